@@ -21,8 +21,7 @@ Vec3 area_vector(const Cage& cage, const std::vector<std::uint32_t>& face) {
 using DirectedEdge = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Edges of the region with no neighbour in the region: from → to, region on the left.
-std::map<std::uint32_t, std::uint32_t> border_of(const Cage& cage,
-                                                 std::span<const std::uint32_t> faces) {
+std::map<std::uint32_t, std::uint32_t> border_of(const Cage& cage, std::span<const std::uint32_t> faces) {
     std::set<DirectedEdge> edges;
     for (const std::uint32_t f : faces) {
         const auto& c = cage.faces[f];
@@ -107,8 +106,7 @@ void carve(Cage& cage, std::span<const std::uint32_t> faces, const CarveBorder& 
         arriving = std::move(moved_arriving);
         for (const auto& [a, b] : next) {
             cage.add_face({a, b, copy[b], copy[a]});
-            if (border[a].corner && style.corner_sharp > 0)
-                cage.crease(a, copy[a], style.corner_sharp);
+            if (border[a].corner && style.corner_sharp > 0) cage.crease(a, copy[a], style.corner_sharp);
             if (loop.sharp > 0) cage.crease(copy[a], copy[b], loop.sharp);
             moved_next[copy[a]] = copy[b];
             moved_border[copy[a]] = border[a];
@@ -127,8 +125,8 @@ Cage make_block(std::array<int, 3> n, const std::function<Vec3(const Vec3& unit)
     const auto vertex = [&](const std::array<int, 3>& at) {
         const auto [it, is_new] = index.try_emplace(at, 0);
         if (is_new)
-            it->second = cage.add_point(
-                place({2.0 * at[0] / n[0] - 1, 2.0 * at[1] / n[1] - 1, 2.0 * at[2] / n[2] - 1}));
+            it->second =
+                cage.add_point(place({2.0 * at[0] / n[0] - 1, 2.0 * at[1] / n[1] - 1, 2.0 * at[2] / n[2] - 1}));
         return it->second;
     };
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -169,8 +167,7 @@ Shape triangulate(const Cage& cage) {
             }
             continue;
         }
-        for (std::size_t k = 1; k + 1 < c.size(); ++k)
-            shape.triangles.push_back({c[0], c[k], c[k + 1]});
+        for (std::size_t k = 1; k + 1 < c.size(); ++k) shape.triangles.push_back({c[0], c[k], c[k + 1]});
     }
     return shape;
 }
@@ -178,8 +175,7 @@ Shape triangulate(const Cage& cage) {
 void append(Shape& shape, const Shape& part) {
     const auto first = static_cast<std::uint32_t>(shape.points.size());
     shape.points.insert(shape.points.end(), part.points.begin(), part.points.end());
-    for (const auto& t : part.triangles)
-        shape.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const auto& t : part.triangles) shape.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
 }
 
 Shape mirrored(const Shape& shape) {

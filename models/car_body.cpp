@@ -22,8 +22,7 @@ enum Side { kNose, kTail, kLeft, kRight, kRoof };
 /// The opening in `n` points (s, 0, z): half a circle `beyond` the arch, and below the axle
 /// straight down to the floor, leaning out a little. The first and last step are short
 /// and round off the sill.
-std::vector<Vec3> draw_arch(const WheelDesign& w, double beyond, double z_first, double z_last,
-                            std::size_t n) {
+std::vector<Vec3> draw_arch(const WheelDesign& w, double beyond, double z_first, double z_last, std::size_t n) {
     const double sill = 12;  // mm
     const double radius = w.arch_radius + beyond, half = std::numbers::pi * radius / 2;
     const double first = -half - (w.z - z_first), last = half + (w.z - z_last);
@@ -39,8 +38,7 @@ std::vector<Vec3> draw_arch(const WheelDesign& w, double beyond, double z_first,
         if (below > 0)
             points.emplace_back(w.s + std::copysign(radius + 0.05 * below, at), 0, w.z - below);
         else
-            points.emplace_back(w.s + grown * std::sin(at / radius), 0,
-                                w.z + grown * std::cos(at / radius));
+            points.emplace_back(w.s + grown * std::sin(at / radius), 0, w.z + grown * std::cos(at / radius));
     }
     return points;
 }
@@ -55,9 +53,7 @@ class Body {
     using Corners = std::vector<std::uint32_t>;
 
     std::uint32_t vertex(int i, int j, int r);
-    Vec3 place(const Vec3& p, bool right) const {
-        return {0.5 * design_.length() - p.x, right ? -p.y : p.y, p.z};
-    }
+    Vec3 place(const Vec3& p, bool right) const { return {0.5 * design_.length() - p.x, right ? -p.y : p.y, p.z}; }
     void add_grid();
     void add_floor();
     void add_arch(const WheelDesign& wheel, bool right);
@@ -100,35 +96,24 @@ bool Body::in_arch(int i, int r) const {
 }
 
 void Body::add_grid() {
-    const auto put = [&](Side side, int a, int b, Corners c) {
-        faces_[{side, a, b}] = cage_.add_face(std::move(c));
-    };
+    const auto put = [&](Side side, int a, int b, Corners c) { faces_[{side, a, b}] = cage_.add_face(std::move(c)); };
     for (int r = 0; r < kTop; ++r) {
         for (int j = 0; j < kColumns; ++j) {
-            put(kNose, j, r,
-                {vertex(0, j + 1, r), vertex(0, j, r), vertex(0, j, r + 1),
-                 vertex(0, j + 1, r + 1)});
+            put(kNose, j, r, {vertex(0, j + 1, r), vertex(0, j, r), vertex(0, j, r + 1), vertex(0, j + 1, r + 1)});
             const int n = kStations;
-            put(kTail, j, r,
-                {vertex(n, j, r), vertex(n, j + 1, r), vertex(n, j + 1, r + 1),
-                 vertex(n, j, r + 1)});
+            put(kTail, j, r, {vertex(n, j, r), vertex(n, j + 1, r), vertex(n, j + 1, r + 1), vertex(n, j, r + 1)});
         }
         for (int i = 0; i < kStations; ++i) {
             if (in_arch(i, r)) continue;
-            put(kLeft, i, r,
-                {vertex(i, 0, r), vertex(i + 1, 0, r), vertex(i + 1, 0, r + 1),
-                 vertex(i, 0, r + 1)});
+            put(kLeft, i, r, {vertex(i, 0, r), vertex(i + 1, 0, r), vertex(i + 1, 0, r + 1), vertex(i, 0, r + 1)});
             const int m = kColumns;
-            put(kRight, i, r,
-                {vertex(i + 1, m, r), vertex(i, m, r), vertex(i, m, r + 1),
-                 vertex(i + 1, m, r + 1)});
+            put(kRight, i, r, {vertex(i + 1, m, r), vertex(i, m, r), vertex(i, m, r + 1), vertex(i + 1, m, r + 1)});
         }
     }
     for (int i = 0; i < kStations; ++i)
         for (int j = 0; j < kColumns; ++j)
             put(kRoof, i, j,
-                {vertex(i + 1, j + 1, kTop), vertex(i, j + 1, kTop), vertex(i, j, kTop),
-                 vertex(i + 1, j, kTop)});
+                {vertex(i + 1, j + 1, kTop), vertex(i, j + 1, kTop), vertex(i, j, kTop), vertex(i + 1, j, kTop)});
 }
 
 /// The floor is flat: one strip in the middle and one beside it on each side.
@@ -174,8 +159,7 @@ void Body::add_arch(const WheelDesign& w, bool right) {
     const int side = right ? kColumns : 0;
     Corners ring;
     for (int r = 0; r < w.top_row; ++r) ring.push_back(vertex(w.first_station, side, r));
-    for (int i = w.first_station; i <= w.last_station; ++i)
-        ring.push_back(vertex(i, side, w.top_row));
+    for (int i = w.first_station; i <= w.last_station; ++i) ring.push_back(vertex(i, side, w.top_row));
     for (int r = w.top_row - 1; r >= 0; --r) ring.push_back(vertex(w.last_station, side, r));
     const std::size_t n = ring.size();
     std::vector<Vec3> border;  // in the design's frame
@@ -185,8 +169,7 @@ void Body::add_arch(const WheelDesign& w, bool right) {
     }
     std::vector<Corners> rings{ring};
     for (const Loop& loop : kLoops) {
-        const std::vector<Vec3> arch =
-            draw_arch(w, loop.beyond, border.front().z, border.back().z, n);
+        const std::vector<Vec3> arch = draw_arch(w, loop.beyond, border.front().z, border.back().z, n);
         Corners next;
         for (std::size_t k = 0; k < n; ++k) {
             Vec3 p = glm::mix(border[k], arch[k], loop.from_border);
@@ -219,8 +202,7 @@ void Body::close_wheel_house(const WheelDesign& w, const std::vector<Corners>& r
             else if (r == nv)
                 wall[{c, r}] = inner[std::size_t(nv + c)];
             else
-                wall[{c, r}] = cage_.add_point(
-                    glm::mix(cage_.points[front], cage_.points[back], double(c) / nu));
+                wall[{c, r}] = cage_.add_point(glm::mix(cage_.points[front], cage_.points[back], double(c) / nu));
         }
     }
     for (int c = 0; c < nu; ++c)
@@ -235,8 +217,7 @@ void Body::close_wheel_house(const WheelDesign& w, const std::vector<Corners>& r
     add(std::move(before), !right);
     add(std::move(after), right);
     for (int c = 0; c < nu; ++c)
-        add({wall[{c + 1, 0}], wall[{c, 0}], vertex(w.first_station + c, q, 0),
-             vertex(w.first_station + c + 1, q, 0)},
+        add({wall[{c + 1, 0}], wall[{c, 0}], vertex(w.first_station + c, q, 0), vertex(w.first_station + c + 1, q, 0)},
             right);
 }
 
@@ -252,8 +233,7 @@ void Body::add_creases() {
         for (const int side : {0, kColumns})
             for (int i = 0; i < kStations; ++i) {
                 const auto a = vertices_.find({i, side, r}), b = vertices_.find({i + 1, side, r});
-                if (a != vertices_.end() && b != vertices_.end())
-                    cage_.crease(a->second, b->second, sharp);
+                if (a != vertices_.end() && b != vertices_.end()) cage_.crease(a->second, b->second, sharp);
             }
     };
     along_ring(6, 1.7);  // character line
@@ -282,8 +262,7 @@ void Body::add_panels() {
     const CarveLoop intake[] = {{8, 40, 1.5}};
     // Bonnet and boot lid.
     carve(cage_, region(kRoof, 1, 11, 5, m - 5), cut, shut_line);
-    carve(cage_, join(region(kRoof, 29, kStations, 6, m - 6), region(kTail, 6, m - 6, 5, kTop)),
-          cut, shut_line);
+    carve(cage_, join(region(kRoof, 29, kStations, 6, m - 6), region(kTail, 6, m - 6, 5, kTop)), cut, shut_line);
     // Windscreen and rear window.
     carve(cage_, region(kRoof, 12, 16, 6, m - 6), frame, glass);
     carve(cage_, region(kRoof, 22, 28, 6, m - 6), frame, glass);

@@ -16,9 +16,8 @@ constexpr double kLength = 4650;
 /// Stations on the flank, mm from the nose. The panels around the wheels take six
 /// stations each; doubled stations stand beside the pillars.
 constexpr std::array<double, kStations + 1> kStationS = {
-    215,  285,  350,  410,  557,  703,  850,  997,  1143, 1290, 1430, 1560,
-    1700, 1800, 1940, 2100, 2300, 2460, 2620, 2790, 2840, 2980, 3120, 3195,
-    3270, 3417, 3563, 3710, 3857, 4003, 4150, 4245, 4340, 4430};
+    215,  285,  350,  410,  557,  703,  850,  997,  1143, 1290, 1430, 1560, 1700, 1800, 1940, 2100, 2300,
+    2460, 2620, 2790, 2840, 2980, 3120, 3195, 3270, 3417, 3563, 3710, 3857, 4003, 4150, 4245, 4340, 4430};
 
 /// Half widths of the columns at nose and tail, mm; column 0 is the corner itself.
 constexpr std::array<double, kMiddle + 1> kNoseY = {0, 735, 700, 665, 620, 565, 470, 330, 170, 0};
@@ -27,9 +26,8 @@ constexpr std::array<double, kMiddle + 1> kTailY = {0, 740, 715, 690, 655, 610, 
 /// The car seen from above: nose, front wheel, waist, rear wheel, tail.
 PlaneLine plan_line() {
     Outline o{{0, 0}};
-    const Vec2 keys[] = {{24, 280},   {80, 520},   {165, 690},  {290, 808},
-                         {470, 882},  {850, 922},  {1500, 914}, {2300, 905},
-                         {3000, 918}, {3710, 938}, {4100, 914}, {4350, 848},
+    const Vec2 keys[] = {{24, 280},   {80, 520},   {165, 690},  {290, 808},  {470, 882},  {850, 922},
+                         {1500, 914}, {2300, 905}, {3000, 918}, {3710, 938}, {4100, 914}, {4350, 848},
                          {4490, 745}, {4572, 600}, {4632, 320}, {kLength, 0}};
     add_spline(o, keys, {0, 1}, {0, -1}, 2000);
     return PlaneLine(o);
@@ -54,8 +52,7 @@ constexpr Section kSections[] = {
 };
 
 /// The front's columns lean: how wide each row stands compared to `kNoseY`.
-constexpr std::array<double, kTop + 1> kNoseSpread = {1,    1.02, 1.05, 1.05, 0.98,
-                                                      0.88, 0.94, 0.98, 1};
+constexpr std::array<double, kTop + 1> kNoseSpread = {1, 1.02, 1.05, 1.05, 0.98, 0.88, 0.94, 0.98, 1};
 
 /// A line of the upper body. At nose and tail it starts and ends on the ring.
 Curve with_ends(double first_at, double first, std::vector<Key> keys, double last_at, double last) {
@@ -176,22 +173,20 @@ CarDesign::CarDesign() : plan_(plan_line()) {
     const auto free_line = [](std::vector<Key> y, std::vector<Key> z) {
         return std::vector<Curve>{Curve(std::move(y)), Curve(std::move(z))};
     };
-    waist_ = free_line(
-        {{1700, 815}, {1800, 824}, {2300, 838}, {2840, 836}, {3210, 812}, {3430, 772}, {3570, 745}},
-        {{1700, 962}, {2300, 976}, {2840, 988}, {3210, 1004}, {3430, 1042}, {3570, 1066}});
-    window_top_ = free_line(
-        {{1700, 802}, {1800, 808}, {2300, 700}, {2700, 696}, {3130, 690}, {3430, 734}, {3570, 738}},
-        {{1700, 968},
-         {1800, 988},
-         {1940, 1058},
-         {2100, 1128},
-         {2300, 1194},
-         {2620, 1226},
-         {2900, 1214},
-         {3130, 1170},
-         {3210, 1148},
-         {3430, 1080},
-         {3570, 1068}});
+    waist_ = free_line({{1700, 815}, {1800, 824}, {2300, 838}, {2840, 836}, {3210, 812}, {3430, 772}, {3570, 745}},
+                       {{1700, 962}, {2300, 976}, {2840, 988}, {3210, 1004}, {3430, 1042}, {3570, 1066}});
+    window_top_ = free_line({{1700, 802}, {1800, 808}, {2300, 700}, {2700, 696}, {3130, 690}, {3430, 734}, {3570, 738}},
+                            {{1700, 968},
+                             {1800, 988},
+                             {1940, 1058},
+                             {2100, 1128},
+                             {2300, 1194},
+                             {2620, 1226},
+                             {2900, 1214},
+                             {3130, 1170},
+                             {3210, 1148},
+                             {3430, 1080},
+                             {3570, 1068}});
 }
 
 double CarDesign::length() const {
@@ -201,8 +196,7 @@ double CarDesign::length() const {
 double CarDesign::ring_u(int i, int j, int r) const {
     const auto k = static_cast<std::size_t>(j);
     if (j == kMiddle) return i == 0 ? 0 : plan_.length();
-    if (i == 0 && j > 0)
-        return plan_.find(1, kNoseY[k] * (j < 3 ? 1 : kNoseSpread[static_cast<std::size_t>(r)]));
+    if (i == 0 && j > 0) return plan_.find(1, kNoseY[k] * (j < 3 ? 1 : kNoseSpread[static_cast<std::size_t>(r)]));
     if (i == kStations && j > 0) return plan_.find(1, kTailY[k], true);
     return plan_.find(0, kStationS[static_cast<std::size_t>(i)]);
 }
@@ -232,8 +226,7 @@ double CarDesign::flare(double s, double z) const {
 double CarDesign::flank_y(double s, double z) const {
     const double u = plan_.find(0, s);
     std::vector<Key> profile;
-    for (std::size_t r = 0; r <= kTop; ++r)
-        profile.push_back({row_height_[r](u), row_inset_[r](u)});
+    for (std::size_t r = 0; r <= kTop; ++r) profile.push_back({row_height_[r](u), row_inset_[r](u)});
     return plan_.point(u).y - Curve(profile)(z) * plan_.left_normal(u).y + flare(s, z);
 }
 

@@ -17,8 +17,8 @@ Shape make_mirror(const CarDesign& design) {
     Cage housing = make_block({2, 3, 2}, [&](const Vec3& u) {
         const double out = 0.5 * (u.y + 1);  // 0 at the car, 1 at the tip
         const double deep = 58 * (1 - 0.35 * out) * (u.x > 0.5 ? 1 - 0.25 * u.z * u.z : 1);
-        return place(design, {1915 - deep * u.x + 38 * out, 962 + 116 * u.y,
-                              1036 + 6 * out + 68 * (1 - 0.3 * out) * u.z});
+        return place(design,
+                     {1915 - deep * u.x + 38 * out, 962 + 116 * u.y, 1036 + 6 * out + 68 * (1 - 0.3 * out) * u.z});
     });
     const std::vector<std::uint32_t> glass{0, 1, 2, 3, 4, 5};
     const CarveLoop loops[] = {{7, 0, 1.5}, {9, 12, 1.5}};

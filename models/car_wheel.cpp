@@ -35,8 +35,7 @@ Shape make_tyre() {
 Shape make_rim() {
     constexpr int kLines = 7;  // per pair of spokes
     constexpr int kColumns = 5 * kLines;
-    constexpr Vec2 kFace[] = {{30, -24},  {66, -24},  {125, -31}, {180, -29},
-                              {226, -17}, {246, -14}, {244, -205}};
+    constexpr Vec2 kFace[] = {{30, -24}, {66, -24}, {125, -31}, {180, -29}, {226, -17}, {246, -14}, {244, -205}};
     Cage cage;
     std::vector<std::vector<std::uint32_t>> row;
     for (const Vec2& p : kFace) {
@@ -44,8 +43,7 @@ Shape make_rim() {
         const double spoke = 14.5;  // degrees from the middle of the pair
         const double half = std::asin(13.0 / std::max(p.x, 90.0)) / kDegrees;
         const double outer = spoke + half, inner = spoke - half;
-        const double lines[kLines] = {
-            -outer, -inner, inner, outer, (outer + 36) / 2, 36, 72 - (outer + 36) / 2};
+        const double lines[kLines] = {-outer, -inner, inner, outer, (outer + 36) / 2, 36, 72 - (outer + 36) / 2};
         row.emplace_back();
         const auto angle = [&](int c) {
             const int pair = (c + kLines) / kLines - 1;
@@ -54,8 +52,7 @@ Shape make_rim() {
         for (int c = 0; c < kColumns; ++c) {
             const double a = angle(c);
             // Subdivision pulls the corners of a polygon inwards.
-            const double grown =
-                6 * p.x / (4 + std::cos(angle(c + 1) - a) + std::cos(a - angle(c - 1)));
+            const double grown = 6 * p.x / (4 + std::cos(angle(c + 1) - a) + std::cos(a - angle(c - 1)));
             row.back().push_back(cage.add_point({grown * std::cos(a), grown * std::sin(a), p.y}));
         }
     }
@@ -70,8 +67,7 @@ Shape make_rim() {
     for (std::size_t c = 0; c < kColumns; ++c)
         for (const std::size_t r : {0, 6}) cage.crease(row[r][c], row[r][(c + 1) % kColumns], 1);
     for (std::size_t p = 0; p < kColumns; p += kLines) {
-        const auto opening = [&](std::initializer_list<std::size_t> columns,
-                                 std::size_t first_row) {
+        const auto opening = [&](std::initializer_list<std::size_t> columns, std::size_t first_row) {
             std::vector<std::uint32_t> faces;
             for (std::size_t r = first_row; r < 4; ++r)
                 for (const std::size_t c : columns) faces.push_back(face[r][p + c]);

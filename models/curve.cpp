@@ -10,14 +10,12 @@ namespace {
 
 /// Slopes of the cubic spline through keys first..last (Thomas algorithm), with
 /// second derivative 0 at the ends, or slope 0 where `flat_first`, `flat_last`.
-std::vector<double> spline_slopes(const std::vector<Curve::Key>& k, std::size_t first,
-                                  std::size_t last, bool flat_first, bool flat_last) {
+std::vector<double> spline_slopes(const std::vector<Curve::Key>& k, std::size_t first, std::size_t last,
+                                  bool flat_first, bool flat_last) {
     const std::size_t n = last - first + 1;
     std::vector<double> upper(n, 0), right(n, 0), slope(n, 0);
     const auto step = [&](std::size_t i) { return k[first + i + 1].at - k[first + i].at; };
-    const auto rise = [&](std::size_t i) {
-        return (k[first + i + 1].value - k[first + i].value) / step(i);
-    };
+    const auto rise = [&](std::size_t i) { return (k[first + i + 1].value - k[first + i].value) / step(i); };
     double pivot = 1;
     if (!flat_first) {
         pivot = 2;
@@ -60,8 +58,7 @@ Curve::Curve(std::vector<Key> keys, bool flat_ends) : keys_(std::move(keys)) {
 double Curve::operator()(double at) const {
     const std::size_t n = keys_.size();
     if (at <= keys_[0].at) return keys_[0].value + slope_in_[0] * (at - keys_[0].at);
-    if (at >= keys_[n - 1].at)
-        return keys_[n - 1].value + slope_out_[n - 1] * (at - keys_[n - 1].at);
+    if (at >= keys_[n - 1].at) return keys_[n - 1].value + slope_out_[n - 1] * (at - keys_[n - 1].at);
     std::size_t k = 0;
     while (at > keys_[k + 1].at) ++k;
     const double h = keys_[k + 1].at - keys_[k].at, t = (at - keys_[k].at) / h, u = 1 - t;

@@ -13,12 +13,10 @@ void add_grid(Shape& shape, Vec3 corner, Vec3 u, Vec3 v, int nu, int nv) {
     const auto first = static_cast<std::uint32_t>(shape.points.size());
     const auto stride = static_cast<std::uint32_t>(nu + 1);
     for (int j = 0; j <= nv; ++j)
-        for (int i = 0; i <= nu; ++i)
-            shape.points.push_back(corner + u * (double(i) / nu) + v * (double(j) / nv));
+        for (int i = 0; i <= nu; ++i) shape.points.push_back(corner + u * (double(i) / nu) + v * (double(j) / nv));
     for (int j = 0; j < nv; ++j) {
         for (int i = 0; i < nu; ++i) {
-            const std::uint32_t a =
-                first + static_cast<std::uint32_t>(j) * stride + static_cast<std::uint32_t>(i);
+            const std::uint32_t a = first + static_cast<std::uint32_t>(j) * stride + static_cast<std::uint32_t>(i);
             const std::uint32_t b = a + 1, c = b + stride, d = a + stride;
             if ((i + j) % 2 == 0) {
                 shape.triangles.push_back({a, b, c});

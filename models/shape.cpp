@@ -24,8 +24,7 @@ std::string solid_defect(const Shape& shape) {
         if (!edges.contains({b, a})) return "an edge has one face only";
     std::vector<double> volume(shape.points.size(), 0);
     for (const auto& t : shape.triangles)
-        volume[root(t[0])] +=
-            glm::dot(shape.points[t[0]], glm::cross(shape.points[t[1]], shape.points[t[2]])) / 6;
+        volume[root(t[0])] += glm::dot(shape.points[t[0]], glm::cross(shape.points[t[1]], shape.points[t[2]])) / 6;
     for (std::uint32_t v = 0; v < parent.size(); ++v)
         if (parent[v] == v && !(volume[v] > 0)) return "a component is inside out or a loose point";
     return "";

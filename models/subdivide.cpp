@@ -98,19 +98,16 @@ Cage subdivide(const Cage& cage, int levels) {
     for (int level = 0; level < levels; ++level) {
         std::vector<std::tuple<Vertex, Vertex, double>> old_edges;
         for (const Mesh::Edge_index e : mesh.edges())
-            if (sharpness[e] > 0)
-                old_edges.emplace_back(mesh.vertex(e, 0), mesh.vertex(e, 1), sharpness[e]);
+            if (sharpness[e] > 0) old_edges.emplace_back(mesh.vertex(e, 0), mesh.vertex(e, 1), sharpness[e]);
         const std::size_t n_old = mesh.number_of_vertices();
-        CGAL::Subdivision_method_3::PQQ(mesh, CreaseMask(&mesh, sharpness),
-                                        CGAL::parameters::number_of_iterations(1));
+        CGAL::Subdivision_method_3::PQQ(mesh, CreaseMask(&mesh, sharpness), CGAL::parameters::number_of_iterations(1));
         inherit_sharpness(mesh, sharpness, n_old, old_edges);
     }
     Cage fine;
     for (const Vertex v : mesh.vertices()) fine.points.push_back(to_vec(mesh.point(v)));
     for (const Mesh::Face_index f : mesh.faces()) {
         std::vector<std::uint32_t> corners;
-        for (const Vertex v : CGAL::vertices_around_face(mesh.halfedge(f), mesh))
-            corners.push_back(v.idx());
+        for (const Vertex v : CGAL::vertices_around_face(mesh.halfedge(f), mesh)) corners.push_back(v.idx());
         fine.faces.push_back(std::move(corners));
     }
     return fine;

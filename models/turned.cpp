@@ -9,8 +9,7 @@ namespace tuft::models {
 namespace {
 
 /// Tangents of the clamped C2 cubic spline over knots `s` (tridiagonal system, Thomas algorithm).
-std::vector<Vec2> spline_tangents(std::span<const Vec2> p, std::span<const double> s, Vec2 first,
-                                  Vec2 last) {
+std::vector<Vec2> spline_tangents(std::span<const Vec2> p, std::span<const double> s, Vec2 first, Vec2 last) {
     const std::size_t n = p.size();
     std::vector<Vec2> tangent(n), right(n);
     std::vector<double> upper(n, 0);
@@ -72,16 +71,14 @@ Shape turn_outline(std::span<const Vec2> outline, int n_around, bool ring) {
 
 void add_line(Outline& outline, Vec2 end, int n_steps) {
     const Vec2 start = outline.back();
-    for (int i = 1; i <= n_steps; ++i)
-        outline.push_back(start + (end - start) * (double(i) / n_steps));
+    for (int i = 1; i <= n_steps; ++i) outline.push_back(start + (end - start) * (double(i) / n_steps));
 }
 
 void add_curve(Outline& outline, Vec2 a, Vec2 b, Vec2 end, int n_steps) {
     const Vec2 start = outline.back();
     for (int i = 1; i <= n_steps; ++i) {
         const double t = double(i) / n_steps, u = 1 - t;
-        outline.push_back(u * u * u * start + 3 * u * u * t * a + 3 * u * t * t * b +
-                          t * t * t * end);
+        outline.push_back(u * u * u * start + 3 * u * u * t * a + 3 * u * t * t * b + t * t * t * end);
     }
 }
 
@@ -96,28 +93,25 @@ void add_half_round(Outline& outline, Vec2 end, int n_steps) {
     }
 }
 
-void add_spline(Outline& outline, std::span<const Vec2> keys, Vec2 first_direction,
-                Vec2 last_direction, int n_steps) {
+void add_spline(Outline& outline, std::span<const Vec2> keys, Vec2 first_direction, Vec2 last_direction, int n_steps) {
     std::vector<Vec2> p{outline.back()};
     p.insert(p.end(), keys.begin(), keys.end());
     std::vector<double> s{0};
     for (std::size_t i = 1; i < p.size(); ++i) s.push_back(s.back() + glm::length(p[i] - p[i - 1]));
-    const std::vector<Vec2> m =
-        spline_tangents(p, s, glm::normalize(first_direction), glm::normalize(last_direction));
+    const std::vector<Vec2> m = spline_tangents(p, s, glm::normalize(first_direction), glm::normalize(last_direction));
     std::size_t k = 0;
     for (int i = 1; i <= n_steps; ++i) {
         const double at = s.back() * i / n_steps;
         while (k + 2 < s.size() && at > s[k + 1]) ++k;
         const double h = s[k + 1] - s[k], t = (at - s[k]) / h, u = 1 - t;
-        outline.push_back((1 + 2 * t) * u * u * p[k] + t * u * u * h * m[k] +
-                          t * t * (3 - 2 * t) * p[k + 1] - t * t * u * h * m[k + 1]);
+        outline.push_back((1 + 2 * t) * u * u * p[k] + t * u * u * h * m[k] + t * t * (3 - 2 * t) * p[k + 1] -
+                          t * t * u * h * m[k + 1]);
     }
 }
 
 Outline inner_side(std::span<const Vec2> outer, const std::function<double(double)>& thickness) {
     std::vector<double> s{0};
-    for (std::size_t i = 1; i < outer.size(); ++i)
-        s.push_back(s.back() + glm::length(outer[i] - outer[i - 1]));
+    for (std::size_t i = 1; i < outer.size(); ++i) s.push_back(s.back() + glm::length(outer[i] - outer[i - 1]));
     Outline inner;
     for (std::size_t i = outer.size(); i-- > 0;) {
         const Vec2 before = outer[i == 0 ? 0 : i - 1];

@@ -17,12 +17,11 @@ using Outline = std::vector<Vec2>;
 /// The functions below append to an outline, from where its pen is.
 void add_line(Outline& outline, Vec2 end, int n_steps = 1);
 void add_curve(Outline& outline, Vec2 handle_a, Vec2 handle_b, Vec2 end, int n_steps);  ///< Bézier
-void add_half_round(Outline& outline, Vec2 end, int n_steps);  ///< half circle, turning left
+void add_half_round(Outline& outline, Vec2 end, int n_steps);                           ///< half circle, turning left
 
 /// Appends a smooth curve through `keys`: the clamped cubic spline over chord
 /// length, with the given directions (any length) at its two ends.
-void add_spline(Outline& outline, std::span<const Vec2> keys, Vec2 first_direction,
-                Vec2 last_direction, int n_steps);
+void add_spline(Outline& outline, std::span<const Vec2> keys, Vec2 first_direction, Vec2 last_direction, int n_steps);
 
 /// The points of `outer`, backwards, each moved to the left of the pen by
 /// `thickness(t)`; t is the part of the length of `outer` before the point.

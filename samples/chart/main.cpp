@@ -73,9 +73,12 @@ std::vector<std::vector<Row>> chart() {
     for (const char* name : {"carbon-black", "bone-black", "cinnabar", "iron-red", "gamboge", "indigo",
                              "cobalt-underglaze", "titanium-white", "shell-white"})
         parts[0].push_back(steps(name));
-    parts[1] = {mixture("gamboge", "indigo"),       mixture("gamboge", "cobalt-underglaze"),
-                mixture("gamboge", "cinnabar"),     mixture("cinnabar", "indigo"),
-                mixture("cinnabar", "titanium-white"), mixture("cobalt-underglaze", "titanium-white"),
+    parts[1] = {mixture("gamboge", "indigo"),
+                mixture("gamboge", "cobalt-underglaze"),
+                mixture("gamboge", "cinnabar"),
+                mixture("cinnabar", "indigo"),
+                mixture("cinnabar", "titanium-white"),
+                mixture("cobalt-underglaze", "titanium-white"),
                 mixture("carbon-black", "titanium-white")};
     parts[2] = {glazes("gamboge", "indigo"), glazes("gamboge", "cinnabar"), glazes("cinnabar", "cobalt-underglaze"),
                 glazes("cobalt-underglaze", "gamboge")};
@@ -88,7 +91,8 @@ void draw(const std::string& path) {
     int rows = 0;
     for (const auto& part : parts) rows += static_cast<int>(part.size());
     const int step = kChip + kGap, group = kColumns * step - kGap + 2 * kGroupGap;
-    io::Image8 image{.width = 2 * kMargin + 3 * group, .height = 2 * kMargin + rows * step + 4 * kGroupGap, .channels = 3};
+    io::Image8 image{
+        .width = 2 * kMargin + 3 * group, .height = 2 * kMargin + rows * step + 4 * kGroupGap, .channels = 3};
     image.pixels.assign(static_cast<std::size_t>(image.width) * image.height * 3, 235);
     const auto fill = [&](int x0, int y0, int width, int height, const ink::Rgb& colour) {
         for (int y = y0; y < y0 + height; ++y)
@@ -104,8 +108,8 @@ void draw(const std::string& path) {
         for (const Row& row : part) {
             for (std::size_t g = 0; g < under.size(); ++g)
                 for (std::size_t i = 0; i < row.size(); ++i)
-                    fill(kMargin + static_cast<int>(g) * group + kGroupGap + static_cast<int>(i) * step, y, kChip, kChip,
-                         colour_of(row[i], under[g]));
+                    fill(kMargin + static_cast<int>(g) * group + kGroupGap + static_cast<int>(i) * step, y, kChip,
+                         kChip, colour_of(row[i], under[g]));
             y += step;
         }
         y += kGroupGap;

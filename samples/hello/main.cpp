@@ -17,14 +17,12 @@ static stroke::Stroke wavy_line(const stroke::Model& model) {
     stroke::Stroke stroke;
     stroke.trace.brush = "wolf-medium";
     stroke.trace.ink = "indigo";
-    stroke.trace.placement = {
-        .origin = front ? front->position : box.centre(), .right = {1, 0, 0}, .down = {0, 0, -1}};
+    stroke.trace.placement = {.origin = front ? front->position : box.centre(), .right = {1, 0, 0}, .down = {0, 0, -1}};
     for (int i = 0; i <= 100; ++i) {
         const double u = i / 100.0;
-        stroke.trace.samples.push_back(
-            {.time = u,                                                   // s
-             .position = {0.04 * (u - 0.5), 0.003 * std::sin(9 * u), 0},  // m
-             .pressure = 0.6 * std::sin(3.1416 * u)});                    // of the working depth
+        stroke.trace.samples.push_back({.time = u,                                                   // s
+                                        .position = {0.04 * (u - 0.5), 0.003 * std::sin(9 * u), 0},  // m
+                                        .pressure = 0.6 * std::sin(3.1416 * u)});  // of the working depth
     }
     return stroke;
 }
@@ -35,8 +33,7 @@ static double ink_area(const stroke::Document& painting) {
     for (const std::uint32_t slot : painting.canvas().touched_slots())
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             const ink::Plane* film = painting.canvas().plane(slot, 0);
-            if (film && (*film)[t] > 0)
-                area += static_cast<double>(painting.model().texels.tiles[slot].area[t]);
+            if (film && (*film)[t] > 0) area += static_cast<double>(painting.model().texels.tiles[slot].area[t]);
         }
     return area;
 }
@@ -50,9 +47,9 @@ int main(int argc, char** argv) {
         const stroke::Model model = stroke::prepare_model(io::read_model(argv[1]), options);
         stroke::Document painting(model, {.substrate = "porcelain"});
         painting.paint(wavy_line(model));
-        io::export_model(argv[2], *model.mesh, model.atlas,
-                         io::make_maps(painting.stack(), model.texels, painting.substrate(),
-                                       painting.compose_options()));
+        io::export_model(
+            argv[2], *model.mesh, model.atlas,
+            io::make_maps(painting.stack(), model.texels, painting.substrate(), painting.compose_options()));
         std::printf("%u charts, %.1f mm2 of ink\n", model.atlas.n_charts, 1e6 * ink_area(painting));
     } catch (const std::exception& error) {
         return std::fprintf(stderr, "tuft-hello: %s\n", error.what()), 1;

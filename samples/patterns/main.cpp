@@ -27,8 +27,7 @@ using std::numbers::pi;
 stroke::Model load(const char* name, std::uint32_t size = 4096) {
     stroke::ModelOptions options;
     options.unwrap.size = size;
-    return stroke::prepare_model(
-        io::read_model(data_folder() / "models" / (std::string(name) + ".ply")), options);
+    return stroke::prepare_model(io::read_model(data_folder() / "models" / (std::string(name) + ".ply")), options);
 }
 
 void draw_seams(const stroke::Model& model, ink::AtlasMap<float>& colour) {
@@ -40,8 +39,7 @@ void draw_seams(const stroke::Model& model, ink::AtlasMap<float>& colour) {
         for (const atlas::SeamSide* side : {&s.a, &s.b}) {
             for (int dy = -2; dy <= 2; ++dy) {
                 for (int dx = -2; dx <= 2; ++dx) {
-                    const int x = static_cast<int>(side->uv.x) + dx,
-                              y = static_cast<int>(side->uv.y) + dy;
+                    const int x = static_cast<int>(side->uv.x) + dx, y = static_cast<int>(side->uv.y) + dy;
                     if (x < 0 || y < 0 || x >= size || y >= size) continue;
                     float* texel = &colour.texels[3 * (std::size_t(y) * size + x)];
                     texel[0] = 0.8f;
@@ -52,26 +50,22 @@ void draw_seams(const stroke::Model& model, ink::AtlasMap<float>& colour) {
     }
 }
 
-void draw(const stroke::Document& painting, const render::View& view,
-          const std::filesystem::path& out) {
+void draw(const stroke::Document& painting, const render::View& view, const std::filesystem::path& out) {
     const stroke::Model& model = painting.model();
     for (const bool seams : {false, true}) {
-        ink::AtlasMap<float> colour = ink::compose_linear(
-            painting.canvas(), model.texels, painting.substrate(), painting.compose_options());
+        ink::AtlasMap<float> colour =
+            ink::compose_linear(painting.canvas(), model.texels, painting.substrate(), painting.compose_options());
         if (seams) draw_seams(model, colour);
         render::Appearance look;
         const ink::Substrate& substrate = painting.substrate();
-        look.finish =
-            substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
-        look.body_colour =
-            Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
+        look.finish = substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
+        look.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
         look.maps.size = colour.size;
         look.maps.corner_uvs = model.atlas.corner_uvs;
         look.maps.base_colour = {reinterpret_cast<const Vec3f*>(colour.texels.data()),
                                  std::size_t{colour.size} * colour.size};
         render::PictureOptions options{.width = 1280, .height = 800, .view = view};
-        const render::Image image =
-            render::render_picture(*model.mesh, *model.query, look, options);
+        const render::Image image = render::render_picture(*model.mesh, *model.query, look, options);
         std::filesystem::path file = out;
         file += seams ? "-seams.png" : ".png";
         io::write_image(file, io::view_of(image.width, image.height, 3, image.rgb.data()));
@@ -105,16 +99,15 @@ void plate(const std::filesystem::path& folder) {
     constexpr int kPeriods = 48, kRows = 180;  // of a period
     const double step = 2 * pi * radius / (kPeriods * kRows), period = kRows * step;
     const auto way = ring(model, radius, 0.1, kPeriods * kRows);
-    roll(model, painting.canvas(), pigment, 2.0f, way, step, 18 * kMillimetre,
-         [&](double x, double v) {
-             const double mm = v / kMillimetre;
-             if (std::abs(std::abs(mm) - 8) < 0.4) return true;
-             if (std::abs(mm - 3.6 * std::sin(2 * pi * x / period)) < 0.7) return true;
-             // Dots in the bends.
-             const double s = x - period * std::floor(x / period);
-             return std::hypot(s - 0.25 * period, v + 0.5 * kMillimetre) < 1.3 * kMillimetre ||
-                    std::hypot(s - 0.75 * period, v - 0.5 * kMillimetre) < 1.3 * kMillimetre;
-         });
+    roll(model, painting.canvas(), pigment, 2.0f, way, step, 18 * kMillimetre, [&](double x, double v) {
+        const double mm = v / kMillimetre;
+        if (std::abs(std::abs(mm) - 8) < 0.4) return true;
+        if (std::abs(mm - 3.6 * std::sin(2 * pi * x / period)) < 0.7) return true;
+        // Dots in the bends.
+        const double s = x - period * std::floor(x / period);
+        return std::hypot(s - 0.25 * period, v + 0.5 * kMillimetre) < 1.3 * kMillimetre ||
+               std::hypot(s - 0.75 * period, v - 0.5 * kMillimetre) < 1.3 * kMillimetre;
+    });
     draw(painting, {.azimuth = 0, .elevation = 60 * kDegree}, folder / "plate-ring");
 }
 
@@ -127,11 +120,9 @@ void bowl(const std::filesystem::path& folder) {
     s.trace.brush = "wolf-small";
     s.trace.ink = "cinnabar";
     const double length = painting.brush(s.trace.brush).length, step = 0.25 * kMillimetre;
-    const auto way =
-        straight_way(model, {0.035, -0.01, 0.02}, glm::normalize(Vec3{1, -0.3, 0.6}), step, 400);
-    const auto rim = std::max_element(way.begin(), way.end(), [](const Contact& a, const Contact& b) {
-        return a.frame.origin.z < b.frame.origin.z;
-    });
+    const auto way = straight_way(model, {0.035, -0.01, 0.02}, glm::normalize(Vec3{1, -0.3, 0.6}), step, 400);
+    const auto rim = std::max_element(
+        way.begin(), way.end(), [](const Contact& a, const Contact& b) { return a.frame.origin.z < b.frame.origin.z; });
     double time = 0;
     Vec3 before{0};
     for (std::size_t i = 0; i < way.size(); ++i) {
@@ -143,9 +134,7 @@ void bowl(const std::filesystem::path& folder) {
         // The holder turns over the rim gently: its axis is the mean normal of 15 mm of the way.
         Vec3 n{0};
         for (int k = -30; k <= 30; ++k)
-            n += way[std::clamp<std::ptrdiff_t>(std::ptrdiff_t(i) + k, 0,
-                                                std::ptrdiff_t(way.size()) - 1)]
-                     .frame.n;
+            n += way[std::clamp<std::ptrdiff_t>(std::ptrdiff_t(i) + k, 0, std::ptrdiff_t(way.size()) - 1)].frame.n;
         n = glm::normalize(n);
         const Frame f = make_frame(Vec3{0}, n, way[i].frame.t);
         stroke::TraceSample p;
@@ -173,8 +162,7 @@ void bowl(const std::filesystem::path& folder) {
 
 int main(int argc, char** argv) {
     const std::string only = argc > 2 ? argv[2] : "";
-    if (argc < 2 || argv[1][0] == '-' ||
-        !(only.empty() || only == "car" || only == "bowl" || only == "plate")) {
+    if (argc < 2 || argv[1][0] == '-' || !(only.empty() || only == "car" || only == "bowl" || only == "plate")) {
         std::fprintf(stderr, "usage: tuft-patterns FOLDER [car | bowl | plate]\n");
         return 2;
     }

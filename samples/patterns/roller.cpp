@@ -11,8 +11,8 @@ constexpr double kWheel = 2.5e-3;  // metres, radius: too wide for the shut line
 
 }  // namespace
 
-std::vector<Contact> straight_way(const stroke::Model& model, const Vec3& from, const Vec3& heading,
-                                  double step, int n) {
+std::vector<Contact> straight_way(const stroke::Model& model, const Vec3& from, const Vec3& heading, double step,
+                                  int n) {
     const auto start = model.query->closest_point(from);
     Frame frame = make_frame(start->position, start->normal, heading);
     std::vector<Contact> way{{frame, start->triangle}};
@@ -48,8 +48,8 @@ std::vector<Contact> ring(const stroke::Model& model, double radius, double heig
     return way;
 }
 
-void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float film,
-          const std::vector<Contact>& way, double step, double width, const Pattern& pattern) {
+void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float film, const std::vector<Contact>& way,
+          double step, double width, const Pattern& pattern) {
     const double cell = 0.5 * model.texels.texel_size;
     // The wheel flattens over four steps, so that rows that fan out where the surface bends like a
     // saddle leave nothing blank between them.
@@ -80,16 +80,14 @@ void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float fi
                     const double v = f.lo.y + (j + (p / kPoints + 0.5) / kPoints) * cell;
                     sum += pattern(double(i) * step + u, v);
                 }
-                f.coverage[std::size_t(j) * f.width + k] =
-                    static_cast<std::uint8_t>(255 * sum / (kPoints * kPoints));
+                f.coverage[std::size_t(j) * f.width + k] = static_cast<std::uint8_t>(255 * sum / (kPoints * kPoints));
             }
         jobs = footprint::plan_stamp(model.surface(), f, {}, options, scratch, std::move(jobs));
         footprint::choose_mode(jobs, true, options);
         for (const footprint::TileJob& job : jobs.tiles) {
             if (!footprint::evaluate_tile(model.texels, jobs, job, unpacked, exposure)) continue;
             ink::Plane& plane = canvas.touch(job.slot, pigment);
-            for (int t = 0; t < atlas::kTileTexels; ++t)
-                plane[t] = std::max(plane[t], film * exposure[t]);
+            for (int t = 0; t < atlas::kTileTexels; ++t) plane[t] = std::max(plane[t], film * exposure[t]);
         }
     }
 }

@@ -18,8 +18,8 @@ struct Contact {
 
 /// Straight on from the surface near `from` towards `heading`, `n` places `step` metres apart: where
 /// a wheel of 2.5 mm touches that rolls without turning. It goes round edges and over shut lines.
-std::vector<Contact> straight_way(const stroke::Model& model, const Vec3& from, const Vec3& heading,
-                                  double step, int n);
+std::vector<Contact> straight_way(const stroke::Model& model, const Vec3& from, const Vec3& heading, double step,
+                                  int n);
 
 /// Round the z axis at `radius` metres on the surface that lies under `height`, closed.
 std::vector<Contact> ring(const stroke::Model& model, double radius, double height, int n);
@@ -28,7 +28,7 @@ std::vector<Contact> ring(const stroke::Model& model, double radius, double heig
 using Pattern = std::function<bool(double x, double v)>;
 
 /// Prints `film` film units of the canvas's pigment along the way, `width` metres wide.
-void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float film,
-          const std::vector<Contact>& way, double step, double width, const Pattern& pattern);
+void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float film, const std::vector<Contact>& way,
+          double step, double width, const Pattern& pattern);
 
 }  // namespace tuft::samples

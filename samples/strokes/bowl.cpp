@@ -11,8 +11,8 @@ namespace {
 
 constexpr const char* kBrush = "mixed-small";
 
-void write_glyph(std::vector<stroke::Trace>& out, const Glyph& g, const WidthTable& table,
-                 const WriteOptions& options, const stroke::Placement& place, const char* ink) {
+void write_glyph(std::vector<stroke::Trace>& out, const Glyph& g, const WidthTable& table, const WriteOptions& options,
+                 const stroke::Placement& place, const char* ink) {
     for (const Stroke& s : g.strokes) {
         stroke::Trace t = write(s, table, options);
         t.placement = place;
@@ -37,10 +37,7 @@ std::vector<stroke::Trace> bowl_inside() {
         const Vec2 middle{(k % 2 - 0.5) * pitch, (k / 2 - 0.5) * pitch};
         options.centre = Vec2(500, 500) - middle * kMillimetre / (0.001 * options.size);
         write_glyph(out, glyph(characters[k]), table, options,
-                    {{0, back * kMillimetre, 11.6 * kMillimetre},
-                     {1, 0, 0},
-                     {0, -1, 0},
-                     stroke::SurfaceMapping::wrap},
+                    {{0, back * kMillimetre, 11.6 * kMillimetre}, {1, 0, 0}, {0, -1, 0}, stroke::SurfaceMapping::wrap},
                     "carbon");
     }
     return out;

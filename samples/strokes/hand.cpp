@@ -38,8 +38,7 @@ std::vector<double> monotone_slopes(const std::vector<double>& t, const std::vec
 
 double hermite(double v0, double m0, double v1, double m1, double h, double u) {
     const double u2 = u * u, u3 = u2 * u;
-    return (2 * u3 - 3 * u2 + 1) * v0 + (u3 - 2 * u2 + u) * h * m0 + (3 * u2 - 2 * u3) * v1 +
-           (u3 - u2) * h * m1;
+    return (2 * u3 - 3 * u2 + 1) * v0 + (u3 - 2 * u2 + u) * h * m0 + (3 * u2 - 2 * u3) * v1 + (u3 - u2) * h * m1;
 }
 
 /// Dense points along one smooth piece.
@@ -72,8 +71,7 @@ std::vector<Spot> trace_piece(const std::vector<Spot>& keys) {
         for (int k = 1; k <= steps; ++k) {
             const double u = double(k) / steps;
             Spot s;
-            for (int c = 0; c < 2; ++c)
-                s.p[c] = hermite(keys[i].p[c], m0[c], keys[i + 1].p[c], m1[c], h, u);
+            for (int c = 0; c < 2; ++c) s.p[c] = hermite(keys[i].p[c], m0[c], keys[i + 1].p[c], m1[c], h, u);
             s.width = hermite(width[i], width_slope[i], width[i + 1], width_slope[i + 1], h, u);
             s.pace = hermite(pace[i], pace_slope[i], pace[i + 1], pace_slope[i + 1], h, u);
             s.length = spots.back().length + way(spots.back(), s);
@@ -102,18 +100,15 @@ std::vector<double> time_piece(const std::vector<Spot>& spots, const WriteOption
     speed.front() = speed.back() = creep;
     for (std::size_t i = 1; i < n; ++i) {
         const double ds = spots[i].length - spots[i - 1].length;
-        speed[i] =
-            std::min(speed[i], std::sqrt(speed[i - 1] * speed[i - 1] + 2 * o.acceleration * ds));
+        speed[i] = std::min(speed[i], std::sqrt(speed[i - 1] * speed[i - 1] + 2 * o.acceleration * ds));
     }
     for (std::size_t i = n - 1; i-- > 0;) {
         const double ds = spots[i + 1].length - spots[i].length;
-        speed[i] =
-            std::min(speed[i], std::sqrt(speed[i + 1] * speed[i + 1] + 2 * o.acceleration * ds));
+        speed[i] = std::min(speed[i], std::sqrt(speed[i + 1] * speed[i + 1] + 2 * o.acceleration * ds));
     }
     std::vector<double> time(n, 0.0);
     for (std::size_t i = 1; i < n; ++i)
-        time[i] =
-            time[i - 1] + 2 * (spots[i].length - spots[i - 1].length) / (speed[i] + speed[i - 1]);
+        time[i] = time[i - 1] + 2 * (spots[i].length - spots[i - 1].length) / (speed[i] + speed[i - 1]);
     return time;
 }
 
@@ -126,10 +121,8 @@ WidthTable::WidthTable(const brush::Preset& preset) {
     widths_ = {0};
     pressures_ = {0};
     for (const brush::SweepRow& row : brush::sweep_depth(preset, depths)) {
-        if (row.width <=
-            widths_.back() + 1e-6) {  // the bare tip: press as far as the line stays fine
-            pressures_.back() =
-                std::max(pressures_.back(), widths_.size() > 1 ? row.depth / deepest : 0.0);
+        if (row.width <= widths_.back() + 1e-6) {  // the bare tip: press as far as the line stays fine
+            pressures_.back() = std::max(pressures_.back(), widths_.size() > 1 ? row.depth / deepest : 0.0);
             continue;
         }
         widths_.push_back(row.width);
@@ -152,8 +145,7 @@ stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOp
     std::vector<Spot> keys;
     for (std::size_t i = 0; i < stroke.keys.size(); ++i) {
         const Key& k = stroke.keys[i];
-        keys.push_back(
-            {0.001 * o.size * (Vec2(k.x, k.y) - o.centre), 0.001 * o.size * k.width, k.pace, 0});
+        keys.push_back({0.001 * o.size * (Vec2(k.x, k.y) - o.centre), 0.001 * o.size * k.width, k.pace, 0});
         const bool last = i + 1 == stroke.keys.size();
         if (keys.size() > 1 && (k.rest >= 0 || last)) {
             const auto piece = trace_piece(keys);
@@ -181,14 +173,13 @@ stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOp
         const double u = h > 0 ? std::clamp((t - times[i]) / h, 0.0, 1.0) : 1.0;
         const Vec2 p = spots[i].p + u * (spots[i + 1].p - spots[i].p);
         const double width = spots[i].width + u * (spots[i + 1].width - spots[i].width);
-        trace.samples.push_back(
-            {.time = t, .position = Vec3(p, 0), .pressure = table.pressure(width), .tilt = o.tilt});
+        trace.samples.push_back({.time = t, .position = Vec3(p, 0), .pressure = table.pressure(width), .tilt = o.tilt});
     }
     return trace;
 }
 
-void Series::add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::BrushAction> before,
-                 const Vec2& tilt) {
+void Series::add(const Stroke& stroke, const char* brush, const char* ink, double speed,
+                 std::vector<stroke::BrushAction> before, const Vec2& tilt) {
     WriteOptions options;
     options.size = 1;  // keys are in millimetres
     options.centre = {0, 0};

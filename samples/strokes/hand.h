@@ -47,7 +47,7 @@ struct WriteOptions {
     double turn_radius = 0.0015;  ///< metres: bends tighter than this slow the hand down
     double acceleration = 1.2;    ///< m/s², from rest and into rest
     double sample_rate = 200;     ///< Hz
-    Vec2 tilt{0.015, 0.025};  ///< radians: upright, but for a little to the right and to the writer
+    Vec2 tilt{0.015, 0.025};      ///< radians: upright, but for a little to the right and to the writer
 };
 
 /// The motion: a centripetal Catmull–Rom curve through the keys (from rest to rest, corners
@@ -60,8 +60,8 @@ struct Series {
     stroke::Placement place;
     std::vector<stroke::Trace> out = {};
 
-    void add(const Stroke& stroke, const char* brush, const char* ink, double speed, std::vector<stroke::BrushAction> before = {},
-             const Vec2& tilt = WriteOptions{}.tilt);
+    void add(const Stroke& stroke, const char* brush, const char* ink, double speed,
+             std::vector<stroke::BrushAction> before = {}, const Vec2& tilt = WriteOptions{}.tilt);
 };
 
 }  // namespace tuft::samples

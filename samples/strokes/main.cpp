@@ -16,8 +16,7 @@ int main(int argc, char** argv) {
     }
     try {
         const std::filesystem::path folder = argv[1];
-        const auto save = [&](const char* name, const char* title,
-                              const std::vector<stroke::Trace>& traces) {
+        const auto save = [&](const char* name, const char* title, const std::vector<stroke::Trace>& traces) {
             double seconds = 0;
             for (const stroke::Trace& t : traces) seconds += t.samples.back().time;
             io::write_inkml(folder / name, traces, title, io::Digits::rounded);

@@ -26,8 +26,7 @@ struct Rim {
     double unrolled = kRadius / std::cos(kSlope);
     Key at(double s, double t, double width, double pace = 1, double rest = -1) const {
         const double a = s / unrolled;
-        return {(unrolled + t) * std::sin(a), unrolled - (unrolled + t) * std::cos(a), width, pace,
-                rest};
+        return {(unrolled + t) * std::sin(a), unrolled - (unrolled + t) * std::cos(a), width, pace, rest};
     }
 };
 
@@ -53,8 +52,8 @@ Stroke draw(const Leaf& l, const Rim& rim) {
     };
     return {"leaf",
             {key(0, 0, 0, 0.7), key(0.16, 0.5, 0.45 * l.width, 0.8), key(0.42, 1.0, l.width, 0.8),
-             key(0.66, 0.95, 0.80 * l.width, 1), key(0.86, 0.5, 0.34 * l.width, 1.2),
-             key(1.0, 0.0, 0.22, 1.2, 0), key(0.93, 0.22, 0, 1)}};
+             key(0.66, 0.95, 0.80 * l.width, 1), key(0.86, 0.5, 0.34 * l.width, 1.2), key(1.0, 0.0, 0.22, 1.2, 0),
+             key(0.93, 0.22, 0, 1)}};
 }
 
 /// A thin line through points (s, t) that swells by `width` in its middle.
@@ -78,8 +77,7 @@ Stroke berry(Vec2 p, double width, const Rim& rim) {
 
 /// Half a wave: the stem's hollow with its spray, and the leaf on its back. `side` is +1
 /// where the stem runs on the outer half.
-void half_wave(std::vector<Stroke>& out, double s0, double half, double side, const Rim& rim,
-               Hand& hand) {
+void half_wave(std::vector<Stroke>& out, double s0, double half, double side, const Rim& rim, Hand& hand) {
     const double rise = 6.5;
     const auto wave = [&](double x) { return side * rise * std::sin(pi * x); };
     std::vector<Vec2> main;
@@ -90,9 +88,8 @@ void half_wave(std::vector<Stroke>& out, double s0, double half, double side, co
     // A side shoot curls back into the hollow and ends in a spray of three.
     const double x0 = s0 + 0.08 * half;
     const Vec2 end{s0 + hand.vary(0.56, 0.03) * half, side * hand.vary(-5.2, 0.06)};
-    out.push_back(stem(
-        {{x0, wave(0.08)}, {s0 + 0.22 * half, side * 1.0}, {s0 + 0.38 * half, side * -2.6}, end},
-        0.95, rim));
+    out.push_back(
+        stem({{x0, wave(0.08)}, {s0 + 0.22 * half, side * 1.0}, {s0 + 0.38 * half, side * -2.6}, end}, 0.95, rim));
     const double along = side * -0.25;
     const double turns[] = {0.0, 0.75, -0.75};
     const double lengths[] = {15.0, 11.5, 11.0};
@@ -125,16 +122,14 @@ void half_wave(std::vector<Stroke>& out, double s0, double half, double side, co
                         .width = hand.vary(2.7, 0.06),
                         .bend = 0.16 * side},
                        rim));
-    out.push_back(
-        berry({s0 + 0.93 * half, side * hand.vary(6.6, 0.05)}, hand.vary(2.3, 0.08), rim));
+    out.push_back(berry({s0 + 0.93 * half, side * hand.vary(6.6, 0.05)}, hand.vary(2.3, 0.08), rim));
 }
 
 }  // namespace
 
 std::vector<stroke::Trace> plate_ornament() {
     const WidthTable table(brush::load_preset(kBrush));
-    const WriteOptions options{
-        .size = 1.0, .centre = {0, 0}, .speed = 0.05};  // keys are millimetres
+    const WriteOptions options{.size = 1.0, .centre = {0, 0}, .speed = 0.05};  // keys are millimetres
     const Rim rim;
     const double period = 2 * pi * rim.unrolled * std::cos(kSlope) / kPeriods;
     std::vector<stroke::Trace> out;

@@ -37,10 +37,10 @@ struct Writer {
 
 Stroke sweep(const char* name, Vec2 from, Vec2 to, double width, double pace = 1) {
     const Vec2 way = to - from;
-    const auto at = [&](double f, double w, double p) {
-        return Key{from.x + f * way.x, from.y + f * way.y, w, p};
-    };
-    return {name, {at(0, 0, 0.6), at(0.01, 0.25 * width, 0.4), at(0.07, width, pace), at(0.5, width, pace), at(0.93, width, pace), at(1, 0, pace)}};
+    const auto at = [&](double f, double w, double p) { return Key{from.x + f * way.x, from.y + f * way.y, w, p}; };
+    return {name,
+            {at(0, 0, 0.6), at(0.01, 0.25 * width, 0.4), at(0.07, width, pace), at(0.5, width, pace),
+             at(0.93, width, pace), at(1, 0, pace)}};
 }
 
 }  // namespace
@@ -58,23 +58,28 @@ std::vector<stroke::Trace> stroke_sheet() {
         ++row;
     }
     using stroke::Action;
-    const auto wiped = [](double amount) { return std::vector<stroke::BrushAction>{{.action = Action::wipe, .extent = {.amount = amount}}}; };
+    const auto wiped = [](double amount) {
+        return std::vector<stroke::BrushAction>{{.action = Action::wipe, .extent = {.amount = amount}}};
+    };
     const char* brush = "mixed-medium";
     // The holder leans across the stroke, so that the tip runs along one side of it.
     w.add(sweep("slanted tip", {60, 300}, {940, 300}, 200), brush, 0, row, {.tilt = {0, 0.7}});
     w.add(sweep("slanted tip, dry", {60, 740}, {940, 740}, 200), brush, 0, row, {.tilt = {0, 0.7}}, wiped(0.72));
     // The holder leans ahead: the tip is pushed against its hair.
     w.add(sweep("reversed tip", {60, 300}, {800, 300}, 150, 0.6), brush, 1.05, row, {.tilt = {-0.6, 0}});
-    w.add(sweep("reversed tip, dry", {60, 740}, {800, 740}, 150, 0.6), brush, 1.05, row, {.tilt = {-0.6, 0}}, wiped(0.72));
+    w.add(sweep("reversed tip, dry", {60, 740}, {800, 740}, 150, 0.6), brush, 1.05, row, {.tilt = {-0.6, 0}},
+          wiped(0.72));
     for (int k = 0; k < 2; ++k)
-        w.add(sweep("split tip", {60, 300.0 + 440 * k}, {940, 300.0 + 440 * k}, 330), brush, 2.1, row, {}, wiped(0.86 + 0.06 * k));
+        w.add(sweep("split tip", {60, 300.0 + 440 * k}, {940, 300.0 + 440 * k}, 330), brush, 2.1, row, {},
+              wiped(0.86 + 0.06 * k));
     // One after the other drier.
     const double amounts[] = {0.5, 0.64, 0.74, 0.82};
     for (int k = 0; k < 4; ++k)
-        w.add(sweep("dry tip", {60, 140.0 + 250 * k}, {3000, 140.0 + 250 * k}, 215), brush, 3.15, row,
-              {.speed = 0.1}, wiped(amounts[k]));
+        w.add(sweep("dry tip", {60, 140.0 + 250 * k}, {3000, 140.0 + 250 * k}, 215), brush, 3.15, row, {.speed = 0.1},
+              wiped(amounts[k]));
     ++row;
-    w.add(sweep("fast and half dry", {60, 200}, {5900, 160}, 260), "goat-medium", 0, row + 0.15, {.speed = 0.35, .acceleration = 6}, wiped(0.55));
+    w.add(sweep("fast and half dry", {60, 200}, {5900, 160}, 260), "goat-medium", 0, row + 0.15,
+          {.speed = 0.35, .acceleration = 6}, wiped(0.55));
     w.add(sweep("runs dry", {60, 560}, {5900, 600}, 260), "wolf-medium", 0, row + 0.15, {.speed = 0.15}, wiped(0.7));
     w.add(na({4200, 820}, {5200, 1430}, {5900, 1450}, 260), "goat-medium", 0, row + 0.15, {.speed = 0.12}, wiped(0.6));
     w.add(pie({3900, 880}, {2400, 1500}, 240, 0.1), "goat-medium", 0, row + 0.15, {.speed = 0.15}, wiped(0.62));

@@ -13,7 +13,7 @@ namespace {
 using stroke::Action;
 using stroke::BrushAction;
 
-constexpr double kSquare = 1;    // metres: keys are in millimetres
+constexpr double kSquare = 1;      // metres: keys are in millimetres
 constexpr double kRedTip = 0.085;  // of the tuft's length
 
 const BrushAction kDry{.action = Action::dry};
@@ -62,7 +62,9 @@ Stroke petal(double turn, double from, double length, double width) {
         const Vec2 p = (from + (1 - f) * length) * u + side * length * v;
         return Key{p.x, p.y, w, pace};
     };
-    return {"petal", {at(0, 0, 0, 0.5), at(0.12, 0.02, 0.45 * width, 0.5), at(0.4, 0.05, width, 0.6), at(0.7, 0.03, 0.7 * width, 0.9), at(1, 0, 0, 1)}};
+    return {"petal",
+            {at(0, 0, 0, 0.5), at(0.12, 0.02, 0.45 * width, 0.5), at(0.4, 0.05, width, 0.6),
+             at(0.7, 0.03, 0.7 * width, 0.9), at(1, 0, 0, 1)}};
 }
 
 void append(std::vector<stroke::Trace>& to, Writer&& w) {
@@ -85,7 +87,8 @@ std::vector<stroke::Trace> wet_sheet() {
     append(out, std::move(flower));
     // Three glazes, each over the dry one below.
     Writer glazes = on_sheet(48, 40);
-    const char* inks[] = {"samples/inks/gamboge-wash.toml", "samples/inks/iron-red-wash.toml", "samples/inks/indigo-wash.toml"};
+    const char* inks[] = {"samples/inks/gamboge-wash.toml", "samples/inks/iron-red-wash.toml",
+                          "samples/inks/indigo-wash.toml"};
     for (int k = 0; k < 3; ++k) {
         const double a = (k * 60 + 10) * kDegree;
         const Vec2 u{std::cos(a), std::sin(a)};
@@ -95,10 +98,13 @@ std::vector<stroke::Trace> wet_sheet() {
     append(out, std::move(glazes));
     // A wet stripe, and a clean wet brush drawn through it.
     Writer smear = on_sheet(-50, -45);
-    smear.add({"stripe", {{-30, -8, 0}, {-29, -8, 3}, {-23, -11, 9}, {-8, -12, 8}, {13, -6, 8}, {26, -9, 5}, {31, -13, 0}}}, {.brush = "mixed-medium", .ink = "indigo"});
+    smear.add(
+        {"stripe", {{-30, -8, 0}, {-29, -8, 3}, {-23, -11, 9}, {-8, -12, 8}, {13, -6, 8}, {26, -9, 5}, {31, -13, 0}}},
+        {.brush = "mixed-medium", .ink = "indigo"});
     const double starts[] = {-19, -1, 17};
     for (const double x : starts)
-        smear.add({"clean brush", {{x, -20, 0}, {x + 0.5, -18, 5}, {x + 2, -8, 8}, {x + 1, 8, 8}, {x - 4, 20, 5}, {x - 8, 27, 0}}},
+        smear.add({"clean brush",
+                   {{x, -20, 0}, {x + 0.5, -18, 5}, {x + 2, -8, 8}, {x + 1, 8, 8}, {x - 4, 20, 5}, {x - 8, 27, 0}}},
                   {.brush = "mixed-medium", .ink = "water", .options = {.speed = 0.04}});
     append(out, std::move(smear));
     // Fast and half dry: the bristles show.
@@ -106,8 +112,16 @@ std::vector<stroke::Trace> wet_sheet() {
     const double amounts[] = {0.74, 0.82};
     for (int k = 0; k < 2; ++k) {
         const double y = 22.0 * k - 12;
-        sweep.add({"dry sweep", {{-36, y + 5, 0, 0.5}, {-34, y + 4, 5, 0.4}, {-28, y + 1, 9, 1}, {-5, y - 5, 9, 1}, {18, y - 3, 8, 1}, {40, y - 9, 0, 1}}},
-                  {.brush = k ? "goat-medium" : "wolf-large", .options = {.speed = 0.25, .acceleration = 6}, .before = {{.action = Action::wipe, .extent = {.amount = amounts[k]}}}});
+        sweep.add({"dry sweep",
+                   {{-36, y + 5, 0, 0.5},
+                    {-34, y + 4, 5, 0.4},
+                    {-28, y + 1, 9, 1},
+                    {-5, y - 5, 9, 1},
+                    {18, y - 3, 8, 1},
+                    {40, y - 9, 0, 1}}},
+                  {.brush = k ? "goat-medium" : "wolf-large",
+                   .options = {.speed = 0.25, .acceleration = 6},
+                   .before = {{.action = Action::wipe, .extent = {.amount = amounts[k]}}}});
     }
     append(out, std::move(sweep));
     return out;
@@ -119,12 +133,18 @@ std::vector<stroke::Trace> wet_bowl() {
               {std::cos(turn), std::sin(turn), 0},
               {0, 0, -1},
               stroke::SurfaceMapping::wrap}};
-    w.add({"wet ground", {{-26, -8, 0}, {-22, -9, 8}, {0, -11, 13}, {22, -7, 8}, {26, -6, 0}}}, {.brush = "mixed-large", .ink = "water"});
-    w.add({"wet ground", {{-27, 3, 0}, {-22, 2, 8}, {0, 0, 14}, {22, 3, 8}, {27, 4, 0}}}, {.brush = "mixed-large", .ink = "water"});
-    w.add({"indigo", {{-20, -4, 0}, {-17, -5, 6}, {-8, -6, 12}, {2, -3, 10}, {8, -1, 0}}}, {.brush = "mixed-large", .ink = "indigo"});
-    w.add({"gamboge", {{-6, 6, 0}, {-3, 5, 6}, {5, 3, 12}, {14, 2, 9}, {20, -1, 0}}}, {.brush = "mixed-large", .ink = "gamboge"});
-    w.add({"cinnabar", {{6, -10, 0}, {8, -9, 5}, {11, -7, 8}, {13, -5, 0}}}, {.brush = "mixed-medium", .ink = "cinnabar"});
-    w.add({"drop of water", {{-12, -5, 0}, {-11, -4, 4}, {-10, -3, 7}, {-9, -1, 0}}}, {.brush = "mixed-medium", .ink = "water", .before = {{.action = Action::dry, .seconds = 5}}});
+    w.add({"wet ground", {{-26, -8, 0}, {-22, -9, 8}, {0, -11, 13}, {22, -7, 8}, {26, -6, 0}}},
+          {.brush = "mixed-large", .ink = "water"});
+    w.add({"wet ground", {{-27, 3, 0}, {-22, 2, 8}, {0, 0, 14}, {22, 3, 8}, {27, 4, 0}}},
+          {.brush = "mixed-large", .ink = "water"});
+    w.add({"indigo", {{-20, -4, 0}, {-17, -5, 6}, {-8, -6, 12}, {2, -3, 10}, {8, -1, 0}}},
+          {.brush = "mixed-large", .ink = "indigo"});
+    w.add({"gamboge", {{-6, 6, 0}, {-3, 5, 6}, {5, 3, 12}, {14, 2, 9}, {20, -1, 0}}},
+          {.brush = "mixed-large", .ink = "gamboge"});
+    w.add({"cinnabar", {{6, -10, 0}, {8, -9, 5}, {11, -7, 8}, {13, -5, 0}}},
+          {.brush = "mixed-medium", .ink = "cinnabar"});
+    w.add({"drop of water", {{-12, -5, 0}, {-11, -4, 4}, {-10, -3, 7}, {-9, -1, 0}}},
+          {.brush = "mixed-medium", .ink = "water", .before = {{.action = Action::dry, .seconds = 5}}});
     return std::move(w.out);
 }
 
@@ -135,18 +155,34 @@ std::vector<stroke::Trace> backrun() {
     // When it has lost its shine, clean water.
     const double drops[][2] = {{-13, 3}, {12, -4}};
     for (const auto& [x, y] : drops)
-        w.add({"drop of water", {{x - 1, y, 0, 0.5}, {x, y, 5, 0.5}, {x + 1, y + 0.5, 6, 0.5}, {x + 2, y + 0.5, 0, 0.5}}},
-              {.brush = "mixed-large", .ink = "water",
-               .options = {.speed = 0.02},
-               .before = x < 0 ? std::vector<BrushAction>{{.action = Action::dry, .seconds = 25}, {.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}} : std::vector<BrushAction>{{.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}}});
+        w.add(
+            {"drop of water", {{x - 1, y, 0, 0.5}, {x, y, 5, 0.5}, {x + 1, y + 0.5, 6, 0.5}, {x + 2, y + 0.5, 0, 0.5}}},
+            {.brush = "mixed-large",
+             .ink = "water",
+             .options = {.speed = 0.02},
+             .before =
+                 x < 0
+                     ? std::vector<BrushAction>{{.action = Action::dry, .seconds = 25},
+                                                {.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}}
+                     : std::vector<BrushAction>{{.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}}});
     return std::move(w.out);
 }
 
 std::vector<stroke::Trace> wet_vase() {
     Writer w{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::SurfaceMapping::wrap}};
     // Dripping wet: what the hair does not hold runs down the wall.
-    w.add({"dripping stroke", {{-32, 2, 0, 0.6}, {-29, 1, 7, 0.5}, {-18, -3, 12, 0.6}, {-4, -1, 9, 1}, {10, 3, 11, 0.7}, {24, 0, 8, 1}, {36, -5, 0, 1}}},
-          {.brush = "mixed-large", .ink = "indigo", .options = {.speed = 0.03}, .before = {{.action = Action::dip, .ink = "indigo", .extent = {.amount = 1.045}}}});
+    w.add({"dripping stroke",
+           {{-32, 2, 0, 0.6},
+            {-29, 1, 7, 0.5},
+            {-18, -3, 12, 0.6},
+            {-4, -1, 9, 1},
+            {10, 3, 11, 0.7},
+            {24, 0, 8, 1},
+            {36, -5, 0, 1}}},
+          {.brush = "mixed-large",
+           .ink = "indigo",
+           .options = {.speed = 0.03},
+           .before = {{.action = Action::dip, .ink = "indigo", .extent = {.amount = 1.045}}}});
     return std::move(w.out);
 }
 

@@ -24,28 +24,34 @@ using namespace tuft;
 // The options: for --help, the manual page and the completions of shells.
 const Manual& manual() {
     static const Manual manual{
-        .program = {.name = "tuft-studio",
-                    .text = "decorate a 3D model with ink and a bending brush, in a window",
-                    .options = {{.value = "MODEL|PROJECT", .text = "mesh (PLY, OBJ, STL, OFF, GLB or glTF) or project to open"},
-                                {.names = {"--script"}, .value = "FILE", .text = "play the commands of a file, then end"},
-                                {.names = {"--headless"}, .text = "show no window (for scripts)"},
-                                {.names = {"--size"}, .value = "WxH", .text = "size of the window in pixels (1280x720)"},
-                                {.names = {"--help", "-h"}, .text = "print this help message and exit"},
-                                {.names = {"--version"}, .text = "print the program's version and exit"}}},
+        .program =
+            {.name = "tuft-studio",
+             .text = "decorate a 3D model with ink and a bending brush, in a window",
+             .options = {{.value = "MODEL|PROJECT",
+                          .text = "mesh (PLY, OBJ, STL, OFF, GLB or glTF) or project to open"},
+                         {.names = {"--script"}, .value = "FILE", .text = "play the commands of a file, then end"},
+                         {.names = {"--headless"}, .text = "show no window (for scripts)"},
+                         {.names = {"--size"}, .value = "WxH", .text = "size of the window in pixels (1280x720)"},
+                         {.names = {"--help", "-h"}, .text = "print this help message and exit"},
+                         {.names = {"--version"}, .text = "print the program's version and exit"}}},
         .version = build_facts().version,
         .date = build_facts().released,
         .sections = {{"DESCRIPTION",
-                      "tuft-studio opens a mesh, makes a texture atlas for it, and paints on its surface with a physically bending "
+                      "tuft-studio opens a mesh, makes a texture atlas for it, and paints on its surface with a "
+                      "physically bending "
                       "brush, by mouse, pen tablet or SpaceMouse. Help in its menu lists the keys."},
                      {"FILES",
-                      "$XDG_STATE_HOME/tuft (~/.local/state/tuft) keeps settings and unfinished work. /usr/share/tuft has brushes, "
+                      "$XDG_STATE_HOME/tuft (~/.local/state/tuft) keeps settings and unfinished work. /usr/share/tuft "
+                      "has brushes, "
                       "inks, substrates, models and samples; TUFT_DATA names another folder for them."},
                      {"SEE ALSO", "tuft(1)"}}};
     return manual;
 }
 
 std::string help() {
-    std::string text = "Usage: tuft-studio [OPTIONS] [MODEL|PROJECT]\nDecorate a 3D model with ink and a bending brush, in a window.\n\n";
+    std::string text =
+        "Usage: tuft-studio [OPTIONS] [MODEL|PROJECT]\nDecorate a 3D model with ink and a bending brush, in a "
+        "window.\n\n";
     for (const ManualOption& option : manual().program.options) {
         std::string line = "  ";
         for (const std::string& name : option.names) line += (line.size() > 2 ? ", " : "") + name;
@@ -58,7 +64,8 @@ std::string help() {
 
 bool is_option(const std::string& word) {
     const auto& options = manual().program.options;
-    return std::any_of(options.begin(), options.end(), [&](const ManualOption& o) { return std::count(o.names.begin(), o.names.end(), word) > 0; });
+    return std::any_of(options.begin(), options.end(),
+                       [&](const ManualOption& o) { return std::count(o.names.begin(), o.names.end(), word) > 0; });
 }
 
 struct Options {
@@ -76,17 +83,22 @@ Options parse(int argc, char** argv) {
             return std::string(argv[i]);
         };
         if (word.starts_with("-") && !is_option(word)) throw UsageError("unknown option '" + word + "' (see --help)");
-        if (word == "--script") o.script = value();
-        else if (word == "--headless") o.headless = true;
+        if (word == "--script")
+            o.script = value();
+        else if (word == "--headless")
+            o.headless = true;
         else if (word == "--size") {
             const std::string size = value();
             const char* end = size.data() + size.size();
             const auto [x, e1] = std::from_chars(size.data(), end, o.width);
-            const bool good = e1 == std::errc() && x < end && *x == 'x' && std::from_chars(x + 1, end, o.height).ptr == end;
+            const bool good =
+                e1 == std::errc() && x < end && *x == 'x' && std::from_chars(x + 1, end, o.height).ptr == end;
             if (!good || o.width < 320 || o.height < 240 || o.width > 8192 || o.height > 8192)
                 throw UsageError("'" + size + "' is not a size; write 1280x720");
-        } else if (o.file.empty()) o.file = word;
-        else throw UsageError("one model or project at a time, '" + word + "' is too much");
+        } else if (o.file.empty())
+            o.file = word;
+        else
+            throw UsageError("one model or project at a time, '" + word + "' is too much");
     }
     if (o.headless && o.script.empty()) throw UsageError("--headless needs a --script to play");
     return o;
@@ -124,7 +136,8 @@ void loop(app::Display& display, const Options& options) {
         display.present();
         studio.shown(display.now());
         const std::string name = app::project_name(session) + (session.last.viewing ? " (a view)" : "");
-        if (const std::string wanted = name.empty() ? "tuft studio" : name + " \xe2\x80\x93 tuft studio"; wanted != title)
+        if (const std::string wanted = name.empty() ? "tuft studio" : name + " \xe2\x80\x93 tuft studio";
+            wanted != title)
             display.set_title(title = wanted);
     }
     studio.finish();
@@ -154,14 +167,17 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
     for (int i = 1; i < argc; ++i) {
-        if (!std::strcmp(argv[i], "--help") || !std::strcmp(argv[i], "-h")) return std::fputs(help().c_str(), stdout), 0;
-        if (!std::strcmp(argv[i], "--version")) return std::printf("tuft-studio %s\n", build_facts().version.c_str()), 0;
+        if (!std::strcmp(argv[i], "--help") || !std::strcmp(argv[i], "-h"))
+            return std::fputs(help().c_str(), stdout), 0;
+        if (!std::strcmp(argv[i], "--version"))
+            return std::printf("tuft-studio %s\n", build_facts().version.c_str()), 0;
     }
     // A limit on the size of files is a write that fails, with a message, not the end of the program.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);  // so is a driver that goes away
     try {
-        if (argc == 3 && !std::strcmp(argv[1], "--reference")) return write_manual(manual(), argv[2]), 0;  // when it is built
+        if (argc == 3 && !std::strcmp(argv[1], "--reference"))
+            return write_manual(manual(), argv[2]), 0;  // when it is built
         return run(parse(argc, argv));
     } catch (const UsageError& error) {
         std::fprintf(stderr, "tuft-studio: %s\n", error.what());

@@ -27,7 +27,8 @@ void take_picked(Session& s, const std::string& name) {
     std::string parts;
     for (const ink::InkPart& part : ink->parts) {
         char text[96];
-        std::snprintf(text, sizeof text, "%s%.0f %% %s", parts.empty() ? "" : ", ", 100 * part.fraction / std::max(1e-9, ink->strength()), part.pigment.name.c_str());
+        std::snprintf(text, sizeof text, "%s%.0f %% %s", parts.empty() ? "" : ", ",
+                      100 * part.fraction / std::max(1e-9, ink->strength()), part.pigment.name.c_str());
         parts += text;
     }
     say(s, name + ": " + parts);
@@ -35,8 +36,10 @@ void take_picked(Session& s, const std::string& name) {
 
 std::unique_ptr<PaintThread> start_painter(Session& s, PaintThread::Work work) {
     const fs::path project = work.autosave.path();
-    if (project.empty() || work.autosave.viewing()) s.note.clear();  // it is in memory only, or another program's
-    else s.note.write(project, work.source);
+    if (project.empty() || work.autosave.viewing())
+        s.note.clear();  // it is in memory only, or another program's
+    else
+        s.note.write(project, work.source);
     if (!project.empty() && !is_unnamed(project)) remember_project(project);
     work.spare = s.note.new_project(fs::path(work.source).stem().string());
     return std::make_unique<PaintThread>(std::move(work));
@@ -50,19 +53,21 @@ void take_file(Session& s, const fs::path& project) {
     s.recent = recent_projects();
     // The file that it had before it had a name is of no more use, but as what a revised model is made from.
     std::error_code ec;
-    if (const fs::path& before = s.last.project; is_unnamed(before) && before != s.revises && before != s.former) fs::remove(before, ec);
+    if (const fs::path& before = s.last.project; is_unnamed(before) && before != s.revises && before != s.former)
+        fs::remove(before, ec);
 }
 
 // A layer just added is painted on, and so is one that an undo brings back after it was removed from under the hand.
 // Without the one painted on: the one before it was added, where that is undone, else its neighbour below.
 void follow_layers(Session& s, const stroke::LayerTable& now, bool outside) {
     const std::uint32_t before = s.layer, newest = now.next_id - 1;
-    if (s.layers_seen == 0) s.layer = now.layers.back().id;
+    if (s.layers_seen == 0)
+        s.layer = now.layers.back().id;
     else if (now.next_id > s.layers_seen && !outside && now.find(newest)) {
         if (s.layer != kNewestLayer) s.layers_before.push_back(s.layer);
         s.layer = newest;
     } else if (s.layer == kNewestLayer) {
-        if (!s.painter->idle()) return;  // still to come
+        if (!s.painter->idle()) return;    // still to come
         s.layer = s.layers_before.back();  // it could not be added
         s.layers_before.pop_back();
     } else if (s.layer_gone != 0 && now.find(s.layer_gone)) {
@@ -70,9 +75,12 @@ void follow_layers(Session& s, const stroke::LayerTable& now, bool outside) {
     }
     if (!now.find(s.layer)) {
         const std::vector<stroke::Layer>& was = s.last.layers.layers;
-        const auto place = std::find_if(was.begin(), was.end(), [&](const stroke::Layer& l) { return l.id == s.layer; }) - was.begin();
+        const auto place =
+            std::find_if(was.begin(), was.end(), [&](const stroke::Layer& l) { return l.id == s.layer; }) - was.begin();
         s.layer_gone = s.layer;
-        s.layer = now.layers[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(place - 1, 0, static_cast<std::ptrdiff_t>(now.layers.size()) - 1))].id;
+        s.layer = now.layers[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
+                                 place - 1, 0, static_cast<std::ptrdiff_t>(now.layers.size()) - 1))]
+                      .id;
         for (; now.next_id < s.layers_seen && !s.layers_before.empty(); s.layers_before.pop_back())
             if (now.find(s.layers_before.back())) {
                 s.layer = s.layers_before.back();
@@ -200,7 +208,9 @@ void choose_mask(Session& s, std::uint32_t id) {
     s.painter->post(ShowMask{id});
 }
 
-bool has_unkept_work(const Session& s) { return s.painter && (s.last.unkept > 0 || s.last.behind); }
+bool has_unkept_work(const Session& s) {
+    return s.painter && (s.last.unkept > 0 || s.last.behind);
+}
 
 void leave(Session& s, Leaving leaving) {
     if (!has_unkept_work(s)) return leave_at_once(s, leaving);
@@ -231,7 +241,9 @@ void open_in_use(Session& s, OpenAs as) {
 void open_path(Session& s, const fs::path& path) {
     if (path.extension() == ".toml") return open_ink(s, path);
     if (const std::string e = path.extension().string(); e == ".svg" || e == ".inkml") return open_writing(s, path);
-    if (const std::string e = lower(path.extension().string()); e == ".png" || e == ".jpg" || e == ".jpeg" || e == ".tif" || e == ".tiff") return pin_reference(s, path);
+    if (const std::string e = lower(path.extension().string());
+        e == ".png" || e == ".jpg" || e == ".jpeg" || e == ".tif" || e == ".tiff")
+        return pin_reference(s, path);
     if (has_unkept_work(s)) return leave(s, {Leaving::To::open, path});
     s.pictures.rest();
     s.in_use.reset();
@@ -254,7 +266,10 @@ void open_sample(Session& s, const fs::path& path) {
 void revise_with(Session& s, const fs::path& path) {
     if (!s.painter) return;
     if (!s.last.trouble.empty()) return say(s, s.ui.tr("The project must be on disk first: ") + s.last.trouble);
-    const OpenOptions same{.frame = s.painter->frame(), .atlas_size = s.painter->model().atlas.size, .substrate = s.open_options.substrate, .own_colours = s.open_options.own_colours};
+    const OpenOptions same{.frame = s.painter->frame(),
+                           .atlas_size = s.painter->model().atlas.size,
+                           .substrate = s.open_options.substrate,
+                           .own_colours = s.open_options.own_colours};
     const fs::path former = s.last.project;
     open_path(s, path);
     s.open_options = same;
@@ -266,33 +281,54 @@ void open_former(Session& s) {
 }
 
 bool close_dialog(Session& s) {
-    if (s.files.shown()) s.files.close();
-    else if (s.help.manual) s.help.manual = false;
-    else if (s.key_asked) s.key_asked.reset();
-    else if (s.show_keys) s.show_keys = false;
-    else if (s.show_about) s.show_about = false;
-    else if (s.show_mismatches) s.show_mismatches = false;
-    else if (s.journal.moves) s.journal.moves = false, s.journal.from.reset(), s.journal.to.reset();
-    else if (s.show_settings) s.show_settings = false;
-    else if (s.show_colours) s.show_colours = false;
-    else if (s.show_export) s.show_export = false;
-    else if (s.opening.running()) s.opening.cancel();
-    else if (s.leaving) s.leaving.reset();
-    else if (s.in_use) s.in_use.reset();
-    else if (s.inspected) s.inspected.reset();
-    else if (s.sure_to_delete) s.sure_to_delete = false;
-    else if (!s.lost.empty() && !s.painter) s.lost.erase(s.lost.begin());  // later
-    else if (!s.snapshots.compared.empty()) compare_with(s, "");
-    else if (!s.journal.selected.empty()) select_entries(s, {});
-    else return false;
+    if (s.files.shown())
+        s.files.close();
+    else if (s.help.manual)
+        s.help.manual = false;
+    else if (s.key_asked)
+        s.key_asked.reset();
+    else if (s.show_keys)
+        s.show_keys = false;
+    else if (s.show_about)
+        s.show_about = false;
+    else if (s.show_mismatches)
+        s.show_mismatches = false;
+    else if (s.journal.moves)
+        s.journal.moves = false, s.journal.from.reset(), s.journal.to.reset();
+    else if (s.show_settings)
+        s.show_settings = false;
+    else if (s.show_colours)
+        s.show_colours = false;
+    else if (s.show_export)
+        s.show_export = false;
+    else if (s.opening.running())
+        s.opening.cancel();
+    else if (s.leaving)
+        s.leaving.reset();
+    else if (s.in_use)
+        s.in_use.reset();
+    else if (s.inspected)
+        s.inspected.reset();
+    else if (s.sure_to_delete)
+        s.sure_to_delete = false;
+    else if (!s.lost.empty() && !s.painter)
+        s.lost.erase(s.lost.begin());  // later
+    else if (!s.snapshots.compared.empty())
+        compare_with(s, "");
+    else if (!s.journal.selected.empty())
+        select_entries(s, {});
+    else
+        return false;
     return true;
 }
 
 void accept_inspected(Session& s) {
     if (!s.inspected) return;
     const fs::path project = s.note.new_project(s.inspected->path.stem().string());
-    if (s.revises.empty()) s.opening.prepare(std::move(*s.inspected), s.open_options, project);
-    else s.opening.revise(std::move(*s.inspected), s.open_options, s.revises, project);
+    if (s.revises.empty())
+        s.opening.prepare(std::move(*s.inspected), s.open_options, project);
+    else
+        s.opening.revise(std::move(*s.inspected), s.open_options, s.revises, project);
     s.inspected.reset();
 }
 
@@ -307,7 +343,8 @@ void close_model(Session& s) {
     s.left_behind.clear();
     // Finishes and keeps what is in work.
     if (const fs::path spare = s.painter->finish(); !spare.empty()) {
-        s.left_behind = project.string() + " could not be written; the work is in " + spare.string() + " and is offered at the next start";
+        s.left_behind = project.string() + " could not be written; the work is in " + spare.string() +
+                        " and is offered at the next start";
         s.note.write(spare, s.painter->source());
         remember_project(spare);
         project = spare;
@@ -372,7 +409,8 @@ void poll_session(Session& s) {
         s.last = {};
         if (!find_ink(s, s.ink)) s.ink = "carbon";
         s.model_is_new = true;
-        for (const io::Attachment& image : s.painter->carried_references()) s.references.images.push_back(from_attachment(image));
+        for (const io::Attachment& image : s.painter->carried_references())
+            s.references.images.push_back(from_attachment(image));
         if (s.help.by_itself && !s.help.seen && s.help.step < 0) start_guide(s);
         s.keeps_view = revised;
         s.former = s.revises;
@@ -432,8 +470,10 @@ void poll_painter(Session& s) {
     follow_layers(s, u.layers, u.from_outside);
     const stroke::MaskTable& masks = u.masks;
     // A mask that was just made is the one wanted; one that is gone holds nothing back.
-    if (masks.next_id > s.masks_seen && s.masks_seen > 0 && !masks.masks.empty()) choose_mask(s, masks.masks.back().id);
-    else if (s.mask != 0 && !masks.find(s.mask)) choose_mask(s, 0);
+    if (masks.next_id > s.masks_seen && s.masks_seen > 0 && !masks.masks.empty())
+        choose_mask(s, masks.masks.back().id);
+    else if (s.mask != 0 && !masks.find(s.mask))
+        choose_mask(s, 0);
     s.masks_seen = masks.next_id;
     s.last = std::move(u);
     // What was asked about is on disk now.
@@ -462,7 +502,8 @@ Vec4f section_plane(const Session& s) {
 
 std::string project_name(const Session& s) {
     if (!s.painter) return "";
-    return s.last.project.empty() || is_unnamed(s.last.project) ? fs::path(s.painter->source()).stem().string() : s.last.project.stem().string();
+    return s.last.project.empty() || is_unnamed(s.last.project) ? fs::path(s.painter->source()).stem().string()
+                                                                : s.last.project.stem().string();
 }
 
 void pin_reference(Session& s, const fs::path& path) {
@@ -470,8 +511,10 @@ void pin_reference(Session& s, const fs::path& path) {
     try {
         ReferenceImage image = read_reference(path);
         References& all = s.references;
-        if (all.images.size() >= io::kMostAttachments) return say(s, "There are as many images as a project can hold; take one off first.");
-        const auto same = std::find_if(all.images.begin(), all.images.end(), [&](const ReferenceImage& r) { return r.id == image.id; });
+        if (all.images.size() >= io::kMostAttachments)
+            return say(s, "There are as many images as a project can hold; take one off first.");
+        const auto same = std::find_if(all.images.begin(), all.images.end(),
+                                       [&](const ReferenceImage& r) { return r.id == image.id; });
         if (same != all.images.end()) {
             same->shown = true;
             return say(s, "This image is pinned already.");
@@ -513,36 +556,51 @@ double number_within(const std::string& text, double lo, double hi) {
 void load_settings(Session& s) {
     std::ifstream in(state_folder() / "settings");
     for (std::string key, value; in >> key >> value;) {
-        if (key == "language") s.wanted.language = value == "chinese" ? Language::chinese : Language::english;
-        else if (key == "theme") s.wanted.theme = value == "light" ? Theme::light : Theme::dark;
+        if (key == "language")
+            s.wanted.language = value == "chinese" ? Language::chinese : Language::english;
+        else if (key == "theme")
+            s.wanted.theme = value == "light" ? Theme::light : Theme::dark;
         else if (key == "own_scale") {
             s.wanted.scale = static_cast<float>(number_within(value, 0.75, 3));
             s.wanted.own_scale = true;
-        } else if (key == "guide_seen") s.help.seen = value == "1";
+        } else if (key == "guide_seen")
+            s.help.seen = value == "1";
         else if (key == "panels") {
             s.tools_shown = value.find('t') != std::string::npos;
             s.journal_shown = value.find('j') != std::string::npos;
-        } else if (key.rfind("section:", 0) == 0) s.ui.sections[from_word(key.substr(8))] = value == "1";
-        else if (key == "left_handed") s.wanted.left_handed = value == "1";
-        else if (key.rfind("key:", 0) == 0) s.keys.restore(key.substr(4), value);
-        else if (key == "pen_least") s.hand.pen_least = number_within(value, 0.0, 0.9);
-        else if (key == "pen_full") s.hand.pen_full = number_within(value, s.hand.pen_least + 0.1, 1.0);
-        else if (key == "pen_gamma") s.hand.pen_gamma = number_within(value, 0.25, 4.0);
-        else if (key == "cap_speed") s.cap.speed = number_within(value, 0.1, 4.0);
-        else if (key == "cap_level") s.cap.level = value == "1";
-        else if (key == "cap_eye") s.cap.moves_eye = value == "1";
-        else if (key == "clean_ends") s.hand.clean_ends = value == "1";
-        else if (key == "keymap") s.keymap = value == "maya" ? Keymap::maya : Keymap::blender;
+        } else if (key.rfind("section:", 0) == 0)
+            s.ui.sections[from_word(key.substr(8))] = value == "1";
+        else if (key == "left_handed")
+            s.wanted.left_handed = value == "1";
+        else if (key.rfind("key:", 0) == 0)
+            s.keys.restore(key.substr(4), value);
+        else if (key == "pen_least")
+            s.hand.pen_least = number_within(value, 0.0, 0.9);
+        else if (key == "pen_full")
+            s.hand.pen_full = number_within(value, s.hand.pen_least + 0.1, 1.0);
+        else if (key == "pen_gamma")
+            s.hand.pen_gamma = number_within(value, 0.25, 4.0);
+        else if (key == "cap_speed")
+            s.cap.speed = number_within(value, 0.1, 4.0);
+        else if (key == "cap_level")
+            s.cap.level = value == "1";
+        else if (key == "cap_eye")
+            s.cap.moves_eye = value == "1";
+        else if (key == "clean_ends")
+            s.hand.clean_ends = value == "1";
+        else if (key == "keymap")
+            s.keymap = value == "maya" ? Keymap::maya : Keymap::blender;
     }
 }
 
 void store_settings(const Session& s) {
     std::ostringstream out;
     out << "language " << (s.wanted.language == Language::chinese ? "chinese" : "english") << "\ntheme "
-        << (s.wanted.theme == Theme::light ? "light" : "dark") << "\nleft_handed "
-        << s.wanted.left_handed << "\nkeymap " << (s.keymap == Keymap::maya ? "maya" : "blender") << "\npen_least " << s.hand.pen_least << "\npen_full "
-        << s.hand.pen_full << "\npen_gamma " << s.hand.pen_gamma << "\ncap_speed " << s.cap.speed << "\ncap_level " << s.cap.level
-        << "\ncap_eye " << s.cap.moves_eye << "\nclean_ends " << s.hand.clean_ends << '\n';
+        << (s.wanted.theme == Theme::light ? "light" : "dark") << "\nleft_handed " << s.wanted.left_handed
+        << "\nkeymap " << (s.keymap == Keymap::maya ? "maya" : "blender") << "\npen_least " << s.hand.pen_least
+        << "\npen_full " << s.hand.pen_full << "\npen_gamma " << s.hand.pen_gamma << "\ncap_speed " << s.cap.speed
+        << "\ncap_level " << s.cap.level << "\ncap_eye " << s.cap.moves_eye << "\nclean_ends " << s.hand.clean_ends
+        << '\n';
     if (s.wanted.own_scale) out << "own_scale " << s.wanted.scale << '\n';
     out << "guide_seen " << s.help.seen << "\n";
     out << "panels -" << (s.tools_shown ? "t" : "") << (s.journal_shown ? "j" : "") << '\n';

@@ -13,26 +13,29 @@
 /// The brush that a model is opened with: the one that a person last had in hand for it, the one of its last stroke,
 /// or one in the size of the model.
 ///
-/// Size: at the resting pressure its line shall be 2 % of the diagonal of the model's box wide, 12 to 16 pixels where the
-/// whole model is seen, but no wider than a quarter of the middle side of its box. Of the brushes with the hair that is
-/// in the hand the one nearest to that is taken, scaled where it is further off than half as much again.
+/// Size: at the resting pressure its line shall be 2 % of the diagonal of the model's box wide, 12 to 16 pixels where
+/// the whole model is seen, but no wider than a quarter of the middle side of its box. Of the brushes with the hair
+/// that is in the hand the one nearest to that is taken, scaled where it is further off than half as much again.
 namespace fs = std::filesystem;
 
 namespace tuft::app {
 namespace {
 
 constexpr double kPartOfDiagonal = 0.02, kPartOfMiddle = 0.25;
-constexpr double kNearEnough = 1.5;          // times the wanted width, up or down, that a brush keeps its own size
-constexpr std::size_t kMostModels = 200;     // remembered
+constexpr double kNearEnough = 1.5;       // times the wanted width, up or down, that a brush keeps its own size
+constexpr std::size_t kMostModels = 200;  // remembered
 
-fs::path memory_path() { return state_folder() / "brushes"; }
+fs::path memory_path() {
+    return state_folder() / "brushes";
+}
 
 // Brush and model, the newest first.
 std::vector<std::pair<std::string, std::string>> memory() {
     std::vector<std::pair<std::string, std::string>> all;
     std::ifstream in(memory_path());
     for (std::string line; all.size() < kMostModels && std::getline(in, line);)
-        if (const auto tab = line.find('\t'); tab != std::string::npos) all.emplace_back(line.substr(0, tab), line.substr(tab + 1));
+        if (const auto tab = line.find('\t'); tab != std::string::npos)
+            all.emplace_back(line.substr(0, tab), line.substr(tab + 1));
     return all;
 }
 
@@ -65,7 +68,8 @@ double first_line_width(const Box& box) {
     return std::min(kPartOfDiagonal * box.diagonal(), kPartOfMiddle * side[1]);
 }
 
-std::string first_brush(const std::vector<std::string>& brushes, const std::string& hair_of, double pressure, double width) {
+std::string first_brush(const std::vector<std::string>& brushes, const std::string& hair_of, double pressure,
+                        double width) {
     const std::string hair = hair_of.substr(0, hair_of.find('-') + 1);
     std::string best;
     double factor = 1, least = 1e9;

@@ -10,7 +10,9 @@ namespace {
 bool same_recipe(const ink::Ink& a, const ink::Ink& b) {
     return a.film == b.film && a.yield == b.yield &&
            std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
-                      [](const ink::InkPart& p, const ink::InkPart& q) { return p.fraction == q.fraction && p.pigment.name == q.pigment.name; });
+                      [](const ink::InkPart& p, const ink::InkPart& q) {
+                          return p.fraction == q.fraction && p.pigment.name == q.pigment.name;
+                      });
 }
 
 }  // namespace
@@ -21,7 +23,9 @@ std::vector<ink::Pigment> pigments_in_use(const Session& s) {
         const ink::Ink* ink = line.ink.empty() || line.erases ? nullptr : find_ink(s, line.ink);
         if (!ink) continue;
         for (const ink::InkPart& part : ink->parts)
-            if (std::none_of(all.begin(), all.end(), [&](const ink::Pigment& p) { return p.name == part.pigment.name; })) all.push_back(part.pigment);
+            if (std::none_of(all.begin(), all.end(),
+                             [&](const ink::Pigment& p) { return p.name == part.pigment.name; }))
+                all.push_back(part.pigment);
     }
     return all;
 }
@@ -30,7 +34,8 @@ void take_mix(Session& s, ink::Ink ink) {
     // An ink of the work has that name already: the same one, or another that keeps it.
     const std::string wanted = ink.name;
     for (int n = 2;; ++n) {
-        const auto own = std::find_if(s.own_inks.begin(), s.own_inks.end(), [&](const ink::Ink& o) { return o.name == ink.name; });
+        const auto own =
+            std::find_if(s.own_inks.begin(), s.own_inks.end(), [&](const ink::Ink& o) { return o.name == ink.name; });
         const bool shipped = std::find(s.inks.begin(), s.inks.end(), ink.name) != s.inks.end();
         if (own != s.own_inks.end() && same_recipe(*own, ink)) {
             s.colour.in_hand.reset();

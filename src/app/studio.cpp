@@ -18,10 +18,11 @@ namespace fs = std::filesystem;
 namespace tuft::app {
 namespace {
 
-constexpr double kTurnPause = 0.25;    // seconds without a turn of the wheel after which the view is still
-constexpr double kStillAfter = 0.4;    // seconds after the last event
+constexpr double kTurnPause = 0.25;  // seconds without a turn of the wheel after which the view is still
+constexpr double kStillAfter = 0.4;  // seconds after the last event
 constexpr double kProgressEvery = 0.05, kInkEvery = 0.008, kStillEvery = 0.015;  // seconds between frames
-constexpr double kInkWait = 0.02, kInkPart = 0.2;  // seconds, and part of a frame's time, that the newest ink is waited for
+constexpr double kInkWait = 0.02,
+                 kInkPart = 0.2;       // seconds, and part of a frame's time, that the newest ink is waited for
 constexpr float kLeastView = 240;      // pixels at scale 1, of the model's view beside both panels
 constexpr double kPictureAfter = 1.5;  // seconds after the last stroke
 constexpr double kPictureWait = 3;     // seconds that leaving waits at most for the newest ink on it
@@ -132,7 +133,8 @@ void Studio::layout(int width, int height) {
 
 bool Studio::dialog_open() const {
     const Session& s = session_;
-    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings || s.show_keys || s.show_about || s.help.manual || s.show_mismatches || s.in_use || s.leaving ||
+    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings ||
+           s.show_keys || s.show_about || s.help.manual || s.show_mismatches || s.in_use || s.leaving ||
            s.files.shown();
 }
 
@@ -143,11 +145,15 @@ void Studio::panels() {
     ImGui::BeginDisabled(s.ui.modal);
     if (s.painter) {
         const auto top = static_cast<float>(s.area.y), bottom = static_cast<float>(s.area.y + s.area.height);
-        const auto right = static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width);
+        const auto right =
+            static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width);
         const bool swapped = !s.journal_fits && s.show_journal && !s.show_colours;
         const float strip = s.ui.px(kStripWidth), screen = ImGui::GetIO().DisplaySize.x;
         tool_strip(s, top, bottom, s.wanted.left_handed ? screen - strip : 0);
-        if (s.show_colours || s.tools_shown || swapped) (s.show_colours ? colours_panel : swapped ? journal_panel : tool_panel)(s, top, bottom, s.wanted.left_handed ? right : strip);
+        if (s.show_colours || s.tools_shown || swapped)
+            (s.show_colours ? colours_panel
+             : swapped      ? journal_panel
+                            : tool_panel)(s, top, bottom, s.wanted.left_handed ? right : strip);
         if (s.journal_fits && s.journal_shown) journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
         status_bar(s, bottom);
         panel_handles(s);
@@ -166,11 +172,16 @@ void Studio::panels() {
         welcome(s);
     }
     ImGui::EndDisabled();
-    if (s.opening.running()) opening_progress(s);
-    else if (s.leaving) leave_dialog(s);
-    else if (s.in_use) in_use_dialog(s);
-    else if (s.inspected) open_dialog(s);
-    else if (!s.lost.empty() && !s.painter) recovery_dialog(s);
+    if (s.opening.running())
+        opening_progress(s);
+    else if (s.leaving)
+        leave_dialog(s);
+    else if (s.in_use)
+        in_use_dialog(s);
+    else if (s.inspected)
+        open_dialog(s);
+    else if (!s.lost.empty() && !s.painter)
+        recovery_dialog(s);
     export_dialog(s);
     settings_dialog(s);
     manual_dialog(s);
@@ -178,13 +189,20 @@ void Studio::panels() {
     about_dialog(s);
     mismatch_dialog(s);
     if (const auto path = s.files.draw(s.ui, s.pictures)) {
-        if (s.files.purpose() == FileDialog::Purpose::open) open_path(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::save) save_as(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::revise) revise_with(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::writing) open_writing(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::reference) pin_reference(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::ink) open_ink(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::save_ink) save_ink(s, *path);
+        if (s.files.purpose() == FileDialog::Purpose::open)
+            open_path(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::save)
+            save_as(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::revise)
+            revise_with(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::writing)
+            open_writing(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::reference)
+            pin_reference(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::ink)
+            open_ink(s, *path);
+        else if (s.files.purpose() == FileDialog::Purpose::save_ink)
+            save_ink(s, *path);
         else if (s.painter)
             s.painter->post(export_command(s, *path));
     }
@@ -255,7 +273,8 @@ void Studio::update_tuft(double now) {
     s.pressed = s.last.tuft && !s.last.tuft->branches.empty() && !s.last.on_palette;
     if (s.pressed) {
         s.tuft = *s.last.tuft;
-    } else if (s.tool != Tool::writing && s.tool != Tool::fill && s.tool != Tool::pick && s.tool != Tool::mask && !s.journal.moves && cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
+    } else if (s.tool != Tool::writing && s.tool != Tool::fill && s.tool != Tool::pick && s.tool != Tool::mask &&
+               !s.journal.moves && cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
         if (!preview_ || preview_brush_ != s.brush) {
             preview_ = brush::make_tuft(brush::load_preset(s.brush));
             preview_brush_ = s.brush;
@@ -269,7 +288,8 @@ void Studio::update_tuft(double now) {
     const brush::Section& root = s.tuft.branches.front().sections.back();
     double length = 0;
     const auto& sections = s.tuft.branches.front().sections;
-    for (std::size_t i = 1; i < sections.size(); ++i) length += glm::distance(sections[i].centre, sections[i - 1].centre);
+    for (std::size_t i = 1; i < sections.size(); ++i)
+        length += glm::distance(sections[i].centre, sections[i - 1].centre);
     const auto hit = s.painter->model().query->ray(root.centre, root.tangent, 0, length);
     if (hit) s.depth = length - hit->distance;
 }
@@ -283,16 +303,22 @@ void Studio::draw_scene(unsigned framebuffer, int height) {
     glClear(GL_COLOR_BUFFER_BIT);
     if (!s.painter || s.model_is_new) return;
     show_colours();
-    static constexpr render::Shading shadings[] = {render::Shading::glaze,  render::Shading::clay,   render::Shading::flat,
-                                                   render::Shading::height, render::Shading::height, render::Shading::texels, render::Shading::triangles,
-                                                   render::Shading::triangles};
+    static constexpr render::Shading shadings[] = {
+        render::Shading::glaze,  render::Shading::clay,   render::Shading::flat,      render::Shading::height,
+        render::Shading::height, render::Shading::texels, render::Shading::triangles, render::Shading::triangles};
     const bool dark = s.ui.settings().theme == Theme::dark;
     const render::GlSolid solid = solid_of(s.tuft, colour_in_tuft(s));
-    render::GlView::Frame f{.camera = camera(), .solid = &solid, .opacity = s.view.see_through ? 0.25f : s.pressed ? 0.92f : 0.72f};
-    f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shown)], .roughness = s.looks.roughness,
+    render::GlView::Frame f{.camera = camera(),
+                            .solid = &solid,
+                            .opacity = s.view.see_through ? 0.25f
+                                       : s.pressed        ? 0.92f
+                                                          : 0.72f};
+    f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shown)],
+                      .roughness = s.looks.roughness,
                       .section = section_plane(s)};
     // Only where it is shown: more ink than before must not draw everything anew.
-    if (f.look.options.shading == render::Shading::height) f.look.options.height_range = static_cast<float>(height_range(s));
+    if (f.look.options.shading == render::Shading::height)
+        f.look.options.height_range = static_cast<float>(height_range(s));
     f.look.light = render::make_light(s.view.rig, f.camera);
     f.look.low = dark ? Vec3f(0.27f) : Vec3f(0.62f);
     f.look.high = dark ? Vec3f(0.40f, 0.405f, 0.415f) : Vec3f(0.80f, 0.805f, 0.815f);
@@ -324,7 +350,8 @@ void Studio::await_ink(double since_last) {
 }
 
 void Studio::shown(double now) {
-    for (; !asked_.empty() && asked_.front() <= session_.last.done; asked_.pop_front()) delays_.push_back(now - asked_.front());
+    for (; !asked_.empty() && asked_.front() <= session_.last.done; asked_.pop_front())
+        delays_.push_back(now - asked_.front());
 }
 
 void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffer, double now) {

@@ -113,10 +113,10 @@ class Studio {
     std::unique_ptr<render::GlView> view_;
     std::unique_ptr<render::GlScene> compare_scene_;  ///< a snapshot's, while the work is compared with it
     std::unique_ptr<render::GlView> compare_view_;
-    std::optional<stroke::Model> plate_;      ///< of the palette, once it was shown
-    bool on_plate_ = false;                   ///< the hand is over it
+    std::optional<stroke::Model> plate_;  ///< of the palette, once it was shown
+    bool on_plate_ = false;               ///< the hand is over it
     std::optional<PointerInput> hand_;
-    std::optional<Event> line_start_;         ///< where a new control point was set
+    std::optional<Event> line_start_;  ///< where a new control point was set
     stroke::Placement ghost_placement_;
     double ghost_scale_ = 0;
     render::GlCamera ghost_camera_;
@@ -137,8 +137,8 @@ class Studio {
     unsigned framebuffer_ = 0;  ///< of the newest frame
     int height_ = 0;
     std::vector<double> delays_;
-    std::filesystem::path pictured_;          ///< project whose picture is due, or kept
-    std::deque<double> asked_;                ///< when each sample was taken whose ink is not shown yet
+    std::filesystem::path pictured_;  ///< project whose picture is due, or kept
+    std::deque<double> asked_;        ///< when each sample was taken whose ink is not shown yet
     std::size_t samples_ = 0;
 };
 

@@ -12,7 +12,9 @@
 namespace tuft::app {
 namespace {
 
-double pixels_per_side(const Session& s) { return s.view.atlas_zoom * std::min(s.atlas_area.width, s.atlas_area.height); }
+double pixels_per_side(const Session& s) {
+    return s.view.atlas_zoom * std::min(s.atlas_area.width, s.atlas_area.height);
+}
 
 Vec2 on_atlas(const Session& s, const Vec2& uv) {
     const Vec2 d = (uv - s.view.atlas_centre) * pixels_per_side(s);
@@ -36,8 +38,11 @@ void Studio::draw_atlas(const render::DrawOptions& options, unsigned framebuffer
     if (!s.view.atlas) return;
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     const bool dark = s.ui.settings().theme == Theme::dark;
-    scene_->draw_atlas({.part = {s.atlas_area.x, height - s.atlas_area.y - s.atlas_area.height, s.atlas_area.width, s.atlas_area.height},
-                        .centre = s.view.atlas_centre, .pixels_per_side = pixels_per_side(s), .backdrop = dark ? Vec3f(0.19f) : Vec3f(0.55f)},
+    scene_->draw_atlas({.part = {s.atlas_area.x, height - s.atlas_area.y - s.atlas_area.height, s.atlas_area.width,
+                                 s.atlas_area.height},
+                        .centre = s.view.atlas_centre,
+                        .pixels_per_side = pixels_per_side(s),
+                        .backdrop = dark ? Vec3f(0.19f) : Vec3f(0.55f)},
                        options);
 }
 
@@ -53,8 +58,10 @@ std::optional<Vec2> Studio::atlas_cursor() const {
 }
 
 void Studio::atlas_press(const Event& e) {
-    if (e.button == 0) look_at_uv(uv_at(session_, e.x, e.y));
-    else drag_ = Drag::atlas;
+    if (e.button == 0)
+        look_at_uv(uv_at(session_, e.x, e.y));
+    else
+        drag_ = Drag::atlas;
 }
 
 void Studio::atlas_wheel(const Event& e) {
@@ -88,7 +95,9 @@ void Studio::look_at_uv(const Vec2& uv) {
 void atlas_marks(const Session& s, const std::optional<Vec2>& cursor) {
     if (!s.view.atlas || !s.painter) return;
     ImDrawList* draw = ImGui::GetBackgroundDrawList();
-    const auto at = [&](const Vec2& uv) { return ImVec2(static_cast<float>(on_atlas(s, uv).x), static_cast<float>(on_atlas(s, uv).y)); };
+    const auto at = [&](const Vec2& uv) {
+        return ImVec2(static_cast<float>(on_atlas(s, uv).x), static_cast<float>(on_atlas(s, uv).y));
+    };
     const ImVec2 a(static_cast<float>(s.atlas_area.x), static_cast<float>(s.atlas_area.y));
     const ImVec2 b(a.x + static_cast<float>(s.atlas_area.width), a.y + static_cast<float>(s.atlas_area.height));
     draw->PushClipRect(a, b, true);
@@ -100,16 +109,19 @@ void atlas_marks(const Session& s, const std::optional<Vec2>& cursor) {
     const stroke::Model& m = s.painter->model();
     const auto print = [&](const char* between) {
         char text[160];
-        const int n = std::snprintf(text, sizeof text, s.ui.tr(m.atlas.n_charts == 1 ? "%u chart" : "%u charts"), m.atlas.n_charts);
+        const int n = std::snprintf(text, sizeof text, s.ui.tr(m.atlas.n_charts == 1 ? "%u chart" : "%u charts"),
+                                    m.atlas.n_charts);
         if (const atlas::AtlasReport* report = s.painter->atlas_report())
-            std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "%s%s %.3f%s%s %.0f %%", between, s.ui.tr("stretch"), report->l2_stretch,
-                          between, s.ui.tr("used"), 100 * report->utilisation);
+            std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "%s%s %.3f%s%s %.0f %%", between,
+                          s.ui.tr("stretch"), report->l2_stretch, between, s.ui.tr("used"), 100 * report->utilisation);
         return std::string(text);
     };
     std::string text = print("    ");
     if (ImGui::CalcTextSize(text.c_str()).x + s.ui.px(32) > b.x - a.x) text = print("\n");
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-    draw->AddRectFilled(ImVec2(a.x + s.ui.px(8), a.y + s.ui.px(8)), ImVec2(a.x + s.ui.px(24) + size.x, a.y + s.ui.px(16) + size.y), IM_COL32(24, 24, 26, 190), s.ui.px(5));
+    draw->AddRectFilled(ImVec2(a.x + s.ui.px(8), a.y + s.ui.px(8)),
+                        ImVec2(a.x + s.ui.px(24) + size.x, a.y + s.ui.px(16) + size.y), IM_COL32(24, 24, 26, 190),
+                        s.ui.px(5));
     draw->AddText(ImVec2(a.x + s.ui.px(16), a.y + s.ui.px(12)), IM_COL32(240, 240, 240, 255), text.c_str());
     draw->PopClipRect();
     draw->AddLine(ImVec2(a.x - 1, a.y), ImVec2(a.x - 1, b.y), ImGui::GetColorU32(ImGuiCol_Border));
@@ -131,7 +143,8 @@ void Studio::shift_release(const Event& e) {
     JournalState& j = s.journal;
     if (const auto to = aim_at(*s.painter->model().query, aim_of(e))) j.to = to;
     if (glm::distance(j.from->position, j.to->position) > 1e-5)
-        s.painter->post(EditStrokes{.ids = {j.selected.begin(), j.selected.end()}, .move = shift_between(*j.from, *j.to)});
+        s.painter->post(
+            EditStrokes{.ids = {j.selected.begin(), j.selected.end()}, .move = shift_between(*j.from, *j.to)});
     j.from.reset();
     j.to.reset();
     j.moves = false;

@@ -7,7 +7,9 @@
 /// The work beside one of its snapshots.
 namespace tuft::app {
 
-bool Studio::comparing() const { return session_.painter && !session_.snapshots.compared.empty(); }
+bool Studio::comparing() const {
+    return session_.painter && !session_.snapshots.compared.empty();
+}
 
 // The snapshot has the left half of the view, the work the right one; swiped, both have all of it.
 void Studio::layout_comparison() {
@@ -59,7 +61,8 @@ void Studio::draw_comparison(const render::GlView::Frame& of_work, int height) {
     glBindTexture(GL_TEXTURE_2D, c.texture);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, s.area.x, height - s.area.y - s.area.height, s.area.width, s.area.height, 0);
+    glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, s.area.x, height - s.area.y - s.area.height, s.area.width,
+                     s.area.height, 0);
 }
 
 // Whether a press is one on the work, not on the snapshot beside or over it.

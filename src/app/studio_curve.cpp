@@ -12,8 +12,8 @@
 namespace tuft::app {
 namespace {
 
-constexpr double kGrab = 11;          // pixels round a control point, at a scale of 1
-constexpr double kShortest = 3;       // pixels of a line
+constexpr double kGrab = 11;     // pixels round a control point, at a scale of 1
+constexpr double kShortest = 3;  // pixels of a line
 constexpr double kSnap = std::numbers::pi / 12;
 
 }  // namespace
@@ -68,7 +68,8 @@ void Studio::curve_drag(const Event& e) {
         const std::size_t other = curve.grabbed > 0 ? static_cast<std::size_t>(curve.grabbed) - 1 : 1;
         const Vec3 pivot = render::picture_point(camera(), curve.points[other].position);
         const double x = e.x - session_.area.x - pivot.x, y = e.y - session_.area.y - pivot.y;
-        const double angle = kSnap * std::round(std::atan2(y, x) / kSnap), length = x * std::cos(angle) + y * std::sin(angle);
+        const double angle = kSnap * std::round(std::atan2(y, x) / kSnap),
+                     length = x * std::cos(angle) + y * std::sin(angle);
         at.x = pivot.x + session_.area.x + length * std::cos(angle);
         at.y = pivot.y + session_.area.y + length * std::sin(angle);
     }
@@ -85,8 +86,10 @@ void Studio::curve_release(const Event& e) {
     const bool moved = line_start_ && std::hypot(e.x - line_start_->x, e.y - line_start_->y) >= kShortest;
     curve.grabbed = -1;
     line_start_.reset();
-    if (fresh_line && !moved) curve = {};
-    else if (fresh_line || (curve.changed && curve_editable())) paint_curve();
+    if (fresh_line && !moved)
+        curve = {};
+    else if (fresh_line || (curve.changed && curve_editable()))
+        paint_curve();
 }
 
 void Studio::curve_wheel(const Event& e) {
@@ -101,17 +104,22 @@ bool Studio::curve_key(const Event& e) {
     CurveInWork& curve = session_.curve;
     if (curve.points.empty()) return false;
     if (e.key == GLFW_KEY_ENTER || e.key == GLFW_KEY_KP_ENTER) {
-        if (curve.changed || !curve.last_stroke) paint_curve();
-        else curve = {};
+        if (curve.changed || !curve.last_stroke)
+            paint_curve();
+        else
+            curve = {};
     } else if (e.key == GLFW_KEY_ESCAPE) {
         curve = {};
         line_start_.reset();
     } else if ((e.key == GLFW_KEY_BACKSPACE || e.key == GLFW_KEY_DELETE) && session_.tool == Tool::curve) {
-        curve.points.erase(curve.points.begin() + (curve.over >= 0 ? curve.over : static_cast<int>(curve.points.size()) - 1));
+        curve.points.erase(curve.points.begin() +
+                           (curve.over >= 0 ? curve.over : static_cast<int>(curve.points.size()) - 1));
         curve.over = curve.grabbed = -1;
         curve.changed = true;
-        if (curve.points.size() < 2 && curve.last_stroke) curve = {};
-        else if (curve_editable()) paint_curve();
+        if (curve.points.size() < 2 && curve.last_stroke)
+            curve = {};
+        else if (curve_editable())
+            paint_curve();
     } else {
         return false;
     }
@@ -136,8 +144,12 @@ void Studio::paint_curve() {
     const brush::Preset preset = brush::load_preset(s.brush);
     const TipLag lag = tip_lag(preset);
     const render::GlCamera c = camera();
-    CurveHand hand{.hold = stroke::holder_options(preset, s.painter->model().query->mesh()), .settings = s.curve_settings, .pressure = s.hand.pressure,
-                   .tilt = {s.hand.tilt.x, -s.hand.tilt.y}, .right = c.right, .down = -c.up};
+    CurveHand hand{.hold = stroke::holder_options(preset, s.painter->model().query->mesh()),
+                   .settings = s.curve_settings,
+                   .pressure = s.hand.pressure,
+                   .tilt = {s.hand.tilt.x, -s.hand.tilt.y},
+                   .right = c.right,
+                   .down = -c.up};
     hand.hold.tip_lag = lag.upright;
     hand.hold.leaned = lag.leaned;
     const auto strokes = curve_poses(*s.painter->model().query, curve.points, hand);

@@ -14,8 +14,10 @@ constexpr double kLassoStep = 3;  // pixels between two of its corners
 
 void Studio::pick_press(const Event& e) {
     const auto hit = aim_at(*session_.painter->model().query, aim_of(e));
-    if (hit) session_.painter->post(PickInk{hit->position});
-    else say(session_, "Click on the model: the ink that lies there is picked up.");
+    if (hit)
+        session_.painter->post(PickInk{hit->position});
+    else
+        say(session_, "Click on the model: the ink that lies there is picked up.");
 }
 
 void Studio::mask_press(const Event& e) {
@@ -55,7 +57,11 @@ void Studio::lasso_release() {
     const render::GlCamera c = camera();
     stroke::Mask mask;
     mask.kind = stroke::MaskKind::lasso;
-    mask.view = {.origin = c.eye, .right = c.right, .up = c.up, .perspective = c.parallel_height == 0, .through = s.mask_choice.through};
+    mask.view = {.origin = c.eye,
+                 .right = c.right,
+                 .up = c.up,
+                 .perspective = c.parallel_height == 0,
+                 .through = s.mask_choice.through};
     for (const Vec2& p : pixels) {
         const render::GlRay ray = render::ray_at(c, p.x - s.area.x, p.y - s.area.y);
         const Vec3 d = mask.view.perspective ? ray.direction / glm::dot(ray.direction, c.forward) : ray.origin - c.eye;

@@ -7,8 +7,8 @@
 namespace tuft::app {
 namespace {
 
-constexpr double kHigh = 0.2;          // metres above the plate from where it is looked at
-constexpr double kPoolDepth = 60;      // film units in the middle of a pool: 0.6 mm
+constexpr double kHigh = 0.2;      // metres above the plate from where it is looked at
+constexpr double kPoolDepth = 60;  // film units in the middle of a pool: 0.6 mm
 
 }  // namespace
 
@@ -20,8 +20,14 @@ bool Studio::in_palette(const Event& e) const {
 Aim Studio::palette_aim(const Event& e) const {
     const PaletteState& p = session_.palette;
     const double width = p.width > 0 ? p.width : 1, height = p.width > 0 ? p.height : 1;
-    const Vec3 from{((e.x - p.x) / width - 0.5) * stroke::kPaletteWidth, (0.5 - (e.y - p.y) / height) * stroke::kPaletteHeight, kHigh};
-    Aim aim{.ray = {from, {0, 0, -1}}, .view_right = {1, 0, 0}, .view_up = {0, 1, 0}, .metres_per_pixel = stroke::kPaletteWidth / width, .time = e.time, .pressure = e.pressure};
+    const Vec3 from{((e.x - p.x) / width - 0.5) * stroke::kPaletteWidth,
+                    (0.5 - (e.y - p.y) / height) * stroke::kPaletteHeight, kHigh};
+    Aim aim{.ray = {from, {0, 0, -1}},
+            .view_right = {1, 0, 0},
+            .view_up = {0, 1, 0},
+            .metres_per_pixel = stroke::kPaletteWidth / width,
+            .time = e.time,
+            .pressure = e.pressure};
     if (e.pressure >= 0) aim.tilt = Vec2(e.tilt.x, -e.tilt.y);
     return aim;
 }
@@ -33,7 +39,11 @@ void Studio::palette_press(const Event& e) {
     const Vec3 at{aim.ray.origin.x, aim.ray.origin.y, 0};
     if (s.palette.tool == PaletteTool::pick) return s.painter->post(PickInk{at, true});
     if (s.palette.tool == PaletteTool::pour) {
-        stroke::Fill pool{.film = kPoolDepth, .gradient = stroke::Gradient::round, .to_film = 0, .from = at, .to = at + Vec3{s.palette.radius, 0, 0}};
+        stroke::Fill pool{.film = kPoolDepth,
+                          .gradient = stroke::Gradient::round,
+                          .to_film = 0,
+                          .from = at,
+                          .to = at + Vec3{s.palette.radius, 0, 0}};
         return s.painter->post(FillModel{.ink = s.ink, .fill = pool, .layer = stroke::kPaletteLayer});
     }
     try {
@@ -66,7 +76,8 @@ void Studio::update_palette_picture() {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, p.picture.width, p.picture.height, 0, GL_RGB, GL_UNSIGNED_BYTE, p.picture.rgb.data());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, p.picture.width, p.picture.height, 0, GL_RGB, GL_UNSIGNED_BYTE,
+                 p.picture.rgb.data());
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 }
 

@@ -38,7 +38,8 @@ void Studio::update_thumbnails() {
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, at->second.width, at->second.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, at->second.rgba.data());
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, at->second.width, at->second.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                     at->second.rgba.data());
     }
     list.fresh.clear();
 }

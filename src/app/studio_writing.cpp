@@ -9,7 +9,8 @@
 namespace tuft::app {
 namespace {
 
-constexpr double kGhostTolerance = 2e-3;  // of the model's size: where it is seen edge-on, draped lines lie over its grooves
+constexpr double kGhostTolerance =
+    2e-3;  // of the model's size: where it is seen edge-on, draped lines lie over its grooves
 
 }  // namespace
 
@@ -20,7 +21,8 @@ std::optional<stroke::Placement> Studio::writing_placement() const {
     const auto hit = aim_at(*s.painter->model().query, aim);
     if (!hit) return std::nullopt;
     const Vec3 normal = glm::dot(hit->normal, aim.ray.direction) < 0 ? hit->normal : -hit->normal;
-    return place_writing(s.writing, *s.painter->model().query, hit->position, normal, aim.view_right, glm::cross(aim.view_right, aim.view_up));
+    return place_writing(s.writing, *s.painter->model().query, hit->position, normal, aim.view_right,
+                         glm::cross(aim.view_right, aim.view_up));
 }
 
 void Studio::watch_writing() {
@@ -34,8 +36,8 @@ void Studio::watch_writing() {
     const stroke::Placement& old = ghost_placement_;
     const render::GlCamera seen_from = camera();
     const Vec4f section = section_plane(s);
-    const bool same = placement->origin == old.origin && placement->right == old.right && placement->down == old.down && placement->mapping == old.mapping &&
-                      ghost_scale_ == s.writing.scale;
+    const bool same = placement->origin == old.origin && placement->right == old.right && placement->down == old.down &&
+                      placement->mapping == old.mapping && ghost_scale_ == s.writing.scale;
     if (same && seen_from == ghost_camera_ && section == ghost_section_) return;
     ghost_placement_ = *placement;
     ghost_scale_ = s.writing.scale;
@@ -50,8 +52,10 @@ void Studio::watch_writing() {
 
 void Studio::writing_wheel(const Event& e) {
     Writing& w = session_.writing;
-    if (e.modifiers & kShift) w.turn = std::remainder(w.turn + 3 * kDegree * e.steps, 360 * kDegree);
-    else w.scale = std::clamp(w.scale * std::pow(1.05, e.steps), 1e-3, 1e3);
+    if (e.modifiers & kShift)
+        w.turn = std::remainder(w.turn + 3 * kDegree * e.steps, 360 * kDegree);
+    else
+        w.scale = std::clamp(w.scale * std::pow(1.05, e.steps), 1e-3, 1e3);
 }
 
 void Studio::lay_writing() {
@@ -61,7 +65,8 @@ void Studio::lay_writing() {
     // Pressures that are made up stay as they are while the slider is where it is at first.
     const WritingHand hand{s.brush, s.ink, s.hand.pressure / PointerSettings{}.pressure};
     say(s, s.ui.tr("Placed:") + (" " + place_words(s.writing, *placement)));
-    s.painter->post(PaintDrawing{placed_writing(s.writing, *placement, hand), stroke::group_name(s.writing.file), s.symmetry, s.layer, s.mask, s.wet});
+    s.painter->post(PaintDrawing{placed_writing(s.writing, *placement, hand), stroke::group_name(s.writing.file),
+                                 s.symmetry, s.layer, s.mask, s.wet});
 }
 
 }  // namespace tuft::app

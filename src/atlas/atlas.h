@@ -19,15 +19,15 @@ namespace tuft::atlas {
 /// pages, and half a gutter is free along each page's edge. To whatever works on texels they
 /// are one large atlas whose empty tiles cost nothing; only files see pages.
 struct Atlas {
-    std::uint32_t size = 0;                ///< texels per side, of all pages together
-    std::uint32_t pages = 1;               ///< that are used
-    std::vector<std::uint32_t> udims;      ///< [pages] numbers that a file's pages have; empty: by place
-    std::uint32_t gutter = 4;              ///< texels kept free between charts
-    double texel_size = 0;                 ///< metres per texel, area-weighted mean
-    std::vector<Vec2f> corner_uvs;         ///< [3 n_triangles]
+    std::uint32_t size = 0;                     ///< texels per side, of all pages together
+    std::uint32_t pages = 1;                    ///< that are used
+    std::vector<std::uint32_t> udims;           ///< [pages] numbers that a file's pages have; empty: by place
+    std::uint32_t gutter = 4;                   ///< texels kept free between charts
+    double texel_size = 0;                      ///< metres per texel, area-weighted mean
+    std::vector<Vec2f> corner_uvs;              ///< [3 n_triangles]
     std::vector<std::uint32_t> triangle_chart;  ///< [n_triangles]
     std::uint32_t n_charts = 0;
-    bool from_file = false;                ///< the file's own UVs were kept
+    bool from_file = false;  ///< the file's own UVs were kept
 
     std::uint32_t pages_per_side() const;
     std::uint32_t page_size() const { return size / pages_per_side(); }
@@ -56,16 +56,16 @@ struct RequestedSeams {
 enum class Cutting { never, where_useful, tight };
 
 struct UnwrapOptions {
-    std::uint32_t size = 0;        ///< texels per side (of a page); 0: from texel_size
-    double texel_size = 0;         ///< metres; used when size is 0. Both 0: size 2048
+    std::uint32_t size = 0;  ///< texels per side (of a page); 0: from texel_size
+    double texel_size = 0;   ///< metres; used when size is 0. Both 0: size 2048
     /// Most pages. Above 1, `size` (0: 4096) is the side of a page, and with `texel_size` as many
     /// are made as it needs; without, all of them are filled as well as can be.
     std::uint32_t pages = 1;
-    std::uint32_t gutter = 4;      ///< texels
+    std::uint32_t gutter = 4;  ///< texels
     /// automatic: the file's UVs if they are valid and lie on one page; keep: or on several
     /// (UDIM), of `size` texels each
     UvPolicy uvs = UvPolicy::automatic;
-    RequestedSeams seams;              ///< these, and pages, make new UVs unless `keep` is asked
+    RequestedSeams seams;            ///< these, and pages, make new UVs unless `keep` is asked
     std::uint32_t max_size = 16384;  ///< of all pages together
     Cutting cutting = Cutting::where_useful;
     ProgressFn progress;
@@ -74,14 +74,14 @@ struct UnwrapOptions {
 /// Figures of an atlas. Stretch after Sander et al. 2001 (1 = isometry).
 struct AtlasReport {
     std::size_t charts = 0;
-    std::size_t flips = 0;             ///< triangles with negative area in UV
-    std::size_t overlapping_texels = 0;///< texel centres covered by two triangles
-    std::size_t roomless_triangles = 0;///< with a zero or non-finite UV area
+    std::size_t flips = 0;               ///< triangles with negative area in UV
+    std::size_t overlapping_texels = 0;  ///< texel centres covered by two triangles
+    std::size_t roomless_triangles = 0;  ///< with a zero or non-finite UV area
     double l2_stretch = 0, linf_stretch = 0;
-    double angle_distortion = 0, area_distortion = 0;  ///< area-weighted means, 1 = none
-    double utilisation = 0;            ///< covered texels over those of all used pages
-    double seam_length = 0;            ///< over the diagonal of the bounding box
-    int smallest_gap = 0;              ///< texels between two charts, capped at 64
+    double angle_distortion = 0, area_distortion = 0;     ///< area-weighted means, 1 = none
+    double utilisation = 0;                               ///< covered texels over those of all used pages
+    double seam_length = 0;                               ///< over the diagonal of the bounding box
+    int smallest_gap = 0;                                 ///< texels between two charts, capped at 64
     std::vector<std::pair<std::string, double>> seconds;  ///< per phase, in order
 };
 

@@ -19,8 +19,7 @@ constexpr double kRange = 0.2;  // stretch at the ends of the colour scale
 
 Colour mix(const Colour& a, const Colour& b, double t) {
     Colour c;
-    for (int k = 0; k < 3; ++k)
-        c[k] = static_cast<std::uint8_t>(std::lround((1 - t) * a[k] + t * b[k]));
+    for (int k = 0; k < 3; ++k) c[k] = static_cast<std::uint8_t>(std::lround((1 - t) * a[k] + t * b[k]));
     return c;
 }
 
@@ -63,10 +62,8 @@ class Canvas {
 
     void set(std::uint32_t square, std::uint32_t x, std::uint32_t row, const Colour& colour) {
         if (x >= side_ || row >= side_) return;
-        const std::size_t at =
-            3 * ((std::size_t{side_} - 1 - row) * picture_.width + square * side_ + x);
-        std::copy(colour.begin(), colour.end(),
-                  picture_.rgb.begin() + static_cast<std::ptrdiff_t>(at));
+        const std::size_t at = 3 * ((std::size_t{side_} - 1 - row) * picture_.width + square * side_ + x);
+        std::copy(colour.begin(), colour.end(), picture_.rgb.begin() + static_cast<std::ptrdiff_t>(at));
     }
 
     void line(std::uint32_t square, const Vec2f& a_uv, const Vec2f& b_uv, const Colour& colour) {
@@ -77,8 +74,7 @@ class Canvas {
         for (int i = 0; i <= steps; ++i) {
             const Vec2 p = (a + (b - a) * (double(i) / steps)) * double(side_);
             if (p.x >= 0 && p.y >= 0 && p.x < side_ && p.y < side_)
-                set(square, static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y),
-                    colour);
+                set(square, static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y), colour);
         }
     }
 
@@ -89,8 +85,7 @@ class Canvas {
 
 }  // namespace
 
-AtlasPicture draw_atlas(const mesh::TriangleMesh& mesh, const Atlas& atlas,
-                        const AtlasPictureOptions& options) {
+AtlasPicture draw_atlas(const mesh::TriangleMesh& mesh, const Atlas& atlas, const AtlasPictureOptions& options) {
     AtlasPicture picture;
     const std::uint32_t side = std::max(options.side, 1u);
     picture.width = 2 * side;

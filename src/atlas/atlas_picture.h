@@ -21,7 +21,6 @@ struct AtlasPictureOptions {
 /// the right the stretch of every triangle relative to the mean texel size: blue where
 /// texels are 20 % smaller than on average, white at the mean, red 20 % larger (the
 /// larger singular value of the map from UV to surface).
-AtlasPicture draw_atlas(const mesh::TriangleMesh& mesh, const Atlas& atlas,
-                        const AtlasPictureOptions& options = {});
+AtlasPicture draw_atlas(const mesh::TriangleMesh& mesh, const Atlas& atlas, const AtlasPictureOptions& options = {});
 
 }  // namespace tuft::atlas

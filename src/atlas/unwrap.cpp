@@ -51,17 +51,15 @@ double mean_texel_size(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
 [[noreturn]] void refuse_texel_size(const UnwrapOptions& options, double size) {
     char millimetres[32];
     std::snprintf(millimetres, sizeof millimetres, "%.3g", options.texel_size * 1e3);
-    throw Error("a texel of " + std::string(millimetres) +
-                " mm needs an atlas of " + std::to_string(static_cast<long long>(size)) +
-                " texels, more than the " + std::to_string(options.max_size) +
-                " allowed; use larger texels");
+    throw Error("a texel of " + std::string(millimetres) + " mm needs an atlas of " +
+                std::to_string(static_cast<long long>(size)) + " texels, more than the " +
+                std::to_string(options.max_size) + " allowed; use larger texels");
 }
 
 [[noreturn]] void refuse_size(const UnwrapOptions& options, const CutMesh& cut, double size) {
     throw Error("an atlas of " + std::to_string(options.size) + " texels cannot hold " +
-                std::to_string(cut.charts.size()) + " charts with gutters of " +
-                std::to_string(options.gutter) + "; it needs at least " +
-                std::to_string(static_cast<long long>(size)));
+                std::to_string(cut.charts.size()) + " charts with gutters of " + std::to_string(options.gutter) +
+                "; it needs at least " + std::to_string(static_cast<long long>(size)));
 }
 
 /// Whether the layout is as large as the user allows; charts too large for a page are not
@@ -82,9 +80,9 @@ void check_packing(const CutMesh& cut, const UnwrapOptions& options, const Packi
                     " texels; use larger texels");
     }
     if (options.texel_size > 0)
-        throw Error("a texel of " + std::to_string(options.texel_size * 1e3) +
-                    " mm needs more than " + std::to_string(options.pages) + " pages of " +
-                    std::to_string(options.size) + " texels; allow more or use larger texels");
+        throw Error("a texel of " + std::to_string(options.texel_size * 1e3) + " mm needs more than " +
+                    std::to_string(options.pages) + " pages of " + std::to_string(options.size) +
+                    " texels; allow more or use larger texels");
     refuse_size(options, cut, 2.0 * options.size);
 }
 
@@ -122,8 +120,7 @@ std::vector<std::uint32_t> place_charts(const CutMesh& cut, const Packing& packi
         std::vector<Vec2> uv(chart.uv.size());
         for (std::size_t v = 0; v < uv.size(); ++v) {
             const Vec2& q = chart.uv[v];
-            uv[v] = (offset + p.scale * Vec2(p.c * q.x - p.s * q.y, p.s * q.x + p.c * q.y)) /
-                    double(atlas.size);
+            uv[v] = (offset + p.scale * Vec2(p.c * q.x - p.s * q.y, p.s * q.x + p.c * q.y)) / double(atlas.size);
         }
         for (const std::uint32_t t : snap_to_floats(chart.mesh.faces, uv, atlas.size))
             roomless.push_back(chart.mesh.triangles[t]);
@@ -149,8 +146,7 @@ Limits chart_limits(const mesh::TriangleMesh& mesh, const UnwrapOptions& options
     // Texels along the square root of the surface's area: charts cover about two thirds.
     const double covered = 0.8 * options.size * std::sqrt(options.pages);
     const bool by_texel = options.texel_size > 0 && (options.size == 0 || options.pages > 1);
-    const double texels =
-        by_texel ? std::sqrt(mesh::surface_area(mesh)) / options.texel_size : covered;
+    const double texels = by_texel ? std::sqrt(mesh::surface_area(mesh)) / options.texel_size : covered;
     // Parts of one chart keep a gutter from each other like two charts do.
     limits.chart.gap = options.gutter / texels;
     if (options.pages > 1) {  // charts have to fit a page, and some beside each other
@@ -205,9 +201,9 @@ void lay_out(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, const
             const bool filled = options.size > 0 && (options.pages == 1 || options.texel_size == 0);
             if (options.cutting != Cutting::never && filled) {
                 const bool tight = options.cutting == Cutting::tight;
-                made = cut_to_pack(mesh, cut, chart_options.gap, pack_options(cut, options),
-                                   tight ? kTightUse : kGoodUse)
-                           .packing;
+                made =
+                    cut_to_pack(mesh, cut, chart_options.gap, pack_options(cut, options), tight ? kTightUse : kGoodUse)
+                        .packing;
                 watch.lap(out, "pack");
             }
             continue;
@@ -277,8 +273,7 @@ void check_options(const mesh::TriangleMesh& mesh, const UnwrapOptions& options)
         return;
     }
     if (options.size > 0) return;
-    if (!(options.texel_size > 0) || !std::isfinite(options.texel_size))
-        throw Error("the texel size must be above 0");
+    if (!(options.texel_size > 0) || !std::isfinite(options.texel_size)) throw Error("the texel size must be above 0");
     const double least = std::sqrt(mesh::surface_area(mesh)) / options.texel_size;
     if (least > options.max_size) refuse_texel_size(options, std::min(least / 0.8, 1e15));
 }
@@ -293,12 +288,10 @@ std::uint32_t Atlas::pages_per_side() const {
 
 std::uint32_t Atlas::page_of(std::size_t triangle) const {
     const std::uint32_t k = pages_per_side();
-    const Vec2 middle = (Vec2(corner_uvs[3 * triangle]) + Vec2(corner_uvs[3 * triangle + 1]) +
-                         Vec2(corner_uvs[3 * triangle + 2])) /
-                        3.0;
-    const auto index = [k](double x) {
-        return static_cast<std::uint32_t>(std::clamp(x * k, 0.0, k - 0.5));
-    };
+    const Vec2 middle =
+        (Vec2(corner_uvs[3 * triangle]) + Vec2(corner_uvs[3 * triangle + 1]) + Vec2(corner_uvs[3 * triangle + 2])) /
+        3.0;
+    const auto index = [k](double x) { return static_cast<std::uint32_t>(std::clamp(x * k, 0.0, k - 0.5)); };
     return index(middle.y) * k + index(middle.x);
 }
 
@@ -326,8 +319,7 @@ Unwrapped unwrap(const mesh::TriangleMesh& mesh, const UnwrapOptions& given) {
         const FileUvs found = read_file_uvs(mesh, file);
         if (found.fault.empty()) return {found.atlas, measure(mesh, found.atlas)};
         if (options.uvs == UvPolicy::keep)
-            throw Error("the model's UVs cannot be kept: " + found.fault +
-                        "; leave out --keep-uv to make new ones");
+            throw Error("the model's UVs cannot be kept: " + found.fault + "; leave out --keep-uv to make new ones");
     }
     Unwrapped out = make_atlas(mesh, options);
     auto seconds = std::move(out.report.seconds);

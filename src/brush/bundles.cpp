@@ -102,8 +102,8 @@ Bundles make_bundles(const Preset& p, std::uint64_t seed) {
     return out;
 }
 
-void split_bundles(Bundles& bundles, const Preset& p, double stress, std::span<const double> saturation,
-                  double travel, double dt) {
+void split_bundles(Bundles& bundles, const Preset& p, double stress, std::span<const double> saturation, double travel,
+                   double dt) {
     const double k = std::clamp(stress, 0.0, 1.0);
     for (std::size_t i = 0; i < bundles.separation.size(); ++i) {
         const double s = i < saturation.size() ? std::clamp(saturation[i], 0.0, 1.0) : 1.0;
@@ -116,7 +116,9 @@ void split_bundles(Bundles& bundles, const Preset& p, double stress, std::span<c
     }
 }
 
-void gather(Bundles& bundles) { std::fill(bundles.separation.begin(), bundles.separation.end(), 0.0); }
+void gather(Bundles& bundles) {
+    std::fill(bundles.separation.begin(), bundles.separation.end(), 0.0);
+}
 
 Vec2 place_of(const Bundles& bundles, const Bristle& bristle) {
     const Vec2 at(bristle.place);

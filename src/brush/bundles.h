@@ -13,18 +13,18 @@ namespace tuft::brush {
 
 /// One drawn hair; it stands for all real ones near it.
 struct Bristle {
-    Vec2f place{0};            ///< in the section, unit disc: x along e, y along m
-    float end = 1;             ///< where it ends, part of the tuft's length from the root
-    float readiness = 0;       ///< seeded, 0–1: those of less give up their ink first
+    Vec2f place{0};       ///< in the section, unit disc: x along e, y along m
+    float end = 1;        ///< where it ends, part of the tuft's length from the root
+    float readiness = 0;  ///< seeded, 0–1: those of less give up their ink first
     std::uint16_t bundle = 0;
 };
 
 struct Bundles {
     std::uint64_t seed = 0;
-    std::vector<Vec2> place;     ///< [n] in the section, unit disc
-    std::vector<double> holds;   ///< [n] seeded, about 1: film it brings to the surface, over the mean
-    std::vector<double> resists; ///< [n] seeded, about 1: factor on the splitting threshold
-    std::vector<double> separation;   ///< [n] state: 0 with the others … 1 drawn together by itself
+    std::vector<Vec2> place;         ///< [n] in the section, unit disc
+    std::vector<double> holds;       ///< [n] seeded, about 1: film it brings to the surface, over the mean
+    std::vector<double> resists;     ///< [n] seeded, about 1: factor on the splitting threshold
+    std::vector<double> separation;  ///< [n] state: 0 with the others … 1 drawn together by itself
     std::vector<Bristle> bristles;
 };
 
@@ -41,8 +41,8 @@ Bundles make_bundles(const Preset& preset, std::uint64_t seed);
 /// Between the two it stays as it is: hair that is parted comes together when wetted, or
 /// combed (`gather`). `stress` is k in [0, 1], `travel` metres, `dt` seconds; steps of any size
 /// give the same.
-void split_bundles(Bundles& bundles, const Preset& preset, double stress,
-                  std::span<const double> saturation, double travel, double dt);
+void split_bundles(Bundles& bundles, const Preset& preset, double stress, std::span<const double> saturation,
+                   double travel, double dt);
 
 /// Combs all bundles together.
 void gather(Bundles& bundles);

@@ -16,9 +16,9 @@ namespace {
 /// A preset value the fit may change, searched on a logarithmic scale of `shift` + value.
 struct Free {
     double Preset::*member;
-    double lo, hi;       ///< SI
-    double shift;        ///< makes the value positive
-    double first;        ///< first step of the search, relative
+    double lo, hi;  ///< SI
+    double shift;   ///< makes the value positive
+    double first;   ///< first step of the search, relative
 };
 
 /// Few enough for some ten measured depths. Only the ratio of side stiffness to bending
@@ -26,8 +26,8 @@ struct Free {
 constexpr std::array kFree = {
     Free{&Preset::radius, 0.5e-3, 30e-3, 0, 0.15},
     Free{&Preset::tip_power, 0.6, 2.5, 0, 0.2},
-    Free{&Preset::alpha, -6, 1, -2, 0.3},         // of 2 - α
-    Free{&Preset::beta, -0.995, 0, 1, 0.4},      // of 1 + β
+    Free{&Preset::alpha, -6, 1, -2, 0.3},    // of 2 - α
+    Free{&Preset::beta, -0.995, 0, 1, 0.4},  // of 1 + β
     Free{&Preset::tip_stiffness, 1e-6, 1e-1, 0, 0.8},
     Free{&Preset::transverse_stiffness, 200, 2e5, 0, 0.5},
     Free{&Preset::adhesion_range, 1e-5, 2e-3, 0, 0.8},
@@ -45,7 +45,7 @@ void from_search(const Free& f, double x, Preset& p) {
     p.*f.member = std::clamp(v, f.lo, f.hi);
 }
 
-constexpr double kNorm = 12; ///< of the three columns: the worst one counts most
+constexpr double kNorm = 12;  ///< of the three columns: the worst one counts most
 
 using Point = std::array<double, kFree.size()>;
 
@@ -56,7 +56,7 @@ Preset preset_at(const Preset& start, const Point& x) {
     return p;
 }
 
-constexpr double SweepRow::* kColumns[] = {&SweepRow::width, &SweepRow::drag, &SweepRow::offset};
+constexpr double SweepRow::*kColumns[] = {&SweepRow::width, &SweepRow::drag, &SweepRow::offset};
 
 struct Fit {
     SweepRow rms;
@@ -216,17 +216,16 @@ Vertex descend(const Vertex& begin, double size, int budget, const Cost& cost) {
 
 }  // namespace
 
-Calibration calibrate(const Preset& start, std::span<const SweepRow> measured,
-                      const CalibrateOptions& options) {
+Calibration calibrate(const Preset& start, std::span<const SweepRow> measured, const CalibrateOptions& options) {
     if (measured.size() < 4) {
-        throw Error("calibration needs at least 4 measured depths, there are " +
-                    std::to_string(measured.size()));
+        throw Error("calibration needs at least 4 measured depths, there are " + std::to_string(measured.size()));
     }
     check_preset(start, start.name);
     Calibration out;
     const auto fit_at = [&](const Point& x) {
         ++out.evaluations;
-        report(options.progress, "fitting", std::min(1.0, out.evaluations / static_cast<double>(options.max_evaluations)));
+        report(options.progress, "fitting",
+               std::min(1.0, out.evaluations / static_cast<double>(options.max_evaluations)));
         return compare(preset_at(start, x), measured, options.repeatability);
     };
     const auto cost = [&](const Point& x) { return fit_at(x).cost; };

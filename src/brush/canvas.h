@@ -13,7 +13,7 @@ namespace tuft::brush {
 
 struct Canvas {
     int width = 0, height = 0;
-    std::vector<float> rgb;   ///< linear, [height * width * 3], row 0 on top
+    std::vector<float> rgb;  ///< linear, [height * width * 3], row 0 on top
 
     Canvas(int w, int h, const Vec3& background);
 };
@@ -25,12 +25,11 @@ Vec3 srgb(int r, int g, int b);
 void fill_polygon(Canvas& canvas, std::span<const Vec2> points, const Vec3& colour, double alpha = 1);
 
 /// A polyline of round pieces; width in pixels at each point (one value: the same everywhere).
-void stroke_line(Canvas& canvas, std::span<const Vec2> points, std::span<const double> widths,
-                 const Vec3& colour, double alpha = 1);
+void stroke_line(Canvas& canvas, std::span<const Vec2> points, std::span<const double> widths, const Vec3& colour,
+                 double alpha = 1);
 
 /// Digits, '.', '-', ',', space, small letters and N in strokes; `at` is the left end of the base line.
-void write_text(Canvas& canvas, std::string_view text, const Vec2& at, double size,
-                const Vec3& colour);
+void write_text(Canvas& canvas, std::string_view text, const Vec2& at, double size, const Vec3& colour);
 double text_width(std::string_view text, double size);
 
 /// To 8-bit sRGB.

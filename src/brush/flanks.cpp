@@ -17,8 +17,7 @@ constexpr double kGround = 0.436, kSteep = 0.8;  // sines of 26° and 53° betwe
 std::vector<rod::Wall> flank_walls(const Preset& p, const Spine& spine, const Quat& turn,
                                    std::span<const ContactPlane> walls, double wetness) {
     std::vector<rod::Wall> out;
-    if (walls.empty() || spine.flank.size() != walls.size() || spine.side.size() != walls.size())
-        return out;
+    if (walls.empty() || spine.flank.size() != walls.size() || spine.side.size() != walls.size()) return out;
     out.resize(walls.size());
     const int n = spine.rod.segments();
     const double soft = side_stiffness(wetness);
@@ -34,8 +33,8 @@ std::vector<rod::Wall> flank_walls(const Preset& p, const Spine& spine, const Qu
         if (share <= 0) continue;
         const double along = glm::dot(spine.memory.tangent[node - 1], wall.normal);
         const double a = spine.flank[k], r = spine.rest_radius[node], b = r * r / a;
-        const double h = std::sqrt(a * a * nearing * nearing +
-                                   b * b * std::max(0.0, 1 - nearing * nearing - along * along));
+        const double h =
+            std::sqrt(a * a * nearing * nearing + b * b * std::max(0.0, 1 - nearing * nearing - along * along));
         out[k] = {node, wall.origin / p.length, wall.normal, h / p.length, soft * share};
     }
     return out;

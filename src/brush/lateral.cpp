@@ -43,8 +43,7 @@ double reach_squared(const LateralSprings& s, std::size_t i) {
 /// 2 κ0 λ² r² / h of the slope spring between nodes i - 1 and i.
 double slope_spring(const std::vector<double>& at, const LateralSprings& s, std::size_t i) {
     const double a = taper(s, i - 1), b = taper(s, i);
-    return s.bend * (a * a * reach_squared(s, i - 1) + b * b * reach_squared(s, i)) /
-           (at[i] - at[i - 1]);
+    return s.bend * (a * a * reach_squared(s, i - 1) + b * b * reach_squared(s, i)) / (at[i] - at[i - 1]);
 }
 
 /// κ0 λ⁴ w of the bend spring at node i.
@@ -118,8 +117,7 @@ LateralRow lateral_row(const std::vector<double>& at, const LateralSprings& s) {
     return row;
 }
 
-std::vector<double> solve_lateral(const std::vector<double>& at, const LateralSprings& s,
-                                  const LateralSide& side) {
+std::vector<double> solve_lateral(const std::vector<double>& at, const LateralSprings& s, const LateralSide& side) {
     return solve_lateral(lateral_row(at, s), side);
 }
 
@@ -151,15 +149,14 @@ std::vector<double> solve_lateral(const LateralRow& row, const LateralSide& side
     return u;
 }
 
-LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings& s,
-                             const LateralSide& side, const std::vector<double>& u) {
+LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings& s, const LateralSide& side,
+                             const std::vector<double>& u) {
     LateralEnergy out;
     out.gradient.assign(at.size(), 0);
     const auto v = [&](std::size_t i) { return u[i] / taper(s, i); };
     for (std::size_t i = 0; i < at.size(); ++i) {
         const double w = tributary(at, i), over = std::max(0.0, u[i] - side.clear[i]);
-        out.value +=
-            w * (0.5 * s.stretch * (u[i] * u[i] + s.wall * over * over) - side.push[i] * u[i]);
+        out.value += w * (0.5 * s.stretch * (u[i] * u[i] + s.wall * over * over) - side.push[i] * u[i]);
         out.gradient[i] += w * (s.stretch * (u[i] + s.wall * over) - side.push[i]);
         const double inner = i > 0 ? v(i - 1) : 0, r = taper(s, i);
         if (i > 0) {
@@ -181,20 +178,18 @@ LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings
     return out;
 }
 
-double stored_at_rest(const std::vector<double>& at, const LateralSprings& s,
-                      const LateralSide& side, const std::vector<double>& u) {
+double stored_at_rest(const std::vector<double>& at, const LateralSprings& s, const LateralSide& side,
+                      const std::vector<double>& u) {
     double sum = 0;
     for (std::size_t i = 1; i < at.size(); ++i) {
         double twice = side.push[i] * u[i];
-        if (u[i] > side.clear[i])
-            twice -= s.wall * s.stretch * (u[i] - side.clear[i]) * side.clear[i];
+        if (u[i] > side.clear[i]) twice -= s.wall * s.stretch * (u[i] - side.clear[i]) * side.clear[i];
         sum += 0.5 * tributary(at, i) * twice;
     }
     return sum;
 }
 
-LateralShift drag_lateral(const std::vector<double>& at, const LateralSprings& s,
-                          const LateralFriction& friction) {
+LateralShift drag_lateral(const std::vector<double>& at, const LateralSprings& s, const LateralFriction& friction) {
     return drag_lateral(lateral_row(at, s), friction);
 }
 
@@ -203,8 +198,7 @@ LateralShift drag_lateral(const LateralRow& row, const LateralFriction& friction
     LateralShift out;
     out.shift = friction.stuck;
     out.shift[0] = 0;
-    if (std::all_of(out.shift.begin(), out.shift.end(), [](double d) { return d == 0; }))
-        return out;
+    if (std::all_of(out.shift.begin(), out.shift.end(), [](double d) { return d == 0; })) return out;
     std::vector<signed char>& slips = out.slips;
     slips = friction.slips;
     slips.resize(count, 0);
@@ -216,8 +210,7 @@ LateralShift drag_lateral(const LateralRow& row, const LateralFriction& friction
     // Of both sides, in v = δ over the taper.
     const auto force = [&](std::size_t i) {
         double f = 0;
-        for (std::size_t d = 0; d <= std::min<std::size_t>(i, 2); ++d)
-            f += row.band[i][d] * v[i - d];
+        for (std::size_t d = 0; d <= std::min<std::size_t>(i, 2); ++d) f += row.band[i][d] * v[i - d];
         for (std::size_t d = 1; d <= 2 && i + d < count; ++d) f += row.band[i + d][d] * v[i + d];
         return 2 * f;
     };

@@ -24,18 +24,18 @@ namespace tuft::brush {
 inline constexpr int kWallPasses = 6, kDragPasses = 12;
 
 struct LateralSprings {
-    double stretch = 1e4;     ///< κ, N/m²: force per length of tuft per displacement
-    double bend = 1e4;        ///< κ0 of the bend springs
-    double reach = 2e-3;      ///< λ at the ferrule, m: how far along the tuft a push is felt where κ = κ0
-    double wall = 100;        ///< κ_w over κ
-    std::vector<double> taper;///< r > 0, [n+1], root first, any unit; or none: the same everywhere
+    double stretch = 1e4;       ///< κ, N/m²: force per length of tuft per displacement
+    double bend = 1e4;          ///< κ0 of the bend springs
+    double reach = 2e-3;        ///< λ at the ferrule, m: how far along the tuft a push is felt where κ = κ0
+    double wall = 100;          ///< κ_w over κ
+    std::vector<double> taper;  ///< r > 0, [n+1], root first, any unit; or none: the same everywhere
 };
 
 /// One side's nodes, root first. [n+1] each.
 struct LateralSide {
-    std::vector<double> push;  ///< q, N/m, outward
-    std::vector<double> clear; ///< c, m, displacement at which a wall is met; infinite: none
-    double root = 0;           ///< u_0, m: 0 in a ferrule; where a sub-spine leaves, what its trunk has
+    std::vector<double> push;   ///< q, N/m, outward
+    std::vector<double> clear;  ///< c, m, displacement at which a wall is met; infinite: none
+    double root = 0;            ///< u_0, m: 0 in a ferrule; where a sub-spine leaves, what its trunk has
 };
 
 /// The springs of one row of side nodes, made once for all that is solved with them.
@@ -59,18 +59,18 @@ struct LateralEnergy {
     double value = 0;
     std::vector<double> gradient;
 };
-LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings& springs,
-                             const LateralSide& side, const std::vector<double>& u);
+LateralEnergy lateral_energy(const std::vector<double>& at, const LateralSprings& springs, const LateralSide& side,
+                             const std::vector<double>& u);
 
 /// What the springs of one side store at the minimum u of E: E and the work of the push, joules;
 /// Σ w_i [½ q_i u_i - ½ κ_w ⟨u_i - c_i⟩ c_i] there.
-double stored_at_rest(const std::vector<double>& at, const LateralSprings& springs,
-                      const LateralSide& side, const std::vector<double>& u);
+double stored_at_rest(const std::vector<double>& at, const LateralSprings& springs, const LateralSide& side,
+                      const std::vector<double>& u);
 
 /// Friction of the surface on the side nodes of both sides.
 struct LateralFriction {
-    std::vector<double> most;   ///< T >= 0, N/m on both sides together. [n+1]
-    std::vector<double> stuck;  ///< d, m, displacement at which they would stick to the surface. [n+1]
+    std::vector<double> most;        ///< T >= 0, N/m on both sides together. [n+1]
+    std::vector<double> stuck;       ///< d, m, displacement at which they would stick to the surface. [n+1]
     std::vector<signed char> slips;  ///< which are thought to slip, as in LateralShift; or none
 };
 
@@ -83,8 +83,8 @@ struct LateralFriction {
 /// no more than friction brings. Passes over the set of nodes that stick, at most kDragPasses, from
 /// the set that is given.
 struct LateralShift {
-    std::vector<double> shift;  ///< δ. [n+1]
-    double stored = 0;          ///< S, joules
+    std::vector<double> shift;       ///< δ. [n+1]
+    double stored = 0;               ///< S, joules
     std::vector<signed char> slips;  ///< 0: sticks; else the sign of the force of the surface. [n+1] or none
 };
 LateralShift drag_lateral(const std::vector<double>& at, const LateralSprings& springs,

@@ -33,8 +33,7 @@ struct Hand {
 
     Hand(const Preset& p, double tilt, double slant) {
         now.tuft = make_tuft(p, 3);
-        now.pose.rotation =
-            glm::angleAxis(-tilt, Vec3{0, 1, 0}) * glm::angleAxis(slant, Vec3{1, 0, 0});
+        now.pose.rotation = glm::angleAxis(-tilt, Vec3{0, 1, 0}) * glm::angleAxis(slant, Vec3{1, 0, 0});
         lowest = p.length * -now.pose.axis().z;
         now.pose.position = {0, 0, lowest};
     }
@@ -78,8 +77,7 @@ struct Sheet {
     void text(const std::string& words, Vec2 at, double size, const Vec3& colour) const {
         write_text(canvas, words, at, size * unit, colour);
     }
-    void centred(const std::string& words, double x, double y, double size,
-                 const Vec3& colour) const {
+    void centred(const std::string& words, double x, double y, double size, const Vec3& colour) const {
         text(words, {x - 0.5 * text_width(words, size * unit), y}, size, colour);
     }
     void rule(double y) const {
@@ -95,15 +93,10 @@ void draw_scale(const Sheet& sheet, const View& view, double x0, double x1) {
     const double mm = view.scale * kMillimetre;
     for (int k = static_cast<int>(std::ceil((x0 - view.foot.x) / mm));
          k <= static_cast<int>(std::floor((x1 - view.foot.x) / mm)); ++k) {
-        const double x = view.foot.x + k * mm, tall = (k % 10 == 0  ? 11
-                                                       : k % 5 == 0 ? 8
-                                                                    : 4) *
-                                                      sheet.unit;
+        const double x = view.foot.x + k * mm, tall = (k % 10 == 0 ? 11 : k % 5 == 0 ? 8 : 4) * sheet.unit;
         const Vec2 tick[] = {{x, y}, {x, y + tall}};
         stroke_line(sheet.canvas, tick, {&thin, 1}, ink);
-        if (k % 10 == 0)
-            sheet.centred(std::to_string(std::abs(k)), x + sheet.unit, y + 24 * sheet.unit, 8.5,
-                          ink);
+        if (k % 10 == 0) sheet.centred(std::to_string(std::abs(k)), x + sheet.unit, y + 24 * sheet.unit, 8.5, ink);
     }
 }
 
@@ -138,15 +131,13 @@ void draw_row(const Sheet& sheet, double top, double tilt, const char* name) {
         draw_scale(sheet, view, (k + 0.02) * sheet.column, (k + 0.98) * sheet.column);
         if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, view, plan);
         const double x = (k + 0.5) * sheet.column, y = ground + 152 * u;
-        sheet.centred(lifted ? "lifted"
-                             : label("%.1f mm", at.depth / kMillimetre) +
-                                   label("   %.2f N", at.state.normal_force),
-                      x, y, 12, sheet.ink);
+        sheet.centred(
+            lifted ? "lifted" : label("%.1f mm", at.depth / kMillimetre) + label("   %.2f N", at.state.normal_force), x,
+            y, 12, sheet.ink);
     }
     sheet.rule(ground);
     // Over the handles' bands, so that it can be read.
-    const Vec2 band[] = {
-        {0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
+    const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
     fill_polygon(sheet.canvas, band, srgb(246, 243, 236));
     sheet.text(name, {24 * u, top + 27 * u}, 14, sheet.ink);
 }
@@ -164,8 +155,7 @@ void draw_tips(const Sheet& sheet, double top) {
         if (k == 2) {
             hand.now.tuft.ink_left = 0.05;
             hand.now.tuft.wetness = 0.4;
-            hand.now.tuft.preset.split_factor =
-                3;  // the paper's: shipped hair parts later, in bundles
+            hand.now.tuft.preset.split_factor = 3;  // the paper's: shipped hair parts later, in bundles
             name = "split tip, short of ink";
         } else if (k == 3) {
             look.dry = true;
@@ -201,8 +191,7 @@ void draw_tips(const Sheet& sheet, double top) {
         draw_patch(sheet.canvas, at.tuft, at.state, plan, top + 440 * u, look);
         sheet.centred(name, (k + 0.5) * column, top + 522 * u, 12, sheet.ink);
     }
-    const Vec2 band[] = {
-        {0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
+    const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
     fill_polygon(sheet.canvas, band, srgb(246, 243, 236));
     sheet.text("tips", {24 * u, top + 27 * u}, 14, sheet.ink);
 }
@@ -215,9 +204,7 @@ Picture draw_tuft(const Preset& preset, int width) {
     const int height = static_cast<int>(std::ceil(head + 4 * row));
     Canvas canvas(width, height, srgb(246, 243, 236));
     const double column = static_cast<double>(width) / kColumns;
-    const Sheet sheet{canvas, preset,
-                      unit,   static_cast<double>(width),
-                      column, 0.92 * column / (1.3 * preset.length)};
+    const Sheet sheet{canvas, preset, unit, static_cast<double>(width), column, 0.92 * column / (1.3 * preset.length)};
     draw_tips(sheet, head + 3 * row);
     draw_row(sheet, head + 2 * row, -kLean, "leaning back, pushed");
     draw_row(sheet, head + row, kLean, "leaning ahead, pulled");

@@ -73,12 +73,10 @@ struct Placed {
     std::optional<Vec2> at(const Strand& strand, std::size_t k, std::size_t i) const {
         if (i >= strand.trunk) {
             const auto last = static_cast<double>(strand.sections.size() - 1);
-            return glm::mix(bound, whole,
-                            smooth_step((last - static_cast<double>(i)) / (kBound * last)));
+            return glm::mix(bound, whole, smooth_step((last - static_cast<double>(i)) / (kBound * last)));
         }
         // Between the last section of its own and the trunk's first it goes straight.
-        if (part.branch != static_cast<int>(k) || i + kBetween + 1 > strand.trunk)
-            return std::nullopt;
+        if (part.branch != static_cast<int>(k) || i + kBetween + 1 > strand.trunk) return std::nullopt;
         return part.place;
     }
 };
@@ -89,8 +87,7 @@ Vec3 point_of(const Section& s, const Vec2& place) {
 
 void fill_silhouette(Canvas& canvas, const Strand& strand, const View& view, const Vec3& colour) {
     constexpr int kRound = 16;
-    constexpr double kUnder =
-        0.88;  // of the section: no rim where the outermost hair happens to lie further in
+    constexpr double kUnder = 0.88;  // of the section: no rim where the outermost hair happens to lie further in
     constexpr double kRoot = 0.5;
     std::vector<Vec2> before, now;
     for (std::size_t i = 0; i < strand.sections.size(); ++i) {
@@ -99,14 +96,10 @@ void fill_silhouette(Canvas& canvas, const Strand& strand, const View& view, con
         const Section& s = strand.sections[i];
         const Vec2 centre = view(s.centre);
         // Round a branch's root it lies within the hair, which runs straight past it.
-        const double from_root =
-            std::abs(static_cast<double>(i) - static_cast<double>(strand.trunk)) / (kBetween + 1);
-        const double under =
-            strand.trunk > 0 ? std::lerp(kRoot, kUnder, smooth_step(from_root / 3)) : kUnder;
-        const Vec2 e =
-            under * s.a * view.scale * Vec2{glm::dot(s.e, view.right), -glm::dot(s.e, view.up)};
-        const Vec2 m =
-            under * s.b * view.scale * Vec2{glm::dot(s.m, view.right), -glm::dot(s.m, view.up)};
+        const double from_root = std::abs(static_cast<double>(i) - static_cast<double>(strand.trunk)) / (kBetween + 1);
+        const double under = strand.trunk > 0 ? std::lerp(kRoot, kUnder, smooth_step(from_root / 3)) : kUnder;
+        const Vec2 e = under * s.a * view.scale * Vec2{glm::dot(s.e, view.right), -glm::dot(s.e, view.up)};
+        const Vec2 m = under * s.b * view.scale * Vec2{glm::dot(s.m, view.right), -glm::dot(s.m, view.up)};
         std::vector<Vec2> round;
         for (int k = 0; k < kRound; ++k) {
             const double w = 2 * std::numbers::pi * k / kRound;
@@ -126,13 +119,11 @@ void fill_silhouette(Canvas& canvas, const Strand& strand, const View& view, con
     }
 }
 
-void draw_tuft_hair(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view,
-                    const TuftLook& look) {
+void draw_tuft_hair(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view, const TuftLook& look) {
     const std::vector<Strand> strands = strands_of(state, look);
     const int count = static_cast<int>(strands.size());
     if (!look.dry)
-        for (const Strand& strand : strands)
-            fill_silhouette(canvas, strand, view, srgb(78, 55, 40));
+        for (const Strand& strand : strands) fill_silhouette(canvas, strand, view, srgb(78, 55, 40));
     const std::vector<Bristle>& bristles = tuft.bundles.bristles;
     std::vector<Placed> placed;
     std::vector<double> near;
@@ -142,14 +133,12 @@ void draw_tuft_hair(Canvas& canvas, const Tuft& tuft, const TuftState& state, co
         const Strand& strand = strands[static_cast<std::size_t>(placed.back().part.branch)];
         const Section& s = strand.sections[strand.sections.size() / 3];
         near.push_back(glm::dot(
-            point_of(s, strand.sections.size() / 3 < strand.trunk ? placed.back().part.place
-                                                                  : placed.back().whole),
+            point_of(s, strand.sections.size() / 3 < strand.trunk ? placed.back().part.place : placed.back().whole),
             viewer));
     }
     std::vector<std::size_t> order(bristles.size());
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return near[a] < near[b]; });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return near[a] < near[b]; });
     const Vec3 light = glm::normalize(0.75 * view.up - 0.45 * view.right + 0.5 * viewer);
     Random random(tuft.bundles.seed + 7);
     std::vector<double> shade(bristles.size());
@@ -162,8 +151,7 @@ void draw_tuft_hair(Canvas& canvas, const Tuft& tuft, const TuftState& state, co
         const std::vector<Section>& fine = strands[k].sections;
         const double readiness = bristles[h].readiness, n = static_cast<double>(fine.size());
         // Hairs end at unequal lengths; water draws all of them to the point.
-        const double short_by =
-            look.dry ? 0.16 * readiness : 0.3 * readiness * readiness * glm::length(p.whole);
+        const double short_by = look.dry ? 0.16 * readiness : 0.3 * readiness * readiness * glm::length(p.whole);
         const auto stop = static_cast<std::size_t>(short_by * n);
         line.clear();
         width.clear();
@@ -172,15 +160,13 @@ void draw_tuft_hair(Canvas& canvas, const Tuft& tuft, const TuftState& state, co
             const std::optional<Vec2> at = p.at(strands[k], k, i);
             if (!at) continue;
             line.push_back(view(point_of(fine[i], *at)));
-            width.push_back(0.5 + (look.dry ? 0.7 : 1.1) *
-                                      std::min(1.0, 4 * static_cast<double>(i - stop) / n));
+            width.push_back(0.5 + (look.dry ? 0.7 : 1.1) * std::min(1.0, 4 * static_cast<double>(i - stop) / n));
             lit += glm::dot(at->x * fine[i].e + at->y * fine[i].m, light);
         }
         if (line.size() < 2) continue;
         lit /= static_cast<double>(line.size());
         const double tone = std::clamp(0.42 + 0.5 * lit + shade[h], 0.0, 1.0);
-        stroke_line(canvas, line, width, glm::mix(srgb(48, 32, 22), srgb(206, 168, 120), tone),
-                    0.8);
+        stroke_line(canvas, line, width, glm::mix(srgb(48, 32, 22), srgb(206, 168, 120), tone), 0.8);
     }
 }
 
@@ -198,8 +184,7 @@ void fill_turned(Canvas& canvas, const Turned& piece, const Pose& pose, const Vi
     side = glm::length(side) > 1e-6 ? glm::normalize(side) : view.right;
     const Vec3 front = glm::cross(side, up);
     const auto rim = [&](double height, double radius, double w) {
-        return view(pose.position + height * up +
-                    radius * (std::sin(w) * side + std::cos(w) * front));
+        return view(pose.position + height * up + radius * (std::sin(w) * side + std::cos(w) * front));
     };
     const double lean = 0.25 * glm::dot(side, view.right);
     std::vector<Vec2> lower, upper;
@@ -227,12 +212,11 @@ void fill_turned(Canvas& canvas, const Turned& piece, const Pose& pose, const Vi
 
 }  // namespace
 
-void draw_brush(Canvas& canvas, const Tuft& tuft, const TuftState& state, const Pose& pose,
-                const View& view, double length, const TuftLook& look) {
+void draw_brush(Canvas& canvas, const Tuft& tuft, const TuftState& state, const Pose& pose, const View& view,
+                double length, const TuftLook& look) {
     const Preset& p = tuft.preset;
     const double r = 1.12 * rest_radius(p, 0);
-    const Turned handle{0.2 * p.length, length,           0.92 * r,
-                        0.9 * r,        srgb(96, 66, 34), srgb(222, 184, 120)};
+    const Turned handle{0.2 * p.length, length, 0.92 * r, 0.9 * r, srgb(96, 66, 34), srgb(222, 184, 120)};
     const Turned ferrule{0, 0.22 * p.length, r, 1.04 * r, srgb(28, 28, 32), srgb(150, 150, 158)};
     const bool into_mouth = glm::dot(pose.axis(), view.toward()) > 0;
     if (into_mouth) {
@@ -298,12 +282,11 @@ std::vector<Section> touching(const std::vector<Section>& sections) {
 
 }  // namespace
 
-void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view,
-                double y, const TuftLook& look) {
+void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view, double y,
+                const TuftLook& look) {
     const Vec3 ink = srgb(24, 22, 24);
     const auto plan = [&](const Vec3& p) {
-        return Vec2{view.foot.x + view.scale * (p.x - view.origin.x),
-                    y + view.scale * (p.y - view.origin.y)};
+        return Vec2{view.foot.x + view.scale * (p.x - view.origin.x), y + view.scale * (p.y - view.origin.y)};
     };
     if (look.dry) {
         // The lines of the bristles that lie on the sheet.
@@ -319,10 +302,8 @@ void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const 
                 const Section& s = strands[k].sections[i];
                 const std::optional<Vec2> at = placed.at(strands[k], k, i);
                 if (!at || at->y * s.m.z > 0) continue;
-                const double under =
-                    std::sqrt(std::max(0.0, 1 - at->x * at->x)) * s.b * std::abs(s.m.z);
-                if (s.centre.z + s.a * at->x * s.e.z - under <= 1e-4)
-                    line.push_back(plan(point_of(s, *at)));
+                const double under = std::sqrt(std::max(0.0, 1 - at->x * at->x)) * s.b * std::abs(s.m.z);
+                if (s.centre.z + s.a * at->x * s.e.z - under <= 1e-4) line.push_back(plan(point_of(s, *at)));
             }
             stroke_line(canvas, line, {&width, 1}, ink, 0.85);
         }
@@ -332,8 +313,7 @@ void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const 
         std::vector<Vec2> left, right;
         for (const Section& s : touching(refine_sections(branch.sections, kBetween))) {
             const double ne = s.a * s.e.z, nm = s.b * s.m.z, reach = reach_of(s);
-            const double middle = std::atan2(nm, ne),
-                         half = std::acos(std::clamp(-s.centre.z / reach, -1.0, 1.0));
+            const double middle = std::atan2(nm, ne), half = std::acos(std::clamp(-s.centre.z / reach, -1.0, 1.0));
             Vec3 q[2];
             for (int k = 0; k < 2; ++k) {
                 const double w = middle + (k == 0 ? -half : half);

@@ -1,5 +1,7 @@
 #include "brush/preset.h"
 
+#include <toml++/toml.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -7,7 +9,6 @@
 #include <cstdio>
 #include <optional>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -75,7 +76,7 @@ constexpr std::array kFields = {
 struct WholeField {
     const char* table;
     const char* key;
-    int Preset::* member;
+    int Preset::*member;
     int lo, hi;
 };
 
@@ -87,11 +88,12 @@ constexpr std::array kWholeFields = {
 };
 
 std::string whole_note(const WholeField& f) {
-    return std::string(f.key) + " must be a whole number from " + std::to_string(f.lo) + " to " +
-           std::to_string(f.hi);
+    return std::string(f.key) + " must be a whole number from " + std::to_string(f.lo) + " to " + std::to_string(f.hi);
 }
 
-long line_of(const toml::node& node) { return static_cast<long>(node.source().begin.line); }
+long line_of(const toml::node& node) {
+    return static_cast<long>(node.source().begin.line);
+}
 
 [[noreturn]] void fail(const std::string& source, long line, const std::string& what) {
     if (line > 0) throw Error(source, line, what);
@@ -112,11 +114,9 @@ std::vector<std::string> known_keys() {
     return keys;
 }
 
-[[noreturn]] void unknown_key(const std::string& source, const toml::node& node,
-                              const std::string& key) {
+[[noreturn]] void unknown_key(const std::string& source, const toml::node& node, const std::string& key) {
     const std::string near = nearest_name(key, known_keys());
-    fail(source, line_of(node),
-         "unknown key '" + key + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
+    fail(source, line_of(node), "unknown key '" + key + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
 }
 
 std::string text_of(const toml::node& node, const std::string& source, const std::string& key) {
@@ -159,8 +159,8 @@ void read_value(Preset& p, const std::string& table, const std::string& written,
         if (table != f.table || key != f.key) continue;
         const double v = number_of(node, source, full);
         if (!(v >= f.lo && v <= f.hi)) {
-            fail(source, line_of(node), "'" + full + "' is " + number(v) + ", outside " +
-                                            number(f.lo) + " to " + number(f.hi));
+            fail(source, line_of(node),
+                 "'" + full + "' is " + number(v) + ", outside " + number(f.lo) + " to " + number(f.hi));
         }
         p.*f.member = v * f.unit + 0.0;  // no negative zero, whose text has no sign in TOML
         return;
@@ -168,7 +168,9 @@ void read_value(Preset& p, const std::string& table, const std::string& written,
     unknown_key(source, node, full);
 }
 
-fs::path preset_folder() { return data_folder() / "models" / "brushes"; }
+fs::path preset_folder() {
+    return data_folder() / "models" / "brushes";
+}
 
 }  // namespace
 
@@ -177,8 +179,8 @@ void check_preset(const Preset& p, const std::string& source) {
         const double v = p.*f.member / f.unit;
         const double slack = 1e-9 * (std::abs(f.lo) + std::abs(f.hi));
         if (!(v >= f.lo - slack && v <= f.hi + slack)) {
-            throw Error(source, "'" + std::string(f.table) + "." + f.key + "' is " + number(v) +
-                                    ", outside " + number(f.lo) + " to " + number(f.hi));
+            throw Error(source, "'" + std::string(f.table) + "." + f.key + "' is " + number(v) + ", outside " +
+                                    number(f.lo) + " to " + number(f.hi));
         }
     }
     for (const WholeField& f : kWholeFields)
@@ -250,7 +252,8 @@ SizedName sized_name(const std::string& name) {
     const char* end = name.data() + name.size();
     const auto [at, error] = std::from_chars(name.data() + star + 1, end, out.factor);
     if (error != std::errc{} || at != end || !(out.factor >= kLeastSize && out.factor <= kMostSize))
-        throw Error("brush '" + name + "': a size from " + number(kLeastSize) + " to " + number(kMostSize) + " must follow the *");
+        throw Error("brush '" + name + "': a size from " + number(kLeastSize) + " to " + number(kMostSize) +
+                    " must follow the *");
     return out;
 }
 
@@ -263,7 +266,9 @@ std::string name_of(const SizedName& sized) {
 namespace {
 
 /// A preset as a project stores it and a replay reads it, which rounds numbers to 12 digits: both paint the same.
-Preset as_stored(const Preset& preset, const std::string& source) { return parse_preset(preset_toml(preset), source); }
+Preset as_stored(const Preset& preset, const std::string& source) {
+    return parse_preset(preset_toml(preset), source);
+}
 
 }  // namespace
 
@@ -290,8 +295,7 @@ Preset load_preset(const std::string& name_or_path) {
             if (names.empty()) {
                 throw Error("unknown brush '" + name + "': no presets in " + preset_folder().string());
             }
-            throw Error("unknown brush '" + name + "'" +
-                        (near.empty() ? "" : ", did you mean '" + near + "'?"));
+            throw Error("unknown brush '" + name + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
         }
         path = preset_folder() / (name + ".toml");
     }

@@ -19,16 +19,16 @@ enum class SpineMethod {
 /// stiffness brush: B(ξ) = B0 e^{αξ} (1+βξ)³, M_e(ξ) = M_e0 e^{γξ} (1+βξ)², ξ from
 /// root (0) to tip (1).
 struct Preset {
-    std::string name;             ///< "wolf-medium"
-    std::string note;             ///< one line for people
+    std::string name;  ///< "wolf-medium"
+    std::string note;  ///< one line for people
 
     // Shape.
-    double length = 0.032;        ///< m, free hair from ferrule to tip
-    double radius = 0.0035;       ///< m, scale R of the belly; the widest section is about 1.06 R
-    double tip_power = 1.4;       ///< exponent q of the taper (1-u^2.4)^q: larger is a finer point
-    double tip_radius = 1e-4;     ///< m, of the few hairs that make the point
-    double hardness = 0.5;        ///< [0, 1]; softer means shorter segments at the tip
-    int segments = 16;            ///< spine segments, 12–24
+    double length = 0.032;     ///< m, free hair from ferrule to tip
+    double radius = 0.0035;    ///< m, scale R of the belly; the widest section is about 1.06 R
+    double tip_power = 1.4;    ///< exponent q of the taper (1-u^2.4)^q: larger is a finer point
+    double tip_radius = 1e-4;  ///< m, of the few hairs that make the point
+    double hardness = 0.5;     ///< [0, 1]; softer means shorter segments at the tip
+    int segments = 16;         ///< spine segments, 12–24
 
     // Bending.
     double stiffness = 2e-4;      ///< B0, N·m², at the root
@@ -40,24 +40,24 @@ struct Preset {
     double plastic_share = 0.3;   ///< part of the stiffness that yields; 1 is the ideally plastic hair
                                   ///< of the paper, less gives a set that saturates
 
-    double recovery = 4;          ///< s in which a small set goes back while nothing bends the hair;
-                                  ///< 0: never. A large set goes slower or stays
-    double damping = 3e-3;        ///< s, viscous over elastic stiffness of the wet bundle: hair that
-                                  ///< slips off an edge or buckles lets go in this time
+    double recovery = 4;    ///< s in which a small set goes back while nothing bends the hair;
+                            ///< 0: never. A large set goes slower or stays
+    double damping = 3e-3;  ///< s, viscous over elastic stiffness of the wet bundle: hair that
+                            ///< slips off an edge or buckles lets go in this time
 
     // Contact.
     double transverse_stiffness = 1.2e4;  ///< k_c, N/m²: force per length per indentation of the tuft's side
-    double core_stiffness = 150;  ///< times k_c once the hair is packed
-    double core_start = 0.65;     ///< indentation over radius at which it is packed
-    double end_compliance = 5e-4; ///< m, scatter of the hairs' ends: by so much the point gives before
-                                  ///< the tuft, pressed end-on, buckles
-    double adhesion = 0.5;        ///< N/m, pull of the wet film per length of hair; none when dry
-    double adhesion_range = 1e-3; ///< m, gap at which the film breaks
+    double core_stiffness = 150;          ///< times k_c once the hair is packed
+    double core_start = 0.65;             ///< indentation over radius at which it is packed
+    double end_compliance = 5e-4;         ///< m, scatter of the hairs' ends: by so much the point gives before
+                                          ///< the tuft, pressed end-on, buckles
+    double adhesion = 0.5;                ///< N/m, pull of the wet film per length of hair; none when dry
+    double adhesion_range = 1e-3;         ///< m, gap at which the film breaks
     double friction_wet = 0.30, friction_dry = 0.45;  ///< Coulomb μ
-    double grain = 0.4;           ///< κ_f: share of friction along the hair; 0.5 is isotropic
-    double with_hair = 0.3;       ///< C_η: part of friction lost when dragged tip last
-    double pore_grip = 0.5;       ///< extra μ at the tip against being pushed tip first
-    double stick = 40;            ///< tangential over normal stiffness of a sticking contact
+    double grain = 0.4;                               ///< κ_f: share of friction along the hair; 0.5 is isotropic
+    double with_hair = 0.3;                           ///< C_η: part of friction lost when dragged tip last
+    double pore_grip = 0.5;                           ///< extra μ at the tip against being pushed tip first
+    double stick = 40;                                ///< tangential over normal stiffness of a sticking contact
 
     // Sections.
     double flatten_moment = 0.8;  ///< κ1 of a = r (1 + κ1 |m|/M_e0 + κ2 k_F + κ3 i)
@@ -66,19 +66,19 @@ struct Preset {
     double flatten_max = 3;       ///< a <= flatten_max r
 
     // Ink and splitting.
-    double capacity = 4e-7;       ///< m³ of ink when full
-    double split_factor = 3;      ///< ξ of SP = ξ k (1 - Z_i/Z)
+    double capacity = 4e-7;               ///< m³ of ink when full
+    double split_factor = 3;              ///< ξ of SP = ξ k (1 - Z_i/Z)
     double split_at = 1, merge_at = 0.7;  ///< thresholds on SP
-    double split_yaw = 0.12;      ///< Δ, radians between sub-spines
-    int split_into = 3;           ///< sub-spines of the last third, 2–5
+    double split_yaw = 0.12;              ///< Δ, radians between sub-spines
+    int split_into = 3;                   ///< sub-spines of the last third, 2–5
 
     // Hair.
-    int bundles = 40;             ///< of hair that stick together, each with ink of its own
-    int bristles = 500;           ///< drawn and inked one by one
+    int bundles = 40;    ///< of hair that stick together, each with ink of its own
+    int bristles = 500;  ///< drawn and inked one by one
 
     // Force to the hand.
-    double force_gain = 15;       ///< G: hair gives 0.05–0.5 N, the hand feels G times it
-    double force_limit = 7.9;     ///< N
+    double force_gain = 15;    ///< G: hair gives 0.05–0.5 N, the hand feels G times it
+    double force_limit = 7.9;  ///< N
 
     SpineMethod spine = SpineMethod::rod;
 };

@@ -10,10 +10,10 @@ namespace tuft::brush {
 /// yield stress σ0 e^{γξ} gives M_e(ξ) = e · e^{γξ} (1+βξ)².
 struct Profile {
     double alpha = -1;
-    double beta = -0.8;   ///< > -1
-    double yield = 0;     ///< e = M_e0 L / B0; 0 means elastic for ever
+    double beta = -0.8;  ///< > -1
+    double yield = 0;    ///< e = M_e0 L / B0; 0 means elastic for ever
     double gamma = -1;
-    double floor = 0;     ///< added to B/B0: the hairs that reach the tip; M_e grows in proportion
+    double floor = 0;  ///< added to B/B0: the hairs that reach the tip; M_e grows in proportion
 };
 
 double bending_stiffness(const Profile& p, double xi);  ///< B/B0

@@ -68,7 +68,7 @@ struct Obstacle {
     Vec3 normal{0, 0, 1};
     double radius = 0;
     Vec3 beyond_origin{0};
-    Vec3 beyond_normal{0};             ///< zero: no edge near
+    Vec3 beyond_normal{0};  ///< zero: no edge near
 
     bool at_edge() const { return beyond_normal != Vec3{0}; }
 };
@@ -78,47 +78,47 @@ struct Wall {
     int node = 0;
     Vec3 origin{0}, normal{0, 0, 1};
     double radius = 0;
-    double share = 0;                  ///< 0: nothing
+    double share = 0;  ///< 0: nothing
 };
 
 /// Contact law of all nodes.
 struct Law {
-    int points_per_segment = 1; ///< contact points: the nodes, and this less one between them,
-                                ///< whose planes and radii are interpolated
-    bool hard = false;          ///< exact non-penetration by an augmented Lagrangian
-    double stiffness = 1e4;     ///< k_c, force per length per indentation; penalty when hard
-    double core_stiffness = 0;  ///< further k beyond core_start · radius
+    int points_per_segment = 1;  ///< contact points: the nodes, and this less one between them,
+                                 ///< whose planes and radii are interpolated
+    bool hard = false;           ///< exact non-penetration by an augmented Lagrangian
+    double stiffness = 1e4;      ///< k_c, force per length per indentation; penalty when hard
+    double core_stiffness = 0;   ///< further k beyond core_start · radius
     double core_start = 0.65;
-    double onset = 0;           ///< indentation over which a stiffness comes in, smoothing its kink
-    double end_friction = 1;    ///< share of μ that is left where hair meets the surface end-on; the
-                                ///< rest comes with lying down, as sin² of its angle to the normal
-    double recovery = 0;        ///< Δt/T of the set: stops that push the hair back towards straight
-                                ///< creep; see `recover_joint`
-    double end_compliance = 0;        ///< length by which the hair's ends give at the buckling load
-                                ///< when they meet a surface end-on, less the more they lie;
-                                ///< 0: none. Fades to nothing 4 end_compliance behind the tip
-    double damping = 0;         ///< viscous stiffness over elastic stiffness of the joints:
-                                ///< η/(k Δt) of backward Euler
-    double edge = 0;            ///< over a crease, where a node has two planes or the planes of
-                                ///< neighbouring nodes part, a point keeps off both (in a corner) or
-                                ///< either (over an edge), rounded by this length as in wedge.h;
-                                ///< 0: one plane each
-    double adhesion = 0;        ///< pull per length of a wet node that all but touches, fading
-    double adhesion_range = 0;  ///< as (1 - gap/range)² to nothing at this gap
-    double friction = 0;        ///< μ
-    double grain = 0.5;         ///< κ_f: 2κ_f μ along the tangent, 2(1-κ_f) μ across
-    double with_hair = 0;       ///< C_η: μ (1 - C_η cos⁴) when dragged tip last
-    double pore_grip = 0;       ///< extra μ of the tip against being pushed tip first
+    double onset = 0;              ///< indentation over which a stiffness comes in, smoothing its kink
+    double end_friction = 1;       ///< share of μ that is left where hair meets the surface end-on; the
+                                   ///< rest comes with lying down, as sin² of its angle to the normal
+    double recovery = 0;           ///< Δt/T of the set: stops that push the hair back towards straight
+                                   ///< creep; see `recover_joint`
+    double end_compliance = 0;     ///< length by which the hair's ends give at the buckling load
+                                   ///< when they meet a surface end-on, less the more they lie;
+                                   ///< 0: none. Fades to nothing 4 end_compliance behind the tip
+    double damping = 0;            ///< viscous stiffness over elastic stiffness of the joints:
+                                   ///< η/(k Δt) of backward Euler
+    double edge = 0;               ///< over a crease, where a node has two planes or the planes of
+                                   ///< neighbouring nodes part, a point keeps off both (in a corner) or
+                                   ///< either (over an edge), rounded by this length as in wedge.h;
+                                   ///< 0: one plane each
+    double adhesion = 0;           ///< pull per length of a wet node that all but touches, fading
+    double adhesion_range = 0;     ///< as (1 - gap/range)² to nothing at this gap
+    double friction = 0;           ///< μ
+    double grain = 0.5;            ///< κ_f: 2κ_f μ along the tangent, 2(1-κ_f) μ across
+    double with_hair = 0;          ///< C_η: μ (1 - C_η cos⁴) when dragged tip last
+    double pore_grip = 0;          ///< extra μ of the tip against being pushed tip first
     double stick_stiffness = 4e4;  ///< k_t, tangential force per length per displacement
-    int max_passes = 20;        ///< of lagged normal forces
-    int max_iterations = 80;    ///< of Newton, all passes together
-    double tolerance = 1e-7;    ///< largest residual moment
+    int max_passes = 20;           ///< of lagged normal forces
+    int max_iterations = 80;       ///< of Newton, all passes together
+    double tolerance = 1e-7;       ///< largest residual moment
     double pass_tolerance = 1e-2;  ///< change of normal forces between passes, relative
 };
 
 struct Load {
     Vec3 tip_force{0};
-    double end_moment = 0;      ///< about e = tangent × toward of the clamp: bends towards `toward`
+    double end_moment = 0;  ///< about e = tangent × toward of the clamp: bends towards `toward`
     Vec3 toward{1, 0, 0};
 };
 
@@ -132,21 +132,21 @@ struct JointMemory {
 struct ContactMemory {
     bool touching = false;
     Vec3 anchor{0};
-    Vec3 normal{0};                    ///< of the surface at the last solve; x - anchor is normal to it
-    double force = 0;                  ///< normal force of the last solve
-    double growth = 0;                 ///< of it over that of the solve before
-    double multiplier = 0;             ///< hard contact
+    Vec3 normal{0};         ///< of the surface at the last solve; x - anchor is normal to it
+    double force = 0;       ///< normal force of the last solve
+    double growth = 0;      ///< of it over that of the solve before
+    double multiplier = 0;  ///< hard contact
 };
 
 struct Memory {
     Clamp clamp;
-    std::vector<Vec3> tangent;         ///< [n] unit
-    std::vector<Vec3> turn;            ///< [n] change of each tangent in the last solve, in the
-                                       ///< clamp's frame, for a better first guess; or none
-    double moved = 0;                  ///< of the clamp in the last solve
-    std::vector<Vec3> node;            ///< [n+1]
-    std::vector<JointMemory> joint;    ///< [n]
-    std::vector<ContactMemory> contact;///< [points_per_segment n + 1], and one for each wall
+    std::vector<Vec3> tangent;           ///< [n] unit
+    std::vector<Vec3> turn;              ///< [n] change of each tangent in the last solve, in the
+                                         ///< clamp's frame, for a better first guess; or none
+    double moved = 0;                    ///< of the clamp in the last solve
+    std::vector<Vec3> node;              ///< [n+1]
+    std::vector<JointMemory> joint;      ///< [n]
+    std::vector<ContactMemory> contact;  ///< [points_per_segment n + 1], and one for each wall
 };
 
 struct Result {
@@ -183,20 +183,19 @@ std::vector<Vec3> nodes(const Rod& rod, const Memory& memory);
 /// Carries the rod to `clamp`, then solves. `obstacles`: [n+1], or empty for none. `walls` come in the same
 /// order from solve to solve, and only where there are obstacles; out of reach they change no bit.
 /// Bounded work; when it stops early the best state is kept and `converged` is false.
-Result solve(const Rod& rod, Memory& memory, const Clamp& clamp,
-             std::span<const Obstacle> obstacles, const Law& law, const Load& load = {},
-             std::span<const Wall> walls = {});
+Result solve(const Rod& rod, Memory& memory, const Clamp& clamp, std::span<const Obstacle> obstacles, const Law& law,
+             const Load& load = {}, std::span<const Wall> walls = {});
 
 /// Value and derivatives of Π for frozen friction, for tests: x holds 2n steps along each
 /// segment's two normals from the state in `memory`.
 struct Probe {
     double value = 0;
     std::vector<double> gradient;
-    std::vector<double> hessian;       ///< [2n × 2n] its lower half, column major
-    std::vector<double> step;          ///< Newton's, each segment's pivot raised by `damping` times the
-                                       ///< stiffness of its joints; none where it is not positive definite
+    std::vector<double> hessian;  ///< [2n × 2n] its lower half, column major
+    std::vector<double> step;     ///< Newton's, each segment's pivot raised by `damping` times the
+                                  ///< stiffness of its joints; none where it is not positive definite
 };
-Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles,
-                   const Law& law, const Load& load, std::span<const double> x, double damping = 0);
+Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles, const Law& law,
+                   const Load& load, std::span<const double> x, double damping = 0);
 
 }  // namespace tuft::brush::rod

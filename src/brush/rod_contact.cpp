@@ -10,8 +10,8 @@ namespace tuft::brush::rod {
 namespace {
 
 /// Spring that slips at `cap` along a displacement of metric length q; G d is the metric's slope.
-void add_slider(double cap, double k, const Vec3& gd, const Sym3& g, double q, double& energy,
-                Vec3& slope, Sym3& curvature) {
+void add_slider(double cap, double k, const Vec3& gd, const Sym3& g, double q, double& energy, Vec3& slope,
+                Sym3& curvature) {
     if (q * k <= cap) {
         energy += 0.5 * k * q * q;
         slope += k * gd;
@@ -23,26 +23,23 @@ void add_slider(double cap, double k, const Vec3& gd, const Sym3& g, double q, d
     }
 }
 
-void add_friction(const Friction& f, const Vec3& normal, const Vec3& x, double& energy,
-                  Vec3& slope, Sym3& curvature) {
+void add_friction(const Friction& f, const Vec3& normal, const Vec3& x, double& energy, Vec3& slope, Sym3& curvature) {
     if (f.cap <= 0 || f.stick <= 0) return;
     Vec3 d = x - f.anchor;
     d -= glm::dot(d, normal) * normal;
     const double a2 = f.across * f.across, l2 = f.along * f.along;
     const Sym3 g = a2 * (Sym3{1, 0, 0, 1, 0, 1} + -1.0 * outer(normal)) + (l2 - a2) * outer(f.grain);
     const Vec3 gd = g * d;
-    add_slider(f.cap, f.stick, gd, g, std::sqrt(std::max(0.0, glm::dot(d, gd))), energy, slope,
-               curvature);
+    add_slider(f.cap, f.stick, gd, g, std::sqrt(std::max(0.0, glm::dot(d, gd))), energy, slope, curvature);
     const double pushed = glm::dot(d, f.grain);
     if (f.pore_cap > 0 && pushed > 0) {
-        add_slider(f.pore_cap, f.stick, pushed * f.grain, outer(f.grain), pushed, energy, slope,
-                   curvature);
+        add_slider(f.pore_cap, f.stick, pushed * f.grain, outer(f.grain), pushed, energy, slope, curvature);
     }
 }
 
 /// Potential of a point by its indentation and by c = -t·n, with derivatives.
 struct EndOn {
-    double energy = 0, d = 0, c = 0;      ///< value, ∂/∂depth (the normal force), ∂/∂c
+    double energy = 0, d = 0, c = 0;  ///< value, ∂/∂depth (the normal force), ∂/∂c
     double dd = 0, dc = 0, cc = 0;
 };
 
@@ -75,8 +72,7 @@ EndOn end_on(const Law& law, double weight, double radius, double depth, double 
 Distance distance_of(const Obstacle& o, const Crease& crease, double edge, const Vec3& x) {
     Distance out{glm::dot(x - o.origin, o.normal), o.normal};
     if (crease.share <= 0) return out;
-    const Distance d = crease.convex ? edge_distance(crease.wedge, edge, x)
-                                     : corner_distance(crease.wedge, edge, x);
+    const Distance d = crease.convex ? edge_distance(crease.wedge, edge, x) : corner_distance(crease.wedge, edge, x);
     out.z += crease.share * (d.z - out.z);
     out.slope += crease.share * (d.slope - out.slope);
     out.bend = crease.share * d.bend;
@@ -275,8 +271,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     if (depth > 0 && c > 0 && frozen.give[p] > 0 && frozen.crease[p].share <= 0) {
         f = end_on(law, frozen.weight[p], o.radius, depth, c, frozen.give[p]);
     } else {
-        const NormalForce whole =
-            normal_force(law, frozen.weight[p], o.radius, depth, frozen.multiplier[p]);
+        const NormalForce whole = normal_force(law, frozen.weight[p], o.radius, depth, frozen.multiplier[p]);
         f = {.energy = whole.energy, .d = whole.force, .dd = whole.stiffness};
     }
     const NormalForce pull = adhesion(law, frozen.weight[p], -depth);

@@ -56,15 +56,13 @@ JointBlocks joint_blocks(const JointForce& jf, const Joint& joint, double c) {
             const double id = i == k ? 1 : 0;
             if (k <= i) {
                 out.aa.m[i][k] = ja[0][i] * dja[0][k] + ja[1][i] * dja[1][k] +
-                                 (f.chi * c - 0.5 * f.phi) * (m[i] * p[k] + p[i] * m[k]) +
-                                 f.chi * c * mp * id - f.dchi * mp * p[i] * p[k];
-                out.bb.m[i][k] = jb[0][i] * djb[0][k] + jb[1][i] * djb[1][k] +
-                                 (f.chi * c - f.phi) * mp * id - f.chi * (q[i] * rm[k] + rm[i] * q[k]) -
-                                 f.dchi * mp * q[i] * q[k];
+                                 (f.chi * c - 0.5 * f.phi) * (m[i] * p[k] + p[i] * m[k]) + f.chi * c * mp * id -
+                                 f.dchi * mp * p[i] * p[k];
+                out.bb.m[i][k] = jb[0][i] * djb[0][k] + jb[1][i] * djb[1][k] + (f.chi * c - f.phi) * mp * id -
+                                 f.chi * (q[i] * rm[k] + rm[i] * q[k]) - f.dchi * mp * q[i] * q[k];
             }
-            out.ab.m[i][k] = ja[0][i] * djb[0][k] + ja[1][i] * djb[1][k] +
-                             (f.chi * c - f.phi) * m[i] * q[k] - f.chi * p[i] * rm[k] -
-                             f.chi * mp * r[i][k] - f.dchi * mp * p[i] * q[k];
+            out.ab.m[i][k] = ja[0][i] * djb[0][k] + ja[1][i] * djb[1][k] + (f.chi * c - f.phi) * m[i] * q[k] -
+                             f.chi * p[i] * rm[k] - f.chi * mp * r[i][k] - f.dchi * mp * p[i] * q[k];
         }
     }
     out.aa.m[0][1] = out.aa.m[1][0];
@@ -84,8 +82,7 @@ struct Lower {
 
 }  // namespace
 
-void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& at,
-                   Derivatives& out) {
+void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& at, Derivatives& out) {
     const Rod& rod = *frozen.rod;
     const int n = rod.segments();
     out.gradient.assign(2 * n, 0);
@@ -115,8 +112,7 @@ void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& a
     }
 }
 
-void differentiate_twice(const Frozen& frozen, const Shape& shape, const Evaluation& at,
-                         Derivatives& out) {
+void differentiate_twice(const Frozen& frozen, const Shape& shape, const Evaluation& at, Derivatives& out) {
     const Rod& rod = *frozen.rod;
     const int n = rod.segments();
     out.segment.resize(n);
@@ -137,8 +133,8 @@ void differentiate_twice(const Frozen& frozen, const Shape& shape, const Evaluat
     }
 }
 
-bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Derivatives& d,
-             double damping, Elimination& work, std::vector<double>& step) {
+bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Derivatives& d, double damping,
+             Elimination& work, std::vector<double>& step) {
     const int n = rod.segments();
     work.gain.resize(n);
     step.resize(2 * n);
@@ -153,15 +149,14 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
         const Vec3 arm[2] = {l * shape.side[j], l * d.second[j]};
         const Vec3 pa[2] = {big_p * arm[0], big_p * arm[1]};
         const Mat2& own = d.segment[j].own;
-        const double damped =
-            damping > 0 ? damping * (rod.stiffness[j] + (j + 1 < n ? rod.stiffness[j + 1] : 0)) : 0;
+        const double damped = damping > 0 ? damping * (rod.stiffness[j] + (j + 1 < n ? rod.stiffness[j + 1] : 0)) : 0;
         // The steps of segment j: their own matrix, and its inverse.
-        const double u00 = own.m[0][0] + big_r.m[0][0] + glm::dot(arm[0], pa[0]) +
-                           2 * glm::dot(big_q[0], arm[0]) + damped;
-        const double u10 = own.m[1][0] + big_r.m[1][0] + glm::dot(arm[1], pa[0]) +
-                           glm::dot(big_q[0], arm[1]) + glm::dot(big_q[1], arm[0]);
-        const double u11 = own.m[1][1] + big_r.m[1][1] + glm::dot(arm[1], pa[1]) +
-                           2 * glm::dot(big_q[1], arm[1]) + damped;
+        const double u00 =
+            own.m[0][0] + big_r.m[0][0] + glm::dot(arm[0], pa[0]) + 2 * glm::dot(big_q[0], arm[0]) + damped;
+        const double u10 = own.m[1][0] + big_r.m[1][0] + glm::dot(arm[1], pa[0]) + glm::dot(big_q[0], arm[1]) +
+                           glm::dot(big_q[1], arm[0]);
+        const double u11 =
+            own.m[1][1] + big_r.m[1][1] + glm::dot(arm[1], pa[1]) + 2 * glm::dot(big_q[1], arm[1]) + damped;
         const double det = u00 * u11 - u10 * u10;
         if (!(u00 > 0) || !(det > 0)) return false;
         const double i00 = u11 / det, i10 = -u10 / det, i11 = u00 / det;
@@ -176,8 +171,7 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
         const Sym3 coupling = at.coupling[j] + far;
         const double before = rod.length[j - 1];
         const Vec3 far_arm[2] = {before * (far * shape.side[j - 1]), before * (far * d.second[j - 1])};
-        const Vec3 x0 = pa[0] + big_q[0] + coupling * arm[0],
-                   x1 = pa[1] + big_q[1] + coupling * arm[1];
+        const Vec3 x0 = pa[0] + big_q[0] + coupling * arm[0], x1 = pa[1] + big_q[1] + coupling * arm[1];
         gain.move[0] = i00 * x0 + i10 * x1;
         gain.move[1] = i10 * x0 + i11 * x1;
         Mat2 in = d.segment[j].inboard;
@@ -193,8 +187,7 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
             big_q[i] = -far_arm[i] - (in.m[i][0] * gain.move[0] + in.m[i][1] * gain.move[1]);
             r[i] = -(in.m[i][0] * gain.rest[0] + in.m[i][1] * gain.rest[1]);
             for (int k = 0; k <= i; ++k) {
-                big_r.m[i][k] =
-                    -(in.m[i][0] * gain.inner.m[0][k] + in.m[i][1] * gain.inner.m[1][k]);
+                big_r.m[i][k] = -(in.m[i][0] * gain.inner.m[0][k] + in.m[i][1] * gain.inner.m[1][k]);
             }
         }
     }
@@ -206,8 +199,7 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
         for (int k = 0; k < 2; ++k) {
             u[k] = -gain.rest[k];
             if (j > 0)
-                u[k] -= glm::dot(gain.move[k], moved) + gain.inner.m[k][0] * before[0] +
-                        gain.inner.m[k][1] * before[1];
+                u[k] -= glm::dot(gain.move[k], moved) + gain.inner.m[k][0] * before[0] + gain.inner.m[k][1] * before[1];
             step[2 * j + k] = u[k];
         }
         moved += rod.length[j] * (u[0] * shape.side[j] + u[1] * d.second[j]);

@@ -23,7 +23,7 @@ constexpr std::array<double, kTerms> kAngleSeries = [] {
 
 AngleFunctions angle_functions(double c, const Vec2& p) {
     const double v = 0.5 * (1 - c);
-    if (v < 0.03) {  // 20°; what is left out is less than 1e-16
+    if (v < 0.03) {                                                // 20°; what is left out is less than 1e-16
         double f = kAngleSeries[kTerms - 1], slope = 0, bend = 0;  // bend: half of the second derivative
         for (int k = kTerms - 1; k-- > 0;) {
             bend = bend * v + slope;
@@ -83,7 +83,9 @@ Bend bend_between(const Vec3& a, const Vec3& side, const Vec3& outer) {
 
 }  // namespace
 
-Vec2 bend_of(const Vec3& a, const Vec3& side, const Vec3& outer) { return bend_between(a, side, outer).w; }
+Vec2 bend_of(const Vec3& a, const Vec3& side, const Vec3& outer) {
+    return bend_between(a, side, outer).w;
+}
 
 JointForce joint_force(const Rod& rod, int j, const JointMemory& memory, const Vec2& w) {
     JointForce out;
@@ -190,8 +192,7 @@ void transport_sides(const Clamp& clamp, const std::vector<Vec3>& tangents, std:
 Vec2 end_moment(const Frozen& frozen) {
     const Clamp& c = frozen.clamp;
     const Vec3& toward = frozen.load.toward;
-    return frozen.load.end_moment *
-           Vec2{glm::dot(c.side, toward), glm::dot(glm::cross(c.tangent, c.side), toward)};
+    return frozen.load.end_moment * Vec2{glm::dot(c.side, toward), glm::dot(glm::cross(c.tangent, c.side), toward)};
 }
 
 namespace {
@@ -287,8 +288,7 @@ void advance(const Shape& from, std::span<const double> u, double scale, Shape& 
     to.side.resize(n);
     for (std::size_t j = 0; j < n; ++j) {
         const Vec3 &t = from.tangent[j], &s = from.side[j];
-        const Vec3 moved = glm::normalize(
-            t + scale * (u[2 * j] * s + u[2 * j + 1] * glm::cross(t, s)));
+        const Vec3 moved = glm::normalize(t + scale * (u[2 * j] * s + u[2 * j + 1] * glm::cross(t, s)));
         const Vec3 side = parallel_transport(s, t, moved);
         to.tangent[j] = moved;
         to.side[j] = glm::normalize(side - glm::dot(side, moved) * moved);

@@ -10,7 +10,9 @@
 /// Inside of the rod solver: Π and its derivatives for frozen friction and multipliers.
 namespace tuft::brush::rod {
 
-inline Mat3 clamp_frame(const Clamp& c) { return {c.tangent, c.side, glm::cross(c.tangent, c.side)}; }
+inline Mat3 clamp_frame(const Clamp& c) {
+    return {c.tangent, c.side, glm::cross(c.tangent, c.side)};
+}
 
 /// Where contact point p lies: x = (1 - s) x_j + s x_{j+1}.
 struct PointPlace {
@@ -41,12 +43,13 @@ struct PointRange {
 };
 inline PointRange points_of(int k, int per_segment, int segments) {
     const int half = per_segment / 2;
-    return {std::max(1, per_segment * k - half), k < segments ? per_segment * (k + 1) - half : per_segment * segments + 1};
+    return {std::max(1, per_segment * k - half),
+            k < segments ? per_segment * (k + 1) - half : per_segment * segments + 1};
 }
 
 /// Crease beside a contact point: the planes of an edge near it, or of two neighbouring nodes.
 struct Crease {
-    double share = 0;        ///< 0: none, the point has one plane; 1: a sharp one
+    double share = 0;  ///< 0: none, the point has one plane; 1: a sharp one
     bool convex = true;
     Wedge wedge;
 };
@@ -76,13 +79,13 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out);
 
 /// Friction of one contact point, frozen during one Newton solve.
 struct Friction {
-    double cap = 0;          ///< μ N̂, force at slip
-    double stick = 0;        ///< force per displacement while sticking
+    double cap = 0;    ///< μ N̂, force at slip
+    double stick = 0;  ///< force per displacement while sticking
     Vec3 anchor{0};
-    Vec3 normal{0, 0, 1};    ///< unit, of the surface
-    Vec3 grain{0};           ///< unit, in the plane, along the hair towards the tip; zero: isotropic
+    Vec3 normal{0, 0, 1};          ///< unit, of the surface
+    Vec3 grain{0};                 ///< unit, in the plane, along the hair towards the tip; zero: isotropic
     double along = 1, across = 1;  ///< factors on displacement along the grain and across
-    double pore_cap = 0;     ///< force against being pushed along the grain
+    double pore_cap = 0;           ///< force against being pushed along the grain
 };
 
 /// The contact points of a node where they all meet planes of one normal, away
@@ -91,12 +94,12 @@ struct Friction {
 struct Patch {
     bool flat = false;
     Vec3 normal{0, 0, 1}, along{1, 0, 0}, across{0, 1, 0};
-    double along2 = 1, across2 = 1;   ///< factors of friction, squared
-    double reach = 0;                 ///< greatest height from which a point is felt
+    double along2 = 1, across2 = 1;  ///< factors of friction, squared
+    double reach = 0;                ///< greatest height from which a point is felt
 };
 struct PatchPoint {
-    double height = 0;                ///< of the plane along the patch's normal, from the clamp
-    Vec2 anchor{0};                   ///< along the hair and across, from the clamp
+    double height = 0;  ///< of the plane along the patch's normal, from the clamp
+    Vec2 anchor{0};     ///< along the hair and across, from the clamp
 };
 
 /// Everything that stays fixed during one Newton solve.
@@ -104,22 +107,22 @@ struct Frozen {
     const Rod* rod = nullptr;
     const std::vector<JointMemory>* joint = nullptr;
     std::span<const Obstacle> obstacles;  ///< of the contact points, or none
-    std::vector<PointPlace> place;    ///< of the contact points
-    std::vector<Stencil> stencil;     ///< of the contact points
-    std::vector<double> laid_length;  ///< segments for which place and stencil were laid,
-    int laid_per = 0;                 ///< points per segment,
-    bool laid_round = false;          ///< and whether rounded
-    std::size_t walls_from = 0;       ///< contact points of walls are those from here on
-    std::vector<Crease> crease;       ///< of the contact points
-    std::vector<double> weight;       ///< of the contact points, tributary lengths
+    std::vector<PointPlace> place;        ///< of the contact points
+    std::vector<Stencil> stencil;         ///< of the contact points
+    std::vector<double> laid_length;      ///< segments for which place and stencil were laid,
+    int laid_per = 0;                     ///< points per segment,
+    bool laid_round = false;              ///< and whether rounded
+    std::size_t walls_from = 0;           ///< contact points of walls are those from here on
+    std::vector<Crease> crease;           ///< of the contact points
+    std::vector<double> weight;           ///< of the contact points, tributary lengths
     const Law* law = nullptr;
     Load load;
     Clamp clamp;
-    std::vector<Friction> friction;   ///< of the contact points
-    std::vector<double> multiplier;   ///< of the contact points
-    std::vector<double> give;         ///< of the contact points, end-on displacement per force
-    std::vector<Patch> patch;         ///< of the nodes, or none
-    std::vector<PatchPoint> spot;     ///< of the contact points on patches
+    std::vector<Friction> friction;  ///< of the contact points
+    std::vector<double> multiplier;  ///< of the contact points
+    std::vector<double> give;        ///< of the contact points, end-on displacement per force
+    std::vector<Patch> patch;        ///< of the nodes, or none
+    std::vector<PatchPoint> spot;    ///< of the contact points on patches
 };
 
 /// Unit tangent t and unit normal s of every segment; the pair (s, t × s) moves without spin.
@@ -133,9 +136,9 @@ struct AngleFunctions {
 };
 
 struct JointForce {
-    Vec2 bend{0};            ///< w: log of the outer tangent at the inner one
-    AngleFunctions angle;    ///< of its angle
-    Vec2 moment{0};          ///< ∂ψ/∂w
+    Vec2 bend{0};                      ///< w: log of the outer tangent at the inner one
+    AngleFunctions angle;              ///< of its angle
+    Vec2 moment{0};                    ///< ∂ψ/∂w
     double d00 = 0, d01 = 0, d11 = 0;  ///< ∂²ψ/∂w²
     double energy = 0;
 };
@@ -143,14 +146,14 @@ struct JointForce {
 /// Value of Π and what its derivatives are made of. Reused between calls.
 struct Evaluation {
     double value = 0;
-    double contact = 0;              ///< of it: indentation, ends that give, the film; no friction
-    std::vector<Vec3> node;          ///< [n+1]
-    std::vector<Vec3> slope;         ///< [n+1] ∂V/∂x_i of contact, friction and load
-    std::vector<Sym3> curvature;     ///< [n+1] ∂²V/∂x_i²
-    std::vector<Sym3> coupling;      ///< [n] ∂²V/∂x_i∂x_{i+1}
-    std::vector<Sym3> across;        ///< [n] ∂²V/∂x_i∂x_{i+2}, the last of them 0
-    std::vector<double> normal;      ///< of the contact points, normal force
-    std::vector<JointForce> joint;   ///< [n]
+    double contact = 0;             ///< of it: indentation, ends that give, the film; no friction
+    std::vector<Vec3> node;         ///< [n+1]
+    std::vector<Vec3> slope;        ///< [n+1] ∂V/∂x_i of contact, friction and load
+    std::vector<Sym3> curvature;    ///< [n+1] ∂²V/∂x_i²
+    std::vector<Sym3> coupling;     ///< [n] ∂²V/∂x_i∂x_{i+1}
+    std::vector<Sym3> across;       ///< [n] ∂²V/∂x_i∂x_{i+2}, the last of them 0
+    std::vector<double> normal;     ///< of the contact points, normal force
+    std::vector<JointForce> joint;  ///< [n]
 };
 
 /// Sides by parallel transport from the clamp along the rod.
@@ -173,8 +176,8 @@ struct Mat2 {
 /// second ones but for what the nodes' curvatures add through the lever arms.
 struct Derivatives {
     struct Joint {
-        double p[2], q[2];  ///< outer tangent over the inner segment's sides; and the other way round
-        double r[2][2];     ///< sides of the inner over those of the outer segment
+        double p[2], q[2];          ///< outer tangent over the inner segment's sides; and the other way round
+        double r[2][2];             ///< sides of the inner over those of the outer segment
         double ja[2][2], jb[2][2];  ///< ∂w over steps of the inner and of the outer segment
     };
     struct Segment {

@@ -17,8 +17,7 @@ inline NormalForce ramp(double k, double x, double onset) {
     return {0.5 * k * y * y + k * onset * onset / 24, k * y, k};
 }
 
-inline NormalForce normal_force(const Law& law, double weight, double radius, double depth,
-                                double multiplier) {
+inline NormalForce normal_force(const Law& law, double weight, double radius, double depth, double multiplier) {
     if (law.hard) {
         const double k = law.stiffness * weight, force = multiplier + k * depth;
         if (force <= 0) return {-multiplier * multiplier / (2 * k), 0, 0};

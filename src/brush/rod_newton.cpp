@@ -33,8 +33,7 @@ int newton_step(const Rod& rod, const Shape& shape, Workspace& ws, bool by_eigen
     for (const double damping : kDamping) {
         ++cost;
         if (descend(rod, shape, ws.at, ws.derivatives, damping, ws.elimination, ws.step)) {
-            usable = std::all_of(ws.step.begin(), ws.step.end(),
-                                 [](double u) { return std::isfinite(u); });
+            usable = std::all_of(ws.step.begin(), ws.step.end(), [](double u) { return std::isfinite(u); });
             if (usable && longest_turn(ws) <= 2 * kLongestStep) return cost;
         } else if (by_eigenvectors) {
             break;
@@ -78,8 +77,7 @@ NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit
         out.iterations += cost;
         const double longest = longest_turn(ws);
         double slope = 0;
-        for (std::size_t i = 0; i < ws.step.size(); ++i)
-            slope += ws.derivatives.gradient[i] * ws.step[i];
+        for (std::size_t i = 0; i < ws.step.size(); ++i) slope += ws.derivatives.gradient[i] * ws.step[i];
         double scale = std::min(1.0, kLongestStep / longest);
         // Below this a change of Π is round-off.
         const double noise = 1e-14 * (1 + std::abs(ws.at.value));

@@ -101,8 +101,7 @@ void lay_patches(Frozen& frozen) {
         double reach = -1e300;
         for (int p = range.begin; p < range.end; ++p) {
             const Obstacle& o = frozen.obstacles[p];
-            patch.flat = patch.flat && o.normal == patch.normal && frozen.crease[p].share <= 0 &&
-                         frozen.give[p] <= 0;
+            patch.flat = patch.flat && o.normal == patch.normal && frozen.crease[p].share <= 0 && frozen.give[p] <= 0;
             if (!patch.flat) break;
             frozen.spot[p].height = glm::dot(o.origin - frozen.clamp.position, patch.normal);
             reach = std::max(reach, frozen.spot[p].height + o.radius + law.adhesion_range);
@@ -152,8 +151,7 @@ double add_patch(const Frozen& frozen, int k, bool derivatives, Evaluation& out)
         const double depth = o.radius + frozen.spot[p].height - height;
         if (depth <= -law.adhesion_range) continue;
         const double weight = frozen.weight[p];
-        const NormalForce push = normal_force(law, weight, o.radius, depth, 0),
-                          pull = adhesion(law, weight, -depth);
+        const NormalForce push = normal_force(law, weight, o.radius, depth, 0), pull = adhesion(law, weight, -depth);
         PointPotential v;
         v.energy = push.energy + pull.energy;
         v.normal = pull.force - push.force;
@@ -176,7 +174,8 @@ double add_patch(const Frozen& frozen, int k, bool derivatives, Evaluation& out)
         return m.normal * nn + m.along * aa + m.mixed * ac + m.across * cc;
     };
     for (int i = 0; i < count; ++i) {
-        out.slope[first + i] += sum.normal[i] * patch.normal + sum.along[i] * patch.along + sum.across[i] * patch.across;
+        out.slope[first + i] +=
+            sum.normal[i] * patch.normal + sum.along[i] * patch.along + sum.across[i] * patch.across;
         out.curvature[first + i] += in_space(sum.own[i]);
         if (i + 1 < count) out.coupling[first + i] += in_space(sum.coupling[i]);
     }

@@ -26,7 +26,8 @@ struct Layer {
         const double own = glm::dot(x - o.origin, o.normal), beyond = glm::dot(x - o.beyond_origin, o.beyond_normal);
         constexpr double kRoundings = 3;  // more than hair goes in one solve beside the edge's own rounding
         if (std::min(own, beyond) > -kRoundings * law.edge) return o;
-        return own >= beyond ? Obstacle{o.origin, o.normal, o.radius} : Obstacle{o.beyond_origin, o.beyond_normal, o.radius};
+        return own >= beyond ? Obstacle{o.origin, o.normal, o.radius}
+                             : Obstacle{o.beyond_origin, o.beyond_normal, o.radius};
     }
 
     /// The two planes of a point over a crease: those of an edge near the nodes beside it, or of
@@ -40,8 +41,10 @@ struct Layer {
             const double part = !inner ? 0 : near_first ? at.s : 1 - at.s;
             if (lay_edge(p, edge, other, both, part)) return;
             // The other node is nearer, and on a third face.
-            if (both) lay_edge(p, other, edge, false, 0);
-            else std::tie(fine[p].origin, fine[p].normal) = std::tie(other.origin, other.normal);
+            if (both)
+                lay_edge(p, other, edge, false, 0);
+            else
+                std::tie(fine[p].origin, fine[p].normal) = std::tie(other.origin, other.normal);
             return;
         }
         lay_parted(p, at, from, to);
@@ -152,7 +155,8 @@ struct Layer {
         }
         frozen.place.push_back({n() - 1, 1.0});
         frozen.stencil.clear();
-        for (const PointPlace& at : frozen.place) frozen.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
+        for (const PointPlace& at : frozen.place)
+            frozen.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
     }
 
     void lay_point(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b) {

@@ -9,7 +9,9 @@
 namespace tuft::brush::rod {
 
 /// Where hair is a curve for its contact: where points lie between the nodes.
-inline bool rounded(const Law& law) { return law.points_per_segment > 2 && !law.hard; }
+inline bool rounded(const Law& law) {
+    return law.points_per_segment > 2 && !law.hard;
+}
 
 /// The place at share s of segment j. Rounded: on the curve that runs from middle to middle of the segments along
 /// parabolas with the nodes as their control points, so that the bend of a joint is spread evenly over the length of

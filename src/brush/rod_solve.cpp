@@ -11,14 +11,14 @@ namespace tuft::brush::rod {
 
 namespace {
 
-constexpr double kFirstTouch = 0.1;   ///< B0/L²: guess of a first contact's force
-constexpr double kFaint = 0.02;       ///< B0/L²: normal force below which relative accuracy is no aim
-constexpr double kStands = 0.9;       ///< cosine of the bend, 26°, up to which hair stands and may yet buckle or fall to any side
+constexpr double kFirstTouch = 0.1;  ///< B0/L²: guess of a first contact's force
+constexpr double kFaint = 0.02;      ///< B0/L²: normal force below which relative accuracy is no aim
+constexpr double kStands =
+    0.9;  ///< cosine of the bend, 26°, up to which hair stands and may yet buckle or fall to any side
 
 /// How far a clamp went, turns counted at one length.
 double clamp_distance(const Clamp& a, const Clamp& b) {
-    return glm::length(b.position - a.position) + glm::length(b.tangent - a.tangent) +
-           glm::length(b.side - a.side);
+    return glm::length(b.position - a.position) + glm::length(b.tangent - a.tangent) + glm::length(b.side - a.side);
 }
 
 /// Where a point first touched on its way from its last place, z0 off the surface, to `x`.
@@ -30,8 +30,8 @@ Vec3 touching_point(double z0, double z1, const Vec3& x_t0, const Vec3& x) {
 /// Hair along a tangent over a plane of unit normal.
 struct Hair {
     Vec3 tangent{0}, plane{0};
-    Vec3 grain{0};           ///< unit, along the hair in the plane; zero where it stands upright
-    double lean = 0;         ///< sine of its angle to the normal
+    Vec3 grain{0};    ///< unit, along the hair in the plane; zero where it stands upright
+    double lean = 0;  ///< sine of its angle to the normal
 };
 
 Hair hair_over(const Vec3& tangent, const Vec3& plane) {
@@ -69,15 +69,15 @@ Friction friction_of(const Law& law, const Hair& hair, double weight, double nor
 
 /// Buffers of one thread, kept so that a warm solve allocates little.
 struct Buffers {
-    std::vector<Vec3> before;         ///< nodes of the last solve
-    std::vector<Obstacle> fine;       ///< of the contact points
+    std::vector<Vec3> before;    ///< nodes of the last solve
+    std::vector<Obstacle> fine;  ///< of the contact points
     Frozen frozen;
     Shape shape;
-    std::vector<double> normal;       ///< lagged N̂
+    std::vector<double> normal;  ///< lagged N̂
     std::vector<Vec3> anchor;
     std::vector<char> anchored;
-    std::vector<double> last_miss;    ///< of N̂ in the pass before
-    std::vector<double> friction_sum; ///< [n+1] most friction of the points beside each node
+    std::vector<double> last_miss;     ///< of N̂ in the pass before
+    std::vector<double> friction_sum;  ///< [n+1] most friction of the points beside each node
     Workspace newton;
 };
 
@@ -85,11 +85,11 @@ struct Buffers {
 struct Solver {
     const Rod& rod;
     Memory& memory;
-    std::span<const Obstacle> obstacles;   ///< of the nodes
+    std::span<const Obstacle> obstacles;  ///< of the nodes
     std::span<const Wall> walls;
     const Law& law;
     Buffers& buffers;
-    double moved = 0;                      ///< of the clamp since the last solve
+    double moved = 0;  ///< of the clamp since the last solve
     std::vector<Obstacle>& fine = buffers.fine;
     Frozen& frozen = buffers.frozen;
     Shape& shape = buffers.shape;
@@ -98,7 +98,7 @@ struct Solver {
     std::vector<char>& anchored = buffers.anchored;
     Workspace& ws = buffers.newton;
     double relaxation = 1;
-    double recovered = 0;                  ///< energy lost by the set going back
+    double recovered = 0;  ///< energy lost by the set going back
 
     int n() const { return rod.segments(); }
 
@@ -168,9 +168,7 @@ struct Solver {
     }
 
     /// The plane that a contact point meets, and its unit normal.
-    Obstacle met_at(std::size_t p, const std::vector<Vec3>& x) const {
-        return met_by(frozen, static_cast<int>(p), x);
-    }
+    Obstacle met_at(std::size_t p, const std::vector<Vec3>& x) const { return met_by(frozen, static_cast<int>(p), x); }
     Vec3 normal_at(std::size_t p, const std::vector<Vec3>& x) const {
         return frozen.crease[p].share <= 0 ? fine[p].normal : met_at(p, x).normal;
     }
@@ -224,8 +222,10 @@ struct Solver {
     /// hand alone would have taken the hair points the wrong way, and costs passes.
     void start() {
         if (lay_onward()) {
-            if (stands()) freeze_friction(memory.node, shape.tangent);
-            else freeze_friction(ws.ahead, ws.next.tangent);
+            if (stands())
+                freeze_friction(memory.node, shape.tangent);
+            else
+                freeze_friction(ws.ahead, ws.next.tangent);
             evaluate(frozen, ws.next, ws.trial);
             if (ws.trial.value < value_of(frozen, shape, ws.at)) {
                 std::swap(shape, ws.next);
@@ -284,8 +284,7 @@ struct Solver {
             out.iterations += r.iterations;
             const bool settled = fine.empty() || take_normal_forces(out.passes);
             out.converged = r.converged && settled;
-            if (out.converged || out.passes >= law.max_passes ||
-                out.iterations >= law.max_iterations) {
+            if (out.converged || out.passes >= law.max_passes || out.iterations >= law.max_iterations) {
                 break;
             }
             ws.ahead = ws.at.node;
@@ -325,7 +324,8 @@ struct Solver {
         for (std::size_t p = 0; p < memory.contact.size(); ++p) finish_contact(p, out);
         for (int i = 0; i <= n(); ++i) out.slip[i] /= std::max(buffers.friction_sum[i], 1e-300);
         out.met.reserve(memory.node.size());
-        for (std::size_t p = 0; p < std::min(fine.size(), frozen.walls_from); p += law.points_per_segment) out.met.push_back(met_at(p, at.node));
+        for (std::size_t p = 0; p < std::min(fine.size(), frozen.walls_from); p += law.points_per_segment)
+            out.met.push_back(met_at(p, at.node));
         const Mat3 back = glm::transpose(clamp_frame(memory.clamp));
         memory.turn.resize(shape.tangent.size());
         for (std::size_t j = 0; j < shape.tangent.size(); ++j) {
@@ -350,8 +350,10 @@ struct Solver {
         c.multiplier = law.hard ? c.force : 0;
         const bool own = p < frozen.walls_from;
         for (int k = 0; k < at.count; ++k) {
-            if (own) out.normal_force[at.first + k] += at.w[k] * c.force;
-            else out.wall_force[at.first + k] += at.w[k] * c.force * fine[p].normal;
+            if (own)
+                out.normal_force[at.first + k] += at.w[k] * c.force;
+            else
+                out.wall_force[at.first + k] += at.w[k] * c.force * fine[p].normal;
         }
         const Vec3 x = point(ws.at.node, p);
         const Friction& f = frozen.friction[p];
@@ -363,8 +365,7 @@ struct Solver {
         if (!sticks) return;
         const double along = glm::dot(d, f.grain);
         const Vec3 side = d - along * f.grain;
-        const double q = std::sqrt(f.along * f.along * along * along +
-                                   f.across * f.across * glm::dot(side, side));
+        const double q = std::sqrt(f.along * f.along * along * along + f.across * f.across * glm::dot(side, side));
         const double reach = f.cap / f.stick;
         out.contact_energy += 0.5 * f.stick * std::min(q, reach) * std::min(q, reach);
         if (q > reach) {
@@ -378,9 +379,8 @@ struct Solver {
 
 }  // namespace
 
-Result solve(const Rod& rod, Memory& memory, const Clamp& clamp,
-             std::span<const Obstacle> obstacles, const Law& law, const Load& load,
-             std::span<const Wall> walls) {
+Result solve(const Rod& rod, Memory& memory, const Clamp& clamp, std::span<const Obstacle> obstacles, const Law& law,
+             const Load& load, std::span<const Wall> walls) {
     thread_local Buffers buffers;
     buffers.before = memory.node;
     const double moved = clamp_distance(memory.clamp, clamp);
@@ -390,8 +390,8 @@ Result solve(const Rod& rod, Memory& memory, const Clamp& clamp,
     return solver.run();
 }
 
-Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles,
-                   const Law& law, const Load& load, std::span<const double> x, double damping) {
+Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles, const Law& law,
+                   const Load& load, std::span<const double> x, double damping) {
     Buffers buffers;
     Workspace& ws = buffers.newton;
     Memory copy = memory;

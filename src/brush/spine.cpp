@@ -5,19 +5,19 @@
 
 #include "brush/flanks.h"
 #include "brush/rod_points.h"
-#include "brush/upright_hair.h"
 #include "brush/tuft_sections.h"
+#include "brush/upright_hair.h"
 #include "brush/wedge.h"
 
 namespace tuft::brush {
 
 namespace {
 
-constexpr double kOnset = 5e-5;    ///< m, fuzz of the tuft's side
-constexpr double kStraight = 1e-4; ///< 1 - cos of a bend that is none yet, 0.8°
-constexpr double kSeed = 0.05;     ///< radians, bend that grows if the load is beyond buckling
+constexpr double kOnset = 5e-5;       ///< m, fuzz of the tuft's side
+constexpr double kStraight = 1e-4;    ///< 1 - cos of a bend that is none yet, 0.8°
+constexpr double kSeed = 0.05;        ///< radians, bend that grows if the load is beyond buckling
 constexpr double kEndFriction = 0.2;  ///< of the fold of hair ends that carries the tip along
-constexpr int kContactPoints = 6;  ///< per segment: a patch then grows smoothly with depth
+constexpr int kContactPoints = 6;     ///< per segment: a patch then grows smoothly with depth
 
 void set_time(const Preset& p, double dt, rod::Law& law) {
     law.damping = dt > 0 ? p.damping / dt : 0;
@@ -78,9 +78,8 @@ void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose&
     Vec3 aside = from.position - to.position;
     aside -= glm::dot(aside, to.axis()) * to.axis();
     const Quat back = from.rotation * glm::conjugate(to.rotation);
-    aside = glm::length(aside) > 1e-3 * glm::length(to.position - from.position) + 1e-9
-                ? glm::normalize(back * aside)
-                : from.rotation * Vec3{1, 0, 0};
+    aside = glm::length(aside) > 1e-3 * glm::length(to.position - from.position) + 1e-9 ? glm::normalize(back * aside)
+                                                                                        : from.rotation * Vec3{1, 0, 0};
     // Bend angle ε s² that takes the tip back up to the surface: the tip rises by L ε²/10. But buckling
     // makes no energy: it holds what the contact held and what the hand does in the step.
     double angle = std::clamp(std::sqrt(10 * under / p.length), kSeed, 0.6);
@@ -95,8 +94,7 @@ void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose&
 }
 
 /// Planes of a spine's nodes (tip first) as obstacles of its rod (root first).
-std::vector<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine,
-                                        std::span<const ContactPlane> planes) {
+std::vector<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine, std::span<const ContactPlane> planes) {
     const std::size_t count = spine.rest_radius.size();
     std::vector<rod::Obstacle> out;
     if (planes.empty()) return out;
@@ -121,8 +119,7 @@ rod::Clamp clamp_of(const Preset& p, const Pose& pose) {
     return {pose.position / p.length, pose.axis(), pose.rotation * Vec3{1, 0, 0}};
 }
 
-Spine make_spine(const Preset& p, const rod::Rod& rod, const rod::Clamp& clamp, double xi0,
-                 double share) {
+Spine make_spine(const Preset& p, const rod::Rod& rod, const rod::Clamp& clamp, double xi0, double share) {
     Spine spine;
     spine.rod = rod;
     spine.memory = rod::make_memory(rod, clamp);
@@ -157,12 +154,12 @@ Solved with_sections(const Preset& p, Spine& spine, rod::Result result, std::spa
 }  // namespace
 
 Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
-                   std::span<const ContactPlane> planes, double wetness, double share,
-                   double dt, std::span<const ContactPlane> walls, const Passed& passed) {
+                   std::span<const ContactPlane> planes, double wetness, double share, double dt,
+                   std::span<const ContactPlane> walls, const Passed& passed) {
     const rod::Law law = law_of(p, wetness, share, dt);
     const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
-    rod::Result result = rod::solve(spine.rod, spine.memory, clamp, obstacles, law, {},
-                                    flank_walls(p, spine, turn, walls, wetness));
+    rod::Result result =
+        rod::solve(spine.rod, spine.memory, clamp, obstacles, law, {}, flank_walls(p, spine, turn, walls, wetness));
     spine.pressed = result.contact_energy;
     result.dissipation += passed.dissipation;
     for (std::size_t i = 0; i < passed.slip.size(); ++i) result.slip[i] += passed.slip[i];
@@ -175,25 +172,25 @@ namespace {
 /// Largest move of the ferrule in one solve, in lengths, turns counted at one length: hair
 /// that stands nearly straight must be followed closely, or it falls to the wrong side.
 constexpr double kCareful = 0.006, kOrdinary = 0.03;
-constexpr double kLaid = 0.8;    ///< bend from which the hair lies as it will, radians
-constexpr double kTeleport = 0.5;///< lengths; a further jump is no motion to follow
+constexpr double kLaid = 0.8;      ///< bend from which the hair lies as it will, radians
+constexpr double kTeleport = 0.5;  ///< lengths; a further jump is no motion to follow
 constexpr int kMaxParts = 8;
 
 Pose between(const Pose& a, const Pose& b, double t) {
-    return {glm::mix(a.position, b.position, t), glm::slerp(a.rotation, b.rotation, t),
-            a.time + t * (b.time - a.time)};
+    return {glm::mix(a.position, b.position, t), glm::slerp(a.rotation, b.rotation, t), a.time + t * (b.time - a.time)};
 }
 
 }  // namespace
 
-Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
-                std::span<const ContactPlane> planes, std::span<const ContactPlane> walls, double wetness, double& dt) {
+Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to, std::span<const ContactPlane> planes,
+                std::span<const ContactPlane> walls, double wetness, double& dt) {
     rod::Law law = law_of(p, wetness, 1, 0);
     Passed passed;
     if (planes.empty()) return passed;
     const double turned = 2 * std::acos(std::min(1.0, std::abs(glm::dot(from.rotation, to.rotation))));
     const double moved = glm::length(to.position - from.position) / p.length + turned;
-    const double bend = std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
+    const double bend =
+        std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
     int parts = 1;
     if (moved < kTeleport) {
         const double largest = bend < kLaid ? kCareful : kOrdinary;
@@ -207,8 +204,8 @@ Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
         const Pose pose = between(from, to, static_cast<double>(k) / parts);
         turn_with_spread(p, spine, last, pose, planes);
         break_symmetry(p, spine, last, pose, planes);
-        const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes), law,
-                                         {}, flank_walls(p, spine, pose.rotation, walls, wetness));
+        const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes),
+                                         law, {}, flank_walls(p, spine, pose.rotation, walls, wetness));
         spine.pressed = r.contact_energy;
         passed.dissipation += r.dissipation;
         passed.slip.resize(r.slip.size(), Vec3{0});
@@ -220,8 +217,8 @@ Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
     return passed;
 }
 
-Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const rod::Clamp& clamp,
-                   const Quat& turn, std::span<const ContactPlane> planes, double wetness) {
+Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
+                   std::span<const ContactPlane> planes, double wetness) {
     const rod::Law law = law_of(p, wetness, 1, 0);
     const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
     rod::Memory& m = spine.memory;

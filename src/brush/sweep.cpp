@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "brush/tuft_surface.h"
 #include "brush/tuft.h"
+#include "brush/tuft_surface.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/units.h"
@@ -28,7 +28,9 @@ struct Patch {
 constexpr int kFineSections = 12;  ///< between two nodes: 0.1 mm along the tuft
 
 /// How far the section reaches into the sheet; not positive where it does not touch.
-double overlap(const Section& s) { return std::hypot(s.a * s.e.z, s.b * s.m.z) - std::abs(s.centre.z); }
+double overlap(const Section& s) {
+    return std::hypot(s.a * s.e.z, s.b * s.m.z) - std::abs(s.centre.z);
+}
 
 void add_section(const Section& s, Patch& patch) {
     const double ne = s.a * s.e.z, nm = s.b * s.m.z, reach = std::hypot(ne, nm), z = s.centre.z;
@@ -143,8 +145,8 @@ std::string sweep_csv(std::span<const SweepRow> rows) {
     std::string text = "z_mm,width_mm,drag_mm,offset_mm\n";
     for (const SweepRow& r : rows) {
         char line[128];
-        std::snprintf(line, sizeof line, "%.4g,%.4f,%.4f,%.4f\n", r.depth / kMillimetre,
-                      r.width / kMillimetre, r.drag / kMillimetre, r.offset / kMillimetre);
+        std::snprintf(line, sizeof line, "%.4g,%.4f,%.4f,%.4f\n", r.depth / kMillimetre, r.width / kMillimetre,
+                      r.drag / kMillimetre, r.offset / kMillimetre);
         text += line;
     }
     return text;
@@ -155,8 +157,10 @@ namespace {
 std::vector<std::string> cells_of(const std::string& line) {
     std::vector<std::string> cells(1);
     for (const char c : line) {
-        if (c == ',') cells.emplace_back();
-        else if (c != '\r' && c != ' ' && c != '\t') cells.back() += c;
+        if (c == ',')
+            cells.emplace_back();
+        else if (c != '\r' && c != ' ' && c != '\t')
+            cells.back() += c;
     }
     return cells;
 }
@@ -166,8 +170,7 @@ std::vector<std::string> cells_of(const std::string& line) {
 std::vector<SweepRow> read_sweep(const std::string& path) {
     const std::vector<char> bytes = read_file(path, 16 << 20);
     const char* const names[] = {"z_mm", "width_mm", "drag_mm", "offset_mm"};
-    double SweepRow::* const members[] = {&SweepRow::depth, &SweepRow::width, &SweepRow::drag,
-                                          &SweepRow::offset};
+    double SweepRow::*const members[] = {&SweepRow::depth, &SweepRow::width, &SweepRow::drag, &SweepRow::offset};
     int column[4] = {-1, -1, -1, -1}, excluded = -1;
     bool header = true;
     std::vector<SweepRow> rows;
@@ -190,8 +193,9 @@ std::vector<SweepRow> read_sweep(const std::string& path) {
             }
             for (int k = 0; k < 4; ++k) {
                 if (column[k] < 0) {
-                    throw Error(path, number, std::string("no column '") + names[k] +
-                                                  "'; needed are z_mm,width_mm,drag_mm,offset_mm");
+                    throw Error(
+                        path, number,
+                        std::string("no column '") + names[k] + "'; needed are z_mm,width_mm,drag_mm,offset_mm");
                 }
             }
             continue;

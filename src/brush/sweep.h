@@ -15,10 +15,10 @@ namespace tuft::brush {
 
 /// Steady straight stroke, holder upright. Lengths in metres.
 struct SweepRow {
-    double depth = 0;    ///< of the ferrule below the height where the tip first touches
-    double width = 0;    ///< of the line left behind
-    double drag = 0;     ///< length of the contact patch along the stroke
-    double offset = 0;   ///< end of the patch nearer to the root, behind the foot of the holder's axis
+    double depth = 0;   ///< of the ferrule below the height where the tip first touches
+    double width = 0;   ///< of the line left behind
+    double drag = 0;    ///< length of the contact patch along the stroke
+    double offset = 0;  ///< end of the patch nearer to the root, behind the foot of the holder's axis
 };
 
 /// Drags each depth until steady (at most three hair lengths). Depths in metres.
@@ -27,8 +27,8 @@ std::vector<SweepRow> sweep_depth(const Preset& preset, std::span<const double> 
 /// Where the line of a steady straight stroke along +x over the sheet z = 0 lies, seen from the foot
 /// of the unbent tip, metres.
 struct LinePlace {
-    double behind = 0;   ///< mean of the two places where the patch is widest
-    double aside = 0;    ///< middle of the line, to the left (+y)
+    double behind = 0;  ///< mean of the two places where the patch is widest
+    double aside = 0;   ///< middle of the line, to the left (+y)
 };
 
 /// The same for a holder that leans: up ∝ (tan lean.x, tan lean.y, 1), radians. A holder that leans
@@ -53,15 +53,14 @@ struct CalibrateOptions {
 
 struct Calibration {
     Preset preset;
-    SweepRow rms;        ///< root mean square residual of each column (depth unused)
-    double cost = 0;     ///< twelfth-power mean of the columns' rms over repeatability
+    SweepRow rms;     ///< root mean square residual of each column (depth unused)
+    double cost = 0;  ///< twelfth-power mean of the columns' rms over repeatability
     int evaluations = 0;
 };
 
 /// Fits radius, taper, stiffness along the hair, side stiffness, flattening, friction and wet film
 /// of `start`, whose hair length must be the measured brush's: least squares from several
 /// beginnings, then a simplex search on the worst column. Deterministic. About 20 ms per evaluation.
-Calibration calibrate(const Preset& start, std::span<const SweepRow> measured,
-                      const CalibrateOptions& options = {});
+Calibration calibrate(const Preset& start, std::span<const SweepRow> measured, const CalibrateOptions& options = {});
 
 }  // namespace tuft::brush

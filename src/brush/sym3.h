@@ -18,8 +18,7 @@ struct Sym3 {
         return *this;
     }
     Vec3 operator*(const Vec3& v) const {
-        return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
-                xz * v.x + yz * v.y + zz * v.z};
+        return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
     }
 };
 

@@ -11,8 +11,8 @@ namespace tuft::brush {
 
 namespace {
 
-constexpr int kFiner = 2;            ///< rod segments for one spine segment: tip within 3e-4 L
-constexpr double kLargestLoad = 8;   ///< P L²/B0 of the last row: the tip has turned past 80°
+constexpr int kFiner = 2;           ///< rod segments for one spine segment: tip within 3e-4 L
+constexpr double kLargestLoad = 8;  ///< P L²/B0 of the last row: the tip has turned past 80°
 
 /// Clamped at the origin along x, bends towards y.
 const rod::Clamp kHolder{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -131,8 +131,7 @@ TableRow look_up(const QueryTable& table, double moment) {
     const std::size_t k = std::min(static_cast<std::size_t>(at), rows.size() - 2);
     const double t = at - static_cast<double>(k);
     const bool first = k == 0, end = k + 2 == rows.size();
-    const TableRow &r0 = rows[first ? k : k - 1], &r1 = rows[k], &r2 = rows[k + 1],
-                   &r3 = rows[end ? k + 1 : k + 2];
+    const TableRow &r0 = rows[first ? k : k - 1], &r1 = rows[k], &r2 = rows[k + 1], &r3 = rows[end ? k + 1 : k + 2];
     TableRow out;
     out.moment = cubic(r0.moment, r1.moment, r2.moment, r3.moment, t, first, end);
     out.load = cubic(r0.load, r1.load, r2.load, r3.load, t, first, end);
@@ -146,8 +145,8 @@ TableRow look_up(const QueryTable& table, double moment) {
 
 namespace {
 
-FixedShape stand(const QueryTable& table, const TableRow& row, double root_height, double holder_angle,
-                 double mu, double lambda) {
+FixedShape stand(const QueryTable& table, const TableRow& row, double root_height, double holder_angle, double mu,
+                 double lambda) {
     FixedShape out;
     out.moment = row.moment;
     out.holder_angle = holder_angle;
@@ -169,14 +168,13 @@ double standing_angle(const TableRow& row, double root_height) {
 
 }  // namespace
 
-FixedShape fixed_shape(const QueryTable& table, double moment, double root_height, double mu,
-                       double lambda) {
+FixedShape fixed_shape(const QueryTable& table, double moment, double root_height, double mu, double lambda) {
     const TableRow row = look_up(table, moment);
     return stand(table, row, root_height, standing_angle(row, root_height), mu, lambda);
 }
 
-FixedShape fixed_shape_at_angle(const QueryTable& table, double root_height, double holder_angle,
-                                double mu, double lambda) {
+FixedShape fixed_shape_at_angle(const QueryTable& table, double root_height, double holder_angle, double mu,
+                                double lambda) {
     // The tip's height rises with the moment; the first row that lifts it to the plane counts.
     const auto height = [&](const TableRow& row) {
         const Vec2& tip = row.nodes.front();
@@ -186,8 +184,7 @@ FixedShape fixed_shape_at_angle(const QueryTable& table, double root_height, dou
     return stand(table, look_up(table, moment), root_height, holder_angle, mu, lambda);
 }
 
-double standing_moment(const QueryTable& table,
-                       const std::function<double(const TableRow&)>& tip_height) {
+double standing_moment(const QueryTable& table, const std::function<double(const TableRow&)>& tip_height) {
     if (tip_height(table.rows.front()) >= 0) return 0;
     std::size_t k = 1;
     while (k < table.rows.size() && tip_height(table.rows[k]) < 0) ++k;

@@ -29,7 +29,7 @@ void feel(Tuft& tuft, TuftState& state, double dt) {
     state.device_force = tuft.device_force;
 }
 
-constexpr double kCoheres = 0.25;  ///< of the capacity: ink from which water draws parted hair together
+constexpr double kCoheres = 0.25;        ///< of the capacity: ink from which water draws parted hair together
 constexpr double kMergingTime = 0.03;    ///< s in which it does
 constexpr double kPartingLength = 6e-3;  ///< m of the hand's way in which sub-spines part
 constexpr double kMerged = 0.02;         ///< spread at which they are one again
@@ -87,15 +87,14 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     const Preset& p = tuft.preset;
     const std::size_t expected = expected_planes(tuft);
     if (planes.size() > 1 && planes.size() != expected) {
-        throw Error("brush: " + std::to_string(planes.size()) + " contact planes for " +
-                    std::to_string(expected) + " nodes; give one per node, one for all, or none");
+        throw Error("brush: " + std::to_string(planes.size()) + " contact planes for " + std::to_string(expected) +
+                    " nodes; give one per node, one for all, or none");
     }
     if (!walls.empty() && walls.size() != 2 * tuft.spine.rest_radius.size()) {
         throw Error("brush: " + std::to_string(walls.size()) + " walls for " +
                     std::to_string(2 * tuft.spine.rest_radius.size()) + " side nodes");
     }
-    if (!std::isfinite(glm::dot(pose.position, pose.position)) ||
-        std::abs(glm::length(pose.rotation) - 1) > 1e-3) {
+    if (!std::isfinite(glm::dot(pose.position, pose.position)) || std::abs(glm::length(pose.rotation) - 1) > 1e-3) {
         throw Error("brush: the pose is not a place and a unit rotation");
     }
     const rod::Clamp clamp = clamp_of(p, pose);
@@ -112,10 +111,12 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     const std::span<const ContactPlane> main_planes = planes.size() > 1 ? planes.first(own) : planes;
     double part = std::isfinite(dt) ? std::max(0.0, dt) : 0;
     Passed passed;
-    if (p.spine == SpineMethod::rod) passed = approach(p, tuft.spine, tuft.pose, pose, main_planes, walls, tuft.wetness, part);
-    Solved solved = p.spine == SpineMethod::table
-                        ? stand_spine(p, tuft.table, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness)
-                        : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness, 1, part, walls, passed);
+    if (p.spine == SpineMethod::rod)
+        passed = approach(p, tuft.spine, tuft.pose, pose, main_planes, walls, tuft.wetness, part);
+    Solved solved =
+        p.spine == SpineMethod::table
+            ? stand_spine(p, tuft.table, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness)
+            : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness, 1, part, walls, passed);
     const double moved = glm::length(pose.position - tuft.pose.position);
     tuft.pose = pose;
 
@@ -141,8 +142,10 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     const double measure = split_measure(p, tuft.ink_left, state.root_moment);
     if (tuft.split) {
         // Too dry for water to draw it together, it stays split until it is wetted or combed.
-        if (measure < p.merge_at && tuft.ink_left > kCoheres) tuft.spread *= std::exp(-std::max(dt, 0.0) / kMergingTime);
-        else tuft.spread = 1 - (1 - tuft.spread) * std::exp(-moved / kPartingLength);
+        if (measure < p.merge_at && tuft.ink_left > kCoheres)
+            tuft.spread *= std::exp(-std::max(dt, 0.0) / kMergingTime);
+        else
+            tuft.spread = 1 - (1 - tuft.spread) * std::exp(-moved / kPartingLength);
         solve_sub_spines(tuft, planes, state, dt);
         if (measure < p.merge_at && tuft.spread < kMerged) tuft.split = false;
     } else if (measure > p.split_at) {

@@ -26,37 +26,37 @@ inline constexpr double kDeviceForceTime = 4e-3;
 
 /// One solved spine with what it remembers. Arrays go from root to tip.
 struct Spine {
-    rod::Rod rod;                   ///< lengths and stiffness, in units of L and B0
-    rod::Memory memory;             ///< joints, contacts
-    std::vector<double> rest_radius;///< [n+1] m
-    Vec3 wide{1, 0, 0};             ///< unit, ferrule frame: direction e at the root of the last step
-    double root_width = 0;          ///< m, half-width at the root, of a sub-spine; 0: the ferrule's
-    Vec2 one_sided{0};              ///< mean direction of splayed hair, across the clamp; see splay.h
-    std::vector<Vec3> side;         ///< side nodes of the last step, metres from the root, ferrule
-                                    ///< frame, tip first, two to a node; or none
-    std::vector<double> flank;      ///< m, half-widths as those side nodes have them where no wall is; or none
-    std::vector<double> aside;      ///< [n+1] m, how far friction has shifted the side nodes along e, or none
-    std::vector<signed char> slips; ///< [n+1] which of them slipped in the last step, or none
-    double aside_energy = 0;        ///< J, that their springs hold by this
-    double pressed = 0;             ///< contact energy of the last solve, B0/L
+    rod::Rod rod;                     ///< lengths and stiffness, in units of L and B0
+    rod::Memory memory;               ///< joints, contacts
+    std::vector<double> rest_radius;  ///< [n+1] m
+    Vec3 wide{1, 0, 0};               ///< unit, ferrule frame: direction e at the root of the last step
+    double root_width = 0;            ///< m, half-width at the root, of a sub-spine; 0: the ferrule's
+    Vec2 one_sided{0};                ///< mean direction of splayed hair, across the clamp; see splay.h
+    std::vector<Vec3> side;           ///< side nodes of the last step, metres from the root, ferrule
+                                      ///< frame, tip first, two to a node; or none
+    std::vector<double> flank;        ///< m, half-widths as those side nodes have them where no wall is; or none
+    std::vector<double> aside;        ///< [n+1] m, how far friction has shifted the side nodes along e, or none
+    std::vector<signed char> slips;   ///< [n+1] which of them slipped in the last step, or none
+    double aside_energy = 0;          ///< J, that their springs hold by this
+    double pressed = 0;               ///< contact energy of the last solve, B0/L
 };
 
 /// The persistent state of one tuft. Make it with `make_tuft`; copying it is a snapshot.
 struct Tuft {
     Preset preset;
-    double wetness = 1;             ///< input, 0 dry … 1 wet: friction, cohesion, plasticity
-    double ink_left = 1;            ///< input, ink over capacity: splitting
+    double wetness = 1;   ///< input, 0 dry … 1 wet: friction, cohesion, plasticity
+    double ink_left = 1;  ///< input, ink over capacity: splitting
 
-    Pose pose;                      ///< of the last step
-    bool posed = false;             ///< false until the first step
+    Pose pose;           ///< of the last step
+    bool posed = false;  ///< false until the first step
     Spine spine;
     bool split = false;
-    std::vector<Spine> sub_spines;       ///< sub-spines of the last third, `split_into` of them while split
-    double spread = 0;              ///< how far they have parted: 0 still one point … 1 fully
-    double branch_width = 0;        ///< m, semi-axis of the section that they leave from
-    Vec3 device_force{0}, device_force_rate{0};     ///< force that came through to the ferrule, N, and its rate, N/s
-    Bundles bundles;                ///< the hair within
-    QueryTable table;               ///< for the table method only
+    std::vector<Spine> sub_spines;               ///< sub-spines of the last third, `split_into` of them while split
+    double spread = 0;                           ///< how far they have parted: 0 still one point … 1 fully
+    double branch_width = 0;                     ///< m, semi-axis of the section that they leave from
+    Vec3 device_force{0}, device_force_rate{0};  ///< force that came through to the ferrule, N, and its rate, N/s
+    Bundles bundles;                             ///< the hair within
+    QueryTable table;                            ///< for the table method only
 };
 
 /// A straight tuft of this make; `seed` lays its hair. Throws `Error` for values out of range.

@@ -49,8 +49,10 @@ Wide wide_axis(const SectionInput& in, const std::vector<Vec3>& t) {
         for (std::size_t j = 0; j < m.tangent.size(); ++j) {
             bend += glm::cross(j == 0 ? m.clamp.tangent : m.tangent[j - 1], m.tangent[j]);
         }
-        if (glm::length(bend) > 0.02) best = {0, bend};
-        else best = {0, kept};
+        if (glm::length(bend) > 0.02)
+            best = {0, bend};
+        else
+            best = {0, kept};
     }
     Vec3& e = best.direction;
     e -= glm::dot(e, t[best.node]) * t[best.node];
@@ -102,21 +104,24 @@ std::vector<double> indentation_of(const SectionInput& in, const std::vector<Vec
     return out;
 }
 
-constexpr double kDry = 0.7;   ///< stretch springs of dry hair over those of wet hair
-constexpr double kReach = 0.045; ///< of the length, λ of the side nodes
-constexpr double kWall = 100;    ///< stiffness of a wall over that of the springs
-constexpr double kFinest = 1e-5; ///< m, radius of a tuft's point at least
-constexpr double kSides = 0.03;    ///< of k_c, the stretch springs: water holds hair together by some 0.3 N/m a millimetre
+constexpr double kDry = 0.7;      ///< stretch springs of dry hair over those of wet hair
+constexpr double kReach = 0.045;  ///< of the length, λ of the side nodes
+constexpr double kWall = 100;     ///< stiffness of a wall over that of the springs
+constexpr double kFinest = 1e-5;  ///< m, radius of a tuft's point at least
+constexpr double kSides =
+    0.03;  ///< of k_c, the stretch springs: water holds hair together by some 0.3 N/m a millimetre
 constexpr double kSideDrag = 1.0;  ///< of kSides: share of the friction across a section that its side nodes take
-constexpr double kGrip = 0.05;  ///< of the length, way along the hair over which a contact comes to hold the hair beyond it
+constexpr double kGrip =
+    0.05;  ///< of the length, way along the hair over which a contact comes to hold the hair beyond it
 constexpr double kFree = 0.1;   ///< of r, height off the surface from which hair beyond the contact is free of it
 constexpr double kLying = 0.6;  ///< height over b at which wet hair lies by its own weight
 
 /// How far each centre comes down along its plane's normal, metres, root first. A flattened
 /// section keeps its lower side where the contact has it, so the centre sinks by r - b, but
 /// not below the surface; what the contact's give let sink is lifted onto it; this fades within r off
-/// the surface, beyond the contact within kFree r. The free end beyond the contact comes down with the contact, and by the wet
-/// film's thickness more, until it touches: all of it from kGrip behind the place on where the hair comes to touch.
+/// the surface, beyond the contact within kFree r. The free end beyond the contact comes down with the contact, and by
+/// the wet film's thickness more, until it touches: all of it from kGrip behind the place on where the hair comes to
+/// touch.
 std::vector<double> lowering(const SectionInput& in, const std::vector<Section>& sections) {
     const std::size_t count = sections.size();
     std::vector<double> down(count, 0);
@@ -183,10 +188,8 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
     const double k_f = std::min(1.0, p.force_gain * glm::length(in.result.force) * newton / p.force_limit);
     const std::vector<double> indentation = indentation_of(in, t);
     const double wet = kSides * p.transverse_stiffness;
-    LateralSprings springs{.stretch = wet * (kDry + (1 - kDry) * in.wetness),
-                           .bend = wet,
-                           .reach = kReach * p.length,
-                           .wall = kWall};
+    LateralSprings springs{
+        .stretch = wet * (kDry + (1 - kDry) * in.wetness), .bend = wet, .reach = kReach * p.length, .wall = kWall};
     for (const double r : in.spine.rest_radius) springs.taper.push_back(std::max(r, kFinest));
     std::vector<double> at(count, 0);
     LateralSide plus{std::vector<double>(count, 0),
@@ -201,8 +204,8 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
         // The ferrule holds the hair round for some radii from its mouth.
         const double out_of_ferrule = at[i] / (2.5 * p.radius);
         const double held = in.share > 1 ? 1 : 1 - std::exp(-out_of_ferrule * out_of_ferrule);
-        const double widen = held * (p.flatten_moment * moment / yield + p.flatten_force * k_f +
-                                     p.flatten_contact * indentation[i]);
+        const double widen =
+            held * (p.flatten_moment * moment / yield + p.flatten_force * k_f + p.flatten_contact * indentation[i]);
         const Vec3 wall = in.result.wall_force.empty() ? Vec3{0} : in.result.wall_force[i];
         friction.most[i] = kSides * kSideDrag * std::abs(glm::dot(in.result.contact_force[i] - wall, e[i])) * newton /
                            (in.spine.rod.weight[i] * p.length);
@@ -242,7 +245,9 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
 
 }  // namespace
 
-double side_stiffness(double wetness) { return kSides * (kDry + (1 - kDry) * wetness) * kWall / (1 + kWall); }
+double side_stiffness(double wetness) {
+    return kSides * (kDry + (1 - kDry) * wetness) * kWall / (1 + kWall);
+}
 
 SectionOutput make_sections(const SectionInput& in) {
     const Preset& p = in.preset;
@@ -273,8 +278,8 @@ SectionOutput make_sections(const SectionInput& in) {
         section.m = glm::cross(e[i], t[i]);
         section.centre = in.node[i] * p.length + 0.5 * (widths.plus[i] - widths.minus[i]) * e[i];
         section.moment = (i + 1 < count ? in.result.moment[i] : 0) * p.stiffness / p.length;
-        section.pressure = in.result.normal_force[i] / in.spine.rod.weight[i] * p.stiffness /
-                           (p.length * p.length * p.length);
+        section.pressure =
+            in.result.normal_force[i] / in.spine.rod.weight[i] * p.stiffness / (p.length * p.length * p.length);
     }
     const std::vector<double> down = lowering(in, out.sections);
     for (std::size_t i = 1; i < count && !in.obstacles.empty(); ++i) {

@@ -14,22 +14,22 @@ struct SectionInput {
     const rod::Result& result;
     std::span<const rod::Obstacle> obstacles;
     std::span<const Vec3> node;  ///< [n+1] where the hair is, units of L
-    Quat rotation;       ///< of the ferrule
-    double wetness = 1;  ///< 0 to 1: the film that draws the tip down, the cohesion that keeps hair together
-    double share = 1;    ///< spines the hair is shared among
+    Quat rotation;               ///< of the ferrule
+    double wetness = 1;          ///< 0 to 1: the film that draws the tip down, the cohesion that keeps hair together
+    double share = 1;            ///< spines the hair is shared among
     std::span<const ContactPlane> walls = {};  ///< beside the nodes, tip first, that of the side of
                                                ///< e and that of the other; or none
 };
 
 struct SectionOutput {
-    std::vector<Section> sections;    ///< tip first
-    Vec3 wide{1, 0, 0};               ///< e at the root, ferrule frame
-    std::vector<double> aside;        ///< as in Spine
-    std::vector<signed char> slips;   ///< as in Spine
+    std::vector<Section> sections;               ///< tip first
+    Vec3 wide{1, 0, 0};                          ///< e at the root, ferrule frame
+    std::vector<double> aside;                   ///< as in Spine
+    std::vector<signed char> slips;              ///< as in Spine
     double aside_energy = 0, spread_energy = 0;  ///< J
-    std::vector<Vec3> sides;          ///< side nodes from the root, metres, ferrule frame, tip
-                                      ///< first: that of the side of e, that of the other
-    std::vector<double> flank;        ///< as in Spine
+    std::vector<Vec3> sides;                     ///< side nodes from the root, metres, ferrule frame, tip
+                                                 ///< first: that of the side of e, that of the other
+    std::vector<double> flank;                   ///< as in Spine
 };
 
 /// Stiffness against a wall of a side node and the springs that draw it in, one behind the other, over that of the

@@ -130,8 +130,7 @@ void solve_sub_spines(Tuft& tuft, std::span<const ContactPlane> planes, TuftStat
         if (index == count_all / 2) {
             // The middle one carries the trunk.
             branch.sections.pop_back();
-            branch.sections.insert(branch.sections.end(), whole.begin() + static_cast<long>(count) - 1,
-                                   whole.end());
+            branch.sections.insert(branch.sections.end(), whole.begin() + static_cast<long>(count) - 1, whole.end());
         }
         state.branches.push_back(std::move(branch));
     }

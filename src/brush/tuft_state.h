@@ -11,9 +11,9 @@ namespace tuft::brush {
 /// the tuft, P_m) and its rotation. The tuft's rest axis, from root to tip, is
 /// rotation * (0, 0, -1).
 struct Pose {
-    Vec3 position{0};        ///< metres, world
+    Vec3 position{0};  ///< metres, world
     Quat rotation{1, 0, 0, 0};
-    double time = 0;         ///< seconds
+    double time = 0;  ///< seconds
 
     Vec3 axis() const { return rotation * Vec3{0, 0, -1}; }
 };
@@ -34,17 +34,17 @@ struct Section {
 /// One spine with its sections, tip first (index 0) and root last.
 struct Branch {
     std::vector<Section> sections;
-    double ink_share = 1;    ///< of the tuft's ink; shares sum to one
+    double ink_share = 1;  ///< of the tuft's ink; shares sum to one
 };
 
 /// Where the hand's work is, joules, of the whole spine (sub-spines follow it). The work that the
 /// hand does against `TuftState::force` and `moment` is the change of stored() and `lost`.
 struct TuftEnergy {
-    double bend = 0;         ///< stored in the bent hair
-    double contact = 0;      ///< in what the surface presses flat, in hair that sticks, and in the wet film
-    double aside = 0;        ///< in side nodes that friction has drawn to one side
-    double spread = 0;       ///< of bend and contact: what the springs of the spread side nodes hold
-    double lost = 0;         ///< since the step before, by yielding, slip, damping; never negative
+    double bend = 0;     ///< stored in the bent hair
+    double contact = 0;  ///< in what the surface presses flat, in hair that sticks, and in the wet film
+    double aside = 0;    ///< in side nodes that friction has drawn to one side
+    double spread = 0;   ///< of bend and contact: what the springs of the spread side nodes hold
+    double lost = 0;     ///< since the step before, by yielding, slip, damping; never negative
 
     double stored() const { return bend + contact + aside; }
 };
@@ -52,14 +52,14 @@ struct TuftEnergy {
 /// The tuft at one moment: one branch, or the sub-spines after bifurcation.
 struct TuftState {
     std::vector<Branch> branches;
-    Vec3 force{0};           ///< of the surface on the tuft, newtons, world
-    Vec3 device_force{0};            ///< what of that force has come through to the ferrule, newtons, world
-    Vec3 moment{0};          ///< of `force` about the root, N·m, world
-    double root_moment = 0;  ///< bending moment at the ferrule, N·m
-    double normal_force = 0; ///< newtons
+    Vec3 force{0};            ///< of the surface on the tuft, newtons, world
+    Vec3 device_force{0};     ///< what of that force has come through to the ferrule, newtons, world
+    Vec3 moment{0};           ///< of `force` about the root, N·m, world
+    double root_moment = 0;   ///< bending moment at the ferrule, N·m
+    double normal_force = 0;  ///< newtons
     TuftEnergy energy;
     bool touching = false;
-    bool converged = true;   ///< false: the solver stopped at its limit with its best state
+    bool converged = true;  ///< false: the solver stopped at its limit with its best state
     int iterations = 0;
 };
 
@@ -67,10 +67,10 @@ struct TuftState {
 /// dot(p - origin, normal) < 0 are inside the object. Next to a sharp convex edge with the plane
 /// beyond it: inside is what both call inside.
 struct ContactPlane {
-    Vec3 origin{0};          ///< metres, world
-    Vec3 normal{0, 0, 1};    ///< unit, out of the object
-    Vec3 beyond_origin{0};   ///< of the plane beyond the edge
-    Vec3 beyond_normal{0};   ///< unit; zero: no edge near
+    Vec3 origin{0};         ///< metres, world
+    Vec3 normal{0, 0, 1};   ///< unit, out of the object
+    Vec3 beyond_origin{0};  ///< of the plane beyond the edge
+    Vec3 beyond_normal{0};  ///< unit; zero: no edge near
 };
 
 inline constexpr double kEdgeRounding = 2e-4;  ///< m, radius by which the tuft feels edges rounded

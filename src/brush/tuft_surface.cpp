@@ -12,8 +12,7 @@ namespace {
 template <class T>
 T hermite(const T& p0, const T& p1, const T& m0, const T& m1, double h, double t) {
     const double t2 = t * t, t3 = t2 * t;
-    return (2 * t3 - 3 * t2 + 1) * p0 + (t3 - 2 * t2 + t) * h * m0 + (3 * t2 - 2 * t3) * p1 +
-           (t3 - t2) * h * m1;
+    return (2 * t3 - 3 * t2 + 1) * p0 + (t3 - 2 * t2 + t) * h * m0 + (3 * t2 - 2 * t3) * p1 + (t3 - t2) * h * m1;
 }
 
 template <class T>
@@ -38,8 +37,10 @@ std::vector<double> monotone_slopes(const std::vector<double>& v, const std::vec
     for (std::size_t i = 0; i + 1 < v.size(); ++i) {
         const double d = (v[i + 1] - v[i]) / (s[i + 1] - s[i]);
         for (double* slope : {&m[i], &m[i + 1]}) {
-            if (*slope * d <= 0) *slope = 0;
-            else if (std::abs(*slope) > 3 * std::abs(d)) *slope = 3 * d;
+            if (*slope * d <= 0)
+                *slope = 0;
+            else if (std::abs(*slope) > 3 * std::abs(d))
+                *slope = 3 * d;
         }
     }
     return m;
@@ -62,8 +63,8 @@ std::vector<Section> refine_sections(const std::vector<Section>& in, int between
         pressure[i] = in[i].pressure;
     }
     const std::vector<Vec3> mc = slopes(centre, s);
-    const std::vector<double> ma = monotone_slopes(a, s), mb = monotone_slopes(b, s),
-                              mm = monotone_slopes(moment, s), mp = monotone_slopes(pressure, s);
+    const std::vector<double> ma = monotone_slopes(a, s), mb = monotone_slopes(b, s), mm = monotone_slopes(moment, s),
+                              mp = monotone_slopes(pressure, s);
     std::vector<Section> out;
     out.reserve(n + (n - 1) * between);
     for (std::size_t i = 0; i + 1 < n; ++i) {

@@ -10,15 +10,15 @@ namespace tuft::brush {
 
 struct TuftSurfaceOptions {
     int points_per_ring = 24;
-    int rings_between_nodes = 2;   ///< spline-interpolated rings added between two sections
+    int rings_between_nodes = 2;  ///< spline-interpolated rings added between two sections
 };
 
 struct TuftSurface {
-    std::vector<Vec3> positions;                   ///< metres, world
-    std::vector<Vec3> normals;                     ///< unit, outward, one per position
-    std::vector<std::uint32_t> triangles;          ///< 3 indices each, counter-clockwise from outside
-    int points_per_ring = 0;                       ///< ring k holds positions [k * p, (k+1) * p), root first
-    int rings = 0;                                 ///< of all branches; the tip of each closes with one point
+    std::vector<Vec3> positions;           ///< metres, world
+    std::vector<Vec3> normals;             ///< unit, outward, one per position
+    std::vector<std::uint32_t> triangles;  ///< 3 indices each, counter-clockwise from outside
+    int points_per_ring = 0;               ///< ring k holds positions [k * p, (k+1) * p), root first
+    int rings = 0;                         ///< of all branches; the tip of each closes with one point
 };
 
 /// Rings of ellipses along Catmull–Rom splines through the sections of every branch.

@@ -12,15 +12,19 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kBuiltIn = 0.05;  ///< |w| of a tuft as it is bound: its ends do not lie quite evenly
+constexpr double kBuiltIn = 0.05;                ///< |w| of a tuft as it is bound: its ends do not lie quite evenly
 constexpr double kTurnsAt = 0.15, kDrawn = 0.5;  ///< |w|, see splay.h
-constexpr double kElsewhere = 0.4; ///< radians: hair no further from its mean its friction turns
-constexpr double kLeastReach = 0.02;  ///< of the length, ρ at the first touch
+constexpr double kElsewhere = 0.4;               ///< radians: hair no further from its mean its friction turns
+constexpr double kLeastReach = 0.02;             ///< of the length, ρ at the first touch
 
-Vec3 second_side(const rod::Clamp& c) { return glm::cross(c.tangent, c.side); }
+Vec3 second_side(const rod::Clamp& c) {
+    return glm::cross(c.tangent, c.side);
+}
 
 /// Across the clamp's axis.
-Complex across(const rod::Clamp& c, const Vec3& v) { return {glm::dot(v, c.side), glm::dot(v, second_side(c))}; }
+Complex across(const rod::Clamp& c, const Vec3& v) {
+    return {glm::dot(v, c.side), glm::dot(v, second_side(c))};
+}
 
 /// Hair in the air over a surface: how one-sided it will be when it touches, as a part of its taper.
 Complex free_side(const Preset& p, const Spine& spine, const Vec3& normal) {
@@ -35,7 +39,7 @@ Complex free_side(const Preset& p, const Spine& spine, const Vec3& normal) {
 }  // namespace
 
 void turn_with_spread(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
-                     std::span<const ContactPlane> planes) {
+                      std::span<const ContactPlane> planes) {
     rod::Memory& m = spine.memory;
     bool touching = false;
     for (const rod::ContactMemory& c : m.contact) touching = touching || c.touching;
@@ -69,7 +73,8 @@ UprightHair upright_hair_of(const Tuft& tuft, const ContactPlane& tip) {
     const Preset& p = tuft.preset;
     const double down = -glm::dot(tuft.pose.axis(), tip.normal);
     const double height = glm::dot(tuft.pose.position - tip.origin, tip.normal);
-    if (tuft.split || p.spine == SpineMethod::table || !(down > 0.1) || !(height > 0) || height >= down * p.length) return foot;
+    if (tuft.split || p.spine == SpineMethod::table || !(down > 0.1) || !(height > 0) || height >= down * p.length)
+        return foot;
     foot.centre = tuft.pose.position + height / down * tuft.pose.axis();
     foot.radius = rest_radius(p, height / down / p.length);
     const double side = glm::length(tuft.spine.one_sided);

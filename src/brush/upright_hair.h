@@ -22,14 +22,14 @@ namespace tuft::brush {
 /// Hair in the air is splayed if it is straight and stands upright; it is on one side if it is bent or
 /// leans by more than the tuft's own taper (radius over length).
 void turn_with_spread(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
-                     std::span<const ContactPlane> planes);
+                      std::span<const ContactPlane> planes);
 
 /// Where the axis of a tuft that touches meets the surface, and the hair that stands round it there
 /// while not all of it has been drawn to the side where the spine lies.
 struct UprightHair {
-    Vec3 centre{0};      ///< metres, world
-    double radius = 0;   ///< metres, of the straight tuft at the height of the surface
-    double share = 0;    ///< 1: hair lies on all sides alike … 0: all of it has been drawn to one side
+    Vec3 centre{0};     ///< metres, world
+    double radius = 0;  ///< metres, of the straight tuft at the height of the surface
+    double share = 0;   ///< 1: hair lies on all sides alike … 0: all of it has been drawn to one side
 };
 
 /// `tip`: the plane that the tip meets. No share for hair in the air, split, from the query table, or

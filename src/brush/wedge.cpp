@@ -32,8 +32,7 @@ Distance corner_distance(const Wedge& w, double rounding, const Vec3& x) {
     const double z1 = glm::dot(x - w.origin[1], w.normal[1]), apart = z1 - z0;
     const double w0 = std::clamp(0.5 + 0.5 * apart / rounding, 0.0, 1.0);
     const double round = std::max(0.0, rounding - std::abs(apart));
-    Distance out{(apart > 0 ? z0 : z1) - round * round / (4 * rounding),
-                 w0 * w.normal[0] + (1 - w0) * w.normal[1]};
+    Distance out{(apart > 0 ? z0 : z1) - round * round / (4 * rounding), w0 * w.normal[0] + (1 - w0) * w.normal[1]};
     if (round > 0) {
         out.bend = -1 / (2 * rounding);
         out.across = w.normal[0] - w.normal[1];

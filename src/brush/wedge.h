@@ -8,8 +8,8 @@ namespace tuft::brush {
 /// Distance of a point from the surface, negative inside, with derivatives. Any unit of length.
 struct Distance {
     double z = 0;
-    Vec3 slope{0};           ///< ∂z/∂x
-    double bend = 0;         ///< ∂²z/∂x² = bend · across acrossᵀ
+    Vec3 slope{0};    ///< ∂z/∂x
+    double bend = 0;  ///< ∂²z/∂x² = bend · across acrossᵀ
     Vec3 across{0};
 };
 

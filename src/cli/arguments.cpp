@@ -1,8 +1,8 @@
 #include "cli/arguments.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 #include <iostream>
@@ -29,7 +29,7 @@ namespace {
 
 constexpr double kFarthestMm = kFarthest / kMillimetre;
 constexpr std::size_t kLongestMessage = 600;  // bytes
-constexpr double kMostTexels = 1e9;     // along a side; memory is asked about later
+constexpr double kMostTexels = 1e9;           // along a side; memory is asked about later
 constexpr double kLeastTexelMm = 1e-9;
 constexpr double kMostDegrees = 36000;  // a hundred turns
 
@@ -69,8 +69,7 @@ CLI::Validator number_in(double lo, double hi, const std::string& name = {}) {
 }
 
 void add_common(CLI::App* app, Common& c) {
-    app->add_option("--threads", c.threads, "threads to use (0: one per core)")
-        ->check(number_in(0, 1024));
+    app->add_option("--threads", c.threads, "threads to use (0: one per core)")->check(number_in(0, 1024));
     app->add_flag("--json", c.json, "print one JSON object on standard output");
     app->add_flag("--quiet", c.quiet, "no progress, no notes");
 }
@@ -111,14 +110,14 @@ void add_surface(CLI::App* app, Surface& s) {
                                 "halve large charts as long as the atlas is covered better then "
                                 "(else: only where less than 65 % would be)");
     app->add_flag("--whole", s.whole, "never halve charts for the sake of the atlas")->excludes(tight);
-    app->add_option("--seams", s.seams,
-                    "where the atlas must be cut: free, groups (of faces), sharp (edges), both")
+    app->add_option("--seams", s.seams, "where the atlas must be cut: free, groups (of faces), sharp (edges), both")
         ->check(CLI::IsMember({"free", "groups", "sharp", "both"}))
         ->excludes(keep);
     app->add_option("--sharp-angle", s.sharp_angle_deg, "degrees from which an edge is sharp")
         ->check(number_in(1.0, 180.0));
-    app->add_flag("--plain", s.plain,
-                  "leave aside the colours that the model brings along (pictures, vertices, facets); else ink lies on them");
+    app->add_flag(
+        "--plain", s.plain,
+        "leave aside the colours that the model brings along (pictures, vertices, facets); else ink lies on them");
     add_store(app, s);
 }
 
@@ -129,7 +128,8 @@ CLI::Option* add_point(CLI::App* app, const std::string& name, std::vector<doubl
             [&to, name](const std::string& text) {
                 to = numbers(text, ',', 3, kFarthestMm);
                 if (to.empty())
-                    throw CLI::ValidationError(name, "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
+                    throw CLI::ValidationError(
+                        name, "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
             },
             what)
         ->type_name("X,Y,Z");
@@ -168,7 +168,8 @@ void add_view(CLI::App* app, View& v) {
            [&v](const std::string& text) {
                const auto n = numbers(text, 'x', 2, 16384);
                if (n.empty() || n[0] < 16 || n[1] < 16 || n[0] != std::floor(n[0]) || n[1] != std::floor(n[1]))
-                   throw CLI::ValidationError("--size", "'" + excerpt(text) + "' is not WIDTHxHEIGHT, such as 1280x720");
+                   throw CLI::ValidationError("--size",
+                                              "'" + excerpt(text) + "' is not WIDTHxHEIGHT, such as 1280x720");
                v.width = static_cast<int>(n[0]);
                v.height = static_cast<int>(n[1]);
            },
@@ -178,14 +179,16 @@ void add_view(CLI::App* app, View& v) {
     add_view_direction(app, v);
     app->add_option("--light", v.light, "turn the lights by so many degrees (they follow the camera)")
         ->check(number_in(-kMostDegrees, kMostDegrees, "DEGREES"));
-    app->add_flag("--raking", v.raking, "one lamp from the side, which shows the relief of the ink; --light turns it about the view");
+    app->add_flag("--raking", v.raking,
+                  "one lamp from the side, which shows the relief of the ink; --light turns it about the view");
     app->add_option("--zoom", v.zoom, "magnification (1: the whole model)")->check(number_in(0.05, 100.0));
     app->add_option_function<std::string>(
            "--target",
            [&v](const std::string& text) {
                v.target_mm = numbers(text, ',', 3, kFarthestMm);
                if (v.target_mm.empty())
-                   throw CLI::ValidationError("--target", "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
+                   throw CLI::ValidationError("--target",
+                                              "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
            },
            "the point to look at, in millimetres: X,Y,Z")
         ->type_name("X,Y,Z");
@@ -196,15 +199,16 @@ void name_presets(CLI::App& app) {
     for (const char* name : {"--brush", "--ink", "--to-ink", "--substrate", "--material"})
         for (CLI::App* command : app.get_subcommands({}))
             if (CLI::Option* option = command->get_option_no_throw(name))
-                option->type_name(std::string_view(name) == "--brush" ? "BRUSH" : std::string_view(name).ends_with("ink") ? "INK" : "SUBSTRATE");
+                option->type_name(std::string_view(name) == "--brush"       ? "BRUSH"
+                                  : std::string_view(name).ends_with("ink") ? "INK"
+                                                                            : "SUBSTRATE");
 }
 
 /// Nothing that an option takes is nothing: `--ink ""` is a slip, most often of a script.
 void check_no_empty_values(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options())
         for (const std::string& value : option->results())
-            if (value.empty())
-                throw CLI::ValidationError(option->get_name(), "its value is empty");
+            if (value.empty()) throw CLI::ValidationError(option->get_name(), "its value is empty");
     for (const CLI::App* command : app.get_subcommands()) check_no_empty_values(*command);
 }
 
@@ -213,7 +217,8 @@ void check_no_empty_values(const CLI::App& app) {
 bool parse_arguments(int argc, const char* const* argv, Command& command, int& status) {
     CLI::App app{"tuft: ink and a bending hair brush on the surface of 3D models", "tuft"};
     bool json_version = false;
-    auto* json = app.add_flag("--json", json_version, "with --version: the libraries' versions and facts of the build, as one JSON object");
+    auto* json = app.add_flag("--json", json_version,
+                              "with --version: the libraries' versions and facts of the build, as one JSON object");
     json->needs(app.set_version_flag("--version", [&] { return version_text(json_version); }));
     app.require_subcommand(1);
     app.footer("Run 'tuft COMMAND --help' for the options of a command.");
@@ -223,11 +228,16 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     auto* p = app.add_subcommand("paint", "paint recorded strokes onto a model, or go on with a project");
     p->add_option("MODEL", paint.model, "mesh (PLY, OBJ, STL, OFF, GLB or glTF) or project")->required();
     p->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
-    p->add_option("--brush", paint.brush, "brush for all strokes ('tuft brush' lists them; goat-small*0.5 is one of half the size; default: what they name, else wolf-medium)");
-    p->add_option("--ink", paint.ink, "ink for all strokes: a name ('tuft ink' lists them), a .toml file, or a colour such as '#c03020' (default: what they name, else carbon)");
+    p->add_option("--brush", paint.brush,
+                  "brush for all strokes ('tuft brush' lists them; goat-small*0.5 is one of half the size; default: "
+                  "what they name, else wolf-medium)");
+    p->add_option("--ink", paint.ink,
+                  "ink for all strokes: a name ('tuft ink' lists them), a .toml file, or a colour such as '#c03020' "
+                  "(default: what they name, else carbon)");
     p->add_option("--mask", paint.mask, "mask of the project to keep to, for strokes that name none");
-    p->add_flag_callback("--erase", [&paint] { paint.erases = true; },
-                         "the strokes take ink away, wet and dry, instead of leaving some");
+    p->add_flag_callback(
+        "--erase", [&paint] { paint.erases = true; },
+        "the strokes take ink away, wet and dry, instead of leaving some");
     p->add_option("--layer", paint.layer, "layer for strokes that name none; it is made when there is none yet");
     p->add_option("--substrate", paint.surface.substrate, "what the model is made of: porcelain, bisque, clay, ...");
     p->add_option("--spine", paint.spine, "how the tuft bends: rod (live solve) or table (query table)")
@@ -240,20 +250,18 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
                   "dip a fresh brush for each stroke, carry hair and ink on until told, or paint "
                   "with a brush that never runs dry (endless)")
         ->check(CLI::IsMember({"each", "carry", "endless"}));
-    p->add_option(
-         "--film", paint.film,
-         "still: ink stays where it is put; wet: it flows, soaks in, dries and is picked up")
+    p->add_option("--film", paint.film,
+                  "still: ink stays where it is put; wet: it flows, soaks in, dries and is picked up")
         ->check(CLI::IsMember({"still", "wet"}));
     p->add_option_function<std::string>(
-         "--down", 
+         "--down",
          [&paint](const std::string& text) {
              paint.down = numbers(text, ',', 3, kFarthestMm);
              if (paint.down.empty()) throw CLI::ValidationError("--down", "'" + excerpt(text) + "' is not X,Y,Z");
          },
          "direction of weight for wet ink (0,0,0: none)")
         ->type_name("X,Y,Z");
-    p->add_option("--dry", paint.dry,
-                  "let the ink dry for so many seconds after each stroke file; 0: until all is dry")
+    p->add_option("--dry", paint.dry, "let the ink dry for so many seconds after each stroke file; 0: until all is dry")
         ->check(number_in(0.0, 86400.0))
         ->type_name("SECONDS");
     p->add_option("--prepare", paint.prepare,
@@ -283,7 +291,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
          [&paint](const std::string& text) {
              paint.place_mm = numbers(text, ',', 3, kFarthestMm);
              if (paint.place_mm.empty())
-                 throw CLI::ValidationError("--place", "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
+                 throw CLI::ValidationError("--place",
+                                            "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
          },
          "where flat strokes go that have no place of their own: X,Y,Z in millimetres")
         ->type_name("X,Y,Z");
@@ -306,10 +315,9 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
              paint.read_from = numbers(text, ',', 3, 1e9);
              if (paint.read_from.empty() ||
                  std::hypot(paint.read_from[0], paint.read_from[1], paint.read_from[2]) < 1e-6)
-                 throw CLI::ValidationError("--read-from",
-                                            "'" + text +
-                                                "' is neither front, back, left, right, top or "
-                                                "bottom nor a direction X,Y,Z");
+                 throw CLI::ValidationError("--read-from", "'" + text +
+                                                               "' is neither front, back, left, right, top or "
+                                                               "bottom nor a direction X,Y,Z");
          },
          "where a person stands who reads the drawing: front, back, left, right, top, bottom, or a "
          "direction X,Y,Z from the model; "
@@ -317,8 +325,10 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
          "before the surface)")
         ->type_name("DIRECTION");
     p->add_option("--mapping,--laying", paint.mapping,
-                  "how flat strokes lie: drape (bent round the surface, over its grooves, relief and gaps), wrap (round its very "
-                  "triangles, into each groove), project (straight, as seen from before the place); default: as their file says, "
+                  "how flat strokes lie: drape (bent round the surface, over its grooves, relief and gaps), wrap "
+                  "(round its very "
+                  "triangles, into each groove), project (straight, as seen from before the place); default: as their "
+                  "file says, "
                   "drape where it names no place")
         ->check(CLI::IsMember({"drape", "wrap", "project"}));
     p->add_option("--place-width", paint.place_width_mm,
@@ -329,12 +339,14 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         ->check(number_in(-360.0, 360.0))
         ->type_name("DEG");
     p->add_flag("--place-mirror", paint.place_mirror, "flips it from left to right");
-    p->add_flag("--fit-brush", paint.fit_brush, "with --brush: takes this make in the sizes that draw the line widths of a drawing");
+    p->add_flag("--fit-brush", paint.fit_brush,
+                "with --brush: takes this make in the sizes that draw the line widths of a drawing");
     add_surface(p, paint.surface);
     p->add_option("--project", paint.project, "write a project file (.tuft)");
     p->add_option("--export", paint.exported, "write the textured model: .glb, .gltf or .obj");
     p->add_option("--preview", paint.preview, "write a picture (.png)");
-    p->add_option("--forces", paint.forces, "write time, pose, force, force on the hand and moment at every sample of the hand (.csv)");
+    p->add_option("--forces", paint.forces,
+                  "write time, pose, force, force on the hand and moment at every sample of the hand (.csv)");
     add_view(p, paint.view);
     add_common(p, paint.common);
 
@@ -342,7 +354,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     auto* i = app.add_subcommand("inspect", "say what is in a mesh or a project, and what is wrong with it");
     i->add_option("FILE", inspect.file, "mesh or project")->required();
     add_frame(i, inspect.unit, inspect.up, "unit of the model file (default: a guess from its size)");
-    auto* spot = add_point(i, "--at", inspect.at_mm, "say which pigments lie at this point of a project, in millimetres");
+    auto* spot =
+        add_point(i, "--at", inspect.at_mm, "say which pigments lie at this point of a project, in millimetres");
     i->add_option("--save-ink", inspect.save_ink, "write them as an ink (.toml), for --ink")->needs(spot);
     i->add_flag("--palette", inspect.palette, "the point is one of the palette, from its middle, z = 0")->needs(spot);
     add_common(i, inspect.common);
@@ -360,7 +373,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     r->add_option("PROJECT", replay.project, "project file (.tuft)")->required();
     r->add_option("--model", replay.model, "paint onto this revised mesh instead");
     r->add_option("--brush", replay.brush, "use this brush for every stroke");
-    r->add_option("--ink", replay.ink, "use this ink for every stroke: a name, a .toml file or a colour such as '#c03020'");
+    r->add_option("--ink", replay.ink,
+                  "use this ink for every stroke: a name, a .toml file or a colour such as '#c03020'");
     add_surface(r, replay.surface);
     add_look(r, replay.look);
     r->add_option("--project", replay.out_project, "write a project file (.tuft)");
@@ -373,10 +387,12 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     auto* e = app.add_subcommand("export", "write a project's textured model, maps or strokes");
     e->add_option("PROJECT", exported.project, "project file (.tuft)")->required();
     e->add_option("-o,--output", exported.output,
-                  ".glb, .gltf, .obj (model); .png, .exr (one map); .inkml (strokes, to the bit)")->required();
-    e->add_option("--map", exported.map,
-                  "which map a .png or .exr holds: base-colour, normal, height, roughness, pigments (.exr) or palette (.png); "
-                  "default: the file's name if it is one of these, else base-colour")
+                  ".glb, .gltf, .obj (model); .png, .exr (one map); .inkml (strokes, to the bit)")
+        ->required();
+    e->add_option(
+         "--map", exported.map,
+         "which map a .png or .exr holds: base-colour, normal, height, roughness, pigments (.exr) or palette (.png); "
+         "default: the file's name if it is one of these, else base-colour")
         ->check(CLI::IsMember(io::map_names()));
     e->add_option("--bits", exported.bits, "8 or 16 bits a channel of base-colour.png")->check(CLI::IsMember({8, 16}));
     add_look(e, exported.look);
@@ -386,11 +402,15 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     LayerWork layer;
     auto* l = app.add_subcommand("layer", "change a project's layers");
     l->add_option("PROJECT", layer.project, "project file (.tuft)")->required();
-    l->add_option("WHAT", layer.what, "add, remove, show, hide, lock, unlock, opacity, blend, rename, move, duplicate or merge (into the one below)")
+    l->add_option(
+         "WHAT", layer.what,
+         "add, remove, show, hide, lock, unlock, opacity, blend, rename, move, duplicate or merge (into the one below)")
         ->required()
-        ->check(CLI::IsMember({"add", "remove", "show", "hide", "lock", "unlock", "opacity", "blend", "rename", "move", "duplicate", "merge"}));
+        ->check(CLI::IsMember({"add", "remove", "show", "hide", "lock", "unlock", "opacity", "blend", "rename", "move",
+                               "duplicate", "merge"}));
     l->add_option("NAME", layer.name, "name of the layer")->required();
-    l->add_option("VALUE", layer.value, "opacity (0 to 1), blend (normal, glaze, multiply), new name, or place (1 is the lowest)");
+    l->add_option("VALUE", layer.value,
+                  "opacity (0 to 1), blend (normal, glaze, multiply), new name, or place (1 is the lowest)");
     add_common(l, layer.common);
 
     FillWork fill;
@@ -424,7 +444,9 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     k->add_option("--within", mask.within, "to within so many degrees")->check(number_in(0.0, 180.0));
     k->add_option("--soft", mask.soft, "with an edge of so many degrees to either side")->check(number_in(0.0, 180.0));
     add_point(k, "--chart", mask.chart_mm, "the chart of the atlas at this point, in millimetres");
-    k->add_option("--lasso", mask.lasso, "what this polygon encloses: 'X,Y X,Y X,Y ...', millimetres right and up of the middle as seen from --view");
+    k->add_option(
+        "--lasso", mask.lasso,
+        "what this polygon encloses: 'X,Y X,Y X,Y ...', millimetres right and up of the middle as seen from --view");
     add_view_direction(k, mask.view);
     k->add_flag("--through", mask.through, "the lasso also takes what faces away or is hidden");
     k->add_option("--invert", mask.invert, "what this mask leaves out");
@@ -447,7 +469,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     Brush brush;
     auto* b = app.add_subcommand("brush", "print a brush's query table, draw it, or fit one to measurements");
     b->add_option("BRUSH", brush.name, "brush name or .toml file; without it, the names are listed");
-    b->add_option("--picture", brush.picture, "draw the tuft at five depths and three tilts, lifted, slanted, reversed, split and dry (.png)");
+    b->add_option("--picture", brush.picture,
+                  "draw the tuft at five depths and three tilts, lifted, slanted, reversed, split and dry (.png)");
     b->add_option("--sweep-depth", brush.sweep_depth, "write line width over depth (.csv)");
     auto* fit = b->add_subcommand("calibrate", "fit a brush to a table of depth against line width");
     fit->add_option("MEASURED", brush.calibrate, "measured table (.csv)")->required();
@@ -456,7 +479,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     fit->fallthrough();  // options of 'brush' also stand behind 'calibrate'
 
     BiasCorrection bias;
-    auto* h = app.add_subcommand("bias", "learn how a writer's strokes differ from those that were meant")->alias("habit");
+    auto* h =
+        app.add_subcommand("bias", "learn how a writer's strokes differ from those that were meant")->alias("habit");
     h->add_option("INTENDED", bias.intended, "strokes as they should be (.inkml)")->required();
     h->add_option("WRITTEN", bias.written, "the same strokes as the writer makes them (.inkml)")->required();
     h->add_option("-o,--output", bias.output, "bias correction to write (.toml)")->required();
@@ -464,12 +488,20 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
 
     InkWork ink;
     auto* inks = app.add_subcommand("ink", "list the inks, or find the mix of pigments nearest to a colour");
-    auto* match = inks->add_subcommand("match", "find the mix of pigments nearest to a colour, by Kubelka-Munk and CIEDE2000");
-    match->add_option("COLOUR", ink.colour, "sRGB as '#rrggbb' (quoted: a shell takes an open # for a comment) or rrggbb")->required();
+    auto* match =
+        inks->add_subcommand("match", "find the mix of pigments nearest to a colour, by Kubelka-Munk and CIEDE2000");
+    match
+        ->add_option("COLOUR", ink.colour,
+                     "sRGB as '#rrggbb' (quoted: a shell takes an open # for a comment) or rrggbb")
+        ->required();
     match->add_option("--substrate", ink.substrate, "what it is painted on: porcelain, bisque, clay, ...");
-    match->add_option("--film", ink.film, "thickness of the wet film in film units of 10 um (default, or 0: 2, or 4 or 8 where the colour needs it)")
+    match
+        ->add_option(
+            "--film", ink.film,
+            "thickness of the wet film in film units of 10 um (default, or 0: 2, or 4 or 8 where the colour needs it)")
         ->check(CLI::Range(0.0, ink::kThickestMix));
-    match->add_option("--pigments", ink.pigments, "choose from these pigments only: NAME,... or FILE.toml,...")->delimiter(',');
+    match->add_option("--pigments", ink.pigments, "choose from these pigments only: NAME,... or FILE.toml,...")
+        ->delimiter(',');
     match->add_option("--parts", ink.parts, "most pigments in the mix")->check(CLI::Range(1, 4));
     match->add_option("-o,--output", ink.output, "write the mix as an ink (.toml), for --ink");
     add_common(match, ink.common);
@@ -511,19 +543,32 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         status = 2;
         return false;
     }
-    if (p->parsed()) command = paint;
-    else if (i->parsed()) command = inspect;
-    else if (u->parsed()) command = unwrap;
-    else if (r->parsed()) command = replay;
-    else if (e->parsed()) command = exported;
-    else if (d->parsed()) command = render;
-    else if (b->parsed()) command = brush;
-    else if (h->parsed()) command = bias;
-    else if (l->parsed()) command = layer;
-    else if (f->parsed()) command = fill;
-    else if (k->parsed()) command = mask;
-    else if (inks->parsed()) command = ink;
-    else command = bench;
+    if (p->parsed())
+        command = paint;
+    else if (i->parsed())
+        command = inspect;
+    else if (u->parsed())
+        command = unwrap;
+    else if (r->parsed())
+        command = replay;
+    else if (e->parsed())
+        command = exported;
+    else if (d->parsed())
+        command = render;
+    else if (b->parsed())
+        command = brush;
+    else if (h->parsed())
+        command = bias;
+    else if (l->parsed())
+        command = layer;
+    else if (f->parsed())
+        command = fill;
+    else if (k->parsed())
+        command = mask;
+    else if (inks->parsed())
+        command = ink;
+    else
+        command = bench;
     return true;
 }
 

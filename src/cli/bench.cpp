@@ -56,8 +56,8 @@ mesh::PolygonSoup sphere(int n) {
     for (int j = 0; j <= rings; ++j)
         for (int i = 0; i < columns; ++i) {
             const double theta = pi * j / rings, phi = 2 * pi * i / columns;
-            soup.points.push_back(50.0 * Vec3(std::sin(theta) * std::cos(phi),
-                                              std::sin(theta) * std::sin(phi), std::cos(theta)));
+            soup.points.push_back(
+                50.0 * Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)));
         }
     soup.polygon_start.push_back(0);
     const auto at = [&](int j, int i) { return static_cast<std::uint32_t>(j * columns + i % columns); };
@@ -130,8 +130,8 @@ footprint::Footprint disc(const stroke::Model& model, int texels, const Step& at
 }
 
 // Deposit alone: planning, evaluating and inking one stamp after the other along the way.
-double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps,
-                              footprint::Isa isa, std::span<const char* const> inks) {
+double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps, footprint::Isa isa,
+                              std::span<const char* const> inks) {
     ink::Canvas canvas(model.texels.n_slots());
     ink::DepositParams params;
     for (const char* name : inks) {  // in equal parts
@@ -168,7 +168,9 @@ double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps
     return quantile(runs, 0.5);
 }
 
-double footprint_texels(int texels) { return pi / 4 * texels * texels; }
+double footprint_texels(int texels) {
+    return pi / 4 * texels * texels;
+}
 
 // The whole path: a brush as thick as makes lines of about `texels` across, dragged along
 // the way; hand samples at 1 kHz and a stamp per texel.
@@ -315,9 +317,9 @@ struct Case {
 /// Wall time of the two phases, from the progress that they report.
 ProgressFn timed(const ProgressFn& progress, double& map_seconds, double& graph_seconds) {
     return [&map_seconds, &graph_seconds, progress](std::string_view phase, double fraction) {
-        double* const seconds = phase == "texel map"     ? &map_seconds
+        double* const seconds = phase == "texel map"       ? &map_seconds
                                 : phase == "cluster graph" ? &graph_seconds
-                                                         : nullptr;
+                                                           : nullptr;
         if (seconds && fraction == 0) *seconds = -wall_seconds();
         if (seconds && fraction == 1) *seconds += wall_seconds();
         return !progress || progress(phase, fraction);
@@ -364,13 +366,18 @@ int run(const Bench& a) {
     j["machine"] = cpu_name();
     j["threads"] = 1;
     const RodTimes rod = rod_microseconds();
-    j["rod_microseconds"] = {{"mean", rod.mean}, {"mean_spread", rod.spread}, {"median", rod.median}, {"p99", rod.p99}, {"segments", 16}};
+    j["rod_microseconds"] = {
+        {"mean", rod.mean}, {"mean_spread", rod.spread}, {"median", rod.median}, {"p99", rod.p99}, {"segments", 16}};
     const double square = microseconds_per_square(1, "porcelain");
-    j["composite_microseconds"] = {{"one_film", square}, {"three_films", microseconds_per_square(3, "porcelain")},
-                                   {"texels", 64 * 64}, {"pigments", 4}, {"bands", ink::kBands}};
+    j["composite_microseconds"] = {{"one_film", square},
+                                   {"three_films", microseconds_per_square(3, "porcelain")},
+                                   {"texels", 64 * 64},
+                                   {"pigments", 4},
+                                   {"bands", ink::kBands}};
     for (Case& c : cases) {
         const std::string on = fmt::format("{} at {} x {}", c.name, size, size);
-        nlohmann::json m{{"triangles", c.model.mesh->n_triangles()}, {"atlas_size", size},
+        nlohmann::json m{{"triangles", c.model.mesh->n_triangles()},
+                         {"atlas_size", size},
                          {"texel_store", c.model.texels.packed.empty() ? "float" : "packed"}};
         static constexpr std::array kOneInk{"carbon"};
         static constexpr std::array kPigments{"carbon", "gamboge", "cinnabar"};
@@ -397,8 +404,9 @@ int run(const Bench& a) {
         m["first_ink_ms"] = first_ink_milliseconds(c.model, 64);
         j["models"][c.name] = m;
         if (!j.contains("microseconds_per_stamp")) {
-            for (const char* key : {"microseconds_per_stamp", "stamps_per_second", "bristle_stamps_per_second", "ns_per_texel", "atlas_seconds",
-                                    "texel_map_seconds", "cluster_graph_seconds", "first_ink_ms"})
+            for (const char* key :
+                 {"microseconds_per_stamp", "stamps_per_second", "bristle_stamps_per_second", "ns_per_texel",
+                  "atlas_seconds", "texel_map_seconds", "cluster_graph_seconds", "first_ink_ms"})
                 j[key] = m[key];
             j["model"] = on;
         }
@@ -413,26 +421,29 @@ int run(const Bench& a) {
     }
     fmt::print("{}, one thread (preparing: all), {}, CPU time, medians\n", j["machine"].get<std::string>(),
                j["isa"].get<std::string>());
-    fmt::print("rod solve, 16 segments: mean {:.1f} +- {:.1f} us, median {:.1f} us, 99 % {:.1f} us\n", rod.mean, rod.spread, rod.median, rod.p99);
+    fmt::print("rod solve, 16 segments: mean {:.1f} +- {:.1f} us, median {:.1f} us, 99 % {:.1f} us\n", rod.mean,
+               rod.spread, rod.median, rod.p99);
     fmt::print("colour of 64 x 64 texels, 4 pigments, {} bands: {:.0f} us with one film, {:.0f} us with three\n",
                ink::kBands, square, j["composite_microseconds"]["three_films"].get<double>());
     for (const auto& [name, m] : j["models"].items()) {
         fmt::print("{} ({} triangles, atlas {} x {}, made in {:.1f} s, texel map {:.2f} s, cluster graph {:.2f} s)\n",
                    name, m["triangles"].get<std::size_t>(), size, size, m["atlas_seconds"].get<double>(),
                    m["texel_map_seconds"].get<double>(), m["cluster_graph_seconds"].get<double>());
-        fmt::print("  first ink {:.1f} ms after the first touch; {:.1f} ns a texel with one ink, {:.1f} with three pigments\n",
-                   m["first_ink_ms"].get<double>(), m["ns_per_texel"]["one_ink"].get<double>(),
-                   m["ns_per_texel"]["pigments"].get<double>());
+        fmt::print(
+            "  first ink {:.1f} ms after the first touch; {:.1f} ns a texel with one ink, {:.1f} with three pigments\n",
+            m["first_ink_ms"].get<double>(), m["ns_per_texel"]["one_ink"].get<double>(),
+            m["ns_per_texel"]["pigments"].get<double>());
         fmt::print("  wet ink with four pigments: {:.1f} ns a texel and step, {:.1f} both ways under the brush",
                    m["ns_per_texel"]["film_step"].get<double>(), m["ns_per_texel"]["transfer"].get<double>());
         if (m.contains("film_steps_per_second"))
             fmt::print("; all of it wet {:.1f} steps/s on two threads", m["film_steps_per_second"].get<double>());
         fmt::print("\n");
         for (const char* texels : {"64", "128", "256"})
-            fmt::print("  {:>3} texels wide: deposit {:>7.1f} us a stamp; whole path {:>8.0f} stamps/s; dry, by 500 bristles {:>6.0f}\n",
-                       texels, m["microseconds_per_stamp"][texels].get<double>(),
-                       m["stamps_per_second"][texels].get<double>(),
-                       m["bristle_stamps_per_second"][texels].get<double>());
+            fmt::print(
+                "  {:>3} texels wide: deposit {:>7.1f} us a stamp; whole path {:>8.0f} stamps/s; dry, by 500 bristles "
+                "{:>6.0f}\n",
+                texels, m["microseconds_per_stamp"][texels].get<double>(), m["stamps_per_second"][texels].get<double>(),
+                m["bristle_stamps_per_second"][texels].get<double>());
     }
     fmt::print("peak memory {:.0f} MiB, at the end {:.0f} MiB\n", j["peak_mb"].get<double>(),
                j["resident_mb"].get<double>());

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "ink/film/film.h"
 #include "ink/exchange/transfer.h"
+#include "ink/film/film.h"
 
 namespace tuft::cli {
 namespace {

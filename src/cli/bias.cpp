@@ -30,13 +30,14 @@ int run(const BiasCorrection& a) {
     const glm::dmat2& m = bias.linear;
     if (a.common.json)
         print_json(nlohmann::json{{"wrote", a.output.string()},
-                                    {"strokes", written.size()},
-                                    {"pieces", bias.pieces.size()},
-                                    {"pressure_ratio", ratio},
-                                    {"linear", {{m[0][0], m[1][0]}, {m[0][1], m[1][1]}}}});
+                                  {"strokes", written.size()},
+                                  {"pieces", bias.pieces.size()},
+                                  {"pressure_ratio", ratio},
+                                  {"linear", {{m[0][0], m[1][0]}, {m[0][1], m[1][1]}}}});
     else
         fmt::print("wrote {}: {} in {}; mean pressure x {:.2f}, slant {:+.2f}, width x {:.2f}, height x {:.2f}\n",
-                   a.output.string(), counted(written.size(), "stroke"), counted(bias.pieces.size(), "piece"), ratio, m[1][0], m[0][0], m[1][1]);
+                   a.output.string(), counted(written.size(), "stroke"), counted(bias.pieces.size(), "piece"), ratio,
+                   m[1][0], m[0][0], m[1][1]);
     return 0;
 }
 

@@ -51,21 +51,17 @@ nlohmann::json table_json(const brush::Preset& preset, const brush::QueryTable& 
 void print_table(const brush::Preset& preset, const brush::QueryTable& table) {
     fmt::print("{}: {}\n", preset.name, preset.note);
     fmt::print("tuft {:.1f} mm long, {:.1f} mm thick, root stiffness {:.3g} N m2, {} segments\n\n",
-               preset.length / kMillimetre, 2 * preset.radius / kMillimetre, preset.stiffness,
-               preset.segments);
-    fmt::print("{:>11} {:>9} {:>22} {:>11}   node angles from tip to root, degrees\n", "moment mNm",
-               "load N", "tip x, y mm", "tip angle");
+               preset.length / kMillimetre, 2 * preset.radius / kMillimetre, preset.stiffness, preset.segments);
+    fmt::print("{:>11} {:>9} {:>22} {:>11}   node angles from tip to root, degrees\n", "moment mNm", "load N",
+               "tip x, y mm", "tip angle");
     for (std::size_t k = 0; k < table.rows.size(); k += 4) {
         const brush::TableRow& row = table.rows[k];
         fmt::print("{:>11.4f} {:>9.4f} {:>10.3f}, {:>10.3f} {:>11.2f}  ", row.moment * 1e3, row.load,
-                   row.nodes.front().x / kMillimetre, row.nodes.front().y / kMillimetre,
-                   row.angles.front() / kDegree);
-        for (std::size_t i = 0; i < row.angles.size(); i += 2)
-            fmt::print(" {:>5.1f}", row.angles[i] / kDegree);
+                   row.nodes.front().x / kMillimetre, row.nodes.front().y / kMillimetre, row.angles.front() / kDegree);
+        for (std::size_t i = 0; i < row.angles.size(); i += 2) fmt::print(" {:>5.1f}", row.angles[i] / kDegree);
         fmt::print("\n");
     }
-    fmt::print("\nEvery fourth of {} rows and every second node; --json prints them all.\n",
-               table.rows.size());
+    fmt::print("\nEvery fourth of {} rows and every second node; --json prints them all.\n", table.rows.size());
 }
 
 int calibrate(const Brush& a) {
@@ -82,10 +78,10 @@ int calibrate(const Brush& a) {
     write_file(a.output, toml.data(), toml.size());
     if (a.common.json)
         print_json(nlohmann::json{{"wrote", a.output.string()},
-                                    {"rms_width_mm", fit.rms.width / kMillimetre},
-                                    {"rms_drag_mm", fit.rms.drag / kMillimetre},
-                                    {"rms_offset_mm", fit.rms.offset / kMillimetre},
-                                    {"evaluations", fit.evaluations}});
+                                  {"rms_width_mm", fit.rms.width / kMillimetre},
+                                  {"rms_drag_mm", fit.rms.drag / kMillimetre},
+                                  {"rms_offset_mm", fit.rms.offset / kMillimetre},
+                                  {"evaluations", fit.evaluations}});
     else
         fmt::print("wrote {}: residuals (rms) {:.2f} mm of width, {:.2f} mm of contact length, {:.2f} mm of offset\n",
                    a.output.string(), fit.rms.width / kMillimetre, fit.rms.drag / kMillimetre,
@@ -118,8 +114,10 @@ int run(const Brush& a) {
         write_file(a.sweep_depth, csv.data(), csv.size());
     }
     const brush::QueryTable table = brush::make_table(preset);
-    if (a.common.json) print_json(table_json(preset, table));
-    else print_table(preset, table);
+    if (a.common.json)
+        print_json(table_json(preset, table));
+    else
+        print_table(preset, table);
     return 0;
 }
 

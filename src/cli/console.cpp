@@ -36,11 +36,13 @@ int next_signal(const sigset_t& signals, std::chrono::nanoseconds patience) {
 
 void await_signals(const sigset_t& signals) {
     int first = 0;
-    while (::sigwait(&signals, &first) != 0) {}
+    while (::sigwait(&signals, &first) != 0) {
+    }
     request_interrupt();
     // A terminal, `timeout` and others send one to the process and its group: it comes twice at the same time.
     std::this_thread::sleep_for(kTogether);
-    while (next_signal(signals, 0ns) > 0) {}
+    while (next_signal(signals, 0ns) > 0) {
+    }
     const int second = next_signal(signals, kPatience);
     remove_unfinished();
     if (second > 0) {  // ends the ordinary way
@@ -79,8 +81,7 @@ struct Console::State {
         std::string left;
         if (fraction > 0.02 && fraction < 1 && seconds > 0.5)
             left = fmt::format("{:.0f} s left", seconds * (1 - fraction) / fraction);
-        fmt::print(stderr, "\r{:<14} [{:<30}] {:3.0f} %  {:<14}", name, std::string(filled, '#'),
-                   100 * fraction, left);
+        fmt::print(stderr, "\r{:<14} [{:<30}] {:3.0f} %  {:<14}", name, std::string(filled, '#'), 100 * fraction, left);
         std::fflush(stderr);
         bar_shown = true;
     }
@@ -93,7 +94,7 @@ void listen_for_signals() {
     ::sigemptyset(&signals);
     ::sigaddset(&signals, SIGINT);
     ::sigaddset(&signals, SIGTERM);
-    struct sigaction hang_up{};
+    struct sigaction hang_up {};
     ::sigaction(SIGHUP, nullptr, &hang_up);
     if (hang_up.sa_handler != SIG_IGN) ::sigaddset(&signals, SIGHUP);  // ignored under nohup
     ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
@@ -105,7 +106,9 @@ Console::Console(bool quiet) : state_(std::make_unique<State>()) {
     state_->terminal = ::isatty(STDERR_FILENO) == 1;
 }
 
-Console::~Console() { clear(); }
+Console::~Console() {
+    clear();
+}
 
 ProgressFn Console::progress() {
     return [state = state_.get()](std::string_view phase, double fraction) {

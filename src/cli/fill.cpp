@@ -10,7 +10,9 @@
 namespace tuft::cli {
 namespace {
 
-Vec3 metres(const std::vector<double>& mm) { return kMillimetre * Vec3(mm[0], mm[1], mm[2]); }
+Vec3 metres(const std::vector<double>& mm) {
+    return kMillimetre * Vec3(mm[0], mm[1], mm[2]);
+}
 
 stroke::Stroke entry_of(const FillWork& a, stroke::Document& painting) {
     stroke::Stroke entry;
@@ -43,7 +45,8 @@ int run(const FillWork& a) {
     Console console(a.common.quiet);
     const auto project = open_project(a.project, io::Access::write, console);
     for (const std::vector<double>* point : {&a.part_mm, &a.chart_mm})
-        if (!point->empty()) check_on_surface(project->model, metres(*point), point == &a.part_mm ? "--part" : "--chart");
+        if (!point->empty())
+            check_on_surface(project->model, metres(*point), point == &a.part_mm ? "--part" : "--chart");
     stroke::Document painting(project->model);
     restore(*project, painting, console);
     std::vector<stroke::Stroke> entries =
@@ -63,9 +66,9 @@ int run(const FillWork& a) {
     const double volume = report.ink_given * ink::kFilmUnit * 1e9;
     if (a.common.json)
         print_json(nlohmann::json{{"project", a.project.string()},
-                                    {"id", done.back().id},
-                                    {"pigment_mm3", volume},
-                                    {"canvas_hash", fmt::format("{:016x}", painting.hash())}});
+                                  {"id", done.back().id},
+                                  {"pigment_mm3", volume},
+                                  {"canvas_hash", fmt::format("{:016x}", painting.hash())}});
     else
         fmt::print("filled with {:.1f} mm3 of pigment\n", volume);
     return 0;

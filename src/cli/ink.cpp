@@ -23,10 +23,8 @@ int list_inks(const InkWork& a) {
         const ink::Ink ink = ink::load_ink(name);
         const std::string hex = ink::to_hex(ink::colour_on(ink, ink::load_substrate("porcelain")));
         if (a.common.json)
-            j["inks"].push_back({{"name", name},
-                                 {"title", ink.title},
-                                 {"film", ink.film},
-                                 {"colour_on_porcelain", hex}});
+            j["inks"].push_back(
+                {{"name", name}, {"title", ink.title}, {"film", ink.film}, {"colour_on_porcelain", hex}});
         else
             fmt::print("{:<22} {}  {:>4g} um  {}\n", name, hex, 10 * ink.film, ink.title);
     }
@@ -43,14 +41,12 @@ ink::Rgb wanted_colour(const InkWork& a) {
 std::vector<ink::Pigment> candidates(const InkWork& a) {
     if (a.pigments.empty()) return ink::shipped_pigments();
     if (a.pigments.size() > ink::MixSearch::kMostCandidates)
-        throw UsageError(fmt::format("--pigments: at most {} can be chosen from",
-                                     ink::MixSearch::kMostCandidates));
+        throw UsageError(fmt::format("--pigments: at most {} can be chosen from", ink::MixSearch::kMostCandidates));
     std::vector<ink::Pigment> all;
     for (const std::string& name : a.pigments) {
         all.push_back(ink::load_pigment(name));
         for (std::size_t i = 0; i + 1 < all.size(); ++i)
-            if (all[i].name == all.back().name)
-                throw UsageError("--pigments: '" + name + "' is listed twice");
+            if (all[i].name == all.back().name) throw UsageError("--pigments: '" + name + "' is listed twice");
     }
     return all;
 }
@@ -76,13 +72,11 @@ int run(const InkWork& a) {
     if (a.colour.empty()) return list_inks(a);
     check_extension(a.output, {".toml"});
     check_output(a.output);
-    if (!std::isfinite(a.film))
-        throw UsageError("--film: a thickness in film units is a number from 0 to 8");
+    if (!std::isfinite(a.film)) throw UsageError("--film: a thickness in film units is a number from 0 to 8");
     const ink::Rgb wanted = wanted_colour(a);
     const ink::Substrate substrate = ink::load_substrate(a.substrate);
-    ink::ColourMatch match =
-        ink::match_colour(wanted, candidates(a), substrate,
-                          {.film = a.film, .most_parts = static_cast<std::size_t>(a.parts)});
+    ink::ColourMatch match = ink::match_colour(wanted, candidates(a), substrate,
+                                               {.film = a.film, .most_parts = static_cast<std::size_t>(a.parts)});
     if (!a.output.empty()) {
         match.ink.name = a.output.stem().string();
         const std::string toml = ink::ink_toml(match.ink);
@@ -94,13 +88,11 @@ int run(const InkWork& a) {
         std::cout << j.dump(2) << '\n';
         return 0;
     }
-    fmt::print("{} on {}, a film of {:g} um: reaches {}, dE2000 {:.2f} ({})\n", ink::to_hex(wanted),
-               substrate.name, 10 * match.ink.film, ink::to_hex(match.reached), match.delta_e,
-               ink::difference_in_words(match.delta_e));
+    fmt::print("{} on {}, a film of {:g} um: reaches {}, dE2000 {:.2f} ({})\n", ink::to_hex(wanted), substrate.name,
+               10 * match.ink.film, ink::to_hex(match.reached), match.delta_e, ink::difference_in_words(match.delta_e));
     for (const ink::InkPart& part : match.ink.parts)
         fmt::print("  {:>6.2f} %  {}\n", 100 * part.fraction, part.pigment.name);
-    if (match.ink.strength() < 0.99995)
-        fmt::print("  {:>6.2f} %  water\n", 100 * (1 - match.ink.strength()));
+    if (match.ink.strength() < 0.99995) fmt::print("  {:>6.2f} %  water\n", 100 * (1 - match.ink.strength()));
     if (!a.output.empty()) fmt::print("wrote {}\n", a.output.string());
     return 0;
 }

@@ -57,11 +57,12 @@ int inspect_point(const Inspect& a) {
                          {"films", nlohmann::json::array()},
                          {"parts", nlohmann::json::object()}};
         for (const stroke::PickedFilm& f : pick.films)
-            j["films"].push_back({{"layer", f.layer == stroke::kPaletteLayer ? "palette" : painting.layers().find(f.layer)->name},
-                                  {"film", f.film == ink::kOpenFilm     ? "open"
-                                           : f.film == ink::kSoakedFilm ? "soaked"
-                                                                        : "dry " + std::to_string(f.film)},
-                                  {"amounts", amounts(f.amounts)}});
+            j["films"].push_back(
+                {{"layer", f.layer == stroke::kPaletteLayer ? "palette" : painting.layers().find(f.layer)->name},
+                 {"film", f.film == ink::kOpenFilm     ? "open"
+                          : f.film == ink::kSoakedFilm ? "soaked"
+                                                       : "dry " + std::to_string(f.film)},
+                 {"amounts", amounts(f.amounts)}});
         if (ink)
             for (const ink::InkPart& part : ink->parts) j["parts"][part.pigment.name] = part.fraction;
         print_json(j);
@@ -121,7 +122,11 @@ int inspect_project(const Inspect& a) {
                                    {"locked", l.locked}});
         j["groups"] = nlohmann::json::array();
         for (const auto& [id, group] : groups)
-            j["groups"].push_back({{"id", id}, {"name", group.name}, {"entries", group.entries}, {"strokes", group.strokes}, {"hidden", group.hidden == group.entries}});
+            j["groups"].push_back({{"id", id},
+                                   {"name", group.name},
+                                   {"entries", group.entries},
+                                   {"strokes", group.strokes},
+                                   {"hidden", group.hidden == group.entries}});
         for (const stroke::Stroke& s : strokes)
             j["strokes"].push_back({{"id", s.id},
                                     {"group", s.group.id},
@@ -145,8 +150,8 @@ int inspect_project(const Inspect& a) {
     const Vec3 size = model.mesh.bounds.size() / kMillimetre;
     fmt::print("{}: project by {}, of {}\n", a.file.string(), project.written_by(), model.source);
     fmt::print("{}, {:.1f} x {:.1f} x {:.1f} mm; atlas {} x {}, {}, texel {:.3f} mm\n",
-               counted(model.mesh.n_triangles(), "triangle"), size.x, size.y, size.z, model.atlas.size, model.atlas.size,
-               counted(model.atlas.n_charts, "chart"), model.atlas.texel_size / kMillimetre);
+               counted(model.mesh.n_triangles(), "triangle"), size.x, size.y, size.z, model.atlas.size,
+               model.atlas.size, counted(model.atlas.n_charts, "chart"), model.atlas.texel_size / kMillimetre);
     if (layers != stroke::LayerTable{})
         for (auto l = layers.layers.rbegin(); l != layers.layers.rend(); ++l)
             fmt::print("  layer   {:>4}  {}, opacity {:g}{}{}{}\n", l->id, l->name, l->opacity,
@@ -160,21 +165,26 @@ int inspect_project(const Inspect& a) {
                        sum.hidden == sum.entries ? " (hidden)" : "");
         }
         group = s.group.id;
-        fmt::print("  {}{:<7} {:>4}  {:<14} {:<10} {:>6} samples  {}{}\n", group ? "  " : "", stroke::name_of(s.action), s.id, s.trace.brush,
-                   s.trace.ink, s.trace.samples.size(), s.trace.label, s.hidden ? " (hidden)" : "");
+        fmt::print("  {}{:<7} {:>4}  {:<14} {:<10} {:>6} samples  {}{}\n", group ? "  " : "", stroke::name_of(s.action),
+                   s.id, s.trace.brush, s.trace.ink, s.trace.samples.size(), s.trace.label,
+                   s.hidden ? " (hidden)" : "");
     }
     return 0;
 }
 
 // What the UVs of a file cannot do well on pages of `page` texels, even where they are kept.
-std::vector<std::string> uv_notes(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, int gap, std::uint32_t page) {
+std::vector<std::string> uv_notes(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, int gap,
+                                  std::uint32_t page) {
     constexpr double kSmallChart = 9, kUneven = 3;  // texels; between the sizes of texels
     std::vector<std::string> notes;
     if (gap == 1)
-        notes.push_back(fmt::format("charts lie 1 texel apart, and what lies between can have the colour of one only: where ink "
-                                    "ends at a seam, a line may show; at {} x {} texels they are 2 apart", 2 * page, 2 * page));
+        notes.push_back(
+            fmt::format("charts lie 1 texel apart, and what lies between can have the colour of one only: where ink "
+                        "ends at a seam, a line may show; at {} x {} texels they are 2 apart",
+                        2 * page, 2 * page));
     if (gap > 1 && gap < 4)
-        notes.push_back(fmt::format("charts lie {} texels apart: clean up close, but from afar, in mip-maps, their colours mix", gap));
+        notes.push_back(fmt::format(
+            "charts lie {} texels apart: clean up close, but from afar, in mip-maps, their colours mix", gap));
     std::vector<double> chart_texels(atlas.n_charts, 0);
     std::vector<std::pair<double, double>> texels;  // metres, m² of surface
     double area = 0;
@@ -189,9 +199,11 @@ std::vector<std::string> uv_notes(const mesh::TriangleMesh& mesh, const atlas::A
         texels.emplace_back(std::sqrt(here / n), here);
         area += here;
     }
-    const auto small = std::count_if(chart_texels.begin(), chart_texels.end(), [](double n) { return n < kSmallChart; });
+    const auto small =
+        std::count_if(chart_texels.begin(), chart_texels.end(), [](double n) { return n < kSmallChart; });
     if (small > 0)
-        notes.push_back(fmt::format("{} of the charts have less than 3 x 3 texels: a stroke over them is as coarse", small));
+        notes.push_back(
+            fmt::format("{} of the charts have less than 3 x 3 texels: a stroke over them is as coarse", small));
     std::sort(texels.begin(), texels.end());
     const auto quantile = [&](double part) {
         double sum = 0;
@@ -201,8 +213,9 @@ std::vector<std::string> uv_notes(const mesh::TriangleMesh& mesh, const atlas::A
     };
     const double finest = quantile(0.01), coarsest = quantile(0.99);
     if (coarsest > kUneven * finest)
-        notes.push_back(fmt::format("texels are {:.3g} to {:.3g} mm wide, from place to place: ink is as much coarser there",
-                                    finest / kMillimetre, coarsest / kMillimetre));
+        notes.push_back(
+            fmt::format("texels are {:.3g} to {:.3g} mm wide, from place to place: ink is as much coarser there",
+                        finest / kMillimetre, coarsest / kMillimetre));
     return notes;
 }
 
@@ -268,12 +281,15 @@ int run(const Inspect& a) {
     }
     const atlas::Atlas& in_file = uvs.atlas;
     fmt::print("UVs: {} on {}, seams {:.1f} x the diagonal; stretch L2 {:.4f}, Linf {:.2f}; {:.0f} % used\n",
-               counted(quality.charts, "chart"), in_file.pages > 1 ? fmt::format("{} UDIM pages", in_file.pages) : "one page",
-               quality.seam_length, quality.l2_stretch, quality.linf_stretch, 100 * quality.utilisation);
+               counted(quality.charts, "chart"),
+               in_file.pages > 1 ? fmt::format("{} UDIM pages", in_file.pages) : "one page", quality.seam_length,
+               quality.l2_stretch, quality.linf_stretch, 100 * quality.utilisation);
     fmt::print("     {} flipped triangles, {} without room; at {} x {} texels {} overlap, gap {}\n", quality.flips,
                quality.roomless_triangles, kPage, kPage, quality.overlapping_texels, quality.smallest_gap);
-    if (uvs.fault.empty()) fmt::print("     --keep-uv keeps them\n");
-    else fmt::print("     they cannot be kept: {}\n", uvs.fault);
+    if (uvs.fault.empty())
+        fmt::print("     --keep-uv keeps them\n");
+    else
+        fmt::print("     they cannot be kept: {}\n", uvs.fault);
     for (const std::string& note : notes) fmt::print("     {}\n", note);
     return 0;
 }

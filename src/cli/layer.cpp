@@ -29,7 +29,8 @@ stroke::LayerEdit edit_of(const LayerWork& a, const stroke::LayerTable& table) {
     if (a.what == "remove") return stroke::removed(found->id);
     if (a.what == "merge") return stroke::merged_down(table, found->id);
     if (a.what == "duplicate")
-        return stroke::duplicated(table, found->id, a.value.empty() ? stroke::free_name(table, a.name + " copy") : a.value);
+        return stroke::duplicated(table, found->id,
+                                  a.value.empty() ? stroke::free_name(table, a.name + " copy") : a.value);
     stroke::Layer layer = *found;
     if (a.what == "show" || a.what == "hide") layer.visible = a.what == "show";
     if (a.what == "lock" || a.what == "unlock") layer.locked = a.what == "lock";
@@ -37,7 +38,9 @@ stroke::LayerEdit edit_of(const LayerWork& a, const stroke::LayerTable& table) {
     if (a.what == "rename") layer.name = a.value;
     if (a.what == "blend") {
         const std::optional<ink::Blend> blend = ink::blend_of(a.value);
-        if (!blend) throw UsageError("'tuft layer PROJECT blend NAME VALUE' needs normal, glaze or multiply, not '" + a.value + "'");
+        if (!blend)
+            throw UsageError("'tuft layer PROJECT blend NAME VALUE' needs normal, glaze or multiply, not '" + a.value +
+                             "'");
         layer.blend = *blend;
     }
     if (a.what == "move") {

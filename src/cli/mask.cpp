@@ -102,15 +102,15 @@ int run(const MaskWork& a) {
         const stroke::MaskTexels texels = stroke::evaluate(entry.mask_edit.mask, table, opened->model);
         for (std::uint32_t slot = 0; slot < opened->model.texels.n_slots(); ++slot)
             for (int t = 0; t < atlas::kTileTexels; ++t)
-                covered += static_cast<double>(opened->model.texels.tiles[slot].area[t]) * texels.coverage(slot, t) / 255;
+                covered +=
+                    static_cast<double>(opened->model.texels.tiles[slot].area[t]) * texels.coverage(slot, t) / 255;
         console.clear();
         if (covered == 0) console.note("warning: the mask covers nothing of the model");
     }
     project.append(entry);
     if (a.common.json)
-        print_json(nlohmann::json{{"project", a.project.string()},
-                                    {"id", entry.mask_edit.mask.id},
-                                    {"covered_cm2", covered * 1e4}});
+        print_json(nlohmann::json{
+            {"project", a.project.string()}, {"id", entry.mask_edit.mask.id}, {"covered_cm2", covered * 1e4}});
     else if (a.remove)
         fmt::print("ended mask {}\n", a.name);
     else

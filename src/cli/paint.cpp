@@ -28,8 +28,7 @@ nlohmann::json to_json(const PlacedDrawing& p) {
                      {"width_mm", p.size.x / kMillimetre},
                      {"height_mm", p.size.y / kMillimetre}};
     if (!p.side.empty()) j["side"] = p.side;
-    if (p.part > 0)
-        j["free_mm"] = {p.free.x / kMillimetre, p.free.y / kMillimetre}, j["part"] = p.part;
+    if (p.part > 0) j["free_mm"] = {p.free.x / kMillimetre, p.free.y / kMillimetre}, j["part"] = p.part;
     return j;
 }
 
@@ -40,9 +39,9 @@ std::string forces_csv(const std::vector<stroke::StrokeReport>& reports) {
     for (const stroke::StrokeReport& report : reports)
         for (const stroke::ForceRecord& f : report.forces) {
             const brush::Pose& p = f.pose;
-            csv += fmt::format("{},{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", report.stroke_id,
-                               p.time, p.position.x, p.position.y, p.position.z, p.rotation.w, p.rotation.x,
-                               p.rotation.y, p.rotation.z);
+            csv += fmt::format("{},{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", report.stroke_id, p.time,
+                               p.position.x, p.position.y, p.position.z, p.rotation.w, p.rotation.x, p.rotation.y,
+                               p.rotation.z);
             for (const Vec3& v : {f.force, f.device_force, f.torque})
                 csv += fmt::format(",{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z);
             csv += fmt::format(",{:.6g}\n", f.moment);
@@ -60,16 +59,14 @@ std::vector<const stroke::Stroke*> painted_strokes(const stroke::Journal& journa
 
 // Warnings for strokes whose brush was full and ran out of ink.
 void note_dry(const std::vector<stroke::StrokeReport>& reports, Console& console) {
-    const auto dry =
-        std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.ran_dry(); });
+    const auto dry = std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.ran_dry(); });
     if (dry == 0) return;
-    const auto first =
-        std::find_if(reports.begin(), reports.end(), [](const auto& r) { return r.ran_dry(); });
-    console.note(fmt::format(
-        "warning: {} full brush{} run{} dry: stroke {} after {:.0f} of {:.0f} mm{} (see --dip "
-        "endless, a larger --brush; dry_from_mm of --json)",
-        dry, dry == 1 ? "" : "es", dry == 1 ? "s" : "", first->stroke_id,
-        first->dry_from / kMillimetre, first->path / kMillimetre, dry == 1 ? "" : ", and others"));
+    const auto first = std::find_if(reports.begin(), reports.end(), [](const auto& r) { return r.ran_dry(); });
+    console.note(
+        fmt::format("warning: {} full brush{} run{} dry: stroke {} after {:.0f} of {:.0f} mm{} (see --dip "
+                    "endless, a larger --brush; dry_from_mm of --json)",
+                    dry, dry == 1 ? "" : "es", dry == 1 ? "s" : "", first->stroke_id, first->dry_from / kMillimetre,
+                    first->path / kMillimetre, dry == 1 ? "" : ", and others"));
 }
 
 std::string stroke_name(const stroke::StrokeReport& report, const stroke::Stroke& stroke) {
@@ -77,10 +74,11 @@ std::string stroke_name(const stroke::StrokeReport& report, const stroke::Stroke
     return fmt::format("stroke {}{}", report.stroke_id, label.empty() ? "" : " (" + label + ")");
 }
 
-// The strokes of whose reports there is a value, as one line: "stroke 3 (seal)", "43 strokes, from stroke 3 (seal) on,";
-// empty: none. `most` becomes the largest value of them.
+// The strokes of whose reports there is a value, as one line: "stroke 3 (seal)", "43 strokes, from stroke 3 (seal)
+// on,"; empty: none. `most` becomes the largest value of them.
 template <typename Value>
-std::string strokes_with(const std::vector<stroke::StrokeReport>& reports, const std::vector<const stroke::Stroke*>& strokes, const Value& value_of, double& most) {
+std::string strokes_with(const std::vector<stroke::StrokeReport>& reports,
+                         const std::vector<const stroke::Stroke*>& strokes, const Value& value_of, double& most) {
     std::size_t n = 0, first = 0;
     for (std::size_t i = 0; i < reports.size(); ++i) {
         const std::optional<double> value = value_of(reports[i]);
@@ -94,22 +92,37 @@ std::string strokes_with(const std::vector<stroke::StrokeReport>& reports, const
 }
 
 // Warnings for strokes that go into a closed body, in space or by their place.
-void note_inside(const std::vector<stroke::StrokeReport>& reports, const std::vector<const stroke::Stroke*>& strokes, const Box& model, Console& console) {
+void note_inside(const std::vector<stroke::StrokeReport>& reports, const std::vector<const stroke::Stroke*>& strokes,
+                 const Box& model, Console& console) {
     const auto noted = [](double depth, double from) { return depth > from ? std::optional(depth) : std::nullopt; };
     double deepest = 0;
-    if (const std::string which = strokes_with(reports, strokes, [&](const auto& r) { return noted(r.origin_inside, place_inside_noted(model)); }, deepest); !which.empty())
-        console.note(fmt::format("warning: the place of {} lies up to {:.2f} mm inside the model; strokes go onto its surface", which, deepest / kMillimetre));
-    if (const std::string which = strokes_with(reports, strokes, [&](const auto& r) { return noted(r.deepest, kInsideNoted); }, deepest); !which.empty())
-        console.note(fmt::format("warning: {} the ferrule into the model, up to {:.2f} mm deep; it is held on the surface there (check the place, the unit and the pressure)",
-                                 which.ends_with(',') ? which + " take" : which + " takes", deepest / kMillimetre));
+    if (const std::string which = strokes_with(
+            reports, strokes, [&](const auto& r) { return noted(r.origin_inside, place_inside_noted(model)); },
+            deepest);
+        !which.empty())
+        console.note(
+            fmt::format("warning: the place of {} lies up to {:.2f} mm inside the model; strokes go onto its surface",
+                        which, deepest / kMillimetre));
+    if (const std::string which = strokes_with(
+            reports, strokes, [&](const auto& r) { return noted(r.deepest, kInsideNoted); }, deepest);
+        !which.empty())
+        console.note(
+            fmt::format("warning: {} the ferrule into the model, up to {:.2f} mm deep; it is held on the surface there "
+                        "(check the place, the unit and the pressure)",
+                        which.ends_with(',') ? which + " take" : which + " takes", deepest / kMillimetre));
 }
 
 // Warnings for strokes that never met the model.
-void note_misses(const std::vector<stroke::StrokeReport>& reports, const std::vector<const stroke::Stroke*>& strokes, Console& console) {
+void note_misses(const std::vector<stroke::StrokeReport>& reports, const std::vector<const stroke::Stroke*>& strokes,
+                 Console& console) {
     double farthest = 0;
-    const std::string which = strokes_with(reports, strokes, [](const auto& r) { return r.touched() ? std::nullopt : std::optional(r.nearest); }, farthest);
+    const std::string which = strokes_with(
+        reports, strokes, [](const auto& r) { return r.touched() ? std::nullopt : std::optional(r.nearest); },
+        farthest);
     if (which.empty()) return;
-    console.note(fmt::format("warning: {} the model, up to {:.2f} mm away", which.ends_with(',') ? which + " never touch" : which + " never touches", farthest / kMillimetre));
+    console.note(fmt::format("warning: {} the model, up to {:.2f} mm away",
+                             which.ends_with(',') ? which + " never touch" : which + " never touches",
+                             farthest / kMillimetre));
 }
 
 }  // namespace
@@ -125,7 +138,8 @@ int run(const Paint& a) {
     const bool goes_on = is_project_file(a.model);
     const bool in_place = goes_on && (a.project.empty() || std::filesystem::equivalent(a.project, a.model, no_matter));
     const auto reserved = in_place ? std::nullopt : reserve(a.project, console);
-    const auto before = goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console) : nullptr;
+    const auto before =
+        goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console) : nullptr;
     std::vector<stroke::Stroke> strokes = load_strokes(a, console);
     Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, a.surface, console);
     const stroke::Model model = std::move(loaded.model);
@@ -133,8 +147,7 @@ int run(const Paint& a) {
     const std::optional<PlacedDrawing> placed = place_strokes(strokes, model, a, console);
     if (!a.view.directed) look_at_strokes(outputs.view, strokes, model);
 
-    stroke::Document painting(model, {.substrate = a.surface.substrate,
-                                      .record_forces = !a.forces.empty()});
+    stroke::Document painting(model, {.substrate = a.surface.substrate, .record_forces = !a.forces.empty()});
     if (before) {
         restore(*before, painting, console);
         show_looks(before->file, painting, {}, console);
@@ -155,8 +168,7 @@ int run(const Paint& a) {
     } else if (!a.project.empty()) {
         std::vector<stroke::Stroke> all = painting.journal().strokes();
         all.insert(all.end(), strokes.begin(), strokes.end());
-        project = start_project(a.project, before ? before->source : a.model.string(),
-                                outputs.frame, painting, all);
+        project = start_project(a.project, before ? before->source : a.model.string(), outputs.frame, painting, all);
         project->append(painting.journal().strokes());
     }
     const auto painting_start = Clock::now();
@@ -174,7 +186,8 @@ int run(const Paint& a) {
         }
     } catch (const Cancelled&) {
         if (project)
-            console.note(fmt::format("{} holds the {} that {} finished", a.project.string(), counted(project->n_strokes(), "stroke"),
+            console.note(fmt::format("{} holds the {} that {} finished", a.project.string(),
+                                     counted(project->n_strokes(), "stroke"),
                                      project->n_strokes() == 1 ? "was" : "were"));
         throw;
     }
@@ -206,19 +219,21 @@ int run(const Paint& a) {
         j["atlas"] = to_json(model.atlas, model.atlas_report);
         if (placed) j["placed"] = to_json(*placed);
         j["strokes"] = nlohmann::json::array();
-        for (std::size_t i = 0; i < reports.size(); ++i)
-            j["strokes"].push_back(to_json(reports[i], *done[i]));
+        for (std::size_t i = 0; i < reports.size(); ++i) j["strokes"].push_back(to_json(reports[i], *done[i]));
         j["stamps"] = stamps;
         j["ink_mm3"] = given * ink::kFilmUnit * 1e9;
         j["canvas_hash"] = fmt::format("{:016x}", painting.hash());
-        j["seconds"] = {{"to_first_stamp", first_stamp}, {"preparing", prepared},
-                        {"painting", painted}, {"total", seconds_since(start)}};
+        j["seconds"] = {{"to_first_stamp", first_stamp},
+                        {"preparing", prepared},
+                        {"painting", painted},
+                        {"total", seconds_since(start)}};
         j["peak_mb"] = peak_megabytes();
         print_json(j);
     } else {
         fmt::print("painted {} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n",
-                   counted(reports.size(), "stroke"), counted(stamps, "stamp"), given * ink::kFilmUnit * 1e9, painted, model.atlas.size,
-                   model.atlas.size, counted(model.atlas.n_charts, "chart"), model.atlas.texel_size / kMillimetre);
+                   counted(reports.size(), "stroke"), counted(stamps, "stamp"), given * ink::kFilmUnit * 1e9, painted,
+                   model.atlas.size, model.atlas.size, counted(model.atlas.n_charts, "chart"),
+                   model.atlas.texel_size / kMillimetre);
         for (const auto& path : {a.project, a.exported, a.preview, a.forces})
             if (!path.empty()) fmt::print("wrote {}\n", path.string());
         std::fflush(stdout);

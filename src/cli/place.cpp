@@ -22,9 +22,13 @@ constexpr double kLies = 0.8;
 
 void note_widths(const stroke::WidthMismatch& m, Console& console) {
     if (m.brush.empty()) return;
-    const std::string asked = m.most > m.least ? fmt::format("{:.3g} to {:.3g}", m.least / kMillimetre, m.most / kMillimetre) : fmt::format("{:.3g}", m.most / kMillimetre);
-    console.note(fmt::format("the drawing has lines {} mm wide; {} draws {:.2g} to {:.2g} mm (without --brush, or with --fit-brush, it is made to fit)",
-                             asked, m.brush, m.thinnest / kMillimetre, m.widest / kMillimetre));
+    const std::string asked = m.most > m.least
+                                  ? fmt::format("{:.3g} to {:.3g}", m.least / kMillimetre, m.most / kMillimetre)
+                                  : fmt::format("{:.3g}", m.most / kMillimetre);
+    console.note(
+        fmt::format("the drawing has lines {} mm wide; {} draws {:.2g} to {:.2g} mm (without --brush, or with "
+                    "--fit-brush, it is made to fit)",
+                    asked, m.brush, m.thinnest / kMillimetre, m.widest / kMillimetre));
 }
 
 constexpr double kTooLarge = 3;  // diagonals of the model
@@ -39,29 +43,37 @@ struct Spot {
 Spot named_spot(const stroke::Model& model, const Paint& a, Console& console) {
     const Vec3 place = kMillimetre * vector_of(a.place_mm);
     const auto at = model.query->closest_point(place);
-    if (const double inside = contact::depth_inside(*model.query, place); inside > place_inside_noted(model.mesh->bounds))
-        console.note(fmt::format("warning: --place {:.4g},{:.4g},{:.4g} lies {:.2f} mm inside the model; the drawing goes to the nearest place of its surface, {:.1f},{:.1f},{:.1f} mm",
-                                 a.place_mm[0], a.place_mm[1], a.place_mm[2], inside / kMillimetre, at->position.x / kMillimetre, at->position.y / kMillimetre, at->position.z / kMillimetre));
+    if (const double inside = contact::depth_inside(*model.query, place);
+        inside > place_inside_noted(model.mesh->bounds))
+        console.note(
+            fmt::format("warning: --place {:.4g},{:.4g},{:.4g} lies {:.2f} mm inside the model; the drawing goes to "
+                        "the nearest place of its surface, {:.1f},{:.1f},{:.1f} mm",
+                        a.place_mm[0], a.place_mm[1], a.place_mm[2], inside / kMillimetre, at->position.x / kMillimetre,
+                        at->position.y / kMillimetre, at->position.z / kMillimetre));
     return {*at, at->normal};
 }
 
-/// On a side, and how large: where it is not said as it is written, if that suits the largest calm area, else as a part of it.
+/// On a side, and how large: where it is not said as it is written, if that suits the largest calm area, else as a part
+/// of it.
 Spot free_spot(const stroke::Model& model, const Paint& a, const Vec2& size, double& scale, PlacedDrawing& placed) {
     const stroke::Side side = stroke::side_named(a.on).value_or(stroke::usual_side(model.mesh->bounds));
     placed.side = stroke::side_name(side);
     const auto free = stroke::find_free_area(*model.query, side, std::max(size.x, 1e-9) / std::max(size.y, 1e-9));
     if (!free) {
         if (!a.on.empty())
-            throw Error(fmt::format("{}: no calm area is found on its {}{}", a.model.string(), placed.side,
-                                    side == stroke::Side::inside ? " (the inside is looked for from above, within walls)" : ""));
-        const Vec3 look = stroke::look_at_side(side), before = model.mesh->bounds.centre() - model.mesh->bounds.diagonal() * look;
+            throw Error(fmt::format(
+                "{}: no calm area is found on its {}{}", a.model.string(), placed.side,
+                side == stroke::Side::inside ? " (the inside is looked for from above, within walls)" : ""));
+        const Vec3 look = stroke::look_at_side(side),
+                   before = model.mesh->bounds.centre() - model.mesh->bounds.diagonal() * look;
         auto at = model.query->ray(before, look);
         if (!at) at = model.query->closest_point(before);
         return {*at, at->normal};
     }
     placed.free = free->size;
     const auto part = [&] { return scale * std::max(size.x / free->size.x, size.y / free->size.y); };
-    if (a.place_width_mm <= 0 && part() > 0 && (part() > stroke::kMostPart || part() < stroke::kLeastPart)) scale *= stroke::kUsualPart / part();
+    if (a.place_width_mm <= 0 && part() > 0 && (part() > stroke::kMostPart || part() < stroke::kLeastPart))
+        scale *= stroke::kUsualPart / part();
     placed.part = part();
     return {free->at, free->normal};
 }
@@ -71,24 +83,29 @@ stroke::Placement placement_at(const Spot& spot, const Paint& a, bool project) {
     const double turn = a.place_turn_deg * kDegree;
     if (a.read_from.empty()) return stroke::upright_placement(spot.at.position, spot.normal, turn);
     const Vec3 from = vector_of(a.read_from);
-    return stroke::placement_seen(spot.at.position, project ? glm::normalize(from) : spot.normal, stroke::reading_right(from), turn);
+    return stroke::placement_seen(spot.at.position, project ? glm::normalize(from) : spot.normal,
+                                  stroke::reading_right(from), turn);
 }
 
 void note_placed(const PlacedDrawing& p, const Paint& a, const Box& area, double scale, Console& console) {
-    std::string line = fmt::format("{} the {} of the model, at {:.1f},{:.1f},{:.1f} mm", a.on.empty() ? "the strokes name no place; they go to" : "the strokes go to",
-                                   p.side, p.at.x / kMillimetre, p.at.y / kMillimetre, p.at.z / kMillimetre);
+    std::string line = fmt::format("{} the {} of the model, at {:.1f},{:.1f},{:.1f} mm",
+                                   a.on.empty() ? "the strokes name no place; they go to" : "the strokes go to", p.side,
+                                   p.at.x / kMillimetre, p.at.y / kMillimetre, p.at.z / kMillimetre);
     if (p.part > 0)
-        line += fmt::format(", the middle of its largest calm area, {:.4g} x {:.4g} mm, of which they take {:.0f} %", p.free.x / kMillimetre,
-                            p.free.y / kMillimetre, 100 * p.part);
+        line += fmt::format(", the middle of its largest calm area, {:.4g} x {:.4g} mm, of which they take {:.0f} %",
+                            p.free.x / kMillimetre, p.free.y / kMillimetre, 100 * p.part);
     line += " (see --place, --on)";
     if (scale != 1 && a.place_width_mm <= 0)
-        line += fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide{} (see --place-width, --brush)", area.size().x / kMillimetre,
-                            scale * area.size().x / kMillimetre, a.brush.empty() ? " with brushes of that scale" : "");
+        line +=
+            fmt::format("; they are written {:.4g} mm wide and painted {:.4g} mm wide{} (see --place-width, --brush)",
+                        area.size().x / kMillimetre, scale * area.size().x / kMillimetre,
+                        a.brush.empty() ? " with brushes of that scale" : "");
     console.note(line);
 }
 
-std::optional<PlacedDrawing> lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a, const stroke::BrushFit& fit,
-                                         stroke::WidthTables& widths, Console& console) {
+std::optional<PlacedDrawing> lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
+                                         const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths,
+                                         Console& console) {
     for (stroke::Stroke& s : strokes) {
         if (s.layer == stroke::kPaletteLayer) continue;  // in its own frame
         if (!s.trace.placed) s.trace.placement.mapping = stroke::SurfaceMapping::drape;
@@ -104,15 +121,19 @@ std::optional<PlacedDrawing> lay_drawing(std::vector<stroke::Stroke>& strokes, c
     const double turn = a.place_turn_deg * kDegree, width = stroke::width_of(area);
     double scale = a.place_width_mm > 0 && width > 0 ? a.place_width_mm * kMillimetre / width : 1;
     PlacedDrawing placed;
-    const Vec2 size = std::abs(std::cos(turn)) * Vec2(area.size()) + std::abs(std::sin(turn)) * Vec2(area.size().y, area.size().x);
+    const Vec2 size =
+        std::abs(std::cos(turn)) * Vec2(area.size()) + std::abs(std::sin(turn)) * Vec2(area.size().y, area.size().x);
     const Spot spot = a.place_mm.empty() ? free_spot(model, a, size, scale, placed) : named_spot(model, a, console);
     placed.at = spot.at.position;
     placed.normal = spot.normal;
     placed.size = scale * Vec2(area.size());
     if (a.place_mm.empty()) note_placed(placed, a, area, scale, console);
-    if (const double large = scale * std::max(area.size().x, area.size().y), whole = model.mesh->bounds.diagonal(); large > kTooLarge * whole)
-        console.note(fmt::format("the drawing is {:.4g} mm large, the model {:.4g} mm: most of it meets no surface (see --place-width, --unit)",
-                                 large / kMillimetre, whole / kMillimetre));
+    if (const double large = scale * std::max(area.size().x, area.size().y), whole = model.mesh->bounds.diagonal();
+        large > kTooLarge * whole)
+        console.note(
+            fmt::format("the drawing is {:.4g} mm large, the model {:.4g} mm: most of it meets no surface (see "
+                        "--place-width, --unit)",
+                        large / kMillimetre, whole / kMillimetre));
     const bool project = drawing.front()->placement.mapping == stroke::SurfaceMapping::project;
     stroke::place_drawing(drawing, {placement_at(spot, a, project), Vec2(area.centre()), scale, a.place_mirror});
     stroke::choose_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y), fit, widths);
@@ -121,7 +142,8 @@ std::optional<PlacedDrawing> lay_drawing(std::vector<stroke::Stroke>& strokes, c
 
 }  // namespace
 
-std::optional<PlacedDrawing> place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model, const Paint& a, Console& console) {
+std::optional<PlacedDrawing> place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
+                                           const Paint& a, Console& console) {
     stroke::WidthTables widths;
     const bool chosen = !a.brush.empty();
     const stroke::BrushFit fit{.grow = !chosen, .fit = !chosen || a.fit_brush};
@@ -147,7 +169,8 @@ void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes, con
     // On what lies nearly flat the drawing says from which of the four sides it is read, not the slope.
     if (std::abs(n.z) > kLies && std::hypot(up.x, up.y) > 0.5 * count)
         view.azimuth = 90 * std::round(std::atan2(-up.x, up.y) / kDegree / 90);
-    else if (std::hypot(n.x, n.y) > 0.1) view.azimuth = std::atan2(n.x, -n.y) / kDegree;
+    else if (std::hypot(n.x, n.y) > 0.1)
+        view.azimuth = std::atan2(n.x, -n.y) / kDegree;
     view.elevation = std::clamp(std::asin(n.z) / kDegree + 10, -80.0, 80.0);
     // A wall that leans out is looked at from above the ground, as it stands; an underside from below.
     if (n.z > -0.7) view.elevation = std::max(view.elevation, 5.0);

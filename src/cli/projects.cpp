@@ -33,16 +33,14 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
     surface.up = frame.y_up ? "y" : "z";
     if (surface.pages == 0) surface.pages = project.model.atlas.pages;
     if (!a.model.empty()) {
-        if (surface.atlas_size == 0 && surface.texel_size_mm == 0)
-            surface.atlas_size = project.model.atlas.page_size();
+        if (surface.atlas_size == 0 && surface.texel_size_mm == 0) surface.atlas_size = project.model.atlas.page_size();
         return load_model(a.model, surface, console).model;
     }
-    if (surface.atlas_size == 0 && surface.texel_size_mm == 0 && !surface.new_uv &&
-        surface.seams == "free")
+    if (surface.atlas_size == 0 && surface.texel_size_mm == 0 && !surface.new_uv && surface.seams == "free")
         return std::move(project.model);
     const atlas::Atlas& atlas = project.model.atlas;  // pages of the file stay
-    surface.keep_uv |= atlas.from_file && (atlas.pages > 1 || !atlas.udims.empty()) &&
-                       !surface.new_uv && surface.seams == "free";
+    surface.keep_uv |=
+        atlas.from_file && (atlas.pages > 1 || !atlas.udims.empty()) && !surface.new_uv && surface.seams == "free";
     stroke::ModelOptions options = model_options(surface, console);
     return stroke::rescale_model(std::move(project.model), options);
 }
@@ -55,8 +53,8 @@ struct Fit {
     stroke::FitTotal total;
 };
 
-Fit find_fit(const Replay& a, const OpenProject& project, stroke::Document& painting, const std::vector<stroke::Stroke>& strokes,
-             const std::vector<stroke::StrokeReport>& reports) {
+Fit find_fit(const Replay& a, const OpenProject& project, stroke::Document& painting,
+             const std::vector<stroke::Stroke>& strokes, const std::vector<stroke::StrokeReport>& reports) {
     Fit fit;
     if (!a.model.empty()) {
         const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
@@ -126,7 +124,8 @@ std::string map_name(const Export& a) {
 }
 
 int write_strokes(const Export& a, Console& console) {
-    const std::vector<stroke::Stroke> entries = io::Project::open(a.project, open_options(io::Access::read, console)).strokes();
+    const std::vector<stroke::Stroke> entries =
+        io::Project::open(a.project, open_options(io::Access::read, console)).strokes();
     const stroke::JournalTraces written = stroke::traces_of(entries);
     if (written.traces.empty()) throw Error(a.project.string(), "there are no strokes to write");
     io::write_inkml(a.output, written.traces, a.project.stem().string());
@@ -134,9 +133,9 @@ int write_strokes(const Export& a, Console& console) {
         console.note(fmt::format("warning: {} changes of layers and masks are not in a stroke file", written.left_out));
     if (a.common.json)
         print_json(nlohmann::json{{"project", a.project.string()},
-                                    {"wrote", a.output.string()},
-                                    {"traces", written.traces.size()},
-                                    {"left_out", written.left_out}});
+                                  {"wrote", a.output.string()},
+                                  {"traces", written.traces.size()},
+                                  {"left_out", written.left_out}});
     else
         fmt::print("wrote {}\n", a.output.string());
     return 0;
@@ -180,7 +179,8 @@ int run(const Replay& a) {
     console.clear();
     if (a.common.json) {
         nlohmann::json list = nlohmann::json::array();
-        for (const stroke::StrokeMismatch& m : fit.mismatches) list.push_back({{"stroke", m.stroke}, {"reason", m.reason}});
+        for (const stroke::StrokeMismatch& m : fit.mismatches)
+            list.push_back({{"stroke", m.stroke}, {"reason", m.reason}});
         nlohmann::json j{{"project", a.project.string()},
                          {"strokes", reports.size()},
                          {"missed", missed},
@@ -201,7 +201,8 @@ int run(const Export& a) {
     check_output(a.output);
     const std::string map = map_name(a);
     if (a.bits == 16 && (map != "base-colour" || a.output.extension() != ".png"))
-        throw UsageError("--bits: only a base-colour.png has a choice; other maps have 16 bits in PNG and floats in EXR");
+        throw UsageError(
+            "--bits: only a base-colour.png has a choice; other maps have 16 bits in PNG and floats in EXR");
     Console console(a.common.quiet);
     if (a.output.extension() == ".inkml") return write_strokes(a, console);
     const auto project = open_project(a.project, io::Access::read, console);
@@ -211,13 +212,15 @@ int run(const Export& a) {
     show_looks(project->file, painting, a.look, console);
     const ink::ComposeOptions compose = painting.compose_options();
     const std::string extension = a.output.extension().string();
-    if (extension == ".png" || extension == ".exr") io::write_map(a.output, map, painting, compose, a.bits);
-    else write_outputs({.exported = a.output, .frame = project->frame}, painting, console);
+    if (extension == ".png" || extension == ".exr")
+        io::write_map(a.output, map, painting, compose, a.bits);
+    else
+        write_outputs({.exported = a.output, .frame = project->frame}, painting, console);
     console.clear();
     if (a.common.json)
         print_json(nlohmann::json{{"project", a.project.string()},
-                                    {"wrote", a.output.string()},
-                                    {"canvas_hash", fmt::format("{:016x}", painting.hash())}});
+                                  {"wrote", a.output.string()},
+                                  {"canvas_hash", fmt::format("{:016x}", painting.hash())}});
     else
         fmt::print("wrote {}\n", a.output.string());
     return 0;

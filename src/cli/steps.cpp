@@ -13,9 +13,9 @@
 #include "ink/colour/composite.h"
 #include "ink/colour/match.h"
 #include "ink/colour/recolour.h"
+#include "io/appearance.h"
 #include "io/export.h"
 #include "io/image.h"
-#include "io/appearance.h"
 #include "io/read_model.h"
 #include "io/restore.h"
 #include "io/svg.h"
@@ -40,8 +40,7 @@ stroke::ModelOptions model_options(const Surface& s, Console& console) {
                              : s.whole ? atlas::Cutting::never
                                        : atlas::Cutting::where_useful;
     options.unwrap.seams.groups = s.seams == "groups" || s.seams == "both";
-    if (s.seams == "sharp" || s.seams == "both")
-        options.unwrap.seams.sharp_angle = s.sharp_angle_deg * kDegree;
+    if (s.seams == "sharp" || s.seams == "both") options.unwrap.seams.sharp_angle = s.sharp_angle_deg * kDegree;
     options.unwrap.uvs = s.new_uv    ? atlas::UvPolicy::renew
                          : s.keep_uv ? atlas::UvPolicy::keep
                                      : atlas::UvPolicy::automatic;
@@ -88,7 +87,8 @@ Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
     try {
         Loaded loaded{stroke::prepare_model(std::move(read.soup), options), read.frame};
         for (const std::string& warning : loaded.model.repairs.warnings) console.note("warning: " + warning);
-        if (!loaded.model.ground.empty()) console.note("ink lies on the colours that the model brings along (--plain leaves them aside)");
+        if (!loaded.model.ground.empty())
+            console.note("ink lies on the colours that the model brings along (--plain leaves them aside)");
         return loaded;
     } catch (const Error& error) {
         const std::string what = error.what();
@@ -145,7 +145,8 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     settings.stabilise = a.stabilise_mm * kMillimetre;
     settings.film = a.film;
     settings.down = {a.down[0], a.down[1], a.down[2]};
-    stroke::EntryOptions options{.settings = settings, .brush = a.brush, .ink = a.ink, .pressure = a.pressure, .erases = a.erases};
+    stroke::EntryOptions options{
+        .settings = settings, .brush = a.brush, .ink = a.ink, .pressure = a.pressure, .erases = a.erases};
     for (const std::string& text : a.prepare) options.prepare.push_back(stroke::action_of_text(text));
     std::optional<stroke::BiasCorrection> bias;
     if (!a.bias.empty()) bias = stroke::load_bias(a.bias);
@@ -154,7 +155,10 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     std::set<std::string> told;  // a file that is painted twice is told of once
     for (const fs::path& file : a.strokes) {
         const std::size_t first = strokes.size();
-        std::vector<stroke::Trace> traces = io::read_strokes(file, {.actions = true, .note = [&](const std::string& line) { if (told.insert(line).second) console.note(line); }});
+        std::vector<stroke::Trace> traces =
+            io::read_strokes(file, {.actions = true, .note = [&](const std::string& line) {
+                                        if (told.insert(line).second) console.note(line);
+                                    }});
         if (bias) traces = stroke::correct_bias(*bias, std::move(traces));
         stroke::append_entries(strokes, std::move(traces), options);
         for (std::size_t i = first; i < strokes.size(); ++i)
@@ -171,9 +175,8 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
     return strokes;
 }
 
-render::Image draw_picture(const stroke::Model& model, const stroke::Document* painting,
-                           const std::string& material, const View& v, int frame, int count,
-                           Console& console) {
+render::Image draw_picture(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
+                           const View& v, int frame, int count, Console& console) {
     render::Appearance look;
     const ink::Substrate substrate = material.empty() && painting
                                          ? painting->substrate()
@@ -227,17 +230,16 @@ void check_outputs(const Outputs& o) {
 void write_outputs(const Outputs& o, const stroke::Document& painting, Console& console) {
     const stroke::Model& model = painting.model();
     if (!o.exported.empty()) {
-        const io::ModelMaps maps = io::make_maps(painting.stack(), model.texels, painting.substrate(),
-                                                 painting.compose_options());
-        const std::vector<std::string> notes = io::export_model(
-            o.exported, *model.mesh, model.atlas, maps,
-            {.frame = o.frame,
-             .painted = io::painted_parts(painting.stack(), *model.mesh, model.atlas, model.texels),
-             .progress = console.progress()});
+        const io::ModelMaps maps =
+            io::make_maps(painting.stack(), model.texels, painting.substrate(), painting.compose_options());
+        const std::vector<std::string> notes =
+            io::export_model(o.exported, *model.mesh, model.atlas, maps,
+                             {.frame = o.frame,
+                              .painted = io::painted_parts(painting.stack(), *model.mesh, model.atlas, model.texels),
+                              .progress = console.progress()});
         for (const std::string& note : notes) console.note(note);
     }
-    if (!o.preview.empty())
-        write_picture(o.preview, draw_picture(model, &painting, "", o.view, 0, 1, console));
+    if (!o.preview.empty()) write_picture(o.preview, draw_picture(model, &painting, "", o.view, 0, 1, console));
 }
 
 void write_picture(const fs::path& path, const render::Image& image) {
@@ -247,12 +249,11 @@ void write_picture(const fs::path& path, const render::Image& image) {
 io::Project start_project(const fs::path& path, const std::string& source, const FileFrame& frame,
                           stroke::Document& painting, const std::vector<stroke::Stroke>& strokes) {
     const stroke::Model& model = painting.model();
-    io::Project project = io::Project::create(
-        path, {.source = source,
-               .frame = frame,
-               .mesh = *model.mesh,
-               .atlas = model.atlas,
-               .substrate = ink::substrate_toml(painting.painted_on())});
+    io::Project project = io::Project::create(path, {.source = source,
+                                                     .frame = frame,
+                                                     .mesh = *model.mesh,
+                                                     .atlas = model.atlas,
+                                                     .substrate = ink::substrate_toml(painting.painted_on())});
     io::store_looks(project, painting);
     put_presets(project, painting, strokes);
     return project;
@@ -285,8 +286,7 @@ void show_layers(stroke::Document& painting, const std::vector<std::string>& nam
     for (const stroke::Layer& layer : painting.layers().layers) all.push_back(layer.name);
     for (const std::string& name : names) {
         const stroke::Layer* layer = painting.layers().find(name);
-        if (!layer)
-            throw UsageError(fmt::format("there is no layer '{}'; there are {}", name, fmt::join(all, ", ")));
+        if (!layer) throw UsageError(fmt::format("there is no layer '{}'; there are {}", name, fmt::join(all, ", ")));
         ids.push_back(layer->id);
     }
     if (!ids.empty()) painting.show_only(std::move(ids));
@@ -303,7 +303,8 @@ std::optional<io::ProjectLock> reserve(const fs::path& path, Console& console) {
 }
 
 std::unique_ptr<OpenProject> open_project(const fs::path& path, io::Access access, Console& console) {
-    auto opened = std::make_unique<OpenProject>(OpenProject{.file = io::Project::open(path, open_options(access, console))});
+    auto opened =
+        std::make_unique<OpenProject>(OpenProject{.file = io::Project::open(path, open_options(access, console))});
     io::ProjectModel stored = opened->file.model();
     opened->source = stored.source;
     opened->frame = stored.frame;
@@ -323,7 +324,8 @@ void show_looks(const io::Project& project, stroke::Document& painting, const Lo
             throw UsageError("--recolour: '" + text + "' is not INK=NAME, INK=FILE.toml or INK=#rrggbb");
         const std::string name = text.substr(0, equals);
         if (!used.contains(name))
-            throw Error("nothing is painted with ink '" + name + "'; there are: " + fmt::format("{}", fmt::join(used, ", ")));
+            throw Error("nothing is painted with ink '" + name +
+                        "'; there are: " + fmt::format("{}", fmt::join(used, ", ")));
         painting.recolour(name, ink::ink_named(text.substr(equals + 1), painting.substrate()));
         for (const std::string& other : used)
             if (other != name && !ink::shared_pigments(painting.ink(name), painting.ink(other)).empty())
@@ -343,8 +345,9 @@ void check_on_surface(const stroke::Model& model, const Vec3& at, const char* op
     const auto near = model.query->closest_point(at);
     if (!near || near->distance <= kBeside * model.mesh->bounds.diagonal()) return;
     const Vec3 mm = near->position / kMillimetre;
-    throw Error(fmt::format("{}: the point lies {:.1f} mm beside the model, whose nearest point is {:.3f},{:.3f},{:.3f}",
-                            option, near->distance / kMillimetre, mm.x, mm.y, mm.z));
+    throw Error(
+        fmt::format("{}: the point lies {:.1f} mm beside the model, whose nearest point is {:.3f},{:.3f},{:.3f}",
+                    option, near->distance / kMillimetre, mm.x, mm.y, mm.z));
 }
 
 void print_json(const nlohmann::json& json) {
@@ -408,8 +411,7 @@ nlohmann::json to_json(const stroke::StrokeReport& r, const stroke::Stroke& s) {
             {"inside_mm", r.deepest / kMillimetre},
             {"origin_inside_mm", r.origin_inside / kMillimetre},
             {"path_mm", r.path / kMillimetre},
-            {"dry_from_mm",
-             r.dry_from < 0 ? nlohmann::json() : nlohmann::json(r.dry_from / kMillimetre)},
+            {"dry_from_mm", r.dry_from < 0 ? nlohmann::json() : nlohmann::json(r.dry_from / kMillimetre)},
             {"dry_path_mm", r.dry_path / kMillimetre},
             {"ran_dry", r.ran_dry()}};
 }

@@ -41,8 +41,8 @@ void check_output(const std::filesystem::path& path);
 /// Throws `UsageError` when the extension is none of `allowed` (".glb", ...).
 void check_extension(const std::filesystem::path& path, const std::vector<std::string>& allowed);
 
-/// Strokes of InkML and SVG files in order, with brush and ink filled in where the file names none; each file is a group,
-/// numbered from 1.
+/// Strokes of InkML and SVG files in order, with brush and ink filled in where the file names none; each file is a
+/// group, numbered from 1.
 std::vector<stroke::Stroke> load_strokes(const Paint& arguments, Console& console);
 
 /// Has only the layers of these names seen; throws `UsageError` for a name that is not there.
@@ -59,9 +59,8 @@ void check_outputs(const Outputs& outputs);
 void write_outputs(const Outputs& outputs, const stroke::Document& painting, Console& console);
 
 /// Picture of a painted model, or of a bare one (canvas == nullptr).
-render::Image draw_picture(const stroke::Model& model, const stroke::Document* painting,
-                           const std::string& material, const View& view, int turntable_frame,
-                           int turntable_count, Console& console);
+render::Image draw_picture(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
+                           const View& view, int turntable_frame, int turntable_count, Console& console);
 
 void write_picture(const std::filesystem::path& path, const render::Image& image);
 
@@ -71,9 +70,8 @@ void write_picture(const std::filesystem::path& path, const render::Image& image
 void find_presets(stroke::Document& painting, const std::vector<stroke::Stroke>& strokes);
 /// Stores the presets that these entries use.
 void put_presets(io::Project& project, stroke::Document& painting, const std::vector<stroke::Stroke>& strokes);
-io::Project start_project(const std::filesystem::path& path, const std::string& source,
-                          const FileFrame& frame, stroke::Document& painting,
-                          const std::vector<stroke::Stroke>& strokes);
+io::Project start_project(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
+                          stroke::Document& painting, const std::vector<stroke::Stroke>& strokes);
 
 /// A project with its model ready to be painted on.
 struct OpenProject {

@@ -31,14 +31,17 @@ int run(const Unwrap& a) {
     io::export_model(a.output, *model.mesh, unwrapped.atlas, {}, {.frame = frame});
     if (!a.picture.empty()) {
         const atlas::AtlasPicture picture = atlas::draw_atlas(*model.mesh, unwrapped.atlas);
-        io::write_image(a.picture, io::view_of(static_cast<int>(picture.width), static_cast<int>(picture.height), 3, picture.rgb.data()));
+        io::write_image(a.picture, io::view_of(static_cast<int>(picture.width), static_cast<int>(picture.height), 3,
+                                               picture.rgb.data()));
     }
     console.clear();
     const atlas::AtlasReport& r = unwrapped.report;
     if (a.common.json) {
-        nlohmann::json j{{"model", a.model.string()}, {"wrote", a.output.string()},
+        nlohmann::json j{{"model", a.model.string()},
+                         {"wrote", a.output.string()},
                          {"triangles", model.mesh->n_triangles()},
-                         {"atlas", to_json(unwrapped.atlas, r)}, {"peak_mb", peak_megabytes()}};
+                         {"atlas", to_json(unwrapped.atlas, r)},
+                         {"peak_mb", peak_megabytes()}};
         print_json(j);
         return 0;
     }
@@ -47,9 +50,10 @@ int run(const Unwrap& a) {
     fmt::print("{} at {}{} x {}, texel {:.3f} mm, {:.0f} % used{}\n", counted(r.charts, "chart"), pages,
                made.page_size(), made.page_size(), unwrapped.atlas.texel_size / kMillimetre, 100 * r.utilisation,
                unwrapped.atlas.from_file ? " (the file's own UVs)" : "");
-    fmt::print("stretch L2 {:.4f}, Linf {:.2f}; seams {:.1f} x the diagonal; flips {}, overlapping texels {}, triangles without room {}\n",
-               r.l2_stretch, r.linf_stretch, r.seam_length, r.flips, r.overlapping_texels,
-               r.roomless_triangles);
+    fmt::print(
+        "stretch L2 {:.4f}, Linf {:.2f}; seams {:.1f} x the diagonal; flips {}, overlapping texels {}, triangles "
+        "without room {}\n",
+        r.l2_stretch, r.linf_stretch, r.seam_length, r.flips, r.overlapping_texels, r.roomless_triangles);
     fmt::print("wrote {}\n", a.output.string());
     return 0;
 }

@@ -16,12 +16,12 @@ using brush::ContactPlane;
 /// A step in work.
 struct Work {
     const mesh::SurfaceQuery& surface;
-    brush::Pose pose;   // as asked, or held off the surface
+    brush::Pose pose;  // as asked, or held off the surface
     const Options& options;
     StandOptions stand;
-    double radius = 0;  // of the tuft, metres
-    double near = 0;    // metres: farther than this nothing of the tuft can touch
-    Stand root;         // of the ferrule's mouth
+    double radius = 0;       // of the tuft, metres
+    double near = 0;         // metres: farther than this nothing of the tuft can touch
+    Stand root;              // of the ferrule's mouth
     bool laid_over = false;  // the tip went so far that its hair was laid there: it did not slide
 };
 
@@ -29,15 +29,14 @@ Stand stand_of_root(const Work& w, const Memory& memory, double length) {
     const Vec3& root = w.pose.position;
     // A hand that touched has not left the object's front within a tuft's length.
     const bool known = memory.touching && glm::length(root - memory.root) < 2 * length;
-    const Vec3 from =
-        known ? memory.outside : find_outside(w.surface, root, -w.pose.axis(), w.stand);
+    const Vec3 from = known ? memory.outside : find_outside(w.surface, root, -w.pose.axis(), w.stand);
     return stand_from(w.surface, from, known ? memory.side : 1, root, w.stand);
 }
 
-/// Holds the ferrule's mouth off the surface that it would go through: `kPad` of the tuft's radius where the surface lies
-/// before it, nothing where it lies beside it. Returns how far it would be below the surface, metres.
+/// Holds the ferrule's mouth off the surface that it would go through: `kPad` of the tuft's radius where the surface
+/// lies before it, nothing where it lies beside it. Returns how far it would be below the surface, metres.
 double hold_off(Work& w) {
-    constexpr double kPad = 0.5;                   // hair pressed flat under the ferrule
+    constexpr double kPad = 0.5;                    // hair pressed flat under the ferrule
     constexpr double kBeside = 0.2, kBefore = 0.5;  // cosines of the normal to the handle
     constexpr int kPasses = 4;
     const double inside = std::max(0.0, -w.root.height);
@@ -62,8 +61,7 @@ std::vector<Vec3> centres(const brush::Branch& branch) {
 /// trunk.
 std::vector<Stand> stand_nodes(const Work& w, std::span<const Vec3> nodes, std::size_t trunk,
                                std::span<const Stand> before = {}) {
-    std::vector<Stand> out =
-        stand_along(w.surface, w.root, nodes.first(trunk), w.near, w.stand, before);
+    std::vector<Stand> out = stand_along(w.surface, w.root, nodes.first(trunk), w.near, w.stand, before);
     if (nodes.size() == trunk) return out;
     const std::size_t sub_spine = (nodes.size() - trunk) / 3;
     for (std::size_t first = trunk; first < nodes.size(); first += sub_spine) {
@@ -120,8 +118,8 @@ std::vector<ContactPlane> side_walls(const Work& w, const brush::Tuft& tuft, std
 
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
 /// `planes`: those of the last solve. `rest`: stands of the trunk where it lies now, or empty.
-brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt,
-                       std::vector<ContactPlane>& planes, std::vector<Stand>& rest) {
+brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<ContactPlane>& planes,
+                       std::vector<Stand>& rest) {
     const std::size_t trunk = tuft.spine.rest_radius.size();
     const bool was_split = tuft.split;
     const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
@@ -140,8 +138,8 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt,
         double worst = 0;
         std::vector<ContactPlane> fresh = planes;
         for (std::size_t i = 0; i < planes.size(); ++i) {
-            const double radius = i < trunk ? before.spine.rest_radius[trunk - 1 - i]
-                                            : before.spine.rest_radius[trunk - 1];
+            const double radius =
+                i < trunk ? before.spine.rest_radius[trunk - 1 - i] : before.spine.rest_radius[trunk - 1];
             const double z = brush::height_over(planes[i], compared[i]);
             const double height = brush::height_over(stands[i].met, compared[i]);
             if (std::min(z, height) > 2 * radius) continue;
@@ -166,8 +164,7 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt,
 brush::TuftState solve_by_vertices(const Work& w, brush::Tuft& tuft, double dt, Result& result) {
     const Vec3 tip = brush::predicted_nodes(tuft, w.pose).front();
     const Vec3 holder = w.pose.position - tuft.preset.length * w.pose.axis();
-    const WeightedDistance d =
-        weighted_distance(w.surface, tip, holder, w.options.nearest_vertices);
+    const WeightedDistance d = weighted_distance(w.surface, tip, holder, w.options.nearest_vertices);
     if (!d.found) return brush::step(tuft, w.pose, {}, dt);
     const ContactPlane plane{snap_tip(tip, d), d.normal};
     result.planes.assign(1, plane);
@@ -180,8 +177,7 @@ brush::TuftState solve_by_vertices(const Work& w, brush::Tuft& tuft, double dt, 
 /// of the rod's nodes, from which the sections' centres differ along the planes' normals, and
 /// along the surface by what friction drags the sides;
 /// `trunk` holds them if they are known.
-std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::Tuft& solved,
-                                               const brush::TuftState& tuft,
+std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::Tuft& solved, const brush::TuftState& tuft,
                                                std::vector<Stand> trunk) {
     std::vector<std::vector<Stand>> out;
     if (tuft.branches.size() == 1) {
@@ -218,8 +214,7 @@ double surface_distance(const Work& w, const brush::TuftState& tuft) {
     for (const brush::Branch& branch : tuft.branches)
         for (const brush::Section& s : branch.sections) {
             const double r = std::sqrt(s.a * s.b);
-            if (const auto q = w.surface.closest_point(s.centre, best + r))
-                best = std::min(best, q->distance - r);
+            if (const auto q = w.surface.closest_point(s.centre, best + r)) best = std::min(best, q->distance - r);
         }
     return std::max(best, 0.0);
 }
@@ -236,8 +231,7 @@ Vec3 followed_centre(const Work& w, const Memory& memory, const Vec3& travel, co
 
 /// The contact frame under the middle of the touching sections, and the distance to touch.
 /// Sections weigh as deep as they reach into the surface, so that it moves continuously.
-void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, Memory& memory,
-                 Result& result) {
+void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, Memory& memory, Result& result) {
     Vec3 sum{0}, travel{0};
     std::vector<Vec3> centres;
     for (const brush::Branch& branch : result.tuft.branches)
@@ -253,8 +247,7 @@ void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, M
             const Stand& s = stands[b][i];
             const std::size_t k = at_centre++;
             if (s.triangle == kNone) continue;
-            const double under =
-                s.height - std::sqrt(sections[i].a * sections[i].b);  // as the rod's contacts
+            const double under = s.height - std::sqrt(sections[i].a * sections[i].b);  // as the rod's contacts
             if (under < gap) {
                 gap = under;
                 lowest = &s;
@@ -271,8 +264,7 @@ void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, M
             }
         }
     }
-    if (memory.touching && total > 0)
-        result.travel = followed ? travel / total : w.pose.position - memory.root;
+    if (memory.touching && total > 0) result.travel = followed ? travel / total : w.pose.position - memory.root;
     memory.centres = std::move(centres);
     if (!lowest) return;
     result.distance = result.tuft.touching ? 0 : std::max(0.0, gap);
@@ -299,8 +291,8 @@ Vec3 device_force(const brush::Preset& preset, const Result& result, const Optio
     return size > preset.force_limit ? force * (preset.force_limit / size) : force;
 }
 
-Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::SurfaceQuery& surface,
-                 Memory& memory, double dt, const Options& options, bool approaches);
+Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::SurfaceQuery& surface, Memory& memory,
+                 double dt, const Options& options, bool approaches);
 
 /// Presses a tuft that has not touched yet down to a pose: straight hair that begins pressed flat has no shape near
 /// enough to start the solve from.
@@ -314,14 +306,13 @@ void approach(brush::Tuft& tuft, const Work& w, Memory& memory) {
     memory.touching = false;  // the next pose is the first
 }
 
-Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::SurfaceQuery& surface,
-                 Memory& memory, double dt, const Options& options, bool approaches) {
+Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::SurfaceQuery& surface, Memory& memory,
+                 double dt, const Options& options, bool approaches) {
     Result result;
     const brush::Preset& preset = tuft.preset;
     std::vector<Vec3> nodes = brush::predicted_nodes(tuft, asked);
     const double thick = 1.2 * preset.radius * std::max(1.0, preset.flatten_max);
-    const bool meets =
-        overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
+    const bool meets = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
     Work w{surface, asked, options, {}, preset.radius, 0, {}};
     w.stand.reach = 2 * preset.length + thick;
@@ -333,8 +324,7 @@ Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::Surfac
         if (w.pose.position != asked.position) nodes = brush::predicted_nodes(tuft, w.pose);
     }
     const brush::Pose& pose = w.pose;
-    const bool reachable =
-        meets && w.root.triangle != kNone && w.root.height < preset.length + w.near;
+    const bool reachable = meets && w.root.triangle != kNone && w.root.height < preset.length + w.near;
     if (!reachable) {
         result.tuft = brush::step(tuft, pose, {}, dt);
         result.inside = std::max(result.inside, depth_inside(surface, asked.position));
@@ -348,8 +338,7 @@ Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::Surfac
     std::vector<Stand> rest;
     result.tuft = options.method == Method::exact ? solve(w, tuft, dt, result.planes, rest)
                                                   : solve_by_vertices(w, tuft, dt, result);
-    const std::vector<std::vector<Stand>> stands =
-        stand_sections(w, tuft, result.tuft, std::move(rest));
+    const std::vector<std::vector<Stand>> stands = stand_sections(w, tuft, result.tuft, std::move(rest));
     for (const std::vector<Stand>& branch : stands) {
         result.branch_planes.emplace_back();
         for (const Stand& s : branch) result.branch_planes.back().push_back(s.plane);

@@ -39,20 +39,19 @@ struct Memory {
 /// The tuft against the model at one pose.
 struct Result {
     brush::TuftState tuft;
-    std::vector<brush::ContactPlane> planes;  ///< that it was bent against, as in brush::step
-    std::vector<std::vector<brush::ContactPlane>>
-        branch_planes;  ///< of every section of tuft.branches,
-                        ///< empty when nothing is near
-    Frame frame;        ///< on the surface under the contact patch, n outward; t carried
-                        ///< along from the stamp before; travels with the hair
+    std::vector<brush::ContactPlane> planes;                      ///< that it was bent against, as in brush::step
+    std::vector<std::vector<brush::ContactPlane>> branch_planes;  ///< of every section of tuft.branches,
+                                                                  ///< empty when nothing is near
+    Frame frame;                     ///< on the surface under the contact patch, n outward; t carried
+                                     ///< along from the stamp before; travels with the hair
     std::uint32_t triangle = kNone;  ///< under frame.origin; kNone when nothing is near
-    Vec3 travel{0};       ///< metres, world: way of the touching hair since the last sample; the
-                          ///< frame's origin may go another way over a crease. 0 at first touch
-    double distance = 0;  ///< metres from the tuft's skin to the surface; 0 when touching
-    double inside = 0;    ///< metres that the pose would have the ferrule's mouth below the surface
-    Vec3 device_force{0};   ///< N, to a haptic device: gain, clamp and proximity applied
-    Sphere sphere;        ///< Method::vertices: round the bent tuft
-    EffectivePatch patch;  ///< Method::vertices: vertices the projection plane is made from
+    Vec3 travel{0};                  ///< metres, world: way of the touching hair since the last sample; the
+                                     ///< frame's origin may go another way over a crease. 0 at first touch
+    double distance = 0;             ///< metres from the tuft's skin to the surface; 0 when touching
+    double inside = 0;               ///< metres that the pose would have the ferrule's mouth below the surface
+    Vec3 device_force{0};            ///< N, to a haptic device: gain, clamp and proximity applied
+    Sphere sphere;                   ///< Method::vertices: round the bent tuft
+    EffectivePatch patch;            ///< Method::vertices: vertices the projection plane is made from
 };
 
 /// Moves the brush to `pose`, finds the surface every node meets and bends the tuft
@@ -63,7 +62,7 @@ struct Result {
 /// through, less beside it, so that the force is at most that of hair pressed flat under it.
 /// Creases, bowls and rims come out of the planes being local; they are looked up again where the
 /// tuft has moved off them. Always finite. Cost: 50–200 µs.
-Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery& surface,
-            Memory& memory, double dt, const Options& options = {});
+Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery& surface, Memory& memory, double dt,
+            const Options& options = {});
 
 }  // namespace tuft::contact

@@ -33,8 +33,7 @@ WeightedDistance weighted_distance(std::span<const mesh::NearVertex> vertices, c
     WeightedDistance out;
     out.vertices.assign(vertices.begin(), vertices.end());
     double d_max = 0;
-    for (const mesh::NearVertex& v : vertices)
-        d_max = std::max(d_max, glm::length(tip - v.position));
+    for (const mesh::NearVertex& v : vertices) d_max = std::max(d_max, glm::length(tip - v.position));
     double sum = 0, weights = 0;
     Vec3 normal{0};
     for (const mesh::NearVertex& v : vertices) {
@@ -51,16 +50,14 @@ WeightedDistance weighted_distance(std::span<const mesh::NearVertex> vertices, c
     return out;
 }
 
-WeightedDistance weighted_distance(const mesh::SurfaceQuery& surface, const Vec3& tip,
-                                   const Vec3& holder, int k) {
+WeightedDistance weighted_distance(const mesh::SurfaceQuery& surface, const Vec3& tip, const Vec3& holder, int k) {
     // The far side of a wall may be nearer: take more, keep those that face the holder.
     std::vector<mesh::NearVertex> vertices;
     for (int asked = 2 * k; asked <= 64 * k; asked *= 4) {
         vertices = surface.nearest_vertices(tip, asked);
         const bool all = vertices.size() < static_cast<std::size_t>(asked);
-        std::erase_if(vertices, [&](const mesh::NearVertex& v) {
-            return glm::dot(v.normal, holder - v.position) <= 0;
-        });
+        std::erase_if(vertices,
+                      [&](const mesh::NearVertex& v) { return glm::dot(v.normal, holder - v.position) <= 0; });
         if (all || vertices.size() >= static_cast<std::size_t>(k)) break;
     }
     if (vertices.size() > static_cast<std::size_t>(k)) vertices.resize(static_cast<std::size_t>(k));
@@ -79,15 +76,14 @@ std::vector<Vec3> outline_points(const brush::TuftState& tuft, int per_section) 
         for (const brush::Section& s : branch.sections)
             for (int k = 0; k < per_section; ++k) {
                 const double omega = 2 * std::numbers::pi * k / per_section;
-                points.push_back(s.centre + s.a * std::cos(omega) * s.e +
-                                 s.b * std::sin(omega) * s.m);
+                points.push_back(s.centre + s.a * std::cos(omega) * s.e + s.b * std::sin(omega) * s.m);
             }
     }
     return points;
 }
 
-EffectivePatch effective_patch(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
-                               const Sphere& sphere, const Vec3& holder) {
+EffectivePatch effective_patch(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const Sphere& sphere,
+                               const Vec3& holder) {
     EffectivePatch patch;
     if (triangle >= mesh.n_triangles()) return patch;
     const double r2 = sphere.radius * sphere.radius;
@@ -104,9 +100,7 @@ EffectivePatch effective_patch(const mesh::TriangleMesh& mesh, std::uint32_t tri
         if (i == 0 && glm::dot(area, holder - a) < 0) side = -1;
         area *= side;
         if (i == 0 && glm::length(area) > 0) patch.normal = glm::normalize(area);
-        if (i > 0 &&
-            (glm::dot(area, holder - a) <= 0 || distance_to_triangle2(mesh, t, sphere.centre) > r2))
-            continue;
+        if (i > 0 && (glm::dot(area, holder - a) <= 0 || distance_to_triangle2(mesh, t, sphere.centre) > r2)) continue;
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t v = mesh.triangles[t][k];
             const Vec3 d = mesh.position(t, k) - sphere.centre;

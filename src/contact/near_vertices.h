@@ -26,8 +26,7 @@ struct WeightedDistance {
 WeightedDistance weighted_distance(std::span<const mesh::NearVertex> vertices, const Vec3& tip);
 
 /// The same for the `k` vertices nearest to the tip whose normals look towards `holder`.
-WeightedDistance weighted_distance(const mesh::SurfaceQuery& surface, const Vec3& tip,
-                                   const Vec3& holder, int k = 8);
+WeightedDistance weighted_distance(const mesh::SurfaceQuery& surface, const Vec3& tip, const Vec3& holder, int k = 8);
 
 /// P0 - d_w n: the tip put on the surface.
 Vec3 snap_tip(const Vec3& tip, const WeightedDistance& d);
@@ -40,11 +39,11 @@ std::vector<Vec3> outline_points(const brush::TuftState& tuft, int per_section =
 struct EffectivePatch {
     std::vector<std::uint32_t> vertices;  ///< in the order of the walk
     Vec3 normal{0, 0, 1};                 ///< unit, Σ A_v n_v over them; of the triangle if none
-    double area = 0;  ///< m², Σ A_v: a third of the triangles round each vertex
+    double area = 0;                      ///< m², Σ A_v: a third of the triangles round each vertex
 };
 
 /// Walks from `triangle` over triangles that reach into the sphere and face `holder`.
-EffectivePatch effective_patch(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
-                               const Sphere& sphere, const Vec3& holder);
+EffectivePatch effective_patch(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const Sphere& sphere,
+                               const Vec3& holder);
 
 }  // namespace tuft::contact

@@ -77,16 +77,15 @@ bool overlap(const Obb& a, const Obb& b) {
         if (std::abs(t[i]) > reach) return false;
     }
     for (int j = 0; j < 3; ++j) {
-        const double reach =
-            b.half[j] + a.half[0] * m[0][j] + a.half[1] * m[1][j] + a.half[2] * m[2][j];
+        const double reach = b.half[j] + a.half[0] * m[0][j] + a.half[1] * m[1][j] + a.half[2] * m[2][j];
         if (std::abs(glm::dot(t, r[j])) > reach) return false;
     }
     for (int i = 0; i < 3; ++i) {
         const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
         for (int j = 0; j < 3; ++j) {
             const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-            const double reach = a.half[i1] * m[i2][j] + a.half[i2] * m[i1][j] +
-                                 b.half[j1] * m[i][j2] + b.half[j2] * m[i][j1];
+            const double reach =
+                a.half[i1] * m[i2][j] + a.half[i2] * m[i1][j] + b.half[j1] * m[i][j2] + b.half[j2] * m[i][j1];
             if (std::abs(t[i2] * r[j][i1] - t[i1] * r[j][i2]) > reach) return false;
         }
     }

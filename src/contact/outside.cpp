@@ -19,16 +19,14 @@ Vec3 plane_normal(const mesh::SurfacePoint& q, double side, const Vec3& off, dou
     const Vec3 direction = off / d;
     const double cosine = glm::dot(direction, n);
     constexpr double kAlike = 0.985, kApart = 0.90;  // 10° and 26°
-    const double w =
-        smooth_step((kAlike - cosine) / (kAlike - kApart)) * smooth_step((d - lift) / (4 * lift));
+    const double w = smooth_step((kAlike - cosine) / (kAlike - kApart)) * smooth_step((d - lift) / (4 * lift));
     if (w <= 0 || cosine < -0.5) return n;
     return glm::normalize((1 - w) * n + w * direction);
 }
 
 /// Unit normal of triangle t, smooth as shading has it, at weight w between its corners k and l.
 Vec3 corner_normal(const mesh::TriangleMesh& mesh, std::uint32_t t, int k, int l, double w) {
-    const Vec3 n =
-        (1 - w) * Vec3(mesh.corner_normals[3 * t + k]) + w * Vec3(mesh.corner_normals[3 * t + l]);
+    const Vec3 n = (1 - w) * Vec3(mesh.corner_normals[3 * t + k]) + w * Vec3(mesh.corner_normals[3 * t + l]);
     const double size = glm::length(n);
     return size > 1e-9 ? n / size : n;
 }
@@ -46,8 +44,7 @@ struct SharpEdge {
 
 /// The edge of triangle t from its corner k on, where it is sharp and convex: the point of it
 /// nearest to q.
-std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_t t, int k,
-                                    const Vec3& q) {
+std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_t t, int k, const Vec3& q) {
     const std::uint32_t other = mesh.neighbours[3 * t + k];
     if (other == kNone) return {};
     const int l = (k + 1) % 3;
@@ -64,8 +61,7 @@ std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_
     if (a < 0 || b < 0 || far < 0) return {};
     // Both faces share their normals on a smooth surface: nothing to compute.
     const auto& normal = mesh.corner_normals;
-    if (normal[3 * t + k] == normal[3 * other + a] && normal[3 * t + l] == normal[3 * other + b])
-        return {};
+    if (normal[3 * t + k] == normal[3 * other + a] && normal[3 * t + l] == normal[3 * other + b]) return {};
     const Vec3 from = mesh.position(t, k), way = mesh.position(t, l) - from;
     const double w = std::clamp(glm::dot(q - from, way) / glm::dot(way, way), 0.0, 1.0);
     const Vec3 own = corner_normal(mesh, t, k, l, w);
@@ -87,17 +83,12 @@ std::optional<SharpEdge> edge_near(const mesh::TriangleMesh& mesh, const mesh::S
     for (int i = 0; i < count; ++i) {
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t next = mesh.neighbours[3 * seen[i] + k];
-            if (next == kNone ||
-                std::find(seen.begin(), seen.begin() + count, next) != seen.begin() + count)
-                continue;
-            const Vec3 from = mesh.position(seen[i], k),
-                       way = mesh.position(seen[i], (k + 1) % 3) - from;
+            if (next == kNone || std::find(seen.begin(), seen.begin() + count, next) != seen.begin() + count) continue;
+            const Vec3 from = mesh.position(seen[i], k), way = mesh.position(seen[i], (k + 1) % 3) - from;
             const Vec3 to_q = q.position - from;
-            const double length2 = glm::dot(way, way),
-                         along = std::clamp(glm::dot(to_q, way), 0.0, length2);
+            const double length2 = glm::dot(way, way), along = std::clamp(glm::dot(to_q, way), 0.0, length2);
             // Squared distance from the edge, times its squared length.
-            if (length2 * glm::dot(to_q, to_q) + along * (along - 2 * glm::dot(to_q, way)) >
-                kReach * kReach * length2)
+            if (length2 * glm::dot(to_q, to_q) + along * (along - 2 * glm::dot(to_q, way)) > kReach * kReach * length2)
                 continue;
             if (const auto edge = sharp_edge(mesh, seen[i], k, q.position)) {
                 if (!best || edge->distance < best->distance) best = edge;
@@ -110,8 +101,7 @@ std::optional<SharpEdge> edge_near(const mesh::TriangleMesh& mesh, const mesh::S
 }
 
 /// Whether the surface point q lies on an edge from whose other face `off` leads outwards.
-bool before_other_face(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& q, double side,
-                       const Vec3& off) {
+bool before_other_face(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& q, double side, const Vec3& off) {
     const double weight[3] = {1 - q.b1 - q.b2, q.b1, q.b2};
     for (int k = 0; k < 3; ++k) {
         const std::uint32_t other = mesh.neighbours[3 * q.triangle + k];
@@ -153,8 +143,7 @@ Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double sid
     }
     out.triangle = q->triangle;
     out.plane.origin = q->position;
-    out.plane.normal =
-        behind ? out.side * q->normal : plane_normal(*q, out.side, off, options.lift);
+    out.plane.normal = behind ? out.side * q->normal : plane_normal(*q, out.side, off, options.lift);
     out.height = glm::dot(off, out.plane.normal);
     out.met = out.plane;
     if (const auto edge = edge_near(surface.mesh(), *q)) {
@@ -166,9 +155,8 @@ Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double sid
     return out;
 }
 
-std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& root,
-                               std::span<const Vec3> points, double near,
-                               const StandOptions& options, std::span<const Stand> before) {
+std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& root, std::span<const Vec3> points,
+                               double near, const StandOptions& options, std::span<const Stand> before) {
     std::vector<Stand> out(points.size());
     Stand last = root;
     Vec3 looked_up = root.outside;
@@ -184,8 +172,7 @@ std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& r
         }
         const Stand& hint = i < before.size() ? before[i] : last;
         const Vec3& from = i + 1 < points.size() ? out[i + 1].outside : root.outside;
-        last = stand_from(surface, from, last.side, p, options,
-                          hint.triangle != kNone ? &hint.plane.origin : nullptr);
+        last = stand_from(surface, from, last.side, p, options, hint.triangle != kNone ? &hint.plane.origin : nullptr);
         out[i] = last;
         looked_up = last.outside;
         clear = last.triangle == kNone ? options.reach : last.height;
@@ -193,20 +180,17 @@ std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& r
     return out;
 }
 
-Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up,
-                  const StandOptions& options) {
+Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up, const StandOptions& options) {
     const auto q = surface.closest_point(root, options.reach);
     if (!q || glm::dot(root - q->position, q->face_normal) >= 0) return root;
     const auto exit = surface.ray(root, up, 0, 4 * options.reach);
-    if (!exit || glm::dot(exit->face_normal, up) <= 0)
-        return root;  // in front of an open sheet's back
+    if (!exit || glm::dot(exit->face_normal, up) <= 0) return root;  // in front of an open sheet's back
     return exit->position + options.lift * exit->face_normal;
 }
 
 double depth_inside(const mesh::SurfaceQuery& surface, const Vec3& p) {
     const Box& box = surface.mesh().bounds;
-    if (box.empty() || glm::any(glm::lessThan(p, box.lo)) || glm::any(glm::greaterThan(p, box.hi)))
-        return 0;
+    if (box.empty() || glm::any(glm::lessThan(p, box.lo)) || glm::any(glm::greaterThan(p, box.hi))) return 0;
     for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {-1.0, 1.0}) {
             Vec3 way{0};

@@ -38,14 +38,12 @@ Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double sid
 /// outwards, each from the one before. Points farther than `near` from any surface share the plane
 /// of the last one looked up, which then is no closer to them than the surface. `before`, where
 /// not empty, holds the stands of the same points a moment ago and only makes it faster.
-std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& root,
-                               std::span<const Vec3> points, double near,
-                               const StandOptions& options, std::span<const Stand> before = {});
+std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& root, std::span<const Vec3> points,
+                               double near, const StandOptions& options, std::span<const Stand> before = {});
 
 /// A start outside the object for a tuft at `root` whose handle points along `up`: the root
 /// itself, or, when it is inside a closed object, where the handle comes out.
-Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up,
-                  const StandOptions& options);
+Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up, const StandOptions& options);
 
 /// Metres from a point within a closed body to its surface; 0 outside, and before or behind an open
 /// sheet. Within: the surface is met from its back in all six directions of the axes. Cost: six

@@ -16,8 +16,7 @@ struct BuildFacts {
     std::string compiler;    ///< "GNU 12.2.0"
     std::string build_type;  ///< "Release"
     std::string system;      ///< "Linux x86_64"
-    std::vector<std::pair<std::string, std::string>>
-        libraries;  ///< name and version, as they were compiled against
+    std::vector<std::pair<std::string, std::string>> libraries;  ///< name and version, as they were compiled against
 };
 
 const BuildFacts& build_facts();

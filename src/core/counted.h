@@ -7,6 +7,8 @@
 namespace tuft {
 
 /// "1 chart", "3 charts": a number with its noun, which takes an s.
-inline std::string counted(std::size_t n, std::string_view noun) { return std::to_string(n) + " " + std::string(noun) + (n == 1 ? "" : "s"); }
+inline std::string counted(std::size_t n, std::string_view noun) {
+    return std::to_string(n) + " " + std::string(noun) + (n == 1 ? "" : "s");
+}
 
 }  // namespace tuft

@@ -15,8 +15,7 @@ class Error : public std::runtime_error {
   public:
     explicit Error(const std::string& what) : std::runtime_error(what) {}
     /// "FILE: what".
-    Error(const std::string& file, const std::string& what)
-        : std::runtime_error(file + ": " + what) {}
+    Error(const std::string& file, const std::string& what) : std::runtime_error(file + ": " + what) {}
     /// "FILE:LINE: what"; lines count from 1.
     Error(const std::string& file, long line, const std::string& what)
         : std::runtime_error(file + ":" + std::to_string(line) + ": " + what) {}

@@ -24,15 +24,13 @@ std::vector<char> read_file(const fs::path& path, std::size_t max_bytes) {
     if (ec) throw Error(path.string(), "cannot be read: " + ec.message());
     if (size == 0) throw Error(path.string(), "the file is empty");
     if (size > max_bytes)
-        throw Error(path.string(), "is too large (" + std::to_string(size >> 20) +
-                                       " MiB; the limit is " + std::to_string(max_bytes >> 20) +
-                                       " MiB)");
+        throw Error(path.string(), "is too large (" + std::to_string(size >> 20) + " MiB; the limit is " +
+                                       std::to_string(max_bytes >> 20) + " MiB)");
     std::vector<char> bytes(size);
     std::ifstream file(path, std::ios::binary);
     if (!file) throw Error(path.string(), "cannot be opened for reading");
     file.read(bytes.data(), static_cast<std::streamsize>(size));
-    if (file.gcount() != static_cast<std::streamsize>(size))
-        throw Error(path.string(), "could not be read to its end");
+    if (file.gcount() != static_cast<std::streamsize>(size)) throw Error(path.string(), "could not be read to its end");
     return bytes;
 }
 
@@ -43,8 +41,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
         throw Error(path.string(), "the output folder '" + folder.string() + "' does not exist");
     // Writers choose their format by the extension, so it stays at the end.
     const fs::path temporary =
-        folder / ("." + path.stem().string() + ".part" + std::to_string(::getpid()) +
-                  path.extension().string());
+        folder / ("." + path.stem().string() + ".part" + std::to_string(::getpid()) + path.extension().string());
     if (fs::exists(path, ec) && !fs::is_regular_file(path, ec))
         throw Error(path.string(), "is there already and is not a regular file");
     const Unfinished unfinished(temporary);

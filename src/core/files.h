@@ -10,8 +10,7 @@ namespace tuft {
 
 /// The whole file. Throws `Error` when it is missing, a folder, unreadable, empty
 /// or larger than `max_bytes`; the size is checked before memory is taken.
-std::vector<char> read_file(const std::filesystem::path& path,
-                            std::size_t max_bytes = std::size_t{8} << 30);
+std::vector<char> read_file(const std::filesystem::path& path, std::size_t max_bytes = std::size_t{8} << 30);
 
 /// Calls `write(temporary)` with a path beside `path`, then renames it to `path`.
 /// On any error the temporary file is removed, `path` is as it was, and `Error` is thrown.

@@ -41,8 +41,7 @@ std::string upper(std::string text) {
 }
 
 std::string capital(std::string text) {
-    if (!text.empty())
-        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     return text;
 }
 
@@ -59,8 +58,7 @@ void add_options(std::string& page, const ManualCommand& command, bool with_plac
         if (option.names.empty() != with_place) continue;
         page += ".TP\n" + headline(option) + "\n" + roff(capital(option.text));
         std::string choices;
-        for (const std::string& choice : option.choices)
-            choices += (choices.empty() ? "" : ", ") + bold(choice);
+        for (const std::string& choice : option.choices) choices += (choices.empty() ? "" : ", ") + bold(choice);
         if (!choices.empty()) page += (option.text.empty() ? "One of " : ". One of ") + choices;
         page += ".\n";
     }
@@ -70,8 +68,7 @@ void add_options(std::string& page, const ManualCommand& command, bool with_plac
 std::string synopsis(const std::string& name, const ManualCommand& command) {
     std::string line = bold(name);
     for (const ManualOption& option : command.options)
-        if (option.names.empty())
-            line += option.required ? " " + headline(option) : " [" + headline(option) + "]";
+        if (option.names.empty()) line += option.required ? " " + headline(option) : " [" + headline(option) + "]";
     for (const ManualOption& option : command.options)
         if (option.required && !option.names.empty())
             line += " " + bold(option.names.back()) + " " + italic(option.value);
@@ -79,9 +76,9 @@ std::string synopsis(const std::string& name, const ManualCommand& command) {
 }
 
 std::string heading(const Manual& manual, const std::string& name, const std::string& text) {
-    return ".\\\" Made from the program's option tables.\n.TH " + roff(upper(name)) + " 1 " +
-           manual.date + " \"" + roff(manual.program.name + " " + manual.version) + "\" \"" +
-           manual.program.name + " manual\"\n.SH NAME\n" + roff(name) + " \\- " + roff(text) + "\n";
+    return ".\\\" Made from the program's option tables.\n.TH " + roff(upper(name)) + " 1 " + manual.date + " \"" +
+           roff(manual.program.name + " " + manual.version) + "\" \"" + manual.program.name + " manual\"\n.SH NAME\n" +
+           roff(name) + " \\- " + roff(text) + "\n";
 }
 
 // Paragraphs; indented lines as they are.
@@ -118,26 +115,23 @@ std::string man_page(const Manual& manual) {
         if (section.title == "DESCRIPTION") page += ".SH DESCRIPTION\n" + body(section.text);
     if (!program.commands.empty()) page += ".SH COMMANDS\n";
     for (const ManualCommand& command : program.commands)
-        page += ".TP\n" + bold(program.name + "-" + command.name) + "(1)\n" +
-                roff(capital(command.text)) + ".\n";
+        page += ".TP\n" + bold(program.name + "-" + command.name) + "(1)\n" + roff(capital(command.text)) + ".\n";
     page += ".SH OPTIONS\n";
     add_options(page, program, true);
     add_options(page, program, false);
     for (const ManualSection& section : manual.sections)
-        if (section.title != "DESCRIPTION")
-            page += ".SH " + section.title + "\n" + body(section.text);
+        if (section.title != "DESCRIPTION") page += ".SH " + section.title + "\n" + body(section.text);
     return page;
 }
 
 std::string man_page(const Manual& manual, const ManualCommand& command) {
     const std::string& program = manual.program.name;
-    std::string page = heading(manual, program + "-" + command.name, command.text) +
-                       ".SH SYNOPSIS\n" + synopsis(program + " " + command.name, command) + "\n";
+    std::string page = heading(manual, program + "-" + command.name, command.text) + ".SH SYNOPSIS\n" +
+                       synopsis(program + " " + command.name, command) + "\n";
     for (const ManualCommand& part : command.commands)
         page += ".br\n" + synopsis(program + " " + command.name + " " + part.name, part) + "\n";
     page += ".SH DESCRIPTION\n" + roff(capital(command.text)) + ".\n";
-    if (std::any_of(command.options.begin(), command.options.end(),
-                    [](const auto& o) { return o.names.empty(); })) {
+    if (std::any_of(command.options.begin(), command.options.end(), [](const auto& o) { return o.names.empty(); })) {
         page += ".SH ARGUMENTS\n";
         add_options(page, command, true);
     }
@@ -173,8 +167,7 @@ std::vector<std::string> file_extensions(const ManualOption& option) {
     if (option.value != "FILE" && !(option.names.empty() && option.choices.empty())) return found;
     std::string word;
     const std::string text = option.value + " " + option.text + " ";
-    const bool dotted =
-        text.find(" .") != std::string::npos || text.find("(.") != std::string::npos;
+    const bool dotted = text.find(" .") != std::string::npos || text.find("(.") != std::string::npos;
     for (std::size_t i = 0; i < text.size(); ++i) {
         if (std::isalnum(static_cast<unsigned char>(text[i]))) {
             word += static_cast<char>(std::tolower(static_cast<unsigned char>(text[i])));
@@ -185,8 +178,7 @@ std::vector<std::string> file_extensions(const ManualOption& option) {
         for (const auto& [name, extensions] : formats)
             if (word == name && with_dot == dotted)
                 for (const std::string& extension : extensions)
-                    if (std::find(found.begin(), found.end(), extension) == found.end())
-                        found.push_back(extension);
+                    if (std::find(found.begin(), found.end(), extension) == found.end()) found.push_back(extension);
         word.clear();
     }
     return found;
@@ -201,13 +193,11 @@ void write_manual(const Manual& manual, const fs::path& folder) {
     try {
         write(fs::path("man1") / (program + ".1"), man_page(manual));
         for (const ManualCommand& command : manual.program.commands)
-            write(fs::path("man1") / (program + "-" + command.name + ".1"),
-                  man_page(manual, command));
+            write(fs::path("man1") / (program + "-" + command.name + ".1"), man_page(manual, command));
         write(fs::path("bash") / program, bash_completion(manual.program));
         write(fs::path("zsh") / ("_" + program), zsh_completion(manual.program));
     } catch (const fs::filesystem_error& error) {
-        throw Error(folder.string(),
-                    "the manual cannot be written there: " + error.code().message());
+        throw Error(folder.string(), "the manual cannot be written there: " + error.code().message());
     }
 }
 

@@ -11,8 +11,8 @@ namespace tuft {
 
 /// An option, or an argument that has a place instead of a name.
 struct ManualOption {
-    std::vector<std::string> names;  ///< "-o", "--output"; empty: an argument with a place
-    std::string value;  ///< placeholder of what follows: "FILE", "X,Y,Z"; empty: a flag
+    std::vector<std::string> names;    ///< "-o", "--output"; empty: an argument with a place
+    std::string value;                 ///< placeholder of what follows: "FILE", "X,Y,Z"; empty: a flag
     std::vector<std::string> choices;  ///< all that the value may be; empty: no list
     std::string text;                  ///< what it does, one phrase
     bool required = false;

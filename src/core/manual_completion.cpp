@@ -25,28 +25,24 @@ bool takes_file(const ManualOption& option) {
 // What completes a value, as `_PROGRAM_fill` of the bash script takes it.
 std::string bash_value(const ManualOption& option) {
     if (!option.choices.empty()) return joined(option.choices, " ");
-    if (const std::string presets = presets_of(option); !presets.empty())
-        return "@presets " + presets;
+    if (const std::string presets = presets_of(option); !presets.empty()) return "@presets " + presets;
     return takes_file(option) ? "@files " + joined(file_extensions(option), " ") : "@none";
 }
 
 // Entries of the script's two tables for one command; `key` is the words that call it.
-void add_bash(std::string& words, std::string& values, const std::string& key,
-              const ManualCommand& command) {
+void add_bash(std::string& words, std::string& values, const std::string& key, const ManualCommand& command) {
     std::vector<std::string> all;
     int place = 0;
     for (const ManualOption& option : command.options) {
         all.insert(all.end(), option.names.begin(), option.names.end());
         const std::string value = "='" + bash_value(option) + "'\n";
         if (option.names.empty())
-            values += "    ['" + key + " " + std::to_string(++place) + (option.repeats ? "+" : "") +
-                      "']" + value;
+            values += "    ['" + key + " " + std::to_string(++place) + (option.repeats ? "+" : "") + "']" + value;
         for (const std::string& name : option.names)
             if (!option.value.empty()) values += "    ['" + key + " " + name + "']" + value;
     }
     words += "    ['" + key + "']='" + joined(all, " ") + "'\n";
-    for (const ManualCommand& part : command.commands)
-        add_bash(words, values, key + " " + part.name, part);
+    for (const ManualCommand& part : command.commands) add_bash(words, values, key + " " + part.name, part);
 }
 
 // What follows does not depend on the program; PROGRAM stands for its name, as a shell function's.
@@ -136,12 +132,10 @@ std::string zsh_value(const ManualOption& option, const std::string& function) {
     if (!option.choices.empty())
         action = "(" + joined(option.choices, " ") + ")";
     else if (const std::string presets = presets_of(option); !presets.empty())
-        action =
-            " " + function + "_presets " + presets;  // the space: no words of _arguments before it
+        action = " " + function + "_presets " + presets;  // the space: no words of _arguments before it
     else if (takes_file(option)) {
         const std::vector<std::string> extensions = file_extensions(option);
-        action =
-            extensions.empty() ? "_files" : "_files -g \"*.(" + joined(extensions, "|") + ")\"";
+        action = extensions.empty() ? "_files" : "_files -g \"*.(" + joined(extensions, "|") + ")\"";
     }
     return ":" + zsh_text(option.value) + ":" + action;
 }
@@ -152,16 +146,13 @@ std::string zsh_arguments(const ManualCommand& command, const std::string& funct
     for (const ManualOption& option : command.options) {
         if (option.names.empty()) {
             lines += std::string(" \\\n      '") + (option.repeats ? "*" : "") +
-                     (option.required || option.repeats ? "" : ":") + zsh_value(option, function) +
-                     "'";
+                     (option.required || option.repeats ? "" : ":") + zsh_value(option, function) + "'";
             continue;
         }
         for (const std::string& name : option.names) {
-            const bool whole =
-                option.value.empty() || !name.starts_with("--");  // "--name=value" else
-            lines += std::string(" \\\n      '") + (option.repeats ? "*" : "") + name +
-                     (whole ? "" : "=") + "[" + zsh_text(option.text) + "]" +
-                     (option.value.empty() ? "" : zsh_value(option, function)) + "'";
+            const bool whole = option.value.empty() || !name.starts_with("--");  // "--name=value" else
+            lines += std::string(" \\\n      '") + (option.repeats ? "*" : "") + name + (whole ? "" : "=") + "[" +
+                     zsh_text(option.text) + "]" + (option.value.empty() ? "" : zsh_value(option, function)) + "'";
         }
     }
     return lines;
@@ -180,16 +171,14 @@ std::string bash_completion(const ManualCommand& program) {
     const std::string function = "_" + function_name(program.name);
     std::string words, values;
     add_bash(words, values, program.name, program);
-    return "# Completion of " + program.name +
-           " for bash; made from the program's option tables.\n" + "declare -gA " + function +
-           "_words=(\n" + words + ")\ndeclare -gA " + function + "_values=(\n" + values + ")\n" +
+    return "# Completion of " + program.name + " for bash; made from the program's option tables.\n" + "declare -gA " +
+           function + "_words=(\n" + words + ")\ndeclare -gA " + function + "_values=(\n" + values + ")\n" +
            replaced(replaced(kBash, "_PROGRAM", function), "KEY", program.name);
 }
 
 std::string zsh_completion(const ManualCommand& program) {
     const std::string function = "_" + function_name(program.name);
-    std::string text = "#compdef " + program.name +
-                       "\n# Made from the program's option tables.\n\n" + function +
+    std::string text = "#compdef " + program.name + "\n# Made from the program's option tables.\n\n" + function +
                        "_presets() {\n"
                        "  local data=${TUFT_DATA:-${commands[tuft]:A:h:h}/share/tuft}\n"
                        "  local -a names=($data/models/$1/*.toml(N:t:r))\n"
@@ -197,8 +186,7 @@ std::string zsh_completion(const ManualCommand& program) {
                        "}\n\n" +
                        function + "() {\n";
     if (program.commands.empty())
-        return text + "  _arguments" + zsh_arguments(program, function) + "\n}\n\n" + function +
-               " \"$@\"\n";
+        return text + "  _arguments" + zsh_arguments(program, function) + "\n}\n\n" + function + " \"$@\"\n";
     text +=
         "  local context state state_descr line\n  typeset -A opt_args\n  local -a commands_\n  "
         "_arguments -C" +

@@ -11,8 +11,7 @@
 namespace tuft {
 
 inline constexpr int kDeepestJson = 100;  ///< arrays and objects within each other
-inline constexpr int kDeepestToml =
-    32;  ///< arrays and inline tables within each other, and parts of one key
+inline constexpr int kDeepestToml = 32;   ///< arrays and inline tables within each other, and parts of one key
 
 /// Throws `Error` with `source` and line when arrays and inline tables are within each other more
 /// than `kDeepestToml` times, or a dotted key or table header has more parts. A text that is no

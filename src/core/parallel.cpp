@@ -38,15 +38,16 @@ tbb::task_arena& arena() {
 
 }  // namespace
 
-void set_thread_count(int n) { g_threads = std::max(0, n); }
+void set_thread_count(int n) {
+    g_threads = std::max(0, n);
+}
 
 int thread_count() {
     const int n = g_threads;
     return n > 0 ? n : tbb::info::default_concurrency();
 }
 
-void parallel_for(std::size_t n, std::size_t grain,
-                  const std::function<void(std::size_t, std::size_t)>& body) {
+void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
     check_interrupt();
     if (n == 0) return;
     grain = std::max<std::size_t>(grain, 1);

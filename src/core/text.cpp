@@ -49,8 +49,7 @@ std::string to_utf8(std::string_view text) {
 std::string excerpt(std::string_view text, std::size_t most) {
     std::string_view head = text.substr(0, most + 4);
     // A character that the cut went through does not make the whole another encoding.
-    for (int i = 0; i < 3 && head.size() < text.size() && !head.empty() && !is_utf8(head); ++i)
-        head.remove_suffix(1);
+    for (int i = 0; i < 3 && head.size() < text.size() && !head.empty() && !is_utf8(head); ++i) head.remove_suffix(1);
     const std::string whole = to_utf8(is_utf8(head) ? head : text.substr(0, most + 4));
     std::string out;
     for (std::size_t at = 0; at < whole.size();) {

@@ -33,9 +33,7 @@ struct Frame {
         const Vec3 d = p_world - origin;
         return {glm::dot(d, t), glm::dot(d, b), glm::dot(d, n)};
     }
-    Vec3 to_world(const Vec3& p_local) const {
-        return origin + p_local.x * t + p_local.y * b + p_local.z * n;
-    }
+    Vec3 to_world(const Vec3& p_local) const { return origin + p_local.x * t + p_local.y * b + p_local.z * n; }
 };
 
 /// Any frame whose n is `normal` (unit length); `hint` gives the direction t

@@ -8,7 +8,7 @@
 /// Only `io`, `cli` and `app` convert.
 namespace tuft {
 
-inline constexpr double kMillimetre = 1e-3;  ///< metres
+inline constexpr double kMillimetre = 1e-3;              ///< metres
 inline constexpr double kDegree = 0.017453292519943295;  ///< radians
 
 /// Metres in one unit named `um`, `mm`, `cm`, `m`, `in` or `ft`; empty for any other name.

@@ -37,8 +37,8 @@ constexpr int kAtOnce = 16;  // columns; a picture has as many cells more beyond
 
 /// Adds a band to columns `first` to `last` of a picture by rows, [rows columns]. Cells that it
 /// does not cover stay.
-TUFT_CLONES void draw_along(std::uint8_t* __restrict level, int rows, int columns, const Band& band,
-                            int first, int last) {
+TUFT_CLONES void draw_along(std::uint8_t* __restrict level, int rows, int columns, const Band& band, int first,
+                            int last) {
     const auto cells = static_cast<float>(rows);
     for (int i = first; i <= last; i += kAtOnce) {
         alignas(64) float lo[kAtOnce], hi[kAtOnce], whole[kAtOnce];
@@ -58,8 +58,7 @@ TUFT_CLONES void draw_along(std::uint8_t* __restrict level, int rows, int column
 #pragma omp simd
             for (int t = 0; t < kAtOnce; ++t) {
                 const float part = (hi[t] < high ? hi[t] : high) - (lo[t] > low ? lo[t] : low);
-                const float v =
-                    static_cast<float>(int{cell[t]}) + whole[t] * (part > 0 ? part : 0.0f) + 0.5f;
+                const float v = static_cast<float>(int{cell[t]}) + whole[t] * (part > 0 ? part : 0.0f) + 0.5f;
                 cell[t] = static_cast<std::uint8_t>(static_cast<int>(v < 255.0f ? v : 255.0f));
             }
         }
@@ -74,8 +73,7 @@ void draw_across(std::uint8_t* level, int rows, const Band& band, int first, int
             std::uint8_t& cell = level[std::size_t(i) * rows + j];
             const auto low = static_cast<float>(j);
             const float part = std::min(c.hi, low + 1) - std::max(c.lo, low);
-            cell = static_cast<std::uint8_t>(
-                std::min(255.0f, static_cast<float>(cell) + c.whole * part + 0.5f));
+            cell = static_cast<std::uint8_t>(std::min(255.0f, static_cast<float>(cell) + c.whole * part + 0.5f));
         }
     }
 }
@@ -83,10 +81,7 @@ void draw_across(std::uint8_t* level, int rows, const Band& band, int first, int
 }  // namespace
 
 Bands::Bands(int width, int height, bool steep)
-    : width_(width),
-      height_(height),
-      steep_(steep),
-      level_(std::size_t(width) * height + kAtOnce, 0) {}
+    : width_(width), height_(height), steep_(steep), level_(std::size_t(width) * height + kAtOnce, 0) {}
 
 void Bands::draw(Vec2 p, Vec2 q, double r, double s, const Vec2& across) {
     const bool steep = std::abs(across.x) > std::abs(across.y);
@@ -105,8 +100,7 @@ void Bands::draw(Vec2 p, Vec2 q, double r, double s, const Vec2& across) {
     const double along = steep ? across.y : across.x, over = steep ? across.x : across.y;
     const double stretch = std::min(std::abs(over - slope * along), 1.0);
     const int columns = steep ? height_ : width_, rows = steep ? width_ : height_;
-    const int first = std::max(static_cast<int>(p.x), 0),
-              last = std::min(static_cast<int>(q.x), columns - 1);
+    const int first = std::max(static_cast<int>(p.x), 0), last = std::min(static_cast<int>(q.x), columns - 1);
     const Band band{p.x, std::min(q.x, double(columns)), p.y, slope, r, grow, stretch};
     if (steep == steep_)
         draw_along(level_.data(), rows, columns, band, first, last);

@@ -14,8 +14,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kSearchSteps = 4;  // per segment, to find where the skin meets the surface
 constexpr int kSamples = 48;     // sections taken from a stretch that touches
 
-Cut cut_of(const brush::Section& s, const Frame& frame, const brush::ContactPlane* plane,
-           double film) {
+Cut cut_of(const brush::Section& s, const Frame& frame, const brush::ContactPlane* plane, double film) {
     const Vec3 normal = plane ? plane->normal : frame.n;
     const Vec3 origin = plane ? plane->origin : frame.origin;
     Cut cut;
@@ -69,9 +68,7 @@ class TuftSurface {
   public:
     TuftSurface(const brush::Branch& branch, const Frame& frame, const NodePlanes* planes, double film) {
         const auto& sections = branch.sections;
-        const auto plane = [&](std::size_t i) {
-            return planes && i < planes->size() ? &(*planes)[i] : nullptr;
-        };
+        const auto plane = [&](std::size_t i) { return planes && i < planes->size() ? &(*planes)[i] : nullptr; };
         add_cap(sections.front(), frame, plane(0), film);
         cap_ = nodes_.size();
         for (std::size_t i = 0; i < sections.size(); ++i) {
@@ -122,8 +119,7 @@ class TuftSurface {
     };
 
     /// Closes a blunt tip by half an ellipsoid.
-    void add_cap(const brush::Section& tip, const Frame& frame, const brush::ContactPlane* plane,
-                 double film) {
+    void add_cap(const brush::Section& tip, const Frame& frame, const brush::ContactPlane* plane, double film) {
         const double r = std::sqrt((tip.a + film) * (tip.b + film));
         if (!(r > 1e-7)) return;
         static constexpr std::array<double, 5> kAhead{1, 0.98, 0.9, 0.7, 0.4};
@@ -147,9 +143,7 @@ class TuftSurface {
     void set_slopes() {
         const std::size_t n = nodes_.size();
         slopes_.resize(n);
-        const auto rate = [&](std::size_t i, auto get) {
-            return (get(nodes_[i + 1]) - get(nodes_[i])) / steps_[i];
-        };
+        const auto rate = [&](std::size_t i, auto get) { return (get(nodes_[i + 1]) - get(nodes_[i])) / steps_[i]; };
         const auto z = [](const Cut& c) { return c.z; };
         const auto a = [](const Cut& c) { return c.a; };
         const auto b = [](const Cut& c) { return c.b; };
@@ -204,8 +198,7 @@ std::vector<Stretch> touching_stretches(const TuftSurface& skin) {
     for (int i = 0; i <= n; ++i) {
         const double s = double(i) / kSearchSteps;
         const bool now = skin.at(s).overlap() >= 0;
-        if (now && !before)
-            found.push_back({i == 0 ? 0 : meeting(skin, double(i - 1) / kSearchSteps, s), s});
+        if (now && !before) found.push_back({i == 0 ? 0 : meeting(skin, double(i - 1) / kSearchSteps, s), s});
         if (now) found.back().end = s;
         if (!now && before) found.back().end = meeting(skin, s, double(i - 1) / kSearchSteps);
         before = now;
@@ -215,15 +208,14 @@ std::vector<Stretch> touching_stretches(const TuftSurface& skin) {
 
 }  // namespace
 
-std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame,
-                          std::span<const NodePlanes> planes, double length, double film) {
+std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
+                          double length, double film) {
     std::vector<Trail> found;
     const std::size_t count = tuft.branches.size();
     for (std::size_t k = 0; k < count; ++k) {
         const auto& sections = tuft.branches[k].sections;
         if (sections.size() < 2) continue;
-        const TuftSurface skin(tuft.branches[k], frame, k < planes.size() ? &planes[k] : nullptr,
-                        std::max(film, 0.0));
+        const TuftSurface skin(tuft.branches[k], frame, k < planes.size() ? &planes[k] : nullptr, std::max(film, 0.0));
         // The middle one of several branches goes on as the trunk.
         const bool carries = count > 1 && k == count / 2;
         const double trunk = carries ? skin.at_section(tuft.branches[0].sections.size() - 1) : 1e9;
@@ -245,9 +237,10 @@ std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame,
 namespace {
 
 constexpr double kTrackStep = 2.5e-5;  // metres between places of a track
-constexpr double kAboutAsWide = 0.1; // of the widest section's half width
-constexpr double kFan = 0.35;        // slope at which lying hair leaves a lifted tuft: sideways it is held by friction, about that
-constexpr double kNarrowest = 0.2;   // of its width to which a section is drawn together
+constexpr double kAboutAsWide = 0.1;   // of the widest section's half width
+constexpr double kFan =
+    0.35;  // slope at which lying hair leaves a lifted tuft: sideways it is held by friction, about that
+constexpr double kNarrowest = 0.2;  // of its width to which a section is drawn together
 
 /// The place's own value, between two of those that are there.
 double width_at(const HairTracks::Track& track, double place, double otherwise) {
@@ -272,8 +265,8 @@ void reach_over(HairTracks::Track& track, long long lo, long long hi) {
 }
 
 /// Cuts [begin, end) of a trail: those up to the widest are where the tuft is, and so is what never touched.
-void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::Track& track, double slid, double length,
-                  double amount) {
+void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::Track& track, double slid,
+                  double length, double amount) {
     const auto place = [&](std::size_t i) { return slid - trail.along[i] * length; };
     std::size_t widest = end - 1;
     for (std::size_t i = end - 1; i-- > begin;)
@@ -305,7 +298,8 @@ void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::
     track.passing = trail.cuts[widest].a;
     for (std::size_t k = begin; k < end && place(k) < front; ++k) {
         Cut& cut = trail.cuts[k];
-        const double laid = std::min(width_at(track, place(k), cut.a), trail.cuts[widest].a + kFan * (front - place(k)));
+        const double laid =
+            std::min(width_at(track, place(k), cut.a), trail.cuts[widest].a + kFan * (front - place(k)));
         const double grow = std::max(1 + amount * (laid / std::max(cut.a, 1e-9) - 1), kNarrowest);
         cut.a *= grow;
         cut.b /= grow;

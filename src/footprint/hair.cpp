@@ -13,20 +13,24 @@
 namespace tuft::footprint {
 namespace {
 
-constexpr double kClosing = 0.4;       // s_c
-constexpr double kFastHair = 0.7;      // v_c, m/s
-constexpr double kRolling = 12e-3;     // m of travel over which the hair of a bundle rolls off and on, longer than it touches
-constexpr double kBreaking = 4e-3;     // m of travel over which the ink under a single bristle breaks and closes
+constexpr double kClosing = 0.4;   // s_c
+constexpr double kFastHair = 0.7;  // v_c, m/s
+constexpr double kRolling =
+    12e-3;  // m of travel over which the hair of a bundle rolls off and on, longer than it touches
+constexpr double kBreaking = 4e-3;  // m of travel over which the ink under a single bristle breaks and closes
 constexpr double kRollingPart = 0.2, kBreakingPart = 0.2;  // of the wetness at which they stop
-constexpr double kThinning = 0.02;     // wetness over which a thread of ink tapers before it breaks
-constexpr double kAside = 0.35;        // sine of the angle from the tuft's way, or the hand's course, at which hair that lands or leaves is swept aside
-constexpr double kLessLanding = 0.75;  // of what it may measure across its motion, that it lacks while it lands or leaves
-constexpr double kTapers =
-    0.08;  // sine up to which it is not: hair draws together as a stroke runs out
-constexpr double kTrails = 0.25;       // sine from the course by which hair that goes along itself
-                                       // trails behind the hand round a curve
-constexpr double kMark = 45e-6;        // m, half width of what a bristle leaves by itself: hair is 70–135 µm thick
-constexpr double kSkirt = 0.7, kFullSkirt = 0.9;  // wetness from which ink stands out beyond the outermost hair, and as far as it bridges
+constexpr double kThinning = 0.02;                         // wetness over which a thread of ink tapers before it breaks
+constexpr double kAside = 0.35;  // sine of the angle from the tuft's way, or the hand's course, at which hair that
+                                 // lands or leaves is swept aside
+constexpr double kLessLanding =
+    0.75;                         // of what it may measure across its motion, that it lacks while it lands or leaves
+constexpr double kTapers = 0.08;  // sine up to which it is not: hair draws together as a stroke runs out
+constexpr double kTrails = 0.25;  // sine from the course by which hair that goes along itself
+                                  // trails behind the hand round a curve
+constexpr double kMark = 45e-6;   // m, half width of what a bristle leaves by itself: hair is 70–135 µm thick
+constexpr double kSkirt = 0.7,
+                 kFullSkirt =
+                     0.9;  // wetness from which ink stands out beyond the outermost hair, and as far as it bridges
 constexpr double kBridge = 0.5;        // spacings that ink bridges from one bristle to the next at half wetness
 constexpr double kLeastContact = 0.1;  // part of what lies down of it that the driest bristle touches with
 constexpr double kSameEnd = 0.01;      // of the length
@@ -102,15 +106,17 @@ double breaks_at(const brush::Bundles& bundles, const brush::Bristle& b, double 
                               kRollingPart * (0.5 + 0.5 * rolls) + kBreakingPart * (0.5 + 0.5 * breaks));
 }
 
-/// What lies down of the hair, parts of the tuft's length, and what it measures across its motion; of hair that lands or
-/// leaves also across the hand's course.
+/// What lies down of the hair, parts of the tuft's length, and what it measures across its motion; of hair that lands
+/// or leaves also across the hand's course.
 struct Laid {
     Lying lies;
     Across across;
     double lands = 0, over_course = 0;  ///< metres, of that
 
     Laid(const Trail& trail, std::size_t begin, std::size_t end, const HairInk& ink)
-        : lies{trail.along[end - 1], trail.along[begin]}, across(trail, begin, end, ink.before, ink.way), lands(ink.lands) {
+        : lies{trail.along[end - 1], trail.along[begin]},
+          across(trail, begin, end, ink.before, ink.way),
+          lands(ink.lands) {
         const double size = glm::length(ink.course);
         for (std::size_t i = begin; i + 1 < end && size > 0; ++i) {
             const Vec2 run = trail.cuts[i + 1].centre - trail.cuts[i].centre;
@@ -134,7 +140,8 @@ Lying touching(const brush::Bundles& bundles, const brush::Bristle& b, double we
     return {part < 1 ? lies.begin + (1 - behind * behind) * rest : -4, part < 1 ? end - behind * behind * rest : end};
 }
 
-/// How much what the hand presses or lifts sweeps the hair at x aside, 0–1: off the way of the tuft, or with it off the course.
+/// How much what the hand presses or lifts sweeps the hair at x aside, 0–1: off the way of the tuft, or with it off the
+/// course.
 double swept_aside(const Across& across, double x, const HairInk& ink) {
     const double course = std::max(ink.swings, across.off_way(x, ink.course));
     const double off_course = std::max(std::min(course, across.off_itself(x)), course - kTrails);
@@ -146,17 +153,15 @@ double swept_aside(const Across& across, double x, const HairInk& ink) {
 std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& bundles, const HairInk& ink, double a,
                                const Laid& laid) {
     std::vector<Strand> strands;
-    std::sort(lower.begin(), lower.end(), [](const Lower& p, const Lower& q) {
-        return p.x != q.x ? p.x < q.x : p.bristle < q.bristle;
-    });
+    std::sort(lower.begin(), lower.end(),
+              [](const Lower& p, const Lower& q) { return p.x != q.x ? p.x < q.x : p.bristle < q.bristle; });
     const double spacing = 2 * a / std::max<double>(1, static_cast<double>(lower.size()));
     const auto wet_of = [&](const brush::Bristle& b) { return b.bundle < ink.wet.size() ? ink.wet[b.bundle] : 1; };
     double bridge_before = 0;
     for (std::size_t i = 0; i < lower.size(); ++i) {
         const brush::Bristle& b = *lower[i].bristle;
         const double aside = ink.lands > 0 ? swept_aside(laid.across, lower[i].x, ink) : 0;
-        const double wet = wet_of(b), own = breaks_at(bundles, b, ink.travel),
-                     breaks = own + aside * (1 - own);
+        const double wet = wet_of(b), own = breaks_at(bundles, b, ink.travel), breaks = own + aside * (1 - own);
         const double active = std::clamp((wet - std::min(breaks, 1 - kThinning)) / kThinning, 0.0, 1.0);
         if (!(active > 0)) continue;
         const double bridge = wet >= 1 ? 8 * a : active * std::max(kMark, kBridge * spacing * wet / (1 - wet));
@@ -167,12 +172,14 @@ std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& 
         const double past_hi = i + 1 == lower.size() ? skirt : mark;
         const double gap = strands.empty() ? 1e9 : (lower[i].x - strands.back().hi) * a;
         const bool bridged = gap <= bridge_before + bridge;
-        if (bridged && std::abs(strands.back().begin - on.begin) < kSameEnd && std::abs(strands.back().end - on.end) < kSameEnd) {
+        if (bridged && std::abs(strands.back().begin - on.begin) < kSameEnd &&
+            std::abs(strands.back().end - on.end) < kSameEnd) {
             strands.back().hi = lower[i].x;
             strands.back().past_hi = past_hi;
         } else {
             if (bridged) strands.back().past_hi = std::max(strands.back().past_hi, 0.5 * gap);
-            strands.push_back({lower[i].x, lower[i].x, bridged ? std::max(past_lo, 0.5 * gap) : past_lo, past_hi, on.begin, on.end});
+            strands.push_back(
+                {lower[i].x, lower[i].x, bridged ? std::max(past_lo, 0.5 * gap) : past_lo, past_hi, on.begin, on.end});
         }
         bridge_before = bridge;
     }
@@ -209,8 +216,12 @@ void draw_strands(const Trail& trail, std::size_t begin, std::size_t end, std::s
         // Ink reaches beyond the hair by a length of its own, so that the sides close where sections end in a point.
         const double most = kBeyond * widest;
         const double past_lo = std::min(strand.past_lo, most) / cell, past_hi = std::min(strand.past_hi, most) / cell;
-        const auto place = [&](std::size_t k) { return (on_surface(trail.cuts[at[k]], x) - zero) / cell + 0.5 * (past_hi - past_lo) * across[k]; };
-        const auto half_width = [&](std::size_t k) { return half * trail.cuts[at[k]].a / cell + 0.5 * (past_hi + past_lo); };
+        const auto place = [&](std::size_t k) {
+            return (on_surface(trail.cuts[at[k]], x) - zero) / cell + 0.5 * (past_hi - past_lo) * across[k];
+        };
+        const auto half_width = [&](std::size_t k) {
+            return half * trail.cuts[at[k]].a / cell + 0.5 * (past_hi + past_lo);
+        };
         // Pieces from tip to root; the first and the last may end between two cuts.
         const std::size_t last = at.size() - 1;
         std::size_t k = 0;
@@ -225,8 +236,10 @@ void draw_strands(const Trail& trail, std::size_t begin, std::size_t end, std::s
         bool first = true;
         for (; k < last && trail.along[at[k]] > strand.begin && trail.along[at[k + 1]] < strand.end; ++k) {
             const Vec2 p = place(k), q = place(k + 1);
-            const double r = half_width(k), s = half_width(k + 1), f = part_of(k, strand.end), g = part_of(k, strand.begin);
-            const double from = trail.along[at[k]] > strand.end ? f : 0, to = trail.along[at[k + 1]] < strand.begin ? g : 1;
+            const double r = half_width(k), s = half_width(k + 1), f = part_of(k, strand.end),
+                         g = part_of(k, strand.begin);
+            const double from = trail.along[at[k]] > strand.end ? f : 0,
+                         to = trail.along[at[k + 1]] < strand.begin ? g : 1;
             const Vec2 start = glm::mix(p, q, from);
             const double half_start = glm::mix(r, s, from);
             before = glm::mix(p, q, to);
@@ -276,8 +289,8 @@ double wetness_of_bundle(double saturation, double holds, double speed) {
     return saturation * holds / (kClosing * (1 + std::max(speed, 0.0) / kFastHair));
 }
 
-std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bundles& bundles,
-                                 int branches, std::span<const double> ends) {
+std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bundles& bundles, int branches,
+                                 std::span<const double> ends) {
     const std::size_t n = bundles.place.size(), cells = ends.size();
     std::vector<double> sum(n * cells, 0);
     const auto cell_at = [&](double along) {
@@ -301,18 +314,19 @@ std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bun
     return parts;
 }
 
-std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles, int branches) {
+std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles,
+                                                  int branches) {
     std::vector<HairContactPoint> found;
     for (const Trail& trail : trails)
         each_touch(trail, bundles, branches, [&](std::size_t k, std::size_t i, const Vec2& place, double length) {
-            found.push_back({static_cast<std::uint32_t>(k), on_surface(trail.cuts[i], place.x), trail.along[i], length});
+            found.push_back(
+                {static_cast<std::uint32_t>(k), on_surface(trail.cuts[i], place.x), trail.along[i], length});
         });
     return found;
 }
 
-HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> outlines,
-                     const brush::Bundles& bundles, int branches, const HairInk& ink,
-                     const Frame& frame, std::uint32_t triangle, double cell) {
+HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> outlines, const brush::Bundles& bundles,
+                     int branches, const HairInk& ink, const Frame& frame, std::uint32_t triangle, double cell) {
     HairMarks result{rasterise(outlines, frame, triangle, cell), 0};
     Footprint& f = result.footprint;
     if (f.empty()) return result;

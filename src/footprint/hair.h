@@ -16,8 +16,8 @@ namespace tuft::footprint {
 /// cell that lies on the surface. A bundle lies on it where it is in the lower half of its
 /// section and the section's underside at its place is at or below the surface. Where no bundle
 /// does, the foremost cells share. `ends` is that of brush::hair_cells.
-std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bundles& bundles,
-                                 int branches, std::span<const double> ends);
+std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bundles& bundles, int branches,
+                                 std::span<const double> ends);
 
 /// A cluster of a bundle that lies on the surface.
 struct HairContactPoint {
@@ -28,7 +28,8 @@ struct HairContactPoint {
 };
 
 /// The clusters that `contact_cells` counts, one by one. About 10 µs.
-std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles, int branches);
+std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles,
+                                                  int branches);
 
 /// How wet the hair is where it touches.
 struct HairInk {
@@ -36,10 +37,12 @@ struct HairInk {
                                   ///< gaps between its hairs; 1 and more: closed
     double travel = 0;            ///< metres of the stroke so far: bristles roll as they are drawn
     Vec2 way{0};                  ///< unit, where the tuft is drawn, in the stamp's (u, v); zero: it stands
-    std::span<const Trail> before = {};  ///< of the stamp before, in this one's frame: each hair's own way; none: all go `way`
-    double lands = 0;             ///< 0–1: how much of the hand's motion is pressing or lifting
-    Vec2 course{0};               ///< where the hand goes, but for what it goes by pressing and lifting, any length, in (u, v); zero: nowhere
-    double swings = 0;            ///< 0–1: sine of the angle between the way of the tuft over its last millimetre and `course`
+    std::span<const Trail> before =
+        {};             ///< of the stamp before, in this one's frame: each hair's own way; none: all go `way`
+    double lands = 0;   ///< 0–1: how much of the hand's motion is pressing or lifting
+    Vec2 course{0};     ///< where the hand goes, but for what it goes by pressing and lifting, any length, in (u, v);
+                        ///< zero: nowhere
+    double swings = 0;  ///< 0–1: sine of the angle between the way of the tuft over its last millimetre and `course`
 };
 
 /// Film that a bundle brings over the film that closes its gaps,
@@ -57,10 +60,10 @@ struct HairMarks {
 
 /// Picture of the bristles' marks inside the outlines of the trails. Each bristle of the lower half that gives
 /// ink leaves a streak along the hair, 90 µm wide, as thick as hair with the ink that clings to it; between
-/// bristles side by side it closes gaps of wet / (1 − wet) mean spacings. A bristle gives ink or none: the thread under it
-/// breaks where its bundle's wetness falls below what it needs, which differs from one to the next, the less ready
-/// ones first, and along the way, over 12 mm for all of a bundle and over 4 mm for it alone. Dry hair touches with a part of what
-/// lies down of it,
+/// bristles side by side it closes gaps of wet / (1 − wet) mean spacings. A bristle gives ink or none: the thread under
+/// it breaks where its bundle's wetness falls below what it needs, which differs from one to the next, the less ready
+/// ones first, and along the way, over 12 mm for all of a bundle and over 4 mm for it alone. Dry hair touches with a
+/// part of what lies down of it,
 ///
 ///     0.1 + 1.25 wet²,   and no more than measures max(1, wet / (2 (1 − wet)²)) streaks across its motion (`Across`):
 ///
@@ -72,10 +75,11 @@ struct HairMarks {
 ///
 ///     lands S((max(sin ψ, min(sin φ, sin χ), sin φ − 0.25) − 0.08) / 0.27)
 ///
-/// of what its need lacks to 1 more wetness, ψ the angle between the hair's way and the tuft's, φ that of the hair's way or
-/// of the tuft's over its last millimetre, the larger one, to the course, χ that of the hair's way to itself, S the smooth step.
-/// Hair that trails behind the hand round a curve goes off the course, but along itself, and draws together where the stroke
-/// runs out: both go on to its end. While the hand presses or lifts hair touches with no more than measures
+/// of what its need lacks to 1 more wetness, ψ the angle between the hair's way and the tuft's, φ that of the hair's
+/// way or of the tuft's over its last millimetre, the larger one, to the course, χ that of the hair's way to itself, S
+/// the smooth step. Hair that trails behind the hand round a curve goes off the course, but along itself, and draws
+/// together where the stroke runs out: both go on to its end. While the hand presses or lifts hair touches with no more
+/// than measures
 ///
 ///     max(1, (1 − 0.75 lands) wet / (2 (1 − wet)²))
 ///
@@ -83,9 +87,9 @@ struct HairMarks {
 /// and end ragged, along themselves.
 ///
 /// All this is of the hair and of the way, in metres, and the same for any sampling and texel. Areas are exact at the
-/// edges. As the wetness of every bundle goes to 1 it closes into the picture of `rasterise`. All 500 bristles: about 0.2 ms.
-HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> outlines,
-                     const brush::Bundles& bundles, int branches, const HairInk& ink,
-                     const Frame& frame, std::uint32_t triangle, double cell);
+/// edges. As the wetness of every bundle goes to 1 it closes into the picture of `rasterise`. All 500 bristles: about
+/// 0.2 ms.
+HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> outlines, const brush::Bundles& bundles,
+                     int branches, const HairInk& ink, const Frame& frame, std::uint32_t triangle, double cell);
 
 }  // namespace tuft::footprint

@@ -10,15 +10,14 @@
 namespace tuft::footprint {
 namespace {
 
-constexpr double kFewFolds = 0.01;  // of the clusters: fewer are left where the walk placed them
-constexpr double kBeyond = 1.1;     // of the reach: clusters that begin there
+constexpr double kFewFolds = 0.01;             // of the clusters: fewer are left where the walk placed them
+constexpr double kBeyond = 1.1;                // of the reach: clusters that begin there
 constexpr std::size_t kMostWindows = 120'000;  // some 20 ms
-constexpr double kBeside = 1e-3;  // of a triangle: what places in the atlas are rounded by
+constexpr double kBeside = 1e-3;               // of a triangle: what places in the atlas are rounded by
 
 Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
     const Vec3 a = mesh.position(triangle, 0);
-    return glm::normalize(
-        glm::cross(mesh.position(triangle, 1) - a, mesh.position(triangle, 2) - a));
+    return glm::normalize(glm::cross(mesh.position(triangle, 1) - a, mesh.position(triangle, 2) - a));
 }
 
 /// Appearance for centres of clusters in a triangle: of those whose place in the atlas has a centre
@@ -40,17 +39,16 @@ class Seating {
         const std::int64_t x1 = tile(hi.x), y1 = tile(hi.y);
         for (std::int64_t y = tile(lo.y); y <= y1; ++y)
             for (std::int64_t x = tile(lo.x); x <= x1; ++x) {
-                const std::uint32_t slot = surface_.texels.slot_of_tile[static_cast<std::size_t>(
-                    y * surface_.texels.tiles_per_side + x)];
+                const std::uint32_t slot =
+                    surface_.texels.slot_of_tile[static_cast<std::size_t>(y * surface_.texels.tiles_per_side + x)];
                 if (slot == kNone) continue;
                 const auto& first = surface_.texels.cluster_start;
                 for (std::uint32_t i = first[slot]; i < first[slot + 1]; ++i) {
                     const atlas::TexelCluster& cluster = surface_.clusters.clusters[i];
                     if (cluster.chart != surface_.atlas.triangle_chart[t]) continue;
-                    const Vec2 d =
-                        Vec2(double(x) * atlas::kTile + cluster.centre_texel % atlas::kTile + 0.5,
-                             double(y) * atlas::kTile + cluster.centre_texel / atlas::kTile + 0.5) -
-                        a;
+                    const Vec2 d = Vec2(double(x) * atlas::kTile + cluster.centre_texel % atlas::kTile + 0.5,
+                                        double(y) * atlas::kTile + cluster.centre_texel / atlas::kTile + 0.5) -
+                                   a;
                     sit(i, t, (d.x * c.y - d.y * c.x) / det, (b.x * d.y - b.y * d.x) / det);
                 }
             }
@@ -59,16 +57,14 @@ class Seating {
   private:
     std::int64_t tile(double texels) const {
         const auto last = static_cast<std::int64_t>(surface_.texels.tiles_per_side) - 1;
-        return std::clamp(static_cast<std::int64_t>(std::floor(texels / atlas::kTile)),
-                          std::int64_t{0}, last);
+        return std::clamp(static_cast<std::int64_t>(std::floor(texels / atlas::kTile)), std::int64_t{0}, last);
     }
 
     void sit(std::uint32_t cluster, std::uint32_t t, double w1, double w2) {
         const double w0 = 1 - w1 - w2;
         if (std::min({w0, w1, w2}) < -kBeside) return;
         const Vec3 off = w0 * surface_.mesh.position(t, 0) + w1 * surface_.mesh.position(t, 1) +
-                         w2 * surface_.mesh.position(t, 2) -
-                         Vec3(surface_.clusters.clusters[cluster].centre);
+                         w2 * surface_.mesh.position(t, 2) - Vec3(surface_.clusters.clusters[cluster].centre);
         entries_.insert(cluster, t, glm::dot(off, off));
     }
 
@@ -87,8 +83,8 @@ struct OccludedClusters {
         const mesh::ExactGeodesics::Geodesic way = ways.to(triangle, Vec3(cluster.centre));
         if (!std::isfinite(way.length)) return false;
         const Vec2 leaves = atlas::carried_direction(from, way.leaves, normal);
-        const Vec2 arrives = atlas::carried_direction(atlas::frame_of(cluster), way.arrives,
-                                                      face_normal(mesh, triangle));
+        const Vec2 arrives =
+            atlas::carried_direction(atlas::frame_of(cluster), way.arrives, face_normal(mesh, triangle));
         n.u = static_cast<float>(way.length * leaves.x);
         n.v = static_cast<float>(way.length * leaves.y);
         n.c = static_cast<float>(glm::dot(leaves, arrives));
@@ -112,8 +108,8 @@ void TriangleCache::insert(std::uint32_t cluster, std::uint32_t triangle, double
         entries_[entry] = {triangle, off2};
 }
 
-void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Frame& from,
-                 const Reach& reach, const Start& start, std::size_t occluded, PlanScratch& scratch) {
+void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Frame& from, const Reach& reach,
+                      const Start& start, std::size_t occluded, PlanScratch& scratch) {
     const auto n_clusters = static_cast<double>(scratch.reached.size());
     if (occluded == 0 || static_cast<double>(occluded) < kFewFolds * n_clusters) return;
     mesh::ExactGeodesics& ways = scratch.ways;
@@ -134,8 +130,7 @@ void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Fram
         const bool placed = occluded_clusters.place(cluster, scratch.triangle_cache.of(index), n);
         const float distance = std::sqrt(n.u * n.u + n.v * n.v);
         if (index != start.cluster &&
-            (!placed || distance - kPieceSlack * cluster.radius > reach.radius ||
-             faces_away(reach, cluster)))
+            (!placed || distance - kPieceSlack * cluster.radius > reach.radius || faces_away(reach, cluster)))
             continue;
         if (in_picture(reach, cluster, n)) scratch.reached.push_back(index);
         for (std::uint32_t k = graph.edge_start[index]; k < graph.edge_start[index + 1]; ++k) {

@@ -13,7 +13,7 @@ namespace tuft::footprint {
 /// turned as the way arrives. Behind a corner, where all ways leave in one direction, lengths hold
 /// and pictures are drawn out. Cost: nothing where nothing folds, else 1.5 µs a triangle within
 /// reach; where that would be more than 20 ms, the places of the walk stay.
-void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Frame& from,
-                 const Reach& reach, const Start& start, std::size_t occluded, PlanScratch& scratch);
+void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Frame& from, const Reach& reach,
+                      const Start& start, std::size_t occluded, PlanScratch& scratch);
 
 }  // namespace tuft::footprint

@@ -27,8 +27,7 @@ const std::array<Vec2, kDirections>& directions() {
 /// first and last are its cut points Q±, unless all of it lies below.
 void add_shadow(const Cut& cut, std::vector<Vec2>& corners) {
     const double p = cut.a * cut.e.z, q = cut.b * cut.m.z, height = std::sqrt(p * p + q * q);
-    const double level =
-        height > 0 ? std::clamp(-cut.z / height, -1.0, 1.0) : (cut.z <= 0 ? 1 : -1);
+    const double level = height > 0 ? std::clamp(-cut.z / height, -1.0, 1.0) : (cut.z <= 0 ? 1 : -1);
     const double cos_f = height > 0 ? p / height : 1, sin_f = height > 0 ? q / height : 0;
     const double sin_l = std::sqrt(std::max(0.0, 1 - level * level));
     // Q± at φ ± acos(level); below the surface is what lies between them on the far side.
@@ -41,12 +40,9 @@ void add_shadow(const Cut& cut, std::vector<Vec2>& corners) {
     };
     // They are taken in order from Q+ on: from where those below the surface begin.
     int first = 0;
-    while (first < kDirections &&
-           !(below(first) && !below((first + kDirections - 1) % kDirections)))
-        ++first;
+    while (first < kDirections && !(below(first) && !below((first + kDirections - 1) % kDirections))) ++first;
     if (first == kDirections)
-        first = static_cast<int>(std::ceil(std::atan2(from.y, from.x) * kDirections / (2 * kPi))) +
-                kDirections;
+        first = static_cast<int>(std::ceil(std::atan2(from.y, from.x) * kDirections / (2 * kPi))) + kDirections;
     for (int k = 0; k < kDirections; ++k) {
         const int at = (first + k) % kDirections;
         if (below(at)) corners.push_back(cut.at(directions()[at].x, directions()[at].y));
@@ -78,8 +74,7 @@ Vec2 forward_direction(const std::vector<Cut>& cuts) {
 class Envelope {
   public:
     Envelope(double lo, double hi, int n) : x_(n), top_(n, -kFar), bottom_(n, kFar) {
-        for (int j = 0; j < n; ++j)
-            x_[j] = 0.5 * (lo + hi) - 0.5 * (hi - lo) * std::cos(kPi * (j + 1) / (n + 1));
+        for (int j = 0; j < n; ++j) x_[j] = 0.5 * (lo + hi) - 0.5 * (hi - lo) * std::cos(kPi * (j + 1) / (n + 1));
     }
 
     void add(Vec2 p, Vec2 q) {
@@ -194,8 +189,7 @@ Outline outline_of(const Trail& trail, int points) {
     return outline;
 }
 
-std::vector<NodePlanes> node_planes(const brush::TuftState& tuft,
-                                    std::span<const brush::ContactPlane> planes) {
+std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes) {
     const auto& branches = tuft.branches;
     if (planes.size() == 1) {
         std::vector<NodePlanes> same;
@@ -221,8 +215,8 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft,
     return dealt;
 }
 
-std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame,
-                             std::span<const NodePlanes> planes, const OutlineOptions& options) {
+std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
+                             const OutlineOptions& options) {
     std::vector<Outline> outlines;
     for (const Trail& trail : trails(tuft, frame, planes, 0, options.film)) {
         Outline o = outline_of(trail, options.points);

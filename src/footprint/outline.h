@@ -32,8 +32,7 @@ using NodePlanes = std::vector<brush::ContactPlane>;
 
 /// Deals the planes of `brush::predicted_nodes` (whole spine, then sub-spines) out to the
 /// branches of the tuft. Empty when their number fits no such tuft.
-std::vector<NodePlanes> node_planes(const brush::TuftState& tuft,
-                                    std::span<const brush::ContactPlane> planes);
+std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes);
 
 /// One outline for each stretch of each branch that touches. Section i at height z with
 /// semi-axes a along e, b along m is cut where |z| ≤ A = √(a² (e·n)² + b² (m·n)²), at
@@ -43,8 +42,7 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft,
 /// surface counts with the shadow it casts on it. With `planes` (one entry per branch)
 /// each node is cut by the surface it meets and its cut points are laid out along the
 /// surface by the log map; without, the plane is that of `frame`.
-std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame,
-                             std::span<const NodePlanes> planes = {},
+std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes = {},
                              const OutlineOptions& options = {});
 
 /// Points of the curve, `per_span` for each cut point.
@@ -53,7 +51,6 @@ std::vector<Vec2> curve_points(const Outline& outline, int per_span = 4);
 /// Picture of the outlines' union with exact area coverage. `cell` in metres: about a texel
 /// or finer; doubled until the picture has at most 4096 cells a side, when a texel is small
 /// against the tuft. Empty when there is nothing.
-Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle,
-                    double cell);
+Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle, double cell);
 
 }  // namespace tuft::footprint

@@ -14,8 +14,7 @@ namespace {
 TUFT_CLONES void pack_rows(const std::uint8_t* __restrict low, const std::uint8_t* __restrict high,
                            std::uint16_t* __restrict out, std::size_t n) {
 #pragma omp simd
-    for (std::size_t i = 0; i < n; ++i)
-        out[i] = static_cast<std::uint16_t>(low[i] | high[i] << 8);
+    for (std::size_t i = 0; i < n; ++i) out[i] = static_cast<std::uint16_t>(low[i] | high[i] << 8);
 }
 
 /// Bits that all, and bits that any of four rows have set, column by column.
@@ -30,8 +29,7 @@ TUFT_CLONES void column_bits(const std::uint8_t* __restrict row0, const std::uin
 }
 
 /// Eight rows of eight cells become columns: corners change places, in squares of 4, of 2 and of 1.
-void turn_square(const std::uint8_t* in, std::ptrdiff_t next_in, std::uint8_t* out,
-                 std::ptrdiff_t next_out) {
+void turn_square(const std::uint8_t* in, std::ptrdiff_t next_in, std::uint8_t* out, std::ptrdiff_t next_out) {
     std::uint64_t row[8];
     for (int k = 0; k < 8; ++k) std::memcpy(&row[k], in + k * next_in, 8);
     const auto swap = [](std::uint64_t& a, std::uint64_t& b, int shift, std::uint64_t low) {
@@ -74,8 +72,8 @@ struct Blocks {
             const float from = low > 0.0f ? low : 0.0f, to = high > 0.0f ? high : 0.0f;
             first[k] = static_cast<int>(from < height ? from : height);
             end[k] = static_cast<int>(to < height ? to : height);
-            const bool inside = (cx[k] - cr[k] >= 0) & (cy[k] - cr[k] >= 0) & (cx[k] + cr[k] <= last_x) &
-                                (cy[k] + cr[k] <= last_y);
+            const bool inside =
+                (cx[k] - cr[k] >= 0) & (cy[k] - cr[k] >= 0) & (cx[k] + cr[k] <= last_x) & (cy[k] + cr[k] <= last_y);
             met[k] = inside ? 0u : 1u;
             const int span = end[k] - first[k];
             rows = span > rows ? span : rows;
@@ -103,7 +101,8 @@ struct Blocks {
 
 using Count = void (*)(const Blocks&, const float*, const float*, const float*, std::uint32_t*, std::size_t);
 
-void count_baseline(const Blocks& b, const float* x, const float* y, const float* r, std::uint32_t* found, std::size_t n) {
+void count_baseline(const Blocks& b, const float* x, const float* y, const float* r, std::uint32_t* found,
+                    std::size_t n) {
     count_blocks(b, x, y, r, found, n);
 }
 
@@ -146,8 +145,7 @@ void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs)
     pack_rows(footprint.coverage.data(), footprint.coverage.data() + row, pairs.data(), pairs.size());
 }
 
-void turn_over(std::span<const std::uint8_t> cells, int width, int height,
-               std::vector<std::uint8_t>& turned) {
+void turn_over(std::span<const std::uint8_t> cells, int width, int height, std::vector<std::uint8_t>& turned) {
     constexpr int kSide = 8;
     turned.resize(static_cast<std::size_t>(width) * height);
     const auto in = [&](int x, int y) { return cells.data() + static_cast<std::ptrdiff_t>(y) * width + x; };

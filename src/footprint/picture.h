@@ -19,8 +19,7 @@ Isa best_isa();  ///< of this machine
 void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs);
 
 /// The picture [width * height] with its columns as rows, [height * width]. Cost: 0.1 ns a cell.
-void turn_over(std::span<const std::uint8_t> cells, int width, int height,
-               std::vector<std::uint8_t>& turned);
+void turn_over(std::span<const std::uint8_t> cells, int width, int height, std::vector<std::uint8_t>& turned);
 
 enum class Cover : std::uint8_t { mixed, empty, full };
 
@@ -64,11 +63,11 @@ class BlockTally {
     void look(Discs& discs, Isa isa) const;
 
   private:
-    int width_ = 0, height_ = 0;              // blocks
-    int cells_x_ = 0, cells_y_ = 0;           // whole cells
-    std::vector<std::uint32_t> to_left_;      // [height (width + 1)] blocks to the left that are not
-                                              // full, and in the upper half: not empty
-    std::vector<std::uint32_t> all_, any_;    // [width] bits of the cells of a block
+    int width_ = 0, height_ = 0;            // blocks
+    int cells_x_ = 0, cells_y_ = 0;         // whole cells
+    std::vector<std::uint32_t> to_left_;    // [height (width + 1)] blocks to the left that are not
+                                            // full, and in the upper half: not empty
+    std::vector<std::uint32_t> all_, any_;  // [width] bits of the cells of a block
 };
 
 }  // namespace tuft::footprint

@@ -11,15 +11,17 @@ namespace {
 
 constexpr float kEverywhere = 1e9f;  // cells
 
-constexpr int texel(int row, int column) { return row * atlas::kTile + column; }
+constexpr int texel(int row, int column) {
+    return row * atlas::kTile + column;
+}
 
 /// By quadrant: the two texels next to the middle, then the corners.
 constexpr std::array<std::array<int, 6>, kQuadrants> kTexels = [] {
     std::array<std::array<int, 6>, kQuadrants> t{};
     for (int q = 0; q < kQuadrants; ++q) {
         const int first = texel(8 * (q / 2), 8 * (q % 2));
-        t[q] = {first + texel(3, 3), first + texel(4, 4), first, first + texel(0, 7), first + texel(7, 0),
-                first + texel(7, 7)};
+        t[q] = {first + texel(3, 3), first + texel(4, 4), first,
+                first + texel(0, 7), first + texel(7, 0), first + texel(7, 7)};
     }
     return t;
 }();
@@ -56,16 +58,21 @@ Quarters quadrants_of(Position position, Normal normal) {
 Quarters quadrants_of(const atlas::TexelMap& texels, std::uint32_t slot) {
     if (!texels.packed.empty())
         return quadrants_of([&](int t) { return texels.position(slot, t); },
-                           [&](int t) { return texels.normal(slot, t); });
+                            [&](int t) { return texels.normal(slot, t); });
     const atlas::TexelShape& s = texels.shapes[slot];
-    return quadrants_of([&](int t) { return Vec3f{s.px[t], s.py[t], s.pz[t]}; },
-                       [&](int t) { return Vec3f{s.nx[t], s.ny[t], s.nz[t]}; });
+    return quadrants_of(
+        [&](int t) {
+            return Vec3f{s.px[t], s.py[t], s.pz[t]};
+        },
+        [&](int t) {
+            return Vec3f{s.nx[t], s.ny[t], s.nz[t]};
+        });
 }
 
 }  // namespace
 
 bool add_quadrants(const ClusterFrame& frame, std::int32_t cluster, const atlas::TexelMap& texels, std::uint32_t slot,
-                  const SweptDisplacement& drift, Discs& discs) {
+                   const SweptDisplacement& drift, Discs& discs) {
     const std::uint8_t* id = texels.tiles[slot].cluster.data();
     for (const auto& quadrant : kTexels)
         for (const int t : quadrant)

@@ -26,7 +26,7 @@ inline constexpr int kQuadrants = 4;
 /// Adds a disc for each quadrant of a tile with all that the picture may have over it, where `frame` maps
 /// the texels. False, and none, where the quadrants' middles and corners are not all of this cluster.
 bool add_quadrants(const ClusterFrame& frame, std::int32_t cluster, const atlas::TexelMap& texels, std::uint32_t slot,
-                  const SweptDisplacement& drift, Discs& discs);
+                   const SweptDisplacement& drift, Discs& discs);
 
 /// Sorts the quadrants of a cluster into full ones, empty ones and the rest by their discs from `first` on.
 void sort_quadrants(const Discs& discs, std::size_t first, ClusterFrame& frame);

@@ -20,8 +20,8 @@ struct BorderCell {
 
 /// Collects the border cells of outlines; costs grow with the border, not with the area.
 struct Border {
-    int height;                      ///< rows
-    std::vector<BorderCell> cells;   ///< as drawn
+    int height;                     ///< rows
+    std::vector<BorderCell> cells;  ///< as drawn
 
     /// Part of an edge inside one cell.
     void add_in_cell(int i, int j, double x0, double x1, double dy) {
@@ -122,8 +122,8 @@ Footprint disc(const Frame& frame, std::uint32_t triangle, double radius, double
     result.cell = cell;
     const double half = std::ceil(radius / cell) + 2;
     if (!(half >= 2 && 2 * half <= kMaxCells))
-        throw Error("a disc of " + std::to_string(1e3 * radius) + " mm does not fit into " +
-                    std::to_string(kMaxCells) + " texels: use a larger texel size");
+        throw Error("a disc of " + std::to_string(1e3 * radius) + " mm does not fit into " + std::to_string(kMaxCells) +
+                    " texels: use a larger texel size");
     result.width = result.height = static_cast<int>(2 * half);
     result.lo = Vec2{-half * cell};
     result.radius = radius + cell;
@@ -131,15 +131,13 @@ Footprint disc(const Frame& frame, std::uint32_t triangle, double radius, double
     for (int j = 0; j < result.height; ++j) {
         for (int i = 0; i < result.width; ++i) {
             const double out = glm::length(Vec2(i, j) + 0.5 - half) - radius / cell;
-            result.coverage.push_back(
-                static_cast<std::uint8_t>(std::clamp(0.5 - out, 0.0, 1.0) * 255 + 0.5));
+            result.coverage.push_back(static_cast<std::uint8_t>(std::clamp(0.5 - out, 0.0, 1.0) * 255 + 0.5));
         }
     }
     return result;
 }
 
-Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle,
-                    double cell) {
+Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle, double cell) {
     Footprint result;
     result.frame = frame;
     result.triangle = triangle;
@@ -171,8 +169,7 @@ Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::
     border.cells.reserve(4 * static_cast<std::size_t>(result.width + result.height));
     for (auto& curve : curves) {
         for (Vec2& p : curve) p = p / cell - first;
-        for (std::size_t k = 0; k < curve.size(); ++k)
-            border.add(curve[k], curve[(k + 1) % curve.size()]);
+        for (std::size_t k = 0; k < curve.size(); ++k) border.add(curve[k], curve[(k + 1) % curve.size()]);
     }
     result.coverage.resize(static_cast<std::size_t>(result.width) * result.height);
     border.resolve(result.width, result.coverage.data());

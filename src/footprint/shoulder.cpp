@@ -55,7 +55,8 @@ struct Blocks {
     int width = 0, height = 0;
     std::vector<float> far;
 
-    Blocks(const Footprint& f, int part) : width((f.width + part - 1) / part + 2), height((f.height + part - 1) / part + 2) {
+    Blocks(const Footprint& f, int part)
+        : width((f.width + part - 1) / part + 2), height((f.height + part - 1) / part + 2) {
         far.assign(std::size_t(width) * height, 0);
         std::vector<std::uint32_t> sum(far.size(), 0);
         for (int y = 0; y < f.height; ++y) {

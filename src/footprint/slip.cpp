@@ -6,8 +6,7 @@
 namespace tuft::footprint {
 namespace {
 
-constexpr double kStill =
-    1e-7;  // metres from stamp to stamp: less is no motion but round-off of hair that sticks
+constexpr double kStill = 1e-7;  // metres from stamp to stamp: less is no motion but round-off of hair that sticks
 
 /// Middle and half width of a trail between its cuts.
 struct Place {
@@ -17,11 +16,9 @@ struct Place {
 Place place_at(const Trail& trail, double along) {
     const std::vector<double>& a = trail.along;  // falls
     const auto after = std::lower_bound(a.begin(), a.end(), along, std::greater<>());
-    const std::size_t j = std::clamp<std::size_t>(static_cast<std::size_t>(after - a.begin()), 1,
-                                                  a.size() - 1),
+    const std::size_t j = std::clamp<std::size_t>(static_cast<std::size_t>(after - a.begin()), 1, a.size() - 1),
                       i = j - 1;
-    const double run = a[i] - a[j],
-                 f = run > 1e-12 ? std::clamp((a[i] - along) / run, 0.0, 1.0) : 0;
+    const double run = a[i] - a[j], f = run > 1e-12 ? std::clamp((a[i] - along) / run, 0.0, 1.0) : 0;
     const Cut &p = trail.cuts[i], &q = trail.cuts[j];
     return {glm::mix(p.centre, q.centre, f), glm::mix(p.a * Vec2(p.e), q.a * Vec2(q.e), f)};
 }
@@ -32,8 +29,8 @@ const Trail* same_hair(const Trail& trail, std::span<const Trail> before) {
     double most = 0;
     for (const Trail& b : before) {
         if (b.branch != trail.branch || b.cuts.size() < 2) continue;
-        const double common = std::min(b.along.front(), trail.along.front()) -
-                              std::max(b.along.back(), trail.along.back());
+        const double common =
+            std::min(b.along.front(), trail.along.front()) - std::max(b.along.back(), trail.along.back());
         if (common > most) most = common, best = &b;
     }
     return best;
@@ -54,8 +51,7 @@ void change_frame(std::vector<Trail>& trails, const Frame& from, const Frame& to
         }
 }
 
-Across::Across(const Trail& trail, std::size_t begin, std::size_t end,
-               std::span<const Trail> before, const Vec2& way) {
+Across::Across(const Trail& trail, std::size_t begin, std::size_t end, std::span<const Trail> before, const Vec2& way) {
     const Trail* was = same_hair(trail, before);
     for (std::size_t i = begin; i + 1 < end; ++i) {
         const Vec2 run = trail.cuts[i + 1].centre - trail.cuts[i].centre;
@@ -66,9 +62,9 @@ Across::Across(const Trail& trail, std::size_t begin, std::size_t end,
             continue;
         }
         // Hair that only now touches goes as its neighbour does.
-        const double along = std::clamp(0.5 * (trail.along[i] + trail.along[i + 1]),
-                                        std::max(trail.along.back(), was->along.back()),
-                                        std::min(trail.along.front(), was->along.front()));
+        const double along =
+            std::clamp(0.5 * (trail.along[i] + trail.along[i + 1]), std::max(trail.along.back(), was->along.back()),
+                       std::min(trail.along.front(), was->along.front()));
         const Place p = place_at(*was, along), q = place_at(trail, along);
         const Vec2 middle = q.centre - p.centre, spread = q.half - p.half;
         for (std::size_t k = 0; k < kPlaces; ++k) {

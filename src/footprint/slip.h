@@ -22,8 +22,7 @@ class Across {
   public:
     /// For cuts [begin, end) of a trail. `before`: the trails of the stamp before in the same
     /// frame; where none goes with this one, all hair goes along `way` (unit, or zero).
-    Across(const Trail& trail, std::size_t begin, std::size_t end, std::span<const Trail> before,
-           const Vec2& way);
+    Across(const Trail& trail, std::size_t begin, std::size_t end, std::span<const Trail> before, const Vec2& way);
 
     /// Of hair at x in [-1, 1] along the sections' e, metres.
     double at(double x) const;

@@ -15,11 +15,10 @@ namespace tuft::footprint {
 namespace {
 
 constexpr float kSureCos = 0.8f, kSureNormal = 0.3f;  // clusters that surely face the stamp
-constexpr double kShadow = 0.1;  // of its distance: what a cluster behind an opening may be off by
+constexpr double kShadow = 0.1;                       // of its distance: what a cluster behind an opening may be off by
 
 /// Frame of texels whose log map in `frame` lands at `place` + turn · (u, v) in the stamp.
-ClusterFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& turn,
-                         const Footprint& footprint) {
+ClusterFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& turn, const Footprint& footprint) {
     ClusterFrame f;
     const double scale = 1 / footprint.cell;
     f.origin = Vec3f(frame.origin);
@@ -32,8 +31,7 @@ ClusterFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& tu
 }
 
 /// Sub-poses for no point to go further than `sub_pose` between them; 0: nothing moves.
-double poses_wanted(const Footprint& footprint, const Motion& motion, double texel_size,
-                    const StampOptions& options) {
+double poses_wanted(const Footprint& footprint, const Motion& motion, double texel_size, const StampOptions& options) {
     const double travel = glm::length(motion.shift) + std::abs(motion.turn) * footprint.radius;
     if (!(travel > 0)) return 0;
     const double step = options.sub_pose * texel_size;
@@ -42,12 +40,11 @@ double poses_wanted(const Footprint& footprint, const Motion& motion, double tex
 
 /// Poses of the picture at the middles of equal parts of the motion. At a part σ before
 /// its end a texel at (u, v) sees the picture's point x = R(σ turn) ((u, v) + σ shift).
-std::vector<SubPose> spread_poses(const Footprint& footprint, const Motion& motion,
-                                  double texel_size, const StampOptions& options) {
+std::vector<SubPose> spread_poses(const Footprint& footprint, const Motion& motion, double texel_size,
+                                  const StampOptions& options) {
     const double wanted = poses_wanted(footprint, motion, texel_size, options);
     if (!(wanted > 0)) return {SubPose{}};
-    const int n =
-        static_cast<int>(std::clamp(wanted, 1.0, double(std::max(options.max_sub_poses, 1))));
+    const int n = static_cast<int>(std::clamp(wanted, 1.0, double(std::max(options.max_sub_poses, 1))));
     std::vector<SubPose> poses(n);
     const Vec2 zero = footprint.lo / footprint.cell + 0.5;  // cell (0, 0) in cells from the origin
     for (int k = 0; k < n; ++k) {
@@ -55,7 +52,11 @@ std::vector<SubPose> spread_poses(const Footprint& footprint, const Motion& moti
         const double c = std::cos(rest * motion.turn), s = std::sin(rest * motion.turn);
         const Vec2 p = zero + rest * motion.shift / footprint.cell;
         const auto cos = static_cast<float>(c), sin = static_cast<float>(s);
-        poses[k] = {cos, -sin, sin, cos, static_cast<float>(c * p.x - s * p.y - zero.x),
+        poses[k] = {cos,
+                    -sin,
+                    sin,
+                    cos,
+                    static_cast<float>(c * p.x - s * p.y - zero.x),
                     static_cast<float>(s * p.x + c * p.y - zero.y)};
     }
     return poses;
@@ -75,10 +76,8 @@ Reach reach_of(const Footprint& footprint, const Motion& motion) {
 
 /// Distance between where one stamp frame and the walk put a cluster's centre, metres.
 double disagreement(const Frame& frame, const atlas::TexelCluster& cluster, const PlanScratch::Node& n) {
-    if (glm::dot(Vec3(cluster.normal), frame.n) <= atlas::kLogMapMinCos)
-        return std::numeric_limits<double>::infinity();
-    return glm::length(atlas::log_map(frame, Vec3(cluster.centre), Vec3(cluster.normal)) -
-                       Vec2(n.u, n.v));
+    if (glm::dot(Vec3(cluster.normal), frame.n) <= atlas::kLogMapMinCos) return std::numeric_limits<double>::infinity();
+    return glm::length(atlas::log_map(frame, Vec3(cluster.centre), Vec3(cluster.normal)) - Vec2(n.u, n.v));
 }
 
 bool surely_faces(const atlas::TexelCluster& cluster, const Vec3f& normal) {
@@ -87,8 +86,8 @@ bool surely_faces(const atlas::TexelCluster& cluster, const Vec3f& normal) {
 
 /// Where the texels of the reached clusters may lie in either mode and in whatever pose, and the next
 /// cell; with the disagreement of the modes.
-void cover_of_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint, const Motion& motion,
-                     Isa isa, PlanScratch& scratch) {
+void cover_of_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint, const Motion& motion, Isa isa,
+                       PlanScratch& scratch) {
     const auto cell = static_cast<float>(footprint.cell);
     const Vec2f zero = Vec2f(footprint.lo / footprint.cell + 0.5);
     const Vec2f half_way = Vec2f(0.5 * motion.shift);
@@ -110,7 +109,7 @@ void cover_of_clusters(const atlas::ClusterGraph& graph, const Footprint& footpr
 /// Lists the reached clusters that the picture may cover, with what is known of its coverage
 /// there, and takes the greatest disagreement; scratch.reached is left with those listed.
 void list_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint, const Motion& motion,
-                 PlanScratch& scratch, StampJobs& jobs) {
+                   PlanScratch& scratch, StampJobs& jobs) {
     scratch.tally.count(footprint);
     cover_of_clusters(graph, footprint, motion, jobs.isa, scratch);
     const Vec3f normal(footprint.frame.n);
@@ -160,13 +159,13 @@ void stretch_frame(ClusterFrame& f, const PlanScratch::Node& at) {
 }
 
 /// Gives each cluster the frame it needs when they have their own.
-void place_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint,
-                  const PlanScratch& scratch, StampJobs& jobs) {
+void place_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint, const PlanScratch& scratch,
+                    StampJobs& jobs) {
     for (std::size_t k = 0; k < jobs.frames.size(); ++k) {
         const PlanScratch::Node& at = scratch.nodes[scratch.reached[k]];
         const ClusterFrame& old = jobs.frames[k];
-        ClusterFrame f = picture_frame(frame_of(graph.clusters[scratch.reached[k]]), Vec2(at.u, at.v),
-                                     Vec2(at.c, at.s), footprint);
+        ClusterFrame f =
+            picture_frame(frame_of(graph.clusters[scratch.reached[k]]), Vec2(at.u, at.v), Vec2(at.c, at.s), footprint);
         if (at.stretch != 1) stretch_frame(f, at);
         f.cluster = old.cluster;
         f.first_row = old.first_row;
@@ -179,8 +178,8 @@ void place_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint
 
 /// Appearance closer at clusters of whole tiles that the picture covers in part. Between the two thresholds
 /// of discrepancy a cluster may be mapped by either frame.
-void sort_clusters(const Surface& surface, const Footprint& footprint, const Motion& motion, const StampOptions& options,
-                 PlanScratch& scratch, StampJobs& jobs) {
+void sort_clusters(const Surface& surface, const Footprint& footprint, const Motion& motion,
+                   const StampOptions& options, PlanScratch& scratch, StampJobs& jobs) {
     if (jobs.mapping != Mapping::log) return;
     const auto [low, high] = std::minmax(options.enter, options.leave);
     const bool either = jobs.discrepancy > low && jobs.discrepancy <= high;
@@ -188,7 +187,7 @@ void sort_clusters(const Surface& surface, const Footprint& footprint, const Mot
     const auto cell = static_cast<float>(footprint.cell);
     const Vec3f normal(footprint.frame.n);
     SweptDisplacement drift{Vec2f(footprint.lo / footprint.cell + 0.5), Vec2f(0.5 * motion.shift) / cell,
-                static_cast<float>(std::abs(motion.turn))};
+                            static_cast<float>(std::abs(motion.turn))};
     if (either) drift.extra = 1 + static_cast<float>(jobs.discrepancy * footprint.radius) / cell;
     scratch.asked.clear();
     scratch.discs.clear();
@@ -221,12 +220,12 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     jobs.mapping = options.mapping;
     jobs.isa = options.isa;
     if (footprint.empty() || footprint.width < 2 || footprint.height < 2) return jobs;
-    const atlas::TexelRef contact = atlas::texel_at(surface.mesh, surface.atlas, surface.texels,
-                                                    footprint.triangle, footprint.frame.origin);
+    const atlas::TexelRef contact =
+        atlas::texel_at(surface.mesh, surface.atlas, surface.texels, footprint.triangle, footprint.frame.origin);
     if (!contact.valid()) return jobs;
 
-    const std::uint32_t first = surface.texels.cluster_start[contact.slot] +
-                                surface.texels.tiles[contact.slot].cluster[contact.texel];
+    const std::uint32_t first =
+        surface.texels.cluster_start[contact.slot] + surface.texels.tiles[contact.slot].cluster[contact.texel];
     const atlas::TexelCluster& first_cluster = surface.clusters.clusters[first];
     const Reach reach = reach_of(footprint, motion);
 
@@ -237,8 +236,7 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     start.t = parallel_transport(footprint.frame.t, footprint.frame.n, start.n);
     start.b = glm::cross(start.n, start.t);
     const Vec2 place = atlas::log_map(start, Vec3(first_cluster.centre), Vec3(first_cluster.normal));
-    const Vec2 turn =
-        atlas::carried_direction(start, Vec3(first_cluster.tangent), Vec3(first_cluster.normal));
+    const Vec2 turn = atlas::carried_direction(start, Vec3(first_cluster.tangent), Vec3(first_cluster.normal));
     const Start at{first, Vec2f(place), Vec2f(turn)};
     const std::size_t occluded = walk_clusters(surface.clusters, reach, at, scratch);
     resolve_occluded(surface, footprint.triangle, start, reach, at, occluded, scratch);
@@ -258,8 +256,10 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     jobs.reach_lo = reach.lo / float(footprint.cell) - to_cells - 2.0f;
     jobs.reach_hi = reach.hi / float(footprint.cell) - to_cells + 2.0f;
     if (swept) {
-        if (passes_over) sweep_over(footprint, motion.shift, options.passes_over, jobs, scratch.sweep);
-        else sweep(footprint, motion.shift, jobs, scratch.sweep);
+        if (passes_over)
+            sweep_over(footprint, motion.shift, options.passes_over, jobs, scratch.sweep);
+        else
+            sweep(footprint, motion.shift, jobs, scratch.sweep);
         return jobs;
     }
     jobs.width = footprint.width - 1;
@@ -269,8 +269,8 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
 }
 
 bool choose_mode(StampJobs& jobs, bool piecewise_before, const StampOptions& options) {
-    jobs.piecewise = jobs.mapping == Mapping::log &&
-                     jobs.discrepancy > (piecewise_before ? options.leave : options.enter);
+    jobs.piecewise =
+        jobs.mapping == Mapping::log && jobs.discrepancy > (piecewise_before ? options.leave : options.enter);
     return jobs.piecewise;
 }
 

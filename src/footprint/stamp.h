@@ -57,9 +57,9 @@ inline constexpr std::uint8_t kAllQuadrants = 0xf;
 struct ClusterFrame {
     Vec3f origin{0}, normal{0}, tu{0}, tv{0};
     float u0 = 0, v0 = 0;
-    std::int32_t cluster = 0;            ///< as in `TexelTile::cluster`
+    std::int32_t cluster = 0;  ///< as in `TexelTile::cluster`
     std::uint8_t first_row = 0, last_row = 0;
-    std::uint8_t full_quadrants = 0;             ///< quadrants in which the picture covers all of the cluster in all poses
+    std::uint8_t full_quadrants = 0;  ///< quadrants in which the picture covers all of the cluster in all poses
     std::uint8_t partial_quadrants = kAllQuadrants;  ///< other quadrants in which it may cover some of it
 };
 
@@ -76,17 +76,17 @@ struct SubPose {
 
 /// A planned stamp: its picture packed for the kernel and the tiles it may touch.
 struct StampJobs {
-    int width = 0, height = 0;  ///< of the picture less one: squares between four cells
-    std::vector<std::uint16_t> pairs;             ///< see `pack_picture`
-    float gain = 1;                               ///< what full cells of it stand for
-    std::vector<SubPose> sub_poses;               ///< evenly spread over the motion
-    Vec2f reach_lo{0}, reach_hi{0};               ///< cells: the picture in all its sub-poses
-    ClusterFrame stamp_frame;                       ///< serves all clusters when not piecewise
-    std::vector<ClusterFrame> frames;               ///< one for each cluster reached, by slot; without
-                                                  ///< a place where discrepancy is below `leave`
-    std::vector<TileJob> tiles;                   ///< by slot
-    double discrepancy = 0;  ///< between the two ways of mapping, over the radius
-    bool piecewise = false;  ///< set by `choose_mode`
+    int width = 0, height = 0;         ///< of the picture less one: squares between four cells
+    std::vector<std::uint16_t> pairs;  ///< see `pack_picture`
+    float gain = 1;                    ///< what full cells of it stand for
+    std::vector<SubPose> sub_poses;    ///< evenly spread over the motion
+    Vec2f reach_lo{0}, reach_hi{0};    ///< cells: the picture in all its sub-poses
+    ClusterFrame stamp_frame;          ///< serves all clusters when not piecewise
+    std::vector<ClusterFrame> frames;  ///< one for each cluster reached, by slot; without
+                                       ///< a place where discrepancy is below `leave`
+    std::vector<TileJob> tiles;        ///< by slot
+    double discrepancy = 0;            ///< between the two ways of mapping, over the radius
+    bool piecewise = false;            ///< set by `choose_mode`
     Mapping mapping = Mapping::log;
     Isa isa = Isa::baseline;
 
@@ -143,7 +143,7 @@ struct PlanScratch {
     std::vector<std::uint32_t> reached;
     BlockTally tally;
     Discs discs;
-    std::vector<double> apart;  ///< metres, by reached cluster
+    std::vector<double> apart;         ///< metres, by reached cluster
     std::vector<std::uint32_t> asked;  ///< frames whose quadrants are looked at
     SweepScratch sweep;
     mesh::ExactGeodesics ways;
@@ -170,7 +170,7 @@ bool choose_mode(StampJobs& jobs, bool piecewise_before, const StampOptions& opt
 /// Part of the stamp's motion during which the tuft covers each texel, in [0, 1]; zero
 /// for texels outside. Returns false when all are zero. `unpacked` keeps the tile that was
 /// unpacked last: stamps on one tile come best one after the other.
-bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const TileJob& job,
-                   Unpacked& unpacked, std::span<float, atlas::kTileTexels> exposure);
+bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const TileJob& job, Unpacked& unpacked,
+                   std::span<float, atlas::kTileTexels> exposure);
 
 }  // namespace tuft::footprint

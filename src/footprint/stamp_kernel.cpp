@@ -71,7 +71,7 @@ struct Task {
     const SubPose* poses;
     const std::uint16_t* pairs;
     std::uint32_t n_frames, n_poses;
-    const std::uint8_t* cluster;                 ///< of the tile, as the rest
+    const std::uint8_t* cluster;  ///< of the tile, as the rest
     const float *px, *py, *pz, *nx, *ny, *nz;
     Vec2f reach_lo, reach_hi;
 };
@@ -79,16 +79,16 @@ struct Task {
 /// Texel → picture, in cells, for the texels that are `mine`, or all when `whole`; see `atlas::log_map`
 /// for the formula. The others stay as they are, or lie outside when this is the `only` frame.
 template <int lanes, bool plane, bool only, bool whole>
-[[gnu::always_inline]] inline void map_texels(const Task& task, const ClusterFrame& f,
-                                              const Runs& runs, const std::int32_t* __restrict mine,
-                                              float* __restrict fu, float* __restrict fv) {
+[[gnu::always_inline]] inline void map_texels(const Task& task, const ClusterFrame& f, const Runs& runs,
+                                              const std::int32_t* __restrict mine, float* __restrict fu,
+                                              float* __restrict fv) {
     constexpr float least_cos = float(atlas::kLogMapMinCos);
     for (int run = 0; run < runs.count; ++run) {
         const int begin = runs.start[run];
         const float *px = task.px + begin, *py = task.py + begin, *pz = task.pz + begin;
         const float *mx = task.nx + begin, *my = task.ny + begin, *mz = task.nz + begin;
         const std::int32_t* __restrict own = mine + begin;
-        float *__restrict to_u = fu + begin, *__restrict to_v = fv + begin;
+        float* __restrict to_u = fu + begin, * __restrict to_v = fv + begin;
 #pragma omp simd
         for (int t = 0; t < lanes; ++t) {
             const MappedTexel at = map_texel<plane>(f, px[t], py[t], pz[t], mx[t], my[t], mz[t]);
@@ -116,12 +116,13 @@ template <int lanes, bool plane, bool only, bool whole>
 /// Adds `value` at the texels of a cluster in some units. Numbers are compared as wide as values: compared as bytes,
 /// they would be widened after it, in four times as many steps.
 template <class T>
-[[gnu::always_inline]] inline void mark(const std::uint8_t* __restrict id, std::int32_t cluster, Units units,
-                                        T value, T* __restrict out) {
+[[gnu::always_inline]] inline void mark(const std::uint8_t* __restrict id, std::int32_t cluster, Units units, T value,
+                                        T* __restrict out) {
     for (; units != 0; units &= units - 1) {
         const int begin = kUnit * __builtin_ctz(units);
 #pragma omp simd
-        for (int t = begin; t < begin + kUnit; ++t) out[t] += static_cast<std::int32_t>(id[t]) == cluster ? value : T{0};
+        for (int t = begin; t < begin + kUnit; ++t)
+            out[t] += static_cast<std::int32_t>(id[t]) == cluster ? value : T{0};
     }
 }
 
@@ -232,8 +233,8 @@ template <int lanes, bool plane>
     const std::uint8_t* id = task.cluster;
     alignas(64) std::int32_t mine[kTileTexels];
     if (task.n_frames == 1 && is_alone(id, task.frames[0].cluster)) {
-        map_texels<lanes, plane, true, true>(task, jobs.piecewise ? task.frames[0] : jobs.stamp_frame, runs, mine,
-                                             fu, fv);
+        map_texels<lanes, plane, true, true>(task, jobs.piecewise ? task.frames[0] : jobs.stamp_frame, runs, mine, fu,
+                                             fv);
         return;
     }
     if (!jobs.piecewise) {
@@ -297,7 +298,9 @@ template <int lanes>
 
 using Evaluate = bool (*)(const Task&, float* __restrict);
 
-bool evaluate_baseline(const Task& task, float* __restrict exposure) { return evaluate<8>(task, exposure); }
+bool evaluate_baseline(const Task& task, float* __restrict exposure) {
+    return evaluate<8>(task, exposure);
+}
 
 #ifdef TUFT_X86
 [[gnu::target(TUFT_AVX2)]] bool evaluate_avx2(const Task& task, float* __restrict exposure) {
@@ -335,15 +338,16 @@ Isa best_isa() {
 #endif
 }
 
-bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const TileJob& job,
-                   Unpacked& unpacked, std::span<float, kTileTexels> exposure) {
+bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const TileJob& job, Unpacked& unpacked,
+                   std::span<float, kTileTexels> exposure) {
     if (jobs.pairs.empty() || jobs.sub_poses.empty()) {
         std::fill(exposure.begin(), exposure.end(), 0.0f);
         return false;
     }
     const atlas::TexelShape* shape = texels.packed.empty() ? &texels.shapes[job.slot] : &unpacked.shape;
     const auto frames = std::span(jobs.frames).subspan(job.first, job.count);
-    const bool known = std::all_of(frames.begin(), frames.end(), [](const ClusterFrame& f) { return f.partial_quadrants == 0; });
+    const bool known =
+        std::all_of(frames.begin(), frames.end(), [](const ClusterFrame& f) { return f.partial_quadrants == 0; });
     if (!texels.packed.empty() && !known && unpacked.slot != job.slot) {
         atlas::shape_of(texels, job.slot, unpacked.shape);
         unpacked.slot = job.slot;

@@ -14,15 +14,13 @@ namespace {
 constexpr int kStrip = 64;
 
 /// out = low + f (high − low): `n` lines of cells each seen f of a cell further.
-TUFT_CLONES void blend(const std::uint8_t* const* lines, const float* __restrict f,
-                       float* __restrict out, int n) {
+TUFT_CLONES void blend(const std::uint8_t* const* lines, const float* __restrict f, float* __restrict out, int n) {
     for (int i = 0; i < n; ++i, out += kStrip) {
         const std::uint8_t* __restrict cells = lines[i];
         const float part = f[i];
 #pragma omp simd
         for (int j = 0; j < kStrip; ++j) {
-            const auto low = static_cast<float>(int{cells[j]}),
-                       high = static_cast<float>(int{cells[j + 1]});
+            const auto low = static_cast<float>(int{cells[j]}), high = static_cast<float>(int{cells[j + 1]});
             out[j] = low + part * (high - low);
         }
     }
@@ -33,8 +31,7 @@ TUFT_CLONES void blend(const std::uint8_t* const* lines, const float* __restrict
 TUFT_CLONES void add_up(const float* __restrict lines, float* __restrict sums, int n) {
     for (int i = 0; i < n; ++i, lines += kStrip, sums += kStrip) {
 #pragma omp simd
-        for (int j = 0; j < kStrip; ++j)
-            sums[j + kStrip] = sums[j] + 0.5f * (lines[j] + lines[j + kStrip]);
+        for (int j = 0; j < kStrip; ++j) sums[j + kStrip] = sums[j] + 0.5f * (lines[j] + lines[j + kStrip]);
     }
 }
 
@@ -45,8 +42,7 @@ struct Upper {
 };
 
 /// out = (upper − lower) scale, rounded.
-TUFT_CLONES void difference(const Upper& to, const Upper& from, float scale,
-                            std::uint8_t* __restrict out) {
+TUFT_CLONES void difference(const Upper& to, const Upper& from, float scale, std::uint8_t* __restrict out) {
     const float t = to.t, s = from.t;
     const float *ti = to.integral, *ta = to.line, *tb = to.next;
     const float *si = from.integral, *sa = from.line, *sb = from.next;
@@ -86,13 +82,11 @@ TUFT_CLONES void largest(const float* __restrict lines, const float* __restrict 
 /// out = (value before + 2 value + value after) / 4 along each of `lines`, rounded: the mean over
 /// two cells, a texel, wherever between the cells it is read. The last two of a line are of no use.
 /// `in` has two values more.
-TUFT_CLONES void soften(const float* __restrict in, int lines, std::uint8_t* __restrict out,
-                        std::size_t stride) {
+TUFT_CLONES void soften(const float* __restrict in, int lines, std::uint8_t* __restrict out, std::size_t stride) {
     for (int k = 0; k < lines; ++k, in += kStrip, out += stride)
 #pragma omp simd
         for (int j = 0; j < kStrip; ++j)
-            out[j] = static_cast<std::uint8_t>(
-                static_cast<int>(0.25f * (in[j] + 2 * in[j + 1] + in[j + 2]) + 0.5f));
+            out[j] = static_cast<std::uint8_t>(static_cast<int>(0.25f * (in[j] + 2 * in[j + 1] + in[j + 2]) + 0.5f));
 }
 
 /// The picture in lines across the motion, columns of it or rows, sheared so that the motion leads
@@ -113,8 +107,7 @@ struct Sheared {
         const double lean = slope * (n_lines - 1);
         first = static_cast<int>(std::floor(-std::max(lean, 0.0)));
         across = static_cast<int>(std::ceil(n_cells - 1 - std::min(lean, 0.0))) - first + 1;
-        if (along_x)
-            turn_over(footprint.coverage, footprint.width, footprint.height, scratch.turned);
+        if (along_x) turn_over(footprint.coverage, footprint.width, footprint.height, scratch.turned);
         cells = along_x ? scratch.turned.data() : footprint.coverage.data();
     }
 
@@ -147,9 +140,7 @@ struct Sheared {
 
     /// Places along the motion where the picture passes, and a cell more on either side.
     int start() const { return static_cast<int>(std::floor(-std::max(length, 0.0))) - 1; }
-    int stop() const {
-        return static_cast<int>(std::ceil(n_lines - 1 - std::min(length, 0.0))) + 1;
-    }
+    int stop() const { return static_cast<int>(std::ceil(n_lines - 1 - std::min(length, 0.0))) + 1; }
 
     /// Room in the scratch for a picture over those places.
     Footprint& lay_out(SweepScratch& scratch) const {
@@ -192,8 +183,7 @@ float mean_over(const Sheared& sheared, SweepScratch& scratch) {
     const auto upper = [&](double x) {  // line k of `lines` lies at k − 1
         const double p = std::clamp(x + 1, 0.0, double(n_lines + 1));
         const int k = std::min(static_cast<int>(p), n_lines);
-        return Upper{line_of(sums, k), line_of(lines, k), line_of(lines, k + 1),
-                     static_cast<float>(p - k)};
+        return Upper{line_of(sums, k), line_of(lines, k), line_of(lines, k + 1), static_cast<float>(p - k)};
     };
     Footprint& swept = sheared.lay_out(scratch);
     alignas(64) std::array<std::uint8_t, kStrip> values;
@@ -203,10 +193,8 @@ float mean_over(const Sheared& sheared, SweepScratch& scratch) {
         const int n = std::min(kStrip, sheared.across - from);
         for (int k = 0; k < swept.height; ++k) {
             const double x = sheared.start() + k;
-            difference(upper(std::max(x, x + length)), upper(std::min(x, x + length)), scale,
-                       values.data());
-            std::copy_n(values.data(), n,
-                        swept.coverage.data() + std::size_t(k) * sheared.across + from);
+            difference(upper(std::max(x, x + length)), upper(std::min(x, x + length)), scale, values.data());
+            std::copy_n(values.data(), n, swept.coverage.data() + std::size_t(k) * sheared.across + from);
         }
     }
     return gain;
@@ -217,15 +205,13 @@ void most_over(const Sheared& sheared, SweepScratch& scratch) {
     const int n_lines = sheared.n_lines;
     const double back = std::min(sheared.length, 0.0), on = std::max(sheared.length, 0.0);
     // The same number of whole lines lies between both ends of the way at every place.
-    const int begin = static_cast<int>(std::ceil(back)),
-              count = static_cast<int>(std::floor(on)) - begin + 1;
+    const int begin = static_cast<int>(std::ceil(back)), count = static_cast<int>(std::floor(on)) - begin + 1;
     const int room = count + 3;  // lines of nothing before and after the picture
     const int total = n_lines + 2 * room;
     std::vector<float>& lines = scratch.lines;
     lines.assign(static_cast<std::size_t>(total) * kStrip, 0);
     if (count > 1) scratch.sums.assign(static_cast<std::size_t>(total) * kStrip, 0);
-    std::vector<float>& most =
-        count > 1 ? scratch.sums : lines;  // the largest value of `wide` lines from here on
+    std::vector<float>& most = count > 1 ? scratch.sums : lines;  // the largest value of `wide` lines from here on
     int wide = 1;
     while (2 * wide <= count) wide *= 2;
     Footprint& swept = sheared.lay_out(scratch);
@@ -250,8 +236,7 @@ void most_over(const Sheared& sheared, SweepScratch& scratch) {
         for (int w = 1; w < wide; w *= 2)
             larger(w == 1 ? lines.data() : most.data(), std::size_t(w) * kStrip, most.data(),
                    std::size_t(total - w) * kStrip);
-        largest(lines.data(), most.data(), scratch.swept_lines.data(), swept.height,
-                scratch.passed.data());
+        largest(lines.data(), most.data(), scratch.swept_lines.data(), swept.height, scratch.passed.data());
         std::uint8_t* out = swept.coverage.data() + from;
         if (from + kStrip <= sheared.across) {  // the next strip goes over the last two
             soften(scratch.passed.data(), swept.height, out, std::size_t(sheared.across));
@@ -260,20 +245,18 @@ void most_over(const Sheared& sheared, SweepScratch& scratch) {
         scratch.strip.resize(static_cast<std::size_t>(swept.height) * kStrip);
         soften(scratch.passed.data(), swept.height, scratch.strip.data(), kStrip);
         for (int k = 0; k < swept.height; ++k)
-            std::copy_n(scratch.strip.data() + std::size_t(k) * kStrip,
-                        std::min(kValues, sheared.across - from),
+            std::copy_n(scratch.strip.data() + std::size_t(k) * kStrip, std::min(kValues, sheared.across - from),
                         out + std::size_t(k) * sheared.across);
     }
 }
 
 /// most = gain mean + part (most − gain mean), rounded.
-TUFT_CLONES void mix(const std::uint8_t* __restrict mean, float gain, float part,
-                     std::uint8_t* __restrict most, int n) {
+TUFT_CLONES void mix(const std::uint8_t* __restrict mean, float gain, float part, std::uint8_t* __restrict most,
+                     int n) {
 #pragma omp simd
     for (int j = 0; j < n; ++j) {
         const float e = gain * static_cast<float>(int{mean[j]});
-        most[j] = static_cast<std::uint8_t>(
-            static_cast<int>(e + part * (static_cast<float>(int{most[j]}) - e) + 0.5f));
+        most[j] = static_cast<std::uint8_t>(static_cast<int>(e + part * (static_cast<float>(int{most[j]}) - e) + 0.5f));
     }
 }
 
@@ -285,8 +268,7 @@ void sweep(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, Sweep
     sheared.hand_over(scratch.swept, jobs);
 }
 
-void sweep_over(const Footprint& footprint, const Vec2& shift, float part, StampJobs& jobs,
-                SweepScratch& scratch) {
+void sweep_over(const Footprint& footprint, const Vec2& shift, float part, StampJobs& jobs, SweepScratch& scratch) {
     const Sheared sheared(footprint, shift, scratch);
     std::vector<std::uint8_t> mean;
     float gain = 1;

@@ -7,7 +7,7 @@
 namespace tuft::footprint {
 namespace {
 
-constexpr double kPressed = 1.25;  // radii of standing hair that it covers when its ends are pressed down
+constexpr double kPressed = 1.25;        // radii of standing hair that it covers when its ends are pressed down
 constexpr int kTowards = 8, kRound = 6;  // cuts from the tuft to its foot, and round that
 
 /// Half of the width of what of a section that stands across the surface lies under it.

@@ -12,21 +12,20 @@ namespace tuft::footprint {
 namespace {
 
 constexpr double kFacingAway = atlas::kLogMapMinCos;  // normals beyond this are never touched
-constexpr float kAgree = 0.25f;  // of a hop: neighbours that differ by more went other ways
-constexpr float kUpwind = 0.2f;       // cosine to the source of neighbours that lead on
-constexpr float kNearSource = 0.5f;   // squared distance over hop below which hops are added up
-constexpr float kLeastStretch = 0.6f; // and its inverse: beyond, the ways to both differ
-constexpr float kOverBorder = 0.3f;  // cosine of an open border's outward direction to the source
-constexpr float kDetour = 2;  // cluster radii round the picture in which ways to it are looked for
-constexpr float kFold =
-    0.99f;  // of the straight line in space: places nearer than that are occluded over themselves
+constexpr float kAgree = 0.25f;                       // of a hop: neighbours that differ by more went other ways
+constexpr float kUpwind = 0.2f;                       // cosine to the source of neighbours that lead on
+constexpr float kNearSource = 0.5f;                   // squared distance over hop below which hops are added up
+constexpr float kLeastStretch = 0.6f;                 // and its inverse: beyond, the ways to both differ
+constexpr float kOverBorder = 0.3f;                   // cosine of an open border's outward direction to the source
+constexpr float kDetour = 2;     // cluster radii round the picture in which ways to it are looked for
+constexpr float kFold = 0.99f;   // of the straight line in space: places nearer than that are occluded over themselves
 constexpr float kLater = 1.05f;  // of the squared distance expected: the cluster's turn comes later
 // Ways that bend round a corner (see bent_way).
-constexpr float kShortest = 0.95f;  // of the straight line in space: a shorter way is none
+constexpr float kShortest = 0.95f;                 // of the straight line in space: a shorter way is none
 constexpr float kBackward = 0.03f, kRound = 0.1f;  // of a hop: ends nearer than it began by so much
-constexpr float kCorner = 0.8f;   // of a hop, what it adds to a way that bends
-constexpr float kBeside = 1.6f;   // cluster radii: the source may lie beside the cluster itself
-constexpr float kBetween = 0.8f;  // of the distance it began at: may lead between two neighbours
+constexpr float kCorner = 0.8f;                    // of a hop, what it adds to a way that bends
+constexpr float kBeside = 1.6f;                    // cluster radii: the source may lie beside the cluster itself
+constexpr float kBetween = 0.8f;                   // of the distance it began at: may lead between two neighbours
 
 constexpr std::uint32_t kMostEdges = 64;  // of a cluster that are looked at
 
@@ -42,7 +41,7 @@ struct Walk {
     const atlas::ClusterGraph& graph;
     PlanScratch& scratch;
     const Reach& reach;
-    std::uint32_t start;  ///< the cluster touched
+    std::uint32_t start;       ///< the cluster touched
     std::size_t occluded = 0;  ///< clusters that no straight way leads to
 
     PlanScratch::Node& node(std::uint32_t cluster) { return node_of(scratch, cluster); }
@@ -271,13 +270,14 @@ struct Walk {
             const float distance = std::sqrt(n.u * n.u + n.v * n.v);
             // Its turn comes later where the neighbours see it further away than the first of them did.
             if (distance * distance > kLater * key && i != start) {
-                if (distance - kPieceSlack * cluster.radius > reach.radius) n.state = kOutside;
-                else push(n, i, distance * distance);
+                if (distance - kPieceSlack * cluster.radius > reach.radius)
+                    n.state = kOutside;
+                else
+                    push(n, i, distance * distance);
                 continue;
             }
             n.state = kOutside;
-            if (distance - kPieceSlack * cluster.radius > reach.radius || faces_away(reach, cluster))
-                continue;
+            if (distance - kPieceSlack * cluster.radius > reach.radius || faces_away(reach, cluster)) continue;
             n.state = kFinal;
             if (in_picture(reach, cluster, n)) scratch.reached.push_back(i);
             for (std::uint32_t k = graph.edge_start[i]; k < graph.edge_start[i + 1]; ++k) {
@@ -344,7 +344,7 @@ PlanScratch::Node& place_start(PlanScratch& scratch, const Start& start) {
 }
 
 std::size_t walk_clusters(const atlas::ClusterGraph& graph, const Reach& reach, const Start& start,
-                        PlanScratch& scratch) {
+                          PlanScratch& scratch) {
     begin_walk(scratch, graph.n_clusters());
     Walk walk{graph, scratch, reach, start.cluster};
     walk.push(place_start(scratch, start), start.cluster, 0);

@@ -29,7 +29,7 @@ struct Start {
 /// all visited in scratch.nodes. Returns to how many of them no straight way over their neighbours leads: where the
 /// surface folds. Cost: 0.2 µs a cluster.
 std::size_t walk_clusters(const atlas::ClusterGraph& graph, const Reach& reach, const Start& start,
-                        PlanScratch& scratch);
+                          PlanScratch& scratch);
 
 /// What the walk over clusters and that over folds (occluded.h) have in common: states of a cluster,
 enum : std::uint8_t { kOpen, kFinal, kOutside };

@@ -20,8 +20,7 @@ bool all_zero(const Plane& plane) {
 
 double integral(const Plane& plane, const atlas::TexelTile& tile) {
     double sum = 0;
-    for (std::size_t t = 0; t < kTexels; ++t)
-        sum += static_cast<double>(plane[t]) * static_cast<double>(tile.area[t]);
+    for (std::size_t t = 0; t < kTexels; ++t) sum += static_cast<double>(plane[t]) * static_cast<double>(tile.area[t]);
     return sum;
 }
 
@@ -34,8 +33,7 @@ Canvas::Canvas(const Canvas& other)
     : pigments_(other.pigments_), slots_(other.slots_.size()), dirty_(other.slots_.size()) {
     for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) {
         other.each_plane(slot, [&](int film, int index, const Plane& plane) {
-            (film == kFilms ? touch_liquid(slot, static_cast<Liquid>(index))
-                            : touch_film(slot, film, index)) = plane;
+            (film == kFilms ? touch_liquid(slot, static_cast<Liquid>(index)) : touch_film(slot, film, index)) = plane;
         });
     }
     dirty_ = other.dirty_;  // copying is no writing
@@ -101,7 +99,9 @@ void Canvas::forget_pigments(std::size_t n) {
     if (n >= pigments_.size()) return;
     for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) {
         bool above = false;
-        each_plane(slot, [&](int film, int index, const Plane&) { above |= film != kFilms && static_cast<std::size_t>(index) >= n; });
+        each_plane(slot, [&](int film, int index, const Plane&) {
+            above |= film != kFilms && static_cast<std::size_t>(index) >= n;
+        });
         if (!above) continue;
         // Planes of zeros, which have no place in a list that ends before them.
         const TileSnapshot tile = snapshot(slot);
@@ -164,8 +164,7 @@ const Plane* Canvas::film_plane(std::uint32_t slot, int film, int pigment) const
     if (!tile) return nullptr;
     if (film == kOpenFilm) return tile->open[pigment].get();
     const auto place = static_cast<std::size_t>(film);
-    return place < tile->under.size() && tile->under[place] ? (*tile->under[place])[pigment].get()
-                                                            : nullptr;
+    return place < tile->under.size() && tile->under[place] ? (*tile->under[place])[pigment].get() : nullptr;
 }
 
 Plane& Canvas::touch_film(std::uint32_t slot, int film, int pigment) {
@@ -262,13 +261,12 @@ void Canvas::restore(const TileSnapshot& snapshot) {
     int below = -1;
     for (const FilmPlanes& f : snapshot.under) {
         const std::size_t limit = f.film == kFilms ? 2 : pigments_.size();
-        good = good && f.film > below && f.film <= kFilms && f.film != kOpenFilm &&
-               f.planes != 0 && std::bit_width(f.planes) <= limit;
+        good = good && f.film > below && f.film <= kFilms && f.film != kOpenFilm && f.planes != 0 &&
+               std::bit_width(f.planes) <= limit;
         count += static_cast<std::size_t>(std::popcount(f.planes));
         below = f.film;
     }
-    if (!good || snapshot.amounts.size() != kTexels * count)
-        throw Error("a saved tile does not fit this canvas");
+    if (!good || snapshot.amounts.size() != kTexels * count) throw Error("a saved tile does not fit this canvas");
     if (slots_[snapshot.slot]) {
         std::size_t planes = 0, liquid = 0, films = 0;
         each_plane(snapshot.slot, [&](int film, int, const Plane&) {
@@ -320,8 +318,7 @@ std::uint64_t Canvas::hash() const {
             if (all_zero(plane)) return;
             // The open film's places are those of files of old, which have no others.
             const std::uint64_t above = film == kOpenFilm ? 0 : static_cast<std::uint64_t>(film + 1);
-            const std::uint64_t place =
-                (above << 40 | slot) * kMaxPigments + static_cast<std::uint64_t>(index);
+            const std::uint64_t place = (above << 40 | slot) * kMaxPigments + static_cast<std::uint64_t>(index);
             h = hash_bytes(&place, sizeof place, h);
             h = hash_bytes(plane.data(), kTexels * sizeof(float), h);
         });
@@ -330,18 +327,16 @@ std::uint64_t Canvas::hash() const {
 }
 
 bool Canvas::same_contents(const Canvas& other) const {
-    if (slots_.size() != other.slots_.size() || pigments_.size() != other.pigments_.size())
-        return false;
+    if (slots_.size() != other.slots_.size() || pigments_.size() != other.pigments_.size()) return false;
     for (std::size_t i = 0; i < pigments_.size(); ++i)
         if (pigments_[i].name != other.pigments_[i].name) return false;
     bool same = true;
     const auto compare = [&same](const Canvas& a, const Canvas& b, std::uint32_t slot) {
         a.each_plane(slot, [&](int film, int index, const Plane& plane) {
-            const Plane* match = film == kFilms ? b.liquid(slot, static_cast<Liquid>(index))
-                                                : b.film_plane(slot, film, index);
-            same = same && (match ? std::memcmp(plane.data(), match->data(),
-                                                kTexels * sizeof(float)) == 0
-                                  : all_zero(plane));
+            const Plane* match =
+                film == kFilms ? b.liquid(slot, static_cast<Liquid>(index)) : b.film_plane(slot, film, index);
+            same = same &&
+                   (match ? std::memcmp(plane.data(), match->data(), kTexels * sizeof(float)) == 0 : all_zero(plane));
         });
     };
     for (std::uint32_t slot = 0; same && slot < slots_.size(); ++slot) {

@@ -47,8 +47,8 @@ struct FilmPlanes {
 /// set bits of `planes`, then of those of `under`, film by film.
 struct TileSnapshot {
     std::uint32_t slot = 0;
-    std::uint8_t planes = 0;     ///< of the open film; bit p: pigment p has a plane here
-    std::vector<float> amounts;  ///< [256 × number of set bits]
+    std::uint8_t planes = 0;             ///< of the open film; bit p: pigment p has a plane here
+    std::vector<float> amounts;          ///< [256 × number of set bits]
     std::vector<FilmPlanes> under = {};  ///< ascending, no empty ones
 
     bool operator==(const TileSnapshot&) const = default;
@@ -81,9 +81,7 @@ class Canvas {
     void set_pigment(int index, const Pigment& pigment);
 
     /// The plane of the open film, or nullptr where nothing was ever put.
-    const Plane* plane(std::uint32_t slot, int pigment) const {
-        return film_plane(slot, kOpenFilm, pigment);
-    }
+    const Plane* plane(std::uint32_t slot, int pigment) const { return film_plane(slot, kOpenFilm, pigment); }
     /// All planes of the open film; whoever changes them marks the slot dirty.
     std::array<Plane*, kMaxPigments> open_planes(std::uint32_t slot);
     /// The plane of the open film, made and zeroed when needed; the slot becomes dirty.

@@ -18,8 +18,8 @@ TUFT_CLONES double store_change(float* __restrict w, const float* __restrict dw,
             const float before = w[t + lane];
             const float after = before + part * dw[t + lane];
             w[t + lane] = after;
-            sum[lane] += (static_cast<double>(after) - static_cast<double>(before)) *
-                         static_cast<double>(area[t + lane]);
+            sum[lane] +=
+                (static_cast<double>(after) - static_cast<double>(before)) * static_cast<double>(area[t + lane]);
         }
     }
     double total = 0;

@@ -11,8 +11,7 @@ void show_looks(const Project& project, stroke::Document& painting) {
 }
 
 void store_looks(Project& project, const stroke::Document& painting) {
-    for (const auto& [name, ink] : painting.recolours())
-        project.put_recolour({name, ink::ink_toml(ink)});
+    for (const auto& [name, ink] : painting.recolours()) project.put_recolour({name, ink::ink_toml(ink)});
     const std::string shown = painting.has_preview_substrate() ? ink::substrate_toml(painting.substrate()) : "";
     if (shown != project.shown_substrate()) project.put_shown_substrate(shown);
 }

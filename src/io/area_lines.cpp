@@ -18,15 +18,15 @@ using Line = std::vector<Vec2>;
 constexpr double kStem = 0.36, kCompact = 0.06;  // line's width: of a stem's, of the area's root
 
 // Widths of the line.
-constexpr double kFirst = 0.22;    // from the outline to the first line; bends draw the ink inwards
-constexpr double kNext = 0.33;     // from one line to the next
-constexpr double kChord = 0.1;     // of edges, and between points
-constexpr double kSlack = 0.02;    // that the outline which lines follow leaves the true one
-constexpr double kBare = 1;        // from the outline to the next line, where it counts as bare
-constexpr double kPoint = 0.4;     // within which a line turns at a point
-constexpr double kPast = 0.5;      // that it goes on past the corner, on the stencil edge
-constexpr double kBetween = 1.75;  // and between others, where it begins thin
-constexpr double kSmall = 8;  // shorter loops get a dab in their middle, than half of it are one
+constexpr double kFirst = 0.22;            // from the outline to the first line; bends draw the ink inwards
+constexpr double kNext = 0.33;             // from one line to the next
+constexpr double kChord = 0.1;             // of edges, and between points
+constexpr double kSlack = 0.02;            // that the outline which lines follow leaves the true one
+constexpr double kBare = 1;                // from the outline to the next line, where it counts as bare
+constexpr double kPoint = 0.4;             // within which a line turns at a point
+constexpr double kPast = 0.5;              // that it goes on past the corner, on the stencil edge
+constexpr double kBetween = 1.75;          // and between others, where it begins thin
+constexpr double kSmall = 8;               // shorter loops get a dab in their middle, than half of it are one
 constexpr double kShort = 0.5, kFine = 4;  // shorter pieces are none; of finer lines
 constexpr int kLevels = 4;
 
@@ -39,17 +39,14 @@ class Near {
     bool any(const Vec2& p, Test test) const {
         for (std::int64_t j = -1; j <= 1; ++j)
             for (std::int64_t i = -1; i <= 1; ++i)
-                if (const auto at = squares_.find(key(square(p.x) + i, square(p.y) + j));
-                    at != squares_.end())
+                if (const auto at = squares_.find(key(square(p.x) + i, square(p.y) + j)); at != squares_.end())
                     for (const Vec2& q : at->second)
                         if (test(q)) return true;
         return false;
     }
 
   private:
-    std::int64_t square(double x) const {
-        return static_cast<std::int64_t>(std::floor(x / radius_));
-    }
+    std::int64_t square(double x) const { return static_cast<std::int64_t>(std::floor(x / radius_)); }
     static std::uint64_t key(std::int64_t i, std::int64_t j) {
         return static_cast<std::uint64_t>(i) * 0x9E3779B97F4A7C15u ^
                static_cast<std::uint64_t>(j) * 0xC2B2AE3D27D4EB4Fu;
@@ -102,9 +99,8 @@ void attach_stencils(const std::vector<stroke::StencilEdge>& stencil, std::vecto
             if (std::max(e.from.x, e.to.x) < low.x || std::max(e.from.y, e.to.y) < low.y ||
                 std::min(e.from.x, e.to.x) > high.x || std::min(e.from.y, e.to.y) > high.y)
                 continue;
-            if (std::any_of(line.line.begin(), line.line.end(), [&](const Vec2& p) {
-                    return segment_distance(e.from, e.to, p) < reach;
-                }))
+            if (std::any_of(line.line.begin(), line.line.end(),
+                            [&](const Vec2& p) { return segment_distance(e.from, e.to, p) < reach; }))
                 line.stencil.push_back(e);
         }
     }
@@ -119,8 +115,7 @@ Line even(std::span<const Vec2> way, double step) {
     double along = 0;
     for (std::size_t i = 1; i < way.size(); ++i) {
         const double length = glm::distance(way[i - 1], way[i]);
-        for (double at; points.size() < n &&
-                        (at = whole * double(points.size()) / double(n)) < along + length;)
+        for (double at; points.size() < n && (at = whole * double(points.size()) / double(n)) < along + length;)
             points.push_back(glm::mix(way[i - 1], way[i], (at - along) / length));
         along += length;
     }
@@ -138,8 +133,7 @@ Line means(const Line& line, std::ptrdiff_t reach, bool closed) {
         double weights = 1;
         for (std::ptrdiff_t k = 1; k <= m; ++k) {
             const double x = 2.5 * double(k) / double(m), w = std::exp(-0.5 * x * x);
-            sum += w * (line[static_cast<std::size_t>((i + k) % n)] +
-                        line[static_cast<std::size_t>((i - k + n) % n)]);
+            sum += w * (line[static_cast<std::size_t>((i + k) % n)] + line[static_cast<std::size_t>((i - k + n) % n)]);
             weights += 2 * w;
         }
         out.push_back(sum / weights);
@@ -168,8 +162,7 @@ Line smooth(const Ring& ring, double chord) {
         Line points = even(side, chord);
         if (!closed) points.push_back(side.back());
         const Line once = means(points, kReach, closed), twice = means(once, kReach, closed);
-        for (std::size_t k = 0; k < points.size() - !closed; ++k)
-            curve.push_back(2.0 * once[k] - twice[k]);
+        for (std::size_t k = 0; k < points.size() - !closed; ++k) curve.push_back(2.0 * once[k] - twice[k]);
         side = {ring[i % n]};
     }
     return curve;
@@ -177,8 +170,7 @@ Line smooth(const Ring& ring, double chord) {
 
 /// What of the curves at `d` inside the outline lies beside open edges, in runs; closed ones end
 /// where they began.
-std::vector<Line> runs_at(const Shape& shape, const std::vector<std::vector<Edge>>& border,
-                          double d, double width) {
+std::vector<Line> runs_at(const Shape& shape, const std::vector<std::vector<Edge>>& border, double d, double width) {
     const double chord = kChord * width, beside = d + chord;
     Near open(beside);
     for (const std::vector<Edge>& ring : border)
@@ -190,11 +182,9 @@ std::vector<Line> runs_at(const Shape& shape, const std::vector<std::vector<Edge
         Line curve = smooth(ring, chord);
         std::vector<bool> wanted;
         for (const Vec2& p : curve)
-            wanted.push_back(
-                open.any(p, [&](const Vec2& q) { return glm::distance(p, q) < beside; }));
+            wanted.push_back(open.any(p, [&](const Vec2& q) { return glm::distance(p, q) < beside; }));
         if (curve.size() < 2) continue;
-        const auto gap = static_cast<std::size_t>(std::find(wanted.begin(), wanted.end(), false) -
-                                                  wanted.begin());
+        const auto gap = static_cast<std::size_t>(std::find(wanted.begin(), wanted.end(), false) - wanted.begin());
         if (gap == wanted.size()) {
             curve.push_back(curve.front());
             runs.push_back(std::move(curve));
@@ -231,8 +221,7 @@ std::vector<Part> parted(const Line& line, double reach) {
     for (std::size_t i = 0; i < count; ++i) {
         // The first vertices `reach` away to both sides.
         std::size_t back = 0, ahead = 0;
-        const std::size_t most_back = closed ? count - 1 : i,
-                          most_ahead = closed ? count - 1 : count - 1 - i;
+        const std::size_t most_back = closed ? count - 1 : i, most_ahead = closed ? count - 1 : count - 1 - i;
         while (back < most_back && glm::distance(at(i + count - back), at(i)) < reach) ++back;
         while (ahead < most_ahead && glm::distance(at(i + ahead), at(i)) < reach) ++ahead;
         const Vec2 in = at(i) - at(i + count - back), out = at(i + ahead) - at(i);
@@ -269,14 +258,12 @@ std::vector<Part> parted(const Line& line, double reach) {
 /// area: to where the outline along it and the one on the point's other side meet, which is
 /// straight ahead on their bisector; a line `inside` others, or one that ends between others, 7/4
 /// of a width; past the corner on stencil edge. The length of a way into a corner, else 0.
-double run_out(Line& line, const Line& other, double d, double width, bool inside,
-               const Shape& shape) {
+double run_out(Line& line, const Line& other, double d, double width, bool inside, const Shape& shape) {
     const double reach = kPoint * width;
     const auto heading = [&](const Line& l, bool from_end) {  // away from the point
         const Vec2 tip = from_end ? l.back() : l.front();
         for (std::size_t i = 1; i < l.size(); ++i)
-            if (const Vec2 p = from_end ? l[l.size() - 1 - i] : l[i];
-                glm::distance(p, tip) >= reach)
+            if (const Vec2 p = from_end ? l[l.size() - 1 - i] : l[i]; glm::distance(p, tip) >= reach)
                 return glm::normalize(p - tip);
         const Vec2 p = from_end ? l.front() : l.back();
         return p == tip ? Vec2(1, 0) : glm::normalize(p - tip);
@@ -314,8 +301,7 @@ Line dab(const Line& loop, double width) {
         for (const Vec2& q : loop)
             if (glm::distance(p, q) > glm::distance(a, b)) a = p, b = q;
     const Vec2 middle = 0.5 * (a + b),
-               half = a == b ? Vec2(0.3 * width, 0)
-                             : glm::normalize(b - a) * (0.5 * glm::distance(a, b) + 0.3 * width);
+               half = a == b ? Vec2(0.3 * width, 0) : glm::normalize(b - a) * (0.5 * glm::distance(a, b) + 0.3 * width);
     return {middle - half, middle, middle + half};
 }
 
@@ -328,9 +314,8 @@ bool cover(std::vector<std::vector<Edge>>& border, const std::vector<AreaLine>& 
             for (const Vec2& p : lines[to].line) near.add(p);
         for (std::vector<Edge>& ring : border)
             for (Edge& e : ring)
-                if (const Vec2 p = e.middle(); e.open && near.any(p, [&](const Vec2& q) {
-                        return glm::distance(p, q) <= reach;
-                    }))
+                if (const Vec2 p = e.middle();
+                    e.open && near.any(p, [&](const Vec2& q) { return glm::distance(p, q) <= reach; }))
                     e.open = false;
     }
     constexpr std::ptrdiff_t kBeside = 30;
@@ -383,8 +368,7 @@ std::vector<AreaLine> area_lines(std::span<const Ring> rings, FillRule rule) {
                     AreaLine line{.line = std::move(parts[i].line), .width = w};
                     if (length_of(line.line) < (level ? kFine : kShort) * w) continue;
                     if (parts[i].tail)
-                        line.tail = run_out(line.line, all[(i + 1) % all.size()].line, d, w,
-                                            inside > 0, shape);
+                        line.tail = run_out(line.line, all[(i + 1) % all.size()].line, d, w, inside > 0, shape);
                     if (parts[i].head) {
                         Line before = all[(i + all.size() - 1) % all.size()].line;
                         std::reverse(before.begin(), before.end());

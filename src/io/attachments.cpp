@@ -20,18 +20,26 @@ constexpr std::size_t kMostEntryText = std::size_t{1} << 28, kMostNumbers = std:
 // At the head of the bytes: sizes of what follows.
 struct SnapshotHead {
     char magic[8] = {'T', 'U', 'F', 'T', 'S', 'N', 'A', '1'};
-    std::uint64_t text = 0;        ///< bytes of the entries' JSON
-    std::uint64_t packed_text = 0; ///< bytes that it is packed into, which follow
-    std::uint64_t numbers = 0;     ///< of all samples; packed, they fill the rest
+    std::uint64_t text = 0;         ///< bytes of the entries' JSON
+    std::uint64_t packed_text = 0;  ///< bytes that it is packed into, which follow
+    std::uint64_t numbers = 0;      ///< of all samples; packed, they fill the rest
 };
 
 nlohmann::json snapshot_json(const stroke::Stroke& s) {
     const stroke::Trace& t = s.trace;
     const stroke::Placement& p = t.placement;
-    return {{"id", s.id}, {"brush", t.brush}, {"ink", t.ink}, {"seed", t.seed}, {"label", t.label}, {"hidden", s.hidden}, {"flat", t.flat},
+    return {{"id", s.id},
+            {"brush", t.brush},
+            {"ink", t.ink},
+            {"seed", t.seed},
+            {"label", t.label},
+            {"hidden", s.hidden},
+            {"flat", t.flat},
             {"laying", std::string(stroke::surface_mapping_name(p.mapping))},
-            {"placement", {p.origin.x, p.origin.y, p.origin.z, p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z}},
-            {"samples", t.samples.size()}, {"entry", stroke::entry_json(s)}};
+            {"placement",
+             {p.origin.x, p.origin.y, p.origin.z, p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z}},
+            {"samples", t.samples.size()},
+            {"entry", stroke::entry_json(s)}};
 }
 
 stroke::Stroke entry_of(const nlohmann::json& j) {
@@ -44,8 +52,10 @@ stroke::Stroke entry_of(const nlohmann::json& j) {
     s.trace.flat = j.at("flat").get<bool>();
     const auto mapping = stroke::surface_mapping_named(j.at("laying").get<std::string>());
     const auto p = j.at("placement").get<std::array<double, 9>>();
-    if (!mapping || !std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); })) throw Error("its place on the model cannot be read");
-    s.trace.placement = {.origin = {p[0], p[1], p[2]}, .right = {p[3], p[4], p[5]}, .down = {p[6], p[7], p[8]}, .mapping = *mapping};
+    if (!mapping || !std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); }))
+        throw Error("its place on the model cannot be read");
+    s.trace.placement = {
+        .origin = {p[0], p[1], p[2]}, .right = {p[3], p[4], p[5]}, .down = {p[6], p[7], p[8]}, .mapping = *mapping};
     stroke::read_entry_json(j.at("entry").get<std::string>(), s);
     s.hidden = j.at("hidden").get<bool>();
     return s;
@@ -71,13 +81,16 @@ std::vector<char> pack_entries(std::span<const stroke::Stroke> entries) {
     std::size_t i = 0;
     for (const stroke::Stroke& s : entries)
         for (const stroke::TraceSample& t : s.trace.samples) {
-            const double fields[kSampleNumbers] = {t.time, t.position.x, t.position.y, t.position.z, t.pressure, t.tilt.x, t.tilt.y, t.rotation.w, t.rotation.x, t.rotation.y, t.rotation.z};
+            const double fields[kSampleNumbers] = {t.time,       t.position.x, t.position.y, t.position.z,
+                                                   t.pressure,   t.tilt.x,     t.tilt.y,     t.rotation.w,
+                                                   t.rotation.x, t.rotation.y, t.rotation.z};
             for (std::size_t f = 0; f < kSampleNumbers; ++f) numbers[f * n + i] = fields[f];
             ++i;
         }
     // Labels of files may be no readable text.
     const std::string text = all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-    const std::vector<char> packed_text = pack(text.data(), text.size(), kTextPacking), packed = pack(numbers.data(), numbers.size(), kNumberPacking);
+    const std::vector<char> packed_text = pack(text.data(), text.size(), kTextPacking),
+                            packed = pack(numbers.data(), numbers.size(), kNumberPacking);
     SnapshotHead head;
     head.text = text.size();
     head.packed_text = packed_text.size();
@@ -94,8 +107,8 @@ std::vector<stroke::Stroke> unpack_entries(std::span<const char> bytes, const st
     if (bytes.size() < sizeof head) throw Error(what + " is damaged: it ends too soon");
     std::memcpy(&head, bytes.data(), sizeof head);
     const std::size_t rest = bytes.size() - sizeof head;
-    if (std::memcmp(head.magic, expected.magic, sizeof head.magic) != 0 || head.packed_text > rest || head.text > kMostEntryText || head.numbers > kMostNumbers ||
-        head.numbers % kSampleNumbers != 0)
+    if (std::memcmp(head.magic, expected.magic, sizeof head.magic) != 0 || head.packed_text > rest ||
+        head.text > kMostEntryText || head.numbers > kMostNumbers || head.numbers % kSampleNumbers != 0)
         throw Error(what + " is damaged: its head makes no sense");
     const char *text_blob = bytes.data() + sizeof head, *blob = text_blob + head.packed_text;
     check_packed(text_blob, head.packed_text, head.text, what);
@@ -104,7 +117,8 @@ std::vector<stroke::Stroke> unpack_entries(std::span<const char> bytes, const st
     std::vector<double> numbers(head.numbers);
     unpack(text_blob, head.packed_text, text.data(), text.size(), kTextPacking, what);
     unpack(blob, rest - head.packed_text, numbers.data(), numbers.size(), kNumberPacking, what);
-    if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })) throw Error(what + " has numbers that are not finite");
+    if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }))
+        throw Error(what + " has numbers that are not finite");
     const std::size_t n = numbers.size() / kSampleNumbers;
     std::vector<stroke::Stroke> entries;
     std::size_t at = 0;
@@ -115,7 +129,10 @@ std::vector<stroke::Stroke> unpack_entries(std::span<const char> bytes, const st
             if (count > n - at) throw Error("it has more samples than are stored");
             for (std::size_t k = 0; k < count; ++k, ++at) {
                 const auto field = [&](std::size_t f) { return numbers[f * n + at]; };
-                s.trace.samples.push_back({.time = field(0), .position = {field(1), field(2), field(3)}, .pressure = field(4), .tilt = {field(5), field(6)},
+                s.trace.samples.push_back({.time = field(0),
+                                           .position = {field(1), field(2), field(3)},
+                                           .pressure = field(4),
+                                           .tilt = {field(5), field(6)},
                                            .rotation = Quat(field(7), field(8), field(9), field(10))});
             }
         }
@@ -134,11 +151,13 @@ void store_attachment(SQLite::Database& db, const std::string& kind, const Attac
     insert.bind(2, a.name);
     insert.bind(3, std::to_string(a.bytes.size()) + "\n" + a.about);
     insert.exec();
-    put_array_bytes(db, kind.c_str(), a.name.c_str(), a.bytes.data(), a.bytes.size(), 1, {.element = 1, .lag = 1, .level = 1});
+    put_array_bytes(db, kind.c_str(), a.name.c_str(), a.bytes.data(), a.bytes.size(), 1,
+                    {.element = 1, .lag = 1, .level = 1});
 }
 
 void remove_attachment(SQLite::Database& db, const std::string& kind, const std::string& name) {
-    for (const char* sql : {"DELETE FROM presets WHERE kind = ? AND name = ?", "DELETE FROM arrays WHERE owner = ? AND name = ?"}) {
+    for (const char* sql :
+         {"DELETE FROM presets WHERE kind = ? AND name = ?", "DELETE FROM arrays WHERE owner = ? AND name = ?"}) {
         SQLite::Statement s(db, sql);
         s.bind(1, kind);
         s.bind(2, name);
@@ -146,7 +165,8 @@ void remove_attachment(SQLite::Database& db, const std::string& kind, const std:
     }
 }
 
-std::vector<Attachment> load_attachments(SQLite::Database& db, const std::filesystem::path& path, const std::string& kind) {
+std::vector<Attachment> load_attachments(SQLite::Database& db, const std::filesystem::path& path,
+                                         const std::string& kind) {
     std::vector<Attachment> found;
     SQLite::Statement select(db, "SELECT name, toml FROM presets WHERE kind = ? ORDER BY name LIMIT ?");
     select.bind(1, kind);
@@ -155,7 +175,8 @@ std::vector<Attachment> load_attachments(SQLite::Database& db, const std::filesy
         const std::string about = select.getColumn(1).getString();
         const std::size_t line = about.find('\n');
         const std::uint64_t bytes = std::strtoull(about.c_str(), nullptr, 10);
-        if (line == std::string::npos || about.size() > kMostAbout || bytes > kMostAttachmentBytes) damaged(path, "what is said of a " + kind + " cannot be read");
+        if (line == std::string::npos || about.size() > kMostAbout || bytes > kMostAttachmentBytes)
+            damaged(path, "what is said of a " + kind + " cannot be read");
         Attachment& a = found.emplace_back(select.getColumn(0).getString(), about.substr(line + 1));
         a.bytes = get_array<char>(db, path, kind.c_str(), a.name.c_str(), {.element = 1, .lag = 1, .level = 1}, bytes);
         if (a.bytes.size() != bytes) damaged(path, "a " + kind + " is not there");

@@ -16,8 +16,8 @@ inline constexpr std::size_t kMostAttachments = 200;     ///< of a kind
 inline constexpr std::size_t kMostAttachmentBytes = std::size_t{256} << 20;
 
 struct Attachment {
-    std::string name;         ///< of no other one of its kind; the order of a kind is that of names
-    std::string about;        ///< a line of text, at most 64 KiB
+    std::string name;   ///< of no other one of its kind; the order of a kind is that of names
+    std::string about;  ///< a line of text, at most 64 KiB
     std::vector<char> bytes;
 
     bool operator==(const Attachment&) const = default;

@@ -47,8 +47,7 @@ std::vector<Vec2f> split_pages(const atlas::Atlas& atlas, ExportScene& scene) {
     scene.udims = {atlas::udim_of(atlas, 0)};
     if (atlas.pages == 1 && !own) return uvs;
     scene.udims.clear();
-    for (std::uint32_t page = 0; page < atlas.pages; ++page)
-        scene.udims.push_back(atlas::udim_of(atlas, page));
+    for (std::uint32_t page = 0; page < atlas.pages; ++page) scene.udims.push_back(atlas::udim_of(atlas, page));
     if (atlas.pages > 1) scene.triangle_page.resize(mesh.n_triangles());
     uvs = atlas.corner_uvs;
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
@@ -79,8 +78,8 @@ void check_parts(const mesh::TriangleMesh& mesh, const mesh::SourceScene& source
 
 }  // namespace
 
-ModelMaps make_maps(const ink::Stack& stack, const atlas::TexelMap& texels,
-                    const ink::Substrate& substrate, const ink::ComposeOptions& options) {
+ModelMaps make_maps(const ink::Stack& stack, const atlas::TexelMap& texels, const ink::Substrate& substrate,
+                    const ink::ComposeOptions& options) {
     return {.base_colour = compose_srgb8(stack, texels, substrate, options),
             .orm = compose_orm8(stack, texels, substrate, options),
             .height = compose_height(stack, texels, options)};
@@ -157,8 +156,7 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
     std::error_code ec;
     if (!fs::is_directory(parent, ec))
         throw Error(path.string(), "the output folder '" + parent.string() + "' does not exist");
-    const fs::path folder =
-        parent / ("." + path.stem().string() + ".part" + std::to_string(::getpid()));
+    const fs::path folder = parent / ("." + path.stem().string() + ".part" + std::to_string(::getpid()));
     const Unfinished unfinished(folder);
     struct Cleanup {
         fs::path folder;
@@ -168,8 +166,7 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
         }
     };
     fs::remove_all(folder, ec);
-    if (!fs::create_directory(folder, ec))
-        throw Error(path.string(), "cannot be written: " + ec.message());
+    if (!fs::create_directory(folder, ec)) throw Error(path.string(), "cannot be written: " + ec.message());
     const Cleanup cleanup{folder};
     write(folder);
     // The model comes last, so that it never points to files that are not there yet.
@@ -180,8 +177,7 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
     });
     for (const fs::path& file : files) {
         fs::rename(file, parent / file.filename(), ec);
-        if (ec)
-            throw Error((parent / file.filename()).string(), "cannot be written: " + ec.message());
+        if (ec) throw Error((parent / file.filename()).string(), "cannot be written: " + ec.message());
     }
 }
 
@@ -192,26 +188,23 @@ PixelView page_view(const PixelView& whole, const atlas::Atlas& atlas, std::uint
     const std::ptrdiff_t texel = std::abs(whole.row_bytes) / whole.width;
     PixelView view = whole;
     view.width = view.height = side;
-    view.first = static_cast<const char*>(whole.first) +
-                 std::ptrdiff_t{row} * side * whole.row_bytes + std::ptrdiff_t{column} * side * texel;
+    view.first = static_cast<const char*>(whole.first) + std::ptrdiff_t{row} * side * whole.row_bytes +
+                 std::ptrdiff_t{column} * side * texel;
     return view;
 }
 
 fs::path page_path(const fs::path& path, const atlas::Atlas& atlas, std::uint32_t page) {
     if (atlas.pages == 1) return path;
-    return path.parent_path() / (path.stem().string() + "." +
-                                 std::to_string(atlas::udim_of(atlas, page)) +
-                                 path.extension().string());
+    return path.parent_path() /
+           (path.stem().string() + "." + std::to_string(atlas::udim_of(atlas, page)) + path.extension().string());
 }
 
-std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps,
-                                     const ExportOptions& options, const atlas::Atlas& atlas) {
+std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps, const ExportOptions& options,
+                                     const atlas::Atlas& atlas) {
     std::vector<fs::path> files{path};
     const std::string extension = path.extension().string();
     if (extension == ".glb") return files;
-    const auto beside = [&](const std::string& tail) {
-        return path.parent_path() / (safe_stem(path) + tail);
-    };
+    const auto beside = [&](const std::string& tail) { return path.parent_path() / (safe_stem(path) + tail); };
     files.push_back(beside(extension == ".obj" ? ".mtl" : ".bin"));
     for (const MapFile& map : map_files(maps, options))
         for (std::uint32_t page = 0; map.present && page < atlas.pages; ++page)
@@ -219,16 +212,13 @@ std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps
     return files;
 }
 
-std::vector<std::string> export_model(const fs::path& path, const mesh::TriangleMesh& mesh,
-                                      const atlas::Atlas& atlas, const ModelMaps& maps,
-                                      const ExportOptions& options) {
+std::vector<std::string> export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
+                                      const ModelMaps& maps, const ExportOptions& options) {
     const std::string extension = path.extension().string();
     if (extension != ".glb" && extension != ".gltf" && extension != ".obj")
-        throw Error(path.string(),
-                    "models are written as .glb, .gltf or .obj, not as '" + extension + "'");
+        throw Error(path.string(), "models are written as .glb, .gltf or .obj, not as '" + extension + "'");
     const auto metres = metres_per(options.frame.unit);
-    if (!metres)
-        throw Error("unknown unit '" + options.frame.unit + "'; there are um, mm, cm, m, in and ft");
+    if (!metres) throw Error("unknown unit '" + options.frame.unit + "'; there are um, mm, cm, m, in and ft");
     mesh::SourceScene of_groups;
     if (!mesh.scene || mesh.scene->document.empty()) of_groups = make_scene(mesh, safe_stem(path));
     const mesh::SourceScene& source = of_groups.document.empty() ? *mesh.scene : of_groups;
@@ -245,8 +235,7 @@ std::vector<std::string> export_model(const fs::path& path, const mesh::Triangle
     scene.wedges = split_wedges(mesh, scene.corner_uvs, scene.triangle_page);
     std::vector<EncodedMap> encoded;
     report(options.progress, "export", 0);
-    const ImageOptions colour{.srgb = true, .channel_names = {}},
-        data{.srgb = false, .channel_names = {}};
+    const ImageOptions colour{.srgb = true, .channel_names = {}}, data{.srgb = false, .channel_names = {}};
     for (const MapFile& map : map_files(maps, options)) {
         if (!map.present) continue;
         const std::string kind = map.suffix;
@@ -257,13 +246,12 @@ std::vector<std::string> export_model(const fs::path& path, const mesh::Triangle
                                                                          : made;
         for (std::uint32_t page = 0; page < atlas.pages; ++page) {
             const fs::path file = page_path(scene.name + "_" + kind + ".png", atlas, page);
-            encoded.push_back({.kind = kind,
-                               .file = file.string(),
-                               .page = page,
-                               .png = png_bytes(page_view(view_of(whole), atlas, page),
-                                                kind == "base_colour" ? colour : data)});
-            report(options.progress, "export",
-                   0.25 * static_cast<double>(encoded.size()) / atlas.pages);
+            encoded.push_back(
+                {.kind = kind,
+                 .file = file.string(),
+                 .page = page,
+                 .png = png_bytes(page_view(view_of(whole), atlas, page), kind == "base_colour" ? colour : data)});
+            report(options.progress, "export", 0.25 * static_cast<double>(encoded.size()) / atlas.pages);
         }
     }
     write_together(path, [&](const fs::path& folder) {

@@ -24,8 +24,8 @@ struct ModelMaps {
 };
 
 /// All maps of what is seen of a canvas or of layers; `options.seams` makes their gutters continue over seams.
-ModelMaps make_maps(const ink::Stack& stack, const atlas::TexelMap& texels,
-                    const ink::Substrate& substrate, const ink::ComposeOptions& options = {});
+ModelMaps make_maps(const ink::Stack& stack, const atlas::TexelMap& texels, const ink::Substrate& substrate,
+                    const ink::ComposeOptions& options = {});
 
 /// Tangent-space normals of a height map (micrometres over texels of `texel_size` metres):
 /// n ∝ (−∂h/∂u, −∂h/∂v, 1), v up, encoded as 8 bit (n + 1)/2; slopes are cut at 1.
@@ -87,16 +87,13 @@ std::vector<std::string> export_model(const std::filesystem::path& path, const m
 
 /// Names of the files `export_model` writes for `path` with these maps, but for pictures of the file's own
 /// materials.
-std::vector<std::filesystem::path> exported_files(const std::filesystem::path& path,
-                                                  const ModelMaps& maps,
-                                                  const ExportOptions& options = {},
-                                                  const atlas::Atlas& atlas = {});
+std::vector<std::filesystem::path> exported_files(const std::filesystem::path& path, const ModelMaps& maps,
+                                                  const ExportOptions& options = {}, const atlas::Atlas& atlas = {});
 
 /// One page of a picture of the whole atlas; no copy.
 PixelView page_view(const PixelView& whole, const atlas::Atlas& atlas, std::uint32_t page);
 /// `path` with the page's UDIM number before the extension: name.1001.png. With one page, `path`.
-std::filesystem::path page_path(const std::filesystem::path& path, const atlas::Atlas& atlas,
-                                std::uint32_t page);
+std::filesystem::path page_path(const std::filesystem::path& path, const atlas::Atlas& atlas, std::uint32_t page);
 
 /// Runs `write(folder)` with a fresh folder beside `path`, then moves the files made in it
 /// beside `path`. On any error nothing has changed and `Error` is thrown.

@@ -44,9 +44,7 @@ struct ExportScene {
     std::vector<std::uint32_t> udims{1001};    ///< of each page
     std::vector<std::uint32_t> triangle_page;  ///< [n_triangles], or empty: all on page 0
 
-    std::uint32_t page_of(std::size_t triangle) const {
-        return triangle_page.empty() ? 0 : triangle_page[triangle];
-    }
+    std::uint32_t page_of(std::size_t triangle) const { return triangle_page.empty() ? 0 : triangle_page[triangle]; }
     /// Name of the decorated material on a page of glTF.
     std::string material_name(std::uint32_t page) const {
         return udims.size() > 1 ? "decorated." + std::to_string(udims[page]) : "decorated";
@@ -60,11 +58,9 @@ std::vector<std::vector<std::uint32_t>> triangles_of_parts(const ExportScene& sc
 std::vector<std::string> notes_on_parts(const ExportScene& scene);
 
 /// GLB, or glTF with its files, by the extension; `path` lies in a staging folder.
-void write_gltf(const std::filesystem::path& path, const ExportScene& scene,
-                std::span<const EncodedMap> maps);
+void write_gltf(const std::filesystem::path& path, const ExportScene& scene, std::span<const EncodedMap> maps);
 /// OBJ, MTL and pictures.
-void write_obj(const std::filesystem::path& path, const ExportScene& scene,
-               std::span<const EncodedMap> maps);
+void write_obj(const std::filesystem::path& path, const ExportScene& scene, std::span<const EncodedMap> maps);
 
 /// The stem of `path` with bytes that a URI or a line of an MTL file cannot hold replaced
 /// by '_': the files that a model refers to are named after it.

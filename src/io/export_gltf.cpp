@@ -35,12 +35,10 @@ std::vector<Vec4f> wedge_tangents(const ExportScene& scene) {
     std::vector<double> signs(sums.size(), 0);
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
         const Vec2 uv0(scene.corner_uvs[3 * t]);
-        const Vec2 a = Vec2(scene.corner_uvs[3 * t + 1]) - uv0,
-                   b = Vec2(scene.corner_uvs[3 * t + 2]) - uv0;
+        const Vec2 a = Vec2(scene.corner_uvs[3 * t + 1]) - uv0, b = Vec2(scene.corner_uvs[3 * t + 2]) - uv0;
         const double area = a.x * b.y - a.y * b.x;
         if (!(area != 0)) continue;
-        const Vec3 p0 = mesh.position(t, 0), p = mesh.position(t, 1) - p0,
-                   q = mesh.position(t, 2) - p0;
+        const Vec3 p0 = mesh.position(t, 0), p = mesh.position(t, 1) - p0, q = mesh.position(t, 2) - p0;
         Vec3 along_u = (b.y * p - a.y * q) * (area > 0 ? 1.0 : -1.0);
         const double length = glm::length(along_u);
         if (!(length > 0)) continue;
@@ -55,8 +53,7 @@ std::vector<Vec4f> wedge_tangents(const ExportScene& scene) {
     for (std::size_t w = 0; w < sums.size(); ++w) {
         const Vec3 n = glm::normalize(Vec3(mesh.corner_normals[scene.wedges.corner[w]]));
         const double scale = glm::length(sums[w]);
-        const Vec3 t =
-            scale > 0 ? make_frame(Vec3(0), n, sums[w] / scale).t : make_frame(Vec3(0), n).t;
+        const Vec3 t = scale > 0 ? make_frame(Vec3(0), n, sums[w] / scale).t : make_frame(Vec3(0), n).t;
         tangents[w] = Vec4f(Vec3f(t), signs[w] < 0 ? -1.0f : 1.0f);
     }
     return tangents;
@@ -77,9 +74,7 @@ struct NodeFrame {
         linear = glm::dmat3(world);
         mirrors = det < 0;
     }
-    Vec3f position(const Vec3f& p) const {
-        return Vec3f(Vec3(inverse * glm::dvec4(Vec3(to_gltf(p)), 1)));
-    }
+    Vec3f position(const Vec3f& p) const { return Vec3f(Vec3(inverse * glm::dvec4(Vec3(to_gltf(p)), 1))); }
     /// Normals go back by the transpose, as they came by its inverse.
     Vec3f normal(const Vec3f& n) const { return unit(glm::transpose(linear) * Vec3(to_gltf(n))); }
     Vec3f tangent(const Vec3f& t) const { return unit(glm::dmat3(inverse) * Vec3(to_gltf(t))); }
@@ -112,8 +107,7 @@ class Writer {
                 before.materials.insert(static_cast<std::size_t>(part.own_material));
         const std::vector<std::vector<std::uint32_t>> triangles = triangles_of_parts(scene_);
         std::map<std::int32_t, std::vector<std::size_t>> parts_of;  // by node
-        for (std::size_t i = 0; i < scene_.source.parts.size(); ++i)
-            parts_of[scene_.source.parts[i].node].push_back(i);
+        for (std::size_t i = 0; i < scene_.source.parts.size(); ++i) parts_of[scene_.source.parts[i].node].push_back(i);
         for (const auto& [node, parts] : parts_of) rebuild_node(node, parts, triangles);
         prune(document_, before);
     }
@@ -137,9 +131,8 @@ class Writer {
     /// Views of new bytes count from the end of the source's; see `write_buffer`.
     int add_view(const void* data, std::size_t size, int target) {
         added_.resize(aligned(added_.size()));
-        json view{{"buffer", 0},
-                  {"byteOffset", aligned(scene_.source.buffer.size()) + added_.size()},
-                  {"byteLength", size}};
+        json view{
+            {"buffer", 0}, {"byteOffset", aligned(scene_.source.buffer.size()) + added_.size()}, {"byteLength", size}};
         if (target > 0) view["target"] = target;
         const auto* from = static_cast<const unsigned char*>(data);
         added_.insert(added_.end(), from, from + size);
@@ -158,9 +151,7 @@ class Writer {
 
     int add_texture(const EncodedMap& map) {
         if (sampler_ < 0)  // linear, mip-mapped, ends at the edge
-            sampler_ =
-                add("samplers",
-                    {{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33071}});
+            sampler_ = add("samplers", {{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33071}});
         json image{{"name", map.kind}, {"mimeType", "image/png"}};
         if (embed_)
             image["bufferView"] = add_view(map.png.data(), map.png.size(), 0);
@@ -217,8 +208,7 @@ class Writer {
     const json* own_material(const mesh::ScenePart& part) const {
         const auto materials = document_.find("materials");
         const auto index = static_cast<std::size_t>(part.own_material);
-        if (part.own_material < 0 || materials == document_.end() || index >= materials->size())
-            return nullptr;
+        if (part.own_material < 0 || materials == document_.end() || index >= materials->size()) return nullptr;
         return &(*materials)[index];
     }
 
@@ -236,10 +226,9 @@ class Writer {
         std::map<std::uint32_t, std::vector<std::uint32_t>> by_page;
         for (const std::uint32_t t : triangles) by_page[scene_.page_of(t)].push_back(t);
         for (const auto& [page, here] : by_page) {
-            json primitive =
-                primitive_of(here, NodeFrame(part.transform), nullptr, !tangents_.empty());
-            primitive["material"] = maps_.empty() && own ? without_pictures(part.own_material, *own)
-                                                         : decorated(page, double_sided);
+            json primitive = primitive_of(here, NodeFrame(part.transform), nullptr, !tangents_.empty());
+            primitive["material"] =
+                maps_.empty() && own ? without_pictures(part.own_material, *own) : decorated(page, double_sided);
             own = own_material(part);  // the list has grown
             out.push_back(std::move(primitive));
         }
@@ -247,14 +236,13 @@ class Writer {
     }
 
     /// `own`: the file's material, of a part without ink.
-    json primitive_of(const std::vector<std::uint32_t>& triangles, const NodeFrame& frame,
-                      const json* own, bool with_tangents) {
+    json primitive_of(const std::vector<std::uint32_t>& triangles, const NodeFrame& frame, const json* own,
+                      bool with_tangents) {
         const mesh::TriangleMesh& mesh = scene_.mesh;
         std::vector<std::uint32_t> indices, wedges;
         for (const std::uint32_t t : triangles)
             for (int k = 0; k < 3; ++k) {
-                const std::uint32_t wedge =
-                    scene_.wedges.corner_wedge[3 * t + (frame.mirrors ? 2 - k : k)];
+                const std::uint32_t wedge = scene_.wedges.corner_wedge[3 * t + (frame.mirrors ? 2 - k : k)];
                 if (local_[wedge] == kNone) {
                     local_[wedge] = static_cast<std::uint32_t>(wedges.size());
                     wedges.push_back(wedge);
@@ -272,37 +260,32 @@ class Writer {
             positions[i] = frame.position(mesh.positions[scene_.wedges.vertex[wedge]]);
             normals[i] = frame.normal(mesh.corner_normals[corner]);
             uvs[i] = Vec2f(scene_.corner_uvs[corner].x, 1 - scene_.corner_uvs[corner].y);
-            if (with_tangents)
-                tangents[i] = Vec4f(frame.tangent(Vec3f(tangents_[wedge])), tangents_[wedge].w);
+            if (with_tangents) tangents[i] = Vec4f(frame.tangent(Vec3f(tangents_[wedge])), tangents_[wedge].w);
             lo = glm::min(lo, positions[i]);
             hi = glm::max(hi, positions[i]);
         }
         json attributes;
-        attributes["POSITION"] =
-            add_accessor(positions, kFloat, "VEC3", kVertexTarget,
-                         {{"min", {lo.x, lo.y, lo.z}}, {"max", {hi.x, hi.y, hi.z}}});
+        attributes["POSITION"] = add_accessor(positions, kFloat, "VEC3", kVertexTarget,
+                                              {{"min", {lo.x, lo.y, lo.z}}, {"max", {hi.x, hi.y, hi.z}}});
         attributes["NORMAL"] = add_accessor(normals, kFloat, "VEC3", kVertexTarget);
         if (!own || !mesh.corner_uvs.empty())
             attributes["TEXCOORD_0"] = add_accessor(uvs, kFloat, "VEC2", kVertexTarget);
-        if (with_tangents)
-            attributes["TANGENT"] = add_accessor(tangents, kFloat, "VEC4", kVertexTarget);
+        if (with_tangents) attributes["TANGENT"] = add_accessor(tangents, kFloat, "VEC4", kVertexTarget);
         if (own && !mesh.vertex_colours.empty() &&
             !own->value("pbrMetallicRoughness", json::object()).contains("baseColorTexture"))
-            attributes["COLOR_0"] = add_accessor(vertex_colours(wedges), kUnsignedShort, "VEC4",
-                                                 kVertexTarget, {{"normalized", true}});
+            attributes["COLOR_0"] =
+                add_accessor(vertex_colours(wedges), kUnsignedShort, "VEC4", kVertexTarget, {{"normalized", true}});
         return {{"attributes", std::move(attributes)},
                 {"indices", add_accessor(indices, kUnsignedInt, "SCALAR", kIndexTarget)}};
     }
 
-    std::vector<std::array<std::uint16_t, 4>> vertex_colours(
-        const std::vector<std::uint32_t>& wedges) const {
+    std::vector<std::array<std::uint16_t, 4>> vertex_colours(const std::vector<std::uint32_t>& wedges) const {
         std::vector<std::array<std::uint16_t, 4>> colours;
         for (const std::uint32_t wedge : wedges) {
             const auto& code = scene_.mesh.vertex_colours[scene_.wedges.vertex[wedge]];
             std::array<std::uint16_t, 4> linear{0, 0, 0, 65535};
             for (std::size_t c = 0; c < 3; ++c)
-                linear[c] =
-                    static_cast<std::uint16_t>(std::lround(65535 * ink::linear_of_code()[code[c]]));
+                linear[c] = static_cast<std::uint16_t>(std::lround(65535 * ink::linear_of_code()[code[c]]));
             colours.push_back(linear);
         }
         return colours;
@@ -331,8 +314,7 @@ class Writer {
             if (part.primitive >= 0)
                 new_of[static_cast<std::size_t>(part.primitive)] = i;
             else
-                for (json& primitive : primitives_of(i, triangles[i]))
-                    primitives.push_back(std::move(primitive));
+                for (json& primitive : primitives_of(i, triangles[i])) primitives.push_back(std::move(primitive));
         }
         for (std::size_t p = 0; p < old_primitives.size(); ++p) {
             const auto made = new_of.find(p);
@@ -345,16 +327,14 @@ class Writer {
         for (json& primitive : primitives) primitive.erase("targets");
         mesh.erase("weights");
         mesh["primitives"] = std::move(primitives);
-        if (!mesh.contains("name"))
-            mesh["name"] = nodes[static_cast<std::size_t>(index)].value("name", scene_.name);
+        if (!mesh.contains("name")) mesh["name"] = nodes[static_cast<std::size_t>(index)].value("name", scene_.name);
         put_mesh(static_cast<std::size_t>(index), std::move(mesh));
     }
 
     json mesh_of(const json& node) const {
         const auto meshes = document_.find("meshes");
         const std::size_t index = node.value("mesh", std::numeric_limits<std::size_t>::max());
-        if (meshes == document_.end() || !meshes->is_array() || index >= meshes->size())
-            return json::object();
+        if (meshes == document_.end() || !meshes->is_array() || index >= meshes->size()) return json::object();
         return (*meshes)[index];
     }
 
@@ -362,9 +342,8 @@ class Writer {
     void put_mesh(std::size_t index, json mesh) {
         json& nodes = list("nodes");
         const auto uses = [&](std::size_t m) {
-            return std::count_if(nodes.begin(), nodes.end(), [&](const json& n) {
-                return n.is_object() && n.contains("mesh") && n["mesh"] == m;
-            });
+            return std::count_if(nodes.begin(), nodes.end(),
+                                 [&](const json& n) { return n.is_object() && n.contains("mesh") && n["mesh"] == m; });
         };
         if (nodes[index].contains("mesh") && nodes[index]["mesh"].is_number_unsigned() &&
             uses(nodes[index]["mesh"].get<std::size_t>()) == 1)
@@ -396,8 +375,7 @@ void write_u32(std::ofstream& file, std::size_t value) {
 }
 
 void write_bytes(std::ofstream& file, std::span<const unsigned char> bytes) {
-    file.write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
+    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
 /// JSON of a file, padded to a multiple of 4 with spaces.
@@ -409,8 +387,7 @@ std::string text_of_document(const json& document, bool embed) {
 
 }  // namespace
 
-void write_gltf(const std::filesystem::path& path, const ExportScene& scene,
-                std::span<const EncodedMap> maps) {
+void write_gltf(const std::filesystem::path& path, const ExportScene& scene, std::span<const EncodedMap> maps) {
     const bool embed = path.extension() == ".glb";
     std::optional<Writer> made;
     std::vector<unsigned char> buffer;
@@ -427,8 +404,7 @@ void write_gltf(const std::filesystem::path& path, const ExportScene& scene,
         throw Error(path.filename().string(), "a GLB file holds at most 4 GiB; export as .gltf");
     if (!embed) {
         if (!buffer.empty()) document["buffers"][0]["uri"] = safe_stem(path) + ".bin";
-        for (const EncodedMap& map : maps)
-            write_staged(path.parent_path() / map.file, map.png.data(), map.png.size());
+        for (const EncodedMap& map : maps) write_staged(path.parent_path() / map.file, map.png.data(), map.png.size());
         write_staged(path.parent_path() / (safe_stem(path) + ".bin"), buffer.data(), buffer.size());
         const std::string text = text_of_document(document, embed);
         write_staged(path, text.data(), text.size());
@@ -449,8 +425,7 @@ void write_gltf(const std::filesystem::path& path, const ExportScene& scene,
         write_bytes(file, buffer);
     }
     file.close();
-    if (!file)
-        throw Error(path.filename().string(), "could not be written to its end (disk full?)");
+    if (!file) throw Error(path.filename().string(), "could not be written to its end (disk full?)");
 }
 
 }  // namespace tuft::io

@@ -15,7 +15,8 @@ ink::AtlasMap<std::uint16_t> srgb16(const ink::AtlasMap<float>& linear) {
     ink::AtlasMap<std::uint16_t> out{.size = linear.size, .channels = linear.channels, .texels = {}};
     out.texels.reserve(linear.texels.size());
     for (const float v : linear.texels)
-        out.texels.push_back(static_cast<std::uint16_t>(std::lround(65535 * ink::srgb_encode(std::clamp(v, 0.0f, 1.0f)))));
+        out.texels.push_back(
+            static_cast<std::uint16_t>(std::lround(65535 * ink::srgb_encode(std::clamp(v, 0.0f, 1.0f)))));
     return out;
 }
 
@@ -24,7 +25,8 @@ const std::vector<std::string>& map_names() {
     return names;
 }
 
-void write_map(const fs::path& path, const std::string& name, const stroke::Document& painting, const ink::ComposeOptions& compose, int bits) {
+void write_map(const fs::path& path, const std::string& name, const stroke::Document& painting,
+               const ink::ComposeOptions& compose, int bits) {
     const ink::Stack stack = painting.stack();
     const stroke::Model& model = painting.model();
     const bool png = path.extension() == ".png";
@@ -60,10 +62,14 @@ void write_map(const fs::path& path, const std::string& name, const stroke::Docu
         write(view_of(amounts), data);
     } else {
         const ink::AtlasMap<float> height = ink::compose_height(stack, model.texels, compose);
-        if (name == "normal" && png) write(view_of(normal_map16(height, model.atlas.texel_size)), data);
-        else if (name == "normal") write(view_of(normal_map_float(height, model.atlas.texel_size)), data);
-        else if (png) write(view_of(height16(height)), data);
-        else write(view_of(height), data);
+        if (name == "normal" && png)
+            write(view_of(normal_map16(height, model.atlas.texel_size)), data);
+        else if (name == "normal")
+            write(view_of(normal_map_float(height, model.atlas.texel_size)), data);
+        else if (png)
+            write(view_of(height16(height)), data);
+        else
+            write(view_of(height), data);
     }
 }
 

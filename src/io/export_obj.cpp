@@ -16,8 +16,7 @@ namespace {
 
 void append_number(std::string& out, double value, int digits) {
     char buffer[40];
-    const auto end =
-        std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits);
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits);
     out.append(buffer, end.ptr);
 }
 
@@ -64,8 +63,7 @@ class TextFile {
     void close() {
         flush();
         file_.close();
-        if (!file_)
-            throw Error(path_.filename().string(), "could not be written to its end (disk full?)");
+        if (!file_) throw Error(path_.filename().string(), "could not be written to its end (disk full?)");
     }
 
   private:
@@ -119,8 +117,7 @@ void write_staged(const std::filesystem::path& path, const void* data, std::size
     std::ofstream file(path, std::ios::binary | std::ios::trunc);
     file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
     file.close();
-    if (!file)
-        throw Error(path.filename().string(), "could not be written to its end (disk full?)");
+    if (!file) throw Error(path.filename().string(), "could not be written to its end (disk full?)");
 }
 
 namespace {
@@ -132,8 +129,7 @@ const json kNothing;
 /// document[key][index], or null.
 const json& item_of(const json& document, const char* key, std::size_t index) {
     const auto found = document.find(key);
-    return found != document.end() && found->is_array() && index < found->size() ? (*found)[index]
-                                                                                 : kNothing;
+    return found != document.end() && found->is_array() && index < found->size() ? (*found)[index] : kNothing;
 }
 
 /// Writes the pictures of the file's own materials beside the model, each when it is first asked
@@ -146,8 +142,8 @@ class OwnPictures {
     /// Name of the file of a texture's picture, or "".
     std::string file_of(std::size_t texture) {
         const json& source = item_of(document_, "textures", texture);
-        const std::size_t image = source.is_object() ? source.value("source", std::size_t{1} << 40)
-                                                     : std::size_t{1} << 40;
+        const std::size_t image =
+            source.is_object() ? source.value("source", std::size_t{1} << 40) : std::size_t{1} << 40;
         const auto [it, is_new] = files_.try_emplace(image);
         if (is_new) it->second = write(item_of(document_, "images", image));
         return it->second;
@@ -156,8 +152,7 @@ class OwnPictures {
   private:
     std::string write(const json& image) {
         if (!image.is_object() || !image.contains("bufferView")) return {};
-        const json& view =
-            item_of(document_, "bufferViews", image["bufferView"].get<std::size_t>());
+        const json& view = item_of(document_, "bufferViews", image["bufferView"].get<std::size_t>());
         if (!view.is_object()) return {};
         const std::size_t at = view.value("byteOffset", std::size_t{0}),
                           size = view.at("byteLength").get<std::size_t>();
@@ -202,8 +197,7 @@ std::vector<std::string> write_library(const std::filesystem::path& path, const 
     for (const EncodedMap& map : maps) {
         write_staged(path.parent_path() / map.file, map.png.data(), map.png.size());
         if (map.page > 0 || !used) continue;
-        const std::string file =
-            scene.udims.size() == 1 ? map.file : scene.name + "_" + map.kind + ".<UDIM>.png";
+        const std::string file = scene.udims.size() == 1 ? map.file : scene.name + "_" + map.kind + ".<UDIM>.png";
         if (map.kind == "base_colour") mtl += "map_Kd " + file + "\n";
         if (map.kind == "normal") mtl += "norm " + file + "\n";
     }
@@ -219,10 +213,9 @@ std::vector<std::string> write_library(const std::filesystem::path& path, const 
             if (is_new) {
                 const std::string name = line_name(part.material);
                 it->second = names.get(name.empty() ? "material" : name);
-                mtl += mtl_entry(it->second, item_of(document, "materials", index),
-                                 item_of(document, kStatements, index), [&](std::size_t texture) {
-                                     return scene.decorated[i] ? "" : pictures.file_of(texture);
-                                 });
+                mtl +=
+                    mtl_entry(it->second, item_of(document, "materials", index), item_of(document, kStatements, index),
+                              [&](std::size_t texture) { return scene.decorated[i] ? "" : pictures.file_of(texture); });
             }
             name_of_part[i] = it->second;
         }
@@ -234,13 +227,11 @@ std::vector<std::string> write_library(const std::filesystem::path& path, const 
 }
 
 /// The faces, part by part.
-void write_faces(TextFile& file, const ExportScene& scene,
-                 const std::vector<std::string>& materials) {
+void write_faces(TextFile& file, const ExportScene& scene, const std::vector<std::string>& materials) {
     const std::vector<std::vector<std::uint32_t>> of_part = triangles_of_parts(scene);
     const bool own_uvs = !scene.mesh.corner_uvs.empty();
     UniqueNames objects;
-    std::map<std::pair<std::int32_t, std::string>, std::string>
-        object_names;  // two nodes may have one name
+    std::map<std::pair<std::int32_t, std::string>, std::string> object_names;  // two nodes may have one name
     std::string object, group, material;
     for (std::size_t i = 0; i < of_part.size(); ++i) {
         if (of_part[i].empty()) continue;
@@ -248,8 +239,7 @@ void write_faces(TextFile& file, const ExportScene& scene,
         std::string& text = file.text();
         const std::int32_t node = part.primitive >= 0 ? part.node : -1;
         const auto [it, is_new] = object_names.try_emplace({node, part.object});
-        if (is_new)
-            it->second = objects.get(part.object.empty() ? scene.name : line_name(part.object));
+        if (is_new) it->second = objects.get(part.object.empty() ? scene.name : line_name(part.object));
         if (it->second != object) text += "o " + (object = it->second) + "\n";
         const std::string in_group = part.group.empty() ? "" : line_name(part.group);
         if (in_group != group) text += "g " + (group = in_group) + "\n";
@@ -259,12 +249,10 @@ void write_faces(TextFile& file, const ExportScene& scene,
             std::string& out = file.text();
             out += 'f';
             for (int k = 0; k < 3; ++k) {
-                const std::string wedge = std::to_string(
-                    scene.wedges.corner_wedge[3 * std::size_t{t} + static_cast<std::size_t>(k)] +
-                    1);
-                out += ' ' +
-                       std::to_string(scene.mesh.triangles[t][static_cast<std::size_t>(k)] + 1) +
-                       '/' + (with_uvs ? wedge : "") + '/' + wedge;
+                const std::string wedge =
+                    std::to_string(scene.wedges.corner_wedge[3 * std::size_t{t} + static_cast<std::size_t>(k)] + 1);
+                out += ' ' + std::to_string(scene.mesh.triangles[t][static_cast<std::size_t>(k)] + 1) + '/' +
+                       (with_uvs ? wedge : "") + '/' + wedge;
             }
             out += '\n';
         }
@@ -273,8 +261,7 @@ void write_faces(TextFile& file, const ExportScene& scene,
 
 }  // namespace
 
-void write_obj(const std::filesystem::path& path, const ExportScene& scene,
-               std::span<const EncodedMap> maps) {
+void write_obj(const std::filesystem::path& path, const ExportScene& scene, std::span<const EncodedMap> maps) {
     const mesh::TriangleMesh& mesh = scene.mesh;
     const Wedges& wedges = scene.wedges;
     const std::vector<std::string> materials = write_library(path, scene, maps);

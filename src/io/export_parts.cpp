@@ -11,8 +11,7 @@
 namespace tuft::io {
 namespace {
 
-constexpr float kLeastInk =
-    1e-4f;  // film units; the least code of a colour is some 2e-3 of black ink
+constexpr float kLeastInk = 1e-4f;  // film units; the least code of a colour is some 2e-3 of black ink
 
 using TexelSet = std::bitset<atlas::kTileTexels>;
 
@@ -28,8 +27,7 @@ TexelSet inked_texels(const ink::Stack& stack, std::uint32_t slot) {
         for (int film = 0; film < ink::kFilms; ++film)
             for (int p = 0; p < static_cast<int>(layer.canvas->pigments().size()); ++p)
                 add(layer.canvas->film_plane(slot, film, p));
-        for (const ink::Liquid where : {ink::Liquid::film, ink::Liquid::pores})
-            add(layer.canvas->liquid(slot, where));
+        for (const ink::Liquid where : {ink::Liquid::film, ink::Liquid::pores}) add(layer.canvas->liquid(slot, where));
     }
     return inked;
 }
@@ -43,41 +41,34 @@ std::string name_of_part(const mesh::ScenePart& part) {
 std::vector<std::uint8_t> painted_parts(const ink::Stack& stack, const mesh::TriangleMesh& mesh,
                                         const atlas::Atlas& atlas, const atlas::TexelMap& texels) {
     std::uint32_t n = 0;
-    for (std::size_t t = 0; t < mesh.n_triangles(); ++t)
-        n = std::max(n, mesh::part_of(mesh, t) + 1);
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t) n = std::max(n, mesh::part_of(mesh, t) + 1);
     if (mesh.scene) n = std::max(n, static_cast<std::uint32_t>(mesh.scene->parts.size()));
     std::vector<std::uint8_t> painted(std::max<std::size_t>(n, mesh.group_names.size()), 0);
     std::vector<TexelSet> inked(texels.n_slots());
     const std::vector<std::uint32_t> touched = stack.touched_slots();
     parallel_for(touched.size(), 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            inked[touched[i]] = inked_texels(stack, touched[i]);
+        for (std::size_t i = begin; i < end; ++i) inked[touched[i]] = inked_texels(stack, touched[i]);
     });
-    atlas::visit_texels(mesh, atlas, texels,
-                        [&](std::uint32_t slot, int texel, std::uint32_t triangle, const Vec3&) {
-                            if (inked[slot].test(static_cast<std::size_t>(texel)))
-                                std::atomic_ref(painted[mesh::part_of(mesh, triangle)])
-                                    .store(1, std::memory_order_relaxed);
-                        });
+    atlas::visit_texels(mesh, atlas, texels, [&](std::uint32_t slot, int texel, std::uint32_t triangle, const Vec3&) {
+        if (inked[slot].test(static_cast<std::size_t>(texel)))
+            std::atomic_ref(painted[mesh::part_of(mesh, triangle)]).store(1, std::memory_order_relaxed);
+    });
     return painted;
 }
 
 std::vector<std::vector<std::uint32_t>> triangles_of_parts(const ExportScene& scene) {
     std::vector<std::vector<std::uint32_t>> of_part(scene.source.parts.size());
-    for (std::uint32_t t = 0; t < scene.mesh.n_triangles(); ++t)
-        of_part[mesh::part_of(scene.mesh, t)].push_back(t);
+    for (std::uint32_t t = 0; t < scene.mesh.n_triangles(); ++t) of_part[mesh::part_of(scene.mesh, t)].push_back(t);
     return of_part;
 }
 
 std::vector<std::string> notes_on_parts(const ExportScene& scene) {
     std::vector<std::string> notes;
-    const auto kept =
-        static_cast<std::size_t>(std::count(scene.decorated.begin(), scene.decorated.end(), 0));
+    const auto kept = static_cast<std::size_t>(std::count(scene.decorated.begin(), scene.decorated.end(), 0));
     if (kept > 0)
-        notes.push_back(
-            std::to_string(scene.decorated.size() - kept) + " of " +
-            std::to_string(scene.decorated.size()) +
-            " parts get the material 'decorated'; the others carry no ink and keep their own");
+        notes.push_back(std::to_string(scene.decorated.size() - kept) + " of " +
+                        std::to_string(scene.decorated.size()) +
+                        " parts get the material 'decorated'; the others carry no ink and keep their own");
     const nlohmann::json document = parse_document(scene.source);
     const auto materials = document.find("materials");
     if (materials == document.end() || !materials->is_array()) return notes;

@@ -35,17 +35,15 @@ void check_container(const std::vector<char>& bytes, const std::string& name) {
     }
     if (bytes.size() < 20) throw Error(name, "the GLB file is cut short");
     if (u32(&bytes[4]) != 2)
-        throw Error(name,
-                    "is glTF version " + std::to_string(u32(&bytes[4])) + "; tuft reads version 2");
+        throw Error(name, "is glTF version " + std::to_string(u32(&bytes[4])) + "; tuft reads version 2");
     const std::size_t length = u32(&bytes[8]);
     if (length > bytes.size())
-        throw Error(name, "the GLB file is cut short: it has " + std::to_string(bytes.size()) +
-                              " of " + std::to_string(length) + " bytes");
+        throw Error(name, "the GLB file is cut short: it has " + std::to_string(bytes.size()) + " of " +
+                              std::to_string(length) + " bytes");
     std::size_t at = 12;
     for (int chunk = 0; at + 8 <= length; ++chunk) {
         const std::size_t size = u32(&bytes[at]);
-        if (size > length - at - 8)
-            throw Error(name, "a chunk of the GLB file is longer than the file");
+        if (size > length - at - 8) throw Error(name, "a chunk of the GLB file is longer than the file");
         if (chunk == 0) check_json_nesting({&bytes[at + 8], size}, name);
         at += 8 + size;
     }
@@ -70,8 +68,7 @@ struct Sandbox {
     }
     std::string fault() const {
         // The library looks in the working folder next, which is outside as a rule.
-        if (!missing.empty())
-            return "it refers to '" + short_uri(missing) + "', which is not there";
+        if (!missing.empty()) return "it refers to '" + short_uri(missing) + "', which is not there";
         return "it refers to '" + short_uri(refused) + "', which is outside its folder";
     }
 };
@@ -84,8 +81,7 @@ std::string sandbox_expand(const std::string& file, void*) {
     return file;
 }
 
-bool sandbox_read(std::vector<unsigned char>* out, std::string* err, const std::string& file,
-                  void* sandbox) {
+bool sandbox_read(std::vector<unsigned char>* out, std::string* err, const std::string& file, void* sandbox) {
     try {
         if (!static_cast<Sandbox*>(sandbox)->inside(file)) return false;
         const std::vector<char> bytes = read_file(file);
@@ -131,10 +127,8 @@ void take_pictures_of_buffers(const tinygltf::Model& model, PictureFiles& files)
         if (!lies_in(index, model.bufferViews)) continue;
         const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(index)];
         if (!lies_in(view.buffer, model.buffers)) continue;
-        const std::vector<unsigned char>& bytes =
-            model.buffers[static_cast<std::size_t>(view.buffer)].data;
-        if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset)
-            continue;
+        const std::vector<unsigned char>& bytes = model.buffers[static_cast<std::size_t>(view.buffer)].data;
+        if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset) continue;
         keep_picture(files, i, std::span(bytes).subspan(view.byteOffset, view.byteLength));
     }
 }
@@ -173,9 +167,9 @@ std::string refusal_of(const std::string& name) {
     if (name.starts_with("KHR_materials_")) return {};
     for (const Extension& known : kExtensions)
         if (name == known.name)
-            return known.advice ? "it requires the glTF extension " + name +
-                                      ", which tuft does not read: " + known.advice
-                                : std::string();
+            return known.advice
+                       ? "it requires the glTF extension " + name + ", which tuft does not read: " + known.advice
+                       : std::string();
     return "it requires the glTF extension '" + name.substr(0, 60) +
            "', which tuft does not know; export it without that extension";
 }
@@ -187,11 +181,8 @@ void check_extensions(std::string_view text, const std::string& file) {
         if (event == nlohmann::json::parse_event_t::key && at == 1) key = value.get<std::string>();
         return at == 0 || key == "extensionsRequired";
     };
-    const nlohmann::json head =
-        nlohmann::json::parse(text.begin(), text.end(), only_required, false);
-    if (!head.is_object() || !head.contains("extensionsRequired") ||
-        !head["extensionsRequired"].is_array())
-        return;
+    const nlohmann::json head = nlohmann::json::parse(text.begin(), text.end(), only_required, false);
+    if (!head.is_object() || !head.contains("extensionsRequired") || !head["extensionsRequired"].is_array()) return;
     for (const nlohmann::json& name : head["extensionsRequired"]) {
         const std::string why = name.is_string() ? refusal_of(name.get<std::string>()) : "";
         if (!why.empty()) throw Error(file, why);
@@ -222,15 +213,13 @@ std::string short_uri(const std::string& uri) {
     constexpr std::size_t kMost = 80;
     if (!uri.starts_with("data:")) return uri.size() <= kMost ? uri : uri.substr(0, kMost) + "...";
     const std::size_t comma = std::min(uri.find(','), uri.size());
-    return uri.substr(0, std::min(comma, kMost)) + ",... (" + std::to_string(uri.size()) +
-           " characters)";
+    return uri.substr(0, std::min(comma, kMost)) + ",... (" + std::to_string(uri.size()) + " characters)";
 }
 
 GltfFile open_gltf(const std::vector<char>& bytes, const fs::path& path) {
     const std::string name = path.string();
     check_container(bytes, name);
-    if (bytes.size() > std::numeric_limits<unsigned>::max())
-        throw Error(name, "is larger than 4 GiB");
+    if (bytes.size() > std::numeric_limits<unsigned>::max()) throw Error(name, "is larger than 4 GiB");
     check_extensions(json_of(bytes), name);
     Sandbox sandbox{path.has_parent_path() ? path.parent_path() : fs::path("."), {}, {}};
     tinygltf::TinyGLTF loader;
@@ -244,12 +233,10 @@ GltfFile open_gltf(const std::vector<char>& bytes, const fs::path& path) {
     try {
         const auto size = static_cast<unsigned>(bytes.size());
         if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0)
-            ok = loader.LoadBinaryFromMemory(&model, &err, &warn,
-                                             reinterpret_cast<const unsigned char*>(bytes.data()),
+            ok = loader.LoadBinaryFromMemory(&model, &err, &warn, reinterpret_cast<const unsigned char*>(bytes.data()),
                                              size, sandbox.folder.string());
         else
-            ok = loader.LoadASCIIFromString(&model, &err, &warn, bytes.data(), size,
-                                            sandbox.folder.string());
+            ok = loader.LoadASCIIFromString(&model, &err, &warn, bytes.data(), size, sandbox.folder.string());
     } catch (const std::bad_alloc&) {
         err = "it asks for more memory than there is";
     } catch (const std::exception& e) {
@@ -259,10 +246,8 @@ GltfFile open_gltf(const std::vector<char>& bytes, const fs::path& path) {
         if (!sandbox.refused.empty() || !sandbox.missing.empty()) err = sandbox.fault();
         err = one_line(std::move(err));
         // The JSON library's messages begin with its name for the error, and end with what it read last.
-        if (const auto end = err.find("] ");
-            err.starts_with("[json.exception") && end != err.npos)
-            err = "its JSON cannot be read: " +
-                  excerpt(err.substr(end + 2, err.find("; last read") - end - 2), 200);
+        if (const auto end = err.find("] "); err.starts_with("[json.exception") && end != err.npos)
+            err = "its JSON cannot be read: " + excerpt(err.substr(end + 2, err.find("; last read") - end - 2), 200);
         throw Error(name, err.empty() ? "is not a glTF file that can be read" : err);
     }
     if (model.asset.version.starts_with("1."))

@@ -13,10 +13,9 @@ class Model;
 namespace tuft::io {
 
 struct GltfFile {
-    std::string json;                        ///< as it is in the file
-    std::unique_ptr<tinygltf::Model> model;  ///< the same, parsed, with its buffers
-    std::vector<std::vector<unsigned char>>
-        pictures;  ///< by image, in their own file format; empty: not there
+    std::string json;                                  ///< as it is in the file
+    std::unique_ptr<tinygltf::Model> model;            ///< the same, parsed, with its buffers
+    std::vector<std::vector<unsigned char>> pictures;  ///< by image, in their own file format; empty: not there
 
     GltfFile();
     ~GltfFile();

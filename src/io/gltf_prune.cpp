@@ -17,11 +17,9 @@ struct IndexVisitor {
     std::function<void(json&)> accessor, view, material, texture, image;
 
     void visit(json& document) const {
-        each(document, "meshes",
-             [&](json& mesh) { each(mesh, "primitives", [&](json& p) { primitive(p); }); });
+        each(document, "meshes", [&](json& mesh) { each(mesh, "primitives", [&](json& p) { primitive(p); }); });
         each(document, "animations", [&](json& animation) {
-            each(animation, "samplers",
-                 [&](json& s) { index(s, "input", accessor), index(s, "output", accessor); });
+            each(animation, "samplers", [&](json& s) { index(s, "input", accessor), index(s, "output", accessor); });
         });
         each(document, "skins", [&](json& skin) { index(skin, "inverseBindMatrices", accessor); });
         each(document, "accessors", [&](json& a) {
@@ -47,8 +45,7 @@ struct IndexVisitor {
     }
     static void index(json& of, const char* key, const std::function<void(json&)>& fn) {
         const auto found = of.is_object() ? of.find(key) : of.end();
-        if (found != of.end() && found->is_number_integer() && found->get<std::int64_t>() >= 0)
-            fn(*found);
+        if (found != of.end() && found->is_number_integer() && found->get<std::int64_t>() >= 0) fn(*found);
     }
     static void extensions_of(json& of, const std::function<void(json&)>& fn) {
         const auto found = of.find("extensions");
@@ -89,17 +86,15 @@ bool knows_extensions(const json& document) {
         const auto& text = name.get_ref<const std::string&>();
         if (text.starts_with("KHR_materials_")) return true;
         for (const char* known :
-             {"KHR_texture_transform", "KHR_mesh_quantization", "KHR_lights_punctual",
-              "KHR_texture_basisu", "EXT_texture_webp", "KHR_draco_mesh_compression",
-              "KHR_xmp_json_ld", "KHR_node_visibility"})
+             {"KHR_texture_transform", "KHR_mesh_quantization", "KHR_lights_punctual", "KHR_texture_basisu",
+              "EXT_texture_webp", "KHR_draco_mesh_compression", "KHR_xmp_json_ld", "KHR_node_visibility"})
             if (text == known) return true;
         return false;
     });
 }
 
 /// New indices of the items of an array from which those `gone` are taken out.
-std::map<std::size_t, std::size_t> take_out(json& document, const char* key,
-                                            const std::set<std::size_t>& before,
+std::map<std::size_t, std::size_t> take_out(json& document, const char* key, const std::set<std::size_t>& before,
                                             const std::set<std::size_t>& after) {
     std::map<std::size_t, std::size_t> index;
     const auto found = document.find(key);
@@ -125,8 +120,8 @@ References references_in(const json& document) {
         return [&all](json& index) { all.insert(index.get<std::size_t>()); };
     };
     json copy = document;
-    const IndexVisitor all{into(used.accessors), into(used.views), into(used.materials),
-                           into(used.textures), into(used.images)};
+    const IndexVisitor all{into(used.accessors), into(used.views), into(used.materials), into(used.textures),
+                           into(used.images)};
     all.visit(copy);
     return used;
 }
@@ -136,24 +131,19 @@ void prune(json& document, const References& before) {
     const auto nothing = [](json&) {};
     const auto turned = [](const std::map<std::size_t, std::size_t>& index) {
         return [&index](json& value) {
-            if (const auto it = index.find(value.get<std::size_t>()); it != index.end())
-                value = it->second;
+            if (const auto it = index.find(value.get<std::size_t>()); it != index.end()) value = it->second;
         };
     };
     // What one kind leaves out, the next one is no longer asked for by.
-    const auto materials =
-        take_out(document, "materials", before.materials, references_in(document).materials);
+    const auto materials = take_out(document, "materials", before.materials, references_in(document).materials);
     IndexVisitor{nothing, nothing, turned(materials), nothing, nothing}.visit(document);
-    const auto textures =
-        take_out(document, "textures", before.textures, references_in(document).textures);
+    const auto textures = take_out(document, "textures", before.textures, references_in(document).textures);
     IndexVisitor{nothing, nothing, nothing, turned(textures), nothing}.visit(document);
     const auto images = take_out(document, "images", before.images, references_in(document).images);
     IndexVisitor{nothing, nothing, nothing, nothing, turned(images)}.visit(document);
-    const auto accessors =
-        take_out(document, "accessors", before.accessors, references_in(document).accessors);
+    const auto accessors = take_out(document, "accessors", before.accessors, references_in(document).accessors);
     IndexVisitor{turned(accessors), nothing, nothing, nothing, nothing}.visit(document);
-    const auto views =
-        take_out(document, "bufferViews", before.views, references_in(document).views);
+    const auto views = take_out(document, "bufferViews", before.views, references_in(document).views);
     IndexVisitor{nothing, turned(views), nothing, nothing, nothing}.visit(document);
 }
 
@@ -165,9 +155,7 @@ void drop_morphs(json& document, std::size_t node) {
         json channels = json::array();
         for (json& channel : animation["channels"]) {
             const json target = channel.value("target", json::object());
-            if (target.value("path", "") == "weights" && target.contains("node") &&
-                target["node"] == node)
-                continue;
+            if (target.value("path", "") == "weights" && target.contains("node") && target["node"] == node) continue;
             channels.push_back(std::move(channel));
         }
         if (channels.empty()) continue;
@@ -191,23 +179,19 @@ std::vector<unsigned char> take_views(json& document, const std::vector<unsigned
         for (const json& view : *found) {
             const std::size_t at = view.value("byteOffset", std::size_t{0}),
                               size = view.at("byteLength").get<std::size_t>();
-            const bool inside =
-                at <= end && size <= end - at && (at >= second || at + size <= source.size());
+            const bool inside = at <= end && size <= end - at && (at >= second || at + size <= source.size());
             plain = plain && inside && !view.contains("extensions");
             needed += inside ? aligned(size) : 0;
         }
     if (!plain || needed > end + (1u << 20)) {
         whole = source;
-        if (!added.empty())
-            whole.resize(second), whole.insert(whole.end(), added.begin(), added.end());
+        if (!added.empty()) whole.resize(second), whole.insert(whole.end(), added.begin(), added.end());
         return whole;
     }
     whole.reserve(needed);
     for (json& view : *found) {
-        const std::size_t at = view.value("byteOffset", std::size_t{0}),
-                          size = view["byteLength"].get<std::size_t>();
-        const unsigned char* from =
-            at >= second ? added.data() + (at - second) : source.data() + at;
+        const std::size_t at = view.value("byteOffset", std::size_t{0}), size = view["byteLength"].get<std::size_t>();
+        const unsigned char* from = at >= second ? added.data() + (at - second) : source.data() + at;
         whole.resize(aligned(whole.size()));
         view["byteOffset"] = whole.size();
         whole.insert(whole.end(), from, from + size);

@@ -24,8 +24,7 @@ void drop_morphs(nlohmann::json& document, std::size_t node);
 /// The bytes of the buffer views in their order, out of `source` and, from the next multiple of 4
 /// on, `added`; the views point to them afterwards. Views that overlap much, or lie outside, keep
 /// the whole buffer as it is.
-std::vector<unsigned char> take_views(nlohmann::json& document,
-                                      const std::vector<unsigned char>& source,
+std::vector<unsigned char> take_views(nlohmann::json& document, const std::vector<unsigned char>& source,
                                       const std::vector<unsigned char>& added);
 
 }  // namespace tuft::io

@@ -38,12 +38,11 @@ const ImageCodec& load_codec() {
             continue;
         }
         using Entry = const ImageCodec* (*)();
-        if (void* entry = dlsym(module, kImageCodecSymbol))
-            return *reinterpret_cast<Entry>(entry)();
+        if (void* entry = dlsym(module, kImageCodecSymbol)) return *reinterpret_cast<Entry>(entry)();
         fault = "it has no " + std::string(kImageCodecSymbol);
     }
-    throw Error("the picture library cannot be loaded" + (fault.empty() ? "" : ": " + fault) +
-                " (looked for " + tried + ")");
+    throw Error("the picture library cannot be loaded" + (fault.empty() ? "" : ": " + fault) + " (looked for " + tried +
+                ")");
 }
 
 const ImageCodec& codec() {
@@ -51,26 +50,23 @@ const ImageCodec& codec() {
     return loaded;
 }
 
-std::vector<unsigned char> encode(ImageFormat format, const PixelView& pixels,
-                                  const ImageOptions& options, const std::string& name) {
+std::vector<unsigned char> encode(ImageFormat format, const PixelView& pixels, const ImageOptions& options,
+                                  const std::string& name) {
     if (pixels.width <= 0 || pixels.height <= 0 || pixels.channels <= 0 || !pixels.first)
         throw Error(name, "the picture is empty");
     if (format == ImageFormat::png && pixels.channels > 4)
-        throw Error(name, "a PNG file has 1 to 4 channels, not " + std::to_string(pixels.channels) +
-                              "; write an EXR file");
-    assert(options.channel_names.empty() ||
-           options.channel_names.size() == static_cast<std::size_t>(pixels.channels));
+        throw Error(name,
+                    "a PNG file has 1 to 4 channels, not " + std::to_string(pixels.channels) + "; write an EXR file");
+    assert(options.channel_names.empty() || options.channel_names.size() == static_cast<std::size_t>(pixels.channels));
     std::vector<unsigned char> bytes;
-    const std::string fault =
-        codec().encode({.format = format, .pixels = pixels, .options = &options}, bytes);
+    const std::string fault = codec().encode({.format = format, .pixels = pixels, .options = &options}, bytes);
     if (!fault.empty()) throw Error(name, fault);
     return bytes;
 }
 
 ImageFormat format_of(const std::vector<char>& bytes, const fs::path& path) {
     const auto starts = [&](std::string_view magic) {
-        return bytes.size() >= magic.size() &&
-               std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+        return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
     };
     if (starts("\x89PNG\r\n\x1a\n")) return ImageFormat::png;
     if (starts("\x76\x2f\x31\x01")) return ImageFormat::exr;
@@ -104,10 +100,9 @@ Image<T> decode(const std::vector<char>& bytes, const fs::path& path, std::size_
 void write_image(const fs::path& path, const PixelView& pixels, const ImageOptions& options) {
     const std::string extension = path.extension().string();
     if (extension != ".png" && extension != ".exr")
-        throw Error(path.string(),
-                    "pictures are written as .png or .exr, not as '" + extension + "'");
-    const std::vector<unsigned char> bytes = encode(
-        extension == ".png" ? ImageFormat::png : ImageFormat::exr, pixels, options, path.string());
+        throw Error(path.string(), "pictures are written as .png or .exr, not as '" + extension + "'");
+    const std::vector<unsigned char> bytes =
+        encode(extension == ".png" ? ImageFormat::png : ImageFormat::exr, pixels, options, path.string());
     write_file(path, bytes.data(), bytes.size());
 }
 

@@ -17,7 +17,7 @@ namespace tuft::io {
 template <class T>
 struct Image {
     int width = 0, height = 0, channels = 0;
-    std::vector<T> pixels;  ///< [width * height * channels]
+    std::vector<T> pixels;                        ///< [width * height * channels]
     std::vector<std::string> channel_names = {};  ///< of a file that was read
 
     /// Same size and pixels.
@@ -40,8 +40,7 @@ struct PixelView {
 
 template <class T>
 PixelView view_of(int width, int height, int channels, const T* pixels) {
-    static_assert(std::is_same_v<T, std::uint8_t> || std::is_same_v<T, std::uint16_t> ||
-                  std::is_same_v<T, float>);
+    static_assert(std::is_same_v<T, std::uint8_t> || std::is_same_v<T, std::uint16_t> || std::is_same_v<T, float>);
     return {.type = sizeof(T) == 1   ? PixelView::Type::u8
                     : sizeof(T) == 2 ? PixelView::Type::u16
                                      : PixelView::Type::f32,
@@ -60,10 +59,8 @@ PixelView view_of(const Image<T>& image) {
 /// An atlas map as a picture: its last row (v = 1) becomes the top one. No copy.
 template <class T>
 PixelView view_of(const ink::AtlasMap<T>& map) {
-    PixelView view = view_of(static_cast<int>(map.size), static_cast<int>(map.size), map.channels,
-                             map.texels.data());
-    view.first = static_cast<const char*>(view.first) +
-                 view.row_bytes * (static_cast<std::ptrdiff_t>(map.size) - 1);
+    PixelView view = view_of(static_cast<int>(map.size), static_cast<int>(map.size), map.channels, map.texels.data());
+    view.first = static_cast<const char*>(view.first) + view.row_bytes * (static_cast<std::ptrdiff_t>(map.size) - 1);
     view.row_bytes = -view.row_bytes;
     return view;
 }
@@ -83,8 +80,7 @@ struct ImageOptions {
 /// Writes a picture atomically; the extension chooses the format: `.png` (u8, u16; floats
 /// become u16 of [0, 1]) or `.exr` (f32 or half; u8 and u16 become [0, 1]). 1–4 channels in PNG,
 /// alpha not premultiplied. Throws `Error` for another extension or a failed write.
-void write_image(const std::filesystem::path& path, const PixelView& pixels,
-                 const ImageOptions& options = {});
+void write_image(const std::filesystem::path& path, const PixelView& pixels, const ImageOptions& options = {});
 
 /// The bytes of a PNG file.
 std::vector<unsigned char> png_bytes(const PixelView& pixels, const ImageOptions& options = {});
@@ -95,11 +91,8 @@ Image8 decode_image8(const std::vector<char>& bytes, const std::string& name, st
 /// Reads a PNG, EXR, JPEG or TIFF file into the asked type, colours as stored (no
 /// conversion but that of the number range). Throws `Error` for damaged files and for
 /// pictures of more than `max_pixels`, before memory is taken.
-Image8 read_image8(const std::filesystem::path& path,
-                   std::size_t max_pixels = std::size_t{1} << 29);
-Image16 read_image16(const std::filesystem::path& path,
-                     std::size_t max_pixels = std::size_t{1} << 29);
-ImageF read_image_float(const std::filesystem::path& path,
-                        std::size_t max_pixels = std::size_t{1} << 29);
+Image8 read_image8(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
+Image16 read_image16(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
+ImageF read_image_float(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
 
 }  // namespace tuft::io

@@ -44,8 +44,7 @@ std::string encode_checked(const EncodeRequest& request, std::vector<unsigned ch
     if (!exr && px.type == PixelView::Type::f32) stored = OIIO::TypeDesc::UINT16;
 
     OIIO::ImageSpec spec(px.width, px.height, px.channels, stored);
-    static const std::vector<std::string> names[5] = {
-        {}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+    static const std::vector<std::string> names[5] = {{}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     if (!request.options->channel_names.empty())
         spec.channelnames = request.options->channel_names;
     else if (px.channels <= 4)
@@ -66,8 +65,7 @@ std::string encode_checked(const EncodeRequest& request, std::vector<unsigned ch
     std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name, &memory);
     if (!output) return OIIO::geterror();
     if (!output->open(name, spec)) return output->geterror();
-    if (!output->write_image(type_of(px.type), px.first, OIIO::AutoStride, px.row_bytes))
-        return output->geterror();
+    if (!output->write_image(type_of(px.type), px.first, OIIO::AutoStride, px.row_bytes)) return output->geterror();
     if (!output->close()) return output->geterror();
     out = memory.buffer();
     return out.empty() ? "the encoder wrote nothing" : "";
@@ -78,26 +76,22 @@ std::string decode_checked(const DecodeRequest& request, DecodedImage& out) {
     config.attribute("oiio:UnassociatedAlpha", 1);
     OIIO::Filesystem::IOMemReader memory(const_cast<void*>(request.bytes), request.size);
     const char* name = extension_of(request.format);
-    std::unique_ptr<OIIO::ImageInput> input =
-        OIIO::ImageInput::create(name, false, &config, &memory);
+    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(name, false, &config, &memory);
     if (!input) return OIIO::geterror();
     OIIO::ImageSpec spec;
     if (!input->set_ioproxy(&memory) || !input->open(name, spec, config)) return input->geterror();
-    if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1)
-        return "it has no pixels";
-    if (static_cast<std::size_t>(spec.width) >
-            request.max_pixels / static_cast<std::size_t>(spec.height) ||
+    if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1) return "it has no pixels";
+    if (static_cast<std::size_t>(spec.width) > request.max_pixels / static_cast<std::size_t>(spec.height) ||
         spec.nchannels > 64)
-        return "it has " + std::to_string(spec.width) + " × " + std::to_string(spec.height) +
-               " pixels with " + std::to_string(spec.nchannels) + " channels, which is too many";
+        return "it has " + std::to_string(spec.width) + " × " + std::to_string(spec.height) + " pixels with " +
+               std::to_string(spec.nchannels) + " channels, which is too many";
     out.width = spec.width;
     out.height = spec.height;
     out.channels = spec.nchannels;
     out.channel_names = spec.channelnames;
     const OIIO::TypeDesc type = type_of(request.type);
     out.bytes.resize(std::size_t(spec.width) * spec.height * spec.nchannels * type.size());
-    if (!input->read_image(0, 0, 0, spec.nchannels, type, out.bytes.data()))
-        return input->geterror();
+    if (!input->read_image(0, 0, 0, spec.nchannels, type, out.bytes.data())) return input->geterror();
     return "";
 }
 

@@ -62,8 +62,7 @@ class Reader : InkmlText {
     std::vector<Trace> run() {
         const auto parsed = document_.load_buffer(content.data(), content.size());
         if (!parsed)
-            throw Error(path, line_at(parsed.offset),
-                        std::string("not well-formed XML: ") + parsed.description());
+            throw Error(path, line_at(parsed.offset), std::string("not well-formed XML: ") + parsed.description());
         const xml_node ink = document_.document_element();
         if (local_name(ink) != "ink") fail(ink, "not InkML: the outermost element is not <ink>");
         collect_ids(ink, 0);
@@ -106,8 +105,7 @@ class Reader : InkmlText {
 
     InkmlFormat default_format() const {
         InkmlFormat f;
-        for (const char* name : {"X", "Y"})
-            f.channels.push_back({.name = name, .scale = options_.metres_per_unit});
+        for (const char* name : {"X", "Y"}) f.channels.push_back({.name = name, .scale = options_.metres_per_unit});
         f.n_regular = 2;
         return f;
     }
@@ -122,13 +120,11 @@ class Reader : InkmlText {
                     if (local_name(channel) == "channel")
                         (name[0] == 'r' ? regular : intermittent).push_back(channel_of(channel));
         }
-        if (regular.size() + intermittent.size() > 1000)
-            fail(node, "a trace format has over 1000 channels");
+        if (regular.size() + intermittent.size() > 1000) fail(node, "a trace format has over 1000 channels");
         InkmlFormat f{std::move(regular), 0};
         f.n_regular = f.channels.size();
         f.channels.insert(f.channels.end(), intermittent.begin(), intermittent.end());
-        if (f.find("X") < 0 || f.find("Y") < 0)
-            fail(node, "a trace format has no X and Y channels");
+        if (f.find("X") < 0 || f.find("Y") < 0) fail(node, "a trace format has no X and Y channels");
         return f;
     }
 
@@ -142,8 +138,7 @@ class Reader : InkmlText {
         const double hi = has_range ? number_of(node, "max") : 1;
         if (c.name == "X" || c.name == "Y" || c.name == "Z") {
             c.scale = length_unit(unit).value_or(options_.metres_per_unit);
-            if (std::string_view(node.attribute("orientation").value()) == "-ve")
-                c.scale = -c.scale;
+            if (std::string_view(node.attribute("orientation").value()) == "-ve") c.scale = -c.scale;
         } else if (c.name == "T") {
             c.scale = unit == "s" ? 1 : unit == "us" ? 1e-6 : 1e-3;
         } else if (c.name == "P" || (c.name == "F" && (has_range || unit == "dev"))) {
@@ -161,8 +156,7 @@ class Reader : InkmlText {
             c.fallback = 1;
         }
         if (node.attribute("default"))
-            if (const auto x = to_number(node.attribute("default").value()))
-                c.fallback = (*x - c.offset) * c.scale;
+            if (const auto x = to_number(node.attribute("default").value())) c.fallback = (*x - c.offset) * c.scale;
         return c;
     }
 
@@ -172,12 +166,10 @@ class Reader : InkmlText {
             if (name == "traceFormat") state.format = format_of(child);
             if (name == "sampleRate") state.sample_rate = number_of(child, "value");
         }
-        if (const xml_node format = referred(node, "traceFormatRef"))
-            state.format = format_of(format);
+        if (const xml_node format = referred(node, "traceFormatRef")) state.format = format_of(format);
         for (const xml_node& child : node.children())
             if (local_name(child) == "channelProperties")
-                for (const xml_node& property : child.children())
-                    apply_property(state, property, node);
+                for (const xml_node& property : child.children()) apply_property(state, property, node);
     }
 
     /// `resolution` in 1/length counts the channel's integers per length.
@@ -203,11 +195,9 @@ class Reader : InkmlText {
 
     void apply_context(State& state, const xml_node& node, int depth) const {
         if (depth > kMaxNesting) fail(node, "contexts refer to each other in a circle");
-        if (const xml_node base = referred(node, "contextRef"))
-            apply_context(state, base, depth + 1);
+        if (const xml_node base = referred(node, "contextRef")) apply_context(state, base, depth + 1);
         if (const xml_node source = referred(node, "inkSourceRef")) apply_source(state, source);
-        if (const xml_node format = referred(node, "traceFormatRef"))
-            state.format = format_of(format);
+        if (const xml_node format = referred(node, "traceFormatRef")) state.format = format_of(format);
         if (const xml_node brush = referred(node, "brushRef")) apply_brush(state, brush, depth + 1);
         for (const xml_node& child : node.children()) {
             const auto name = local_name(child);
@@ -238,8 +228,7 @@ class Reader : InkmlText {
                 add_trace(node, state);
             } else if (name == "traceGroup") {
                 State inner = state;
-                if (const xml_node context = referred(node, "contextRef"))
-                    apply_context(inner, context, 0);
+                if (const xml_node context = referred(node, "contextRef")) apply_context(inner, context, 0);
                 if (const xml_node brush = referred(node, "brushRef")) apply_brush(inner, brush, 0);
                 walk(node, inner, depth + 1);
             } else if (name == "context") {
@@ -265,22 +254,19 @@ class Reader : InkmlText {
 
         const xml_node first = node.first_child();
         const long line = line_at((first ? first : node).offset_debug());
-        const InkmlRows rows = decode_inkml(text_of(node), state.format,
-                                            options_.max_samples - n_samples_, path, line);
+        const InkmlRows rows = decode_inkml(text_of(node), state.format, options_.max_samples - n_samples_, path, line);
         std::vector<stroke::BrushAction> before = actions_of(*this, node);
         if (rows.n_rows() == 0 && (before.empty() || !options_.actions)) return;
         n_samples_ += rows.n_rows();
 
         Draft draft = draft_of(rows, state, line);
         draft.trace.before = std::move(before);
-        if (const auto x = to_number(node.attribute("duration").value()))
-            draft.duration = 1e-3 * *x;
+        if (const auto x = to_number(node.attribute("duration").value())) draft.duration = 1e-3 * *x;
         const std::string_view continuation = node.attribute("continuation").value();
         const std::string_view prior = node.attribute("priorRef").value();
         if (continuation == "middle" || continuation == "end") {
             const auto it = by_id_.find(std::string(prior.substr(prior.rfind('#') + 1)));
-            if (it == by_id_.end())
-                fail(node, "a continued trace does not say which one it continues");
+            if (it == by_id_.end()) fail(node, "a continued trace does not say which one it continues");
             Draft& start = drafts_[it->second];
             start.trace.samples.insert(start.trace.samples.end(), draft.trace.samples.begin(),
                                        draft.trace.samples.end());
@@ -330,23 +316,21 @@ class Reader : InkmlText {
             for (int k = 0; k < 3; ++k)
                 if (std::abs(s.position[k]) > options_.max_extent)
                     throw Error(path, line,
-                                "a coordinate lies more than " + std::to_string(static_cast<long>(options_.max_extent)) +
+                                "a coordinate lies more than " +
+                                    std::to_string(static_cast<long>(options_.max_extent)) +
                                     " m away; declare the unit of X and Y");
             s.time = get(t);
             s.pressure = get(p);
             s.tilt = {get(tx), get(ty)};
             if (tx < 0 && ty < 0 && oe >= 0) {
                 const double lean = std::clamp(90 * kDegree - get(oe), 0.0, 85 * kDegree);
-                s.tilt = {std::atan(std::tan(lean) * std::cos(get(oa))),
-                          std::atan(std::tan(lean) * std::sin(get(oa)))};
+                s.tilt = {std::atan(std::tan(lean) * std::cos(get(oa))), std::atan(std::tan(lean) * std::sin(get(oa)))};
             }
-            for (int k = 0; k < 2; ++k)
-                s.tilt[k] = std::clamp(s.tilt[k], -85 * kDegree, 85 * kDegree);
+            for (int k = 0; k < 2; ++k) s.tilt[k] = std::clamp(s.tilt[k], -85 * kDegree, 85 * kDegree);
             if (turned) {
                 s.rotation = Quat(get(q[0]), get(q[1]), get(q[2]), get(q[3]));
                 const double size = glm::length(s.rotation);
-                if (!(size > 1e-6 && size < 1e6))
-                    throw Error(path, line, "a rotation is zero, or out of range");
+                if (!(size > 1e-6 && size < 1e6)) throw Error(path, line, "a rotation is zero, or out of range");
                 if (!is_unit(glm::dot(s.rotation, s.rotation))) s.rotation = glm::normalize(s.rotation);
             } else if (!d.trace.flat) {
                 const Vec3 up = glm::normalize(Vec3(std::tan(s.tilt.x), std::tan(s.tilt.y), 1));
@@ -364,8 +348,7 @@ class Reader : InkmlText {
         double largest = 1;  // of pressures without a range
         for (const Draft& d : drafts_)
             if (!d.pressure_ranged)
-                for (const TraceSample& s : d.trace.samples)
-                    largest = std::max(largest, s.pressure);
+                for (const TraceSample& s : d.trace.samples) largest = std::max(largest, s.pressure);
         for (Draft& d : drafts_) {
             auto& samples = d.trace.samples;
             for (TraceSample& s : samples)
@@ -420,8 +403,7 @@ class Reader : InkmlText {
         auto& s = trace.samples;
         const std::size_t n = s.size();
         std::vector<double> along(n, 0);
-        for (std::size_t i = 1; i < n; ++i)
-            along[i] = along[i - 1] + glm::length(s[i].position - s[i - 1].position);
+        for (std::size_t i = 1; i < n; ++i) along[i] = along[i - 1] + glm::length(s[i].position - s[i - 1].position);
         const double length = along.back(), duration = s.back().time;
         const double swell = std::min(0.25 * length, 4e-3), taper = std::min(0.25 * length, 3e-3);
         for (std::size_t i = 0; i < n; ++i) {
@@ -450,8 +432,7 @@ class Reader : InkmlText {
 
 }  // namespace
 
-std::vector<Trace> parse_inkml(std::string_view text, const std::string& source,
-                               const InkmlOptions& options) {
+std::vector<Trace> parse_inkml(std::string_view text, const std::string& source, const InkmlOptions& options) {
     return Reader(text, source, options).run();
 }
 

@@ -13,14 +13,12 @@
 namespace tuft::io {
 
 struct InkmlOptions {
-    double metres_per_unit =
-        1e-3;  ///< of X, Y, Z where the file declares neither unit nor resolution
-    double flat_width =
-        0;  ///< metres: scales all flat traces together to this width; 0: as written
-    double full_force = 1;  ///< newtons of F that count as pressure 1 where no maximum is declared
-    double pen_speed = 0.06;     ///< m/s, for traces without a time channel or sample rate
-    double flat_pressure = 0.5;  ///< middle of the default pressure, for traces without P and F
-    double max_extent = 1000;    ///< metres; coordinates beyond are refused
+    double metres_per_unit = 1e-3;  ///< of X, Y, Z where the file declares neither unit nor resolution
+    double flat_width = 0;          ///< metres: scales all flat traces together to this width; 0: as written
+    double full_force = 1;          ///< newtons of F that count as pressure 1 where no maximum is declared
+    double pen_speed = 0.06;        ///< m/s, for traces without a time channel or sample rate
+    double flat_pressure = 0.5;     ///< middle of the default pressure, for traces without P and F
+    double max_extent = 1000;       ///< metres; coordinates beyond are refused
     std::size_t max_bytes = std::size_t{1} << 30;
     std::size_t max_samples = 10'000'000;
     bool actions = false;  ///< keeps traces without points that say what is done with a brush
@@ -47,7 +45,8 @@ struct InkmlOptions {
 ///     tuft:seed     whole number         tuft:down    "x y z" direction of +y
 ///     tuft:label    any text             tuft:mapping wrap | project
 ///     tuft:mask     name of a mask that the project has
-///     tuft:stencil edge     edges that no ink of a trace gets over: X Y X Y each, metres, what may be painted to the right of
+///     tuft:stencil edge     edges that no ink of a trace gets over: X Y X Y each, metres, what may be painted to the
+///     right of
 ///                   their way where Y points down
 ///     tuft:layer    name of a layer      tuft:tool    brush | eraser
 ///     tuft:on       model | palette      tuft:settings  stroke::to_json of a journal's settings
@@ -55,18 +54,17 @@ struct InkmlOptions {
 ///
 /// and, on a `trace` only, what is done with the brush before it, in the order written:
 /// tuft:dip (an ink's name, or empty: the trace's own), tuft:wipe, tuft:rinse,
-/// tuft:reshape, tuft:wash (of the palette), tuft:dry (seconds, or empty: until all is dry), tuft:fill (an ink's name, or empty: the trace's own) with the
-/// attributes film, region (all, part, chart), at, gradient (none, along, round), to_film, to_ink,
-/// from, to: see stroke::Fill, points "x y z" in mm, or followed by m in metres. A dip or wipe may have attributes depth and
-/// amount, 0–1, and side, -1–1: see stroke::Extent.
+/// tuft:reshape, tuft:wash (of the palette), tuft:dry (seconds, or empty: until all is dry), tuft:fill (an ink's name,
+/// or empty: the trace's own) with the attributes film, region (all, part, chart), at, gradient (none, along, round),
+/// to_film, to_ink, from, to: see stroke::Fill, points "x y z" in mm, or followed by m in metres. A dip or wipe may
+/// have attributes depth and amount, 0–1, and side, -1–1: see stroke::Extent.
 ///
 /// Flat traces without P and F get pressure that swells in and tapers out over their length
 /// and falls with speed; P without a declared range is 0–1, or scaled by its largest value.
 ///
 /// Throws `Error` with file and line: not well formed, not InkML, no traces, a value that is
 /// no finite number, too few values in a point, a reference to nothing, absurd sizes.
-std::vector<stroke::Trace> read_inkml(const std::filesystem::path& path,
-                                      const InkmlOptions& options = {});
+std::vector<stroke::Trace> read_inkml(const std::filesystem::path& path, const InkmlOptions& options = {});
 
 /// The same from text; `source` names it in errors.
 std::vector<stroke::Trace> parse_inkml(std::string_view text, const std::string& source,
@@ -83,7 +81,8 @@ enum class Digits {
 
 /// InkML text with explicit values: traces that share a placement, brush, ink and settings form
 /// a `traceGroup`.
-std::string inkml_text(std::span<const stroke::Trace> traces, const std::string& title = {}, Digits digits = Digits::exact);
+std::string inkml_text(std::span<const stroke::Trace> traces, const std::string& title = {},
+                       Digits digits = Digits::exact);
 
 /// Writes the text atomically.
 void write_inkml(const std::filesystem::path& path, std::span<const stroke::Trace> traces,

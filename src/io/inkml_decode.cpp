@@ -23,8 +23,8 @@ struct History {
 
 class Decoder {
   public:
-    Decoder(std::string_view text, const InkmlFormat& format, std::size_t max_rows,
-            const std::string& source, long line)
+    Decoder(std::string_view text, const InkmlFormat& format, std::size_t max_rows, const std::string& source,
+            long line)
         : text_(text),
           format_(format),
           max_rows_(max_rows),
@@ -36,8 +36,7 @@ class Decoder {
         InkmlRows rows;
         rows.n_channels = format_.channels.size();
         for (skip_space(); at_ < text_.size(); skip_space()) {
-            if (rows.n_rows() >= max_rows_)
-                fail("more samples than " + std::to_string(max_rows_) + "; split the file");
+            if (rows.n_rows() >= max_rows_) fail("more samples than " + std::to_string(max_rows_) + "; split the file");
             point(rows);
             if (at_ < text_.size()) ++at_;  // the comma
         }
@@ -63,20 +62,16 @@ class Decoder {
         std::size_t n = 0;
         for (skip_space(); at_ < text_.size() && peek() != ','; skip_space(), ++n) {
             if (n == format_.channels.size())
-                fail("a point has more than the " + std::to_string(n) +
-                     " values of its trace format");
+                fail("a point has more than the " + std::to_string(n) + " values of its trace format");
             value(history_[n]);
         }
         if (n < format_.n_regular)
-            fail("a point has " + std::to_string(n) + " values, its trace format " +
-                 std::to_string(format_.n_regular));
+            fail("a point has " + std::to_string(n) + " values, its trace format " + std::to_string(format_.n_regular));
         for (std::size_t k = 0; k < history_.size(); ++k) {
             const InkmlChannel& channel = format_.channels[k];
             const History& h = history_[k];
-            const double si =
-                h.reported ? (h.value - channel.offset) * channel.scale : channel.fallback;
-            if (!std::isfinite(si))
-                fail("channel " + channel.name + " has a value that is not finite");
+            const double si = h.reported ? (h.value - channel.offset) * channel.scale : channel.fallback;
+            if (!std::isfinite(si)) fail("channel " + channel.name + " has a value that is not finite");
             rows.values.push_back(si);
         }
     }

@@ -28,8 +28,7 @@ Vec3 vector_of(const InkmlText& file, const xml_node& node, std::string_view tex
         text.remove_prefix(static_cast<std::size_t>(end - text.data()));
     }
     if (!trimmed(text).empty() && trimmed(text) != unit)
-        file.fail(node, std::string(node.attribute("type").value()) +
-                            " needs three numbers, millimetres");
+        file.fail(node, std::string(node.attribute("type").value()) + " needs three numbers, millimetres");
     return {v[0], v[1], v[2]};
 }
 
@@ -48,8 +47,7 @@ Vec3 direction_of(const InkmlText& file, const xml_node& node, std::string_view 
     return is_unit(glm::dot(v, v)) ? v : glm::normalize(v);
 }
 
-std::string name_of(const InkmlText& file, const xml_node& node, std::string_view text,
-                    const char* of_what) {
+std::string name_of(const InkmlText& file, const xml_node& node, std::string_view text, const char* of_what) {
     try {
         stroke::check_name(text, of_what);
     } catch (const Error& e) {
@@ -68,8 +66,8 @@ std::string settings_of(const InkmlText& file, const xml_node& node, std::string
 }
 
 bool is_care(std::string_view type) {
-    return type == "dip" || type == "rinse" || type == "reshape" || type == "dry" ||
-           type == "fill" || type == "wipe" || type == "wash";
+    return type == "dip" || type == "rinse" || type == "reshape" || type == "dry" || type == "fill" || type == "wipe" ||
+           type == "wash";
 }
 
 stroke::Fill fill_of(const InkmlText& file, const xml_node& node) {
@@ -78,8 +76,7 @@ stroke::Fill fill_of(const InkmlText& file, const xml_node& node) {
         if (node.attribute(name)) to = file.number_of(node, name);
     };
     const auto point = [&](const char* name, Vec3& to) {
-        if (node.attribute(name))
-            to = point_of(file, node, node.attribute(name).value());
+        if (node.attribute(name)) to = point_of(file, node, node.attribute(name).value());
     };
     number("film", fill.film);
     fill.to_film = fill.film;
@@ -89,10 +86,8 @@ stroke::Fill fill_of(const InkmlText& file, const xml_node& node) {
     point("to", fill.to);
     fill.to_ink = node.attribute("to_ink").value();
     try {
-        if (node.attribute("region"))
-            fill.region = stroke::region_of(node.attribute("region").value());
-        if (node.attribute("gradient"))
-            fill.gradient = stroke::gradient_of(node.attribute("gradient").value());
+        if (node.attribute("region")) fill.region = stroke::region_of(node.attribute("region").value());
+        if (node.attribute("gradient")) fill.gradient = stroke::gradient_of(node.attribute("gradient").value());
         if (fill.region != stroke::Region::all && !node.attribute("at"))
             file.fail(node, "a fill of a part or a chart needs a point: at=\"x y z\"");
         stroke::check_fill(fill);
@@ -141,25 +136,27 @@ stroke::Extent extent_of(const InkmlText& file, const xml_node& node, stroke::Ac
 std::vector<stroke::StencilEdge> stencil_of(const InkmlText& file, const xml_node& node, std::string_view text) {
     std::vector<double> numbers;
     while (!text.empty()) {
-        const std::size_t begin = text.find_first_not_of(", \t\r\n"), end = std::min(text.find_first_of(", \t\r\n", begin), text.size());
+        const std::size_t begin = text.find_first_not_of(", \t\r\n"),
+                          end = std::min(text.find_first_of(", \t\r\n", begin), text.size());
         if (begin == std::string_view::npos) break;
         const auto x = to_number(text.substr(begin, end - begin));
-        if (!x || numbers.size() >= 4 * stroke::kMaxStencilEdges) file.fail(node, "tuft:stencil is not a list of edges, four numbers each");
+        if (!x || numbers.size() >= 4 * stroke::kMaxStencilEdges)
+            file.fail(node, "tuft:stencil is not a list of edges, four numbers each");
         if (!(std::abs(*x) <= kFarthest)) file.fail(node, "an edge of tuft:stencil lies more than 10 km away");
         numbers.push_back(*x);
         text.remove_prefix(end);
     }
     if (numbers.size() % 4 != 0) file.fail(node, "tuft:stencil has an edge without four numbers");
     std::vector<stroke::StencilEdge> stencil;
-    for (std::size_t i = 0; i < numbers.size(); i += 4) stencil.push_back({{numbers[i], numbers[i + 1]}, {numbers[i + 2], numbers[i + 3]}});
+    for (std::size_t i = 0; i < numbers.size(); i += 4)
+        stencil.push_back({{numbers[i], numbers[i + 1]}, {numbers[i + 2], numbers[i + 3]}});
     return stencil;
 }
 
 }  // namespace
 
 long InkmlText::line_at(std::ptrdiff_t offset) const {
-    const auto n =
-        std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(content.size()));
+    const auto n = std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(content.size()));
     if (n < counted) counted = 0, counted_line = 1;
     counted_line += static_cast<long>(std::count(content.begin() + counted, content.begin() + n, '\n'));
     counted = n;
@@ -185,8 +182,7 @@ std::string_view local_name(const xml_node& node) {
 std::string text_of(const xml_node& node) {
     std::string text;
     for (const xml_node& child : node.children())
-        if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata)
-            text += child.value();
+        if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) text += child.value();
     return text;
 }
 
@@ -211,8 +207,7 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
         if (type.rfind("tuft:", 0) != 0) continue;
         type.remove_prefix(5);
         if (is_care(type) && local_name(parent) != "trace")
-            file.fail(node, "tuft:" + std::string(type) +
-                                " belongs on the trace before which it is done");
+            file.fail(node, "tuft:" + std::string(type) + " belongs on the trace before which it is done");
         const std::string whole = text_of(node);
         const std::string_view text = trimmed(whole);
         if (type == "brush")
@@ -253,8 +248,7 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
             if (!mapping) file.fail(node, "tuft:mapping is neither wrap, drape nor project");
             marks.placement.mapping = *mapping;
         } else if (type == "seed") {
-            const auto [end, error] =
-                std::from_chars(text.data(), text.data() + text.size(), marks.seed);
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), marks.seed);
             if (error != std::errc{} || end != text.data() + text.size())
                 file.fail(node, "tuft:seed is not a whole number");
         }
@@ -272,8 +266,7 @@ std::vector<stroke::BrushAction> actions_of(const InkmlText& file, const xml_nod
         const stroke::Action action = stroke::action_of(std::string(type));
         stroke::BrushAction& one = care.emplace_back();
         one.action = action;
-        if (action == stroke::Action::dip || action == stroke::Action::fill)
-            one.ink = trimmed(text);
+        if (action == stroke::Action::dip || action == stroke::Action::fill) one.ink = trimmed(text);
         if (action == stroke::Action::fill) one.fill = fill_of(file, node);
         if (action == stroke::Action::dry) one.seconds = seconds_of(file, node, trimmed(text));
         one.extent = extent_of(file, node, action);

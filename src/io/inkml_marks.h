@@ -18,7 +18,7 @@ namespace tuft::io {
 /// The file, for telling where something is wrong.
 struct InkmlText {
     std::string_view content;
-    const std::string& path;  ///< as it is named in errors
+    const std::string& path;             ///< as it is named in errors
     mutable std::ptrdiff_t counted = 0;  ///< offset up to which lines are counted
     mutable long counted_line = 1;       ///< line there
 
@@ -36,7 +36,9 @@ std::string_view local_name(const pugi::xml_node& node);
 std::string text_of(const pugi::xml_node& node);
 std::string_view trimmed(std::string_view s);
 /// Whether a vector of that squared length was normalised already: doing so again would change its last bits.
-inline bool is_unit(double squared_length) { return std::abs(squared_length - 1) <= 1e-14; }
+inline bool is_unit(double squared_length) {
+    return std::abs(squared_length - 1) <= 1e-14;
+}
 /// The whole of `s` as a finite number.
 std::optional<double> to_number(std::string_view s);
 

@@ -20,8 +20,8 @@ enum class Kind { flat, leaned, space };
 
 Kind kind_of(const Trace& trace) {
     if (!trace.flat) return Kind::space;
-    const bool leans = std::any_of(trace.samples.begin(), trace.samples.end(),
-                                   [](const auto& s) { return s.tilt != Vec2{0}; });
+    const bool leans =
+        std::any_of(trace.samples.begin(), trace.samples.end(), [](const auto& s) { return s.tilt != Vec2{0}; });
     return leans ? Kind::leaned : Kind::flat;
 }
 
@@ -74,11 +74,9 @@ void add_number(std::string& out, double x, const Style& style, int decimals) {
     if (std::string_view(out).substr(start) == "-0") out.replace(start, 2, "0");
 }
 
-void add_annotation(std::string& out, const char* indent, const char* type,
-                    const std::string& text) {
+void add_annotation(std::string& out, const char* indent, const char* type, const std::string& text) {
     if (!text.empty())
-        out += fmt::format("{}<annotation type=\"tuft:{}\">{}</annotation>\n", indent, type,
-                           escaped(text));
+        out += fmt::format("{}<annotation type=\"tuft:{}\">{}</annotation>\n", indent, type, escaped(text));
 }
 
 std::string vector_text(const Vec3& v, const Style& style, int decimals) {
@@ -97,20 +95,22 @@ std::string point_text(const Vec3& p, const Style& style) {
 std::string fill_attributes(const stroke::Fill& fill, const Style& style) {
     std::string out = fmt::format(" film=\"{}\" region=\"{}\"", fill.film, stroke::name_of(fill.region));
     const auto add = [&](const char* name, const Vec3& v) {
-        out += style.exact ? fmt::format(" {}=\"{}\"", name, point_text(v, style))
-                           : fmt::format(" {}=\"{} {} {}\"", name, v.x / kMillimetre, v.y / kMillimetre, v.z / kMillimetre);
+        out += style.exact
+                   ? fmt::format(" {}=\"{}\"", name, point_text(v, style))
+                   : fmt::format(" {}=\"{} {} {}\"", name, v.x / kMillimetre, v.y / kMillimetre, v.z / kMillimetre);
     };
     if (fill.region != stroke::Region::all) add("at", fill.at);
     if (fill.gradient == stroke::Gradient::none) return out;
-    out += fmt::format(" gradient=\"{}\" to_film=\"{}\" to_ink=\"{}\"", stroke::name_of(fill.gradient),
-                       fill.to_film, escaped(fill.to_ink));
+    out += fmt::format(" gradient=\"{}\" to_film=\"{}\" to_ink=\"{}\"", stroke::name_of(fill.gradient), fill.to_film,
+                       escaped(fill.to_ink));
     add("from", fill.from);
     add("to", fill.to);
     return out;
 }
 
 bool same_place(const Trace& a, const Trace& b) {
-    return a.flat == b.flat && a.brush == b.brush && a.ink == b.ink && a.layer == b.layer && a.mask == b.mask && a.erases == b.erases && a.on_palette == b.on_palette && a.settings == b.settings &&
+    return a.flat == b.flat && a.brush == b.brush && a.ink == b.ink && a.layer == b.layer && a.mask == b.mask &&
+           a.erases == b.erases && a.on_palette == b.on_palette && a.settings == b.settings &&
            a.placement.origin == b.placement.origin && a.placement.right == b.placement.right &&
            a.placement.down == b.placement.down && a.placement.mapping == b.placement.mapping;
 }
@@ -121,7 +121,8 @@ void add_format(std::string& out, Kind kind, const Style& style) {
     const auto channel = [&](const char* name, const std::string& more) {
         out += fmt::format("      <channel name=\"{}\" type=\"{}\"{}/>\n", name, type, more);
     };
-    const std::string length = style.exact ? " units=\"m\"" : " units=\"mm\"", angle = style.exact ? " units=\"rad\"" : " units=\"deg\"";
+    const std::string length = style.exact ? " units=\"m\"" : " units=\"mm\"",
+                      angle = style.exact ? " units=\"rad\"" : " units=\"deg\"";
     channel("X", length);
     channel("Y", length);
     if (kind == Kind::space) channel("Z", length);
@@ -131,9 +132,8 @@ void add_format(std::string& out, Kind kind, const Style& style) {
         for (const char* name : {"OTx", "OTy"}) channel(name, angle);
     if (kind == Kind::space)
         for (const char* name : {"QW", "QX", "QY", "QZ"}) channel(name, "");
-    out += fmt::format(
-        "    </traceFormat>\n    <context xml:id=\"{0}\" traceFormatRef=\"#{0}-format\"/>\n",
-        name_of(kind));
+    out += fmt::format("    </traceFormat>\n    <context xml:id=\"{0}\" traceFormatRef=\"#{0}-format\"/>\n",
+                       name_of(kind));
 }
 
 void add_sample(std::string& out, const stroke::TraceSample& s, Kind kind, const Style& style) {
@@ -162,7 +162,8 @@ void add_trace(std::string& out, const Trace& trace, Kind kind, const Style& sty
         };
         out += fmt::format("      <annotation type=\"tuft:{}\"{}{}{}{}>{}</annotation>\n", stroke::name_of(care.action),
                            care.action == stroke::Action::fill ? fill_attributes(care.fill, style) : "",
-                           part("depth", care.extent.depth), part("amount", care.extent.amount), part("side", care.extent.side, 0),
+                           part("depth", care.extent.depth), part("amount", care.extent.amount),
+                           part("side", care.extent.side, 0),
                            care.seconds > 0 ? fmt::format("{}", care.seconds) : escaped(care.ink));
     }
     if (!trace.stencil.empty()) {
@@ -203,12 +204,10 @@ std::string inkml_text(std::span<const Trace> traces, const std::string& title, 
     std::string out =
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<ink xmlns=\"http://www.w3.org/2003/InkML\">\n";
-    if (!title.empty())
-        out += fmt::format("  <annotation type=\"title\">{}</annotation>\n", escaped(title));
+    if (!title.empty()) out += fmt::format("  <annotation type=\"title\">{}</annotation>\n", escaped(title));
     out += "  <definitions>\n";
     for (const Kind kind : {Kind::flat, Kind::leaned, Kind::space})
-        if (std::any_of(traces.begin(), traces.end(),
-                        [&](const Trace& t) { return kind_of(t) == kind; }))
+        if (std::any_of(traces.begin(), traces.end(), [&](const Trace& t) { return kind_of(t) == kind; }))
             add_format(out, kind, style);
     out += "  </definitions>\n";
     for (std::size_t i = 0; i < traces.size();) {
@@ -223,8 +222,8 @@ std::string inkml_text(std::span<const Trace> traces, const std::string& title, 
     return out;
 }
 
-void write_inkml(const std::filesystem::path& path, std::span<const Trace> traces,
-                 const std::string& title, Digits digits) {
+void write_inkml(const std::filesystem::path& path, std::span<const Trace> traces, const std::string& title,
+                 Digits digits) {
     const std::string text = inkml_text(traces, title, digits);
     write_file(path, text.data(), text.size());
 }

@@ -59,9 +59,7 @@ void read_library(const fs::path& file, std::map<std::string, MtlEntry>& entries
             for (int c = 0; c < 3; ++c) {
                 char* end = nullptr;
                 const float value = std::strtof(at, &end);
-                entry->colour[c] = end == at              ? 0
-                                   : std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f)
-                                                          : 1;
+                entry->colour[c] = end == at ? 0 : std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 1;
                 at = end;
             }
         } else if (mesh::same_word(key, "map_Kd")) {
@@ -73,8 +71,7 @@ void read_library(const fs::path& file, std::map<std::string, MtlEntry>& entries
 /// Each picture is read once, and told of once when that fails.
 class Pictures {
   public:
-    Pictures(fs::path folder, std::vector<std::string>& warnings)
-        : folder_(std::move(folder)), warnings_(warnings) {}
+    Pictures(fs::path folder, std::vector<std::string>& warnings) : folder_(std::move(folder)), warnings_(warnings) {}
 
     std::shared_ptr<const mesh::Picture> get(const std::string& name) {
         const std::optional<fs::path> file = find_beside(folder_, name);
@@ -107,8 +104,7 @@ std::map<std::string, MtlEntry> read_libraries(mesh::PolygonSoup& soup, const fs
     for (const std::string& name : soup.material_libraries) {
         const std::optional<fs::path> file = find_beside(folder, name);
         if (!file) {
-            soup.warnings.push_back("the material library " + mesh::in_quotes(name) +
-                                    " is not in the model's folder");
+            soup.warnings.push_back("the material library " + mesh::in_quotes(name) + " is not in the model's folder");
             continue;
         }
         try {
@@ -123,14 +119,12 @@ std::map<std::string, MtlEntry> read_libraries(mesh::PolygonSoup& soup, const fs
 /// Whether a picture may be a map of normals: a grey one is a map of heights.
 bool has_colour(const mesh::Picture& picture) {
     for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3)
-        if (picture.rgb[i] != picture.rgb[i + 1] || picture.rgb[i] != picture.rgb[i + 2])
-            return true;
+        if (picture.rgb[i] != picture.rgb[i + 1] || picture.rgb[i] != picture.rgb[i + 2]) return true;
     return false;
 }
 
 /// Completes the scene that the reader has named the parts of.
-void add_materials(mesh::PolygonSoup& soup, const std::map<std::string, MtlEntry>& entries,
-                   Pictures& pictures) {
+void add_materials(mesh::PolygonSoup& soup, const std::map<std::string, MtlEntry>& entries, Pictures& pictures) {
     SceneBuilder builder;
     std::map<const mesh::Picture*, int> textures;
     std::vector<const mesh::Picture*> picture_of;
@@ -153,8 +147,7 @@ void add_materials(mesh::PolygonSoup& soup, const std::map<std::string, MtlEntry
         if (is_new) {
             MtlAsGltf made = gltf_of_mtl(part.material, entry->second.statements, texture_of);
             const auto normal = made.material.find("normalTexture");
-            if (normal != made.material.end() &&
-                !has_colour(*picture_of[(*normal)["index"].get<std::size_t>()]))
+            if (normal != made.material.end() && !has_colour(*picture_of[(*normal)["index"].get<std::size_t>()]))
                 made.material.erase(normal);
             index->second = builder.add_material(std::move(made.material));
             builder.keep_statements(index->second, std::move(made.statements));
@@ -176,8 +169,7 @@ std::shared_ptr<const mesh::Picture> decode_picture(std::string name, std::vecto
     picture->bytes = std::move(bytes);
     picture->width = image.width;
     picture->height = image.height;
-    const std::size_t n =
-        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    const std::size_t n = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     const auto channels = static_cast<std::size_t>(image.channels);
     picture->rgb.resize(3 * n);
     for (std::size_t i = 0; i < n; ++i)
@@ -191,8 +183,7 @@ bool lies_within(const fs::path& folder, const fs::path& file) {
     const fs::path root = fs::weakly_canonical(folder, ec);
     if (ec) return false;
     const fs::path whole = fs::weakly_canonical(file, ec);
-    return !ec &&
-           std::mismatch(root.begin(), root.end(), whole.begin(), whole.end()).first == root.end();
+    return !ec && std::mismatch(root.begin(), root.end(), whole.begin(), whole.end()).first == root.end();
 }
 
 void read_materials(mesh::PolygonSoup& soup, const fs::path& model) {
@@ -223,11 +214,8 @@ void read_materials(mesh::PolygonSoup& soup, const fs::path& model) {
 }
 
 void drop_plain_materials(mesh::PolygonSoup& soup) {
-    const auto plain = [&](const mesh::Material& m) {
-        return !m.picture && m.colour == soup.materials[0].colour;
-    };
-    if (soup.materials.empty() || !std::all_of(soup.materials.begin(), soup.materials.end(), plain))
-        return;
+    const auto plain = [&](const mesh::Material& m) { return !m.picture && m.colour == soup.materials[0].colour; };
+    if (soup.materials.empty() || !std::all_of(soup.materials.begin(), soup.materials.end(), plain)) return;
     const Vec3f c = soup.materials[0].colour;
     if (c.r == c.g && c.g == c.b) soup.materials.clear();
 }

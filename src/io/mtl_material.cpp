@@ -54,8 +54,7 @@ double number_in(const std::string& line, double otherwise) {
 
 std::string number_text(double value) {
     char text[40];
-    return {text,
-            std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr};
+    return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr};
 }
 
 std::string colour_line(const char* key, const json& colour, bool encode) {
@@ -73,15 +72,12 @@ std::string file_in(const json& material, const char* key, const FileOfTexture& 
     const auto info = material.find(key);
     if (info == material.end() || !info->is_object()) return {};
     const auto index = info->find("index");
-    return index != info->end() && index->is_number_unsigned()
-               ? file_of_texture(index->get<std::size_t>())
-               : "";
+    return index != info->end() && index->is_number_unsigned() ? file_of_texture(index->get<std::size_t>()) : "";
 }
 
 double factor_in(const json& of, const char* key, double otherwise) {
     const auto found = of.find(key);
-    return found != of.end() && found->is_number() ? std::clamp(found->get<double>(), 0.0, 1.0)
-                                                   : otherwise;
+    return found != of.end() && found->is_number() ? std::clamp(found->get<double>(), 0.0, 1.0) : otherwise;
 }
 
 std::string entry_of_gltf(const json& material, const FileOfTexture& file_of_texture) {
@@ -89,8 +85,7 @@ std::string entry_of_gltf(const json& material, const FileOfTexture& file_of_tex
     const auto found = material.find("pbrMetallicRoughness");
     const json& pbr = found != material.end() && found->is_object() ? *found : kNone;
     const json colour = pbr.value("baseColorFactor", json::array({1, 1, 1, 1}));
-    const double rough = factor_in(pbr, "roughnessFactor", 1),
-                 metal = factor_in(pbr, "metallicFactor", 1);
+    const double rough = factor_in(pbr, "roughnessFactor", 1), metal = factor_in(pbr, "metallicFactor", 1);
     std::string out = colour_line("Kd", colour, true);
     out += "Ks 0.04 0.04 0.04\n";
     out += "Ns " + number_text(kSharpest * (1 - rough) * (1 - rough)) + "\n";
@@ -98,15 +93,13 @@ std::string entry_of_gltf(const json& material, const FileOfTexture& file_of_tex
     const std::string mode = material.value("alphaMode", "OPAQUE");
     if (mode != "OPAQUE" && colour.is_array() && colour.size() > 3 && colour[3].is_number())
         out += "d " + number_text(std::clamp(colour[3].get<double>(), 0.0, 1.0)) + "\n";
-    if (material.contains("emissiveFactor"))
-        out += colour_line("Ke", material["emissiveFactor"], false);
+    if (material.contains("emissiveFactor")) out += colour_line("Ke", material["emissiveFactor"], false);
     out += mode == "BLEND" ? "illum 4\n" : "illum 2\n";
     if (const std::string file = file_in(pbr, "baseColorTexture", file_of_texture); !file.empty()) {
         out += "map_Kd " + file + "\n";
         if (mode != "OPAQUE") out += "map_d " + file + "\n";
     }
-    if (const std::string file = file_in(material, "emissiveTexture", file_of_texture);
-        !file.empty())
+    if (const std::string file = file_in(material, "emissiveTexture", file_of_texture); !file.empty())
         out += "map_Ke " + file + "\n";
     if (const std::string file = file_in(material, "normalTexture", file_of_texture); !file.empty())
         out += "norm " + file + "\nmap_Bump -bm 1 " + file + "\n";  // Blender reads the second
@@ -137,8 +130,7 @@ std::string picture_name(std::string line) {
     return line;
 }
 
-MtlAsGltf gltf_of_mtl(const std::string& name, const std::vector<MtlStatement>& entry,
-                      const TextureOf& texture_of) {
+MtlAsGltf gltf_of_mtl(const std::string& name, const std::vector<MtlStatement>& entry, const TextureOf& texture_of) {
     Vec3f kd(1), ke(0);
     double alpha = 1, rough = 0.5, metal = 0, ambient = 0;
     bool has_pr = false, has_pm = false, reflects = false;
@@ -152,10 +144,8 @@ MtlAsGltf gltf_of_mtl(const std::string& name, const std::vector<MtlStatement>& 
         if (pictured || is("bump") || is("norm") || is("disp") || is("decal") || is("refl")) {
             const std::string file = picture_name(line);
             texture = texture_of(file);
-            const std::string options =
-                line.substr(0, line.size() - std::min(file.size(), line.size()));
-            if (texture >= 0)
-                statements.push_back({{"line", key + " " + options}, {"texture", texture}});
+            const std::string options = line.substr(0, line.size() - std::min(file.size(), line.size()));
+            if (texture >= 0) statements.push_back({{"line", key + " " + options}, {"texture", texture}});
             if (is("map_Kd")) base = texture, base_file = file;
             if (is("map_d")) alpha_file = file;
             if (is("map_Ke")) emissive = texture;
@@ -166,20 +156,17 @@ MtlAsGltf gltf_of_mtl(const std::string& name, const std::vector<MtlStatement>& 
         const std::array<double, 3> three = numbers_in(line, 1);
         if (is("Kd"))
             for (int c = 0; c < 3; ++c)
-                kd[c] =
-                    static_cast<float>(std::clamp(three[static_cast<std::size_t>(c)], 0.0, 1.0));
+                kd[c] = static_cast<float>(std::clamp(three[static_cast<std::size_t>(c)], 0.0, 1.0));
         if (is("Ke"))
             for (int c = 0; c < 3; ++c)
-                ke[c] =
-                    static_cast<float>(std::clamp(three[static_cast<std::size_t>(c)], 0.0, 1.0));
+                ke[c] = static_cast<float>(std::clamp(three[static_cast<std::size_t>(c)], 0.0, 1.0));
         if (is("d")) alpha = std::clamp(number_in(line, 1), 0.0, 1.0);
         if (is("Tr")) alpha = 1 - std::clamp(number_in(line, 0), 0.0, 1.0);
         if (is("Pm")) metal = std::clamp(number_in(line, 0), 0.0, 1.0), has_pm = true;
         if (is("Ka")) ambient = std::clamp((three[0] + three[1] + three[2]) / 3, 0.0, 1.0);
         if (is("illum")) reflects = number_in(line, 0) == 3;
         if (is("Pr")) rough = std::clamp(number_in(line, 0.5), 0.0, 1.0), has_pr = true;
-        if (is("Ns") && !has_pr)
-            rough = 1 - std::sqrt(std::clamp(number_in(line, 0), 0.0, kSharpest) / kSharpest);
+        if (is("Ns") && !has_pr) rough = 1 - std::sqrt(std::clamp(number_in(line, 0), 0.0, kSharpest) / kSharpest);
     }
     if (!has_pm && reflects) metal = ambient;
     json colour = json::array();
@@ -187,24 +174,20 @@ MtlAsGltf gltf_of_mtl(const std::string& name, const std::vector<MtlStatement>& 
     colour.push_back(alpha);
     json material{{"name", name},
                   {"pbrMetallicRoughness",
-                   {{"baseColorFactor", std::move(colour)},
-                    {"metallicFactor", metal},
-                    {"roughnessFactor", rough}}}};
+                   {{"baseColorFactor", std::move(colour)}, {"metallicFactor", metal}, {"roughnessFactor", rough}}}};
     if (base >= 0) material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", base}};
     if (emissive >= 0) material["emissiveTexture"] = {{"index", emissive}};
     if (emissive >= 0 && ke == Vec3f(0)) ke = Vec3f(1);
     if (ke != Vec3f(0)) material["emissiveFactor"] = {ke.r, ke.g, ke.b};
     if (normal >= 0) material["normalTexture"] = {{"index", normal}};
-    if (alpha < 1 || (!alpha_file.empty() && alpha_file == base_file))
-        material["alphaMode"] = "BLEND";
+    if (alpha < 1 || (!alpha_file.empty() && alpha_file == base_file)) material["alphaMode"] = "BLEND";
     return {std::move(material), std::move(statements)};
 }
 
 std::string mtl_entry(const std::string& name, const json& material, const json& statements,
                       const FileOfTexture& file_of_texture) {
     std::string out = "newmtl " + name + "\n";
-    if (!statements.is_array() || statements.empty())
-        return out + entry_of_gltf(material, file_of_texture);
+    if (!statements.is_array() || statements.empty()) return out + entry_of_gltf(material, file_of_texture);
     for (const json& statement : statements) {
         if (!statement.is_object()) continue;
         std::string line = statement.value("line", "");
@@ -214,8 +197,7 @@ std::string mtl_entry(const std::string& name, const json& material, const json&
             out += line + "\n";
             continue;
         }
-        const std::string file =
-            texture->is_number_unsigned() ? file_of_texture(texture->get<std::size_t>()) : "";
+        const std::string file = texture->is_number_unsigned() ? file_of_texture(texture->get<std::size_t>()) : "";
         if (!file.empty()) out += line + (line.ends_with(' ') ? "" : " ") + file + "\n";
     }
     return out;

@@ -27,15 +27,14 @@ struct MtlAsGltf {
 /// `Ns` the roughness by r = 1 - sqrt(Ns / 1000), `Pm` or else, with `illum 3`, `Ka` the metallic
 /// part (both as Blender has it), `Ke` and `map_Ke` emission, `norm` and a `bump` in colours the
 /// normal texture. A picture is not tinted by `Kd`.
-MtlAsGltf gltf_of_mtl(const std::string& name, const std::vector<MtlStatement>& entry,
-                      const TextureOf& texture_of);
+MtlAsGltf gltf_of_mtl(const std::string& name, const std::vector<MtlStatement>& entry, const TextureOf& texture_of);
 
 /// File name of the picture of a texture, or "" where there is none.
 using FileOfTexture = std::function<std::string(std::size_t texture)>;
 
 /// An entry of an MTL library, with its line ends: the statements where there are any, else the
 /// other way round from the glTF material.
-std::string mtl_entry(const std::string& name, const nlohmann::json& material,
-                      const nlohmann::json& statements, const FileOfTexture& file_of_texture);
+std::string mtl_entry(const std::string& name, const nlohmann::json& material, const nlohmann::json& statements,
+                      const FileOfTexture& file_of_texture);
 
 }  // namespace tuft::io

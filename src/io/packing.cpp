@@ -33,8 +33,7 @@ void spread(const void* data, std::size_t begin, std::size_t end, std::size_t la
 }
 
 void check(std::size_t result) {
-    if (ZSTD_isError(result))
-        throw Error(std::string("compression failed: ") + ZSTD_getErrorName(result));
+    if (ZSTD_isError(result)) throw Error(std::string("compression failed: ") + ZSTD_getErrorName(result));
 }
 
 /// Compresses what it is given piece by piece.
@@ -75,8 +74,7 @@ void gather(const unsigned char* planes, std::size_t count, std::size_t lag, voi
     for (std::size_t i = 0; i < count; ++i) {
         T v = 0;
         for (std::size_t b = 0; b < sizeof(T); ++b)
-            v = static_cast<T>(v |
-                               static_cast<T>(static_cast<T>(planes[b * count + i]) << (8 * b)));
+            v = static_cast<T>(v | static_cast<T>(static_cast<T>(planes[b * count + i]) << (8 * b)));
         if (i >= lag) {
             T before;
             std::memcpy(&before, bytes + (i - lag) * sizeof(T), sizeof before);
@@ -99,24 +97,20 @@ std::vector<char> pack(const void* data, std::size_t count, const Packing& packi
         for (std::size_t begin = 0; begin < count; begin += kPiece) {
             check_interrupt();
             const std::size_t end = std::min(count, begin + kPiece);
-            if (packing.element == 1)
-                spread<std::uint8_t>(data, begin, end, packing.lag, byte, piece.data());
-            if (packing.element == 4)
-                spread<std::uint32_t>(data, begin, end, packing.lag, byte, piece.data());
-            if (packing.element == 8)
-                spread<std::uint64_t>(data, begin, end, packing.lag, byte, piece.data());
+            if (packing.element == 1) spread<std::uint8_t>(data, begin, end, packing.lag, byte, piece.data());
+            if (packing.element == 4) spread<std::uint32_t>(data, begin, end, packing.lag, byte, piece.data());
+            if (packing.element == 8) spread<std::uint64_t>(data, begin, end, packing.lag, byte, piece.data());
             compressor.add(piece.data(), end - begin, ZSTD_e_continue);
         }
     return compressor.finish();
 }
 
-void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes,
-                  const std::string& what) {
+void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const std::string& what) {
     if (ZSTD_getFrameContentSize(blob, blob_size) != bytes) throw Error(what + " is damaged");
 }
 
-void unpack(const void* blob, std::size_t blob_size, void* out, std::size_t count,
-            const Packing& packing, const std::string& what) {
+void unpack(const void* blob, std::size_t blob_size, void* out, std::size_t count, const Packing& packing,
+            const std::string& what) {
     const std::size_t expected = count * packing.element;
     check_packed(blob, blob_size, expected, what);
     std::vector<unsigned char> planes(expected);

@@ -18,12 +18,11 @@ struct Packing {
 std::vector<char> pack(const void* data, std::size_t count, const Packing& packing);
 
 /// Throws `Error` naming `what` when the blob does not unpack to `bytes` bytes by its head.
-void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes,
-                  const std::string& what);
+void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const std::string& what);
 
 /// Undoes `pack` into `out`, which has room for `count` numbers. Throws `Error` naming
 /// `what` when the blob is damaged or holds another number of bytes; never writes past.
-void unpack(const void* blob, std::size_t blob_size, void* out, std::size_t count,
-            const Packing& packing, const std::string& what);
+void unpack(const void* blob, std::size_t blob_size, void* out, std::size_t count, const Packing& packing,
+            const std::string& what);
 
 }  // namespace tuft::io

@@ -1,9 +1,8 @@
 #include "io/project.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <sqlite3.h>
-
 #include <fcntl.h>
+#include <sqlite3.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -98,14 +97,16 @@ std::string why_not_opened(const std::filesystem::path& path) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) return std::string("cannot be opened: ") + std::strerror(errno);
     ::close(file);
-    return "cannot be opened together with its '" + path.filename().string() + "-journal' file; is that a folder, or somebody else's?";
+    return "cannot be opened together with its '" + path.filename().string() +
+           "-journal' file; is that a folder, or somebody else's?";
 }
 
 /// What SQLite says, in words for people.
 [[noreturn]] void rethrow(const SQLite::Exception& e, const std::filesystem::path& path) {
     const std::string name = path.string();
     const int code = e.getErrorCode();
-    if (const std::string gone = why_gone(path); !gone.empty() && (code == SQLITE_READONLY || code == SQLITE_IOERR || code == SQLITE_CANTOPEN))
+    if (const std::string gone = why_gone(path);
+        !gone.empty() && (code == SQLITE_READONLY || code == SQLITE_IOERR || code == SQLITE_CANTOPEN))
         throw Error(name, gone);
     switch (code) {
         case SQLITE_FULL:
@@ -171,7 +172,8 @@ void set_pragmas(SQLite::Database& db, Access access) {
     db.setBusyTimeout(kBusyMilliseconds);
     if (access == Access::read) db.exec("PRAGMA query_only = ON;");
     // The rollback journal keeps a project one file; each commit reaches the disk.
-    else db.exec("PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL; PRAGMA foreign_keys = OFF;");
+    else
+        db.exec("PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL; PRAGMA foreign_keys = OFF;");
 }
 
 void put_meta(SQLite::Database& db, const char* key, const std::string& value) {
@@ -200,7 +202,8 @@ std::vector<PresetText> get_presets(SQLite::Database& db, const fs::path& path, 
     s.bind(1, kind);
     std::vector<PresetText> presets;
     while (s.executeStep()) {
-        if (presets.size() >= kMostPresets) damaged(path, std::string("it has too many presets of the kind '") + kind + "'");
+        if (presets.size() >= kMostPresets)
+            damaged(path, std::string("it has too many presets of the kind '") + kind + "'");
         presets.emplace_back(text_of(s.getColumn(0), kMostName, path, "the name of a preset"),
                              text_of(s.getColumn(1), kMostPreset, path, "a preset"));
     }
@@ -235,11 +238,17 @@ struct Project::State {
     SQLite::Database db;
     mutable Overseer overseer;
     OpenFile file;
-    std::uint32_t version = 0;        ///< change counter of the file as last read or written here
+    std::uint32_t version = 0;  ///< change counter of the file as last read or written here
     mutable FileStamp seen;
 
     State(const fs::path& p, std::optional<ProjectLock> l)
-        : path(p), place(p), lock(std::move(l)), db(p.string(), SQLite::OPEN_READWRITE), overseer(db.getHandle()), file(p), seen(stamp_of(p)) {}
+        : path(p),
+          place(p),
+          lock(std::move(l)),
+          db(p.string(), SQLite::OPEN_READWRITE),
+          overseer(db.getHandle()),
+          file(p),
+          seen(stamp_of(p)) {}
 
     /// `hears`: whoever listens may stop it.
     template <class Fn>
@@ -258,7 +267,8 @@ struct Project::State {
         sqlite3_file* handle = nullptr;
         char bytes[4] = {};
         sqlite3_file_control(db.getHandle(), "main", SQLITE_FCNTL_FILE_POINTER, &handle);
-        if (!handle || !handle->pMethods || handle->pMethods->xRead(handle, bytes, sizeof bytes, 24) != SQLITE_OK) return version;
+        if (!handle || !handle->pMethods || handle->pMethods->xRead(handle, bytes, sizeof bytes, 24) != SQLITE_OK)
+            return version;
         return big_endian(bytes);
     }
     /// All of `fn` or nothing.
@@ -300,7 +310,8 @@ Project Project::open_file(const fs::path& path, std::optional<ProjectLock> lock
     return Project(std::move(state));
 }
 
-Project Project::create(const fs::path& path, const ModelToWrite& model, const std::function<void(Project&)>& fill, const OpenOptions& options) {
+Project Project::create(const fs::path& path, const ModelToWrite& model, const std::function<void(Project&)>& fill,
+                        const OpenOptions& options) {
     const ProjectLock lock(path, options.patience, options.progress);
     write_atomically(path, [&](const fs::path& temporary) {
         std::error_code ec;
@@ -308,8 +319,7 @@ Project Project::create(const fs::path& path, const ModelToWrite& model, const s
         guarded(path, [&] {
             SQLite::Database db(temporary.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
             // Nothing to protect yet: the file gets its name when it is complete.
-            db.exec(
-                "PRAGMA journal_mode = OFF; PRAGMA synchronous = FULL; PRAGMA page_size = 8192;");
+            db.exec("PRAGMA journal_mode = OFF; PRAGMA synchronous = FULL; PRAGMA page_size = 8192;");
             db.exec("PRAGMA application_id = " + std::to_string(kApplicationId) +
                     "; PRAGMA user_version = " + std::to_string(kFirstFormat) + ";");
             SQLite::Transaction transaction(db);
@@ -338,12 +348,10 @@ Project Project::open(const fs::path& path, const OpenOptions& options) {
     if (::access(path.c_str(), R_OK) != 0) throw Error(path.string(), "may not be read; change its permissions");
     const Header header = header_of(path);
     if (!header.sqlite) throw Error(path.string(), "is not a tuft project");
-    if (header.application != kApplicationId)
-        throw Error(path.string(), "is a database, but not a tuft project");
+    if (header.application != kApplicationId) throw Error(path.string(), "is a database, but not a tuft project");
     if (header.version > kProjectFormat)
-        throw Error(path.string(), "was written by a newer tuft (format " +
-                                       std::to_string(header.version) + ", this one reads up to " +
-                                       std::to_string(kProjectFormat) +
+        throw Error(path.string(), "was written by a newer tuft (format " + std::to_string(header.version) +
+                                       ", this one reads up to " + std::to_string(kProjectFormat) +
                                        "); update tuft to open it");
     if (!header.own_kind) damaged(path, "it is kept in another way than tuft keeps projects");
     std::optional<ProjectLock> lock;
@@ -380,8 +388,7 @@ const fs::path& Project::path() const {
 }
 
 int Project::format() const {
-    return state_->run(
-        [](SQLite::Database& db) { return db.execAndGet("PRAGMA user_version").getInt(); });
+    return state_->run([](SQLite::Database& db) { return db.execAndGet("PRAGMA user_version").getInt(); });
 }
 
 std::string Project::written_by() const {
@@ -392,8 +399,7 @@ ProjectModel Project::model() const {
     return state_->run(
         [&](SQLite::Database& db) {
             ProjectModel model = load_model(db, state_->path, state_->overseer.progress());
-            for (const PresetText& preset : get_presets(db, state_->path, "substrate"))
-                model.substrate = preset.second;
+            for (const PresetText& preset : get_presets(db, state_->path, "substrate")) model.substrate = preset.second;
             return model;
         },
         true);
@@ -466,7 +472,8 @@ namespace {
 
 // Texels that were stored after this entry, or after one that is gone, show other strokes than the journal has.
 void forget_texels_after(SQLite::Database& db, std::uint64_t stroke_id) {
-    SQLite::Statement s(db, "SELECT (SELECT ordinal FROM strokes WHERE id = ?) < (SELECT ordinal FROM strokes WHERE id = ?)");
+    SQLite::Statement s(
+        db, "SELECT (SELECT ordinal FROM strokes WHERE id = ?) < (SELECT ordinal FROM strokes WHERE id = ?)");
     s.bind(1, static_cast<std::int64_t>(std::strtoull(get_meta(db, "tiles_stroke").c_str(), nullptr, 10)));
     s.bind(2, static_cast<std::int64_t>(stroke_id));
     if (s.executeStep() && s.getColumn(0).getInt() == 1) return;
@@ -481,8 +488,7 @@ void Project::set_hidden(std::uint64_t stroke_id, bool hidden) {
         SQLite::Statement s(db, "UPDATE strokes SET hidden = ? WHERE id = ?");
         s.bind(1, hidden ? 1 : 0);
         s.bind(2, static_cast<std::int64_t>(stroke_id));
-        if (s.exec() != 1)
-            throw Error(state_->path.string(), "has no stroke " + std::to_string(stroke_id));
+        if (s.exec() != 1) throw Error(state_->path.string(), "has no stroke " + std::to_string(stroke_id));
     });
 }
 
@@ -491,13 +497,13 @@ void Project::remove(std::uint64_t stroke_id) {
         forget_texels_after(db, stroke_id);
         SQLite::Statement s(db, "DELETE FROM strokes WHERE id = ?");
         s.bind(1, static_cast<std::int64_t>(stroke_id));
-        if (s.exec() != 1)
-            throw Error(state_->path.string(), "has no stroke " + std::to_string(stroke_id));
+        if (s.exec() != 1) throw Error(state_->path.string(), "has no stroke " + std::to_string(stroke_id));
     });
 }
 
 std::vector<stroke::Stroke> Project::strokes() const {
-    return state_->run([&](SQLite::Database& db) { return load_strokes(db, state_->path, state_->overseer.progress()); }, true);
+    return state_->run(
+        [&](SQLite::Database& db) { return load_strokes(db, state_->path, state_->overseer.progress()); }, true);
 }
 
 std::size_t Project::n_strokes() const {

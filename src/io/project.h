@@ -75,7 +75,8 @@ enum class Access { read, write };
 struct OpenOptions {
     Access access = Access::write;
     std::chrono::milliseconds patience{0};  ///< to wait for another program to let go of it
-    ProgressFn progress = {};  ///< asked about every tenth of a second, also by the methods, while they work; see `listen`
+    ProgressFn progress =
+        {};  ///< asked about every tenth of a second, also by the methods, while they work; see `listen`
 };
 
 /// Another program changed the project, or put another file in its place, since it was opened here:
@@ -96,8 +97,8 @@ class Project {
     /// Makes a new project in place of any file of that name, complete with what `fill` puts into
     /// it, or not at all: on any error, or a kill, what was there stays. Throws `ProjectInUse` where
     /// another program has the project of that name.
-    static Project create(const std::filesystem::path& path, const ModelToWrite& model, const std::function<void(Project&)>& fill = {},
-                          const OpenOptions& options = {});
+    static Project create(const std::filesystem::path& path, const ModelToWrite& model,
+                          const std::function<void(Project&)>& fill = {}, const OpenOptions& options = {});
     /// Opens a project. Throws `Error` for a file that is not a tuft project, is from a
     /// newer version, or is damaged (all pages are checked); `ProjectInUse`; `Cancelled`.
     static Project open(const std::filesystem::path& path, const OpenOptions& options = {});
@@ -141,7 +142,7 @@ class Project {
     void append(std::span<const stroke::Stroke> strokes);
     void append(const stroke::Stroke& stroke) { append(std::span(&stroke, 1)); }
     void set_hidden(std::uint64_t stroke_id, bool hidden);  ///< forgets texels stored after it or a later one
-    void remove(std::uint64_t stroke_id);  ///< likewise
+    void remove(std::uint64_t stroke_id);                   ///< likewise
     /// All strokes in order, every number as it was put in, to the bit.
     std::vector<stroke::Stroke> strokes() const;
     std::size_t n_strokes() const;
@@ -157,7 +158,8 @@ class Project {
   private:
     struct State;
     explicit Project(std::unique_ptr<State> state);
-    static Project open_file(const std::filesystem::path& path, std::optional<ProjectLock> lock, const ProgressFn& progress);
+    static Project open_file(const std::filesystem::path& path, std::optional<ProjectLock> lock,
+                             const ProgressFn& progress);
     std::unique_ptr<State> state_;
 };
 

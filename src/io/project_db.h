@@ -24,27 +24,26 @@ inline constexpr std::int64_t kMaxEntries = 1'000'000;              ///< of a jo
 
 /// Stores an array of `count` elements of `size` bytes, made of numbers of
 /// `packing.element` bytes, in the table `arrays`; nothing when it is empty.
-void put_array_bytes(SQLite::Database& db, const char* owner, const char* name, const void* data,
-                     std::size_t count, std::size_t size, const Packing& packing);
+void put_array_bytes(SQLite::Database& db, const char* owner, const char* name, const void* data, std::size_t count,
+                     std::size_t size, const Packing& packing);
 
 /// Whether the array is there; throws when it does not have `count` elements of `size` bytes.
-bool has_array(SQLite::Database& db, const std::filesystem::path& path, const char* owner,
-               const char* name, std::size_t count, std::size_t size);
-void get_array_bytes(SQLite::Database& db, const std::filesystem::path& path, const char* owner,
-                     const char* name, void* out, std::size_t count, std::size_t size,
-                     const Packing& packing);
+bool has_array(SQLite::Database& db, const std::filesystem::path& path, const char* owner, const char* name,
+               std::size_t count, std::size_t size);
+void get_array_bytes(SQLite::Database& db, const std::filesystem::path& path, const char* owner, const char* name,
+                     void* out, std::size_t count, std::size_t size, const Packing& packing);
 
 template <class T>
-void put_array(SQLite::Database& db, const char* owner, const char* name,
-               const std::vector<T>& values, const Packing& packing) {
+void put_array(SQLite::Database& db, const char* owner, const char* name, const std::vector<T>& values,
+               const Packing& packing) {
     put_array_bytes(db, owner, name, values.data(), values.size(), sizeof(T), packing);
 }
 
 /// The stored array, which must have `expected` elements; empty when there is none. Its size
 /// is checked before memory is taken.
 template <class T>
-std::vector<T> get_array(SQLite::Database& db, const std::filesystem::path& path, const char* owner,
-                         const char* name, const Packing& packing, std::size_t expected) {
+std::vector<T> get_array(SQLite::Database& db, const std::filesystem::path& path, const char* owner, const char* name,
+                         const Packing& packing, std::size_t expected) {
     if (!has_array(db, path, owner, name, expected, sizeof(T))) return {};
     std::vector<T> values(expected);
     get_array_bytes(db, path, owner, name, values.data(), expected, sizeof(T), packing);
@@ -64,13 +63,13 @@ void load_materials(SQLite::Database& db, const std::filesystem::path& path, mes
 void store_scene(SQLite::Database& db, const mesh::TriangleMesh& mesh);
 void load_scene(SQLite::Database& db, const std::filesystem::path& path, mesh::TriangleMesh& mesh);
 /// A stored array of bytes of any length up to `most`; empty when there is none.
-std::vector<char> get_bytes(SQLite::Database& db, const std::filesystem::path& path,
-                            const std::string& name, std::size_t most);
+std::vector<char> get_bytes(SQLite::Database& db, const std::filesystem::path& path, const std::string& name,
+                            std::size_t most);
 
 /// Strokes (project_strokes.cpp). The caller opens the transaction. `load_strokes` throws `Cancelled`.
-void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
-                   std::span<const stroke::Stroke> strokes);
-std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path, const ProgressFn& progress);
+void store_strokes(SQLite::Database& db, const std::filesystem::path& path, std::span<const stroke::Stroke> strokes);
+std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path,
+                                         const ProgressFn& progress);
 
 /// Texels (project_tiles.cpp). The caller opens the transaction.
 struct StoredTexels {
@@ -86,7 +85,8 @@ std::vector<stroke::LayerCanvas> load_canvases(SQLite::Database& db, const std::
 inline constexpr std::size_t kMostAbout = std::size_t{1} << 16;
 void store_attachment(SQLite::Database& db, const std::string& kind, const Attachment& attachment);
 void remove_attachment(SQLite::Database& db, const std::string& kind, const std::string& name);
-std::vector<Attachment> load_attachments(SQLite::Database& db, const std::filesystem::path& path, const std::string& kind);
+std::vector<Attachment> load_attachments(SQLite::Database& db, const std::filesystem::path& path,
+                                         const std::string& kind);
 
 /// Marks the project as one of `format`, unless it is of a higher one.
 void raise_format(SQLite::Database& db, int format);

@@ -40,7 +40,8 @@ LockHolder read_holder(int file) {
     LockHolder holder;
     std::istringstream lines(std::string(text, size > 0 ? static_cast<std::size_t>(size) : 0));
     std::string process;
-    if (!std::getline(lines, holder.program) || !std::getline(lines, process) || !std::getline(lines, holder.host)) return {};
+    if (!std::getline(lines, holder.program) || !std::getline(lines, process) || !std::getline(lines, holder.host))
+        return {};
     holder.program = readable(holder.program);
     holder.host = readable(holder.host);
     holder.process = std::max(0L, std::strtol(process.c_str(), nullptr, 10));
@@ -49,7 +50,8 @@ LockHolder read_holder(int file) {
 }
 
 void write_holder(int file) {
-    const std::string text = std::string(program_invocation_short_name) + '\n' + std::to_string(::getpid()) + '\n' + host_name() + '\n';
+    const std::string text =
+        std::string(program_invocation_short_name) + '\n' + std::to_string(::getpid()) + '\n' + host_name() + '\n';
     // A lock without a record is a lock all the same.
     if (::ftruncate(file, 0) == 0 && ::pwrite(file, text.data(), text.size(), 0) < 0) return;
 }
@@ -61,9 +63,10 @@ fs::path without_links(const fs::path& project) {
 }
 
 bool same_file(int file, int folder, const std::string& name) {
-    struct stat open {}, named {};
-    return ::fstat(file, &open) == 0 && ::fstatat(folder, name.c_str(), &named, AT_SYMLINK_NOFOLLOW) == 0 && open.st_ino == named.st_ino &&
-           open.st_dev == named.st_dev;
+    struct stat open {
+    }, named{};
+    return ::fstat(file, &open) == 0 && ::fstatat(folder, name.c_str(), &named, AT_SYMLINK_NOFOLLOW) == 0 &&
+           open.st_ino == named.st_ino && open.st_dev == named.st_dev;
 }
 
 }  // namespace
@@ -71,12 +74,14 @@ bool same_file(int file, int folder, const std::string& name) {
 std::string name_of(const LockHolder& holder) {
     if (holder.program.empty()) return "another program";
     std::string name = holder.program;
-    if (holder.process > 0) name += " (process " + std::to_string(holder.process) + (holder.host.empty() ? "" : " on " + holder.host) + ")";
+    if (holder.process > 0)
+        name += " (process " + std::to_string(holder.process) + (holder.host.empty() ? "" : " on " + holder.host) + ")";
     return name;
 }
 
 ProjectInUse::ProjectInUse(const fs::path& project, LockHolder holder)
-    : Error(project.string(), name_of(holder) + " is working on it; close it there, or work on a copy of the file"), holder_(std::move(holder)) {}
+    : Error(project.string(), name_of(holder) + " is working on it; close it there, or work on a copy of the file"),
+      holder_(std::move(holder)) {}
 
 /// The lock file, locked. Its folder stays open, so that it is found again when the folder is moved.
 class ProjectLock::File {
@@ -84,7 +89,8 @@ class ProjectLock::File {
     explicit File(const fs::path& project, const fs::path& real) : name_("." + real.filename().string() + ".lock") {
         folder_ = ::open(real.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (folder_ < 0) {
-            const std::string why = errno == ENOENT ? "' does not exist" : std::string("' cannot be opened: ") + std::strerror(errno);
+            const std::string why =
+                errno == ENOENT ? "' does not exist" : std::string("' cannot be opened: ") + std::strerror(errno);
             throw Error(project.string(), "its folder '" + real.parent_path().string() + why);
         }
         try {
@@ -112,20 +118,24 @@ class ProjectLock::File {
         if (foreign) file_ = ::openat(folder_, name_.c_str(), kFlags | O_RDONLY);
         if (file_ < 0 && foreign && errno == ENOENT) errno = EACCES;
         if (file_ < 0) {
-            if (errno == EACCES || errno == EROFS || errno == EPERM) throw Error(project.string(), "cannot be changed: nothing may be written into its folder");
-            if (errno == ENOSPC || errno == EDQUOT) throw Error(project.string(), "cannot be changed: the disk is full");
+            if (errno == EACCES || errno == EROFS || errno == EPERM)
+                throw Error(project.string(), "cannot be changed: nothing may be written into its folder");
+            if (errno == ENOSPC || errno == EDQUOT)
+                throw Error(project.string(), "cannot be changed: the disk is full");
             throw Error(project.string(), "its lock file '" + name_ + "' cannot be opened: " + std::strerror(errno));
         }
         if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
             if (errno == EINTR) return closed_again();
             if (errno == EWOULDBLOCK) throw ProjectInUse(project, read_holder(file_));
-            throw Error(project.string(), std::string("cannot be locked against other programs where it lies (") + std::strerror(errno) +
+            throw Error(project.string(), std::string("cannot be locked against other programs where it lies (") +
+                                              std::strerror(errno) +
                                               "); copy it to a disk of this machine and work there");
         }
         if (!same_file(file_, folder_, name_)) return closed_again();
         if (!foreign) return true;
         // Nobody's any more, but not to be written: a new one takes its place.
-        if (::unlinkat(folder_, name_.c_str(), 0) != 0) throw Error(project.string(), "its lock file '" + name_ + "' is another person's and cannot be removed");
+        if (::unlinkat(folder_, name_.c_str(), 0) != 0)
+            throw Error(project.string(), "its lock file '" + name_ + "' is another person's and cannot be removed");
         return closed_again();
     }
     bool closed_again() {
@@ -158,7 +168,9 @@ ProjectLock::ProjectLock(const fs::path& project, std::chrono::milliseconds pati
             // This process may be about to let go of it on another thread.
             const LockHolder& holder = in_use.holder();
             const bool own = holder.process == ::getpid() && holder.host.empty();
-            const auto longest = own ? std::max(patience, kOwnPatience) : holder.program == kStudio ? std::chrono::milliseconds{} : patience;
+            const auto longest = own                         ? std::max(patience, kOwnPatience)
+                                 : holder.program == kStudio ? std::chrono::milliseconds{}
+                                                             : patience;
             if (std::chrono::steady_clock::now() - start >= longest) throw;
         }
         report(progress, "reading", 0);

@@ -42,7 +42,8 @@ class ProjectLock {
     /// Takes the lock, also of a project that is not there yet. Waits up to `patience` for a
     /// program that is about to end: not for the studio. Throws `ProjectInUse`; `Error` when
     /// the folder cannot be written into, or its file system has no locks; `Cancelled`.
-    explicit ProjectLock(const std::filesystem::path& project, std::chrono::milliseconds patience = {}, const ProgressFn& progress = {});
+    explicit ProjectLock(const std::filesystem::path& project, std::chrono::milliseconds patience = {},
+                         const ProgressFn& progress = {});
 
   private:
     class File;

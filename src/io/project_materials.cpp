@@ -22,14 +22,13 @@ std::string picture_array(std::size_t i) {
 
 }  // namespace
 
-std::vector<char> get_bytes(SQLite::Database& db, const std::filesystem::path& path,
-                            const std::string& name, std::size_t most) {
+std::vector<char> get_bytes(SQLite::Database& db, const std::filesystem::path& path, const std::string& name,
+                            std::size_t most) {
     SQLite::Statement select(db, "SELECT count FROM arrays WHERE owner = 'mesh' AND name = ?");
     select.bind(1, name);
     if (!select.executeStep()) return {};
     const std::int64_t count = select.getColumn(0).getInt64();
-    if (count < 0 || static_cast<std::uint64_t>(count) > most)
-        damaged(path, "array '" + name + "' is too large");
+    if (count < 0 || static_cast<std::uint64_t>(count) > most) damaged(path, "array '" + name + "' is too large");
     return get_array<char>(db, path, "mesh", name.c_str(), kBytes, static_cast<std::size_t>(count));
 }
 
@@ -55,8 +54,7 @@ void store_materials(SQLite::Database& db, const mesh::TriangleMesh& mesh) {
     raise_format(db, kColoursFormat);
 }
 
-void load_materials(SQLite::Database& db, const std::filesystem::path& path,
-                    mesh::TriangleMesh& mesh) {
+void load_materials(SQLite::Database& db, const std::filesystem::path& path, mesh::TriangleMesh& mesh) {
     const std::vector<char> text = get_bytes(db, path, "materials", kMaxTable);
     if (text.empty()) return;
     std::vector<std::shared_ptr<const mesh::Picture>> pictures;
@@ -66,8 +64,7 @@ void load_materials(SQLite::Database& db, const std::filesystem::path& path,
         const auto names = j.at("pictures").get<std::vector<std::string>>();
         if (names.size() > kMaxPictures) damaged(path, "it has too many pictures");
         for (std::size_t i = 0; i < names.size(); ++i)
-            pictures.push_back(
-                decode_picture(names[i], get_bytes(db, path, picture_array(i), kMaxPictureBytes)));
+            pictures.push_back(decode_picture(names[i], get_bytes(db, path, picture_array(i), kMaxPictureBytes)));
         for (const nlohmann::json& row : j.at("materials")) {
             mesh::Material m{.tinted = row.at("tinted").get<bool>()};
             for (int c = 0; c < 3; ++c) {

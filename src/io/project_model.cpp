@@ -34,21 +34,15 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
         for (const std::uint32_t v : triangle)
             if (v >= n_vertices) damaged(path, "a triangle has a vertex that does not exist");
     for (const std::uint32_t t : m.neighbours)
-        if (t != kNone && t >= n_triangles)
-            damaged(path, "a triangle has a neighbour that does not exist");
+        if (t != kNone && t >= n_triangles) damaged(path, "a triangle has a neighbour that does not exist");
     for (const std::uint32_t g : m.triangle_groups)
-        if (g >= m.group_names.size())
-            damaged(path, "a triangle is in a group that does not exist");
+        if (g >= m.group_names.size()) damaged(path, "a triangle is in a group that does not exist");
     for (const std::uint32_t c : model.atlas.triangle_chart)
-        if (c >= model.atlas.n_charts)
-            damaged(path, "a triangle is in a chart that does not exist");
+        if (c >= model.atlas.n_charts) damaged(path, "a triangle is in a chart that does not exist");
     for (const Vec3f& p : m.positions)
-        if (!within(Vec3(p)))
-            damaged(path, "the model has points that are no numbers or lie more than 10 km away");
-    if (!(m.bounds.diagonal() >= kSmallestModel))
-        damaged(path, "the model is smaller than a micrometre");
-    if (!all_finite(m.corner_normals) || !all_finite(m.corner_uvs) ||
-        !all_finite(model.atlas.corner_uvs))
+        if (!within(Vec3(p))) damaged(path, "the model has points that are no numbers or lie more than 10 km away");
+    if (!(m.bounds.diagonal() >= kSmallestModel)) damaged(path, "the model is smaller than a micrometre");
+    if (!all_finite(m.corner_normals) || !all_finite(m.corner_uvs) || !all_finite(model.atlas.corner_uvs))
         damaged(path, "the model has numbers that are not finite");
     if (m.corner_normals.empty() || m.neighbours.empty() || model.atlas.corner_uvs.empty() ||
         model.atlas.triangle_chart.empty())
@@ -56,8 +50,7 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
     const double texel = model.atlas.texel_size;
     if (model.atlas.size == 0 || model.atlas.size > 65536 || !(texel > 0) || !std::isfinite(texel))
         damaged(path, "the atlas has no valid size");
-    if (model.atlas.pages < 1 || model.atlas.pages > 100 ||
-        model.atlas.size % model.atlas.pages_per_side() != 0)
+    if (model.atlas.pages < 1 || model.atlas.pages > 100 || model.atlas.size % model.atlas.pages_per_side() != 0)
         damaged(path, "the atlas has no valid pages");
     for (const std::uint32_t udim : model.atlas.udims)
         if (udim < 1001 || udim > 2000) damaged(path, "a page of the atlas has no valid number");
@@ -68,8 +61,8 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
 
 }  // namespace
 
-void put_array_bytes(SQLite::Database& db, const char* owner, const char* name, const void* data,
-                     std::size_t count, std::size_t size, const Packing& packing) {
+void put_array_bytes(SQLite::Database& db, const char* owner, const char* name, const void* data, std::size_t count,
+                     std::size_t size, const Packing& packing) {
     if (count == 0) return;
     const std::vector<char> blob = pack(data, count * size / packing.element, packing);
     SQLite::Statement insert(db, "INSERT INTO arrays(owner, name, count, data) VALUES(?, ?, ?, ?)");
@@ -80,8 +73,8 @@ void put_array_bytes(SQLite::Database& db, const char* owner, const char* name, 
     insert.exec();
 }
 
-bool has_array(SQLite::Database& db, const std::filesystem::path& path, const char* owner,
-               const char* name, std::size_t count, std::size_t size) {
+bool has_array(SQLite::Database& db, const std::filesystem::path& path, const char* owner, const char* name,
+               std::size_t count, std::size_t size) {
     SQLite::Statement select(db, "SELECT count, data FROM arrays WHERE owner = ? AND name = ?");
     select.bind(1, owner);
     select.bind(2, name);
@@ -91,21 +84,18 @@ bool has_array(SQLite::Database& db, const std::filesystem::path& path, const ch
     const SQLite::Column blob = select.getColumn(1);
     check_packed(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), count * size,
                  path.string() + ": the project is damaged: array '" + name + "'");
-    check_memory(path, 2 * static_cast<std::uintmax_t>(count) *
-                           size);  // it, and it before its bytes are in order
+    check_memory(path, 2 * static_cast<std::uintmax_t>(count) * size);  // it, and it before its bytes are in order
     return true;
 }
 
-void get_array_bytes(SQLite::Database& db, const std::filesystem::path& path, const char* owner,
-                     const char* name, void* out, std::size_t count, std::size_t size,
-                     const Packing& packing) {
+void get_array_bytes(SQLite::Database& db, const std::filesystem::path& path, const char* owner, const char* name,
+                     void* out, std::size_t count, std::size_t size, const Packing& packing) {
     SQLite::Statement select(db, "SELECT data FROM arrays WHERE owner = ? AND name = ?");
     select.bind(1, owner);
     select.bind(2, name);
     if (!select.executeStep()) damaged(path, std::string("array '") + name + "' is missing");
     const SQLite::Column blob = select.getColumn(0);
-    unpack(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), out,
-           count * size / packing.element, packing,
+    unpack(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), out, count * size / packing.element, packing,
            path.string() + ": the project is damaged: array '" + name + "'");
 }
 
@@ -126,8 +116,7 @@ void store_model(SQLite::Database& db, const ModelToWrite& model) {
     row.bind(3, static_cast<std::int64_t>(hash_of(m)));
     row.bind(4, static_cast<std::int64_t>(m.n_vertices()));
     row.bind(5, static_cast<std::int64_t>(m.n_triangles()));
-    row.bind(6, nlohmann::json(m.group_names)
-                    .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    row.bind(6, nlohmann::json(m.group_names).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     row.bind(7, static_cast<std::int64_t>(a.size));
     row.bind(8, static_cast<std::int64_t>(a.gutter));
     row.bind(9, a.texel_size);
@@ -150,8 +139,7 @@ void store_model(SQLite::Database& db, const ModelToWrite& model) {
     put_array(db, "atlas", "udims", a.udims, kSingle);
 }
 
-ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path,
-                        const ProgressFn& progress) {
+ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path, const ProgressFn& progress) {
     SQLite::Statement row(db,
                           "SELECT source, unit, vertices, triangles, groups, atlas_size, gutter, "
                           "texel_size, charts, uvs_from_file FROM model WHERE id = 1");
@@ -159,8 +147,7 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path,
     ProjectModel model;
     model.source = text_of(row.getColumn(0), kMostSource, path, "the model's file name");
     model.frame.unit = text_of(row.getColumn(1), kMostSource, path, "the model's unit");
-    const std::int64_t vertices = row.getColumn(2).getInt64(),
-                       triangles = row.getColumn(3).getInt64();
+    const std::int64_t vertices = row.getColumn(2).getInt64(), triangles = row.getColumn(3).getInt64();
     if (vertices < 1 || vertices > 3 * kMaxTriangles || triangles < 1 || triangles > kMaxTriangles)
         damaged(path, "the model's counts are out of range");
     const auto n_v = static_cast<std::size_t>(vertices), n_t = static_cast<std::size_t>(triangles);
@@ -190,8 +177,7 @@ ProjectModel load_model(SQLite::Database& db, const std::filesystem::path& path,
     m.corner_normals = get_array<Vec3f>(db, path, "mesh", "corner_normals", kXyz, 3 * n_t);
     m.neighbours = get_array<std::uint32_t>(db, path, "mesh", "neighbours", kXyz, 3 * n_t);
     m.corner_uvs = get_array<Vec2f>(db, path, "mesh", "corner_uvs", kUv, 3 * n_t);
-    m.vertex_colours =
-        get_array<std::array<std::uint8_t, 4>>(db, path, "mesh", "vertex_colours", kSingle, n_v);
+    m.vertex_colours = get_array<std::array<std::uint8_t, 4>>(db, path, "mesh", "vertex_colours", kSingle, n_v);
     m.triangle_groups = get_array<std::uint32_t>(db, path, "mesh", "triangle_groups", kSingle, n_t);
     load_materials(db, path, m);
     load_scene(db, path, m);

@@ -14,8 +14,7 @@ using nlohmann::json;
 
 constexpr Packing kSceneBytes{.element = 1, .lag = 1}, kPartNumbers{.element = 4, .lag = 1};
 constexpr std::size_t kMostText = std::size_t{1} << 28, kMostParts = std::size_t{1} << 20;
-constexpr std::size_t kBufferPiece = std::size_t{1}
-                                     << 26;  // of the buffer, in one row of the table
+constexpr std::size_t kBufferPiece = std::size_t{1} << 26;  // of the buffer, in one row of the table
 constexpr std::size_t kMostPieces = 128;
 
 std::string piece_name(std::size_t i) {
@@ -23,9 +22,8 @@ std::string piece_name(std::size_t i) {
 }
 
 json json_of_part(const mesh::ScenePart& part) {
-    return {{"object", part.object},       {"group", part.group},
-            {"material", part.material},   {"node", part.node},
-            {"primitive", part.primitive}, {"own_material", part.own_material},
+    return {{"object", part.object},      {"group", part.group},         {"material", part.material},
+            {"node", part.node},          {"primitive", part.primitive}, {"own_material", part.own_material},
             {"transform", part.transform}};
 }
 
@@ -55,8 +53,8 @@ void store_scene(SQLite::Database& db, const mesh::TriangleMesh& mesh) {
     put_text(db, "scene document", mesh.scene->document);
     const std::vector<unsigned char>& buffer = mesh.scene->buffer;
     for (std::size_t at = 0, i = 0; at < buffer.size(); at += kBufferPiece, ++i)
-        put_array_bytes(db, "mesh", piece_name(i).c_str(), &buffer[at],
-                        std::min(kBufferPiece, buffer.size() - at), 1, kSceneBytes);
+        put_array_bytes(db, "mesh", piece_name(i).c_str(), &buffer[at], std::min(kBufferPiece, buffer.size() - at), 1,
+                        kSceneBytes);
     put_array(db, "mesh", "triangle_parts", mesh.triangle_parts, kPartNumbers);
 }
 
@@ -67,8 +65,7 @@ void load_scene(SQLite::Database& db, const std::filesystem::path& path, mesh::T
     check_json_nesting({text.data(), text.size()}, path.string() + ": parts");
     try {
         const json parts = json::parse(text.begin(), text.end());
-        if (!parts.is_array() || parts.empty() || parts.size() > kMostParts)
-            damaged(path, "it has no valid parts");
+        if (!parts.is_array() || parts.empty() || parts.size() > kMostParts) damaged(path, "it has no valid parts");
         for (const json& part : parts) scene->parts.push_back(part_of_json(part));
     } catch (const json::exception&) {
         damaged(path, "its parts cannot be read");
@@ -80,12 +77,11 @@ void load_scene(SQLite::Database& db, const std::filesystem::path& path, mesh::T
         if (piece.empty()) break;
         scene->buffer.insert(scene->buffer.end(), piece.begin(), piece.end());
     }
-    mesh.triangle_parts = get_array<std::uint32_t>(db, path, "mesh", "triangle_parts", kPartNumbers,
-                                                   mesh.n_triangles());
+    mesh.triangle_parts =
+        get_array<std::uint32_t>(db, path, "mesh", "triangle_parts", kPartNumbers, mesh.n_triangles());
     if (!scene->document.empty()) parse_document(*scene);
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t)
-        if (mesh::part_of(mesh, t) >= scene->parts.size())
-            damaged(path, "a triangle is in a part that does not exist");
+        if (mesh::part_of(mesh, t) >= scene->parts.size()) damaged(path, "a triangle is in a part that does not exist");
     mesh.scene = std::move(scene);
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 struct Table {
     const char* name;
-    bool always;      ///< every project has it
+    bool always;  ///< every project has it
     const char* columns;
 };
 
@@ -56,7 +56,9 @@ constexpr Table kSequence{"sqlite_sequence", false, "(name,seq)"};
 constexpr std::size_t kMostSchemaText = 4096;
 constexpr std::int64_t kMostObjects = 64;
 
-std::string sql_of(const Table& table) { return std::string("CREATE TABLE ") + table.name + table.columns; }
+std::string sql_of(const Table& table) {
+    return std::string("CREATE TABLE ") + table.name + table.columns;
+}
 
 // White space is one blank, or none beside brackets and commas.
 std::string squeezed(const std::string& sql) {
@@ -88,34 +90,44 @@ void create_table(SQLite::Database& db, const std::string& name) {
 }
 
 void check_schema(SQLite::Database& db, const std::filesystem::path& path) {
-    SQLite::Statement row(db, "SELECT type, name, tbl_name, sql FROM sqlite_master LIMIT " + std::to_string(kMostObjects + 1));
+    SQLite::Statement row(
+        db, "SELECT type, name, tbl_name, sql FROM sqlite_master LIMIT " + std::to_string(kMostObjects + 1));
     std::set<std::string> found;
     for (std::int64_t n = 0; row.executeStep(); ++n) {
-        const auto text = [&](int column) { return text_of(row.getColumn(column), kMostSchemaText, path, "a table's description"); };
+        const auto text = [&](int column) {
+            return text_of(row.getColumn(column), kMostSchemaText, path, "a table's description");
+        };
         const std::string type = text(0), name = text(1), on = text(2);
         const Table* table = find_table(type == "index" ? on : name);
         bool good = n < kMostObjects && table;
-        if (good && type == "index") good = row.getColumn(3).isNull() && name.starts_with("sqlite_autoindex_");
-        else if (good) good = type == "table" && on == name && squeezed(text(3)) == squeezed(sql_of(*table));
-        if (!good) damaged(path, "it holds the " + type.substr(0, 20) + " '" + name.substr(0, 60) + "' as no tuft project does, and is not opened");
+        if (good && type == "index")
+            good = row.getColumn(3).isNull() && name.starts_with("sqlite_autoindex_");
+        else if (good)
+            good = type == "table" && on == name && squeezed(text(3)) == squeezed(sql_of(*table));
+        if (!good)
+            damaged(path, "it holds the " + type.substr(0, 20) + " '" + name.substr(0, 60) +
+                              "' as no tuft project does, and is not opened");
         if (type == "table") found.insert(name);
     }
     for (const Table& table : kTables)
-        if (table.always && !found.contains(table.name)) damaged(path, std::string("its table '") + table.name + "' is missing");
+        if (table.always && !found.contains(table.name))
+            damaged(path, std::string("its table '") + table.name + "' is missing");
 }
 
 void restrain(SQLite::Database& db) {
     sqlite3* const handle = db.getHandle();
-    constexpr std::pair<int, int> kSwitches[] = {{SQLITE_DBCONFIG_DEFENSIVE, 1},      {SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0},
-                                                 {SQLITE_DBCONFIG_ENABLE_VIEW, 0},    {SQLITE_DBCONFIG_ENABLE_TRIGGER, 0},
+    constexpr std::pair<int, int> kSwitches[] = {{SQLITE_DBCONFIG_DEFENSIVE, 1},
+                                                 {SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0},
+                                                 {SQLITE_DBCONFIG_ENABLE_VIEW, 0},
+                                                 {SQLITE_DBCONFIG_ENABLE_TRIGGER, 0},
                                                  {SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, 0},
-                                                 {SQLITE_DBCONFIG_DQS_DDL, 0},        {SQLITE_DBCONFIG_DQS_DML, 0}};
-    constexpr std::pair<int, int> kLimits[] = {{SQLITE_LIMIT_LENGTH, 1'000'000'000}, {SQLITE_LIMIT_SQL_LENGTH, 20'000},
-                                               {SQLITE_LIMIT_COLUMN, 16},            {SQLITE_LIMIT_EXPR_DEPTH, 16},
-                                               {SQLITE_LIMIT_COMPOUND_SELECT, 2},    {SQLITE_LIMIT_VDBE_OP, 5000},
-                                               {SQLITE_LIMIT_FUNCTION_ARG, 8},       {SQLITE_LIMIT_ATTACHED, 0},
-                                               {SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 64}, {SQLITE_LIMIT_VARIABLE_NUMBER, 16},
-                                               {SQLITE_LIMIT_TRIGGER_DEPTH, 1},      {SQLITE_LIMIT_WORKER_THREADS, 0}};
+                                                 {SQLITE_DBCONFIG_DQS_DDL, 0},
+                                                 {SQLITE_DBCONFIG_DQS_DML, 0}};
+    constexpr std::pair<int, int> kLimits[] = {
+        {SQLITE_LIMIT_LENGTH, 1'000'000'000}, {SQLITE_LIMIT_SQL_LENGTH, 20'000}, {SQLITE_LIMIT_COLUMN, 16},
+        {SQLITE_LIMIT_EXPR_DEPTH, 16},        {SQLITE_LIMIT_COMPOUND_SELECT, 2}, {SQLITE_LIMIT_VDBE_OP, 5000},
+        {SQLITE_LIMIT_FUNCTION_ARG, 8},       {SQLITE_LIMIT_ATTACHED, 0},        {SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 64},
+        {SQLITE_LIMIT_VARIABLE_NUMBER, 16},   {SQLITE_LIMIT_TRIGGER_DEPTH, 1},   {SQLITE_LIMIT_WORKER_THREADS, 0}};
     for (const auto& [what, on] : kSwitches) sqlite3_db_config(handle, what, on, nullptr);
     for (const auto& [what, most] : kLimits) sqlite3_limit(handle, what, most);
     // A file that is cut off while it is mapped would end the program.
@@ -132,7 +144,8 @@ constexpr std::uintmax_t kFreeTicks = 20'000, kBytesPerTick = 300;
 }  // namespace
 
 Overseer::Overseer(sqlite3* db) : db_(db) {
-    sqlite3_progress_handler(db, kTickSteps, [](void* self) { return static_cast<Overseer*>(self)->tick(); }, this);
+    sqlite3_progress_handler(
+        db, kTickSteps, [](void* self) { return static_cast<Overseer*>(self)->tick(); }, this);
 }
 
 void Overseer::begin(std::uintmax_t bytes, bool hears) {
@@ -182,8 +195,10 @@ std::string Overseer::check_pages(SQLite::Database& db) {
     }
 }
 
-std::string text_of(const SQLite::Column& column, std::size_t most, const std::filesystem::path& path, const char* what) {
-    if (column.getBytes() < 0 || static_cast<std::size_t>(column.getBytes()) > most) damaged(path, std::string(what) + " is too long");
+std::string text_of(const SQLite::Column& column, std::size_t most, const std::filesystem::path& path,
+                    const char* what) {
+    if (column.getBytes() < 0 || static_cast<std::size_t>(column.getBytes()) > most)
+        damaged(path, std::string(what) + " is too long");
     return column.getString();
 }
 

@@ -9,7 +9,7 @@ struct sqlite3;
 namespace SQLite {
 class Database;
 class Column;
-}
+}  // namespace SQLite
 
 /// What a project's database may hold, and how one that anybody may have made is opened.
 /// Included by project*.cpp only.
@@ -42,7 +42,7 @@ class Overseer {
     const ProgressFn& progress() const { return progress_; }
     /// A new call begins; `bytes` is the size of the file; `hears`: whoever listens may stop it.
     void begin(std::uintmax_t bytes, bool hears);
-    bool spent() const { return spent_; }      ///< the last call was stopped for its length
+    bool spent() const { return spent_; }  ///< the last call was stopped for its length
     /// Whether all pages of the file are in order: "ok", else what is not. Heard within a tenth of a second.
     std::string check_pages(SQLite::Database& db);
 
@@ -56,7 +56,8 @@ class Overseer {
 };
 
 /// The text of a column; throws `Error` where it is longer than `most` bytes.
-std::string text_of(const SQLite::Column& column, std::size_t most, const std::filesystem::path& path, const char* what);
+std::string text_of(const SQLite::Column& column, std::size_t most, const std::filesystem::path& path,
+                    const char* what);
 
 /// Throws `Error` where so many bytes are not free.
 void check_memory(const std::filesystem::path& path, std::uintmax_t bytes);

@@ -10,7 +10,8 @@ namespace tuft::io {
 namespace {
 
 constexpr std::size_t kFields = 11;  // per sample
-constexpr std::size_t kMostWord = 4096, kMostLabel = std::size_t{1} << 20, kMostSettings = std::size_t{1} << 25;  // bytes
+constexpr std::size_t kMostWord = 4096, kMostLabel = std::size_t{1} << 20,
+                      kMostSettings = std::size_t{1} << 25;      // bytes
 constexpr std::uintmax_t kLookEvery = std::uintmax_t{64} << 20;  // bytes of samples between two looks at what is free
 constexpr Packing kSamples{.element = 8, .lag = 1, .level = 6};
 
@@ -20,9 +21,9 @@ std::vector<double> columns_of(const std::vector<stroke::TraceSample>& samples) 
     std::vector<double> out(kFields * n);
     for (std::size_t i = 0; i < n; ++i) {
         const stroke::TraceSample& s = samples[i];
-        const std::array<double, kFields> fields{
-            s.time,   s.position.x, s.position.y, s.position.z, s.pressure,  s.tilt.x,
-            s.tilt.y, s.rotation.w, s.rotation.x, s.rotation.y, s.rotation.z};
+        const std::array<double, kFields> fields{s.time,       s.position.x, s.position.y, s.position.z,
+                                                 s.pressure,   s.tilt.x,     s.tilt.y,     s.rotation.w,
+                                                 s.rotation.x, s.rotation.y, s.rotation.z};
         for (std::size_t f = 0; f < kFields; ++f) out[f * n + i] = fields[f];
     }
     return out;
@@ -43,18 +44,15 @@ std::vector<stroke::TraceSample> samples_of(const std::vector<double>& columns) 
 }
 
 std::array<double, 9> numbers_of(const stroke::Placement& p) {
-    return {p.origin.x, p.origin.y, p.origin.z, p.right.x, p.right.y,
-            p.right.z,  p.down.x,   p.down.y,   p.down.z};
+    return {p.origin.x, p.origin.y, p.origin.z, p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z};
 }
 
 }  // namespace
 
-void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
-                   std::span<const stroke::Stroke> strokes) {
-    SQLite::Statement insert(
-        db,
-        "INSERT INTO strokes(id, brush, ink, seed, label, settings, hidden, flat, "
-        "laying, placement, sample_count, samples) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+void store_strokes(SQLite::Database& db, const std::filesystem::path& path, std::span<const stroke::Stroke> strokes) {
+    SQLite::Statement insert(db,
+                             "INSERT INTO strokes(id, brush, ink, seed, label, settings, hidden, flat, "
+                             "laying, placement, sample_count, samples) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     for (const stroke::Stroke& stroke : strokes) {
         const stroke::Trace& t = stroke.trace;
         const std::vector<double> columns = columns_of(t.samples);
@@ -82,21 +80,23 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
         if (stroke::keeps_texels(stroke.action) || stroke.action == stroke::Action::fill || stroke.mask != 0 ||
             stroke.layer != stroke::kFirstLayer || stroke.trace.erases)
             raise_format(db, kLayersFormat);
-        if (stroke.layer == stroke::kPaletteLayer || stroke.action == stroke::Action::wash) raise_format(db, kPaletteFormat);
+        if (stroke.layer == stroke::kPaletteLayer || stroke.action == stroke::Action::wash)
+            raise_format(db, kPaletteFormat);
         if (t.flat && t.placement.mapping == stroke::SurfaceMapping::drape) raise_format(db, kDrapedFormat);
         if (!t.stencil.empty()) raise_format(db, kTapedFormat);
     }
 }
 
-std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path, const ProgressFn& progress) {
+std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path,
+                                         const ProgressFn& progress) {
     const std::int64_t n = db.execAndGet("SELECT count(*) FROM strokes").getInt64();
     if (n > kMaxEntries)
-        damaged(path, "it has " + std::to_string(n) + " strokes, more than the " + std::to_string(kMaxEntries) + " that are read");
+        damaged(path, "it has " + std::to_string(n) + " strokes, more than the " + std::to_string(kMaxEntries) +
+                          " that are read");
     check_memory(path, static_cast<std::uintmax_t>(n) * sizeof(stroke::Stroke));
-    SQLite::Statement select(
-        db,
-        "SELECT id, brush, ink, seed, label, settings, hidden, flat, laying, placement, "
-        "sample_count, samples FROM strokes ORDER BY ordinal");
+    SQLite::Statement select(db,
+                             "SELECT id, brush, ink, seed, label, settings, hidden, flat, laying, placement, "
+                             "sample_count, samples FROM strokes ORDER BY ordinal");
     std::vector<stroke::Stroke> strokes;
     std::uintmax_t bytes = 0, checked = 0;
     while (select.executeStep()) {
@@ -104,8 +104,7 @@ std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesy
         stroke::Stroke stroke;
         stroke::Trace& t = stroke.trace;
         stroke.id = static_cast<std::uint64_t>(select.getColumn(0).getInt64());
-        const std::string what =
-            path.string() + ": the project is damaged: stroke " + std::to_string(stroke.id);
+        const std::string what = path.string() + ": the project is damaged: stroke " + std::to_string(stroke.id);
         const auto text = [&](int column, std::size_t most, const char* of_what) {
             return text_of(select.getColumn(column), most, path, of_what);
         };
@@ -121,22 +120,21 @@ std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesy
         t.placement.mapping = *mapping;
         const SQLite::Column placement = select.getColumn(9);
         std::array<double, 9> p{};
-        if (placement.getBytes() != static_cast<int>(sizeof p))
-            throw Error(what + " has no valid placement");
+        if (placement.getBytes() != static_cast<int>(sizeof p)) throw Error(what + " has no valid placement");
         std::memcpy(p.data(), placement.getBlob(), sizeof p);
         t.placement.origin = {p[0], p[1], p[2]};
         t.placement.right = {p[3], p[4], p[5]};
         t.placement.down = {p[6], p[7], p[8]};
         const std::int64_t count = select.getColumn(10).getInt64();
-        if (count < 0 || count > kMaxSamples)
-            throw Error(what + " has an impossible number of samples");
+        if (count < 0 || count > kMaxSamples) throw Error(what + " has an impossible number of samples");
         const SQLite::Column blob = select.getColumn(11);
         const auto size = static_cast<std::size_t>(blob.getBytes());
         const std::size_t numbers = kFields * static_cast<std::size_t>(count);
         check_packed(blob.getBlob(), size, numbers * sizeof(double), what);
         // Its columns, and them as they are unpacked, go again.
         bytes += sizeof(stroke::TraceSample) * static_cast<std::uintmax_t>(count);
-        if (const auto now = 3 * numbers * sizeof(double); bytes - checked + now > kLookEvery) check_memory(path, bytes - std::exchange(checked, bytes) + now);
+        if (const auto now = 3 * numbers * sizeof(double); bytes - checked + now > kLookEvery)
+            check_memory(path, bytes - std::exchange(checked, bytes) + now);
         std::vector<double> columns(numbers);
         unpack(blob.getBlob(), size, columns.data(), numbers, kSamples, what);
         t.samples = samples_of(columns);

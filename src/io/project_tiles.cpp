@@ -41,16 +41,16 @@ class LayerRows {
 
     void store_tile(const ink::TileSnapshot& tile) {
         const std::size_t open = std::popcount(tile.planes) * atlas::kTileTexels;
-        SQLite::Statement& s = statement(tile_, first() ? "INSERT INTO tiles VALUES(?, ?, ?)"
-                                                        : "INSERT INTO layer_tiles VALUES(?, ?, ?, ?)");
+        SQLite::Statement& s = statement(
+            tile_, first() ? "INSERT INTO tiles VALUES(?, ?, ?)" : "INSERT INTO layer_tiles VALUES(?, ?, ?, ?)");
         insert(s, {static_cast<std::int64_t>(tile.slot), tile.planes}, tile.amounts.data(), open);
         if (tile.under.empty()) return;
         if (first() && !film_) {
             create_table(db_, "films");
             raise_format(db_, kFilmsFormat);
         }
-        SQLite::Statement& f = statement(film_, first() ? "INSERT INTO films VALUES(?, ?, ?, ?)"
-                                                        : "INSERT INTO layer_films VALUES(?, ?, ?, ?, ?)");
+        SQLite::Statement& f = statement(
+            film_, first() ? "INSERT INTO films VALUES(?, ?, ?, ?)" : "INSERT INTO layer_films VALUES(?, ?, ?, ?, ?)");
         const float* from = tile.amounts.data() + open;
         for (const ink::FilmPlanes& p : tile.under) {
             const std::size_t count = std::popcount(p.planes) * atlas::kTileTexels;
@@ -61,9 +61,9 @@ class LayerRows {
 
     /// Puts all tiles of the layer into its canvas.
     void load(ink::Canvas& canvas, const std::filesystem::path& path, const ProgressFn& progress) {
-        SQLite::Statement tile(
-            db_, first() ? "SELECT slot, planes, amounts FROM tiles ORDER BY slot"
-                         : "SELECT slot, planes, amounts FROM layer_tiles WHERE layer = ? ORDER BY slot");
+        SQLite::Statement tile(db_,
+                               first() ? "SELECT slot, planes, amounts FROM tiles ORDER BY slot"
+                                       : "SELECT slot, planes, amounts FROM layer_tiles WHERE layer = ? ORDER BY slot");
         if (!first()) tile.bind(1, static_cast<std::int64_t>(layer_));
         const bool films = !first() || has_films(db_);
         std::uintmax_t bytes = 0, checked = 0;
@@ -73,9 +73,8 @@ class LayerRows {
             const std::int64_t planes = tile.getColumn(1).getInt64();
             if (slot < 0 || slot >= static_cast<std::int64_t>(canvas.n_slots()) || planes < 0 || planes > 255)
                 damaged(path, "a tile lies outside the atlas");
-            ink::TileSnapshot snapshot{.slot = static_cast<std::uint32_t>(slot),
-                                       .planes = static_cast<std::uint8_t>(planes),
-                                       .amounts = {}};
+            ink::TileSnapshot snapshot{
+                .slot = static_cast<std::uint32_t>(slot), .planes = static_cast<std::uint8_t>(planes), .amounts = {}};
             const std::string what = path.string() + ": the project is damaged: tile " + std::to_string(slot);
             append(snapshot, tile.getColumn(2), snapshot.planes, what);
             if (films) load_films(snapshot, what);
@@ -113,10 +112,10 @@ class LayerRows {
     }
 
     void load_films(ink::TileSnapshot& tile, const std::string& what) {
-        SQLite::Statement& s = statement(
-            film_, first() ? "SELECT film, planes, amounts FROM films WHERE slot = ? ORDER BY film"
-                           : "SELECT film, planes, amounts FROM layer_films WHERE slot = ? AND layer = ? "
-                             "ORDER BY film");
+        SQLite::Statement& s =
+            statement(film_, first() ? "SELECT film, planes, amounts FROM films WHERE slot = ? ORDER BY film"
+                                     : "SELECT film, planes, amounts FROM layer_films WHERE slot = ? AND layer = ? "
+                                       "ORDER BY film");
         s.bind(1, static_cast<std::int64_t>(tile.slot));
         if (!first()) s.bind(2, static_cast<std::int64_t>(layer_));
         while (s.executeStep()) {
@@ -228,7 +227,8 @@ std::vector<stroke::LayerCanvas> load_canvases(SQLite::Database& db, const std::
     SQLite::Statement pigment(db, "SELECT toml FROM pigments ORDER BY plane");
     for (std::size_t n = 0; pigment.executeStep(); ++n) {
         if (n >= ink::kMaxPigments) damaged(path, "it has too many pigments");
-        const ink::Ink alone = ink::parse_ink(text_of(pigment.getColumn(0), kMostPigmentText, path, "a pigment"), path.string());
+        const ink::Ink alone =
+            ink::parse_ink(text_of(pigment.getColumn(0), kMostPigmentText, path, "a pigment"), path.string());
         if (alone.parts.empty()) damaged(path, "a pigment is none");
         for (stroke::LayerCanvas& layer : layers) layer.canvas.add_pigment(alone.parts.at(0).pigment);
     }

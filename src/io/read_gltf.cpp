@@ -72,26 +72,20 @@ Rows rows_of(const tinygltf::Model& model, int index, int type, const std::strin
     const tinygltf::Accessor* accessor = element(model.accessors, index);
     if (!accessor) fail("does not exist");
     if (accessor->type != type) fail("has the wrong type");
-    if (accessor->sparse.isSparse)
-        fail("is sparse, which tuft does not read; export the model without");
+    if (accessor->sparse.isSparse) fail("is sparse, which tuft does not read; export the model without");
     const tinygltf::BufferView* view = element(model.bufferViews, accessor->bufferView);
-    if (!view)
-        fail("has no buffer view (compressed meshes are not read; export without compression)");
+    if (!view) fail("has no buffer view (compressed meshes are not read; export without compression)");
     const tinygltf::Buffer* buffer = element(model.buffers, view->buffer);
     if (!buffer) fail("has no buffer");
-    const int component_size =
-        tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor->componentType));
+    const int component_size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor->componentType));
     const int n_components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type));
-    if (component_size <= 0 || n_components <= 0 ||
-        accessor->componentType == TINYGLTF_COMPONENT_TYPE_DOUBLE)
+    if (component_size <= 0 || n_components <= 0 || accessor->componentType == TINYGLTF_COMPONENT_TYPE_DOUBLE)
         fail("has an unknown component type");
     const std::size_t row = static_cast<std::size_t>(component_size) * n_components;
     const std::size_t stride = view->byteStride > 0 ? view->byteStride : row;
     const std::size_t have = buffer->data.size();
-    if (view->byteOffset > have || view->byteLength > have - view->byteOffset)
-        fail("lies outside its buffer");
-    if (stride < row || stride > 4096 || accessor->byteOffset > view->byteLength)
-        fail("lies outside its buffer");
+    if (view->byteOffset > have || view->byteLength > have - view->byteOffset) fail("lies outside its buffer");
+    if (stride < row || stride > 4096 || accessor->byteOffset > view->byteLength) fail("lies outside its buffer");
     const std::size_t room = view->byteLength - accessor->byteOffset;
     if (accessor->count > 0 && (room < row || (room - row) / stride < accessor->count - 1))
         fail("lies outside its buffer view");
@@ -146,7 +140,8 @@ PictureUvs picture_uvs(const tinygltf::Material& material) {
     };
     const Vec2 offset = pair("offset", 0), scale = pair("scale", 1);
     const double turn = number(moved->second.Get("rotation"), 0);
-    out.columns = {scale.x * Vec2(std::cos(turn), -std::sin(turn)), scale.y * Vec2(std::sin(turn), std::cos(turn)), offset};
+    out.columns = {scale.x * Vec2(std::cos(turn), -std::sin(turn)), scale.y * Vec2(std::sin(turn), std::cos(turn)),
+                   offset};
     if (const tinygltf::Value& set = moved->second.Get("texCoord"); set.IsInt()) out.set = set.GetNumberAsInt();
     return out;
 }
@@ -167,16 +162,14 @@ class Gatherer {
             Mat4 parent;
         };
         std::vector<Visit> stack;
-        for (auto it = roots.rbegin(); it != roots.rend(); ++it)
-            stack.push_back({*it, 0, Mat4(1.0)});
+        for (auto it = roots.rbegin(); it != roots.rend(); ++it) stack.push_back({*it, 0, Mat4(1.0)});
         std::vector<bool> seen(model_.nodes.size(), false);
         while (!stack.empty()) {
             const Visit visit = stack.back();
             stack.pop_back();
             const tinygltf::Node* node = element(model_.nodes, visit.node);
             if (!node) throw Error(name_, "node " + std::to_string(visit.node) + " does not exist");
-            if (seen[visit.node] || visit.depth > kMaxNodeDepth)
-                throw Error(name_, "its nodes do not form a tree");
+            if (seen[visit.node] || visit.depth > kMaxNodeDepth) throw Error(name_, "its nodes do not form a tree");
             seen[visit.node] = true;
             const Mat4 world = visit.parent * local_transform(*node);
             if (node->mesh >= 0) add_mesh(node->mesh, visit.node, world);
@@ -282,8 +275,7 @@ class Gatherer {
         return it->second;
     }
 
-    void add_primitive(const tinygltf::Mesh& mesh, const tinygltf::Primitive& primitive,
-                       const Mat4& world) {
+    void add_primitive(const tinygltf::Mesh& mesh, const tinygltf::Primitive& primitive, const Mat4& world) {
         const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
         if (mode != TINYGLTF_MODE_TRIANGLES && mode != TINYGLTF_MODE_TRIANGLE_STRIP &&
             mode != TINYGLTF_MODE_TRIANGLE_FAN) {
@@ -292,15 +284,13 @@ class Gatherer {
         }
         const auto position = primitive.attributes.find("POSITION");
         if (position == primitive.attributes.end()) {
-            soup_.warnings.push_back("a part of mesh '" + mesh.name +
-                                     "' without positions was skipped");
+            soup_.warnings.push_back("a part of mesh '" + mesh.name + "' without positions was skipped");
             return;
         }
         const Rows points = rows_of(model_, position->second, TINYGLTF_TYPE_VEC3, name_);
         const CornerUvs uvs = uvs_of(mesh, primitive, points.count);
         Rows indices;
-        if (primitive.indices >= 0)
-            indices = rows_of(model_, primitive.indices, TINYGLTF_TYPE_SCALAR, name_);
+        if (primitive.indices >= 0) indices = rows_of(model_, primitive.indices, TINYGLTF_TYPE_SCALAR, name_);
         const bool indexed = primitive.indices >= 0;
         const std::size_t n = indexed ? indices.count : points.count;
         const std::uint32_t base = add_points(points, world);
@@ -311,23 +301,20 @@ class Gatherer {
         const auto index_at = [&](std::size_t i) {
             const double index = indexed ? indices.number(i, 0) : static_cast<double>(i);
             if (!(index >= 0 && index < static_cast<double>(points.count)))
-                throw Error(name_, "index " + std::to_string(static_cast<long long>(index)) +
-                                       " of mesh '" + mesh.name + "' is out of range (there are " +
-                                       std::to_string(points.count) + " vertices)");
+                throw Error(name_, "index " + std::to_string(static_cast<long long>(index)) + " of mesh '" + mesh.name +
+                                       "' is out of range (there are " + std::to_string(points.count) + " vertices)");
             return static_cast<std::uint32_t>(index);
         };
         const bool list = mode == TINYGLTF_MODE_TRIANGLES;
         const std::size_t n_triangles = list ? n / 3 : (n >= 3 ? n - 2 : 0);
-        if (soup_.corners.size() + 3 * n_triangles > kMaxCorners)
-            throw Error(name_, "has too many triangles");
+        if (soup_.corners.size() + 3 * n_triangles > kMaxCorners) throw Error(name_, "has too many triangles");
         std::size_t dropped = 0;
         for (std::size_t t = 0; t < n_triangles; ++t) {
             std::array<std::size_t, 3> at{3 * t, 3 * t + 1, 3 * t + 2};
             if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) at = {t, t + 1 + t % 2, t + 2 - t % 2};
             if (mode == TINYGLTF_MODE_TRIANGLE_FAN) at = {t + 1, t + 2, 0};
             if (mirrored) std::swap(at[1], at[2]);
-            const std::array<std::uint32_t, 3> index{index_at(at[0]), index_at(at[1]),
-                                                     index_at(at[2])};
+            const std::array<std::uint32_t, 3> index{index_at(at[0]), index_at(at[1]), index_at(at[2])};
             if (bad_[base + index[0]] || bad_[base + index[1]] || bad_[base + index[2]]) {
                 ++dropped;
                 continue;
@@ -338,18 +325,17 @@ class Gatherer {
             soup_.polygon_parts.push_back(static_cast<std::uint32_t>(parts_.size()) - 1);
         }
         if (dropped > 0)
-            soup_.warnings.push_back(std::to_string(dropped) + " triangles of mesh '" + mesh.name +
-                                     "' were dropped: their vertices are no finite numbers or lie more than 10 km away");
+            soup_.warnings.push_back(
+                std::to_string(dropped) + " triangles of mesh '" + mesh.name +
+                "' were dropped: their vertices are no finite numbers or lie more than 10 km away");
     }
 
     std::uint32_t add_points(const Rows& points, const Mat4& world) {
         const auto base = static_cast<std::uint32_t>(soup_.points.size());
-        if (soup_.points.size() + points.count > kMaxCorners)
-            throw Error(name_, "has too many vertices");
+        if (soup_.points.size() + points.count > kMaxCorners) throw Error(name_, "has too many vertices");
         soup_.points.reserve(soup_.points.size() + points.count);
         for (std::size_t i = 0; i < points.count; ++i) {
-            const Vec3 p = Vec3(world * glm::dvec4(points.number(i, 0), points.number(i, 1),
-                                                   points.number(i, 2), 1));
+            const Vec3 p = Vec3(world * glm::dvec4(points.number(i, 0), points.number(i, 1), points.number(i, 2), 1));
             const bool fits = within(p);
             bad_.push_back(!fits);
             soup_.points.push_back(fits ? Vec3(p.x, -p.z, p.y) : Vec3(0));
@@ -389,8 +375,9 @@ class Gatherer {
         std::string name = "TEXCOORD_" + std::to_string(out.place.set);
         auto found = primitive.attributes.find(name);
         if (found == primitive.attributes.end() && out.place.set != 0) {
-            soup_.warnings.push_back("mesh '" + mesh.name + "' has no " + name + ", by which the picture of material '" +
-                                     material->name + "' lies; it lies by TEXCOORD_0 instead");
+            soup_.warnings.push_back("mesh '" + mesh.name + "' has no " + name +
+                                     ", by which the picture of material '" + material->name +
+                                     "' lies; it lies by TEXCOORD_0 instead");
             found = primitive.attributes.find(name = "TEXCOORD_0");
         }
         if (found == primitive.attributes.end()) return out;

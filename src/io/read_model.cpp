@@ -41,8 +41,7 @@ std::optional<Format> by_extension(const std::filesystem::path& path) {
 std::optional<Format> by_content(std::string_view bytes) {
     if (bytes.starts_with("glTF")) return Format::glb;
     if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return Format::ply;
-    for (const std::string_view magic :
-         {"OFF", "COFF", "NOFF", "STOFF", "CNOFF", "STNOFF", "STCNOFF"})
+    for (const std::string_view magic : {"OFF", "COFF", "NOFF", "STOFF", "CNOFF", "STNOFF", "STCNOFF"})
         if (bytes.starts_with(magic) && bytes.size() > magic.size() &&
             (std::isspace(static_cast<unsigned char>(bytes[magic.size()])) ||
              std::isdigit(static_cast<unsigned char>(bytes[magic.size()]))))
@@ -69,13 +68,11 @@ mesh::PolygonSoup read_polygons(Format format, const std::vector<char>& bytes, c
 
 mesh::PolygonSoup read_model(const std::filesystem::path& path) {
     const std::vector<char> bytes = read_file(path);
-    std::optional<Format> format =
-        by_content({bytes.data(), std::min<std::size_t>(bytes.size(), 16)});
+    std::optional<Format> format = by_content({bytes.data(), std::min<std::size_t>(bytes.size(), 16)});
     if (!format) format = by_extension(path);
-    if (!format)
-        throw Error(path.string(),
-                    "is no model format tuft knows; it reads OBJ, PLY, STL, OFF, GLB and glTF");
-    if (bytes.size() >= 2 && (std::memcmp(bytes.data(), "\xff\xfe", 2) == 0 || std::memcmp(bytes.data(), "\xfe\xff", 2) == 0))
+    if (!format) throw Error(path.string(), "is no model format tuft knows; it reads OBJ, PLY, STL, OFF, GLB and glTF");
+    if (bytes.size() >= 2 &&
+        (std::memcmp(bytes.data(), "\xff\xfe", 2) == 0 || std::memcmp(bytes.data(), "\xfe\xff", 2) == 0))
         throw Error(path.string(), "is text in UTF-16; save it as UTF-8 or ASCII");
     if (*format == Format::glb || *format == Format::gltf) return read_gltf(bytes, path);
     mesh::PolygonSoup soup = read_polygons(*format, bytes, path);

@@ -16,8 +16,7 @@ void use_presets(const Project& project, stroke::Document& painting) {
     }
 }
 
-void restore_strokes(const Project& project, stroke::Document& painting,
-                     const ProgressFn& progress) {
+void restore_strokes(const Project& project, stroke::Document& painting, const ProgressFn& progress) {
     std::vector<stroke::Stroke> strokes;
     std::optional<SavedCanvases> saved;
     project.read_together([&] {

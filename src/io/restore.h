@@ -12,7 +12,6 @@ void use_presets(const Project& project, stroke::Document& painting);
 
 /// Brings the painting to the project's last stroke: by its saved texels where they fit its
 /// journal, else by replay.
-void restore_strokes(const Project& project, stroke::Document& painting,
-                     const ProgressFn& progress);
+void restore_strokes(const Project& project, stroke::Document& painting, const ProgressFn& progress);
 
 }  // namespace tuft::io

@@ -39,8 +39,7 @@ std::size_t append_bytes(std::vector<unsigned char>& buffer, std::span<const uns
     return at;
 }
 
-int add_view(json& document, std::vector<unsigned char>& buffer,
-             std::span<const unsigned char> bytes) {
+int add_view(json& document, std::vector<unsigned char>& buffer, std::span<const unsigned char> bytes) {
     json& views = array_of(document, "bufferViews");
     const std::size_t at = append_bytes(buffer, bytes);
     views.push_back({{"buffer", 0}, {"byteOffset", at}, {"byteLength", bytes.size()}});
@@ -55,11 +54,10 @@ void move_view(json& view, const std::vector<std::size_t>& starts, const std::st
     view["buffer"] = 0;
 }
 
-void pack_buffers(json& document, mesh::SourceScene& scene,
-                  std::span<const std::vector<unsigned char>> buffers, const std::string& name) {
+void pack_buffers(json& document, mesh::SourceScene& scene, std::span<const std::vector<unsigned char>> buffers,
+                  const std::string& name) {
     std::vector<std::size_t> starts;
-    for (const std::vector<unsigned char>& bytes : buffers)
-        starts.push_back(append_bytes(scene.buffer, bytes));
+    for (const std::vector<unsigned char>& bytes : buffers) starts.push_back(append_bytes(scene.buffer, bytes));
     if (!document.contains("bufferViews")) return;
     for (json& view : array_of(document, "bufferViews")) {
         move_view(view, starts, name);
@@ -69,8 +67,7 @@ void pack_buffers(json& document, mesh::SourceScene& scene,
     }
 }
 
-void pack_pictures(json& document, mesh::SourceScene& scene,
-                   std::span<const std::vector<unsigned char>> pictures) {
+void pack_pictures(json& document, mesh::SourceScene& scene, std::span<const std::vector<unsigned char>> pictures) {
     if (!document.contains("images")) return;
     json& images = array_of(document, "images");
     for (std::size_t i = 0; i < images.size(); ++i) {
@@ -94,8 +91,7 @@ void add_nodes_for_meshes(json& document) {
     json roots = json::array();
     for (std::size_t m = 0; m < n; ++m) {
         nodes.push_back({{"mesh", m}});
-        if (const json& mesh = document["meshes"][m]; mesh.contains("name"))
-            nodes.back()["name"] = mesh["name"];
+        if (const json& mesh = document["meshes"][m]; mesh.contains("name")) nodes.back()["name"] = mesh["name"];
         roots.push_back(m);
     }
     document["scenes"] = json::array({{{"nodes", std::move(roots)}}});
@@ -106,22 +102,18 @@ void add_nodes_for_meshes(json& document) {
 
 std::string mime_type_of(std::span<const unsigned char> bytes) {
     const auto starts = [&](std::string_view magic, std::size_t at = 0) {
-        return bytes.size() >= at + magic.size() &&
-               std::memcmp(bytes.data() + at, magic.data(), magic.size()) == 0;
+        return bytes.size() >= at + magic.size() && std::memcmp(bytes.data() + at, magic.data(), magic.size()) == 0;
     };
     if (starts("\x89PNG")) return "image/png";
     if (starts("\xff\xd8\xff")) return "image/jpeg";
     if (starts("RIFF") && starts("WEBP", 8)) return "image/webp";
     if (starts("\xabKTX 20")) return "image/ktx2";
-    if (starts(std::string_view("II*\0", 4)) || starts(std::string_view("MM\0*", 4)))
-        return "image/tiff";
+    if (starts(std::string_view("II*\0", 4)) || starts(std::string_view("MM\0*", 4))) return "image/tiff";
     return {};
 }
 
-mesh::SourceScene pack_document(std::string_view text,
-                                std::span<const std::vector<unsigned char>> buffers,
-                                std::span<const std::vector<unsigned char>> pictures,
-                                const std::string& name) {
+mesh::SourceScene pack_document(std::string_view text, std::span<const std::vector<unsigned char>> buffers,
+                                std::span<const std::vector<unsigned char>> pictures, const std::string& name) {
     mesh::SourceScene scene;
     json document = parse(text, name);
     try {
@@ -157,14 +149,12 @@ void SceneBuilder::keep_statements(int material, json statements) {
     all[static_cast<std::size_t>(material)] = std::move(statements);
 }
 
-mesh::SourceScene SceneBuilder::finish(std::vector<mesh::ScenePart> parts,
-                                       const std::string& root) {
+mesh::SourceScene SceneBuilder::finish(std::vector<mesh::ScenePart> parts, const std::string& root) {
     json& nodes = array_of(document_, "nodes");
     json roots = json::array();
     std::map<std::pair<std::string, std::string>, std::int32_t> node_of;
     const auto node = [&](const std::string& object, const std::string& group) {
-        const auto [it, is_new] =
-            node_of.try_emplace({object, group}, static_cast<std::int32_t>(nodes.size()));
+        const auto [it, is_new] = node_of.try_emplace({object, group}, static_cast<std::int32_t>(nodes.size()));
         if (is_new) {
             const std::string& name = group.empty() ? object : group;
             nodes.push_back({{"name", name.empty() ? root : name}});
@@ -197,8 +187,7 @@ json plain_material(const std::string& name, const Vec3f& srgb, int texture) {
     json colour = json::array();
     for (int c = 0; c < 3; ++c) colour.push_back(srgb[c] < 1 ? ink::srgb_decode(srgb[c]) : 1.0f);
     colour.push_back(1);
-    json pbr{
-        {"baseColorFactor", std::move(colour)}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}};
+    json pbr{{"baseColorFactor", std::move(colour)}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}};
     if (texture >= 0) pbr["baseColorTexture"] = {{"index", texture}};
     json material{{"pbrMetallicRoughness", std::move(pbr)}};
     if (!name.empty()) material["name"] = name;
@@ -214,21 +203,18 @@ mesh::SourceScene make_scene(const mesh::TriangleMesh& mesh, const std::string& 
     else if (!mesh.triangle_groups.empty())
         for (std::size_t i = 0; i < parts.size(); ++i) parts[i].group = mesh.group_names[i];
     std::map<const mesh::Picture*, int> textures;
-    for (std::size_t i = 0;
-         i < parts.size() && mesh.materials.size() == parts.size() && !mesh.triangle_groups.empty();
+    for (std::size_t i = 0; i < parts.size() && mesh.materials.size() == parts.size() && !mesh.triangle_groups.empty();
          ++i) {
         const mesh::Material& m = mesh.materials[i];
         int texture = -1;
         if (m.picture && !mesh.corner_uvs.empty()) {
             const auto [it, is_new] = textures.try_emplace(m.picture.get(), -1);
             const auto* bytes = reinterpret_cast<const unsigned char*>(m.picture->bytes.data());
-            if (is_new)
-                it->second = builder.add_texture(m.picture->name, {bytes, m.picture->bytes.size()});
+            if (is_new) it->second = builder.add_texture(m.picture->name, {bytes, m.picture->bytes.size()});
             texture = it->second;
         }
         if (parts[i].material.empty()) parts[i].material = mesh.group_names[i];
-        parts[i].own_material =
-            builder.add_material(plain_material(parts[i].material, m.colour, texture));
+        parts[i].own_material = builder.add_material(plain_material(parts[i].material, m.colour, texture));
     }
     return builder.finish(std::move(parts), root);
 }

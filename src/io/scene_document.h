@@ -24,10 +24,8 @@ std::string mime_type_of(std::span<const unsigned char> bytes);
 /// Puts the buffers and the pictures of a glTF file into one buffer. `json` is its JSON; a picture
 /// without bytes keeps its address. A file without nodes gets one for each mesh. The scene has no
 /// parts yet. Throws `Error` naming `name` where the JSON is not that of a glTF file.
-mesh::SourceScene pack_document(std::string_view json,
-                                std::span<const std::vector<unsigned char>> buffers,
-                                std::span<const std::vector<unsigned char>> pictures,
-                                const std::string& name);
+mesh::SourceScene pack_document(std::string_view json, std::span<const std::vector<unsigned char>> buffers,
+                                std::span<const std::vector<unsigned char>> pictures, const std::string& name);
 
 /// Builds the document of a file that is not glTF.
 class SceneBuilder {

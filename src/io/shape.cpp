@@ -51,8 +51,7 @@ struct Grid {
         std::vector<Ring> rings;
         for (const clip::Path& path : paths) {
             Ring ring;
-            for (const clip::IntPoint& p : path)
-                ring.push_back(centre + Vec2(double(p.X), double(p.Y)) / scale);
+            for (const clip::IntPoint& p : path) ring.push_back(centre + Vec2(double(p.X), double(p.Y)) / scale);
             if (ring.size() > 2) rings.push_back(std::move(ring));
         }
         return rings;
@@ -67,17 +66,15 @@ bool crosses_more_than(std::size_t most, std::span<const Ring> rings) {
             const Vec2 &a = ring[i], &b = ring[i + 1 < ring.size() ? i + 1 : 0];
             edges.emplace_back(a.x <= b.x ? a : b, a.x <= b.x ? b : a);
         }
-    std::sort(edges.begin(), edges.end(),
-              [](const auto& a, const auto& b) { return a.first.x < b.first.x; });
+    std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.first.x < b.first.x; });
     std::size_t n = 0;
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const auto& [a, b] = edges[i];
         for (std::size_t j = i + 1; j < edges.size() && edges[j].first.x <= b.x; ++j) {
             const auto& [c, d] = edges[j];
-            if (std::max(a.y, b.y) < std::min(c.y, d.y) || std::max(c.y, d.y) < std::min(a.y, b.y))
-                continue;
-            const bool apart = cross(b - a, c - a) * cross(b - a, d - a) >= 0 ||
-                               cross(d - c, a - c) * cross(d - c, b - c) >= 0;
+            if (std::max(a.y, b.y) < std::min(c.y, d.y) || std::max(c.y, d.y) < std::min(a.y, b.y)) continue;
+            const bool apart =
+                cross(b - a, c - a) * cross(b - a, d - a) >= 0 || cross(d - c, a - c) * cross(d - c, b - c) >= 0;
             if (!apart && ++n > most) return true;
         }
     }
@@ -94,8 +91,7 @@ std::vector<Ring> united(const Grid& grid, const clip::Paths& paths, clip::PolyF
 
 /// The points of the way from `first` to `last` (past the end it begins anew) that are needed are
 /// marked.
-void mark_needed(const Ring& ring, std::size_t first, std::size_t last, double tolerance,
-                 std::vector<bool>& needed) {
+void mark_needed(const Ring& ring, std::size_t first, std::size_t last, double tolerance, std::vector<bool>& needed) {
     std::vector<std::pair<std::size_t, std::size_t>> ways{{first, last}};
     const auto at = [&](std::size_t i) -> const Vec2& { return ring[i % ring.size()]; };
     while (!ways.empty()) {
@@ -104,8 +100,7 @@ void mark_needed(const Ring& ring, std::size_t first, std::size_t last, double t
         double farthest = tolerance;
         std::size_t split = from;
         for (std::size_t i = from + 1; i < to; ++i)
-            if (const double d = segment_distance(at(from), at(to), at(i)); d > farthest)
-                farthest = d, split = i;
+            if (const double d = segment_distance(at(from), at(to), at(i)); d > farthest) farthest = d, split = i;
         if (split == from) continue;
         needed[split % ring.size()] = true;
         ways.emplace_back(from, split);
@@ -120,8 +115,7 @@ Shape::Shape(std::span<const Ring> rings, FillRule rule) {
     for (const Ring& ring : rings) n += ring.size();
     const Grid grid(rings);
     if (n > kMostPoints || grid.scale == 0 || crosses_more_than(kMostPoints, rings)) return;
-    rings_ = united(grid, grid.paths(rings),
-                    rule == FillRule::nonzero ? clip::pftNonZero : clip::pftEvenOdd);
+    rings_ = united(grid, grid.paths(rings), rule == FillRule::nonzero ? clip::pftNonZero : clip::pftEvenOdd);
 }
 
 double Shape::area() const {
@@ -145,8 +139,7 @@ bool Shape::contains(const Vec2& p) const {
     for (const Ring& ring : rings_)
         for (std::size_t i = 0; i < ring.size(); ++i) {
             const Vec2 &a = ring[i], &b = ring[i + 1 < ring.size() ? i + 1 : 0];
-            if ((a.y <= p.y) != (b.y <= p.y) && (cross(b - a, p - a) > 0) == (b.y > a.y))
-                inside = !inside;
+            if ((a.y <= p.y) != (b.y <= p.y) && (cross(b - a, p - a) > 0) == (b.y > a.y)) inside = !inside;
         }
     return inside;
 }
@@ -155,15 +148,11 @@ Shape Shape::simplified(double tolerance) const {
     std::vector<Ring> fewer;
     for (const Ring& ring : rings_) {
         // From the point of lowest x and the one farthest from it.
-        const auto less = [](const Vec2& a, const Vec2& b) {
-            return std::pair(a.x, a.y) < std::pair(b.x, b.y);
-        };
-        const auto first = static_cast<std::size_t>(
-            std::min_element(ring.begin(), ring.end(), less) - ring.begin());
+        const auto less = [](const Vec2& a, const Vec2& b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); };
+        const auto first = static_cast<std::size_t>(std::min_element(ring.begin(), ring.end(), less) - ring.begin());
         std::size_t last = first;
         for (std::size_t i = 0; i < ring.size(); ++i)
-            if (glm::distance(ring[i], ring[first]) > glm::distance(ring[last], ring[first]))
-                last = i;
+            if (glm::distance(ring[i], ring[first]) > glm::distance(ring[last], ring[first])) last = i;
         if (last < first) last += ring.size();
         std::vector<bool> needed(ring.size(), false);
         needed[first] = needed[last % ring.size()] = true;
@@ -175,8 +164,7 @@ Shape Shape::simplified(double tolerance) const {
         if (kept.size() > 2) fewer.push_back(std::move(kept));
     }
     Shape shape;
-    if (const Grid grid(fewer); grid.scale > 0)
-        shape.rings_ = united(grid, grid.paths(fewer), clip::pftPositive);
+    if (const Grid grid(fewer); grid.scale > 0) shape.rings_ = united(grid, grid.paths(fewer), clip::pftPositive);
     return shape;
 }
 
@@ -184,8 +172,7 @@ Shape Shape::inset(double d, double tolerance) const {
     // A jagged outline crosses itself at d over the distance of its points: small steps first, each
     // of which leaves fewer points to the next, twice as long.
     const double first = 2 * tolerance;
-    const int steps =
-        1 + std::max(0, static_cast<int>(std::ceil(std::log2(std::max(d / first, 1.0)))));
+    const int steps = 1 + std::max(0, static_cast<int>(std::ceil(std::log2(std::max(d / first, 1.0)))));
     const double part = tolerance / (2 * steps);
     Shape shape = *this;
     double done = 0;

@@ -19,12 +19,12 @@
 namespace tuft::io {
 namespace {
 
-constexpr double kPixel = 0.0254 / 96;   // metres of a CSS pixel
-constexpr double kSpacing = 5e-4;        // metres, of samples on a straight line
-constexpr int kDeepest = 64;             // of nested groups
-constexpr std::size_t kMostElements = 1'000'000;  // drawn, each `use` of one counted
+constexpr double kPixel = 0.0254 / 96;                   // metres of a CSS pixel
+constexpr double kSpacing = 5e-4;                        // metres, of samples on a straight line
+constexpr int kDeepest = 64;                             // of nested groups
+constexpr std::size_t kMostElements = 1'000'000;         // drawn, each `use` of one counted
 constexpr std::size_t kMostText = std::size_t{1} << 30;  // bytes of attributes read, those of each `use` counted
-constexpr int kMostChords = 4096;        // of one curve
+constexpr int kMostChords = 4096;                        // of one curve
 using Matrix = glm::dmat3;
 using Line = std::vector<Vec2>;
 
@@ -39,7 +39,8 @@ struct Drawn {
 // Reads numbers, flags and words from an attribute.
 class Reader {
   public:
-    Reader(std::string_view text, const std::string& source) : at_(text.data()), end_(at_ + text.size()), source_(source) {}
+    Reader(std::string_view text, const std::string& source)
+        : at_(text.data()), end_(at_ + text.size()), source_(source) {}
 
     void skip() {
         while (at_ < end_ && (std::isspace(static_cast<unsigned char>(*at_)) || *at_ == ',')) ++at_;
@@ -57,7 +58,9 @@ class Reader {
         double value = 0;
         const auto [next, fault] = std::from_chars(at_, end_, value);
         if (fault != std::errc() || !std::isfinite(value) || std::abs(value) > 1e9)
-            throw Error(source_, "'" + std::string(at_, std::min<std::size_t>(12, static_cast<std::size_t>(end_ - at_))) + "' is not a number of a drawing");
+            throw Error(source_, "'" +
+                                     std::string(at_, std::min<std::size_t>(12, static_cast<std::size_t>(end_ - at_))) +
+                                     "' is not a number of a drawing");
         at_ = next;
         return value;
     }
@@ -79,8 +82,12 @@ class Reader {
     const std::string& source_;
 };
 
-Matrix translation(double x, double y) { return {1, 0, 0, 0, 1, 0, x, y, 1}; }
-Matrix scaling(double x, double y) { return {x, 0, 0, 0, y, 0, 0, 0, 1}; }
+Matrix translation(double x, double y) {
+    return {1, 0, 0, 0, 1, 0, x, y, 1};
+}
+Matrix scaling(double x, double y) {
+    return {x, 0, 0, 0, y, 0, 0, 0, 1};
+}
 
 class Drawing {
   public:
@@ -93,7 +100,8 @@ class Drawing {
         for (const pugi::xml_attribute& one : node.attributes()) n_text_ += std::strlen(one.value());
         if (n_text_ > kMostText) throw Error(source_, "what 'use' repeats makes it too large");
         const std::string name = local(node.name());
-        static constexpr const char* skipped[] = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "metadata", "style", "title", "desc"};
+        static constexpr const char* skipped[] = {"defs",    "symbol",   "clipPath", "mask",  "marker",
+                                                  "pattern", "metadata", "style",    "title", "desc"};
         if (std::find(std::begin(skipped), std::end(skipped), name) != std::end(skipped) || is_lost(node, name)) return;
         const Properties own(node, sheet_.declared(node, name));
         if (own("display") == "none" || opacity(own("opacity"), 1) == 0) return;
@@ -103,7 +111,8 @@ class Drawing {
             return;
         }
         count_effects(own);
-        if (name == "svg" && depth > 0 && (node.attribute("x") || node.attribute("y") || node.attribute("viewBox"))) losses_.add(SvgLoss::frame);
+        if (name == "svg" && depth > 0 && (node.attribute("x") || node.attribute("y") || node.attribute("viewBox")))
+            losses_.add(SvgLoss::frame);
         if (const auto transform = node.attribute("transform")) matrix = matrix * transform_of(transform.value());
         if (name == "use") return use(node, matrix, style, depth);
         matrix_ = matrix;
@@ -114,19 +123,27 @@ class Drawing {
         if (lines_.size() > before) {
             if (own("vector-effect") == "non-scaling-stroke" && style.stroked()) losses_.add(SvgLoss::scaled_width);
             count_paints(style);
-            if (style.bare()) lines_.resize(before);
-            else if (style.filled()) fill(before, style);
+            if (style.bare())
+                lines_.resize(before);
+            else if (style.filled())
+                fill(before, style);
         }
         children(node, matrix, style, depth);
     }
 
     void shape(const pugi::xml_node& node, const std::string& name) {
-        if (name == "path") path(node.attribute("d").value());
-        else if (name == "polyline" || name == "polygon") points(node.attribute("points").value(), name == "polygon");
-        else if (name == "line") emit({{number(node, "x1"), number(node, "y1")}, {number(node, "x2"), number(node, "y2")}});
-        else if (name == "rect") rectangle(node);
-        else if (name == "circle") ellipse(number(node, "cx"), number(node, "cy"), number(node, "r"), number(node, "r"));
-        else if (name == "ellipse") ellipse(number(node, "cx"), number(node, "cy"), number(node, "rx"), number(node, "ry"));
+        if (name == "path")
+            path(node.attribute("d").value());
+        else if (name == "polyline" || name == "polygon")
+            points(node.attribute("points").value(), name == "polygon");
+        else if (name == "line")
+            emit({{number(node, "x1"), number(node, "y1")}, {number(node, "x2"), number(node, "y2")}});
+        else if (name == "rect")
+            rectangle(node);
+        else if (name == "circle")
+            ellipse(number(node, "cx"), number(node, "cy"), number(node, "r"), number(node, "r"));
+        else if (name == "ellipse")
+            ellipse(number(node, "cx"), number(node, "cy"), number(node, "rx"), number(node, "ry"));
     }
 
     // The lines from `before` on are outlines of one area: lines that fill it come before them where they are
@@ -143,7 +160,8 @@ class Drawing {
         if (area.empty()) return;
         if (style.fill.kind == SvgPaint::Kind::flat) losses_.add_colour(style.fill.colour);
         if (!style.stroked()) lines_.resize(before);
-        lines_.insert(lines_.begin() + static_cast<std::ptrdiff_t>(before), std::make_move_iterator(area.begin()), std::make_move_iterator(area.end()));
+        lines_.insert(lines_.begin() + static_cast<std::ptrdiff_t>(before), std::make_move_iterator(area.begin()),
+                      std::make_move_iterator(area.end()));
     }
 
     /// Elements by their `id`, for `use`.
@@ -197,7 +215,8 @@ class Drawing {
     /// Properties of one element.
     class Properties {
       public:
-        Properties(const pugi::xml_node& node, std::map<std::string, std::string> declared) : node_(node), declared_(std::move(declared)) {}
+        Properties(const pugi::xml_node& node, std::map<std::string, std::string> declared)
+            : node_(node), declared_(std::move(declared)) {}
         /// "" where nothing says it, or where it is handed down anyway.
         std::string operator()(const char* name) const {
             const auto at = declared_.find(name);
@@ -220,10 +239,13 @@ class Drawing {
     void inherit(SvgStyle& style, const Properties& own) const {
         if (const std::string paint = own("stroke"); !paint.empty()) style.stroke = svg_paint(paint, by_id_);
         if (const std::string paint = own("fill"); !paint.empty()) style.fill = svg_paint(paint, by_id_);
-        if (const std::string width = own("stroke-width"); !width.empty() && width.back() != '%') style.width = std::max(0.0, length(width) / kPixel);
-        if (const std::string rule = own("fill-rule"); !rule.empty()) style.rule = rule == "evenodd" ? FillRule::even_odd : FillRule::nonzero;
+        if (const std::string width = own("stroke-width"); !width.empty() && width.back() != '%')
+            style.width = std::max(0.0, length(width) / kPixel);
+        if (const std::string rule = own("fill-rule"); !rule.empty())
+            style.rule = rule == "evenodd" ? FillRule::even_odd : FillRule::nonzero;
         if (const std::string seen = own("visibility"); !seen.empty()) style.visible = seen == "visible";
-        if (const std::string dashes = own("stroke-dasharray"); !dashes.empty()) style.dashed = dashes.find_first_of("123456789") != std::string::npos;
+        if (const std::string dashes = own("stroke-dasharray"); !dashes.empty())
+            style.dashed = dashes.find_first_of("123456789") != std::string::npos;
         for (const char* marker : {"marker", "marker-start", "marker-mid", "marker-end"})
             if (const std::string value = own(marker); !value.empty()) style.marked = value != "none";
         style.fill_opacity = opacity(own("fill-opacity"), style.fill_opacity);
@@ -232,17 +254,26 @@ class Drawing {
 
     // Elements that leave nothing; whether this is one.
     bool is_lost(const pugi::xml_node& node, const std::string& name) {
-        if (name == "foreignObject" && local(node.parent().name()) == "switch") return true;  // another child takes its place
-        if (name == "foreignObject" || name == "video" || name == "iframe" || name == "canvas") losses_.add(SvgLoss::foreign);
-        else if (name == "animate" || name == "animateTransform" || name == "animateMotion" || name == "animateColor" || name == "set") losses_.add(SvgLoss::animation);
-        else if (name == "script") losses_.add(SvgLoss::script);
-        else return false;
+        if (name == "foreignObject" && local(node.parent().name()) == "switch")
+            return true;  // another child takes its place
+        if (name == "foreignObject" || name == "video" || name == "iframe" || name == "canvas")
+            losses_.add(SvgLoss::foreign);
+        else if (name == "animate" || name == "animateTransform" || name == "animateMotion" || name == "animateColor" ||
+                 name == "set")
+            losses_.add(SvgLoss::animation);
+        else if (name == "script")
+            losses_.add(SvgLoss::script);
+        else
+            return false;
         return true;
     }
 
     // What an element does to all within it.
     void count_effects(const Properties& own) {
-        const auto used = [&](const char* name) { const std::string value = own(name); return !value.empty() && value != "none" && value != "normal"; };
+        const auto used = [&](const char* name) {
+            const std::string value = own(name);
+            return !value.empty() && value != "none" && value != "normal";
+        };
         if (used("clip-path")) losses_.add(SvgLoss::clip);
         if (used("mask")) losses_.add(SvgLoss::mask);
         if (used("filter")) losses_.add(SvgLoss::filter);
@@ -261,7 +292,8 @@ class Drawing {
         if (either(Kind::pattern)) losses_.add(SvgLoss::pattern);
         if (style.stroked() && style.dashed) losses_.add(SvgLoss::dash);
         if (style.marked) losses_.add(SvgLoss::marker);
-        if ((style.filled() && style.fill_opacity < 1) || (style.stroked() && style.stroke_opacity < 1)) losses_.add(SvgLoss::opacity);
+        if ((style.filled() && style.fill_opacity < 1) || (style.stroked() && style.stroke_opacity < 1))
+            losses_.add(SvgLoss::opacity);
         if (style.stroked() && style.stroke.kind == Kind::flat) losses_.add_colour(style.stroke.colour);
     }
 
@@ -276,7 +308,8 @@ class Drawing {
         if (target.empty()) target = node.attribute("xlink:href").value();
         const bool inside = target.starts_with('#');
         const auto at = inside ? by_id_.find(target.substr(1)) : by_id_.end();
-        if (at == by_id_.end()) return losses_.add(inside || target.empty() ? SvgLoss::missing_use : SvgLoss::outside_use);
+        if (at == by_id_.end())
+            return losses_.add(inside || target.empty() ? SvgLoss::missing_use : SvgLoss::outside_use);
         matrix = matrix * translation(number(node, "x"), number(node, "y"));
         if (local(at->second.name()) != "symbol") return walk(at->second, matrix, style, depth + 1);
         if (const std::string box = at->second.attribute("viewBox").value(); !box.empty()) {
@@ -309,7 +342,9 @@ class Drawing {
         const double value = in.number();
         if (in.peek() == '%') {
             const std::string_view along(name);
-            const double page = along == "r" ? glm::length(view_) / std::numbers::sqrt2 : along.find('y') != along.npos || along == "height" ? view_.y : view_.x;
+            const double page = along == "r" ? glm::length(view_) / std::numbers::sqrt2
+                                : along.find('y') != along.npos || along == "height" ? view_.y
+                                                                                     : view_.x;
             return value / 100 * page;
         }
         return in.word().empty() ? value : length(text) / kPixel;
@@ -327,15 +362,21 @@ class Drawing {
             if (in.peek() != ')') throw Error(source_, "a transform is not closed");
             in.take();
             const auto at = [&](std::size_t i, double otherwise = 0) { return i < v.size() ? v[i] : otherwise; };
-            if (name == "matrix" && v.size() == 6) m = m * Matrix(v[0], v[1], 0, v[2], v[3], 0, v[4], v[5], 1);
-            else if (name == "translate") m = m * translation(at(0), at(1));
-            else if (name == "scale") m = m * scaling(at(0, 1), at(1, at(0, 1)));
+            if (name == "matrix" && v.size() == 6)
+                m = m * Matrix(v[0], v[1], 0, v[2], v[3], 0, v[4], v[5], 1);
+            else if (name == "translate")
+                m = m * translation(at(0), at(1));
+            else if (name == "scale")
+                m = m * scaling(at(0, 1), at(1, at(0, 1)));
             else if (name == "rotate") {
                 const double a = at(0) * std::numbers::pi / 180, c = std::cos(a), s = std::sin(a);
                 m = m * translation(at(1), at(2)) * Matrix(c, s, 0, -s, c, 0, 0, 0, 1) * translation(-at(1), -at(2));
-            } else if (name == "skewX") m = m * Matrix(1, 0, 0, std::tan(at(0) * std::numbers::pi / 180), 1, 0, 0, 0, 1);
-            else if (name == "skewY") m = m * Matrix(1, std::tan(at(0) * std::numbers::pi / 180), 0, 0, 1, 0, 0, 0, 1);
-            else throw Error(source_, "'" + name + "' is not a transform");
+            } else if (name == "skewX")
+                m = m * Matrix(1, 0, 0, std::tan(at(0) * std::numbers::pi / 180), 1, 0, 0, 0, 1);
+            else if (name == "skewY")
+                m = m * Matrix(1, std::tan(at(0) * std::numbers::pi / 180), 0, 0, 1, 0, 0, 0, 1);
+            else
+                throw Error(source_, "'" + name + "' is not a transform");
         }
         return m;
     }
@@ -347,9 +388,12 @@ class Drawing {
         Line out;
         for (const Vec2& p : line) {
             const Vec2 q = moved(p);
-            if (!(std::abs(q.x) < options_.ink.max_extent && std::abs(q.y) < options_.ink.max_extent)) throw Error(source_, "the drawing is absurdly large");
+            if (!(std::abs(q.x) < options_.ink.max_extent && std::abs(q.y) < options_.ink.max_extent))
+                throw Error(source_, "the drawing is absurdly large");
             // Pressure is laid out along the samples, so long chords need some.
-            const int n = out.empty() ? 1 : static_cast<int>(std::clamp(glm::distance(out.back(), q) / kSpacing, 1.0, static_cast<double>(kMostChords)));
+            const int n = out.empty() ? 1
+                                      : static_cast<int>(std::clamp(glm::distance(out.back(), q) / kSpacing, 1.0,
+                                                                    static_cast<double>(kMostChords)));
             const Vec2 from = out.empty() ? q : out.back();
             if (!out.empty() && q == from) continue;
             for (int i = 1; i <= n; ++i) out.push_back(glm::mix(from, q, static_cast<double>(i) / n));
@@ -382,7 +426,8 @@ class Drawing {
         if (rx == 0 || ry == 0 || start == end) return line.push_back(end);
         const double c = std::cos(turn), s = std::sin(turn);
         const Vec2 h = 0.5 * (start - end), p(c * h.x + s * h.y, -s * h.x + c * h.y);
-        if (const double over = p.x * p.x / (rx * rx) + p.y * p.y / (ry * ry); over > 1) rx *= std::sqrt(over), ry *= std::sqrt(over);
+        if (const double over = p.x * p.x / (rx * rx) + p.y * p.y / (ry * ry); over > 1)
+            rx *= std::sqrt(over), ry *= std::sqrt(over);
         const double below = rx * rx * p.y * p.y + ry * ry * p.x * p.x;
         const double root = (large == sweep ? -1 : 1) * std::sqrt(std::max(0.0, (rx * rx * ry * ry - below) / below));
         const Vec2 q(root * rx * p.y / ry, -root * ry * p.x / rx);
@@ -409,7 +454,8 @@ class Drawing {
         emit(line);
     }
     void rectangle(const pugi::xml_node& node) {
-        const double x = number(node, "x"), y = number(node, "y"), w = number(node, "width"), h = number(node, "height");
+        const double x = number(node, "x"), y = number(node, "y"), w = number(node, "width"),
+                     h = number(node, "height");
         if (!(w > 0 && h > 0)) return;
         // A corner without one of its radii has both alike.
         double rx = number(node, "rx"), ry = number(node, "ry");
@@ -443,8 +489,10 @@ class Drawing {
             line.clear();
         };
         while (!in.done()) {
-            if (std::isalpha(static_cast<unsigned char>(in.peek()))) command = in.take();
-            else if (!in.number_next() || command == '\0' || command == 'Z' || command == 'z') throw Error(source_, "a path cannot be read");
+            if (std::isalpha(static_cast<unsigned char>(in.peek())))
+                command = in.take();
+            else if (!in.number_next() || command == '\0' || command == 'Z' || command == 'z')
+                throw Error(source_, "a path cannot be read");
             const bool relative = std::islower(static_cast<unsigned char>(command)) != 0;
             const Vec2 base = relative ? at : Vec2(0);
             const auto point = [&] {
@@ -461,11 +509,19 @@ class Drawing {
             }
             if (line.empty()) line.push_back(at);
             // The reflected control point after a curve of the same kind, else the current point.
-            const auto smooth = [&](const char* kinds) { return std::strchr(kinds, before) && before ? 2.0 * at - control : at; };
+            const auto smooth = [&](const char* kinds) {
+                return std::strchr(kinds, before) && before ? 2.0 * at - control : at;
+            };
             switch (c) {
-                case 'L': line.push_back(point()); break;
-                case 'H': line.emplace_back(base.x + in.number(), at.y); break;
-                case 'V': line.emplace_back(at.x, base.y + in.number()); break;
+                case 'L':
+                    line.push_back(point());
+                    break;
+                case 'H':
+                    line.emplace_back(base.x + in.number(), at.y);
+                    break;
+                case 'V':
+                    line.emplace_back(at.x, base.y + in.number());
+                    break;
                 case 'C':
                 case 'S': {
                     const Vec2 first = c == 'C' ? point() : smooth("CS");
@@ -492,7 +548,8 @@ class Drawing {
                     at = start;
                     before = 'Z';
                     continue;
-                default: throw Error(source_, std::string("a path has the unknown command '") + command + "'");
+                default:
+                    throw Error(source_, std::string("a path has the unknown command '") + command + "'");
             }
             at = line.back();
             before = c;
@@ -522,7 +579,8 @@ void give_width(stroke::Trace& trace, const Drawn& drawn, double full) {
     for (std::size_t i = 1; i < drawn.line.size(); ++i) whole += glm::distance(drawn.line[i - 1], drawn.line[i]);
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         if (i > 0) along += glm::distance(trace.samples[i - 1].position, trace.samples[i].position);
-        const double in = drawn.head > 0 ? std::min(1.0, kFuller * along / drawn.head) : 1, out = drawn.tail > 0 ? std::min(1.0, kFuller * (whole - along) / drawn.tail) : 1;
+        const double in = drawn.head > 0 ? std::min(1.0, kFuller * along / drawn.head) : 1,
+                     out = drawn.tail > 0 ? std::min(1.0, kFuller * (whole - along) / drawn.tail) : 1;
         trace.samples[i].pressure = full * std::clamp(std::min(in, out), 0.0, 1.0);
     }
 }
@@ -540,7 +598,9 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
     drawing.read_sheets(svg, 0);
     drawing.walk(svg, drawing.frame(svg), {}, 0);
     const std::vector<std::string> losses = drawing.left_out();
-    if (drawing.lines().empty()) throw Error(source, "nothing is drawn in this file; " + (losses.empty() ? "text must be turned into paths first" : losses.front()));
+    if (drawing.lines().empty())
+        throw Error(source, "nothing is drawn in this file; " +
+                                (losses.empty() ? "text must be turned into paths first" : losses.front()));
     if (options.ink.note)
         for (const std::string& loss : losses) options.ink.note(source + ": " + loss);
     std::ostringstream ink;
@@ -549,7 +609,8 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
     for (const Drawn& drawn : drawing.lines()) {
         const Line& line = drawn.line;
         ink << "<trace>";
-        for (std::size_t i = 0; i < line.size(); ++i) ink << (i ? "," : "") << 1e3 * line[i].x << ' ' << 1e3 * line[i].y;
+        for (std::size_t i = 0; i < line.size(); ++i)
+            ink << (i ? "," : "") << 1e3 * line[i].x << ' ' << 1e3 * line[i].y;
         ink << "</trace>";
     }
     ink << "</ink>";
@@ -568,7 +629,8 @@ std::vector<stroke::Trace> read_svg(const std::filesystem::path& path, const Svg
 
 std::vector<stroke::Trace> read_strokes(const std::filesystem::path& path, const InkmlOptions& options) {
     std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return extension == ".svg" ? read_svg(path, {.ink = options}) : read_inkml(path, options);
 }
 

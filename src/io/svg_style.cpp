@@ -19,7 +19,8 @@ std::map<std::string, std::string> declarations(std::string_view text) {
         const std::size_t colon = one.find(':');
         if (colon == std::string_view::npos) continue;
         std::string_view value = stripped(one.substr(colon + 1));
-        if (const std::size_t mark = value.find('!'); mark != std::string_view::npos) value = stripped(value.substr(0, mark));
+        if (const std::size_t mark = value.find('!'); mark != std::string_view::npos)
+            value = stripped(value.substr(0, mark));
         out[std::string(stripped(one.substr(0, colon)))] = value;
     }
     return out;
@@ -41,20 +42,29 @@ bool is_simple(std::string_view selector) {
     if (selector.empty()) return false;
     const std::string_view name = selector.substr(selector.front() == '.' || selector.front() == '#');
     return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || static_cast<unsigned char>(c) >= 0x80;
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' ||
+               static_cast<unsigned char>(c) >= 0x80;
     });
 }
 
 std::string canonical(std::string_view colour) {
     std::string out;
     for (const char c : colour)
-        if (!std::isspace(static_cast<unsigned char>(c))) out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        if (!std::isspace(static_cast<unsigned char>(c)))
+            out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return out;
 }
 
 bool is_white(const std::string& colour) {
-    static constexpr const char* names[] = {"white", "#fff", "#ffff", "#ffffff", "#ffffffff", "rgb(255,255,255)", "rgb(100%,100%,100%)",
-                                            "rgba(255,255,255,1)", "hsl(0,0%,100%)"};
+    static constexpr const char* names[] = {"white",
+                                            "#fff",
+                                            "#ffff",
+                                            "#ffffff",
+                                            "#ffffffff",
+                                            "rgb(255,255,255)",
+                                            "rgb(100%,100%,100%)",
+                                            "rgba(255,255,255,1)",
+                                            "hsl(0,0%,100%)"};
     return std::find(std::begin(names), std::end(names), colour) != std::end(names);
 }
 

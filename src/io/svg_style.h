@@ -19,9 +19,7 @@ struct SvgPaint {
     enum class Kind { none, flat, white, gradient, pattern, missing } kind = Kind::none;
     std::string colour;  ///< of `flat`: as written, in small letters without blanks
 
-    bool paints() const {
-        return kind == Kind::flat || kind == Kind::gradient || kind == Kind::pattern;
-    }
+    bool paints() const { return kind == Kind::flat || kind == Kind::gradient || kind == Kind::pattern; }
 };
 
 /// What elements hand down to those within them.
@@ -37,8 +35,7 @@ struct SvgStyle {
     /// Something is to be seen, but not as ink: white, faint to nothing, of a paint that is not
     /// there.
     bool bare() const {
-        return !filled() && !stroked() &&
-               !(fill.kind == SvgPaint::Kind::none && stroke.kind == SvgPaint::Kind::none);
+        return !filled() && !stroked() && !(fill.kind == SvgPaint::Kind::none && stroke.kind == SvgPaint::Kind::none);
     }
 };
 
@@ -52,8 +49,7 @@ class SvgSheet {
     std::size_t add(std::string_view sheet);
     /// What is said of an element itself outside its attributes: in its `style`, else by the rules
     /// for its id, its classes, its name (CSS 2.1, 6.4.3; rules that come later win).
-    std::map<std::string, std::string> declared(const pugi::xml_node& element,
-                                                const std::string& local_name) const;
+    std::map<std::string, std::string> declared(const pugi::xml_node& element, const std::string& local_name) const;
 
   private:
     std::map<std::string, std::map<std::string, std::string>> rules_;  // by selector

@@ -7,14 +7,13 @@ namespace tuft::mesh {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNarrowest = 1e-4;  // of an edge: vertices as flat as that throw no shadow
-constexpr double kSlack = 1e-9;      // of a distance, by which rounding may lie
-constexpr double kBeside = 1e-3;     // of an edge: how far beside a window a way may pass
-constexpr double kFarBeside = 0.1;   // the same where no window is nearer
-constexpr std::size_t kFewWindows =
-    2000;                     // before which it cannot be told that they will be too many
-constexpr double kDense = 4;  // over the mean of the area that there may be near the origin
-constexpr std::size_t kMostFaces = 64;  // round a vertex
+constexpr double kNarrowest = 1e-4;        // of an edge: vertices as flat as that throw no shadow
+constexpr double kSlack = 1e-9;            // of a distance, by which rounding may lie
+constexpr double kBeside = 1e-3;           // of an edge: how far beside a window a way may pass
+constexpr double kFarBeside = 0.1;         // the same where no window is nearer
+constexpr std::size_t kFewWindows = 2000;  // before which it cannot be told that they will be too many
+constexpr double kDense = 4;               // over the mean of the area that there may be near the origin
+constexpr std::size_t kMostFaces = 64;     // round a vertex
 
 double cross(const Vec2& a, const Vec2& b) {
     return a.x * b.y - a.y * b.x;
@@ -107,13 +106,10 @@ ExactGeodesics::Corner ExactGeodesics::over(std::uint32_t face, int edge) {
 }
 
 /// Whether ways over vertices of the face are shorter to all of [from, to] of its edge.
-bool ExactGeodesics::outdone(const Face& face, int edge, double from, double to,
-                           const Source& source) const {
+bool ExactGeodesics::outdone(const Face& face, int edge, double from, double to, const Source& source) const {
     const auto far = [&](double x) { return source.before + glm::length(source.at - Vec2{x, 0}); };
-    const double a = vertices_[face.vertex[edge]].distance,
-                 b = vertices_[face.vertex[after(edge)]].distance;
-    if (far(to) * (1 - kSlack) > a + to || far(from) * (1 - kSlack) > b + face.length[edge] - from)
-        return true;
+    const double a = vertices_[face.vertex[edge]].distance, b = vertices_[face.vertex[after(edge)]].distance;
+    if (far(to) * (1 - kSlack) > a + to || far(from) * (1 - kSlack) > b + face.length[edge] - from) return true;
     const double near = source.before + nearest_on(source.at, from, to);
     if (near > radius_) return true;
     const Vec2 c = face.third[edge];
@@ -122,8 +118,7 @@ bool ExactGeodesics::outdone(const Face& face, int edge, double from, double to,
 }
 
 /// Ways from `source` out of the face over the part [from, to] of its edge.
-void ExactGeodesics::leave(std::uint32_t face, int edge, double from, double to,
-                         const Source& source) {
+void ExactGeodesics::leave(std::uint32_t face, int edge, double from, double to, const Source& source) {
     const double length = faces_[face].length[edge];
     from = std::clamp(from, 0.0, length);
     to = std::clamp(to, 0.0, length);
@@ -134,17 +129,15 @@ void ExactGeodesics::leave(std::uint32_t face, int edge, double from, double to,
     const double near = source.before + nearest_on(source.at, from, to);
     std::uint32_t& list = faces_[to_face.face].windows[to_face.corner];
     const auto index = static_cast<std::uint32_t>(windows_.size());
-    windows_.push_back({to_face.face, static_cast<std::uint8_t>(to_face.corner), length - to,
-                        length - from, Vec2{length, 0} - source.at, source.before, -source.turn,
-                        source.root, list});
+    windows_.push_back({to_face.face, static_cast<std::uint8_t>(to_face.corner), length - to, length - from,
+                        Vec2{length, 0} - source.at, source.before, -source.turn, source.root, list});
     list = index;
     enqueue(near, index, false);
 }
 
 /// A way reaches a corner of a face, coming on in direction `onward` (frame of the edge that begins
 /// there).
-void ExactGeodesics::reach(std::uint32_t face, int corner, double distance, const Vec2& onward,
-                         const Vec2& leaves) {
+void ExactGeodesics::reach(std::uint32_t face, int corner, double distance, const Vec2& onward, const Vec2& leaves) {
     Vertex& vertex = vertices_[faces_[face].vertex[corner]];
     if (!(distance < vertex.distance * (1 - kSlack)) || distance > radius_) return;
     vertex.distance = distance;
@@ -161,8 +154,7 @@ void ExactGeodesics::carry_on(std::uint32_t index) {
     Face& face = faces_[w.face];
     const double right_length = face.length[right_edge], left_length = face.length[left_edge];
     const Vec2 b{face.length[edge], 0}, c = face.third[edge], s = w.source;
-    const double at =
-        s.x + (c.x - s.x) * -s.y / (c.y - s.y);  // where the way to the third corner enters
+    const double at = s.x + (c.x - s.x) * -s.y / (c.y - s.y);  // where the way to the third corner enters
     bool left = at > w.from, right = at < w.to;
     if (left && right) {
         const double distance = w.before + glm::length(c - s);
@@ -179,22 +171,19 @@ void ExactGeodesics::carry_on(std::uint32_t index) {
     }
     if (right) {
         const Vec2 e = (c - b) / right_length;
-        const double from = met(s, w.to, b, e),
-                     to = at > w.from ? right_length : met(s, w.from, b, e);
-        leave(w.face, right_edge, from, to,
-              {turned_back(s - b, e), w.before, turned(e, w.turn), w.root});
+        const double from = met(s, w.to, b, e), to = at > w.from ? right_length : met(s, w.from, b, e);
+        leave(w.face, right_edge, from, to, {turned_back(s - b, e), w.before, turned(e, w.turn), w.root});
     }
     if (left) {
         const Vec2 e = -c / left_length;
         const double from = at < w.to ? 0 : met(s, w.to, c, e), to = met(s, w.from, c, e);
-        leave(w.face, left_edge, from, to,
-              {turned_back(s - c, e), w.before, turned(e, w.turn), w.root});
+        leave(w.face, left_edge, from, to, {turned_back(s - c, e), w.before, turned(e, w.turn), w.root});
     }
 }
 
 /// The faces round the vertex at a corner, from the one beside it on to a border or all round.
 std::vector<ExactGeodesics::Corner>& ExactGeodesics::fan(std::vector<Corner>& corners, Corner at,
-                                                     bool counter_clockwise) {
+                                                         bool counter_clockwise) {
     corners.clear();
     const std::uint32_t first = at.face;
     while (corners.size() < kMostFaces) {
@@ -282,14 +271,13 @@ void ExactGeodesics::bend(const Arrival& arrival) {
             leave_round(left_[k], k == i ? from : 0, k == last ? to : length(left_[k]), distance);
         return;
     }
-    for (std::size_t k = i; k < n; ++k)
-        leave_round(left_[k], k == i ? from : 0, length(left_[k]), distance);
+    for (std::size_t k = i; k < n; ++k) leave_round(left_[k], k == i ? from : 0, length(left_[k]), distance);
     for (std::size_t k = j; k < right_.size(); ++k)
         leave_round(right_[k], 0, k == j ? to : length(right_[k]), distance);
 }
 
-bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin,
-                          double radius, std::size_t most) {
+bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin, double radius,
+                            std::size_t most) {
     begin(mesh, radius);
     if (triangle >= mesh.n_triangles()) return false;
     start_ = face_of(triangle);
@@ -308,8 +296,7 @@ bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, co
     for (int k = 0; k < 3; ++k) {
         const Vec2 way = corner - origin_;
         const double distance = glm::length(way);
-        if (distance > 0)
-            reach(start_, k, distance, turned_back(way / distance, e), way / distance);
+        if (distance > 0) reach(start_, k, distance, turned_back(way / distance, e), way / distance);
         const double length = faces_[start_].length[k];
         leave(start_, k, 0, length, {turned_back(origin_ - corner, e), 0, e, kNone});
         corner += length * e;
@@ -329,14 +316,12 @@ bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, co
         }
         const Window& w = windows_[next.index];
         // By what has been learnt of the vertices since.
-        if (!outdone(faces_[w.face], w.edge, w.from, w.to, {w.source, w.before, w.turn, w.root}))
-            carry_on(next.index);
+        if (!outdone(faces_[w.face], w.edge, w.from, w.to, {w.source, w.before, w.turn, w.root})) carry_on(next.index);
         // Their number grows with the area.
         const double share = static_cast<double>(ring_ + 1) / kRings,
                      expected = static_cast<double>(most) * share * share;
         const auto n = static_cast<double>(windows_.size());
-        if (windows_.size() > most || (windows_.size() > kFewWindows && n > kDense * expected))
-            return false;
+        if (windows_.size() > most || (windows_.size() > kFewWindows && n > kDense * expected)) return false;
     }
     return true;
 }
@@ -346,10 +331,8 @@ ExactGeodesics::Geodesic ExactGeodesics::to(std::uint32_t triangle, const Vec3& 
     const std::uint32_t number = face_numbers_.find(triangle);
     if (number == kNone) return way;
     const Face& face = faces_[number];
-    const Vec3 a = mesh_->position(triangle, 0),
-               x = glm::normalize(mesh_->position(triangle, 1) - a);
-    const Vec3 n = glm::normalize(glm::cross(x, mesh_->position(triangle, 2) - a)),
-               y = glm::cross(n, x);
+    const Vec3 a = mesh_->position(triangle, 0), x = glm::normalize(mesh_->position(triangle, 1) - a);
+    const Vec3 n = glm::normalize(glm::cross(x, mesh_->position(triangle, 2) - a)), y = glm::cross(n, x);
     const Vec2 q{glm::dot(p - a, x), glm::dot(p - a, y)};
     Vec2 leaves{0}, arrives{0};  // frames of edge 0 of the first and of this face
     if (number == start_) {
@@ -368,8 +351,7 @@ ExactGeodesics::Geodesic ExactGeodesics::to(std::uint32_t triangle, const Vec3& 
         for (std::uint32_t i = face.windows[k]; i != kNone; i = windows_[i].next) {
             const Window& w = windows_[i];
             const double height = std::max(at.y, 0.0);
-            const double cut =
-                w.source.x + (at.x - w.source.x) * -w.source.y / (height - w.source.y);
+            const double cut = w.source.x + (at.x - w.source.x) * -w.source.y / (height - w.source.y);
             const double off = std::max({w.from - cut, cut - w.to, 0.0}) / face.length[k];
             const double length = w.before + glm::length(at - w.source);
             if (off <= kBeside && length < way.length) {
@@ -392,8 +374,7 @@ ExactGeodesics::Geodesic ExactGeodesics::to(std::uint32_t triangle, const Vec3& 
         const Vec2 from = corners[best->edge] + turned(best->source, edges[best->edge]);
         arrives = glm::normalize(q - from);
         way.bent = best->root != kNone;
-        leaves = way.bent ? vertices_[best->root].leaves
-                          : turned(turned_back(arrives, edges[best->edge]), best->turn);
+        leaves = way.bent ? vertices_[best->root].leaves : turned(turned_back(arrives, edges[best->edge]), best->turn);
     }
     for (int k = 0; k < 3; ++k) {
         const Vertex& v = vertices_[face.vertex[k]];

@@ -19,13 +19,11 @@ class ExactGeodesics {
     /// From `origin`, a point of `triangle`, to all points within `radius` metres. Cost: about 1.5
     /// µs a triangle within reach. False when that takes, or is going to take, more than `most`
     /// windows: nothing is known then.
-    bool spread(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin, double radius,
-                std::size_t most);
+    bool spread(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin, double radius, std::size_t most);
 
     struct Geodesic {
-        double length =
-            std::numeric_limits<double>::infinity();  ///< metres; infinite: none within the radius
-        Vec3 leaves{0};     ///< unit, in the plane of the origin's triangle
+        double length = std::numeric_limits<double>::infinity();  ///< metres; infinite: none within the radius
+        Vec3 leaves{0};                                           ///< unit, in the plane of the origin's triangle
         Vec3 arrives{0};    ///< unit, in the plane of the point's triangle, away from the origin
         bool bent = false;  ///< it goes round a vertex
     };
@@ -46,8 +44,8 @@ class ExactGeodesics {
         std::uint32_t triangle;
         std::array<std::uint32_t, 3> vertex;
         std::array<double, 3> length;
-        std::array<Vec2, 3> third;             ///< corner k + 2 in the frame of edge k
-        std::array<std::uint32_t, 3> windows;  ///< that enter over edge k, a list; kNone: its end
+        std::array<Vec2, 3> third;                ///< corner k + 2 in the frame of edge k
+        std::array<std::uint32_t, 3> windows;     ///< that enter over edge k, a list; kNone: its end
         std::array<double, 3> nearest, crossing;  ///< of ways over edge k to the third corner: the
                                                   ///< shortest, and where on the edge it enters
     };
@@ -100,16 +98,15 @@ class ExactGeodesics {
     bool outdone(const Face& face, int edge, double from, double to, const Source& source) const;
     void leave(std::uint32_t face, int edge, double from, double to, const Source& source);
     void carry_on(std::uint32_t window);
-    void reach(std::uint32_t face, int corner, double distance, const Vec2& onward,
-               const Vec2& leaves);
+    void reach(std::uint32_t face, int corner, double distance, const Vec2& onward, const Vec2& leaves);
     void bend(const Arrival& arrival);
     void leave_round(const Corner& at, double from, double to, double distance);
     std::vector<Corner>& fan(std::vector<Corner>& corners, Corner at, bool counter_clockwise);
 
     const TriangleMesh* mesh_ = nullptr;
     double radius_ = 0;
-    std::uint32_t start_ = kNone;  ///< the origin's face
-    Vec2 origin_{0};               ///< in the frame of its edge 0
+    std::uint32_t start_ = kNone;                    ///< the origin's face
+    Vec2 origin_{0};                                 ///< in the frame of its edge 0
     SparseNumbering face_numbers_, vertex_numbers_;  ///< of what is within reach, by the mesh's
     std::vector<Face> faces_;
     std::vector<Vertex> vertices_;

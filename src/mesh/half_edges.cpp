@@ -23,8 +23,7 @@ Wing make_wing(const RawMesh& mesh, std::uint32_t h, std::uint32_t reference_sta
     const Vec3 normal = glm::cross(b - a, c - a);
     const Vec3 away = glm::cross(normal, b - a);
     const double ln = glm::length(normal), la = glm::length(away);
-    return {h, la > 0 ? away / la : Vec3(0), ln > 0 ? normal / ln : Vec3(0),
-            mesh.start(h) == reference_start};
+    return {h, la > 0 ? away / la : Vec3(0), ln > 0 ? normal / ln : Vec3(0), mesh.start(h) == reference_start};
 }
 
 /// How well two wings continue each other: 1 flat, -1 folded back; convex edges win ties, so
@@ -47,8 +46,7 @@ void pair_best(RawMesh& mesh, std::span<const std::uint32_t> half_edges, bool tr
     constexpr std::size_t kMaxWings = 64;
     if (half_edges.size() > kMaxWings) return;
     std::vector<Wing> wings;
-    for (const std::uint32_t h : half_edges)
-        wings.push_back(make_wing(mesh, h, mesh.start(half_edges[0])));
+    for (const std::uint32_t h : half_edges) wings.push_back(make_wing(mesh, h, mesh.start(half_edges[0])));
     struct Candidate {
         double score;
         std::size_t i, j;
@@ -75,8 +73,7 @@ class DuplicateFinder {
   public:
     void look(const RawMesh& mesh, std::span<const std::uint32_t> half_edges) {
         thirds_.clear();
-        for (const std::uint32_t h : half_edges)
-            thirds_.emplace_back(mesh.end(next_in_face(h)), h / 3);
+        for (const std::uint32_t h : half_edges) thirds_.emplace_back(mesh.end(next_in_face(h)), h / 3);
         std::sort(thirds_.begin(), thirds_.end());
         for (std::size_t i = 1; i < thirds_.size(); ++i) {
             if (thirds_[i].first != thirds_[i - 1].first) continue;
@@ -124,8 +121,7 @@ void keep_triangles(RawMesh& mesh, const std::vector<bool>& keep) {
         if (!keep[t]) continue;
         mesh.triangles[out] = mesh.triangles[t];
         if (!mesh.groups.empty()) mesh.groups[out] = mesh.groups[t];
-        for (std::size_t k = 0; k < 3 && !mesh.uvs.empty(); ++k)
-            mesh.uvs[3 * out + k] = mesh.uvs[3 * t + k];
+        for (std::size_t k = 0; k < 3 && !mesh.uvs.empty(); ++k) mesh.uvs[3 * out + k] = mesh.uvs[3 * t + k];
         ++out;
     }
     mesh.triangles.resize(out);
@@ -196,8 +192,7 @@ std::size_t split_vertices(RawMesh& mesh) {
             vertex = static_cast<std::uint32_t>(mesh.positions.size());
             mesh.positions.push_back(mesh.positions[old_vertex]);
             if (!mesh.colours.empty()) mesh.colours.push_back(mesh.colours[old_vertex]);
-            const bool expected =
-                old_vertex < mesh.at_split_edge.size() && mesh.at_split_edge[old_vertex];
+            const bool expected = old_vertex < mesh.at_split_edge.size() && mesh.at_split_edge[old_vertex];
             if (!expected && !counted[old_vertex]) ++split;
             counted[old_vertex] = true;
         }
@@ -217,8 +212,7 @@ void settle(RawMesh& mesh) {
         bool changed = false;
         std::vector<std::uint32_t> loose;  // triangles to set apart when nothing else helps
         for_each_edge(mesh, [&](std::span<const std::uint32_t> group) {
-            const bool sound = group.size() == 1 ||
-                               (group.size() == 2 && mesh.start(group[0]) != mesh.start(group[1]));
+            const bool sound = group.size() == 1 || (group.size() == 2 && mesh.start(group[0]) != mesh.start(group[1]));
             if (sound) {
                 if (group.size() == 2) pair(mesh, group[0], group[1]);
                 return;

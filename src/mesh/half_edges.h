@@ -20,13 +20,11 @@ struct RawMesh {
     std::vector<Vec2f> uvs;                            ///< [3 n_triangles] or empty
     std::vector<std::uint32_t> groups;                 ///< [n_triangles] or empty
     std::vector<std::array<std::uint8_t, 4>> colours;  ///< [n_vertices] or empty
-    std::vector<std::uint32_t> opposite;  ///< [3 n_triangles] half-edge over the edge, or kNone
-    std::vector<bool> at_split_edge;  ///< [n_vertices] lies on an edge that was opened, or empty
+    std::vector<std::uint32_t> opposite;               ///< [3 n_triangles] half-edge over the edge, or kNone
+    std::vector<bool> at_split_edge;                   ///< [n_vertices] lies on an edge that was opened, or empty
 
     std::uint32_t start(std::uint32_t h) const { return triangles[h / 3][h % 3]; }
-    std::uint32_t end(std::uint32_t h) const {
-        return triangles[h / 3][(h + 1) % 3 ? h % 3 + 1 : 0];
-    }
+    std::uint32_t end(std::uint32_t h) const { return triangles[h / 3][(h + 1) % 3 ? h % 3 + 1 : 0]; }
 };
 
 /// The half-edge after and before h in its triangle.

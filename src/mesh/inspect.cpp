@@ -15,8 +15,7 @@ namespace {
 std::string short_number(double x) {
     const double size = std::abs(x);
     int digits = 0;
-    if (size < 100 && size > 0)
-        digits = std::min(9, 2 - static_cast<int>(std::floor(std::log10(size))));
+    if (size < 100 && size > 0) digits = std::min(9, 2 - static_cast<int>(std::floor(std::log10(size))));
     char text[32];
     if (size >= 1e7 || (size > 0 && size < 1e-6))
         std::snprintf(text, sizeof text, "%.2e", x);
@@ -26,8 +25,7 @@ std::string short_number(double x) {
 }
 
 std::string size_text(const Vec3& size_metres) {
-    return short_number(size_metres.x / kMillimetre) + " x " +
-           short_number(size_metres.y / kMillimetre) + " x " +
+    return short_number(size_metres.x / kMillimetre) + " x " + short_number(size_metres.y / kMillimetre) + " x " +
            short_number(size_metres.z / kMillimetre) + " mm";
 }
 
@@ -52,10 +50,8 @@ UnitGuess guess_unit(const Box& bounds) {
         const char* plural;
         double weight;
     };
-    constexpr std::array<Unit, 4> kUnits{{{"mm", "millimetres", 0.5},
-                                          {"m", "metres", 0.25},
-                                          {"cm", "centimetres", 0.15},
-                                          {"in", "inches", 0.1}}};
+    constexpr std::array<Unit, 4> kUnits{
+        {{"mm", "millimetres", 0.5}, {"m", "metres", 0.25}, {"cm", "centimetres", 0.15}, {"in", "inches", 0.1}}};
     const double diagonal = bounds.diagonal();
     UnitGuess guess;
     if (!(diagonal > 0) || !std::isfinite(diagonal)) {
@@ -66,12 +62,11 @@ UnitGuess guess_unit(const Box& bounds) {
     std::array<double, 4> score{};
     for (std::size_t i = 0; i < kUnits.size(); ++i)
         score[i] = kUnits[i].weight * plausibility(diagonal * *metres_per(kUnits[i].name));
-    const auto best =
-        static_cast<std::size_t>(std::max_element(score.begin(), score.end()) - score.begin());
+    const auto best = static_cast<std::size_t>(std::max_element(score.begin(), score.end()) - score.begin());
     if (!(score[best] > 1e-12)) {  // no unit makes it a product: nothing to tell them apart
         guess.unit = "mm";
-        guess.sentence = "no usual unit makes this a thing one can hold (" +
-                         short_number(diagonal) + " units across); mm is taken";
+        guess.sentence =
+            "no usual unit makes this a thing one can hold (" + short_number(diagonal) + " units across); mm is taken";
         return guess;
     }
     guess.unit = kUnits[best].name;
@@ -82,8 +77,8 @@ UnitGuess guess_unit(const Box& bounds) {
             second = score[i];
             guess.second = kUnits[i].name;
         }
-    guess.sentence = "numbers look like " + std::string(kUnits[best].plural) +
-                     ": the model would be " + size_text(bounds.size() * guess.metres_per_unit);
+    guess.sentence = "numbers look like " + std::string(kUnits[best].plural) + ": the model would be " +
+                     size_text(bounds.size() * guess.metres_per_unit);
     if (!guess.second.empty()) guess.sentence += "; " + guess.second + " is possible too";
     return guess;
 }
@@ -100,7 +95,8 @@ MeshSummary summarise(const Surface& surface, double metres_per_unit) {
     std::set<const Picture*> pictures;
     for (const Material& m : mesh.materials)
         if (m.picture && pictures.insert(m.picture.get()).second)
-            s.pictures.push_back(m.picture->name + " (" + std::to_string(m.picture->width) + " x " + std::to_string(m.picture->height) + ")");
+            s.pictures.push_back(m.picture->name + " (" + std::to_string(m.picture->width) + " x " +
+                                 std::to_string(m.picture->height) + ")");
     s.vertex_colours = !mesh.vertex_colours.empty();
     s.group_names = mesh.group_names;
     s.metres_per_unit = metres_per_unit;
@@ -110,12 +106,10 @@ MeshSummary summarise(const Surface& surface, double metres_per_unit) {
     const Vec3 centre = mesh.bounds.centre();
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
         const Vec3 p[3] = {mesh.position(t, 0), mesh.position(t, 1), mesh.position(t, 2)};
-        if (s.report.closed)
-            s.volume += glm::dot(p[0] - centre, glm::cross(p[1] - centre, p[2] - centre)) / 6;
+        if (s.report.closed) s.volume += glm::dot(p[0] - centre, glm::cross(p[1] - centre, p[2] - centre)) / 6;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t over = mesh.neighbours[3 * t + k];
-            if (over == kNone || over > t)
-                edges.push_back(static_cast<float>(glm::distance(p[k], p[(k + 1) % 3])));
+            if (over == kNone || over > t) edges.push_back(static_cast<float>(glm::distance(p[k], p[(k + 1) % 3])));
         }
     }
     if (!edges.empty()) {
@@ -138,24 +132,18 @@ std::vector<std::string> describe_defects(const RepairReport& r) {
     };
     // Triangles without shared vertices are the way of STL, not a defect.
     if (!r.loose_triangles)
-        tell(r.vertices_welded, "vertex lay on another one: welded",
-             "vertices lay on others: welded");
+        tell(r.vertices_welded, "vertex lay on another one: welded", "vertices lay on others: welded");
     tell(r.crack_vertices_welded, "vertex lay next to another one across a crack: welded",
          "vertices lay next to others across cracks: welded");
-    tell(r.unused_vertices_dropped, "vertex is used by no face: dropped",
-         "vertices are used by no face: dropped");
-    tell(r.degenerate_faces_dropped, "face without an area: dropped",
-         "faces without an area: dropped");
+    tell(r.unused_vertices_dropped, "vertex is used by no face: dropped", "vertices are used by no face: dropped");
+    tell(r.degenerate_faces_dropped, "face without an area: dropped", "faces without an area: dropped");
     tell(r.degenerate_faces_repaired, "face with a corner on its opposite side: mended by a flip",
          "faces with a corner on their opposite side: mended by flips");
-    tell(r.duplicate_faces_dropped, "face is there twice: dropped",
-         "faces are there twice: dropped");
-    tell(r.non_manifold_edges_split, "edge with more than two faces: split",
-         "edges with more than two faces: split");
+    tell(r.duplicate_faces_dropped, "face is there twice: dropped", "faces are there twice: dropped");
+    tell(r.non_manifold_edges_split, "edge with more than two faces: split", "edges with more than two faces: split");
     tell(r.non_manifold_vertices_split, "vertex where separate surfaces touch: split",
          "vertices where separate surfaces touch: split");
-    tell(r.faces_flipped, "face showed its back: turned round",
-         "faces showed their backs: turned round");
+    tell(r.faces_flipped, "face showed its back: turned round", "faces showed their backs: turned round");
     lines.insert(lines.end(), r.warnings.begin(), r.warnings.end());
     return lines;
 }
@@ -167,14 +155,14 @@ std::vector<std::string> describe(const MeshSummary& s) {
                     count_text(s.n_vertices, "vertex", "vertices") + " (in the file " +
                     count_text(r.polygons_in_file, "face, ", "faces, ") +
                     count_text(r.points_in_file, "vertex)", "vertices)"));
-    lines.push_back("size " + size_text(s.bounds.size()) + ", area " + short_number(s.area * 1e4) +
-                    " cm²" + (r.closed ? ", volume " + short_number(s.volume * 1e6) + " cm³" : ""));
-    lines.push_back("edges: half of them below " + short_number(s.median_edge / kMillimetre) +
-                    " mm, longest " + short_number(s.longest_edge / kMillimetre) + " mm");
+    lines.push_back("size " + size_text(s.bounds.size()) + ", area " + short_number(s.area * 1e4) + " cm²" +
+                    (r.closed ? ", volume " + short_number(s.volume * 1e6) + " cm³" : ""));
+    lines.push_back("edges: half of them below " + short_number(s.median_edge / kMillimetre) + " mm, longest " +
+                    short_number(s.longest_edge / kMillimetre) + " mm");
     lines.push_back(count_text(r.components, "part, ", "parts, ") +
                     (r.closed ? "closed"
-                              : "open: " + count_text(r.holes, "border loop", "border loops") +
-                                    " with " + count_text(r.border_edges, "edge", "edges")));
+                              : "open: " + count_text(r.holes, "border loop", "border loops") + " with " +
+                                    count_text(r.border_edges, "edge", "edges")));
     std::string extras;
     if (s.has_uvs) extras += "texture coordinates, ";
     if (s.vertex_colours) extras += "vertex colours, ";

@@ -30,7 +30,7 @@ struct MeshSummary {
     double median_edge = 0;   ///< metres
     double longest_edge = 0;  ///< metres
     bool has_uvs = false;
-    bool has_colours = false;           ///< of its own, of any kind
+    bool has_colours = false;  ///< of its own, of any kind
     bool vertex_colours = false;
     std::vector<std::string> pictures;  ///< on its faces: name and size in pixels
     std::vector<std::string> group_names;

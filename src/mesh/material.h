@@ -22,8 +22,8 @@ struct Picture {
 struct Material {
     Vec3f colour{1};                         ///< sRGB-encoded, in [0, 1]
     std::shared_ptr<const Picture> picture;  ///< null: none
-    bool tinted = false;  ///< by vertex colours also where it has a picture (glTF); else there only
-                          ///< where it has none
+    bool tinted = false;                     ///< by vertex colours also where it has a picture (glTF); else there only
+                                             ///< where it has none
 };
 
 }  // namespace tuft::mesh

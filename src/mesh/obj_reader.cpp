@@ -16,9 +16,7 @@ namespace {
 class ObjReader {
   public:
     ObjReader(const std::vector<char>& bytes, const std::string& file)
-        : file_(file),
-          text_(bytes, file, {.comment = '#', .continuation = true}),
-          builder_(file, "line") {}
+        : file_(file), text_(bytes, file, {.comment = '#', .continuation = true}), builder_(file, "line") {}
 
     PolygonSoup read() {
         while (text_.skip_to_token()) {
@@ -27,9 +25,9 @@ class ObjReader {
         }
         const std::size_t n = builder_.soup.points.size();
         if (highest_ > n)
-            throw Error(file_, highest_line_,
-                        "the face uses vertex " + std::to_string(highest_) +
-                            ", but the file has only " + std::to_string(n));
+            throw Error(
+                file_, highest_line_,
+                "the face uses vertex " + std::to_string(highest_) + ", but the file has only " + std::to_string(n));
         if (free_form_.count)
             builder_.soup.warnings.push_back(
                 free_form_.text("lines of free-form curves or surfaces are not read", "line"));
@@ -63,8 +61,8 @@ class ObjReader {
     std::string object_, group_, material_;
     std::uint32_t current_group_ = kNone;
     bool group_changed_ = false;
-    std::vector<ScenePart> parts_;    ///< by group
-    std::vector<std::string> named_;  ///< objects and groups, in the order of the file,
+    std::vector<ScenePart> parts_;                      ///< by group
+    std::vector<std::string> named_;                    ///< objects and groups, in the order of the file,
     std::unordered_set<std::string> seen_, has_faces_;  ///< the same, and those with faces
     std::vector<std::uint32_t> corners_;                ///< of the face being read
     std::vector<Vec2f> corner_uvs_;
@@ -115,8 +113,7 @@ std::uint32_t ObjReader::current_group() {
     for (const std::string* s : {&object_, &group_}) has_faces_.insert(*s);
     current_group_ = name.empty() ? kNone : builder_.group(name, material_);
     if (current_group_ != kNone && current_group_ == parts_.size())
-        parts_.push_back(
-            {.object = to_utf8(object_), .group = to_utf8(group_), .material = to_utf8(material_)});
+        parts_.push_back({.object = to_utf8(object_), .group = to_utf8(group_), .material = to_utf8(material_)});
     return current_group_;
 }
 
@@ -138,9 +135,8 @@ void ObjReader::report_empty(PolygonSoup& soup) const {
         if (++n <= kMostNames) names += (n > 1 ? ", " : "") + in_quotes(name);
     }
     if (n > 0)
-        soup.warnings.push_back(std::to_string(n) + (n == 1 ? " group has" : " groups have") +
-                                " no faces and " + (n == 1 ? "is" : "are") + " left out: " + names +
-                                (n > kMostNames ? ", ..." : ""));
+        soup.warnings.push_back(std::to_string(n) + (n == 1 ? " group has" : " groups have") + " no faces and " +
+                                (n == 1 ? "is" : "are") + " left out: " + names + (n > kMostNames ? ", ..." : ""));
 }
 
 void ObjReader::read_vertex() {
@@ -203,13 +199,11 @@ void ObjReader::read_face() {
 void ObjReader::finish_colours() {
     if (colours_.empty()) return;
     colours_.resize(builder_.soup.points.size(), Vec3f(1));
-    const bool is_real = std::all_of(colours_.begin(), colours_.end(), [](const Vec3f& c) {
-        return !(c.r > 1 || c.g > 1 || c.b > 1);
-    });
+    const bool is_real =
+        std::all_of(colours_.begin(), colours_.end(), [](const Vec3f& c) { return !(c.r > 1 || c.g > 1 || c.b > 1); });
     builder_.soup.point_colours.reserve(colours_.size());
     for (const Vec3f& c : colours_)
-        builder_.soup.point_colours.push_back(
-            colour_from({c.r, c.g, c.b, is_real ? 1.0 : 255.0}, is_real));
+        builder_.soup.point_colours.push_back(colour_from({c.r, c.g, c.b, is_real ? 1.0 : 255.0}, is_real));
 }
 
 }  // namespace

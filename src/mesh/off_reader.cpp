@@ -27,12 +27,12 @@ OffKind read_kind(TextCursor& text) {
     if (is_digit(word.front()) && is_digit(word.back())) return kind;
     // Some writers leave out the end of the line: OFF490 518 0.
     if (const std::size_t head = word.find_last_of("Ff"); head != word.npos && head > 0 && head + 1 < word.size())
-        if (std::all_of(word.begin() + static_cast<std::ptrdiff_t>(head) + 1, word.end(), is_digit)) word = word.substr(0, head + 1);
+        if (std::all_of(word.begin() + static_cast<std::ptrdiff_t>(head) + 1, word.end(), is_digit))
+            word = word.substr(0, head + 1);
     text.skip(word.size());
     const std::string_view whole = word;
     const auto take = [&](std::string_view prefix) {
-        if (word.size() < prefix.size() + 3 || !same_word(word.substr(0, prefix.size()), prefix))
-            return false;
+        if (word.size() < prefix.size() + 3 || !same_word(word.substr(0, prefix.size()), prefix)) return false;
         word.remove_prefix(prefix.size());
         return true;
     };
@@ -52,10 +52,7 @@ OffKind read_kind(TextCursor& text) {
 class OffReader {
   public:
     OffReader(const std::vector<char>& bytes, const std::string& file)
-        : file_(file),
-          bytes_(bytes),
-          text_(bytes, file, {.comment = '#'}),
-          builder_(file, "line") {}
+        : file_(file), bytes_(bytes), text_(bytes, file, {.comment = '#'}), builder_(file, "line") {}
 
     PolygonSoup read() {
         kind_ = read_kind(text_);
@@ -71,8 +68,8 @@ class OffReader {
     PolygonSoup read_binary();
     void read_text_point();
     void read_text_face();
-    void check_counts(std::int64_t points, std::int64_t faces, std::size_t left,
-                      std::size_t point_size, std::size_t face_size) const;
+    void check_counts(std::int64_t points, std::int64_t faces, std::size_t left, std::size_t point_size,
+                      std::size_t face_size) const;
     std::uint32_t point_index(std::int64_t written) const;
     void add_face(long place, std::uint32_t group);
     std::uint32_t face_colour();
@@ -90,8 +87,8 @@ class OffReader {
     std::vector<std::uint32_t> corners_;
 };
 
-void OffReader::check_counts(std::int64_t points, std::int64_t faces, std::size_t left,
-                             std::size_t point_size, std::size_t face_size) const {
+void OffReader::check_counts(std::int64_t points, std::int64_t faces, std::size_t left, std::size_t point_size,
+                             std::size_t face_size) const {
     const auto limit = [&](std::size_t size) { return static_cast<std::int64_t>(left / size); };
     if (points < 0 || faces < 0 || points > limit(point_size) || faces > limit(face_size))
         text_.fail("promises " + std::to_string(points) + " vertices and " + std::to_string(faces) +
@@ -137,16 +134,14 @@ void OffReader::read_text_point() {
         const bool has_alpha = n - first >= 4;
         colour_is_real_ = colour_is_real_ || real[first] || real[first + 1] || real[first + 2];
         colours_.resize(builder_.soup.points.size() - 1, {255, 255, 255, -1});
-        colours_.push_back(
-            {more[first], more[first + 1], more[first + 2], has_alpha ? more[first + 3] : -1});
+        colours_.push_back({more[first], more[first + 1], more[first + 2], has_alpha ? more[first + 3] : -1});
     }
 }
 
 std::uint32_t OffReader::point_index(std::int64_t written) const {
     if (written < 0 || static_cast<std::size_t>(written) >= n_points_) {
-        const std::string what = "the face uses vertex " + std::to_string(written) +
-                                 ", but the file has only " + std::to_string(n_points_) +
-                                 " (counted from 0)";
+        const std::string what = "the face uses vertex " + std::to_string(written) + ", but the file has only " +
+                                 std::to_string(n_points_) + " (counted from 0)";
         if (kind_.is_binary) throw Error(file_, what);
         text_.fail(what);
     }
@@ -198,8 +193,7 @@ PolygonSoup OffReader::read_binary() {
         unsigned char raw[4];
         std::memcpy(raw, at, 4);
         at += 4;
-        return std::uint32_t{raw[0]} << 24 | std::uint32_t{raw[1]} << 16 |
-               std::uint32_t{raw[2]} << 8 | raw[3];
+        return std::uint32_t{raw[0]} << 24 | std::uint32_t{raw[1]} << 16 | std::uint32_t{raw[2]} << 8 | raw[3];
     };
     const auto real = [&] {
         const std::uint32_t bits = word();
@@ -232,11 +226,9 @@ PolygonSoup OffReader::read_binary() {
         const std::uint32_t n = word();
         if (n > left() / 4) throw Error(file_, "face " + std::to_string(i + 1) + " is cut off");
         corners_.clear();
-        for (std::uint32_t k = 0; k < n; ++k)
-            corners_.push_back(point_index(static_cast<std::int32_t>(word())));
+        for (std::uint32_t k = 0; k < n; ++k) corners_.push_back(point_index(static_cast<std::int32_t>(word())));
         const std::uint32_t n_colour = word();
-        if (n_colour > left() / 4)
-            throw Error(file_, "face " + std::to_string(i + 1) + " is cut off");
+        if (n_colour > left() / 4) throw Error(file_, "face " + std::to_string(i + 1) + " is cut off");
         std::array<double, 4> rgba{};
         for (std::uint32_t k = 0; k < n_colour; ++k) {
             const double value = real();

@@ -25,8 +25,7 @@ double six_volumes(const RawMesh& mesh, std::uint32_t t, const Vec3& origin) {
     return glm::dot(p(0), glm::cross(p(1), p(2)));
 }
 
-Component grow(const RawMesh& mesh, std::uint32_t seed, std::vector<bool>& reached,
-               std::vector<bool>& turned) {
+Component grow(const RawMesh& mesh, std::uint32_t seed, std::vector<bool>& reached, std::vector<bool>& turned) {
     Component c;
     reached[seed] = true;
     c.faces.push_back(seed);
@@ -52,8 +51,7 @@ Component grow(const RawMesh& mesh, std::uint32_t seed, std::vector<bool>& reach
 }
 
 /// Opens every edge at which no choice of sides can agree.
-std::size_t cut_disagreeing(RawMesh& mesh, const std::vector<bool>& turned,
-                            std::vector<bool>& face_cut) {
+std::size_t cut_disagreeing(RawMesh& mesh, const std::vector<bool>& turned, std::vector<bool>& face_cut) {
     std::size_t cut = 0;
     for (std::uint32_t h = 0; h < mesh.opposite.size(); ++h) {
         const std::uint32_t o = mesh.opposite[h];
@@ -86,13 +84,11 @@ bool contains(const Box& box, const Vec3& p) {
 
 /// Whether the component lies inside an odd number of the other closed ones, by the parity of a
 /// ray's crossings. `budget` bounds the triangles looked at; when it is used up the answer is no.
-bool is_cavity(const RawMesh& mesh, const std::vector<Component>& components, std::size_t self,
-               std::size_t& budget) {
+bool is_cavity(const RawMesh& mesh, const std::vector<Component>& components, std::size_t self, std::size_t& budget) {
     // A direction that no modelled edge or plane is likely to share.
     const Vec3 direction = glm::normalize(Vec3(0.5377, 0.8339, -0.3188));
     Vec3 from(0);
-    for (int k = 0; k < 3; ++k)
-        from += Vec3(mesh.positions[mesh.triangles[components[self].faces[0]][k]]) / 3.0;
+    for (int k = 0; k < 3; ++k) from += Vec3(mesh.positions[mesh.triangles[components[self].faces[0]][k]]) / 3.0;
     bool inside = false;
     for (std::size_t i = 0; i < components.size(); ++i) {
         const Component& other = components[i];

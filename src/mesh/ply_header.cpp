@@ -23,11 +23,10 @@ PlyType parse_type(TextCursor& text) {
         const char *old_name, *new_name;
         PlyType type;
     };
-    constexpr Name kNames[] = {
-        {"char", "int8", PlyType::kInt8},        {"uchar", "uint8", PlyType::kUint8},
-        {"short", "int16", PlyType::kInt16},     {"ushort", "uint16", PlyType::kUint16},
-        {"int", "int32", PlyType::kInt32},       {"uint", "uint32", PlyType::kUint32},
-        {"float", "float32", PlyType::kFloat32}, {"double", "float64", PlyType::kFloat64}};
+    constexpr Name kNames[] = {{"char", "int8", PlyType::kInt8},        {"uchar", "uint8", PlyType::kUint8},
+                               {"short", "int16", PlyType::kInt16},     {"ushort", "uint16", PlyType::kUint16},
+                               {"int", "int32", PlyType::kInt32},       {"uint", "uint32", PlyType::kUint32},
+                               {"float", "float32", PlyType::kFloat32}, {"double", "float64", PlyType::kFloat64}};
     for (const Name& n : kNames)
         if (name == n.old_name || name == n.new_name) return n.type;
     text.fail(in_quotes(name) + " is not a PLY type such as float or uchar");
@@ -110,8 +109,7 @@ std::size_t PlyElement::least_row_size(PlyFormat format) const {
 }
 
 bool PlyElement::has_list() const {
-    return std::any_of(properties.begin(), properties.end(),
-                       [](const PlyProperty& p) { return p.is_list; });
+    return std::any_of(properties.begin(), properties.end(), [](const PlyProperty& p) { return p.is_list; });
 }
 
 int PlyElement::find(std::initializer_list<const char*> names) const {

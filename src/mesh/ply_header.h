@@ -10,16 +10,7 @@ namespace tuft::mesh {
 
 enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
 
-enum class PlyType : std::uint8_t {
-    kInt8,
-    kUint8,
-    kInt16,
-    kUint16,
-    kInt32,
-    kUint32,
-    kFloat32,
-    kFloat64
-};
+enum class PlyType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
 /// Bytes of one value in a binary file.
 std::size_t size_of(PlyType type);

@@ -28,9 +28,7 @@ class PlyBody {
           end_(bytes.data() + bytes.size()) {}
 
     bool is_text() const { return format_ == PlyFormat::kAscii; }
-    std::size_t left() const {
-        return is_text() ? text_.left() + 1 : static_cast<std::size_t>(end_ - at_);
-    }
+    std::size_t left() const { return is_text() ? text_.left() + 1 : static_cast<std::size_t>(end_ - at_); }
     long line() const { return first_line_ + text_.line() - 1; }
 
     void begin_element(const PlyElement& element) {
@@ -81,11 +79,9 @@ class PlyBody {
     std::size_t list_size(const PlyProperty& property) {
         const double n = value(property.count_type);
         const std::size_t each = is_text() ? 2 : size_of(property.type);
-        if (!(n >= 0) || n != std::floor(n))
-            fail("the list '" + property.name + "' has an impossible length");
+        if (!(n >= 0) || n != std::floor(n)) fail("the list '" + property.name + "' has an impossible length");
         const std::size_t most = left() / each;
-        if (n > static_cast<double>(most))
-            fail("the list '" + property.name + "' is longer than the rest of the file");
+        if (n > static_cast<double>(most)) fail("the list '" + property.name + "' is longer than the rest of the file");
         return static_cast<std::size_t>(n);
     }
 
@@ -105,9 +101,8 @@ class PlyBody {
         throw Error(file_, element_->name + " row " + std::to_string(row_) + ": " + what);
     }
     [[noreturn]] void fail_short() const {
-        fail("the file ends in row " + std::to_string(row_) + " of " +
-             std::to_string(element_->count) + " of element '" + element_->name +
-             "'; it is cut off");
+        fail("the file ends in row " + std::to_string(row_) + " of " + std::to_string(element_->count) +
+             " of element '" + element_->name + "'; it is cut off");
     }
 
   private:
@@ -122,9 +117,9 @@ class PlyBody {
             return text_.number("a value");
         } catch (const Error&) {
             // The cursor counts lines of the body, the message is to count those of the file.
-            fail(text_.at_end() ? "the file is cut off in this row"
-                                : "the row of element '" + element_->name +
-                                      "' holds too few values or one that is not a number");
+            fail(text_.at_end()
+                     ? "the file is cut off in this row"
+                     : "the row of element '" + element_->name + "' holds too few values or one that is not a number");
         }
     }
 
@@ -174,9 +169,8 @@ class PlyReader {
         }
         for (const PlyElement& e : header_.elements) read_element(e);
         if (texcoord_mismatches_.count)
-            builder_.soup.warnings.push_back(
-                texcoord_mismatches_.text("faces have a texcoord list that does not fit their corners",
-                                       body_.is_text() ? "line" : "row"));
+            builder_.soup.warnings.push_back(texcoord_mismatches_.text(
+                "faces have a texcoord list that does not fit their corners", body_.is_text() ? "line" : "row"));
         PolygonSoup soup = builder_.finish();
         if (header_.textures.size() == 1 && soup.polygon_groups.empty() && soup.materials.empty())
             soup.material_names = header_.textures;
@@ -190,8 +184,7 @@ class PlyReader {
     void read_strips(const PlyElement& element);
     void skip_rows(const PlyElement& element);
     std::uint32_t point_index(double written) const;
-    void add_face(std::span<const std::uint32_t> corners, std::span<const double> texcoords,
-                  std::uint32_t group);
+    void add_face(std::span<const std::uint32_t> corners, std::span<const double> texcoords, std::uint32_t group);
 
     std::string file_;
     PlyHeader header_;
@@ -240,11 +233,9 @@ void PlyReader::skip_rows(const PlyElement& element) {
 
 void PlyReader::read_vertices(const PlyElement& element) {
     const int xyz[3] = {element.find({"x"}), element.find({"y"}), element.find({"z"})};
-    if (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0)
-        throw Error(file_, element.line, "the vertices have no x, y and z");
-    const int rgba[4] = {
-        element.find({"red", "diffuse_red", "r"}), element.find({"green", "diffuse_green", "g"}),
-        element.find({"blue", "diffuse_blue", "b"}), element.find({"alpha", "diffuse_alpha", "a"})};
+    if (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0) throw Error(file_, element.line, "the vertices have no x, y and z");
+    const int rgba[4] = {element.find({"red", "diffuse_red", "r"}), element.find({"green", "diffuse_green", "g"}),
+                         element.find({"blue", "diffuse_blue", "b"}), element.find({"alpha", "diffuse_alpha", "a"})};
     const int u = element.find({"s", "u", "texture_u", "texture_s"});
     const int v = element.find({"t", "v", "texture_v", "texture_t"});
     const bool has_colour = rgba[0] >= 0 && rgba[1] >= 0 && rgba[2] >= 0;
@@ -275,8 +266,7 @@ void PlyReader::read_vertices(const PlyElement& element) {
         builder_.add_point({at(xyz[0]), at(xyz[1]), at(xyz[2])}, place);
         if (has_uv) point_uvs_.emplace_back(at(u), at(v));
         if (has_colour) {
-            std::array<double, 4> c{at(rgba[0]), at(rgba[1]), at(rgba[2]),
-                                    rgba[3] >= 0 ? at(rgba[3]) : alpha};
+            std::array<double, 4> c{at(rgba[0]), at(rgba[1]), at(rgba[2]), rgba[3] >= 0 ? at(rgba[3]) : alpha};
             for (double& channel : c)
                 if (alpha == 65535.0) channel /= 257.0;
             builder_.soup.point_colours.push_back(colour_from(c, is_real(colour_type)));
@@ -285,12 +275,11 @@ void PlyReader::read_vertices(const PlyElement& element) {
 }
 
 std::uint32_t PlyReader::point_index(double written) const {
-    if (!(written >= 0) || written >= static_cast<double>(n_points_) ||
-        written != std::floor(written))
-        body_.fail("the face uses vertex " +
-                   std::to_string(static_cast<long long>(
-                       std::isfinite(written) ? std::clamp(written, -1e15, 1e15) : -1.0)) +
-                   ", but the file has only " + std::to_string(n_points_) + " (counted from 0)");
+    if (!(written >= 0) || written >= static_cast<double>(n_points_) || written != std::floor(written))
+        body_.fail(
+            "the face uses vertex " +
+            std::to_string(static_cast<long long>(std::isfinite(written) ? std::clamp(written, -1e15, 1e15) : -1.0)) +
+            ", but the file has only " + std::to_string(n_points_) + " (counted from 0)");
     return static_cast<std::uint32_t>(written);
 }
 
@@ -298,13 +287,11 @@ void PlyReader::add_face(std::span<const std::uint32_t> corners, std::span<const
                          std::uint32_t group) {
     face_uvs_.clear();
     if (texcoords.size() == 2 * corners.size()) {
-        for (std::size_t i = 0; i < corners.size(); ++i)
-            face_uvs_.emplace_back(texcoords[2 * i], texcoords[2 * i + 1]);
+        for (std::size_t i = 0; i < corners.size(); ++i) face_uvs_.emplace_back(texcoords[2 * i], texcoords[2 * i + 1]);
     } else {
         if (!texcoords.empty()) texcoord_mismatches_.add(body_.place());
         if (!point_uvs_.empty())
-            for (const std::uint32_t c : corners)
-                face_uvs_.push_back(c < point_uvs_.size() ? point_uvs_[c] : Vec2f(0));
+            for (const std::uint32_t c : corners) face_uvs_.push_back(c < point_uvs_.size() ? point_uvs_[c] : Vec2f(0));
     }
     builder_.add_polygon(corners, face_uvs_, group, body_.place());
 }
@@ -318,8 +305,7 @@ void PlyReader::read_faces(const PlyElement& element) {
     const FaceColour colour(element);
     builder_.soup.polygon_start.reserve(element.count + 1);
     builder_.soup.polygon_groups.reserve(element.count);
-    builder_.soup.corners.reserve(
-        std::min<std::size_t>(3 * element.count, body_.left() / (body_.is_text() ? 2 : 1)));
+    builder_.soup.corners.reserve(std::min<std::size_t>(3 * element.count, body_.left() / (body_.is_text() ? 2 : 1)));
     std::vector<std::uint32_t> corners;
     std::vector<double> texcoords;
     for (std::uint64_t r = 0; r < element.count; ++r) {
@@ -336,12 +322,10 @@ void PlyReader::read_faces(const PlyElement& element) {
                 for (std::size_t c = 0; c < 3; ++c)
                     if (i == colour.property[c]) rgb[c] = value / colour.scale;
                 if (i != texture || !has_groups) continue;
-                const bool named =
-                    value >= 0 && value < static_cast<double>(header_.textures.size());
-                group =
-                    named ? builder_.group(header_.textures[static_cast<std::size_t>(value)],
-                                           header_.textures[static_cast<std::size_t>(value)])
-                          : builder_.group("");
+                const bool named = value >= 0 && value < static_cast<double>(header_.textures.size());
+                group = named ? builder_.group(header_.textures[static_cast<std::size_t>(value)],
+                                               header_.textures[static_cast<std::size_t>(value)])
+                              : builder_.group("");
                 continue;
             }
             const std::size_t n = body_.list_size(p);

@@ -80,8 +80,7 @@ void write_ply(const std::filesystem::path& path, const PolygonSoup& soup) {
     head += "end_header\n";
 
     std::vector<char> out(head.begin(), head.end());
-    out.reserve(head.size() + 24 * soup.points.size() + 4 * soup.n_polygons() +
-                12 * soup.corners.size());
+    out.reserve(head.size() + 24 * soup.points.size() + 4 * soup.n_polygons() + 12 * soup.corners.size());
     for (std::size_t i = 0; i < soup.points.size(); ++i) {
         for (int k = 0; k < 3; ++k) append(out, static_cast<float>(soup.points[i][k]));
         if (!uvs.empty()) append(out, uvs[i]);

@@ -16,10 +16,10 @@
 namespace tuft::mesh {
 
 struct PolygonSoup {
-    std::vector<Vec3> points;              ///< in the file's unit
-    std::vector<std::uint32_t> corners;    ///< point index per polygon corner, all polygons in a row
-    std::vector<std::uint32_t> polygon_start;  ///< [n_polygons + 1] offsets into `corners`
-    std::vector<Vec2f> corner_uvs;         ///< parallel to `corners`, v up, or empty
+    std::vector<Vec3> points;                                ///< in the file's unit
+    std::vector<std::uint32_t> corners;                      ///< point index per polygon corner, all polygons in a row
+    std::vector<std::uint32_t> polygon_start;                ///< [n_polygons + 1] offsets into `corners`
+    std::vector<Vec2f> corner_uvs;                           ///< parallel to `corners`, v up, or empty
     std::vector<std::array<std::uint8_t, 4>> point_colours;  ///< [n_points] or empty
     std::vector<std::uint32_t> polygon_groups;               ///< [n_polygons] or empty
     std::vector<std::string> group_names;
@@ -31,7 +31,7 @@ struct PolygonSoup {
     /// `polygon_parts` [n_polygons] says of each face in which part it is; all faces of a part are in one group.
     std::shared_ptr<SourceScene> scene;
     std::vector<std::uint32_t> polygon_parts;
-    std::vector<std::string> warnings;     ///< one line each: what the reader dropped, with line numbers
+    std::vector<std::string> warnings;  ///< one line each: what the reader dropped, with line numbers
 
     std::size_t n_polygons() const { return polygon_start.empty() ? 0 : polygon_start.size() - 1; }
 };

@@ -18,38 +18,32 @@ namespace {
 constexpr double kWeldTolerance = 1e-6;
 
 void check_soup(const PolygonSoup& soup) {
-    const bool sound =
-        (soup.polygon_start.empty() ? soup.corners.empty()
-                                    : soup.polygon_start.front() == 0 &&
-                                          soup.polygon_start.back() == soup.corners.size()) &&
-        std::is_sorted(soup.polygon_start.begin(), soup.polygon_start.end()) &&
-        (soup.corner_uvs.empty() || soup.corner_uvs.size() == soup.corners.size()) &&
-        (soup.point_colours.empty() || soup.point_colours.size() == soup.points.size()) &&
-        (soup.polygon_groups.empty() || soup.polygon_groups.size() == soup.n_polygons()) &&
-        (soup.polygon_parts.empty() ||
-         (soup.scene && soup.polygon_parts.size() == soup.n_polygons() &&
-          soup.polygon_groups.size() == soup.n_polygons())) &&
-        (soup.materials.empty() ||
-         soup.materials.size() == (soup.polygon_groups.empty() ? 1 : soup.group_names.size()));
+    const bool sound = (soup.polygon_start.empty()
+                            ? soup.corners.empty()
+                            : soup.polygon_start.front() == 0 && soup.polygon_start.back() == soup.corners.size()) &&
+                       std::is_sorted(soup.polygon_start.begin(), soup.polygon_start.end()) &&
+                       (soup.corner_uvs.empty() || soup.corner_uvs.size() == soup.corners.size()) &&
+                       (soup.point_colours.empty() || soup.point_colours.size() == soup.points.size()) &&
+                       (soup.polygon_groups.empty() || soup.polygon_groups.size() == soup.n_polygons()) &&
+                       (soup.polygon_parts.empty() || (soup.scene && soup.polygon_parts.size() == soup.n_polygons() &&
+                                                       soup.polygon_groups.size() == soup.n_polygons())) &&
+                       (soup.materials.empty() ||
+                        soup.materials.size() == (soup.polygon_groups.empty() ? 1 : soup.group_names.size()));
     if (!sound) throw Error("the mesh's polygon arrays do not fit each other");
     for (const std::uint32_t part : soup.polygon_parts)
-        if (part >= soup.scene->parts.size())
-            throw Error("a polygon is in a part that does not exist");
+        if (part >= soup.scene->parts.size()) throw Error("a polygon is in a part that does not exist");
     for (const std::uint32_t c : soup.corners)
         if (c >= soup.points.size())
-            throw Error("a polygon uses point " + std::to_string(c) + " of " +
-                        std::to_string(soup.points.size()));
+            throw Error("a polygon uses point " + std::to_string(c) + " of " + std::to_string(soup.points.size()));
 }
 
 void check_size(const Box& bounds) {
-    if (!(bounds.diagonal() >= kSmallestModel))
-        throw Error("the mesh is smaller than a micrometre; say its unit");
+    if (!(bounds.diagonal() >= kSmallestModel)) throw Error("the mesh is smaller than a micrometre; say its unit");
 }
 
 class Repair {
   public:
-    Repair(PolygonSoup soup, const RepairOptions& options)
-        : soup_(std::move(soup)), options_(options) {}
+    Repair(PolygonSoup soup, const RepairOptions& options) : soup_(std::move(soup)), options_(options) {}
 
     Surface run();
 
@@ -71,7 +65,7 @@ class Repair {
     PolygonSoup soup_;
     RepairOptions options_;
     RepairReport report_;
-    RawMesh mesh_;  ///< its groups are parts where the soup has parts
+    RawMesh mesh_;                                           ///< its groups are parts where the soup has parts
     std::vector<std::uint32_t> part_faces_, group_of_part_;  ///< by part, or by group
     PairingReport pairs_;                                    ///< the last pairing
     std::vector<std::uint32_t> ring_;                        ///< scratch: corners of one polygon
@@ -141,9 +135,8 @@ void Repair::report_lost_parts(const TriangleMesh& mesh) {
     }
     if (n == 0) return;
     report_.warnings.push_back(std::to_string(n) + (n == 1 ? " part" : " parts") + " of the file " +
-                               (n == 1 ? "has" : "have") + " no face left (" + names +
-                               (n > kMostNames ? ", ..." : "") + "): all of " +
-                               (n == 1 ? "its " : "their ") + std::to_string(n_faces) +
+                               (n == 1 ? "has" : "have") + " no face left (" + names + (n > kMostNames ? ", ..." : "") +
+                               "): all of " + (n == 1 ? "its " : "their ") + std::to_string(n_faces) +
                                " faces are without an area or lie on faces of other parts");
 }
 
@@ -179,16 +172,14 @@ void Repair::cut_polygon(std::size_t p, EarBudget& budget) {
     ring_.clear();
     for (std::uint32_t c = begin; c < end; ++c)
         if (ring_.empty() || soup_.corners[ring_.back()] != soup_.corners[c]) ring_.push_back(c);
-    while (ring_.size() > 1 && soup_.corners[ring_.front()] == soup_.corners[ring_.back()])
-        ring_.pop_back();
+    while (ring_.size() > 1 && soup_.corners[ring_.front()] == soup_.corners[ring_.back()]) ring_.pop_back();
     if (ring_.size() < 3) {
         ++report_.degenerate_faces_dropped;
         return;
     }
     ++report_.polygons_triangulated;
     ring_points_.clear();
-    for (const std::uint32_t c : ring_)
-        ring_points_.push_back(Vec3(mesh_.positions[soup_.corners[c]]));
+    for (const std::uint32_t c : ring_) ring_points_.push_back(Vec3(mesh_.positions[soup_.corners[c]]));
     cuts_.clear();
     triangulate(ring_points_, budget, cuts_);
     for (const auto& [a, b, c] : cuts_) add_triangle(p, ring_[a], ring_[b], ring_[c]);
@@ -207,8 +198,7 @@ void Repair::cut_polygons() {
         else
             ++report_.degenerate_faces_dropped;
     }
-    if (budget.ran_out)
-        report_.warnings.push_back("a polygon is too intricate to be cut well; it became a fan");
+    if (budget.ran_out) report_.warnings.push_back("a polygon is too intricate to be cut well; it became a fan");
     soup_.corners = {};
     soup_.polygon_start = {};
     soup_.corner_uvs = {};

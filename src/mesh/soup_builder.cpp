@@ -17,8 +17,7 @@ constexpr std::size_t kMaxCorners = 0xfffffff0u;  // offsets are 32-bit
 
 std::string Tally::text(const std::string& what, const char* unit) const {
     std::string out = std::to_string(count) + " " + what + " (" + unit + " ";
-    for (std::size_t i = 0; i < places.size(); ++i)
-        out += (i ? ", " : "") + std::to_string(places[i]);
+    for (std::size_t i = 0; i < places.size(); ++i) out += (i ? ", " : "") + std::to_string(places[i]);
     return out + (count > places.size() ? ", ...)" : ")");
 }
 
@@ -32,8 +31,8 @@ void SoupBuilder::add_point(const Vec3& p, long place) {
     soup.points.push_back(fits ? p : Vec3(0));
 }
 
-void SoupBuilder::add_polygon(std::span<const std::uint32_t> corners, std::span<const Vec2f> uvs,
-                              std::uint32_t group, long place) {
+void SoupBuilder::add_polygon(std::span<const std::uint32_t> corners, std::span<const Vec2f> uvs, std::uint32_t group,
+                              long place) {
     if (corners.size() < 3) return short_polygons_.add(place);
     const std::size_t begin = soup.corners.size();
     if (begin + corners.size() > kMaxCorners) throw Error(file_, place, "too many faces");
@@ -61,8 +60,7 @@ void SoupBuilder::add_polygon(std::span<const std::uint32_t> corners, std::span<
 
 std::uint32_t SoupBuilder::group(const std::string& name, const std::string& material) {
     std::string readable = to_utf8(name);
-    const auto [it, is_new] =
-        group_of_.try_emplace(readable, static_cast<std::uint32_t>(soup.group_names.size()));
+    const auto [it, is_new] = group_of_.try_emplace(readable, static_cast<std::uint32_t>(soup.group_names.size()));
     if (is_new) {
         soup.group_names.push_back(std::move(readable));
         soup.material_names.push_back(material);
@@ -140,20 +138,15 @@ PolygonSoup SoupBuilder::finish() {
     const bool had_polygons = soup.n_polygons() > 0;
     drop_bad_points();
     if (short_polygons_.count)
-        soup.warnings.push_back(
-            short_polygons_.text("faces have fewer than three corners and were dropped", unit_));
+        soup.warnings.push_back(short_polygons_.text("faces have fewer than three corners and were dropped", unit_));
     if (bad_uvs_.count)
-        soup.warnings.push_back(
-            bad_uvs_.text("faces have texture coordinates that are not finite", unit_));
+        soup.warnings.push_back(bad_uvs_.text("faces have texture coordinates that are not finite", unit_));
     if (no_uv_.count)
-        soup.warnings.push_back(std::to_string(no_uv_.count) +
-                                " faces have no texture coordinates while others do");
+        soup.warnings.push_back(std::to_string(no_uv_.count) + " faces have no texture coordinates while others do");
     if (soup.n_polygons() == 0) {
-        if (had_polygons)
-            throw Error(file_, "every face uses a vertex that is no finite number or lies beyond 1e10");
+        if (had_polygons) throw Error(file_, "every face uses a vertex that is no finite number or lies beyond 1e10");
         if (n_points > 0)
-            throw Error(file_, "has " + std::to_string(n_points) +
-                                   " vertices but no faces; a surface is needed");
+            throw Error(file_, "has " + std::to_string(n_points) + " vertices but no faces; a surface is needed");
         throw Error(file_, "has no vertices and no faces");
     }
     finish_groups();
@@ -162,8 +155,7 @@ PolygonSoup SoupBuilder::finish() {
 
 void SoupBuilder::finish_groups() {
     std::vector<std::uint32_t>& groups = soup.polygon_groups;
-    if (too_many_colours_)
-        soup.warnings.push_back("faces have more than 256 colours, too many to be groups of faces");
+    if (too_many_colours_) soup.warnings.push_back("faces have more than 256 colours, too many to be groups of faces");
     const bool by_colour = !group_of_colour_.empty() && !too_many_colours_;
     const bool all_one = std::adjacent_find(groups.begin(), groups.end(), std::not_equal_to<>()) == groups.end();
     group_colours_.resize(soup.group_names.size(), Vec3f(1));
@@ -189,9 +181,7 @@ std::array<std::uint8_t, 4> colour_from(const std::array<double, 4>& channels, b
     std::array<std::uint8_t, 4> colour{};
     for (int k = 0; k < 4; ++k) {
         const double value = is_real ? channels[k] * 255 : channels[k];
-        colour[k] = std::isnan(value)
-                        ? 0
-                        : static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+        colour[k] = std::isnan(value) ? 0 : static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
     }
     return colour;
 }

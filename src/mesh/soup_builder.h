@@ -26,8 +26,7 @@ struct Tally {
 
 class SoupBuilder {
   public:
-    SoupBuilder(std::string file, const char* place_unit)
-        : file_(std::move(file)), unit_(place_unit) {}
+    SoupBuilder(std::string file, const char* place_unit) : file_(std::move(file)), unit_(place_unit) {}
 
     PolygonSoup soup;
 
@@ -35,8 +34,8 @@ class SoupBuilder {
     void add_point(const Vec3& p, long place);
     /// Adds a polygon over point indices already in range; fewer than three corners are dropped.
     /// `uvs` is empty or has one entry per corner.
-    void add_polygon(std::span<const std::uint32_t> corners, std::span<const Vec2f> uvs,
-                     std::uint32_t group, long place);
+    void add_polygon(std::span<const std::uint32_t> corners, std::span<const Vec2f> uvs, std::uint32_t group,
+                     long place);
     /// Index of the group with this name (as UTF-8, see `to_utf8`), new if need be; `material` is what its
     /// faces are made of, as the file spells it.
     std::uint32_t group(const std::string& name, const std::string& material = "");

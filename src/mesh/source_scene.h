@@ -23,7 +23,7 @@ struct ScenePart {
 
 struct SourceScene {
     std::vector<ScenePart> parts;
-    std::string document;      ///< JSON of a glTF 2.0 file with one buffer and no outside files
+    std::string document;               ///< JSON of a glTF 2.0 file with one buffer and no outside files
     std::vector<unsigned char> buffer;  ///< the bytes of that buffer
 };
 

@@ -44,8 +44,7 @@ class FacetColours {
         const std::size_t at = head.find(kKey);
         magics_ = at != std::string_view::npos && at + kKey.size() + 4 <= head.size();
         if (!magics_) return;
-        for (std::size_t k = 0; k < 4; ++k)
-            whole_[k] = static_cast<std::uint8_t>(head[at + kKey.size() + k]);
+        for (std::size_t k = 0; k < 4; ++k) whole_[k] = static_cast<std::uint8_t>(head[at + kKey.size() + k]);
     }
 
     std::uint32_t group(std::uint16_t bits, SoupBuilder& builder) const {
@@ -64,24 +63,20 @@ class FacetColours {
 
 PolygonSoup read_binary(const std::vector<char>& bytes, const std::string& file) {
     if (bytes.size() < kHead)
-        throw Error(file,
-                    "is too short to be an STL file (" + std::to_string(bytes.size()) + " bytes)");
+        throw Error(file, "is too short to be an STL file (" + std::to_string(bytes.size()) + " bytes)");
     const std::size_t promised = count_in_head(bytes);
     const std::size_t held = (bytes.size() - kHead) / kTriangle;
     SoupBuilder builder(file, "triangle");
     std::size_t n = promised;
     if (promised == 0 && held > 0 && (bytes.size() - kHead) % kTriangle == 0) {
-        builder.soup.warnings.push_back("the head says 0 triangles, the file holds " +
-                                        std::to_string(held));
+        builder.soup.warnings.push_back("the head says 0 triangles, the file holds " + std::to_string(held));
         n = held;
     } else if (promised > held) {
-        throw Error(file, "the head promises " + std::to_string(promised) +
-                              " triangles, but the file holds only " + std::to_string(held) +
-                              "; it is cut off or not an STL file");
+        throw Error(file, "the head promises " + std::to_string(promised) + " triangles, but the file holds only " +
+                              std::to_string(held) + "; it is cut off or not an STL file");
     } else if (kHead + promised * kTriangle != bytes.size()) {
-        builder.soup.warnings.push_back(
-            std::to_string(bytes.size() - kHead - promised * kTriangle) +
-            " bytes behind the last triangle are not read");
+        builder.soup.warnings.push_back(std::to_string(bytes.size() - kHead - promised * kTriangle) +
+                                        " bytes behind the last triangle are not read");
     }
     builder.soup.points.reserve(3 * n);
     builder.soup.corners.reserve(3 * n);
@@ -95,8 +90,7 @@ PolygonSoup read_binary(const std::vector<char>& bytes, const std::string& file)
         std::memcpy(&attribute, bytes.data() + kHead + kTriangle * t + sizeof values, sizeof attribute);
         const auto first = static_cast<std::uint32_t>(builder.soup.points.size());
         for (int k = 1; k <= 3; ++k)
-            builder.add_point({values[3 * k], values[3 * k + 1], values[3 * k + 2]},
-                              static_cast<long>(t + 1));
+            builder.add_point({values[3 * k], values[3 * k + 1], values[3 * k + 2]}, static_cast<long>(t + 1));
         const std::uint32_t corners[3] = {first, first + 1, first + 2};
         builder.add_polygon(corners, {}, colours.group(attribute, builder), static_cast<long>(t + 1));
     }
@@ -151,8 +145,7 @@ PolygonSoup read_text(const std::vector<char>& bytes, const std::string& file) {
 
 PolygonSoup read_stl(const std::vector<char>& bytes, const std::filesystem::path& path) {
     const std::string file = path.string();
-    const bool exact_binary =
-        bytes.size() >= kHead && bytes.size() == kHead + kTriangle * count_in_head(bytes);
+    const bool exact_binary = bytes.size() >= kHead && bytes.size() == kHead + kTriangle * count_in_head(bytes);
     if (!exact_binary && looks_like_text(bytes, file)) return read_text(bytes, file);
     return read_binary(bytes, file);
 }

@@ -62,8 +62,7 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
     const double distance2 = glm::dot(d, d);
     if (!(distance2 <= best.limit2)) return false;
     // Equal distances (shared edges and corners) go to the lower index, whatever the visit order.
-    if (best.triangle != kNone &&
-        (distance2 > best.distance2 || (distance2 == best.distance2 && t > best.triangle)))
+    if (best.triangle != kNone && (distance2 > best.distance2 || (distance2 == best.distance2 && t > best.triangle)))
         return false;
     best.triangle = t;
     best.b1 = b.x;
@@ -93,8 +92,8 @@ bool visit_vertices(RTCPointQueryFunctionArguments* args) {
     const Vec3 area = glm::cross(best.mesh->position(t, 1) - a, best.mesh->position(t, 2) - a);
     for (int corner = 0; corner < 3; ++corner) {
         const std::uint32_t v = best.mesh->triangles[t][corner];
-        const auto known = std::find_if(best.found.begin(), best.found.end(),
-                                        [&](const NearVertex& n) { return n.index == v; });
+        const auto known =
+            std::find_if(best.found.begin(), best.found.end(), [&](const NearVertex& n) { return n.index == v; });
         if (known != best.found.end()) {
             known->normal += area;
             continue;
@@ -105,8 +104,7 @@ bool visit_vertices(RTCPointQueryFunctionArguments* args) {
         const auto nearer = [](const NearVertex& x, const NearVertex& y) {
             return x.distance < y.distance || (x.distance == y.distance && x.index < y.index);
         };
-        best.found.insert(std::upper_bound(best.found.begin(), best.found.end(), candidate, nearer),
-                          candidate);
+        best.found.insert(std::upper_bound(best.found.begin(), best.found.end(), candidate, nearer), candidate);
         if (best.found.size() > best.k) best.found.pop_back();
     }
     if (best.found.size() < best.k) return false;
@@ -118,8 +116,7 @@ bool visit_vertices(RTCPointQueryFunctionArguments* args) {
 
 /// Metres that rounding to single precision can hide from the box tests round p.
 double rounding_slack(const TriangleMesh& mesh, const Vec3& p) {
-    return 4e-7 *
-           (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + mesh.bounds.diagonal());
+    return 4e-7 * (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + mesh.bounds.diagonal());
 }
 
 RTCPointQuery make_query(const Vec3& p, double radius) {
@@ -134,9 +131,8 @@ RTCPointQuery make_query(const Vec3& p, double radius) {
 void check(RTCDevice device, const char* what) {
     const RTCError code = rtcGetDeviceError(device);
     if (code == RTC_ERROR_NONE) return;
-    throw Error(std::string("cannot build the search tree of the mesh (") + what + "): " +
-                (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory"
-                                                 : "Embree error " + std::to_string(code)));
+    throw Error(std::string("cannot build the search tree of the mesh (") + what +
+                "): " + (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "Embree error " + std::to_string(code)));
 }
 
 RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) {
@@ -189,9 +185,8 @@ SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : state_(std::make_unique<S
     // Embree reads 16 bytes at every vertex, for which its own buffers are padded and ours are not; triangles
     // it reads where they are.
     if (!mesh.triangles.empty()) {
-        void* vertices =
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                    sizeof(Vec3f), mesh.n_vertices());
+        void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f),
+                                                 mesh.n_vertices());
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
                                    3 * sizeof(std::uint32_t), mesh.n_triangles());
         if (!vertices) {
@@ -229,8 +224,7 @@ std::optional<SurfacePoint> SurfaceQuery::closest_point(const Vec3& p, double ma
     return s;
 }
 
-std::vector<NearVertex> SurfaceQuery::nearest_vertices(const Vec3& p, int k,
-                                                       double max_distance) const {
+std::vector<NearVertex> SurfaceQuery::nearest_vertices(const Vec3& p, int k, double max_distance) const {
     if (!within(p, kEmbreeLimit) || k <= 0 || !(max_distance >= 0)) return {};
     Nearest best;
     best.mesh = state_->mesh;
@@ -249,24 +243,20 @@ std::vector<NearVertex> SurfaceQuery::nearest_vertices(const Vec3& p, int k,
     return std::move(best.found);
 }
 
-std::optional<SurfacePoint> SurfaceQuery::ray(const Vec3& origin, const Vec3& direction,
-                                              double t_min, double t_max) const {
-    const RayHit hit = trace(Vec3f(origin), Vec3f(direction), static_cast<float>(t_min),
-                             static_cast<float>(t_max));
+std::optional<SurfacePoint> SurfaceQuery::ray(const Vec3& origin, const Vec3& direction, double t_min,
+                                              double t_max) const {
+    const RayHit hit = trace(Vec3f(origin), Vec3f(direction), static_cast<float>(t_min), static_cast<float>(t_max));
     if (hit.triangle == kNone) return std::nullopt;
     SurfacePoint s = surface_point(*state_->mesh, hit.triangle, hit.b1, hit.b2);
     s.distance = glm::dot(s.position - origin, direction);
     return s;
 }
 
-bool SurfaceQuery::occluded(const Vec3& origin, const Vec3& direction, double t_min,
-                            double t_max) const {
-    return blocked(Vec3f(origin), Vec3f(direction), static_cast<float>(t_min),
-                   static_cast<float>(t_max));
+bool SurfaceQuery::occluded(const Vec3& origin, const Vec3& direction, double t_min, double t_max) const {
+    return blocked(Vec3f(origin), Vec3f(direction), static_cast<float>(t_min), static_cast<float>(t_max));
 }
 
-RayHit SurfaceQuery::trace(const Vec3f& origin, const Vec3f& direction, float t_min,
-                           float t_max) const {
+RayHit SurfaceQuery::trace(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) const {
     if (!is_ray(origin, direction, t_min, t_max)) return {};
     RTCRayHit rayhit{};
     rayhit.ray = make_ray(origin, direction, t_min, t_max);
@@ -278,8 +268,7 @@ RayHit SurfaceQuery::trace(const Vec3f& origin, const Vec3f& direction, float t_
     return {rayhit.hit.primID, rayhit.hit.u, rayhit.hit.v, rayhit.ray.tfar};
 }
 
-bool SurfaceQuery::blocked(const Vec3f& origin, const Vec3f& direction, float t_min,
-                           float t_max) const {
+bool SurfaceQuery::blocked(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) const {
     if (!is_ray(origin, direction, t_min, t_max)) return false;
     RTCRay ray = make_ray(origin, direction, t_min, t_max);
     RTCIntersectContext context;

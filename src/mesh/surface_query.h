@@ -36,13 +36,13 @@ class SurfaceQuery {
 
     /// Exact closest point within `max_distance` metres of `p`, or nothing.
     /// A small `max_distance` makes it faster: 1–3 µs near the surface.
-    std::optional<SurfacePoint> closest_point(
-        const Vec3& p, double max_distance = std::numeric_limits<double>::infinity()) const;
+    std::optional<SurfacePoint> closest_point(const Vec3& p,
+                                              double max_distance = std::numeric_limits<double>::infinity()) const;
 
     /// The `k` vertices nearest to `p` among those that triangles use, nearest first, fewer
     /// where `max_distance` metres does not hold so many.
-    std::vector<NearVertex> nearest_vertices(
-        const Vec3& p, int k, double max_distance = std::numeric_limits<double>::infinity()) const;
+    std::vector<NearVertex> nearest_vertices(const Vec3& p, int k,
+                                             double max_distance = std::numeric_limits<double>::infinity()) const;
 
     /// First hit of the ray at a distance in [t_min, t_max]; `direction` is unit length.
     /// Both sides of a triangle are hit.

@@ -29,8 +29,7 @@ constexpr double kFloatStep = 1.2e-7;  // relative spacing of float numbers
 bool is_flat_to_rounding(const RawMesh& mesh, std::size_t t) {
     const std::array<Vec3, 3> p = points_of(mesh, t);
     double largest = 0;
-    for (const Vec3& q : p)
-        largest = std::max({largest, std::abs(q.x), std::abs(q.y), std::abs(q.z)});
+    for (const Vec3& q : p) largest = std::max({largest, std::abs(q.x), std::abs(q.y), std::abs(q.z)});
     const Shape s = shape_of(p);
     return s.height <= std::max(kFlat * s.longest, kFloatStep * largest);
 }
@@ -45,8 +44,7 @@ struct Spoke {
 
 /// Gives the corners of each run of spokes between creases the run's mean normal.
 void average_runs(std::span<Spoke> spokes, std::vector<Vec3f>& normals) {
-    const auto first =
-        std::find_if(spokes.begin(), spokes.end(), [](const Spoke& s) { return s.after_crease; });
+    const auto first = std::find_if(spokes.begin(), spokes.end(), [](const Spoke& s) { return s.after_crease; });
     if (first != spokes.end()) std::rotate(spokes.begin(), first, spokes.end());
     for (std::size_t begin = 0, end = 0; begin < spokes.size(); begin = end) {
         Vec3 sum(0);
@@ -78,9 +76,7 @@ struct SurfaceTopology::State {
     /// Half-edge from corner k to corner k + 1: a face's own half-edge starts at corner 0.
     HalfedgeHandle half_edge(std::size_t t, int k) const {
         const HalfedgeHandle first = mesh.halfedge_handle(face(t));
-        return k == 0   ? first
-               : k == 1 ? mesh.next_halfedge_handle(first)
-                        : mesh.prev_halfedge_handle(first);
+        return k == 0 ? first : k == 1 ? mesh.next_halfedge_handle(first) : mesh.prev_halfedge_handle(first);
     }
     /// Corner of its triangle at which h starts.
     std::size_t corner(HalfedgeHandle h) const {
@@ -135,8 +131,7 @@ void SurfaceTopology::State::link_borders() {
     for (const auto h : mesh.halfedges())
         if (mesh.is_boundary(h)) mesh.set_halfedge_handle(mesh.from_vertex_handle(h), h);
     for (const auto h : mesh.halfedges())
-        if (mesh.is_boundary(h))
-            mesh.set_next_halfedge_handle(h, mesh.halfedge_handle(mesh.to_vertex_handle(h)));
+        if (mesh.is_boundary(h)) mesh.set_next_halfedge_handle(h, mesh.halfedge_handle(mesh.to_vertex_handle(h)));
 }
 
 SurfaceTopology::SurfaceTopology(const RawMesh& mesh) : state_(std::make_unique<State>()) {
@@ -162,16 +157,15 @@ bool SurfaceTopology::State::flip_flat(std::size_t t, RawMesh& raw) {
     const HalfedgeHandle h = half_edge(t, before.longest_side);
     const auto edge = mesh.edge_handle(h);
     const HalfedgeHandle over = mesh.opposite_halfedge_handle(h);
-    if (mesh.is_boundary(over) || is_hub(mesh.prev_halfedge_handle(h)) ||
-        is_hub(mesh.prev_halfedge_handle(over)) || !mesh.is_flip_ok(edge))
+    if (mesh.is_boundary(over) || is_hub(mesh.prev_halfedge_handle(h)) || is_hub(mesh.prev_halfedge_handle(over)) ||
+        !mesh.is_flip_ok(edge))
         return false;
     // a, c: the long side; b: the corner that lies on it; d: the far corner of the neighbour.
     const std::size_t ca = corner(h), cb = corner(mesh.prev_halfedge_handle(h));
     const std::size_t cc = corner(over), cd = corner(mesh.prev_halfedge_handle(over));
     const std::size_t ca_over = corner(mesh.next_halfedge_handle(over));
     const auto vertex_at = [&](std::size_t c) { return raw.triangles[c / 3][c % 3]; };
-    const std::array<std::uint32_t, 4> v{vertex_at(ca), vertex_at(cb), vertex_at(cc),
-                                         vertex_at(cd)};
+    const std::array<std::uint32_t, 4> v{vertex_at(ca), vertex_at(cb), vertex_at(cc), vertex_at(cd)};
     std::array<Vec3, 4> p;
     for (int k = 0; k < 4; ++k) p[k] = Vec3(raw.positions[v[k]]);
     const Shape s1 = shape_of({p[0], p[3], p[1]}), s2 = shape_of({p[3], p[2], p[1]});
@@ -185,8 +179,7 @@ bool SurfaceTopology::State::flip_flat(std::size_t t, RawMesh& raw) {
     if (!raw.uvs.empty()) {
         const Vec3 side = p[2] - p[0];
         const auto along = static_cast<float>(glm::dot(p[1] - p[0], side) / glm::dot(side, side));
-        uv = {raw.uvs[ca_over], glm::mix(raw.uvs[ca_over], raw.uvs[cc], along), raw.uvs[cc],
-              raw.uvs[cd]};
+        uv = {raw.uvs[ca_over], glm::mix(raw.uvs[ca_over], raw.uvs[cc], along), raw.uvs[cc], raw.uvs[cd]};
     }
     if (!raw.groups.empty()) raw.groups[t] = raw.groups[other];
     mesh.flip(edge);
@@ -195,8 +188,7 @@ bool SurfaceTopology::State::flip_flat(std::size_t t, RawMesh& raw) {
             const std::uint32_t at = index(mesh.from_vertex_handle(half_edge(f, k)));
             raw.triangles[f][static_cast<std::size_t>(k)] = at;
             const auto which = std::find(v.begin(), v.end(), at) - v.begin();
-            if (!raw.uvs.empty())
-                raw.uvs[3 * f + static_cast<std::size_t>(k)] = uv[static_cast<std::size_t>(which)];
+            if (!raw.uvs.empty()) raw.uvs[3 * f + static_cast<std::size_t>(k)] = uv[static_cast<std::size_t>(which)];
         }
     return true;
 }
@@ -262,8 +254,7 @@ std::size_t SurfaceTopology::n_border_loops() const {
     for (const auto first : mesh.halfedges()) {
         if (seen[index(first)] || !mesh.is_boundary(first)) continue;
         ++loops;
-        for (HalfedgeHandle h = first; !seen[index(h)]; h = mesh.next_halfedge_handle(h))
-            seen[index(h)] = true;
+        for (HalfedgeHandle h = first; !seen[index(h)]; h = mesh.next_halfedge_handle(h)) seen[index(h)] = true;
     }
     return loops;
 }
@@ -285,8 +276,7 @@ Vec3 SurfaceTopology::State::point(HalfedgeHandle h) const {
 }
 
 /// The triangles around vertex v, counter-clockwise; `spokes` is filled anew.
-void SurfaceTopology::State::fan(std::size_t v, double cos_crease,
-                                 const std::vector<Vec3f>& face_normals,
+void SurfaceTopology::State::fan(std::size_t v, double cos_crease, const std::vector<Vec3f>& face_normals,
                                  std::vector<Spoke>& spokes) const {
     spokes.clear();
     const HalfedgeHandle own = mesh.halfedge_handle(vertex(static_cast<std::uint32_t>(v)));

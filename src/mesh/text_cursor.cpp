@@ -116,11 +116,9 @@ double TextCursor::number(const char* what) {
         while (!token_ends(at_)) ++at_;
         const std::string_view token(begin, static_cast<std::size_t>(at_ - begin));
         // Old Windows programs write 1.#QNAN, -1.#IND and 1.#INF.
-        if (ec == std::errc() && token.find(".#") != token.npos)
-            return std::numeric_limits<double>::quiet_NaN();
+        if (ec == std::errc() && token.find(".#") != token.npos) return std::numeric_limits<double>::quiet_NaN();
         const bool comment_follows = ec == std::errc() && *stop == syntax_.comment;
-        if (!comment_follows)
-            fail(in_quotes(token) + " is not a number (" + what + " was expected)");
+        if (!comment_follows) fail(in_quotes(token) + " is not a number (" + what + " was expected)");
         at_ = stop;
     }
     const std::string_view spelled(begin, static_cast<std::size_t>(stop - begin));

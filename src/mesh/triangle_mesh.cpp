@@ -7,8 +7,8 @@ SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t triangle, dou
     const Vec3 d1 = mesh.position(triangle, 1) - p0;
     const Vec3 d2 = mesh.position(triangle, 2) - p0;
     const std::size_t c = 3 * std::size_t{triangle};
-    const Vec3 n = (1 - b1 - b2) * Vec3(mesh.corner_normals[c]) +
-                   b1 * Vec3(mesh.corner_normals[c + 1]) + b2 * Vec3(mesh.corner_normals[c + 2]);
+    const Vec3 n = (1 - b1 - b2) * Vec3(mesh.corner_normals[c]) + b1 * Vec3(mesh.corner_normals[c + 1]) +
+                   b2 * Vec3(mesh.corner_normals[c + 2]);
     SurfacePoint s;
     s.triangle = triangle;
     s.b1 = b1;

@@ -17,25 +17,23 @@
 namespace tuft::mesh {
 
 struct TriangleMesh {
-    std::vector<Vec3f> positions;                        ///< [n_vertices], metres
-    std::vector<std::array<std::uint32_t, 3>> triangles; ///< [n_triangles] vertex indices
-    std::vector<Vec3f> corner_normals;       ///< [3 n_triangles], unit; split at creases above 40°
-    std::vector<std::uint32_t> neighbours;   ///< [3 n_triangles] triangle over the edge from corner
-                                             ///< k to corner k+1, kNone on a border
-    std::vector<Vec2f> corner_uvs;           ///< [3 n_triangles] as in the file (v up), or empty
+    std::vector<Vec3f> positions;                             ///< [n_vertices], metres
+    std::vector<std::array<std::uint32_t, 3>> triangles;      ///< [n_triangles] vertex indices
+    std::vector<Vec3f> corner_normals;                        ///< [3 n_triangles], unit; split at creases above 40°
+    std::vector<std::uint32_t> neighbours;                    ///< [3 n_triangles] triangle over the edge from corner
+                                                              ///< k to corner k+1, kNone on a border
+    std::vector<Vec2f> corner_uvs;                            ///< [3 n_triangles] as in the file (v up), or empty
     std::vector<std::array<std::uint8_t, 4>> vertex_colours;  ///< [n_vertices] RGBA, or empty
-    std::vector<std::uint32_t> triangle_groups;  ///< [n_triangles] index into group_names, or empty
+    std::vector<std::uint32_t> triangle_groups;               ///< [n_triangles] index into group_names, or empty
     std::vector<std::string> group_names;
-    std::vector<Material> materials;  ///< [n_groups], or one for all without groups, or empty
-    std::shared_ptr<const SourceScene> scene;    ///< objects and materials of the file, or null
-    std::vector<std::uint32_t> triangle_parts;   ///< [n_triangles] index into scene->parts; empty: the groups
+    std::vector<Material> materials;            ///< [n_groups], or one for all without groups, or empty
+    std::shared_ptr<const SourceScene> scene;   ///< objects and materials of the file, or null
+    std::vector<std::uint32_t> triangle_parts;  ///< [n_triangles] index into scene->parts; empty: the groups
     Box bounds;
 
     std::size_t n_vertices() const { return positions.size(); }
     std::size_t n_triangles() const { return triangles.size(); }
-    Vec3 position(std::size_t triangle, int corner) const {
-        return Vec3(positions[triangles[triangle][corner]]);
-    }
+    Vec3 position(std::size_t triangle, int corner) const { return Vec3(positions[triangles[triangle][corner]]); }
 };
 
 /// Index of a triangle's part: object, group and material of the file together.
@@ -53,10 +51,10 @@ inline bool has_colours(const TriangleMesh& mesh) {
 struct SurfacePoint {
     std::uint32_t triangle = kNone;
     double b1 = 0, b2 = 0;
-    Vec3 position{0};        ///< metres
-    Vec3 normal{0, 0, 1};    ///< unit, corner normals interpolated
+    Vec3 position{0};           ///< metres
+    Vec3 normal{0, 0, 1};       ///< unit, corner normals interpolated
     Vec3 face_normal{0, 0, 1};  ///< unit, of the flat triangle
-    double distance = 0;     ///< metres: from the query point, or along the ray
+    double distance = 0;        ///< metres: from the query point, or along the ray
 };
 
 /// The point of `triangle` with the given weights; `distance` is left 0.

@@ -26,8 +26,7 @@ double quad_cut_quality(std::span<const Vec3> p, const Vec3& normal, int first) 
         const Vec3 &a = p[(first + 2 * half) % 4], &b = p[(first + 2 * half + 1) % 4],
                    &c = p[(first + 2 * half + 2) % 4];
         const Vec3 area = glm::cross(b - a, c - a);
-        const double longest =
-            std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
+        const double longest = std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
         worst = std::min(worst, longest > 0 ? glm::dot(area, normal) / longest : 0.0);
     }
     return worst;
@@ -41,8 +40,7 @@ void cut_quad(std::span<const Vec3> p, std::vector<std::array<std::uint32_t, 3>>
     constexpr double kSound = 1e-3;
     const double q02 = quad_cut_quality(p, normal, 0), q13 = quad_cut_quality(p, normal, 1);
     bool along_02 = q02 >= q13;
-    if (q02 > kSound && q13 > kSound)
-        along_02 = glm::distance(p[0], p[2]) <= glm::distance(p[1], p[3]);
+    if (q02 > kSound && q13 > kSound) along_02 = glm::distance(p[0], p[2]) <= glm::distance(p[1], p[3]);
     if (along_02) {
         triangles.push_back({0, 1, 2});
         triangles.push_back({0, 2, 3});
@@ -92,9 +90,7 @@ class EarClipper {
         }
     }
 
-    double bend(std::uint32_t i) const {
-        return cross2(points_[previous_[i]], points_[i], points_[next_[i]]);
-    }
+    double bend(std::uint32_t i) const { return cross2(points_[previous_[i]], points_[i], points_[next_[i]]); }
     bool is_convex(std::uint32_t i) const { return bend(i) > 0; }
 
     /// No other corner lies in the triangle; corners at one of its three places do not count.
@@ -143,9 +139,8 @@ class EarClipper {
     void forget_unbent(std::uint32_t before, std::uint32_t after, std::uint32_t ear) {
         budget_.tests -= std::min<std::uint64_t>(budget_.tests, reflex_.size());
         if (budget_.tests == 0) return;
-        std::erase_if(reflex_, [&](std::uint32_t r) {
-            return r == ear || ((r == before || r == after) && is_convex(r));
-        });
+        std::erase_if(reflex_,
+                      [&](std::uint32_t r) { return r == ear || ((r == before || r == after) && is_convex(r)); });
     }
 
     EarBudget& budget_;

@@ -36,9 +36,8 @@ std::uint64_t hash_point(const Vec3f& p) {
 using Cell = std::array<std::int64_t, 3>;
 
 std::uint64_t hash_cell(const Cell& c) {
-    return hash_bits(
-        static_cast<std::uint64_t>(c[0]) ^ std::rotl(static_cast<std::uint64_t>(c[1]), 32),
-        static_cast<std::uint64_t>(c[2]));
+    return hash_bits(static_cast<std::uint64_t>(c[0]) ^ std::rotl(static_cast<std::uint64_t>(c[1]), 32),
+                     static_cast<std::uint64_t>(c[2]));
 }
 
 }  // namespace
@@ -64,8 +63,8 @@ std::vector<std::uint32_t> weld_exact(std::span<const Vec3f> points) {
     return target;
 }
 
-void weld_near(std::span<const Vec3f> points, std::span<const std::uint32_t> candidates,
-               double tolerance, std::vector<std::uint32_t>& target) {
+void weld_near(std::span<const Vec3f> points, std::span<const std::uint32_t> candidates, double tolerance,
+               std::vector<std::uint32_t>& target) {
     if (!(tolerance > 0)) return;
     // Cells are as wide as the tolerance reaches, so two neighbours per axis are enough.
     const double width = 2 * tolerance;

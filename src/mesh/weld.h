@@ -16,7 +16,7 @@ std::vector<std::uint32_t> weld_exact(std::span<const Vec3f> points);
 /// Among the points named in `candidates` (ascending), each goes to the first earlier candidate
 /// that stands for itself and lies within `tolerance` metres, the nearest if there are several.
 /// Changes only those entries of `target`. Linear time by a grid of cells of that size.
-void weld_near(std::span<const Vec3f> points, std::span<const std::uint32_t> candidates,
-               double tolerance, std::vector<std::uint32_t>& target);
+void weld_near(std::span<const Vec3f> points, std::span<const std::uint32_t> candidates, double tolerance,
+               std::vector<std::uint32_t>& target);
 
 }  // namespace tuft::mesh

@@ -20,8 +20,7 @@ void check(const View& view, int width, int height) {
         throw Error("the field of view must be between 0.06 and 171 degrees");
     if (!std::isfinite(view.azimuth) || !(std::abs(view.elevation) <= std::numbers::pi / 2 + 1e-9))
         throw Error("the view's elevation must be within -90 to 90 degrees");
-    if (!(view.margin >= 0 && view.margin < 0.49))
-        throw Error("the view's margin must be within 0 to 0.49");
+    if (!(view.margin >= 0 && view.margin < 0.49)) throw Error("the view's margin must be within 0 to 0.49");
 }
 
 }  // namespace
@@ -71,8 +70,7 @@ Camera make_camera(const View& view, int width, int height, std::span<const Vec3
 
 Vec3 ray_direction(const Camera& c, double x, double y) {
     const double s = 2 * c.tan_half_height / c.height;
-    return glm::normalize(c.forward + s * (x - 0.5 * c.width) * c.right -
-                          s * (y - 0.5 * c.height) * c.up);
+    return glm::normalize(c.forward + s * (x - 0.5 * c.width) * c.right - s * (y - 0.5 * c.height) * c.up);
 }
 
 std::optional<Vec3> project(const Camera& c, const Vec3& p) {
@@ -80,8 +78,7 @@ std::optional<Vec3> project(const Camera& c, const Vec3& p) {
     const double z = glm::dot(d, c.forward);
     if (!(z > 0)) return std::nullopt;
     const double s = c.height / (2 * c.tan_half_height * z);
-    return Vec3{0.5 * c.width + s * glm::dot(d, c.right), 0.5 * c.height - s * glm::dot(d, c.up),
-                z};
+    return Vec3{0.5 * c.width + s * glm::dot(d, c.right), 0.5 * c.height - s * glm::dot(d, c.up), z};
 }
 
 }  // namespace tuft::render

@@ -11,20 +11,20 @@ namespace tuft::render {
 /// From where the model is seen. Azimuth turns about z: at 0 the camera stands on the
 /// -y side and looks towards +y, at π/2 on the +x side. Elevation lifts it above the ground.
 struct View {
-    double azimuth = 0.6;         ///< radians
-    double elevation = 0.45;      ///< radians, within ±π/2
-    double field_of_view = 0.42;  ///< radians, over the picture's height, in (0, 3)
-    double margin = 0.1;          ///< part of the picture kept free on each side when fitting
-    std::optional<Vec3> target;   ///< metres; looks here instead of fitting the whole object
-    double distance = 0;  ///< metres from eye to target; 0: such that `width_at_target` fits
+    double azimuth = 0.6;          ///< radians
+    double elevation = 0.45;       ///< radians, within ±π/2
+    double field_of_view = 0.42;   ///< radians, over the picture's height, in (0, 3)
+    double margin = 0.1;           ///< part of the picture kept free on each side when fitting
+    std::optional<Vec3> target;    ///< metres; looks here instead of fitting the whole object
+    double distance = 0;           ///< metres from eye to target; 0: such that `width_at_target` fits
     double width_at_target = 0.1;  ///< metres seen across the picture at the target
 };
 
 struct Camera {
     Vec3 eye{0};                                         ///< metres
     Vec3 right{1, 0, 0}, up{0, 0, 1}, forward{0, 1, 0};  ///< unit, orthogonal
-    double tan_half_height = 0.2;    ///< of half the field of view over the height
-    int width = 1280, height = 720;  ///< pixels
+    double tan_half_height = 0.2;                        ///< of half the field of view over the height
+    int width = 1280, height = 720;                      ///< pixels
 };
 
 /// Camera for a picture of `width` × `height` pixels. Without a target the eye stands as

@@ -6,19 +6,19 @@ namespace tuft::render {
 
 /// Camera of the window: a pinhole, or a parallel projection.
 struct GlCamera {
-    Vec3 eye{0};                    ///< metres, world
+    Vec3 eye{0};  ///< metres, world
     Vec3 right{1, 0, 0}, up{0, 0, 1}, forward{0, 1, 0};
-    double field_of_view = 0.6;     ///< radians over the height
-    double parallel_height = 0;     ///< metres seen over the height; 0: pinhole
-    double near = 0.01, far = 10;   ///< metres
-    int width = 1280, height = 720; ///< pixels
+    double field_of_view = 0.6;      ///< radians over the height
+    double parallel_height = 0;      ///< metres seen over the height; 0: pinhole
+    double near = 0.01, far = 10;    ///< metres
+    int width = 1280, height = 720;  ///< pixels
 
     bool operator==(const GlCamera&) const = default;
 };
 
 struct GlRay {
-    Vec3 origin{0};                 ///< metres, world
-    Vec3 direction{0, 1, 0};        ///< unit
+    Vec3 origin{0};           ///< metres, world
+    Vec3 direction{0, 1, 0};  ///< unit
 };
 
 /// The ray seen at a place of the picture (pixels, origin at the top left).

@@ -9,10 +9,11 @@
 namespace tuft::render {
 
 struct GlLight {
-    Vec3f key{0, 0, 1}, fill{0, 0, 1};            ///< unit, world, towards the lamps
+    Vec3f key{0, 0, 1}, fill{0, 0, 1};                                       ///< unit, world, towards the lamps
     Vec3f key_light{0.52f, 0.51f, 0.49f}, fill_light{0.10f, 0.11f, 0.125f};  ///< linear radiance
     Vec3f ground{0.24f, 0.235f, 0.23f}, sky{0.54f, 0.555f, 0.58f};           ///< of the dome
-    float relief = 0;                             ///< times that thin ink is shown as high as it is; thick paint is not exaggerated; 0: none is shown
+    float relief =
+        0;  ///< times that thin ink is shown as high as it is; thick paint is not exaggerated; 0: none is shown
 
     bool operator==(const GlLight&) const = default;
 };

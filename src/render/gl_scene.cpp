@@ -47,7 +47,8 @@ std::vector<std::uint32_t> spatial_order(const mesh::TriangleMesh& mesh) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
     keys.reserve(mesh.n_triangles());
     for (std::uint32_t t = 0; t < mesh.n_triangles(); ++t) {
-        const Vec3 p = ((mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3.0 - mesh.bounds.lo) / std::max({size.x, size.y, size.z});
+        const Vec3 p = ((mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3.0 - mesh.bounds.lo) /
+                       std::max({size.x, size.y, size.z});
         const auto cell = [](double v) { return static_cast<std::uint64_t>(std::clamp(1023 * v, 0.0, 1023.0)); };
         keys.emplace_back(spread(cell(p.x)) | spread(cell(p.y)) << 1 | spread(cell(p.z)) << 2, t);
     }
@@ -104,9 +105,9 @@ struct GlScene::State {
     GLuint mesh_array = 0, mesh_buffer = 0, mesh_index = 0;
     GLuint cluster_array = 0, cluster_index = 0;
     std::vector<Cluster> clusters;
-    std::vector<GLuint> queries;         // one per cluster: whether any of it is seen
-    std::vector<std::uint8_t> hidden;    // likewise, after the answers
-    bool asked = false;                  // the answers are still to be read
+    std::vector<GLuint> queries;       // one per cluster: whether any of it is seen
+    std::vector<std::uint8_t> hidden;  // likewise, after the answers
+    bool asked = false;                // the answers are still to be read
     GLuint solid_array = 0, solid_buffer = 0, solid_index = 0, empty_array = 0;
     GLuint texture = 0, colour_buffer = 0, colour_texture = 0;
     GLsizei n_indices = 0;
@@ -120,7 +121,8 @@ GlScene::GlScene() : state_(std::make_unique<State>()) {
     s.backdrop_program = make_program("backdrop/backdrop");
     s.atlas_program = make_program("atlas/atlas");
     for (GLuint* array : {&s.mesh_array, &s.cluster_array, &s.solid_array, &s.empty_array}) glGenVertexArrays(1, array);
-    for (GLuint* buffer : {&s.mesh_buffer, &s.mesh_index, &s.cluster_index, &s.solid_buffer, &s.solid_index, &s.colour_buffer})
+    for (GLuint* buffer :
+         {&s.mesh_buffer, &s.mesh_index, &s.cluster_index, &s.solid_buffer, &s.solid_index, &s.colour_buffer})
         glGenBuffers(1, buffer);
     glGenTextures(1, &s.texture);
     glGenTextures(1, &s.colour_texture);
@@ -128,9 +130,12 @@ GlScene::GlScene() : state_(std::make_unique<State>()) {
 
 GlScene::~GlScene() {
     State& s = *state_;
-    for (const GLuint program : {s.mesh_program, s.solid_program, s.backdrop_program, s.atlas_program}) glDeleteProgram(program);
-    for (const GLuint array : {s.mesh_array, s.cluster_array, s.solid_array, s.empty_array}) glDeleteVertexArrays(1, &array);
-    for (const GLuint buffer : {s.mesh_buffer, s.mesh_index, s.cluster_index, s.solid_buffer, s.solid_index, s.colour_buffer})
+    for (const GLuint program : {s.mesh_program, s.solid_program, s.backdrop_program, s.atlas_program})
+        glDeleteProgram(program);
+    for (const GLuint array : {s.mesh_array, s.cluster_array, s.solid_array, s.empty_array})
+        glDeleteVertexArrays(1, &array);
+    for (const GLuint buffer :
+         {s.mesh_buffer, s.mesh_index, s.cluster_index, s.solid_buffer, s.solid_index, s.colour_buffer})
         glDeleteBuffers(1, &buffer);
     glDeleteTextures(1, &s.texture);
     glDeleteTextures(1, &s.colour_texture);
@@ -246,13 +251,15 @@ std::vector<Seen> clusters_in(const std::vector<Cluster>& clusters, const GlCame
         const Cluster& cluster = clusters[i];
         double x0 = 1e30, y0 = 1e30, x1 = -1e30, y1 = -1e30, nearest = 1e30;
         for (int k = 0; k < 8; ++k) {
-            const Vec3 p = picture_point(c, Vec3(k & 1 ? cluster.hi.x : cluster.lo.x, k & 2 ? cluster.hi.y : cluster.lo.y,
-                                                 k & 4 ? cluster.hi.z : cluster.lo.z));
+            const Vec3 p =
+                picture_point(c, Vec3(k & 1 ? cluster.hi.x : cluster.lo.x, k & 2 ? cluster.hi.y : cluster.lo.y,
+                                      k & 4 ? cluster.hi.z : cluster.lo.z));
             nearest = std::min(nearest, p.z);
             x0 = std::min(x0, p.x), x1 = std::max(x1, p.x), y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
         }
         const bool before_eye = c.parallel_height <= 0 && nearest <= c.near;
-        if (before_eye || (x1 >= part.x && x0 <= part.x + part.width && c.height - y0 >= part.y && c.height - y1 <= part.y + part.height))
+        if (before_eye || (x1 >= part.x && x0 <= part.x + part.width && c.height - y0 >= part.y &&
+                           c.height - y1 <= part.y + part.height))
             seen.push_back({nearest, i});
     }
     std::sort(seen.begin(), seen.end());
@@ -363,7 +370,8 @@ void GlScene::redraw_model(const GlCamera& c, const GlLight& light, const DrawOp
         counts.push_back(static_cast<GLsizei>(cluster.count));
         starts.push_back(start_of(cluster));
     }
-    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, starts.data(), static_cast<GLsizei>(counts.size()));
+    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, starts.data(),
+                        static_cast<GLsizei>(counts.size()));
     end_model();
 }
 
@@ -380,7 +388,8 @@ void GlScene::draw_atlas(const AtlasWindow& window, const DrawOptions& options) 
     glUseProgram(s.atlas_program);
     const auto at = [&](const char* name) { return glGetUniformLocation(s.atlas_program, name); };
     glUniform4f(at("u_window"), static_cast<float>(window.centre.x), static_cast<float>(window.centre.y),
-                static_cast<float>(0.5 * part.width / window.pixels_per_side), static_cast<float>(0.5 * part.height / window.pixels_per_side));
+                static_cast<float>(0.5 * part.width / window.pixels_per_side),
+                static_cast<float>(0.5 * part.height / window.pixels_per_side));
     glUniform1i(at("u_shading"), static_cast<int>(options.shading));
     glUniform1f(at("u_atlas_size"), static_cast<float>(s.texture_size));
     glUniform1f(at("u_height_range"), options.height_range);

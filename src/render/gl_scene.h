@@ -21,9 +21,9 @@ enum class Shading { glaze = 0, clay = 1, flat = 2, height = 3, texels = 4, tria
 
 /// Colour mesh for things that change every frame, such as the tuft.
 struct GlSolid {
-    std::vector<Vec3f> positions;   ///< metres, world
-    std::vector<Vec3f> normals;     ///< unit
-    std::vector<Vec3f> colours;     ///< linear
+    std::vector<Vec3f> positions;  ///< metres, world
+    std::vector<Vec3f> normals;    ///< unit
+    std::vector<Vec3f> colours;    ///< linear
     std::vector<std::uint32_t> triangles;
 };
 
@@ -37,8 +37,12 @@ struct GlBox {
 /// The texture's fourth channel, of thin ink and thick paint alike: code 0–255 for a height in micrometres,
 /// a step of 0.1 µm on bare ground and of 1/48 of the height where it is high; 255 is 969 µm.
 inline constexpr double kCodeHeight = 4.8, kCodeSteps = 48;
-inline double height_of_code(double code) { return kCodeHeight * std::expm1(code / kCodeSteps); }
-inline double code_of_height(double micrometres) { return kCodeSteps * std::log1p(micrometres / kCodeHeight); }
+inline double height_of_code(double code) {
+    return kCodeHeight * std::expm1(code / kCodeSteps);
+}
+inline double code_of_height(double micrometres) {
+    return kCodeSteps * std::log1p(micrometres / kCodeHeight);
+}
 
 /// One tile of the atlas at all levels, RGBA: sRGB colour and the code of the height.
 struct TilePixels {
@@ -56,9 +60,9 @@ struct MapPixels {
 
 struct DrawOptions {
     Shading shading = Shading::glaze;
-    float roughness = 0.1f;         ///< of the coat
-    float height_range = 10;        ///< micrometres of ink that get the last colour of the ramp
-    Vec4f section{0};               ///< plane, metres; cuts away dot((p, 1), section) > 0; zero: none
+    float roughness = 0.1f;   ///< of the coat
+    float height_range = 10;  ///< micrometres of ink that get the last colour of the ramp
+    Vec4f section{0};         ///< plane, metres; cuts away dot((p, 1), section) > 0; zero: none
 
     bool operator==(const DrawOptions&) const = default;
 };
@@ -94,7 +98,7 @@ class GlScene {
         PixelRect part;
         Vec2 centre{0.5};
         double pixels_per_side = 512;
-        Vec3f backdrop{0.1f};       ///< sRGB-encoded
+        Vec3f backdrop{0.1f};  ///< sRGB-encoded
     };
     void draw_atlas(const AtlasWindow& window, const DrawOptions& options);
     void draw_solid(const GlCamera& camera, const GlLight& light, const GlSolid& solid, float opacity);

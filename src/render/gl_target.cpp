@@ -8,7 +8,9 @@
 
 namespace tuft::render {
 
-GlTarget::~GlTarget() { clear(); }
+GlTarget::~GlTarget() {
+    clear();
+}
 
 void GlTarget::clear() {
     if (!framebuffer_) return;
@@ -42,13 +44,15 @@ void GlTarget::resize(int width, int height, int samples) {
                     std::to_string(height) + " pixels");
 }
 
-void GlTarget::bind() { glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_); }
+void GlTarget::bind() {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+}
 
 void GlTarget::resolve_to(unsigned framebuffer, const PixelRect& r, int dx, int dy) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-    glBlitFramebuffer(r.x, r.y, r.x + r.width, r.y + r.height, r.x + dx, r.y + dy, r.x + r.width + dx, r.y + r.height + dy,
-                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitFramebuffer(r.x, r.y, r.x + r.width, r.y + r.height, r.x + dx, r.y + dy, r.x + r.width + dx,
+                      r.y + r.height + dy, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
 

@@ -42,7 +42,9 @@ PixelRect joined(const PixelRect& a, const PixelRect& b) {
     return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
 }
 
-double area(const PixelRect& r) { return static_cast<double>(r.width) * r.height; }
+double area(const PixelRect& r) {
+    return static_cast<double>(r.width) * r.height;
+}
 
 /// Adds a part to others; parts that lie together become one.
 void add(std::vector<PixelRect>& parts, PixelRect r) {
@@ -64,9 +66,9 @@ void add(std::vector<PixelRect>& parts, PixelRect r) {
 }  // namespace
 
 struct GlView::State {
-    GlTarget smooth;   // the model, several samples per pixel
-    GlTarget plain;    // the same, resolved
-    GlTarget over;     // copy of a part of `smooth` with the tuft over it
+    GlTarget smooth;  // the model, several samples per pixel
+    GlTarget plain;   // the same, resolved
+    GlTarget over;    // copy of a part of `smooth` with the tuft over it
     std::optional<GlCamera> camera;
     GlLook look;
     bool is_smooth = false, slow = false, warm = false;
@@ -76,8 +78,12 @@ struct GlView::State {
 GlView::GlView() : state_(std::make_unique<State>()) {}
 GlView::~GlView() = default;
 
-void GlView::texture_changed(std::span<const GlBox> boxes) { state_->changed.insert(state_->changed.end(), boxes.begin(), boxes.end()); }
-void GlView::scene_changed() { state_->camera.reset(); }
+void GlView::texture_changed(std::span<const GlBox> boxes) {
+    state_->changed.insert(state_->changed.end(), boxes.begin(), boxes.end());
+}
+void GlView::scene_changed() {
+    state_->camera.reset();
+}
 
 // A driver compiles what it needs when it needs it first: better now than under the first stroke.
 void GlView::warm_up(GlScene& scene, const Frame& f) {
@@ -90,7 +96,9 @@ void GlView::warm_up(GlScene& scene, const Frame& f) {
     const double depth = 1.1 * c.near, size = 0.01 * depth;
     const Vec3 at = c.eye + depth * c.forward;
     GlSolid solid{.positions = {Vec3f(at - size * c.right), Vec3f(at + size * c.right), Vec3f(at + size * c.up)},
-                  .normals = std::vector<Vec3f>(3, Vec3f(-c.forward)), .colours = std::vector<Vec3f>(3), .triangles = {0, 1, 2}};
+                  .normals = std::vector<Vec3f>(3, Vec3f(-c.forward)),
+                  .colours = std::vector<Vec3f>(3),
+                  .triangles = {0, 1, 2}};
     s.over.resize(c.width, c.height, kSamples);
     s.smooth.copy_to(s.over, middle);
     s.over.bind();

@@ -16,8 +16,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kOnFloor = 4;
 
 /// What comes to `p` from direction `d` but for the boxes.
-Vec3f incoming(const Scene& scene, const LightCache& cache, const Vec3f& p, const Vec3f& d,
-               const Vec2f& jitter, bool& hit_object) {
+Vec3f incoming(const Scene& scene, const LightCache& cache, const Vec3f& p, const Vec3f& d, const Vec2f& jitter,
+               bool& hit_object) {
     const mesh::RayHit hit = scene.query.trace(p, d, 0, kInfinity);
     hit_object = hit.triangle != kNone;
     if (hit_object) {
@@ -25,8 +25,7 @@ Vec3f incoming(const Scene& scene, const LightCache& cache, const Vec3f& p, cons
         if (glm::dot(n, d) > 0) n = -n;
         Vec3f t, b;
         complete_frame(n, t, b);
-        const Vec3f at =
-            p + hit.distance * d + cache.voxel() * ((jitter.x - 0.5f) * t + (jitter.y - 0.5f) * b);
+        const Vec3f at = p + hit.distance * d + cache.voxel() * ((jitter.x - 0.5f) * t + (jitter.y - 0.5f) * b);
         return scene.material.albedo(hit.triangle, hit.b1, hit.b2) * cache.nearest_light(at, n);
     }
     if (d.z < -1e-4f && scene.studio.floor && p.z > scene.studio.floor_z) {
@@ -56,8 +55,8 @@ Sight look(const Scene& scene, const Camera& camera, const Vec3f& direction) {
         const auto& t = scene.mesh.triangles[hit.triangle];
         const Vec3f* corner = &scene.mesh.corner_normals[3 * std::size_t{hit.triangle}];
         const float b0 = 1 - hit.b1 - hit.b2;
-        s.position = b0 * scene.mesh.positions[t[0]] + hit.b1 * scene.mesh.positions[t[1]] +
-                     hit.b2 * scene.mesh.positions[t[2]];
+        s.position =
+            b0 * scene.mesh.positions[t[0]] + hit.b1 * scene.mesh.positions[t[1]] + hit.b2 * scene.mesh.positions[t[2]];
         s.face = face_normal(scene.mesh, hit.triangle);
         if (glm::dot(s.face, direction) > 0) s.face = -s.face;
         s.normal = b0 * corner[0] + hit.b1 * corner[1] + hit.b2 * corner[2];
@@ -78,8 +77,8 @@ Sight look(const Scene& scene, const Camera& camera, const Vec3f& direction) {
     return s;
 }
 
-Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at,
-                   const LightSamples& samples, int x, int y, std::uint64_t seed) {
+Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at, const LightSamples& samples, int x,
+                   int y, std::uint64_t seed) {
     Light light;
     const bool floor = at.seen == Seen::floor;
     const Vec3f start = at.position + scene.offset * at.face;
@@ -91,23 +90,21 @@ Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at,
             const Vec2f s = wrap(sobol_point(static_cast<std::uint32_t>(i)) + shift);
             const BoxSample l = sample_box(scene.studio.boxes[b], start, at.normal, s);
             if (!(l.light.y > 0)) continue;
-            const bool blocked = glm::dot(l.direction, at.face) <= 0 ||
-                                 scene.query.blocked(start, l.direction, 0, l.distance);
+            const bool blocked =
+                glm::dot(l.direction, at.face) <= 0 || scene.query.blocked(start, l.direction, 0, l.distance);
             if (floor ? blocked : !blocked) part += floor ? -l.light : l.light;
         }
         light.direct += part / static_cast<float>(n);
     }
     const Vec2f turn = lattice_shift(x, y, seed, 3);
-    const std::uint64_t jitter =
-        hash_bits(seed, (static_cast<std::uint64_t>(x) << 32) + static_cast<std::uint64_t>(y));
+    const std::uint64_t jitter = hash_bits(seed, (static_cast<std::uint64_t>(x) << 32) + static_cast<std::uint64_t>(y));
     for (int i = 0; i < samples.around; ++i) {
         const Vec2f s = wrap(sobol_point(static_cast<std::uint32_t>(i)) + turn);
         Vec3f d = cosine_direction(at.normal, s);
         const float below = glm::dot(d, at.face);
         if (below < 1e-3f) d = glm::normalize(d + (2e-3f - below) * at.face);
         bool hit = false;
-        const Vec3f in = incoming(scene, cache, start, d,
-                                  hash_point(jitter, static_cast<std::uint64_t>(i)), hit);
+        const Vec3f in = incoming(scene, cache, start, d, hash_point(jitter, static_cast<std::uint64_t>(i)), hit);
         if (!floor)
             light.around += in;
         else if (hit)
@@ -127,12 +124,10 @@ bool LightBuffer::find(float x, float y, const Sight& at, float pixel_size, Ligh
         const std::size_t k = static_cast<std::size_t>(j) * width + i;
         const Sight& there = sights[k];
         if (there.seen != at.seen) return;
-        const float off =
-            std::abs(glm::dot(at.face, there.position - at.position)) / (2 * pixel_size);
+        const float off = std::abs(glm::dot(at.face, there.position - at.position)) / (2 * pixel_size);
         const float cosine = glm::dot(at.normal, there.normal);
         if (off > 3 || cosine < 0.7f) return;
-        weight *=
-            std::exp(-off) * cosine * cosine * cosine * cosine * cosine * cosine * cosine * cosine;
+        weight *= std::exp(-off) * cosine * cosine * cosine * cosine * cosine * cosine * cosine * cosine;
         sum.direct += weight * light[k].direct;
         sum.around += weight * light[k].around;
         total += weight;
@@ -164,21 +159,18 @@ LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const
     for (int top = 0; top < camera.height; top += kBand) {
         report(options.progress, "light", static_cast<double>(top) / camera.height);
         const int rows = std::min(kBand, camera.height - top);
-        parallel_for(static_cast<std::size_t>(rows) * camera.width, 256,
-                     [&](std::size_t begin, std::size_t end) {
-                         for (std::size_t i = begin; i < end; ++i) {
-                             const std::size_t k = static_cast<std::size_t>(top) * camera.width + i;
-                             const double x = static_cast<double>(k % camera.width) + 0.5;
-                             const double y = static_cast<double>(k / camera.width) + 0.5;
-                             Sight& s = buffer.sights[k];
-                             s = look(scene, camera, Vec3f(ray_direction(camera, x, y)));
-                             if (s.seen != Seen::backdrop)
-                                 buffer.light[k] =
-                                     sample_light(scene, cache, s, options.samples,
-                                                  static_cast<int>(k % camera.width),
-                                                  static_cast<int>(k / camera.width), options.seed);
-                         }
-                     });
+        parallel_for(static_cast<std::size_t>(rows) * camera.width, 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::size_t k = static_cast<std::size_t>(top) * camera.width + i;
+                const double x = static_cast<double>(k % camera.width) + 0.5;
+                const double y = static_cast<double>(k / camera.width) + 0.5;
+                Sight& s = buffer.sights[k];
+                s = look(scene, camera, Vec3f(ray_direction(camera, x, y)));
+                if (s.seen != Seen::backdrop)
+                    buffer.light[k] = sample_light(scene, cache, s, options.samples, static_cast<int>(k % camera.width),
+                                                   static_cast<int>(k / camera.width), options.seed);
+            }
+        });
     }
     smooth_light(buffer, variance, camera);
     return buffer;

@@ -37,8 +37,8 @@ struct LightSamples {
 LightSamples share_samples(int total);
 
 /// Monte Carlo estimate of the light at a sight in pixel (x, y).
-Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at,
-                   const LightSamples& samples, int x, int y, std::uint64_t seed);
+Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at, const LightSamples& samples, int x,
+                   int y, std::uint64_t seed);
 
 /// Per pixel, row-major from the top.
 struct LightBuffer {

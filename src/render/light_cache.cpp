@@ -26,22 +26,21 @@ int side_of(const Vec3f& n) {
 
 Vec3f face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
     const auto& t = mesh.triangles[triangle];
-    const Vec3f n = glm::cross(mesh.positions[t[1]] - mesh.positions[t[0]],
-                               mesh.positions[t[2]] - mesh.positions[t[0]]);
+    const Vec3f n =
+        glm::cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
     const float length = glm::length(n);
     return length > 0 ? n / length : Vec3f{0, 0, 1};
 }
 
-Vec3f direct_light(const Scene& scene, const Vec3f& p, const Vec3f& n,
-                   const std::array<int, 3>& samples, const Vec2f& shift) {
+Vec3f direct_light(const Scene& scene, const Vec3f& p, const Vec3f& n, const std::array<int, 3>& samples,
+                   const Vec2f& shift) {
     Vec3f sum{0};
     for (std::size_t b = 0; b < samples.size(); ++b) {
         Vec3f part{0};
         for (int i = 0; i < samples[b]; ++i) {
             const Vec2f s = wrap(sobol_point(static_cast<std::uint32_t>(i)) + shift);
             const BoxSample l = sample_box(scene.studio.boxes[b], p, n, s);
-            if (l.light.y > 0 && !scene.query.blocked(p, l.direction, 0, l.distance))
-                part += l.light;
+            if (l.light.y > 0 && !scene.query.blocked(p, l.direction, 0, l.distance)) part += l.light;
         }
         sum += part / static_cast<float>(samples[b]);
     }
@@ -62,11 +61,9 @@ LightCache::LightCache(const Scene& scene) {
 std::uint64_t LightCache::key(const Vec3f& p, int side) const {
     const Vec3f q = (p - origin_) / voxel_;
     const auto cell = [](float v) {
-        return static_cast<std::uint64_t>(
-            std::clamp(static_cast<int>(std::floor(v)), 0, (1 << 20) - 1));
+        return static_cast<std::uint64_t>(std::clamp(static_cast<int>(std::floor(v)), 0, (1 << 20) - 1));
     };
-    return ((cell(q.x) << 40 | cell(q.y) << 20 | cell(q.z)) << 3) |
-           static_cast<std::uint64_t>(side);
+    return ((cell(q.x) << 40 | cell(q.y) << 20 | cell(q.z)) << 3) | static_cast<std::uint64_t>(side);
 }
 
 std::uint32_t LightCache::find(std::uint64_t key) const {
@@ -98,16 +95,14 @@ void LightCache::insert(const Vec3f& p, const Vec3f& n) {
 void LightCache::seed_patches(const Scene& scene) {
     // Evenly spaced along the running sum of areas: every patch that matters gets a point.
     const mesh::TriangleMesh& mesh = scene.mesh;
-    const bool open =
-        std::find(mesh.neighbours.begin(), mesh.neighbours.end(), kNone) != mesh.neighbours.end();
+    const bool open = std::find(mesh.neighbours.begin(), mesh.neighbours.end(), kNone) != mesh.neighbours.end();
     const double area = mesh::surface_area(mesh);
     const double wanted = std::clamp(8 * area / (voxel_ * voxel_), 1e3, 4e5);
     const double step = area / wanted;
     double next = 0.5 * step, sum = 0;
     std::uint64_t count = 0;
     for (std::uint32_t t = 0; t < mesh.n_triangles() && step > 0; ++t) {
-        const Vec3 a = mesh.position(t, 0), e1 = mesh.position(t, 1) - a,
-                   e2 = mesh.position(t, 2) - a;
+        const Vec3 a = mesh.position(t, 0), e1 = mesh.position(t, 1) - a, e2 = mesh.position(t, 2) - a;
         sum += 0.5 * glm::length(glm::cross(e1, e2));
         for (; next < sum; next += step) {
             Vec2f s = hash_point(17, count++);
@@ -126,10 +121,8 @@ void LightCache::seed_floor(const Scene& scene) {
     parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Vec2f s{static_cast<float>(i % kFloorGrid), static_cast<float>(i / kFloorGrid)};
-            const Vec2f xy = floor_centre_ +
-                             floor_half_ * (2.0f * s / static_cast<float>(kFloorGrid - 1) - 1.0f);
-            open_floor_[i] =
-                open_light(scene.studio, {xy.x, xy.y, scene.studio.floor_z}, {0, 0, 1});
+            const Vec2f xy = floor_centre_ + floor_half_ * (2.0f * s / static_cast<float>(kFloorGrid - 1) - 1.0f);
+            open_floor_[i] = open_light(scene.studio, {xy.x, xy.y, scene.studio.floor_z}, {0, 0, 1});
         }
     });
 }
@@ -143,26 +136,21 @@ void LightCache::gather(const Scene& scene, const Patch& at, std::size_t index, 
     Vec3f dome{0};
     for (std::uint32_t i = 0; i < kRays; ++i) {
         const Vec3f d = cosine_direction(at.n, wrap(sobol_point(i) + shift));
-        const mesh::RayHit hit =
-            scene.query.trace(start, d, 0, std::numeric_limits<float>::infinity());
+        const mesh::RayHit hit = scene.query.trace(start, d, 0, std::numeric_limits<float>::infinity());
         if (hit.triangle != kNone) {
             Vec3f n = face_normal(scene.mesh, hit.triangle);
             if (glm::dot(n, d) > 0) n = -n;
             const Vec3f p = start + hit.distance * d;
             const std::uint32_t patch = find(key(p, side_of(n)));
-            if (patch != kNone)
-                links.push_back({patch, scene.material.albedo(hit.triangle, hit.b1, hit.b2)});
+            if (patch != kNone) links.push_back({patch, scene.material.albedo(hit.triangle, hit.b1, hit.b2)});
         } else if (d.z < 0 && scene.studio.floor && start.z > scene.studio.floor_z) {
             const Vec3f p = start + (scene.studio.floor_z - start.z) / d.z * d;
             const Vec2f g = (Vec2f{p.x, p.y} - floor_centre_) / floor_half_ * 0.5f + 0.5f;
             if (g.x < 0 || g.y < 0 || g.x > 1 || g.y > 1) {
                 dome += dome_radiance(scene.studio, d);
             } else {
-                const auto cell = [](float v) {
-                    return static_cast<std::uint32_t>(v * (kFloorGrid - 1) + 0.5f);
-                };
-                links.push_back(
-                    {kFloorLink + cell(g.y) * kFloorGrid + cell(g.x), scene.studio.floor_albedo});
+                const auto cell = [](float v) { return static_cast<std::uint32_t>(v * (kFloorGrid - 1) + 0.5f); };
+                links.push_back({kFloorLink + cell(g.y) * kFloorGrid + cell(g.x), scene.studio.floor_albedo});
             }
         } else {
             dome += dome_radiance(scene.studio, d);
@@ -182,11 +170,8 @@ void LightCache::solve(const Scene& scene) {
                 at = patches_[i];
             } else {
                 const std::size_t k = i - n_object;
-                const Vec2f s{static_cast<float>(k % kFloorGrid),
-                              static_cast<float>(k / kFloorGrid)};
-                const Vec2f xy =
-                    floor_centre_ +
-                    floor_half_ * (2.0f * s / static_cast<float>(kFloorGrid - 1) - 1.0f);
+                const Vec2f s{static_cast<float>(k % kFloorGrid), static_cast<float>(k / kFloorGrid)};
+                const Vec2f xy = floor_centre_ + floor_half_ * (2.0f * s / static_cast<float>(kFloorGrid - 1) - 1.0f);
                 at.p = {xy.x, xy.y, scene.studio.floor_z};
                 at.n = {0, 0, 1};
             }
@@ -198,8 +183,7 @@ void LightCache::solve(const Scene& scene) {
         for (std::size_t i = 0; i < n; ++i) {
             Vec3f sum{0};
             for (const Link& l : links[i])
-                sum += l.albedo *
-                       light[l.patch & kFloorLink ? n_object + (l.patch - kFloorLink) : l.patch];
+                sum += l.albedo * light[l.patch & kFloorLink ? n_object + (l.patch - kFloorLink) : l.patch];
             next[i] = own[i] + sum / static_cast<float>(kRays);
         }
         std::swap(light, next);
@@ -245,15 +229,12 @@ Vec3f LightCache::object_light(const Vec3f& p, const Vec3f& n) const {
 }
 
 Vec3f LightCache::read_floor(const std::vector<Vec3f>& grid, float x, float y) const {
-    const Vec2f g =
-        glm::clamp((Vec2f{x, y} - floor_centre_) / floor_half_ * 0.5f + 0.5f, 0.0f, 1.0f) *
-        static_cast<float>(kFloorGrid - 1);
-    const int i = std::min(static_cast<int>(g.x), kFloorGrid - 2),
-              j = std::min(static_cast<int>(g.y), kFloorGrid - 2);
+    const Vec2f g = glm::clamp((Vec2f{x, y} - floor_centre_) / floor_half_ * 0.5f + 0.5f, 0.0f, 1.0f) *
+                    static_cast<float>(kFloorGrid - 1);
+    const int i = std::min(static_cast<int>(g.x), kFloorGrid - 2), j = std::min(static_cast<int>(g.y), kFloorGrid - 2);
     const float a = g.x - static_cast<float>(i), b = g.y - static_cast<float>(j);
     const Vec3f* row = &grid[static_cast<std::size_t>(j * kFloorGrid + i)];
-    return (1 - b) * ((1 - a) * row[0] + a * row[1]) +
-           b * ((1 - a) * row[kFloorGrid] + a * row[kFloorGrid + 1]);
+    return (1 - b) * ((1 - a) * row[0] + a * row[1]) + b * ((1 - a) * row[kFloorGrid] + a * row[kFloorGrid + 1]);
 }
 
 Vec3f LightCache::floor_light(float x, float y) const {

@@ -24,8 +24,8 @@ struct Scene {
 Vec3f face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle);
 
 /// Light of the boxes on a face at p (irradiance over π). `samples`: per box.
-Vec3f direct_light(const Scene& scene, const Vec3f& p, const Vec3f& n,
-                   const std::array<int, 3>& samples, const Vec2f& shift);
+Vec3f direct_light(const Scene& scene, const Vec3f& p, const Vec3f& n, const std::array<int, 3>& samples,
+                   const Vec2f& shift);
 
 class LightCache {
   public:
@@ -59,8 +59,7 @@ class LightCache {
     void insert(const Vec3f& p, const Vec3f& n);
     void seed_patches(const Scene& scene);
     void seed_floor(const Scene& scene);
-    void gather(const Scene& scene, const Patch& at, std::size_t index, Vec3f& own,
-                std::vector<Link>& links) const;
+    void gather(const Scene& scene, const Patch& at, std::size_t index, Vec3f& own, std::vector<Link>& links) const;
     void solve(const Scene& scene);
     Vec3f read_floor(const std::vector<Vec3f>& grid, float x, float y) const;
 

@@ -16,8 +16,7 @@ struct Taps {
 };
 
 Taps taps_at(const Vec2f& uv, std::uint32_t size) {
-    const float x = uv.x * static_cast<float>(size) - 0.5f,
-                y = uv.y * static_cast<float>(size) - 0.5f;
+    const float x = uv.x * static_cast<float>(size) - 0.5f, y = uv.y * static_cast<float>(size) - 0.5f;
     const float fx = std::floor(x), fy = std::floor(y);
     const auto clamp = [&](float v) {
         return static_cast<std::size_t>(std::clamp(v, 0.0f, static_cast<float>(size - 1)));
@@ -34,8 +33,8 @@ float into_unit(float v) {
 
 void check_map(std::size_t have, std::uint32_t size, const char* name) {
     if (have && have != std::size_t{size} * size)
-        throw Error("the " + std::string(name) + " map has " + std::to_string(have) +
-                    " texels instead of " + std::to_string(size) + " x " + std::to_string(size));
+        throw Error("the " + std::string(name) + " map has " + std::to_string(have) + " texels instead of " +
+                    std::to_string(size) + " x " + std::to_string(size));
 }
 
 }  // namespace
@@ -56,12 +55,10 @@ MaterialReader::MaterialReader(const mesh::TriangleMesh& mesh, const Appearance&
     check_map(maps.roughness.size(), maps.size, "roughness");
     check_map(maps.height.size(), maps.size, "height");
     if (maps.size && maps.corner_uvs.size() != 3 * mesh.n_triangles())
-        throw Error("the texture has " + std::to_string(maps.corner_uvs.size()) +
-                    " corner coordinates for a mesh of " + std::to_string(mesh.n_triangles()) +
-                    " triangles");
+        throw Error("the texture has " + std::to_string(maps.corner_uvs.size()) + " corner coordinates for a mesh of " +
+                    std::to_string(mesh.n_triangles()) + " triangles");
     const bool porcelain = appearance.finish == Finish::porcelain;
-    body_ = appearance.body_colour.value_or(porcelain ? Vec3f{0.86f, 0.857f, 0.845f}
-                                                      : Vec3f{0.37f, 0.275f, 0.21f});
+    body_ = appearance.body_colour.value_or(porcelain ? Vec3f{0.86f, 0.857f, 0.845f} : Vec3f{0.37f, 0.275f, 0.21f});
     roughness_ = porcelain ? 0.02f : 0.6f;
     for (int i = 0; i < 256; ++i) srgb_[i] = decode_srgb(static_cast<float>(i) / 255);
 }
@@ -86,8 +83,7 @@ Vec3f MaterialReader::albedo(std::uint32_t triangle, float b1, float b2) const {
         for (int i = 0; i < 4; ++i) {
             const auto& c = maps.base_colour_srgb[taps.index[i]];
             const float alpha = static_cast<float>(c[3]) / 255;
-            sum += taps.weight[i] *
-                   glm::mix(body_, Vec3f{srgb_[c[0]], srgb_[c[1]], srgb_[c[2]]}, alpha);
+            sum += taps.weight[i] * glm::mix(body_, Vec3f{srgb_[c[0]], srgb_[c[1]], srgb_[c[2]]}, alpha);
         }
         return sum;
     }
@@ -111,8 +107,8 @@ float MaterialReader::height(const Vec2f& at) const {
     return sum;
 }
 
-float MaterialReader::unshaded(std::uint32_t triangle, float b1, float b2, const Vec3f& normal,
-                               const Vec3f& to_light, float blur) const {
+float MaterialReader::unshaded(std::uint32_t triangle, float b1, float b2, const Vec3f& normal, const Vec3f& to_light,
+                               float blur) const {
     constexpr float kReach = 3e-3f;  // metres
     const TextureMaps& maps = appearance_.maps;
     const float rise = glm::dot(normal, to_light);
@@ -128,7 +124,8 @@ float MaterialReader::unshaded(std::uint32_t triangle, float b1, float b2, const
     const float det = g11 * g22 - g12 * g12;
     if (!(det > 0)) return 1;
     const float r1 = glm::dot(level, d1) / run, r2 = glm::dot(level, d2) / run;
-    const Vec2f along = ((g22 * r1 - g12 * r2) * (corner[1] - corner[0]) + (g11 * r2 - g12 * r1) * (corner[2] - corner[0])) / det;
+    const Vec2f along =
+        ((g22 * r1 - g12 * r2) * (corner[1] - corner[0]) + (g11 * r2 - g12 * r1) * (corner[2] - corner[0])) / det;
     const float texels = glm::length(along) * static_cast<float>(maps.size);  // per metre
     if (!(texels > 0) || !std::isfinite(texels)) return 1;
     const Vec2f at = uv(triangle, b1, b2);
@@ -174,8 +171,7 @@ Material MaterialReader::read(std::uint32_t triangle, float b1, float b2) const 
         if (!maps.roughness.empty()) {
             const Taps taps = taps_at(at, maps.size);
             m.roughness = 0;
-            for (int i = 0; i < 4; ++i)
-                m.roughness += taps.weight[i] * maps.roughness[taps.index[i]];
+            for (int i = 0; i < 4; ++i) m.roughness += taps.weight[i] * maps.roughness[taps.index[i]];
             m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
         }
         if (!maps.height.empty()) m.slope = relief(triangle, at);

@@ -42,8 +42,7 @@ Vec3f mirrored(const Shading& f, const Vec3f& p, const Vec3f& d, float roughness
     if (hit.triangle != kNone) {
         Vec3f n = face_normal(f.scene.mesh, hit.triangle);
         if (glm::dot(n, d) > 0) n = -n;
-        return f.scene.material.albedo(hit.triangle, hit.b1, hit.b2) *
-               f.cache.object_light(p + hit.distance * d, n);
+        return f.scene.material.albedo(hit.triangle, hit.b1, hit.b2) * f.cache.object_light(p + hit.distance * d, n);
     }
     const Studio& studio = f.scene.studio;
     if (d.z < -1e-4f && studio.floor && p.z > studio.floor_z) {
@@ -70,7 +69,8 @@ Vec3f shade_object(const Shading& f, const Sight& s, Light light, const Vec3f& v
         const SoftBox& lamp = f.scene.studio.boxes[0];
         const Vec3f key = lamp.centre - s.position;
         const float away = glm::length(key);
-        light.direct *= f.scene.material.unshaded(s.triangle, s.b1, s.b2, s.normal, key / away, glm::length(lamp.u) / away);
+        light.direct *=
+            f.scene.material.unshaded(s.triangle, s.b1, s.b2, s.normal, key / away, glm::length(lamp.u) / away);
     }
     const Vec3f body = m.albedo * (light.direct + light.around);
     const float cosine = glm::dot(n, view);
@@ -90,14 +90,13 @@ Vec3f shade_object(const Shading& f, const Sight& s, Light light, const Vec3f& v
 Vec3f shade(const Shading& f, float x, float y, std::uint64_t seed) {
     const Vec3f direction(ray_direction(f.camera, x, y));
     const Sight s = look(f.scene, f.camera, direction);
-    const Vec3f back =
-        backdrop(x / static_cast<float>(f.camera.width), y / static_cast<float>(f.camera.height));
+    const Vec3f back = backdrop(x / static_cast<float>(f.camera.width), y / static_cast<float>(f.camera.height));
     if (s.seen == Seen::backdrop) return back;
     Light light;
     const float pixel = f.pixel_angle * glm::length(s.position - Vec3f(f.camera.eye));
     if (!f.buffer.find(x, y, s, pixel, light))
-        light = sample_light(f.scene, f.cache, s, share_samples(2 * f.options.light_samples),
-                             static_cast<int>(x), static_cast<int>(y), seed);
+        light = sample_light(f.scene, f.cache, s, share_samples(2 * f.options.light_samples), static_cast<int>(x),
+                             static_cast<int>(y), seed);
     if (s.seen == Seen::object) return shade_object(f, s, light, -direction);
     const Vec3f open = f.cache.open_floor_light(s.position.x, s.position.y);
     return back * glm::max(1.0f + (light.direct + light.around) / open, 0.02f);
@@ -116,8 +115,7 @@ Vec3f draw_rays(const Shading& f, int x, int y, std::uint64_t seed, int from, in
     Vec3f sum{0};
     for (int n = from; n < to; ++n) {
         const Vec2f s = wrap(sobol_point(static_cast<std::uint32_t>(n)) + shift);
-        const float sx = static_cast<float>(x) + 0.5f + tent(s.x),
-                    sy = static_cast<float>(y) + 0.5f + tent(s.y);
+        const float sx = static_cast<float>(x) + 0.5f + tent(s.x), sy = static_cast<float>(y) + 0.5f + tent(s.y);
         const Vec3f c = shade(f, sx, sy, hash_bits(seed, static_cast<std::uint64_t>(n) + 1));
         const Vec3f shown{shoulder(c.x), shoulder(c.y), shoulder(c.z)};
         sum += shown;
@@ -132,16 +130,17 @@ Vec3f draw_rays(const Shading& f, int x, int y, std::uint64_t seed, int from, in
 /// of which covers the pixel evenly, agree: a highlight thinner than the pixel is met by few.
 Vec3f pixel_colour(const Shading& f, bool on_edge, int x, int y) {
     constexpr float kContrast = 8.0f / 255, kAgreement = 5.0f / 255;  // codes: the eye sees most where it is dark
-    constexpr int kMostRays = 8;  // times edge_samples
-    const std::uint64_t seed =
-        hash_bits(f.options.seed + 1, static_cast<std::uint64_t>(y) * f.camera.width + x);
+    constexpr int kMostRays = 8;                                      // times edge_samples
+    const std::uint64_t seed = hash_bits(f.options.seed + 1, static_cast<std::uint64_t>(y) * f.camera.width + x);
     Vec3f lo{kInfinity}, hi{-kInfinity};
     int n = std::max(1, f.options.edge_samples / 4);
     Vec3f sum = draw_rays(f, x, y, seed, 0, n, lo, hi);
-    if (!on_edge && glm::length(shown_codes(hi) - shown_codes(lo)) < kContrast) return shown_codes(sum / static_cast<float>(n));
+    if (!on_edge && glm::length(shown_codes(hi) - shown_codes(lo)) < kContrast)
+        return shown_codes(sum / static_cast<float>(n));
     while (n < kMostRays * f.options.edge_samples) {
         const Vec3f more = draw_rays(f, x, y, seed, n, 2 * n, lo, hi);
-        const Vec3f gap = glm::abs(shown_codes(sum / static_cast<float>(n)) - shown_codes(more / static_cast<float>(n)));
+        const Vec3f gap =
+            glm::abs(shown_codes(sum / static_cast<float>(n)) - shown_codes(more / static_cast<float>(n)));
         sum += more;
         n *= 2;
         if (n >= f.options.edge_samples && std::max({gap.x, gap.y, gap.z}) < kAgreement) break;
@@ -170,7 +169,8 @@ std::vector<std::uint8_t> find_edges(const Shading& f) {
             for (int j = std::max(0, y - 1); j <= std::min(f.camera.height - 1, y + 1); ++j)
                 for (int i = std::max(0, x - 1); i <= std::min(f.camera.width - 1, x + 1); ++i)
                     for (std::size_t c = 0; c < 3; ++c)
-                        if (std::abs(middles[static_cast<std::size_t>(j) * width + static_cast<std::size_t>(i)][c] - middles[k][c]) > kContrast)
+                        if (std::abs(middles[static_cast<std::size_t>(j) * width + static_cast<std::size_t>(i)][c] -
+                                     middles[k][c]) > kContrast)
                             edges[k] = 1;
         }
     });
@@ -183,52 +183,47 @@ std::uint8_t quantise(float code, float dither) {
 
 }  // namespace
 
-Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& query,
-                     const Appearance& appearance, const PictureOptions& options) {
+Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& query, const Appearance& appearance,
+                     const PictureOptions& options) {
     constexpr std::int64_t kMostPixels = std::int64_t{40} << 20;  // about 5 GB of buffers
     const Camera camera = make_camera(options.view, options.width, options.height, mesh.positions);
     if (std::int64_t{options.width} * options.height > kMostPixels)
-        throw Error("a picture of " + std::to_string(options.width) + "x" +
-                    std::to_string(options.height) + " is too large; at most 40 million pixels");
+        throw Error("a picture of " + std::to_string(options.width) + "x" + std::to_string(options.height) +
+                    " is too large; at most 40 million pixels");
     const MaterialReader material(mesh, appearance);
-    Scene scene{mesh, query, material,
-                options.lights == Lights::raking
-                    ? make_raking_studio(mesh.bounds, Vec3f(camera.right), Vec3f(camera.up), Vec3f(camera.forward),
-                                         options.light_azimuth, options.floor, options.exposure)
-                    : make_studio(mesh.bounds, options.view.azimuth, options.light_azimuth, options.floor,
-                                  options.exposure),
-                0};
+    Scene scene{
+        mesh, query, material,
+        options.lights == Lights::raking
+            ? make_raking_studio(mesh.bounds, Vec3f(camera.right), Vec3f(camera.up), Vec3f(camera.forward),
+                                 options.light_azimuth, options.floor, options.exposure)
+            : make_studio(mesh.bounds, options.view.azimuth, options.light_azimuth, options.floor, options.exposure),
+        0};
     scene.offset = 2e-5f * scene.studio.radius + 2e-7f * glm::length(scene.studio.centre);
     report(options.progress, "bounces", 0);
     const LightCache cache(scene);
     const LightBuffer buffer =
-        fill_light_buffer(scene, cache, camera,
-                          {share_samples(options.light_samples), options.seed, options.progress});
+        fill_light_buffer(scene, cache, camera, {share_samples(options.light_samples), options.seed, options.progress});
 
     Image image;
     image.width = options.width;
     image.height = options.height;
     image.rgb.resize(3 * static_cast<std::size_t>(options.width) * options.height);
-    const Shading shading{scene,   cache,
-                          camera,  buffer,
-                          options, static_cast<float>(2 * camera.tan_half_height / camera.height)};
+    const Shading shading{scene,  cache,   camera,
+                          buffer, options, static_cast<float>(2 * camera.tan_half_height / camera.height)};
     const std::vector<std::uint8_t> edges = find_edges(shading);
     constexpr int kBand = 32;
     for (int top = 0; top < image.height; top += kBand) {
         report(options.progress, "picture", static_cast<double>(top) / image.height);
         const int rows = std::min(kBand, image.height - top);
-        parallel_for(static_cast<std::size_t>(rows) * image.width, 256,
-                     [&](std::size_t begin, std::size_t end) {
-                         for (std::size_t i = begin; i < end; ++i) {
-                             const std::size_t k = static_cast<std::size_t>(top) * image.width + i;
-                             const Vec3f c =
-                                 pixel_colour(shading, edges[k] != 0, static_cast<int>(k % image.width),
-                                              static_cast<int>(k / image.width));
-                             const float dither = static_cast<float>(uniform(options.seed + 2, k));
-                             for (int channel = 0; channel < 3; ++channel)
-                                 image.rgb[3 * k + channel] = quantise(c[channel], dither);
-                         }
-                     });
+        parallel_for(static_cast<std::size_t>(rows) * image.width, 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::size_t k = static_cast<std::size_t>(top) * image.width + i;
+                const Vec3f c = pixel_colour(shading, edges[k] != 0, static_cast<int>(k % image.width),
+                                             static_cast<int>(k / image.width));
+                const float dither = static_cast<float>(uniform(options.seed + 2, k));
+                for (int channel = 0; channel < 3; ++channel) image.rgb[3 * k + channel] = quantise(c[channel], dither);
+            }
+        });
     }
     report(options.progress, "picture", 1);
     return image;

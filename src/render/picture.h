@@ -28,11 +28,11 @@ enum class Finish {
 /// Empty spans mean "no such map".
 struct TextureMaps {
     std::uint32_t size = 0;
-    std::span<const Vec2f> corner_uvs{};   ///< [3 n_triangles], v up
-    std::span<const Vec3f> base_colour{};  ///< linear RGB reflectance, or
+    std::span<const Vec2f> corner_uvs{};                              ///< [3 n_triangles], v up
+    std::span<const Vec3f> base_colour{};                             ///< linear RGB reflectance, or
     std::span<const std::array<std::uint8_t, 4>> base_colour_srgb{};  ///< sRGB, alpha over the body
-    std::span<const float> roughness{};  ///< of the coat, 0 mirror … 1 matt
-    std::span<const float> height{};     ///< metres of ink above the surface
+    std::span<const float> roughness{};                               ///< of the coat, 0 mirror … 1 matt
+    std::span<const float> height{};                                  ///< metres of ink above the surface
 };
 
 struct Appearance {
@@ -50,13 +50,13 @@ enum class Lights {
 struct PictureOptions {
     int width = 1280, height = 720;  ///< pixels
     View view;
-    bool floor = true;         ///< stands on a seamless studio floor with its shadow
+    bool floor = true;  ///< stands on a seamless studio floor with its shadow
     Lights lights = Lights::studio;
     double light_azimuth = 0;  ///< radians the lights are turned about z, raking light about the
                                ///< camera's axis; they follow the camera
     double exposure = 1;       ///< factor on the light
-    int edge_samples = 16;     ///< rays per pixel on edges, up to eight times as many on thin lights (a quarter elsewhere)
-    int light_samples = 28;    ///< rays per pixel towards lights and surroundings
+    int edge_samples = 16;  ///< rays per pixel on edges, up to eight times as many on thin lights (a quarter elsewhere)
+    int light_samples = 28;  ///< rays per pixel towards lights and surroundings
     std::uint64_t seed = 1;
     ProgressFn progress;
 };
@@ -67,8 +67,8 @@ struct PictureOptions {
 /// highlights from clipping. The same arguments give the same bits for any thread count.
 /// Throws `Error` for sizes out of range or maps that do not match `size` or the mesh.
 /// Cost at 1280 × 720 and 100,000 triangles: about 10 s of one core.
-Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& query,
-                     const Appearance& appearance, const PictureOptions& options = {});
+Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& query, const Appearance& appearance,
+                     const PictureOptions& options = {});
 
 /// Frame `index` of `count` of a turntable: the model turns once counter-clockwise.
 PictureOptions turntable_frame(PictureOptions options, int index, int count);

@@ -30,8 +30,7 @@ inline Vec2f sobol_point(std::uint32_t i) {
 /// Two uniform numbers from a hash.
 inline Vec2f hash_point(std::uint64_t seed, std::uint64_t counter) {
     const std::uint64_t h = hash_bits(seed, counter);
-    return {static_cast<float>(h >> 40) * 0x1p-24f,
-            static_cast<float>((h >> 8) & 0xffffff) * 0x1p-24f};
+    return {static_cast<float>(h >> 40) * 0x1p-24f, static_cast<float>((h >> 8) & 0xffffff) * 0x1p-24f};
 }
 
 /// Shift for the sums of pixel (x, y): a lattice, so that the errors of neighbours cancel when

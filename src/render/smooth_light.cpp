@@ -18,8 +18,7 @@ float likeness(const Sight& a, const Sight& b, float reach) {
     const float cosine = glm::dot(a.normal, b.normal);
     if (cosine < 0.8f) return 0;
     const Vec3f d = b.position - a.position;
-    const float off =
-        std::max(std::abs(glm::dot(a.normal, d)), std::abs(glm::dot(b.normal, d))) / reach;
+    const float off = std::max(std::abs(glm::dot(a.normal, d)), std::abs(glm::dot(b.normal, d))) / reach;
     if (off > 4) return 0;
     const float c2 = cosine * cosine, c4 = c2 * c2, c8 = c4 * c4, c16 = c8 * c8;
     return c16 * c16 * std::exp(-off * off);
@@ -57,8 +56,7 @@ void local_variance(const LightBuffer& in, const Camera& camera, std::vector<Vec
 void smooth_light(LightBuffer& buffer, std::vector<Vec2f>& variance, const Camera& camera) {
     constexpr float kernel[3] = {0.375f, 0.25f, 0.0625f};
     constexpr int kPasses = 4;
-    constexpr float kStop =
-        2.5f;  // standard deviations of noise that still count as the same light
+    constexpr float kStop = 2.5f;  // standard deviations of noise that still count as the same light
     local_variance(buffer, camera, variance);
     const float per_metre = static_cast<float>(2 * camera.tan_half_height / camera.height);
     std::vector<Light> out(buffer.light.size());
@@ -69,10 +67,8 @@ void smooth_light(LightBuffer& buffer, std::vector<Vec2f>& variance, const Camer
             for (std::size_t k = begin; k < end; ++k) {
                 const Sight& s = buffer.sights[k];
                 if (s.seen == Seen::backdrop) continue;
-                const int x = static_cast<int>(k % buffer.width),
-                          y = static_cast<int>(k / buffer.width);
-                const float reach =
-                    (1 + step) * per_metre * glm::length(s.position - Vec3f(camera.eye));
+                const int x = static_cast<int>(k % buffer.width), y = static_cast<int>(k / buffer.width);
+                const float reach = (1 + step) * per_metre * glm::length(s.position - Vec3f(camera.eye));
                 const Vec2f centre{luma(buffer.light[k].direct), luma(buffer.light[k].around)};
                 const Vec2f tolerance = 1.0f / (kStop * glm::sqrt(variance[k]) + 2e-3f);
                 Light sum;
@@ -88,8 +84,7 @@ void smooth_light(LightBuffer& buffer, std::vector<Vec2f>& variance, const Camer
                         if (q != k) w *= likeness(s, buffer.sights[q], reach);
                         if (w <= 0) continue;
                         const Light& l = buffer.light[q];
-                        const Vec2f gap =
-                            glm::abs(Vec2f{luma(l.direct), luma(l.around)} - centre) * tolerance;
+                        const Vec2f gap = glm::abs(Vec2f{luma(l.direct), luma(l.around)} - centre) * tolerance;
                         const Vec2f weight = w * Vec2f{std::exp(-gap.x), std::exp(-gap.y)};
                         sum.direct += weight.x * l.direct;
                         sum.around += weight.y * l.around;

@@ -19,8 +19,7 @@ float profile(float s, float t, float edge) {
     return a * b * (1 - 0.18f * std::min(s * s + t * t, 2.0f));
 }
 
-SoftBox make_box(const Vec3f& at, const Vec3f& aim, float half_width, float half_height,
-                 const Vec3f& radiance) {
+SoftBox make_box(const Vec3f& at, const Vec3f& aim, float half_width, float half_height, const Vec3f& radiance) {
     SoftBox box;
     box.centre = at;
     box.normal = glm::normalize(aim - at);
@@ -43,13 +42,9 @@ Studio make_studio(const Box& bounds, double azimuth, double turn, bool floor, d
     const double a = azimuth + turn;
     const Vec3f right(std::cos(a), std::sin(a), 0), away(-std::sin(a), std::cos(a), 0), up(0, 0, 1);
     const float r = s.radius;
-    const auto at = [&](float x, float y, float z) {
-        return s.centre + r * (x * right + y * away + z * up);
-    };
-    s.boxes[0] =
-        make_box(at(-2.0f, -1.8f, 2.2f), s.centre, 1.35f * r, 1.0f * r, {9.0f, 8.85f, 8.6f});
-    s.boxes[1] =
-        make_box(at(2.9f, -1.5f, 0.9f), s.centre, 0.6f * r, 1.3f * r, {3.6f, 3.68f, 3.85f});
+    const auto at = [&](float x, float y, float z) { return s.centre + r * (x * right + y * away + z * up); };
+    s.boxes[0] = make_box(at(-2.0f, -1.8f, 2.2f), s.centre, 1.35f * r, 1.0f * r, {9.0f, 8.85f, 8.6f});
+    s.boxes[1] = make_box(at(2.9f, -1.5f, 0.9f), s.centre, 0.6f * r, 1.3f * r, {3.6f, 3.68f, 3.85f});
     s.boxes[2] = make_box(at(0.7f, 3.0f, 1.7f), s.centre, 1.7f * r, 0.5f * r, {4.2f, 4.25f, 4.35f});
 
     const Vec3f to_key = glm::normalize(s.boxes[0].centre - s.centre);
@@ -60,9 +55,9 @@ Studio make_studio(const Box& bounds, double azimuth, double turn, bool floor, d
     return s;
 }
 
-Studio make_raking_studio(const Box& bounds, const Vec3f& right, const Vec3f& up, const Vec3f& forward,
-                          double turn, bool floor, double exposure) {
-    constexpr float kGrazing = 0.23f;  // sine of the lamp's height over a face that looks at the camera
+Studio make_raking_studio(const Box& bounds, const Vec3f& right, const Vec3f& up, const Vec3f& forward, double turn,
+                          bool floor, double exposure) {
+    constexpr float kGrazing = 0.23f;         // sine of the lamp's height over a face that looks at the camera
     constexpr float kFar = 6, kLamp = 0.35f;  // radii
     Studio s;
     s.centre = Vec3f(bounds.centre());
@@ -93,8 +88,7 @@ Vec3f dome_radiance(const Studio& studio, const Vec3f& d) {
     return studio.scale * studio.dome * glm::mix(low, high, h);
 }
 
-Vec3f box_radiance(const Studio& studio, const Vec3f& origin, const Vec3f& direction,
-                   float roughness) {
+Vec3f box_radiance(const Studio& studio, const Vec3f& origin, const Vec3f& direction, float roughness) {
     Vec3f sum{0};
     for (const SoftBox& box : studio.boxes) {
         const float facing = -glm::dot(direction, box.normal);
@@ -105,8 +99,7 @@ Vec3f box_radiance(const Studio& studio, const Vec3f& origin, const Vec3f& direc
         const float uu = glm::dot(box.u, box.u), vv = glm::dot(box.v, box.v);
         // A rough coat spreads a mirror direction over about roughness² radians.
         const float blur = 1.5f * roughness * roughness * t;
-        const float edge_u = SoftBox::kEdge + blur / std::sqrt(uu),
-                    edge_v = SoftBox::kEdge + blur / std::sqrt(vv);
+        const float edge_u = SoftBox::kEdge + blur / std::sqrt(uu), edge_v = SoftBox::kEdge + blur / std::sqrt(vv);
         const float su = std::abs(glm::dot(d, box.u)) / uu, sv = std::abs(glm::dot(d, box.v)) / vv;
         if (su >= 1 + edge_u || sv >= 1 + edge_v) continue;
         // A blur wider than the box dims it: keep the area under the profile.
@@ -129,8 +122,7 @@ BoxSample sample_box(const SoftBox& box, const Vec3f& p, const Vec3f& n, const V
     const float cos_n = glm::dot(n, out.direction), cos_box = -glm::dot(box.normal, out.direction);
     if (cos_n <= 0 || cos_box <= 0) return out;
     const float area = 4 * kReach * kReach * glm::length(box.u) * glm::length(box.v);
-    out.light =
-        box.radiance * (profile(a, b, SoftBox::kEdge) * cos_n * cos_box * area / (d2 * kPi));
+    out.light = box.radiance * (profile(a, b, SoftBox::kEdge) * cos_n * cos_box * area / (d2 * kPi));
     return out;
 }
 
@@ -141,15 +133,13 @@ Vec3f open_light(const Studio& studio, const Vec3f& p, const Vec3f& n) {
         const Vec2f s = sobol_point(i) + Vec2f{0.5f / kSamples};
         for (const SoftBox& box : studio.boxes) sum += sample_box(box, p, n, s).light;
         const Vec3f d = cosine_direction(n, s);
-        sum += d.z < 0 && studio.floor ? studio.floor_albedo * studio.scale * 1.5f
-                                       : dome_radiance(studio, d);
+        sum += d.z < 0 && studio.floor ? studio.floor_albedo * studio.scale * 1.5f : dome_radiance(studio, d);
     }
     return sum / static_cast<float>(kSamples);
 }
 
 Vec3f backdrop(float x, float y) {
-    const float glow =
-        std::exp(-1.6f * ((x - 0.5f) * (x - 0.5f) * 1.6f + (y - 0.42f) * (y - 0.42f) * 1.2f));
+    const float glow = std::exp(-1.6f * ((x - 0.5f) * (x - 0.5f) * 1.6f + (y - 0.42f) * (y - 0.42f) * 1.2f));
     const Vec3f dark{0.235f, 0.24f, 0.25f}, light{0.50f, 0.505f, 0.51f};
     return glm::mix(dark, light, glow * (0.75f + 0.25f * smooth_step(y)));
 }

@@ -37,15 +37,14 @@ Studio make_studio(const Box& bounds, double azimuth, double turn, bool floor, d
 /// Studio with one small lamp that grazes what the camera sees, from its left (turned by `turn`
 /// clockwise about its axis), and little light from all round: it shows relief. `right`, `up` and
 /// `forward` are the camera's, unit. Exposed as above for a face that looks at the camera.
-Studio make_raking_studio(const Box& bounds, const Vec3f& right, const Vec3f& up, const Vec3f& forward,
-                          double turn, bool floor, double exposure);
+Studio make_raking_studio(const Box& bounds, const Vec3f& right, const Vec3f& up, const Vec3f& forward, double turn,
+                          bool floor, double exposure);
 
 /// Radiance of the dome from a direction (unit).
 Vec3f dome_radiance(const Studio& studio, const Vec3f& direction);
 
 /// Radiance of the boxes along a ray, blurred by a coat of the given roughness.
-Vec3f box_radiance(const Studio& studio, const Vec3f& origin, const Vec3f& direction,
-                   float roughness);
+Vec3f box_radiance(const Studio& studio, const Vec3f& origin, const Vec3f& direction, float roughness);
 
 /// A point of a box seen from p, with the light it would give a face with normal n.
 struct BoxSample {

@@ -80,7 +80,8 @@ TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
     EXPECT_EQ(io::Project::open(path_).strokes().size(), 1u);
 }
 
-// No folder can be written into when the work begins: it waits in memory, and is in its file as soon as there can be one.
+// No folder can be written into when the work begins: it waits in memory, and is in its file as soon as there can be
+// one.
 TEST_F(KeeperTest, WorkThatHasNoFileYetWaitsForOne) {
     Autosave autosave;
     const auto file = folder_ / "later" / "work.tuft";

@@ -24,13 +24,16 @@ struct View {
     Aim aim(const Vec2& pixel, double time) const {
         const Vec3 forward = -glm::cross(right, up);
         return {.ray = {middle + metres * (pixel.x * right + pixel.y * up) - 2.0 * forward, forward},
-                .view_right = right, .view_up = up, .metres_per_pixel = metres, .time = time};
+                .view_right = right,
+                .view_up = up,
+                .metres_per_pixel = metres,
+                .time = time};
     }
     Vec2 pixel(const Vec3& p) const { return Vec2(glm::dot(p - middle, right), glm::dot(p - middle, up)) / metres; }
 };
 
-/// The cursor of a mouse along corners (pixels) at a pace of so many pixels a second; `eased`: it begins and ends at rest,
-/// as a careful hand does, else it moves when the button goes down and when it comes up.
+/// The cursor of a mouse along corners (pixels) at a pace of so many pixels a second; `eased`: it begins and ends at
+/// rest, as a careful hand does, else it moves when the button goes down and when it comes up.
 std::vector<Aim> drawn(const View& view, const std::vector<Vec2>& corners, double pace, bool eased) {
     double length = 0;
     for (std::size_t i = 1; i < corners.size(); ++i) length += glm::distance(corners[i - 1], corners[i]);
@@ -40,14 +43,17 @@ std::vector<Aim> drawn(const View& view, const std::vector<Vec2>& corners, doubl
         const double t = static_cast<double>(i) / n;
         double gone = length * (eased ? t * t * (3 - 2 * t) : t);
         std::size_t k = 1;
-        while (k + 1 < corners.size() && gone > glm::distance(corners[k - 1], corners[k])) gone -= glm::distance(corners[k - 1], corners[k]), ++k;
+        while (k + 1 < corners.size() && gone > glm::distance(corners[k - 1], corners[k]))
+            gone -= glm::distance(corners[k - 1], corners[k]), ++k;
         const double part = length > 0 ? gone / glm::distance(corners[k - 1], corners[k]) : 0;
-        aims.push_back(view.aim(glm::round(corners[k - 1] + std::min(1.0, part) * (corners[k] - corners[k - 1])), i / kRate));
+        aims.push_back(
+            view.aim(glm::round(corners[k - 1] + std::min(1.0, part) * (corners[k] - corners[k - 1])), i / kRate));
     }
     return aims;
 }
 
-stroke::Document painted(const stroke::Model& model, const std::string& brush, const std::vector<Aim>& aims, PointerSettings settings = {}) {
+stroke::Document painted(const stroke::Model& model, const std::string& brush, const std::vector<Aim>& aims,
+                         PointerSettings settings = {}) {
     const brush::Preset preset = brush::load_preset(brush);
     PointerInput hand(*model.query, preset, settings, {stroke::measure_tip_lag(preset)});
     stroke::Document painting(model);
@@ -85,7 +91,8 @@ std::vector<Vec2> inked(stroke::Document& painting, const View& view) {
             for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
                 if (const ink::Plane* w = canvas.plane(slot, p)) film += static_cast<double>((*w)[t]);
             // A tenth of a full film of carbon is a dark grey.
-            if (film > 0.18 && model.texels.tiles[slot].cluster[t] != atlas::kNoCluster) places.push_back(view.pixel(Vec3(model.texels.position(slot, t))));
+            if (film > 0.18 && model.texels.tiles[slot].cluster[t] != atlas::kNoCluster)
+                places.push_back(view.pixel(Vec3(model.texels.position(slot, t))));
         }
     return places;
 }
@@ -105,7 +112,8 @@ Line measure(const std::vector<Vec2>& ink, const Vec2& a, const Vec2& b) {
         if (std::abs(u - 0.5 * length) < 0.1 * length) line.half = std::max(line.half, std::abs(v));
     }
     for (const Vec2& p : ink)
-        if (const double u = glm::dot(p - a, along); u < 0.25 * length || u > 0.75 * length) line.aside = std::max(line.aside, std::abs(glm::dot(p - a, across)));
+        if (const double u = glm::dot(p - a, along); u < 0.25 * length || u > 0.75 * length)
+            line.aside = std::max(line.aside, std::abs(glm::dot(p - a, across)));
     return line;
 }
 
@@ -135,7 +143,8 @@ TEST(CleanEnds, InkBeginsAtThePressAndEndsAtTheRelease) {
                 const Vec2 d{std::cos(angle), std::sin(angle)}, a = glm::round(-90.0 * d), b = glm::round(90.0 * d);
                 stroke::Document painting = painted(sheet(), brush, drawn(view, {a, b}, pace, eased));
                 expect_clean(measure(inked(painting, view), a, b), glm::distance(a, b),
-                             std::string(brush) + " at " + std::to_string(pace) + (eased ? " eased" : "") + ", direction " + std::to_string(angle));
+                             std::string(brush) + " at " + std::to_string(pace) + (eased ? " eased" : "") +
+                                 ", direction " + std::to_string(angle));
             }
 }
 
@@ -160,7 +169,8 @@ TEST(CleanEnds, AClickIsADotWhereItWas) {
         const std::vector<Vec2> ink = inked(painting, view);
         ASSERT_GT(ink.size(), 20u) << brush;
         double furthest = 0, nearest = 1e9;
-        for (const Vec2& p : ink) furthest = std::max(furthest, glm::distance(p, at)), nearest = std::min(nearest, glm::distance(p, at));
+        for (const Vec2& p : ink)
+            furthest = std::max(furthest, glm::distance(p, at)), nearest = std::min(nearest, glm::distance(p, at));
         EXPECT_LT(nearest, 2) << brush;
         // A tuft pressed down lies to one side, no further than its pressed length.
         const brush::Preset preset = brush::load_preset(brush);
@@ -196,22 +206,26 @@ TEST(CleanEnds, HoldOnBowlsAndCars) {
         const char* brush;
         View view;
     };
-    const Place places[] = {{bowl, "wolf-small", side(bowl, {0, 1, 0}, {0, 0, 0}, 0.33e-3)},  // inside, from above
-                            {bowl, "wolf-small", side(bowl, {0, 0, 1}, {0, 0, 0}, 0.33e-3)},  // outside, from the front
-                            {car, "wolf-large*3", side(car, {0, 0, 1}, {0, 0, -0.03}, 1.9e-3)}};  // the door; the whole car on 600 pixels
+    const Place places[] = {
+        {bowl, "wolf-small", side(bowl, {0, 1, 0}, {0, 0, 0}, 0.33e-3)},      // inside, from above
+        {bowl, "wolf-small", side(bowl, {0, 0, 1}, {0, 0, 0}, 0.33e-3)},      // outside, from the front
+        {car, "wolf-large*3", side(car, {0, 0, 1}, {0, 0, -0.03}, 1.9e-3)}};  // the door; the whole car on 600 pixels
     for (const auto& [model, brush, view] : places)
         for (const auto& [pace, eased] : {std::pair{150.0, true}, {800.0, false}})
             for (const double angle : {0.0, 2.8}) {
                 const Vec2 d{std::cos(angle), std::sin(angle)}, a = glm::round(-45.0 * d), b = glm::round(45.0 * d);
                 stroke::Document painting = painted(model, brush, drawn(view, {a, b}, pace, eased));
                 const Line line = measure(inked(painting, view), a, b);
-                expect_clean(line, glm::distance(a, b), std::string(brush) + " at " + std::to_string(pace) + ", direction " + std::to_string(angle));
+                expect_clean(
+                    line, glm::distance(a, b),
+                    std::string(brush) + " at " + std::to_string(pace) + ", direction " + std::to_string(angle));
             }
 }
 
 TEST(CleanEnds, StrokesReplayToTheBit) {
     const View view{.middle = sheet().mesh->bounds.centre()};
-    const stroke::Document painting = painted(sheet(), "wolf-medium", drawn(view, {{-60, 0}, {20, 30}, {60, -20}}, 500, false));
+    const stroke::Document painting =
+        painted(sheet(), "wolf-medium", drawn(view, {{-60, 0}, {20, 30}, {60, -20}}, 500, false));
     stroke::Document again(sheet());
     again.replay(painting.journal().strokes());
     EXPECT_EQ(again.hash(), painting.hash());

@@ -60,7 +60,9 @@ class OwnInks : public testing::Test {
 
 TEST_F(OwnInks, AndRecentColoursAreThereTheNextTime) {
     ColourChoice first;
-    ink::Ink own = ink::match_colour(*ink::colour_of_hex("#603010"), ink::shipped_pigments(), ink::load_substrate("porcelain")).ink;
+    ink::Ink own =
+        ink::match_colour(*ink::colour_of_hex("#603010"), ink::shipped_pigments(), ink::load_substrate("porcelain"))
+            .ink;
     own.name = "bark / 树皮";
     save_own_ink(first, own);
     remember_colour(first, "#603010");
@@ -89,7 +91,9 @@ TEST_F(OwnInks, ThatCannotBeReadAreLeftOut) {
     EXPECT_EQ(next.recent, std::vector<std::string>{"#abcdef"});
 }
 
-Box box(double x, double y, double z) { return {Vec3(0), Vec3(x, y, z)}; }
+Box box(double x, double y, double z) {
+    return {Vec3(0), Vec3(x, y, z)};
+}
 
 // The line of the first brush, metres.
 double first_line(const Box& of) {
@@ -101,21 +105,24 @@ double first_line(const Box& of) {
 
 TEST(FirstBrush, DrawsALineInTheSizeOfTheModel) {
     // From a 20 mm ring to a car of 1.2 m: within half as much again of 2 % of the diagonal.
-    for (const Box& b : {box(0.02, 0.02, 0.004), box(0.06, 0.05, 0.04), box(0.15, 0.15, 0.07), box(0.2, 0.2, 0.001), box(1.16, 0.54, 0.33)}) {
+    for (const Box& b : {box(0.02, 0.02, 0.004), box(0.06, 0.05, 0.04), box(0.15, 0.15, 0.07), box(0.2, 0.2, 0.001),
+                         box(1.16, 0.54, 0.33)}) {
         const double wanted = 0.02 * b.diagonal();
         EXPECT_LT(first_line(b), 1.6 * wanted) << b.diagonal();
         EXPECT_GT(first_line(b), wanted / 1.6) << b.diagonal();
     }
     // A real car takes the largest size there is; its line is no hairline where 5.1 m lie on 700 pixels.
     const Box car = box(4.6, 1.8, 1.4);
-    EXPECT_EQ(brush::sized_name(first_brush(brush::list_presets(), "wolf-medium", 0.45, first_line_width(car))).factor, brush::kMostSize);
+    EXPECT_EQ(brush::sized_name(first_brush(brush::list_presets(), "wolf-medium", 0.45, first_line_width(car))).factor,
+              brush::kMostSize);
     EXPECT_GT(first_line(car), 3 * 5.1 / 700) << "three pixels";
     // A thin rod is not painted round.
     EXPECT_LT(first_line(box(1, 0.01, 0.01)), 0.005);
 }
 
 TEST(FirstBrush, OfASampleInBrushSizeIsNotScaled) {
-    const std::string name = first_brush(brush::list_presets(), "wolf-medium", 0.45, first_line_width(box(0.151, 0.151, 0.067)));
+    const std::string name =
+        first_brush(brush::list_presets(), "wolf-medium", 0.45, first_line_width(box(0.151, 0.151, 0.067)));
     EXPECT_EQ(name.find('*'), std::string::npos) << name;
     EXPECT_TRUE(name.starts_with("wolf-")) << name;
 }

@@ -8,8 +8,8 @@
 
 #include "app/view/texture.h"
 #include "models.h"
-#include "stroke/hand/tip_lag.h"
 #include "paths.h"
+#include "stroke/hand/tip_lag.h"
 
 namespace tuft::app {
 namespace {
@@ -46,7 +46,8 @@ TEST(Curve, GoesThroughItsPointsOnTheSideThatIsSeen) {
     for (const CurvePlace& place : places) {
         ASSERT_TRUE(place.on);
         // The inside of the thin wall faces the other way.
-        EXPECT_GT(glm::dot(place.normal, glm::normalize(place.position - Vec3(middle.x, middle.y, place.position.z))), 0);
+        EXPECT_GT(glm::dot(place.normal, glm::normalize(place.position - Vec3(middle.x, middle.y, place.position.z))),
+                  0);
     }
 }
 
@@ -61,12 +62,14 @@ TEST(Curve, BreaksWhereThereIsNoModel) {
         points.push_back({.position = hit->position});
     }
     const brush::Preset preset = brush::load_preset("wolf-small");
-    EXPECT_EQ(curve_poses(query, points, {.hold = stroke::holder_options(preset, query.mesh())}).size(), 2u);  // over the hole
+    EXPECT_EQ(curve_poses(query, points, {.hold = stroke::holder_options(preset, query.mesh())}).size(),
+              2u);  // over the hole
 }
 
 /// Under a holder that leans by so many radians to the right and down.
 class LeaningCurve : public testing::TestWithParam<std::pair<double, double>> {};
-INSTANTIATE_TEST_SUITE_P(Curve, LeaningCurve, testing::Values(std::pair(0.0, 0.0), std::pair(0.6, 0.0), std::pair(0.0, -0.6)));
+INSTANTIATE_TEST_SUITE_P(Curve, LeaningCurve,
+                         testing::Values(std::pair(0.0, 0.0), std::pair(0.6, 0.0), std::pair(0.0, -0.6)));
 
 TEST_P(LeaningCurve, ItsInkLiesOnIt) {
     const stroke::Model model = test::shipped_model("sheet.ply", 1024);
@@ -79,7 +82,9 @@ TEST_P(LeaningCurve, ItsInkLiesOnIt) {
     }
     stroke::Document painting(model);
     const brush::Preset preset = painting.brush("wolf-medium");
-    CurveHand hand{.hold = stroke::holder_options(preset, *model.mesh), .pressure = 0.4, .tilt = {GetParam().first, GetParam().second}};
+    CurveHand hand{.hold = stroke::holder_options(preset, *model.mesh),
+                   .pressure = 0.4,
+                   .tilt = {GetParam().first, GetParam().second}};
     hand.hold.tip_lag = stroke::measure_tip_lag(preset);
     stroke::TiltedTipLag leaned(preset);
     hand.hold.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
@@ -98,8 +103,10 @@ TEST_P(LeaningCurve, ItsInkLiesOnIt) {
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             const std::uint32_t tile = model.texels.tile_of_slot[slot];
             if (model.texels.tiles[slot].cluster[static_cast<std::size_t>(t)] == atlas::kNoCluster) continue;
-            const std::size_t x = tile % model.texels.tiles_per_side * atlas::kTile + static_cast<std::size_t>(t) % atlas::kTile,
-                              y = tile / model.texels.tiles_per_side * atlas::kTile + static_cast<std::size_t>(t) / atlas::kTile;
+            const std::size_t x = tile % model.texels.tiles_per_side * atlas::kTile +
+                                  static_cast<std::size_t>(t) % atlas::kTile,
+                              y = tile / model.texels.tiles_per_side * atlas::kTile +
+                                  static_cast<std::size_t>(t) / atlas::kTile;
             const double ink = map.levels[0][y * map.size + x][3];
             const Vec3 p = Vec3(model.texels.position(slot, t)) - c;
             if (ink == 0) continue;

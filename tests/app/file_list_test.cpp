@@ -18,10 +18,17 @@ std::string names(const std::vector<FileEntry>& entries) {
 }
 
 TEST(FileList, FoldersComeFirstAndFilesInTheOrderAskedFor) {
-    std::vector<FileEntry> entries{{"b.ply", false, 30, 100}, {"Zebra", true, 0, 5}, {"A.ply", false, 10, 300}, {"apes", true, 0, 9}, {"c.ply", false, 20, 200}};
+    std::vector<FileEntry> entries{{"b.ply", false, 30, 100},
+                                   {"Zebra", true, 0, 5},
+                                   {"A.ply", false, 10, 300},
+                                   {"apes", true, 0, 9},
+                                   {"c.ply", false, 20, 200}};
     const std::tuple<FileOrder, bool, const char*> orders[] = {
-        {FileOrder::name, false, "apes Zebra A.ply b.ply c.ply "}, {FileOrder::name, true, "apes Zebra c.ply b.ply A.ply "},
-        {FileOrder::size, false, "apes Zebra A.ply c.ply b.ply "}, {FileOrder::date, true, "apes Zebra A.ply c.ply b.ply "}, {FileOrder::date, false, "apes Zebra b.ply c.ply A.ply "}};
+        {FileOrder::name, false, "apes Zebra A.ply b.ply c.ply "},
+        {FileOrder::name, true, "apes Zebra c.ply b.ply A.ply "},
+        {FileOrder::size, false, "apes Zebra A.ply c.ply b.ply "},
+        {FileOrder::date, true, "apes Zebra A.ply c.ply b.ply "},
+        {FileOrder::date, false, "apes Zebra b.ply c.ply A.ply "}};
     for (const auto& [order, downward, expected] : orders) {
         sort_entries(entries, order, downward);
         EXPECT_EQ(names(entries), expected) << static_cast<int>(order) << downward;
@@ -40,13 +47,15 @@ TEST(FileList, AFolderIsReadWithoutHiddenFilesPipesAndWhatDoesNotSuit) {
     for (const char* name : {"a.ply", "b.txt", ".c.ply"}) std::ofstream(folder / name) << "12345";
     ASSERT_EQ(mkfifo((folder / "pipe.ply").c_str(), 0600), 0);
     std::string fault = "left over";
-    std::vector<FileEntry> entries = list_folder(folder, [](const fs::path& p) { return p.extension() == ".ply"; }, fault);
+    std::vector<FileEntry> entries = list_folder(
+        folder, [](const fs::path& p) { return p.extension() == ".ply"; }, fault);
     sort_entries(entries, FileOrder::name, false);
     EXPECT_EQ(names(entries), "inner a.ply ");
     EXPECT_EQ(fault, "");
     EXPECT_EQ(entries.back().bytes, 5u);
     EXPECT_EQ(date_text(entries.back().changed).size(), 16u);
-    list_folder(folder / "missing", [](const fs::path&) { return true; }, fault);
+    list_folder(
+        folder / "missing", [](const fs::path&) { return true; }, fault);
     EXPECT_NE(fault, "");
     fs::remove_all(folder);
 }

@@ -29,7 +29,8 @@ class Gl : public testing::Test {
 std::array<std::uint8_t, 3> encoded(const Vec3f& light) {
     std::array<std::uint8_t, 3> out;
     for (int k = 0; k < 3; ++k)
-        out[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(std::lround(255 * ink::srgb_encode(glm::clamp(light[k], 0.0f, 1.0f))));
+        out[static_cast<std::size_t>(k)] =
+            static_cast<std::uint8_t>(std::lround(255 * ink::srgb_encode(glm::clamp(light[k], 0.0f, 1.0f))));
     return out;
 }
 
@@ -54,7 +55,8 @@ TEST_F(Gl, ShadersAgreeWithTheirTwinOnTheProcessor) {
     render::GlTarget target;
     target.resize(kWidth, kHeight, 0);
     for (const Vec3f& n : {Vec3f(0, -1, 0), Vec3f(0.6f, -0.8f, 0), Vec3f(-0.3f, -0.5f, 0.8f)})
-        for (const render::LightRig rig : {render::LightRig::studio, render::LightRig::window, render::LightRig::raking})
+        for (const render::LightRig rig :
+             {render::LightRig::studio, render::LightRig::window, render::LightRig::raking})
             for (const float roughness : {0.05f, 0.5f, 0.9f})
                 for (const double parallel : {0.0, 2.5}) {
                     const Vec3f normal = glm::normalize(n);
@@ -68,9 +70,12 @@ TEST_F(Gl, ShadersAgreeWithTheirTwinOnTheProcessor) {
                     for (const auto& [x, y] : {std::pair{120, 90}, std::pair{95, 75}}) {
                         const std::vector<std::uint8_t> pixel = render::read_pixels(x, kHeight - 1 - y, 1, 1);
                         const render::GlRay ray = render::ray_at(c, x + 0.5, y + 0.5);
-                        const auto want = encoded(render::glazed(light, base, normal, Vec3f(-ray.direction), roughness));
-                        // One step of eight bits for rounding, one for the GPU's single precision and its texture decoding.
-                        for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(pixel[k], want[k], 2) << "channel " << k << " roughness " << roughness;
+                        const auto want =
+                            encoded(render::glazed(light, base, normal, Vec3f(-ray.direction), roughness));
+                        // One step of eight bits for rounding, one for the GPU's single precision and its texture
+                        // decoding.
+                        for (std::size_t k = 0; k < 3; ++k)
+                            EXPECT_NEAR(pixel[k], want[k], 2) << "channel " << k << " roughness " << roughness;
                     }
                 }
 }
@@ -104,11 +109,12 @@ render::GlView::Frame any_frame(const stroke::Model& model, Random& random) {
     orbit.target += near(random.uniform()) * b.size();
     orbit.zoom(random.uniform(-6, 12), orbit.target);
     render::GlView::Frame frame{.camera = orbit.camera(kWidth, kHeight, b)};
-    constexpr render::Shading shadings[] = {render::Shading::glaze, render::Shading::glaze, render::Shading::clay,
+    constexpr render::Shading shadings[] = {render::Shading::glaze, render::Shading::glaze,  render::Shading::clay,
                                             render::Shading::flat,  render::Shading::height, render::Shading::texels};
     frame.look.options.shading = shadings[static_cast<std::size_t>(random.uniform(0, 6))];
     if (random.uniform() < 0.3) frame.look.options.section = Vec4f(0, -1, 0, static_cast<float>(b.centre().y));
-    frame.look.light = render::make_light(random.uniform() < 0.5 ? render::LightRig::studio : render::LightRig::raking, frame.camera);
+    frame.look.light =
+        render::make_light(random.uniform() < 0.5 ? render::LightRig::studio : render::LightRig::raking, frame.camera);
     frame.moving = random.uniform() < 0.1;
     return frame;
 }
@@ -139,7 +145,8 @@ void Painted::compare(const stroke::Model& model, std::uint64_t seed) {
         stroke.trace.brush = round % 3 == 0 ? "goat-large" : "wolf-medium";
         stroke.trace.ink = round % 2 ? "carbon" : "cinnabar";
         painting.begin(stroke);
-        const std::vector<brush::Pose> poses = test::poses_above(model, painting.brush(stroke.trace.brush), random.uniform(0.04, 0.2), random.uniform(-0.02, 0.02));
+        const std::vector<brush::Pose> poses = test::poses_above(
+            model, painting.brush(stroke.trace.brush), random.uniform(0.04, 0.2), random.uniform(-0.02, 0.02));
         std::vector<std::uint8_t> pieces;
         for (std::size_t i = 0; i < poses.size(); i += poses.size() / 3 + 1) {
             painting.extend(std::span(poses).subspan(i, std::min(poses.size() / 3 + 1, poses.size() - i)));

@@ -1,10 +1,9 @@
-#include "app/input/pointer_input.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
+#include "app/input/pointer_input.h"
 #include "app/view/viewport.h"
 #include "models.h"
 #include "paths.h"
@@ -25,7 +24,11 @@ class HandOnSheet : public testing::Test {
     // A cursor straight above (x, y) of the sheet's middle.
     static Aim above(double x, double y, double time, double pressure = -1) {
         const Vec3 c = mesh_->bounds.centre();
-        return {.ray = {c + Vec3(x, y, 0.5), {0, 0, -1}}, .view_up = {0, 1, 0}, .metres_per_pixel = 1e-4, .time = time, .pressure = pressure};
+        return {.ray = {c + Vec3(x, y, 0.5), {0, 0, -1}},
+                .view_up = {0, 1, 0},
+                .metres_per_pixel = 1e-4,
+                .time = time,
+                .pressure = pressure};
     }
     // Depth of the unbent tip at the last pose of a stroke along x at a steady speed (m/s).
     static double depth_at(double speed, PointerSettings settings, double pressure = -1, double seconds = 0.6) {
@@ -72,7 +75,8 @@ TEST_F(HandOnSheet, APenHeldStillWithoutReportsKeepsItsPressureUntilItsNextOne) 
     PointerInput hand(*query_, preset_, {});
     std::vector<brush::Pose> poses;
     const auto move = [&](double t, double pressure) {
-        for (const HandStep& step : hand.move(above(0, 0, t, pressure))) poses.insert(poses.end(), step.poses.begin(), step.poses.end());
+        for (const HandStep& step : hand.move(above(0, 0, t, pressure)))
+            poses.insert(poses.end(), step.poses.begin(), step.poses.end());
     };
     for (int i = 0; i <= 20; ++i) move(0.004 * i, 0.7);
     const std::size_t before = poses.size();
@@ -143,8 +147,10 @@ struct Slabs {
         soup.polygon_start = {0};
         const auto box = [&](const Vec3& lo, const Vec3& hi) {
             const auto first = static_cast<std::uint32_t>(soup.points.size());
-            for (int i = 0; i < 8; ++i) soup.points.emplace_back(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
-            static constexpr std::array<std::array<std::uint32_t, 4>, 6> quads{{{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+            for (int i = 0; i < 8; ++i)
+                soup.points.emplace_back(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
+            static constexpr std::array<std::array<std::uint32_t, 4>, 6> quads{
+                {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
             for (const auto& quad : quads) {
                 for (const std::uint32_t corner : quad) soup.corners.push_back(first + corner);
                 soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
@@ -171,7 +177,8 @@ Crossing cross(const Slabs& slabs, const brush::Preset& preset, double slant) {
     s.speed_effect = s.dwell_effect = 0;
     PointerInput hand(slabs.query, preset, s);
     Crossing out;
-    const Vec3 down = glm::normalize(Vec3(0, std::sin(slant), -std::cos(slant))), up = glm::normalize(Vec3(0, std::cos(slant), std::sin(slant)));
+    const Vec3 down = glm::normalize(Vec3(0, std::sin(slant), -std::cos(slant))),
+               up = glm::normalize(Vec3(0, std::cos(slant), std::sin(slant)));
     std::vector<brush::Pose> poses;
     const auto take = [&](const std::vector<HandStep>& steps, bool look) {
         for (const HandStep& step : steps) {
@@ -188,7 +195,12 @@ Crossing cross(const Slabs& slabs, const brush::Preset& preset, double slant) {
     };
     for (int i = 0; i <= 800; ++i) {
         const Vec3 at(-0.04 + 1e-4 * i, 0, 0);
-        take(hand.move({.ray = {at - 0.5 * down, down}, .view_right = {1, 0, 0}, .view_up = up, .metres_per_pixel = 1e-4, .time = 0.001 * i}), true);
+        take(hand.move({.ray = {at - 0.5 * down, down},
+                        .view_right = {1, 0, 0},
+                        .view_up = up,
+                        .metres_per_pixel = 1e-4,
+                        .time = 0.001 * i}),
+             true);
     }
     take(hand.lift(), false);
     return out;
@@ -206,7 +218,8 @@ TEST(HandOverAGap, AGapNarrowerThanTheTuftIsCrossedInOneLevelStroke) {
                 // 20 µm: a five hundredth of its depth; the pressure still rises by e^-8 after 0.4 s.
                 EXPECT_LT(c.most - c.least, 2e-5) << name << " floor " << floor << " slant " << slant;
                 EXPECT_LT(c.lean, 0.02);
-                // 0.1 m/s: 0.1 mm in each of the samples' milliseconds; six of them while it is set down; at an edge no more than the reach of the snap back.
+                // 0.1 m/s: 0.1 mm in each of the samples' milliseconds; six of them while it is set down; at an edge no
+                // more than the reach of the snap back.
                 EXPECT_LT(c.step, 8e-4);
             }
     }
@@ -299,7 +312,9 @@ TEST(Orbit, TheModelGoesWhereTheCapIsPushedAndTurned) {
         Orbit before;
         before.roll = roll;
         const Box scene{Vec3(-0.1), Vec3(0.1)};
-        const auto picture = [&](const Orbit& o, const Vec3& p) { return render::picture_point(o.camera(800, 600, scene), p); };
+        const auto picture = [&](const Orbit& o, const Vec3& p) {
+            return render::picture_point(o.camera(800, 600, scene), p);
+        };
         const Vec3 middle = before.target, front = before.target - 0.05 * before.camera(800, 600, scene).forward;
         Orbit o = before;
         o.fly({0.1, 0, 0}, Vec3(0), true);

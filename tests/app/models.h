@@ -1,8 +1,8 @@
 #pragma once
 
 #include "io/read_model.h"
-#include "stroke/painting/painting.h"
 #include "paths.h"
+#include "stroke/painting/painting.h"
 
 namespace tuft::test {
 
@@ -23,7 +23,8 @@ inline std::vector<brush::Pose> poses_above(const stroke::Model& model, const br
         const Vec3 above{b.centre().x + (s - 0.5) * length, b.centre().y + y, b.hi.z + 0.1};
         const auto hit = model.query->ray(above, {0, 0, -1});
         if (!hit) continue;
-        poses.push_back({.position = hit->position + Vec3(0, 0, preset.length * (1 - press) + (press > 0 ? 0 : 1e-3)), .time = 0.01 * i});
+        poses.push_back({.position = hit->position + Vec3(0, 0, preset.length * (1 - press) + (press > 0 ? 0 : 1e-3)),
+                         .time = 0.01 * i});
     }
     return poses;
 }

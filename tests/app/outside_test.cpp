@@ -91,14 +91,18 @@ class OutsideTest : public testing::Test {
 
 // The file gets a copy of the first stroke 5 mm aside, under the id that the next one here would have.
 const std::string kCopyFirst =
-    "INSERT INTO strokes(id, brush, ink, seed, label, settings, hidden, flat, laying, placement, sample_count, samples) "
-    "SELECT (SELECT max(id) + 1 FROM strokes), brush, ink, seed, 'theirs', settings, hidden, flat, laying, placement, sample_count, samples "
+    "INSERT INTO strokes(id, brush, ink, seed, label, settings, hidden, flat, laying, placement, sample_count, "
+    "samples) "
+    "SELECT (SELECT max(id) + 1 FROM strokes), brush, ink, seed, 'theirs', settings, hidden, flat, laying, placement, "
+    "sample_count, samples "
     "FROM strokes LIMIT 1";
 
 TEST_F(OutsideTest, AChangeBesideIsSeenByItselfAndThePaintingGoesOnAfterIt) {
     stroke(0);
     as_old_program(kCopyFirst);
-    EXPECT_TRUE(comes([&] { return messages_.find("Another program changed this project; 1 change of it is taken in.") != std::string::npos; })) << messages_;
+    EXPECT_TRUE(comes([&] {
+        return messages_.find("Another program changed this project; 1 change of it is taken in.") != std::string::npos;
+    })) << messages_;
     EXPECT_EQ(lines_.size(), 2u);
     stroke(0.01);
     EXPECT_EQ(last_.trouble, "");
@@ -112,7 +116,9 @@ TEST_F(OutsideTest, AStrokeThatMeetsAChangeIsPaintedAfterIt) {
     for (int i = 1; i <= 3; ++i) {
         as_old_program(kCopyFirst);
         stroke(0.01 * i);
-        EXPECT_TRUE(comes([&] { return lines_.size() == 1u + 2u * static_cast<unsigned>(i) && last_.unkept == 0 && last_.trouble.empty(); })) << last_.trouble;
+        EXPECT_TRUE(comes([&] {
+            return lines_.size() == 1u + 2u * static_cast<unsigned>(i) && last_.unkept == 0 && last_.trouble.empty();
+        })) << last_.trouble;
     }
     painter_->post(UndoStroke{});
     rest();
@@ -155,7 +161,8 @@ TEST_F(OutsideTest, WhereAnotherModelIsPutInItsPlaceTheWorkGoesOnInACopy) {
     const auto size = fs::file_size(folder_ / "other.tuft");
     fs::rename(folder_ / "other.tuft", path_);
     stroke(0.01);
-    EXPECT_TRUE(comes([&] { return last_.project == folder_ / "spare.tuft" && last_.trouble.empty(); })) << last_.trouble;
+    EXPECT_TRUE(comes([&] { return last_.project == folder_ / "spare.tuft" && last_.trouble.empty(); }))
+        << last_.trouble;
     painter_.reset();
     expect_file(2, folder_ / "spare.tuft");
     EXPECT_EQ(fs::file_size(path_), size) << "theirs is as it was";
@@ -186,11 +193,13 @@ TEST_F(OutsideTest, AtTheEndAFolderThatCameBackIsEnough) {
 class TwoPrograms : public testing::Test {
   protected:
     void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) / ("tuft_two_" + std::to_string(getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
+        folder_ = fs::path(testing::TempDir()) / ("tuft_two_" + std::to_string(getpid()) + "_" +
+                                                  testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::remove_all(folder_);
         fs::create_directories(folder_ / "place");
-        const Ran made = shell("'" + tuft_program() + "' paint '" + source_folder() + "/models/sheet.ply' --strokes '" + source_folder() +
-                               "/samples/strokes/stroke-sheet.inkml' --atlas-size 256 --quiet --project place/work.tuft");
+        const Ran made = shell(
+            "'" + tuft_program() + "' paint '" + source_folder() + "/models/sheet.ply' --strokes '" + source_folder() +
+            "/samples/strokes/stroke-sheet.inkml' --atlas-size 256 --quiet --project place/work.tuft");
         ASSERT_EQ(made.status, 0) << made.err;
         strokes_ = io::Project::open(folder_ / "place/work.tuft").n_strokes();
         if (studio("quit\n", "probe").err.find("no OpenGL") != std::string::npos) GTEST_SKIP();
@@ -203,8 +212,10 @@ class TwoPrograms : public testing::Test {
     };
     Ran shell(const std::string& command, const std::string& name = "shell") const {
         const std::string err = (folder_ / (name + ".err")).string();
-        const int raw = std::system(("cd '" + folder_.string() + "' && TUFT_DATA='" + source_folder() + "' XDG_STATE_HOME='" + (folder_ / name).string() + "' " +
-                                     command + " >/dev/null 2>'" + err + "'").c_str());
+        const int raw =
+            std::system(("cd '" + folder_.string() + "' && TUFT_DATA='" + source_folder() + "' XDG_STATE_HOME='" +
+                         (folder_ / name).string() + "' " + command + " >/dev/null 2>'" + err + "'")
+                            .c_str());
         std::ifstream in(err);
         std::ostringstream text;
         text << in.rdbuf();
@@ -215,7 +226,8 @@ class TwoPrograms : public testing::Test {
         return shell("'" + studio_program() + "' --headless --size 884x520 --script " + name + ".txt", name);
     }
     void wait_for(const std::string& file) const {
-        for (double t = 0; t < kLongest && !fs::exists(folder_ / file); t += 0.05) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        for (double t = 0; t < kLongest && !fs::exists(folder_ / file); t += 0.05)
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
         ASSERT_TRUE(fs::exists(folder_ / file));
         std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the picture is written to its end
     }
@@ -229,7 +241,11 @@ const std::string kStroke = "stroke 46%,48% 54%,52%\nwait-ready\n";
 
 TEST_F(TwoPrograms, TheCommandLineNamesTheStudioAndNothingIsLost) {
     Ran one;
-    std::thread first([&] { one = studio("open place/work.tuft\nwait-ready\nscreenshot ready.png\nwait 4\n" + kStroke + "expect strokes " + n(1) + "\nexpect kept\n", "one"); });
+    std::thread first([&] {
+        one = studio("open place/work.tuft\nwait-ready\nscreenshot ready.png\nwait 4\n" + kStroke + "expect strokes " +
+                         n(1) + "\nexpect kept\n",
+                     "one");
+    });
     wait_for("ready.png");
     const Ran fill = shell("'" + tuft_program() + "' fill place/work.tuft --ink cinnabar");
     const Ran again = shell("'" + tuft_program() + "' replay place/work.tuft --project place/work.tuft");
@@ -250,12 +266,16 @@ TEST_F(TwoPrograms, TheCommandLineNamesTheStudioAndNothingIsLost) {
 TEST_F(TwoPrograms, ASecondWindowAsksAndItsViewFollowsTheFirst) {
     Ran one, two;
     std::thread first([&] {
-        one = studio("open place/work.tuft\nwait-ready\nscreenshot ready.png\nwait 6\n" + kStroke + "expect kept\nwait 4\nexpect strokes " + n(1) + "\n", "one");
+        one = studio("open place/work.tuft\nwait-ready\nscreenshot ready.png\nwait 6\n" + kStroke +
+                         "expect kept\nwait 4\nexpect strokes " + n(1) + "\n",
+                     "one");
     });
     wait_for("ready.png");
-    two = studio("open place/work.tuft\nawait label \"Look at it\"\nclick \"Look at it\"\nwait-ready\nexpect strokes " + n(0) + "\n" + kStroke + "expect strokes " + n(0) +
-                     "\nexpect message \"only looked at\"\nawait strokes " + n(1) + "\nsave copy.tuft\nwait-ready\nstroke 46%,52% 54%,56%\nwait-ready\nexpect strokes " +
-                     n(2) + "\nexpect kept\n",
+    two = studio("open place/work.tuft\nawait label \"Look at it\"\nclick \"Look at it\"\nwait-ready\nexpect strokes " +
+                     n(0) + "\n" + kStroke + "expect strokes " + n(0) +
+                     "\nexpect message \"only looked at\"\nawait strokes " + n(1) +
+                     "\nsave copy.tuft\nwait-ready\nstroke 46%,52% 54%,56%\nwait-ready\nexpect strokes " + n(2) +
+                     "\nexpect kept\n",
                  "two");
     first.join();
     EXPECT_EQ(two.status, 0) << two.err;
@@ -267,17 +287,21 @@ TEST_F(TwoPrograms, ASecondWindowAsksAndItsViewFollowsTheFirst) {
 TEST_F(TwoPrograms, QuittingAsksWhereWorkIsNotOnDiskAndOffersItLater) {
     Ran one;
     std::thread second([&] {
-        one = studio("open place/work.tuft\nwait-ready\nscreenshot ready.png\nwait 2\n" + kStroke +
-                         "quit\nwait 0.3\nexpect label \"Leave all the same\"\nclick \"Go back\"\nwait 0.2\nquit\nawait label \"Try again\"\nclick \"Try again\"\nwait 0.5\n"
-                         "expect label \"Leave all the same\"\nclick \"Leave all the same\"\nwait 5\nexpect strokes 0\n",
-                     "one");
+        one =
+            studio("open place/work.tuft\nwait-ready\nscreenshot ready.png\nwait 2\n" + kStroke +
+                       "quit\nwait 0.3\nexpect label \"Leave all the same\"\nclick \"Go back\"\nwait 0.2\nquit\nawait "
+                       "label \"Try again\"\nclick \"Try again\"\nwait 0.5\n"
+                       "expect label \"Leave all the same\"\nclick \"Leave all the same\"\nwait 5\nexpect strokes 0\n",
+                   "one");
     });
     wait_for("ready.png");
     fs::rename(folder_ / "place", folder_ / "elsewhere");
     second.join();
     EXPECT_EQ(one.status, 1);
     EXPECT_NE(one.err.find("could not be written; the work is in "), std::string::npos) << one.err;
-    const Ran next = studio("await label Continue\nclick Continue\nwait 0.2\nwait-ready\nexpect strokes " + n(1) + "\nexpect kept\n", "one");
+    const Ran next =
+        studio("await label Continue\nclick Continue\nwait 0.2\nwait-ready\nexpect strokes " + n(1) + "\nexpect kept\n",
+               "one");
     EXPECT_EQ(next.status, 0) << next.err;
 }
 

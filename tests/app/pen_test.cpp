@@ -1,10 +1,9 @@
-#include "app/input/pen_samples.h"
-
 #include <gtest/gtest.h>
 #include <imgui.h>
 
-#include "app/input/pointer_input.h"
 #include "app/input/imgui_feed.h"
+#include "app/input/pen_samples.h"
+#include "app/input/pointer_input.h"
 #include "core/units.h"
 #include "models.h"
 #include "paths.h"
@@ -15,9 +14,19 @@ namespace {
 // As a Wacom Intuos shows itself to XInput 2 (xinput list-props): axes 0 and 1 absolute, pressure
 // 0–65536, tilt in degrees from -64 to 63.
 std::map<int, PenDevice> tablet() {
-    return {{11, {.name = "Wacom Intuos Pro M Pen stylus", .x = {0, 0, 44800}, .y = {1, 0, 29600}, .pressure = {2, 0, 65536},
-                  .tilt_x = {3, -64, 63}, .tilt_y = {4, -64, 63}}},
-            {12, {.name = "Wacom Intuos Pro M Pen eraser", .x = {0, 0, 44800}, .y = {1, 0, 29600}, .pressure = {2, 0, 65536}, .eraser = true}}};
+    return {{11,
+             {.name = "Wacom Intuos Pro M Pen stylus",
+              .x = {0, 0, 44800},
+              .y = {1, 0, 29600},
+              .pressure = {2, 0, 65536},
+              .tilt_x = {3, -64, 63},
+              .tilt_y = {4, -64, 63}}},
+            {12,
+             {.name = "Wacom Intuos Pro M Pen eraser",
+              .x = {0, 0, 44800},
+              .y = {1, 0, 29600},
+              .pressure = {2, 0, 65536},
+              .eraser = true}}};
 }
 constexpr PenScreen kScreen{.left = 100, .top = 50, .width = 1280, .height = 720};
 
@@ -103,8 +112,12 @@ TEST(PenSamples, TwoDotsWithinOneFrameAreTwo) {
     PenSamples pen;
     pen.set_devices(tablet());
     double t = 5;
-    const auto at = [&](double x) { pen.take({.device = 11, .time = t += 0.001, .axes = {0, 1, 2}, .values = {x, 14800, 30000}}, kScreen, 1); };
-    const auto button = [&](bool pressed) { pen.take({.device = 11, .motion = false, .button = 1, .pressed = pressed, .time = t += 0.001}, kScreen, 1); };
+    const auto at = [&](double x) {
+        pen.take({.device = 11, .time = t += 0.001, .axes = {0, 1, 2}, .values = {x, 14800, 30000}}, kScreen, 1);
+    };
+    const auto button = [&](bool pressed) {
+        pen.take({.device = 11, .motion = false, .button = 1, .pressed = pressed, .time = t += 0.001}, kScreen, 1);
+    };
     const Event down{.kind = Event::Kind::press}, up{.kind = Event::Kind::release};
     at(10000), button(true), at(10100), button(false), at(12000), button(true), at(12100), button(false);
     // The window saw no more than the first three yet; the fourth comes with the next frame.
@@ -150,9 +163,12 @@ TEST(PenSamples, OfAThousandReportsASecondNoneIsLostOnItsWayToTheBrush) {
     double last_time = -1;
     for (int i = 0; i < 1000; ++i) {
         const double t = i * 1e-3, pressure = 0.5 + 0.4 * std::sin(20 * t);
-        pen.take({.device = 11, .time = 100 + t, .axes = {0, 1, 2}, .values = {20000.0 + 2 * i, 14800, 65536 * pressure}}, kScreen, 3 + t);
+        pen.take(
+            {.device = 11, .time = 100 + t, .axes = {0, 1, 2}, .values = {20000.0 + 2 * i, 14800, 65536 * pressure}},
+            kScreen, 3 + t);
         if (i % 67 != 66 && i != 999) continue;  // a frame
-        EventQueue fresh{{.kind = Event::Kind::move, .x = 1}, {.kind = Event::Kind::move, .x = 2}};  // the server's own copies
+        EventQueue fresh{{.kind = Event::Kind::move, .x = 1},
+                         {.kind = Event::Kind::move, .x = 2}};  // the server's own copies
         pen.merge(fresh, 3 + t);
         queue.insert(queue.end(), fresh.begin(), fresh.end());
         for (const Event& e : feed_imgui(queue, 1280, 720, 0.067)) {
@@ -160,15 +176,19 @@ TEST(PenSamples, OfAThousandReportsASecondNoneIsLostOnItsWayToTheBrush) {
             ++moves;
             EXPECT_GT(e.time, last_time);
             last_time = e.time;
-            const Aim aim{.ray = {mesh.bounds.centre() + Vec3(1e-4 * (e.x - 500), 0, 0.5), {0, 0, -1}}, .time = e.time, .pressure = e.pressure};
+            const Aim aim{.ray = {mesh.bounds.centre() + Vec3(1e-4 * (e.x - 500), 0, 0.5), {0, 0, -1}},
+                          .time = e.time,
+                          .pressure = e.pressure};
             for (const HandStep& step : hand.move(aim))
-                for (const brush::Pose& pose : step.poses) depths.push_back(preset.length - (pose.position.z - mesh.bounds.hi.z));
+                for (const brush::Pose& pose : step.poses)
+                    depths.push_back(preset.length - (pose.position.z - mesh.bounds.hi.z));
         }
     }
     ImGui::DestroyContext();
     EXPECT_EQ(moves, 1000u);
     ASSERT_EQ(depths.size(), 1000u);
-    // The depth follows the pressure with the hand's time constant of 4 ms, over which it changes by at most 4 ms · 20/s · 0.4.
+    // The depth follows the pressure with the hand's time constant of 4 ms, over which it changes by at most 4 ms ·
+    // 20/s · 0.4.
     for (std::size_t i = 100; i < 1000; ++i) {
         const double pressure = 0.5 + 0.4 * std::sin(20 * 1e-3 * static_cast<double>(i));
         EXPECT_NEAR(depths[i] / stroke::working_depth(preset), pressure, 0.034) << i;

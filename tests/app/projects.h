@@ -13,8 +13,8 @@
 #include "atlas/texels/texel_map.h"
 #include "core/hash.h"
 #include "io/project.h"
-#include "stroke/painting/painting.h"
 #include "paths.h"
+#include "stroke/painting/painting.h"
 
 /// What the studio kept, asked of the file and of the command line.
 namespace tuft::test {
@@ -40,7 +40,8 @@ inline std::string stored_hash(const std::string& project) {
     for (const stroke::Layer& layer : table) {
         const auto stored = std::ranges::find(saved->layers, layer.id, &stroke::LayerCanvas::layer);
         // Of a layer without ink nothing is stored.
-        const std::uint64_t part[] = {layer.id, stored == saved->layers.end() ? ink::Canvas().hash() : stored->canvas.hash()};
+        const std::uint64_t part[] = {layer.id,
+                                      stored == saved->layers.end() ? ink::Canvas().hash() : stored->canvas.hash()};
         hash = table.size() == 1 ? part[1] : hash_bytes(part, sizeof part, hash);
     }
     char text[20];

@@ -38,7 +38,8 @@ class SpaceDaemon {
         client_ = ::accept(server_, nullptr, nullptr);
         std::int32_t word = 0;
         // The one word that asks for a protocol; answered with its version.
-        if (!readable(client_) || read(client_, &word, sizeof word) != sizeof word || (word & 0xff00) != 0x5500) return false;
+        if (!readable(client_) || read(client_, &word, sizeof word) != sizeof word || (word & 0xff00) != 0x5500)
+            return false;
         send(client_, &word, sizeof word, MSG_NOSIGNAL);
         std::array<std::int32_t, 8> request{};  // for kinds of events
         if (!readable(client_) || read(client_, request.data(), sizeof request) != sizeof request) return false;
@@ -47,7 +48,9 @@ class SpaceDaemon {
         return true;
     }
     /// Right, up, away from the person, and about them; some 350 counts at most.
-    void motion(const std::array<std::int32_t, 6>& counts) { say({0, counts[0], counts[1], counts[2], counts[3], counts[4], counts[5], 8}); }
+    void motion(const std::array<std::int32_t, 6>& counts) {
+        say({0, counts[0], counts[1], counts[2], counts[3], counts[4], counts[5], 8});
+    }
     void button(std::int32_t number) { say({1, number}); }
     /// A device comes (0) or goes (1).
     void device(std::int32_t what) { say({3, what}); }
@@ -57,7 +60,9 @@ class SpaceDaemon {
         pollfd end{fd, POLLIN, 0};
         return poll(&end, 1, 60000) == 1;
     }
-    void say(const std::array<std::int32_t, 8>& words) const { send(client_, words.data(), sizeof words, MSG_NOSIGNAL); }
+    void say(const std::array<std::int32_t, 8>& words) const {
+        send(client_, words.data(), sizeof words, MSG_NOSIGNAL);
+    }
 
     std::string path_;
     int server_ = -1, client_ = -1;

@@ -14,8 +14,9 @@ const char* const kLarge = "--headless --size 1280x720";  // rows have room for 
 std::string drawing() {
     std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 30 12' width='30mm'>";
     for (int i = 0; i < 5; ++i)
-        svg += "<path fill='none' stroke='black' stroke-width='1' d='M" + std::to_string(2 + 6 * i) + " 2 l3 1'/><path fill='none' stroke='black' stroke-width='1' d='M" +
-               std::to_string(2 + 6 * i) + " 9 l3 -1'/>";
+        svg += "<path fill='none' stroke='black' stroke-width='1' d='M" + std::to_string(2 + 6 * i) +
+               " 2 l3 1'/><path fill='none' stroke='black' stroke-width='1' d='M" + std::to_string(2 + 6 * i) +
+               " 9 l3 -1'/>";
     return svg + "</svg>";
 }
 
@@ -25,7 +26,10 @@ class Journal : public StudioProgram {
         StudioProgram::SetUp();
         std::ofstream(path("leaves.svg")) << drawing();
     }
-    std::string placed() const { return kBowl + "open " + path("leaves.svg") + "\nmove 50%,59%\npress\nrelease\nwait-ready\nwait 0.1\nexpect strokes 10\n"; }
+    std::string placed() const {
+        return kBowl + "open " + path("leaves.svg") +
+               "\nmove 50%,59%\npress\nrelease\nwait-ready\nwait 0.1\nexpect strokes 10\n";
+    }
     static int highlighted(const std::string& file) {
         const io::Image8 image = io::read_image8(file, std::size_t{1} << 24);
         int n = 0;
@@ -39,14 +43,21 @@ class Journal : public StudioProgram {
 };
 
 TEST_F(Journal, APlacedDrawingIsOneGroupThatIsHiddenMovedInkedAndDeletedAsOne) {
-    const auto keep = [](const std::string& name) { return "wait-ready\nsave " + name + ".tuft\nwait-ready\nsave work.tuft\nwait-ready\n"; };
-    const Ran ran = studio(placed() + "set tool brush\nstroke 46%,62% 50%,63%\nwait-ready\n" + keep("placed") + "click \"group leaves.svg\"\nclick Hide\n" + keep("hidden") + "click Show\nwait-ready\n" +
-                           "right-click \"group leaves.svg\"\nwait 0.1\nclick Ink\nwait 0.1\nclick indigo\n" + keep("inked") +
-                           "click Move\nmove 50%,59%\npress\nmove 53%,58%\nrelease\n" + keep("moved") + "undo\n" + keep("back") +
-                           "key delete\nwait-ready\nexpect strokes 1\n" + keep("deleted") + "undo\nundo\nundo\nundo\nwait-ready\nexpect strokes 11\n" + keep("undone"), kLarge);
+    const auto keep = [](const std::string& name) {
+        return "wait-ready\nsave " + name + ".tuft\nwait-ready\nsave work.tuft\nwait-ready\n";
+    };
+    const Ran ran =
+        studio(placed() + "set tool brush\nstroke 46%,62% 50%,63%\nwait-ready\n" + keep("placed") +
+                   "click \"group leaves.svg\"\nclick Hide\n" + keep("hidden") + "click Show\nwait-ready\n" +
+                   "right-click \"group leaves.svg\"\nwait 0.1\nclick Ink\nwait 0.1\nclick indigo\n" + keep("inked") +
+                   "click Move\nmove 50%,59%\npress\nmove 53%,58%\nrelease\n" + keep("moved") + "undo\n" +
+                   keep("back") + "key delete\nwait-ready\nexpect strokes 1\n" + keep("deleted") +
+                   "undo\nundo\nundo\nundo\nwait-ready\nexpect strokes 11\n" + keep("undone"),
+               kLarge);
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto project = [this](const std::string& name) { return io::Project::open(path(name + ".tuft")).strokes(); };
-    const auto placed_strokes = project("placed"), hidden = project("hidden"), inked = project("inked"), moved = project("moved"), undone = project("undone");
+    const auto placed_strokes = project("placed"), hidden = project("hidden"), inked = project("inked"),
+               moved = project("moved"), undone = project("undone");
     ASSERT_EQ(placed_strokes.size(), 11u);
     const std::uint64_t group = placed_strokes[0].group.id;
     EXPECT_NE(group, 0u);
@@ -57,7 +68,8 @@ TEST_F(Journal, APlacedDrawingIsOneGroupThatIsHiddenMovedInkedAndDeletedAsOne) {
         EXPECT_EQ(inked[i].trace.ink, in ? "indigo" : "carbon") << i;
         EXPECT_EQ(inked[i].trace.brush, placed_strokes[i].trace.brush) << i;
         if (in) {
-            EXPECT_GT(glm::distance(moved[i].trace.placement.origin, placed_strokes[i].trace.placement.origin), 1e-3) << i;
+            EXPECT_GT(glm::distance(moved[i].trace.placement.origin, placed_strokes[i].trace.placement.origin), 1e-3)
+                << i;
         }
         EXPECT_EQ(undone[i].trace.ink, "carbon") << i;
         EXPECT_EQ(undone[i].trace.placement.origin, placed_strokes[i].trace.placement.origin) << i;
@@ -65,7 +77,10 @@ TEST_F(Journal, APlacedDrawingIsOneGroupThatIsHiddenMovedInkedAndDeletedAsOne) {
     EXPECT_EQ(project("deleted").size(), 1u);
     EXPECT_EQ(test::stored_hash(path("undone.tuft")), test::stored_hash(path("placed.tuft")));
     EXPECT_EQ(test::stored_hash(path("back.tuft")), test::stored_hash(path("inked.tuft")));
-    for (const char* name : {"placed", "hidden", "inked", "moved", "deleted"}) EXPECT_EQ(tuft("replay '" + path(name) + ".tuft'")["canvas_hash"], test::stored_hash(path(std::string(name) + ".tuft"))) << name;
+    for (const char* name : {"placed", "hidden", "inked", "moved", "deleted"})
+        EXPECT_EQ(tuft("replay '" + path(name) + ".tuft'")["canvas_hash"],
+                  test::stored_hash(path(std::string(name) + ".tuft")))
+            << name;
     const nlohmann::json told = tuft("inspect '" + path("placed.tuft") + "'");
     ASSERT_EQ(told["groups"].size(), 1u);
     EXPECT_EQ(told["groups"][0]["name"], "leaves.svg");
@@ -73,9 +88,14 @@ TEST_F(Journal, APlacedDrawingIsOneGroupThatIsHiddenMovedInkedAndDeletedAsOne) {
 }
 
 TEST_F(Journal, AGroupOpensAndIsTakenApartAndEachSymmetricCopyIsOneOfItsOwn) {
-    const Ran ran = studio(placed() + "expect label \"group leaves.svg\"\nclick \"open leaves.svg\"\nwait 0.1\nexpect label \"stroke 10\"\nright-click \"stroke 10\"\nwait 0.1\nclick Delete\nwait-ready\n"
-                                      "expect strokes 9\nright-click \"group leaves.svg\"\nwait 0.1\nclick Ungroup\nwait-ready\nwait 0.1\nexpect label \"stroke 9\"\nsave apart.tuft\nwait-ready\nsave work.tuft\nwait-ready\n"
-                                      "set radial 3\nset tool writing\nmove 50%,63%\npress\nrelease\nwait-ready\nsave copies.tuft\nwait-ready\n", kLarge);
+    const Ran ran = studio(
+        placed() +
+            "expect label \"group leaves.svg\"\nclick \"open leaves.svg\"\nwait 0.1\nexpect label \"stroke "
+            "10\"\nright-click \"stroke 10\"\nwait 0.1\nclick Delete\nwait-ready\n"
+            "expect strokes 9\nright-click \"group leaves.svg\"\nwait 0.1\nclick Ungroup\nwait-ready\nwait 0.1\nexpect "
+            "label \"stroke 9\"\nsave apart.tuft\nwait-ready\nsave work.tuft\nwait-ready\n"
+            "set radial 3\nset tool writing\nmove 50%,63%\npress\nrelease\nwait-ready\nsave copies.tuft\nwait-ready\n",
+        kLarge);
     ASSERT_EQ(ran.status, 0) << ran.err;
     for (const auto& s : io::Project::open(path("apart.tuft")).strokes()) EXPECT_EQ(s.group.id, 0u);
     std::map<std::uint64_t, int> sizes;
@@ -85,11 +105,17 @@ TEST_F(Journal, AGroupOpensAndIsTakenApartAndEachSymmetricCopyIsOneOfItsOwn) {
 }
 
 TEST_F(Journal, SeveralStrokesAreChosenAndChangedAtOnce) {
-    const Ran ran = studio(kBowl + kTwoStrokes + "stroke 50%,59% 53%,57%\nwait-ready\nclick \"stroke 3\"\nhold ctrl\nclick \"stroke 1\"\nhold none\nwait 0.1\nclick \"Change ink\"\nwait 0.2\nclick indigo\nwait-ready\n"
-                                                 "save some.tuft\nwait-ready\nsave work.tuft\nwait-ready\nundo\nwait-ready\nclick \"stroke 1\"\nwait 0.1\nhold shift\nclick \"stroke 3\"\nhold none\nkey delete\nwait-ready\nexpect strokes 0\n"
-                                                 "undo\nwait-ready\nexpect strokes 3\nsave back.tuft\nwait-ready\n", kLarge);
+    const Ran ran =
+        studio(kBowl + kTwoStrokes +
+                   "stroke 50%,59% 53%,57%\nwait-ready\nclick \"stroke 3\"\nhold ctrl\nclick \"stroke 1\"\nhold "
+                   "none\nwait 0.1\nclick \"Change ink\"\nwait 0.2\nclick indigo\nwait-ready\n"
+                   "save some.tuft\nwait-ready\nsave work.tuft\nwait-ready\nundo\nwait-ready\nclick \"stroke 1\"\nwait "
+                   "0.1\nhold shift\nclick \"stroke 3\"\nhold none\nkey delete\nwait-ready\nexpect strokes 0\n"
+                   "undo\nwait-ready\nexpect strokes 3\nsave back.tuft\nwait-ready\n",
+               kLarge);
     ASSERT_EQ(ran.status, 0) << ran.err;
-    const auto some = io::Project::open(path("some.tuft")).strokes(), back = io::Project::open(path("back.tuft")).strokes();
+    const auto some = io::Project::open(path("some.tuft")).strokes(),
+               back = io::Project::open(path("back.tuft")).strokes();
     const char* inks[] = {"indigo", "cinnabar", "indigo"};
     ASSERT_EQ(some.size(), 3u);
     ASSERT_EQ(back.size(), 3u);
@@ -100,18 +126,23 @@ TEST_F(Journal, SeveralStrokesAreChosenAndChangedAtOnce) {
 // Black ink on white glaze: what is blue in the view is the highlight.
 TEST_F(Journal, AChosenStrokeShowsItsInkUntilOnePaints) {
     const std::string look = "move 5%,5%\nwait 0.2\nscreenshot ";
-    const Ran ran = studio(kBowl + "stroke 46%,58% 50%,61% 54%,58%\nwait-ready\n" + look + "before.png\nclick \"stroke 1\"\nwait-ready\n" + look + "chosen.png\nstroke 46%,66% 47%,66%\nwait-ready\n" + look +
-                                   "painted.png\nclick \"stroke 1\"\nwait-ready\nclick \"stroke 1\"\nwait-ready\n" + look + "left.png\nclick \"stroke 1\"\nwait-ready\nkey escape\nwait-ready\n" + look + "escaped.png\n");
+    const Ran ran = studio(
+        kBowl + "stroke 46%,58% 50%,61% 54%,58%\nwait-ready\n" + look + "before.png\nclick \"stroke 1\"\nwait-ready\n" +
+        look + "chosen.png\nstroke 46%,66% 47%,66%\nwait-ready\n" + look +
+        "painted.png\nclick \"stroke 1\"\nwait-ready\nclick \"stroke 1\"\nwait-ready\n" + look +
+        "left.png\nclick \"stroke 1\"\nwait-ready\nkey escape\nwait-ready\n" + look + "escaped.png\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const int before = highlighted(path("before.png"));
     EXPECT_GT(highlighted(path("chosen.png")), before + 30);  // the stroke is 28 pixels long
-    for (const char* file : {"painted.png", "left.png", "escaped.png"}) EXPECT_LT(highlighted(path(file)), before + 10) << file;
+    for (const char* file : {"painted.png", "left.png", "escaped.png"})
+        EXPECT_LT(highlighted(path(file)), before + 10) << file;
 }
 
 // Old files say nothing of groups.
 TEST_F(Journal, TheCommandLineMakesAGroupOfEachStrokeFile) {
     std::ofstream(path("a.svg")) << drawing();
-    tuft("paint '" + source_folder() + "/models/bowl.ply' --atlas-size 256 --strokes '" + path("leaves.svg") + "' '" + path("a.svg") + "' --project '" + path("two.tuft") + "'");
+    tuft("paint '" + source_folder() + "/models/bowl.ply' --atlas-size 256 --strokes '" + path("leaves.svg") + "' '" +
+         path("a.svg") + "' --project '" + path("two.tuft") + "'");
     tuft("paint '" + path("two.tuft") + "' --strokes '" + path("a.svg") + "'");
     const nlohmann::json told = tuft("inspect '" + path("two.tuft") + "'");
     ASSERT_EQ(told["groups"].size(), 3u);

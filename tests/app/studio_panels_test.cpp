@@ -31,16 +31,20 @@ TEST_F(Panels, NothingNeededForPaintingScrollsAt1280Times720) {
     std::string script = kBowl;
     for (const char* tool : {"brush", "line", "curve", "eraser"}) {
         script += "set tool " + std::string(tool) + "\nwait 0.1\n";
-        for (const char* label : {"Brush", "Mask", "Palette", "goat-small", "wolf-large", "Tuft size", "Pressure", "Stabiliser", "fold Symmetry", "Undo", "Add a layer"})
+        for (const char* label : {"Brush", "Mask", "Palette", "goat-small", "wolf-large", "Tuft size", "Pressure",
+                                  "Stabiliser", "fold Symmetry", "Undo", "Add a layer"})
             script += "expect label \"" + std::string(label) + "\"\n";
-        if (tool != std::string("eraser")) script += "expect label carbon\nexpect label \"Wet ink\"\nexpect label \"Don't reload\"\n";
+        if (tool != std::string("eraser"))
+            script += "expect label carbon\nexpect label \"Wet ink\"\nexpect label \"Don't reload\"\n";
     }
     const Ran ran = studio(script, "--headless --size 1280x720");
     EXPECT_EQ(ran.status, 0) << ran.err;
 }
 
 TEST_F(Panels, AScrollbarShiftsNoColumn) {
-    const auto at = [&](const std::string& size) { return places(studio(kBowl + "set wet on\nset carry on\nwait 0.2\nplaces\n", "--headless --size " + size).out); };
+    const auto at = [&](const std::string& size) {
+        return places(studio(kBowl + "set wet on\nset carry on\nwait 0.2\nplaces\n", "--headless --size " + size).out);
+    };
     auto high = at("1280x1400"), low = at("1280x420");
     ASSERT_TRUE(high.contains("Which side"));
     ASSERT_FALSE(low.contains("Which side")) << "it would not scroll";
@@ -51,9 +55,15 @@ TEST_F(Panels, AScrollbarShiftsNoColumn) {
 }
 
 TEST_F(Panels, WhatIsFoldedStaysFolded) {
-    const Ran first = studio(kBowl + "click \"fold Symmetry\"\nwait 0.1\nexpect label \"Radial copies\"\nclick \"fold Brush\"\nwait 0.1\nclick \"Fold the journal\"\nwait 0.1\n", "--headless --size 1280x720");
+    const Ran first = studio(kBowl +
+                                 "click \"fold Symmetry\"\nwait 0.1\nexpect label \"Radial copies\"\nclick \"fold "
+                                 "Brush\"\nwait 0.1\nclick \"Fold the journal\"\nwait 0.1\n",
+                             "--headless --size 1280x720");
     ASSERT_EQ(first.status, 0) << first.err;
-    const Ran second = studio(kBowl + "wait 0.2\nexpect label \"Radial copies\"\nplaces\nkey tab\nwait 0.2\nkey tab\nwait 0.2\nexpect label Undo\nexpect label \"Radial copies\"\n", "--headless --size 1280x720");
+    const Ran second = studio(kBowl +
+                                  "wait 0.2\nexpect label \"Radial copies\"\nplaces\nkey tab\nwait 0.2\nkey tab\nwait "
+                                  "0.2\nexpect label Undo\nexpect label \"Radial copies\"\n",
+                              "--headless --size 1280x720");
     ASSERT_EQ(second.status, 0) << second.err;
     const auto found = places(second.out);
     EXPECT_FALSE(found.contains("wolf-large"));
@@ -62,7 +72,9 @@ TEST_F(Panels, WhatIsFoldedStaysFolded) {
 
 TEST_F(Panels, AFoldedPanelLeavesItsRoomToTheModel) {
     // The handle of the journal is at the view's right edge.
-    const Ran ran = studio(kBowl + "wait 0.1\nplaces\nclick \"Fold the journal\"\nclick \"Fold the tools\"\nwait 0.2\nplaces\n", "--headless --size 1280x720");
+    const Ran ran =
+        studio(kBowl + "wait 0.1\nplaces\nclick \"Fold the journal\"\nclick \"Fold the tools\"\nwait 0.2\nplaces\n",
+               "--headless --size 1280x720");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const std::size_t half = ran.out.rfind(" Brush\n");
     ASSERT_NE(half, std::string::npos);
@@ -82,22 +94,34 @@ TEST_F(Panels, SavingAsTakesANewNameByTypingItAndKeepsTheExtension) {
 
 TEST_F(Panels, AnErrorWhenSavingKeepsTheNameToBeMended) {
     const std::string mend = "wait 0.2\nexpect label \"file name\"\nkey ctrl+a\ntype ";
-    const Ran ran = studio(kBowl + "key ctrl+s\nwait 0.2\nkey ctrl+a\ntype /no/such/folder/x\nkey enter\n" + mend + "/proc/x\nkey enter\nwait-ready\n" + mend + path("mended") + "\nkey enter\nwait-ready\nexpect kept\nexpect message Saved\n");
+    const Ran ran = studio(kBowl + "key ctrl+s\nwait 0.2\nkey ctrl+a\ntype /no/such/folder/x\nkey enter\n" + mend +
+                           "/proc/x\nkey enter\nwait-ready\n" + mend + path("mended") +
+                           "\nkey enter\nwait-ready\nexpect kept\nexpect message Saved\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     EXPECT_TRUE(fs::exists(path("mended.tuft")));
 }
 
 TEST_F(Panels, TheFileDialogMakesFoldersFiltersSortsAndRemembersWhereOneWas) {
-    for (const char* name : {"bowl-one.svg", "bowl-two.svg", "vase.svg"}) std::ofstream(path(name)) << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path fill='none' stroke='black' d='M1 1 l7 7'/></svg>";
-    const Ran ran = studio(kBowl + "key ctrl+s\nwait 0.2\nclick \"New folder\"\nwait 0.1\nclick \"name of the new folder\"\ntype drafts\nkey enter\nwait 0.2\nkey ctrl+a\ntype one\nkey enter\nwait-ready\nexpect kept\n"
-                                   "set tool writing\nwait 0.1\nclick \"Writing or drawing...\"\nwait 0.2\nexpect label \"folder drafts\"\nclick \"file name\"\nkey ctrl+a\ntype " + folder_.string() + "\nkey enter\nwait 0.2\n"
-                                   "places\nclick \"by Name\"\nwait 0.1\nclick filter\ntype bowl\nwait 0.2\nplaces\nclick bowl-two.svg\nwait 0.2\nexpect label Preview\nclick Open\nwait 0.1\nexpect label Width\n",
-                           "--headless --size 1280x720");
+    for (const char* name : {"bowl-one.svg", "bowl-two.svg", "vase.svg"})
+        std::ofstream(path(name)) << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path fill='none' "
+                                     "stroke='black' d='M1 1 l7 7'/></svg>";
+    const Ran ran =
+        studio(kBowl +
+                   "key ctrl+s\nwait 0.2\nclick \"New folder\"\nwait 0.1\nclick \"name of the new folder\"\ntype "
+                   "drafts\nkey enter\nwait 0.2\nkey ctrl+a\ntype one\nkey enter\nwait-ready\nexpect kept\n"
+                   "set tool writing\nwait 0.1\nclick \"Writing or drawing...\"\nwait 0.2\nexpect label \"folder "
+                   "drafts\"\nclick \"file name\"\nkey ctrl+a\ntype " +
+                   folder_.string() +
+                   "\nkey enter\nwait 0.2\n"
+                   "places\nclick \"by Name\"\nwait 0.1\nclick filter\ntype bowl\nwait 0.2\nplaces\nclick "
+                   "bowl-two.svg\nwait 0.2\nexpect label Preview\nclick Open\nwait 0.1\nexpect label Width\n",
+               "--headless --size 1280x720");
     ASSERT_EQ(ran.status, 0) << ran.err;
     EXPECT_TRUE(fs::exists(path("drafts") + "/one.tuft"));
     const std::size_t second = ran.out.find(" bowl-one.svg", ran.out.find(" bowl-one.svg") + 1);
     ASSERT_NE(second, std::string::npos);
-    auto first = places(ran.out.substr(0, second - 40)), filtered = places(ran.out.substr(ran.out.rfind('\n', second) + 1));
+    auto first = places(ran.out.substr(0, second - 40)),
+         filtered = places(ran.out.substr(ran.out.rfind('\n', second) + 1));
     EXPECT_TRUE(first.contains("vase.svg"));
     EXPECT_FALSE(filtered.contains("vase.svg"));
     EXPECT_LT(first["bowl-one.svg"].second, first["bowl-two.svg"].second);
@@ -105,10 +129,13 @@ TEST_F(Panels, TheFileDialogMakesFoldersFiltersSortsAndRemembersWhereOneWas) {
 }
 
 TEST_F(Panels, TheLanguageIsChangedInTheMenuBarAndAMissingFontIsNamedWithItsPackage) {
-    const bool with_fonts = fs::exists("/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc") || fs::exists("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc");
+    const bool with_fonts = fs::exists("/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc") ||
+                            fs::exists("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc");
     fs::create_directories(path("fonts"));
     setenv("TUFT_FONTS", path("fonts").c_str(), 1);
-    const Ran none = studio("wait 0.2\nclick \"Language button\"\nwait 0.3\nexpect message fonts-noto-cjk\nexpect label \"Language button\"\n");
+    const Ran none = studio(
+        "wait 0.2\nclick \"Language button\"\nwait 0.3\nexpect message fonts-noto-cjk\nexpect label \"Language "
+        "button\"\n");
     unsetenv("TUFT_FONTS");
     EXPECT_EQ(none.status, 0) << none.err;
     if (!with_fonts) GTEST_SKIP() << "no Chinese font is installed";

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string>
 
-#include "projects.h"
 #include "paths.h"
+#include "projects.h"
 
 namespace tuft::app {
 
@@ -47,23 +47,24 @@ class StudioProgram : public testing::Test {
     // Arguments for exec: a shell that sets the surroundings and becomes the program.
     std::string command(const std::string& script, const std::string& options) {
         std::ofstream(path("script.txt")) << script;
-        return "cd '" + folder_.string() + "'; export TUFT_DATA='" + source_folder() + "' XDG_STATE_HOME='" + path("state") +
-               "'; unset DISPLAY; exec '" + studio_program() + "' " + options + " --script '" + path("script.txt") + "' >'" + path(".out") +
-               "' 2>'" + path(".err") + "'";
+        return "cd '" + folder_.string() + "'; export TUFT_DATA='" + source_folder() + "' XDG_STATE_HOME='" +
+               path("state") + "'; unset DISPLAY; exec '" + studio_program() + "' " + options + " --script '" +
+               path("script.txt") + "' >'" + path(".out") + "' 2>'" + path(".err") + "'";
     }
     Ran studio(const std::string& script, const std::string& options = "--headless --size 884x520") {
         const int raw = std::system(("bash -c \"" + command(script, options) + "\"").c_str());
         return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), read(path(".out")), read(path(".err"))};
     }
-    nlohmann::json tuft(const std::string& arguments) const {
-        return test::tuft(arguments, path("tuft.json"));
-    }
+    nlohmann::json tuft(const std::string& arguments) const { return test::tuft(arguments, path("tuft.json")); }
 
     fs::path folder_;
 };
 
-inline const std::string kBowl = "open " + source_folder() + "/models/bowl.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\nexpect model\n";
+inline const std::string kBowl =
+    "open " + source_folder() +
+    "/models/bowl.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\nexpect model\n";
 inline const std::string kTwoStrokes =
-    "stroke 46%,58% 50%,61% 54%,58%\nset brush goat-medium\nset ink cinnabar\nstroke 44%,57%,0.2 47%,60%,0.6 51%,58%,0.1\nwait-ready\nexpect strokes 2\n";
+    "stroke 46%,58% 50%,61% 54%,58%\nset brush goat-medium\nset ink cinnabar\nstroke 44%,57%,0.2 47%,60%,0.6 "
+    "51%,58%,0.1\nwait-ready\nexpect strokes 2\n";
 
 }  // namespace tuft::app

@@ -25,7 +25,10 @@ class Views : public StudioProgram {
         int n = 0;
         for (int y = 60; y < image.height - 40; ++y)
             for (int x = from; x < to; ++x) {
-                const std::uint8_t* p = &image.pixels[static_cast<std::size_t>(image.channels) * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x))];
+                const std::uint8_t* p =
+                    &image.pixels[static_cast<std::size_t>(image.channels) *
+                                  (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                   static_cast<std::size_t>(x))];
                 n += p[0] > p[1] + 60 && p[0] > p[2] + 60;
             }
         return n;
@@ -35,10 +38,15 @@ class Views : public StudioProgram {
 
 TEST_F(Views, AReferenceImageIsPinnedMovedFadedAndThereAgainWithItsProject) {
     write_red("leaf.png");
-    const Ran ran = studio(kBowl + "open " + path("leaf.png") + "\nwait 0.2\nexpect label \"reference leaf.png\"\nscreenshot pinned.png\nmove 45%,12%\nsave a.tuft\nwait-ready\nsave work.tuft\nwait-ready\n"
-                                   // By its middle, to the right and down; then another one, which is no image.
-                                   "move 18%,14%\npress\nmove 30%,20%\nmove 48%,26%\nrelease\nwait-ready\nopen " + path("script.txt") + ".png\nwait 0.1\nexpect message script.txt.png\nsave b.tuft\nwait-ready\nexpect strokes 0\n",
-                           "--headless --size 1280x720");
+    const Ran ran =
+        studio(kBowl + "open " + path("leaf.png") +
+                   "\nwait 0.2\nexpect label \"reference leaf.png\"\nscreenshot pinned.png\nmove 45%,12%\nsave "
+                   "a.tuft\nwait-ready\nsave work.tuft\nwait-ready\n"
+                   // By its middle, to the right and down; then another one, which is no image.
+                   "move 18%,14%\npress\nmove 30%,20%\nmove 48%,26%\nrelease\nwait-ready\nopen " +
+                   path("script.txt") +
+                   ".png\nwait 0.1\nexpect message script.txt.png\nsave b.tuft\nwait-ready\nexpect strokes 0\n",
+               "--headless --size 1280x720");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto about = [this](const std::string& project) {
         const auto images = io::Project::open(path(project)).attachments(io::kReferences);
@@ -50,22 +58,35 @@ TEST_F(Views, AReferenceImageIsPinnedMovedFadedAndThereAgainWithItsProject) {
     EXPECT_GT(after["x"].get<double>(), before["x"].get<double>() + 0.2);
     EXPECT_GT(after["y"].get<double>(), before["y"].get<double>() + 0.05);
     EXPECT_GT(red(path("pinned.png"), 284, 960), 5000);
-    const Ran again = studio("open " + path("b.tuft") + "\nwait-ready\nexpect model\nwait 0.2\nexpect label \"reference leaf.png\"\nclick \"fold References\"\nwait 0.1\nclick \"show leaf.png\"\nwait-ready\nwait 0.1\n"
-                             "screenshot hidden.png\nclick \"remove leaf.png\"\nwait-ready\nsave c.tuft\nwait-ready\n",
-                             "--headless --size 1280x720");
+    const Ran again =
+        studio("open " + path("b.tuft") +
+                   "\nwait-ready\nexpect model\nwait 0.2\nexpect label \"reference leaf.png\"\nclick \"fold "
+                   "References\"\nwait 0.1\nclick \"show leaf.png\"\nwait-ready\nwait 0.1\n"
+                   "screenshot hidden.png\nclick \"remove leaf.png\"\nwait-ready\nsave c.tuft\nwait-ready\n",
+               "--headless --size 1280x720");
     ASSERT_EQ(again.status, 0) << again.err;
     EXPECT_LT(red(path("hidden.png"), 284, 960), 50);
     EXPECT_TRUE(io::Project::open(path("c.tuft")).attachments(io::kReferences).empty());
-    EXPECT_EQ(io::Project::open(path("b.tuft")).attachments(io::kReferences).size(), 0u) << "it was worked on until it had another name";
+    EXPECT_EQ(io::Project::open(path("b.tuft")).attachments(io::kReferences).size(), 0u)
+        << "it was worked on until it had another name";
 }
 
 TEST_F(Views, ASnapshotIsRestoredAsOneStepAndNothingIsLostByIt) {
-    const auto keep = [](const std::string& name) { return "wait-ready\nsave " + name + ".tuft\nwait-ready\nsave work.tuft\nwait-ready\n"; };
-    const Ran ran = studio(kBowl + kTwoStrokes + keep("two") + "click \"fold Snapshots\"\nwait 0.1\nclick \"Take a snapshot\"\nwait-ready\nwait 0.1\nexpect label \"snapshot Snapshot 1\"\n"
-                                   "click \"stroke 2\"\nwait-ready\nclick \"Change ink\"\nwait 0.2\nclick indigo\nwait-ready\nkey escape\nstroke 50%,59% 53%,57%\nwait-ready\nexpect strokes 3\n" + keep("three") +
-                                   "click \"snapshot Snapshot 1\"\nwait 0.1\nclick Restore\n" + keep("restored") + "expect strokes 2\nundo\n" + keep("undone") + "expect strokes 3\nredo\nwait-ready\nexpect strokes 2\n"
-                                   "stroke 50%,59% 53%,57%\nwait-ready\nundo\nundo\nwait-ready\nexpect strokes 3\nexpect kept\n" + keep("end"),
-                           "--headless --size 1280x720");
+    const auto keep = [](const std::string& name) {
+        return "wait-ready\nsave " + name + ".tuft\nwait-ready\nsave work.tuft\nwait-ready\n";
+    };
+    const Ran ran =
+        studio(kBowl + kTwoStrokes + keep("two") +
+                   "click \"fold Snapshots\"\nwait 0.1\nclick \"Take a snapshot\"\nwait-ready\nwait 0.1\nexpect label "
+                   "\"snapshot Snapshot 1\"\n"
+                   "click \"stroke 2\"\nwait-ready\nclick \"Change ink\"\nwait 0.2\nclick indigo\nwait-ready\nkey "
+                   "escape\nstroke 50%,59% 53%,57%\nwait-ready\nexpect strokes 3\n" +
+                   keep("three") + "click \"snapshot Snapshot 1\"\nwait 0.1\nclick Restore\n" + keep("restored") +
+                   "expect strokes 2\nundo\n" + keep("undone") +
+                   "expect strokes 3\nredo\nwait-ready\nexpect strokes 2\n"
+                   "stroke 50%,59% 53%,57%\nwait-ready\nundo\nundo\nwait-ready\nexpect strokes 3\nexpect kept\n" +
+                   keep("end"),
+               "--headless --size 1280x720");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto hash = [this](const std::string& project) { return test::stored_hash(path(project)); };
     EXPECT_EQ(hash("restored.tuft"), hash("two.tuft"));
@@ -78,9 +99,13 @@ TEST_F(Views, ASnapshotIsRestoredAsOneStepAndNothingIsLostByIt) {
     EXPECT_EQ(io::unpack_entries(snapshots[0].bytes, "it").size(), 2u);
     EXPECT_EQ(nlohmann::json::parse(snapshots[0].about)["name"], "Snapshot 1");
     // Opened again it can still be gone back to.
-    const Ran again = studio("open " + path("end.tuft") + "\nwait-ready\nexpect strokes 3\nwait 0.1\nclick \"snapshot Snapshot 1\"\nwait 0.1\nclick \"Snapshot name\"\nkey ctrl+a\ntype Fired\nkey enter\nwait-ready\nwait 0.1\n"
-                             "expect label \"snapshot Fired\"\nclick Restore\nwait-ready\nexpect strokes 2\nsave later.tuft\nwait-ready\n",
-                             "--headless --size 1280x720");
+    const Ran again =
+        studio("open " + path("end.tuft") +
+                   "\nwait-ready\nexpect strokes 3\nwait 0.1\nclick \"snapshot Snapshot 1\"\nwait 0.1\nclick "
+                   "\"Snapshot name\"\nkey ctrl+a\ntype Fired\nkey enter\nwait-ready\nwait 0.1\n"
+                   "expect label \"snapshot Fired\"\nclick Restore\nwait-ready\nexpect strokes 2\nsave "
+                   "later.tuft\nwait-ready\n",
+               "--headless --size 1280x720");
     ASSERT_EQ(again.status, 0) << again.err;
     EXPECT_EQ(hash("later.tuft"), hash("two.tuft"));
 }
@@ -88,11 +113,18 @@ TEST_F(Views, ASnapshotIsRestoredAsOneStepAndNothingIsLostByIt) {
 // The snapshot has no ink yet, the work a red stroke.
 TEST_F(Views, ASnapshotIsComparedSideBySideAndByASwipe) {
     const std::string look = "move 5%,5%\nwait 0.3\nwait-ready\nscreenshot ";
-    const Ran ran = studio(kBowl + "click \"fold Snapshots\"\nwait 0.1\nclick \"Take a snapshot\"\nwait-ready\nset ink cinnabar\nset pressure 0.9\nstroke 46%,58% 50%,62% 54%,58%\nwait-ready\nclick \"snapshot Snapshot 1\"\nwait 0.1\nclick Compare\n"
-                                   "wait-ready\n" + look + "side.png\nclick Swipe\n" + "set swipe 0.9\n" + look + "old.png\nset swipe 0.1\n" + look + "new.png\n"
-                                   // What is pressed on the snapshot paints nothing; on the work it does.
-                                   "stroke 5%,58% 8%,60%\nwait-ready\nexpect strokes 1\nstroke 52%,62% 55%,62%\nwait-ready\nexpect strokes 2\nclick Done\nwait 0.2\n" + look + "done.png\nexpect model\n",
-                           "--headless --size 1280x720");
+    const Ran ran = studio(
+        kBowl +
+            "click \"fold Snapshots\"\nwait 0.1\nclick \"Take a snapshot\"\nwait-ready\nset ink cinnabar\nset pressure "
+            "0.9\nstroke 46%,58% 50%,62% 54%,58%\nwait-ready\nclick \"snapshot Snapshot 1\"\nwait 0.1\nclick Compare\n"
+            "wait-ready\n" +
+            look + "side.png\nclick Swipe\n" + "set swipe 0.9\n" + look + "old.png\nset swipe 0.1\n" + look +
+            "new.png\n"
+            // What is pressed on the snapshot paints nothing; on the work it does.
+            "stroke 5%,58% 8%,60%\nwait-ready\nexpect strokes 1\nstroke 52%,62% 55%,62%\nwait-ready\nexpect strokes "
+            "2\nclick Done\nwait 0.2\n" +
+            look + "done.png\nexpect model\n",
+        "--headless --size 1280x720");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const int middle = 284 + (1280 - 284 - 252) / 2;
     EXPECT_LT(red(path("side.png"), 290, middle - 4), 20);
@@ -104,9 +136,14 @@ TEST_F(Views, ASnapshotIsComparedSideBySideAndByASwipe) {
 
 // An ink of the work's own that no stroke uses any more comes back with a stroke that does.
 TEST_F(Views, AStrokeInAnInkOfOnesOwnComesBackAfterItWasTheOnlyOne) {
-    const Ran ran = studio(kBowl + "set ink gamboge\nset tip-ink cinnabar\nset two-inks on\nset pressure 0.8\nstroke 44%,52% 47%,60% 52%,62%\nwait-ready\nset tool pick\nmove 47%,60%\npress\nrelease\nwait-ready\nwait 0.1\n"
-                                   "expect message mixture\nset two-inks off\nstroke 55%,57% 60%,58%\nwait-ready\nexpect strokes 5\nclick \"stroke 5\"\nwait-ready\nclick Delete\nwait-ready\nexpect strokes 4\nclick \"stroke 1\"\nwait-ready\nclick Hide\nwait-ready\n"
-                                   "undo\nundo\nwait-ready\nexpect strokes 5\nexpect kept\n");
+    const Ran ran =
+        studio(kBowl +
+               "set ink gamboge\nset tip-ink cinnabar\nset two-inks on\nset pressure 0.8\nstroke 44%,52% 47%,60% "
+               "52%,62%\nwait-ready\nset tool pick\nmove 47%,60%\npress\nrelease\nwait-ready\nwait 0.1\n"
+               "expect message mixture\nset two-inks off\nstroke 55%,57% 60%,58%\nwait-ready\nexpect strokes 5\nclick "
+               "\"stroke 5\"\nwait-ready\nclick Delete\nwait-ready\nexpect strokes 4\nclick \"stroke "
+               "1\"\nwait-ready\nclick Hide\nwait-ready\n"
+               "undo\nundo\nwait-ready\nexpect strokes 5\nexpect kept\n");
     EXPECT_EQ(ran.status, 0) << ran.err;
 }
 
@@ -114,18 +151,27 @@ TEST_F(Views, TheGuideGoesOnAsThingsAreDoneAndCanBeSkipped) {
     const Ran ran = studio(kBowl + "wait 0.2\nnames\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     EXPECT_EQ(ran.out.find("Skip the guide"), std::string::npos) << "it comes over no script";
-    const Ran guided = studio(kBowl + "set guide on\nwait 0.1\nexpect label \"Skip the guide\"\nmove 50%,80%\npress middle\nmove 60%,80%\nmove 70%,80%\nrelease middle\nwait 0.2\nmove 50%,70%\nscroll 3\nwait 0.2\nclick goat-small\nwait 0.2\n"
-                                      "stroke 46%,60% 52%,62%\nwait-ready\nwait 0.2\nundo\nwait-ready\nwait 0.2\nexpect label Done\nclick Done\nwait 0.2\nnames\n", "--headless --size 1280x720");
+    const Ran guided = studio(
+        kBowl +
+            "set guide on\nwait 0.1\nexpect label \"Skip the guide\"\nmove 50%,80%\npress middle\nmove 60%,80%\nmove "
+            "70%,80%\nrelease middle\nwait 0.2\nmove 50%,70%\nscroll 3\nwait 0.2\nclick goat-small\nwait 0.2\n"
+            "stroke 46%,60% 52%,62%\nwait-ready\nwait 0.2\nundo\nwait-ready\nwait 0.2\nexpect label Done\nclick "
+            "Done\nwait 0.2\nnames\n",
+        "--headless --size 1280x720");
     ASSERT_EQ(guided.status, 0) << guided.err;
     EXPECT_EQ(guided.out.find("Skip the guide"), std::string::npos);
     EXPECT_NE(read(path("state") + "/tuft/settings").find("guide_seen 1"), std::string::npos);
-    const Ran skipped = studio(kBowl + "click Help\nwait 0.1\nclick \"The first minute, step by step\"\nwait 0.2\nclick \"Skip the guide\"\nwait 0.2\nnames\n");
+    const Ran skipped = studio(kBowl +
+                               "click Help\nwait 0.1\nclick \"The first minute, step by step\"\nwait 0.2\nclick \"Skip "
+                               "the guide\"\nwait 0.2\nnames\n");
     ASSERT_EQ(skipped.status, 0) << skipped.err;
     EXPECT_EQ(skipped.out.find("Skip the guide"), std::string::npos);
 }
 
 TEST_F(Views, TheManualIsInTheHelpMenu) {
-    const Ran ran = studio("wait 0.2\nclick Help\nwait 0.1\nclick Manual\nwait 0.2\nclick \"page Ink\"\nwait 0.2\nexpect label \"page First steps\"\nkey escape\nwait 0.2\nnames\n");
+    const Ran ran = studio(
+        "wait 0.2\nclick Help\nwait 0.1\nclick Manual\nwait 0.2\nclick \"page Ink\"\nwait 0.2\nexpect label \"page "
+        "First steps\"\nkey escape\nwait 0.2\nnames\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     EXPECT_EQ(ran.out.find("page Ink"), std::string::npos);
 }
@@ -140,7 +186,9 @@ TEST(Manual, EveryPageIsThereInBothLanguagesWithTheKeysThatAreSet) {
             EXPECT_GT(text.size(), 150u) << page.title;
             EXPECT_EQ(text.find('{'), std::string::npos) << page.title;
             EXPECT_EQ(text.find('?'), std::string::npos) << page.title << ": a key of no action\n" << text;
-            EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), std::count(page.text, page.text + std::string(page.text).size(), '\n')) << "the same points: " << page.title;
+            EXPECT_EQ(std::count(text.begin(), text.end(), '\n'),
+                      std::count(page.text, page.text + std::string(page.text).size(), '\n'))
+                << "the same points: " << page.title;
         }
     EXPECT_NE(manual_text(manual_pages().front(), Language::english, keys).find("Ctrl+U"), std::string::npos);
 }

@@ -6,9 +6,9 @@
 
 #include "brush/preset.h"
 #include "core/units.h"
+#include "paths.h"
 #include "stroke/hand/placement.h"
 #include "window.h"
-#include "paths.h"
 
 /// A Wacom tablet from its kernel events on: the real X server with the real driver reads an event device
 /// (umockdev) that the test writes to; the window gets them through XInput 2, and paints.
@@ -27,7 +27,8 @@ class Tablet : public test::Window {
             if (!installed(tool)) GTEST_SKIP() << tool << " is not installed: no tablet is tested";
         const fs::path modules = "/usr/lib/xorg/modules";
         for (const char* driver : {"input/wacom_drv.so", "input/inputtest_drv.so", "drivers/dummy_drv.so"})
-            if (!fs::exists(modules / driver)) GTEST_SKIP() << "the X server has no " << driver << ": no tablet is tested";
+            if (!fs::exists(modules / driver))
+                GTEST_SKIP() << "the X server has no " << driver << ": no tablet is tested";
         if (geteuid() != 0) GTEST_SKIP() << "only root may start an X server without a terminal: no tablet is tested";
         make_folder();
         std::string config = read(source_folder() + "/tests/app/tablet/xorg.conf");
@@ -36,10 +37,14 @@ class Tablet : public test::Window {
         ASSERT_EQ(mkfifo(path("events").c_str(), 0600), 0);
         // The device of the test bed becomes a pipe, so that events can be written while the server runs.
         std::ofstream(path("server")) << "echo $$ >'" << path("server.pid") << "'; ln -sf '" << path("events")
-                                      << "' \"$UMOCKDEV_DIR/dev/input/event5\"; exec Xorg -config '" << path("xorg.conf") << "' -logfile '"
-                                      << path("xorg.log") << "' -displayfd 3 -noreset -nolisten tcp -novtswitch -sharevts 3>'" << path("display") << "'\n";
-        server_ = start({"umockdev-run", "-d", source_folder() + "/tests/app/tablet/pen.umockdev", "-i",
-                         "/dev/input/event5=" + source_folder() + "/tests/app/tablet/pen.ioctl", "--", "bash", path("server")}, "");
+                                      << "' \"$UMOCKDEV_DIR/dev/input/event5\"; exec Xorg -config '"
+                                      << path("xorg.conf") << "' -logfile '" << path("xorg.log")
+                                      << "' -displayfd 3 -noreset -nolisten tcp -novtswitch -sharevts 3>'"
+                                      << path("display") << "'\n";
+        server_ = start(
+            {"umockdev-run", "-d", source_folder() + "/tests/app/tablet/pen.umockdev", "-i",
+             "/dev/input/event5=" + source_folder() + "/tests/app/tablet/pen.ioctl", "--", "bash", path("server")},
+            "");
         take_display();
         pen_ = open(path("events").c_str(), O_WRONLY | O_NONBLOCK);
         ASSERT_GE(pen_, 0) << read("xorg.log");
@@ -73,19 +78,26 @@ class Tablet : public test::Window {
     }
     // One sample: a place in the window (which is at the screen's corner), pressure 0–1, tilt in degrees.
     void sample(double x, double y, double pressure, int tilt_x, int tilt_y) const {
-        say({{EV_ABS, ABS_X, static_cast<int>(x * kWide / kScreenWidth)}, {EV_ABS, ABS_Y, static_cast<int>(y * kHigh / kScreenHeight)},
-             {EV_ABS, ABS_PRESSURE, static_cast<int>(pressure * kPressed)}, {EV_ABS, ABS_TILT_X, tilt_x}, {EV_ABS, ABS_TILT_Y, tilt_y},
+        say({{EV_ABS, ABS_X, static_cast<int>(x * kWide / kScreenWidth)},
+             {EV_ABS, ABS_Y, static_cast<int>(y * kHigh / kScreenHeight)},
+             {EV_ABS, ABS_PRESSURE, static_cast<int>(pressure * kPressed)},
+             {EV_ABS, ABS_TILT_X, tilt_x},
+             {EV_ABS, ABS_TILT_Y, tilt_y},
              {EV_KEY, BTN_TOUCH, pressure > 0}});
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     // From one place to the other with a tool: half the way with one pressure and tilt, then with another.
     void stroke(int tool) const {
-        say({{EV_ABS, ABS_X, static_cast<int>((kFrom.x - 10) * kWide / kScreenWidth)}, {EV_ABS, ABS_Y, static_cast<int>(kFrom.y * kHigh / kScreenHeight)}, {EV_ABS, ABS_DISTANCE, 20}, {EV_KEY, tool, 1}});
+        say({{EV_ABS, ABS_X, static_cast<int>((kFrom.x - 10) * kWide / kScreenWidth)},
+             {EV_ABS, ABS_Y, static_cast<int>(kFrom.y * kHigh / kScreenHeight)},
+             {EV_ABS, ABS_DISTANCE, 20},
+             {EV_KEY, tool, 1}});
         for (int i = 0; i < 20; ++i) sample(kFrom.x - 0.5 * (20 - i), kFrom.y, 0, 30, 0);
         for (int i = 0; i <= kSteps; ++i) {
             const double s = static_cast<double>(i) / kSteps;
             const bool first = 2 * i < kSteps;
-            sample(kFrom.x + s * (kTo.x - kFrom.x), kFrom.y + s * (kTo.y - kFrom.y), first ? 0.3 : 0.7, first ? 30 : -10, first ? 0 : 20);
+            sample(kFrom.x + s * (kTo.x - kFrom.x), kFrom.y + s * (kTo.y - kFrom.y), first ? 0.3 : 0.7,
+                   first ? 30 : -10, first ? 0 : 20);
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(200));  // held still
         sample(kTo.x, kTo.y, 0, -10, 20);
@@ -98,10 +110,13 @@ class Tablet : public test::Window {
 };
 
 TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
-    std::ofstream(path("script")) << "open " + source_folder() + "/models/sheet.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\n"
-                                     "set elevation 90\nset azimuth 0\nset string 0\nset clean-ends off\nwait 0.1\nscreenshot " << path("ready.png")
-                                  << "\nawait strokes 1\nwait-ready\nscreenshot " << path("one.png") << "\nawait strokes 2\nwait-ready\nscreenshot "
-                                  << path("two.png") << "\nawait strokes 3\nwait-ready\nreport\nsave " << path("work.tuft") << "\nwait-ready\nexpect kept\n";
+    std::ofstream(path("script"))
+        << "open " + source_folder() +
+               "/models/sheet.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\n"
+               "set elevation 90\nset azimuth 0\nset string 0\nset clean-ends off\nwait 0.1\nscreenshot "
+        << path("ready.png") << "\nawait strokes 1\nwait-ready\nscreenshot " << path("one.png")
+        << "\nawait strokes 2\nwait-ready\nscreenshot " << path("two.png")
+        << "\nawait strokes 3\nwait-ready\nreport\nsave " << path("work.tuft") << "\nwait-ready\nexpect kept\n";
     open_studio("", {"--script", path("script")}, "out");
     wait_for("the model", [&] { return fs::exists(path("ready.png")); });
     stroke(BTN_TOOL_PEN);
@@ -110,7 +125,8 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
     wait_for("the eraser's stroke", [&] { return fs::exists(path("two.png")); });
     // A pointer that is warped counts for the device that moved last; now that is the mouse.
     run("xdotool mousemove_relative -- 3 3 sleep 0.3 mousemove 440 300 sleep 0.5");
-    Window::stroke({{static_cast<int>(kFrom.x), static_cast<int>(kFrom.y)}, {static_cast<int>(kTo.x), static_cast<int>(kTo.y)}});
+    Window::stroke(
+        {{static_cast<int>(kFrom.x), static_cast<int>(kFrom.y)}, {static_cast<int>(kTo.x), static_cast<int>(kTo.y)}});
     int status = -1;
     waitpid(studio_, &status, 0);
     studio_ = 0;
@@ -124,7 +140,9 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
         std::size_t clump = 0;
         for (std::size_t i = 1; i < samples.size(); ++i) {
             clump = samples[i].time - samples[i - 1].time < 5e-4 ? clump + 1 : 0;
-            if (clump > kSteps / 10) GTEST_SKIP() << "the machine is too busy to play a hand: more than " << clump << " reports came at once";
+            if (clump > kSteps / 10)
+                GTEST_SKIP() << "the machine is too busy to play a hand: more than " << clump
+                             << " reports came at once";
         }
     }
     EXPECT_FALSE(strokes[0].trace.erases);
@@ -135,8 +153,8 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
     const double working = stroke::working_depth(brush);
     struct HolderPose {
         double pressure;
-        Vec2 lean;    // tangents, to the right and away from the hand
-        Vec3 foot;    // of the holder's axis on the sheet, metres
+        Vec2 lean;  // tangents, to the right and away from the hand
+        Vec3 foot;  // of the holder's axis on the sheet, metres
     };
     const auto held = [&](const stroke::TraceSample& s) {
         const Vec3 up = s.rotation * Vec3(0, 0, 1);
@@ -154,14 +172,16 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
             hurried += at_once;
             late += at_once && i + 80 > samples.size();
         }
-        if (hurried > samples.size() / 8 || late > 0) GTEST_SKIP() << "the machine is too busy for a tablet: reports are read many at once";
+        if (hurried > samples.size() / 8 || late > 0)
+            GTEST_SKIP() << "the machine is too busy for a tablet: reports are read many at once";
         std::size_t light = 0, firm = 0;
         for (const stroke::TraceSample& s : samples) {
             const HolderPose h = held(s);
             // The device has 2047 steps of pressure and whole degrees; on the steps between two of the driver's
             // averages (4 reports) and of the hand (4 ms) there is neither.
             light += std::abs(h.pressure - 0.3) < 1e-3 && glm::distance(h.lean, Vec2(std::tan(30 * kDegree), 0)) < 1e-6;
-            firm += std::abs(h.pressure - 0.7) < 1e-3 && glm::distance(h.lean, Vec2(std::tan(-10 * kDegree), -std::tan(20 * kDegree))) < 1e-6;
+            firm += std::abs(h.pressure - 0.7) < 1e-3 &&
+                    glm::distance(h.lean, Vec2(std::tan(-10 * kDegree), -std::tan(20 * kDegree))) < 1e-6;
         }
         EXPECT_GT(light, kSteps * 2 / 5u) << k;
         EXPECT_GT(firm, kSteps * 2 / 5u) << k;

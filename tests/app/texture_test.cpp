@@ -38,7 +38,8 @@ TEST(Texture, RefreshedTilesAreWhatTheWholeWouldBe) {
     }
     ASSERT_FALSE(painting.canvas().touched_slots().empty());
     const render::MapPixels whole = Texture(painting).pixels();
-    for (std::size_t level = 0; level < render::kTextureLevels; ++level) EXPECT_EQ(map.levels[level], whole.levels[level]) << level;
+    for (std::size_t level = 0; level < render::kTextureLevels; ++level)
+        EXPECT_EQ(map.levels[level], whole.levels[level]) << level;
 }
 
 TEST(HeightCode, IsFineForThinInkAndReachesThickPaint) {

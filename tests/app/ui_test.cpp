@@ -19,7 +19,9 @@
 
 namespace tuft::app {
 
-static void PrintTo(Theme theme, std::ostream* out) { *out << (theme == Theme::dark ? "dark" : "light"); }
+static void PrintTo(Theme theme, std::ostream* out) {
+    *out << (theme == Theme::dark ? "dark" : "light");
+}
 
 namespace {
 
@@ -36,7 +38,9 @@ double contrast(const ImVec4& a, const ImVec4& b) {
     return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);
 }
 
-TEST(Contrast, OfBlackOnWhiteIsTwentyOne) { EXPECT_NEAR(contrast({0, 0, 0, 1}, {1, 1, 1, 1}), 21, 1e-9); }
+TEST(Contrast, OfBlackOnWhiteIsTwentyOne) {
+    EXPECT_NEAR(contrast({0, 0, 0, 1}, {1, 1, 1, 1}), 21, 1e-9);
+}
 
 class Themes : public testing::TestWithParam<Theme> {};
 
@@ -45,29 +49,34 @@ TEST_P(Themes, TextCanBeReadEverywhere) {
     Ui ui;
     ui.prepare({.theme = GetParam()});
     const ImVec4* c = ImGui::GetStyle().Colors;
-    for (const int ground : {ImGuiCol_WindowBg, ImGuiCol_PopupBg, ImGuiCol_MenuBarBg, ImGuiCol_TitleBgActive, ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered,
-                             ImGuiCol_FrameBgActive, ImGuiCol_Button, ImGuiCol_ButtonHovered, ImGuiCol_ButtonActive, ImGuiCol_Header,
-                             ImGuiCol_HeaderHovered, ImGuiCol_HeaderActive})
+    for (const int ground :
+         {ImGuiCol_WindowBg, ImGuiCol_PopupBg, ImGuiCol_MenuBarBg, ImGuiCol_TitleBgActive, ImGuiCol_FrameBg,
+          ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_Button, ImGuiCol_ButtonHovered,
+          ImGuiCol_ButtonActive, ImGuiCol_Header, ImGuiCol_HeaderHovered, ImGuiCol_HeaderActive})
         EXPECT_GE(contrast(c[ImGuiCol_Text], c[ground]), 4.5) << ImGui::GetStyleColorName(ground);
     for (const int ground : {ImGuiCol_WindowBg, ImGuiCol_PopupBg, ImGuiCol_MenuBarBg, ImGuiCol_FrameBg})
-        EXPECT_GE(contrast(c[ImGuiCol_TextDisabled], c[ground]), 4.5) << "faint on " << ImGui::GetStyleColorName(ground);
+        EXPECT_GE(contrast(c[ImGuiCol_TextDisabled], c[ground]), 4.5)
+            << "faint on " << ImGui::GetStyleColorName(ground);
     const ImVec4 white(1, 1, 1, 1);
     EXPECT_GE(contrast(white, {kPrimary[0], kPrimary[1], kPrimary[2], 1}), 4.5);
     EXPECT_GE(contrast(white, {kPrimaryHovered[0], kPrimaryHovered[1], kPrimaryHovered[2], 1}), 4.5);
     // What is not text needs 3 : 1 (WCAG 1.4.11).
     const ImVec4 accent = ImGui::ColorConvertU32ToFloat4(ui.accent);
-    for (const int ground : {ImGuiCol_WindowBg, ImGuiCol_FrameBg}) EXPECT_GE(contrast(accent, c[ground]), 3.0) << ImGui::GetStyleColorName(ground);
+    for (const int ground : {ImGuiCol_WindowBg, ImGuiCol_FrameBg})
+        EXPECT_GE(contrast(accent, c[ground]), 3.0) << ImGui::GetStyleColorName(ground);
     ImGui::DestroyContext();
 }
 INSTANTIATE_TEST_SUITE_P(, Themes, testing::Values(Theme::dark, Theme::light));
 
 TEST(UiText, AllChineseTextsAreThereForWhatTheKeysAreCalled) {
-    for (const char* text : {"Undo", "Redo", "Curve", "Hold it upright", "Dry"}) EXPECT_NE(chinese_text(text), nullptr) << text;
+    for (const char* text : {"Undo", "Redo", "Curve", "Hold it upright", "Dry"})
+        EXPECT_NE(chinese_text(text), nullptr) << text;
 }
 
 // What the panels' sources give to the functions that show it, but for keys and names that are the same in both.
 TEST(UiText, EveryTextOfThePanelsHasAChineseOne) {
-    const std::regex shown(R"re((?:button|choice|toggle|slider|heading|section|menu_item|begin_menu|begin_dialog|fact|row|tr|note)\((?:s, )?"((?:[^"\\]|\\x..)*)")re");
+    const std::regex shown(
+        R"re((?:button|choice|toggle|slider|heading|section|menu_item|begin_menu|begin_dialog|fact|row|tr|note)\((?:s, )?"((?:[^"\\]|\\x..)*)")re");
     const std::regex words("[a-z]{3}");
     std::size_t seen = 0;
     for (const auto& file : std::filesystem::recursive_directory_iterator(source_folder() + "/src/app")) {
@@ -76,7 +85,9 @@ TEST(UiText, EveryTextOfThePanelsHasAChineseOne) {
         const std::string text{std::istreambuf_iterator<char>(in), {}};
         for (std::sregex_iterator it(text.begin(), text.end(), shown), end; it != end; ++it) {
             const std::string label = (*it)[1];
-            if (!std::regex_search(label, words) || label.find('\\') != std::string::npos || label == "SpaceMouse" || label == "%g mm") continue;
+            if (!std::regex_search(label, words) || label.find('\\') != std::string::npos || label == "SpaceMouse" ||
+                label == "%g mm")
+                continue;
             ++seen;
             EXPECT_NE(chinese_text(label.c_str()), nullptr) << file.path().filename() << ": " << label;
         }
@@ -99,14 +110,16 @@ TEST(UiScale, FollowsTheDisplayAndTheSizeOfThePicture) {
 TEST(ChineseFont, IsFoundByItsNameTheBestOneFirst) {
     EXPECT_EQ(find_chinese_font({{"DejaVuSans.ttf", "a"}, {"NotoSansMono-Regular.ttf", "b"}}), "");
     EXPECT_EQ(find_chinese_font({{"uming.ttc", "u"}, {"NotoSansCJK-Regular.ttc", "n"}}), "n");
-    EXPECT_EQ(find_chinese_font({{"DejaVuSans.ttf", "a"}, {"SarasaGothicCJK-Light.ttc", "s"}}), "s") << "one that is not known";
+    EXPECT_EQ(find_chinese_font({{"DejaVuSans.ttf", "a"}, {"SarasaGothicCJK-Light.ttc", "s"}}), "s")
+        << "one that is not known";
     EXPECT_EQ(find_chinese_font({{"README-CJK.txt", "t"}}), "");
 }
 
 // Names in files, such as "iron-red", are not what a person reads.
 TEST(UiText, AllThatIsShippedHasANameInBothLanguages) {
     std::vector<std::string> names;
-    for (const auto& list : {brush::list_presets(), ink::list_inks(), ink::list_pigments(), ink::list_substrates()}) names.insert(names.end(), list.begin(), list.end());
+    for (const auto& list : {brush::list_presets(), ink::list_inks(), ink::list_pigments(), ink::list_substrates()})
+        names.insert(names.end(), list.begin(), list.end());
     EXPECT_GT(names.size(), 25u);
     for (const std::string& name : names) {
         ASSERT_NE(english_name(name.c_str()), nullptr) << name;

@@ -8,7 +8,16 @@ namespace tuft::app {
 namespace {
 
 render::GlCamera from_front(double parallel_height) {
-    return {.eye = {0, -1, 0}, .right = {1, 0, 0}, .up = {0, 0, 1}, .forward = {0, 1, 0}, .field_of_view = 0.5, .parallel_height = parallel_height, .near = 0.01, .far = 3, .width = 640, .height = 480};
+    return {.eye = {0, -1, 0},
+            .right = {1, 0, 0},
+            .up = {0, 0, 1},
+            .forward = {0, 1, 0},
+            .field_of_view = 0.5,
+            .parallel_height = parallel_height,
+            .near = 0.01,
+            .far = 3,
+            .width = 640,
+            .height = 480};
 }
 
 // The sphere round the origin: what faces the eye is seen, the back is hidden behind the front.

@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "io/project.h"
-#include "projects.h"
 #include "paths.h"
+#include "projects.h"
 
 namespace tuft::test {
 
@@ -27,13 +27,16 @@ namespace fs = std::filesystem;
 /// The real window on a real X server, driven as by a person's hand through XTEST.
 class Window : public testing::Test {
   protected:
-    static bool installed(const std::string& tool) { return std::system(("command -v " + tool + " >/dev/null").c_str()) == 0; }
+    static bool installed(const std::string& tool) {
+        return std::system(("command -v " + tool + " >/dev/null").c_str()) == 0;
+    }
 
     void SetUp() override {
         for (const char* tool : {"Xvfb", "xdotool"})
             if (!installed(tool)) GTEST_SKIP() << tool << " is not installed: no window is tested";
         make_folder();
-        server_ = start({"Xvfb", "-displayfd", "3", "-screen", "0", "1000x640x24", "-nolisten", "tcp", "-noreset"}, "3>'" + path("display") + "'");
+        server_ = start({"Xvfb", "-displayfd", "3", "-screen", "0", "1000x640x24", "-nolisten", "tcp", "-noreset"},
+                        "3>'" + path("display") + "'");
         take_display();
     }
     void make_folder() {
@@ -95,17 +98,21 @@ class Window : public testing::Test {
         wait_for("the window", [&] { return run("xdotool search --name 'tuft studio'") == 0; });
         run("xdotool search --name 'tuft studio' windowfocus");
     }
-    int run(const std::string& line) const { return std::system(("DISPLAY=" + display_ + " " + line + " >/dev/null 2>&1").c_str()); }
+    int run(const std::string& line) const {
+        return std::system(("DISPLAY=" + display_ + " " + line + " >/dev/null 2>&1").c_str());
+    }
     void keys(const std::string& words) const { run("xdotool key --delay 120 " + words); }
     void type(const std::string& text) const { run("xdotool type --delay 15 '" + text + "'"); }
     bool titled(const std::string& title) const { return run("xdotool search --name '" + title + "'") == 0; }
     // A stroke along points, some pixels at a time, as a hand moves.
     void stroke(const std::vector<std::pair<int, int>>& points) const {
-        std::string line = "xdotool mousemove " + std::to_string(points[0].first) + " " + std::to_string(points[0].second) + " sleep 0.25 mousedown 1 sleep 0.1";
+        std::string line = "xdotool mousemove " + std::to_string(points[0].first) + " " +
+                           std::to_string(points[0].second) + " sleep 0.25 mousedown 1 sleep 0.1";
         for (std::size_t i = 1; i < points.size(); ++i)
             for (int k = 1; k <= 12; ++k) {
                 const auto at = [&](int a, int b) { return std::to_string(a + (b - a) * k / 12); };
-                line += " mousemove " + at(points[i - 1].first, points[i].first) + " " + at(points[i - 1].second, points[i].second) + " sleep 0.01";
+                line += " mousemove " + at(points[i - 1].first, points[i].first) + " " +
+                        at(points[i - 1].second, points[i].second) + " sleep 0.01";
             }
         run(line + " sleep 0.15 mouseup 1 sleep 0.15");
     }
@@ -123,9 +130,7 @@ class Window : public testing::Test {
             return -1;  // being written
         }
     }
-    nlohmann::json tuft(const std::string& arguments) const {
-        return test::tuft(arguments, path("tuft.json"));
-    }
+    nlohmann::json tuft(const std::string& arguments) const { return test::tuft(arguments, path("tuft.json")); }
 
     fs::path folder_;
     std::string display_;

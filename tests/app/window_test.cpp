@@ -1,6 +1,7 @@
-#include "space_daemon.h"
 #include "window.h"
+
 #include "paths.h"
+#include "space_daemon.h"
 
 namespace tuft::app {
 namespace {
@@ -63,21 +64,30 @@ TEST_F(Window, AnAfternoonWithAKillInItLosesNothing) {
     EXPECT_EQ(replayed["strokes"], 3);
     EXPECT_EQ(replayed["canvas_hash"], test::stored_hash(path("work.tuft")));
     const std::string size = std::to_string(io::Project::open(path("work.tuft")).model().atlas.size);
-    const nlohmann::json painted = tuft("paint " + source_folder() + "/models/sphere.ply --strokes '" + path("work.inkml") + "' --atlas-size " + size);
+    const nlohmann::json painted = tuft("paint " + source_folder() + "/models/sphere.ply --strokes '" +
+                                        path("work.inkml") + "' --atlas-size " + size);
     EXPECT_EQ(painted["strokes"].size(), 3u);
     EXPECT_EQ(painted["canvas_hash"], test::stored_hash(path("work.tuft")));
-    const int valid = std::system(("bash '" + source_folder() + "/tests/io/validate_glb.sh' '" + source_folder() + "/build/node' '" + path("work.glb") + "' >'" + path("valid") + "' 2>&1").c_str());
-    if (WEXITSTATUS(valid) == 77) std::puts("the glTF validator is not installed: the exported file is not checked");
-    else EXPECT_EQ(valid, 0) << read("valid");
+    const int valid = std::system(("bash '" + source_folder() + "/tests/io/validate_glb.sh' '" + source_folder() +
+                                   "/build/node' '" + path("work.glb") + "' >'" + path("valid") + "' 2>&1")
+                                      .c_str());
+    if (WEXITSTATUS(valid) == 77)
+        std::puts("the glTF validator is not installed: the exported file is not checked");
+    else
+        EXPECT_EQ(valid, 0) << read("valid");
 }
 
 // The spacenav daemon, played by the test, turns the model; its device is pulled out; the hand paints on.
 TEST_F(Window, ASpaceMouseTurnsTheModelAndMayBePulledOut) {
     test::SpaceDaemon daemon(path("spnav"));
     setenv("SPNAV_SOCKET", path("spnav").c_str(), 1);
-    std::ofstream(path("script")) << "open " + source_folder() + "/models/bowl.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\n"
-                                     "report\nscreenshot " << path("ready.png") << "\nawait message unplugged\nreport\n"
-                                     "stroke 46%,58% 50%,61%\nwait-ready\nexpect strokes 1\nexpect kept\n";
+    std::ofstream(path("script"))
+        << "open " + source_folder() +
+               "/models/bowl.ply\nwait-ready\nset texels 512\nclick \"Unwrap and paint\"\nwait-ready\n"
+               "report\nscreenshot "
+        << path("ready.png")
+        << "\nawait message unplugged\nreport\n"
+           "stroke 46%,58% 50%,61%\nwait-ready\nexpect strokes 1\nexpect kept\n";
     open_studio("", {"--script", path("script")}, "out");
     if (!daemon.accept()) GTEST_SKIP() << "built without libspnav: no SpaceMouse is tested";
     wait_for("the model", [&] { return fs::exists(path("ready.png")); });

@@ -15,7 +15,8 @@ namespace {
 
 Writing cross() {
     const std::string file = testing::TempDir() + "/tuft_writing_" + std::to_string(getpid()) + ".svg";
-    std::ofstream(file) << "<svg width='40mm' viewBox='0 0 40 20'><line x1='0' y1='10' x2='40' y2='10'/><line x1='20' y1='0' x2='20' y2='20'/></svg>";
+    std::ofstream(file) << "<svg width='40mm' viewBox='0 0 40 20'><line x1='0' y1='10' x2='40' y2='10'/><line x1='20' "
+                           "y1='0' x2='20' y2='20'/></svg>";
     Writing w = read_writing(file);
     std::filesystem::remove(file);
     return w;
@@ -32,7 +33,8 @@ TEST(Writing, LiesWithItsMiddleAtTheCursorTurnedAndScaled) {
     constexpr double kRounding = 2e-6;  // metres: the turn is 0.01 degrees off at most, on 15 mm
     const auto at = query.ray(mesh.bounds.centre() + Vec3(0.01, 0.02, 1), Vec3(0, 0, -1));
     ASSERT_TRUE(at);
-    const auto lines = ghost_lines(query, w, place_writing(w, query, at->position, Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, 1)));
+    const auto lines =
+        ghost_lines(query, w, place_writing(w, query, at->position, Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, 1)));
     ASSERT_EQ(lines.size(), 2u);
     // Seen from above with x to the right, a turn goes clockwise: the line's right end sinks.
     const Vec3 right = lines[0].back().position - at->position;
@@ -55,7 +57,8 @@ struct Painted {
 /// A shipped model with a drawing placed on it at the point that a ray from the outside meets.
 class WritingOnModel : public ::testing::Test {
   protected:
-    Painted by_studio(const std::string& name, const Writing& w, const Vec3& from, const Vec3& along, const Vec3& right, const WritingHand& hand) {
+    Painted by_studio(const std::string& name, const Writing& w, const Vec3& from, const Vec3& along, const Vec3& right,
+                      const WritingHand& hand) {
         const std::string project = folder_ + "/studio.tuft";
         std::filesystem::remove(project);
         PaintThread::Work work;
@@ -79,9 +82,10 @@ class WritingOnModel : public ::testing::Test {
     Painted by_program(const std::string& name, const Writing& w, const std::string& words, const std::string& more) {
         const std::string project = folder_ + "/program.tuft";
         std::filesystem::remove(project);
-        const nlohmann::json j = test::tuft("paint " + source_folder() + "/models/" + name + " --atlas-size " + std::to_string(kTexels) + " --strokes " +
-                                                w.file.string() + " " + words + " " + more + " --project " + project,
-                                            folder_ + "/out.json");
+        const nlohmann::json j =
+            test::tuft("paint " + source_folder() + "/models/" + name + " --atlas-size " + std::to_string(kTexels) +
+                           " --strokes " + w.file.string() + " " + words + " " + more + " --project " + project,
+                       folder_ + "/out.json");
         return {j["canvas_hash"], words, io::Project::open(project).strokes()};
     }
 
@@ -122,7 +126,8 @@ TEST_F(WritingOnModel, MirroredTurnedAndSmallInAPlateItIsTheSame) {
     Writing w = roundel(0.025);  // a sixth of its own size, below which times once stayed as they were
     w.mirrored = true;
     w.turn = 0.7;
-    const Painted studio = by_studio("plate.ply", w, {0.01, 0.02, 1}, {0, 0, -1}, {0.8, 0.6, 0}, {"goat-medium", "cinnabar"});
+    const Painted studio =
+        by_studio("plate.ply", w, {0.01, 0.02, 1}, {0, 0, -1}, {0.8, 0.6, 0}, {"goat-medium", "cinnabar"});
     expect_same(studio, by_program("plate.ply", w, studio.words, "--brush goat-medium --fit-brush --ink cinnabar"));
     EXPECT_NE(studio.words.find("--place-mirror"), std::string::npos);
 }

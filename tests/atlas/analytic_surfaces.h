@@ -32,10 +32,8 @@ inline Unwrapped build(const std::vector<Patch>& patches, std::uint32_t size) {
     u.atlas.n_charts = static_cast<std::uint32_t>(patches.size());
     std::map<std::array<long long, 3>, std::uint32_t> welded;
     const auto vertex = [&](const Vec3& p) {
-        const std::array<long long, 3> key{std::llround(p.x * 1e8), std::llround(p.y * 1e8),
-                                           std::llround(p.z * 1e8)};
-        const auto [it, fresh] =
-            welded.try_emplace(key, static_cast<std::uint32_t>(u.mesh.positions.size()));
+        const std::array<long long, 3> key{std::llround(p.x * 1e8), std::llround(p.y * 1e8), std::llround(p.z * 1e8)};
+        const auto [it, fresh] = welded.try_emplace(key, static_cast<std::uint32_t>(u.mesh.positions.size()));
         if (fresh) {
             u.mesh.positions.emplace_back(p);
             u.mesh.bounds.add(p);
@@ -46,16 +44,15 @@ inline Unwrapped build(const std::vector<Patch>& patches, std::uint32_t size) {
         const Patch& patch = patches[chart];
         for (int j = 0; j < patch.nt; ++j) {
             for (int i = 0; i < patch.ns; ++i) {
-                const std::array<Vec2, 4> st{Vec2(i, j), Vec2(i + 1, j), Vec2(i + 1, j + 1),
-                                             Vec2(i, j + 1)};
+                const std::array<Vec2, 4> st{Vec2(i, j), Vec2(i + 1, j), Vec2(i + 1, j + 1), Vec2(i, j + 1)};
                 for (const std::array<int, 3>& t : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
                     std::array<std::uint32_t, 3> corners;
                     for (int k = 0; k < 3; ++k) {
                         const Vec2 q = st[t[k]] / Vec2(patch.ns, patch.nt);
                         corners[k] = vertex(patch.position(q.x, q.y));
                         u.mesh.corner_normals.emplace_back(patch.normal(q.x, q.y));
-                        u.atlas.corner_uvs.emplace_back(
-                            (patch.uv0 + q.x * patch.uv_s + q.y * patch.uv_t) / double(size));
+                        u.atlas.corner_uvs.emplace_back((patch.uv0 + q.x * patch.uv_s + q.y * patch.uv_t) /
+                                                        double(size));
                     }
                     u.mesh.triangles.push_back(corners);
                     u.atlas.triangle_chart.push_back(chart);
@@ -65,8 +62,7 @@ inline Unwrapped build(const std::vector<Patch>& patches, std::uint32_t size) {
     }
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges;
     for (std::uint32_t t = 0; t < u.mesh.n_triangles(); ++t) {
-        for (int k = 0; k < 3; ++k)
-            edges[{u.mesh.triangles[t][k], u.mesh.triangles[t][(k + 1) % 3]}] = t;
+        for (int k = 0; k < 3; ++k) edges[{u.mesh.triangles[t][k], u.mesh.triangles[t][(k + 1) % 3]}] = t;
     }
     u.mesh.neighbours.assign(3 * u.mesh.n_triangles(), kNone);
     for (std::uint32_t t = 0; t < u.mesh.n_triangles(); ++t) {
@@ -104,8 +100,7 @@ inline Unwrapped sheet(double side, int n, double texels, int grid = 8) {
     for (int j = 0; j < n; ++j) {
         for (int i = 0; i < n; ++i) {
             const double w = side / n;
-            Patch p = flat({-0.5 * side + i * w, -0.5 * side + j * w, 0}, {w, 0, 0}, {0, w, 0},
-                           grid, grid);
+            Patch p = flat({-0.5 * side + i * w, -0.5 * side + j * w, 0}, {w, 0, 0}, {0, w, 0}, grid, grid);
             const Vec2 at{8.21 + step * i, 8.13 + step * j};
             switch ((i + 2 * j) % 4) {
                 case 0:
@@ -130,8 +125,7 @@ inline Unwrapped sheet(double side, int n, double texels, int grid = 8) {
 /// Cylinder round z of radius r, height h, in `n` strips.
 inline Unwrapped cylinder(double r, double h, int n, double texels_per_metre, int grid = 64) {
     std::vector<Patch> patches;
-    const double width = 2 * std::numbers::pi * r / n * texels_per_metre,
-                 height = h * texels_per_metre;
+    const double width = 2 * std::numbers::pi * r / n * texels_per_metre, height = h * texels_per_metre;
     for (int k = 0; k < n; ++k) {
         const double a0 = 2 * std::numbers::pi * k / n, da = 2 * std::numbers::pi / n;
         Patch p;
@@ -139,9 +133,7 @@ inline Unwrapped cylinder(double r, double h, int n, double texels_per_metre, in
             const double a = k == n - 1 && s == 1 ? 0 : a0 + s * da;
             return Vec3{r * std::cos(a), r * std::sin(a), (t - 0.5) * h};
         };
-        p.normal = [=](double s, double) {
-            return Vec3{std::cos(a0 + s * da), std::sin(a0 + s * da), 0};
-        };
+        p.normal = [=](double s, double) { return Vec3{std::cos(a0 + s * da), std::sin(a0 + s * da), 0}; };
         p.ns = grid;
         p.nt = 4;
         place(p, {8.3 + k * (width + 9), 8.4}, {width, 0}, {0, height});
@@ -169,8 +161,7 @@ inline Unwrapped sphere(double r, double texels, int grid = 48) {
         p.position = [=](double s, double t) { return r * direction(s, t); };
         p.normal = direction;
         p.ns = p.nt = grid;
-        place(p, {8.2 + (f % 3) * (texels + 9.3), 8.2 + (f / 3) * (texels + 9.3)}, {texels, 0},
-              {0, texels});
+        place(p, {8.2 + (f % 3) * (texels + 9.3), 8.2 + (f / 3) * (texels + 9.3)}, {texels, 0}, {0, texels});
         patches.push_back(p);
     }
     return build(patches, static_cast<std::uint32_t>(3 * (texels + 9.3) + 20));
@@ -191,8 +182,7 @@ inline Unwrapped plate(double a, double d, double texels, int grid = 16) {
                                                    {Vec3{-h, h, -d}, {0, -a, 0}}}};
     for (int k = 0; k < 4; ++k) {
         Patch rim = flat(rims[k][0], rims[k][1], {0, 0, d}, grid, 1);
-        patches.push_back(
-            place(rim, {x1, y1 + texels + 9 + k * (band + 9)}, {texels, 0}, {0, band}));
+        patches.push_back(place(rim, {x1, y1 + texels + 9 + k * (band + 9)}, {texels, 0}, {0, band}));
     }
     return build(patches, static_cast<std::uint32_t>(x2 + texels + 4 * (band + 9) + 20));
 }

@@ -12,8 +12,7 @@ namespace {
 /// Corners less edges plus faces: 1 for a disk.
 int euler(const Patch& patch) {
     int edges = 0;
-    for (std::uint32_t h = 0; h < patch.twin.size(); ++h)
-        edges += patch.twin[h] == kNone || patch.twin[h] > h;
+    for (std::uint32_t h = 0; h < patch.twin.size(); ++h) edges += patch.twin[h] == kNone || patch.twin[h] > h;
     return static_cast<int>(patch.n_vertices) - edges + static_cast<int>(patch.triangles.size());
 }
 

@@ -50,8 +50,7 @@ TriangleMesh mirrored_sheets(const std::function<Vec2f(const Vec2f&)>& uv, float
     std::vector<Vec2f> uvs;
     const Vec2f corners[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     for (const std::uint32_t image : {0u, 1u}) {
-        for (const Vec2f& c : corners)
-            p.emplace_back(0.1f * (image ? 1 - c.x : c.x), 0.1f * c.y, 0.1f * float(image));
+        for (const Vec2f& c : corners) p.emplace_back(0.1f * (image ? 1 - c.x : c.x), 0.1f * c.y, 0.1f * float(image));
         for (std::array<std::uint32_t, 3> f : {std::array{0u, 1u, 2u}, std::array{0u, 2u, 3u}}) {
             if (image) std::swap(f[1], f[2]);
             t.push_back({4 * image + f[0], 4 * image + f[1], 4 * image + f[2]});
@@ -194,8 +193,8 @@ TEST(FileUvs, KeepTheNumbersOfTheirPages) {
     TriangleMesh m = test::sheet();  // in four stripes, on pages as another program may number them
     const std::array<Vec2f, 4> tiles{Vec2f(0, 0), Vec2f(9, 0), Vec2f(2, 7), Vec2f(9, 99)};
     const auto stripe_of = [&](std::size_t t) {
-        return static_cast<std::size_t>(
-            std::min({m.position(t, 0).x, m.position(t, 1).x, m.position(t, 2).x}) * 20 + 1e-3);
+        return static_cast<std::size_t>(std::min({m.position(t, 0).x, m.position(t, 1).x, m.position(t, 2).x}) * 20 +
+                                        1e-3);
     };
     for (std::size_t c = 0; c < 3 * m.n_triangles(); ++c) {
         const Vec3f p = m.positions[m.triangles[c / 3][c % 3]];

@@ -29,9 +29,8 @@ ChartMesh whole_chart(const mesh::TriangleMesh& m) {
 }
 
 mesh::TriangleMesh cylinder_part(double turn) {
-    return test::grid_mesh(60, 20, false, false, [&](double u, double v) {
-        return Vec3(std::cos(turn * u), std::sin(turn * u), 2 * v);
-    });
+    return test::grid_mesh(60, 20, false, false,
+                           [&](double u, double v) { return Vec3(std::cos(turn * u), std::sin(turn * u), 2 * v); });
 }
 
 // Facets of a developable surface unroll exactly; what is left is where the iteration stops.
@@ -42,11 +41,10 @@ TEST(Flatten, UnrollsCylindersAndCones) {
         const FlatCheck check = check_flat(cylinder, flatten(cylinder));
         EXPECT_TRUE(check.sound()) << turn;
         EXPECT_NEAR(check.l2, 1, 1e-4) << turn;
-        const ChartMesh cone =
-            whole_chart(test::grid_mesh(60, 20, false, false, [&](double u, double v) {
-                const double r = 0.3 + v;
-                return Vec3(r * std::cos(turn * u), r * std::sin(turn * u), 1.5 * v);
-            }));
+        const ChartMesh cone = whole_chart(test::grid_mesh(60, 20, false, false, [&](double u, double v) {
+            const double r = 0.3 + v;
+            return Vec3(r * std::cos(turn * u), r * std::sin(turn * u), 1.5 * v);
+        }));
         EXPECT_NEAR(check_flat(cone, flatten(cone)).l2, 1, 1e-4) << turn;
     }
 }
@@ -57,10 +55,12 @@ Vec2 unrolled(const Vec3& p, double turn) {
     return {2 * facet * std::sin(turn / 120), p.z};
 }
 
-Vec2 elsewhere(const Vec2& p) { return {std::cos(1.0) * p.x - std::sin(1.0) * p.y + 7, std::sin(1.0) * p.x + std::cos(1.0) * p.y - 3}; }
+Vec2 elsewhere(const Vec2& p) {
+    return {std::cos(1.0) * p.x - std::sin(1.0) * p.y + 7, std::sin(1.0) * p.x + std::cos(1.0) * p.y - 3};
+}
 
-FlatChart laid_out(const mesh::TriangleMesh& m, std::span<const std::uint32_t> glued, const std::vector<std::uint32_t>& triangles,
-                   double turn, bool moved) {
+FlatChart laid_out(const mesh::TriangleMesh& m, std::span<const std::uint32_t> glued,
+                   const std::vector<std::uint32_t>& triangles, double turn, bool moved) {
     FlatChart chart;
     chart.mesh = make_chart(m, glued, triangles, 1);
     chart.uv.resize(chart.mesh.n_vertices());
@@ -116,20 +116,26 @@ TEST(Arap, LaysAPartAnew) {
     const FlatChart truth = laid_out(m, twin_half_edges(m), all, turn, false);
     std::vector<std::uint8_t> outside(truth.uv.size(), 0);
     for (std::uint32_t f = 0; f < all.size(); ++f) {
-        const Vec2 c = (truth.uv[truth.mesh.faces[f][0]] + truth.uv[truth.mesh.faces[f][1]] + truth.uv[truth.mesh.faces[f][2]]) / 3.0;
-        if (glm::length(c - Vec2(1, 1)) < 0.4) part.push_back(f);
+        const Vec2 c =
+            (truth.uv[truth.mesh.faces[f][0]] + truth.uv[truth.mesh.faces[f][1]] + truth.uv[truth.mesh.faces[f][2]]) /
+            3.0;
+        if (glm::length(c - Vec2(1, 1)) < 0.4)
+            part.push_back(f);
         else
             for (const std::uint32_t v : truth.mesh.faces[f]) outside[v] = 1;
     }
     std::vector<Vec2> uv = truth.uv;
     std::size_t inside = 0;
     for (std::size_t v = 0; v < uv.size(); ++v)
-        if (!outside[v]) uv[v] += 0.01 * Vec2(std::sin(12.0 * double(inside)), std::cos(7.0 * double(inside))), ++inside;
+        if (!outside[v])
+            uv[v] += 0.01 * Vec2(std::sin(12.0 * double(inside)), std::cos(7.0 * double(inside))), ++inside;
     ASSERT_GT(inside, 50u);
     arap(truth.mesh, uv, {.iterations = 2000, .tolerance = 1e-12, .enough = 1e-20}, part);
     for (std::size_t v = 0; v < uv.size(); ++v) {
-        if (outside[v]) EXPECT_EQ(uv[v], truth.uv[v]);
-        else EXPECT_LT(glm::length(uv[v] - truth.uv[v]), 1e-5 * 0.033);
+        if (outside[v])
+            EXPECT_EQ(uv[v], truth.uv[v]);
+        else
+            EXPECT_LT(glm::length(uv[v] - truth.uv[v]), 1e-5 * 0.033);
     }
 }
 
@@ -157,11 +163,10 @@ TEST(Charts, HoldNoMoreTrianglesThanAllowed) {
 // their mean square, grows with the fourth power.
 TEST(Flatten, StretchOfASphericalCapGrowsWithTheFourthPowerOfItsAngle) {
     const auto excess = [](double angle) {
-        const ChartMesh cap =
-            whole_chart(test::grid_mesh(24, 24, false, false, [&](double u, double v) {
-                const Vec2 p = (2.0 * Vec2(u, v) - 1.0) * angle / std::sqrt(2.0);
-                return glm::normalize(Vec3(std::tan(p.x), std::tan(p.y), 1));
-            }));
+        const ChartMesh cap = whole_chart(test::grid_mesh(24, 24, false, false, [&](double u, double v) {
+            const Vec2 p = (2.0 * Vec2(u, v) - 1.0) * angle / std::sqrt(2.0);
+            return glm::normalize(Vec3(std::tan(p.x), std::tan(p.y), 1));
+        }));
         ArapOptions options;
         options.iterations = 200;
         options.tolerance = 1e-6;
@@ -174,8 +179,7 @@ TEST(Flatten, StretchOfASphericalCapGrowsWithTheFourthPowerOfItsAngle) {
 }
 
 TEST(Flatten, UntanglesAFoldedVertex) {
-    const mesh::TriangleMesh m =
-        test::grid_mesh(8, 8, false, false, [](double u, double v) { return Vec3(u, v, 0); });
+    const mesh::TriangleMesh m = test::grid_mesh(8, 8, false, false, [](double u, double v) { return Vec3(u, v, 0); });
     const ChartMesh chart = whole_chart(m);
     std::vector<Vec2> uv = flatten(chart);
     for (std::uint32_t v = 0; v < uv.size(); ++v) {
@@ -285,9 +289,7 @@ TEST(Snap, EveryTriangleKeepsAnArea) {
         const int n = 12;
         for (int i = 0; i <= n; ++i) {
             const double a = random.uniform(0, 1) + i * 3e-8;
-            uv.push_back(Vec2(0.7, 0.6) +
-                         0.1 * Vec2(std::cos(0.5 + i * 4e-7), std::sin(0.5 + i * 4e-7)) +
-                         a * 1e-12);
+            uv.push_back(Vec2(0.7, 0.6) + 0.1 * Vec2(std::cos(0.5 + i * 4e-7), std::sin(0.5 + i * 4e-7)) + a * 1e-12);
         }
         for (std::uint32_t i = 1; i <= std::uint32_t(n); ++i) faces.push_back({0, i, i + 1});
         const std::vector<Vec2> start = uv;

@@ -48,16 +48,13 @@ struct Mismatch {
 /// the box of the mesh: where the surface ends, so does what could be interpolated.
 Mismatch mismatch(const Unwrapped& u, const std::vector<float>& image, double inset = -1) {
     std::vector<SeamSample> samples;
-    for (const SeamEdge& e : find_seams(u.mesh, u.atlas))
-        sample_seam(u.mesh, u.atlas, e, 0.3, samples);
+    for (const SeamEdge& e : find_seams(u.mesh, u.atlas)) sample_seam(u.mesh, u.atlas, e, 0.3, samples);
     Mismatch m;
     const Vec3 lo = u.mesh.bounds.lo + inset, hi = u.mesh.bounds.hi - inset;
     for (const SeamSample& s : samples) {
-        if (inset > 0 && (s.position.x < lo.x || s.position.y < lo.y || s.position.x > hi.x ||
-                          s.position.y > hi.y))
+        if (inset > 0 && (s.position.x < lo.x || s.position.y < lo.y || s.position.x > hi.x || s.position.y > hi.y))
             continue;
-        const double d =
-            bilinear(image, u.atlas.size, s.a.uv) - bilinear(image, u.atlas.size, s.b.uv);
+        const double d = bilinear(image, u.atlas.size, s.a.uv) - bilinear(image, u.atlas.size, s.b.uv);
         m.rms += d * d;
         m.max = std::max(m.max, std::abs(d));
     }
@@ -83,8 +80,7 @@ TEST(Gutter, HidesTheSeamsOfASphere) {
     const TexelMap map = build_texel_map(u.mesh, u.atlas);
     const Gutter gutter = build_gutter(u.mesh, u.atlas, map, 4);
     const double k = 2 * std::numbers::pi / (16 * map.texel_size);
-    auto image = picture(
-        map, [&](const Vec3& p) { return std::sin(k * (0.48 * p.x + 0.6 * p.y + 0.64 * p.z)); });
+    auto image = picture(map, [&](const Vec3& p) { return std::sin(k * (0.48 * p.x + 0.6 * p.y + 0.64 * p.z)); });
     fill_gutter(gutter, map, 1, image);
     const Mismatch m = mismatch(u, image);
     // Texels of 0.7 to 1.3 of the mean, sheared by up to 30° where three charts meet.
@@ -101,11 +97,9 @@ TEST(Gutter, KeepsConstantsAndLinearFunctionsAndStaysOutsideCharts) {
     std::set<std::uint32_t> seen;
     for (std::size_t i = 0; i < gutter.texels.size(); ++i) {
         EXPECT_TRUE(seen.insert(gutter.texels[i]).second);
-        EXPECT_FALSE(
-            texel_ref(map, gutter.texels[i] % map.size, gutter.texels[i] / map.size).valid());
+        EXPECT_FALSE(texel_ref(map, gutter.texels[i] % map.size, gutter.texels[i] / map.size).valid());
         double sum = 0;
-        for (std::uint32_t k = gutter.start[i]; k < gutter.start[i + 1]; ++k)
-            sum += gutter.taps[k].weight;
+        for (std::uint32_t k = gutter.start[i]; k < gutter.start[i + 1]; ++k) sum += gutter.taps[k].weight;
         EXPECT_NEAR(sum, 1, 1e-5);
         EXPECT_LE(gutter.start[i + 1] - gutter.start[i], 10u);
     }
@@ -125,8 +119,7 @@ TEST(Gutter, ShowsNoLineInTheLevelsOfAMipMap) {
     const double texel = map.texel_size;
     for (const int level : {1, 2}) {
         const double k = 2 * std::numbers::pi / (16 * (1 << level) * texel);
-        auto image = picture(
-            map, [&](const Vec3& p) { return std::sin(k * (0.48 * p.x + 0.6 * p.y + 0.64 * p.z)); });
+        auto image = picture(map, [&](const Vec3& p) { return std::sin(k * (0.48 * p.x + 0.6 * p.y + 0.64 * p.z)); });
         fill_gutter(build_gutter(u.mesh, u.atlas, map, 8), map, 1, image);
         const std::vector<MipLevel> levels = mip_levels(u.mesh, u.atlas, map, 1, image);
         ASSERT_EQ(levels.size(), 2u);  // gaps of 8, 4, 2 texels
@@ -147,8 +140,8 @@ TEST(Gutter, SameBitsForAnyNumberOfThreads) {
     for (const int n : {1, 2, 8}) {
         set_thread_count(n);
         const Gutter g = build_gutter(u.mesh, u.atlas, map, 4);
-        hashes.insert(hash_span(std::span<const GutterTap>(g.taps),
-                                hash_span(std::span<const std::uint32_t>(g.texels))));
+        hashes.insert(
+            hash_span(std::span<const GutterTap>(g.taps), hash_span(std::span<const std::uint32_t>(g.texels))));
     }
     set_thread_count(0);
     EXPECT_EQ(hashes.size(), 1u);

@@ -45,8 +45,8 @@ const std::vector<Vec3f> kTwoSquares{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
 TEST(Measure, CubeOfSixSquares) {
     std::vector<Vec3f> p;
     for (int i = 0; i < 8; ++i) p.push_back(Vec3f(i >> 2 & 1, i >> 1 & 1, i & 1));
-    const mesh::TriangleMesh cube = quads(
-        p, {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}});
+    const mesh::TriangleMesh cube =
+        quads(p, {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}});
     std::vector<std::array<float, 4>> uv;
     for (int i = 0; i < 6; ++i) {
         const float x = 0.0625f + 0.3125f * float(i % 3), y = 0.0625f + 0.3125f * float(i / 3);
@@ -65,8 +65,7 @@ TEST(Measure, CubeOfSixSquares) {
 }
 
 TEST(Measure, SquareSquashedToHalfItsHeight) {
-    const mesh::TriangleMesh square =
-        quads({kTwoSquares.begin(), kTwoSquares.begin() + 4}, {{0, 1, 2, 3}});
+    const mesh::TriangleMesh square = quads({kTwoSquares.begin(), kTwoSquares.begin() + 4}, {{0, 1, 2, 3}});
     const AtlasReport r = measure(square, rectangles({{0, 0, 1, 0.5f}}, 64));
     // Singular values of the map UV -> surface: 1/√2 and √2.
     EXPECT_NEAR(r.l2_stretch, std::sqrt(1.25), 1e-9);
@@ -78,8 +77,7 @@ TEST(Measure, SquareSquashedToHalfItsHeight) {
 
 TEST(Measure, ChartsOfDifferentScale) {
     const mesh::TriangleMesh two = quads(kTwoSquares, {{0, 1, 2, 3}, {4, 5, 6, 7}});
-    const AtlasReport r =
-        measure(two, rectangles({{0, 0, 0.5f, 0.5f}, {0.6f, 0.6f, 0.85f, 0.85f}}, 64));
+    const AtlasReport r = measure(two, rectangles({{0, 0, 0.5f, 0.5f}, {0.6f, 0.6f, 0.85f, 0.85f}}, 64));
     // Areas 1/4 and 1/16 for 1 and 1: the texel density over the mean is 1.6 and 0.4.
     EXPECT_NEAR(r.l2_stretch, 1.25, 1e-6);
     EXPECT_NEAR(r.area_distortion, 2.05, 1e-5);
@@ -88,8 +86,7 @@ TEST(Measure, ChartsOfDifferentScale) {
 
 TEST(Measure, OverlapsAreCountedInTexels) {
     const mesh::TriangleMesh two = quads(kTwoSquares, {{0, 1, 2, 3}, {4, 5, 6, 7}});
-    const AtlasReport r =
-        measure(two, rectangles({{0, 0, 0.5f, 0.5f}, {0.25f, 0.25f, 0.75f, 0.75f}}, 1024));
+    const AtlasReport r = measure(two, rectangles({{0, 0, 0.5f, 0.5f}, {0.25f, 0.25f, 0.75f, 0.75f}}, 1024));
     EXPECT_EQ(r.overlapping_texels, 65536u);
     EXPECT_DOUBLE_EQ(r.utilisation, (2 * 512.0 * 512 - 65536) / 1024 / 1024);
     EXPECT_EQ(r.smallest_gap, 0);
@@ -98,10 +95,9 @@ TEST(Measure, OverlapsAreCountedInTexels) {
 TEST(Measure, GapsAreRoundedDown) {
     const mesh::TriangleMesh two = quads(kTwoSquares, {{0, 1, 2, 3}, {4, 5, 6, 7}});
     const auto gap = [&](float x, float y) {
-        return measure(two,
-                       rectangles({{0, 0, 0.25f, 0.25f},
-                                   {0.25f + x / 1024, y / 1024, 0.5f + x / 1024, 0.25f + y / 1024}},
-                                  1024))
+        return measure(two, rectangles(
+                                {{0, 0, 0.25f, 0.25f}, {0.25f + x / 1024, y / 1024, 0.5f + x / 1024, 0.25f + y / 1024}},
+                                1024))
             .smallest_gap;
     };
     EXPECT_EQ(gap(3.5f, 0), 3);
@@ -128,8 +124,7 @@ TEST(Measure, UvsThatAreNotNumbersAreLeftOut) {
     const mesh::TriangleMesh three = quads(p, {{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}});
     const float infinite = std::numeric_limits<float>::infinity();
     for (const float bad : {NAN, infinite, -infinite}) {
-        Atlas atlas = rectangles(
-            {{0, 0, 0.25f, 0.25f}, {0.2578125f, 0, 0.5f, 0.25f}, {0.75f, 0.75f, 1, 1}}, 1024);
+        Atlas atlas = rectangles({{0, 0, 0.25f, 0.25f}, {0.2578125f, 0, 0.5f, 0.25f}, {0.75f, 0.75f, 1, 1}}, 1024);
         for (const std::size_t corner : {12u, 16u}) atlas.corner_uvs[corner].x = bad;
         const AtlasReport r = measure(three, atlas);
         EXPECT_EQ(r.roomless_triangles, 2u);

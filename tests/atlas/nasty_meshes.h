@@ -22,8 +22,8 @@ inline mesh::TriangleMesh loose_triangles(Random& random, int n) {
         const double size = std::pow(10.0, random.uniform(-4, 0));
         const Vec3 centre(random.uniform(), random.uniform(), random.uniform());
         for (int k = 0; k < 3; ++k)
-            p.push_back(Vec3f(centre + size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1),
-                                                   random.uniform(-1, 1))));
+            p.push_back(
+                Vec3f(centre + size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))));
         const auto b = static_cast<std::uint32_t>(3 * i);
         t.push_back({b, b + 1, b + 2});
     }
@@ -36,17 +36,15 @@ inline mesh::TriangleMesh slivers(Random& random) {
     for (int i = 0; i < 24; ++i) at.push_back(at.back() + std::pow(10.0, random.uniform(-6, 0)));
     const double bend = random.uniform(0, 0.5), skew = random.uniform(0, 3);
     return grid_mesh(24, 24, false, false, [&](double u, double v) {
-        const double x = at[std::size_t(std::lround(24 * u))],
-                     y = at[std::size_t(std::lround(24 * v))];
+        const double x = at[std::size_t(std::lround(24 * u))], y = at[std::size_t(std::lround(24 * v))];
         return Vec3(x + skew * y, y, bend * x * y);
     });
 }
 
 /// A rough height field with triangles torn out: holes, pinched vertices, islands.
 inline mesh::TriangleMesh torn_sheet(Random& random, double torn, double rough) {
-    const mesh::TriangleMesh whole = grid_mesh(30, 30, false, false, [&](double u, double v) {
-        return Vec3(u, v, rough * random.uniform());
-    });
+    const mesh::TriangleMesh whole =
+        grid_mesh(30, 30, false, false, [&](double u, double v) { return Vec3(u, v, rough * random.uniform()); });
     Triangles t;
     for (const auto& f : whole.triangles)
         if (random.uniform() > torn) t.push_back(f);
@@ -73,8 +71,8 @@ inline mesh::TriangleMesh fans(Random& random) {
         p.push_back(Vec3f(5 * fan, 0, float(height)));
         for (int i = 0; i < n; ++i) {
             const double a = 2 * std::numbers::pi * i / n;
-            p.push_back(Vec3f(float(5 * fan + std::cos(a)), float(std::sin(a)),
-                              float(wave * std::sin(a * (i % 2 ? 3 : 5)))));
+            p.push_back(
+                Vec3f(float(5 * fan + std::cos(a)), float(std::sin(a)), float(wave * std::sin(a * (i % 2 ? 3 : 5)))));
         }
         for (int i = 0; i < n; ++i)
             t.push_back({apex, apex + 1 + std::uint32_t(i), apex + 1 + std::uint32_t((i + 1) % n)});
@@ -90,9 +88,7 @@ inline mesh::TriangleMesh voxels(Random& random, double filled) {
     const auto is_full = [&](int x, int y, int z) {
         return x >= 0 && y >= 0 && z >= 0 && x < n && y < n && z < n && full[(z * n + y) * n + x];
     };
-    const auto vertex = [](int x, int y, int z) {
-        return std::uint32_t((z * (n + 1) + y) * (n + 1) + x);
-    };
+    const auto vertex = [](int x, int y, int z) { return std::uint32_t((z * (n + 1) + y) * (n + 1) + x); };
     std::vector<Vec3f> p;
     for (int z = 0; z <= n; ++z)
         for (int y = 0; y <= n; ++y)
@@ -156,8 +152,8 @@ inline std::vector<NastyMesh> nasty_meshes() {
     add("cap", finish_mesh({{0, 0, 0}, {1, 0, 0}, {0.5f, 1e-6f, 0}}, {{0, 1, 2}}));
     add("tiny", finish_mesh({{0, 0, 0}, {1e-9f, 0, 0}, {0, 1e-9f, 0}}, {{0, 1, 2}}));
     add("two sides", finish_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}));
-    add("tetrahedron", finish_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                   {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
+    add("tetrahedron",
+        finish_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         Random random(seed);
         const std::string tail = " " + std::to_string(seed);

@@ -56,8 +56,7 @@ bool contains(const Polygon& p, const Vec2& q) {
     bool in = false;
     for (std::size_t i = 0; i < p.size(); ++i) {
         const Vec2 a = p[i], b = p[(i + 1) % p.size()];
-        if ((a.y <= q.y) != (b.y <= q.y) && q.x < a.x + (b.x - a.x) * (q.y - a.y) / (b.y - a.y))
-            in = !in;
+        if ((a.y <= q.y) != (b.y <= q.y) && q.x < a.x + (b.x - a.x) * (q.y - a.y) / (b.y - a.y)) in = !in;
     }
     return in;
 }
@@ -66,8 +65,7 @@ std::vector<Polygon> placed(const std::vector<Polygon>& borders, const Packing& 
     std::vector<Polygon> out = borders;
     for (std::size_t i = 0; i < out.size(); ++i) {
         const Placement& p = packing.placements[i];
-        for (Vec2& v : out[i])
-            v = p.offset + p.scale * Vec2(p.c * v.x - p.s * v.y, p.s * v.x + p.c * v.y);
+        for (Vec2& v : out[i]) v = p.offset + p.scale * Vec2(p.c * v.x - p.s * v.y, p.s * v.x + p.c * v.y);
     }
     return out;
 }
@@ -93,9 +91,7 @@ TEST(Pack, ShapesKeepTheirDistanceAndScale) {
                 EXPECT_GE(std::min(v.x, v.y), options.gutter / 2.0 - 1e-6);
                 EXPECT_LE(std::max(v.x, v.y), options.size - options.gutter / 2.0 + 1e-6);
             }
-            EXPECT_NEAR(
-                area(p[i]) / (area(borders[i]) * packing.texels_per_unit * packing.texels_per_unit),
-                1, 1e-9);
+            EXPECT_NEAR(area(p[i]) / (area(borders[i]) * packing.texels_per_unit * packing.texels_per_unit), 1, 1e-9);
             for (std::size_t j = 0; j < i; ++j) {
                 EXPECT_GE(distance(p[i], p[j]), options.gutter - 1e-6);
                 EXPECT_FALSE(contains(p[i], p[j][0]) || contains(p[j], p[i][0]));

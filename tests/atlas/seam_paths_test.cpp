@@ -19,8 +19,7 @@ namespace {
 /// A square sheet of side 1 in three charts: a strip along the top, and below it two that a
 /// slanting seam parts.
 struct ThreeCharts {
-    mesh::TriangleMesh mesh =
-        test::grid_mesh(40, 40, false, false, [](double u, double v) { return Vec3(u, v, 0); });
+    mesh::TriangleMesh mesh = test::grid_mesh(40, 40, false, false, [](double u, double v) { return Vec3(u, v, 0); });
     std::vector<std::uint32_t> twin = twin_half_edges(mesh);
     Patch patch;
     std::vector<std::uint8_t> seam;
@@ -61,8 +60,7 @@ struct ThreeCharts {
         EXPECT_EQ(parts.size(), 3u);
         for (const auto& part : parts) {
             EXPECT_TRUE(make_chart(mesh, glued, part, 1).disk);
-            for (const std::uint32_t t : part)
-                EXPECT_EQ(paths.charts()[t], paths.charts()[part[0]]);
+            for (const std::uint32_t t : part) EXPECT_EQ(paths.charts()[t], paths.charts()[part[0]]);
         }
     }
 };
@@ -150,8 +148,7 @@ TEST(MoveSeams, ShortensThemWithinTheLimits) {
                 EXPECT_LE(check.l2, options.l2);
                 for (const std::uint32_t t : c.mesh.triangles) ++covered[t];
             }
-            EXPECT_EQ(std::count(covered.begin(), covered.end(), 1),
-                      static_cast<std::ptrdiff_t>(m.n_triangles()));
+            EXPECT_EQ(std::count(covered.begin(), covered.end(), 1), static_cast<std::ptrdiff_t>(m.n_triangles()));
             if (glued.empty()) glued = cut.glued;
             EXPECT_EQ(glued, cut.glued);
         }

@@ -9,8 +9,7 @@
 namespace tuft::test {
 
 inline mesh::TriangleMesh sheet() {
-    return grid_mesh(40, 30, false, false,
-                           [](double u, double v) { return Vec3(0.2 * u, 0.15 * v, 0); });
+    return grid_mesh(40, 30, false, false, [](double u, double v) { return Vec3(0.2 * u, 0.15 * v, 0); });
 }
 
 inline mesh::TriangleMesh cylinder() {

@@ -23,23 +23,25 @@ TEST(Tasks, ThatRunAtOnceKeepWithinTheirWeight) {
         double now = 0, greatest = 0;
         int running = 0;
         std::vector<int> done(weights.size(), 0);
-        run_tasks_within(weights.size(), kMost, [&](std::size_t i) { return weights[i]; }, [&](std::size_t i) {
-            {
+        run_tasks_within(
+            weights.size(), kMost, [&](std::size_t i) { return weights[i]; },
+            [&](std::size_t i) {
+                {
+                    const std::lock_guard lock(mutex);
+                    now += weights[i];
+                    if (++running > 1) greatest = std::max(greatest, now);
+                }
+                // A loop within, which other threads may help with.
+                std::vector<double> parts(64, 0);
+                parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t k = begin; k < end; ++k)
+                        for (int j = 0; j < 2000; ++j) parts[k] += 1e-3 * j;
+                });
                 const std::lock_guard lock(mutex);
-                now += weights[i];
-                if (++running > 1) greatest = std::max(greatest, now);
-            }
-            // A loop within, which other threads may help with.
-            std::vector<double> parts(64, 0);
-            parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t k = begin; k < end; ++k)
-                    for (int j = 0; j < 2000; ++j) parts[k] += 1e-3 * j;
+                now -= weights[i];
+                --running;
+                done[i] += parts[63] > 0;
             });
-            const std::lock_guard lock(mutex);
-            now -= weights[i];
-            --running;
-            done[i] += parts[63] > 0;
-        });
         EXPECT_LE(greatest, kMost) << threads;
         for (const int d : done) EXPECT_EQ(d, 1);
     }
@@ -47,7 +49,11 @@ TEST(Tasks, ThatRunAtOnceKeepWithinTheirWeight) {
 
 TEST(Tasks, ThatThrowReachTheCaller) {
     const Threads use(2);
-    EXPECT_THROW(run_tasks_within(50, 1, [](std::size_t) { return 1.0; }, [](std::size_t i) { if (i == 20) throw std::runtime_error("stop"); }),
+    EXPECT_THROW(run_tasks_within(
+                     50, 1, [](std::size_t) { return 1.0; },
+                     [](std::size_t i) {
+                         if (i == 20) throw std::runtime_error("stop");
+                     }),
                  std::runtime_error);
 }
 

@@ -25,8 +25,7 @@ inline mesh::TriangleMesh finish_mesh(std::vector<Vec3f> positions, const Triang
     const std::size_t n = m.triangles.size();
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> edges;
     for (std::size_t t = 0; t < n; ++t)
-        for (int k = 0; k < 3; ++k)
-            edges[{m.triangles[t][k], m.triangles[t][(k + 1) % 3]}].push_back(3 * t + k);
+        for (int k = 0; k < 3; ++k) edges[{m.triangles[t][k], m.triangles[t][(k + 1) % 3]}].push_back(3 * t + k);
     m.neighbours.assign(3 * n, kNone);
     for (const auto& [edge, halves] : edges) {
         const auto back = edges.find({edge.second, edge.first});
@@ -50,8 +49,7 @@ inline mesh::TriangleMesh grid_mesh(int nu, int nv, bool wrap_u, bool wrap_v,
     const int mu = wrap_u ? nu : nu + 1, mv = wrap_v ? nv : nv + 1;
     std::vector<Vec3f> positions;
     for (int j = 0; j < mv; ++j)
-        for (int i = 0; i < mu; ++i)
-            positions.push_back(Vec3f(point(double(i) / nu, double(j) / nv)));
+        for (int i = 0; i < mu; ++i) positions.push_back(Vec3f(point(double(i) / nu, double(j) / nv)));
     Triangles triangles;
     const auto at = [&](int i, int j) { return std::uint32_t((j % mv) * mu + i % mu); };
     for (int j = 0; j < nv; ++j)

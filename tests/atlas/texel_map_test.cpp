@@ -13,8 +13,8 @@
 
 #include "analytic_surfaces.h"
 #include "atlas/texels/border_cells.h"
-#include "atlas/texels/log_map.h"
 #include "atlas/texels/cluster_graph.h"
+#include "atlas/texels/log_map.h"
 #include "atlas/texels/seam_links.h"
 #include "core/error.h"
 #include "core/hash.h"
@@ -75,7 +75,8 @@ TEST(TexelMap, PositionsAndAreasAreThoseOfTheSheet) {
             }
             EXPECT_NEAR(map.position(slot, t).z, 0, 1e-9);
             EXPECT_EQ(map.normal(slot, t).z, 1);
-            const std::uint32_t x = map.tile_of_slot[slot] % map.tiles_per_side * kTile + t % kTile, y = map.tile_of_slot[slot] / map.tiles_per_side * kTile + t / kTile;
+            const std::uint32_t x = map.tile_of_slot[slot] % map.tiles_per_side * kTile + t % kTile,
+                                y = map.tile_of_slot[slot] / map.tiles_per_side * kTile + t / kTile;
             bool inside = true;  // not beside a seam
             for (int k = 0; k < 25; ++k) inside = inside && texel_ref(map, x + k % 5 - 2, y + k / 5 - 2).valid();
             // Snapping to 1/4096 texel over grid cells of 7.5 texels.
@@ -195,8 +196,7 @@ TEST(LogMap, MatchesTheReferenceTable) {
         for (double& x : v) in >> x;
         ASSERT_TRUE(in);
         const Vec3 q{v[14], v[15], v[16]};
-        const Frame f{
-            {v[2], v[3], v[4]}, {v[5], v[6], v[7]}, {v[8], v[9], v[10]}, {v[11], v[12], v[13]}};
+        const Frame f{{v[2], v[3], v[4]}, {v[5], v[6], v[7]}, {v[8], v[9], v[10]}, {v[11], v[12], v[13]}};
         const double distance = v[19];
         Vec3 m{0};
         double curvature = 1 / v[0];
@@ -233,8 +233,7 @@ TEST(ClusterGraph, EdgesComeInInversePairsAndPiecesCoverEveryTexelOnce) {
     const ClusterGraph g = build_cluster_graph(u.mesh, u.atlas, map);
     ASSERT_EQ(g.edge_start.size(), g.n_clusters() + 1);
     for (std::uint32_t i = 0; i < g.n_clusters(); ++i) {
-        EXPECT_GT(g.edge_start[i + 1], g.edge_start[i])
-            << "a cluster of a closed surface hangs alone";
+        EXPECT_GT(g.edge_start[i + 1], g.edge_start[i]) << "a cluster of a closed surface hangs alone";
         for (std::uint32_t k = g.edge_start[i]; k < g.edge_start[i + 1]; ++k) {
             const ClusterEdge& e = g.edges[k];
             bool found = false;
@@ -321,7 +320,8 @@ TEST(BorderCells, TileTheSurfaceTogetherAndAreExactForLinearFlows) {
             for (const BorderFace& f : border.faces) add(f.a, f.b, f.conductance), add(f.b, f.a, f.conductance);
             for (const BorderCell& c : border.cells) {
                 const std::uint32_t tile = map.tile_of_slot[c.texel.slot];
-                const int x = static_cast<int>(tile % map.tiles_per_side) * kTile + c.texel.texel % kTile, y = static_cast<int>(tile / map.tiles_per_side) * kTile + c.texel.texel / kTile;
+                const int x = static_cast<int>(tile % map.tiles_per_side) * kTile + c.texel.texel % kTile,
+                          y = static_cast<int>(tile / map.tiles_per_side) * kTile + c.texel.texel / kTile;
                 for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
                     const TexelRef o = texel_ref(map, x + dx, y + dy);
                     if (o.valid() && !sums.contains({o.slot, o.texel})) add(c.texel, o, 1);
@@ -334,7 +334,8 @@ TEST(BorderCells, TileTheSurfaceTogetherAndAreExactForLinearFlows) {
                 if (s.least < 0.36) continue;  // conductances of pairs so close are held down
                 // Float positions, 1e-5 of a texel.
                 EXPECT_LT(glm::length(s.flux), 1e-3) << a << ' ' << b;
-                EXPECT_NEAR(s.length_distance / (4 * s.area), 1, 1e-3) << "of any cell: four times the area is Σ length distance";
+                EXPECT_NEAR(s.length_distance / (4 * s.area), 1, 1e-3)
+                    << "of any cell: four times the area is Σ length distance";
                 ++n;
             }
             EXPECT_GT(n, 180u);
@@ -349,15 +350,13 @@ TEST(SeamLinks, AreTheSameFromBothSidesAndShort) {
         for (std::uint32_t k = seam.start[slot]; k < seam.start[slot + 1]; ++k) {
             const SeamLink& l = seam.links[k];
             bool found = false;
-            for (std::uint32_t m = seam.start[l.other_slot]; m < seam.start[l.other_slot + 1];
-                 ++m) {
+            for (std::uint32_t m = seam.start[l.other_slot]; m < seam.start[l.other_slot + 1]; ++m) {
                 const SeamLink& back = seam.links[m];
-                found |= back.other_slot == slot && back.other_texel == l.texel &&
-                         back.texel == l.other_texel && back.weight == l.weight;
+                found |= back.other_slot == slot && back.other_texel == l.texel && back.texel == l.other_texel &&
+                         back.weight == l.weight;
             }
             EXPECT_TRUE(found);
-            const Vec3f gap =
-                map.position(slot, l.texel) - map.position(l.other_slot, l.other_texel);
+            const Vec3f gap = map.position(slot, l.texel) - map.position(l.other_slot, l.other_texel);
             EXPECT_LT(glm::length(gap), 2.5 * map.texel_size);
         }
     }
@@ -380,8 +379,7 @@ TEST(SeamLinks, LetAGaussianSpreadOverSeamsAsInsideAChart) {
     };
     std::vector<std::array<double, kTileTexels>> w(map.n_slots()), flux;
     for (std::uint32_t s = 0; s < map.n_slots(); ++s) {
-        for (int t = 0; t < kTileTexels; ++t)
-            w[s][t] = map.tiles[s].cluster[t] == kNoCluster ? 0 : gaussian(s, t, 4);
+        for (int t = 0; t < kTileTexels; ++t) w[s][t] = map.tiles[s].cluster[t] == kNoCluster ? 0 : gaussian(s, t, 4);
     }
     const double k = 0.19;  // σ² grows by 2 k a step
     double before = 0, after = 0;
@@ -390,8 +388,7 @@ TEST(SeamLinks, LetAGaussianSpreadOverSeamsAsInsideAChart) {
         flux.assign(map.n_slots(), {});
         for (std::uint32_t s = 0; s < map.n_slots(); ++s) {
             const std::uint32_t tile = map.tile_of_slot[s];
-            const int x0 = int(tile % map.tiles_per_side) * kTile,
-                      y0 = int(tile / map.tiles_per_side) * kTile;
+            const int x0 = int(tile % map.tiles_per_side) * kTile, y0 = int(tile / map.tiles_per_side) * kTile;
             for (int t = 0; t < kTileTexels; ++t) {
                 if (map.tiles[s].cluster[t] == kNoCluster) continue;
                 for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}}) {
@@ -404,8 +401,7 @@ TEST(SeamLinks, LetAGaussianSpreadOverSeamsAsInsideAChart) {
             }
             for (std::uint32_t l = seam.start[s]; l < seam.start[s + 1]; ++l) {
                 const SeamLink& link = seam.links[l];
-                flux[s][link.texel] -=
-                    k * link.weight * (w[s][link.texel] - w[link.other_slot][link.other_texel]);
+                flux[s][link.texel] -= k * link.weight * (w[s][link.texel] - w[link.other_slot][link.other_texel]);
             }
         }
         for (std::uint32_t s = 0; s < map.n_slots(); ++s) {

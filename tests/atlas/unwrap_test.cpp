@@ -14,9 +14,9 @@
 #include "core/files.h"
 #include "core/parallel.h"
 #include "mesh/repair.h"
+#include "paths.h"
 #include "shapes.h"
 #include "test_mesh.h"
-#include "paths.h"
 
 namespace tuft::atlas {
 namespace {
@@ -115,8 +115,7 @@ TEST(Unwrap, ChartsDoNotDependOnTheUnit) {
     for (const TriangleMesh& m : {test::torus(), test::sphere(), test::cone()}) {
         const auto charts = static_cast<double>(unwrap(m, {}).report.charts);
         for (const float factor : {0.001f, 1000.f})
-            EXPECT_NEAR(static_cast<double>(unwrap(scaled(m, factor), {}).report.charts), charts,
-                        0.05 * charts);
+            EXPECT_NEAR(static_cast<double>(unwrap(scaled(m, factor), {}).report.charts), charts, 0.05 * charts);
     }
 }
 
@@ -141,8 +140,8 @@ TriangleMesh box(int n) {
                         g[(axis + 2) % 3] = b;
                         return at(g);
                     };
-                    std::array<std::uint32_t, 4> q{corner(i, j), corner(i + 1, j),
-                                                   corner(i + 1, j + 1), corner(i, j + 1)};
+                    std::array<std::uint32_t, 4> q{corner(i, j), corner(i + 1, j), corner(i + 1, j + 1),
+                                                   corner(i, j + 1)};
                     if (side == 0) std::swap(q[1], q[3]);
                     t.push_back({q[0], q[1], q[2]});
                     t.push_back({q[0], q[2], q[3]});
@@ -189,8 +188,7 @@ TEST(Unwrap, SeamsFollowFaceGroupsWhereAsked) {
     const std::string text = [] {
         std::string obj;
         for (int j = 0; j <= 20; ++j)
-            for (int i = 0; i <= 20; ++i)
-                obj += "v " + std::to_string(i) + " " + std::to_string(j) + " 0\n";
+            for (int i = 0; i <= 20; ++i) obj += "v " + std::to_string(i) + " " + std::to_string(j) + " 0\n";
         for (int part = 0; part < 4; ++part) {
             obj += part % 2 ? "g left" : "g right";
             obj += part / 2 ? "\nusemtl red\n" : "\nusemtl blue\n";
@@ -198,8 +196,8 @@ TEST(Unwrap, SeamsFollowFaceGroupsWhereAsked) {
                 for (int i = 0; i < 20; ++i) {
                     if ((i < 7) != (part % 2 == 1) || (j < 4) != (part / 2 == 1)) continue;
                     const int a = 21 * j + i + 1;
-                    obj += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " +
-                           std::to_string(a + 22) + " " + std::to_string(a + 21) + "\n";
+                    obj += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " + std::to_string(a + 22) + " " +
+                           std::to_string(a + 21) + "\n";
                 }
         }
         return obj;
@@ -213,9 +211,8 @@ TEST(Unwrap, SeamsFollowFaceGroupsWhereAsked) {
     const Unwrapped u = unwrap(m, options);
     expect_sound(m, u);
     EXPECT_EQ(u.report.charts, 4u);
-    expect_parted(m, u.atlas, [&](std::uint32_t s, std::uint32_t t) {
-        return m.triangle_groups[s] != m.triangle_groups[t];
-    });
+    expect_parted(m, u.atlas,
+                  [&](std::uint32_t s, std::uint32_t t) { return m.triangle_groups[s] != m.triangle_groups[t]; });
     m.triangle_groups.clear();
     EXPECT_THROW(unwrap(m, options), Error);
     options.seams.sharp_angle = 0.5;  // both: what there is
@@ -251,9 +248,7 @@ TEST(Unwrap, AskedSeamsKeepTheInvariantsOfARealModel) {
 // Two squares fill half a square page whichever way they lie; with one cut, five sixths and more
 // could be filled.
 TEST(Unwrap, CutsChartsThatWouldLeaveThePageHalfEmpty) {
-    const TriangleMesh one = test::grid_mesh(24, 24, false, false, [](double u, double v) {
-        return Vec3(u, v, 0);
-    });
+    const TriangleMesh one = test::grid_mesh(24, 24, false, false, [](double u, double v) { return Vec3(u, v, 0); });
     std::vector<Vec3f> p = one.positions;
     test::Triangles t(one.triangles.begin(), one.triangles.end());
     for (const Vec3f& q : one.positions) p.push_back(q + Vec3f(2, 0, 0));
@@ -394,8 +389,7 @@ TEST(AtlasPicture, ShowsChartsAndTheirStretch) {
     EXPECT_EQ(picture.height, 256u);
     // At the atlas's own size the stretch side draws exactly the covered texels.
     std::size_t drawn = 0;
-    for (std::size_t i = 0; i < picture.rgb.size(); i += 3)
-        drawn += (i / 3) % 512 >= 256 && picture.rgb[i] > 30;
+    for (std::size_t i = 0; i < picture.rgb.size(); i += 3) drawn += (i / 3) % 512 >= 256 && picture.rgb[i] > 30;
     EXPECT_EQ(drawn, static_cast<std::size_t>(std::lround(u.report.utilisation * 256 * 256)));
 }
 

@@ -22,13 +22,11 @@ inline void add_polygon(PolygonSoup& soup, const std::vector<std::uint32_t>& cor
 }
 
 inline std::vector<std::uint32_t> polygon(const PolygonSoup& soup, std::size_t p) {
-    return {soup.corners.begin() + soup.polygon_start[p],
-            soup.corners.begin() + soup.polygon_start[p + 1]};
+    return {soup.corners.begin() + soup.polygon_start[p], soup.corners.begin() + soup.polygon_start[p + 1]};
 }
 
 inline void turn_over(PolygonSoup& soup, std::size_t p) {
-    std::reverse(soup.corners.begin() + soup.polygon_start[p],
-                 soup.corners.begin() + soup.polygon_start[p + 1]);
+    std::reverse(soup.corners.begin() + soup.polygon_start[p], soup.corners.begin() + soup.polygon_start[p + 1]);
 }
 
 inline std::uint32_t below(Random& random, std::size_t n) {
@@ -36,15 +34,13 @@ inline std::uint32_t below(Random& random, std::size_t n) {
 }
 
 /// nu × nv quads with points of their own: `point`(u, v), u and v in [0, 1].
-inline void add_grid(PolygonSoup& soup, int nu, int nv,
-                     const std::function<Vec3(double, double)>& point) {
+inline void add_grid(PolygonSoup& soup, int nu, int nv, const std::function<Vec3(double, double)>& point) {
     const auto first = static_cast<std::uint32_t>(soup.points.size());
     for (int j = 0; j <= nv; ++j)
         for (int i = 0; i <= nu; ++i) soup.points.push_back(point(double(i) / nu, double(j) / nv));
     const auto at = [&](int i, int j) { return first + std::uint32_t(j * (nu + 1) + i); };
     for (int j = 0; j < nv; ++j)
-        for (int i = 0; i < nu; ++i)
-            add_polygon(soup, {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+        for (int i = 0; i < nu; ++i) add_polygon(soup, {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
 }
 
 /// A ball of quads and, at its poles, of quads without a side.
@@ -65,8 +61,7 @@ inline PolygonSoup doubled(Random& random) {
         add_polygon(soup, face);
     }
     const double lift = random.uniform() < 0.5 ? 0 : 1e-7;
-    for (int k = 0; k < 3; ++k)
-        add_grid(soup, 5, 5, [&](double u, double v) { return Vec3(u, v, 2 + k * lift); });
+    for (int k = 0; k < 3; ++k) add_grid(soup, 5, 5, [&](double u, double v) { return Vec3(u, v, 2 + k * lift); });
     return soup;
 }
 
@@ -100,8 +95,7 @@ inline PolygonSoup bow_ties(Random& random) {
             const double a = 2 * std::numbers::pi * i / n;
             soup.points.push_back(way + open * (std::cos(a) * x + std::sin(a) * y));
         }
-        for (int i = 0; i < n; ++i)
-            add_polygon(soup, {0, base + std::uint32_t(i), base + std::uint32_t((i + 1) % n)});
+        for (int i = 0; i < n; ++i) add_polygon(soup, {0, base + std::uint32_t(i), base + std::uint32_t((i + 1) % n)});
     }
     for (int j = 0; j < 8; ++j)
         for (int i = 0; i < 8; ++i)
@@ -287,11 +281,21 @@ inline PolygonSoup vandalised(Random& random) {
         const std::vector<std::uint32_t> face = polygon(soup, p);
         const std::uint32_t far = below(random, soup.points.size());
         switch (below(random, 6)) {
-            case 0: soup.corners[below(random, soup.corners.size())] = far; break;
-            case 1: soup.corners[soup.polygon_start[p]] = face[1]; break;
-            case 2: turn_over(soup, p); break;
-            case 3: add_polygon(soup, {face[0], face[1], far}); break;
-            case 4: soup.points[far] = soup.points[face[0]]; break;
+            case 0:
+                soup.corners[below(random, soup.corners.size())] = far;
+                break;
+            case 1:
+                soup.corners[soup.polygon_start[p]] = face[1];
+                break;
+            case 2:
+                turn_over(soup, p);
+                break;
+            case 3:
+                add_polygon(soup, {face[0], face[1], far});
+                break;
+            case 4:
+                soup.points[far] = soup.points[face[0]];
+                break;
             default:
                 soup.points.push_back(0.5 * (soup.points[face[0]] + soup.points[face[1]]));
                 add_polygon(soup, {face[0], static_cast<std::uint32_t>(soup.points.size() - 1), face[1]});

@@ -187,8 +187,7 @@ TEST(Bundles, SubSpinesBeginInTheShapeOfTheTuftAndPartOnTheWay) {
         pose.time = 0.005 * i;
         const TuftState state = step(tuft, pose, {&plane, 1}, 0.005);
         if (state.branches.size() < 2) continue;
-        const double gap =
-            glm::distance(state.branches[0].sections[0].centre, state.branches[2].sections[0].centre);
+        const double gap = glm::distance(state.branches[0].sections[0].centre, state.branches[2].sections[0].centre);
         // 0.1 mm of way parts e^-1/60 of what is left. Rods that meet in the tip when straight are
         // half a millimetre apart when bent, beside a width of 8 mm: no jump from one tip to three.
         EXPECT_LT(std::abs(gap - gap_before), 6e-4) << i;

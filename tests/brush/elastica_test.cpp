@@ -77,10 +77,9 @@ TEST(Rod, TipTurnsTowardsTheLoadButNeverPastIt) {
 TEST(Rod, VariableStiffnessElasticaMatchesShooting) {
     for (const Row& row : read_rows("elastica_variable.csv")) {
         const double a = row["load_angle_deg"] * kDegree, p = row["PL2_E0I0"];
-        const Bent b = bend({row["alpha"], row["beta"]}, 16,
-                            {p * std::cos(a), p * std::sin(a), 0}, row["endML_E0I0"]);
-        SCOPED_TRACE(row.text("alpha") + " " + row.text("beta") + " P " + row.text("PL2_E0I0") +
-                     " angle " + row.text("load_angle_deg") + " M " + row.text("endML_E0I0"));
+        const Bent b = bend({row["alpha"], row["beta"]}, 16, {p * std::cos(a), p * std::sin(a), 0}, row["endML_E0I0"]);
+        SCOPED_TRACE(row.text("alpha") + " " + row.text("beta") + " P " + row.text("PL2_E0I0") + " angle " +
+                     row.text("load_angle_deg") + " M " + row.text("endML_E0I0"));
         EXPECT_TRUE(b.converged);
         EXPECT_NEAR(b.tip.x, row["x_tip_over_L"], kTip);
         EXPECT_NEAR(b.tip.y, row["y_tip_over_L"], kTip);

@@ -18,10 +18,10 @@ struct Account {
     Pose pose;
     TuftState state;
     double work = 0, lost = 0;
-    double least_lost = 0;    // in one step
-    double worst = 0;         // of work - stored - lost, at any time
+    double least_lost = 0;  // in one step
+    double worst = 0;       // of work - stored - lost, at any time
     double most_aside = 0, most_spread = 0, most_stored = 0;
-    double least_left = 0;    // of bend and contact less what of them is in the side nodes
+    double least_left = 0;  // of bend and contact less what of them is in the side nodes
 
     Account(const std::string& brush, double wetness, double lean) : tuft(make_tuft(load_preset(brush))) {
         tuft.wetness = wetness;

@@ -13,15 +13,12 @@ namespace {
 
 constexpr double kPress = 0.28;  // of the length
 constexpr double kSpeed = 0.05;  // m/s, along x
-constexpr double kLedge =
-    8e-3;  // m, height of the walls: over it the hand leads the thick part of the tuft along
+constexpr double kLedge = 8e-3;  // m, height of the walls: over it the hand leads the thick part of the tuft along
 
 /// Walls of the side nodes: those that the floor's y-axis meets at `left` and `right`; infinite:
 /// none.
-std::vector<ContactPlane> walls_beside(const Tuft& tuft, const Pose& pose, double left,
-                                       double right) {
-    const std::vector<Vec3> sides = predicted_sides(tuft, pose),
-                            nodes = predicted_nodes(tuft, pose);
+std::vector<ContactPlane> walls_beside(const Tuft& tuft, const Pose& pose, double left, double right) {
+    const std::vector<Vec3> sides = predicted_sides(tuft, pose), nodes = predicted_nodes(tuft, pose);
     std::vector<ContactPlane> walls;
     for (std::size_t k = 0; k < sides.size(); ++k) {
         const bool to_left = sides[k].y > nodes[k / 2].y;
@@ -50,16 +47,12 @@ Drawn draw(const char* name, double left, double right, bool with_walls = true, 
     Vec3 force{0};
     const int steps = lift ? 1800 : 1400;
     for (int i = 0; i < steps; ++i) {
-        const double t = i * 1e-3,
-                     down = std::min(1.0, t / 0.3) - std::clamp((t - 1.4) / 0.4, 0.0, 1.0);
-        Pose pose{.position = {kSpeed * std::clamp(t - 0.3, 0.0, 1.1), 0,
-                               length * (1.02 - (kPress + 0.02) * down)},
+        const double t = i * 1e-3, down = std::min(1.0, t / 0.3) - std::clamp((t - 1.4) / 0.4, 0.0, 1.0);
+        Pose pose{.position = {kSpeed * std::clamp(t - 0.3, 0.0, 1.1), 0, length * (1.02 - (kPress + 0.02) * down)},
                   .time = t};
-        const auto walls =
-            with_walls ? walls_beside(out.tuft, pose, left, right) : std::vector<ContactPlane>{};
+        const auto walls = with_walls ? walls_beside(out.tuft, pose, left, right) : std::vector<ContactPlane>{};
         out.state = step(out.tuft, pose, planes, 1e-3, walls);
-        if (i > 0)
-            out.work -= glm::dot(0.5 * (force + out.state.force), pose.position - before.position);
+        if (i > 0) out.work -= glm::dot(0.5 * (force + out.state.force), pose.position - before.position);
         out.lost += out.state.energy.lost;
         force = out.state.force;
         before = pose;
@@ -123,15 +116,12 @@ TEST(Flanks, AreNotMovedByWallsOnBothSides) {
 }
 
 TEST(Flanks, FeelNothingOfAWallOutOfReach) {
-    const Drawn far = draw("mixed-medium", 0.012, 0.012),
-                none = draw("mixed-medium", kNone, kNone, false);
+    const Drawn far = draw("mixed-medium", 0.012, 0.012), none = draw("mixed-medium", kNone, kNone, false);
     EXPECT_EQ(far.state.force, none.state.force);
     EXPECT_EQ(far.tuft.spine.memory.node, none.tuft.spine.memory.node);
-    ASSERT_EQ(far.state.branches.front().sections.size(),
-              none.state.branches.front().sections.size());
+    ASSERT_EQ(far.state.branches.front().sections.size(), none.state.branches.front().sections.size());
     for (std::size_t i = 0; i < none.state.branches.front().sections.size(); ++i)
-        EXPECT_EQ(far.state.branches.front().sections[i].a,
-                  none.state.branches.front().sections[i].a);
+        EXPECT_EQ(far.state.branches.front().sections[i].a, none.state.branches.front().sections[i].a);
 }
 
 TEST(Flanks, RestOnAWallInASteadyDrag) {

@@ -103,7 +103,8 @@ TEST(Lateral, APushOutwardsDrawsNothingIn) {
             side.push[node] = 50;
             const std::vector<double> u = solve_lateral(at, springs, side);
             // Up to the error of second differences where nodes lie a third of λ apart.
-            for (std::size_t i = 1; i < u.size(); ++i) EXPECT_GT(u[i], -1e-3 * u[node]) << taper << " " << node << " " << i;
+            for (std::size_t i = 1; i < u.size(); ++i)
+                EXPECT_GT(u[i], -1e-3 * u[node]) << taper << " " << node << " " << i;
         }
     }
 }
@@ -175,7 +176,8 @@ TEST(Lateral, WhatTheSpringsStoreIsTheWorkOfThePushLessE) {
 double dragged(const std::vector<double>& at, const LateralSprings& springs, const LateralFriction& f,
                const std::vector<double>& shift) {
     double sum = 2 * lateral_energy(at, springs, pushed(at, 0), shift).value;
-    for (std::size_t i = 1; i < shift.size(); ++i) sum += tributary(at, i) * f.most[i] * std::abs(shift[i] - f.stuck[i]);
+    for (std::size_t i = 1; i < shift.size(); ++i)
+        sum += tributary(at, i) * f.most[i] * std::abs(shift[i] - f.stuck[i]);
     return sum;
 }
 
@@ -193,7 +195,8 @@ TEST(Lateral, DraggedNodesStickOrSlipWithTheLeastOfStoredAndLost) {
         const LateralShift out = drag_lateral(at, springs, f);
         const double least = dragged(at, springs, f, out.shift);
         EXPECT_NEAR(out.stored, 2 * lateral_energy(at, springs, pushed(at, 0), out.shift).value, 1e-9 * least);
-        for (std::size_t i = 6; i < at.size(); ++i) (std::abs(out.shift[i] - f.stuck[i]) < 1e-9 ? sticking : slipping)++;
+        for (std::size_t i = 6; i < at.size(); ++i)
+            (std::abs(out.shift[i] - f.stuck[i]) < 1e-9 ? sticking : slipping)++;
         for (int other = 0; other < 20; ++other) {
             std::vector<double> v = out.shift;
             for (std::size_t i = 1; i < v.size(); ++i) v[i] += random.uniform(-1, 1) * std::pow(10.0, -5 - other % 3);
@@ -218,7 +221,8 @@ TEST(Lateral, ADragShiftsTheSidesUntilTheirSpringsPullAsFrictionDoesAndLosesTheR
         for (std::size_t i = 6; i < at.size(); ++i) f.stuck[i] -= way;
         const LateralShift next = drag_lateral(at, springs, f);
         double slipped = 0;
-        for (std::size_t i = 6; i < at.size(); ++i) slipped += tributary(at, i) * f.most[i] * std::abs(next.shift[i] - f.stuck[i]);
+        for (std::size_t i = 6; i < at.size(); ++i)
+            slipped += tributary(at, i) * f.most[i] * std::abs(next.shift[i] - f.stuck[i]);
         for (std::size_t i = 6; i < at.size(); ++i) brought += tributary(at, i) * f.most[i] * std::abs(way);
         lost += slipped;
         // What is stored more was brought by friction on the way; the rest is lost.

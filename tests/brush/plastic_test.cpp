@@ -76,7 +76,8 @@ TEST(PlasticRod, SmallDeflectionsAgreeWithLinearTheory) {
     constexpr double kSmall = 1e-3;
     for (const Row& row : read_rows("elastoplastic_cantilever.csv")) {
         if (row.text("kind") != "small") continue;
-        SCOPED_TRACE(row.text("alpha") + " " + row.text("beta") + " " + row.text("gamma") + " P " + row.text("PL2_E0I0"));
+        SCOPED_TRACE(row.text("alpha") + " " + row.text("beta") + " " + row.text("gamma") + " P " +
+                     row.text("PL2_E0I0"));
         const Profile profile{row["alpha"], row["beta"], kSmall * row["Me0L_E0I0"], row["gamma"]};
         const Cycle c = load_and_unload(profile, 16, kSmall * row["PL2_E0I0"]);
         const double dy = row["dy_loaded_over_L"];

@@ -62,13 +62,16 @@ TEST(Presets, OfAnySizeAProjectHoldsThemToTheBit) {
     for (const char* size : {"*0.39984", "*1.7321", "*0.1234"}) names.push_back("goat-small" + std::string(size));
     for (const std::string& name : names) {
         const Preset p = load_preset(name), q = parse_preset(preset_toml(p), "stored");
-        for (const auto member : {&Preset::length, &Preset::radius, &Preset::stiffness, &Preset::adhesion, &Preset::capacity, &Preset::end_compliance, &Preset::tip_radius})
+        for (const auto member : {&Preset::length, &Preset::radius, &Preset::stiffness, &Preset::adhesion,
+                                  &Preset::capacity, &Preset::end_compliance, &Preset::tip_radius})
             EXPECT_EQ(p.*member, q.*member) << name;
     }
 }
 
 TEST(Presets, MistakesAreNamedWithTheirLine) {
-    EXPECT_THAT(error_of("[shape]\nlenght_mm = 20\n"), testing::AllOf(testing::HasSubstr("test.toml:2"), testing::HasSubstr("did you mean 'shape.length_mm'")));
+    EXPECT_THAT(
+        error_of("[shape]\nlenght_mm = 20\n"),
+        testing::AllOf(testing::HasSubstr("test.toml:2"), testing::HasSubstr("did you mean 'shape.length_mm'")));
     EXPECT_THAT(error_of("[shape]\nlength_mm = -3\n"), testing::HasSubstr("'shape.length_mm' is -3, outside 2 to 300"));
     EXPECT_THAT(error_of("[shape]\nlength_mm = \"long\"\n"), testing::HasSubstr("must be a number"));
     EXPECT_THAT(error_of("[shape]\nlength_mm = nan\n"), testing::HasSubstr("outside"));
@@ -97,14 +100,15 @@ TEST(Presets, ANameCarriesItsSize) {
     EXPECT_EQ(preset_toml(parse_preset(preset_toml(half), "half.toml")), preset_toml(half));
     EXPECT_EQ(load_preset("wolf-medium*1").name, "wolf-medium");
     EXPECT_EQ(name_of({"wolf", 1e9}), "wolf*4");
-    for (const char* bad : {"wolf*", "wolf*0", "wolf*-1", "wolf*9", "wolf*2x", "wolf*nan", "wolf*inf", "wolf*1e400", "*2", "wolf*2*2"})
+    for (const char* bad :
+         {"wolf*", "wolf*0", "wolf*-1", "wolf*9", "wolf*2x", "wolf*nan", "wolf*inf", "wolf*1e400", "*2", "wolf*2*2"})
         EXPECT_THROW(load_preset(bad), Error) << bad;
 }
 
 TEST(Presets, TipsAreFineAndBelliesRound) {
     for (const std::string& name : list_presets()) {
         const Preset p = load_preset(name);
-        EXPECT_LE(rest_radius(p, 1), 0.15e-3) << name;       // a 0.3 mm line
+        EXPECT_LE(rest_radius(p, 1), 0.15e-3) << name;  // a 0.3 mm line
         EXPECT_NEAR(rest_radius(p, 0.25), p.radius, 0.1 * p.radius) << name;
         EXPECT_GT(rest_radius(p, 0.6), 0.5 * p.radius) << name;
         for (double u = 0.3; u < 1; u += 0.01) EXPECT_LT(rest_radius(p, u + 0.01), rest_radius(p, u)) << name;

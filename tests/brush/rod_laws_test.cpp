@@ -155,8 +155,7 @@ TEST(RodLaws, WhichFaceOfAnEdgeANodeCallsItsOwnDoesNotMatter) {
 
 TEST(RodLaws, GradientMatchesFiniteDifferences) {
     const std::pair<bool, Under> scenes[] = {
-        {false, Under::plane}, {true, Under::plane}, {false, Under::edge}, {false, Under::corner},
-        {false, Under::rim}};
+        {false, Under::plane}, {true, Under::plane}, {false, Under::edge}, {false, Under::corner}, {false, Under::rim}};
     for (const auto& [hard, under] : scenes) {
         const Scene s = rough_scene(hard, under);
         ASSERT_TRUE(under == Under::corner || under == Under::rim || s.memory.joint[2].yielded);
@@ -246,7 +245,8 @@ TEST(RodLaws, EliminationAlongTheRodSolvesTheFullMatrix) {
         ++solved;
         for (int i = 0; i < kSize; ++i) {
             const double outer = i / 2 + 1 < 8 ? s.rod.stiffness[i / 2 + 1] : 0;
-            double sum = at.gradient[i] + damping * (s.rod.stiffness[i / 2] + outer) * at.step[i], size = std::abs(at.gradient[i]);
+            double sum = at.gradient[i] + damping * (s.rod.stiffness[i / 2] + outer) * at.step[i],
+                   size = std::abs(at.gradient[i]);
             for (int k = 0; k < kSize; ++k) {
                 const double part = at.hessian[kSize * std::min(i, k) + std::max(i, k)] * at.step[k];
                 sum += part;
@@ -265,7 +265,9 @@ TEST(RodLaws, ThePotentialNeverRisesFromStepToStep) {
     const Rod rod = make_rod({-1, -0.8}, 16, 0.5);
     int steps = 0;
     for (int trial = 0; trial < 40; ++trial) {
-        Clamp clamp{{0, 0, random.uniform(0.55, 0.95)}, glm::normalize(Vec3{random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), -1}), {}};
+        Clamp clamp{{0, 0, random.uniform(0.55, 0.95)},
+                    glm::normalize(Vec3{random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), -1}),
+                    {}};
         clamp.side = glm::normalize(glm::cross(clamp.tangent, Vec3{0.3, 1, 0.2}));
         Memory start = make_memory(rod, clamp);
         for (Vec3& t : start.tangent)

@@ -65,8 +65,8 @@ Standing press_and_drag(const Row& row, int n) {
 
 TEST(RodOnPlane, NormalForceTipAndContactLengthMatchTheReference) {
     for (const Row& row : read_rows("rod_on_plane.csv")) {
-        SCOPED_TRACE(row.text("alpha") + " " + row.text("beta") + " tilt " + row.text("tilt_deg") +
-                     " depth " + row.text("depth_over_L") + " " + row.text("drag") + " mu " + row.text("mu"));
+        SCOPED_TRACE(row.text("alpha") + " " + row.text("beta") + " tilt " + row.text("tilt_deg") + " depth " +
+                     row.text("depth_over_L") + " " + row.text("drag") + " mu " + row.text("mu"));
         const Standing s = press_and_drag(row, 16);
         EXPECT_TRUE(s.result.converged) << s.result.passes << " passes";
         const double n = row["N_L2_E0I0"];

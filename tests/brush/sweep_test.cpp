@@ -28,7 +28,8 @@ TEST(Sweep, ABrushOfAnotherSizeDrawsTheSameLineInThatSize) {
                 const double width = sweep_depth(p, std::span(&depth, 1)).front().width;
                 const double of_other = sweep_depth(q, std::span(&other, 1)).front().width;
                 // Similar, but for the sweep's steps in millimetres and the damping in seconds.
-                EXPECT_NEAR(of_other, factor * width, 1e-4 * std::max(1.0, factor)) << name << " x " << factor << " at " << part;
+                EXPECT_NEAR(of_other, factor * width, 1e-4 * std::max(1.0, factor))
+                    << name << " x " << factor << " at " << part;
             }
         }
     }
@@ -193,7 +194,8 @@ TEST(Sweep, TableReadsBack) {
 }
 
 TEST(Sweep, ExcludedRowsAreSkippedAndMistakesNamed) {
-    const std::vector<SweepRow> rows = read_sweep(write("some.csv", "z_mm,width_mm,drag_mm,offset_mm,excluded_by_authors\n1,1,1,1,0\n2,9,9,9,1\n"));
+    const std::vector<SweepRow> rows =
+        read_sweep(write("some.csv", "z_mm,width_mm,drag_mm,offset_mm,excluded_by_authors\n1,1,1,1,0\n2,9,9,9,1\n"));
     EXPECT_EQ(rows.size(), 1u);
     const auto error_of = [](const std::string& text) {
         try {
@@ -204,7 +206,8 @@ TEST(Sweep, ExcludedRowsAreSkippedAndMistakesNamed) {
         return std::string();
     };
     EXPECT_THAT(error_of("z_mm,width_mm\n1,2\n"), testing::HasSubstr("no column 'drag_mm'"));
-    EXPECT_THAT(error_of("z_mm,width_mm,drag_mm,offset_mm\n1,2,x,4\n"), testing::AllOf(testing::HasSubstr(":2:"), testing::HasSubstr("'x'")));
+    EXPECT_THAT(error_of("z_mm,width_mm,drag_mm,offset_mm\n1,2,x,4\n"),
+                testing::AllOf(testing::HasSubstr(":2:"), testing::HasSubstr("'x'")));
     EXPECT_THAT(error_of("z_mm,width_mm,drag_mm,offset_mm\n1,2\n"), testing::HasSubstr("is not a length"));
     EXPECT_THAT(error_of("z_mm,width_mm,drag_mm,offset_mm\n"), testing::HasSubstr("no measured rows"));
 }

@@ -44,7 +44,8 @@ TEST(Table, SmallMomentsFollowTheLinearClosedForm) {
     double s = p.length;
     const double force = row.load;
     for (std::size_t i = 0; i < row.nodes.size(); ++i) {
-        const double w = small_deflection({p.alpha, p.beta}, s / p.length).w * force * std::pow(p.length, 3) / p.stiffness;
+        const double w =
+            small_deflection({p.alpha, p.beta}, s / p.length).w * force * std::pow(p.length, 3) / p.stiffness;
         if (w < 0.02 * p.length && w > 1e-6 * p.length) {
             EXPECT_NEAR(row.nodes[i].y, w, 0.03 * w + 1e-5 * p.length);
         }
@@ -106,7 +107,10 @@ TEST(Table, StrokesWorkWithTheTableToo) {
     TuftState state;
     for (int i = 1; i <= 300; ++i) {
         const double a = 0.01 * i;
-        const Pose pose{{0.02 * std::sin(a), 0.02 * (1 - std::cos(a)), p.length - 0.3 * p.length * std::min(1.0, i / 60.0)}, {1, 0, 0, 0}, 0.01 * i};
+        const Pose pose{
+            {0.02 * std::sin(a), 0.02 * (1 - std::cos(a)), p.length - 0.3 * p.length * std::min(1.0, i / 60.0)},
+            {1, 0, 0, 0},
+            0.01 * i};
         state = step(tuft, pose, {&plane, 1}, 0.01);
         if (i > 80) {
             const Section& tip = state.branches[0].sections.front();

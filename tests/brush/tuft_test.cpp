@@ -28,8 +28,8 @@ struct Motion {
 
 struct Stroke {
     Vec3 direction{1, 0, 0};
-    double depth = 0.25;       // of the length
-    double lean = 0.12;        // radians, of the axis towards -x
+    double depth = 0.25;  // of the length
+    double lean = 0.12;   // radians, of the axis towards -x
     int press = 80, drag = 120, lift = 0;
     Motion motion;
 };
@@ -94,7 +94,9 @@ TEST(Tuft, AWetSoftTuftKeepsASetThatReshapingTakesOut) {
     s.lift = 150;
     TuftState state = draw(tuft, s);
     EXPECT_FALSE(state.touching);
-    const auto tip_angle = [&] { return std::acos(std::min(1.0, glm::dot(tuft.spine.memory.tangent.back(), tuft.pose.axis()))); };
+    const auto tip_angle = [&] {
+        return std::acos(std::min(1.0, glm::dot(tuft.spine.memory.tangent.back(), tuft.pose.axis())));
+    };
     EXPECT_GT(tip_angle(), 0.05);
     reshape(tuft);
     state = step(tuft, tuft.pose, {}, 0.01);
@@ -159,7 +161,9 @@ TEST(Tuft, RigidMotionOfAllInputsMovesTheOutputs) {
     Random random(11);
     for (int trial = 0; trial < 4; ++trial) {
         Stroke s = plain_stroke;
-        s.motion.rotation = glm::angleAxis(random.uniform(0, 3), glm::normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}));
+        s.motion.rotation =
+            glm::angleAxis(random.uniform(0, 3),
+                           glm::normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}));
         s.motion.shift = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
         Tuft tuft = make_tuft(load_preset("mixed-medium"));
         const TuftState state = draw(tuft, s);
@@ -339,7 +343,8 @@ TEST(Tuft, HalfTheStepGivesTheSameEnd) {
         TuftState state;
         for (int i = 1; i <= 200 * parts; ++i) {
             const double t = static_cast<double>(i) / parts;
-            const Pose pose{{2.5e-4 * t, 2e-3 * std::sin(0.02 * t), 0.032 - 0.007 * std::min(1.0, t / 80)}, {1, 0, 0, 0}, 0.01 * t};
+            const Pose pose{
+                {2.5e-4 * t, 2e-3 * std::sin(0.02 * t), 0.032 - 0.007 * std::min(1.0, t / 80)}, {1, 0, 0, 0}, 0.01 * t};
             state = step(tuft, pose, {&plane, 1}, 0.01 / parts);
         }
         return state;
@@ -362,7 +367,8 @@ TEST(Tuft, ScalesWithLengthAndStiffness) {
     Tuft a = make_tuft(small), b = make_tuft(large);
     const TuftState sa = draw(a, {}), sb = draw(b, {});
     // Only the fuzz of 0.05 mm is a fixed length.
-    EXPECT_LT(glm::length(sa.branches[0].sections[0].centre * s - sb.branches[0].sections[0].centre), 1e-2 * large.length);
+    EXPECT_LT(glm::length(sa.branches[0].sections[0].centre * s - sb.branches[0].sections[0].centre),
+              1e-2 * large.length);
     EXPECT_NEAR(sb.normal_force, sa.normal_force * c / (s * s), 0.03 * sb.normal_force);
     EXPECT_NEAR(sb.root_moment, sa.root_moment * c / s, 0.03 * sb.root_moment);
 }
@@ -401,7 +407,8 @@ TEST(Tuft, SectionsMoveNoFasterThanTheHandThatPresses) {
                 pose.position = -preset.length * pose.axis() - Vec3{0, 0, i * kStep};
                 TuftState state = step(tuft, pose, {&plane, 1}, 1e-3);
                 for (std::size_t k = 0; i > 100 && k < state.branches[0].sections.size(); ++k) {
-                    const double moved = state.branches[0].sections[k].centre.z - before.branches[0].sections[k].centre.z;
+                    const double moved =
+                        state.branches[0].sections[k].centre.z - before.branches[0].sections[k].centre.z;
                     fastest = std::max(fastest, std::abs(moved) / kStep);
                 }
                 before = std::move(state);
@@ -481,9 +488,11 @@ TEST(Tuft, TenThousandRandomPosesStayFiniteAndBounded) {
             tuft.ink_left = random.uniform();
             Pose pose;
             const double reach = i % 3 == 0 ? 3 * length : 0.5 * length;  // jumps of up to 10 m/s at 100 Hz
-            pose.position = {random.uniform(-reach, reach), random.uniform(-reach, reach), random.uniform(-reach, 1.2 * length)};
+            pose.position = {random.uniform(-reach, reach), random.uniform(-reach, reach),
+                             random.uniform(-reach, 1.2 * length)};
             const Vec3 axis{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-            pose.rotation = glm::angleAxis(random.uniform(0, i % 2 == 0 ? 3.14 : 0.5), glm::normalize(axis + Vec3{1e-9, 0, 0}));
+            pose.rotation =
+                glm::angleAxis(random.uniform(0, i % 2 == 0 ? 3.14 : 0.5), glm::normalize(axis + Vec3{1e-9, 0, 0}));
             ContactPlane plane;
             plane.normal = glm::normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), 1.2});
             std::vector<ContactPlane> planes(predicted_nodes(tuft, pose).size(), plane);
@@ -495,10 +504,12 @@ TEST(Tuft, TenThousandRandomPosesStayFiniteAndBounded) {
             ASSERT_LE(state.iterations, 4 * (59 + 17));
             for (const Branch& b : state.branches) {
                 for (const Section& s : b.sections) {
-                    ASSERT_TRUE(std::isfinite(glm::length(s.centre)) && std::isfinite(s.a) && std::isfinite(glm::length(s.e)));
+                    ASSERT_TRUE(std::isfinite(glm::length(s.centre)) && std::isfinite(s.a) &&
+                                std::isfinite(glm::length(s.e)));
                     // Hair does not grow: its length from the ferrule, moved by at most its
                     // radius, by half of what it spreads, and by a wet film.
-                    const double about = (1 + 0.5 * tuft.preset.flatten_max) * tuft.preset.radius + 2 * tuft.preset.adhesion_range;
+                    const double about =
+                        (1 + 0.5 * tuft.preset.flatten_max) * tuft.preset.radius + 2 * tuft.preset.adhesion_range;
                     ASSERT_LE(glm::length(s.centre - pose.position), length + about);
                 }
             }

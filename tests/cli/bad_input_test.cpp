@@ -9,7 +9,6 @@
 namespace tuft::test {
 namespace {
 
-
 // Every kind of bad input: the stated exit status, one line on standard error that starts
 // with the program's name, nothing on standard output, no file left behind.
 class BadInput : public Program {
@@ -40,11 +39,17 @@ std::string binary_stl(std::uint32_t triangles, std::size_t bytes) {
     return stl;
 }
 
-TEST_F(BadInput, MissingModel) { expect_refused("inspect " + path("none.ply"), 1, "no such file"); }
+TEST_F(BadInput, MissingModel) {
+    expect_refused("inspect " + path("none.ply"), 1, "no such file");
+}
 
-TEST_F(BadInput, EmptyModel) { expect_refused("inspect " + write("e.obj", ""), 1, "empty"); }
+TEST_F(BadInput, EmptyModel) {
+    expect_refused("inspect " + write("e.obj", ""), 1, "empty");
+}
 
-TEST_F(BadInput, FolderInsteadOfModel) { expect_refused("inspect " + folder_.string(), 1, "folder"); }
+TEST_F(BadInput, FolderInsteadOfModel) {
+    expect_refused("inspect " + folder_.string(), 1, "folder");
+}
 
 TEST_F(BadInput, TruncatedStl) {
     expect_refused("inspect " + write("t.stl", binary_stl(1000, 500)), 1, "t.stl");
@@ -56,8 +61,9 @@ TEST_F(BadInput, TruncatedPly) {
 }
 
 TEST_F(BadInput, PlyThatPromisesABillionVertices) {
-    expect_refused("inspect " + write("b.ply", "ply\nformat ascii 1.0\nelement vertex 1000000000\n"
-                                               "property float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n"),
+    expect_refused("inspect " + write("b.ply",
+                                      "ply\nformat ascii 1.0\nelement vertex 1000000000\n"
+                                      "property float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n"),
                    1, "b.ply");
 }
 
@@ -93,9 +99,9 @@ TEST_F(BadInput, InkmlNotWellFormed) {
 }
 
 TEST_F(BadInput, InkmlWithoutTraces) {
-    expect_refused("paint " + sheet() + " --strokes " +
-                       write("t.inkml", "<ink xmlns=\"http://www.w3.org/2003/InkML\"></ink>"),
-                   1, "t.inkml");
+    expect_refused(
+        "paint " + sheet() + " --strokes " + write("t.inkml", "<ink xmlns=\"http://www.w3.org/2003/InkML\"></ink>"), 1,
+        "t.inkml");
 }
 
 TEST_F(BadInput, AtlasThatExceedsMemory) {
@@ -119,7 +125,10 @@ TEST_F(BadInput, OutputOfAnUnknownKind) {
 TEST_F(BadInput, DiskThatFillsUp) {
     // No file may grow beyond 8 KiB: a write fails half-way, as on a full disk.
     expect_refused("export " + path("p.tuft") + " -o " + path("out.glb"), 1, "p.tuft");
-    ASSERT_EQ(tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("p.tuft")).status, 0);
+    ASSERT_EQ(
+        tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("p.tuft"))
+            .status,
+        0);
     expect_refused("export " + path("p.tuft") + " -o " + path("out.glb"), 1, "out.glb", "trap '' XFSZ; ulimit -f 8;");
 }
 
@@ -129,7 +138,10 @@ TEST_F(BadInput, ProjectThatIsNotOurs) {
 }
 
 TEST_F(BadInput, ProjectFromANewerVersion) {
-    ASSERT_EQ(tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("n.tuft")).status, 0);
+    ASSERT_EQ(
+        tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("n.tuft"))
+            .status,
+        0);
     // SQLite keeps user_version at byte 60 of the file, big-endian.
     std::string bytes = read(path("n.tuft"));
     bytes[60] = 0x7f;
@@ -155,15 +167,21 @@ TEST_F(BadInput, TextsNestedAHundredThousandDeep) {
         expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --habit " + file, 1, "deep.toml:1");
     }
     const std::string groups = repeated("<g>", kDeep) + repeated("</g>", kDeep);
-    expect_refused("paint " + sheet() + " --strokes " + write("deep.svg", "<svg xmlns='http://www.w3.org/2000/svg'>" + groups + "</svg>"), 1,
-                   "nested too deeply");
     expect_refused("paint " + sheet() + " --strokes " +
-                       write("circle.svg", "<svg xmlns='http://www.w3.org/2000/svg'><g id='a'><use href='#b'/></g><g id='b'><use href='#a'/></g></svg>"),
-                   1, "nested too deeply");
-    expect_refused("paint " + sheet() + " --strokes " + write("deep.inkml", "<ink>" + repeated("<traceGroup>", kDeep) + repeated("</traceGroup>", kDeep) + "</ink>"),
+                       write("deep.svg", "<svg xmlns='http://www.w3.org/2000/svg'>" + groups + "</svg>"),
                    1, "nested too deeply");
     expect_refused("paint " + sheet() + " --strokes " +
-                       write("set.inkml", "<ink><annotation type='tuft:settings'>" + repeated("[", kDeep) + "</annotation><trace>0 0,1 1</trace></ink>"),
+                       write("circle.svg",
+                             "<svg xmlns='http://www.w3.org/2000/svg'><g id='a'><use href='#b'/></g><g id='b'><use "
+                             "href='#a'/></g></svg>"),
+                   1, "nested too deeply");
+    expect_refused("paint " + sheet() + " --strokes " +
+                       write("deep.inkml",
+                             "<ink>" + repeated("<traceGroup>", kDeep) + repeated("</traceGroup>", kDeep) + "</ink>"),
+                   1, "nested too deeply");
+    expect_refused("paint " + sheet() + " --strokes " +
+                       write("set.inkml", "<ink><annotation type='tuft:settings'>" + repeated("[", kDeep) +
+                                              "</annotation><trace>0 0,1 1</trace></ink>"),
                    1, "nested more than");
     expect_refused("inspect " + write("deep.gltf", repeated("{\"a\":", kDeep)), 1, "nested more than");
 }
@@ -174,7 +192,8 @@ TEST_F(BadInput, MagnitudesThatCanBeNoModel) {
         for (const char* option : {"--target", "--place"}) expect_refused(paint + option + " " + bad, 2, option);
         expect_refused("render " + sheet() + " -o " + path("a.png") + " --target " + bad, 2, "--target");
         expect_refused("inspect " + path("p.tuft") + " --at " + bad, 2, "--at");
-        for (const char* option : {"--part", "--chart"}) expect_refused("fill " + path("p.tuft") + " " + option + " " + bad, 2, option);
+        for (const char* option : {"--part", "--chart"})
+            expect_refused("fill " + path("p.tuft") + " " + option + " " + bad, 2, option);
         expect_refused("fill " + path("p.tuft") + " --to 1,0,0 --from " + bad, 2, "--from");
         expect_refused("fill " + path("p.tuft") + " --from 1,0,0 --to " + bad, 2, "--to");
     }
@@ -182,18 +201,23 @@ TEST_F(BadInput, MagnitudesThatCanBeNoModel) {
     const auto obj = [](const std::string& s) { return "v 0 0 0\nv " + s + " 0 0\nv 0 " + s + " 0\nf 1 2 3\n"; };
     const auto off = [](const std::string& s) { return "OFF\n3 1 0\n0 0 0\n" + s + " 0 0\n0 " + s + " 0\n3 0 1 2\n"; };
     const auto stl = [](const std::string& s) {
-        return "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex " + s + " 0 0\nvertex 0 " + s + " 0\nendloop\nendfacet\nendsolid a\n";
+        return "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex " + s + " 0 0\nvertex 0 " + s +
+               " 0\nendloop\nendfacet\nendsolid a\n";
     };
     const auto ply = [](const std::string& s) {
-        return "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\nelement face 1\n"
-               "property list uchar int vertex_indices\nend_header\n0 0 0\n" + s + " 0 0\n0 " + s + " 0\n3 0 1 2\n";
+        return "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double "
+               "z\nelement face 1\n"
+               "property list uchar int vertex_indices\nend_header\n0 0 0\n" +
+               s + " 0 0\n0 " + s + " 0\n3 0 1 2\n";
     };
     for (const std::string s : {"1e300", "1e38", "1e24", "1e11", "1e8", "1e-30", "1e-45", "1e-8"}) {
         const bool large = s.find("e-") == std::string::npos;
-        for (const auto& [name, text] : {std::pair{"m.obj", obj(s)}, {"m.off", off(s)}, {"m.stl", stl(s)}, {"m.ply", ply(s)}}) {
+        for (const auto& [name, text] :
+             {std::pair{"m.obj", obj(s)}, {"m.off", off(s)}, {"m.stl", stl(s)}, {"m.ply", ply(s)}}) {
             const std::string file = write(name, text);
             // Where no unit is said, one is guessed that makes the smaller ones things.
-            if (s != "1e8" && s != "1e-8") expect_refused("inspect " + file, 1, large ? "m." : "smaller than a micrometre");
+            if (s != "1e8" && s != "1e-8")
+                expect_refused("inspect " + file, 1, large ? "m." : "smaller than a micrometre");
             expect_refused("paint " + file + " --unit mm --strokes " + good_strokes(), 1, "m.");
         }
     }
@@ -201,23 +225,30 @@ TEST_F(BadInput, MagnitudesThatCanBeNoModel) {
     expect_refused("inspect --unit um " + write("u.obj", obj("0.1")), 1, "smaller than a micrometre");
     // Strokes: placed and in space.
     for (const char* bad : {"1e300", "1e20", "nan", "2e7"})
-        expect_refused("paint " + sheet() + " --strokes " + write("o.inkml", stroke_file(std::string("0 0 ") + bad)), 1, "o.inkml:");
+        expect_refused("paint " + sheet() + " --strokes " + write("o.inkml", stroke_file(std::string("0 0 ") + bad)), 1,
+                       "o.inkml:");
     for (const char* bad : {"1e300", "1e20", "1e9"})
         expect_refused("paint " + sheet() + " --strokes " +
-                           write("x.inkml", std::string("<ink><traceFormat><channel name='X'/><channel name='Y'/><channel name='Z'/></traceFormat><trace>0 0 ") +
+                           write("x.inkml", std::string("<ink><traceFormat><channel name='X'/><channel "
+                                                        "name='Y'/><channel name='Z'/></traceFormat><trace>0 0 ") +
                                                 bad + ", 1 1 1</trace></ink>"),
                        1, "x.inkml:");
 }
 
 TEST_F(BadInput, NumbersThatAreNoNumbers) {
-    ASSERT_EQ(tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("p.tuft")).status, 0);
+    ASSERT_EQ(
+        tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("p.tuft"))
+            .status,
+        0);
     const std::string paint = "paint " + sheet() + " --strokes " + good_strokes() + " ";
     for (const char* bad : {"nan", "-nan", "inf", "1e999", "0x10", "3mm", "-1e308"}) {
-        for (const char* option : {"--dry", "--smooth", "--stabilise", "--place-width", "--place-turn", "--texel-size", "--atlas-size", "--zoom", "--light",
-                                   "--sharp-angle", "--pages", "--threads"})
+        for (const char* option : {"--dry", "--smooth", "--stabilise", "--place-width", "--place-turn", "--texel-size",
+                                   "--atlas-size", "--zoom", "--light", "--sharp-angle", "--pages", "--threads"})
             expect_refused(paint + option + "=" + bad, 2, option);
-        for (const char* option : {"--film", "--to-film"}) expect_refused("fill " + path("p.tuft") + " " + option + "=" + bad, 2, option);
-        for (const char* option : {"--within", "--soft"}) expect_refused("mask " + path("p.tuft") + " m --facing 0,0,1 " + option + "=" + bad, 2, option);
+        for (const char* option : {"--film", "--to-film"})
+            expect_refused("fill " + path("p.tuft") + " " + option + "=" + bad, 2, option);
+        for (const char* option : {"--within", "--soft"})
+            expect_refused("mask " + path("p.tuft") + " m --facing 0,0,1 " + option + "=" + bad, 2, option);
         expect_refused(paint + "--view=" + bad + ",0", 2, "--view");
         expect_refused("mask " + path("p.tuft") + " m --lasso '0,0 1,0 1," + bad + "'", 2, "--lasso");
     }
@@ -229,7 +260,8 @@ TEST_F(BadInput, NumbersThatAreNoNumbers) {
 }
 
 TEST_F(BadInput, ValuesThatAreEmpty) {
-    for (const char* option : {"--ink", "--brush", "--layer", "--mask", "--substrate", "--project", "--export", "--preview", "--habit", "--film"})
+    for (const char* option : {"--ink", "--brush", "--layer", "--mask", "--substrate", "--project", "--export",
+                               "--preview", "--habit", "--film"})
         expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " " + option + " ''", 2, option);
     expect_refused("inspect ''", 2, "FILE");
     expect_refused("layer " + path("p.tuft") + " add ''", 2, "NAME");
@@ -241,7 +273,8 @@ TEST_F(BadInput, PipesDevicesAndFoldersAreNoInput) {
         std::filesystem::create_symlink(path("pipe.ply"), path(name));
     // A program that waits for the pipe's other end is killed after ten seconds: status 137.
     const std::string prefix = "timeout -s KILL 10";
-    for (const std::string& input : {path("pipe.ply"), path("pipe.gltf"), path("pipe.tuft"), std::string("/dev/zero"), std::string("/dev/tty")}) {
+    for (const std::string& input :
+         {path("pipe.ply"), path("pipe.gltf"), path("pipe.tuft"), std::string("/dev/zero"), std::string("/dev/tty")}) {
         expect_refused("inspect " + input, 1, "not a regular file", prefix);
         expect_refused("render " + input + " -o " + path("a.png"), 1, "not a regular file", prefix);
     }
@@ -249,22 +282,34 @@ TEST_F(BadInput, PipesDevicesAndFoldersAreNoInput) {
         expect_refused("paint " + sheet() + " --strokes " + path(name), 1, "not a regular file", prefix);
     expect_refused("paint " + sheet() + " --strokes /dev/zero", 1, "not a regular file", prefix);
     expect_refused("brush " + path("pipe.toml"), 1, "not a regular file", prefix);
-    expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --ink " + path("pipe.toml"), 1, "not a regular file", prefix);
-    expect_refused("brush wolf calibrate " + path("pipe.csv") + " -o " + path("b.toml"), 1, "not a regular file", prefix);
+    expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --ink " + path("pipe.toml"), 1,
+                   "not a regular file", prefix);
+    expect_refused("brush wolf calibrate " + path("pipe.csv") + " -o " + path("b.toml"), 1, "not a regular file",
+                   prefix);
     // Nor is one written over.
-    expect_refused("render " + sheet() + " --size 32x32 -o " + path("pipe.png"), 1, "not a regular file", "mkfifo '" + path("pipe.png") + "'; " + prefix);
+    expect_refused("render " + sheet() + " --size 32x32 -o " + path("pipe.png"), 1, "not a regular file",
+                   "mkfifo '" + path("pipe.png") + "'; " + prefix);
 }
 
 TEST_F(BadInput, FilesThatMayNotGrowLeaveNothing) {
     // The shell's limit kills a program that does not ask to be told instead.
     expect_refused("render " + sheet() + " --size 256x256 -o " + path("a.png"), 1, "a.png", "ulimit -f 1;");
-    ASSERT_EQ(tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("p.tuft")).status, 0);
-    for (const char* name : {"out.glb", "out.obj", "out.exr"}) expect_refused("export " + path("p.tuft") + " -o " + path(name), 1, "out", "ulimit -f 1;");
-    expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("out.tuft"), 1, "out.tuft", "ulimit -f 8;");
+    ASSERT_EQ(
+        tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("p.tuft"))
+            .status,
+        0);
+    for (const char* name : {"out.glb", "out.obj", "out.exr"})
+        expect_refused("export " + path("p.tuft") + " -o " + path(name), 1, "out", "ulimit -f 1;");
+    expect_refused(
+        "paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("out.tuft"), 1,
+        "out.tuft", "ulimit -f 8;");
 }
 
 TEST_F(BadInput, PointsBesideTheModel) {
-    ASSERT_EQ(tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("p.tuft")).status, 0);
+    ASSERT_EQ(
+        tuft("paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("p.tuft"))
+            .status,
+        0);
     expect_refused("inspect " + path("p.tuft") + " --at 1000,0,0", 1, "beside the model");
     expect_refused("fill " + path("p.tuft") + " --part 0,0,1000", 1, "beside the model");
     expect_refused("mask " + path("p.tuft") + " m --chart 0,-1000,0", 1, "beside the model");
@@ -281,20 +326,30 @@ TEST_F(BadInput, NamesOfOlderProgramsInJson) {
     EXPECT_EQ(named.status, 0) << named.err;
     EXPECT_NE(named.out.find("\"triangles\": 2"), std::string::npos);
     for (const char* head : {"solid T\xfcr\n", "solid \xff\xfe\n"})
-        EXPECT_EQ(tuft("inspect --json " + write("a.stl", std::string(head) + "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 10 0 0\nvertex 0 10 0\n"
-                                                          "endloop\nendfacet\nendsolid\n")).status,
+        EXPECT_EQ(tuft("inspect --json " +
+                       write("a.stl", std::string(head) +
+                                          "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 10 0 0\nvertex 0 10 0\n"
+                                          "endloop\nendfacet\nendsolid\n"))
+                      .status,
                   0);
-    EXPECT_EQ(tuft("inspect --json " + write("a.ply", "ply\nformat ascii 1.0\ncomment TextureFile T\xfcr.png\ncomment TextureFile b.png\nelement vertex 3\n"
-                                                      "property float x\nproperty float y\nproperty float z\nelement face 1\n"
-                                                      "property list uchar int vertex_indices\nproperty int texnumber\nend_header\n0 0 0\n10 0 0\n0 10 0\n3 0 1 2 0\n")).status,
-              0);
+    EXPECT_EQ(
+        tuft(
+            "inspect --json " +
+            write("a.ply",
+                  "ply\nformat ascii 1.0\ncomment TextureFile T\xfcr.png\ncomment TextureFile b.png\nelement vertex 3\n"
+                  "property float x\nproperty float y\nproperty float z\nelement face 1\n"
+                  "property list uchar int vertex_indices\nproperty int texnumber\nend_header\n0 0 0\n10 0 0\n0 10 "
+                  "0\n3 0 1 2 0\n"))
+            .status,
+        0);
     expect_refused("inspect --json " + write("bad.gltf", "{\"asset\": \xff}"), 1, "its JSON cannot be read");
 }
 
 TEST_F(BadInput, OptionsStandBehindSubcommands) {
     // The first fault told is that of the table, not of an unknown option.
     for (const char* option : {"--threads 1", "--json", "--quiet"})
-        expect_refused("brush wolf calibrate " + path("none.csv") + " -o " + path("b.toml") + " " + option, 1, "none.csv");
+        expect_refused("brush wolf calibrate " + path("none.csv") + " -o " + path("b.toml") + " " + option, 1,
+                       "none.csv");
 }
 
 TEST_F(BadInput, WrongUsage) {
@@ -312,8 +367,8 @@ TEST_F(BadInput, StrokeThatNeverTouchesIsAWarningWithItsDistance) {
         "<channel name=\"X\" units=\"mm\"/><channel name=\"Y\" units=\"mm\"/><channel name=\"Z\" units=\"mm\"/>"
         "</traceFormat><context xml:id=\"c\" traceFormatRef=\"#f\"/></definitions>"
         "<trace contextRef=\"#c\">0 0 120, 5 0 120, 10 0 120</trace></ink>";
-    const Ran ran = tuft("paint " + sheet() + " --strokes " + write("air.inkml", spatial) +
-                         " --brush wolf-small --atlas-size 256");
+    const Ran ran =
+        tuft("paint " + sheet() + " --strokes " + write("air.inkml", spatial) + " --brush wolf-small --atlas-size 256");
     EXPECT_EQ(ran.status, 0);
     EXPECT_NE(ran.err.find("never touches"), std::string::npos) << ran.err;
     // The ferrule is 120 mm up and the tuft 20 mm long.

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "program.h"
 #include "paths.h"
+#include "program.h"
 
 namespace tuft::test {
 namespace {
@@ -15,9 +15,9 @@ class Commands : public Program {};
 
 TEST_F(Commands, PaintLeavesProjectModelAndPicture) {
     write("s.inkml", stroke_file());
-    const Ran ran = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 512 --project " +
-                         path("p.tuft") + " --export " + path("m.glb") + " --preview " + path("v.png") +
-                         " --size 160x90 --json");
+    const Ran ran =
+        tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 512 --project " +
+             path("p.tuft") + " --export " + path("m.glb") + " --preview " + path("v.png") + " --size 160x90 --json");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const json j = json::parse(ran.out);
     EXPECT_EQ(j["strokes"].size(), 1u);
@@ -31,7 +31,8 @@ TEST_F(Commands, PaintLeavesProjectModelAndPicture) {
 TEST_F(Commands, OneOfAThingIsNamedAsOne) {
     write("s.inkml", stroke_file());
     const Ran unwrapped = tuft("unwrap " + model("sheet.ply") + " -o " + path("m.obj") + " --atlas-size 256");
-    const Ran painted = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " + path("p.tuft"));
+    const Ran painted = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") +
+                             " --atlas-size 256 --project " + path("p.tuft"));
     const Ran inspected = tuft("inspect " + path("p.tuft")), replayed = tuft("replay " + path("p.tuft"));
     EXPECT_EQ(unwrapped.out.substr(0, 11), "1 chart at ") << unwrapped.out;
     for (const std::string& out : {painted.out, inspected.out, replayed.out}) {
@@ -56,8 +57,12 @@ TEST_F(Commands, ReplayMakesTheSameTexelsForAnyThreadCount) {
 
 TEST_F(Commands, ReplayTakesAnotherSizeInkAndModel) {
     write("s.inkml", stroke_file());
-    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " + path("p.tuft")).status, 0);
-    const Ran larger = tuft("replay " + path("p.tuft") + " --atlas-size 512 --ink cinnabar --project " + path("q.tuft") + " --json");
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " +
+                   path("p.tuft"))
+                  .status,
+              0);
+    const Ran larger =
+        tuft("replay " + path("p.tuft") + " --atlas-size 512 --ink cinnabar --project " + path("q.tuft") + " --json");
     ASSERT_EQ(larger.status, 0) << larger.err;
     EXPECT_EQ(json::parse(larger.out)["atlas"]["size"], 512);
     const Ran inspected = tuft("inspect " + path("q.tuft") + " --json");
@@ -71,16 +76,21 @@ TEST_F(Commands, ReplayTakesAnotherSizeInkAndModel) {
 TEST_F(Commands, InkLiesOnTheColoursTheModelBringsAlongUnlessItIsPlain) {
     const std::string faces = "3 0 1 2\n3 0 2 3\n";
     const auto ply = [&](const std::string& properties, const std::string& colour) {
-        std::string text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" + properties +
-                           "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
-        for (const char* point : {"-100 -100 0", "100 -100 0", "100 100 0", "-100 100 0"}) text += point + colour + "\n";
+        std::string text =
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" +
+            properties + "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+        for (const char* point : {"-100 -100 0", "100 -100 0", "100 100 0", "-100 100 0"})
+            text += point + colour + "\n";
         return text + faces;
     };
     write("grey.ply", ply("", ""));
     write("red.ply", ply("property uchar red\nproperty uchar green\nproperty uchar blue\n", " 200 30 20"));
     write("s.inkml", stroke_file());
     const auto picture = [&](const std::string& source, const std::string& options, const std::string& shown = "") {
-        EXPECT_EQ(tuft("paint " + path(source) + " --unit mm --strokes " + path("s.inkml") + " --atlas-size 256 --project " + path("p.tuft") + options).status, 0);
+        EXPECT_EQ(tuft("paint " + path(source) + " --unit mm --strokes " + path("s.inkml") +
+                       " --atlas-size 256 --project " + path("p.tuft") + options)
+                      .status,
+                  0);
         EXPECT_EQ(tuft("export " + path("p.tuft") + " -o " + path("m.png") + shown).status, 0);
         return read(path("m.png"));
     };
@@ -95,7 +105,10 @@ TEST_F(Commands, InkLiesOnTheColoursTheModelBringsAlongUnlessItIsPlain) {
 
 TEST_F(Commands, ExportWritesModelAndMaps) {
     write("s.inkml", stroke_file());
-    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " + path("p.tuft")).status, 0);
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " +
+                   path("p.tuft"))
+                  .status,
+              0);
     for (const char* name : {"a.glb", "a.gltf", "a.obj", "a.png", "a.exr"}) {
         const Ran ran = tuft("export " + path("p.tuft") + " -o " + path(name));
         EXPECT_EQ(ran.status, 0) << name << ": " << ran.err;
@@ -105,7 +118,10 @@ TEST_F(Commands, ExportWritesModelAndMaps) {
 
 TEST_F(Commands, ExportWritesEveryMap) {
     write("s.inkml", stroke_file());
-    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " + path("p.tuft")).status, 0);
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " +
+                   path("p.tuft"))
+                  .status,
+              0);
     for (const char* map : {"base-colour", "normal", "height", "roughness", "pigments"})
         for (const char* extension : {".png", ".exr"}) {
             const std::string file = path(std::string("m") + map + extension);
@@ -122,8 +138,8 @@ TEST_F(Commands, ExportWritesEveryMap) {
 
 TEST_F(Commands, RecolouringChangesColoursButNoAmount) {
     write("s.inkml", stroke_file());
-    const Ran painted = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --ink carbon --atlas-size 256 --project " +
-                             path("p.tuft") + " --json");
+    const Ran painted = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") +
+                             " --ink carbon --atlas-size 256 --project " + path("p.tuft") + " --json");
     ASSERT_EQ(painted.status, 0) << painted.err;
     const std::string hash = json::parse(painted.out)["canvas_hash"];
     const auto colour = [&](const std::string& project, const std::string& options) {
@@ -140,7 +156,8 @@ TEST_F(Commands, RecolouringChangesColoursButNoAmount) {
     EXPECT_NE(both, on_clay);
     EXPECT_EQ(colour("p.tuft", "--recolour carbon=carbon --substrate porcelain"), black);
     // Kept in a project, the look stays a look: what is painted is as before, however often.
-    const Ran kept = tuft("replay " + path("p.tuft") + " --substrate clay --recolour carbon=cinnabar --project " + path("q.tuft") + " --json");
+    const Ran kept = tuft("replay " + path("p.tuft") + " --substrate clay --recolour carbon=cinnabar --project " +
+                          path("q.tuft") + " --json");
     ASSERT_EQ(kept.status, 0) << kept.err;
     EXPECT_EQ(json::parse(kept.out)["canvas_hash"], hash);
     EXPECT_EQ(colour("q.tuft", ""), both);
@@ -155,7 +172,8 @@ TEST_F(Commands, RecolouringChangesColoursButNoAmount) {
 }
 
 TEST_F(Commands, UnwrapTellsItsFigures) {
-    const Ran ran = tuft("unwrap " + model("torus.ply") + " -o " + path("t.obj") + " --atlas-size 1024 --picture " + path("t.png") + " --json");
+    const Ran ran = tuft("unwrap " + model("torus.ply") + " -o " + path("t.obj") + " --atlas-size 1024 --picture " +
+                         path("t.png") + " --json");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const json j = json::parse(ran.out)["atlas"];
     EXPECT_EQ(j["flips"], 0);
@@ -190,7 +208,8 @@ TEST_F(Commands, ABrushIsCarriedOnAndReplaysTheSame) {
     std::string told = trace;
     told.insert(7, "<annotation type=\"tuft:reshape\"/><annotation type=\"tuft:dip\">cinnabar</annotation>");
     write("s.inkml", ink.substr(0, at) + trace + trace + told + ink.substr(end));
-    const std::string common = "paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --json";
+    const std::string common =
+        "paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --json";
     const Ran carried = tuft(common + " --dip carry --project " + path("p.tuft"));
     ASSERT_EQ(carried.status, 0) << carried.err;
     const json j = json::parse(carried.out);
@@ -251,7 +270,8 @@ TEST_F(Commands, AHandWithoutPressureGetsItWhenAsked) {
 TEST_F(Commands, AHabitIsLearnedAndTakenBack) {
     write("meant.inkml", plain_pen(0, true, 0.5));
     write("written.inkml", plain_pen(-0.3, true, 0.4));
-    const Ran learned = tuft("habit " + path("meant.inkml") + " " + path("written.inkml") + " -o " + path("h.toml") + " --json");
+    const Ran learned =
+        tuft("habit " + path("meant.inkml") + " " + path("written.inkml") + " -o " + path("h.toml") + " --json");
     ASSERT_EQ(learned.status, 0) << learned.err;
     const json j = json::parse(learned.out);
     EXPECT_NEAR(j["pressure_ratio"].get<double>(), 1.25, 0.01);
@@ -274,12 +294,16 @@ TEST_F(Commands, AHabitIsLearnedAndTakenBack) {
 
 TEST_F(Commands, ForcesAreATableOfNumbers) {
     write("s.inkml", stroke_file());
-    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --forces " + path("f.csv")).status, 0);
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --forces " +
+                   path("f.csv"))
+                  .status,
+              0);
     std::istringstream csv(read(path("f.csv")));
     std::string line;
     std::getline(csv, line);
-    EXPECT_EQ(line, "stroke,time_s,x_m,y_m,z_m,qw,qx,qy,qz,force_x_N,force_y_N,force_z_N,"
-                    "hand_x_N,hand_y_N,hand_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,moment_Nm");
+    EXPECT_EQ(line,
+              "stroke,time_s,x_m,y_m,z_m,qw,qx,qy,qz,force_x_N,force_y_N,force_z_N,"
+              "hand_x_N,hand_y_N,hand_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,moment_Nm");
     int rows = 0;
     double last = -1;
     while (std::getline(csv, line)) {
@@ -291,17 +315,25 @@ TEST_F(Commands, ForcesAreATableOfNumbers) {
     }
     EXPECT_GT(rows, 20);
     // A row for each sample of the hand: the size of a texel has no part in it.
-    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 512 --forces " + path("fine.csv")).status, 0);
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 512 --forces " +
+                   path("fine.csv"))
+                  .status,
+              0);
     const std::string fine = read(path("fine.csv"));
     EXPECT_EQ(std::count(fine.begin(), fine.end(), '\n'), rows + 1);
 }
 
 TEST_F(Commands, WhatIsPlacedInsideASolidIsSaid) {
-    const std::string head = "<ink xmlns='http://www.w3.org/2003/InkML'>", channels = "<channel name='X' type='decimal' units='mm'/><channel name='Y' type='decimal' units='mm'/>";
+    const std::string head = "<ink xmlns='http://www.w3.org/2003/InkML'>",
+                      channels =
+                          "<channel name='X' type='decimal' units='mm'/><channel name='Y' type='decimal' units='mm'/>";
     // In space, from outside the sphere of 100 mm into its middle.
-    write("into.inkml", head + "<traceFormat>" + channels + "<channel name='Z' type='decimal' units='mm'/></traceFormat>"
-                               "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0 130, 0 0 110, 0 0 90, 0 0 60</trace></ink>");
-    const Ran into = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --forces " + path("f.csv") + " --strokes " + path("into.inkml"));
+    write("into.inkml", head + "<traceFormat>" + channels +
+                            "<channel name='Z' type='decimal' units='mm'/></traceFormat>"
+                            "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0 130, 0 0 110, 0 0 90, 0 0 "
+                            "60</trace></ink>");
+    const Ran into = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --forces " + path("f.csv") +
+                          " --strokes " + path("into.inkml"));
     EXPECT_EQ(into.status, 0) << into.err;
     EXPECT_NE(into.err.find("ferrule into the model"), std::string::npos) << into.err;
     std::istringstream csv(read(path("f.csv")));
@@ -316,22 +348,31 @@ TEST_F(Commands, WhatIsPlacedInsideASolidIsSaid) {
         EXPECT_LT(std::hypot(force[0], force[1], force[2]), 60) << line;
     }
     // Flat, by the file and by the command line.
-    write("flat.inkml", head + "<traceFormat>" + channels + "</traceFormat><annotation type='tuft:origin'>0 -20 50</annotation>"
-                               "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0, 10 0, 20 2</trace></ink>");
+    write("flat.inkml",
+          head + "<traceFormat>" + channels +
+              "</traceFormat><annotation type='tuft:origin'>0 -20 50</annotation>"
+              "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0, 10 0, 20 2</trace></ink>");
     const Ran flat = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --strokes " + path("flat.inkml"));
     EXPECT_NE(flat.err.find("mm inside the model"), std::string::npos) << flat.err;
-    const Ran placed = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-20,50 --strokes " + path("flat.inkml"));
+    const Ran placed =
+        tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-20,50 --strokes " + path("flat.inkml"));
     EXPECT_NE(placed.err.find("--place 0,-20,50 lies"), std::string::npos) << placed.err;
     // As many strokes as there are, in one line.
-    write("many.inkml", head + "<traceFormat>" + channels + "</traceFormat><annotation type='tuft:origin'>0 -20 50</annotation>"
-                               "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0, 10 0</trace><trace>0 5, 10 5</trace><trace>0 9, 10 9</trace></ink>");
+    write("many.inkml", head + "<traceFormat>" + channels +
+                            "</traceFormat><annotation type='tuft:origin'>0 -20 50</annotation>"
+                            "<annotation type='tuft:brush'>wolf-small</annotation><trace>0 0, 10 0</trace><trace>0 5, "
+                            "10 5</trace><trace>0 9, 10 9</trace></ink>");
     const Ran many = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --strokes " + path("many.inkml"));
-    EXPECT_NE(many.err.find("the place of 3 strokes, the first stroke 1, lies up to 29.98 mm inside the model"), std::string::npos) << many.err;
+    EXPECT_NE(many.err.find("the place of 3 strokes, the first stroke 1, lies up to 29.98 mm inside the model"),
+              std::string::npos)
+        << many.err;
     EXPECT_EQ(std::count(many.err.begin(), many.err.end(), '\n'), 1) << many.err;
     // A place that is rounded to the millimetre is what a person reads off the model.
-    const Ran rounded = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-49.3,50 --strokes " + path("flat.inkml"));
+    const Ran rounded =
+        tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-49.3,50 --strokes " + path("flat.inkml"));
     EXPECT_EQ(rounded.err.find("inside"), std::string::npos) << rounded.err;
-    const Ran on = tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-50,50 --strokes " + path("flat.inkml"));
+    const Ran on =
+        tuft("paint " + model("sphere.ply") + " --atlas-size 256 --place 0,-50,50 --strokes " + path("flat.inkml"));
     EXPECT_EQ(on.err.find("inside"), std::string::npos) << on.err;
 }
 
@@ -351,13 +392,13 @@ TEST_F(Commands, EveryFinishedStrokeSurvivesAKill) {
     write("many.inkml", many);
     // Kill it in the middle: when the project has grown by some strokes, however long that takes.
     const std::string project = path("p.tuft");
-    const std::string script =
-        "export TUFT_DATA='" + source_folder() + "'\n'" + tuft_program() + "' paint '" + model("sheet.ply") + "' --strokes '" +
-        path("many.inkml") + "' --atlas-size 1024 --threads 1 --project '" + project + "' >/dev/null 2>&1 &\n" +
-        "pid=$!; first=0\nwhile kill -0 $pid 2>/dev/null; do\n  size=$(stat -c %s '" + project +
-        "' 2>/dev/null || echo 0)\n  [ $first -eq 0 ] && first=$size\n"
-        "  [ $first -gt 0 ] && [ $size -gt $((first + 20000)) ] && break\n  sleep 0.01\ndone\n"
-        "kill -KILL $pid 2>/dev/null; wait $pid 2>/dev/null; true\n";
+    const std::string script = "export TUFT_DATA='" + source_folder() + "'\n'" + tuft_program() + "' paint '" +
+                               model("sheet.ply") + "' --strokes '" + path("many.inkml") +
+                               "' --atlas-size 1024 --threads 1 --project '" + project + "' >/dev/null 2>&1 &\n" +
+                               "pid=$!; first=0\nwhile kill -0 $pid 2>/dev/null; do\n  size=$(stat -c %s '" + project +
+                               "' 2>/dev/null || echo 0)\n  [ $first -eq 0 ] && first=$size\n"
+                               "  [ $first -gt 0 ] && [ $size -gt $((first + 20000)) ] && break\n  sleep 0.01\ndone\n"
+                               "kill -KILL $pid 2>/dev/null; wait $pid 2>/dev/null; true\n";
     ASSERT_EQ(std::system(("bash '" + write("kill.sh", script) + "'").c_str()), 0);
     const Ran inspected = tuft("inspect " + path("p.tuft") + " --json");
     ASSERT_EQ(inspected.status, 0) << inspected.err;
@@ -387,10 +428,9 @@ TEST_F(Commands, InspectMeasuresUvsOfAModelAsUnwrapDoes) {
     const json with = json::parse(inspected.out);
     EXPECT_EQ(with["has_uvs"], true);
     EXPECT_TRUE(with["uv_fault"].is_null()) << with["uv_fault"];
-    for (const auto& [key, value] : unwrapped.items())
-        EXPECT_TRUE(with["atlas"].contains(key)) << key;
-    for (const char* key : {"charts", "flips", "overlapping_texels", "roomless_triangles", "smallest_gap", "size",
-                            "udims", "pages"})
+    for (const auto& [key, value] : unwrapped.items()) EXPECT_TRUE(with["atlas"].contains(key)) << key;
+    for (const char* key :
+         {"charts", "flips", "overlapping_texels", "roomless_triangles", "smallest_gap", "size", "udims", "pages"})
         EXPECT_EQ(with["atlas"][key], unwrapped[key]) << key;
     // The file has nine digits of floats and lengths in millimetres: 1e-6 of each figure.
     for (const char* key : {"seam_length", "l2_stretch", "linf_stretch", "angle_distortion", "area_distortion",
@@ -426,15 +466,16 @@ TEST_F(Commands, InspectSaysWhatSoundUvsCannotDoWell) {
     EXPECT_NE(found["uv_notes"][0].get<std::string>().find("1 texel apart"), std::string::npos);
     EXPECT_EQ(found["uv_notes"][1].get<std::string>().find("1 of the charts"), 0u);
     // 10 mm over 0.2 and 0.05 of 2048 texels.
-    EXPECT_NE(found["uv_notes"][2].get<std::string>().find("0.0244 to 0.0977 mm"), std::string::npos) << found["uv_notes"];
+    EXPECT_NE(found["uv_notes"][2].get<std::string>().find("0.0244 to 0.0977 mm"), std::string::npos)
+        << found["uv_notes"];
 
     write("far.obj", square(0, 10, 0.1, 0.1, 0.2, 1) + square(20, 10, 0.4, 0.1, 0.2, 5));
     EXPECT_EQ(json::parse(tuft("inspect " + path("far.obj") + " --json").out)["uv_notes"], json::array());
 }
 
 TEST_F(Commands, UvsOnSeveralPagesAreKept) {
-    const Ran made = tuft("unwrap " + model("bowl.ply") + " -o " + path("b.obj") +
-                          " --atlas-size 256 --pages 3 --json");
+    const Ran made =
+        tuft("unwrap " + model("bowl.ply") + " -o " + path("b.obj") + " --atlas-size 256 --pages 3 --json");
     ASSERT_EQ(made.status, 0) << made.err;
     const json first = json::parse(made.out)["atlas"];
     EXPECT_EQ(first["udims"], (json{1001, 1002, 1011}));

@@ -39,7 +39,8 @@ TEST_F(EarlierFiles, ProjectKeepsItsJournalAndItsTexels) {
     const json j = run_json("inspect " + project);
     std::vector<std::string> actions;
     for (const json& entry : j.at("strokes")) actions.push_back(entry.at("action"));
-    EXPECT_THAT(actions, testing::ElementsAre("rinse", "dip", "stroke", "mask", "layer", "fill", "layer", "layer", "stroke", "dry"));
+    EXPECT_THAT(actions, testing::ElementsAre("rinse", "dip", "stroke", "mask", "layer", "fill", "layer", "layer",
+                                              "stroke", "dry"));
     EXPECT_EQ(j.at("strokes").at(1).at("ink"), "iron-red");
     EXPECT_EQ(j.at("strokes").at(5).at("mask"), 1);
     EXPECT_EQ(j.at("strokes").at(8).at("tool"), "eraser");
@@ -92,7 +93,8 @@ TEST_F(EarlierFiles, OptionsOfEarlierVersionsAreTaken) {
     ASSERT_EQ(tuft("habit " + word + " " + word + " -o " + path("earlier.toml")).status, 0);
     ASSERT_EQ(tuft("bias " + word + " " + word + " -o " + path("now.toml")).status, 0);
     EXPECT_EQ(read(path("earlier.toml")), read(path("now.toml")));
-    const std::string paint = "paint " + before("tile.obj") + " --strokes " + word + " --texel-size 0.4 --quiet --project ";
+    const std::string paint =
+        "paint " + before("tile.obj") + " --strokes " + word + " --texel-size 0.4 --quiet --project ";
     ASSERT_EQ(tuft(paint + path("a.tuft") + " --laying wrap --habit " + path("now.toml")).status, 0);
     ASSERT_EQ(tuft(paint + path("b.tuft") + " --mapping wrap --bias " + path("now.toml")).status, 0);
     EXPECT_EQ(read(colours_of(path("a.tuft"), "a.png")), read(colours_of(path("b.tuft"), "b.png")));

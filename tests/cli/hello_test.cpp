@@ -15,12 +15,10 @@ class Hello : public test::Program {
   protected:
     /// Runs tuft-hello as a shell would.
     test::Ran hello(const std::string& model, const std::string& glb) const {
-        const std::string command = "TUFT_DATA='" + source_folder() + "' '" TUFT_HELLO "' '" +
-                                    model + "' '" + path(glb) + "' >'" + path(".out") + "' 2>'" +
-                                    path(".err") + "'";
+        const std::string command = "TUFT_DATA='" + source_folder() + "' '" TUFT_HELLO "' '" + model + "' '" +
+                                    path(glb) + "' >'" + path(".out") + "' 2>'" + path(".err") + "'";
         const int raw = std::system(command.c_str());
-        return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), read(path(".out")),
-                read(path(".err"))};
+        return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), read(path(".out")), read(path(".err"))};
     }
 };
 
@@ -39,8 +37,7 @@ std::size_t inked_texels(const mesh::Picture& picture) {
     std::size_t inked = 0;
     for (std::size_t i = 0; i < n; ++i) {
         const Rgb c = texel(i);
-        inked += std::abs(c[0] - bare[0]) > 40 || std::abs(c[1] - bare[1]) > 40 ||
-                 std::abs(c[2] - bare[2]) > 40;
+        inked += std::abs(c[0] - bare[0]) > 40 || std::abs(c[1] - bare[1]) > 40 || std::abs(c[2] - bare[2]) > 40;
     }
     return inked;
 }
@@ -52,8 +49,7 @@ TEST_F(Hello, PaintsOneStrokeThatIsInTheGlb) {
         ASSERT_EQ(ran.status, 0) << ran.err;
         unsigned charts = 0;
         double area = 0;
-        ASSERT_EQ(std::sscanf(ran.out.c_str(), "%u charts, %lf mm2 of ink", &charts, &area), 2)
-            << ran.out;
+        ASSERT_EQ(std::sscanf(ran.out.c_str(), "%u charts, %lf mm2 of ink", &charts, &area), 2) << ran.out;
         // 40 mm of a brush of 7.4 mm across its belly: at least a hair line of 1 mm, at most its
         // widest all along.
         EXPECT_GT(area, 40);

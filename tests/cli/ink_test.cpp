@@ -15,8 +15,7 @@ TEST_F(InksOfTheProgram, AreListedWithTheirColours) {
     ASSERT_EQ(ran.status, 0) << ran.err;
     const json inks = json::parse(ran.out)["inks"];
     EXPECT_GE(inks.size(), 11u);
-    for (const json& ink : inks)
-        EXPECT_EQ(ink["colour_on_porcelain"].get<std::string>().size(), 7u) << ink;
+    for (const json& ink : inks) EXPECT_EQ(ink["colour_on_porcelain"].get<std::string>().size(), 7u) << ink;
     EXPECT_NE(tuft("ink").out.find("Cinnabar red"), std::string::npos);
 }
 
@@ -27,8 +26,8 @@ TEST_F(InksOfTheProgram, AreMixedForAColourAndWrittenForPainting) {
     EXPECT_LT(match["delta_e_2000"], 1);
     EXPECT_EQ(match["in_words"], "the same to the eye");
     write("s.inkml", stroke_file());
-    const Ran painted = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") +
-                             " --ink " + path("brown.toml") + " --atlas-size 256 --json");
+    const Ran painted = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --ink " +
+                             path("brown.toml") + " --atlas-size 256 --json");
     ASSERT_EQ(painted.status, 0) << painted.err;
     // The colour's own name is the same ink.
     const Ran named = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") +
@@ -41,8 +40,8 @@ TEST_F(InksOfTheProgram, AreMixedForAColourAndWrittenForPainting) {
 
 TEST_F(InksOfTheProgram, OfAColourFillAndReplay) {
     write("s.inkml", stroke_file());
-    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") +
-                   " --atlas-size 256 --project " + path("p.tuft"))
+    ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " +
+                   path("p.tuft"))
                   .status,
               0);
     const Ran filled = tuft("fill " + path("p.tuft") + " --ink '#d08040' --layer ground --json");
@@ -50,10 +49,7 @@ TEST_F(InksOfTheProgram, OfAColourFillAndReplay) {
     const Ran replayed = tuft("replay " + path("p.tuft") + " --ink '#3060a0' --json");
     ASSERT_EQ(replayed.status, 0) << replayed.err;
     EXPECT_NE(json::parse(replayed.out)["canvas_hash"], json::parse(filled.out)["canvas_hash"]);
-    EXPECT_EQ(
-        tuft("export " + path("p.tuft") + " -o " + path("m.png") + " --recolour 'carbon=#3060a0'")
-            .status,
-        0);
+    EXPECT_EQ(tuft("export " + path("p.tuft") + " -o " + path("m.png") + " --recolour 'carbon=#3060a0'").status, 0);
 }
 
 TEST_F(InksOfTheProgram, OfAColourOutOfReachSaySoPlainly) {
@@ -78,8 +74,8 @@ TEST_F(InksOfTheProgram, RefuseWhatIsNoColour) {
         EXPECT_EQ(ran.error_lines(), 1) << ran.err;
     }
     write("s.inkml", stroke_file());
-    const Ran ran = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") +
-                         " --ink '#c0302' --atlas-size 256");
+    const Ran ran =
+        tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --ink '#c0302' --atlas-size 256");
     EXPECT_EQ(ran.status, 1);
     EXPECT_NE(ran.err.find("is no colour"), std::string::npos) << ran.err;
 }

@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
-#include "program.h"
 #include "paths.h"
+#include "program.h"
 
 namespace tuft::test {
 namespace {
@@ -19,9 +19,7 @@ class LayersOfAProject : public Program {
         painted_ = json::parse(ran.out);
     }
     json layers() { return json::parse(tuft("inspect " + path("p.tuft") + " --json").out)["layers"]; }
-    std::string replayed() {
-        return json::parse(tuft("replay " + path("p.tuft") + " --json").out)["canvas_hash"];
-    }
+    std::string replayed() { return json::parse(tuft("replay " + path("p.tuft") + " --json").out)["canvas_hash"]; }
     std::string map(const std::string& more = "") {
         EXPECT_EQ(tuft("export " + path("p.tuft") + " -o " + path("m.png") + " " + more).status, 0);
         return read(path("m.png"));
@@ -33,8 +31,8 @@ TEST_F(LayersOfAProject, AreMadeByPaintingAndChangedByName) {
     paint("");
     EXPECT_EQ(layers().size(), 1u);
     const std::string below = map();
-    const Ran gold = tuft("paint " + path("p.tuft") + " --strokes " + path("t.inkml") +
-                          " --layer gold --ink cinnabar --json");
+    const Ran gold =
+        tuft("paint " + path("p.tuft") + " --strokes " + path("t.inkml") + " --layer gold --ink cinnabar --json");
     ASSERT_EQ(gold.status, 0) << gold.err;
     EXPECT_EQ(json::parse(gold.out)["strokes"].size(), 1u) << "what was painted now";
     ASSERT_EQ(layers().size(), 2u);
@@ -69,7 +67,8 @@ TEST_F(LayersOfAProject, AreMadeByPaintingAndChangedByName) {
 
 TEST_F(LayersOfAProject, AreCopiedBlendedAndMerged) {
     paint("");
-    ASSERT_EQ(tuft("paint " + path("p.tuft") + " --strokes " + path("t.inkml") + " --layer gold --ink cinnabar").status, 0);
+    ASSERT_EQ(tuft("paint " + path("p.tuft") + " --strokes " + path("t.inkml") + " --layer gold --ink cinnabar").status,
+              0);
     const std::string below = map("--layers 'Layer 1'"), both = map();
     const auto change = [&](const std::string& what) {
         const Ran ran = tuft("layer " + path("p.tuft") + " " + what + " --json");
@@ -98,10 +97,11 @@ TEST_F(LayersOfAProject, AreCopiedBlendedAndMerged) {
 
 TEST_F(LayersOfAProject, AreNamedInTheStrokeFile) {
     std::string ink = stroke_file();
-    ink.insert(ink.find("<annotation type=\"tuft:brush\""), "<annotation type=\"tuft:layer\">gold &amp; 金</annotation>");
+    ink.insert(ink.find("<annotation type=\"tuft:brush\""),
+               "<annotation type=\"tuft:layer\">gold &amp; 金</annotation>");
     write("g.inkml", ink);
-    const Ran ran = tuft("paint " + model("sheet.ply") + " --strokes " + path("g.inkml") + " --atlas-size 256 --project " +
-                         path("p.tuft"));
+    const Ran ran = tuft("paint " + model("sheet.ply") + " --strokes " + path("g.inkml") +
+                         " --atlas-size 256 --project " + path("p.tuft"));
     ASSERT_EQ(ran.status, 0) << ran.err;
     ASSERT_EQ(layers().size(), 2u);
     EXPECT_EQ(layers()[1]["name"], "gold & 金");
@@ -127,18 +127,21 @@ TEST_F(LayersOfAProject, WhatCannotBeIsOneLine) {
 
 TEST_F(LayersOfAProject, AreFilledAndErased) {
     paint("");
-    const Ran filled = tuft("fill " + path("p.tuft") + " --ink cinnabar --film 2 --to-ink indigo --from -20,0,0 --to 20,0,0 --layer ground --json");
+    const Ran filled =
+        tuft("fill " + path("p.tuft") +
+             " --ink cinnabar --film 2 --to-ink indigo --from -20,0,0 --to 20,0,0 --layer ground --json");
     ASSERT_EQ(filled.status, 0) << filled.err;
     EXPECT_EQ(replayed(), json::parse(filled.out)["canvas_hash"]);
     EXPECT_GT(json::parse(filled.out)["pigment_mm3"], 0);
-    const Ran erased = tuft("paint " + path("p.tuft") + " --strokes " + path("t.inkml") + " --layer ground --erase --json");
+    const Ran erased =
+        tuft("paint " + path("p.tuft") + " --strokes " + path("t.inkml") + " --layer ground --erase --json");
     ASSERT_EQ(erased.status, 0) << erased.err;
     const json stroke = json::parse(erased.out)["strokes"][0];
     EXPECT_GT(stroke["removed_mm3"], 0);
     EXPECT_EQ(stroke["ink_mm3"], 0);
     EXPECT_EQ(replayed(), json::parse(erased.out)["canvas_hash"]);
-    for (const char* wrong : {"--film -1", "--film much", "--to-ink indigo", "--from 0,0,0", "--from 0,0,0 --to 0,0", "--round",
-                              "--part 0,0,0 --chart 0,0,0"}) {
+    for (const char* wrong : {"--film -1", "--film much", "--to-ink indigo", "--from 0,0,0", "--from 0,0,0 --to 0,0",
+                              "--round", "--part 0,0,0 --chart 0,0,0"}) {
         const Ran ran = tuft("fill " + path("p.tuft") + " " + wrong);
         EXPECT_EQ(ran.status, 2) << wrong;
         EXPECT_EQ(ran.error_lines(), 1) << ran.err;
@@ -151,9 +154,12 @@ TEST_F(LayersOfAProject, AreFilledAndErased) {
 // after it loses nothing of it.
 TEST_F(LayersOfAProject, EveryFinishedChangeSurvivesAKill) {
     paint("");
-    const std::string script = "export TUFT_DATA='" + source_folder() + "'\nP='" + path("p.tuft") + "'\nT='" + tuft_program() + "'\n" +
+    const std::string script = "export TUFT_DATA='" + source_folder() + "'\nP='" + path("p.tuft") + "'\nT='" +
+                               tuft_program() + "'\n" +
                                "$T layer $P add gold >/dev/null || exit 1\n"
-                               "$T paint $P --strokes '" + path("t.inkml") + "' --layer gold >/dev/null & pid=$!\n"
+                               "$T paint $P --strokes '" +
+                               path("t.inkml") +
+                               "' --layer gold >/dev/null & pid=$!\n"
                                "sleep 0.05; kill -KILL $pid 2>/dev/null; wait $pid 2>/dev/null\n"
                                "$T layer $P opacity gold 0.25 >/dev/null || exit 1\n";
     ASSERT_EQ(std::system(("bash '" + write("kill.sh", script) + "' 2>/dev/null").c_str()), 0);

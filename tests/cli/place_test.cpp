@@ -36,8 +36,7 @@ class Place : public Program {
         ink << "<ink xmlns=\"http://www.w3.org/2003/InkML\">";
         for (const double below : {0.0, 0.25}) {
             ink << "<trace>";
-            for (int i = 0; i <= 16; ++i)
-                ink << (i ? ", " : "") << x + width * i / 16 << ' ' << y + width * below;
+            for (int i = 0; i <= 16; ++i) ink << (i ? ", " : "") << x + width * i / 16 << ' ' << y + width * below;
             ink << "</trace>";
         }
         return ink.str() + "</ink>";
@@ -59,9 +58,8 @@ class Place : public Program {
 
     // Where the ferrule went, mm.
     Reach painted(const std::string& file, const std::string& more) const {
-        const Ran ran =
-            tuft("paint " + path("box.obj") + " --brush wolf-small --atlas-size 256 --strokes " +
-                 path(file) + " --forces " + path("f.csv") + " " + more);
+        const Ran ran = tuft("paint " + path("box.obj") + " --brush wolf-small --atlas-size 256 --strokes " +
+                             path(file) + " --forces " + path("f.csv") + " " + more);
         EXPECT_EQ(ran.status, 0) << ran.err;
         Reach reach;
         std::istringstream csv(read(path("f.csv")));
@@ -90,7 +88,8 @@ TEST_F(Place, ADrawingLiesWithItsMiddleAtThePlaceAsWideAsAsked) {
     write("box.obj", box(false));
     write("lines.inkml", lines(9000, -4000, 10));
     const Reach plain = painted("lines.inkml", "--place 10,0,20");
-    // The ferrule is ahead of the ink at the end and, where it is set down, on its way there: by no more than hair lies down.
+    // The ferrule is ahead of the ink at the end and, where it is set down, on its way there: by no more than hair lies
+    // down.
     const double lead = plain.size(0) - 10;
     EXPECT_LT(std::abs(lead), 5) << "about what of the hair lies down";
     // The ferrule leans away from the tip: where it is shows against a drawing about the origin.
@@ -109,19 +108,25 @@ TEST_F(Place, ADrawingLiesWithItsMiddleAtThePlaceAsWideAsAsked) {
 
 TEST_F(Place, TheWidthAskedForIsThatOfTheInk) {
     write("box.obj", box(false));
-    write("thick.svg", "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 30 10' width='30mm'><path d='M5 5 h20' fill='none' stroke='#000' stroke-width='4'/></svg>");
+    write("thick.svg",
+          "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 30 10' width='30mm'><path d='M5 5 h20' fill='none' "
+          "stroke='#000' stroke-width='4'/></svg>");
     const Reach own = painted("thick.svg", "--place 0,0,20");
-    const Reach asked = painted("thick.svg", "--place 0,0,20 --place-width 24");  // 20 of line, 2 of ink beyond each end
-    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(own.size(axis), asked.size(axis), 1e-6) << "the scale is 1 but for rounding";
+    const Reach asked =
+        painted("thick.svg", "--place 0,0,20 --place-width 24");  // 20 of line, 2 of ink beyond each end
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(own.size(axis), asked.size(axis), 1e-6) << "the scale is 1 but for rounding";
 }
 
 TEST_F(Place, ADrawingFarLargerThanTheModelIsTold) {
     write("box.obj", box(false));  // 108 mm across
     write("lines.inkml", lines(0, 0, 10));
     for (const auto& [width, told] : {std::pair{"300", false}, {"400", true}}) {
-        const Ran ran = tuft("paint " + path("box.obj") + " --atlas-size 256 --strokes " + path("lines.inkml") + " --place 0,-30,0 --place-width " + width);
+        const Ran ran = tuft("paint " + path("box.obj") + " --atlas-size 256 --strokes " + path("lines.inkml") +
+                             " --place 0,-30,0 --place-width " + width);
         EXPECT_EQ(ran.status, 0) << ran.err;
-        EXPECT_EQ(ran.err.find("the drawing is 400 mm large, the model 107.7 mm") != std::string::npos, told) << ran.err;
+        EXPECT_EQ(ran.err.find("the drawing is 400 mm large, the model 107.7 mm") != std::string::npos, told)
+            << ran.err;
     }
 }
 
@@ -132,7 +137,8 @@ TEST_F(Place, ADrawingWithoutPlaceFitsTheFront) {
     write("fits.inkml", lines(0, 0, 30));
     const Reach fits = painted("fits.inkml", "");
     const double lead = fits.size(0) - 30;
-    // The ferrule is ahead of the ink at the end and, where it is set down, on its way there: by no more than hair lies down.
+    // The ferrule is ahead of the ink at the end and, where it is set down, on its way there: by no more than hair lies
+    // down.
     EXPECT_LT(std::abs(lead), 5) << "what fits stays as it is written";
     EXPECT_NEAR(reach.size(0), 48 + lead, kStep) << "six tenths of the front";
     EXPECT_LT(reach.high[1], -30 + 1e-3) << "before the front";
@@ -140,20 +146,24 @@ TEST_F(Place, ADrawingWithoutPlaceFitsTheFront) {
 }
 
 TEST_F(Place, WhatLiesFlatIsWrittenOnFromAbove) {
-    write("box.obj", "v -40 -30 0\nv 40 -30 0\nv 40 30 0\nv -40 30 0\nv -40 -30 2\nv 40 -30 2\nv 40 30 2\nv -40 30 2\n"
-                     "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    write("box.obj",
+          "v -40 -30 0\nv 40 -30 0\nv 40 30 0\nv -40 30 0\nv -40 -30 2\nv 40 -30 2\nv 40 30 2\nv -40 30 2\n"
+          "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
     write("lines.inkml", lines(0, 0, 20));
     EXPECT_GT(painted("lines.inkml", "").low[2], 2) << "over the top";
 }
 
 TEST_F(Place, WhatLiesOnASlopeIsShownTheWayItReads) {
     // The lid falls by 18 degrees to the back; the drawing stands upright seen from the front.
-    write("lid.obj", "v -40 -30 0\nv 40 -30 0\nv 40 30 0\nv -40 30 0\nv -40 -30 40\nv 40 -30 40\nv 40 30 20\nv -40 30 20\n"
-                     "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    write("lid.obj",
+          "v -40 -30 0\nv 40 -30 0\nv 40 30 0\nv -40 30 0\nv -40 -30 40\nv 40 -30 40\nv 40 30 20\nv -40 30 20\n"
+          "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
     write("lines.inkml", lines(0, 0, 20));
     EXPECT_EQ(picture_of("lid.obj", "0,5,28", ""), picture_of("lid.obj", "0,5,28", " --view 0,80"));
-    EXPECT_EQ(picture_of("lid.obj", "0,5,28 --place-turn 30", ""), picture_of("lid.obj", "0,5,28 --place-turn 30", " --view 0,80"));
-    EXPECT_EQ(picture_of("lid.obj", "0,5,28 --place-turn 90", ""), picture_of("lid.obj", "0,5,28 --place-turn 90", " --view 90,80"));
+    EXPECT_EQ(picture_of("lid.obj", "0,5,28 --place-turn 30", ""),
+              picture_of("lid.obj", "0,5,28 --place-turn 30", " --view 0,80"));
+    EXPECT_EQ(picture_of("lid.obj", "0,5,28 --place-turn 90", ""),
+              picture_of("lid.obj", "0,5,28 --place-turn 90", " --view 90,80"));
 }
 
 TEST_F(Place, TheUnitIsGuessedWhereNothingSaysIt) {
@@ -171,7 +181,8 @@ TEST_F(Place, TheUnitIsGuessedWhereNothingSaysIt) {
     }
     write("metres.obj", out);
     write("lines.inkml", lines(0, 0, 30));
-    const std::string paint = "paint " + path("metres.obj") + " --atlas-size 256 --strokes " + path("lines.inkml") + " --place 0,-300,0";
+    const std::string paint =
+        "paint " + path("metres.obj") + " --atlas-size 256 --strokes " + path("lines.inkml") + " --place 0,-300,0";
     const Ran guessed = tuft(paint + " --export " + path("out.glb"));
     const std::string guessed_model = read(path("out.glb"));
     EXPECT_EQ(guessed.status, 0) << guessed.err;
@@ -190,8 +201,8 @@ TEST_F(Place, BrushesOfTheFileGrowWithTheDrawing) {
     write("named.inkml", ink);
     write("bare.inkml", lines(0, 0, 40));
     const auto brush_of = [&](const std::string& file, const std::string& more) {
-        const Ran ran = tuft("paint " + path("box.obj") + " --atlas-size 256 --strokes " + path(file) + " --place 0,-30,0 --project " +
-                             path("p.tuft") + " " + more);
+        const Ran ran = tuft("paint " + path("box.obj") + " --atlas-size 256 --strokes " + path(file) +
+                             " --place 0,-30,0 --project " + path("p.tuft") + " " + more);
         EXPECT_EQ(ran.status, 0) << ran.err;
         return json::parse(tuft("inspect " + path("p.tuft") + " --json").out)["strokes"][0]["brush"].get<std::string>();
     };
@@ -199,7 +210,8 @@ TEST_F(Place, BrushesOfTheFileGrowWithTheDrawing) {
     EXPECT_EQ(brush_of("named.inkml", "--place-width 20"), "goat-small*0.5");
     EXPECT_EQ(brush_of("named.inkml", "--place-width 20 --brush wolf-small"), "wolf-small");
     EXPECT_EQ(brush_of("bare.inkml", "--place-width 60"), "wolf-medium");
-    EXPECT_EQ(brush_of("bare.inkml", "--place-width 15"), "wolf-medium*0.25") << "60 mm of writing suit the whole brush";
+    EXPECT_EQ(brush_of("bare.inkml", "--place-width 15"), "wolf-medium*0.25")
+        << "60 mm of writing suit the whole brush";
 }
 
 TEST_F(Place, WhatHasNoPlaceIsDraped) {
@@ -229,8 +241,7 @@ TEST_F(Place, AWallThatLeansOutIsLookedAtFromAboveTheGround) {
     std::ostringstream obj;  // a trough: its front leans out by 37 degrees
     for (const int z : {-20, 20})
         for (const int y : {-1, 1})
-            for (const int x : {-40, 40})
-                obj << "v " << x << ' ' << y * (z < 0 ? 20 : 50) << ' ' << z << '\n';
+            for (const int x : {-40, 40}) obj << "v " << x << ' ' << y * (z < 0 ? 20 : 50) << ' ' << z << '\n';
     write("trough.obj", obj.str() + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
     write("lines.inkml", lines(0, 0, 30));
     const auto picture = [&](const std::string& view) { return picture_of("trough.obj", "0,-35,0", view); };
@@ -244,9 +255,8 @@ TEST_F(Place, AFileWithYUpIsTheSameModelStandingUpAndGoesBackAsItCame) {
     write("y.obj", box(true));
     write("lines.inkml", lines(0, 0, 30));
     const auto paint = [&](const std::string& file, const std::string& more) {
-        const Ran ran =
-            tuft("paint " + path(file) + " --brush wolf-small --atlas-size 256 --strokes " +
-                 path("lines.inkml") + " --json --project " + path("p.tuft") + more);
+        const Ran ran = tuft("paint " + path(file) + " --brush wolf-small --atlas-size 256 --strokes " +
+                             path("lines.inkml") + " --json --project " + path("p.tuft") + more);
         EXPECT_EQ(ran.status, 0) << ran.err;
         return json::parse(ran.out)["canvas_hash"].get<std::string>();
     };
@@ -269,8 +279,8 @@ TEST_F(Place, AFileWithYUpIsTheSameModelStandingUpAndGoesBackAsItCame) {
     // From the project again, and on a revised file in the same frame.
     ASSERT_EQ(tuft("export " + path("p.tuft") + " -o " + path("back.obj")).status, 0);
     EXPECT_EQ(points("back.obj"), points("y.obj"));
-    const Ran replayed = tuft("replay " + path("p.tuft") + " --model " + path("y.obj") +
-                              " --json --export " + path("again.obj"));
+    const Ran replayed =
+        tuft("replay " + path("p.tuft") + " --model " + path("y.obj") + " --json --export " + path("again.obj"));
     ASSERT_EQ(replayed.status, 0) << replayed.err;
     EXPECT_EQ(json::parse(replayed.out)["canvas_hash"], standing);
     EXPECT_EQ(points("again.obj"), points("y.obj"));
@@ -282,29 +292,38 @@ TEST_F(Place, AFileWithYUpIsTheSameModelStandingUpAndGoesBackAsItCame) {
 TEST_F(Place, ADrawingGoesToTheSideThatIsNamedAndSaysWhatWasChosen) {
     write("box.obj", box(false));
     write("lines.inkml", lines(0, 0, 8000));  // far too large
-    const std::map<std::string, std::array<double, 3>> sides{{"front", {0, -30, 0}}, {"back", {0, 30, 0}}, {"left", {-40, 0, 0}},
-                                                             {"right", {40, 0, 0}}, {"top", {0, 0, 20}}, {"bottom", {0, 0, -20}}};
+    const std::map<std::string, std::array<double, 3>> sides{{"front", {0, -30, 0}}, {"back", {0, 30, 0}},
+                                                             {"left", {-40, 0, 0}},  {"right", {40, 0, 0}},
+                                                             {"top", {0, 0, 20}},    {"bottom", {0, 0, -20}}};
     for (const auto& [side, at] : sides) {
-        const Ran ran = tuft("paint " + path("box.obj") + " --brush wolf-small --atlas-size 256 --strokes " + path("lines.inkml") + " --on " + side + " --json");
+        const Ran ran = tuft("paint " + path("box.obj") + " --brush wolf-small --atlas-size 256 --strokes " +
+                             path("lines.inkml") + " --on " + side + " --json");
         ASSERT_EQ(ran.status, 0) << ran.err;
         const json placed = json::parse(ran.out)["placed"];
         EXPECT_EQ(placed["side"], side);
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(placed["at_mm"][k].get<double>(), at[k], 0.7) << side << ": a cell of 129";
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(placed["at_mm"][k].get<double>(), at[k], 0.7) << side << ": a cell of 129";
         const double across = side == "left" || side == "right" ? 60 : 80;
         EXPECT_NEAR(placed["free_mm"][0].get<double>(), across, 1.3) << side;
         EXPECT_NEAR(placed["part"].get<double>(), 0.6, 1e-9);
-        // The side of the drawing that fills the free area more takes the part; the other follows, off by what a cell of 129 is of it.
-        const auto taken = [&](const char* size, int axis) { return placed[size].get<double>() / placed["free_mm"][axis].get<double>(); };
+        // The side of the drawing that fills the free area more takes the part; the other follows, off by what a cell
+        // of 129 is of it.
+        const auto taken = [&](const char* size, int axis) {
+            return placed[size].get<double>() / placed["free_mm"][axis].get<double>();
+        };
         EXPECT_NEAR(std::max(taken("width_mm", 0), taken("height_mm", 1)), 0.6, 1e-6) << side;
-        EXPECT_GT(std::min(taken("width_mm", 0), taken("height_mm", 1)), 0.6 * (1 - 1 / 30.0)) << side << ": 32 cells high";
+        EXPECT_GT(std::min(taken("width_mm", 0), taken("height_mm", 1)), 0.6 * (1 - 1 / 30.0))
+            << side << ": 32 cells high";
         EXPECT_NE(ran.err.find("the " + side + " of the model"), std::string::npos) << ran.err;
         EXPECT_NE(ran.err.find("of which they take 60 %"), std::string::npos) << ran.err;
     }
-    const Ran none = tuft("paint " + path("box.obj") + " --atlas-size 256 --strokes " + path("lines.inkml") + " --on inside");
+    const Ran none =
+        tuft("paint " + path("box.obj") + " --atlas-size 256 --strokes " + path("lines.inkml") + " --on inside");
     EXPECT_EQ(none.status, 1) << "a closed box has no inside";
     EXPECT_NE(none.err.find("no calm area is found on its inside"), std::string::npos) << none.err;
     EXPECT_EQ(tuft("paint " + path("box.obj") + " --strokes " + path("lines.inkml") + " --on lid").status, 2);
-    EXPECT_EQ(tuft("paint " + path("box.obj") + " --strokes " + path("lines.inkml") + " --on top --place 0,0,0").status, 2);
+    EXPECT_EQ(tuft("paint " + path("box.obj") + " --strokes " + path("lines.inkml") + " --on top --place 0,0,0").status,
+              2);
 }
 
 TEST_F(Place, WhoReadsItSaysWhichWayUpItIs) {
@@ -321,17 +340,21 @@ TEST_F(Place, WhoReadsItSaysWhichWayUpItIs) {
     // Straight away from the reader, onto whatever lies there.
     const Reach slant = painted("lines.inkml", "--place 0,-30,10 --laying project --read-from 0,-1,1");
     EXPECT_NEAR(slant.size(0), front.size(0), kStep);
-    EXPECT_EQ(tuft("paint " + path("box.obj") + " --strokes " + path("lines.inkml") + " --read-from nowhere").status, 2);
+    EXPECT_EQ(tuft("paint " + path("box.obj") + " --strokes " + path("lines.inkml") + " --read-from nowhere").status,
+              2);
     EXPECT_EQ(tuft("paint " + path("box.obj") + " --strokes " + path("lines.inkml") + " --read-from 0,0,0").status, 2);
 }
 
 TEST_F(Place, TheInsideOfABowlIsWithinItsWalls) {
     write("lines.inkml", lines(0, 0, 8000));
-    const Ran ran = tuft("paint " + source_folder() + "/models/bowl.ply --brush wolf-small --atlas-size 256 --strokes " + path("lines.inkml") + " --on inside --json");
+    const Ran ran =
+        tuft("paint " + source_folder() + "/models/bowl.ply --brush wolf-small --atlas-size 256 --strokes " +
+             path("lines.inkml") + " --on inside --json");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const json placed = json::parse(ran.out)["placed"];
     EXPECT_GT(placed["normal"][2].get<double>(), 0.9);
-    EXPECT_LT(std::hypot(placed["at_mm"][0].get<double>(), placed["at_mm"][1].get<double>()), 6) << "its middle, within a few of 129 cells";
+    EXPECT_LT(std::hypot(placed["at_mm"][0].get<double>(), placed["at_mm"][1].get<double>()), 6)
+        << "its middle, within a few of 129 cells";
 }
 
 }  // namespace

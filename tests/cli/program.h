@@ -1,13 +1,13 @@
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <gtest/gtest.h>
-#include <unistd.h>
 #include <sstream>
 #include <string>
 
@@ -17,7 +17,7 @@
 namespace tuft::test {
 
 struct Ran {
-    int status = -1;       ///< exit status, or 128 + signal
+    int status = -1;  ///< exit status, or 128 + signal
     std::string out, err;
 
     /// Lines on standard error.
@@ -28,7 +28,8 @@ class Program : public testing::Test {
   protected:
     void SetUp() override {
         folder_ = std::filesystem::path(testing::TempDir()) /
-                  ("tuft_cli_" + std::to_string(::getpid()) + "_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+                  ("tuft_cli_" + std::to_string(::getpid()) + "_" +
+                   std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
         std::filesystem::remove_all(folder_);
         std::filesystem::create_directories(folder_);
     }
@@ -44,8 +45,8 @@ class Program : public testing::Test {
 
     /// `prefix` goes before the program, such as "ulimit -f 8;".
     Ran tuft(const std::string& arguments, const std::string& prefix = "") const {
-        const std::string command = "export TUFT_DATA='" + source_folder() + "'; " + prefix + " '" + tuft_program() + "' " +
-                                    arguments + " >'" + path(".out") + "' 2>'" + path(".err") + "'";
+        const std::string command = "export TUFT_DATA='" + source_folder() + "'; " + prefix + " '" + tuft_program() +
+                                    "' " + arguments + " >'" + path(".out") + "' 2>'" + path(".err") + "'";
         const int raw = std::system(("bash -c \"" + escaped(command) + "\"").c_str());
         Ran ran;
         ran.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
@@ -71,12 +72,17 @@ class Program : public testing::Test {
                "<channel name=\"P\" type=\"decimal\" min=\"0\" max=\"1\"/>"
                "<channel name=\"T\" type=\"decimal\" units=\"ms\"/></traceFormat>"
                "<context xml:id=\"c\" traceFormatRef=\"#f\"/></definitions>\n"
-               "<traceGroup contextRef=\"#c\"><annotation type=\"tuft:brush\">" << brush << "</annotation>"
-               "<annotation type=\"tuft:origin\">" << origin << "</annotation>"
+               "<traceGroup contextRef=\"#c\"><annotation type=\"tuft:brush\">"
+            << brush
+            << "</annotation>"
+               "<annotation type=\"tuft:origin\">"
+            << origin
+            << "</annotation>"
                "<annotation type=\"tuft:right\">1 0 0</annotation>"
                "<annotation type=\"tuft:down\">0 -1 0</annotation>\n<trace>";
         for (int i = 0; i <= 50; ++i)
-            ink << (i ? ", " : "") << length * (i / 50.0 - 0.5) << " 0 " << (i == 0 || i == 50 ? 0.0 : 0.4) << ' ' << 8 * i;
+            ink << (i ? ", " : "") << length * (i / 50.0 - 0.5) << " 0 " << (i == 0 || i == 50 ? 0.0 : 0.4) << ' '
+                << 8 * i;
         ink << "</trace>\n</traceGroup></ink>\n";
         return ink.str();
     }

@@ -20,10 +20,8 @@ TEST_F(Reference, VersionAsJsonHasLibrariesAndFactsOfTheBuild) {
         ASSERT_EQ(ran.status, 0) << ran.err;
         const nlohmann::json j = nlohmann::json::parse(ran.out);
         EXPECT_EQ("tuft " + j.at("version").get<std::string>() + "\n", plain.out);
-        for (const char* library :
-             {"CGAL", "OpenMesh", "OpenImageIO", "SQLite3", "embree", "polyclipping"})
-            EXPECT_TRUE(std::isdigit(j.at("libraries").at(library).get<std::string>().at(0)))
-                << library;
+        for (const char* library : {"CGAL", "OpenMesh", "OpenImageIO", "SQLite3", "embree", "polyclipping"})
+            EXPECT_TRUE(std::isdigit(j.at("libraries").at(library).get<std::string>().at(0))) << library;
         for (const char* fact : {"compiler", "build_type", "system", "released", "licence", "data"})
             EXPECT_FALSE(j.at(fact).get<std::string>().empty()) << fact;
         EXPECT_EQ(j.at("data"), source_folder());

@@ -58,11 +58,8 @@ TEST(Contact, FlatSheetIsTheBrushsOwnPlane) {
         const brush::TuftState expected = brush::step(alone, pose, std::span(&ground, 1), 1e-3);
         EXPECT_EQ(r.tuft.touching, expected.touching);
         // The same problem with planes that differ by single precision of the mesh (1e-9 m).
-        EXPECT_NEAR(glm::length(r.tuft.force - expected.force), 0,
-                    1e-4 * (glm::length(expected.force) + 1e-3));
-        EXPECT_NEAR(
-            glm::length(spine(r).front().centre - expected.branches[0].sections.front().centre), 0,
-            2e-6);
+        EXPECT_NEAR(glm::length(r.tuft.force - expected.force), 0, 1e-4 * (glm::length(expected.force) + 1e-3));
+        EXPECT_NEAR(glm::length(spine(r).front().centre - expected.branches[0].sections.front().centre), 0, 2e-6);
         if (r.tuft.touching) {
             EXPECT_NEAR(r.frame.origin.z, 0, 1e-8);
             EXPECT_NEAR(r.frame.n.z, 1, 1e-8);
@@ -79,10 +76,9 @@ TEST(Contact, TurnedAndMovedSheetTurnsAndMovesEverything) {
     const mesh::SurfaceQuery flat_surface(flat);
     Random random(1);
     for (int trial = 0; trial < 4; ++trial) {
-        const Quat q = glm::normalize(Quat{random.uniform(-1, 1), random.uniform(-1, 1),
-                                           random.uniform(-1, 1), random.uniform(-1, 1)});
-        const Vec3 d{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1),
-                     random.uniform(-0.1, 0.1)};
+        const Quat q = glm::normalize(
+            Quat{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        const Vec3 d{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)};
         const mesh::TriangleMesh turned = shapes::moved(flat, q, d);
         const mesh::SurfaceQuery turned_surface(turned);
         for (const Method method : {Method::exact, Method::vertices}) {
@@ -96,10 +92,8 @@ TEST(Contact, TurnedAndMovedSheetTurnsAndMovesEverything) {
                 // Vertices are rounded to 6e-9 m, which decides when pressed hair gives way; after
                 // that both are dragged into the same steady state.
                 if (i < 40) continue;
-                EXPECT_NEAR(glm::length(q * spine(a).front().centre + d - spine(b).front().centre),
-                            0, 2e-5);
-                EXPECT_NEAR(glm::length(q * a.tuft.force - b.tuft.force), 0,
-                            0.01 * glm::length(a.tuft.force) + 1e-5);
+                EXPECT_NEAR(glm::length(q * spine(a).front().centre + d - spine(b).front().centre), 0, 2e-5);
+                EXPECT_NEAR(glm::length(q * a.tuft.force - b.tuft.force), 0, 0.01 * glm::length(a.tuft.force) + 1e-5);
                 if (!a.tuft.touching || !b.tuft.touching) continue;
                 EXPECT_NEAR(glm::length(q * a.frame.origin + d - b.frame.origin), 0, 5e-5);
                 EXPECT_NEAR(glm::length(q * a.frame.n - b.frame.n), 0, 1e-3);
@@ -117,10 +111,8 @@ TEST(Contact, ThinPlateIsMetFromTheSideOfTheFerrule) {
             Hand hand(surface);
             const Quat q = side > 0 ? Quat{1, 0, 0, 0} : glm::angleAxis(kUp, Vec3{1, 0, 0});
             Result r;
-            for (int i = 1; i <= steps; ++i)
-                r = hand.move({0.003, 0.002, side * (0.0005 - 0.012 * i / steps)}, q);
-            for (int i = 0; i < 40; ++i)
-                r = hand.move({0.003 + 2e-4 * i, 0.002, side * (0.0005 - 0.012)}, q);
+            for (int i = 1; i <= steps; ++i) r = hand.move({0.003, 0.002, side * (0.0005 - 0.012 * i / steps)}, q);
+            for (int i = 0; i < 40; ++i) r = hand.move({0.003 + 2e-4 * i, 0.002, side * (0.0005 - 0.012)}, q);
             ASSERT_TRUE(r.tuft.touching);
             for (const brush::Section& s : spine(r)) EXPECT_GT(side * s.centre.z, 0.0005 - 3e-4);
             EXPECT_NEAR(side * r.frame.origin.z, 0.0005, 1e-7);
@@ -168,13 +160,11 @@ struct Drag {
     double frame_jump = 0;  ///< largest step of the frame's origin, metres
     double travel = 0;      ///< largest step of the touching hair, metres
 };
-Drag drag_across(const mesh::SurfaceQuery& surface, const std::function<double(double)>& height,
-                 double depth) {
+Drag drag_across(const mesh::SurfaceQuery& surface, const std::function<double(double)>& height, double depth) {
     Hand hand(surface);
     const Quat lean = glm::angleAxis(-0.6, Vec3{0, 1, 0});
     for (int i = 0; i <= 40; ++i) hand.move({0.03, 0, height(0.03) - depth * i / 40}, lean);
-    for (int i = 0; i < 50; ++i)
-        hand.move({0.03 - 1e-4 * i, 0, height(0.03 - 1e-4 * i) - depth}, lean);
+    for (int i = 0; i < 50; ++i) hand.move({0.03 - 1e-4 * i, 0, height(0.03 - 1e-4 * i) - depth}, lean);
     Drag out;
     Vec3 force{0}, origin{0};
     constexpr int kSteps = 550;
@@ -200,8 +190,7 @@ Drag drag_across(const mesh::SurfaceQuery& surface, const std::function<double(d
 
 TEST(Contact, DragsOverAConvexCreaseAndThroughAGutter) {
     // A node that slips over a sharp edge lets go at once: the hair is a chain of 16 segments.
-    for (const auto& [angle, jump] :
-         {std::pair{0.5, 1.0}, {-0.5, 0.15}, {0.25, 0.5}, {-0.25, 0.1}}) {
+    for (const auto& [angle, jump] : {std::pair{0.5, 1.0}, {-0.5, 0.15}, {0.25, 0.5}, {-0.25, 0.1}}) {
         const mesh::TriangleMesh m = shapes::roof(angle, 0.3);
         const mesh::SurfaceQuery surface(m);
         const double slope = std::tan(angle);
@@ -209,7 +198,7 @@ TEST(Contact, DragsOverAConvexCreaseAndThroughAGutter) {
             surface, [=](double x) { return -std::abs(x) * slope; }, 0.006);
         SCOPED_TRACE(angle);
         EXPECT_LT(d.worst_dip,
-                  5e-5);  // nodes keep off by their radius less what the hair's side gives
+                  5e-5);                // nodes keep off by their radius less what the hair's side gives
         EXPECT_LT(d.worst_jump, jump);  // per 0.1 mm of travel
         EXPECT_LT(d.frame_jump, 1e-3);  // it travels with the hair
         EXPECT_LT(d.travel, 1e-3);      // the hair itself moves no farther than a slip
@@ -240,14 +229,11 @@ TEST(Contact, CircleInsideABowlIsSteadyAndTheSameAtEveryAzimuth) {
     const int per_turn = 1200;
     for (int i = 0; i < per_turn + 400; ++i) {
         const double phi = 2 * std::numbers::pi * i / per_turn;
-        const Vec3 out{std::sin(kPolar) * std::cos(phi), std::sin(kPolar) * std::sin(phi),
-                       std::cos(kPolar)};
+        const Vec3 out{std::sin(kPolar) * std::cos(phi), std::sin(kPolar) * std::sin(phi), std::cos(kPolar)};
         // The holder stands on the surface's normal and turns with the azimuth.
-        const Quat q =
-            glm::angleAxis(phi, Vec3{0, 0, 1}) * glm::angleAxis(kPolar - kUp, Vec3{0, 1, 0});
+        const Quat q = glm::angleAxis(phi, Vec3{0, 0, 1}) * glm::angleAxis(kPolar - kUp, Vec3{0, 1, 0});
         const Result r = hand.move((kRadius + depth * std::min(1.0, i / 60.0)) * out, q);
-        for (const brush::Section& s : spine(r))
-            worst = std::max(worst, glm::length(s.centre) - kRadius);
+        for (const brush::Section& s : spine(r)) worst = std::max(worst, glm::length(s.centre) - kRadius);
         if (i < 400) continue;
         lo = std::min(lo, r.tuft.normal_force);
         hi = std::max(hi, r.tuft.normal_force);
@@ -275,8 +261,7 @@ TEST(Contact, LeavesAPlateOverItsRim) {
         force = r.tuft.force;
         touching = r.tuft.touching;
         for (const brush::Section& s : spine(r)) {
-            const bool inside =
-                std::abs(s.centre.x) < 0.03 - 4e-4 && std::abs(s.centre.z) < 0.002 - 4e-4;
+            const bool inside = std::abs(s.centre.x) < 0.03 - 4e-4 && std::abs(s.centre.z) < 0.002 - 4e-4;
             EXPECT_FALSE(inside) << i;
         }
     }
@@ -352,8 +337,7 @@ TEST(Contact, HoverFeelsTheSurfaceWithinTheTolerance) {
             EXPECT_NEAR(r.distance, gap, 1e-6);
         }
         // Next to what the tuft itself feels, such as the pull of a wet tip.
-        const double force =
-            glm::dot(r.device_force - brush::device_force(hand.preset(), r.tuft), Vec3{0, 0, 1});
+        const double force = glm::dot(r.device_force - brush::device_force(hand.preset(), r.tuft), Vec3{0, 0, 1});
         if (gap > 1.0e-3) {
             EXPECT_NEAR(force, 0, 1e-12);
         } else if (gap < 0.9e-3 && gap > 1e-6) {
@@ -387,8 +371,7 @@ TEST(Contact, VertexMethodGivesThePlaneOfTheSheetAndTheSphereOfTheTuft) {
     for (int i = 0; i <= 80; ++i) {
         const Vec3 tip{std::max(0, i - 40) * 3e-4, 0, -0.01 * std::min(1.0, i / 40.0)};
         const Result a = by_vertices.move(tip), b = exact.move(tip);
-        EXPECT_NEAR(glm::length(a.tuft.force - b.tuft.force), 0,
-                    1e-3 * glm::length(b.tuft.force) + 1e-5);
+        EXPECT_NEAR(glm::length(a.tuft.force - b.tuft.force), 0, 1e-3 * glm::length(b.tuft.force) + 1e-5);
         if (!a.tuft.touching || i < 20) continue;
         EXPECT_NEAR(a.frame.n.z, 1, 1e-9);
         for (const Vec3& p : outline_points(a.tuft))
@@ -406,17 +389,13 @@ TEST(Contact, AnyPoseIsFiniteAndLeavesTheTuftFit) {
         Hand hand(surface, "goat");
         Random random(11);
         for (int i = 0; i < 700; ++i) {
-            const Quat q =
-                glm::normalize(Quat{random.uniform(-1, 1), random.uniform(-1, 1),
-                                    random.uniform(-1, 1), random.uniform(-1, 1) + 1e-3});
+            const Quat q = glm::normalize(Quat{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1),
+                                               random.uniform(-1, 1) + 1e-3});
             const double spread = i % 7 == 0 ? 1.0 : 0.05;
             hand.options.method = i % 3 == 0 ? Method::vertices : Method::exact;
-            const Result r =
-                hand.move({random.uniform(-spread, spread), random.uniform(-spread, spread),
-                           random.uniform(-spread, spread)},
-                          q);
-            ASSERT_TRUE(finite(r.tuft.force) && finite(r.device_force) && finite(r.frame.origin) &&
-                        finite(r.frame.n));
+            const Result r = hand.move(
+                {random.uniform(-spread, spread), random.uniform(-spread, spread), random.uniform(-spread, spread)}, q);
+            ASSERT_TRUE(finite(r.tuft.force) && finite(r.device_force) && finite(r.frame.origin) && finite(r.frame.n));
             ASSERT_NEAR(glm::length(r.frame.n), 1, 1e-9);
             ASSERT_LE(glm::length(r.device_force), hand.preset().force_limit + 1e-9);
             for (const brush::Branch& b : r.tuft.branches)
@@ -430,8 +409,7 @@ TEST(Outside, WallBetweenMeansBehindHoweverThin) {
     const mesh::SurfaceQuery surface(m);
     const StandOptions options;
     for (const double depth : {0.0001, 0.001, 0.01, 0.03}) {
-        const Stand s =
-            stand_from(surface, {0.01, 0, 0.02}, 1, {0.013, 0.001, 0.0001 - depth}, options);
+        const Stand s = stand_from(surface, {0.01, 0, 0.02}, 1, {0.013, 0.001, 0.0001 - depth}, options);
         EXPECT_NEAR(s.plane.origin.z, 0.0001, 1e-9);
         EXPECT_NEAR(s.plane.normal.z, 1, 1e-9);
         EXPECT_NEAR(s.height, -depth, 1e-9);
@@ -448,8 +426,7 @@ TEST(Outside, NormalTurnsSmoothlyOverAConvexEdge) {
     for (int i = 0; i <= 90; ++i) {
         const double a = i * std::numbers::pi / 180;
         const Vec3 p{0.05 + r * std::sin(a), 0.003, 0.02 + r * std::cos(a)};
-        const Stand s =
-            stand_from(surface, p + 0.001 * Vec3{std::sin(a), 0, std::cos(a)}, 1, p, {});
+        const Stand s = stand_from(surface, p + 0.001 * Vec3{std::sin(a), 0, std::cos(a)}, 1, p, {});
         EXPECT_LT(glm::length(s.plane.normal - before),
                   0.15);                     // 1° per step, and the blend's 26° over 16
         EXPECT_NEAR(s.height, r, 0.03 * r);  // 1 - cos of the angle at which the blend starts
@@ -465,7 +442,7 @@ TEST(Contact, AFerruleThatWouldEnterTheObjectIsHeldOnItsSurface) {
     for (const char* name : {"wolf-medium", "goat-small"}) {
         Hand hand(surface, name);
         const double length = hand.preset().length, down = 0.05 - length;
-        double flat = 0;  // force where the ferrule rests on pressed hair
+        double flat = 0;                                             // force where the ferrule rests on pressed hair
         for (double below = -length; below < 0.06; below += 1e-4) {  // of the ferrule's mouth
             const Result r = hand.move({0, 0, down - below});
             const double force = glm::length(r.tuft.force);
@@ -486,7 +463,8 @@ TEST(Contact, AFerruleThatWouldEnterTheObjectIsHeldOnItsSurface) {
 }
 
 TEST(Contact, DepthInsideTellsClosedBodiesOnly) {
-    const mesh::TriangleMesh block = shapes::plate({0.1, 0.1, 0.05}), sheet = shapes::sheet(), bowl = shapes::bowl(0.05);
+    const mesh::TriangleMesh block = shapes::plate({0.1, 0.1, 0.05}), sheet = shapes::sheet(),
+                             bowl = shapes::bowl(0.05);
     const mesh::SurfaceQuery in_block(block), on_sheet(sheet), in_bowl(bowl);
     EXPECT_NEAR(depth_inside(in_block, {0, 0, 0.02}), 0.03, 1e-6);
     EXPECT_NEAR(depth_inside(in_block, {-0.09, 0.01, 0}), 0.01, 1e-6);

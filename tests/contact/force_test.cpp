@@ -6,8 +6,8 @@
 #include "contact/contact.h"
 #include "io/read_model.h"
 #include "mesh/repair.h"
-#include "shapes.h"
 #include "paths.h"
+#include "shapes.h"
 
 namespace tuft::contact {
 namespace {
@@ -72,7 +72,7 @@ constexpr double kNoKnock = 0.05;
 
 /// Presses at 10 mm/s from half a millimetre above `at`, down along -n to 12 mm under it.
 Recording press(const mesh::SurfaceQuery& surface, const std::string& brush, const Vec3& at, const Vec3& n,
-            const Vec3& lean) {
+                const Vec3& lean) {
     brush::Tuft tuft = brush::make_tuft(brush::load_preset(brush));
     Memory memory;
     Recording curve;
@@ -91,10 +91,9 @@ constexpr double kSmooth = 0.015;
 
 TEST(Force, ASlowPressGrowsWithoutStepsOnAnySurface) {
     const mesh::TriangleMesh sheet = shapes::sheet(0.2, 60), bowl = shapes::bowl(0.06, 120),
-                             plate = shapes::plate({0.03, 0.05, 0.002}, 60),
-                             edge = shapes::roof(0.25), sharp = shapes::roof(0.5);
-    const mesh::SurfaceQuery on_sheet(sheet), on_bowl(bowl), on_plate(plate), on_edge(edge),
-        on_sharp(sharp);
+                             plate = shapes::plate({0.03, 0.05, 0.002}, 60), edge = shapes::roof(0.25),
+                             sharp = shapes::roof(0.5);
+    const mesh::SurfaceQuery on_sheet(sheet), on_bowl(bowl), on_plate(plate), on_edge(edge), on_sharp(sharp);
     const Vec3 up{0, 0, 1}, side{std::sin(2.4), 0, std::cos(2.4)};
     for (const std::string brush : {"wolf-medium", "goat-medium", "mixed-small"}) {
         const struct {
@@ -137,8 +136,7 @@ TEST(Force, APressBesideARimGrowsWithoutSteps) {
     for (const std::string brush : {"wolf-medium", "goat-medium", "mixed-small"}) {
         for (const double outside : {-1e-3, -5e-4, -2e-4, 2e-4, 5e-4}) {
             for (const Vec3 lean : {Vec3{0.1, 0.02, 0}, Vec3{-0.15, 0.02, 0}, Vec3{0, 0.15, 0}}) {
-                const Recording curve =
-                    press(block.surface, brush, block.beside_rim(outside, 7e-4), {0, 0, 1}, lean);
+                const Recording curve = press(block.surface, brush, block.beside_rim(outside, 7e-4), {0, 0, 1}, lean);
                 SCOPED_TRACE(brush + ", " + std::to_string(outside) + " m outside, lean " + std::to_string(lean.x));
                 EXPECT_LT(curve.surface.step(0.99), 0.01);  // some times the honest slope, as kSmooth
                 // A tip that stands on the rim may slip off it, once.
@@ -155,7 +153,7 @@ TEST(Force, APressBesideARimGrowsWithoutSteps) {
 /// from `first` ms on.
 template <class Tip>
 Recording drag_along(const mesh::SurfaceQuery& surface, const std::string& brush, const Quat& q, int first,
-                 const Tip& tip) {
+                     const Tip& tip) {
     brush::Tuft tuft = brush::make_tuft(brush::load_preset(brush));
     Memory memory;
     Recording curve;
@@ -183,7 +181,7 @@ TEST(Force, HairDraggedOverARimComesOffItEvenly) {
                 return block.beside_rim(-0.015 + 5e-5 * std::max(0, i - 300), 7e-4, 0.004 * std::min(1.0, i / 300.0));
             });
             const Recording in = drag_along(block.surface, brush, q, 50,
-                                        [&](int i) { return block.beside_rim(0.015 - 5e-5 * i, 7e-4, 0.004); });
+                                            [&](int i) { return block.beside_rim(0.015 - 5e-5 * i, 7e-4, 0.004); });
             EXPECT_LT(out.device_force.step(), kNoKnock) << brush << " lean " << lean;
             EXPECT_LT(in.device_force.step(), kNoKnock) << brush << " lean " << lean;
             // Upright the splayed hair turns behind the hand, which sets its damped joints going: one step. It
@@ -215,8 +213,7 @@ TEST(Force, HairDraggedAlongARimFeelsASteadyForce) {
 
 /// The clay car at 1:4, its front right wheel's arch: the flange 97 mm from the axle.
 struct Arch {
-    mesh::TriangleMesh mesh =
-        mesh::build_surface(io::read_model(source_folder() + "/models/car.ply")).mesh;
+    mesh::TriangleMesh mesh = mesh::build_surface(io::read_model(source_folder() + "/models/car.ply")).mesh;
     mesh::SurfaceQuery surface{mesh};
 
     /// On the flange, `angle` from the front; the tip of a tuft would touch here.
@@ -243,8 +240,7 @@ TEST(Force, TheWheelArchIsPressedAndFollowedWithoutSteps) {
         for (int i = 0; i <= 2600; ++i) {
             const double angle = 0.6 + 5e-5 / 0.097 * std::max(0, i - 300);
             const Vec3 tip = arch.at(angle) - depth * std::min(1.0, i / 300.0) * out;
-            const Result r =
-                step(tuft, pose_at(tuft.preset, tip, upright(out), 1e-3 * i), arch.surface, memory, 1e-3);
+            const Result r = step(tuft, pose_at(tuft.preset, tip, upright(out), 1e-3 * i), arch.surface, memory, 1e-3);
             if (i >= 300) curve.add(r);
         }
         // Hair that slips off the flange's edge lets go in some milliseconds. The flange ends in a fin a
@@ -268,8 +264,8 @@ Recording drag_over(const mesh::SurfaceQuery& surface, double slope, double lean
     for (int i = -200; i <= 1100; ++i) {
         const double x = -0.03 + 5e-5 * std::max(0, i);
         const double depth = 0.006 * std::min(1.0, 1 + i / 100.0);
-        const Result r = step(tuft, pose_at(tuft.preset, {x, 0, height(x) - depth}, q, 1e-3 * i),
-                              surface, memory, 1e-3);
+        const Result r =
+            step(tuft, pose_at(tuft.preset, {x, 0, height(x) - depth}, q, 1e-3 * i), surface, memory, 1e-3);
         if (i > 200) curve.add(r);
     }
     return curve;

@@ -9,8 +9,8 @@
 #include "contact/obb.h"
 #include "contact/sphere.h"
 #include "core/random.h"
-#include "shapes.h"
 #include "paths.h"
+#include "shapes.h"
 
 namespace tuft::contact {
 namespace {
@@ -40,8 +40,7 @@ std::vector<Vec3> point_set(const std::string& kind, int n, std::uint32_t seed) 
         }
         if (kind == "hook") {
             const double r = 4 * (1 - 0.8 * a), t = a * 260 * pi / 180, w = 2 * pi * b;
-            out.push_back({(9 + r * std::cos(w)) * std::cos(t), (9 + r * std::cos(w)) * std::sin(t),
-                           r * std::sin(w)});
+            out.push_back({(9 + r * std::cos(w)) * std::cos(t), (9 + r * std::cos(w)) * std::sin(t), r * std::sin(w)});
         }
     }
     return out;
@@ -72,8 +71,7 @@ TEST(ExpandBall, MatchesTheReferenceTableAndItsProvedBounds) {
             EXPECT_LE(s.r_expanded, exact * (1 + 1e-12));
             EXPECT_GE(s.radius, exact * (1 - 1e-12));
             EXPECT_LE(s.radius, (1 + epsilon) * exact * (1 + 1e-12));
-            for (const Vec3& p : points)
-                EXPECT_LE(glm::length(p - s.centre), s.radius * (1 + 1e-12));
+            for (const Vec3& p : points) EXPECT_LE(glm::length(p - s.centre), s.radius * (1 + 1e-12));
         }
         ++rows;
     }
@@ -81,9 +79,8 @@ TEST(ExpandBall, MatchesTheReferenceTableAndItsProvedBounds) {
 }
 
 TEST(ExpandBall, PointSetsAreThoseOfTheReference) {
-    for (const auto& [name, kind, n, seed] :
-         {std::tuple{"minsphere_points_brush_200_4.csv", "brush", 200, 4u},
-          {"minsphere_points_cube_50_3.csv", "cube", 50, 3u}}) {
+    for (const auto& [name, kind, n, seed] : {std::tuple{"minsphere_points_brush_200_4.csv", "brush", 200, 4u},
+                                              {"minsphere_points_cube_50_3.csv", "cube", 50, 3u}}) {
         std::ifstream file(test_data() + "/contact/" + name);
         ASSERT_TRUE(file);
         std::string line;
@@ -108,13 +105,11 @@ TEST(ExpandBall, TakesAnything) {
 TEST(Obb, HoldsItsPointsTightly) {
     Random random(3);
     for (int trial = 0; trial < 50; ++trial) {
-        const Quat q = glm::normalize(
-            Quat{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), 0.1});
+        const Quat q = glm::normalize(Quat{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), 0.1});
         std::vector<Vec3> points;
         for (int i = 0; i < 4000; ++i)
-            points.push_back(
-                q * Vec3{random.uniform(-5, 5), random.uniform(-2, 2), random.uniform(-1, 1)} +
-                Vec3{3, 4, 5});
+            points.push_back(q * Vec3{random.uniform(-5, 5), random.uniform(-2, 2), random.uniform(-1, 1)} +
+                             Vec3{3, 4, 5});
         const Obb box = obb_of(points);
         for (const Vec3& p : points) {
             const Vec3 local = glm::abs((p - box.centre) * box.axes);
@@ -133,8 +128,8 @@ TEST(Obb, OverlapAgreesWithSampledPoints) {
     int met = 0, apart = 0;
     for (int trial = 0; trial < 400; ++trial) {
         const auto box = [&] {
-            const Quat q = glm::normalize(Quat{random.uniform(-1, 1), random.uniform(-1, 1),
-                                               random.uniform(-1, 1), random.uniform(-1, 1)});
+            const Quat q = glm::normalize(
+                Quat{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
             Obb b;
             b.axes = glm::mat3_cast(q);
             b.centre = {random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)};
@@ -172,15 +167,13 @@ TEST(WeightedDistance, IsTheFormulaAndExactOnAPlane) {
     for (int i = 0; i < 50; ++i) {
         const double height = random.uniform(-0.002, 0.004);
         const Vec3 tip =
-            q * Vec3{random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03), height} +
-            Vec3{0.01, 0.02, 0.03};
+            q * Vec3{random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03), height} + Vec3{0.01, 0.02, 0.03};
         const WeightedDistance d = weighted_distance(query, tip, tip + q * Vec3{0, 0, 0.1});
         ASSERT_TRUE(d.found);
         ASSERT_EQ(d.vertices.size(), 8u);
         EXPECT_NEAR(d.distance, height, 1e-8);  // positions are single precision
         EXPECT_NEAR(glm::length(d.normal - q * Vec3{0, 0, 1}), 0, 1e-5);
-        EXPECT_NEAR(glm::dot(snap_tip(tip, d) - Vec3{0.01, 0.02, 0.03}, q * Vec3{0, 0, 1}), 0,
-                    1e-8);
+        EXPECT_NEAR(glm::dot(snap_tip(tip, d) - Vec3{0.01, 0.02, 0.03}, q * Vec3{0, 0, 1}), 0, 1e-8);
         double sum = 0, weights = 0;
         for (const auto& v : d.vertices) {
             const double w = 1 - v.distance / d.vertices.back().distance;
@@ -203,8 +196,7 @@ TEST(WeightedDistance, ErrorOnASphereFallsWithTheSquareOfTheSpacing) {
         double sum = 0;
         for (int i = 0; i < 300; ++i) {
             const double phi = random.uniform(0, 6.28), theta = random.uniform(2.0, 2.4);
-            const Vec3 out{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                           std::cos(theta)};
+            const Vec3 out{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
             const Vec3 tip = (kRadius - 0.0002) * out;
             sum += std::abs(weighted_distance(query, tip, Vec3{0}).distance - 0.0002);
         }
@@ -223,8 +215,7 @@ TEST(WeightedDistance, IsContinuousWhileTheVertexSetChanges) {
     constexpr int kSteps = 20000;
     for (int i = 0; i <= kSteps; ++i) {
         const double phi = 0.4 * i / kSteps;
-        const Vec3 tip = 0.0485 * Vec3{std::sin(2.2) * std::cos(phi), std::sin(2.2) * std::sin(phi),
-                                       std::cos(2.2)};
+        const Vec3 tip = 0.0485 * Vec3{std::sin(2.2) * std::cos(phi), std::sin(2.2) * std::sin(phi), std::cos(2.2)};
         const double d = weighted_distance(query, tip, Vec3{0}).distance;
         if (i > 0) worst = std::max(worst, std::abs(d - before));
         before = d;
@@ -247,8 +238,7 @@ TEST(EffectivePatch, TakesTheFacingConnectedSideOnly) {
     }
     // Every vertex of the upper side within the sphere is there.
     std::size_t expected = 0;
-    for (const Vec3f& p : m.positions)
-        expected += p.z > 0 && glm::length(Vec3(p) - sphere.centre) <= sphere.radius;
+    for (const Vec3f& p : m.positions) expected += p.z > 0 && glm::length(Vec3(p) - sphere.centre) <= sphere.radius;
     EXPECT_EQ(patch.vertices.size(), expected);
     EXPECT_NEAR(patch.normal.z, 1, 1e-12);
     // The area of the disc cut from the plane, to the vertices' 2 mm.

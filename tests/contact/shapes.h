@@ -18,8 +18,7 @@ inline void finish(mesh::TriangleMesh& m) {
     std::vector<Vec3> area(m.n_triangles());
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edge;
     for (std::uint32_t t = 0; t < m.n_triangles(); ++t) {
-        area[t] =
-            glm::cross(m.position(t, 1) - m.position(t, 0), m.position(t, 2) - m.position(t, 0));
+        area[t] = glm::cross(m.position(t, 1) - m.position(t, 0), m.position(t, 2) - m.position(t, 0));
         for (int k = 0; k < 3; ++k) {
             round[m.triangles[t][k]].push_back(t);
             edge[{m.triangles[t][k], m.triangles[t][(k + 1) % 3]}] = t;
@@ -29,8 +28,7 @@ inline void finish(mesh::TriangleMesh& m) {
         for (int k = 0; k < 3; ++k) {
             Vec3 n{0};
             for (const std::uint32_t other : round[m.triangles[t][k]])
-                if (glm::dot(glm::normalize(area[other]), glm::normalize(area[t])) > 0.766)
-                    n += area[other];
+                if (glm::dot(glm::normalize(area[other]), glm::normalize(area[t])) > 0.766) n += area[other];
             m.corner_normals.emplace_back(glm::normalize(n));
             const auto over = edge.find({m.triangles[t][(k + 1) % 3], m.triangles[t][k]});
             m.neighbours.push_back(over == edge.end() ? kNone : over->second);
@@ -55,9 +53,7 @@ inline mesh::TriangleMesh surface(int nu, int nv, const std::function<Vec3(doubl
 
 /// Flat sheet in z = 0 of the given side, centred.
 inline mesh::TriangleMesh sheet(double side = 0.2, int n = 100) {
-    return surface(n, n, [=](double u, double v) {
-        return Vec3{side * (u - 0.5), side * (v - 0.5), 0};
-    });
+    return surface(n, n, [=](double u, double v) { return Vec3{side * (u - 0.5), side * (v - 0.5), 0}; });
 }
 
 /// Half a sphere of radius r about the origin, seen from inside (a bowl open to +z).
@@ -91,15 +87,13 @@ inline mesh::TriangleMesh plate(const Vec3& half, int n = 40) {
                 p[(axis + 2) % 3] = half[(axis + 2) % 3] * (2 * v - 1);
                 return p;
             };
-            const int nu = half[(axis + 1) % 3] < 0.01 ? 1 : n,
-                      nv = half[(axis + 2) % 3] < 0.01 ? 1 : n;
+            const int nu = half[(axis + 1) % 3] < 0.01 ? 1 : n, nv = half[(axis + 2) % 3] < 0.01 ? 1 : n;
             const mesh::TriangleMesh part = surface(nu, nv, face);
             for (const auto& t : part.triangles) {
                 std::array<std::uint32_t, 3> out{};
                 for (int k = 0; k < 3; ++k) {
                     const Vec3f p = part.positions[t[k]];
-                    const auto [at, fresh] =
-                        index.try_emplace({p.x, p.y, p.z}, all.positions.size());
+                    const auto [at, fresh] = index.try_emplace({p.x, p.y, p.z}, all.positions.size());
                     if (fresh) all.positions.push_back(p);
                     out[k] = at->second;
                 }

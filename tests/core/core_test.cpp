@@ -33,8 +33,7 @@ TEST(ParallelTransport, TakesOneDirectionToTheOtherAndKeepsLengthsAndAngles) {
         const Vec3 v = random_unit(random), w = random_unit(random);
         // A rotation in double: a few rounding errors of 1e-16, amplified near opposite vectors.
         EXPECT_LT(glm::length(parallel_transport(from, from, to) - to), 1e-10);
-        EXPECT_NEAR(glm::dot(parallel_transport(v, from, to), parallel_transport(w, from, to)),
-                    glm::dot(v, w), 1e-10);
+        EXPECT_NEAR(glm::dot(parallel_transport(v, from, to), parallel_transport(w, from, to)), glm::dot(v, w), 1e-10);
     }
 }
 
@@ -145,8 +144,7 @@ TEST(SparseNumbering, NumbersKeysInTheOrderInWhichTheyCome) {
         std::unordered_map<std::uint32_t, std::uint32_t> expected;
         for (int i = 0; i < 5000; ++i) {
             const std::uint32_t key = i % 97 == 0 ? kNone - random() % 3 : random() % 4000;
-            const auto [at, is_new] = expected.try_emplace(
-                key, static_cast<std::uint32_t>(expected.size()));
+            const auto [at, is_new] = expected.try_emplace(key, static_cast<std::uint32_t>(expected.size()));
             EXPECT_EQ(numbering.number(key), std::pair(at->second, is_new));
         }
         EXPECT_EQ(numbering.size(), expected.size());

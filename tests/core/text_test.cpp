@@ -23,8 +23,7 @@ TEST(Text, NamesOfOlderProgramsBecomeUtf8AndOthersStay) {
 
 TEST(Text, OnlyWellFormedSequencesAreUtf8) {
     EXPECT_TRUE(is_utf8("a\xf4\x8f\xbf\xbf"));  // U+10FFFF
-    for (const char* bad : {"\xc0\x80", "\xe0\x9f\xbf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\x80",
-                            "\xe4\xb8", "\xff"})
+    for (const char* bad : {"\xc0\x80", "\xe0\x9f\xbf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\x80", "\xe4\xb8", "\xff"})
         EXPECT_FALSE(is_utf8(bad)) << testing::PrintToString(bad);
 }
 
@@ -55,33 +54,27 @@ TEST(Nesting, TomlMayHaveAsManyLevelsAsItsBoundAndNoMore) {
         }
     };
     const int most = kDeepestToml;
-    for (const std::string& key :
-         {repeated("a.", most - 1) + "a = 1", "[" + repeated("a.", most - 1) + "a]\nx = 1",
-          "x = " + repeated("[", most) + repeated("]", most)})
+    for (const std::string& key : {repeated("a.", most - 1) + "a = 1", "[" + repeated("a.", most - 1) + "a]\nx = 1",
+                                   "x = " + repeated("[", most) + repeated("]", most)})
         EXPECT_EQ(message(key), "") << key;
     for (const std::string& key :
-         {repeated("a.", most) + "a = 1", "[" + repeated("a.", most) + "a]",
-          repeated("' '.", most) + "a = 1", "x = " + repeated("[", most + 1),
-          "x = " + repeated("{a = ", most + 1), repeated("a . ", 100'000)})
+         {repeated("a.", most) + "a = 1", "[" + repeated("a.", most) + "a]", repeated("' '.", most) + "a = 1",
+          "x = " + repeated("[", most + 1), "x = " + repeated("{a = ", most + 1), repeated("a . ", 100'000)})
         EXPECT_THAT(message("# one\n" + key), HasSubstr("a.toml:2: ")) << key.substr(0, 80);
     // What stands in strings and comments nests nothing; long tables and lists neither.
-    EXPECT_EQ(message("x = \"" + repeated("[.\\\"", 99) + "\"\ny = '" + repeated("[.", 99) +
-                      "' # " + repeated("[.", 99) + "\nz = \"\"\"" + repeated("[.\n", 99) +
-                      "\\\"\"\"\"\"\nu = '''" + repeated("{.\n\"", 99) + "'''''\nv = 1"),
+    EXPECT_EQ(message("x = \"" + repeated("[.\\\"", 99) + "\"\ny = '" + repeated("[.", 99) + "' # " +
+                      repeated("[.", 99) + "\nz = \"\"\"" + repeated("[.\n", 99) + "\\\"\"\"\"\"\nu = '''" +
+                      repeated("{.\n\"", 99) + "'''''\nv = 1"),
               "");
-    EXPECT_EQ(
-        message("x = [" + repeated("1.5, ", 10'000) + "]\n" + repeated("[[a.b]]\nc = 1.5\n", 1000)),
-        "");
+    EXPECT_EQ(message("x = [" + repeated("1.5, ", 10'000) + "]\n" + repeated("[[a.b]]\nc = 1.5\n", 1000)), "");
     // Behind strings that end it is looked at again.
-    EXPECT_THAT(message("x = \"\"\"\"\"\"\ny = " + repeated("[", most + 1)),
-                HasSubstr("a.toml:2: "));
+    EXPECT_THAT(message("x = \"\"\"\"\"\"\ny = " + repeated("[", most + 1)), HasSubstr("a.toml:2: "));
     EXPECT_THAT(message("x = \"a\\\\\"\ny = " + repeated("[", most + 1)), HasSubstr("a.toml:2: "));
 }
 
 TEST(Nesting, JsonMayHaveAHundredLevels) {
     const std::string open(kDeepestJson, '[');
-    EXPECT_NO_THROW(
-        check_json_nesting(open + std::string(kDeepestJson, ']') + "[\"[[[[\\\"[[\"]", "a"));
+    EXPECT_NO_THROW(check_json_nesting(open + std::string(kDeepestJson, ']') + "[\"[[[[\\\"[[\"]", "a"));
     EXPECT_THROW(check_json_nesting(open + "{", "a"), Error);
     EXPECT_THROW(check_json_nesting(std::string(100'000, '['), "a"), Error);
 }

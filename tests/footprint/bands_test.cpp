@@ -49,12 +49,10 @@ TEST(Pictures, TurnedTwiceAreThemselves) {
     for (const int width : {1, 7, 8, 23, 64})
         for (const int height : {1, 8, 9, 40}) {
             std::vector<std::uint8_t> cells(static_cast<std::size_t>(width) * height), once, twice;
-            for (std::size_t i = 0; i < cells.size(); ++i)
-                cells[i] = static_cast<std::uint8_t>(37 * i + i / 256);
+            for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = static_cast<std::uint8_t>(37 * i + i / 256);
             turn_over(cells, width, height, once);
             for (int y = 0; y < height; ++y)
-                for (int x = 0; x < width; ++x)
-                    ASSERT_EQ(once[x * height + y], cells[y * width + x]);
+                for (int x = 0; x < width; ++x) ASSERT_EQ(once[x * height + y], cells[y * width + x]);
             turn_over(once, height, width, twice);
             EXPECT_EQ(twice, cells);
         }

@@ -18,14 +18,12 @@ namespace tuft::testing {
 class ExactGeodesics {
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
     using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
-    using Paths =
-        CGAL::Surface_mesh_shortest_path<CGAL::Surface_mesh_shortest_path_traits<Kernel, Surface>>;
+    using Paths = CGAL::Surface_mesh_shortest_path<CGAL::Surface_mesh_shortest_path_traits<Kernel, Surface>>;
 
   public:
     /// All triangles that hang together with `triangle` within `radius` metres of `origin`,
     /// which lies in it.
-    ExactGeodesics(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin,
-                   double radius)
+    ExactGeodesics(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin, double radius)
         : mesh_(mesh), origin_(origin) {
         std::vector<std::uint32_t> open{triangle};
         face_.try_emplace(triangle);
@@ -58,11 +56,10 @@ class ExactGeodesics {
         if (found == face_.end() || found->second == Surface::null_face()) return way;
         std::vector<Kernel::Point_3> points;
         Bends bends;
-        paths_->shortest_path_sequence_to_source_points(found->second, weights(found->second, p),
-                                                        bends);
+        paths_->shortest_path_sequence_to_source_points(found->second, weights(found->second, p), bends);
         way.bent = bends.any;
-        const auto result = paths_->shortest_path_points_to_source_points(
-            found->second, weights(found->second, p), std::back_inserter(points));
+        const auto result = paths_->shortest_path_points_to_source_points(found->second, weights(found->second, p),
+                                                                          std::back_inserter(points));
         if (points.size() < 2 || result.second == paths_->source_points_end()) return way;
         way.length = result.first;
         for (std::size_t i = points.size() - 1; i-- > 0;) {

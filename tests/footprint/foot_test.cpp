@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "brush/upright_hair.h"
 #include "brush/tuft.h"
+#include "brush/upright_hair.h"
 #include "footprint/cuts.h"
 
 /// Hair round the foot of the axis: what an upright press leaves.
@@ -56,7 +56,8 @@ TEST(UprightHair, APressStraightDownLeavesADropRoundAtTheAxisWithoutASpur) {
                 SCOPED_TRACE(std::string(brush) + " " + std::to_string(depth) + " in " + std::to_string(ms) + " ms");
                 const std::vector<double> half = pressed(brush, depth, ms);
                 const auto touched = [](double h) { return h > 0; };
-                const auto rear = static_cast<std::size_t>(std::find_if(half.begin(), half.end(), touched) - half.begin());
+                const auto rear =
+                    static_cast<std::size_t>(std::find_if(half.begin(), half.end(), touched) - half.begin());
                 const auto widest = static_cast<std::size_t>(std::max_element(half.begin(), half.end()) - half.begin());
                 ASSERT_LT(rear, half.size());
                 // It begins behind the axis, no further than half its width, and is round there: at a place
@@ -66,7 +67,8 @@ TEST(UprightHair, APressStraightDownLeavesADropRoundAtTheAxisWithoutASpur) {
                 EXPECT_GT(end, -most - kBin);
                 const double radius = std::min(-end, most);
                 for (double x = 0.2 * radius; x < 0.9 * radius; x += kBin)
-                    EXPECT_GT(half[rear + static_cast<std::size_t>(x / kBin)], 0.8 * std::sqrt(x * (2 * radius - x))) << x;
+                    EXPECT_GT(half[rear + static_cast<std::size_t>(x / kBin)], 0.8 * std::sqrt(x * (2 * radius - x)))
+                        << x;
                 // And widens from there on without a neck; the spur was a neck of a seventh.
                 double before = 0;
                 for (std::size_t i = rear + static_cast<std::size_t>(radius / kBin); i <= widest; ++i) {

@@ -13,8 +13,8 @@
 #include "exact_geodesics.h"
 #include "mesh/repair.h"
 #include "mesh/surface_query.h"
-#include "stage.h"
 #include "paths.h"
+#include "stage.h"
 
 // Stamps on meshes against exact shortest ways over their triangles.
 
@@ -34,9 +34,7 @@ struct Model {
         atlas = atlas::unwrap(mesh, {.size = size, .gutter = gutter}).atlas;
         finish();
     }
-    explicit Model(testing::Unwrapped u) : mesh(std::move(u.mesh)), atlas(std::move(u.atlas)) {
-        finish();
-    }
+    explicit Model(testing::Unwrapped u) : mesh(std::move(u.mesh)), atlas(std::move(u.atlas)) { finish(); }
     void finish() {
         query = std::make_unique<mesh::SurfaceQuery>(mesh);
         map = atlas::build_texel_map(mesh, atlas);
@@ -77,24 +75,21 @@ double mean(const std::vector<double>& v) {
 
 /// | |(u, v)| − length of the exact way | over the radius, at texels of stamps of `texels` across
 /// anywhere on the model. Texels behind an opening are left out: no straight way leads there.
-std::vector<double> distance_errors(Model& model, double texels, int stamps, double part,
-                                    std::uint64_t places = 5) {
+std::vector<double> distance_errors(Model& model, double texels, int stamps, double part, std::uint64_t places = 5) {
     std::vector<double> errors, area{0};
     for (std::size_t t = 0; t < model.mesh.n_triangles(); ++t) {
         const Vec3 a = model.mesh.position(t, 0);
-        area.push_back(area.back() + glm::length(glm::cross(model.mesh.position(t, 1) - a,
-                                                            model.mesh.position(t, 2) - a)));
+        area.push_back(area.back() +
+                       glm::length(glm::cross(model.mesh.position(t, 1) - a, model.mesh.position(t, 2) - a)));
     }
     const double r = 0.5 * texels * model.map.texel_size;
     // Stamps lie at the same places whatever the atlas, which texels come first depends on it.
     Random random(places), choice(6);
     for (int i = 0; i < stamps; ++i) {
-        const auto above =
-            std::upper_bound(area.begin(), area.end(), random.uniform(0, area.back()));
+        const auto above = std::upper_bound(area.begin(), area.end(), random.uniform(0, area.back()));
         const auto triangle = static_cast<std::uint32_t>(above - area.begin() - 1);
         const mesh::SurfacePoint at = mesh::surface_point(model.mesh, triangle, 0.3, 0.3);
-        const Footprint f =
-            disc(make_frame(at.position, at.normal), triangle, r, model.map.texel_size);
+        const Footprint f = disc(make_frame(at.position, at.normal), triangle, r, model.map.texel_size);
         const StampJobs jobs = model.plan(f);
         const testing::ExactGeodesics exact(model.mesh, triangle, at.position, 1.2 * r);
         for_exposed(model, jobs, [&](std::uint32_t slot, int t) {
@@ -115,8 +110,7 @@ TEST(Geodesics, StampsKeepDistancesOnARoughSurface) {
     testing::Unwrapped u = testing::sphere(0.02, 330, 48);
     Random random(2);
     const double edge = 0.02 * 0.5 * std::numbers::pi / 48;
-    for (Vec3f& p : u.mesh.positions)
-        p += static_cast<float>(0.1 * edge * random.uniform(-1, 1)) * glm::normalize(p);
+    for (Vec3f& p : u.mesh.positions) p += static_cast<float>(0.1 * edge * random.uniform(-1, 1)) * glm::normalize(p);
     std::vector<Vec3> sum(u.mesh.n_vertices(), Vec3{0});
     for (std::size_t t = 0; t < u.mesh.n_triangles(); ++t) {
         const Vec3 a = u.mesh.position(t, 0);
@@ -142,8 +136,7 @@ void expect_distances_on_the_car(std::uint32_t gutter) {
     Model car = shipped("car", 2048, gutter);
     for (const auto& [texels, part, places] :
          {std::tuple{40, 0.06, 5}, {40, 0.06, 7}, {128, 0.02, 5}, {256, 0.005, 5}}) {
-        const std::vector<double> errors =
-            distance_errors(car, texels, texels < 128 ? 60 : 30, part, places);
+        const std::vector<double> errors = distance_errors(car, texels, texels < 128 ? 60 : 30, part, places);
         ASSERT_GT(errors.size(), 2500u);
         // Targets for real meshes: 0.4 % mean, 2.5 % at 99 %.
         EXPECT_LT(mean(errors), 0.002) << gutter << ' ' << texels;
@@ -153,9 +146,13 @@ void expect_distances_on_the_car(std::uint32_t gutter) {
     }
 }
 
-TEST(Geodesics, StampsKeepDistancesOnTheCar) { expect_distances_on_the_car(4); }
+TEST(Geodesics, StampsKeepDistancesOnTheCar) {
+    expect_distances_on_the_car(4);
+}
 
-TEST(Geodesics, StampsKeepDistancesOnTheCarInAnotherLayout) { expect_distances_on_the_car(8); }
+TEST(Geodesics, StampsKeepDistancesOnTheCarInAnotherLayout) {
+    expect_distances_on_the_car(8);
+}
 
 struct Contact {
     Frame frame;
@@ -163,8 +160,7 @@ struct Contact {
 };
 
 /// Places `step` metres apart on the straightest way from the surface at `from` along `heading`.
-std::vector<Contact> straight_way(const Model& model, const Vec3& from, const Vec3& heading,
-                                  double step, int n) {
+std::vector<Contact> straight_way(const Model& model, const Vec3& from, const Vec3& heading, double step, int n) {
     constexpr int kSub = 64;
     std::vector<Contact> way;
     auto at = model.query->closest_point(from);
@@ -203,8 +199,7 @@ Footprint checker(const Contact& at, double s, double cell) {
 /// Where the stamp puts the point (u, v), from the texels round it: metres in space. Where several sheets
 /// of a fold lie at that point, it is the one of the texel nearest to it: texels of one sheet are as far
 /// from each other in space as in the picture.
-std::optional<Vec3> read_back(const Model& model, const StampJobs& jobs, const Footprint& f,
-                              const Vec2& uv) {
+std::optional<Vec3> read_back(const Model& model, const StampJobs& jobs, const Footprint& f, const Vec2& uv) {
     struct Near {
         Vec2 d;  // from (u, v), over the reach
         Vec3 p;
@@ -217,7 +212,8 @@ std::optional<Vec3> read_back(const Model& model, const StampJobs& jobs, const F
             const Vec2 d = (place_of(model.map, jobs, f, job.slot, t) - uv) / reach;
             if (glm::dot(d, d) < 1) near.push_back({d, Vec3(model.map.position(job.slot, t))});
         }
-    const auto middle = std::min_element(near.begin(), near.end(), [](const Near& a, const Near& b) { return glm::dot(a.d, a.d) < glm::dot(b.d, b.d); });
+    const auto middle = std::min_element(
+        near.begin(), near.end(), [](const Near& a, const Near& b) { return glm::dot(a.d, a.d) < glm::dot(b.d, b.d); });
     using Row = glm::dmat3;
     Row normal(0.0);
     Row right(0.0);  // columns: x, y, z
@@ -258,7 +254,7 @@ struct Squares {
     std::vector<double> sides;   ///< of all checks, |length / s − 1|, and diagonals
     std::vector<double> curved;  ///< the same where the surface does not unroll
     std::vector<double> areas;   ///< of the black checks by their exposure, |area / 2s² − 1|
-    std::vector<double> radii;  ///< origin to corner where straight ways lead, |length / |uv| − 1|
+    std::vector<double> radii;   ///< origin to corner where straight ways lead, |length / |uv| − 1|
 };
 
 void measure(Model& model, const Contact& at, double s, Squares& out) {
@@ -269,8 +265,7 @@ void measure(Model& model, const Contact& at, double s, Squares& out) {
     std::array<float, atlas::kTileTexels> e;
     for (const TileJob& job : jobs.tiles) {
         evaluate(model.map, jobs, job, e);
-        for (int t = 0; t < atlas::kTileTexels; ++t)
-            area += double(e[t]) * model.map.tiles[job.slot].area[t];
+        for (int t = 0; t < atlas::kTileTexels; ++t) area += double(e[t]) * model.map.tiles[job.slot].area[t];
     }
     if (!curved) out.areas.push_back(std::abs(area / (2 * s * s) - 1));
 
@@ -283,13 +278,11 @@ void measure(Model& model, const Contact& at, double s, Squares& out) {
                              std::vector<double>& into) {
         if (!corner[a] || !corner[b]) return;
         const auto way = exact.to(corner[b]->triangle, corner[b]->position);
-        if (!way.bent && std::isfinite(way.length))
-            into.push_back(std::abs(way.length / length - 1));
+        if (!way.bent && std::isfinite(way.length)) into.push_back(std::abs(way.length / length - 1));
     };
     for (int k = 0; k < 9; ++k) {
         if (!corner[k]) continue;
-        const testing::ExactGeodesics exact(model.mesh, corner[k]->triangle, corner[k]->position,
-                                            1.6 * s);
+        const testing::ExactGeodesics exact(model.mesh, corner[k]->triangle, corner[k]->position, 1.6 * s);
         std::vector<double>& sides = curved ? out.curved : out.sides;
         if (k % 3 < 2) compare(k, k + 1, s, exact, sides);
         if (k < 6) compare(k, k + 3, s, exact, sides);

@@ -121,7 +121,8 @@ TEST(Hair, SplayedHairGivesInkFromItsWholeLowerHalf) {
     };
     const double straight = area(0, 0);
     for (const double lean : {-1e-4, 1e-4})
-        for (const double more : {-1e-12, 1e-12}) EXPECT_NEAR(area(lean, more), straight, 0.02 * straight) << lean << " " << more;
+        for (const double more : {-1e-12, 1e-12})
+            EXPECT_NEAR(area(lean, more), straight, 0.02 * straight) << lean << " " << more;
 }
 
 TEST(Hair, AnotherSeedDrawsOtherStreaksOfTheSameSum) {
@@ -194,7 +195,8 @@ TEST(Hair, DriesIntoThreadsOfItsOwnWidth) {
         double most = 0, length = 0;
         for (int i = 0; i < f.width; ++i) {
             double column = 0;
-            for (int j = 0; j < f.height; ++j) column += f.coverage[static_cast<std::size_t>(j) * f.width + i] / 255.0 * f.cell;
+            for (int j = 0; j < f.height; ++j)
+                column += f.coverage[static_cast<std::size_t>(j) * f.width + i] / 255.0 * f.cell;
             most = std::max(most, column);
             length += column > 40e-6 ? f.cell : 0;
         }
@@ -219,17 +221,18 @@ TEST(Hair, DrawnSidewaysHasInkForNoWiderAWay) {
 }
 
 TEST(Hair, SidewaysByItselfHasInkForNoWiderAWay) {
-    // The hand stands; hair that goes aside, or spreads, or turns about a point, leaves no more than lying hair of its width
-    // drawn that way, and hair that goes along itself leaves what a drag does.
+    // The hand stands; hair that goes aside, or spreads, or turns about a point, leaves no more than lying hair of its
+    // width drawn that way, and hair that goes along itself leaves what a drag does.
     const Pressed& p = pressed();
     const std::vector<double> wet(p.tuft.bundles.place.size(), 0.4);
     const auto area = [&](const std::function<void(Cut&)>& was) {
         std::vector<Trail> before = p.trails;
         for (Trail& trail : before)
             for (Cut& cut : trail.cuts) was(cut);
-        return area_of(hair_marks(p.trails, p.outlines, p.tuft.bundles, 1, {wet, 0, {}, before}, kFlat, 0, kCell).footprint);
+        return area_of(
+            hair_marks(p.trails, p.outlines, p.tuft.bundles, 1, {wet, 0, {}, before}, kFlat, 0, kCell).footprint);
     };
-    const double stays = area([](Cut&) {}), along = area([](Cut& c) { c.centre.x -= 3e-5; });
+    const double stays = area([](Cut&) {}), along = area([](Cut&c) { c.centre.x -= 3e-5; });
     EXPECT_NEAR(along, stays, 0.02 * stays);
     EXPECT_LT(area([](Cut& c) { c.centre.y -= 3e-5; }), 0.3 * stays) << "aside";
     // About a tenth of the bristles stand in the middle, where nothing goes aside.
@@ -237,17 +240,17 @@ TEST(Hair, SidewaysByItselfHasInkForNoWiderAWay) {
 }
 
 TEST(Hair, SweptAsideByAPressDrawsNoLine) {
-    // The tuft goes along itself while it is pressed: hair that follows leaves what it leaves in a drag, hair that spreads
-    // by 20 degrees and more leaves next to nothing, and a full tuft closes all the same.
+    // The tuft goes along itself while it is pressed: hair that follows leaves what it leaves in a drag, hair that
+    // spreads by 20 degrees and more leaves next to nothing, and a full tuft closes all the same.
     const Pressed& p = pressed();
-    const auto area = [&](double wetness, double lands, const std::function<void(Cut&)>& was,
-                          double swings = 0, const Vec2& way = {1, 0}) {
+    const auto area = [&](double wetness, double lands, const std::function<void(Cut&)>& was, double swings = 0,
+                          const Vec2& way = {1, 0}) {
         const std::vector<double> wet(p.tuft.bundles.place.size(), wetness);
         std::vector<Trail> before = p.trails;
         for (Trail& trail : before)
             for (Cut& cut : trail.cuts) was(cut);
-        return area_of(hair_marks(p.trails, p.outlines, p.tuft.bundles, 1,
-                                  {wet, 0, way, before, lands, {1, 0}, swings}, kFlat, 0, kCell)
+        return area_of(hair_marks(p.trails, p.outlines, p.tuft.bundles, 1, {wet, 0, way, before, lands, {1, 0}, swings},
+                                  kFlat, 0, kCell)
                            .footprint);
     };
     const auto follows = [](Cut& c) { c.centre.x -= 3e-5; };
@@ -351,7 +354,8 @@ TEST(Hair, ComesWithTheTuftThatLiftsIt) {
 }
 
 TEST(Hair, ATrackIsAsWideWhateverTheSteps) {
-    // Places of a track and steps of the hand used to beat: the tip of a steady drag went in and out every few dozen stamps.
+    // Places of a track and steps of the hand used to beat: the tip of a steady drag went in and out every few dozen
+    // stamps.
     const Pressed& p = pressed();
     const double length = p.tuft.preset.length, drawn = length + 5e-3;
     double least = 1, most = 0;
@@ -378,19 +382,22 @@ TEST(Hair, EndsOfBristlesFollowTheirLengths) {
     const Trail& trail = pressed().trails[0];
     std::vector<double> ends;
     for (double part = 0.2; part < 0.8; part += 0.01) {
-        one.bristles[0].end = static_cast<float>(trail.along.back() + part * (trail.along.front() - trail.along.back()));
+        one.bristles[0].end =
+            static_cast<float>(trail.along.back() + part * (trail.along.front() - trail.along.back()));
         const Footprint f = marks(one, 0.4);  // too dry for water to draw it to the point
         double end = -1;                      // the tip trails at smaller x: cells from the root's side
         for (int i = 0; i < f.width; ++i) {
             int most = 0;
-            for (int j = 0; j < f.height; ++j) most = std::max<int>(most, f.coverage[static_cast<std::size_t>(j) * f.width + i]);
+            for (int j = 0; j < f.height; ++j)
+                most = std::max<int>(most, f.coverage[static_cast<std::size_t>(j) * f.width + i]);
             if (most > 40) {
                 end = -i * f.cell;
                 break;
             }
         }
         if (!ends.empty()) {
-            EXPECT_LE(std::abs(end - ends.back()), 5 * kCell) << part << " " << end / kCell;  // a hundredth of the patch is 2 cells
+            EXPECT_LE(std::abs(end - ends.back()), 5 * kCell)
+                << part << " " << end / kCell;  // a hundredth of the patch is 2 cells
         }
         ends.push_back(end);
     }
@@ -417,7 +424,8 @@ TEST(Hair, TouchedCellsAreThoseOfTheLowerSideNearTheTip) {
     int bundles = 0;
     for (std::size_t k = 0; k < p.tuft.bundles.place.size(); ++k) {
         double own = 0;
-        for (std::size_t c = 0; c < cells.ends.size(); ++c) own += static_cast<double>(touched[k * cells.ends.size() + c]);
+        for (std::size_t c = 0; c < cells.ends.size(); ++c)
+            own += static_cast<double>(touched[k * cells.ends.size() + c]);
         root += static_cast<double>(touched[k * cells.ends.size()]);
         sum += own;
         bundles += own > 0;

@@ -19,12 +19,10 @@ const Frame kFlat;  // the plane z = 0
 /// Straight tuft along `axis` (root to tip) with its tip at `tip`; radius(s) at distance s from
 /// the tip, bending plane upright, n sections unevenly spaced as the spine's are.
 template <class Radius>
-brush::TuftState straight(const Vec3& tip, const Vec3& axis, double length, int n, Radius radius,
-                          double flatten = 1) {
+brush::TuftState straight(const Vec3& tip, const Vec3& axis, double length, int n, Radius radius, double flatten = 1) {
     brush::TuftState tuft;
     tuft.branches.emplace_back();
-    const Vec3 side =
-        std::abs(axis.z) < 0.999 ? glm::normalize(glm::cross(Vec3{0, 0, 1}, axis)) : Vec3{0, 1, 0};
+    const Vec3 side = std::abs(axis.z) < 0.999 ? glm::normalize(glm::cross(Vec3{0, 0, 1}, axis)) : Vec3{0, 1, 0};
     for (int i = 0; i < n; ++i) {
         const double f = double(i) / (n - 1), s = length * (0.5 * f + 0.5 * f * f);
         brush::Section section;
@@ -181,8 +179,8 @@ TEST(Outline, ChangesContinuouslyWhileTheTuftIsPressed) {
 
 TEST(Outline, OfATouchIsADot) {
     for (const double lean : {0.0, 0.3, 1.0}) {
-        const auto tuft = straight({0, 0, 0}, glm::normalize(Vec3{lean, 0, -1}), 0.04, 17,
-                                   [](double s) { return 0.15 * s; });
+        const auto tuft =
+            straight({0, 0, 0}, glm::normalize(Vec3{lean, 0, -1}), 0.04, 17, [](double s) { return 0.15 * s; });
         const auto outlines = outline(tuft, kFlat);
         ASSERT_EQ(outlines.size(), 1u) << lean;
         const auto curve = curve_points(outlines[0]);
@@ -190,16 +188,14 @@ TEST(Outline, OfATouchIsADot) {
         EXPECT_GT(area, kPi * 0.09e-3 * 0.09e-3) << lean;  // the ball of 0.1 mm film at the tip
         EXPECT_LT(area, kPi * 0.4e-3 * 0.4e-3) << lean;
     }
-    const auto above =
-        straight({0, 0, 0.0002}, {0, 0, -1}, 0.04, 17, [](double s) { return 0.15 * s; });
+    const auto above = straight({0, 0, 0.0002}, {0, 0, -1}, 0.04, 17, [](double s) { return 0.15 * s; });
     EXPECT_TRUE(outline(above, kFlat).empty());
 }
 
 TEST(Outline, OfAPokeIsTheWholeDisc) {
     // Upright and pressed in without bending: the shadow is the section at the surface.
     const double g = 0.2, depth = 0.005;
-    const auto tuft =
-        straight({0, 0, -depth}, {0, 0, -1}, 0.04, 17, [&](double s) { return g * s; });
+    const auto tuft = straight({0, 0, -depth}, {0, 0, -1}, 0.04, 17, [&](double s) { return g * s; });
     const auto outlines = outline(tuft, kFlat, {}, dry());
     ASSERT_EQ(outlines.size(), 1u);
     const double r = g * depth;
@@ -216,8 +212,7 @@ TEST(Outline, SurvivesFewSectionsAndFlatOnes) {
         for (const Vec2& p : curve_points(o)) EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
     }
     for (const int n : {2, 3, 4}) {
-        const auto few =
-            straight({0.01, 0, 0.001}, {1, 0, 0}, 0.02, n, [](double s) { return 0.2 * s; });
+        const auto few = straight({0.01, 0, 0.001}, {1, 0, 0}, 0.02, n, [](double s) { return 0.2 * s; });
         const auto outlines = outline(few, kFlat);
         ASSERT_EQ(outlines.size(), 1u) << n;
         EXPECT_GT(area_of(curve_points(outlines[0])), 0) << n;
@@ -266,8 +261,7 @@ TEST(Rasterise, IsExactForAnyPlaceOnTheGrid) {
             const double a = 2 * kPi * k / n;
             // Control points on a circle larger by 3/(2 + cos): the curve's knots lie on 20.3
             // cells.
-            o.control.push_back(20.3 * kTexel * 3 / (2 + std::cos(2 * kPi / n)) *
-                                    Vec2{std::cos(a), std::sin(a)} +
+            o.control.push_back(20.3 * kTexel * 3 / (2 + std::cos(2 * kPi / n)) * Vec2{std::cos(a), std::sin(a)} +
                                 shift * kTexel);
         }
         const Footprint f = rasterise({&o, 1}, kFlat, 0, kTexel);

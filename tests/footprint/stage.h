@@ -18,8 +18,7 @@ inline bool evaluate(const atlas::TexelMap& map, const StampJobs& jobs, const Ti
 }
 
 /// Where the stamp's frames put a texel, metres in the tangent plane.
-inline Vec2 place_of(const atlas::TexelMap& map, const StampJobs& jobs, const Footprint& f,
-                     std::uint32_t slot, int t) {
+inline Vec2 place_of(const atlas::TexelMap& map, const StampJobs& jobs, const Footprint& f, std::uint32_t slot, int t) {
     for (const TileJob& job : jobs.tiles) {
         if (job.slot != slot) continue;
         for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
@@ -28,8 +27,7 @@ inline Vec2 place_of(const atlas::TexelMap& map, const StampJobs& jobs, const Fo
             // log_map is linear in t and b: the picture's axes take their place.
             const Frame frame{Vec3(p.origin), f.cell * Vec3(p.tu), f.cell * Vec3(p.tv), Vec3(p.normal)};
             const Vec3 m = glm::normalize(Vec3(map.normal(slot, t)));
-            return atlas::log_map(frame, Vec3(map.position(slot, t)), m) +
-                   (Vec2(p.u0, p.v0) + 0.5) * f.cell + f.lo;
+            return atlas::log_map(frame, Vec3(map.position(slot, t)), m) + (Vec2(p.u0, p.v0) + 0.5) * f.cell + f.lo;
         }
     }
     return Vec2{NAN};
@@ -54,8 +52,7 @@ struct Stage {
         std::uint32_t best = 0;
         double distance = 1e9;
         for (std::uint32_t t = 0; t < u.mesh.n_triangles(); ++t) {
-            const Vec3 c =
-                (u.mesh.position(t, 0) + u.mesh.position(t, 1) + u.mesh.position(t, 2)) / 3.0;
+            const Vec3 c = (u.mesh.position(t, 0) + u.mesh.position(t, 1) + u.mesh.position(t, 2)) / 3.0;
             if (glm::dot(Vec3(u.mesh.corner_normals[3 * t]), n) < 0) continue;
             if (glm::length(c - p) < distance) {
                 distance = glm::length(c - p);
@@ -65,8 +62,7 @@ struct Stage {
         return best;
     }
 
-    StampJobs plan(const Footprint& f, const Motion& motion = {},
-                   const StampOptions& options = {}) {
+    StampJobs plan(const Footprint& f, const Motion& motion = {}, const StampOptions& options = {}) {
         StampJobs jobs = plan_stamp(surface(), f, motion, options, scratch);
         choose_mode(jobs, false, options);
         return jobs;
@@ -87,14 +83,12 @@ void for_exposed(const Stage& stage, const StampJobs& jobs, Visit&& visit) {
 
 inline double deposit_area(const Stage& stage, const StampJobs& jobs) {
     double sum = 0;
-    for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float e) {
-        sum += double(e) * stage.map.tiles[slot].area[t];
-    });
+    for_exposed(stage, jobs,
+                [&](std::uint32_t slot, int t, float e) { sum += double(e) * stage.map.tiles[slot].area[t]; });
     return sum;
 }
 
-inline Vec2 place_of(const Stage& stage, const StampJobs& jobs, const Footprint& f, std::uint32_t slot,
-              int t) {
+inline Vec2 place_of(const Stage& stage, const StampJobs& jobs, const Footprint& f, std::uint32_t slot, int t) {
     return place_of(stage.map, jobs, f, slot, t);
 }
 
@@ -111,8 +105,7 @@ struct Errors {
 
 /// Error of (u, v) over the radius against the exact log map, over all exposed texels.
 template <class Exact>
-Errors errors(const Stage& stage, const StampJobs& jobs, const Footprint& f, double r,
-              Exact&& exact) {
+Errors errors(const Stage& stage, const StampJobs& jobs, const Footprint& f, double r, Exact&& exact) {
     Errors e;
     for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float) {
         const Vec2 truth = exact(Vec3(stage.map.position(slot, t)));

@@ -20,8 +20,7 @@ TEST(Stamp, DoesNotBleedThroughAPlate) {
     const double r = 0.01;
     for (const double x : {0.0, 0.008, 0.013, 0.0199}) {
         const Vec3 at{x, 0.0012, 0};
-        const Footprint f =
-            disc(make_frame(at, {0, 0, 1}), stage.triangle_at(at, {0, 0, 1}), r, r / 64);
+        const Footprint f = disc(make_frame(at, {0, 0, 1}), stage.triangle_at(at, {0, 0, 1}), r, r / 64);
         const StampJobs jobs = stage.plan(f);
         double front = 0, back = 0, rim = 0;
         for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float e) {
@@ -73,9 +72,8 @@ TEST(Stamp, DoesNotJumpAcrossAGap) {
     const Vec3 at{-0.2 * r, 0.0003, 0};
     const Footprint f = disc(make_frame(at, {0, 0, 1}), stage.triangle_at(at), r, r / 64);
     std::size_t here = 0, beyond = 0;
-    for_exposed(stage, stage.plan(f), [&](std::uint32_t slot, int t, float) {
-        ++(stage.map.position(slot, t).x < 0 ? here : beyond);
-    });
+    for_exposed(stage, stage.plan(f),
+                [&](std::uint32_t slot, int t, float) { ++(stage.map.position(slot, t).x < 0 ? here : beyond); });
     EXPECT_GT(here, 3000u);
     EXPECT_EQ(beyond, 0u);
 }
@@ -105,19 +103,20 @@ TEST(Stamp, StaysOnItsTurnOfARolledSheet) {
         };
         p.normal = [=](double s, double) {
             const double a = a0 + s * da;
-            const Vec2 along = Vec2{-radius(a) * std::sin(a), radius(a) * std::cos(a)} +
-                               pitch * Vec2{std::cos(a), std::sin(a)};
+            const Vec2 along =
+                Vec2{-radius(a) * std::sin(a), radius(a) * std::cos(a)} + pitch * Vec2{std::cos(a), std::sin(a)};
             return glm::normalize(Vec3{along.y, -along.x, 0});
         };
         p.ns = 96;
         p.nt = 4;
-        testing::place(p, {8.3, 8.4 + k * (0.024 * texels + 9.1)},
-                       {(length(a0 + da) - length(a0)) * texels, 0}, {0, 0.024 * texels});
+        testing::place(p, {8.3, 8.4 + k * (0.024 * texels + 9.1)}, {(length(a0 + da) - length(a0)) * texels, 0},
+                       {0, 0.024 * texels});
         patches.push_back(p);
     }
     Stage stage(testing::build(patches, 1300));
     const double middle = 2 * kPi * 1.5;
-    const Vec3 n = patches[3].normal(0, 0), at{radius(middle) * std::cos(middle), radius(middle) * std::sin(middle), 0.0003};
+    const Vec3 n = patches[3].normal(0, 0),
+               at{radius(middle) * std::cos(middle), radius(middle) * std::sin(middle), 0.0003};
     const Footprint f = disc(make_frame(at, n, {0, 0, 1}), stage.triangle_at(at, n), r, r / 64);
     const StampJobs jobs = stage.plan(f);
     std::size_t exposed = 0, wrong = 0;

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "stage.h"
 #include "paths.h"
+#include "stage.h"
 
 // Where stamps put texels on surfaces whose log map is known.
 
@@ -23,8 +23,7 @@ TEST(Stamp, ExposesOnTheSheetWhatTheFootprintShows) {
         Stage stage(testing::sheet(0.06, charts, 360.0 / charts));
         const double texel = 0.06 / 360, r = 40 * texel;
         const Vec3 at{0.0021, -0.0013, 0};
-        const Footprint f =
-            disc(make_frame(at, {0, 0, 1}, {0.8, 0.6, 0}), stage.triangle_at(at), r, texel);
+        const Footprint f = disc(make_frame(at, {0, 0, 1}, {0.8, 0.6, 0}), stage.triangle_at(at), r, texel);
         const StampJobs jobs = stage.plan(f);
         EXPECT_FALSE(jobs.piecewise);
         EXPECT_LT(jobs.discrepancy, 1e-5);  // float rounding on a flat sheet, seams or not
@@ -52,8 +51,7 @@ TEST(Stamp, CoversOnTheSphereTheAreaOfTheCap) {
         const double exact = 2 * (1 - std::cos(q)) / (q * q);
         // Where charts meet, texels are counted by their centres: up to half a texel too much or
         // too little along a diameter of 160 … 640 texels.
-        EXPECT_NEAR(deposit_area(stage, jobs) / disc_area(f) / exact, 1, q < 0.3 ? 4e-3 : 2e-3)
-            << q;
+        EXPECT_NEAR(deposit_area(stage, jobs) / disc_area(f) / exact, 1, q < 0.3 ? 4e-3 : 2e-3) << q;
     }
 }
 
@@ -78,8 +76,7 @@ TEST(Stamp, FollowsTheSphereAndTheCylinder) {
     Stage tube(testing::cylinder(R, 0.06, 5, 10000, 48));
     for (const double q : {0.5, 1.0}) {
         const Vec3 n{std::cos(1.2), std::sin(1.2), 0};
-        const Footprint f =
-            disc(make_frame(R * n, n, {0, 0, 1}), tube.triangle_at(R * n), q * R, q * R / 64);
+        const Footprint f = disc(make_frame(R * n, n, {0, 0, 1}), tube.triangle_at(R * n), q * R, q * R / 64);
         const StampJobs jobs = tube.plan(f);
         const Errors e = errors(tube, jobs, f, q * R, [&](const Vec3& p) {
             const double angle = std::remainder(std::atan2(p.y, p.x) - 1.2, 2 * kPi);
@@ -104,21 +101,18 @@ Unwrapped cone(double alpha, double s0, double s1, int n, double texels_per_metr
         testing::Patch p;
         p.position = [=](double s, double t) {
             const double a = angle(s), slant = s0 + t * (s1 - s0);
-            return slant * Vec3{std::sin(alpha) * std::cos(a), std::sin(alpha) * std::sin(a),
-                                std::cos(alpha)};
+            return slant * Vec3{std::sin(alpha) * std::cos(a), std::sin(alpha) * std::sin(a), std::cos(alpha)};
         };
         p.normal = [=](double s, double) {
             const double a = angle(s);
-            return Vec3{std::cos(alpha) * std::cos(a), std::cos(alpha) * std::sin(a),
-                        -std::sin(alpha)};
+            return Vec3{std::cos(alpha) * std::cos(a), std::cos(alpha) * std::sin(a), -std::sin(alpha)};
         };
         p.ns = 64;
         p.nt = 32;
         testing::place(p, {8.3 + k * (width + 9), 8.4}, {width, 0}, {0, height});
         patches.push_back(p);
     }
-    return testing::build(patches,
-                          static_cast<std::uint32_t>(std::max(n * (width + 9), height) + 20));
+    return testing::build(patches, static_cast<std::uint32_t>(std::max(n * (width + 9), height) + 20));
 }
 
 TEST(Stamp, UnrollsTheConesOfTheReferenceTable) {
@@ -150,11 +144,9 @@ TEST(Stamp, UnrollsTheConesOfTheReferenceTable) {
     // On the slope, radius over curvature 0.4 (2 where the disc comes near the tip) and 0.9; then
     // over the tip, whose neighbourhood is
     // cut off at 0.3: behind it the ways from both sides meet. Targets up to ratio 1: 1 %, 6 %.
-    for (const Case& c : {Case{1.1, 10, 8, 2e-3, 1e-2}, Case{0.5, 2, 1, 1e-3, 1e-2},
-                          Case{1.1, 10, 13, 2e-3, 2e-2}}) {
+    for (const Case& c : {Case{1.1, 10, 8, 2e-3, 1e-2}, Case{0.5, 2, 1, 1e-3, 1e-2}, Case{1.1, 10, 13, 2e-3, 2e-2}}) {
         const double unit = 0.01;
-        Stage stage(cone(c.alpha, 0.03 * c.contact * unit, 2.4 * c.contact * unit, 3,
-                         64 / (c.radius * unit)));
+        Stage stage(cone(c.alpha, 0.03 * c.contact * unit, 2.4 * c.contact * unit, 3, 64 / (c.radius * unit)));
         const double phi = 0.3;
         const Vec3 out{std::sin(c.alpha) * std::cos(phi), std::sin(c.alpha) * std::sin(phi), std::cos(c.alpha)};
         const Vec3 n{std::cos(c.alpha) * std::cos(phi), std::cos(c.alpha) * std::sin(phi), -std::sin(c.alpha)};
@@ -205,36 +197,29 @@ TEST(Stamp, RollsOverAFillet) {
     // way over it is ρ π/2 longer. Contact 0.3 r before it.
     const double r = 0.01, rho = 0.2 * r, a = 0.3 * r, side = 0.03, texels = 400;
     for (const double sense : {1.0, -1.0}) {
-        testing::Patch level =
-            testing::flat({-side, -0.5 * side, 0}, {side, 0, 0}, {0, side, 0}, 8, 8);
+        testing::Patch level = testing::flat({-side, -0.5 * side, 0}, {side, 0, 0}, {0, side, 0}, 8, 8);
         testing::Patch bend;
         bend.position = [=](double s, double t) {
             const double angle = s * kPi / 2;
-            return Vec3{rho * std::sin(angle), (t - 0.5) * side,
-                        -sense * rho * (1 - std::cos(angle))};
+            return Vec3{rho * std::sin(angle), (t - 0.5) * side, -sense * rho * (1 - std::cos(angle))};
         };
-        bend.normal = [=](double s, double) {
-            return Vec3{sense * std::sin(s * kPi / 2), 0, std::cos(s * kPi / 2)};
-        };
+        bend.normal = [=](double s, double) { return Vec3{sense * std::sin(s * kPi / 2), 0, std::cos(s * kPi / 2)}; };
         bend.ns = 48;
         bend.nt = 8;
         const Vec3 down{0, 0, -sense * side};
-        testing::Patch wall =
-            testing::flat({rho, -0.5 * side, -sense * rho}, down, {0, side, 0}, 8, 8);
+        testing::Patch wall = testing::flat({rho, -0.5 * side, -sense * rho}, down, {0, side, 0}, 8, 8);
         const double width = texels / side * rho * kPi / 2;
         testing::place(level, {8.3, 8.3}, {texels, 0}, {0, texels});
         testing::place(bend, {8.3 + texels + 9.2, 8.3}, {width, 0}, {0, texels});
         testing::place(wall, {8.3 + texels + width + 18.7, 8.3}, {texels, 0}, {0, texels});
-        Stage stage(testing::build({level, bend, wall},
-                                   static_cast<std::uint32_t>(2 * texels + width + 40)));
+        Stage stage(testing::build({level, bend, wall}, static_cast<std::uint32_t>(2 * texels + width + 40)));
         const Vec3 at{-a, 0.0007, 0};
         const Footprint f = disc(make_frame(at, {0, 0, 1}), stage.triangle_at(at), r, r / 128);
         const StampJobs jobs = stage.plan(f);
         const Errors e = errors(stage, jobs, f, r, [&](const Vec3& p) {
             const double below = -sense * p.z;
             double u = p.x;
-            if (p.x > 0)
-                u = below > rho ? rho * kPi / 2 + below - rho : rho * std::atan2(p.x, rho - below);
+            if (p.x > 0) u = below > rho ? rho * kPi / 2 + below - rho : rho * std::atan2(p.x, rho - below);
             return Vec2{u + a, p.y - at.y};
         });
         // Target for fillets is 0.5 % at most.
@@ -316,9 +301,7 @@ TEST(Stamp, LiesOverOpeningsAsOverTheSurfaceWithoutThem) {
 TEST(Stamp, UnfoldsARightAngleWithAnOpeningOverTheEdge) {
     const double r = 0.01, a = 0.3 * r;
     const Vec3 at{-a, 0.0007, 0};
-    const auto unfolded = [&](const Vec3& p) {
-        return Vec2{p.z < -1e-7 ? a - p.z : p.x + a, p.y - at.y};
-    };
+    const auto unfolded = [&](const Vec3& p) { return Vec2{p.z < -1e-7 ? a - p.z : p.x + a, p.y - at.y}; };
     Stage stage(pierced(testing::right_angle(0.04, 300, false), [&](const Vec3& p) {
         return glm::length(unfolded(p) - Vec2{a, 0.2 * r}) < 0.25 * r;
     }));

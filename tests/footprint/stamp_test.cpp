@@ -5,9 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <map>
-#include <utility>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "core/hash.h"
 #include "core/parallel.h"
@@ -20,15 +20,13 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 /// Sum of exposure × way over a stroke of stamps `step` texels apart.
-std::vector<std::array<double, atlas::kTileTexels>> stroke(Stage& stage, double texel,
-                                                           double step) {
+std::vector<std::array<double, atlas::kTileTexels>> stroke(Stage& stage, double texel, double step) {
     std::vector<std::array<double, atlas::kTileTexels>> sum(stage.map.n_slots());
     for (auto& s : sum) s.fill(0);
     const double length = 64;
     for (double way = step; way <= length + 1e-9; way += step) {
         const Vec3 at = Vec3{-0.006, -0.0031, 0} + way * texel * Vec3{0.8, 0.6, 0};
-        const Footprint f = disc(make_frame(at, {0, 0, 1}, {1, 0, 0}), stage.triangle_at(at),
-                                 16 * texel, 0.5 * texel);
+        const Footprint f = disc(make_frame(at, {0, 0, 1}, {1, 0, 0}), stage.triangle_at(at), 16 * texel, 0.5 * texel);
         const Motion motion{step * texel * Vec2{0.8, 0.6}, 0};
         for_exposed(stage, stage.plan(f, motion),
                     [&](std::uint32_t slot, int t, float e) { sum[slot][t] += e * step; });
@@ -76,8 +74,7 @@ TEST(Stamp, PrefixSumsAreManySubPoses) {
             const Motion motion{way * texel * Vec2{std::cos(angle), std::sin(angle)}, 0};
             const StampJobs swept = stage.plan(f, motion);
             ASSERT_EQ(swept.sub_poses.size(), 1u);
-            const StampJobs many = stage.plan(
-                f, motion, {.sub_pose = 0.05, .max_sub_poses = 4096, .prefix_sums = 0});
+            const StampJobs many = stage.plan(f, motion, {.sub_pose = 0.05, .max_sub_poses = 4096, .prefix_sums = 0});
             ASSERT_GT(many.sub_poses.size(), 300u);
             std::vector<float> a(stage.map.n_slots() * atlas::kTileTexels), b = a;
             double sum_a = 0, sum_b = 0, peak = 0, square = 0;
@@ -137,7 +134,8 @@ TEST(Stamp, HairDrawnSidewaysInksAllThatItPassesOver) {
             };
             auto half = exposed(0.5f), none = exposed(1e-6f);
             // Each of the three pictures is rounded to 1/255.
-            for (const auto& [texel_of, e] : exposed(1)) ASSERT_NEAR(half[texel_of], 0.5f * (e + none[texel_of]), 1.1f / 255);
+            for (const auto& [texel_of, e] : exposed(1))
+                ASSERT_NEAR(half[texel_of], 0.5f * (e + none[texel_of]), 1.1f / 255);
             // Between the cells of the sheared picture some of the hair's peak is lost, and little goes beyond.
             EXPECT_GT(inside, 0.75) << way << " " << angle;
             EXPECT_LT(outside, 0.01) << way << " " << angle;
@@ -182,10 +180,8 @@ TEST(Stamp, SameBitsForAllInstructionSetsAndThreadCounts) {
     std::vector<Footprint> prints;
     Random random(7);
     for (int i = 0; i < 24; ++i) {
-        const Vec3 n = glm::normalize(
-            Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
-        prints.push_back(disc(make_frame(0.02 * n, n), stage.triangle_at(0.02 * n),
-                              random.uniform(0.001, 0.02), 1e-4));
+        const Vec3 n = glm::normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        prints.push_back(disc(make_frame(0.02 * n, n), stage.triangle_at(0.02 * n), random.uniform(0.001, 0.02), 1e-4));
     }
     std::set<std::uint64_t> hashes;
     for (const int threads : {1, 2, 4, 8}) {
@@ -196,10 +192,8 @@ TEST(Stamp, SameBitsForAllInstructionSetsAndThreadCounts) {
                 PlanScratch scratch;
                 for (std::size_t i = begin; i < end; ++i) {
                     const StampOptions options{.isa = isa};
-                    const Motion motion = i % 3 == 0 ? Motion{Vec2{3e-3, -1e-3}, 0}
-                                                     : Motion{Vec2{2e-4, -1e-4}, 0.05};
-                    StampJobs jobs =
-                        plan_stamp(stage.surface(), prints[i], motion, options, scratch);
+                    const Motion motion = i % 3 == 0 ? Motion{Vec2{3e-3, -1e-3}, 0} : Motion{Vec2{2e-4, -1e-4}, 0.05};
+                    StampJobs jobs = plan_stamp(stage.surface(), prints[i], motion, options, scratch);
                     choose_mode(jobs, i % 2 == 0, options);
                     std::array<float, atlas::kTileTexels> exposure;
                     for (const TileJob& job : jobs.tiles) {
@@ -221,10 +215,9 @@ TEST(Stamp, SixteenBitTexelsAreExposedAsFloatOnes) {
     Random random(11);
     double worst = 0, total = 0, difference = 0;
     for (int i = 0; i < 12; ++i) {
-        const Vec3 n = glm::normalize(
-            Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
-        const Footprint f = disc(make_frame(0.02 * n, n), exact.triangle_at(0.02 * n),
-                                 random.uniform(0.002, 0.01), exact.map.texel_size);
+        const Vec3 n = glm::normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        const Footprint f = disc(make_frame(0.02 * n, n), exact.triangle_at(0.02 * n), random.uniform(0.002, 0.01),
+                                 exact.map.texel_size);
         const StampJobs a = exact.plan(f), b = small.plan(f);
         std::vector<float> sum_a(exact.map.n_slots() * atlas::kTileTexels), sum_b = sum_a;
         for_exposed(exact, a, [&](std::uint32_t s, int t, float e) { sum_a[256 * s + t] = e; });
@@ -246,10 +239,8 @@ TEST(Stamp, QuartersCalledFullOrEmptyAreSoToTheBit) {
     Random random(3);
     std::size_t full = 0, empty = 0;
     for (int i = 0; i < 36; ++i) {
-        const Vec3 n = glm::normalize(
-            Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
-        Footprint f = disc(make_frame(0.02 * n, n), stage.triangle_at(0.02 * n),
-                           random.uniform(0.003, 0.012), 0.5e-4);
+        const Vec3 n = glm::normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        Footprint f = disc(make_frame(0.02 * n, n), stage.triangle_at(0.02 * n), random.uniform(0.003, 0.012), 0.5e-4);
         if (i % 2 == 1)  // A bristle's thin line instead of a disc.
             for (int j = 0; j < f.height; ++j)
                 for (int k = 0; k < f.width; ++k)
@@ -258,14 +249,14 @@ TEST(Stamp, QuartersCalledFullOrEmptyAreSoToTheBit) {
         const int hole = f.width / 3;
         for (int j = hole; j < hole + 7; ++j)
             std::fill_n(f.coverage.begin() + std::size_t(j) * f.width + hole, 5, std::uint8_t{0});
-        const Motion motion{Vec2{random.uniform(-5e-4, 5e-4), random.uniform(-5e-4, 5e-4)},
-                            i % 3 == 0 ? 0.05 : 0.0};
+        const Motion motion{Vec2{random.uniform(-5e-4, 5e-4), random.uniform(-5e-4, 5e-4)}, i % 3 == 0 ? 0.05 : 0.0};
         // As many poses as it takes, and 27: 27 / 27 in floats is not 1.
         StampJobs known = stage.plan(f, motion, {.sub_pose = i % 4 == 0 ? 0.01 : 1.0, .max_sub_poses = 27});
         StampJobs plain = known;
         for (ClusterFrame& frame : plain.frames) {
             full += static_cast<std::size_t>(std::popcount(frame.full_quadrants));
-            empty += static_cast<std::size_t>(std::popcount(static_cast<std::uint8_t>(~(frame.full_quadrants | frame.partial_quadrants) & kAllQuadrants)));
+            empty += static_cast<std::size_t>(std::popcount(
+                static_cast<std::uint8_t>(~(frame.full_quadrants | frame.partial_quadrants) & kAllQuadrants)));
             frame.full_quadrants = 0;
             frame.partial_quadrants = kAllQuadrants;
         }

@@ -38,8 +38,7 @@ mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
 }
 
 stroke::Stroke stroke_of(Bytes& bytes) {
-    static constexpr const char* kBrushes[] = {"wolf-small", "goat-small*0.3", "mixed-small*0.5",
-                                               "wolf-medium*0.2"};
+    static constexpr const char* kBrushes[] = {"wolf-small", "goat-small*0.3", "mixed-small*0.5", "wolf-medium*0.2"};
     static constexpr const char* kInks[] = {"carbon", "cinnabar", "water", "titanium-white-paste"};
     stroke::Stroke s;
     const int flags = bytes.byte(), more = bytes.byte();
@@ -88,9 +87,7 @@ stroke::Stroke entry_of(Bytes& bytes) {
     s.trace.flat = s.trace.erases = false;
     s.trace.samples.clear();
     if (s.action == Action::dip || s.action == Action::wipe)
-        s.extent = {.depth = std::abs(bytes.real()),
-                    .amount = std::abs(bytes.real()),
-                    .side = bytes.real()};
+        s.extent = {.depth = std::abs(bytes.real()), .amount = std::abs(bytes.real()), .side = bytes.real()};
     if (s.action == Action::dry) s.seconds = 0.5 + std::abs(bytes.real());
     if (s.action == Action::fill) s.fill.film = 2 * std::abs(bytes.real());
     return s;
@@ -113,8 +110,7 @@ void run_paint(std::span<const std::uint8_t> input) {
         options.unwrap.size = 48 + 16 * static_cast<std::uint32_t>(bytes.below(4));
         const stroke::Model model = stroke::prepare_model(tiny_mesh(bytes), options);
         stroke::Document painting(model);
-        for (int i = 0; i < 3 && !bytes.empty(); ++i)
-            refusing([&] { painting.paint(entry_of(bytes)); });
+        for (int i = 0; i < 3 && !bytes.empty(); ++i) refusing([&] { painting.paint(entry_of(bytes)); });
         check_ink(painting.canvas());
         stroke::Document again(model);
         again.replay(painting.journal().strokes());

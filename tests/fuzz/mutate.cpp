@@ -101,20 +101,14 @@ class Mutator {
     }
 
   private:
-    std::size_t below(std::size_t n) {
-        return n == 0 ? 0 : static_cast<std::size_t>(random_.bits() % n);
-    }
+    std::size_t below(std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random_.bits() % n); }
     template <std::size_t N>
     std::string_view pick(const std::string_view (&words)[N]) {
         return words[below(N)];
     }
 
-    std::vector<std::uint8_t>::iterator at(std::size_t i) {
-        return bytes_.begin() + static_cast<std::ptrdiff_t>(i);
-    }
-    void insert(std::string_view word) {
-        bytes_.insert(at(below(bytes_.size() + 1)), word.begin(), word.end());
-    }
+    std::vector<std::uint8_t>::iterator at(std::size_t i) { return bytes_.begin() + static_cast<std::ptrdiff_t>(i); }
+    void insert(std::string_view word) { bytes_.insert(at(below(bytes_.size() + 1)), word.begin(), word.end()); }
 
     void edit_bytes(std::size_t kind) {
         if (bytes_.empty()) return insert(pick(kWords));
@@ -132,11 +126,9 @@ class Mutator {
                 bytes_.erase(at(place), at(std::min(place + length, bytes_.size())));
                 break;
             case 3: {
-                const std::vector<std::uint8_t> part(at(place),
-                                                     at(std::min(place + length, bytes_.size())));
+                const std::vector<std::uint8_t> part(at(place), at(std::min(place + length, bytes_.size())));
                 const std::size_t to = below(bytes_.size() + 1);
-                for (std::size_t n = 1 + (below(8) == 0 ? below(64) : 0);
-                     n > 0 && bytes_.size() < kLongest; --n)
+                for (std::size_t n = 1 + (below(8) == 0 ? below(64) : 0); n > 0 && bytes_.size() < kLongest; --n)
                     bytes_.insert(at(to), part.begin(), part.end());
                 break;
             }
@@ -150,8 +142,7 @@ class Mutator {
                 break;
             }
             case 5:
-                for (std::size_t i = 0; i < std::min<std::size_t>(most, std::size_t{1} << below(4));
-                     ++i)
+                for (std::size_t i = 0; i < std::min<std::size_t>(most, std::size_t{1} << below(4)); ++i)
                     bytes_[place + i] = below(2) ? 0xff : 0;
                 break;
             default:
@@ -165,8 +156,8 @@ class Mutator {
         if (bytes_.empty()) return;
         const auto digit = [](std::uint8_t c) { return std::isdigit(c) != 0; };
         const auto begin = std::find_if(at(below(bytes_.size())), bytes_.end(), digit);
-        const auto end = std::find_if_not(
-            begin, bytes_.end(), [&](std::uint8_t c) { return digit(c) || c == '.' || c == 'e'; });
+        const auto end =
+            std::find_if_not(begin, bytes_.end(), [&](std::uint8_t c) { return digit(c) || c == '.' || c == 'e'; });
         const std::string_view number = pick(kNumbers);
         const auto where = bytes_.erase(begin, end);
         bytes_.insert(where, number.begin(), number.end());
@@ -179,8 +170,8 @@ class Mutator {
 
 }  // namespace
 
-std::vector<std::uint8_t> mutated(const std::vector<std::vector<std::uint8_t>>& seeds,
-                                  std::uint64_t number, bool text) {
+std::vector<std::uint8_t> mutated(const std::vector<std::vector<std::uint8_t>>& seeds, std::uint64_t number,
+                                  bool text) {
     return Mutator(seeds, number).run(text);
 }
 

@@ -16,8 +16,7 @@ namespace {
 
 std::vector<std::vector<std::uint8_t>> corpus_of(const Target& target) {
     std::vector<std::filesystem::path> files;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(source_folder() + "/tests/fuzz/corpus/" + target.name))
+    for (const auto& entry : std::filesystem::directory_iterator(source_folder() + "/tests/fuzz/corpus/" + target.name))
         files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     std::vector<std::vector<std::uint8_t>> seeds;
@@ -41,8 +40,7 @@ TEST_P(Fuzz, CorpusAndMutationsAreReadOrRefused) {
         const std::vector<std::uint8_t> input = mutated(seeds, number, target.text);
         if (last)
             std::ofstream(last, std::ios::binary | std::ios::trunc)
-                .write(reinterpret_cast<const char*>(input.data()),
-                       static_cast<std::streamsize>(input.size()));
+                .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
         target.run(input);
     }
 }

@@ -38,9 +38,8 @@ std::string text_of(Input input) {
 /// A folder of this process alone, where files may be looked for and none are.
 const std::filesystem::path& empty_folder() {
     static const std::filesystem::path folder = [] {
-        const std::filesystem::path base = std::filesystem::is_directory("/dev/shm")
-                                               ? "/dev/shm"
-                                               : std::filesystem::temp_directory_path();
+        const std::filesystem::path base =
+            std::filesystem::is_directory("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path();
         std::filesystem::path made = base / ("tuft_fuzz_" + std::to_string(::getpid()));
         std::filesystem::create_directories(made);
         std::atexit([] {
@@ -64,22 +63,17 @@ void check_surface(const mesh::Surface& surface) {
     promise(m.n_triangles() > 0, "a surface has triangles");
     for (const Vec3f& p : m.positions) promise(finite(p), "positions are finite");
     for (const auto& triangle : m.triangles)
-        for (const std::uint32_t v : triangle)
-            promise(v < m.n_vertices(), "triangles use vertices that are there");
+        for (const std::uint32_t v : triangle) promise(v < m.n_vertices(), "triangles use vertices that are there");
     for (std::size_t i = 0; i < m.neighbours.size(); ++i)
-        promise(m.neighbours[i] == kNone || m.neighbours[i] < m.n_triangles(),
-                "neighbours are there");
+        promise(m.neighbours[i] == kNone || m.neighbours[i] < m.n_triangles(), "neighbours are there");
     for (const Vec3f& n : m.corner_normals)
         promise(finite(n) && std::abs(glm::length(n) - 1) < 1e-3f, "normals are of length 1");
-    for (const std::uint32_t g : m.triangle_groups)
-        promise(g < m.group_names.size(), "groups are there");
+    for (const std::uint32_t g : m.triangle_groups) promise(g < m.group_names.size(), "groups are there");
 }
 
 template <mesh::PolygonSoup (*Read)(const std::vector<char>&, const std::filesystem::path&)>
 void run_mesh(Input input) {
-    refusing([&] {
-        check_surface(mesh::build_surface(Read(chars_of(input), empty_folder() / "input")));
-    });
+    refusing([&] { check_surface(mesh::build_surface(Read(chars_of(input), empty_folder() / "input"))); });
 }
 
 void check_traces(const std::vector<stroke::Trace>& traces) {
@@ -109,9 +103,7 @@ void run_inkml(Input input) {
 
 void run_svg(Input input) {
     std::vector<stroke::Trace> traces;
-    refusing([&] {
-        traces = io::parse_svg(text_of(input), "input.svg", {.ink = {.max_samples = kMostSamples}});
-    });
+    refusing([&] { traces = io::parse_svg(text_of(input), "input.svg", {.ink = {.max_samples = kMostSamples}}); });
     check_traces(traces);
 }
 
@@ -128,15 +120,13 @@ void run_ink(Input input) {
     refusing([&] {
         const ink::Ink ink = ink::parse_ink(text_of(input), "input.toml");
         const std::string text = ink::ink_toml(ink);
-        promise(ink::ink_toml(ink::parse_ink(text, "again.toml")) == text,
-                "an ink that is written is read again");
+        promise(ink::ink_toml(ink::parse_ink(text, "again.toml")) == text, "an ink that is written is read again");
     });
 }
 
 void run_substrate(Input input) {
     refusing([&] {
-        const std::string text =
-            ink::substrate_toml(ink::parse_substrate(text_of(input), "input.toml"));
+        const std::string text = ink::substrate_toml(ink::parse_substrate(text_of(input), "input.toml"));
         promise(ink::substrate_toml(ink::parse_substrate(text, "again.toml")) == text,
                 "a substrate that is written is read again");
     });
@@ -163,8 +153,7 @@ void run_entry(Input input) {
 void run_image(Input input) {
     refusing([&] {
         const io::Image8 image = io::decode_image8(chars_of(input), "input", std::size_t{1} << 20);
-        promise(image.pixels.size() == static_cast<std::size_t>(image.width) *
-                                           static_cast<std::size_t>(image.height) *
+        promise(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
                                            static_cast<std::size_t>(image.channels),
                 "a picture has all its pixels");
     });
@@ -174,8 +163,7 @@ void run_project(Input input) {
     const std::filesystem::path file = empty_folder() / "input.tuft";
     std::filesystem::remove(file.string() + "-journal");
     std::ofstream(file, std::ios::binary | std::ios::trunc)
-        .write(reinterpret_cast<const char*>(input.data()),
-               static_cast<std::streamsize>(input.size()));
+        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
     refusing([&] {
         const io::Project project = io::Project::open(file);
         project.format();
@@ -186,8 +174,7 @@ void run_project(Input input) {
         const io::ProjectModel model = project.model();
         const std::vector<stroke::Stroke> strokes = project.strokes();
         for (const stroke::Stroke& s : strokes) stroke::check_trace(s.trace);
-        for (const std::size_t slots : {std::size_t{1}, std::size_t{4}, std::size_t{16}})
-            project.load_canvases(slots);
+        for (const std::size_t slots : {std::size_t{1}, std::size_t{4}, std::size_t{16}}) project.load_canvases(slots);
     });
 }
 

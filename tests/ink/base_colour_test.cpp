@@ -61,9 +61,9 @@ std::shared_ptr<mesh::Picture> random_picture(int width, int height, std::uint64
 }
 
 std::array<int, 3> pixel(const mesh::Picture& picture, int x, int row_from_below) {
-    const std::size_t at = 3 * (static_cast<std::size_t>(picture.height - 1 - row_from_below) *
-                                    static_cast<std::size_t>(picture.width) +
-                                static_cast<std::size_t>(x));
+    const std::size_t at =
+        3 * (static_cast<std::size_t>(picture.height - 1 - row_from_below) * static_cast<std::size_t>(picture.width) +
+             static_cast<std::size_t>(x));
     return {picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]};
 }
 
@@ -73,8 +73,7 @@ TEST(BaseColour, APictureOfTheAtlasSizeIsKeptPixelByPixel) {
     square.mesh.materials = {{.picture = picture}};
     const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
     for (int y = 0; y < 96; ++y)
-        for (int x = 0; x < 96; ++x)
-            ASSERT_EQ(square.at(ground, x, y), pixel(*picture, x, y)) << x << " " << y;
+        for (int x = 0; x < 96; ++x) ASSERT_EQ(square.at(ground, x, y), pixel(*picture, x, y)) << x << " " << y;
 }
 
 TEST(BaseColour, APictureIsRepeatedBeyondItsEnds) {
@@ -83,8 +82,7 @@ TEST(BaseColour, APictureIsRepeatedBeyondItsEnds) {
     square.mesh.materials = {{.picture = picture}};
     const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
     for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x)
-            ASSERT_EQ(square.at(ground, x, y), pixel(*picture, x % 32, y % 32));
+        for (int x = 0; x < 64; ++x) ASSERT_EQ(square.at(ground, x, y), pixel(*picture, x % 32, y % 32));
 }
 
 // Black and white pixels seen from afar are half the light, which sRGB writes as 188.
@@ -94,14 +92,12 @@ TEST(BaseColour, FinerPicturesAreMeansInLinearLight) {
     for (int y = 0; y < 256; ++y)
         for (int x = 0; x < 256; ++x)
             for (int c = 0; c < 3; ++c)
-                picture
-                    ->rgb[3 * static_cast<std::size_t>(256 * y + x) + static_cast<std::size_t>(c)] =
+                picture->rgb[3 * static_cast<std::size_t>(256 * y + x) + static_cast<std::size_t>(c)] =
                     (x + y) % 2 ? 255 : 0;
     square.mesh.materials = {{.picture = picture}};
     const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
     for (int y = 0; y < 32; ++y)
-        for (int x = 0; x < 32; ++x)
-            ASSERT_EQ(square.at(ground, x, y), (std::array{188, 188, 188}));
+        for (int x = 0; x < 32; ++x) ASSERT_EQ(square.at(ground, x, y), (std::array{188, 188, 188}));
 }
 
 TEST(BaseColour, ColoursOfVerticesAndMaterialsMultiplyInLinearLight) {
@@ -152,8 +148,7 @@ Canvas painted(const Square& square, float film, std::uint32_t n_tiles) {
 TEST(BaseColour, BareTexelsHaveItsColourInTilesWithInkAndWithout) {
     Square square(64);
     const auto picture = random_picture(64, 64, 5);
-    for (std::size_t i = 0; i < 3 * 64 * 10; ++i)
-        picture->rgb[i] = i % 3 == 2 ? 255 : 0;  // pure blue
+    for (std::size_t i = 0; i < 3 * 64 * 10; ++i) picture->rgb[i] = i % 3 == 2 ? 255 : 0;  // pure blue
     square.mesh.materials = {{.picture = picture}};
     const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
     const Canvas canvas = painted(square, 0, 8);  // touched, with nothing on it
@@ -164,8 +159,7 @@ TEST(BaseColour, BareTexelsHaveItsColourInTilesWithInkAndWithout) {
         for (int y = 0; y < 64; ++y)
             for (int x = 0; x < 64; ++x)
                 for (int c = 0; c < 3; ++c)
-                    ASSERT_EQ(seen.texels[3 * static_cast<std::size_t>(64 * y + x) +
-                                          static_cast<std::size_t>(c)],
+                    ASSERT_EQ(seen.texels[3 * static_cast<std::size_t>(64 * y + x) + static_cast<std::size_t>(c)],
                               pixel(*picture, x, y)[c])
                         << name << " " << x << " " << y << " " << c;
     }
@@ -184,12 +178,10 @@ TEST(BaseColour, InkOverItIsThatOverASubstrateOfTheSameColour) {
     const Canvas canvas = painted(square, 0.7f, 16);
     Stack on_ground(canvas);
     on_ground.ground = &ground;
-    const TileAppearance a = shade_tile(on_ground, 3, substrate),
-                   b = shade_tile(Stack(canvas), 3, substrate);
+    const TileAppearance a = shade_tile(on_ground, 3, substrate), b = shade_tile(Stack(canvas), 3, substrate);
     for (int c = 0; c < 3; ++c)
         for (int t = 0; t < kN; ++t)
-            ASSERT_NEAR(a.colour[c][t], b.colour[c][t], 2e-6)
-                << "floats of two orders of summation";
+            ASSERT_NEAR(a.colour[c][t], b.colour[c][t], 2e-6) << "floats of two orders of summation";
     EXPECT_EQ(a.height, b.height);
     EXPECT_EQ(a.roughness, b.roughness);
 }

@@ -32,8 +32,7 @@ double bare(const Substrate& s, int b) {
 Rgb seen(const std::array<double, kBands>& r, const Substrate& s) {
     Bands bands;
     for (int b = 0; b < kBands; ++b)
-        bands[b] = static_cast<float>(
-            saunderson(r[b], {.k1 = 0, .k2 = 0.6 * static_cast<double>(s.interface)}, false));
+        bands[b] = static_cast<float>(saunderson(r[b], {.k1 = 0, .k2 = 0.6 * static_cast<double>(s.interface)}, false));
     return into_gamut(rgb_of_bands(bands));
 }
 
@@ -50,8 +49,7 @@ TEST(Blend, AGlazeOnlyAbsorbs) {
             r[b] = bare(porcelain, b) * std::exp(-2 * k);
         }
         // What single precision may differ by.
-        for (std::size_t c = 0; c < 3; ++c)
-            EXPECT_NEAR(look.colour[c][t], seen(r, porcelain)[c], 4e-6f) << t;
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(look.colour[c][t], seen(r, porcelain)[c], 4e-6f) << t;
     }
 }
 
@@ -68,8 +66,7 @@ TEST(Blend, MultiplyIsAFilterOfTheColourOverWhite) {
                 k += w * static_cast<double>(p.k[b]), s += w * static_cast<double>(p.s[b]);
             r[b] = bare(clay, b) * over(layer(k, s, 1), 1);
         }
-        for (std::size_t c = 0; c < 3; ++c)
-            EXPECT_NEAR(look.colour[c][t], seen(r, clay)[c], 4e-6f) << t;
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(look.colour[c][t], seen(r, clay)[c], 4e-6f) << t;
     }
 }
 
@@ -79,8 +76,7 @@ TEST(Blend, WhiteCoversOnlyNormally) {
     const Canvas white = layer_of({"titanium-white"}, 4), empty(1);
     const TileAppearance none = look_of({{.canvas = &empty}}, clay);
     const auto change = [&](Blend blend) {
-        return look_of({{.canvas = &white, .blend = blend}}, clay).colour[1][255] -
-               none.colour[1][255];
+        return look_of({{.canvas = &white, .blend = blend}}, clay).colour[1][255] - none.colour[1][255];
     };
     EXPECT_GT(change(Blend::normal), 0.3f);
     // Titanium white absorbs a few per cent.
@@ -99,12 +95,10 @@ TEST(Blend, NothingGetsLighterByGlazesAndFilters) {
                 const Canvas film = layer_of({pigment}, 3);
                 const TileAppearance look = look_of({{.canvas = &film, .blend = blend}}, substrate);
                 const auto luminance = [&](int t) {
-                    return 0.2126f * look.colour[0][t] + 0.7152f * look.colour[1][t] +
-                           0.0722f * look.colour[2][t];
+                    return 0.2126f * look.colour[0][t] + 0.7152f * look.colour[1][t] + 0.0722f * look.colour[2][t];
                 };
                 // Thicker is darker, up to rounding.
-                for (int t = 1; t < kN; ++t)
-                    EXPECT_LE(luminance(t), luminance(t - 1) + 1e-6f) << pigment;
+                for (int t = 1; t < kN; ++t) EXPECT_LE(luminance(t), luminance(t - 1) + 1e-6f) << pigment;
             }
 }
 
@@ -124,10 +118,8 @@ TEST(Blend, OpacityFadesEachTowardsWhatLiesBelow) {
     const Canvas film = layer_of({"cinnabar"}, 2);
     for (const Blend blend : {Blend::normal, Blend::glaze, Blend::multiply}) {
         const float whole = look_of({{.canvas = &film, .blend = blend}}, porcelain).colour[1][200];
-        const float half =
-            look_of({{.canvas = &film, .opacity = 0.5f, .blend = blend}}, porcelain).colour[1][200];
-        const float none =
-            look_of({{.canvas = &film, .opacity = 0, .blend = blend}}, porcelain).colour[1][200];
+        const float half = look_of({{.canvas = &film, .opacity = 0.5f, .blend = blend}}, porcelain).colour[1][200];
+        const float none = look_of({{.canvas = &film, .opacity = 0, .blend = blend}}, porcelain).colour[1][200];
         EXPECT_GT(half, whole);
         EXPECT_LT(half, none);
         EXPECT_EQ(none, look_of({}, porcelain).colour[1][200]);
@@ -135,8 +127,7 @@ TEST(Blend, OpacityFadesEachTowardsWhatLiesBelow) {
 }
 
 TEST(Blend, WordsAreReadAndWritten) {
-    for (const Blend blend : {Blend::normal, Blend::glaze, Blend::multiply})
-        EXPECT_EQ(blend_of(name_of(blend)), blend);
+    for (const Blend blend : {Blend::normal, Blend::glaze, Blend::multiply}) EXPECT_EQ(blend_of(name_of(blend)), blend);
     EXPECT_FALSE(blend_of("screen"));
 }
 

@@ -43,8 +43,7 @@ TEST(Canvas, MemoryFollowsThePaintedTiles) {
 
 TEST(Canvas, PigmentsAreFoundByNameAndLimitedToEight) {
     Canvas canvas(1);
-    for (int i = 0; i < kMaxPigments; ++i)
-        EXPECT_EQ(canvas.add_pigment(named(std::to_string(i))), i);
+    for (int i = 0; i < kMaxPigments; ++i) EXPECT_EQ(canvas.add_pigment(named(std::to_string(i))), i);
     EXPECT_EQ(canvas.add_pigment(named("3")), 3);
     EXPECT_THROW(canvas.add_pigment(named("ninth")), Error);
 }

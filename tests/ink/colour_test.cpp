@@ -53,8 +53,8 @@ TEST(Colorimetry, TheTablesGiveTheWhiteOfD65) {
 }
 
 TEST(Spectrum, ASmoothSpectrumHasTheColourItWasMadeFor) {
-    for (const Rgb& colour : {Rgb{.84f, .83f, .79f}, Rgb{.3f, .23f, .17f}, Rgb{.5f, .5f, .5f},
-                              Rgb{.7f, .45f, .3f}, Rgb{0, 0, 0}, Rgb{1, 1, 1}}) {
+    for (const Rgb& colour : {Rgb{.84f, .83f, .79f}, Rgb{.3f, .23f, .17f}, Rgb{.5f, .5f, .5f}, Rgb{.7f, .45f, .3f},
+                              Rgb{0, 0, 0}, Rgb{1, 1, 1}}) {
         const auto back = rgb_of_spectrum(spectrum_of_rgb(colour));
         const Rgb bands = rgb_of_bands(bands_of_rgb(colour));
         for (int c = 0; c < 3; ++c) {
@@ -106,15 +106,13 @@ std::vector<double> band_errors(int n, std::uint64_t seed) {
         Spectrum fine;
         Bands coarse;
         for (int i = 0; i < kWavelengths; ++i)
-            fine[i] = test::reflectance(m, ground[i], [&](int p) { return full[p].k[i]; },
-                                        [&](int p) { return full[p].s[i]; });
+            fine[i] = test::reflectance(
+                m, ground[i], [&](int p) { return full[p].k[i]; }, [&](int p) { return full[p].s[i]; });
         for (int b = 0; b < kBands; ++b)
-            coarse[b] = static_cast<float>(
-                test::reflectance(m, under[b], [&](int p) { return banded[p].k[b]; },
-                                  [&](int p) { return banded[p].s[b]; }));
+            coarse[b] = static_cast<float>(test::reflectance(
+                m, under[b], [&](int p) { return banded[p].k[b]; }, [&](int p) { return banded[p].s[b]; }));
         const Rgb got = rgb_of_bands(coarse);
-        errors.push_back(delta_e_2000(lab_of_rgb({got[0], got[1], got[2]}),
-                                      lab_of_rgb(rgb_of_spectrum(fine))));
+        errors.push_back(delta_e_2000(lab_of_rgb({got[0], got[1], got[2]}), lab_of_rgb(rgb_of_spectrum(fine))));
     }
     std::sort(errors.begin(), errors.end());
     return errors;
@@ -203,7 +201,8 @@ TEST(Spectrum, TheCompositeShowsShippedPigmentsAsTheFullSpectraDo) {
                 }
             }
             const auto full = rgb_of_spectrum(stack_in_full(films, on));
-            const Rgb want = into_gamut({static_cast<float>(full[0]), static_cast<float>(full[1]), static_cast<float>(full[2])});
+            const Rgb want =
+                into_gamut({static_cast<float>(full[0]), static_cast<float>(full[1]), static_cast<float>(full[2])});
             const TileAppearance look = shade_films(tiles, nullptr, eight, on);
             worst = std::max(worst, delta_e({look.colour[0][0], look.colour[1][0], look.colour[2][0]}, want));
         }
@@ -222,8 +221,7 @@ TEST(Upsampling, FilmsKeepTheColoursTheyHaveInThreeBands) {
             for (const float ground : {0.03f, 0.3f, 0.84f, 0.95f}) {
                 Rgb three;
                 for (int c = 0; c < 3; ++c)
-                    three[c] = static_cast<float>(
-                        over(layer(p.curve.k[c], p.curve.s[c], p.curve.scale * x), ground));
+                    three[c] = static_cast<float>(over(layer(p.curve.k[c], p.curve.s[c], p.curve.scale * x), ground));
                 Ink ink;
                 ink.parts = {{p, 1.0}};
                 const double e = delta_e(colour_of_film(ink, {ground, ground, ground}, x), three);
@@ -240,9 +238,9 @@ TEST(Upsampling, FilmsKeepTheColoursTheyHaveInThreeBands) {
 TEST(Upsampling, NothingStaysNothingAndExtremesStayFinite) {
     const Curves none = upsample_pigment({0, 0, 0}, {0, 0, 0});
     for (int i = 0; i < kWavelengths; ++i) EXPECT_EQ(none.k[i] + none.s[i], 0);
-    for (const auto& [k, s] : {std::pair<Rgb, Rgb>{{1e3f, 0, 1e-6f}, {0, 1e3f, 0}},
-                               std::pair<Rgb, Rgb>{{1e-9f, 1e-9f, 1e-9f}, {0, 0, 1e3f}},
-                               std::pair<Rgb, Rgb>{{1e3f, 1e3f, 1e3f}, {1e3f, 1e3f, 1e3f}}}) {
+    for (const auto& [k, s] :
+         {std::pair<Rgb, Rgb>{{1e3f, 0, 1e-6f}, {0, 1e3f, 0}}, std::pair<Rgb, Rgb>{{1e-9f, 1e-9f, 1e-9f}, {0, 0, 1e3f}},
+          std::pair<Rgb, Rgb>{{1e3f, 1e3f, 1e3f}, {1e3f, 1e3f, 1e3f}}}) {
         const Curves c = upsample_pigment(k, s);
         for (int i = 0; i < kWavelengths; ++i) {
             EXPECT_TRUE(std::isfinite(c.k[i]) && std::isfinite(c.s[i]));

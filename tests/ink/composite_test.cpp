@@ -49,8 +49,7 @@ struct Reference {
 
     explicit Reference(const Substrate& s) : substrate(s) {
         const Bands bare = bands_of_rgb(s.reflectance);
-        for (int b = 0; b < kBands; ++b)
-            r[b] = saunderson_inverse(bare[b], {.k1 = 0, .k2 = 0.6 * s.interface}, false);
+        for (int b = 0; b < kBands; ++b) r[b] = saunderson_inverse(bare[b], {.k1 = 0, .k2 = 0.6 * s.interface}, false);
     }
     void lay(const std::vector<Pigment>& pigments, const std::vector<double>& w, double part = 1) {
         for (int b = 0; b < kBands; ++b) {
@@ -66,8 +65,7 @@ struct Reference {
     Rgb seen(double wet = 0) const {
         const double g = substrate.interface + (1 - substrate.interface) * wet;
         Bands out;
-        for (int b = 0; b < kBands; ++b)
-            out[b] = static_cast<float>(saunderson(r[b], {.k1 = 0, .k2 = 0.6 * g}, false));
+        for (int b = 0; b < kBands; ++b) out[b] = static_cast<float>(saunderson(r[b], {.k1 = 0, .k2 = 0.6 * g}, false));
         return into_gamut(rgb_of_bands(out));
     }
 };
@@ -82,8 +80,7 @@ std::vector<Pigment> pigments_of(std::initializer_list<const char*> inks) {
 Plane random_plane(int seed) {
     Plane w;
     for (int t = 0; t < kN; ++t)
-        w[t] = (t + seed) % 7 == 0 ? 0.0f
-                                   : static_cast<float>(std::pow(10, 8 * uniform(seed, t) - 7));
+        w[t] = (t + seed) % 7 == 0 ? 0.0f : static_cast<float>(std::pow(10, 8 * uniform(seed, t) - 7));
     return w;
 }
 
@@ -112,8 +109,7 @@ TEST(Composite, AgreesWithTheScalarFormulas) {
             reference.lay(pigments, w);
             const Rgb expected = reference.seen();
             // Single precision through two dozen operations; the interface has slope ≤ 2.5.
-            for (int c = 0; c < 3; ++c)
-                EXPECT_NEAR(look.colour[c][t], expected[c], 4e-6) << name << " " << t;
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(look.colour[c][t], expected[c], 4e-6) << name << " " << t;
             EXPECT_NEAR(look.height[t], height, 1e-5 * height);
             EXPECT_GE(look.roughness[t], 0);
             EXPECT_LE(look.roughness[t], 1);
@@ -146,8 +142,7 @@ TEST(Composite, FilmsLieOverEachOther) {
         const Rgb expected = reference.seen(1 - std::exp(-water[t] * 10.0 / 30.0));
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(look.colour[c][t], expected[c], 4e-6) << t;
         EXPECT_NEAR(look.height[t],
-                    1e6 * (pigments[0].height * yellow[t] +
-                           pigments[1].height * blue[t] * (1 + 0.7f * mask[t]) +
+                    1e6 * (pigments[0].height * yellow[t] + pigments[1].height * blue[t] * (1 + 0.7f * mask[t]) +
                            pigments[2].height * white[t]),
                     1e-5 * look.height[t] + 1e-9);
     }
@@ -202,14 +197,12 @@ TEST(Composite, SplittingAFilmChangesNothing) {
         white_high[t] = 0.75f * white[t];
     }
     const std::vector<TileFilm> one{{.pigments = {&red, &white}}};
-    const std::vector<TileFilm> two{{.pigments = {&red_low, &white_low}},
-                                    {.pigments = {&red_high, &white_high}}};
+    const std::vector<TileFilm> two{{.pigments = {&red_low, &white_low}}, {.pigments = {&red_high, &white_high}}};
     const Substrate glaze = load_substrate("porcelain");
     const TileAppearance whole = shade_films(one, nullptr, pigments, glaze);
     const TileAppearance parts = shade_films(two, nullptr, pigments, glaze);
     for (int c = 0; c < 3; ++c)
-        for (int t = 0; t < kN; ++t)
-            EXPECT_NEAR(parts.colour[c][t], whole.colour[c][t], 4e-6) << "single precision";
+        for (int t = 0; t < kN; ++t) EXPECT_NEAR(parts.colour[c][t], whole.colour[c][t], 4e-6) << "single precision";
 }
 
 TEST(Composite, WaterDeepensColourAndShines) {
@@ -243,8 +236,7 @@ TEST(Composite, AnEmptyTileLooksLikeTheSubstrate) {
     for (const std::string& name : list_substrates()) {  // under its interface too
         const Substrate substrate = load_substrate(name);
         const TileAppearance bare = shade_tile(canvas, 0, substrate);
-        for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(bare.colour[c][9], substrate.reflectance[c], 1e-6) << name;
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(bare.colour[c][9], substrate.reflectance[c], 1e-6) << name;
     }
 }
 
@@ -266,8 +258,7 @@ TEST(Composite, MapsHaveTheChartsTheirGutterAndTheBackground) {
     const Substrate porcelain = load_substrate("porcelain");
     const AtlasMap<std::uint8_t> image = compose_srgb8(canvas, map, porcelain, {.gutter = 4});
     ASSERT_EQ(image.texels.size(), 100u * 100u * 3u);
-    const TileAppearance look =
-        shade_tile(canvas, map.slot_of_tile[3 * map.tiles_per_side + 3], porcelain);
+    const TileAppearance look = shade_tile(canvas, map.slot_of_tile[3 * map.tiles_per_side + 3], porcelain);
     for (int y = 0; y < 100; ++y)
         for (int x = 0; x < 100; ++x) {
             const double r = std::hypot(x + 0.5 - 50, y + 0.5 - 50);
@@ -287,8 +278,7 @@ TEST(Composite, RefreshingDirtyTilesEqualsComposingAnew) {
     const Substrate paper = load_substrate("rice-paper");
     AtlasMap<std::uint8_t> image = compose_srgb8(canvas, map, paper);
     for (std::uint32_t slot = 5; slot < 40; ++slot)
-        for (int t = 0; t < kN; ++t)
-            canvas.touch(slot, 0)[t] = static_cast<float>(uniform(slot, t));
+        for (int t = 0; t < kN; ++t) canvas.touch(slot, 0)[t] = static_cast<float>(uniform(slot, t));
     const TileSnapshot before = canvas.snapshot(2);
     canvas.touch(2, 0).fill(1);
     refresh_srgb8(image, canvas.take_dirty(), canvas, map, paper);
@@ -300,8 +290,7 @@ TEST(Composite, RefreshingDirtyTilesEqualsComposingAnew) {
 /// A cube of 20 mm: six faces, hence seams.
 mesh::TriangleMesh cube() {
     mesh::PolygonSoup soup;
-    for (int i = 0; i < 8; ++i)
-        soup.points.emplace_back(i & 1 ? 20 : 0, i & 2 ? 20 : 0, i & 4 ? 20 : 0);
+    for (int i = 0; i < 8; ++i) soup.points.emplace_back(i & 1 ? 20 : 0, i & 2 ? 20 : 0, i & 4 ? 20 : 0);
     soup.corners = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
     soup.polygon_start = {0, 4, 8, 12, 16, 20, 24};
     return mesh::build_surface(soup).mesh;
@@ -324,8 +313,7 @@ TEST(Composite, GuttersContinueOverSeams) {
     atlas::fill_gutter(seams.gutter, map, 3, linear.texels);
     ASSERT_FALSE(seams.gutter.texels.empty());
     // Beside unpainted texels the substrate stands as it is, not summed from taps.
-    for (std::size_t i = 0; i < composed.size(); ++i)
-        ASSERT_NEAR(linear.texels[i], composed[i], 1e-6);
+    for (std::size_t i = 0; i < composed.size(); ++i) ASSERT_NEAR(linear.texels[i], composed[i], 1e-6);
     refresh_srgb8(image, canvas.take_dirty(), canvas, map, paper, options);
     EXPECT_EQ(image.texels, compose_srgb8(canvas, map, paper, options).texels);
     for (std::size_t i = 0; i < image.texels.size(); i += 7)
@@ -338,8 +326,7 @@ TEST(Composite, ThreadsDoNotChangeTheMaps) {
     Canvas canvas(map.n_slots());
     canvas.add_pigment(load_ink("cobalt").parts[0].pigment);
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
-        for (int t = 0; t < kN; ++t)
-            canvas.touch(slot, 0)[t] = static_cast<float>(uniform(slot, t));
+        for (int t = 0; t < kN; ++t) canvas.touch(slot, 0)[t] = static_cast<float>(uniform(slot, t));
     const Substrate bisque = load_substrate("bisque");
     set_thread_count(1);
     const auto one = compose_linear(canvas, map, bisque);
@@ -351,13 +338,12 @@ TEST(Composite, ThreadsDoNotChangeTheMaps) {
     EXPECT_EQ(orm.texels[0], 255) << "no occlusion";
     const AtlasMap<float> height = compose_height(canvas, map);
     const Plane& w = *canvas.plane(map.slot_of_tile[5 * map.tiles_per_side + 5], 0);
-    EXPECT_NEAR(height.texels[(5 * 16 + 3) * 300 + 5 * 16 + 2],
-                w[3 * 16 + 2] * canvas.pigments()[0].height * 1e6f, 1e-6);
+    EXPECT_NEAR(height.texels[(5 * 16 + 3) * 300 + 5 * 16 + 2], w[3 * 16 + 2] * canvas.pigments()[0].height * 1e6f,
+                1e-6);
 }
 
 TEST(Srgb, DecodingUndoesEncoding) {
-    for (int i = 0; i <= 255; ++i)
-        EXPECT_NEAR(255 * srgb_encode(srgb_decode(static_cast<float>(i) / 255)), i, 1e-3);
+    for (int i = 0; i <= 255; ++i) EXPECT_NEAR(255 * srgb_encode(srgb_decode(static_cast<float>(i) / 255)), i, 1e-3);
 }
 
 }  // namespace

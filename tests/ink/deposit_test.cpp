@@ -32,10 +32,8 @@ TEST(Deposit, FollowsTheRateLawForAnySteps) {
     const Ink ink = plain("black");
     for (const double step : {0.05e-3, 0.1e-3, 0.5e-3, 1e-3}) {
         Canvas canvas(1);
-        DepositParams params{
-            .mix = mix_of(canvas, ink), .target = 1.6f, .transfer_length = 0.5e-3f};
-        for (double s = 0; s < 1e-3 - 1e-9; s += step)
-            deposit(canvas, 0, constant(0.75f), kArea, step, params);
+        DepositParams params{.mix = mix_of(canvas, ink), .target = 1.6f, .transfer_length = 0.5e-3f};
+        for (double s = 0; s < 1e-3 - 1e-9; s += step) deposit(canvas, 0, constant(0.75f), kArea, step, params);
         // w(s) = c f (1 − exp(−s/s0)); float rounding per step 6e-8, at most 20 steps.
         const double expected = 1.6 * 0.75 * (1 - std::exp(-2.0));
         EXPECT_NEAR((*canvas.plane(0, 0))[100], expected, 3e-6) << step;
@@ -47,8 +45,7 @@ TEST(Deposit, PassingAgainNeitherBeadsNorLosesTheEdge) {
     const Texels coverage = random_texels(3, 0, 1);
     const DepositParams params{.mix = mix_of(canvas, plain("black")), .target = 1.8f};
     for (int i = 0; i < 200; ++i) deposit(canvas, 0, coverage, kArea, 1e-3, params);
-    for (int t = 0; t < kN; ++t)
-        EXPECT_NEAR((*canvas.plane(0, 0))[t], 1.8f * coverage[t], 2e-6f) << "the edge keeps f";
+    for (int t = 0; t < kN; ++t) EXPECT_NEAR((*canvas.plane(0, 0))[t], 1.8f * coverage[t], 2e-6f) << "the edge keeps f";
 }
 
 TEST(Deposit, IsTheSameBesideAPlaneOfNothing) {
@@ -82,9 +79,8 @@ TEST(Deposit, ATexelHalfCoveredLooksHalfCovered) {
         const Ink ink = load_ink(name);
         const Substrate substrate = load_substrate(under);
         Canvas canvas(1);
-        const DepositParams params{.mix = mix_of(canvas, ink),
-                                   .target = static_cast<float>(ink.film),
-                                   .extinction = extinction_of(ink)};
+        const DepositParams params{
+            .mix = mix_of(canvas, ink), .target = static_cast<float>(ink.film), .extinction = extinction_of(ink)};
         Texels coverage;
         for (int t = 0; t < kN; ++t) coverage[t] = static_cast<float>(t) / (kN - 1);
         for (int i = 0; i < 50; ++i) deposit(canvas, 0, coverage, kArea, 1e-3, params);
@@ -94,8 +90,7 @@ TEST(Deposit, ATexelHalfCoveredLooksHalfCovered) {
         for (int t = 0; t < kN; ++t) {
             const double bare = look.colour[1][0], full = look.colour[1][kN - 1];
             // Exact for a film that only absorbs; the tolerance is that of the scattering.
-            EXPECT_NEAR(look.colour[1][t], bare + coverage[t] * (full - bare), tolerance)
-                << name << t;
+            EXPECT_NEAR(look.colour[1][t], bare + coverage[t] * (full - bare), tolerance) << name << t;
         }
     }
 }
@@ -105,15 +100,12 @@ TEST(Deposit, GoalsFollowTheLogarithm) {
     for (const double extinction : {0.01, 1.0, 4.0, 100.0}) {
         Canvas canvas(1);
         deposit(canvas, 0, coverage, kArea, 1e6,
-                {.mix = mix_of(canvas, plain("black")),
-                 .target = 1.5f,
-                 .extinction = static_cast<float>(extinction)});
+                {.mix = mix_of(canvas, plain("black")), .target = 1.5f, .extinction = static_cast<float>(extinction)});
         const double e = std::min(extinction, 12 / 1.5);
         for (int t = 0; t < kN; ++t) {
             const double x = 1 - coverage[t] * -std::expm1(-e * 1.5);
             // Float rounding of x, magnified by the slope 1 / (ε x).
-            EXPECT_NEAR((*canvas.plane(0, 0))[t], -std::log(x) / e, 3e-7 * (1 + 1 / (e * x)))
-                << extinction;
+            EXPECT_NEAR((*canvas.plane(0, 0))[t], -std::log(x) / e, 3e-7 * (1 + 1 / (e * x))) << extinction;
         }
     }
 }
@@ -123,8 +115,7 @@ TEST(Deposit, GivenInkIsWhatTheTexelsGained) {
     const Mix mix = mix_of(canvas, plain("purple", {{"red", 0.3}, {"blue", 0.6}}));
     double given = 0;
     for (int i = 0; i < 300; ++i)
-        given +=
-            deposit(canvas, 0, random_texels(i, 0, 1), kArea, 2e-5, {.mix = mix, .target = 1.8f});
+        given += deposit(canvas, 0, random_texels(i, 0, 1), kArea, 2e-5, {.mix = mix, .target = 1.8f});
     double on_texels = 0, red = 0;
     for (int t = 0; t < kN; ++t) {
         const double area = kArea[t];
@@ -149,8 +140,7 @@ TEST(Deposit, AnotherInkGoesOnTopUpToTheCapacity) {
     EXPECT_EQ((*canvas.plane(0, 0))[5], black_before) << "what lies there stays";
     EXPECT_NEAR(black_before, 2, 1e-6);
     EXPECT_NEAR((*canvas.plane(0, 1))[5], 1, 1e-6) << "no more than the capacity in all";
-    const double more =
-        deposit(canvas, 0, constant(1), kArea, 1e-3, {.mix = black, .target = 9, .capacity = 3});
+    const double more = deposit(canvas, 0, constant(1), kArea, 1e-3, {.mix = black, .target = 9, .capacity = 3});
     EXPECT_LE(more, 1e-6 * 1e-8 * kN);
 }
 
@@ -173,8 +163,7 @@ TEST(Deposit, BitsArePinnedForEveryInstructionSet) {
     for (int i = 0; i < 40; ++i) {
         const Texels f = random_texels(i, 0, 1);
         deposit(canvas, 0, f, kArea, 7e-5, {.mix = mix, .target = 1.8f, .capacity = 1.5f});
-        const auto rate = static_cast<float>(
-            -std::expm1(-7e-5 / static_cast<double>(DepositParams{}.transfer_length)));
+        const auto rate = static_cast<float>(-std::expm1(-7e-5 / static_cast<double>(DepositParams{}.transfer_length)));
         for (int t = 0; t < kN; ++t) {
             float inverse0 = 1.0f / mix[0], inverse1 = 1.0f / mix[1];
             float all = w[0][t] + w[1][t];

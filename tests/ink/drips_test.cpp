@@ -22,9 +22,12 @@ testing::Unwrapped wall(double angle, bool cut) {
         testing::place(p, at, (to - from) * per_metre * x, height * per_metre * y);
         return p;
     };
-    if (!cut) return testing::build({part(-0.5 * width, 0.5 * width, {8.21 + height * per_metre * std::sin(angle), 8.13}, across, up)}, 450);
-    return testing::build({part(-0.5 * width, 0, {8.21, 8.13}, {1, 0}, {0, 1}),
-                           part(0, 0.5 * width, {450.4, 20.3}, {0, 1}, {-1, 0})}, 480);
+    if (!cut)
+        return testing::build(
+            {part(-0.5 * width, 0.5 * width, {8.21 + height * per_metre * std::sin(angle), 8.13}, across, up)}, 450);
+    return testing::build(
+        {part(-0.5 * width, 0, {8.21, 8.13}, {1, 0}, {0, 1}), part(0, 0.5 * width, {450.4, 20.3}, {0, 1}, {-1, 0})},
+        480);
 }
 
 struct Wall {
@@ -53,7 +56,9 @@ struct Wall {
             return std::clamp((radius - glm::distance(p, Vec3{0, 0, 12e-3})) / 0.3e-3 + 0.5, 0.0, 1.0);
         };
         double area = 0;
-        each([&](std::uint32_t slot, int t, const Vec3& p) { area += part(p) * static_cast<double>(map.tiles[slot].area[t]); });
+        each([&](std::uint32_t slot, int t, const Vec3& p) {
+            area += part(p) * static_cast<double>(map.tiles[slot].area[t]);
+        });
         thickness *= std::numbers::pi * radius * radius / area;
         each([&](std::uint32_t slot, int t, const Vec3& p) {
             if (!(part(p) > 0)) return;
@@ -71,7 +76,8 @@ struct Wall {
     std::vector<double> squares(double side, int n) const {
         std::vector<double> sum(static_cast<std::size_t>(n * n)), area(sum.size());
         each([&](std::uint32_t slot, int t, const Vec3& p) {
-            const int x = static_cast<int>(std::floor(p.x / side)) + n / 2, y = static_cast<int>(std::floor(-p.z / side)) + n / 2;
+            const int x = static_cast<int>(std::floor(p.x / side)) + n / 2,
+                      y = static_cast<int>(std::floor(-p.z / side)) + n / 2;
             if (x < 0 || y < 0 || x >= n || y >= n) return;
             const auto a = static_cast<double>(map.tiles[slot].area[t]);
             sum[static_cast<std::size_t>(y * n + x)] += ink(slot, t) * a;
@@ -89,10 +95,14 @@ struct Wall {
     }
 };
 
-FilmParams porcelain(const Vec3& down = {0, 0, -1}) { return film_params(load_substrate("porcelain"), down); }
+FilmParams porcelain(const Vec3& down = {0, 0, -1}) {
+    return film_params(load_substrate("porcelain"), down);
+}
 
 /// A drop of three times the critical volume.
-void drop(Wall& w) { w.blot(8, 1.5e-3); }
+void drop(Wall& w) {
+    w.blot(8, 1.5e-3);
+}
 
 /// Σ |a − b| over Σ a of means over squares of 1 mm, down to 3 mm above the lowest ink: of the trails.
 double difference(const Wall& a, const Wall& b) {
@@ -108,13 +118,15 @@ TEST(Drips, AThinFilmStaysAndAThickOneRuns) {
         Wall w;
         w.blot(thickness, 4e-3);
         w.film.advance(w.canvas, 6, porcelain());
-        if (thickness < 3) EXPECT_NEAR(w.lowest(), 8e-3, 0.3e-3) << "two texels";
-        else EXPECT_LT(w.lowest(), 5e-3);
+        if (thickness < 3)
+            EXPECT_NEAR(w.lowest(), 8e-3, 0.3e-3) << "two texels";
+        else
+            EXPECT_LT(w.lowest(), 5e-3);
     }
 }
 
-// Of a vertical wall of porcelain: R_c = 2 l √(θ / π) = 1.18 mm at θ = 0.15. A contact line that moves holds 0.65 of what
-// one at rest does, so that a running bead stops at 1.06 √0.65 R_c = 1.0 mm.
+// Of a vertical wall of porcelain: R_c = 2 l √(θ / π) = 1.18 mm at θ = 0.15. A contact line that moves holds 0.65 of
+// what one at rest does, so that a running bead stops at 1.06 √0.65 R_c = 1.0 mm.
 constexpr double kLastRadius = 1.0e-3, kCapInk = 0.1 * 0.5 * 0.15 * kLastRadius / kFilmUnit;
 
 TEST(Drips, ADropRunsInANarrowTrailUntilTheTrailHasUsedItUpAndEndsInABead) {
@@ -135,7 +147,8 @@ TEST(Drips, ADropRunsInANarrowTrailUntilTheTrailHasUsedItUpAndEndsInABead) {
     double trail = 0, most_bead = 0, most_trail = 0, most_early = 0;
     std::array<double, 2> sides{1, -1};
     thick.each([&](std::uint32_t slot, int t, const Vec3& p) {
-        const double above = p.z - end, amount = thick.ink(slot, t), area = static_cast<double>(thick.map.tiles[slot].area[t]);
+        const double above = p.z - end, amount = thick.ink(slot, t),
+                     area = static_cast<double>(thick.map.tiles[slot].area[t]);
         if (above < 8e-3) most_bead = std::max(most_bead, amount);
         if (above < 2.5e-3 && amount > 0.01) sides = {std::min(sides[0], p.x), std::max(sides[1], p.x)};
         if (above > 8.5e-3 && above < 9.5e-3) most_trail = std::max(most_trail, amount);
@@ -218,7 +231,8 @@ TEST(Drips, ABeadDriesBluntInFrontAndRunsOutIntoItsTrail) {
 // A bead at rest is drawn out into the trail that it came down on, and no further: nothing flows uphill. 0.6 mm: the
 // blot's soft edge of 0.15 mm, and three texels over which the cap of a bead that hardly moved rounds it.
 TEST(Drips, NothingGetsAboveWhereItWasLaidDown) {
-    for (const auto& [thickness, radius] : {std::pair{6.0, 0.75e-3}, {7.0, 0.75e-3}, {8.0, 0.75e-3}, {9.0, 0.75e-3}, {8.0, 1.25e-3}}) {
+    for (const auto& [thickness, radius] :
+         {std::pair{6.0, 0.75e-3}, {7.0, 0.75e-3}, {8.0, 0.75e-3}, {9.0, 0.75e-3}, {8.0, 1.25e-3}}) {
         Wall w;
         w.blot(thickness, radius);
         w.film.advance(w.canvas, 15, porcelain());
@@ -230,8 +244,8 @@ TEST(Drips, NothingGetsAboveWhereItWasLaidDown) {
     }
 }
 
-// Dots of 0.77 to 0.88 of the critical radius, which hold at the weakest places (grain 0.8: 0.89 of it), as high as caps
-// of their volume that run. 0.3 mm: two texels.
+// Dots of 0.77 to 0.88 of the critical radius, which hold at the weakest places (grain 0.8: 0.89 of it), as high as
+// caps of their volume that run. 0.3 mm: two texels.
 TEST(Drips, AThickDotOnDrySurfaceStaysWhereItsVolumeIsHeld) {
     for (const double part : {0.77, 0.82, 0.88})
         for (const double thickness : {7.0, 8.0, 9.0}) {

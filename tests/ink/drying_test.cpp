@@ -28,8 +28,7 @@ std::array<std::uint8_t, kN> every_texel() {
 void paint(Canvas& canvas, std::uint64_t seed) {
     for (int p = 0; p < 4; ++p) {
         if (p > 0 && uniform(seed, 1000 + p) < 0.4) continue;
-        for (int t = 0; t < kN; ++t)
-            canvas.touch(0, p)[t] += static_cast<float>(2 * uniform(seed + 77 * p, t));
+        for (int t = 0; t < kN; ++t) canvas.touch(0, p)[t] += static_cast<float>(2 * uniform(seed + 77 * p, t));
     }
 }
 

@@ -13,14 +13,20 @@ using namespace tuft;
 using namespace tuft::ink;
 using namespace tuft::ink::wet;
 
-float chance(std::uint64_t a, std::uint64_t b) { return static_cast<float>(uniform(a, b)); }
+float chance(std::uint64_t a, std::uint64_t b) {
+    return static_cast<float>(uniform(a, b));
+}
 
 /// Texels outside the charts.
-bool beside(int texel) { return texel % 29 == 7; }
+bool beside(int texel) {
+    return texel % 29 == 7;
+}
 
 /// Conductances as of a stretched, sheared chart with a hole in it.
 void fill(Geometry& g, std::uint64_t seed) {
-    for (int k = 0; k < kField; ++k) g.room[static_cast<std::size_t>(k)] = static_cast<std::uint16_t>((0.4f + 0.8f * chance(seed + 9, k)) / kRoomUnit);
+    for (int k = 0; k < kField; ++k)
+        g.room[static_cast<std::size_t>(k)] =
+            static_cast<std::uint16_t>((0.4f + 0.8f * chance(seed + 9, k)) / kRoomUnit);
     g.blocks = 0xf7ff;
     g.valid.fill((1u << (kSide + 2)) - 1);
     if (seed % 2) g.gd = std::make_unique<Geometry::Diagonals>();
@@ -40,7 +46,8 @@ void fill(Geometry& g, std::uint64_t seed) {
             const int k = field_at(column, row);
             g.grain[k] = 0.6f + 0.8f * chance(seed + 7, k);
             if (g.gd && row < kSide && column < kSide)
-                (*g.gd)[Geometry::corner_of(column, row)] = static_cast<std::int16_t>(0.4f * (chance(seed + 8, k) - 0.5f) / kDiagonalUnit);
+                (*g.gd)[Geometry::corner_of(column, row)] =
+                    static_cast<std::int16_t>(0.4f * (chance(seed + 8, k) - 0.5f) / kDiagonalUnit);
         }
 }
 
@@ -72,11 +79,23 @@ int main() {
         }
         Geometry g;
         fill(g, 50 * round + (round & 1));
-        const Step step{.flow = 0.02f, .levelling = 0.01f, .limit = 0.06f,
-                        .most = round & 16 ? 0.02f * kRoomUnit : 0.0f, .most_of_link = 0.03f, .threshold = 0.1f, .pin = 1, .mixing = 0.02f, .grip = 0.5f,
-                        .soak = 0.01f, .pores = round & 4 ? 3.0f : 0.0f, .passing = round & 8 ? 0.2f : 1.0f,
-                        .evaporation = 0.004f, .rim = 0.002f,
-                        .hold = 1, .relief = 0.015f, .ridge = 0.4f};
+        const Step step{.flow = 0.02f,
+                        .levelling = 0.01f,
+                        .limit = 0.06f,
+                        .most = round & 16 ? 0.02f * kRoomUnit : 0.0f,
+                        .most_of_link = 0.03f,
+                        .threshold = 0.1f,
+                        .pin = 1,
+                        .mixing = 0.02f,
+                        .grip = 0.5f,
+                        .soak = 0.01f,
+                        .pores = round & 4 ? 3.0f : 0.0f,
+                        .passing = round & 8 ? 0.2f : 1.0f,
+                        .evaporation = 0.004f,
+                        .rim = 0.002f,
+                        .hold = 1,
+                        .relief = 0.015f,
+                        .ridge = 0.4f};
         Work work;
         gather(work.w, w_at);
         gather(work.s, s_at);

@@ -20,7 +20,8 @@ struct Lie {
     Vec2 up(double texels) const { return texels * Vec2{-std::sin(angle), std::cos(angle)}; }
 };
 testing::Patch part_of_sheet(const Lie& lie, int texels, double from, double to) {
-    testing::Patch p = testing::flat({16e-3 * from - 8e-3, -8e-3, 0}, {16e-3 * (to - from), 0, 0}, {0, 16e-3, 0}, 8, 16);
+    testing::Patch p =
+        testing::flat({16e-3 * from - 8e-3, -8e-3, 0}, {16e-3 * (to - from), 0, 0}, {0, 16e-3, 0}, 8, 16);
     return testing::place(p, lie.at + lie.across(texels * from), lie.across(texels * (to - from)), lie.up(texels));
 }
 /// In one chart; or cut down the middle, the halves lying in different ways.
@@ -63,7 +64,8 @@ BlotError error_of(const Wet& s, Truth&& truth) {
     return {worst / peak, std::sqrt(sum2 / static_cast<double>(n)) / peak};
 }
 
-/// Each half against a sheet without a seam, whose texels lie where the half has its own: what differs is the seam alone.
+/// Each half against a sheet without a seam, whose texels lie where the half has its own: what differs is the seam
+/// alone.
 BlotError error_of_seam(const Lie& left, const Lie& right, double shortest_step = 0) {
     const Wet cut = blot_on(two_charts(left, right), shortest_step);
     const Wet whole[] = {blot_on(one_chart(left), shortest_step), blot_on(one_chart(right), shortest_step)};
@@ -71,7 +73,8 @@ BlotError error_of_seam(const Lie& left, const Lie& right, double shortest_step 
         const Lie& lie = at.x > 0 ? right : left;
         const Vec2 uv = lie.at + lie.across((at.x + 8e-3) * 1e4) + lie.up((at.y + 8e-3) * 1e4);
         const Wet& s = whole[at.x > 0];
-        const atlas::TexelRef ref = atlas::texel_ref(s.map, static_cast<std::int64_t>(uv.x), static_cast<std::int64_t>(uv.y));
+        const atlas::TexelRef ref =
+            atlas::texel_ref(s.map, static_cast<std::int64_t>(uv.x), static_cast<std::int64_t>(uv.y));
         return ref.valid() ? s.amount(ref.slot, ref.texel) : 0;
     });
 }
@@ -85,10 +88,19 @@ TEST(WetFilm, ABlotIsTheSameWithASeamUnderIt) {
         EXPECT_LT(e.worst, 0.01) << a.angle << ' ' << b.angle;
         EXPECT_LT(e.rms, 2.5e-4);
     };
-    for (const Lie& right : {Lie{{200.87, 8.21}, 0}, {{460.6, 8.37}, quarter}, {{460, 8.87}, quarter}, {{460.45, 8.62}, quarter}})
+    for (const Lie& right :
+         {Lie{{200.87, 8.21}, 0}, {{460.6, 8.37}, quarter}, {{460, 8.87}, quarter}, {{460.45, 8.62}, quarter}})
         expect_same(left, right);
     // Askew: the edges of the texels go up in steps, and the halves share the texels along the cut.
-    for (const auto& [a, b] : {std::pair{0.0, 15.0}, {0.0, 30.0}, {0.0, 45.0}, {15.0, 15.0}, {15.0, 30.0}, {30.0, 30.0}, {30.0, 36.0}, {45.0, 22.5}, {45.0, 45.0}})
+    for (const auto& [a, b] : {std::pair{0.0, 15.0},
+                               {0.0, 30.0},
+                               {0.0, 45.0},
+                               {15.0, 15.0},
+                               {15.0, 30.0},
+                               {30.0, 30.0},
+                               {30.0, 36.0},
+                               {45.0, 22.5},
+                               {45.0, 45.0}})
         expect_same({{140.3, 8.4}, a * degree}, {{420.7, 10.2}, b * degree});
     // Texels of the two halves that nearly lie on each other: their cells' middles lie far from them.
     for (const Vec2& off : {Vec2{0, 0}, {0.27, 0.41}, {0.5, 0.13}, {0.77, 0.68}})
@@ -153,7 +165,8 @@ TEST(WetFilm, LongStepsKeepEveryPigmentAndAllWaterAndAreTheSameOnAnyNumberOfThre
 TEST(WetFilm, WhereFlowsAreHeldBackASeamDoesNotHoldThemBackMore) {
     // Steps of 50 ms, 2.5 times what stability allows here: blocks of texels end at seams.
     const double degree = std::numbers::pi / 180;
-    for (const auto& [left, right] : {std::pair{Lie{{8.21, 8.13}, 0}, Lie{{200.87, 8.21}, 0}}, {{{140.3, 8.4}, 0}, {{420.7, 10.2}, 30 * degree}}}) {
+    for (const auto& [left, right] :
+         {std::pair{Lie{{8.21, 8.13}, 0}, Lie{{200.87, 8.21}, 0}}, {{{140.3, 8.4}, 0}, {{420.7, 10.2}, 30 * degree}}}) {
         const BlotError e = error_of_seam(left, right, 0.1);
         EXPECT_LT(e.worst, 0.01);
         EXPECT_LT(e.rms, 0.0015) << "of steps in two parts, where they meet";
@@ -191,17 +204,21 @@ TEST(WetFilm, ABlotIsTheSameHoweverTexelsLie) {
         double sum = 0;
         for (int k = 0; k < 4; ++k) {
             const double di = k & 1, dj = k >> 1;
-            const atlas::TexelRef ref = atlas::texel_ref(fine.map, static_cast<std::int64_t>(i + di), static_cast<std::int64_t>(j + dj));
-            if (ref.valid()) sum += (1 - std::abs(x - i - di)) * (1 - std::abs(y - j - dj)) * fine.amount(ref.slot, ref.texel);
+            const atlas::TexelRef ref =
+                atlas::texel_ref(fine.map, static_cast<std::int64_t>(i + di), static_cast<std::int64_t>(j + dj));
+            if (ref.valid())
+                sum += (1 - std::abs(x - i - di)) * (1 - std::abs(y - j - dj)) * fine.amount(ref.slot, ref.texel);
         }
         return sum;
     };
-    for (const Lie& lie : {Lie{{8.21, 8.13}, 0}, Lie{{8.71, 8.63}, 0}, Lie{{100.3, 8.4}, std::numbers::pi / 6}, Lie{{130.3, 8.4}, std::numbers::pi / 4}}) {
+    for (const Lie& lie : {Lie{{8.21, 8.13}, 0}, Lie{{8.71, 8.63}, 0}, Lie{{100.3, 8.4}, std::numbers::pi / 6},
+                           Lie{{130.3, 8.4}, std::numbers::pi / 4}}) {
         const BlotError e = error_of(blot_on(one_chart(lie)), [&](const Vec3& at) {
             double sum = 0;
             for (int k = 0; k < 16; ++k) {
                 const Vec2 d{0.25 * (k % 4) - 0.375, 0.25 * (k / 4) - 0.375};  // of a texel, in its own directions
-                sum += read(at + 1e-4 * Vec3{glm::dot(d, lie.up(1)) * Vec2{0, 1} + glm::dot(d, lie.across(1)) * Vec2{1, 0}, 0});
+                sum += read(
+                    at + 1e-4 * Vec3{glm::dot(d, lie.up(1)) * Vec2{0, 1} + glm::dot(d, lie.across(1)) * Vec2{1, 0}, 0});
             }
             return sum / 16;
         });

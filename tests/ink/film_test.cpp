@@ -50,9 +50,12 @@ TEST(WetFilm, AnUnevenSurfaceCrinklesFrontsAndSpreadsThemAsFarInTheMean) {
     EXPECT_NEAR(s.canvas.total(s.map, 0) / before, 1, 1e-5);
     Vec3 centre{0};
     double sum = 0, second = 0;
-    s.each([&](std::uint32_t slot, int t, const Vec3& at) { sum += s.amount(slot, t), centre += s.amount(slot, t) * at; });
+    s.each(
+        [&](std::uint32_t slot, int t, const Vec3& at) { sum += s.amount(slot, t), centre += s.amount(slot, t) * at; });
     centre /= sum;
-    s.each([&](std::uint32_t slot, int t, const Vec3& at) { second += s.amount(slot, t) * glm::dot(at - centre, at - centre); });
+    s.each([&](std::uint32_t slot, int t, const Vec3& at) {
+        second += s.amount(slot, t) * glm::dot(at - centre, at - centre);
+    });
     // The flow in the large of a plane whose ease is lognormal is that of its geometric mean (of the mean it
     // would be a fifth more); the blot covers a dozen clouds, whose own mean is off by 0.6 / √12.
     EXPECT_NEAR(second / (2 * sum) / sigma2, 1, 0.18);
@@ -156,8 +159,8 @@ TEST(WetFilm, FibresHoldGrainsBackFromWhatSeeps) {
 }
 
 TEST(WetFilm, TapeThrowsBackWhatSpreadsAndLetsNothingPass) {
-    // A Gaussian 1.5 mm beside the edge of a stencil edge goes on as it and its image do; on the stencil edge there is nothing. In one
-    // chart, and over a seam at right angles to the edge.
+    // A Gaussian 1.5 mm beside the edge of a stencil edge goes on as it and its image do; on the stencil edge there is
+    // nothing. In one chart, and over a seam at right angles to the edge.
     for (const int charts : {1, 2}) {
         Wet s(testing::sheet(0.02, charts, 160.0 / charts));
         FilmParams p = still();
@@ -171,7 +174,8 @@ TEST(WetFilm, TapeThrowsBackWhatSpreadsAndLetsNothingPass) {
         const double sigma0 = 0.6e-3, seconds = 500, sigma2 = sigma0 * sigma0 + 2 * p.mixing * seconds;
         const auto gaussian = [&](const Vec3& at, double variance) {
             const Vec3 image{2 * edge - at.x, at.y, at.z};
-            return (std::exp(-glm::dot(at, at) / (2 * variance)) + std::exp(-glm::dot(image, image) / (2 * variance))) / variance * 1e-6;
+            return (std::exp(-glm::dot(at, at) / (2 * variance)) + std::exp(-glm::dot(image, image) / (2 * variance))) /
+                   variance * 1e-6;
         };
         s.wet([](const Vec3&) { return 1.5; });
         s.ink(0, [&](const Vec3& at) { return is_free(at) ? gaussian(at, sigma0 * sigma0) : 0; });
@@ -179,8 +183,10 @@ TEST(WetFilm, TapeThrowsBackWhatSpreadsAndLetsNothingPass) {
         s.film.advance(s.canvas, seconds, p);
         double worst = 0;
         s.each([&](std::uint32_t slot, int t, const Vec3& at) {
-            if (!is_free(at)) ASSERT_EQ(s.amount(slot, t), 0);
-            else if (glm::length(at) < 6e-3) worst = std::max(worst, std::abs(s.amount(slot, t) - gaussian(at, sigma2)));
+            if (!is_free(at))
+                ASSERT_EQ(s.amount(slot, t), 0);
+            else if (glm::length(at) < 6e-3)
+                worst = std::max(worst, std::abs(s.amount(slot, t) - gaussian(at, sigma2)));
         });
         // As without stencil edge; over the seam its edge is ragged by part of a texel of 0.125 mm.
         EXPECT_LT(worst / gaussian(Vec3{0}, sigma2), charts == 1 ? 2e-3 : 0.03);
@@ -337,7 +343,8 @@ TEST(WetFilm, ADryCanvasCostsNothingAndOnlyWetTilesDo) {
     const std::uint32_t slot = atlas::texel_ref(s.map, 168, 168).slot;
     s.canvas.touch_liquid(slot, Liquid::film)[8 * 16 + 8] = 1;  // a drop in the middle of a tile
     std::size_t told = 0;
-    const FilmReport one = s.film.advance(s.canvas, 1, film_params(load_substrate("porcelain")), [&](std::uint32_t) { ++told; });
+    const FilmReport one =
+        s.film.advance(s.canvas, 1, film_params(load_substrate("porcelain")), [&](std::uint32_t) { ++told; });
     EXPECT_GT(one.steps, 0u);
     EXPECT_LE(one.tile_steps, 9u + one.steps) << "its own tile, and once those round it";
     EXPECT_LE(told, 9u);
@@ -371,8 +378,10 @@ TEST(WetFilm, CleanWaterPushesInkAway) {
     p.pores = p.absorbency = 0;
     const double before = s.canvas.total(s.map, 0);
     for (const bool dry : {false, true}) {
-        if (dry) s.film.dry(s.canvas, p);
-        else s.film.advance(s.canvas, 10, p);
+        if (dry)
+            s.film.dry(s.canvas, p);
+        else
+            s.film.advance(s.canvas, 10, p);
         // Means over rings of 0.2 mm.
         std::array<double, 40> sum{}, n{};
         s.each([&](std::uint32_t slot, int t, const Vec3& at) {

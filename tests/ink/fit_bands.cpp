@@ -44,8 +44,8 @@ Samples make_samples(const std::vector<Curves>& pigments, int n, std::uint64_t s
         const Spectrum ground = spectrum_of_rgb(m.ground);
         Spectrum r;
         for (int i = 0; i < kW; ++i)
-            r[i] = reflectance(m, ground[i], [&](int p) { return pigments[p].k[i]; },
-                               [&](int p) { return pigments[p].s[i]; });
+            r[i] = reflectance(
+                m, ground[i], [&](int p) { return pigments[p].k[i]; }, [&](int p) { return pigments[p].s[i]; });
         const auto rgb = rgb_of_spectrum(r);
         const Lab lab = lab_of_rgb(rgb);
         Eigen::Matrix3d slope;
@@ -54,8 +54,7 @@ Samples make_samples(const std::vector<Curves>& pigments, int n, std::uint64_t s
             moved[c] += 1e-5;
             const Lab l = lab_of_rgb(moved);
             const double chroma = std::hypot(lab[1], lab[2]);
-            for (int k = 0; k < 3; ++k)
-                slope(k, c) = (l[k] - lab[k]) / 1e-5 / (k == 0 ? 1.2 : 1 + 0.035 * chroma);
+            for (int k = 0; k < 3; ++k) slope(k, c) = (l[k] - lab[k]) / 1e-5 / (k == 0 ? 1.2 : 1 + 0.035 * chroma);
         }
         out.r.push_back(r);
         out.lab.push_back(lab);
@@ -71,7 +70,7 @@ struct Fit {
 };
 
 struct Errors {
-    std::vector<double> all;    ///< of the colours as computed
+    std::vector<double> all;  ///< of the colours as computed
     double mean = 0, p99 = 0, max = 0, shown = 0;
 };
 

@@ -20,8 +20,7 @@ std::vector<std::vector<double>> rows_of(const std::string& name) {
     std::vector<std::vector<double>> rows;
     std::string line;
     while (std::getline(file, line)) {
-        if (line.empty() || std::isalpha(static_cast<unsigned char>(line[0])) || line[0] == '#')
-            continue;
+        if (line.empty() || std::isalpha(static_cast<unsigned char>(line[0])) || line[0] == '#') continue;
         std::vector<double> row;
         std::stringstream cells(line);
         std::string cell;
@@ -104,8 +103,7 @@ TEST(KubelkaMunk, HugeArgumentsStayFinite) {
 TEST(KubelkaMunk, ThickFilmsHideTheSubstrate) {
     for (double k : {0.01, 0.7, 9.0})
         for (double s : {0.01, 0.5, 4.0})
-            for (double rg : {0.0, 0.4, 0.95})
-                EXPECT_NEAR(over(layer(k, s, 4000), rg), r_infinity(k, s), 1e-12);
+            for (double rg : {0.0, 0.4, 0.95}) EXPECT_NEAR(over(layer(k, s, 4000), rg), r_infinity(k, s), 1e-12);
 }
 
 TEST(KubelkaMunk, SplittingALayerChangesNothing) {
@@ -128,8 +126,7 @@ TEST(KubelkaMunk, StackingIsAssociativeAndOneSidedFromBelow) {
     const Layer turned = stack(c, stack(b, a));
     EXPECT_NEAR(turned.r, left.r_back, 1e-15);
     EXPECT_NEAR(turned.t, left.t, 1e-15);
-    EXPECT_NEAR(over(left, 0.6), over(a, over(b, over(c, 0.6))), 1e-14)
-        << "layer by layer over the substrate";
+    EXPECT_NEAR(over(left, 0.6), over(a, over(b, over(c, 0.6))), 1e-14) << "layer by layer over the substrate";
 }
 
 TEST(KubelkaMunk, TheInverseRecoversAbsorptionAndScattering) {

@@ -31,8 +31,9 @@ int main() {
             for (int t = 0; t < atlas::kTileTexels; ++t)
                 planes[p][t] = static_cast<float>(3 * uniform(100 + round, 1000 * p + t) * uniform(200 + p, t));
         for (float& m : planes[4]) m = m < 1 ? m : 1;
-        const TileFilm films[] = {{.pigments = {&planes[0], &planes[1]}},
-                                  {.pigments = {nullptr, &planes[1], &planes[2], &planes[3]}, .mask = &planes[4], .opacity = 0.8f}};
+        const TileFilm films[] = {
+            {.pigments = {&planes[0], &planes[1]}},
+            {.pigments = {nullptr, &planes[1], &planes[2], &planes[3]}, .mask = &planes[4], .opacity = 0.8f}};
         Substrate substrate;
         substrate.interface = 0.5f * static_cast<float>(round % 3);
         const TileAppearance look = shade_films(films, round % 2 ? &planes[5] : nullptr, pigments, substrate);

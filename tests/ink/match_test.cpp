@@ -15,8 +15,7 @@ namespace tuft::ink {
 namespace {
 
 Lab lab_of(const Rgb& c) {
-    return lab_of_rgb(
-        {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])});
+    return lab_of_rgb({static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])});
 }
 
 double difference(const Rgb& a, const Rgb& b) {
@@ -51,8 +50,7 @@ Ink random_ink(Draws& draw, double film) {
     double left = 1;
     for (std::size_t i = 0; i < parts; ++i) {
         const Pigment& p = pigments()[draw.below(pigments().size())];
-        if (std::any_of(ink.parts.begin(), ink.parts.end(),
-                        [&](const InkPart& o) { return o.pigment.name == p.name; }))
+        if (std::any_of(ink.parts.begin(), ink.parts.end(), [&](const InkPart& o) { return o.pigment.name == p.name; }))
             continue;
         const double fraction = std::min(left, 0.005 * std::pow(200.0, draw()));
         if (fraction < 1e-4) break;
@@ -81,8 +79,7 @@ TEST(Match, ColourOnASubstrateIsWhatAFilmThereLooksLike) {
             const TileAppearance look = shade_films(std::span(&tile, 1), nullptr, held, substrate);
             const Rgb colour = colour_on(ink, substrate);
             // What the tile's single precision may differ by.
-            for (std::size_t c = 0; c < 3; ++c)
-                EXPECT_NEAR(colour[c], look.colour[c][7], 4e-6f) << name;
+            for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(colour[c], look.colour[c][7], 4e-6f) << name;
         }
     }
 }
@@ -99,8 +96,7 @@ TEST(Match, RecoversTheColoursOfRandomMixes) {
                 const ColourMatch match = search.nearest(wanted);
                 // Half of what a trained eye tells side by side.
                 EXPECT_LT(match.delta_e, 0.5) << name << " film " << film << ' ' << to_hex(wanted);
-                EXPECT_NEAR(match.delta_e, difference(colour_on(match.ink, substrate), wanted),
-                            1e-9);
+                EXPECT_NEAR(match.delta_e, difference(colour_on(match.ink, substrate), wanted), 1e-9);
             }
         }
     }
@@ -133,9 +129,8 @@ TEST(Match, IsNeverWorseThanTheBestSinglePigment) {
             for (const Pigment& p : pigments())
                 for (int k = 0; k <= 200; ++k) {
                     const double fraction = std::pow(10.0, -4 + k / 50.0);
-                    best = std::min(best, difference(colour_on({.parts = {{p, fraction}}},
-                                                               substrate, search.film()),
-                                                     wanted));
+                    best = std::min(
+                        best, difference(colour_on({.parts = {{p, fraction}}}, substrate, search.film()), wanted));
                 }
             for (const std::size_t parts : {1, 4}) {
                 // The grid is fine enough to come this close to its own optimum.
@@ -154,16 +149,13 @@ TEST(Match, AgreesWithBruteForceOnAGrid) {
         std::vector<Pigment> three;
         while (three.size() < 3) {
             const Pigment& p = pigments()[draw.below(pigments().size())];
-            if (std::none_of(three.begin(), three.end(),
-                             [&](const Pigment& o) { return o.name == p.name; }))
+            if (std::none_of(three.begin(), three.end(), [&](const Pigment& o) { return o.name == p.name; }))
                 three.push_back(p);
         }
         const MixSearch search(three, substrate);
         std::vector<Lab> grid;
         constexpr int kSide = 26;  // levels of a fraction, evenly in its logarithm, and none
-        const auto level = [](int i) {
-            return i == 0 ? 0.0 : std::pow(10.0, -3.5 + 3.5 * i / kSide);
-        };
+        const auto level = [](int i) { return i == 0 ? 0.0 : std::pow(10.0, -3.5 + 3.5 * i / kSide); };
         for (int a = 0; a <= kSide; ++a)
             for (int b = 0; b <= kSide; ++b)
                 for (int c = 0; c <= kSide; ++c) {
@@ -182,8 +174,7 @@ TEST(Match, AgreesWithBruteForceOnAGrid) {
             // "Discontinuities").
             const double jump = best > 20 ? 1 : 0;
             EXPECT_LT(search.nearest(wanted, 3).delta_e, best + kSameColour + 1e-3 + jump)
-                << three[0].name << ' ' << three[1].name << ' ' << three[2].name << ' '
-                << to_hex(wanted);
+                << three[0].name << ' ' << three[1].name << ' ' << three[2].name << ' ' << to_hex(wanted);
         }
     }
 }
@@ -200,11 +191,9 @@ TEST(Match, ThickerFilmsReachMore) {
 }
 
 TEST(Match, SaysHowFarAColourOutOfReachIs) {
-    const ColourMatch match =
-        match_colour(*colour_of_hex("#00ff00"), pigments(), load_substrate("porcelain"));
+    const ColourMatch match = match_colour(*colour_of_hex("#00ff00"), pigments(), load_substrate("porcelain"));
     EXPECT_GT(match.delta_e, 6);
-    EXPECT_NE(std::string(difference_in_words(match.delta_e)).find("do not reach"),
-              std::string::npos);
+    EXPECT_NE(std::string(difference_in_words(match.delta_e)).find("do not reach"), std::string::npos);
 }
 
 TEST(Match, LabAndLinearLightAreInverse) {
@@ -225,7 +214,8 @@ TEST(Match, OnAFullCanvasUsesItsPigmentsOnly) {
     const ColourMatch free = match_on_canvas(yellow, porcelain, {});
     const ColourMatch bound = match_on_canvas(yellow, porcelain, held);
     const auto has = [](const ColourMatch& m) {
-        return std::any_of(m.ink.parts.begin(), m.ink.parts.end(), [](const InkPart& p) { return p.pigment.name == "gamboge"; });
+        return std::any_of(m.ink.parts.begin(), m.ink.parts.end(),
+                           [](const InkPart& p) { return p.pigment.name == "gamboge"; });
     };
     EXPECT_TRUE(has(free));
     EXPECT_FALSE(has(bound));
@@ -235,8 +225,7 @@ TEST(Match, OnAFullCanvasUsesItsPigmentsOnly) {
 TEST(Match, HexIsReadAndWritten) {
     EXPECT_EQ(to_hex(*colour_of_hex("#c03020")), "#c03020");
     EXPECT_EQ(to_hex(*colour_of_hex("#fA0")), "#ffaa00");
-    for (const char* text :
-         {"", "c03020", "#", "#12345", "#1234567", "#gg0000", "# 12345", "#12 456"})
+    for (const char* text : {"", "c03020", "#", "#12345", "#1234567", "#gg0000", "# 12345", "#12 456"})
         EXPECT_FALSE(colour_of_hex(text)) << text;
 }
 

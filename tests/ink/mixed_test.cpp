@@ -42,8 +42,7 @@ Reservoir two_inks(double millilitres = 0.5) {
 std::vector<HairSample> straight_hair(const Reservoir& tuft) {
     std::vector<HairSample> samples;
     for (std::uint32_t k = 0; k < tuft.n_bundles(); ++k)
-        for (int i = 0; i <= 10; ++i)
-            samples.push_back({k, {i * 1e-3, 4e-3 * tuft.layout.bundles[k].x}, 0.1 * i, 0.1});
+        for (int i = 0; i <= 10; ++i) samples.push_back({k, {i * 1e-3, 4e-3 * tuft.layout.bundles[k].x}, 0.1 * i, 0.1});
     return samples;
 }
 
@@ -162,10 +161,12 @@ TEST(DepositMixed, LaysEachInkUnderTheHairThatHoldsItAndBooksWhatIsStored) {
     const Texels coverage = random_texels(3, 0.3, 1), area = random_texels(4, 0.5e-8, 1.5e-8);
     const DepositParams params{.target = 1.6f};
     NodeContents given{};
-    for (int i = 0; i < 5; ++i) deposit_mixed(canvas, 0, coverage, tents_over(coverage), area, 0.1e-3, params, mixes, given);
+    for (int i = 0; i < 5; ++i)
+        deposit_mixed(canvas, 0, coverage, tents_over(coverage), area, 0.1e-3, params, mixes, given);
     for (int p = 0; p < 2; ++p) {
         double stored = 0, booked = 0;
-        for (int t = 0; t < kN; ++t) stored += static_cast<double>((*canvas.plane(0, p))[t]) * static_cast<double>(area[t]);
+        for (int t = 0; t < kN; ++t)
+            stored += static_cast<double>((*canvas.plane(0, p))[t]) * static_cast<double>(area[t]);
         for (const auto& node : given) booked += node[p];
         EXPECT_NEAR(booked / stored, 1, 1e-12);
     }
@@ -226,7 +227,8 @@ TEST(DepositMixed, OfOneInkItIsDepositAndOfChangingOnesItDoesNotPileUp) {
     params.target = 100;
     for (int i = 0; i < 50; ++i)
         deposit_mixed(mixed, 0, constant(1), tents_over(constant(1)), area, 1e-3, params, mixes, given);
-    for (int t = 0; t < kN; ++t) EXPECT_LE((*mixed.plane(0, 0))[t] + (*mixed.plane(0, 1))[t], params.capacity * 1.00001f);
+    for (int t = 0; t < kN; ++t)
+        EXPECT_LE((*mixed.plane(0, 0))[t] + (*mixed.plane(0, 1))[t], params.capacity * 1.00001f);
 }
 
 }  // namespace

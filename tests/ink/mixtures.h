@@ -83,11 +83,16 @@ inline std::vector<Mixture> random_mixtures(int n, int n_pigments, std::uint64_t
             m.films.push_back(std::move(film));
         }
         const double grounds = u();
-        if (grounds < 0.5) m.ground = {.84f, .83f, .79f};
-        else if (grounds < 0.65) m.ground = {.88f, .86f, .80f};
-        else if (grounds < 0.8) m.ground = {.30f, .23f, .17f};
-        else if (grounds < 0.9) m.ground = {.42f, .43f, .44f};
-        else m.ground = {.03f, .03f, .03f};
+        if (grounds < 0.5)
+            m.ground = {.84f, .83f, .79f};
+        else if (grounds < 0.65)
+            m.ground = {.88f, .86f, .80f};
+        else if (grounds < 0.8)
+            m.ground = {.30f, .23f, .17f};
+        else if (grounds < 0.9)
+            m.ground = {.42f, .43f, .44f};
+        else
+            m.ground = {.03f, .03f, .03f};
         m.interface = u() < 0.5 ? 1 : 0;
         all.push_back(std::move(m));
     }

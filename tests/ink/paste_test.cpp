@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "ink/film/level.h"
 #include "ink/exchange/stir.h"
+#include "ink/film/level.h"
 #include "texels.h"
 
 namespace tuft::ink {
@@ -15,13 +15,16 @@ namespace {
 std::vector<BundleFirmness> bundles(int n) {
     std::vector<BundleFirmness> out;
     for (int k = 0; k < n; ++k)
-        out.push_back({(k + 0.2 + 0.6 * uniform(5, static_cast<std::uint64_t>(k))) / n, 0.5 + 0.5 * uniform(6, static_cast<std::uint64_t>(k))});
+        out.push_back({(k + 0.2 + 0.6 * uniform(5, static_cast<std::uint64_t>(k))) / n,
+                       0.5 + 0.5 * uniform(6, static_cast<std::uint64_t>(k))});
     return out;
 }
 
 double mean_of(const FurrowDepths& furrows) {
     double sum = 0;
-    for (int i = 0; i < kFirmnessSamples; ++i) sum += (i == 0 || i == kFirmnessSamples - 1 ? 0.5 : 1.0) * static_cast<double>(furrows[i]) / (kFirmnessSamples - 1);
+    for (int i = 0; i < kFirmnessSamples; ++i)
+        sum += (i == 0 || i == kFirmnessSamples - 1 ? 0.5 : 1.0) * static_cast<double>(furrows[i]) /
+               (kFirmnessSamples - 1);
     return sum;
 }
 
@@ -29,7 +32,8 @@ double mean_of(const FurrowDepths& furrows) {
 double mode(const FurrowDepths& furrows, int n) {
     double a = 0;
     for (int i = 0; i < kFirmnessSamples; ++i)
-        a += (i == 0 || i == kFirmnessSamples - 1 ? 1.0 : 2.0) * static_cast<double>(furrows[i]) * std::cos(M_PI * n * i / (kFirmnessSamples - 1)) / (kFirmnessSamples - 1);
+        a += (i == 0 || i == kFirmnessSamples - 1 ? 1.0 : 2.0) * static_cast<double>(furrows[i]) *
+             std::cos(M_PI * n * i / (kFirmnessSamples - 1)) / (kFirmnessSamples - 1);
     return a;
 }
 
@@ -42,7 +46,9 @@ TEST(FurrowDepths, NoWaveIsHigherThanTheYieldStressCanHold) {
             for (int n = 1; n <= 60; ++n) {
                 const double k = M_PI * n / 9e-3;
                 // Orchard: stress σ k³ a h at the foot of the film; the furrows is over its mean.
-                EXPECT_LE(0.03 * k * k * k * std::abs(mode(furrows, n)) * film * film, yield * (1 + 1e-3) + 1e-6 * k * k * k * film * film) << n;
+                EXPECT_LE(0.03 * k * k * k * std::abs(mode(furrows, n)) * film * film,
+                          yield * (1 + 1e-3) + 1e-6 * k * k * k * film * film)
+                    << n;
             }
         }
 }
@@ -52,7 +58,8 @@ TEST(FurrowDepths, AStiffPasteKeepsTheFurrowsThatAThinOneLoses) {
     const auto rough = [&](double yield) {
         const FurrowDepths furrows = furrow_depths(hair, {.width = 9e-3, .film = 3e-4, .yield = yield});
         double sum = 0;
-        for (const float v : furrows) sum += (static_cast<double>(v) - 1) * (static_cast<double>(v) - 1) / kFirmnessSamples;
+        for (const float v : furrows)
+            sum += (static_cast<double>(v) - 1) * (static_cast<double>(v) - 1) / kFirmnessSamples;
         return std::sqrt(sum);
     };
     EXPECT_EQ(rough(0), 0) << "what flows lies even";
@@ -62,7 +69,8 @@ TEST(FurrowDepths, AStiffPasteKeepsTheFurrowsThatAThinOneLoses) {
 }
 
 TEST(FurrowDepths, WhatIsPushedOutStandsAtTheSides) {
-    const FurrowDepths furrows = furrow_depths({}, {.width = 9e-3, .film = 3e-4, .yield = 1000, .depth = 0, .rim = 0.5});
+    const FurrowDepths furrows =
+        furrow_depths({}, {.width = 9e-3, .film = 3e-4, .yield = 1000, .depth = 0, .rim = 0.5});
     EXPECT_GT(furrows.front(), 1.1);
     EXPECT_GT(furrows.back(), 1.1);
     EXPECT_LT(furrows[kFirmnessSamples / 2], 1);
@@ -138,7 +146,8 @@ TEST(Paste, ItIsLaidAndPloughedAndEachPigmentIsKept) {
     for (int t = 0; t < atlas::kTileTexels; ++t) {
         const double at = (t % 16) / 15.0 * (kFirmnessSamples - 1);
         const int i = std::min(static_cast<int>(at), kFirmnessSamples - 2);
-        const double phi = static_cast<double>(params.furrows[i]) + (at - i) * static_cast<double>(params.furrows[i + 1] - params.furrows[i]);
+        const double phi = static_cast<double>(params.furrows[i]) +
+                           (at - i) * static_cast<double>(params.furrows[i + 1] - params.furrows[i]);
         // 60 touches of 0.05 mm over a transfer length of 0.08: exp(−37) is left. Renewal under half
         // coverage keeps what lies there.
         EXPECT_NEAR((*w)[t], 0.8 * 40 * phi * static_cast<double>(coverage[t]), 1e-3) << t;
@@ -188,7 +197,8 @@ TwoTiles two_tiles(bool seam) {
     if (!seam) return out;
     for (const std::uint32_t slot : {0u, 1u}) {
         for (int y = 0; y < atlas::kTile; ++y)
-            out.seams.links.push_back({1 - slot, 1, static_cast<std::uint8_t>(y * 16 + (slot ? 0 : 15)), static_cast<std::uint8_t>(y * 16 + (slot ? 15 : 0))});
+            out.seams.links.push_back({1 - slot, 1, static_cast<std::uint8_t>(y * 16 + (slot ? 0 : 15)),
+                                       static_cast<std::uint8_t>(y * 16 + (slot ? 15 : 0))});
         out.seams.start[slot + 1] = static_cast<std::uint32_t>(out.seams.links.size());
     }
     return out;
@@ -236,7 +246,9 @@ TEST(Levelling, ItGoesOverSeamsAndNotOntoBareTexels) {
         for (const std::uint32_t slot : {0u, 1u}) {
             before.emplace(slot, std::make_unique<Plane>(open_pigment(canvas, slot)));
             // The last rows are bare.
-            for (int t = 0; t < 13 * 16; ++t) canvas.touch(slot, 0)[t] = static_cast<float>(uniform(8, slot * 256u + static_cast<unsigned>(t)) * 30 + 1);
+            for (int t = 0; t < 13 * 16; ++t)
+                canvas.touch(slot, 0)[t] =
+                    static_cast<float>(uniform(8, slot * 256u + static_cast<unsigned>(t)) * 30 + 1);
         }
         level_paste(canvas, on.map, on.seams, before, 2e-4);
         for (const std::uint32_t slot : {0u, 1u}) {
@@ -250,7 +262,9 @@ TEST(Levelling, ItGoesOverSeamsAndNotOntoBareTexels) {
 }
 
 TEST(Stirring, BendingMixesNeighboursAndKeepsEachPlane) {
-    Reservoir tuft = make_reservoir(0.5, {.bundles = {{-0.5, 0}, {0, 0}, {0.5, 0}, {0, 0.5}}, .cell_ends = {0.5, 1}, .cell_capacities = {0.5, 0.5}});
+    Reservoir tuft = make_reservoir(
+        0.5,
+        {.bundles = {{-0.5, 0}, {0, 0}, {0.5, 0}, {0, 0.5}}, .cell_ends = {0.5, 1}, .cell_capacities = {0.5, 0.5}});
     Mix red{}, blue{};
     red[0] = 1;
     blue[1] = 1;

@@ -22,8 +22,7 @@ TEST(PasteUnderAWash, WhatComesLooseFollowsArchardsLaw) {
     EXPECT_NEAR(loosened({.pressure = 700, .length = 30e-3, .yield = 400}), loosened(rub), 1e-12);
     EXPECT_NEAR(loosened({.pressure = 2800, .length = 15e-3, .yield = 800}), loosened(rub), 1e-12);
     EXPECT_EQ(loosened({.pressure = -1, .length = 1}), 0);
-    EXPECT_EQ(loosened({.pressure = 1, .length = 1, .yield = 0}), 0)
-        << "what does not yield is no paste";
+    EXPECT_EQ(loosened({.pressure = 1, .length = 1, .yield = 0}), 0) << "what does not yield is no paste";
 }
 
 /// Paste with furrows 100 µm deep across x, dry height 5 µm a film unit, and ink with water over a
@@ -32,20 +31,17 @@ struct BaseColour : Wet {
     std::vector<double> white;  ///< film units, as laid
     double had[3]{};            ///< paste, ink, liquid
 
-    explicit BaseColour(int charts = 1, double loose = 0.8)
-        : Wet(testing::sheet(8e-3, charts, 160.0 / charts)) {
+    explicit BaseColour(int charts = 1, double loose = 0.8) : Wet(testing::sheet(8e-3, charts, 160.0 / charts)) {
         Pigment thick = load_ink("titanium-white").parts[0].pigment;
         thick.height = 5e-6f;
         canvas.set_pigment(0, thick);
-        Wet::ink(0,
-                 [](const Vec3& at) { return std::abs(at.y) < 3e-3 ? 14 + 20 * ridge(at.x) : 0; });
+        Wet::ink(0, [](const Vec3& at) { return std::abs(at.y) < 3e-3 ? 14 + 20 * ridge(at.x) : 0; });
         each([&](std::uint32_t slot, int t, const Vec3&) { white.push_back(amount(slot, t)); });
         had[0] = canvas.total(map, 0);
         const auto spot = [](const Vec3& at) { return 3 * disc(at, 2.5e-3); };
         for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
             std::array<float, kN> flooded;
-            for (int t = 0; t < kN; ++t)
-                flooded[t] = static_cast<float>(spot(Vec3(map.position(slot, t))));
+            for (int t = 0; t < kN; ++t) flooded[t] = static_cast<float>(spot(Vec3(map.position(slot, t))));
             bed_paste(canvas, slot, paste_height(canvas, slot), flooded, loose);
         }
         wet(spot);

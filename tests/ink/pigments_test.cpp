@@ -25,8 +25,8 @@ std::string message_of(const std::function<void()>& fn) {
 
 TEST(Presets, EveryInkLoadsAndWritesItselfBack) {
     const auto names = list_inks();
-    for (const char* wanted : {"carbon", "cinnabar", "indigo", "cobalt", "shell-white",
-                               "titanium-white", "gamboge", "iron-red"})
+    for (const char* wanted :
+         {"carbon", "cinnabar", "indigo", "cobalt", "shell-white", "titanium-white", "gamboge", "iron-red"})
         EXPECT_NE(std::find(names.begin(), names.end(), wanted), names.end()) << wanted;
     for (const std::string& name : names) {
         const Ink ink = load_ink(name);
@@ -51,7 +51,8 @@ TEST(Presets, EverySubstrateLoadsAndWritesItselfBack) {
 }
 
 TEST(Presets, NumbersInOtherUnitsAreReadBackToTheBit) {
-    // Micrometres of a float and millimetres of a double: a project stores this text, and its replay gives the same bits.
+    // Micrometres of a float and millimetres of a double: a project stores this text, and its replay gives the same
+    // bits.
     Random random(3);
     for (int i = 0; i < 2000; ++i) {
         Substrate substrate;
@@ -65,7 +66,8 @@ TEST(Presets, NumbersInOtherUnitsAreReadBackToTheBit) {
         ink.supply_length = random.uniform(0.001, 100) * 1e-3;  // as it is read
         ASSERT_EQ(parse_ink(ink_toml(ink), "text").supply_length, ink.supply_length);
     }
-    EXPECT_EQ(ink_toml(parse_ink("film = 1\nyield_pa = -0.0\npigment = []", "text")), ink_toml(parse_ink("film = 1\nyield_pa = 0\npigment = []", "text")));
+    EXPECT_EQ(ink_toml(parse_ink("film = 1\nyield_pa = -0.0\npigment = []", "text")),
+              ink_toml(parse_ink("film = 1\nyield_pa = 0\npigment = []", "text")));
 }
 
 TEST(Presets, SubstratesDifferAsTheirMaterialsDo) {
@@ -125,8 +127,8 @@ Lab masstone(const char* pigment, double part = 1) {
 }
 
 TEST(Presets, MasstonesAndTintsLieWherePublishedOnesDo) {
-    // Vermilion of A. Maerz, M. R. Paul, A Dictionary of Color, 1930: #E34234. Grinds of it differ by some 5 (coarse ones
-    // are darker and bluer).
+    // Vermilion of A. Maerz, M. R. Paul, A Dictionary of Color, 1930: #E34234. Grinds of it differ by some 5 (coarse
+    // ones are darker and bluer).
     const std::array<double, 3> encoded{0xE3, 0x42, 0x34};
     std::array<double, 3> vermilion;
     for (int c = 0; c < 3; ++c) vermilion[c] = srgb_decode(static_cast<float>(encoded[c] / 255));
@@ -141,9 +143,11 @@ TEST(Presets, MasstonesAndTintsLieWherePublishedOnesDo) {
     // Tints with white turn bluer than masstones, as finely divided pigments do: hue of red ones towards blue, blacks
     // grey with a cold cast.
     const auto hue = [](const Lab& lab) { return std::atan2(lab[2], lab[1]) * 180 / 3.14159265; };
-    for (const char* name : {"cinnabar", "iron-red"}) EXPECT_LT(hue(masstone(name, 0.1)), hue(masstone(name)) - 1) << name;
+    for (const char* name : {"cinnabar", "iron-red"})
+        EXPECT_LT(hue(masstone(name, 0.1)), hue(masstone(name)) - 1) << name;
     EXPECT_LT(masstone("bone-black", 0.1)[2], -1);
-    for (const char* name : {"cobalt-underglaze", "indigo"}) EXPECT_LT(hue(masstone(name, 0.1)), -60) << name << ": blue, not purple";
+    for (const char* name : {"cobalt-underglaze", "indigo"})
+        EXPECT_LT(hue(masstone(name, 0.1)), -60) << name << ": blue, not purple";
     EXPECT_GT(hue(masstone("gamboge", 0.1)), hue(masstone("gamboge")) + 10) << "orange-brown in mass, lemon as a tint";
 }
 
@@ -151,30 +155,23 @@ TEST(Presets, UnknownNamesAreAnsweredWithTheNearest) {
     EXPECT_EQ(message_of([] { load_ink("carbn"); }), "unknown ink 'carbn', did you mean 'carbon'?");
     EXPECT_EQ(message_of([] { load_substrate("porcelian"); }),
               "unknown substrate 'porcelian', did you mean 'porcelain'?");
-    EXPECT_NE(message_of([] { load_ink("../../etc/passwd"); }).find("unknown ink"),
-              std::string::npos);
+    EXPECT_NE(message_of([] { load_ink("../../etc/passwd"); }).find("unknown ink"), std::string::npos);
 }
 
 TEST(Presets, BadFilesAreRefusedWithTheirLine) {
     const std::string good = "film = 2\n[[pigment]]\nname = \"p\"\nK = [1,1,1]\nS = [1,1,1]\n";
     EXPECT_EQ(parse_ink(good, "x.toml").film, 2);
-    const auto says = [](const std::string& text) {
-        return message_of([&] { parse_ink(text, "x.toml"); });
-    };
+    const auto says = [](const std::string& text) { return message_of([&] { parse_ink(text, "x.toml"); }); };
     EXPECT_NE(says("film = \n").find("x.toml:1: "), std::string::npos);
-    EXPECT_NE(says("film = 99\n" + good.substr(9)).find("x.toml:1: 'film' must lie in"),
-              std::string::npos);
+    EXPECT_NE(says("film = 99\n" + good.substr(9)).find("x.toml:1: 'film' must lie in"), std::string::npos);
     EXPECT_NE(says("flim = 2\n" + good.substr(9)).find("did you mean 'film'?"), std::string::npos);
     EXPECT_NE(says("film = 2\n").find("at least one [[pigment]]"), std::string::npos);
-    EXPECT_NE(says(good + "[[pigment]]\nname = \"q\"\nK = [1,1]\nS = [1,1,1]\n")
-                  .find("x.toml:8: 'K' must be 3"),
+    EXPECT_NE(says(good + "[[pigment]]\nname = \"q\"\nK = [1,1]\nS = [1,1,1]\n").find("x.toml:8: 'K' must be 3"),
               std::string::npos);
-    EXPECT_NE(
-        says(good + "[[pigment]]\nname = \"q\"\nK = [1,1,nan]\nS = [1,1,1]\n").find("x.toml:8: "),
-        std::string::npos);
+    EXPECT_NE(says(good + "[[pigment]]\nname = \"q\"\nK = [1,1,nan]\nS = [1,1,1]\n").find("x.toml:8: "),
+              std::string::npos);
     EXPECT_NE(says(good + good.substr(9)).find("listed twice"), std::string::npos);
-    EXPECT_NE(says(good + "[[pigment]]\nname = \"q\"\nK = [1,1,1]\nS = [1,1,1]\n").find("sum to 2"),
-              std::string::npos);
+    EXPECT_NE(says(good + "[[pigment]]\nname = \"q\"\nK = [1,1,1]\nS = [1,1,1]\n").find("sum to 2"), std::string::npos);
 }
 
 }  // namespace

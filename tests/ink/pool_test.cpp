@@ -16,8 +16,8 @@ namespace {
 constexpr int kN = atlas::kTileTexels;
 constexpr double kSideLength = 8e-3, kWave = 1e-3;  // metres
 
-/// A sheet of 8 mm in n × n charts, 20 texels a millimetre, with dry furrows `deep` micrometres deep across x, and 2 film
-/// units of ink in the open film.
+/// A sheet of 8 mm in n × n charts, 20 texels a millimetre, with dry furrows `deep` micrometres deep across x, and 2
+/// film units of ink in the open film.
 struct Furrowed {
     testing::Unwrapped u;
     atlas::TexelMap map;
@@ -88,7 +88,8 @@ TEST(Pool, StandsLevelInTheFurrowsAndThinOnTheRidges) {
             apart += std::abs(w - std::max(options.hold, level - z));
             n += 1;
         });
-        EXPECT_LT(apart / n, 0.1) << "film units of 2 in the mean: a texel is a tenth of a furrow's side, deep " << deep;
+        EXPECT_LT(apart / n, 0.1) << "film units of 2 in the mean: a texel is a tenth of a furrow's side, deep "
+                                  << deep;
         EXPECT_NEAR(thinnest, options.hold, 0.05);
     }
 }
@@ -115,7 +116,8 @@ void expect_same_means(const Furrowed& whole, const Furrowed& cut) {
         std::map<std::pair<int, int>, std::pair<double, double>> sums;
         f.each([&](std::uint32_t slot, int t, const Vec3& p) {
             if (std::abs(p.x) > 1e-3 || std::abs(p.y) > 1e-3) return;
-            auto& [sum, area] = sums[{static_cast<int>(std::floor(p.x / 0.5e-3)), static_cast<int>(std::floor(p.y / 0.25e-3))}];
+            auto& [sum, area] =
+                sums[{static_cast<int>(std::floor(p.x / 0.5e-3)), static_cast<int>(std::floor(p.y / 0.25e-3))}];
             sum += f.film(slot, t) * static_cast<double>(f.map.tiles[slot].area[t]);
             area += static_cast<double>(f.map.tiles[slot].area[t]);
         });
@@ -160,7 +162,8 @@ TEST(Pool, StopsAtTape) {
 
 TEST(Pool, LeavesPlainGroundAsItIsPainted) {
     Furrowed thin(0);  // 60 µm all over, level
-    thin.each([&](std::uint32_t slot, int t, const Vec3&) { thin.canvas.touch_film(slot, kFirstDryFilm, 0)[t] = 5.9f; });
+    thin.each(
+        [&](std::uint32_t slot, int t, const Vec3&) { thin.canvas.touch_film(slot, kFirstDryFilm, 0)[t] = 5.9f; });
     thin.each([&](std::uint32_t slot, int t, const Vec3& p) { thin.canvas.touch(slot, 1)[t] = p.x > 0 ? 2 : 1; });
     const std::uint64_t hash = thin.canvas.hash();
     thin.settle();

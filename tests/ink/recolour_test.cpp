@@ -33,10 +33,10 @@ Canvas painted_with(const Ink& ink) {
 TEST(Recolour, OldTexelsLookAsIfPaintedWithTheNewRecipe) {
     const Substrate porcelain = load_substrate("porcelain");
     const Ink old = recipe("old", {{"cinnabar", 0.6}, {"gamboge", 0.3}});
-    for (const Ink& wanted : {recipe("more-yellow", {{"cinnabar", 0.1}, {"gamboge", 0.8}}),
-                              recipe("other", {{"indigo", 0.5}, {"titanium-white", 0.2}}),
-                              recipe("both", {{"gamboge", 0.4}, {"indigo", 0.4}}),
-                              recipe("one", {{"carbon-black", 1.0}})}) {
+    for (const Ink& wanted :
+         {recipe("more-yellow", {{"cinnabar", 0.1}, {"gamboge", 0.8}}),
+          recipe("other", {{"indigo", 0.5}, {"titanium-white", 0.2}}),
+          recipe("both", {{"gamboge", 0.4}, {"indigo", 0.4}}), recipe("one", {{"carbon-black", 1.0}})}) {
         Canvas canvas = painted_with(old);
         const std::uint64_t hash = canvas.hash();
         canvas.take_dirty();

@@ -26,8 +26,11 @@ Ink plain(const std::string& name, double fraction = 1) {
 }
 
 ReservoirLayout layout_of(int bundles) {
-    ReservoirLayout l{.bundles = {}, .cell_ends = {0.4, 0.7, 0.9, 1}, .cell_capacities = {0.5, 0.3, 0.15, 0.05},
-                      .refill_time = 0.3, .side_time = 3};
+    ReservoirLayout l{.bundles = {},
+                      .cell_ends = {0.4, 0.7, 0.9, 1},
+                      .cell_capacities = {0.5, 0.3, 0.15, 0.05},
+                      .refill_time = 0.3,
+                      .side_time = 3};
     for (int k = 0; k < bundles; ++k) {
         const double r = std::sqrt((k + 0.5) / bundles), w = 2.4 * k;
         l.bundles.push_back({r * std::cos(w), r * std::sin(w)});
@@ -81,8 +84,7 @@ ContactCells some_touch(const Reservoir& tuft, std::uint64_t seed) {
 
 TEST(Reservoir, DippingFillsUpAndMixes) {
     Canvas canvas(1);
-    const Mix black = mix_of(canvas, plain("black")),
-              thin = mix_of(canvas, plain("white", 0.5));
+    const Mix black = mix_of(canvas, plain("black")), thin = mix_of(canvas, plain("white", 0.5));
     Reservoir tuft = make_reservoir(0.6);
     EXPECT_NEAR(tuft.capacity, 0.06, 1e-15) << "1 mL is 0.1 film·m²";
     EXPECT_NEAR(dip(tuft, black), 0.06, 1e-15);
@@ -125,9 +127,8 @@ TEST(Reservoir, ALoadedBrushWritesBlackAndAnEmptyOnePale) {
     for (const double fullness : {1.0, 0.6, 0.4}) {
         take(tuft, tuft.remaining() - fullness * tuft.capacity);
         for (const double width : {0.3e-3, 2e-3, 6e-3, 10e-3}) {
-            const DepositParams p = stamp_deposit(
-                tuft, ink, {.moment_factor = 0.5, .width = width, .area = width * width},
-                substrate);
+            const DepositParams p =
+                stamp_deposit(tuft, ink, {.moment_factor = 0.5, .width = width, .area = width * width}, substrate);
             EXPECT_GE(p.target, 0.9 * ink.film) << fullness << " " << width;
         }
     }
@@ -154,15 +155,13 @@ TEST(Reservoir, TuftAndTexelsTogetherKeepTheInk) {
         const DepositParams params = stamp_deposit(tuft, ink, contact, substrate);
         double given = 0;
         for (std::uint32_t slot = 0; slot < 4; ++slot)
-            given += deposit(canvas, (i / 25 + slot) % kSlots, random_texels(i, 0, 1), area, 1e-4,
-                             params);
+            given += deposit(canvas, (i / 25 + slot) % kSlots, random_texels(i, 0, 1), area, 1e-4, params);
         take(tuft, given);
     }
     double on_texels = 0;
     for (std::uint32_t slot = 0; slot < kSlots; ++slot)
         for (int t = 0; t < kN && canvas.touched(slot); ++t)
-            on_texels +=
-                static_cast<double>(area[t]) * static_cast<double>((*canvas.plane(slot, 0))[t]);
+            on_texels += static_cast<double>(area[t]) * static_cast<double>((*canvas.plane(slot, 0))[t]);
     EXPECT_GT(on_texels, 0.9 * start) << "the test wants a brush that runs dry";
     EXPECT_GE(tuft.remaining(), 0);
     EXPECT_NEAR(on_texels + tuft.remaining(), start, 1e-6 * start);
@@ -170,7 +169,8 @@ TEST(Reservoir, TuftAndTexelsTogetherKeepTheInk) {
 
 TEST(Reservoir, CellCapacitiesAddUpToTheCapacityAndABadLayoutIsRefused) {
     const Reservoir tuft = make_reservoir(0.5, layout_of(40));
-    EXPECT_NEAR(std::accumulate(tuft.cell_capacity.begin(), tuft.cell_capacity.end(), 0.0), tuft.capacity, 1e-12 * tuft.capacity);
+    EXPECT_NEAR(std::accumulate(tuft.cell_capacity.begin(), tuft.cell_capacity.end(), 0.0), tuft.capacity,
+                1e-12 * tuft.capacity);
     ReservoirLayout bad = layout_of(4);
     bad.cell_capacities[0] = 0.4;
     EXPECT_THROW(make_reservoir(0.5, bad), Error);
@@ -228,23 +228,30 @@ TEST(Reservoir, FlowToNowGoesOnByEvenParts) {
     Reservoir whole = start, parts = start;
     flow(whole, 0.005);
     double most = 0;  // change of a cell's saturation in a whole step
-    for (std::size_t i = 0; i < start.content.size(); ++i) most = std::max(most, std::abs(whole.saturation(i) - start.saturation(i)));
+    for (std::size_t i = 0; i < start.content.size(); ++i)
+        most = std::max(most, std::abs(whole.saturation(i) - start.saturation(i)));
     ASSERT_GT(most, 0.01);
     for (int k = 0; k < 10; ++k) {
         const Reservoir before = parts;
         flow(parts, 0.0005, FlowTo::now);
         EXPECT_EQ(parts.unspent, 0);
         for (std::size_t i = 0; i < start.content.size(); ++i)
-            EXPECT_LE(std::abs(parts.saturation(i) - before.saturation(i)), 0.1 * most * (1 + 1e-9)) << "differences only shrink";
+            EXPECT_LE(std::abs(parts.saturation(i) - before.saturation(i)), 0.1 * most * (1 + 1e-9))
+                << "differences only shrink";
     }
     // Euler: the error of a step is half its square, for cells that fill within some 40 ms.
-    for (std::size_t i = 0; i < start.content.size(); ++i) EXPECT_NEAR(parts.saturation(i), whole.saturation(i), 0.15 * most) << i;
+    for (std::size_t i = 0; i < start.content.size(); ++i)
+        EXPECT_NEAR(parts.saturation(i), whole.saturation(i), 0.15 * most) << i;
     expect_same(planes_of(parts), planes_of(start), start.capacity, "plane ");
 }
 
 TEST(Reservoir, HalfTheStepMakesHalfTheError) {
     // Against the closed form of two cells: the difference falls by e^{−t (g/r1 + g/r2)}.
-    ReservoirLayout l{.bundles = {Vec2{0}}, .cell_ends = {0.5, 1}, .cell_capacities = {0.8, 0.2}, .refill_time = 0.3, .mix_time = 1e9};
+    ReservoirLayout l{.bundles = {Vec2{0}},
+                      .cell_ends = {0.5, 1},
+                      .cell_capacities = {0.8, 0.2},
+                      .refill_time = 0.3,
+                      .mix_time = 1e9};
     Reservoir tuft = make_reservoir(0.5, l);
     dip(tuft, kBlack, {.depth = 0.5});
     flow(tuft, 0.3);
@@ -304,7 +311,8 @@ TEST(Reservoir, AShallowDipLoadsAGradientThatSpreadsSlowly) {
     // The last cell and a half: of rooms 0.05 and 0.15 · ½ the missing 0.3.
     EXPECT_NEAR(taken / tuft.capacity, 0.3 * (0.05 + 0.5 * 0.15), 1e-12);
     ContactCells tip(tuft.content.size(), 0), root(tuft.content.size(), 0);
-    for (std::size_t i = 0; i < tip.size(); ++i) (i % kCells == kCells - 1 ? tip : root)[i] = i % kCells == 3 || i % kCells == 0 ? 1.0f / 16 : 0;
+    for (std::size_t i = 0; i < tip.size(); ++i)
+        (i % kCells == kCells - 1 ? tip : root)[i] = i % kCells == 3 || i % kCells == 0 ? 1.0f / 16 : 0;
     EXPECT_NEAR(mix_at(tuft, tip)[0], 0.3, 1e-6) << "0.3 of black on 0.7 of thin";
     EXPECT_EQ(mix_at(tuft, root)[0], 0);
     flow(tuft, 2);

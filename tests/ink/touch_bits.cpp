@@ -6,9 +6,9 @@
 
 #include "core/hash.h"
 #include "core/random.h"
-#include "ink/film/paste.h"
 #include "ink/exchange/deposit_mixed.h"
 #include "ink/exchange/transfer.h"
+#include "ink/film/paste.h"
 
 namespace {
 
@@ -17,7 +17,9 @@ using namespace tuft::ink;
 
 constexpr int kN = atlas::kTileTexels, kPigments = 3;
 
-float chance(std::uint64_t a, std::uint64_t b) { return static_cast<float>(uniform(a, b)); }
+float chance(std::uint64_t a, std::uint64_t b) {
+    return static_cast<float>(uniform(a, b));
+}
 
 /// A tile under part of a contact patch, with bare and dry texels.
 struct Tile {
@@ -57,7 +59,8 @@ int main() {
     for (std::uint64_t round = 0; round < 24; ++round) {
         Tile tile(100 * round + round % 2);
         TransferParams p;
-        p.deposit = {.target = 1.8f + static_cast<float>(round % 3), .capacity = 6, .extinction = round % 4 < 2 ? 0.0f : 0.7f};
+        p.deposit = {
+            .target = 1.8f + static_cast<float>(round % 3), .capacity = 6, .extinction = round % 4 < 2 ? 0.0f : 0.7f};
         p.uptake = 0.4f * chance(round, 1);
         p.room = round % 5 ? 2.0f : 0.0f;
         p.pour = round % 6 ? 0.0f : 0.5f;

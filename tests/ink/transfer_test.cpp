@@ -124,8 +124,7 @@ NodeAreas tapered(double end) {
     constexpr int kParts = 3000;
     for (int k = 0; k < kParts; ++k) {
         const double at = (k + 0.5) / kParts * (kAlong - 1), width = 1 + (end - 1) * at / (kAlong - 1);
-        for (int i = 0; i < kAlong; ++i)
-            areas[i * kAcross] += std::max(0.0, 1 - std::abs(i - at)) * width / kParts;
+        for (int i = 0; i < kAlong; ++i) areas[i * kAcross] += std::max(0.0, 1 - std::abs(i - at)) * width / kParts;
     }
     return areas;
 }
@@ -137,7 +136,8 @@ TEST(Transfer, TheTipOnlyGrazesWhatTheBellyRubs) {
     const std::array<double, kAlong> leaf = firmness(tapered(0));
     const double first = 1 - 1.0 / 9, expected[] = {1, 2.0 / 3 / first, 1.0 / 3 / first, 1.0 / 9 / first};
     for (int i = 0; i < kAlong; ++i) EXPECT_NEAR(leaf[i], expected[i], 1e-5) << i;
-    // So where all its length passes it rubs little more than half as much as a patch that is as long and wide all over.
+    // So where all its length passes it rubs little more than half as much as a patch that is as long and wide all
+    // over.
     const auto along = [](const std::array<double, kAlong>& f) { return (0.5 * f[0] + f[1] + f[2] + 0.5 * f[3]) / 3; };
     EXPECT_LT(along(leaf), 0.6);
     EXPECT_NEAR(along(firmness(tapered(1))), 1, 1e-6);
@@ -205,8 +205,7 @@ TEST(Transfer, OnADrySurfaceItLaysDownWhatDepositDoes) {
         deposit(other, 0, t.coverage, t.area, 0.1e-3, p);
     }
     const int yellow = 1;
-    for (int i = 0; i < kN; ++i)
-        EXPECT_NEAR((*t.canvas.plane(0, yellow))[i], (*other.plane(0, 0))[i], 2e-3) << i;
+    for (int i = 0; i < kN; ++i) EXPECT_NEAR((*t.canvas.plane(0, yellow))[i], (*other.plane(0, 0))[i], 2e-3) << i;
 }
 
 }  // namespace

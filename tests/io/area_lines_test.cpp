@@ -19,14 +19,18 @@ Ring circle(double r, int n = 90, Vec2 c = {0, 0}) {
     for (int i = 0; i < n; ++i) ring.push_back(c + r * Vec2(std::cos(2 * pi * i / n), std::sin(2 * pi * i / n)));
     return ring;
 }
-Ring box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
+Ring box(double x0, double y0, double x1, double y1) {
+    return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+}
 Ring star() {
     Ring ring;
-    for (int i = 0; i < 10; ++i) ring.push_back((i % 2 ? 0.004 : 0.01) * Vec2(std::cos(pi * i / 5), std::sin(pi * i / 5)));
+    for (int i = 0; i < 10; ++i)
+        ring.push_back((i % 2 ? 0.004 : 0.01) * Vec2(std::cos(pi * i / 5), std::sin(pi * i / 5)));
     return ring;
 }
 
-/// Distance from the nearest line in its half widths; below 1: painted. Straight pieces with widths that fall at points.
+/// Distance from the nearest line in its half widths; below 1: painted. Straight pieces with widths that fall at
+/// points.
 double reach(const std::vector<AreaLine>& lines, const Vec2& p) {
     double least = 1e9;
     for (const AreaLine& l : lines) {
@@ -35,9 +39,11 @@ double reach(const std::vector<AreaLine>& lines, const Vec2& p) {
         for (std::size_t i = 1; i < l.line.size(); ++i) whole += glm::distance(l.line[i - 1], l.line[i]);
         for (std::size_t i = 1; i < l.line.size(); ++i) {
             const Vec2 a = l.line[i - 1], d = l.line[i] - a;
-            const double length = glm::length(d), t = length > 0 ? std::clamp(glm::dot(p - a, d) / (length * length), 0.0, 1.0) : 0;
+            const double length = glm::length(d),
+                         t = length > 0 ? std::clamp(glm::dot(p - a, d) / (length * length), 0.0, 1.0) : 0;
             const double at = along + t * length;
-            const double part = std::min({1.0, l.head > 0 ? at / l.head : 1.0, l.tail > 0 ? (whole - at) / l.tail : 1.0});
+            const double part =
+                std::min({1.0, l.head > 0 ? at / l.head : 1.0, l.tail > 0 ? (whole - at) / l.tail : 1.0});
             least = std::min(least, glm::distance(p, a + t * d) / std::max(0.5 * l.width * part, 1e-9));
             along += length;
         }
@@ -55,15 +61,36 @@ struct Shape {
 TEST(AreaLines, CoverTheAreaAndLittleElse) {
     const std::vector<Shape> shapes{
         {"disk", {circle(0.01)}, [](const Vec2& p) { return glm::length(p) < 0.01; }, 0.012},
-        {"ring", {circle(0.01), circle(0.007)}, [](const Vec2& p) { return glm::length(p) < 0.01 && glm::length(p) > 0.007; }, 0.012},
-        {"eccentric ring", {circle(0.01), circle(0.006, 90, {0.0025, 0})},
-         [](const Vec2& p) { return glm::length(p) < 0.01 && glm::distance(p, Vec2(0.0025, 0)) > 0.006; }, 0.012},
-        {"square", {box(-0.01, -0.01, 0.01, 0.01)}, [](const Vec2& p) { return std::max(std::abs(p.x), std::abs(p.y)) < 0.01; }, 0.012},
-        {"stem", {box(-0.02, -0.001, 0.02, 0.001)}, [](const Vec2& p) { return std::abs(p.x) < 0.02 && std::abs(p.y) < 0.001; }, 0.022},
-        {"square with a stem", {{{-0.01, -0.01}, {0.01, -0.01}, {0.01, -0.0004}, {0.022, -0.0004}, {0.022, 0.0004}, {0.01, 0.0004}, {0.01, 0.01}, {-0.01, 0.01}}},
+        {"ring",
+         {circle(0.01), circle(0.007)},
+         [](const Vec2& p) { return glm::length(p) < 0.01 && glm::length(p) > 0.007; },
+         0.012},
+        {"eccentric ring",
+         {circle(0.01), circle(0.006, 90, {0.0025, 0})},
+         [](const Vec2& p) { return glm::length(p) < 0.01 && glm::distance(p, Vec2(0.0025, 0)) > 0.006; },
+         0.012},
+        {"square",
+         {box(-0.01, -0.01, 0.01, 0.01)},
+         [](const Vec2& p) { return std::max(std::abs(p.x), std::abs(p.y)) < 0.01; },
+         0.012},
+        {"stem",
+         {box(-0.02, -0.001, 0.02, 0.001)},
+         [](const Vec2& p) { return std::abs(p.x) < 0.02 && std::abs(p.y) < 0.001; },
+         0.022},
+        {"square with a stem",
+         {{{-0.01, -0.01},
+           {0.01, -0.01},
+           {0.01, -0.0004},
+           {0.022, -0.0004},
+           {0.022, 0.0004},
+           {0.01, 0.0004},
+           {0.01, 0.01},
+           {-0.01, 0.01}}},
          [](const Vec2& p) {
-             return std::max(std::abs(p.x), std::abs(p.y)) < 0.01 || (p.x >= 0.01 && p.x < 0.022 && std::abs(p.y) < 0.0004);
-         }, 0.023},
+             return std::max(std::abs(p.x), std::abs(p.y)) < 0.01 ||
+                    (p.x >= 0.01 && p.x < 0.022 && std::abs(p.y) < 0.0004);
+         },
+         0.023},
     };
     for (const Shape& s : shapes) {
         const auto lines = area_lines(s.rings, FillRule::even_odd);
@@ -94,7 +121,8 @@ TEST(AreaLines, AJaggedOutlineIsDrawnAsASmoothOne) {
     for (std::size_t i = 0; i < jagged.size(); ++i) jagged[i] *= 1 + (i % 2 ? 5e-4 : -5e-4);
     for (const Vec2& p : circle(r, 6000)) {
         const Vec2 at = 1e-4 * glm::round(1e4 * p);
-        if (!stairs.empty() && stairs.back().x != at.x && stairs.back().y != at.y) stairs.push_back({at.x, stairs.back().y});
+        if (!stairs.empty() && stairs.back().x != at.x && stairs.back().y != at.y)
+            stairs.push_back({at.x, stairs.back().y});
         if (stairs.empty() || stairs.back() != at) stairs.push_back(at);
     }
     for (const Ring& ring : {jagged, stairs}) {
@@ -107,14 +135,16 @@ TEST(AreaLines, AJaggedOutlineIsDrawnAsASmoothOne) {
         const double bend = 2 * 0.1 * line.width / (r - 0.3 * line.width);
         for (std::size_t i = 1; i + 1 < line.line.size(); ++i) {
             EXPECT_NEAR(glm::length(line.line[i]), r - 0.22 * line.width, 0.03 * line.width);
-            const Vec2 in = glm::normalize(line.line[i] - line.line[i - 1]), out = glm::normalize(line.line[i + 1] - line.line[i]);
+            const Vec2 in = glm::normalize(line.line[i] - line.line[i - 1]),
+                       out = glm::normalize(line.line[i + 1] - line.line[i]);
             EXPECT_LT(std::acos(std::min(1.0, glm::dot(in, out))), bend) << i;
         }
         EXPECT_GT(line.stencil.size(), ring.size() / 2) << "the tape is the outline's own";
     }
 }
 
-// Teeth deeper than what lines leave out, one beside the other: a hundred would cross each other at the line's distance.
+// Teeth deeper than what lines leave out, one beside the other: a hundred would cross each other at the line's
+// distance.
 TEST(AreaLines, ADeeplyJaggedOutlineIsFilledToo) {
     Ring teeth = circle(0.04, 3000);
     for (std::size_t i = 0; i < teeth.size(); ++i) teeth[i] *= i % 2 ? 1.0025 : 0.9975;
@@ -167,7 +197,8 @@ TEST(AreaLines, NothingComesOfWhatHasNoArea) {
     EXPECT_TRUE(area_lines(std::vector<Ring>{{{0, 0}, {1, 1}}}, FillRule::nonzero).empty());
     EXPECT_TRUE(area_lines(std::vector<Ring>{}, FillRule::nonzero).empty());
     EXPECT_TRUE(area_lines(std::vector<Ring>{{{0, 0}, {0, 0}, {0, 0}}}, FillRule::even_odd).empty());
-    EXPECT_TRUE(area_lines(std::vector<Ring>{circle(1, 100'000)}, FillRule::nonzero).empty()) << "more edges than it takes";
+    EXPECT_TRUE(area_lines(std::vector<Ring>{circle(1, 100'000)}, FillRule::nonzero).empty())
+        << "more edges than it takes";
 }
 
 }  // namespace

@@ -27,9 +27,16 @@ std::vector<stroke::Stroke> journal() {
         s.trace.label = "横 " + std::to_string(k);
         s.hidden = k == 3;
         s.group = {4, "leaves.svg"};
-        s.trace.placement = {.origin = {0.1, 1.0 / 3, -1e-9}, .right = {0, 1, 0}, .down = {0, 0, -1}, .mapping = stroke::SurfaceMapping::drape};
+        s.trace.placement = {.origin = {0.1, 1.0 / 3, -1e-9},
+                             .right = {0, 1, 0},
+                             .down = {0, 0, -1},
+                             .mapping = stroke::SurfaceMapping::drape};
         for (int i = 0; i < 20 * static_cast<int>(k); ++i)
-            s.trace.samples.push_back({.time = 0.001 * i, .position = {std::sin(i), 1e-7 * i, std::sqrt(2.0) * i}, .pressure = 0.1, .tilt = {0.2, -0.3}, .rotation = Quat(0.6, 0, 0.8, 0)});
+            s.trace.samples.push_back({.time = 0.001 * i,
+                                       .position = {std::sin(i), 1e-7 * i, std::sqrt(2.0) * i},
+                                       .pressure = 0.1,
+                                       .tilt = {0.2, -0.3},
+                                       .rotation = Quat(0.6, 0, 0.8, 0)});
         entries.push_back(std::move(s));
     }
     stroke::Stroke dip;
@@ -68,12 +75,16 @@ TEST(PackedEntries, ComeBackToTheBit) {
 // Bytes of a file that anybody may have made: an error that names it, or entries, and nothing else.
 TEST(PackedEntries, DamagedBytesAreAnError) {
     const std::vector<char> sound = pack_entries(journal());
-    for (const std::size_t n : {std::size_t{0}, std::size_t{7}, std::size_t{31}, std::size_t{40}, sound.size() / 2, sound.size() - 1})
+    for (const std::size_t n :
+         {std::size_t{0}, std::size_t{7}, std::size_t{31}, std::size_t{40}, sound.size() / 2, sound.size() - 1})
         EXPECT_THROW(unpack_entries(std::span(sound).first(n), "it"), Error) << n;
     Random random(5);
     for (int i = 0; i < 400; ++i) {
         std::vector<char> bytes = sound;
-        for (int k = 0; k < 3; ++k) bytes[std::min(bytes.size() - 1, static_cast<std::size_t>(random.uniform(0, static_cast<double>(i < 200 ? 64 : bytes.size()))))] ^= static_cast<char>(1 << (i % 8));
+        for (int k = 0; k < 3; ++k)
+            bytes[std::min(bytes.size() - 1, static_cast<std::size_t>(random.uniform(
+                                                 0, static_cast<double>(i < 200 ? 64 : bytes.size()))))] ^=
+                static_cast<char>(1 << (i % 8));
         try {
             unpack_entries(bytes, "the snapshot");
         } catch (const Error& error) {
@@ -102,7 +113,8 @@ TEST_F(AttachedFiles, AreKeptReplacedAndTakenOut) {
     const std::filesystem::path file = folder_ / "a.tuft";
     std::vector<char> bytes(5000);
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * i);
-    const Attachment image{"0002", R"({"name":"飞燕.png"})", bytes}, other{"0001", "{}", {}}, snapshot{"0002", "one", pack_entries(journal())};
+    const Attachment image{"0002", R"({"name":"飞燕.png"})", bytes}, other{"0001", "{}", {}},
+        snapshot{"0002", "one", pack_entries(journal())};
     {
         Project project = Project::create(file, model_);
         project.put_attachment(kReferences, {"0002", "former", {'x'}});

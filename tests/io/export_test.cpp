@@ -95,7 +95,8 @@ TEST(Export, PigmentAmountsComeBackByNameFromAnExrFile) {
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             if (map.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
             const std::uint32_t tile = map.tile_of_slot[slot];
-            const std::uint32_t x = tile % map.tiles_per_side * 16 + t % 16, y = tile / map.tiles_per_side * 16 + t / 16;
+            const std::uint32_t x = tile % map.tiles_per_side * 16 + t % 16,
+                                y = tile / map.tiles_per_side * 16 + t / 16;
             if (x >= map.size || y >= map.size) continue;
             for (int p = 0; p < 3; ++p) {
                 float sum = 0;
@@ -140,8 +141,7 @@ TEST(Export, GltfWithFilesReadBackIsTheSameMesh) {
     const mesh::TriangleMesh mesh = cylinder();
     const ModelMaps maps = pattern_maps(64);
     export_model(folder / "blue bowl.gltf", mesh, cylinder_atlas(mesh), maps);
-    expect_same(read_gltf(read_file(folder / "blue bowl.gltf"), folder / "blue bowl.gltf"), mesh, 1,
-                6e-8);
+    expect_same(read_gltf(read_file(folder / "blue bowl.gltf"), folder / "blue bowl.gltf"), mesh, 1, 6e-8);
     const auto files = exported_files(folder / "blue bowl.gltf", maps);
     EXPECT_EQ(files.size(), 5u);
     EXPECT_EQ(folder.n_files(), files.size());
@@ -157,8 +157,7 @@ atlas::Atlas two_pages(const mesh::TriangleMesh& mesh) {
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
         a.triangle_chart[t] = mesh.triangle_groups[t];
         for (std::size_t c = 3 * t; c < 3 * t + 3; ++c)
-            a.corner_uvs[c] =
-                0.5f * (mesh.corner_uvs[c] + Vec2f(float(mesh.triangle_groups[t]), 0));
+            a.corner_uvs[c] = 0.5f * (mesh.corner_uvs[c] + Vec2f(float(mesh.triangle_groups[t]), 0));
     }
     return a;
 }
@@ -173,25 +172,21 @@ TEST(Export, PagesOfAnObjFollowTheUdimConvention) {
         EXPECT_TRUE(std::filesystem::exists(file)) << file;
     EXPECT_EQ(folder.n_files(), 2u + 3 * 2);
     const std::vector<char> mtl = read_file(folder / "m.mtl");
-    EXPECT_NE(std::string(mtl.begin(), mtl.end()).find("map_Kd m_base_colour.<UDIM>.png"),
-              std::string::npos);
+    EXPECT_NE(std::string(mtl.begin(), mtl.end()).find("map_Kd m_base_colour.<UDIM>.png"), std::string::npos);
     const mesh::PolygonSoup soup = mesh::read_obj(read_file(folder / "m.obj"), "m.obj");
     for (std::size_t c = 0; c < 3 * mesh.n_triangles(); ++c) {
-        const Vec2f expected =
-            mesh.corner_uvs[c] + Vec2f(float(mesh.triangle_groups[c / 3]), 0);
+        const Vec2f expected = mesh.corner_uvs[c] + Vec2f(float(mesh.triangle_groups[c / 3]), 0);
         // UVs went through halves and back: two roundings of floats below 2.
         EXPECT_NEAR(soup.corner_uvs[c].x, expected.x, 3e-7);
         EXPECT_NEAR(soup.corner_uvs[c].y, expected.y, 3e-7);
     }
     for (const int column : {0, 1}) {
-        const Image8 page =
-            read_image8(folder / ("m_base_colour.100" + std::to_string(column + 1) + ".png"));
+        const Image8 page = read_image8(folder / ("m_base_colour.100" + std::to_string(column + 1) + ".png"));
         ASSERT_EQ(page.width, 64);
         ASSERT_EQ(page.height, 64);
         for (int y = 0; y < 64; ++y)
             for (int i = 0; i < 64 * 3; ++i)
-                ASSERT_EQ(page.pixels[(63 - y) * 64 * 3 + i],
-                          maps.base_colour.texels[(y * 128 + 64 * column) * 3 + i]);
+                ASSERT_EQ(page.pixels[(63 - y) * 64 * 3 + i], maps.base_colour.texels[(y * 128 + 64 * column) * 3 + i]);
     }
 }
 
@@ -242,8 +237,7 @@ TEST(Export, NormalsFollowTheSlopeOfTheHeight) {
         for (int x = 0; x < 16; ++x) height.texels.push_back(0.1f * x - 0.2f * y);
     const auto normals = normal_map(height, 1e-6);
     const Vec3 expected = glm::normalize(Vec3(-0.1, 0.2, 1));
-    for (int k = 0; k < 3; ++k)
-        EXPECT_NEAR(normals.texels[(8 * 16 + 8) * 3 + k] / 127.5 - 1, expected[k], 0.5 / 127);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(normals.texels[(8 * 16 + 8) * 3 + k] / 127.5 - 1, expected[k], 0.5 / 127);
 }
 
 }  // namespace

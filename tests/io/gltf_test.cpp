@@ -25,8 +25,7 @@ std::string base64(const std::vector<char>& bytes) {
         std::uint32_t v = 0;
         for (std::size_t k = 0; k < 3; ++k)
             v = v << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-        for (int k = 0; k < 4; ++k)
-            out += i + k > bytes.size() ? '=' : digits[v >> (18 - 6 * k) & 63];
+        for (int k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : digits[v >> (18 - 6 * k) & 63];
     }
     return out;
 }
@@ -85,10 +84,8 @@ TEST(Gltf, NodeTransformsAreComposed) {
     };
     near(soup.points[1], {0, -5, 2});
     near(soup.points[2], {-3, -5, 0});
-    EXPECT_EQ(soup.corners, (std::vector<std::uint32_t>{0, 2, 1}))
-        << "a mirrored mesh is turned round";
-    j["nodes"][0] =
-        json::parse(R"({"children":[1],"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]})");
+    EXPECT_EQ(soup.corners, (std::vector<std::uint32_t>{0, 2, 1})) << "a mirrored mesh is turned round";
+    j["nodes"][0] = json::parse(R"({"children":[1],"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]})");
     near(read(j).points[1], {0, -5, 2});
 }
 
@@ -119,7 +116,9 @@ json pictured_triangle() {
 
 TEST(Gltf, BaseColourIsFactorTimesPictureTimesVertexColours) {
     json j = pictured_triangle();
-    j["materials"] = {{{"name", "m"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0.5, 0.25, 1}}, {"baseColorTexture", {{"index", 0}}}}}}};
+    j["materials"] = {
+        {{"name", "m"},
+         {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0.5, 0.25, 1}}, {"baseColorTexture", {{"index", 0}}}}}}};
     j["meshes"][0]["primitives"][0]["material"] = 0;
     j["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 0;  // the positions serve
     const mesh::PolygonSoup soup = read(j);
@@ -160,7 +159,8 @@ TEST(Gltf, APictureLiesByItsSetOfUvsMovedAsTheFileSays) {
     ASSERT_EQ(moved.corner_uvs.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_LT(glm::length(moved.corner_uvs[i] - expected[i]), 1e-6f) << i << ", by rounding";
-    texture["extensions"]["KHR_texture_transform"] = {{"scale", {"a", 4}}, {"rotation", {}}, {"offset", 7}, {"texCoord", -5}};
+    texture["extensions"]["KHR_texture_transform"] = {
+        {"scale", {"a", 4}}, {"rotation", {}}, {"offset", 7}, {"texCoord", -5}};
     EXPECT_EQ(read(j).corner_uvs.size(), 3u);
 }
 
@@ -169,7 +169,8 @@ TEST(Gltf, PicturesInBuffersLieWithinThem) {
     const Image8 image{.width = 1, .height = 2, .channels = 3, .pixels = {255, 0, 0, 0, 255, 0}};
     const std::vector<unsigned char> png = png_bytes(view_of(image));
     json j = triangle();
-    j["buffers"].push_back({{"byteLength", png.size()}, {"uri", "data:application/octet-stream;base64," + base64({png.begin(), png.end()})}});
+    j["buffers"].push_back({{"byteLength", png.size()},
+                            {"uri", "data:application/octet-stream;base64," + base64({png.begin(), png.end()})}});
     j["bufferViews"].push_back({{"buffer", 1}, {"byteOffset", 0}, {"byteLength", png.size()}});
     j["images"] = {{{"bufferView", 3}, {"mimeType", "image/png"}}};
     j["textures"] = {{{"source", 0}}};
@@ -224,8 +225,9 @@ TEST(Gltf, ARequiredExtensionThatIsNotReadIsRefusedByName) {
     j["extensionsRequired"] = {"KHR_texture_transform", "KHR_materials_unlit", "KHR_mesh_quantization"};
     EXPECT_EQ(fault(j), "read without complaint");
     j["extensionsRequired"] = {"ACME_spline_surfaces"};
-    EXPECT_EQ(fault(j), "x.gltf: it requires the glTF extension 'ACME_spline_surfaces', which tuft does not know; export it "
-                        "without that extension");
+    EXPECT_EQ(fault(j),
+              "x.gltf: it requires the glTF extension 'ACME_spline_surfaces', which tuft does not know; export it "
+              "without that extension");
     for (const char* known : {"KHR_texture_basisu", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression"}) {
         j["extensionsRequired"] = {known};
         EXPECT_NE(fault(j).find(std::string("requires the glTF extension ") + known), std::string::npos) << fault(j);
@@ -250,8 +252,9 @@ TEST(Gltf, NoMessageHoldsAWholeDataUri) {
     j = pictured_triangle();
     j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
     j["meshes"][0]["primitives"][0]["material"] = 0;
-    for (const std::string& uri : {"data:image/png;base64," + std::string(100'000, 'A'), "data:image/bmp;base64," + std::string(100'000, 'A'),
-                                   std::string("data:") + std::string(100'000, 'A')}) {
+    for (const std::string& uri :
+         {"data:image/png;base64," + std::string(100'000, 'A'), "data:image/bmp;base64," + std::string(100'000, 'A'),
+          std::string("data:") + std::string(100'000, 'A')}) {
         j["images"][0]["uri"] = uri;
         std::string told;
         try {
@@ -280,11 +283,10 @@ TEST(Gltf, FaultsAreNamed) {
     EXPECT_NE(with("/nodes/0/children", json::array({0})).find("tree"), std::string::npos);
     EXPECT_NE(with("/scenes/0/nodes", json::array({5})).find("node 5"), std::string::npos);
     EXPECT_NE(with("/accessors/2/count", 0).find("no triangles"), std::string::npos);
-    EXPECT_NE(with("/meshes/0/primitives/0/attributes/POSITION", 5).find("accessor 5"),
-              std::string::npos);
+    EXPECT_NE(with("/meshes/0/primitives/0/attributes/POSITION", 5).find("accessor 5"), std::string::npos);
     json j = triangle();
-    j["accessors"][2] = json::parse(
-        R"({"bufferView":0,"componentType":5125,"count":3,"type":"SCALAR","byteOffset":12})");
+    j["accessors"][2] =
+        json::parse(R"({"bufferView":0,"componentType":5125,"count":3,"type":"SCALAR","byteOffset":12})");
     EXPECT_NE(fault(j).find("out of range"), std::string::npos);
     j = triangle();
     j["meshes"] = json::array();
@@ -298,8 +300,7 @@ TEST(Gltf, BuffersOutsideTheFolderAreRefused) {
     write_file(folder / "secret.bin", secret.data(), secret.size());
     write_file(folder / "models/own.bin", secret.data(), secret.size());
     json j = triangle();
-    for (const std::string& uri :
-         {std::string("../secret.bin"), (folder / "secret.bin").string()}) {
+    for (const std::string& uri : {std::string("../secret.bin"), (folder / "secret.bin").string()}) {
         j["buffers"][0]["uri"] = uri;
         EXPECT_THROW(read(j, folder / "models/m.gltf"), Error) << uri;
     }
@@ -341,8 +342,7 @@ TEST(Gltf, HostileBytesNeverCrash) {
         // Most faults matter in the JSON and the headers.
         const std::size_t reach = std::min<std::size_t>(bytes.size(), 2500);
         for (int k = 0; k < 1 + i % 5; ++k)
-            bytes[static_cast<std::size_t>(random.uniform() * reach)] =
-                static_cast<char>(random.bits());
+            bytes[static_cast<std::size_t>(random.uniform() * reach)] = static_cast<char>(random.bits());
         try {
             read_gltf(bytes, folder / "x.glb");
         } catch (const Error&) {

@@ -71,7 +71,8 @@ TEST(Image, HalfFloatsInExrAreOffByTheirRoundingOnly) {
     const ImageF read = read_image_float(folder / "h.exr");
     ASSERT_EQ(read.pixels.size(), image.pixels.size());
     for (std::size_t i = 0; i < read.pixels.size(); ++i)
-        EXPECT_LE(std::abs(read.pixels[i] - image.pixels[i]), std::max(std::ldexp(std::abs(image.pixels[i]), -11), 0x1p-25f));
+        EXPECT_LE(std::abs(read.pixels[i] - image.pixels[i]),
+                  std::max(std::ldexp(std::abs(image.pixels[i]), -11), 0x1p-25f));
     EXPECT_NE(read, image);
     EXPECT_LT(std::filesystem::file_size(folder / "h.exr"), std::filesystem::file_size(folder / "f.exr"));
 }
@@ -100,8 +101,7 @@ TEST(Image, BadFilesAreErrors) {
     const Folder folder("bad");
     write_image(folder / "a.png", view_of(noise<std::uint8_t>(64, 64, 3, 1)));
     std::vector<char> bytes = read_file(folder / "a.png");
-    for (const std::size_t size :
-         {bytes.size() - 1, bytes.size() / 2, std::size_t{40}, std::size_t{9}}) {
+    for (const std::size_t size : {bytes.size() - 1, bytes.size() / 2, std::size_t{40}, std::size_t{9}}) {
         write_file(folder / "cut.png", bytes.data(), size);
         // The last byte is only part of a checksum after the picture; libpng may do without.
         if (size < bytes.size() - 1) {
@@ -114,9 +114,7 @@ TEST(Image, BadFilesAreErrors) {
     write_file(folder / "text.png", text.data(), text.size());
     EXPECT_THROW(read_image8(folder / "text.png"), Error);
     EXPECT_THROW(write_image(folder / "a.bmp", view_of(noise<std::uint8_t>(4, 4, 3, 1))), Error);
-    EXPECT_THROW(
-        write_image(folder / "no/such/folder/a.png", view_of(noise<std::uint8_t>(4, 4, 3, 1))),
-        Error);
+    EXPECT_THROW(write_image(folder / "no/such/folder/a.png", view_of(noise<std::uint8_t>(4, 4, 3, 1))), Error);
     EXPECT_THROW(write_image(folder / "a.png", PixelView{}), Error);
 }
 

@@ -40,8 +40,7 @@ std::string message(const std::string& text, const InkmlOptions& options = {}) {
 std::vector<std::pair<double, double>> millimetres(const Trace& trace) {
     std::vector<std::pair<double, double>> out;
     for (const auto& s : trace.samples)
-        out.emplace_back(std::round(s.position.x * 1e9) / 1e6,
-                         std::round(s.position.y * 1e9) / 1e6);
+        out.emplace_back(std::round(s.position.x * 1e9) / 1e6, std::round(s.position.y * 1e9) / 1e6);
     return out;
 }
 
@@ -60,9 +59,8 @@ TEST(Inkml, DecodesDifferencesAsTheRecommendationDoes) {
       <trace>1125 18432,'23'43,"7"-8,3-5,7 -3,6 2,6 8,3 6 T,2 4*T,3 6,3-6 F F</trace>)");
     ASSERT_EQ(traces.size(), 1u);
     // velocity: 23 43, 30 35, 33 30, 40 27, 46 29, 52 37, 55 43, 57 47, 60 53, 63 47
-    const Points want{{1125, 18432}, {1148, 18475}, {1178, 18510}, {1211, 18540},
-                      {1251, 18567}, {1297, 18596}, {1349, 18633}, {1404, 18676},
-                      {1461, 18723}, {1521, 18776}, {1584, 18823}};
+    const Points want{{1125, 18432}, {1148, 18475}, {1178, 18510}, {1211, 18540}, {1251, 18567}, {1297, 18596},
+                      {1349, 18633}, {1404, 18676}, {1461, 18723}, {1521, 18776}, {1584, 18823}};
     EXPECT_EQ(millimetres(traces[0]), want);
 }
 
@@ -81,13 +79,11 @@ TEST(Inkml, ReadsHexadecimalAndExponents) {
 
 TEST(Inkml, UnitsAndResolutionsBringLengthsToMetres) {
     const std::pair<const char*, double> units[] = {
-        {"mm", 1e-3},        {"cm", 1e-2},       {"m", 1},     {"in", 0.0254},
-        {"pt", 0.0254 / 72}, {"himetric", 1e-5}, {"dev", 1e-3}};
+        {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}, {"in", 0.0254}, {"pt", 0.0254 / 72}, {"himetric", 1e-5}, {"dev", 1e-3}};
     for (const auto& [unit, metres] : units) {
         const std::string u = unit;
-        const auto t =
-            parse("<traceFormat><channel name='X' units='" + u + "'/><channel name='Y' units='" +
-                  u + "'/></traceFormat><trace>2 3</trace>");
+        const auto t = parse("<traceFormat><channel name='X' units='" + u + "'/><channel name='Y' units='" + u +
+                             "'/></traceFormat><trace>2 3</trace>");
         EXPECT_NEAR(t[0].samples[0].position.x, 2 * metres, 1e-12) << unit;
         EXPECT_NEAR(t[0].samples[0].position.y, 3 * metres, 1e-12) << unit;
     }
@@ -110,10 +106,8 @@ TEST(Inkml, UnitsAndResolutionsBringLengthsToMetres) {
 }
 
 TEST(Inkml, TimesAreRebasedAndNeverFall) {
-    const std::string format =
-        "<traceFormat><channel name='X'/><channel name='Y'/><channel name='T'%/></traceFormat>";
-    for (const auto& [unit, scale] :
-         {std::pair{"", 1e-3}, {" units='s'", 1.0}, {" units='us'", 1e-6}}) {
+    const std::string format = "<traceFormat><channel name='X'/><channel name='Y'/><channel name='T'%/></traceFormat>";
+    for (const auto& [unit, scale] : {std::pair{"", 1e-3}, {" units='s'", 1.0}, {" units='us'", 1e-6}}) {
         std::string f = format;
         f.replace(f.find('%'), 1, unit);
         const auto t = parse(f + "<trace>0 0 1000,1 0 1010,2 0 1005,3 0 1030</trace>");
@@ -122,8 +116,7 @@ TEST(Inkml, TimesAreRebasedAndNeverFall) {
         EXPECT_NEAR(t[0].samples[2].time, 10 * scale, 1e-12);
         EXPECT_NEAR(t[0].samples[3].time, 30 * scale, 1e-12);
     }
-    const auto rated =
-        parse("<inkSource><sampleRate value='50'/></inkSource><trace>0 0,1 0,2 0</trace>");
+    const auto rated = parse("<inkSource><sampleRate value='50'/></inkSource><trace>0 0,1 0,2 0</trace>");
     EXPECT_NEAR(rated[0].samples[2].time, 0.04, 1e-12);
     const auto lasting = parse("<trace duration='300'>0 0,1 0,2 0,2 0</trace>");
     EXPECT_NEAR(lasting[0].samples[2].time, 0.2, 1e-12);
@@ -146,15 +139,13 @@ TEST(Inkml, PlanarHandwritingGetsPressureThatSwellsAndTapers) {
 }
 
 TEST(Inkml, FlatTracesScaleTogether) {
-    const auto t =
-        parse("<trace>0 0,1000 0</trace><trace>3000 500,4000 0</trace>", {.flat_width = 0.1});
+    const auto t = parse("<trace>0 0,1000 0</trace><trace>3000 500,4000 0</trace>", {.flat_width = 0.1});
     EXPECT_NEAR(t[1].samples[1].position.x - t[0].samples[0].position.x, 0.1, 1e-12);
     EXPECT_NEAR(t[1].samples[0].position.y - t[0].samples[0].position.y, 0.0125, 1e-12);
 }
 
 TEST(Inkml, PressureWithoutARangeIsScaledByTheLargest) {
-    const std::string f =
-        "<traceFormat><channel name='X'/><channel name='Y'/><channel name='P'/></traceFormat>";
+    const std::string f = "<traceFormat><channel name='X'/><channel name='Y'/><channel name='P'/></traceFormat>";
     EXPECT_NEAR(parse(f + "<trace>0 0 0.25</trace>")[0].samples[0].pressure, 0.25, 1e-12);
     const auto t = parse(f + "<trace>0 0 256</trace><trace>0 0 1024</trace>");
     EXPECT_NEAR(t[0].samples[0].pressure, 0.25, 1e-12);
@@ -193,8 +184,7 @@ TEST(Inkml, TiltAzimuthAndQuaternionsAgree) {
         "<traceFormat><channel name='X'/><channel name='Y'/><channel name='Z'/><channel name='QW'/>"
         "<channel name='QX'/><channel name='QY'/><channel name='QZ'/></traceFormat><trace>1 2 3 2 "
         "0 0 2</trace>");
-    EXPECT_NEAR(glm::length(turned[0].samples[0].rotation * Vec3(1, 0, 0) - Vec3(0, 1, 0)), 0,
-                1e-12);
+    EXPECT_NEAR(glm::length(turned[0].samples[0].rotation * Vec3(1, 0, 0) - Vec3(0, 1, 0)), 0, 1e-12);
 }
 
 TEST(Inkml, AnnotationsInheritThroughGroupsAndBrushes) {
@@ -230,7 +220,8 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
         "<trace><annotation type=\"tuft:rinse\"/><annotation type=\"tuft:dip\"> cinnabar </annotation>"
         "<annotation type=\"tuft:reshape\"/><annotation type=\"tuft:dry\"/>"
         "<annotation type=\"tuft:dry\"> 2.5 </annotation>0 0, 1 1</trace>"
-        "<trace><annotation type=\"tuft:dip\" depth=\"0.2\"/><annotation type=\"tuft:wipe\" amount=\"0.3\"/>0 0, 1 1</trace><trace>0 0, 1 1</trace></traceGroup></ink>";
+        "<trace><annotation type=\"tuft:dip\" depth=\"0.2\"/><annotation type=\"tuft:wipe\" amount=\"0.3\"/>0 0, 1 "
+        "1</trace><trace>0 0, 1 1</trace></traceGroup></ink>";
     const auto traces = parse_inkml(text, "care.inkml");
     ASSERT_EQ(traces.size(), 3u);
     ASSERT_EQ(traces[0].before.size(), 5u);
@@ -262,7 +253,8 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
     }
     for (const char* bad : {"-1", "soon", "1e9", "nan"})
         EXPECT_THROW(parse_inkml(std::string("<ink><trace><annotation type=\"tuft:dry\">") + bad +
-                                     "</annotation>0 0, 1 1</trace></ink>", "bad.inkml"),
+                                     "</annotation>0 0, 1 1</trace></ink>",
+                                 "bad.inkml"),
                      Error);
     EXPECT_THROW(parse_inkml("<ink><trace><annotation type=\"tuft:wipe\" amount=\"1.5\"/>0 0, 1 1</trace></ink>",
                              "amount.inkml"),
@@ -297,15 +289,16 @@ TEST(Inkml, WritesForPeopleWhatItReads) {
             t.placement = {{0.1, -0.02 * double(k / 2), 1e-4 / 3},
                            glm::normalize(Vec3(1, 2, 3)),
                            glm::normalize(Vec3(2, -1, 0)),
-                           k == 3 ? stroke::SurfaceMapping::project : k == 2 ? stroke::SurfaceMapping::drape : stroke::SurfaceMapping::wrap};
+                           k == 3   ? stroke::SurfaceMapping::project
+                           : k == 2 ? stroke::SurfaceMapping::drape
+                                    : stroke::SurfaceMapping::wrap};
         for (int i = 0; i < 50; ++i) {
             stroke::TraceSample s;
             s.time = 0.005 * i + (i ? 1e-3 * random(0, 1) : 0);
             s.position = {random(-0.2, 0.2), random(-0.2, 0.2), t.flat ? 0 : random(-1, 1)};
             s.pressure = random(0, 1);
             if (t.flat && k % 2) s.tilt = {random(-1, 1), random(-1, 1)};
-            if (!t.flat)
-                s.rotation = glm::normalize(Quat(random(-1, 1), random(-1, 1), random(-1, 1), 1));
+            if (!t.flat) s.rotation = glm::normalize(Quat(random(-1, 1), random(-1, 1), random(-1, 1), 1));
             t.samples.push_back(s);
         }
     }
@@ -347,7 +340,9 @@ double any_double(std::uint64_t seed, std::uint64_t n, double most) {
     }
 }
 
-std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
+std::uint64_t bits(double x) {
+    return std::bit_cast<std::uint64_t>(x);
+}
 
 TEST(Inkml, AnyNumberComesBackToTheBit) {
     std::vector<Trace> traces(200);
@@ -359,7 +354,9 @@ TEST(Inkml, AnyNumberComesBackToTheBit) {
         t.settings = R"({"dip":"carry","down":[0.1,0.0,-1.0],"film":"wet"})";
         if (t.flat)
             t.placement = {{number(1000), number(1000), number(1000)},
-                           glm::normalize(Vec3(1, number(3), 3)), glm::normalize(Vec3(2, -1, number(3))), stroke::SurfaceMapping::wrap};
+                           glm::normalize(Vec3(1, number(3), 3)),
+                           glm::normalize(Vec3(2, -1, number(3))),
+                           stroke::SurfaceMapping::wrap};
         // A clock that began before the stroke, at it, and at minus nothing.
         double time = k % 4 == 0 ? 0 : k % 4 == 1 ? -0.0 : k % 4 == 2 ? 1e5 + number(1) : -std::abs(number(1e6));
         for (int i = 0; i < 20; ++i) {
@@ -373,9 +370,13 @@ TEST(Inkml, AnyNumberComesBackToTheBit) {
             t.samples.push_back(s);
         }
     }
-    traces[0].samples[3].position = {-0.0, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::min()};
-    traces[0].before.push_back({.action = stroke::Action::fill, .fill = {.film = 1.0 / 3, .to_film = 1.0 / 3, .region = stroke::Region::part,
-                                                                         .at = {1.0 / 3, -2e-9 / 7, 123.456}}});
+    traces[0].samples[3].position = {-0.0, std::numeric_limits<double>::denorm_min(),
+                                     std::numeric_limits<double>::min()};
+    traces[0].before.push_back({.action = stroke::Action::fill,
+                                .fill = {.film = 1.0 / 3,
+                                         .to_film = 1.0 / 3,
+                                         .region = stroke::Region::part,
+                                         .at = {1.0 / 3, -2e-9 / 7, 123.456}}});
     const auto back = parse_inkml(inkml_text(traces), "exact.inkml");
     ASSERT_EQ(back.size(), traces.size());
     for (std::size_t k = 0; k < traces.size(); ++k) {
@@ -411,19 +412,15 @@ TEST(Inkml, TracesThatOnlyCareForTheBrushAreReadWhereTheyAreWanted) {
 }
 
 TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
-    EXPECT_THAT(message("<ink>\n<trace>1 2</trace>\n<oops></ink>"),
-                HasSubstr("test.inkml:3: not well-formed XML"));
+    EXPECT_THAT(message("<ink>\n<trace>1 2</trace>\n<oops></ink>"), HasSubstr("test.inkml:3: not well-formed XML"));
     EXPECT_THAT(message("hello"), HasSubstr("test.inkml:1: not well-formed XML"));
     EXPECT_THAT(message(""), HasSubstr("not well-formed XML"));
     EXPECT_THAT(message("<svg/>"), HasSubstr("not InkML"));
     EXPECT_THAT(message(ink("")), HasSubstr("no pen-down traces"));
     EXPECT_THAT(message(ink("<trace></trace>")), HasSubstr("no pen-down traces"));
-    EXPECT_THAT(message(ink("<trace>1 2,\n3 4,\n5 x</trace>")),
-                HasSubstr("test.inkml:4: 'x' is not a number"));
-    EXPECT_THAT(message(ink("<trace>1 2,\n3</trace>")),
-                HasSubstr("test.inkml:3: a point has 1 values"));
-    EXPECT_THAT(message(ink("<trace>1 2 3</trace>")),
-                HasSubstr("test.inkml:2: a point has more than the 2"));
+    EXPECT_THAT(message(ink("<trace>1 2,\n3 4,\n5 x</trace>")), HasSubstr("test.inkml:4: 'x' is not a number"));
+    EXPECT_THAT(message(ink("<trace>1 2,\n3</trace>")), HasSubstr("test.inkml:3: a point has 1 values"));
+    EXPECT_THAT(message(ink("<trace>1 2 3</trace>")), HasSubstr("test.inkml:2: a point has more than the 2"));
     EXPECT_THAT(message(ink("<trace>1 2,,3 4</trace>")), HasSubstr("a point has 0 values"));
     EXPECT_THAT(message(ink("<trace>1 nan</trace>")), HasSubstr("not finite"));
     EXPECT_THAT(message(ink("<trace>1 inf</trace>")), HasSubstr("not finite"));
@@ -434,10 +431,13 @@ TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
     for (const char* type : {"origin", "right", "down"})
         for (const char* bad : {"1e300 0 0", "0 nan 0", "0 0 -1e20", "1e-300 0 0"})
             if (std::string(type) != "origin" || std::string(bad) != "1e-300 0 0") {
-                EXPECT_THAT(message(ink(std::string("<annotation type='tuft:") + type + "'>" + bad + "</annotation><trace>1 2</trace>")),
-                            HasSubstr("test.inkml:2: ")) << type << " " << bad;
+                EXPECT_THAT(message(ink(std::string("<annotation type='tuft:") + type + "'>" + bad +
+                                        "</annotation><trace>1 2</trace>")),
+                            HasSubstr("test.inkml:2: "))
+                    << type << " " << bad;
             }
-    EXPECT_THAT(message(ink("<annotation type='tuft:tape'>0 0 1e9 0</annotation><trace>1 2</trace>")), HasSubstr("10 km"));
+    EXPECT_THAT(message(ink("<annotation type='tuft:tape'>0 0 1e9 0</annotation><trace>1 2</trace>")),
+                HasSubstr("10 km"));
     EXPECT_THAT(message(ink("<trace>'1 2</trace>")), HasSubstr("before any explicit value"));
     EXPECT_THAT(message(ink("<trace>1 2,\"1 2</trace>")), HasSubstr("before any first difference"));
     EXPECT_THAT(message(ink("<trace contextRef='#nowhere'>1 2</trace>")),
@@ -457,8 +457,7 @@ TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
     EXPECT_THAT(message(ink("<context xml:id='a' contextRef='#b'/><context xml:id='b' "
                             "contextRef='#a'/><trace>1 2</trace>")),
                 HasSubstr("in a circle"));
-    EXPECT_THAT(message(ink("<trace>1 2,3 4,5 6</trace>"), {.max_samples = 2}),
-                HasSubstr("more samples than 2"));
+    EXPECT_THAT(message(ink("<trace>1 2,3 4,5 6</trace>"), {.max_samples = 2}), HasSubstr("more samples than 2"));
     std::string deep;
     for (int i = 0; i < 5000; ++i) deep += "<traceGroup>";
     for (int i = 0; i < 5000; ++i) deep += "</traceGroup>";
@@ -475,8 +474,8 @@ TEST(Inkml, AnyTruncationOrGarbledByteIsAnErrorOrAFile) {
         try {
             for (const Trace& trace : parse_inkml(text, "garbled"))
                 for (const auto& s : trace.samples)
-                    ASSERT_TRUE(std::isfinite(s.position.x) && std::isfinite(s.time) &&
-                                s.pressure >= 0 && s.pressure <= 1);
+                    ASSERT_TRUE(std::isfinite(s.position.x) && std::isfinite(s.time) && s.pressure >= 0 &&
+                                s.pressure <= 1);
         } catch (const Error&) {
         }
     };
@@ -484,15 +483,15 @@ TEST(Inkml, AnyTruncationOrGarbledByteIsAnErrorOrAFile) {
     for (std::uint64_t i = 0; i < 2000; ++i) {
         std::string garbled = whole;
         for (int k = 0; k < 3; ++k)
-            garbled[hash_bits(i, 2 * k) % garbled.size()] =
-                static_cast<char>(hash_bits(i, 2 * k + 1) % 128);
+            garbled[hash_bits(i, 2 * k) % garbled.size()] = static_cast<char>(hash_bits(i, 2 * k + 1) % 128);
         survives(garbled);
     }
 }
 
 TEST(Inkml, TapeIsReadAsItIsWritten) {
     stroke::Trace trace;
-    for (int i = 0; i < 3; ++i) trace.samples.push_back({.time = 0.1 * i, .position = {0.01 * i, 0, 0}, .pressure = 0.5});
+    for (int i = 0; i < 3; ++i)
+        trace.samples.push_back({.time = 0.1 * i, .position = {0.01 * i, 0, 0}, .pressure = 0.5});
     trace.stencil = {{{1.0 / 3, -0.1}, {2e-7, 0.5}}, {{0, 0}, {0.1, 0.2}}};
     const std::string text = inkml_text({&trace, 1}, "");
     EXPECT_EQ(parse_inkml(text, "tape").at(0).stencil, trace.stencil) << "to the bit";
@@ -502,7 +501,8 @@ TEST(Inkml, TapeIsReadAsItIsWritten) {
         return other.replace(from, other.find('<', from) - from, tape);
     };
     EXPECT_TRUE(parse_inkml(with(""), "tape").at(0).stencil.empty());
-    for (const char* bad : {"1 2 3", "1 2 3 four", "1 2 3 nan"}) EXPECT_THROW(parse_inkml(with(bad), "tape"), Error) << bad;
+    for (const char* bad : {"1 2 3", "1 2 3 four", "1 2 3 nan"})
+        EXPECT_THROW(parse_inkml(with(bad), "tape"), Error) << bad;
 }
 
 }  // namespace

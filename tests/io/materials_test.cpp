@@ -25,10 +25,7 @@ void put(const fs::path& path, const std::string& text) {
 
 /// Four pixels: red, green / blue, white.
 Image8 four_colours() {
-    return {.width = 2,
-            .height = 2,
-            .channels = 3,
-            .pixels = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255}};
+    return {.width = 2, .height = 2, .channels = 3, .pixels = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255}};
 }
 
 std::string png_text() {
@@ -51,8 +48,7 @@ TEST(Materials, ObjHasTheColoursAndPicturesOfItsLibrary) {
     ASSERT_EQ(soup.materials.size(), 2u);
     ASSERT_TRUE(soup.materials[0].picture);
     EXPECT_EQ(soup.materials[0].picture->rgb, four_colours().pixels);
-    EXPECT_EQ(soup.materials[0].colour, Vec3f(1))
-        << "a picture is not tinted: exporters write any Kd beside it";
+    EXPECT_EQ(soup.materials[0].colour, Vec3f(1)) << "a picture is not tinted: exporters write any Kd beside it";
     EXPECT_FALSE(soup.materials[1].picture);
     EXPECT_EQ(soup.materials[1].colour, Vec3f(0.25f, 0.5f, 1));
     EXPECT_TRUE(soup.warnings.empty());
@@ -81,8 +77,8 @@ TEST(Materials, NoNameLeadsOutOfTheFolder) {
     const Folder folder("outside");
     fs::create_directories(folder / "in");
     put(folder / "secret.png", png_text());
-    put(folder / "in/m.mtl", "newmtl one\nmap_Kd ../secret.png\nnewmtl two\nmap_Kd " +
-                                 fs::absolute(folder / "secret.png").string() + "\n");
+    put(folder / "in/m.mtl",
+        "newmtl one\nmap_Kd ../secret.png\nnewmtl two\nmap_Kd " + fs::absolute(folder / "secret.png").string() + "\n");
     put(folder / "in/m.obj", "mtllib m.mtl\n" + kTwoTriangles);
     mesh::PolygonSoup soup = read_model(folder / "in/m.obj");
     EXPECT_TRUE(soup.materials.empty());
@@ -93,10 +89,8 @@ TEST(Materials, NoNameLeadsOutOfTheFolder) {
     fs::remove(folder / "in/secret.png");
     put(folder / "in/secret.png", png_text());
     soup = read_model(folder / "in/m.obj");
-    ASSERT_EQ(soup.materials.size(), 2u)
-        << "paths of the exporter's machine end in the picture's name";
-    EXPECT_TRUE(soup.materials[0].picture &&
-                soup.materials[0].picture == soup.materials[1].picture);
+    ASSERT_EQ(soup.materials.size(), 2u) << "paths of the exporter's machine end in the picture's name";
+    EXPECT_TRUE(soup.materials[0].picture && soup.materials[0].picture == soup.materials[1].picture);
 }
 
 TEST(Materials, OneGreyForAllSaysNothing) {
@@ -127,14 +121,12 @@ TEST(Materials, PlyNamesItsPictureInAComment) {
 
 TEST(Materials, ColoursOfFacetsAreThoseOfTheirGroups) {
     const Folder folder("facets");
-    put(folder / "m.off",
-        "OFF\n4 2 0\n0 0 0\n100 0 0\n100 100 0\n0 100 0\n3 0 1 2 255 0 51\n3 0 2 3 0 102 0\n");
+    put(folder / "m.off", "OFF\n4 2 0\n0 0 0\n100 0 0\n100 100 0\n0 100 0\n3 0 1 2 255 0 51\n3 0 2 3 0 102 0\n");
     const mesh::PolygonSoup soup = read_model(folder / "m.off");
     ASSERT_EQ(soup.materials.size(), 2u);
     EXPECT_EQ(soup.materials[0].colour, Vec3f(255, 0, 51) / 255.0f);
     EXPECT_EQ(soup.materials[1].colour, Vec3f(0, 102, 0) / 255.0f);
-    put(folder / "m.off",
-        "OFF\n4 2 0\n0 0 0\n100 0 0\n100 100 0\n0 100 0\n3 0 1 2 255 0 51\n3 0 2 3 255 0 51\n");
+    put(folder / "m.off", "OFF\n4 2 0\n0 0 0\n100 0 0\n100 100 0\n0 100 0\n3 0 1 2 255 0 51\n3 0 2 3 255 0 51\n");
     const mesh::PolygonSoup one = read_model(folder / "m.off");
     EXPECT_TRUE(one.group_names.empty());
     ASSERT_EQ(one.materials.size(), 1u);
@@ -170,8 +162,7 @@ TEST(Materials, AProjectKeepsThemAndMakesTheSameGroundAgain) {
     fs::remove(folder / "p.png");
     ASSERT_EQ(stored.mesh.materials.size(), 2u);
     EXPECT_EQ(stored.mesh.materials[0].picture->bytes, model.mesh->materials[0].picture->bytes);
-    const stroke::Model again =
-        stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas));
+    const stroke::Model again = stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas));
     ASSERT_EQ(again.ground.tiles.size(), model.ground.tiles.size());
     for (std::size_t slot = 0; slot < again.ground.tiles.size(); ++slot)
         ASSERT_EQ(again.ground.tiles[slot].rgb, model.ground.tiles[slot].rgb);

@@ -19,7 +19,8 @@ std::vector<stroke::Stroke> mixing() {
         pool.trace.flat = false;
         pool.trace.ink = ink;
         pool.layer = stroke::kPaletteLayer;
-        pool.fill = {.film = 50, .gradient = stroke::Gradient::round, .to_film = 0, .from = {x, 0, 0}, .to = {x + 0.006, 0, 0}};
+        pool.fill = {
+            .film = 50, .gradient = stroke::Gradient::round, .to_film = 0, .from = {x, 0, 0}, .to = {x + 0.006, 0, 0}};
         entries.push_back(pool);
     }
     stroke::Stroke s;
@@ -27,7 +28,8 @@ std::vector<stroke::Stroke> mixing() {
     s.trace.ink = "cinnabar";
     s.layer = stroke::kPaletteLayer;
     s.settings.spacing = 4;
-    for (int i = 0; i <= 20; ++i) s.trace.samples.push_back({.time = 0.02 * i, .position = {-0.01 + 0.001 * i, 0, 0}, .pressure = 0.6});
+    for (int i = 0; i <= 20; ++i)
+        s.trace.samples.push_back({.time = 0.02 * i, .position = {-0.01 + 0.001 * i, 0, 0}, .pressure = 0.6});
     entries.push_back(s);
     return entries;
 }
@@ -95,7 +97,9 @@ TEST(Palette, IsOneMoreThanTheMostLayers) {
 
 TEST(Palette, StrokeFilesSayWhatBelongsOnIt) {
     std::vector<stroke::Trace> traces(2);
-    for (stroke::Trace& t : traces) t.samples = {{.position = {0, 0, 0}, .pressure = 0.5}, {.time = 0.5, .position = {0.01, 0, 0}, .pressure = 0.5}};
+    for (stroke::Trace& t : traces)
+        t.samples = {{.position = {0, 0, 0}, .pressure = 0.5},
+                     {.time = 0.5, .position = {0.01, 0, 0}, .pressure = 0.5}};
     traces[1].on_palette = true;
     const std::vector<stroke::Trace> read = parse_inkml(inkml_text(traces), "test");
     ASSERT_EQ(read.size(), 2u);

@@ -37,15 +37,13 @@ class GltfMaker {
 
     int add_view(const void* data, std::size_t size) {
         buffer_.resize((buffer_.size() + 3) / 4 * 4);
-        document["bufferViews"].push_back(
-            {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", size}});
+        document["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", size}});
         const auto* from = static_cast<const char*>(data);
         buffer_.insert(buffer_.end(), from, from + size);
         return static_cast<int>(document["bufferViews"].size()) - 1;
     }
     template <class T>
-    int add_accessor(const std::vector<T>& values, int component, const char* type,
-                     json more = json::object()) {
+    int add_accessor(const std::vector<T>& values, int component, const char* type, json more = json::object()) {
         more["bufferView"] = add_view(values.data(), values.size() * sizeof(T));
         more["componentType"] = component;
         more["count"] = values.size();
@@ -61,8 +59,8 @@ class GltfMaker {
         for (int axis = 0; axis < 3; ++axis)
             for (const float side : {-0.5f, 0.5f}) {
                 const auto base = static_cast<std::uint16_t>(points.size());
-                for (const Vec2f& c : {Vec2f(-0.5f, -0.5f), Vec2f(0.5f, -0.5f), Vec2f(0.5f, 0.5f),
-                                       Vec2f(-0.5f, 0.5f)}) {
+                for (const Vec2f& c :
+                     {Vec2f(-0.5f, -0.5f), Vec2f(0.5f, -0.5f), Vec2f(0.5f, 0.5f), Vec2f(-0.5f, 0.5f)}) {
                     Vec3f p;
                     p[axis] = side;
                     p[(axis + 1) % 3] = side > 0 ? c.x : -c.x;
@@ -71,17 +69,14 @@ class GltfMaker {
                     first.push_back((c + 0.5f + Vec2f(float(axis), side > 0 ? 1.0f : 0.0f)) / 3.0f);
                     second.push_back(4.0f * c);
                 }
-                for (const int i : {0, 1, 2, 0, 2, 3})
-                    indices.push_back(static_cast<std::uint16_t>(base + i));
+                for (const int i : {0, 1, 2, 0, 2, 3}) indices.push_back(static_cast<std::uint16_t>(base + i));
             }
         const Vec3f lo = at - 0.5f * size, hi = at + 0.5f * size;
-        json attributes{
-            {"POSITION", add_accessor(points, 5126, "VEC3",
-                                      {{"min", {lo.x, lo.y, lo.z}}, {"max", {hi.x, hi.y, hi.z}}})},
-            {"TEXCOORD_0", add_accessor(first, 5126, "VEC2")},
-            {"TEXCOORD_1", add_accessor(second, 5126, "VEC2")}};
-        json primitive{{"attributes", std::move(attributes)},
-                       {"indices", add_accessor(indices, 5123, "SCALAR")}};
+        json attributes{{"POSITION", add_accessor(points, 5126, "VEC3",
+                                                  {{"min", {lo.x, lo.y, lo.z}}, {"max", {hi.x, hi.y, hi.z}}})},
+                        {"TEXCOORD_0", add_accessor(first, 5126, "VEC2")},
+                        {"TEXCOORD_1", add_accessor(second, 5126, "VEC2")}};
+        json primitive{{"attributes", std::move(attributes)}, {"indices", add_accessor(indices, 5123, "SCALAR")}};
         if (material >= 0) primitive["material"] = material;
         return primitive;
     }
@@ -91,8 +86,7 @@ class GltfMaker {
         text.resize((text.size() + 3) / 4 * 4, ' ');
         std::vector<char> bytes;
         const auto put = [&](const void* data, std::size_t size) {
-            bytes.insert(bytes.end(), static_cast<const char*>(data),
-                         static_cast<const char*>(data) + size);
+            bytes.insert(bytes.end(), static_cast<const char*>(data), static_cast<const char*>(data) + size);
         };
         const auto number = [&](std::size_t value) {
             const auto v = static_cast<std::uint32_t>(value);
@@ -115,9 +109,8 @@ std::vector<char> truck_glb() {
     json& d = maker.document;
     const std::vector<unsigned char> png = png_bytes(view_of(kTwoPixels));
     for (const char* name : {"rubber", "flag", "flag normals"})
-        d["images"].push_back({{"name", name},
-                               {"mimeType", "image/png"},
-                               {"bufferView", maker.add_view(png.data(), png.size())}});
+        d["images"].push_back(
+            {{"name", name}, {"mimeType", "image/png"}, {"bufferView", maker.add_view(png.data(), png.size())}});
     d["samplers"] = {{{"wrapS", 33648}}};
     for (int i = 0; i < 3; ++i) d["textures"].push_back({{"source", i}, {"sampler", 0}});
     d["extensionsUsed"] = {"KHR_materials_transmission", "KHR_texture_transform"};
@@ -129,15 +122,12 @@ std::vector<char> truck_glb() {
       {"name":"Chrome","emissiveFactor":[0.1,0,0],"pbrMetallicRoughness":{"roughnessFactor":0.1}},
       {"name":"Flag","alphaMode":"MASK","alphaCutoff":0.4,"pbrMetallicRoughness":{"baseColorTexture":{"index":1}},
        "normalTexture":{"index":2,"texCoord":1,"extensions":{"KHR_texture_transform":{"scale":[2,2]}}}}])");
+    d["meshes"].push_back({{"name", "body mesh"},
+                           {"primitives", {maker.box({0, 1, 0}, {4, 1, 2}, 0), maker.box({1, 2, 0}, {1, 1, 2}, 1)}}});
     d["meshes"].push_back(
-        {{"name", "body mesh"},
-         {"primitives", {maker.box({0, 1, 0}, {4, 1, 2}, 0), maker.box({1, 2, 0}, {1, 1, 2}, 1)}}});
-    d["meshes"].push_back({{"name", "wheel mesh"},
-                           {"primitives",
-                            {maker.box({0, 0, 0}, {1, 1, 0.5f}, 2),
-                             maker.box({0.1f, 0, 0}, {0.5f, 0.5f, 0.7f}, 3)}}});
-    d["meshes"].push_back(
-        {{"name", "flag mesh"}, {"primitives", {maker.box({0, 0, 0}, {1, 1, 0.1f}, 4)}}});
+        {{"name", "wheel mesh"},
+         {"primitives", {maker.box({0, 0, 0}, {1, 1, 0.5f}, 2), maker.box({0.1f, 0, 0}, {0.5f, 0.5f, 0.7f}, 3)}}});
+    d["meshes"].push_back({{"name", "flag mesh"}, {"primitives", {maker.box({0, 0, 0}, {1, 1, 0.1f}, 4)}}});
     d["nodes"] = json::parse(R"([
       {"name":"Truck","children":[1,2,5],"translation":[0.5,0,0.25],"rotation":[0,0.14943813,0,0.98877108]},
       {"name":"Body","mesh":0,"extras":{"plate":"TU FT 1"}},
@@ -157,8 +147,7 @@ stroke::Model model_of(mesh::PolygonSoup soup, double metres_per_unit = 1) {
 }
 
 /// Texels with ink all over the parts of an object and material.
-ink::Canvas ink_on(const stroke::Model& model, const std::string& object,
-                   const std::string& material) {
+ink::Canvas ink_on(const stroke::Model& model, const std::string& object, const std::string& material) {
     ink::Canvas canvas(model.texels.n_slots());
     ink::Pigment pigment;
     pigment.name = "black";
@@ -166,8 +155,7 @@ ink::Canvas ink_on(const stroke::Model& model, const std::string& object,
     std::mutex guard;
     atlas::visit_texels(*model.mesh, model.atlas, model.texels,
                         [&](std::uint32_t slot, int texel, std::uint32_t t, const Vec3&) {
-                            const mesh::ScenePart& part =
-                                model.mesh->scene->parts[mesh::part_of(*model.mesh, t)];
+                            const mesh::ScenePart& part = model.mesh->scene->parts[mesh::part_of(*model.mesh, t)];
                             if (part.object != object || part.material != material) return;
                             const std::scoped_lock lock(guard);
                             canvas.touch(slot, 0)[static_cast<std::size_t>(texel)] = 2;
@@ -175,8 +163,8 @@ ink::Canvas ink_on(const stroke::Model& model, const std::string& object,
     return canvas;
 }
 
-std::vector<std::string> export_painted(const fs::path& path, const stroke::Model& model,
-                                        const ink::Canvas& canvas, bool flat = true) {
+std::vector<std::string> export_painted(const fs::path& path, const stroke::Model& model, const ink::Canvas& canvas,
+                                        bool flat = true) {
     const ink::Stack stack(canvas);
     const ModelMaps maps = pattern_maps(model.atlas.size, flat);
     return export_model(path, *model.mesh, model.atlas, maps,
@@ -200,8 +188,7 @@ std::map<std::string, PartSum> parts_in(const fs::path& path, double metres_per_
     const mesh::PolygonSoup soup = read_model(path);
     std::map<std::string, PartSum> parts;
     for (std::size_t p = 0; p < soup.n_polygons(); ++p) {
-        const std::uint32_t index =
-            soup.polygon_parts.empty() ? soup.polygon_groups[p] : soup.polygon_parts[p];
+        const std::uint32_t index = soup.polygon_parts.empty() ? soup.polygon_groups[p] : soup.polygon_parts[p];
         const mesh::ScenePart& part = soup.scene->parts[index];
         PartSum& sum = parts[part.object + " / " + part.material];
         ++sum.triangles;
@@ -240,12 +227,9 @@ TEST_F(Parts, OnlyWhatIsPaintedGetsTheDecoratedMaterial) {
     EXPECT_EQ(names_in(after["nodes"]), names_in(before["nodes"]));
     for (std::size_t n = 0; n < before["nodes"].size(); ++n)
         for (const char* key : {"children", "translation", "rotation", "scale", "extras"})
-            EXPECT_EQ(after["nodes"][n].value(key, json()), before["nodes"][n].value(key, json()))
-                << n << key;
-    EXPECT_THAT(names_in(after["materials"]),
-                ElementsAre("Paint", "Glass", "Rubber", "Chrome", "Flag", "decorated"));
-    EXPECT_THAT(names_in(after["meshes"]),
-                ElementsAre("body mesh", "wheel mesh", "flag mesh", "wheel mesh"))
+            EXPECT_EQ(after["nodes"][n].value(key, json()), before["nodes"][n].value(key, json())) << n << key;
+    EXPECT_THAT(names_in(after["materials"]), ElementsAre("Paint", "Glass", "Rubber", "Chrome", "Flag", "decorated"));
+    EXPECT_THAT(names_in(after["meshes"]), ElementsAre("body mesh", "wheel mesh", "flag mesh", "wheel mesh"))
         << "the other wheel shows the mesh that both had";
     for (const char* name : {"Paint", "Glass", "Rubber", "Chrome"})
         EXPECT_EQ(material_named(after, name), material_named(before, name));
@@ -259,8 +243,8 @@ TEST_F(Parts, OnlyWhatIsPaintedGetsTheDecoratedMaterial) {
 TEST_F(Parts, TheExportHasTheSameTrianglesInTheSamePlaces) {
     const stroke::Model model = model_of(read_model(folder / "truck.glb"));
     const auto before = parts_in(folder / "truck.glb");
-    for (const auto& [object, material] : {std::pair("Wheel right", "Rubber"),
-                                           std::pair("Body", "Paint"), std::pair("Flag", "Flag")}) {
+    for (const auto& [object, material] :
+         {std::pair("Wheel right", "Rubber"), std::pair("Body", "Paint"), std::pair("Flag", "Flag")}) {
         export_painted(folder / "out.glb", model, ink_on(model, object, material), false);
         auto after = parts_in(folder / "out.glb");
         const std::string painted = std::string(object) + " / ";
@@ -275,8 +259,7 @@ TEST_F(Parts, TheExportHasTheSameTrianglesInTheSamePlaces) {
             EXPECT_LT(glm::distance(after[name].bounds.hi, sum.bounds.hi), 2e-6) << name;
         }
         const stroke::Model again = model_of(read_model(folder / "out.glb"));
-        EXPECT_EQ(again.repairs.faces_flipped, model.repairs.faces_flipped)
-            << "also in the frame that mirrors";
+        EXPECT_EQ(again.repairs.faces_flipped, model.repairs.faces_flipped) << "also in the frame that mirrors";
     }
 }
 
@@ -287,10 +270,8 @@ TEST_F(Parts, PicturesAndVerticesThatNothingShowsAnyMoreAreLeftOut) {
     EXPECT_THAT(names_in(after["images"]), ElementsAre("rubber", "base_colour", "orm"));
     EXPECT_EQ(material_named(after, "Flag"), json());
     const json& rubber = material_named(after, "Rubber");
-    const auto texture =
-        rubber["pbrMetallicRoughness"]["baseColorTexture"]["index"].get<std::size_t>();
-    EXPECT_EQ(after["images"][after["textures"][texture]["source"].get<std::size_t>()]["name"],
-              "rubber");
+    const auto texture = rubber["pbrMetallicRoughness"]["baseColorTexture"]["index"].get<std::size_t>();
+    EXPECT_EQ(after["images"][after["textures"][texture]["source"].get<std::size_t>()]["name"], "rubber");
     EXPECT_EQ(after["textures"][texture]["sampler"], 0);
     EXPECT_EQ(after["samplers"][0]["wrapS"], 33648);
     const json before = glb_json(folder / "truck.glb");
@@ -322,8 +303,7 @@ TEST_F(Parts, AProjectKeepsThem) {
 
 TEST_F(Parts, ObjHasTheObjectsAndMaterialsToo) {
     const stroke::Model model = model_of(read_model(folder / "truck.glb"));
-    const std::vector<std::string> notes =
-        export_painted(folder / "out.obj", model, ink_on(model, "Body", "Paint"));
+    const std::vector<std::string> notes = export_painted(folder / "out.obj", model, ink_on(model, "Body", "Paint"));
     auto before = parts_in(folder / "truck.glb");
     before["Body / decorated"] = before["Body / Paint"];
     before.erase("Body / Paint");
@@ -343,13 +323,10 @@ TEST_F(Parts, ObjHasTheObjectsAndMaterialsToo) {
     EXPECT_EQ(materials.at("Rubber")->picture->rgb, kTwoPixels.pixels);
     EXPECT_NEAR(materials.at("Glass")->colour.b, 0.9547, 1e-3) << "sRGB of 0.9";
     const json document = json::parse(soup.scene->document);
-    EXPECT_NEAR(material_named(document, "Glass")["pbrMetallicRoughness"]["baseColorFactor"][3],
-                0.3, 1e-6);
+    EXPECT_NEAR(material_named(document, "Glass")["pbrMetallicRoughness"]["baseColorFactor"][3], 0.3, 1e-6);
     EXPECT_EQ(material_named(document, "Glass")["alphaMode"], "BLEND");
-    EXPECT_NEAR(material_named(document, "Chrome")["pbrMetallicRoughness"]["roughnessFactor"], 0.1,
-                1e-6);
-    EXPECT_NEAR(material_named(document, "Chrome")["pbrMetallicRoughness"]["metallicFactor"], 1,
-                1e-6);
+    EXPECT_NEAR(material_named(document, "Chrome")["pbrMetallicRoughness"]["roughnessFactor"], 0.1, 1e-6);
+    EXPECT_NEAR(material_named(document, "Chrome")["pbrMetallicRoughness"]["metallicFactor"], 1, 1e-6);
     EXPECT_NEAR(material_named(document, "Chrome")["emissiveFactor"][0], 0.1, 1e-6);
     EXPECT_THAT(notes, Contains(HasSubstr("1 of 7 parts get the material 'decorated'")));
 }
@@ -364,8 +341,8 @@ TEST_F(Parts, WithoutInkTheFileIsWrittenAsItWas) {
     const stroke::Model model = model_of(read_model(folder / "truck.glb"));
     export_painted(folder / "out.glb", model, ink::Canvas(model.texels.n_slots()));
     json before = glb_json(folder / "truck.glb"), after = glb_json(folder / "out.glb");
-    for (const char* key : {"nodes", "meshes", "materials", "textures", "images", "samplers",
-                            "accessors", "scenes", "extensionsUsed"})
+    for (const char* key :
+         {"nodes", "meshes", "materials", "textures", "images", "samplers", "accessors", "scenes", "extensionsUsed"})
         EXPECT_EQ(after[key], before[key]) << key;
     EXPECT_EQ(parts_in(folder / "out.glb").size(), parts_in(folder / "truck.glb").size());
 }
@@ -420,24 +397,22 @@ TEST(PartsOfObj, StayWithTheStatementsOfTheirMaterials) {
     put_obj(folder);
     const stroke::Model model = model_of(read_model(folder / "m.obj"), 1e-3);
     export_painted(folder / "out.obj", model, ink_on(model, "Car", "Red paint"));
-    const std::vector<char> obj = read_file(folder / "out.obj"),
-                            mtl = read_file(folder / "out.mtl");
+    const std::vector<char> obj = read_file(folder / "out.obj"), mtl = read_file(folder / "out.mtl");
     const std::string text(obj.begin(), obj.end()), library(mtl.begin(), mtl.end());
-    for (const char* line : {"\no Car\n", "\ng doors\n", "\ng windows\n", "\no Bench seat\n",
-                             "\nusemtl Glass\n", "\nusemtl decorated\n"})
+    for (const char* line :
+         {"\no Car\n", "\ng doors\n", "\ng windows\n", "\no Bench seat\n", "\nusemtl Glass\n", "\nusemtl decorated\n"})
         EXPECT_THAT(text, HasSubstr(line));
-    for (const char* line : {"newmtl Glass\nKd 0.5 0.7 0.9\nd 0.25\nNi 1.5\n",
-                             "map_Kd -s 2 2 2 out_cloth.png\n", "map_Bump -bm 0.5 out_cloth.png\n"})
+    for (const char* line : {"newmtl Glass\nKd 0.5 0.7 0.9\nd 0.25\nNi 1.5\n", "map_Kd -s 2 2 2 out_cloth.png\n",
+                             "map_Bump -bm 0.5 out_cloth.png\n"})
         EXPECT_THAT(library, HasSubstr(line));
     const mesh::PolygonSoup soup = read_model(folder / "out.obj");
-    EXPECT_THAT(soup.group_names, ElementsAre("Car / doors / decorated", "Car / windows / Glass",
-                                              "Bench seat / Cloth"));
+    EXPECT_THAT(soup.group_names,
+                ElementsAre("Car / doors / decorated", "Car / windows / Glass", "Bench seat / Cloth"));
     EXPECT_TRUE(soup.warnings.empty());
     const mesh::Surface again = mesh::build_surface(soup);
     for (std::size_t t = 0; t < again.mesh.n_triangles(); ++t)
         for (std::size_t c = 3 * t; c < 3 * t + 3 && again.mesh.triangle_groups[t] > 0; ++c)
-            EXPECT_EQ(again.mesh.corner_uvs[c], model.mesh->corner_uvs[c])
-                << "without ink they lie by their own UVs";
+            EXPECT_EQ(again.mesh.corner_uvs[c], model.mesh->corner_uvs[c]) << "without ink they lie by their own UVs";
 }
 
 // Groups of colours, and projects made before scenes were kept.
@@ -452,8 +427,7 @@ TEST(PartsOfGroups, AreNodesWithTheirColours) {
     export_model(folder / "out.glb", *model.mesh, model.atlas, maps, {.painted = painted});
     const json j = glb_json(folder / "out.glb");
     EXPECT_THAT(names_in(j["nodes"]), ElementsAre("#ff0033", "#006600"));
-    EXPECT_NEAR(material_named(j, "#006600")["pbrMetallicRoughness"]["baseColorFactor"][1], 0.1329,
-                1e-3)
+    EXPECT_NEAR(material_named(j, "#006600")["pbrMetallicRoughness"]["baseColorFactor"][1], 0.1329, 1e-3)
         << "linear of 102 / 255";
     EXPECT_NE(material_named(j, "decorated"), json());
     export_model(folder / "out.obj", *model.mesh, model.atlas, maps, {.painted = painted});

@@ -22,8 +22,7 @@ using namespace testing;
 
 class HostileProject : public ::testing::Test {
   protected:
-    HostileProject()
-        : folder_("project_hostile"), good_(folder_ / "good.tuft"), path_(folder_ / "bad.tuft") {
+    HostileProject() : folder_("project_hostile"), good_(folder_ / "good.tuft"), path_(folder_ / "bad.tuft") {
         ProjectModel model;
         model.source = "bowl.ply";
         model.mesh = cylinder();
@@ -74,8 +73,7 @@ class HostileProject : public ::testing::Test {
         }
         return "";
     }
-    static void put_blob(SQLite::Database& db, const std::string& sql,
-                         const std::vector<char>& blob) {
+    static void put_blob(SQLite::Database& db, const std::string& sql, const std::vector<char>& blob) {
         SQLite::Statement s(db, sql);
         s.bind(1, blob.empty() ? "" : blob.data(),
                static_cast<int>(blob.size()));  // no bytes are no NULL
@@ -113,16 +111,13 @@ TEST_F(HostileProject, NothingButTheTablesOfAProjectIsOpened) {
     };
     for (const auto& [sql, what] : harms) {
         const std::string text = said_after(sql);
-        EXPECT_NE(text.find("it holds the " + what + " as no tuft project does, and is not opened"),
-                  std::string::npos)
+        EXPECT_NE(text.find("it holds the " + what + " as no tuft project does, and is not opened"), std::string::npos)
             << sql << '\n'
             << text;
         EXPECT_EQ(text.find('\n'), std::string::npos);
     }
-    EXPECT_NE(said_after("DROP TABLE strokes").find("its table 'strokes' is missing"),
-              std::string::npos);
-    EXPECT_NE(said_after("PRAGMA journal_mode = WAL").find("kept in another way"),
-              std::string::npos);
+    EXPECT_NE(said_after("DROP TABLE strokes").find("its table 'strokes' is missing"), std::string::npos);
+    EXPECT_NE(said_after("PRAGMA journal_mode = WAL").find("kept in another way"), std::string::npos);
     // White space is all that programs may differ in.
     EXPECT_EQ(said_after("DROP TABLE pigments; CREATE TABLE pigments (plane\n INTEGER  PRIMARY "
                          "KEY,name TEXT NOT NULL , toml TEXT NOT NULL); DELETE FROM tiles"),
@@ -132,48 +127,38 @@ TEST_F(HostileProject, NothingButTheTablesOfAProjectIsOpened) {
 TEST_F(HostileProject, SizesThatLieTakeNoMemory) {
     // A frame's head that says 2^40 bytes: magic, single segment with eight bytes of size, then one
     // empty block.
-    const std::vector<char> huge{'\x28', '\xb5', '\x2f', '\xfd', '\xe0', 0, 0, 0,
-                                 0,      0,      1,      0,      0,      1, 0, 0};
+    const std::vector<char> huge{'\x28', '\xb5', '\x2f', '\xfd', '\xe0', 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0};
     const auto frame = [](std::size_t says, std::size_t holds) {
         std::vector<char> zeros(holds), blob(ZSTD_compressBound(holds));
         blob.resize(ZSTD_compress(blob.data(), blob.size(), zeros.data(), holds, 1));
         // Frames of at least 256 and at most 65,791 bytes have two bytes of size after magic and
         // descriptor, less 256.
         if (says != holds)
-            blob[5] = static_cast<char>((says - 256) & 0xff),
-            blob[6] = static_cast<char>((says - 256) >> 8);
+            blob[5] = static_cast<char>((says - 256) & 0xff), blob[6] = static_cast<char>((says - 256) >> 8);
         return blob;
     };
     const std::size_t samples = 200 * 11 * sizeof(double);
     const std::string of_stroke = "UPDATE strokes SET samples = ? WHERE id = 2",
                       of_tile = "UPDATE tiles SET amounts = ? WHERE slot = 3",
-                      of_mesh =
-                          "UPDATE arrays SET data = ? WHERE owner = 'mesh' AND name = 'positions'";
+                      of_mesh = "UPDATE arrays SET data = ? WHERE owner = 'mesh' AND name = 'positions'";
     for (const std::string& sql : {of_stroke, of_tile, of_mesh})
-        for (const std::vector<char>& blob :
-             {huge, std::vector<char>{}, std::vector<char>(100), frame(300, 300)}) {
-            const std::string text =
-                said_after([&](SQLite::Database& db) { put_blob(db, sql, blob); });
-            EXPECT_NE(text.find("is damaged"), std::string::npos)
-                << sql << ' ' << blob.size() << ' ' << text;
+        for (const std::vector<char>& blob : {huge, std::vector<char>{}, std::vector<char>(100), frame(300, 300)}) {
+            const std::string text = said_after([&](SQLite::Database& db) { put_blob(db, sql, blob); });
+            EXPECT_NE(text.find("is damaged"), std::string::npos) << sql << ' ' << blob.size() << ' ' << text;
         }
     for (const std::size_t holds : {samples - 8, samples + 8, 3 * samples}) {
-        const std::string text = said_after(
-            [&](SQLite::Database& db) { put_blob(db, of_stroke, frame(samples, holds)); });
+        const std::string text =
+            said_after([&](SQLite::Database& db) { put_blob(db, of_stroke, frame(samples, holds)); });
         EXPECT_NE(text.find("stroke 2 is damaged"), std::string::npos) << holds << ' ' << text;
     }
     for (const std::string column : {"vertices", "triangles"})
-        for (const std::string value :
-             {"-1", "0", "1000000000000", "9223372036854775807", "'many'", "2", "268435456"})
-            EXPECT_NE(said_after("UPDATE model SET " + column + " = " + value)
-                          .find("the project is damaged"),
+        for (const std::string value : {"-1", "0", "1000000000000", "9223372036854775807", "'many'", "2", "268435456"})
+            EXPECT_NE(said_after("UPDATE model SET " + column + " = " + value).find("the project is damaged"),
                       std::string::npos)
                 << column << value;
-    EXPECT_NE(said_after("UPDATE strokes SET sample_count = 33554433")
-                  .find("impossible number of samples"),
+    EXPECT_NE(said_after("UPDATE strokes SET sample_count = 33554433").find("impossible number of samples"),
               std::string::npos);
-    EXPECT_NE(said_after("UPDATE strokes SET sample_count = 33554432").find("is damaged"),
-              std::string::npos);
+    EXPECT_NE(said_after("UPDATE strokes SET sample_count = 33554432").find("is damaged"), std::string::npos);
 }
 
 TEST_F(HostileProject, TextsAndJsonAreBounded) {
@@ -185,12 +170,10 @@ TEST_F(HostileProject, TextsAndJsonAreBounded) {
             s.exec();
         });
     };
-    const std::string settings = "UPDATE strokes SET settings = ? WHERE id = 2",
-                      groups = "UPDATE model SET groups = ?";
+    const std::string settings = "UPDATE strokes SET settings = ? WHERE id = 2", groups = "UPDATE model SET groups = ?";
     for (const std::string& sql : {settings, groups})
-        for (const std::string& text :
-             {deep, std::string("{\"a\":") + deep + "}", std::string("not json"),
-              std::string("{\"spacing\": 1e999}"), std::string("{\"spacing\": \"x\"}")}) {
+        for (const std::string& text : {deep, std::string("{\"a\":") + deep + "}", std::string("not json"),
+                                        std::string("{\"spacing\": 1e999}"), std::string("{\"spacing\": \"x\"}")}) {
             const std::string said = replace(sql, text);
             EXPECT_FALSE(said.empty()) << sql << text.substr(0, 40);
             EXPECT_LT(said.size(), 400u) << said.substr(0, 200);
@@ -198,12 +181,11 @@ TEST_F(HostileProject, TextsAndJsonAreBounded) {
     EXPECT_NE(replace("UPDATE strokes SET label = ? WHERE id = 2", std::string(2'000'000, 'x'))
                   .find("the label of a stroke is too long"),
               std::string::npos);
-    EXPECT_NE(replace("UPDATE presets SET toml = ?", std::string(2'000'000, 'x'))
-                  .find("a preset is too long"),
+    EXPECT_NE(replace("UPDATE presets SET toml = ?", std::string(2'000'000, 'x')).find("a preset is too long"),
               std::string::npos);
-    EXPECT_NE(replace("UPDATE strokes SET brush = ?", std::string(5'000, 'x'))
-                  .find("the brush of a stroke is too long"),
-              std::string::npos);
+    EXPECT_NE(
+        replace("UPDATE strokes SET brush = ?", std::string(5'000, 'x')).find("the brush of a stroke is too long"),
+        std::string::npos);
     EXPECT_NE(said_after("INSERT INTO presets WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i "
                          "+ 1 FROM n LIMIT 20000) SELECT 'ink', i, '' FROM n")
                   .find("too many presets"),
@@ -221,13 +203,11 @@ TEST_F(HostileProject, AJournalOfMoreEntriesThanAnybodyPaintsIsRefused) {
 }
 
 TEST_F(HostileProject, NumbersThatAreNoneAreRefused) {
-    const double nan = std::numeric_limits<double>::quiet_NaN(),
-                 far = std::numeric_limits<double>::infinity();
+    const double nan = std::numeric_limits<double>::quiet_NaN(), far = std::numeric_limits<double>::infinity();
     for (const double bad : {nan, far}) {
         std::vector<double> columns(200 * 11);
         columns[777] = bad;
-        const std::vector<char> samples =
-            pack(columns.data(), columns.size(), {.element = 8, .lag = 1});
+        const std::vector<char> samples = pack(columns.data(), columns.size(), {.element = 8, .lag = 1});
         EXPECT_NE(said_after([&](SQLite::Database& db) {
                       put_blob(db, "UPDATE strokes SET samples = ? WHERE id = 2", samples);
                   }).find("stroke 2"),
@@ -240,13 +220,9 @@ TEST_F(HostileProject, NumbersThatAreNoneAreRefused) {
                   std::string::npos);
         std::vector<float> positions(3 * cylinder().n_vertices());
         positions[10] = static_cast<float>(bad);
-        const std::vector<char> mesh =
-            pack(positions.data(), positions.size(), {.element = 4, .lag = 3});
+        const std::vector<char> mesh = pack(positions.data(), positions.size(), {.element = 4, .lag = 3});
         EXPECT_NE(said_after([&](SQLite::Database& db) {
-                      put_blob(
-                          db,
-                          "UPDATE arrays SET data = ? WHERE owner = 'mesh' AND name = 'positions'",
-                          mesh);
+                      put_blob(db, "UPDATE arrays SET data = ? WHERE owner = 'mesh' AND name = 'positions'", mesh);
                   }).find("no numbers"),
                   std::string::npos);
     }
@@ -256,11 +232,9 @@ TEST_F(HostileProject, NumbersThatAreNoneAreRefused) {
 
 TEST_F(HostileProject, WhoeverListensIsHeardWhileAFileIsRead) {
     fs::copy_file(good_, path_);
-    EXPECT_THROW(Project::open(path_, {.progress = [](std::string_view, double) { return false; }}),
-                 Cancelled);
+    EXPECT_THROW(Project::open(path_, {.progress = [](std::string_view, double) { return false; }}), Cancelled);
     bool go_on = true;
-    Project project =
-        Project::open(path_, {.progress = [&](std::string_view, double) { return go_on; }});
+    Project project = Project::open(path_, {.progress = [&](std::string_view, double) { return go_on; }});
     go_on = false;
     EXPECT_THROW(project.model(), Cancelled);
     EXPECT_THROW(project.strokes(), Cancelled);

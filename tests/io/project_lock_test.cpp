@@ -110,9 +110,11 @@ TEST(ProjectLock, OneProcessWritesAndTheOthersAreToldWhoDoes) {
     Project::create(path, small_model());
     Other other([&](const auto& ready) { keep(path, ready); });
     ASSERT_TRUE(other.ready());
-    const std::string wanted = "work.tuft: test_io (process " + std::to_string(other.process()) + ") is working on it; close it there, or work on a copy of the file";
+    const std::string wanted = "work.tuft: test_io (process " + std::to_string(other.process()) +
+                               ") is working on it; close it there, or work on a copy of the file";
     EXPECT_NE(said([&] { Project::open(path); }).find(wanted), std::string::npos);
-    EXPECT_NE(said([&] { Project::create(path, small_model()); }).find(wanted), std::string::npos) << "nor is another one put in its place";
+    EXPECT_NE(said([&] { Project::create(path, small_model()); }).find(wanted), std::string::npos)
+        << "nor is another one put in its place";
     EXPECT_EQ(said([&] { EXPECT_EQ(Project::open(path, {.access = Access::read}).n_strokes(), 0u); }), "");
     Project reader = Project::open(path, {.access = Access::read});
     EXPECT_NE(said([&] { reader.append(stroke_of(1)); }).find("read only"), std::string::npos);
@@ -147,7 +149,8 @@ TEST(ProjectLock, AWriterThatIsAboutToEndIsWaitedFor) {
     const auto three = [&](int first) {
         return [&, first](const std::function<void()>& ready) {
             ready();
-            for (int i = 0; i < 3; ++i) Project::open(path, {.patience = std::chrono::seconds(20)}).append(stroke_of(first + i));
+            for (int i = 0; i < 3; ++i)
+                Project::open(path, {.patience = std::chrono::seconds(20)}).append(stroke_of(first + i));
             ready();
         };
     };
@@ -173,7 +176,8 @@ TEST(ProjectLock, WhereItCannotBeTheReasonIsSaidAndReadingGoesOn) {
     }
     fs::remove(folder / ".work.tuft.lock");
     fs::create_directory(folder / ".work.tuft.lock");
-    EXPECT_NE(said([&] { Project::open(path); }).find("its lock file '.work.tuft.lock' cannot be opened"), std::string::npos);
+    EXPECT_NE(said([&] { Project::open(path); }).find("its lock file '.work.tuft.lock' cannot be opened"),
+              std::string::npos);
     fs::remove(folder / ".work.tuft.lock");
     // A person who may look only; the superuser may everything.
     fs::permissions(folder.path(), fs::perms(0555));
@@ -183,7 +187,8 @@ TEST(ProjectLock, WhereItCannotBeTheReasonIsSaidAndReadingGoesOn) {
     ASSERT_EQ(::pipe(ends), 0);
     if (::fork() == 0) {
         if (::setresuid(65534, 65534, 65534) != 0 && ::getuid() == 0) _exit(1);
-        const std::string out = said([&] { Project::open(path); }) + "|" + said([&] { Project::open(path, {.access = Access::read}).model(); }) + "|";
+        const std::string out = said([&] { Project::open(path); }) + "|" +
+                                said([&] { Project::open(path, {.access = Access::read}).model(); }) + "|";
         _exit(::write(ends[1], out.data(), out.size()) < 0);
     }
     ::close(ends[1]);

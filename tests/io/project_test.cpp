@@ -67,8 +67,7 @@ void expect_equal(const stroke::Stroke& a, const stroke::Stroke& b) {
     EXPECT_EQ(a.trace.seed, b.trace.seed);
     EXPECT_EQ(a.trace.label, b.trace.label);
     EXPECT_EQ(a.trace.placement.mapping, b.trace.placement.mapping);
-    EXPECT_EQ(std::memcmp(&a.trace.placement.origin, &b.trace.placement.origin, 9 * sizeof(double)),
-              0);
+    EXPECT_EQ(std::memcmp(&a.trace.placement.origin, &b.trace.placement.origin, 9 * sizeof(double)), 0);
     ASSERT_EQ(a.trace.samples.size(), b.trace.samples.size());
     for (std::size_t i = 0; i < a.trace.samples.size(); ++i) {
         const stroke::TraceSample &p = a.trace.samples[i], &q = b.trace.samples[i];
@@ -86,14 +85,12 @@ TEST(Packing, EveryBitComesBack) {
             for (const std::size_t count :
                  {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{1000}, (std::size_t{1} << 18) + 3}) {
                 std::vector<unsigned char> data(count * element), back(count * element);
-                for (std::size_t i = 0; i < data.size(); ++i)
-                    data[i] = static_cast<unsigned char>(hash_bits(1, i));
+                for (std::size_t i = 0; i < data.size(); ++i) data[i] = static_cast<unsigned char>(hash_bits(1, i));
                 const Packing packing{.element = element, .lag = lag};
                 const std::vector<char> blob = pack(data.data(), count, packing);
                 unpack(blob.data(), blob.size(), back.data(), count, packing, "x");
                 EXPECT_EQ(back, data);
-                EXPECT_THROW(unpack(blob.data(), blob.size(), back.data(), count + 1, packing, "x"),
-                             Error);
+                EXPECT_THROW(unpack(blob.data(), blob.size(), back.data(), count + 1, packing, "x"), Error);
             }
 }
 
@@ -328,7 +325,8 @@ TEST(Project, ActionsOfTheBrushComeBackAmongTheStrokes) {
     entries[0].settings.dip = "carry";
     entries[0].settings.stabilise = 1.0 / 3;
     entries[0].settings.pressure = "speed";
-    for (const auto action : {stroke::Action::rinse, stroke::Action::dip, stroke::Action::reshape, stroke::Action::wipe}) {
+    for (const auto action :
+         {stroke::Action::rinse, stroke::Action::dip, stroke::Action::reshape, stroke::Action::wipe}) {
         stroke::Stroke entry;
         entry.id = entries.size() + 1;
         entry.action = action;
@@ -371,8 +369,7 @@ TEST(Project, PresetsAreReplacedByName) {
 TEST(Project, PaintedTilesComeBackToTheBit) {
     const Folder folder("project_tiles");
     ink::Canvas canvas(500);
-    for (const char* name : {"carbon", "cinnabar"})
-        canvas.add_pigment(ink::load_ink(name).parts[0].pigment);
+    for (const char* name : {"carbon", "cinnabar"}) canvas.add_pigment(ink::load_ink(name).parts[0].pigment);
     for (std::uint32_t slot = 7; slot < 400; slot += 3)
         for (int t = 0; t < atlas::kTileTexels; ++t)
             canvas.touch(slot, slot % 2)[t] = static_cast<float>(uniform(slot, t));
@@ -411,8 +408,7 @@ TEST(Project, AKillLosesAtMostTheStrokeInHand) {
             }
         }
         std::uint64_t finished = 0;
-        for (int i = 0; i < 5 + 3 * round; ++i)
-            ASSERT_EQ(::read(pipe_ends[0], &finished, sizeof finished), 8);
+        for (int i = 0; i < 5 + 3 * round; ++i) ASSERT_EQ(::read(pipe_ends[0], &finished, sizeof finished), 8);
         ASSERT_EQ(::kill(child, SIGKILL), 0);
         ASSERT_EQ(::waitpid(child, nullptr, 0), child);
         ::close(pipe_ends[1]);
@@ -477,7 +473,8 @@ TEST(Project, ForeignFilesAreNamedAsSuch) {
     EXPECT_NE(fault(folder / "o.tuft").find("not a tuft project"), std::string::npos);
     bytes[63] = 9;  // user_version
     write_file(folder / "n.tuft", bytes.data(), bytes.size());
-    EXPECT_NE(fault(folder / "n.tuft").find("newer tuft (format 9, this one reads up to " + std::to_string(kProjectFormat) + ")"),
+    EXPECT_NE(fault(folder / "n.tuft")
+                  .find("newer tuft (format 9, this one reads up to " + std::to_string(kProjectFormat) + ")"),
               std::string::npos);
     EXPECT_THROW(Project::create(folder / "no/where/a.tuft", sample_model()), Error);
 }
@@ -531,8 +528,7 @@ TEST(Project, DamagedFilesAreErrorsNeverCrashes) {
         std::vector<char> bytes = good;
         Random random(i);
         for (int k = 0; k < 1 + i % 20; ++k) {
-            const std::size_t at =
-                100 + static_cast<std::size_t>(random.uniform() * (bytes.size() - 100));
+            const std::size_t at = 100 + static_cast<std::size_t>(random.uniform() * (bytes.size() - 100));
             bytes[at] = static_cast<char>(random.bits());
         }
         write_file(folder / "bad.tuft", bytes.data(), bytes.size());

@@ -16,8 +16,7 @@ TEST(ReadModel, ObjReadBackIsTheSameMeshInTheUnitAsked) {
     const Folder folder("obj");
     const mesh::TriangleMesh mesh = cylinder();
     const ModelMaps maps = pattern_maps(64);
-    for (const auto& [unit, metres] :
-         {std::pair{"mm", 1e-3}, std::pair{"in", 0.0254}, std::pair{"m", 1.0}}) {
+    for (const auto& [unit, metres] : {std::pair{"mm", 1e-3}, std::pair{"in", 0.0254}, std::pair{"m", 1.0}}) {
         export_model(folder / "m.obj", mesh, cylinder_atlas(mesh), maps, {.frame = {.unit = unit}});
         const mesh::PolygonSoup soup = read_model(folder / "m.obj");
         expect_same(soup, mesh, metres, 0);
@@ -31,8 +30,7 @@ TEST(ReadModel, FormatsAreToldByContentThenByExtension) {
     const mesh::TriangleMesh mesh = cylinder();
     export_model(folder / "m.glb", mesh, cylinder_atlas(mesh), pattern_maps(16));
     std::filesystem::rename(folder / "m.glb", folder / "m.obj");
-    EXPECT_EQ(read_model(folder / "m.obj").n_polygons(), mesh.n_triangles())
-        << "a GLB under a wrong name";
+    EXPECT_EQ(read_model(folder / "m.obj").n_polygons(), mesh.n_triangles()) << "a GLB under a wrong name";
     const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     write_file(folder / "m.txt", off.data(), off.size());
     EXPECT_EQ(read_model(folder / "m.txt").n_polygons(), 1u);

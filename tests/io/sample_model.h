@@ -26,10 +26,8 @@ inline mesh::TriangleMesh cylinder() {
     const auto angle = [](int i) { return 2 * std::numbers::pi * i / kAround; };
     for (int j = 0; j <= kUp; ++j)
         for (int i = 0; i < kAround; ++i)
-            m.positions.emplace_back(0.03 * std::cos(angle(i)), 0.03 * std::sin(angle(i)),
-                                     0.05 * j / kUp);
-    const auto corner = [&](std::array<std::uint32_t, 3> triangle,
-                            std::array<std::array<int, 2>, 3> at) {
+            m.positions.emplace_back(0.03 * std::cos(angle(i)), 0.03 * std::sin(angle(i)), 0.05 * j / kUp);
+    const auto corner = [&](std::array<std::uint32_t, 3> triangle, std::array<std::array<int, 2>, 3> at) {
         m.triangles.push_back(triangle);
         for (const auto& [i, j] : at) {
             m.corner_normals.emplace_back(std::cos(angle(i)), std::sin(angle(i)), 0);
@@ -47,8 +45,7 @@ inline mesh::TriangleMesh cylinder() {
     m.neighbours.assign(3 * m.n_triangles(), kNone);
     for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
     m.group_names = {"lower", "upper part"};
-    for (std::size_t t = 0; t < m.n_triangles(); ++t)
-        m.triangle_groups.push_back(t < m.n_triangles() / 2 ? 0 : 1);
+    for (std::size_t t = 0; t < m.n_triangles(); ++t) m.triangle_groups.push_back(t < m.n_triangles() / 2 ? 0 : 1);
     return m;
 }
 
@@ -71,18 +68,16 @@ inline ModelMaps pattern_maps(std::uint32_t size, bool flat = false) {
     for (std::uint32_t y = 0; y < size; ++y)
         for (std::uint32_t x = 0; x < size; ++x) {
             for (int c = 0; c < 3; ++c)
-                maps.base_colour.texels.push_back(
-                    static_cast<std::uint8_t>((x * 3 + y * 7 + c * 50) % 256));
+                maps.base_colour.texels.push_back(static_cast<std::uint8_t>((x * 3 + y * 7 + c * 50) % 256));
             maps.orm.texels.insert(maps.orm.texels.end(), {255, static_cast<std::uint8_t>(y), 0});
-            maps.height.texels.push_back(flat ? 0.0f
-                                              : static_cast<float>(uniform(7, y * size + x) * 3));
+            maps.height.texels.push_back(flat ? 0.0f : static_cast<float>(uniform(7, y * size + x) * 3));
         }
     return maps;
 }
 
 /// Same triangles in the same order with the same positions and UVs.
-inline void expect_same(const mesh::PolygonSoup& soup, const mesh::TriangleMesh& mesh,
-                        double metres_per_unit, double uv_error) {
+inline void expect_same(const mesh::PolygonSoup& soup, const mesh::TriangleMesh& mesh, double metres_per_unit,
+                        double uv_error) {
     ASSERT_EQ(soup.n_polygons(), mesh.n_triangles());
     ASSERT_EQ(soup.corner_uvs.size(), 3 * mesh.n_triangles());
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
@@ -101,8 +96,7 @@ inline void expect_same(const mesh::PolygonSoup& soup, const mesh::TriangleMesh&
 class Folder {
   public:
     explicit Folder(const std::string& name)
-        : path_(std::filesystem::temp_directory_path() /
-                ("tuft_io_" + name + "_" + std::to_string(::getpid()))) {
+        : path_(std::filesystem::temp_directory_path() / ("tuft_io_" + name + "_" + std::to_string(::getpid()))) {
         std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }

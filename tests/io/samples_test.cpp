@@ -9,10 +9,10 @@
 #include "ink/colour/pigments.h"
 #include "io/inkml.h"
 #include "mesh/repair.h"
+#include "paths.h"
 #include "stroke/hand/line_width.h"
 #include "stroke/hand/placement.h"
 #include "stroke/hand/plane_ink.h"
-#include "paths.h"
 
 namespace tuft::io {
 namespace {
@@ -60,11 +60,13 @@ TEST(Samples, AHengClosesWithASlantedShoulderNotWithABall) {
     constexpr int n = 640;
     stroke::WidthTables tables;
     int found = 0;
-    for (const stroke::Trace& t : read_inkml(std::filesystem::path(source_folder()) / "samples/strokes/stroke-sheet.inkml")) {
+    for (const stroke::Trace& t :
+         read_inkml(std::filesystem::path(source_folder()) / "samples/strokes/stroke-sheet.inkml")) {
         if (!t.label.ends_with(" heng") || !t.before.empty()) continue;
         SCOPED_TRACE(t.label);
         ++found;
-        const stroke::PlaneInk ink = stroke::plane_ink(t, brush::load_preset(t.brush), tables.hold(t.brush), 1e-4, cell);
+        const stroke::PlaneInk ink =
+            stroke::plane_ink(t, brush::load_preset(t.brush), tables.hold(t.brush), 1e-4, cell);
         const auto inked = [&](int i, int j) { return ink.at(cell * Vec2(i - n / 2, j - n / 2)) > 0.5; };
         // From end to end, and the height of the middle.
         int begin = n, end = 0;
@@ -78,8 +80,9 @@ TEST(Samples, AHengClosesWithASlantedShoulderNotWithABall) {
                 if (inked(i, j)) low = std::min(low, j), high = std::max(high, j);
         // The hand presses no more than in the body; a ball was 1.2 to 1.4 times as high.
         EXPECT_LT(high + 1 - low, 1.2 * body);
-        // Of the quarter from its middle to a corner a disc leaves 1 − π/4 = 0.215 bare, a cut at 45 degrees a half. The
-        // shoulder is slanted; the foot stands fuller than a disc's, by a third at least (that of a ball was 0.15 to 0.19).
+        // Of the quarter from its middle to a corner a disc leaves 1 − π/4 = 0.215 bare, a cut at 45 degrees a half.
+        // The shoulder is slanted; the foot stands fuller than a disc's, by a third at least (that of a ball was 0.15
+        // to 0.19).
         const int half = (high + 1 - low) / 2;
         for (int i = end + 1 - half; i <= end; ++i)
             for (int j = low; j <= high; ++j)

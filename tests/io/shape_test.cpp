@@ -16,8 +16,7 @@ using std::numbers::pi;
 Ring regular(double r, int n, double jag = 0) {
     Ring ring;
     for (int i = 0; i < n; ++i)
-        ring.push_back((r + (i % 2 ? jag : -jag)) *
-                       Vec2(std::cos(2 * pi * i / n), std::sin(2 * pi * i / n)));
+        ring.push_back((r + (i % 2 ? jag : -jag)) * Vec2(std::cos(2 * pi * i / n), std::sin(2 * pi * i / n)));
     return ring;
 }
 Ring box(double x0, double y0, double x1, double y1) {
@@ -69,15 +68,13 @@ TEST(Shape, AnInsetLiesAtItsDistance) {
     const Shape frame(std::vector<Ring>{box(0, 0, 4, 4), box(1, 1, 3, 3)}, FillRule::even_odd);
     const Shape inner = frame.inset(0.25, 1e-3);
     // Chords of the four quarter circles may cut 0.001 off them.
-    EXPECT_NEAR(inner.area(), 3.5 * 3.5 - (4 + 4 * 2 * 0.25 + pi * 0.25 * 0.25),
-                2 * pi * 0.25 * 1e-3);
+    EXPECT_NEAR(inner.area(), 3.5 * 3.5 - (4 + 4 * 2 * 0.25 + pi * 0.25 * 0.25), 2 * pi * 0.25 * 1e-3);
     for (const Ring& ring : inner.rings())
         for (const Vec2& p : ring) {
             double nearest = 1e9;
             for (const Ring& edge : frame.rings())
                 for (std::size_t i = 0; i < edge.size(); ++i)
-                    nearest = std::min(nearest,
-                                       segment_distance(edge[i], edge[(i + 1) % edge.size()], p));
+                    nearest = std::min(nearest, segment_distance(edge[i], edge[(i + 1) % edge.size()], p));
             EXPECT_NEAR(nearest, 0.25, 1e-3);
         }
 }
@@ -88,8 +85,7 @@ TEST(Shape, ASimplifiedOutlineStaysWithinItsTolerance) {
     const Shape few = jagged.simplified(tolerance);
     ASSERT_EQ(few.rings().size(), 1u);
     // A chord that leaves a circle by s spans 2 √(2 s); those of 0.01 to 0.01 + 0.008 at most.
-    EXPECT_LT(few.rings()[0].size(),
-              static_cast<std::size_t>(4 * 2 * pi / (2 * std::sqrt(2 * tolerance))));
+    EXPECT_LT(few.rings()[0].size(), static_cast<std::size_t>(4 * 2 * pi / (2 * std::sqrt(2 * tolerance))));
     for (const Vec2& p : jagged.rings()[0]) {
         double nearest = 1e9;
         const Ring& ring = few.rings()[0];
@@ -111,8 +107,7 @@ TEST(Shape, IsTheSameInEverySize) {
     ASSERT_EQ(a.rings().size(), b.rings().size());
     for (std::size_t i = 0; i < a.rings().size(); ++i) {
         ASSERT_EQ(a.rings()[i].size(), b.rings()[i].size());
-        for (std::size_t k = 0; k < a.rings()[i].size(); ++k)
-            EXPECT_EQ(1024.0 * a.rings()[i][k], b.rings()[i][k]);
+        for (std::size_t k = 0; k < a.rings()[i].size(); ++k) EXPECT_EQ(1024.0 * a.rings()[i][k], b.rings()[i][k]);
     }
 }
 
@@ -126,15 +121,13 @@ TEST(Shape, WhatIsTooMuchIsNothing) {
     EXPECT_TRUE(Shape(std::vector<Ring>{regular(1, 20'001)}, FillRule::nonzero).empty());
     EXPECT_FALSE(Shape(std::vector<Ring>{regular(1, 20'000)}, FillRule::nonzero).empty());
     for (const double bad : {HUGE_VAL, -HUGE_VAL, std::nan("")})
-        EXPECT_TRUE(
-            Shape(std::vector<Ring>{{{0, 0}, {1, 0}, {bad, 1}}}, FillRule::nonzero).empty());
+        EXPECT_TRUE(Shape(std::vector<Ring>{{{0, 0}, {1, 0}, {bad, 1}}}, FillRule::nonzero).empty());
     for (const double size : {1e-320, 1e-200, 1e200, 1e308}) {
         const Shape s(std::vector<Ring>{box(0, 0, size, size)}, FillRule::nonzero);
         EXPECT_TRUE(s.empty() || s.contains({0.5 * size, 0.5 * size})) << size;
     }
     EXPECT_TRUE(Shape(std::vector<Ring>{}, FillRule::nonzero).empty());
-    EXPECT_TRUE(
-        Shape(std::vector<Ring>{{}, {{1, 1}}, {{1, 1}, {2, 2}}}, FillRule::nonzero).empty());
+    EXPECT_TRUE(Shape(std::vector<Ring>{{}, {{1, 1}}, {{1, 1}, {2, 2}}}, FillRule::nonzero).empty());
 }
 
 }  // namespace

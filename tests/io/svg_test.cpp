@@ -10,14 +10,21 @@
 namespace tuft::io {
 namespace {
 
-std::vector<stroke::Trace> drawn(const std::string& inside, const std::string& size = "width='100mm' viewBox='0 0 100 100'") {
-    return parse_svg("<svg xmlns='http://www.w3.org/2000/svg' fill='none' " + size + ">" + inside + "</svg>", "test.svg");
+std::vector<stroke::Trace> drawn(const std::string& inside,
+                                 const std::string& size = "width='100mm' viewBox='0 0 100 100'") {
+    return parse_svg("<svg xmlns='http://www.w3.org/2000/svg' fill='none' " + size + ">" + inside + "</svg>",
+                     "test.svg");
 }
-Vec2 first(const stroke::Trace& t) { return Vec2(t.samples.front().position) * 1e3; }
-Vec2 last(const stroke::Trace& t) { return Vec2(t.samples.back().position) * 1e3; }
+Vec2 first(const stroke::Trace& t) {
+    return Vec2(t.samples.front().position) * 1e3;
+}
+Vec2 last(const stroke::Trace& t) {
+    return Vec2(t.samples.back().position) * 1e3;
+}
 double length(const stroke::Trace& t) {
     double sum = 0;
-    for (std::size_t i = 1; i < t.samples.size(); ++i) sum += glm::distance(t.samples[i - 1].position, t.samples[i].position);
+    for (std::size_t i = 1; i < t.samples.size(); ++i)
+        sum += glm::distance(t.samples[i - 1].position, t.samples[i].position);
     return 1e3 * sum;
 }
 void expect_near(const Vec2& a, const Vec2& b) {
@@ -36,14 +43,16 @@ TEST(Svg, UnitsFollowWidthAndViewBox) {
 
 TEST(Svg, CirclesAndArcsHaveTheirLength) {
     // Chords that stay within e of an arc of radius r are shorter than it by a part e / 3r: 20 µm of 5 mm is 0.13 %.
-    EXPECT_NEAR(length(drawn("<circle cx='50' cy='50' r='5'/>")[0]), 10 * std::numbers::pi, 0.0015 * 10 * std::numbers::pi);
+    EXPECT_NEAR(length(drawn("<circle cx='50' cy='50' r='5'/>")[0]), 10 * std::numbers::pi,
+                0.0015 * 10 * std::numbers::pi);
     const auto half = drawn("<path d='M 0 0 A 10 10 0 0 1 20 0'/>");
     EXPECT_NEAR(length(half[0]), 10 * std::numbers::pi, 0.0015 * 10 * std::numbers::pi);
     for (const auto& s : half[0].samples) EXPECT_NEAR(glm::distance(1e3 * s.position, Vec3(10, 0, 0)), 10, 0.02);
     // y points down, so a positive sweep goes over the top.
     EXPECT_LT(half[0].samples[half[0].samples.size() / 2].position.y, 0);
     // Radii too small for the distance grow until they reach (F.6.6).
-    EXPECT_NEAR(length(drawn("<path d='M 0 0 A 1 1 0 0 1 20 0'/>")[0]), 10 * std::numbers::pi, 0.0015 * 10 * std::numbers::pi);
+    EXPECT_NEAR(length(drawn("<path d='M 0 0 A 1 1 0 0 1 20 0'/>")[0]), 10 * std::numbers::pi,
+                0.0015 * 10 * std::numbers::pi);
 }
 
 TEST(Svg, CommandsAgreeInTheirAbsoluteAndRelativeForms) {
@@ -51,7 +60,8 @@ TEST(Svg, CommandsAgreeInTheirAbsoluteAndRelativeForms) {
     const auto r = drawn("<path d='m10 10 l10 0 h10 v10 c0 10 10 10 10 0 s10-10 10 0 q5 10 10 0 t10 0 z'/>");
     ASSERT_EQ(a.size(), 1u);
     ASSERT_EQ(a[0].samples.size(), r[0].samples.size());
-    for (std::size_t i = 0; i < a[0].samples.size(); ++i) EXPECT_NEAR(glm::distance(a[0].samples[i].position, r[0].samples[i].position), 0, 1e-12);
+    for (std::size_t i = 0; i < a[0].samples.size(); ++i)
+        EXPECT_NEAR(glm::distance(a[0].samples[i].position, r[0].samples[i].position), 0, 1e-12);
     expect_near(last(a[0]), {10, 10});
 }
 
@@ -63,20 +73,28 @@ TEST(Svg, AQuadraticIsTheParabolaItNames) {
 }
 
 TEST(Svg, TransformsNestFromTheOutside) {
-    const auto t = drawn("<g transform='translate(10,0) rotate(90)'><g transform='scale(2)'><line x1='1' y1='0' x2='3' y2='0'/></g></g>");
+    const auto t = drawn(
+        "<g transform='translate(10,0) rotate(90)'><g transform='scale(2)'><line x1='1' y1='0' x2='3' "
+        "y2='0'/></g></g>");
     expect_near(first(t[0]), {10, 2});
     expect_near(last(t[0]), {10, 6});
 }
 
 TEST(Svg, HiddenThingsAndDefinitionsAreLeftOut) {
-    EXPECT_EQ(drawn("<defs><path d='M0 0 L1 1'/></defs><path display='none' d='M0 0 L9 9'/><rect x='0' y='0' width='1' height='1'/>").size(), 1u);
+    EXPECT_EQ(drawn("<defs><path d='M0 0 L1 1'/></defs><path display='none' d='M0 0 L9 9'/><rect x='0' y='0' width='1' "
+                    "height='1'/>")
+                  .size(),
+              1u);
 }
 
 TEST(Svg, AUseDrawsItsElementAgainWhereItSays) {
-    const std::string defs = "<defs><g id='g'><line x1='0' y1='0' x2='4' y2='0'/></g>"
-                             "<symbol id='s' viewBox='10 0 20 20'><line x1='10' y1='0' x2='30' y2='0'/></symbol></defs>";
-    const auto t = drawn(defs + "<use xlink:href='#g' x='5' transform='rotate(90)'/><g transform='translate(0,7)'><use href='#g'/></g>"
-                                "<use href='#s' x='1' y='2' width='40'/><use href='#nothing'/><use href='elsewhere.svg#g'/>");
+    const std::string defs =
+        "<defs><g id='g'><line x1='0' y1='0' x2='4' y2='0'/></g>"
+        "<symbol id='s' viewBox='10 0 20 20'><line x1='10' y1='0' x2='30' y2='0'/></symbol></defs>";
+    const auto t =
+        drawn(defs +
+              "<use xlink:href='#g' x='5' transform='rotate(90)'/><g transform='translate(0,7)'><use href='#g'/></g>"
+              "<use href='#s' x='1' y='2' width='40'/><use href='#nothing'/><use href='elsewhere.svg#g'/>");
     ASSERT_EQ(t.size(), 3u);
     expect_near(first(t[0]), {0, 5});
     expect_near(last(t[0]), {0, 9});
@@ -99,8 +117,9 @@ TEST(Svg, MistakesAreNamedWithTheFile) {
             return std::string(e.what());
         }
     };
-    for (const std::string inside : {"<path d='L'/>", "<path d='M 1 x'/>", "<path d='M 0 0 B 1 1'/>", "<path d='M0 0 L1e300 0'/>", "<text>Hi</text>",
-                                     "<g transform='spin(3)'/>", "<path d='M0 0 Z 5 5'/>", "<path d='M0 0 A1 1 0 7 1 2 2'/>"}) {
+    for (const std::string inside :
+         {"<path d='L'/>", "<path d='M 1 x'/>", "<path d='M 0 0 B 1 1'/>", "<path d='M0 0 L1e300 0'/>",
+          "<text>Hi</text>", "<g transform='spin(3)'/>", "<path d='M0 0 Z 5 5'/>", "<path d='M0 0 A1 1 0 7 1 2 2'/>"}) {
         const std::string message = fault("<svg>" + inside + "</svg>");
         EXPECT_EQ(message.rfind("bad.svg", 0), 0u) << inside << ": " << message;
     }
@@ -128,11 +147,19 @@ TEST(Svg, LinesHaveTheWidthOfTheirStroke) {
     EXPECT_EQ(width("<line " + line + " stroke-width='2'/>"), 0);
     EXPECT_NEAR(width("<line " + line + " stroke='red'/>"), 1, 1e-9) << "the initial width";
     EXPECT_NEAR(width("<line " + line + " stroke='red' stroke-width='2.5'/>"), 2.5, 1e-9);
-    EXPECT_NEAR(width("<line " + line + " stroke='red' stroke-width='1' style='fill:none; stroke-width : 4'/>"), 4, 1e-9) << "a style counts more";
+    EXPECT_NEAR(width("<line " + line + " stroke='red' stroke-width='1' style='fill:none; stroke-width : 4'/>"), 4,
+                1e-9)
+        << "a style counts more";
     EXPECT_EQ(width("<line " + line + " stroke='red' style='stroke:none'/>"), 0);
-    EXPECT_NEAR(width("<g stroke='red' stroke-width='3'><g transform='scale(2) rotate(30)'><line " + line + "/></g></g>"), 6, 1e-9) << "inherited; drawn under the transform";
-    EXPECT_NEAR(width("<style>.a, .b{stroke:#000;stroke-width:2px} .b {stroke-width:3}</style><line " + line + " class='x b'/>"), 3, 1e-9);
-    EXPECT_NEAR(width("<line " + line + " stroke='red' stroke-width='50%'/>"), 1, 1e-9) << "parts of the page are passed over";
+    EXPECT_NEAR(
+        width("<g stroke='red' stroke-width='3'><g transform='scale(2) rotate(30)'><line " + line + "/></g></g>"), 6,
+        1e-9)
+        << "inherited; drawn under the transform";
+    EXPECT_NEAR(width("<style>.a, .b{stroke:#000;stroke-width:2px} .b {stroke-width:3}</style><line " + line +
+                      " class='x b'/>"),
+                3, 1e-9);
+    EXPECT_NEAR(width("<line " + line + " stroke='red' stroke-width='50%'/>"), 1, 1e-9)
+        << "parts of the page are passed over";
     EXPECT_NO_THROW(drawn("<style>.a{stroke .b } } {{ .c,</style><line " + line + " class='a c' stroke='red'/>"));
     EXPECT_THROW(drawn("<line " + line + " stroke='red' stroke-width='wide'/>"), Error);
 }
@@ -142,40 +169,50 @@ std::vector<std::string> told(const std::string& inside) {
     std::vector<std::string> notes;
     SvgOptions options;
     options.ink.note = [&](const std::string& line) { notes.push_back(line); };
-    parse_svg("<svg xmlns:xlink='http://www.w3.org/1999/xlink'><path d='M0 0L9 9' stroke='black'/>" + inside + "</svg>", "a.svg", options);
+    parse_svg("<svg xmlns:xlink='http://www.w3.org/1999/xlink'><path d='M0 0L9 9' stroke='black'/>" + inside + "</svg>",
+              "a.svg", options);
     return notes;
 }
 using Notes = std::vector<std::string>;
 
 TEST(Svg, WhatIsLeftOutIsSaidInALineEach) {
     EXPECT_EQ(told("<g/>"), Notes{});
-    EXPECT_EQ(told("<text>Hello <tspan>there</tspan></text><image/><text display='none'>no</text><g visibility='hidden'><text>no</text></g>"),
+    EXPECT_EQ(told("<text>Hello <tspan>there</tspan></text><image/><text display='none'>no</text><g "
+                   "visibility='hidden'><text>no</text></g>"),
               (Notes{"a.svg: 1 text is left out: turn text into paths first", "a.svg: 1 image is left out"}));
-    EXPECT_EQ(told("<switch><foreignObject/><g/></switch><foreignObject/>"), Notes{"a.svg: 1 foreignObject is left out"});
+    EXPECT_EQ(told("<switch><foreignObject/><g/></switch><foreignObject/>"),
+              Notes{"a.svg: 1 foreignObject is left out"});
     EXPECT_EQ(told("<use href='#gone'/><use xlink:href='#lost' x='3'/><use href='other.svg#a'/>"),
               (Notes{"a.svg: 2 uses draw nothing: the file has no elements of the ids that they name",
                      "a.svg: 1 use of another file is left out: put its element into this file"}));
-    EXPECT_EQ(told("<script/><path d='M0 0H9' stroke='#000'><animate/><set/></path>"), (Notes{"a.svg: 2 animations are not played", "a.svg: 1 script is not run"}));
+    EXPECT_EQ(told("<script/><path d='M0 0H9' stroke='#000'><animate/><set/></path>"),
+              (Notes{"a.svg: 2 animations are not played", "a.svg: 1 script is not run"}));
 }
 
 TEST(Svg, EffectsThatABrushCannotPaintAreSaidWithTheirCounts) {
     const std::string line = "<path d='M0 0 H 50' stroke='black' ", square = "<rect width='20' height='20' ";
     EXPECT_EQ(told("<g clip-path='url(#a)'>" + line + "/>" + line + "style='clip-path:url(#a)'/></g>"),
               Notes{"a.svg: 2 clip paths are not applied: what they hide is painted"});
-    EXPECT_EQ(told(line + "mask='url(#m)'/>" + line + "mask='none'/>"), Notes{"a.svg: 1 mask is not applied: what it hides is painted"});
+    EXPECT_EQ(told(line + "mask='url(#m)'/>" + line + "mask='none'/>"),
+              Notes{"a.svg: 1 mask is not applied: what it hides is painted"});
     EXPECT_EQ(told(line + "filter='url(#f)'/>"), Notes{"a.svg: 1 filter is not applied"});
-    EXPECT_EQ(told("<g stroke-dasharray='3 2'>" + line + "/>" + line + "/>" + line + "stroke-dasharray='none'/>" + line + "stroke-dasharray='0'/></g>"),
+    EXPECT_EQ(told("<g stroke-dasharray='3 2'>" + line + "/>" + line + "/>" + line + "stroke-dasharray='none'/>" +
+                   line + "stroke-dasharray='0'/></g>"),
               Notes{"a.svg: 2 dashed lines are painted whole"});
     EXPECT_EQ(told(line + "marker-end='url(#arrow)'/>"), Notes{"a.svg: 1 line loses its markers, such as arrow heads"});
-    EXPECT_EQ(told("<g opacity='.5'>" + line + "/></g>" + line + "style='stroke-opacity:40%'/>" + line + "opacity='1'/>"),
-              Notes{"a.svg: 2 opacities are not applied: the ink is painted in full"});
-    EXPECT_EQ(told("<defs><linearGradient id='g'/><radialGradient id='r'/><pattern id='p'/></defs>" + square + "fill='url(#g)'/>" + square +
-                   "style='fill:url(\"#r\")'/>" + square + "fill='url(#p) red'/>" + square + "fill='url(#gone)'/>" + square + "fill='url(#gone) black'/>"),
-              (Notes{"a.svg: 1 area or line has a paint that the file does not hold and is not painted", "a.svg: 2 gradients are painted as one even ink",
-                     "a.svg: 1 pattern is painted as one even ink"}));
-    EXPECT_EQ(told("<style>g > path {fill:red} @media print {.b{fill:red} .c{fill:red}} .x{}</style>"),
-              Notes{"a.svg: 2 rules of style sheets are passed over: only element names, .class and #id are understood"});
-    EXPECT_EQ(told(line + "style='transform:scale(2)'/>"), Notes{"a.svg: 1 transform in a style is not applied: write it as an attribute"});
+    EXPECT_EQ(
+        told("<g opacity='.5'>" + line + "/></g>" + line + "style='stroke-opacity:40%'/>" + line + "opacity='1'/>"),
+        Notes{"a.svg: 2 opacities are not applied: the ink is painted in full"});
+    EXPECT_EQ(told("<defs><linearGradient id='g'/><radialGradient id='r'/><pattern id='p'/></defs>" + square +
+                   "fill='url(#g)'/>" + square + "style='fill:url(\"#r\")'/>" + square + "fill='url(#p) red'/>" +
+                   square + "fill='url(#gone)'/>" + square + "fill='url(#gone) black'/>"),
+              (Notes{"a.svg: 1 area or line has a paint that the file does not hold and is not painted",
+                     "a.svg: 2 gradients are painted as one even ink", "a.svg: 1 pattern is painted as one even ink"}));
+    EXPECT_EQ(
+        told("<style>g > path {fill:red} @media print {.b{fill:red} .c{fill:red}} .x{}</style>"),
+        Notes{"a.svg: 2 rules of style sheets are passed over: only element names, .class and #id are understood"});
+    EXPECT_EQ(told(line + "style='transform:scale(2)'/>"),
+              Notes{"a.svg: 1 transform in a style is not applied: write it as an attribute"});
 }
 
 TEST(Svg, ColoursThatBecomeOneInkAreNamed) {
@@ -183,23 +220,36 @@ TEST(Svg, ColoursThatBecomeOneInkAreNamed) {
     EXPECT_EQ(told(square("black") + square("#000") + square("rgb(0, 0, 0)")), Notes{});
     EXPECT_EQ(told(square("#E30613") + square("#e30613") + "<path d='M0 0H9' fill='none' stroke='navy'/>"),
               Notes{"a.svg: 3 colours are painted in one ink: black, #e30613, navy"});
-    EXPECT_EQ(told(square("white") + square("#FFF") + square("none")),
-              Notes{"a.svg: 2 white areas and lines are left bare: white is the ground, and what they cover stays painted"});
+    EXPECT_EQ(
+        told(square("white") + square("#FFF") + square("none")),
+        Notes{"a.svg: 2 white areas and lines are left bare: white is the ground, and what they cover stays painted"});
     std::string many;
     for (int i = 0; i < 9; ++i) many += square("#00000" + std::to_string(i + 1));
-    EXPECT_EQ(told(many), Notes{"a.svg: 10 colours are painted in one ink: black, #000001, #000002, #000003, #000004, #000005, ..."});
+    EXPECT_EQ(
+        told(many),
+        Notes{"a.svg: 10 colours are painted in one ink: black, #000001, #000002, #000003, #000004, #000005, ..."});
 }
 
 TEST(Svg, WhatIsNotToBeSeenIsNotPainted) {
     const std::string line = "<path d='M0 0 H 50' ", ink = "stroke='black' ";
-    EXPECT_EQ(drawn(line + ink + "/>" + line + ink + "visibility='hidden'/><g visibility='hidden'>" + line + ink + "visibility='visible'/></g>").size(), 2u);
-    EXPECT_EQ(drawn(line + ink + "/>" + line + ink + "opacity='0'/>" + line + ink + "stroke-opacity='0'/>" + line + "stroke='white'/>").size(), 1u);
+    EXPECT_EQ(drawn(line + ink + "/>" + line + ink + "visibility='hidden'/><g visibility='hidden'>" + line + ink +
+                    "visibility='visible'/></g>")
+                  .size(),
+              2u);
+    EXPECT_EQ(drawn(line + ink + "/>" + line + ink + "opacity='0'/>" + line + ink + "stroke-opacity='0'/>" + line +
+                    "stroke='white'/>")
+                  .size(),
+              1u);
     EXPECT_EQ(drawn(line + ink + "/><rect width='9' height='9' fill='red' fill-opacity='0'/>").size(), 1u);
 }
 
 TEST(Svg, RulesForNamesAndIdsCountAsTheirSpecificity) {
-    const std::string sheet = "<style>/* .x{stroke-width:9} */ path{stroke:black;stroke-width:2} .c{stroke-width:3 !important} #i{stroke-width:4}</style>";
-    const auto width = [&](const std::string& more) { return 1e3 * drawn(sheet + "<path d='M0 0H9' stroke-width='1' " + more + "/>").at(0).line_width; };
+    const std::string sheet =
+        "<style>/* .x{stroke-width:9} */ path{stroke:black;stroke-width:2} .c{stroke-width:3 !important} "
+        "#i{stroke-width:4}</style>";
+    const auto width = [&](const std::string& more) {
+        return 1e3 * drawn(sheet + "<path d='M0 0H9' stroke-width='1' " + more + "/>").at(0).line_width;
+    };
     EXPECT_NEAR(width(""), 2, 1e-9) << "attributes count least";
     EXPECT_NEAR(width("class='c'"), 3, 1e-9);
     EXPECT_NEAR(width("class='c' id='i'"), 4, 1e-9);
@@ -209,9 +259,11 @@ TEST(Svg, RulesForNamesAndIdsCountAsTheirSpecificity) {
 TEST(Svg, LengthsHaveUnitsAndPartsOfThePage) {
     expect_near(last(drawn("<line x2='50%' y2='10%'/>", "width='200mm' viewBox='0 0 100 50'")[0]), {100, 10});
     EXPECT_NEAR(length(drawn("<line x2='1in'/>", "")[0]), 25.4, 1e-6);
-    EXPECT_NEAR(length(drawn("<line x2='1'/>", "height='30mm' viewBox='0 0 100 3'")[0]), 10, 1e-6) << "a page whose height alone is said";
+    EXPECT_NEAR(length(drawn("<line x2='1'/>", "height='30mm' viewBox='0 0 100 3'")[0]), 10, 1e-6)
+        << "a page whose height alone is said";
     // Round corners: quarter circles of 5, the sides between them.
-    EXPECT_NEAR(length(drawn("<rect width='30' height='20' rx='5'/>")[0]), 2 * 20 + 2 * 10 + 10 * std::numbers::pi, 0.05);
+    EXPECT_NEAR(length(drawn("<rect width='30' height='20' rx='5'/>")[0]), 2 * 20 + 2 * 10 + 10 * std::numbers::pi,
+                0.05);
     EXPECT_EQ(drawn("<line x2='5'/><rect width='0' height='20'/>").size(), 1u);
 }
 
@@ -232,7 +284,9 @@ TEST(Svg, WhatIsFilledIsPaintedAllOver) {
     EXPECT_EQ(both.size(), lines.size() + 1);
     EXPECT_NEAR(both.back().line_width, 0.002, 1e-12) << "the stroke lies over the fill";
     EXPECT_EQ(drawn("<g style='fill:black'>" + square + "class='x'/></g><style>.x{fill:none}</style>").size(), 1u);
-    EXPECT_EQ(drawn("<rect width='99' height='99' fill='white'/><line x1='0' y1='0' x2='9' y2='9' stroke='red'/>").size(), 1u) << "the ground";
+    EXPECT_EQ(
+        drawn("<rect width='99' height='99' fill='white'/><line x1='0' y1='0' x2='9' y2='9' stroke='red'/>").size(), 1u)
+        << "the ground";
     EXPECT_EQ(drawn("<path d='M0 0 H9 V9' fill='none' stroke='red'/>").size(), 1u);
 }
 

@@ -16,8 +16,7 @@ constexpr std::size_t kMost = 1'000'000;
 
 /// n × n squares of side 1/n metre in the plane, each halved, put into space; without those that
 /// `gone` names.
-TriangleMesh sheet(int n, const std::function<Vec3(Vec2)>& place,
-                   const std::function<bool(Vec2)>& gone = {}) {
+TriangleMesh sheet(int n, const std::function<Vec3(Vec2)>& place, const std::function<bool(Vec2)>& gone = {}) {
     PolygonSoup soup;
     for (int j = 0; j <= n; ++j)
         for (int i = 0; i <= n; ++i) soup.points.push_back(1000.0 * place(Vec2(i, j) / double(n)));
@@ -25,11 +24,9 @@ TriangleMesh sheet(int n, const std::function<Vec3(Vec2)>& place,
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
             if (gone && gone(Vec2(i + 0.5, j + 0.5) / double(n))) continue;
-            const auto at = [&](int x, int y) {
-                return static_cast<std::uint32_t>(y * (n + 1) + x);
-            };
-            for (const std::uint32_t c : {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j),
-                                          at(i + 1, j + 1), at(i, j + 1)})
+            const auto at = [&](int x, int y) { return static_cast<std::uint32_t>(y * (n + 1) + x); };
+            for (const std::uint32_t c :
+                 {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1)})
                 soup.corners.push_back(c);
             soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()) - 3);
             soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
@@ -98,8 +95,7 @@ TEST(ExactGeodesics, BendRoundTheCornerOfANotch) {
     for (const Vec2 p : {Vec2{0.45, 0.95}, Vec2{0.4, 0.9}, Vec2{0.49, 0.6}}) {
         const auto way = stand.to(flat(p));
         EXPECT_TRUE(way.bent);
-        EXPECT_NEAR(way.length, glm::length(corner - Vec2{0.9, 0.3}) + glm::length(p - corner),
-                    1e-6);
+        EXPECT_NEAR(way.length, glm::length(corner - Vec2{0.9, 0.3}) + glm::length(p - corner), 1e-6);
         EXPECT_LT(glm::length(way.arrives - flat(p - corner) / glm::length(p - corner)), 1e-5);
     }
     const auto straight = stand.to(flat({0.1, 0.5}));
@@ -109,9 +105,7 @@ TEST(ExactGeodesics, BendRoundTheCornerOfANotch) {
 
 TEST(ExactGeodesics, AreAsLongThereAsBack) {
     // Over a field of hills and hollows, with ways round many vertices of either kind.
-    const auto hills = [](Vec2 p) {
-        return Vec3(p, 0.06 * std::sin(19 * p.x) * std::cos(17 * p.y));
-    };
+    const auto hills = [](Vec2 p) { return Vec3(p, 0.06 * std::sin(19 * p.x) * std::cos(17 * p.y)); };
     Stand stand(sheet(32, hills));
     Random random(5);
     for (int i = 0; i < 60; ++i) {

@@ -33,8 +33,7 @@ TEST(HostileObj, SaysFileAndLine) {
     const auto error = [](const std::string& text) { return error_of(read_obj, text, "a.obj"); };
     const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     EXPECT_EQ(error(v + "f 1 2 4\n"), "a.obj:4: the face uses vertex 4, but the file has only 3");
-    EXPECT_EQ(error(v + "f 1 2 3\nf 1 2 -4\n"),
-              "a.obj:5: the face uses vertex -4, which does not exist");
+    EXPECT_EQ(error(v + "f 1 2 3\nf 1 2 -4\n"), "a.obj:5: the face uses vertex -4, which does not exist");
     EXPECT_THAT(error(v + "f 0 1 2\n"), StartsWith("a.obj:4: the face uses vertex 0"));
     EXPECT_THAT(error(v + "f 1 2 99999999999999999999\n"), StartsWith("a.obj:4: "));
     EXPECT_THAT(error(v + "f 1 2 9223372036854775807\n"), StartsWith("a.obj:4: "));
@@ -58,44 +57,33 @@ TEST(HostilePly, SaysFileAndLineOrRow) {
         "property float z\nelement face 1\nproperty list uchar int vertex_indices\n";
     const std::string body = "0 0 0\n1 0 0\n0 1 0\n";
     EXPECT_THAT(error("solid"), HasSubstr("a.ply:1: is not a PLY file"));
-    EXPECT_THAT(
-        error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-              "property float z\nproperty uchar red\nproperty uchar green\n"
-              "property uchar blue\nelement vertex 2\nproperty float x\nproperty float y\n"
-              "property float z\nend_header\n0 0 0 1 2 3\n1 0 0\nnan 1 0\n"),
-        HasSubstr("a.ply:10: the element 'vertex' is there twice"));
+    EXPECT_THAT(error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                      "property float z\nproperty uchar red\nproperty uchar green\n"
+                      "property uchar blue\nelement vertex 2\nproperty float x\nproperty float y\n"
+                      "property float z\nend_header\n0 0 0 1 2 3\n1 0 0\nnan 1 0\n"),
+                HasSubstr("a.ply:10: the element 'vertex' is there twice"));
     EXPECT_THAT(error(""), HasSubstr("is not a PLY file"));
     EXPECT_THAT(error(head + body + "3 0 1 2\n"), HasSubstr("is not a PLY keyword"));
     EXPECT_THAT(error(head), StartsWith("a.ply:9: the head has no end_header line"));
-    EXPECT_THAT(error("ply\nproperty float x\n"),
-                StartsWith("a.ply:2: a property stands before any element"));
-    EXPECT_THAT(error("ply\nelement vertex -5\n"),
-                StartsWith("a.ply:2: an element cannot have -5 rows"));
+    EXPECT_THAT(error("ply\nproperty float x\n"), StartsWith("a.ply:2: a property stands before any element"));
+    EXPECT_THAT(error("ply\nelement vertex -5\n"), StartsWith("a.ply:2: an element cannot have -5 rows"));
     EXPECT_THAT(error("ply\nelement vertex nan\n"), StartsWith("a.ply:2: a whole number"));
-    EXPECT_THAT(error("ply\nformat ascii 1.0\nelement vertex 1\nproperty string x\n"),
-                StartsWith("a.ply:4: 'string'"));
-    EXPECT_THAT(error("ply\nend_header\n"),
-                StartsWith("a.ply:2: the head does not say its format"));
+    EXPECT_THAT(error("ply\nformat ascii 1.0\nelement vertex 1\nproperty string x\n"), StartsWith("a.ply:4: 'string'"));
+    EXPECT_THAT(error("ply\nend_header\n"), StartsWith("a.ply:2: the head does not say its format"));
     EXPECT_EQ(error(head + "end_header\n" + body + "3 0 1 3\n"),
               "a.ply:13: the face uses vertex 3, but the file has only 3 (counted from 0)");
-    EXPECT_THAT(error(head + "end_header\n" + body + "3 0 1 -1\n"),
-                StartsWith("a.ply:13: the face uses vertex -1"));
-    EXPECT_THAT(error(head + "end_header\n" + body + "3 0 1 nan\n"),
-                StartsWith("a.ply:13: the face uses vertex"));
-    EXPECT_THAT(error(head + "end_header\n" + body + "3 0 1 0.5\n"),
-                StartsWith("a.ply:13: the face uses vertex"));
+    EXPECT_THAT(error(head + "end_header\n" + body + "3 0 1 -1\n"), StartsWith("a.ply:13: the face uses vertex -1"));
+    EXPECT_THAT(error(head + "end_header\n" + body + "3 0 1 nan\n"), StartsWith("a.ply:13: the face uses vertex"));
+    EXPECT_THAT(error(head + "end_header\n" + body + "3 0 1 0.5\n"), StartsWith("a.ply:13: the face uses vertex"));
     EXPECT_THAT(error(head + "end_header\n" + body + "-3 0 1 2\n"), HasSubstr("impossible length"));
-    EXPECT_THAT(error(head + "end_header\n" + body + "300 0 1 2\n"),
-                HasSubstr("longer than the rest of the file"));
+    EXPECT_THAT(error(head + "end_header\n" + body + "300 0 1 2\n"), HasSubstr("longer than the rest of the file"));
     EXPECT_THAT(error(head + "end_header\n" + body + "3 0 1\n"), HasSubstr("cut off"));
     EXPECT_THAT(error(head + "end_header\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n"),
                 StartsWith("a.ply:11: the row of element 'vertex'"));
-    EXPECT_THAT(error(head + "end_header\n0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n"),
-                StartsWith("a.ply:11: "));
+    EXPECT_THAT(error(head + "end_header\n0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n"), StartsWith("a.ply:11: "));
     std::string lying = head;
     lying.replace(lying.find("vertex 3"), 8, "vertex 1000000000");
-    EXPECT_THAT(error(lying + "end_header\n" + body),
-                StartsWith("a.ply:3: element 'vertex' promises 1000000000 rows"));
+    EXPECT_THAT(error(lying + "end_header\n" + body), StartsWith("a.ply:3: element 'vertex' promises 1000000000 rows"));
     lying.replace(lying.find("ascii"), 5, "binary_little_endian");
     EXPECT_THAT(error(lying + "end_header\n" + body), HasSubstr("promises 1000000000 rows"));
     lying.replace(lying.find("1000000000"), 10, "99999999999999999999999");
@@ -108,8 +96,8 @@ TEST(HostilePly, SaysFileAndLineOrRow) {
 
 TEST(HostilePly, EveryPrefixOfABinaryFileIsAnError) {
     PolygonSoup torus = make_torus(5, 4);
-    const std::filesystem::path path = std::filesystem::temp_directory_path() /
-                                       ("tuft_prefix_" + std::to_string(::getpid()) + ".ply");
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("tuft_prefix_" + std::to_string(::getpid()) + ".ply");
     write_ply(path, torus);
     std::ifstream file(path, std::ios::binary);
     const std::string whole((std::istreambuf_iterator<char>(file)), {});
@@ -132,12 +120,9 @@ TEST(HostileStl, SaysWhatIsMissing) {
     EXPECT_THAT(error(std::string(84, '\0')), HasSubstr("no vertices and no faces"));
     EXPECT_THAT(error("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"),
                 StartsWith("a.stl:6: the file ends inside a solid"));
-    EXPECT_THAT(error("solid a\nvertex 0 0 0\n"),
-                StartsWith("a.stl:2: a vertex stands outside of a loop"));
-    EXPECT_THAT(error("solid a\nouter loop\nvertex 0 0 x\n"),
-                StartsWith("a.stl:3: 'x' is not a number"));
-    EXPECT_THAT(error("solid a\nouter loop\nvertex 0 0\n"),
-                StartsWith("a.stl:3: the line ends where a coordinate"));
+    EXPECT_THAT(error("solid a\nvertex 0 0 0\n"), StartsWith("a.stl:2: a vertex stands outside of a loop"));
+    EXPECT_THAT(error("solid a\nouter loop\nvertex 0 0 x\n"), StartsWith("a.stl:3: 'x' is not a number"));
+    EXPECT_THAT(error("solid a\nouter loop\nvertex 0 0\n"), StartsWith("a.stl:3: the line ends where a coordinate"));
     EXPECT_THAT(error("solid a\nendloop\n"), StartsWith("a.stl:2: endloop without"));
     EXPECT_THAT(error("solid a\nhello\n"), StartsWith("a.stl:2: 'hello' is not an STL keyword"));
     EXPECT_THAT(error("solid a\nendsolid a\n"), HasSubstr("no vertices and no faces"));
@@ -145,17 +130,12 @@ TEST(HostileStl, SaysWhatIsMissing) {
 
 TEST(HostileOff, SaysFileAndLine) {
     const auto error = [](const std::string& text) { return error_of(read_off, text, "a.off"); };
-    EXPECT_THAT(error("OFF\n400000000 1 0\n0 0 0\n"),
-                StartsWith("a.off:2: promises 400000000 vertices"));
+    EXPECT_THAT(error("OFF\n400000000 1 0\n0 0 0\n"), StartsWith("a.off:2: promises 400000000 vertices"));
     EXPECT_THAT(error("OFF\n3 -1 0\n0 0 0\n"), StartsWith("a.off:2: promises"));
-    EXPECT_THAT(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
-                StartsWith("a.off:6: the face uses vertex 3"));
-    EXPECT_THAT(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n900 0 1 2\n"),
-                StartsWith("a.off:6: a face cannot have 900"));
-    EXPECT_THAT(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"),
-                StartsWith("a.off:6: the line ends"));
-    EXPECT_THAT(error("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
-                HasSubstr("ends among its faces"));
+    EXPECT_THAT(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), StartsWith("a.off:6: the face uses vertex 3"));
+    EXPECT_THAT(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n900 0 1 2\n"), StartsWith("a.off:6: a face cannot have 900"));
+    EXPECT_THAT(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"), StartsWith("a.off:6: the line ends"));
+    EXPECT_THAT(error("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), HasSubstr("ends among its faces"));
     EXPECT_THAT(error("OFF\n3 0 0\n0 0 0\n1 0 0\n"), HasSubstr("cut off"));
     EXPECT_THAT(error("OFF\n"), HasSubstr("ends before its counts"));
     EXPECT_THAT(error("4OFF\n1 1 1\n"), HasSubstr("is not a three-dimensional OFF head"));
@@ -167,8 +147,7 @@ TEST(HostilePolygon, IntricateOnesEndInTime) {
     // A comb of 60,000 teeth: ear clipping alone would take some 4e9 steps.
     std::string text;
     const int n = 120000;
-    for (int i = 0; i < n; ++i)
-        text += "v " + std::to_string(i) + " " + std::to_string(i % 2 ? 1000 : 1) + " 0\n";
+    for (int i = 0; i < n; ++i) text += "v " + std::to_string(i) + " " + std::to_string(i % 2 ? 1000 : 1) + " 0\n";
     text += "v " + std::to_string(n) + " 0 0\nv 0 0 0\nf";
     for (int i = 1; i <= n + 2; ++i) text += " " + std::to_string(i);
     const Surface s = build_surface(read_obj(bytes_of(text), "comb.obj"));
@@ -182,30 +161,27 @@ std::vector<std::pair<Reader, std::string>> samples() {
         "o a\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nv 0 0 1 1 1 1\nvt 0 0\nvt 1 0\nvt 0 1\n"
         "g x\nf 1/1 3/3 2/2\nf 1 2 4\nusemtl m\nf 2 3 4\nf -4 -1 -2\nf 1 2 3 4\n";
     out.emplace_back(read_obj, obj);
-    out.emplace_back(
-        read_ply,
-        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
-        "float z\n"
-        "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 4\n"
-        "property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
-        "0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n0 0 1 1 1 1\n3 0 2 1 6 0 0 0 1 1 0\n3 0 1 3 0\n"
-        "3 1 2 3 0\n3 0 3 2 0\n");
+    out.emplace_back(read_ply,
+                     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+                     "float z\n"
+                     "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 4\n"
+                     "property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
+                     "0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n0 0 1 1 1 1\n3 0 2 1 6 0 0 0 1 1 0\n3 0 1 3 0\n"
+                     "3 1 2 3 0\n3 0 3 2 0\n");
     PolygonSoup tetra;
     tetra.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (const auto& f : {std::vector<std::uint32_t>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}})
-        add_polygon(tetra, f);
+    for (const auto& f : {std::vector<std::uint32_t>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}) add_polygon(tetra, f);
     set_uvs_to_position(tetra);
-    const std::filesystem::path path = std::filesystem::temp_directory_path() /
-                                       ("tuft_fuzz_" + std::to_string(::getpid()) + ".ply");
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("tuft_fuzz_" + std::to_string(::getpid()) + ".ply");
     write_ply(path, tetra);
     std::ifstream file(path, std::ios::binary);
     out.emplace_back(read_ply, std::string((std::istreambuf_iterator<char>(file)), {}));
     std::filesystem::remove(path);
-    out.emplace_back(
-        read_ply,
-        "ply\nformat ascii 1.0\nelement vertex 5\nproperty double x\nproperty double y\n"
-        "property double z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
-        "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 1\n9 0 1 2 3 -1 2 3 4 4\n");
+    out.emplace_back(read_ply,
+                     "ply\nformat ascii 1.0\nelement vertex 5\nproperty double x\nproperty double y\n"
+                     "property double z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+                     "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 1\n9 0 1 2 3 -1 2 3 4 4\n");
     std::string stl(80, ' ');
     stl += std::string("\4\0\0\0", 4);
     std::string text_stl = "solid a\n";
@@ -218,8 +194,7 @@ std::vector<std::pair<Reader, std::string>> samples() {
                 const auto value = static_cast<float>(p[axis]);
                 stl.append(reinterpret_cast<const char*>(&value), 4);
             }
-            text_stl += "vertex " + std::to_string(p.x) + " " + std::to_string(p.y) + " " +
-                        std::to_string(p.z) + "\n";
+            text_stl += "vertex " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
         }
         stl.append(2, '\0');
         text_stl += "endloop\nendfacet\n";
@@ -231,8 +206,7 @@ std::vector<std::pair<Reader, std::string>> samples() {
                      "0 0 1 9 9 9 9 0 0\n3 0 2 1\n3 0 1 3\n3 1 2 3 1 0 0\n3 0 3 2\n");
     std::string off = "OFF BINARY\n";
     const auto put = [&](std::uint32_t bits) {
-        for (int shift = 24; shift >= 0; shift -= 8)
-            off.push_back(static_cast<char>(bits >> shift & 255));
+        for (int shift = 24; shift >= 0; shift -= 8) off.push_back(static_cast<char>(bits >> shift & 255));
     };
     for (const std::uint32_t n : {4u, 4u, 6u}) put(n);
     for (const Vec3& p : tetra.points)
@@ -283,9 +257,7 @@ TEST(Fuzz, DamagedFilesGiveAnErrorOrASoundSurface) {
     const auto files = samples();
     std::size_t read = 0, refused = 0;
     for (std::size_t f = 0; f < files.size(); ++f) {
-        EXPECT_EQ(build_surface(files[f].first(bytes_of(files[f].second), "whole")).report.closed,
-                  f != 3)
-            << f;
+        EXPECT_EQ(build_surface(files[f].first(bytes_of(files[f].second), "whole")).report.closed, f != 3) << f;
         for (std::uint64_t seed = 0; seed < 2000; ++seed) {
             Random random(hash_bits(f, seed));
             const std::string bytes = damaged(files[f].second, random);

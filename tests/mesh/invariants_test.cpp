@@ -30,8 +30,7 @@ class Vandal {
     std::uint32_t& corner() { return soup_.corners[below(soup_.corners.size())]; }
     std::vector<std::uint32_t> polygon() {
         const std::size_t p = below(soup_.n_polygons());
-        return {soup_.corners.begin() + soup_.polygon_start[p],
-                soup_.corners.begin() + soup_.polygon_start[p + 1]};
+        return {soup_.corners.begin() + soup_.polygon_start[p], soup_.corners.begin() + soup_.polygon_start[p + 1]};
     }
 
     void damage() {
@@ -77,9 +76,9 @@ class Vandal {
                     copy.push_back(static_cast<std::uint32_t>(soup_.points.size()));
                     soup_.points.push_back(soup_.points[c]);
                 }
-                std::copy(copy.begin(), copy.end(),
-                          soup_.corners.end() - static_cast<std::ptrdiff_t>(
-                                                    std::min(copy.size(), soup_.corners.size())));
+                std::copy(
+                    copy.begin(), copy.end(),
+                    soup_.corners.end() - static_cast<std::ptrdiff_t>(std::min(copy.size(), soup_.corners.size())));
                 break;
             }
             case 10: {  // a large polygon through anything
@@ -145,8 +144,7 @@ TEST(BadMeshes, AHundredBecomeSound) {
 TEST(BadMeshes, RepairIsIdempotent) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(seed);
-        const Surface once =
-            build_surface(Vandal(base(seed), seed).run(1 + seed), {.metres_per_unit = 1});
+        const Surface once = build_surface(Vandal(base(seed), seed).run(1 + seed), {.metres_per_unit = 1});
         // A flip beside a split edge may lay a triangle onto another one of other vertices.
         if (once.report.degenerate_faces_repaired) continue;
         PolygonSoup soup;

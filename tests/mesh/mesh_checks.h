@@ -28,12 +28,10 @@ inline void add_polygon(PolygonSoup& soup, const std::vector<std::uint32_t>& cor
 /// bit 1, z from bit 2 of k.
 inline void add_box(PolygonSoup& soup, const Vec3& lo, const Vec3& size) {
     const auto first = static_cast<std::uint32_t>(soup.points.size());
-    for (int k = 0; k < 8; ++k)
-        soup.points.push_back(lo + size * Vec3(k & 1, k >> 1 & 1, k >> 2 & 1));
+    for (int k = 0; k < 8; ++k) soup.points.push_back(lo + size * Vec3(k & 1, k >> 1 & 1, k >> 2 & 1));
     constexpr std::uint32_t kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                             {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-    for (const auto& q : kQuads)
-        add_polygon(soup, {first + q[0], first + q[1], first + q[2], first + q[3]});
+    for (const auto& q : kQuads) add_polygon(soup, {first + q[0], first + q[1], first + q[2], first + q[3]});
 }
 
 inline PolygonSoup make_box(const Vec3& lo = Vec3(0), const Vec3& size = Vec3(1)) {
@@ -78,8 +76,7 @@ inline PolygonSoup make_torus(std::uint32_t nu, std::uint32_t nv) {
 /// is found out.
 inline void set_uvs_to_position(PolygonSoup& soup) {
     soup.corner_uvs.clear();
-    for (const std::uint32_t c : soup.corners)
-        soup.corner_uvs.emplace_back(soup.points[c].x, soup.points[c].y);
+    for (const std::uint32_t c : soup.corners) soup.corner_uvs.emplace_back(soup.points[c].x, soup.points[c].y);
 }
 
 inline double signed_volume(const TriangleMesh& mesh) {
@@ -119,8 +116,7 @@ inline std::vector<std::string> broken_promises(const Surface& surface) {
             const Vec3f normal = m.corner_normals[3 * t + k];
             require(std::abs(glm::length(normal) - 1) < 1e-5, "normal is not of unit length");
         }
-        const Vec3 area =
-            glm::cross(m.position(t, 1) - m.position(t, 0), m.position(t, 2) - m.position(t, 0));
+        const Vec3 area = glm::cross(m.position(t, 1) - m.position(t, 0), m.position(t, 2) - m.position(t, 0));
         require(glm::length(area) > 0, "triangle " + std::to_string(t) + " has no area");
         std::sort(v.begin(), v.end());
         require(v[0] != v[1] && v[1] != v[2], "repeated corner");

@@ -54,8 +54,7 @@ void expect_unit_cube(PolygonSoup soup, const char* what, std::size_t groups = 0
     EXPECT_DOUBLE_EQ(surface_area(s.mesh), 6);
 }
 
-const std::string kObjPoints =
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n";
+const std::string kObjPoints = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n";
 const std::string kObjQuads = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -72,12 +71,10 @@ TEST(Obj, CubeInEveryDialect) {
     expect(replaced(kObjPoints + kObjQuads, "\n", "\r\n"), "CR LF");
     expect(replaced(kObjPoints + kObjQuads, "\n", "\r"), "CR");
     expect(kObjQuads + kObjPoints, "faces before their vertices");
-    expect("\xEF\xBB\xBF# made by hand\n\n" + kObjPoints + "s off\nvn 0 0 1\n" + kObjQuads,
-           "comments");
+    expect("\xEF\xBB\xBF# made by hand\n\n" + kObjPoints + "s off\nvn 0 0 1\n" + kObjQuads, "comments");
     expect(replaced(replaced(kObjPoints + kObjQuads, "v ", "V  \t"), "f ", "F "), "upper case");
     expect(kObjPoints + replaced(kObjQuads, "\n", " # a face\n"), "inline comments");
-    expect(kObjPoints +
-               "f 1 3 \\\n4 2\nf 5 6 8\\\n 7\nf 1 2 6 5\nf 3 \\\r\n 7 8 4\nf 1 5 7 3\nf 2 4 8 6",
+    expect(kObjPoints + "f 1 3 \\\n4 2\nf 5 6 8\\\n 7\nf 1 2 6 5\nf 3 \\\r\n 7 8 4\nf 1 5 7 3\nf 2 4 8 6",
            "continued lines, no line end at the end");
     expect(kObjPoints +
                "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf 1//1 2//1 6//1 5//1\nf 3 7 8 4\n"
@@ -89,9 +86,8 @@ TEST(Obj, CubeInEveryDialect) {
 
 TEST(Obj, GroupsObjectsAndMaterialsAreKept) {
     const PolygonSoup soup =
-        read_obj(bytes_of(kObjPoints +
-                          "f 1 3 4\no Car\nf 1 4 2\ng Door\nusemtl Red Paint # fine\nf 5 6 8 7\n"
-                          "usemtl\nf 1 2 6 5\n"),
+        read_obj(bytes_of(kObjPoints + "f 1 3 4\no Car\nf 1 4 2\ng Door\nusemtl Red Paint # fine\nf 5 6 8 7\n"
+                                       "usemtl\nf 1 2 6 5\n"),
                  "a.obj");
     EXPECT_THAT(soup.group_names, ElementsAre("Car", "Car / Door / Red Paint", "Car / Door", ""));
     EXPECT_THAT(soup.polygon_groups, ElementsAre(3u, 0u, 1u, 2u));
@@ -103,9 +99,9 @@ TEST(Obj, GroupsObjectsAndMaterialsAreKept) {
 }
 
 TEST(Obj, ThereIsNoGroupWithoutFacesAndThoseOfTheFileAreReported) {
-    const PolygonSoup soup = read_obj(bytes_of(kObjPoints + "o Empty\no Car\ng default\ng Door\nusemtl Red\n" + kObjQuads +
-                                               "o Tail\ng Lamp\n"),
-                                      "a.obj");
+    const PolygonSoup soup = read_obj(
+        bytes_of(kObjPoints + "o Empty\no Car\ng default\ng Door\nusemtl Red\n" + kObjQuads + "o Tail\ng Lamp\n"),
+        "a.obj");
     EXPECT_THAT(soup.group_names, ElementsAre("Car / Door / Red")) << "o, g and usemtl name one group together";
     EXPECT_THAT(soup.warnings, ElementsAre("3 groups have no faces and are left out: 'Empty', 'Tail', 'Lamp'"));
 }
@@ -116,8 +112,7 @@ TEST(Obj, VertexColoursAsRealsOrBytes) {
     ASSERT_EQ(reals.point_colours.size(), 3u);
     EXPECT_THAT(reals.point_colours[0], ElementsAre(255, 128, 0, 255));
     EXPECT_THAT(reals.point_colours[1], ElementsAre(255, 255, 255, 255));
-    const PolygonSoup whole =
-        read_obj(bytes_of("v 0 0 0 255 128 0\nv 1 0 0 0 0 0\nv 0 1 0 0 1 0\nf 1 2 3\n"), "a.obj");
+    const PolygonSoup whole = read_obj(bytes_of("v 0 0 0 255 128 0\nv 1 0 0 0 0 0\nv 0 1 0 0 1 0\nf 1 2 3\n"), "a.obj");
     EXPECT_THAT(whole.point_colours[0], ElementsAre(255, 128, 0, 255));
 }
 
@@ -125,8 +120,7 @@ TEST(Obj, VertexColoursAsRealsOrBytes) {
 TEST(Obj, TextureCoordinatesStayOnTheirCorners) {
     std::string text = kObjPoints;
     for (int v = 0; v <= 1; ++v)
-        for (int u = 0; u <= 1; ++u)
-            text += "vt " + std::to_string(u) + " " + std::to_string(v) + "\n";
+        for (int u = 0; u <= 1; ++u) text += "vt " + std::to_string(u) + " " + std::to_string(v) + "\n";
     // Top and bottom: the coordinate equals x and y.
     text += "f 1/1 3/3 4/4 2/2\nf 5/-4/1 6/-3/1 8/-1/1 7/-2/1\n";
     const Surface s = build_surface(read_obj(bytes_of(text), "a.obj"), {.metres_per_unit = 1});
@@ -138,22 +132,21 @@ TEST(Obj, TextureCoordinatesStayOnTheirCorners) {
 }
 
 TEST(Obj, FacesWithoutTextureCoordinatesAmongOthersAreTold) {
-    const PolygonSoup soup = read_obj(
-        bytes_of(kObjPoints + "vt 0.5 0.25\nf 1 3 4\nf 1/1 4/1 2/1\nf 5/1 6/9 8/1\n"), "a.obj");
+    const PolygonSoup soup =
+        read_obj(bytes_of(kObjPoints + "vt 0.5 0.25\nf 1 3 4\nf 1/1 4/1 2/1\nf 5/1 6/9 8/1\n"), "a.obj");
     ASSERT_EQ(soup.corner_uvs.size(), 9u);
     EXPECT_EQ(soup.corner_uvs[0], Vec2f(0));
     EXPECT_EQ(soup.corner_uvs[3], Vec2f(0.5, 0.25));
     EXPECT_EQ(soup.corner_uvs[6], Vec2f(0));
-    EXPECT_THAT(soup.warnings,
-                ElementsAre("1 faces use texture coordinates that do not exist (line 12)",
-                            "2 faces have no texture coordinates while others do"));
+    EXPECT_THAT(soup.warnings, ElementsAre("1 faces use texture coordinates that do not exist (line 12)",
+                                           "2 faces have no texture coordinates while others do"));
 }
 
 TEST(Obj, RowsThatAreNotFiniteAreDroppedByLine) {
-    const PolygonSoup soup = read_obj(
-        bytes_of("v 0 0 0\nv nan 0 0\nv 1 0 0\nv 0 1 0\nv 0 -inf 0\nv 1 1 1.#QNAN\nv 1e999 0 0\n"
-                 "v 1 1e-999 1\nf 1 2 3\nf 1 3 4\nf 5 1 3 4\nf 3 8 4\n"),
-        "a.obj");
+    const PolygonSoup soup =
+        read_obj(bytes_of("v 0 0 0\nv nan 0 0\nv 1 0 0\nv 0 1 0\nv 0 -inf 0\nv 1 1 1.#QNAN\nv 1e999 0 0\n"
+                          "v 1 1e-999 1\nf 1 2 3\nf 1 3 4\nf 5 1 3 4\nf 3 8 4\n"),
+                 "a.obj");
     EXPECT_EQ(soup.points.size(), 4u);
     EXPECT_THAT(soup.corners, ElementsAre(0, 1, 2, 1, 3, 2));
     EXPECT_EQ(soup.points[3], Vec3(1, 0, 1));
@@ -178,11 +171,7 @@ std::vector<char> binary_ply_cube(bool big_endian, const std::string& line_end) 
                         "\n", line_end),
                big_endian);
     for (const Vec3& p : box.points)
-        out.put(p.x)
-            .put(static_cast<std::int16_t>(p.y))
-            .put(std::uint8_t{1})
-            .put(7.5f)
-            .put(static_cast<float>(p.z));
+        out.put(p.x).put(static_cast<std::int16_t>(p.y)).put(std::uint8_t{1}).put(7.5f).put(static_cast<float>(p.z));
     out.put(std::int32_t{10}).put(std::int32_t{2}).put(std::int16_t{1}).put(std::int16_t{2});
     for (std::size_t p = 0; p < 6; ++p) {
         out.put(std::uint8_t{9}).put(std::uint16_t{4});
@@ -196,8 +185,7 @@ TEST(Ply, CubeInEveryDialect) {
     expect_unit_cube(read_ply(bytes_of(replaced(kPlyText, "\n", "\r\n")), "a.ply"), "CR LF");
     expect_unit_cube(read_ply(bytes_of(replaced(kPlyText, "\n", "\r")), "a.ply"), "CR");
     expect_unit_cube(
-        read_ply(bytes_of(replaced(replaced(kPlyText, "float", "FLOAT32"), "element", "ELEMENT")),
-                 "a.ply"),
+        read_ply(bytes_of(replaced(replaced(kPlyText, "float", "FLOAT32"), "element", "ELEMENT")), "a.ply"),
         "upper case");
     for (const bool big_endian : {false, true})
         for (const char* line_end : {"\n", "\r\n", "\r"})
@@ -221,22 +209,19 @@ TEST(Ply, TextureCoordinatesPerVertexAndPerFace) {
         "ply\nformat ascii 1.0\ncomment TextureFile a.png\ncomment TextureFile b.png\n"
         "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
     for (const auto& [u, v] : {std::pair{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}) {
-        const PolygonSoup soup = read_ply(
-            bytes_of(head + "property float " + u + "\nproperty float " + v +
-                     "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                     "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 1 2 3 0\n"),
-            "a.ply");
-        EXPECT_THAT(soup.corner_uvs,
-                    ElementsAre(Vec2f(1, 0), Vec2f(1, 1), Vec2f(0, 1), Vec2f(0, 0)));
+        const PolygonSoup soup =
+            read_ply(bytes_of(head + "property float " + u + "\nproperty float " + v +
+                              "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                              "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 1 2 3 0\n"),
+                     "a.ply");
+        EXPECT_THAT(soup.corner_uvs, ElementsAre(Vec2f(1, 0), Vec2f(1, 1), Vec2f(0, 1), Vec2f(0, 0)));
     }
-    const PolygonSoup soup = read_ply(
-        bytes_of(head +
-                 "element face 2\nproperty list uchar int vertex_indices\n"
-                 "property list uchar float texcoord\nproperty int texnumber\nend_header\n"
-                 "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 6 0 0 1 0 1 nan 1\n3 0 2 3 4 1 1 1 1 0\n"),
-        "a.ply");
-    EXPECT_THAT(soup.corner_uvs,
-                ElementsAre(Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 0), Vec2f(0), Vec2f(0), Vec2f(0)));
+    const PolygonSoup soup =
+        read_ply(bytes_of(head + "element face 2\nproperty list uchar int vertex_indices\n"
+                                 "property list uchar float texcoord\nproperty int texnumber\nend_header\n"
+                                 "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 6 0 0 1 0 1 nan 1\n3 0 2 3 4 1 1 1 1 0\n"),
+                 "a.ply");
+    EXPECT_THAT(soup.corner_uvs, ElementsAre(Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 0), Vec2f(0), Vec2f(0), Vec2f(0)));
     EXPECT_THAT(soup.polygon_groups, ElementsAre(0u, 1u));
     EXPECT_THAT(soup.group_names, ElementsAre("b.png", "a.png"));
     EXPECT_EQ(soup.warnings.size(), 3u);
@@ -245,16 +230,15 @@ TEST(Ply, TextureCoordinatesPerVertexAndPerFace) {
 TEST(Ply, ColoursOfAllTypes) {
     const auto colour = [](const std::string& type, const std::string& row) {
         const std::string p = "property " + type + " ";
-        return read_ply(
-                   bytes_of("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty "
-                            "float y\n"
-                            "property float z\n" +
-                            p + "red\n" + p + "green\n" + p +
-                            "blue\n"
-                            "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                            "0 0 0 " +
-                            row + "\n1 0 0 " + row + "\n0 1 0 " + row + "\n3 0 1 2\n"),
-                   "a.ply")
+        return read_ply(bytes_of("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty "
+                                 "float y\n"
+                                 "property float z\n" +
+                                 p + "red\n" + p + "green\n" + p +
+                                 "blue\n"
+                                 "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                                 "0 0 0 " +
+                                 row + "\n1 0 0 " + row + "\n0 1 0 " + row + "\n3 0 1 2\n"),
+                        "a.ply")
             .point_colours[2];
     };
     EXPECT_THAT(colour("uchar", "255 128 0"), ElementsAre(255, 128, 0, 255));
@@ -263,8 +247,7 @@ TEST(Ply, ColoursOfAllTypes) {
 }
 
 TEST(Ply, RowsThatAreNotFiniteAreToldByLineOrRow) {
-    const PolygonSoup text =
-        read_ply(bytes_of(replaced(kPlyText, "0 0 1\n1 0 1", "0 0 nan\n1 0 1")), "a.ply");
+    const PolygonSoup text = read_ply(bytes_of(replaced(kPlyText, "0 0 1\n1 0 1", "0 0 nan\n1 0 1")), "a.ply");
     ASSERT_EQ(text.warnings.size(), 1u);
     EXPECT_THAT(text.warnings[0], HasSubstr("(line 16), and with them 3 faces"));
     std::vector<char> bytes = binary_ply_cube(false, "\n");
@@ -299,8 +282,7 @@ std::string text_stl(const PolygonSoup& soup, const std::string& name) {
         out += " facet normal 0 0 0\n  outer loop\n";
         for (int k = 0; k < 3; ++k) {
             const Vec3 p = s.mesh.position(t, k);
-            out += "   vertex " + std::to_string(p.x) + " " + std::to_string(p.y) + " " +
-                   std::to_string(p.z) + "\n";
+            out += "   vertex " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
         }
         out += "  endloop\n endfacet\n";
     }
@@ -309,8 +291,7 @@ std::string text_stl(const PolygonSoup& soup, const std::string& name) {
 
 TEST(Stl, CubeInEveryDialect) {
     expect_unit_cube(read_stl(binary_stl(make_box(), "made by hand"), "a.stl"), "binary");
-    expect_unit_cube(read_stl(binary_stl(make_box(), "solid in name only"), "a.stl"),
-                     "binary that says solid");
+    expect_unit_cube(read_stl(binary_stl(make_box(), "solid in name only"), "a.stl"), "binary that says solid");
     const std::string text = text_stl(make_box(), "cube");
     expect_unit_cube(read_stl(bytes_of(text), "a.stl"), "text");
     expect_unit_cube(read_stl(bytes_of(replaced(text, "\n", "\r\n")), "a.stl"), "CR LF");
@@ -320,8 +301,8 @@ TEST(Stl, CubeInEveryDialect) {
 }
 
 TEST(Stl, SolidsOfATextFileAreGroups) {
-    const PolygonSoup soup = read_stl(
-        bytes_of(text_stl(make_box(), "left") + text_stl(make_box(Vec3(3, 0, 0)), "")), "a.stl");
+    const PolygonSoup soup =
+        read_stl(bytes_of(text_stl(make_box(), "left") + text_stl(make_box(Vec3(3, 0, 0)), "")), "a.stl");
     EXPECT_THAT(soup.group_names, ElementsAre("left", "solid 2"));
     const Surface s = build_surface(soup);
     EXPECT_EQ(s.report.components, 2u);
@@ -373,9 +354,9 @@ TEST(Stl, NoGroupsWhereFacetsHaveOneColourOrAnyNumberOfThem) {
 TEST(Ply, ColoursOfFacesAreGroups) {
     const auto ply = [](const std::string& type, const std::string& red, const std::string& blue) {
         return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-               "element face 2\nproperty list uchar int vertex_indices\nproperty " + type + " red\nproperty " + type +
-               " green\nproperty " + type + " blue\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 " + red +
-               "\n3 0 2 3 " + blue + "\n";
+               "element face 2\nproperty list uchar int vertex_indices\nproperty " +
+               type + " red\nproperty " + type + " green\nproperty " + type +
+               " blue\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 " + red + "\n3 0 2 3 " + blue + "\n";
     };
     for (const std::string& text : {ply("uchar", "255 0 0", "0 0 255"), ply("float", "1 0 0", "0 0 1.5"),
                                     ply("ushort", "65535 0 0", "0 0 65535")}) {
@@ -401,8 +382,7 @@ TEST(Off, ColoursOfFacesAreGroups) {
 TEST(Stl, OddLengthsAreTold) {
     std::vector<char> bytes = binary_stl(make_box(), "");
     bytes.push_back('x');
-    EXPECT_THAT(read_stl(bytes, "a.stl").warnings,
-                ElementsAre("1 bytes behind the last triangle are not read"));
+    EXPECT_THAT(read_stl(bytes, "a.stl").warnings, ElementsAre("1 bytes behind the last triangle are not read"));
     bytes.pop_back();
     std::memset(bytes.data() + 80, 0, 4);
     const PolygonSoup soup = read_stl(bytes, "a.stl");
@@ -459,18 +439,17 @@ TEST(Off, ColoursOfBinaryFacesAreGroups) {
 
 TEST(Off, ColoursNormalsAndTextureCoordinates) {
     const std::string tail = "3 0 1 2\n";
-    const PolygonSoup bytes = read_off(
-        bytes_of("COFF\n3 1 0\n0 0 0 255 128 0 64\n1 0 0 0 0 0 255\n0 1 0 1 1 1 255\n" + tail),
-        "a.off");
+    const PolygonSoup bytes =
+        read_off(bytes_of("COFF\n3 1 0\n0 0 0 255 128 0 64\n1 0 0 0 0 0 255\n0 1 0 1 1 1 255\n" + tail), "a.off");
     EXPECT_THAT(bytes.point_colours[0], ElementsAre(255, 128, 0, 64));
-    const PolygonSoup reals = read_off(
-        bytes_of("COFF\n3 1 0\n0 0 0 1.0 0.5 0\n1 0 0 0 0 0\n0 1 0 1 1 1\n" + tail), "a.off");
+    const PolygonSoup reals =
+        read_off(bytes_of("COFF\n3 1 0\n0 0 0 1.0 0.5 0\n1 0 0 0 0 0\n0 1 0 1 1 1\n" + tail), "a.off");
     EXPECT_THAT(reals.point_colours[0], ElementsAre(255, 128, 0, 255));
-    const PolygonSoup all = read_off(
-        bytes_of("STCNOFF\n3 1 0\n0 0 0 0 0 1 9 9 9 255 0.5 0.25\n1 0 0 0 0 1 9 9 9 255 1 0\n"
-                 "0 1 0 0 0 1 9 9 9 255 0 1\n" +
-                 tail),
-        "a.off");
+    const PolygonSoup all =
+        read_off(bytes_of("STCNOFF\n3 1 0\n0 0 0 0 0 1 9 9 9 255 0.5 0.25\n1 0 0 0 0 1 9 9 9 255 1 0\n"
+                          "0 1 0 0 0 1 9 9 9 255 0 1\n" +
+                          tail),
+                 "a.off");
     EXPECT_THAT(all.corner_uvs, ElementsAre(Vec2f(0.5, 0.25), Vec2f(1, 0), Vec2f(0, 1)));
     EXPECT_THAT(all.point_colours[0], ElementsAre(9, 9, 9, 255));
     const PolygonSoup normals =
@@ -489,7 +468,7 @@ class PolygonFiles : public ::testing::Test {
 TEST_F(PolygonFiles, WrittenPlyReadsBackTheSame) {
     PolygonSoup soup = make_torus(12, 7);
     for (Vec3& p : soup.points) p = glm::round(p * 1024.0) / 1024.0;  // the file holds floats
-    soup.points.emplace_back(1, 2, 3);  // used by no face, kept all the same
+    soup.points.emplace_back(1, 2, 3);                                // used by no face, kept all the same
     for (std::size_t i = 0; i < soup.points.size(); ++i)
         soup.point_colours.push_back({static_cast<std::uint8_t>(i), 2, 3, 200});
     set_uvs_to_position(soup);
@@ -512,8 +491,7 @@ TEST_F(PolygonFiles, PlyKeepsPolygonsWithManyCorners) {
     std::vector<std::uint32_t> ring;
     for (std::uint32_t i = 0; i < 300; ++i) {
         ring.push_back(i);
-        soup.points.push_back(
-            Vec3(Vec3f(std::cos(i * 0.0209439510239), std::sin(i * 0.0209439510239), 0)));
+        soup.points.push_back(Vec3(Vec3f(std::cos(i * 0.0209439510239), std::sin(i * 0.0209439510239), 0)));
     }
     add_polygon(soup, ring);
     write_ply(folder_ / "disk.ply", soup);
@@ -531,10 +509,8 @@ TEST_F(PolygonFiles, ExtensionChoosesTheReaderInAnyCase) {
 }
 
 TEST(ModelFiles, ShippedModelsHaveNoDefects) {
-    for (const char* name :
-         {"bowl", "plate", "vase", "sheet", "sphere", "cylinder", "torus", "thin_plate"}) {
-        const Surface s =
-            build_surface(read_polygon_file(source_folder() + "/models/" + name + ".ply"));
+    for (const char* name : {"bowl", "plate", "vase", "sheet", "sphere", "cylinder", "torus", "thin_plate"}) {
+        const Surface s = build_surface(read_polygon_file(source_folder() + "/models/" + name + ".ply"));
         EXPECT_THAT(describe_defects(s.report), ElementsAre()) << name;
         EXPECT_THAT(broken_promises(s), ElementsAre()) << name;
     }

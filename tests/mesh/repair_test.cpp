@@ -34,8 +34,7 @@ PolygonSoup loosened(const PolygonSoup& soup) {
 
 /// Polygon p the other way round.
 void reverse(PolygonSoup& soup, std::size_t p) {
-    std::reverse(soup.corners.begin() + soup.polygon_start[p],
-                 soup.corners.begin() + soup.polygon_start[p + 1]);
+    std::reverse(soup.corners.begin() + soup.polygon_start[p], soup.corners.begin() + soup.polygon_start[p + 1]);
 }
 
 TEST(Repair, SoundMeshIsLeftAlone) {
@@ -43,10 +42,8 @@ TEST(Repair, SoundMeshIsLeftAlone) {
     const Surface s = repaired(torus);
     EXPECT_THAT(describe_defects(s.report), ElementsAre());
     ASSERT_EQ(s.mesh.n_vertices(), torus.points.size());
-    for (std::size_t v = 0; v < torus.points.size(); ++v)
-        EXPECT_EQ(s.mesh.positions[v], Vec3f(torus.points[v]));
-    for (std::size_t c = 0; c < torus.corners.size(); ++c)
-        EXPECT_EQ(s.mesh.triangles[c / 3][c % 3], torus.corners[c]);
+    for (std::size_t v = 0; v < torus.points.size(); ++v) EXPECT_EQ(s.mesh.positions[v], Vec3f(torus.points[v]));
+    for (std::size_t c = 0; c < torus.corners.size(); ++c) EXPECT_EQ(s.mesh.triangles[c / 3][c % 3], torus.corners[c]);
     EXPECT_TRUE(s.report.closed);
     EXPECT_EQ(s.report.components, 1u);
     EXPECT_EQ(s.report.holes, 0u);
@@ -62,8 +59,7 @@ TEST(Repair, LengthsBecomeMetres) {
 
 TEST(Repair, WeldsVerticesAtTheSamePlace) {
     PolygonSoup box = loosened(make_box());
-    add_polygon(box,
-                {0, 1, 2});  // shares points, so it is no loose soup; and a duplicate of a half
+    add_polygon(box, {0, 1, 2});  // shares points, so it is no loose soup; and a duplicate of a half
     const Surface s = repaired(box);
     EXPECT_EQ(s.report.vertices_welded, 16u);
     EXPECT_EQ(s.mesh.n_vertices(), 8u);
@@ -83,8 +79,7 @@ TEST(Repair, ClosesHairlineCracksOfLooseTriangles) {
     PolygonSoup torus = loosened(make_torus(40, 20));
     // The diagonal is about 115, so this is 2e-7 of it: well within the tolerance of 1e-6 and
     // well above the rounding of float coordinates.
-    for (std::size_t i = 0; i < torus.points.size(); ++i)
-        torus.points[i].z += i % 3 == 0 ? 2.4e-5 : 0;
+    for (std::size_t i = 0; i < torus.points.size(); ++i) torus.points[i].z += i % 3 == 0 ? 2.4e-5 : 0;
     const Surface s = repaired(torus);
     EXPECT_GT(s.report.crack_vertices_welded, 0u);
     EXPECT_TRUE(s.report.closed);
@@ -155,14 +150,9 @@ TEST(Repair, FlipsFlatTrianglesInsteadOfOpeningASlit) {
 // long side afterwards, so its vertices must have come apart from theirs.
 TEST(Repair, FlatTriangleOnASharedEdgeIsSetApart) {
     PolygonSoup soup;
-    soup.points = {{0, 0, 0}, {0, 100, 0}, {1, 0, 0}, {0, 10, 8},
-                   {1, 2, 0}, {0, 100, 4}, {0, 10, 0}};
-    for (const auto& p : {std::vector<std::uint32_t>{0, 1, 3},
-                          {1, 2, 4},
-                          {4, 6, 5, 1},
-                          {4, 6, 5, 1, 0},
-                          {1, 2, 3},
-                          {0, 1, 2, 3}})
+    soup.points = {{0, 0, 0}, {0, 100, 0}, {1, 0, 0}, {0, 10, 8}, {1, 2, 0}, {0, 100, 4}, {0, 10, 0}};
+    for (const auto& p :
+         {std::vector<std::uint32_t>{0, 1, 3}, {1, 2, 4}, {4, 6, 5, 1}, {4, 6, 5, 1, 0}, {1, 2, 3}, {0, 1, 2, 3}})
         add_polygon(soup, p);
     repaired(soup);
 }
@@ -288,8 +278,8 @@ TEST(Repair, MoebiusStripIsCutOpen) {
     for (std::uint32_t i = 0; i < kSteps; ++i) {
         const double u = 6.283185307179586 * i / kSteps;
         for (const double w : {-1.0, 0.0, 1.0})
-            strip.points.emplace_back((5 + w * std::cos(u / 2)) * std::cos(u),
-                                      (5 + w * std::cos(u / 2)) * std::sin(u), w * std::sin(u / 2));
+            strip.points.emplace_back((5 + w * std::cos(u / 2)) * std::cos(u), (5 + w * std::cos(u / 2)) * std::sin(u),
+                                      w * std::sin(u / 2));
     }
     for (std::uint32_t i = 0; i < kSteps; ++i)
         for (std::uint32_t w = 0; w < 2; ++w) {
@@ -335,8 +325,7 @@ TEST(Repair, KeepsColoursGroupsAndTextureCoordinatesThroughEverything) {
     cubes.group_names = {"left", "right"};
     for (std::size_t p = 0; p < 12; ++p) cubes.polygon_groups.push_back(p < 6 ? 0 : 1);
     for (const Vec3& p : cubes.points)
-        cubes.point_colours.push_back({static_cast<std::uint8_t>(10 * p.x),
-                                       static_cast<std::uint8_t>(10 * p.y),
+        cubes.point_colours.push_back({static_cast<std::uint8_t>(10 * p.x), static_cast<std::uint8_t>(10 * p.y),
                                        static_cast<std::uint8_t>(10 * p.z), 255});
     const Surface s = repaired(cubes);
     for (std::size_t t = 0; t < s.mesh.n_triangles(); ++t)
@@ -355,8 +344,7 @@ TEST(Repair, PartsAreKeptAndOneWithoutAFaceLeftIsNamed) {
     add_box(cubes, Vec3(0), Vec3(1));  // on the faces of the first one
     add_box(cubes, Vec3(3, 0, 0), Vec3(1));
     cubes.scene = std::make_shared<SourceScene>();
-    for (const char* name : {"body", "double", "wheel"})
-        cubes.scene->parts.push_back({.object = name});
+    for (const char* name : {"body", "double", "wheel"}) cubes.scene->parts.push_back({.object = name});
     cubes.group_names = {"paint", "rubber"};
     for (std::uint32_t p = 0; p < 18; ++p) {
         cubes.polygon_parts.push_back(p / 6);
@@ -369,10 +357,8 @@ TEST(Repair, PartsAreKeptAndOneWithoutAFaceLeftIsNamed) {
         EXPECT_EQ(s.mesh.triangle_groups[t], t < 12 ? 0u : 1u);
     }
     EXPECT_EQ(s.mesh.scene->parts[2].object, "wheel");
-    EXPECT_THAT(
-        s.report.warnings,
-        ElementsAre("1 part of the file has no face left ('double'): all of its 6 faces are "
-                    "without an area or lie on faces of other parts"));
+    EXPECT_THAT(s.report.warnings, ElementsAre("1 part of the file has no face left ('double'): all of its 6 faces are "
+                                               "without an area or lie on faces of other parts"));
     cubes.polygon_parts[5] = 3;
     EXPECT_THROW(build_surface(cubes), Error);
 }
@@ -390,8 +376,7 @@ TEST(Repair, NormalsSplitAtCreasesOnly) {
     for (std::size_t c = 0; c < 3 * torus.mesh.n_triangles(); ++c) {
         const Vec3 p(torus.mesh.positions[torus.mesh.triangles[c / 3][c % 3]]);
         const Vec3 centre = 30.0 * glm::normalize(Vec3(p.x, p.y, 0));
-        EXPECT_NEAR(glm::length(Vec3(torus.mesh.corner_normals[c]) - (p - centre) / 10.0), 0,
-                    0.011);
+        EXPECT_NEAR(glm::length(Vec3(torus.mesh.corner_normals[c]) - (p - centre) / 10.0), 0, 0.011);
     }
     // 36-degree facets are smooth, 45-degree ones are not.
     for (const std::uint32_t sides : {8u, 10u}) {

@@ -19,8 +19,8 @@ void finish(TriangleMesh& mesh) {
     mesh.bounds = {};
     for (const Vec3f& p : mesh.positions) mesh.bounds.add(Vec3(p));
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
-        const Vec3 n = glm::normalize(glm::cross(mesh.position(t, 1) - mesh.position(t, 0),
-                                                 mesh.position(t, 2) - mesh.position(t, 0)));
+        const Vec3 n = glm::normalize(
+            glm::cross(mesh.position(t, 1) - mesh.position(t, 0), mesh.position(t, 2) - mesh.position(t, 0)));
         for (int k = 0; k < 3; ++k) mesh.corner_normals.emplace_back(n);
     }
     mesh.neighbours.assign(3 * mesh.n_triangles(), kNone);
@@ -36,9 +36,8 @@ TriangleMesh random_triangles(int n, std::uint64_t seed) {
         std::array<std::uint32_t, 3> triangle{};
         for (int k = 0; k < 3; ++k) {
             triangle[k] = static_cast<std::uint32_t>(mesh.positions.size());
-            mesh.positions.emplace_back(c + size * Vec3{random.uniform(-1, 1),
-                                                        random.uniform(-1, 1),
-                                                        random.uniform(-1, 1) * 0.1});
+            mesh.positions.emplace_back(
+                c + size * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1) * 0.1});
         }
         mesh.triangles.push_back(triangle);
     }
@@ -71,8 +70,7 @@ double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
     const Vec3 n = glm::normalize(glm::cross(b - a, c - a));
     const Vec3 foot = p - glm::dot(p - a, n) * n;
     const bool inside = glm::dot(glm::cross(b - a, foot - a), n) >= 0 &&
-                        glm::dot(glm::cross(c - b, foot - b), n) >= 0 &&
-                        glm::dot(glm::cross(a - c, foot - c), n) >= 0;
+                        glm::dot(glm::cross(c - b, foot - b), n) >= 0 && glm::dot(glm::cross(a - c, foot - c), n) >= 0;
     return inside ? std::min(best, std::abs(glm::dot(p - a, n))) : best;
 }
 
@@ -81,13 +79,11 @@ TEST(SurfaceQuery, ClosestPointMatchesBruteForce) {
     const SurfaceQuery query(mesh);
     Random random(2);
     for (int i = 0; i < 300; ++i) {
-        const Vec3 p{random.uniform(-0.05, 0.15), random.uniform(-0.05, 0.15),
-                     random.uniform(-0.05, 0.15)};
+        const Vec3 p{random.uniform(-0.05, 0.15), random.uniform(-0.05, 0.15), random.uniform(-0.05, 0.15)};
         double expected = 1e9;
         for (std::size_t t = 0; t < mesh.n_triangles(); ++t)
-            expected =
-                std::min(expected, distance_to_triangle(p, mesh.position(t, 0), mesh.position(t, 1),
-                                                        mesh.position(t, 2)));
+            expected = std::min(expected,
+                                distance_to_triangle(p, mesh.position(t, 0), mesh.position(t, 1), mesh.position(t, 2)));
         const auto hit = query.closest_point(p);
         ASSERT_TRUE(hit);
         // Both in double; slivers cost some digits of the foot point.
@@ -133,8 +129,7 @@ TEST(SurfaceQuery, NearestVerticesMatchBruteForce) {
     const SurfaceQuery query(mesh);
     Random random(9);
     for (int i = 0; i < 200; ++i) {
-        const Vec3 p{random.uniform(-0.02, 0.12), random.uniform(-0.02, 0.12),
-                     random.uniform(-0.02, 0.12)};
+        const Vec3 p{random.uniform(-0.02, 0.12), random.uniform(-0.02, 0.12), random.uniform(-0.02, 0.12)};
         std::vector<std::pair<double, std::uint32_t>> all;
         for (std::uint32_t v = 0; v < mesh.n_vertices(); ++v)
             all.emplace_back(glm::length(Vec3(mesh.positions[v]) - p), v);
@@ -154,11 +149,9 @@ TEST(SurfaceQuery, VertexNormalsComeFromEveryTriangleRoundThem) {
     TriangleMesh mesh = grid(8, 0.08);
     for (Vec3f& p : mesh.positions) p.z = -std::abs(p.x - 0.04f);
     const SurfaceQuery query(mesh);
-    for (const Vec3& p :
-         {Vec3{0.039, 0.041, 0.002}, Vec3{0.05, 0.04, 0.001}, Vec3{0.03, 0.04, -0.02}})
+    for (const Vec3& p : {Vec3{0.039, 0.041, 0.002}, Vec3{0.05, 0.04, 0.001}, Vec3{0.03, 0.04, -0.02}})
         for (const NearVertex& v : query.nearest_vertices(p, 8))
-            if (std::abs(v.position.x - 0.04) < 1e-6 && v.position.y > 0.001 &&
-                v.position.y < 0.079) {
+            if (std::abs(v.position.x - 0.04) < 1e-6 && v.position.y > 0.001 && v.position.y < 0.079) {
                 EXPECT_NEAR(std::abs(v.normal.z), 1, 1e-6);  // three facets on either side
             }
 }
@@ -170,12 +163,10 @@ TEST(SurfaceQuery, RayMatchesBruteForce) {
     int hits = 0;
     for (int i = 0; i < 500; ++i) {
         const Vec3 origin{random.uniform(-0.05, 0.15), random.uniform(-0.05, 0.15), -0.05};
-        const Vec3 direction =
-            glm::normalize(Vec3{random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), 1});
+        const Vec3 direction = glm::normalize(Vec3{random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), 1});
         double nearest = 1e9, margin = 1;
         for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
-            const Vec3 a = mesh.position(t, 0), e1 = mesh.position(t, 1) - a,
-                       e2 = mesh.position(t, 2) - a;
+            const Vec3 a = mesh.position(t, 0), e1 = mesh.position(t, 1) - a, e2 = mesh.position(t, 2) - a;
             const Vec3 h = glm::cross(direction, e2);
             const double det = glm::dot(e1, h);
             const double u = glm::dot(origin - a, h) / det;

@@ -67,11 +67,9 @@ TEST(Triangulate, StarsCombsAndSpiralsAreCovered) {
     comb.emplace_back(-1, 0, 0);
     std::reverse(comb.begin(), comb.end());
     for (int i = 0; i <= 100; ++i)
-        spiral.emplace_back((2 + 0.1 * i) * std::cos(0.2 * i), (2 + 0.1 * i) * std::sin(0.2 * i),
-                            0);
+        spiral.emplace_back((2 + 0.1 * i) * std::cos(0.2 * i), (2 + 0.1 * i) * std::sin(0.2 * i), 0);
     for (int i = 100; i >= 0; --i)
-        spiral.emplace_back((1 + 0.1 * i) * std::cos(0.2 * i), (1 + 0.1 * i) * std::sin(0.2 * i),
-                            0);
+        spiral.emplace_back((1 + 0.1 * i) * std::cos(0.2 * i), (1 + 0.1 * i) * std::sin(0.2 * i), 0);
     std::reverse(spiral.begin(), spiral.end());
     for (const auto& p : {star, comb, spiral}) {
         double shoelace = 0;
@@ -97,8 +95,7 @@ TEST(Triangulate, KeyholeLeavesTheHoleOpen) {
 TEST(Triangulate, AnyOrientationInSpace) {
     Random random(3);
     for (int trial = 0; trial < 50; ++trial) {
-        const Vec3 normal = glm::normalize(
-            Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+        const Vec3 normal = glm::normalize(Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
         const Frame frame = make_frame(Vec3(random.uniform(-9, 9)), normal);
         std::vector<Vec3> p;
         double shoelace = 0;
@@ -121,8 +118,7 @@ TEST(Triangulate, PolygonsThatCrossThemselvesStillGiveAllTriangles) {
     Random random(4);
     for (std::size_t n = 3; n < 40; ++n) {
         std::vector<Vec3> p;
-        for (std::size_t i = 0; i < n; ++i)
-            p.emplace_back(random.uniform(), random.uniform(), random.uniform());
+        for (std::size_t i = 0; i < n; ++i) p.emplace_back(random.uniform(), random.uniform(), random.uniform());
         EXPECT_EQ(cut(p).size(), n - 2);
         EXPECT_EQ(cut(std::vector<Vec3>(n, Vec3(1))).size(), n - 2);  // all in one place
     }

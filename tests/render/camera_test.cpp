@@ -20,9 +20,8 @@ TEST(Camera, RayThroughAProjectedPointHitsIt) {
             view.elevation = elevation;
             const Camera c = make_camera(view, 640, 400, {});
             for (int i = 0; i < 20; ++i) {
-                const Vec3 p =
-                    *view.target + 0.1 * Vec3{uniform(1, 3 * i) - 0.5, uniform(1, 3 * i + 1) - 0.5,
-                                              uniform(1, 3 * i + 2) - 0.5};
+                const Vec3 p = *view.target + 0.1 * Vec3{uniform(1, 3 * i) - 0.5, uniform(1, 3 * i + 1) - 0.5,
+                                                         uniform(1, 3 * i + 2) - 0.5};
                 const auto at = project(c, p);
                 ASSERT_TRUE(at);
                 const Vec3 hit = c.eye + ray_direction(c, at->x, at->y) * glm::length(p - c.eye);
@@ -40,8 +39,7 @@ TEST(Camera, FitTouchesTheMarginsAndCrossesNone) {
     for (int trial = 0; trial < 20; ++trial) {
         std::vector<Vec3f> points;
         for (int i = 0; i < 200; ++i)
-            points.emplace_back(random.uniform(-1, 1) + 5, random.uniform(-0.3, 0.3),
-                                random.uniform(0, 0.8));
+            points.emplace_back(random.uniform(-1, 1) + 5, random.uniform(-0.3, 0.3), random.uniform(0, 0.8));
         View view;
         view.azimuth = random.uniform(-3, 3);
         view.elevation = random.uniform(-1.5, 1.5);

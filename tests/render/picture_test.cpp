@@ -22,8 +22,7 @@ mesh::TriangleMesh make_sphere(int rings = 32) {
     const double r = 0.05;
     const auto point = [&](int i, int j) {
         const double theta = std::numbers::pi * j / rings, phi = 2 * std::numbers::pi * i / around;
-        return Vec3{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                    std::cos(theta)};
+        return Vec3{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
     };
     for (int j = 0; j <= rings; ++j)
         for (int i = 0; i < around; ++i) m.positions.emplace_back(r * point(i, j) + Vec3{0, 0, r});
@@ -31,16 +30,14 @@ mesh::TriangleMesh make_sphere(int rings = 32) {
         for (int i = 0; i < around; ++i) {
             const std::uint32_t a = j * around + i, b = j * around + (i + 1) % around;
             const std::uint32_t c = a + around, d = b + around;
-            const auto add = [&](std::uint32_t p, std::uint32_t q, std::uint32_t s,
-                                 std::array<Vec2, 3> uv) {
+            const auto add = [&](std::uint32_t p, std::uint32_t q, std::uint32_t s, std::array<Vec2, 3> uv) {
                 m.triangles.push_back({p, q, s});
                 for (const std::uint32_t v : {p, q, s})
-                    m.corner_normals.emplace_back(
-                        glm::normalize(Vec3(m.positions[v]) - Vec3{0, 0, r}));
+                    m.corner_normals.emplace_back(glm::normalize(Vec3(m.positions[v]) - Vec3{0, 0, r}));
                 for (const Vec2& at : uv) m.corner_uvs.emplace_back(at);
             };
-            const double u0 = double(i) / around, u1 = double(i + 1) / around,
-                         v0 = 1 - double(j) / rings, v1 = 1 - double(j + 1) / rings;
+            const double u0 = double(i) / around, u1 = double(i + 1) / around, v0 = 1 - double(j) / rings,
+                         v1 = 1 - double(j + 1) / rings;
             if (j + 1 < rings) add(a, c, d, {Vec2{u0, v0}, Vec2{u0, v1}, Vec2{u1, v1}});
             if (j > 0) add(a, d, b, {Vec2{u0, v0}, Vec2{u1, v1}, Vec2{u1, v0}});
         }
@@ -67,8 +64,7 @@ TEST(Sampling, SobolPointsFillEveryElementaryInterval) {
         std::vector<int> count(256, 0);
         for (std::uint32_t i = 0; i < 256; ++i) {
             const Vec2f p = sobol_point(i);
-            ++count[static_cast<int>(p.x * (1 << split)) * (256 >> split) +
-                    static_cast<int>(p.y * (256 >> split))];
+            ++count[static_cast<int>(p.x * (1 << split)) * (256 >> split) + static_cast<int>(p.y * (256 >> split))];
         }
         for (const int c : count) EXPECT_EQ(c, 1);
     }
@@ -79,15 +75,13 @@ TEST(Material, BilinearLookupIsExactOnLinearMaps) {
     constexpr std::uint32_t kSize = 64;
     std::vector<Vec3f> map(kSize * kSize);
     for (std::uint32_t y = 0; y < kSize; ++y)
-        for (std::uint32_t x = 0; x < kSize; ++x)
-            map[y * kSize + x] = {(x + 0.5f) / kSize, (y + 0.5f) / kSize, 0.25f};
+        for (std::uint32_t x = 0; x < kSize; ++x) map[y * kSize + x] = {(x + 0.5f) / kSize, (y + 0.5f) / kSize, 0.25f};
     Appearance a;
     a.maps = {.size = kSize, .corner_uvs = m.corner_uvs, .base_colour = map};
     const MaterialReader reader(m, a);
     for (std::uint32_t t = 20; t < 60; ++t) {
         const float b1 = 0.3f, b2 = 0.4f;
-        const Vec2f uv = 0.3f * m.corner_uvs[3 * t] + b1 * m.corner_uvs[3 * t + 1] +
-                         b2 * m.corner_uvs[3 * t + 2];
+        const Vec2f uv = 0.3f * m.corner_uvs[3 * t] + b1 * m.corner_uvs[3 * t + 1] + b2 * m.corner_uvs[3 * t + 2];
         const Vec3f c = reader.albedo(t, b1, b2);
         if (uv.x < 0.02f || uv.x > 0.98f) continue;  // the border texels are constant
         EXPECT_NEAR(c.x, uv.x, 1e-5);
@@ -107,8 +101,7 @@ TEST(Material, ReliefGivesTheSlopeOfARamp) {
     constexpr std::uint32_t kSize = 32;
     std::vector<float> height(kSize * kSize);
     for (std::uint32_t y = 0; y < kSize; ++y)
-        for (std::uint32_t x = 0; x < kSize; ++x)
-            height[y * kSize + x] = 0.2f * 0.01f * (y + 0.5f) / kSize;
+        for (std::uint32_t x = 0; x < kSize; ++x) height[y * kSize + x] = 0.2f * 0.01f * (y + 0.5f) / kSize;
     Appearance a;
     a.maps = {.size = kSize, .corner_uvs = m.corner_uvs, .height = height};
     const Vec3f slope = MaterialReader(m, a).read(0, 0.3f, 0.3f).slope;
@@ -224,8 +217,7 @@ mesh::TriangleMesh make_wires() {
         for (const Vec3& p : {a, b, c, d}) m.positions.emplace_back(p);
         m.triangles.push_back({base, base + 1, base + 2});
         m.triangles.push_back({base, base + 2, base + 3});
-        m.corner_normals.insert(m.corner_normals.end(), 6,
-                                Vec3f(glm::normalize(glm::cross(b - a, c - a))));
+        m.corner_normals.insert(m.corner_normals.end(), 6, Vec3f(glm::normalize(glm::cross(b - a, c - a))));
     };
     quad({-0.05, 0, 0}, {0.05, 0, 0}, {0.05, 0, 0.06}, {-0.05, 0, 0.06});
     constexpr double kThick = 1.5e-4;
@@ -233,8 +225,7 @@ mesh::TriangleMesh make_wires() {
         const Vec3 foot(-0.045 + 0.009 * i, -0.002, 0.004), top = foot + Vec3(0.0007 * i, 0, 0.05);
         const Vec3 corner[4] = {{0, -kThick, 0}, {kThick, 0, 0}, {0, kThick, 0}, {-kThick, 0, 0}};
         for (int k = 0; k < 4; ++k)
-            quad(foot + corner[k], foot + corner[(k + 1) % 4], top + corner[(k + 1) % 4],
-                 top + corner[k]);
+            quad(foot + corner[k], foot + corner[(k + 1) % 4], top + corner[(k + 1) % 4], top + corner[k]);
     }
     m.neighbours.assign(3 * m.n_triangles(), kNone);
     for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
@@ -256,8 +247,7 @@ TEST(Picture, ThinLightsAreNoSpecks) {
         o.seed = 99;
         const Image two = render_picture(m, query, a, o);
         int specks = 0;
-        for (std::size_t i = 0; i < one.rgb.size(); i += 3)
-            specks += std::abs(one.rgb[i + 1] - two.rgb[i + 1]) > 12;
+        for (std::size_t i = 0; i < one.rgb.size(); i += 3) specks += std::abs(one.rgb[i + 1] - two.rgb[i + 1]) > 12;
         // Both halves of a pixel's rays agree within 5 codes, so that their mean is some 2 codes
         // off; light adds 2.
         EXPECT_LE(specks, 4) << (finish == Finish::clay ? "clay" : "porcelain");
@@ -273,8 +263,7 @@ TEST(Picture, DrawsAnyMeshFromAnywhere) {
     flake.neighbours.assign(3, kNone);
     for (const Vec3f& p : flake.positions) flake.bounds.add(Vec3(p));
     const mesh::TriangleMesh sphere = make_sphere(6);
-    for (const mesh::TriangleMesh* m :
-         std::initializer_list<const mesh::TriangleMesh*>{&empty, &flake, &sphere}) {
+    for (const mesh::TriangleMesh* m : std::initializer_list<const mesh::TriangleMesh*>{&empty, &flake, &sphere}) {
         const mesh::SurfaceQuery query(*m);
         for (const double elevation : {-1.5, -0.2, 0.0, 1.57})
             for (const int width : {1, 33}) {
@@ -303,8 +292,7 @@ TEST(Picture, TextureIsWhereItsUvsSayAndTheFloorIsDarkUnderTheObject) {
     std::vector<Vec3f> map(kSize * kSize, Vec3f{0.8f});
     for (std::uint32_t y = 0; y < kSize; ++y)
         for (std::uint32_t x = 0; x < kSize; ++x)
-            if (y >= kSize / 2)
-                map[y * kSize + x] = Vec3f{0.02f};  // upper half of the sphere is black
+            if (y >= kSize / 2) map[y * kSize + x] = Vec3f{0.02f};  // upper half of the sphere is black
     Appearance a;
     a.finish = Finish::clay;
     a.maps = {.size = kSize, .corner_uvs = m.corner_uvs, .base_colour = map};
@@ -325,11 +313,9 @@ TEST(Picture, TextureIsWhereItsUvsSayAndTheFloorIsDarkUnderTheObject) {
     EXPECT_GT(at(centre + 0.05 * glm::normalize(side - Vec3{0, 0, 0.1})), 110);
     // The open floor shows the backdrop itself; at the foot of the sphere it is darker.
     const Vec3f open = backdrop(0.02f, 0.97f);
-    EXPECT_NEAR(grey(image, static_cast<int>(0.02 * 240), static_cast<int>(0.97 * 180)),
-                255 * encode_srgb(open.y), 6);
+    EXPECT_NEAR(grey(image, static_cast<int>(0.02 * 240), static_cast<int>(0.97 * 180)), 255 * encode_srgb(open.y), 6);
     const auto foot = project(camera, 0.012 * side);
-    const Vec3f behind =
-        backdrop(static_cast<float>(foot->x) / 240, static_cast<float>(foot->y) / 180);
+    const Vec3f behind = backdrop(static_cast<float>(foot->x) / 240, static_cast<float>(foot->y) / 180);
     EXPECT_GE(at(0.012 * side), 0);
     EXPECT_LT(at(0.012 * side), 0.75 * 255 * encode_srgb(behind.y));
 }

@@ -119,7 +119,7 @@ TEST(BiasCorrection, DependsOnTheKindOfStroke) {
     }
     const BiasCorrection bias = learn_bias(intended, written);
     const auto out = correct_bias(bias, {straight(0.05, Vec2(0.02, 0.02), 0.0125, 0.5 * 1.25),
-                                        straight(1.55, Vec2(0.05, 0.01), 0.0125, 0.6 * 0.7)});
+                                         straight(1.55, Vec2(0.05, 0.01), 0.0125, 0.6 * 0.7)});
     for (const TraceSample& s : out[0].samples) EXPECT_NEAR(s.pressure, 0.5, 0.01);
     for (const TraceSample& s : out[1].samples) EXPECT_NEAR(s.pressure, 0.6, 0.01);
 }

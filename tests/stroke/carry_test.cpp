@@ -12,8 +12,7 @@ namespace {
 const std::string kBrush = "wolf-small";
 
 // A stroke on its own place of the sheet, row by row.
-Stroke carried(int row, const std::string& ink = "carbon", const std::string& brush = kBrush,
-               double depth = 4e-3) {
+Stroke carried(int row, const std::string& ink = "carbon", const std::string& brush = kBrush, double depth = 4e-3) {
     Stroke s = line(brush, depth, make_frame({0, 0.004 * row - 0.012, 0}, {0, 0, 1}, {1, 0, 0}));
     s.trace.ink = ink;
     s.settings.dip = "carry";
@@ -185,7 +184,8 @@ TEST(Carry, UndoBringsTheBrushBackToo) {
             EXPECT_EQ(m.ink, moments[i].ink) << i;
             EXPECT_EQ(m.set, moments[i].set) << i;
         }
-        while (painting.redo()) {}
+        while (painting.redo()) {
+        }
         EXPECT_EQ(painting.canvas().hash(), end);
     }
 }

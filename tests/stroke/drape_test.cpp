@@ -53,7 +53,8 @@ TriangleMesh rough_sphere() {
 TEST(Drape, OnAPlaneIsTheIdentity) {
     const TriangleMesh sheet = make_sheet();
     const SurfaceQuery query(sheet);
-    const Trace trace = make_trace({{0.012, -0.007, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, scattered(200, 0.05));
+    const Trace trace =
+        make_trace({{0.012, -0.007, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, scattered(200, 0.05));
     const SurfaceTrace mapped = map_to_surface(query, trace);
     EXPECT_EQ(mapped.missed, 0u);
     for (std::size_t i = 0; i < mapped.samples.size(); ++i) {
@@ -88,7 +89,8 @@ TEST(Drape, WalksGreatCircles) {
     const TriangleMesh sphere = make_sphere(128);
     const SurfaceQuery query(sphere);
     const std::vector<Vec2> points = scattered(200, 0.05);
-    const SurfaceTrace mapped = map_to_surface(query, make_trace({frame.origin, frame.t, -frame.b, SurfaceMapping::drape}, points));
+    const SurfaceTrace mapped =
+        map_to_surface(query, make_trace({frame.origin, frame.t, -frame.b, SurfaceMapping::drape}, points));
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double length = glm::length(points[i]), angle = length / kSphereRadius;
         const Vec3 heading = (points[i].x * frame.t - points[i].y * frame.b) / length;
@@ -106,8 +108,10 @@ TEST(Drape, LettersStayWholeOnANoisyScan) {
     const Vec3 n = glm::normalize(Vec3(0.3, -0.8, 0.35));
     const auto points = zigzag();
     const auto up = [](const Vec3& p) { return glm::normalize(p); };
-    const auto drape = stretch(map_to_surface(query, make_trace(upright_at(kSphereRadius * n, n, SurfaceMapping::drape), points)), points, up);
-    const auto wrap = stretch(map_to_surface(query, make_trace(upright_at(kSphereRadius * n, n, SurfaceMapping::wrap), points)), points, up);
+    const auto drape = stretch(
+        map_to_surface(query, make_trace(upright_at(kSphereRadius * n, n, SurfaceMapping::drape), points)), points, up);
+    const auto wrap = stretch(
+        map_to_surface(query, make_trace(upright_at(kSphereRadius * n, n, SurfaceMapping::wrap), points)), points, up);
     // The map of a sphere itself is narrower away from the middle: sin(a)/a at the corner,
     // a = 0.85, is 0.88. The noise may add as much.
     EXPECT_GT(drape.first, 0.76);
@@ -140,7 +144,8 @@ TEST(Drape, GoesStraightOverGroovesAndGaps) {
     const SurfaceQuery query(m);
     std::vector<Vec2> line;
     for (int i = 0; i <= 400; ++i) line.push_back(Vec2(0.0001 * i, 0.00003 * i));
-    const SurfaceTrace mapped = map_to_surface(query, make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, line));
+    const SurfaceTrace mapped =
+        map_to_surface(query, make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, line));
     for (std::size_t i = 0; i < line.size(); ++i) {
         const SurfaceSample& s = mapped.samples[i];
         const double across = std::hypot(s.position.x - line[i].x, s.position.y + line[i].y);
@@ -149,7 +154,8 @@ TEST(Drape, GoesStraightOverGroovesAndGaps) {
         EXPECT_GT(s.normal.z, 0.99) << i;
     }
     EXPECT_LT(mapped.missed, 20u) << "samples over the gap only";
-    const SurfaceTrace wrapped = map_to_surface(query, make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::wrap}, line));
+    const SurfaceTrace wrapped =
+        map_to_surface(query, make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::wrap}, line));
     EXPECT_GT(line[150].x - wrapped.samples[150].position.x, 0.004);
 }
 
@@ -168,7 +174,8 @@ TEST(Drape, PastABorderGoesOnFlat) {
     const TriangleMesh sheet = make_sheet();
     const SurfaceQuery query(sheet);
     const SurfaceTrace mapped =
-        map_to_surface(query, make_trace({{0.09, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, {{0, 0}, {0.005, 0.001}, {0.025, 0.01}}));
+        map_to_surface(query, make_trace({{0.09, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape},
+                                         {{0, 0}, {0.005, 0.001}, {0.025, 0.01}}));
     EXPECT_EQ(mapped.missed, 1u);
     EXPECT_FALSE(mapped.samples[2].on_surface);
     EXPECT_LT(glm::length(mapped.samples[2].position - Vec3(0.115, -0.01, 0)), 1.1e-5);

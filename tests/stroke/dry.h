@@ -26,7 +26,8 @@ inline Stroke drag(std::uint64_t seed, double speed = 0.06, int rate = 200) {
 }
 
 /// A brush wiped to `left` of its ink draws one stroke.
-inline Document dry_stroke(const Model& model, double left, std::uint64_t seed, const DocumentOptions& options = {}, Stroke s = {}) {
+inline Document dry_stroke(const Model& model, double left, std::uint64_t seed, const DocumentOptions& options = {},
+                           Stroke s = {}) {
     Document painting(model, options);
     if (s.trace.samples.empty()) s = drag(seed);
     if (left < 1) {

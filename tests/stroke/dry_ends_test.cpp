@@ -59,9 +59,7 @@ double breadth_at_end(const std::vector<std::vector<bool>>& rows, double length)
 
 TEST(DryBrush, ALiftedTuftLeavesWithItsTip) {
     const Model model = sheet();
-    const struct {
-        double lift, on;
-    } hands[] = {{0.035, 1.3e-3}, {0.3, 0}};
+    const struct { double lift, on; } hands[] = {{0.035, 1.3e-3}, {0.3, 0}};
     for (const auto& hand : hands)
         for (std::uint64_t seed = 1; seed < 4; ++seed) {
             Stroke wiped = wipe(0.6, seed), s = drawn_and_lifted(seed, hand.lift, hand.on);
@@ -80,8 +78,7 @@ TEST(DryBrush, ALiftedTuftLeavesWithItsTip) {
 double longest_tear(const std::vector<std::vector<bool>>& rows) {
     std::size_t last = 0, longest = 0;
     for (std::size_t x = 0; x < kSize; ++x)
-        if (std::any_of(rows.begin(), rows.end(),
-                        [&](const std::vector<bool>& row) { return row[x]; })) {
+        if (std::any_of(rows.begin(), rows.end(), [&](const std::vector<bool>& row) { return row[x]; })) {
             if (last > 0) longest = std::max(longest, x - last - 1);
             last = x;
         }
@@ -128,7 +125,8 @@ double off_the_stroke(const Document& p, double from, double to) {
         const ink::Plane* plane = p.canvas().plane(slot, 0);
         for (int t = 0; plane && t < atlas::kTileTexels; ++t)
             if (map.tiles[slot].area[t] > 0)
-                tone[cell(map.position(slot, t).y) * kSize + cell(map.position(slot, t).x)] = std::min(1.0f, (*plane)[t]);
+                tone[cell(map.position(slot, t).y) * kSize + cell(map.position(slot, t).x)] =
+                    std::min(1.0f, (*plane)[t]);
     }
     double along = 0, all = 0;
     for (std::size_t j = 1; j + 1 < kSize; ++j)
@@ -142,14 +140,15 @@ double off_the_stroke(const Document& p, double from, double to) {
 }
 
 TEST(DryBrush, ASplitTipBeginsAndEndsAlongTheStroke) {
-    // A quick press and a quick lift of a tuft wiped to a seventh. Hair that they sweep aside drew a frame of lines at 15-60
-    // degrees round the streaks, 0.153 of the edges at the begin and 0.107 at the end. Without it 0.128 and 0.054: the point
-    // that the tip begins with, and ends of threads.
+    // A quick press and a quick lift of a tuft wiped to a seventh. Hair that they sweep aside drew a frame of lines at
+    // 15-60 degrees round the streaks, 0.153 of the edges at the begin and 0.107 at the end. Without it 0.128 and
+    // 0.054: the point that the tip begins with, and ends of threads.
     const Model model = sheet();
     double begin = 0, end = 0;
     for (const std::uint64_t seed : {11, 12, 13}) {
         Stroke s = drag(seed);
-        const double top = s.trace.samples.front().position.z, low = s.trace.samples[s.trace.samples.size() / 2].position.z;
+        const double top = s.trace.samples.front().position.z,
+                     low = s.trace.samples[s.trace.samples.size() / 2].position.z;
         const double n = static_cast<double>(s.trace.samples.size() - 1);
         for (std::size_t i = 0; i < s.trace.samples.size(); ++i) {
             const double u = static_cast<double>(i) / n;
@@ -188,8 +187,8 @@ TEST(DryBrush, ALeaningTuftThatSwingsRoundLeavesNoFan) {
         begin += off_the_stroke(p, -0.020, -0.010) / 3;
         end += off_the_stroke(p, 0.009, 0.020) / 3;
     }
-    // Hair that inked while it swung drew 0.205 and 0.170, a spray of arcs. Without it 0.159 and 0.062: the begins of streaks
-    // from hair that lies at an angle yet, and the ends of threads.
+    // Hair that inked while it swung drew 0.205 and 0.170, a spray of arcs. Without it 0.159 and 0.062: the begins of
+    // streaks from hair that lies at an angle yet, and the ends of threads.
     EXPECT_LT(begin, 0.175);
     EXPECT_LT(end, 0.08);
 }
@@ -244,8 +243,12 @@ TEST(DryBrush, ALeaningTipThatComesToTouchPrintsNoSpeck) {
         s.trace.ink = "carbon";
         s.trace.seed = static_cast<std::uint64_t>(seed);
         for (int i = 0; i <= samples; ++i) {
-            const double u = static_cast<double>(i) / samples, press = 0.5 * std::min(1.0, std::min(4 * u, 8 * (1 - u)));
-            s.trace.samples.push_back({.time = 0.4 * u, .position = {-0.013 + 0.013 * u * std::min(1.0, 2 * u), 0, 0}, .pressure = press, .tilt = {0, 0.7}});
+            const double u = static_cast<double>(i) / samples,
+                         press = 0.5 * std::min(1.0, std::min(4 * u, 8 * (1 - u)));
+            s.trace.samples.push_back({.time = 0.4 * u,
+                                       .position = {-0.013 + 0.013 * u * std::min(1.0, 2 * u), 0, 0},
+                                       .pressure = press,
+                                       .tilt = {0, 0.7}});
         }
         s.settings.dip = "carry";
         Document painting(model);

@@ -1,3 +1,5 @@
+#include "dry.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 #include <numbers>
 
 #include "core/parallel.h"
-#include "dry.h"
 
 /// Bundles with ink of their own on the whole path: flying white.
 namespace tuft::stroke {
@@ -81,7 +82,8 @@ TEST(DryBrush, ThreadsDoNotChangeABit) {
 
 TEST(DryBrush, StreaksLieWhereTheyLieAtAnySamplingRate) {
     const Model model = sheet();
-    const Document slow = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 100)), fast = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 800));
+    const Document slow = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 100)),
+                   fast = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 800));
     // Another seed differs in more than 0.3; the corners of the press are rounded by a sample.
     EXPECT_LT(apart(slow, fast), 0.1);
 }
@@ -168,15 +170,16 @@ std::vector<double> by_squares(const Document& p, double side) {
             const Vec3 at(map.position(slot, t));
             const int i = std::clamp(static_cast<int>((at.x + 0.5 * kSide) / side), 0, n - 1);
             const int j = std::clamp(static_cast<int>((at.y + 0.5 * kSide) / side), 0, n - 1);
-            sum[static_cast<std::size_t>(j) * n + i] += std::min(1.0, static_cast<double>((*plane)[t])) * area / (side * side);
+            sum[static_cast<std::size_t>(j) * n + i] +=
+                std::min(1.0, static_cast<double>((*plane)[t])) * area / (side * side);
         }
     }
     return sum;
 }
 
 TEST(DryBrush, AFinerAtlasShowsTheSameStreaks) {
-    // Compared over squares of three coarse texels. Edges of streaks are soft over a texel of the one and of the other; hair
-    // of another seed has nothing in common but how much of it gives ink.
+    // Compared over squares of three coarse texels. Edges of streaks are soft over a texel of the one and of the other;
+    // hair of another seed has nothing in common but how much of it gives ink.
     const Model coarse = sheet(), fine = sheet({}, 2 * kSize);
     const auto apart_by = [](const std::vector<double>& a, const std::vector<double>& b) {
         double difference = 0, all = 0;
@@ -217,8 +220,8 @@ TEST(DryBrush, AStrokeRunsDryByItself) {
     painting.use_brush(small);
     painting.paint(drag(7));
     double before = 1e9;
-    // Thirds of the stroke's even part, which the hair that the hand lifts from x = 10 mm on no longer reaches, some 7 mm
-    // behind it; the rolling of single bristles is smaller than what runs out.
+    // Thirds of the stroke's even part, which the hair that the hand lifts from x = 10 mm on no longer reaches, some 7
+    // mm behind it; the rolling of single bristles is smaller than what runs out.
     for (double x = -0.009; x < 0.0025; x += 0.004) {
         const double now = covered(painting, x, x + 0.004);
         EXPECT_LT(now, before) << x;
@@ -246,7 +249,8 @@ std::vector<std::vector<bool>> rows_of_slanted_stroke(const Model& model, std::u
             for (int t = 0; t < atlas::kTileTexels; ++t) {
                 const Vec3 at(map.position(slot, t));
                 if (std::abs(at.x) < 8e-3)
-                    rows[static_cast<std::size_t>((at.y / kSide + 0.5) * kSize)][static_cast<std::size_t>((at.x / kSide + 0.5) * kSize)] = (*plane)[t] > 0.3f;
+                    rows[static_cast<std::size_t>((at.y / kSide + 0.5) * kSize)]
+                        [static_cast<std::size_t>((at.x / kSide + 0.5) * kSize)] = (*plane)[t] > 0.3f;
             }
     return rows;
 }
@@ -267,8 +271,8 @@ TEST(DryBrush, HairThatSticksTogetherDoesNotComeAndGoAtOnce) {
     }
 }
 
-/// How much the edge of the ink of a stroke along x goes in and out to one side (±1) of it, metres for each metre of the
-/// way from x0 to x1: by the ink within half a millimetre of the outermost.
+/// How much the edge of the ink of a stroke along x goes in and out to one side (±1) of it, metres for each metre of
+/// the way from x0 to x1: by the ink within half a millimetre of the outermost.
 double raggedness(const Document& p, int side, double x0, double x1) {
     constexpr double texel = kSide / (kSize - 16), strip = 0.5e-3;
     const atlas::TexelMap& map = p.model().texels;
@@ -277,7 +281,8 @@ double raggedness(const Document& p, int side, double x0, double x1) {
             if (const ink::Plane* plane = p.canvas().plane(slot, 0))
                 for (int t = 0; t < atlas::kTileTexels; ++t)
                     if (const Vec3 at(map.position(slot, t)); at.x > x0 && at.x < x1)
-                        f(static_cast<std::size_t>((at.x - x0) / texel), side * at.y, std::min(1.0, static_cast<double>((*plane)[t])));
+                        f(static_cast<std::size_t>((at.x - x0) / texel), side * at.y,
+                          std::min(1.0, static_cast<double>((*plane)[t])));
     };
     double outermost = -1;
     each([&](std::size_t, double y, double ink) { outermost = ink > 0.5 ? std::max(outermost, y) : outermost; });
@@ -291,8 +296,8 @@ double raggedness(const Document& p, int side, double x0, double x1) {
 }
 
 TEST(DryBrush, EdgesOfAHalfDryStrokeHaveNoTeeth) {
-    // Ink leaves the hair by batches of stamps and flows down it by steps of 5 ms; a wetness that jumps with either sweeps
-    // the ends of the hair to and fro, where their beat shows as regular teeth, 0.063 m a metre.
+    // Ink leaves the hair by batches of stamps and flows down it by steps of 5 ms; a wetness that jumps with either
+    // sweeps the ends of the hair to and fro, where their beat shows as regular teeth, 0.063 m a metre.
     const Model model = sheet();
     constexpr int seeds = 6;
     double sum = 0;
@@ -359,11 +364,14 @@ TEST(DryBrush, PaintingDriesTheTuft) {
 
 TEST(DryBrush, FastHairIsDrierAndRoughGroundShowsItsGrain) {
     const Model model = sheet();
-    const double slow = covered(dry_stroke(model, 0.4, 8, {}, drag(8, 0.02))), fast = covered(dry_stroke(model, 0.4, 8, {}, drag(8, 0.5)));
+    const double slow = covered(dry_stroke(model, 0.4, 8, {}, drag(8, 0.02))),
+                 fast = covered(dry_stroke(model, 0.4, 8, {}, drag(8, 0.5)));
     EXPECT_LT(fast, 0.97 * slow);
-    const double glaze = covered(dry_stroke(model, 0.12, 8)), paper = covered(dry_stroke(model, 0.12, 8, {.substrate = "rice-paper"}));
+    const double glaze = covered(dry_stroke(model, 0.12, 8)),
+                 paper = covered(dry_stroke(model, 0.12, 8, {.substrate = "rice-paper"}));
     EXPECT_LT(paper, 0.9 * glaze);
-    const double full_glaze = covered(dry_stroke(model, 1, 8)), full_paper = covered(dry_stroke(model, 1, 8, {.substrate = "rice-paper"}));
+    const double full_glaze = covered(dry_stroke(model, 1, 8)),
+                 full_paper = covered(dry_stroke(model, 1, 8, {.substrate = "rice-paper"}));
     EXPECT_NEAR(full_paper / full_glaze, 1, 1e-3) << "a full tuft fills it";
 }
 

@@ -48,8 +48,7 @@ Stroke eraser(double depth = 3e-3) {
 
 double total(const Document& p) {
     double sum = 0;
-    for (int k = 0; k < static_cast<int>(p.canvas().pigments().size()); ++k)
-        sum += p.canvas().total(model().texels, k);
+    for (int k = 0; k < static_cast<int>(p.canvas().pigments().size()); ++k) sum += p.canvas().total(model().texels, k);
     return sum;
 }
 
@@ -81,8 +80,12 @@ TEST(Fill, IsFilmTimesArea) {
 
 TEST(Fill, AGradientIsLinearBetweenItsEnds) {
     Document p(model());
-    p.paint(fill("cinnabar", {.film = 2, .gradient = Gradient::along, .to_film = 0.5, .to_ink = "indigo",
-                              .from = {-0.02, 0, 0}, .to = {0.02, 0, 0}}));
+    p.paint(fill("cinnabar", {.film = 2,
+                              .gradient = Gradient::along,
+                              .to_film = 0.5,
+                              .to_ink = "indigo",
+                              .from = {-0.02, 0, 0},
+                              .to = {0.02, 0, 0}}));
     const double red = p.ink("cinnabar").strength(), blue = p.ink("indigo").strength();
     for (const double x : {-0.025, -0.02, -0.01, 0.0, 0.0137, 0.02, 0.028}) {
         const double t = std::clamp((x + 0.02) / 0.04, 0.0, 1.0), film = 2 - 1.5 * t;
@@ -91,7 +94,8 @@ TEST(Fill, AGradientIsLinearBetweenItsEnds) {
         EXPECT_NEAR(film_at(p, {x, 0.005, 0}, 1), film * t * blue, 4e-3) << x;
     }
     Document round(model());
-    round.paint(fill("carbon", {.film = 0, .gradient = Gradient::round, .to_film = 1, .from = {0, 0, 0}, .to = {0, 0.02, 0}}));
+    round.paint(
+        fill("carbon", {.film = 0, .gradient = Gradient::round, .to_film = 1, .from = {0, 0, 0}, .to = {0, 0.02, 0}}));
     EXPECT_NEAR(film_at(round, {0.006, 0.008, 0}, 0), 0.5 * round.ink("carbon").strength(), 4e-3);
     EXPECT_NEAR(film_at(round, {0.025, 0, 0}, 0), round.ink("carbon").strength(), 1e-6);
 }
@@ -101,7 +105,8 @@ TEST(Fill, APartAndAChartEndWhereTheyEnd) {
     mesh::PolygonSoup soup;
     for (const double z : {0.0, 0.01}) {
         const auto n = static_cast<std::uint32_t>(soup.points.size());
-        for (const Vec3& v : {Vec3{0, 0, z}, Vec3{0.02, 0, z}, Vec3{0.02, 0.02, z}, Vec3{0, 0.02, z}}) soup.points.push_back(v);
+        for (const Vec3& v : {Vec3{0, 0, z}, Vec3{0.02, 0, z}, Vec3{0.02, 0.02, z}, Vec3{0, 0.02, z}})
+            soup.points.push_back(v);
         if (soup.polygon_start.empty()) soup.polygon_start.push_back(0);
         for (std::uint32_t k = 0; k < 4; ++k) soup.corners.push_back(n + k);
         soup.polygon_start.push_back(n + 4);
@@ -212,7 +217,8 @@ TEST(Eraser, ReplaysToTheBitForAnyThreadCount) {
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
         Document p(model());
-        p.paint(fill("indigo", {.film = 1, .gradient = Gradient::round, .to_film = 2, .from = {0, 0, 0}, .to = {0, 0.02, 0}}));
+        p.paint(fill("indigo",
+                     {.film = 1, .gradient = Gradient::round, .to_film = 2, .from = {0, 0, 0}, .to = {0, 0.02, 0}}));
         p.paint(quick());
         p.paint(eraser(2e-3));
         if (threads == 1) hash = p.hash();
@@ -241,10 +247,10 @@ TEST(Fill, NonsenseIsRefused) {
     EXPECT_THROW(p.paint(fill("no-such-ink", {})), Error);
     EXPECT_TRUE(p.journal().empty());
     Stroke s;
-    for (const char* text :
-         {R"({"action":"fill"})", R"({"action":"fill","fill":{"film":"much","region":"all"}})", R"({"tool":"knife"})",
-          R"({"action":"fill","fill":{"film":1,"region":"moon"}})", R"({"action":"fill","fill":{"film":1e9,"region":"all"}})",
-          R"({"action":"fill","fill":{"film":1,"region":"part","at":[1,2]}})"})
+    for (const char* text : {R"({"action":"fill"})", R"({"action":"fill","fill":{"film":"much","region":"all"}})",
+                             R"({"tool":"knife"})", R"({"action":"fill","fill":{"film":1,"region":"moon"}})",
+                             R"({"action":"fill","fill":{"film":1e9,"region":"all"}})",
+                             R"({"action":"fill","fill":{"film":1,"region":"part","at":[1,2]}})"})
         EXPECT_THROW(read_entry_json(text, s), Error) << text;
 }
 

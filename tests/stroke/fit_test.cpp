@@ -19,8 +19,8 @@ std::string reason_on(const Model& revised, const Stroke& stroke) {
     Document painting(revised);
     const auto reports = painting.replay({stroke});
     const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
-    const auto misfits = find_mismatches(reports, compare_fit(painting.journal().strokes(), length_of,
-                                                           *former.query, *revised.query));
+    const auto misfits =
+        find_mismatches(reports, compare_fit(painting.journal().strokes(), length_of, *former.query, *revised.query));
     EXPECT_LE(misfits.size(), 1u);
     return misfits.empty() ? "" : misfits.front().reason;
 }
@@ -71,23 +71,20 @@ Stroke written(SurfaceMapping mapping) {
     s.id = 1;
     s.trace.brush = "wolf-small";
     s.trace.ink = "carbon";
-    s.trace.placement = {
-        .origin = {0, 0, 0}, .right = {1, 0, 0}, .down = {0, -1, 0}, .mapping = mapping};
+    s.trace.placement = {.origin = {0, 0, 0}, .right = {1, 0, 0}, .down = {0, -1, 0}, .mapping = mapping};
     for (int i = 0; i <= 100; ++i)
-        s.trace.samples.push_back({.time = 0.01 * i,
-                                   .position = {0.03 * (i / 100.0 - 0.5), 0, 0},
-                                   .pressure = i % 100 == 0 ? 0.0 : 0.5});
+        s.trace.samples.push_back(
+            {.time = 0.01 * i, .position = {0.03 * (i / 100.0 - 0.5), 0, 0}, .pressure = i % 100 == 0 ? 0.0 : 0.5});
     return s;
 }
 
-StrokeFit fit_on(const mesh::TriangleMesh& revised, const Stroke& stroke,
-                 bool with_motion = false) {
+StrokeFit fit_on(const mesh::TriangleMesh& revised, const Stroke& stroke, bool with_motion = false) {
     const Model former = sheet({}, kSmall);
     const mesh::SurfaceQuery query(revised);
     const auto motion = with_motion ? find_motion(*former.query, query) : std::nullopt;
     return compare_fit(
-               {stroke}, [](const std::string& brush) { return brush::load_preset(brush).length; },
-               *former.query, query, motion)
+               {stroke}, [](const std::string& brush) { return brush::load_preset(brush).length; }, *former.query,
+               query, motion)
         .at(0);
 }
 
@@ -99,8 +96,7 @@ mesh::TriangleMesh with_hole(const mesh::TriangleMesh& mesh, const Vec3& centre,
     out.corner_normals.clear();
     out.neighbours.clear();
     for (std::uint32_t t = 0; t < mesh.n_triangles(); ++t) {
-        if (glm::distance((mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3.0,
-                          centre) < radius)
+        if (glm::distance((mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3.0, centre) < radius)
             continue;
         place[t] = static_cast<std::uint32_t>(out.triangles.size());
         out.triangles.push_back(mesh.triangles[t]);
@@ -120,8 +116,7 @@ mesh::TriangleMesh remeshed(const mesh::TriangleMesh& mesh) {
     mesh::TriangleMesh out = mesh;
     Random random(1);
     for (Vec3f& p : out.positions)
-        p += Vec3f(random.uniform(-8e-4, 8e-4), random.uniform(-8e-4, 8e-4),
-                   random.uniform(-1e-4, 1e-4));
+        p += Vec3f(random.uniform(-8e-4, 8e-4), random.uniform(-8e-4, 8e-4), random.uniform(-1e-4, 1e-4));
     return out;
 }
 
@@ -142,8 +137,7 @@ TEST(Fit, AFlatStrokeOnTheSameModelOrAnotherMeshOfItFits) {
 
 TEST(Fit, AFlatStrokeTellsHowFarItsPlaceMoved) {
     for (const SurfaceMapping mapping : {SurfaceMapping::wrap, SurfaceMapping::drape, SurfaceMapping::project}) {
-        EXPECT_EQ(mismatch_reason(fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh,
-                                       written(mapping))),
+        EXPECT_EQ(mismatch_reason(fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, written(mapping))),
                   "lies 20.0 mm from where it lay");
         // Along itself the sheet goes from under the stroke: it stays in space, but not on the
         // model.
@@ -158,25 +152,21 @@ TEST(Fit, AFlatStrokeTellsHowFarItsPlaceMoved) {
 
 // A hole of 10 mm across the middle of 30 mm; triangles of 3 mm make it ragged.
 TEST(Fit, AHoleUnderAStrokeIsMissingInk) {
-    const StrokeFit flat =
-        fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0), 5e-3), written(SurfaceMapping::project));
+    const StrokeFit flat = fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0), 5e-3), written(SurfaceMapping::project));
     const StrokeFit space = fit_on(with_hole(*sheet({}, kSmall).mesh, Vec3(0), 5e-3), pressed());
     for (const StrokeFit& fit : {flat, space}) {
         EXPECT_NEAR(fit.missing(), 10.0 / 30, 0.1);
-        EXPECT_NE(mismatch_reason(fit).find("% of it touches nothing"), std::string::npos)
-            << mismatch_reason(fit);
+        EXPECT_NE(mismatch_reason(fit).find("% of it touches nothing"), std::string::npos) << mismatch_reason(fit);
     }
 }
 
 // Projected onto a plane that leans by 60 degrees along it, a stroke is twice as long.
 TEST(Fit, AStrokeThatIsPulledLongIsToldByItsShare) {
-    const Model steep =
-        sheet(make_frame(Vec3(0), glm::normalize(Vec3(-std::sqrt(3.0), 0, 1))), kSmall);
+    const Model steep = sheet(make_frame(Vec3(0), glm::normalize(Vec3(-std::sqrt(3.0), 0, 1))), kSmall);
     const StrokeFit fit = fit_on(*steep.mesh, written(SurfaceMapping::project));
     EXPECT_NEAR(fit.kept_now / fit.kept, 2, 0.02);
     EXPECT_GT(fit.stretched, 0.5 * fit.way);
-    EXPECT_NE(mismatch_reason(fit).find("stretched or squeezed"), std::string::npos)
-        << mismatch_reason(fit);
+    EXPECT_NE(mismatch_reason(fit).find("stretched or squeezed"), std::string::npos) << mismatch_reason(fit);
 }
 
 TEST(Fit, TheTotalSaysWhatAllStrokesDo) {
@@ -213,15 +203,13 @@ TEST(ModelMotion, ShiftsTurnsAndSizesOfAWholeModelAreFound) {
         const mesh::TriangleMesh revised = crooked(moved);
         const auto motion = find_motion(mesh::SurfaceQuery(former), mesh::SurfaceQuery(revised));
         if (!motion) return std::string();
-        for (const Vec3f& p : former.positions)
-            EXPECT_LT(glm::distance((*motion)(Vec3(p)), moved(Vec3(p))), 1e-6);
+        for (const Vec3f& p : former.positions) EXPECT_LT(glm::distance((*motion)(Vec3(p)), moved(Vec3(p))), 1e-6);
         for (const Vec3f& p : former.positions)
             EXPECT_LT(glm::distance(motion->back((*motion)(Vec3(p))), Vec3(p)), 1e-12);
         return describe(*motion);
     };
     EXPECT_EQ(found([](const Vec3& p) { return p; }), "");
-    EXPECT_EQ(found([](const Vec3& p) { return p + Vec3(20e-3, 0, -1e-3); }),
-              "shifted by (20.0, 0.0, -1.0) mm");
+    EXPECT_EQ(found([](const Vec3& p) { return p + Vec3(20e-3, 0, -1e-3); }), "shifted by (20.0, 0.0, -1.0) mm");
     EXPECT_EQ(found([](const Vec3& p) { return 1.2 * p; }), "1.2 times as large");
     EXPECT_EQ(found([](const Vec3& p) { return 25.4 * p; }), "25.4 times as large");
     EXPECT_EQ(found([](const Vec3& p) { return Vec3(p.x, -p.z, p.y); }), "turned by 90 degrees");

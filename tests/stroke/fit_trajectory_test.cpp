@@ -26,21 +26,18 @@ Trace through(std::initializer_list<Vec2> points) {
         const int n = before ? static_cast<int>(std::ceil(glm::distance(*before, p) / 5e-4)) : 1;
         for (int k = 1; k <= n; ++k)
             trace.samples.push_back(
-                {.position = Vec3(before ? glm::mix(*before, p, double(k) / n) : p, 0),
-                 .pressure = 0.5});
+                {.position = Vec3(before ? glm::mix(*before, p, double(k) / n) : p, 0), .pressure = 0.5});
         before = &p;
     }
     for (std::size_t i = 1; i < trace.samples.size(); ++i)
         trace.samples[i].time =
-            trace.samples[i - 1].time +
-            glm::distance(trace.samples[i].position, trace.samples[i - 1].position) / 0.06;
+            trace.samples[i - 1].time + glm::distance(trace.samples[i].position, trace.samples[i - 1].position) / 0.06;
     draw_to_width(trace, tables().of(trace.brush));
     return trace;
 }
 
 Trace fitted(const Trace& trace) {
-    return fit_trajectory(trace, brush::load_preset(trace.brush), tables().of(trace.brush),
-                    tables().hold(trace.brush));
+    return fit_trajectory(trace, brush::load_preset(trace.brush), tables().of(trace.brush), tables().hold(trace.brush));
 }
 
 /// How far round the ink goes from the line through the points, within `about` of `corner`: the
@@ -48,11 +45,9 @@ Trace fitted(const Trace& trace) {
 struct Spill {
     double farthest = 0, area = 0;
 };
-Spill spilt(const Trace& trace, std::initializer_list<Vec2> points, const Vec2& corner,
-            double about) {
+Spill spilt(const Trace& trace, std::initializer_list<Vec2> points, const Vec2& corner, double about) {
     const double cell = 5e-5;
-    const PlaneInk ink =
-        plane_ink(trace, brush::load_preset(trace.brush), tables().hold(trace.brush), 1e-4, cell);
+    const PlaneInk ink = plane_ink(trace, brush::load_preset(trace.brush), tables().hold(trace.brush), 1e-4, cell);
     Spill s;
     for (double y = corner.y - about; y < corner.y + about; y += cell)
         for (double x = corner.x - about; x < corner.x + about; x += cell) {
@@ -62,10 +57,8 @@ Spill spilt(const Trace& trace, std::initializer_list<Vec2> points, const Vec2& 
             double far = 1e9;
             for (const Vec2* a = points.begin(); a + 1 < points.end(); ++a) {
                 const Vec2 d = a[1] - a[0];
-                far = std::min(
-                    far,
-                    glm::distance(
-                        p, *a + std::clamp(glm::dot(p - *a, d) / glm::dot(d, d), 0.0, 1.0) * d));
+                far = std::min(far,
+                               glm::distance(p, *a + std::clamp(glm::dot(p - *a, d) / glm::dot(d, d), 0.0, 1.0) * d));
             }
             s.farthest = std::max(s.farthest, far);
             if (far > 0.5 * kWidth) s.area += cell * cell;
@@ -80,11 +73,9 @@ TEST(Practise, CornersHaveNoKnobs) {
     for (const double turn : {60.0, 90.0, 115.0, 130.0}) {
         SCOPED_TRACE(turn);
         const double a = turn * std::numbers::pi / 180;
-        const std::initializer_list<Vec2> points{
-            {-0.02, 0}, {0, 0}, 0.02 * Vec2(std::cos(a), std::sin(a))};
+        const std::initializer_list<Vec2> points{{-0.02, 0}, {0, 0}, 0.02 * Vec2(std::cos(a), std::sin(a))};
         const Trace plain = through(points), tried = fitted(plain);
-        const Spill before = spilt(plain, points, {0, 0}, 3 * kWidth),
-                    after = spilt(tried, points, {0, 0}, 3 * kWidth);
+        const Spill before = spilt(plain, points, {0, 0}, 3 * kWidth), after = spilt(tried, points, {0, 0}, 3 * kWidth);
         // A tenth of the width is what a straight line may be wide or narrow (LineWidth.*), the
         // rest a cell of the picture and what is left of the tuft's turning over; unpractised it is
         // 0.2 to 0.5.
@@ -126,12 +117,10 @@ TEST(Practise, LooksOnlyAtEdgesThatShow) {
 
 TEST(PlaneInk, AStraightLineIsAsWideAsItsPressure) {
     const Trace line = through({{-0.025, 0}, {0.025, 0}});
-    const PlaneInk ink =
-        plane_ink(line, brush::load_preset(line.brush), tables().hold(line.brush), 1e-4, 5e-5);
+    const PlaneInk ink = plane_ink(line, brush::load_preset(line.brush), tables().hold(line.brush), 1e-4, 5e-5);
     double area = 0;
     for (double y = -0.005; y < 0.005; y += 5e-5)
-        for (double x = -0.01; x < 0.01; x += 5e-5)
-            area += ink.at({x + 2.5e-5, y + 2.5e-5}) * 2.5e-9;
+        for (double x = -0.01; x < 0.01; x += 5e-5) area += ink.at({x + 2.5e-5, y + 2.5e-5}) * 2.5e-9;
     EXPECT_NEAR(area / 0.02, kWidth, 0.05 * kWidth);  // as LineWidth.ALineIsAsWideAsTheDrawingHasIt
     EXPECT_LT(ink.when({0.01, 0}), line.samples.back().time);
     EXPECT_GT(ink.when({0.01, 0}), ink.when({-0.01, 0}));

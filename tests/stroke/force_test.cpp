@@ -131,7 +131,8 @@ TEST(Forces, OfAFlatStrokeAreThoseOfItsOwnSamples) {
     s.trace.ink = "carbon";
     s.trace.placement = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::wrap};
     for (int i = 0; i <= 100; ++i)
-        s.trace.samples.push_back({.time = 0.005 * i, .position = {-0.01 + 2e-4 * i, 0, 0}, .pressure = i == 100 ? 0 : 0.3});
+        s.trace.samples.push_back(
+            {.time = 0.005 * i, .position = {-0.01 + 2e-4 * i, 0, 0}, .pressure = i == 100 ? 0 : 0.3});
     Document painting(model, {.record_forces = true});
     const std::vector<ForceRecord> forces = painting.paint(s).forces;
     // It is set down before them and lifted off behind; neither has a sample of the hand.

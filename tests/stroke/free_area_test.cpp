@@ -31,12 +31,10 @@ TriangleMesh walls(const std::vector<std::array<double, 5>>& all) {
 TEST(FreeArea, OnASphereItIsInTheMiddle) {
     const TriangleMesh m = make_sphere();
     const SurfaceQuery query(m);
-    for (const Side side :
-         {Side::front, Side::back, Side::left, Side::right, Side::top, Side::bottom}) {
+    for (const Side side : {Side::front, Side::back, Side::left, Side::right, Side::top, Side::bottom}) {
         const auto free = find_free_area(query, side, 1);
         ASSERT_TRUE(free) << side_name(side);
-        EXPECT_NEAR(glm::distance(free->at.position, -0.05 * look_at_side(side)), 0, 0.2 * kGrid)
-            << side_name(side);
+        EXPECT_NEAR(glm::distance(free->at.position, -0.05 * look_at_side(side)), 0, 0.2 * kGrid) << side_name(side);
         EXPECT_GT(-glm::dot(free->normal, look_at_side(side)), 0.999);
         EXPECT_LT(free->size.x, 0.0709) << "a square in the circle is 0.71 wide";
         EXPECT_GT(free->size.x, 0.045);
@@ -69,8 +67,7 @@ TEST(FreeArea, ALineTakesTheLengthOfALongWall) {
 
 TEST(FreeArea, AStepIsNotCrossedAndTheLargerSideOfItIsTaken) {
     // Two thirds of the front stand 30 mm behind the rest.
-    const TriangleMesh m =
-        walls({{-0.06, -0.02, -0.02, 0.02, 0}, {-0.02, 0.06, -0.02, 0.02, 0.03}});
+    const TriangleMesh m = walls({{-0.06, -0.02, -0.02, 0.02, 0}, {-0.02, 0.06, -0.02, 0.02, 0.03}});
     const SurfaceQuery query(m);
     const auto free = find_free_area(query, Side::front, 2);
     ASSERT_TRUE(free);
@@ -80,9 +77,8 @@ TEST(FreeArea, AStepIsNotCrossedAndTheLargerSideOfItIsTaken) {
 }
 
 TEST(FreeArea, AShutLineIsNotAnEdge) {
-    const TriangleMesh m = walls({{-0.1, -0.001, -0.05, 0.05, 0},
-                                  {0.001, 0.1, -0.05, 0.05, 0},
-                                  {-0.001, 0.001, -0.05, 0.05, 0.02}});
+    const TriangleMesh m =
+        walls({{-0.1, -0.001, -0.05, 0.05, 0}, {0.001, 0.1, -0.05, 0.05, 0}, {-0.001, 0.001, -0.05, 0.05, 0.02}});
     const SurfaceQuery query(m);
     const auto free = find_free_area(query, Side::front, 2);
     ASSERT_TRUE(free);
@@ -93,14 +89,12 @@ TEST(FreeArea, AShutLineIsNotAnEdge) {
 TEST(FreeArea, ItHasTheDrawingsShape) {
     const TriangleMesh m = walls({{-0.1, 0.1, -0.01, 0.01, 0}});
     const SurfaceQuery query(m);
-    const auto square = find_free_area(query, Side::front, 1),
-               wide = find_free_area(query, Side::front, 4);
+    const auto square = find_free_area(query, Side::front, 1), wide = find_free_area(query, Side::front, 4);
     ASSERT_TRUE(square && wide);
     // A cell is 1.6 x 0.16 mm: two of them for the edges.
     EXPECT_NEAR(square->size.x, 0.02, 0.4 * kGrid);
     EXPECT_NEAR(wide->size.x, 0.08, 0.4 * kGrid);
-    EXPECT_NEAR(square->at.position.x, 0, 0.4 * kGrid)
-        << "the middle of all the places that are as good";
+    EXPECT_NEAR(square->at.position.x, 0, 0.4 * kGrid) << "the middle of all the places that are as good";
     EXPECT_FALSE(find_free_area(query, Side::back, 1)) << "its back is not painted on";
 }
 
@@ -111,11 +105,10 @@ TEST(FreeArea, ACalmAreaIsPreferredToALargerRoughOne) {
     const double pleat = 0.004, deep = pleat * std::tan(0.52);
     for (int k = 0; k < 35; ++k)
         for (int half = 0; half < 2; ++half) {
-            const double x0 = pleat * (k + 0.5 * half), x1 = x0 + 0.5 * pleat,
-                         y0 = half ? 0.5 * deep : 0, y1 = half ? 0 : 0.5 * deep;
+            const double x0 = pleat * (k + 0.5 * half), x1 = x0 + 0.5 * pleat, y0 = half ? 0.5 * deep : 0,
+                         y1 = half ? 0 : 0.5 * deep;
             const auto v = static_cast<std::uint32_t>(m.positions.size());
-            for (const Vec3& p : {Vec3{x0, y0, -0.05}, Vec3{x1, y1, -0.05}, Vec3{x1, y1, 0.05},
-                                  Vec3{x0, y0, 0.05}}) {
+            for (const Vec3& p : {Vec3{x0, y0, -0.05}, Vec3{x1, y1, -0.05}, Vec3{x1, y1, 0.05}, Vec3{x0, y0, 0.05}}) {
                 m.positions.push_back(Vec3f(p));
                 m.bounds.add(p);
             }

@@ -19,15 +19,14 @@ using std::numbers::pi;
 /// A grid of (nu + 1) × (nv + 1) vertices put into space by `place`, with normals of
 /// `normal`; vertices that coincide are shared, so a grid can close on itself.
 inline TriangleMesh make_grid(int nu, int nv, const std::function<Vec3(double, double)>& place,
-                       const std::function<Vec3(const Vec3&)>& normal) {
+                              const std::function<Vec3(const Vec3&)>& normal) {
     TriangleMesh m;
     std::map<std::array<long, 3>, std::uint32_t> known;
     std::vector<std::uint32_t> id;
     for (int j = 0; j <= nv; ++j)
         for (int i = 0; i <= nu; ++i) {
             const Vec3 p = place(double(i) / nu, double(j) / nv);
-            const std::array<long, 3> key{std::lround(p.x * 1e8), std::lround(p.y * 1e8),
-                                          std::lround(p.z * 1e8)};
+            const std::array<long, 3> key{std::lround(p.x * 1e8), std::lround(p.y * 1e8), std::lround(p.z * 1e8)};
             const auto [it, fresh] = known.try_emplace(key, std::uint32_t(m.positions.size()));
             if (fresh) m.positions.push_back(Vec3f(p));
             m.bounds.add(p);
@@ -70,8 +69,7 @@ inline TriangleMesh make_cylinder(int around = 180) {
         around, 40,
         [](double u, double v) {
             const double a = 2 * pi * u;
-            return Vec3(kCylinderRadius * std::cos(a), kCylinderRadius * std::sin(a),
-                        0.12 * (v - 0.5));
+            return Vec3(kCylinderRadius * std::cos(a), kCylinderRadius * std::sin(a), 0.12 * (v - 0.5));
         },
         [](const Vec3& p) { return glm::normalize(Vec3(p.x, p.y, 0)); });
 }
@@ -82,8 +80,7 @@ inline TriangleMesh make_sphere(int n = 96) {
         2 * n, n,
         [](double u, double v) {
             const double a = 2 * pi * u, b = pi * (v - 0.5);
-            return kSphereRadius *
-                   Vec3(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
+            return kSphereRadius * Vec3(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
         },
         [](const Vec3& p) { return glm::normalize(p); });
 }
@@ -92,16 +89,14 @@ inline Trace make_trace(const Placement& placement, const std::vector<Vec2>& poi
     Trace t;
     t.placement = placement;
     for (std::size_t i = 0; i < points.size(); ++i)
-        t.samples.push_back(
-            {.time = 0.005 * double(i), .position = Vec3(points[i], 0), .pressure = 0.5});
+        t.samples.push_back({.time = 0.005 * double(i), .position = Vec3(points[i], 0), .pressure = 0.5});
     return t;
 }
 
 inline std::vector<Vec2> scattered(std::size_t n, double reach) {
     std::vector<Vec2> out;
     for (std::size_t i = 0; i < n; ++i)
-        out.push_back(
-            {reach * (2 * uniform(7, 2 * i) - 1), reach * (2 * uniform(7, 2 * i + 1) - 1)});
+        out.push_back({reach * (2 * uniform(7, 2 * i) - 1), reach * (2 * uniform(7, 2 * i + 1) - 1)});
     return out;
 }
 

@@ -28,16 +28,19 @@ TEST(EntryGroups, EntriesWrittenBeforeThereWereGroupsHaveNone) {
 
 TEST(EntryGroups, NonsenseIsRefused) {
     Stroke s;
-    for (const char* text : {R"({"group":1})", R"({"group":0,"group_name":"a"})", R"({"group":-2,"group_name":"a"})", R"({"group":1.5,"group_name":"a"})",
-                             R"({"group":"one","group_name":"a"})", R"({"group":1,"group_name":7})", R"({"group":1,"group_name":""})",
-                             R"({"group":9223372036854775807,"group_name":"a"})"})
+    for (const char* text :
+         {R"({"group":1})", R"({"group":0,"group_name":"a"})", R"({"group":-2,"group_name":"a"})",
+          R"({"group":1.5,"group_name":"a"})", R"({"group":"one","group_name":"a"})", R"({"group":1,"group_name":7})",
+          R"({"group":1,"group_name":""})", R"({"group":9223372036854775807,"group_name":"a"})"})
         EXPECT_THROW(read_entry_json(text, s), Error) << text;
     EXPECT_THROW(read_entry_json(R"({"group":1,"group_name":")" + std::string(300, 'a') + "\"}", s), Error);
 }
 
 TEST(EntryGroups, AFilesNameIsReadableWhateverItIs) {
     EXPECT_EQ(group_name("drawings/roundel.svg"), "roundel.svg");
-    EXPECT_EQ(group_name("a\xff" "b.svg"), "a?b.svg");
+    EXPECT_EQ(group_name("a\xff"
+                         "b.svg"),
+              "a?b.svg");
     EXPECT_EQ(group_name("two\nlines.svg"), "two?lines.svg");
     std::string characters;
     for (int i = 0; i < 80; ++i) characters += "飞";

@@ -106,7 +106,8 @@ TEST(HandFilter, AWholeTraceDoesNotLagAndKeepsItsEnds) {
     Random random(9);
     double in = 0, out = 0;
     for (int i = 0; i <= 500; ++i)
-        t.samples.push_back({.time = 0.008 * i, .position = Vec3(0.03 * 0.008 * i, 0, 0) + jitter(random), .pressure = 0.5});
+        t.samples.push_back(
+            {.time = 0.008 * i, .position = Vec3(0.03 * 0.008 * i, 0, 0) + jitter(random), .pressure = 0.5});
     const Trace steadied = steady(t, settings);
     ASSERT_EQ(steadied.samples.size(), t.samples.size());
     double behind = 0;
@@ -159,8 +160,10 @@ TEST(String, IsNeverLongerThanItsLengthAndTheTipNeverGoesFartherThanTheHand) {
     for (int i = 0; i < 20000; ++i) {
         const Vec3 step = 1e-3 * Vec3(random.uniform(-1, 1.2), random.uniform(-1, 1), 0);
         hand += step;
-        if (i == 0) last = hand;
-        else hand_way += glm::length(step);
+        if (i == 0)
+            last = hand;
+        else
+            hand_way += glm::length(step);
         const TraceSample out = pull(s, TraceSample{.time = 0.01 * i, .position = hand, .pressure = 0.5}, length);
         EXPECT_LE(glm::distance(out.position, hand), length * (1 + 1e-12));
         tip_way += glm::distance(out.position, last);
@@ -222,8 +225,7 @@ TEST(String, PressureStaysAtItsPlaceOnTheWay) {
     for (const TraceSample& s : out.samples) EXPECT_NEAR(s.pressure, s.position.x / 3e-2, 1e-9);
     EXPECT_LT(glm::distance(out.samples.back().position, t.samples.back().position), 1e-12);
     EXPECT_EQ(out.samples.back().pressure, 1);
-    for (std::size_t i = 1; i < out.samples.size(); ++i)
-        EXPECT_GE(out.samples[i].time, out.samples[i - 1].time);
+    for (std::size_t i = 1; i < out.samples.size(); ++i) EXPECT_GE(out.samples[i].time, out.samples[i - 1].time);
 }
 
 TEST(String, AFerrulePressesThroughAtOnce) {
@@ -318,8 +320,8 @@ TEST(Settings, OfAHandComeBackAndNonsenseIsRefused) {
     read_entry_json(R"({"spine":"rod","footprint":"surface","contact":"exact","spacing":1.0,"lead":true})", back);
     EXPECT_EQ(back.settings, Settings{});
     EXPECT_EQ(back.action, Action::stroke);
-    for (const char* bad : {R"({"dip":"often"})", R"({"pressure":"guess"})", R"({"smooth":-1})",
-                            R"({"stabilise":1e9})", R"({"action":"sneeze"})", R"({"action":3})", "{"})
+    for (const char* bad : {R"({"dip":"often"})", R"({"pressure":"guess"})", R"({"smooth":-1})", R"({"stabilise":1e9})",
+                            R"({"action":"sneeze"})", R"({"action":3})", "{"})
         EXPECT_THROW(read_entry_json(bad, back), Error) << bad;
 }
 

@@ -159,7 +159,8 @@ TEST(Layers, UndoAndRedoGoOverEveryChange) {
             EXPECT_EQ(p.layers(), tables[i]) << i;
             EXPECT_EQ(picture(p), pictures[i]) << i;
         }
-        while (p.redo()) {}
+        while (p.redo()) {
+        }
         EXPECT_EQ(p.layers(), last);
         EXPECT_EQ(picture(p), end);
     }
@@ -252,7 +253,8 @@ TEST(Layers, MergingAndCopyingUndoRedoAndReplayToTheBit) {
             EXPECT_EQ(p.layers(), tables[i]) << i;
             EXPECT_EQ(picture(p), pictures[i]) << i;
         }
-        while (p.redo()) {}
+        while (p.redo()) {
+        }
         EXPECT_EQ(picture(p), end);
         Document again(model());
         again.replay(p.journal().strokes());
@@ -354,7 +356,9 @@ TEST(Layers, EntriesComeBackFromTheirText) {
         EXPECT_EQ(back.edit.layer.blend, s.edit.layer.blend);
     }
     Stroke old;  // of a program that knew no blends
-    read_entry_json(R"({"action":"layer","edit":{"what":"add","id":2,"name":"gold","visible":true,"opacity":1,"locked":false,"place":1}})", old);
+    read_entry_json(
+        R"({"action":"layer","edit":{"what":"add","id":2,"name":"gold","visible":true,"opacity":1,"locked":false,"place":1}})",
+        old);
     EXPECT_EQ(old.edit.layer.blend, ink::Blend::normal);
     for (const Stroke& s : session()) {
         Stroke back;
@@ -386,12 +390,14 @@ TEST(Layers, NonsenseIsRefused) {
     EXPECT_THROW(apply(t, {LayerChange::change, {.opacity = std::nan("")}, 0}), Error);
     EXPECT_EQ(t, before);
     Stroke s;
-    for (const char* text :
-         {R"({"action":"layer"})", R"({"action":"layer","edit":{"what":"melt","id":1}})",
-          R"({"action":"layer","edit":{"what":"merge","id":1}})", R"({"action":"layer","edit":{"what":"merge","id":1,"other":-1}})",
-          R"({"action":"layer","edit":{"what":"add","id":2,"name":"a","visible":true,"opacity":1,"locked":false,"place":0,"blend":"screen"}})",
-          R"({"action":"layer","edit":{"what":"remove","id":-1}})", R"({"layer":"one"})", R"({"layer":-3})",
-          R"({"action":"layer","edit":{"what":"add","id":2,"name":7,"visible":true,"opacity":1,"locked":false,"place":0}})"})
+    for (
+        const char* text :
+        {R"({"action":"layer"})", R"({"action":"layer","edit":{"what":"melt","id":1}})",
+         R"({"action":"layer","edit":{"what":"merge","id":1}})",
+         R"({"action":"layer","edit":{"what":"merge","id":1,"other":-1}})",
+         R"({"action":"layer","edit":{"what":"add","id":2,"name":"a","visible":true,"opacity":1,"locked":false,"place":0,"blend":"screen"}})",
+         R"({"action":"layer","edit":{"what":"remove","id":-1}})", R"({"layer":"one"})", R"({"layer":-3})",
+         R"({"action":"layer","edit":{"what":"add","id":2,"name":7,"visible":true,"opacity":1,"locked":false,"place":0}})"})
         EXPECT_THROW(read_entry_json(text, s), Error) << text;
     for (std::size_t i = 1; i < kMaxLayers; ++i) apply(t, add_on_top(t, std::to_string(i)));
     EXPECT_THROW(apply(t, add_on_top(t, "one more")), Error);

@@ -19,8 +19,12 @@ Stroke straight(const std::string& brush, double width, double angle) {
     s.trace.ink = "carbon";
     s.trace.pressed = false;
     s.trace.line_width = width;
-    s.trace.placement = {{0, 0, 0}, {std::cos(angle), std::sin(angle), 0}, {std::sin(angle), -std::cos(angle), 0}, SurfaceMapping::drape};
-    for (int i = 0; i <= 100; ++i) s.trace.samples.push_back({.time = i / 120.0, .position = {-0.025 + 5e-4 * i, 0, 0}, .pressure = 0.5});
+    s.trace.placement = {{0, 0, 0},
+                         {std::cos(angle), std::sin(angle), 0},
+                         {std::sin(angle), -std::cos(angle), 0},
+                         SurfaceMapping::drape};
+    for (int i = 0; i <= 100; ++i)
+        s.trace.samples.push_back({.time = i / 120.0, .position = {-0.025 + 5e-4 * i, 0, 0}, .pressure = 0.5});
     return s;
 }
 
@@ -75,7 +79,8 @@ Stroke circle(const std::string& brush, double width, double radius) {
     stroke.trace.samples.clear();
     for (int i = 0; i <= 200; ++i) {
         const double a = 2 * std::numbers::pi * (i % 200) / 200;
-        stroke.trace.samples.push_back({.time = i / 120.0, .position = radius * Vec3{std::cos(a), std::sin(a), 0}, .pressure = 0.5});
+        stroke.trace.samples.push_back(
+            {.time = i / 120.0, .position = radius * Vec3{std::cos(a), std::sin(a), 0}, .pressure = 0.5});
     }
     draw_to_width(stroke.trace, LineWidths(brush::load_preset(brush)));
     return stroke;
@@ -89,7 +94,8 @@ TEST(LineWidth, ALeanAgainstTheWayDoesNotTurnTheTuftOver) {
             Stroke stroke = straight(brush, width, 0.3);
             for (TraceSample& s : stroke.trace.samples) s.tilt = lean;
             draw_to_width(stroke.trace, LineWidths(brush::load_preset(brush)));
-            EXPECT_LT(drawn(stroke).farthest, 0.75 * width + 6e-5) << brush << ' ' << lean.x << ' ' << lean.y;  // as above, and a texel
+            EXPECT_LT(drawn(stroke).farthest, 0.75 * width + 6e-5)
+                << brush << ' ' << lean.x << ' ' << lean.y;  // as above, and a texel
         }
 }
 
@@ -112,7 +118,8 @@ TEST(LineWidth, AFineBrushSetsDownOnItsLineToo) {
 TEST(LineWidth, AClosedLineHasNoGapWhereItsEndsMeet) {
     const double width = 0.002, radius = 0.008;
     const Stroke stroke = circle("wolf-small", width, radius);
-    EXPECT_TRUE(std::is_sorted(stroke.trace.samples.begin(), stroke.trace.samples.end(), [](auto& a, auto& b) { return a.time < b.time; }));
+    EXPECT_TRUE(std::is_sorted(stroke.trace.samples.begin(), stroke.trace.samples.end(),
+                               [](auto& a, auto& b) { return a.time < b.time; }));
     const Model model = sheet();
     Document painting(model);
     painting.paint(stroke);
@@ -123,7 +130,8 @@ TEST(LineWidth, AClosedLineHasNoGapWhereItsEndsMeet) {
                 if (model.texels.tiles[slot].area[t] <= 0 || (*plane)[t] < 0.1f) continue;
                 const Vec3 p(model.texels.position(slot, t));
                 const double a = std::atan2(p.y, p.x) / (2 * std::numbers::pi);
-                across[static_cast<std::size_t>(std::floor(36 * (a - std::floor(a)))) % 36] += model.texels.tiles[slot].area[t];
+                across[static_cast<std::size_t>(std::floor(36 * (a - std::floor(a)))) % 36] +=
+                    model.texels.tiles[slot].area[t];
             }
     for (double& area : across) area /= 2 * std::numbers::pi * radius / 36;
     // As the straight line, and a fifth for heads and ends, which do not lie exactly over each other.
@@ -166,7 +174,8 @@ TEST(LineWidth, LinesOnCurvedWallsLieWhereTheyAreLaidBothWays) {
             place.origin = at.position;
             place.right = glm::normalize(glm::cross(Vec3(0, 0, 1), at.normal));
             place.down = glm::cross(place.right, at.normal);
-            for (TraceSample& s : stroke.trace.samples) s.position = s.position.x * (way ? 1.0 : -1.0) * Vec3(std::sqrt(0.5), std::sqrt(0.5), 0);
+            for (TraceSample& s : stroke.trace.samples)
+                s.position = s.position.x * (way ? 1.0 : -1.0) * Vec3(std::sqrt(0.5), std::sqrt(0.5), 0);
             draw_to_width(stroke.trace, LineWidths(brush::load_preset("wolf-medium")));
             Document painting(model);
             painting.paint(stroke);

@@ -25,11 +25,9 @@ Trace along(const std::vector<Vec2>& corners) {
         const double length = glm::distance(corners[k - 1], corners[k]);
         const int n = std::max(1, static_cast<int>(length / 2.5e-4));
         for (int i = k == 1 ? 0 : 1; i <= n; ++i)
-            t.samples.push_back(
-                {.time = time + length * i / n / 0.06,
-                 .position =
-                     Vec3(glm::mix(corners[k - 1], corners[k], static_cast<double>(i) / n), 0),
-                 .pressure = 0.5});
+            t.samples.push_back({.time = time + length * i / n / 0.06,
+                                 .position = Vec3(glm::mix(corners[k - 1], corners[k], static_cast<double>(i) / n), 0),
+                                 .pressure = 0.5});
         time += length / 0.06;
     }
     return t;
@@ -44,8 +42,7 @@ Trace serpentine(int rows) {
         corners.emplace_back(0.022 * side, y);
         for (int i = 1; i < 24 && row + 1 < rows; ++i) {
             const double a = std::numbers::pi * (i / 24.0 - 0.5);
-            corners.emplace_back(side * (0.022 + 0.004 * std::cos(a)),
-                                 y + 0.004 + 0.004 * std::sin(a));
+            corners.emplace_back(side * (0.022 + 0.004 * std::cos(a)), y + 0.004 + 0.004 * std::sin(a));
         }
     }
     return along(corners);
@@ -60,8 +57,8 @@ struct Drawn {
 
 /// The line by the brush that is chosen for it, or by `brush`; with `redips` as drawings are
 /// painted.
-Drawn drawn(const Trace& line, bool redips, const std::string& brush = "",
-            const std::string& ink = "titanium-white", bool endless = false) {
+Drawn drawn(const Trace& line, bool redips, const std::string& brush = "", const std::string& ink = "titanium-white",
+            bool endless = false) {
     const Model model = sheet({}, 512);
     WidthTables widths;
     std::vector<Stroke> entries{{.trace = line}};
@@ -90,12 +87,9 @@ Drawn drawn(const Trace& line, bool redips, const std::string& brush = "",
                 std::size_t nearest = 0;
                 double least = 1;
                 for (std::size_t i = 0; i < at.size(); ++i)
-                    if (const double d =
-                            glm::distance(line.samples[i].position, Vec3(p.x, -p.y, 0));
-                        d < least)
+                    if (const double d = glm::distance(line.samples[i].position, Vec3(p.x, -p.y, 0)); d < least)
                         least = d, nearest = i;
-                out.width[static_cast<std::size_t>(at[nearest] / 0.005)] +=
-                    map.tiles[slot].area[t] / 0.005;
+                out.width[static_cast<std::size_t>(at[nearest] / 0.005)] += map.tiles[slot].area[t] / 0.005;
             }
     return out;
 }
@@ -129,8 +123,7 @@ TEST(LongLines, ABrushThatNeverRunsDryNeedsNoSecondDip) {
 TEST(LongLines, ARingIsClosedAndFullAllRound) {
     std::vector<Vec2> ring;
     for (int i = 0; i <= 180; ++i)
-        ring.push_back(0.028 * Vec2(std::cos(i * std::numbers::pi / 90),
-                                    std::sin((i % 180) * std::numbers::pi / 90)));
+        ring.push_back(0.028 * Vec2(std::cos(i * std::numbers::pi / 90), std::sin((i % 180) * std::numbers::pi / 90)));
     ring.back() = ring.front();
     const Drawn line = drawn(along(ring), true);
     ASSERT_GT(line.reports.size(), 1u);
@@ -152,10 +145,8 @@ TEST(LongLines, PiecesCoverTheLineOverlapAndAreCutWhereItIsStraight) {
     EXPECT_NEAR(sum, whole + overlap * static_cast<double>(clusters.size() - 1), 1e-9);
     for (std::size_t k = 1; k < clusters.size(); ++k) {
         // The end of one and the beginning of the next go the same way, straight.
-        const Vec3 a = clusters[k].samples.front().position,
-                   b = clusters[k - 1].samples.back().position;
-        EXPECT_NEAR(glm::distance(a, b), overlap, 1e-6)
-            << k << ": a little less in the last of a bend";
+        const Vec3 a = clusters[k].samples.front().position, b = clusters[k - 1].samples.back().position;
+        EXPECT_NEAR(glm::distance(a, b), overlap, 1e-6) << k << ": a little less in the last of a bend";
     }
     EXPECT_EQ(cut_line(line, 1, overlap).size(), 1u);
     EXPECT_EQ(cut_line(line, 1e-9, overlap).size(), static_cast<std::size_t>(whole / (4 * overlap)))
@@ -168,14 +159,11 @@ TEST(LongLines, ALargerBrushIsTakenForALongerLine) {
     const std::string usual = brush_for_width("wolf-medium", widths.of("wolf-medium"), width);
     const double enough = whole_length(widths.preset(usual), width, film);
     EXPECT_EQ(brush_for_line("wolf-medium", widths, width, 0.9 * enough, film, 0.06), usual);
-    const std::string larger =
-                          brush_for_line("wolf-medium", widths, width, 1.1 * enough, film, 0.06),
-                      largest =
-                          brush_for_line("wolf-medium", widths, width, 100 * enough, film, 0.06);
+    const std::string larger = brush_for_line("wolf-medium", widths, width, 1.1 * enough, film, 0.06),
+                      largest = brush_for_line("wolf-medium", widths, width, 100 * enough, film, 0.06);
     EXPECT_GE(brush::sized_name(larger).factor, brush::sized_name(usual).factor);
     EXPECT_GT(brush::sized_name(largest).factor, brush::sized_name(usual).factor);
-    EXPECT_GE(widths.of(largest).pressure(width), 0.299)
-        << "not so large that it only tips the surface";
+    EXPECT_GE(widths.of(largest).pressure(width), 0.299) << "not so large that it only tips the surface";
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ const Model& ball() {
         for (std::uint32_t j = 0; j < kRings; ++j)
             for (std::uint32_t i = 0; i < kSides; ++i) {
                 const std::uint32_t k = (i + 1) % kSides;
-                for (const std::uint32_t corner : {j * kSides + i, (j + 1) * kSides + i, (j + 1) * kSides + k, j * kSides + k})
+                for (const std::uint32_t corner :
+                     {j * kSides + i, (j + 1) * kSides + i, (j + 1) * kSides + k, j * kSides + k})
                     soup.corners.push_back(corner);
                 soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
                 soup.polygon_groups.push_back(j < kRings / 2 ? 0 : 1);
@@ -61,7 +62,8 @@ double share(const Mask& mask, const MaskTable& table, const Model& m) {
 
 Mask lasso(std::vector<Vec2> polygon, bool through = false) {
     // Seen from above.
-    return {.name = "lasso", .kind = MaskKind::lasso,
+    return {.name = "lasso",
+            .kind = MaskKind::lasso,
             .view = {.origin = {0, 0, 0}, .right = {1, 0, 0}, .up = {0, 1, 0}, .through = through},
             .polygon = std::move(polygon)};
 }
@@ -172,7 +174,9 @@ TEST(Mask, NothingOutsideAndTheSameInside) {
 
 TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
     // Half of the sheet is masked; a stroke with much water runs over its edge.
-    const Mask half{.name = "half", .kind = MaskKind::lasso, .view = {.right = {1, 0, 0}, .up = {0, 1, 0}},
+    const Mask half{.name = "half",
+                    .kind = MaskKind::lasso,
+                    .view = {.right = {1, 0, 0}, .up = {0, 1, 0}},
                     .polygon = {{0, -1}, {1, -1}, {1, 1}, {0, 1}}};
     Stroke wet = quick();
     wet.trace.ink = "carbon";
@@ -189,7 +193,8 @@ TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
                 for (int t = 0; t < atlas::kTileTexels; ++t)
                     if (mask.coverage(slot, t) == 0)
                         for (int film = 0; film < ink::kFilms; ++film)
-                            if (const ink::Plane* w = painting.canvas().film_plane(slot, film, p)) sum += static_cast<double>((*w)[t]);
+                            if (const ink::Plane* w = painting.canvas().film_plane(slot, film, p))
+                                sum += static_cast<double>((*w)[t]);
         return sum;
     };
     Document painting(model(), {.substrate = "rice-paper"});
@@ -248,9 +253,11 @@ TEST(Mask, UndoReplayAndTextKeepIt) {
         again.replay(strokes);
         EXPECT_EQ(again.hash(), hash);
         EXPECT_EQ(again.masks(), table);
-        while (p.undo()) {}
+        while (p.undo()) {
+        }
         EXPECT_EQ(p.masks(), MaskTable{});
-        while (p.redo()) {}
+        while (p.redo()) {
+        }
         EXPECT_EQ(p.masks(), table);
         EXPECT_EQ(p.hash(), hash);
     }
@@ -278,9 +285,10 @@ TEST(Mask, NonsenseIsRefused) {
         apply(t, {.mask = {.name = std::to_string(i), .kind = MaskKind::unite, .of = {i - 1, i}}});
     EXPECT_EQ(share(t.masks.back(), t, ball()), 1);
     Stroke s;
-    for (const char* text : {R"({"action":"mask"})", R"({"mask":-1})", R"({"mask":"all"})",
-                             R"({"action":"mask","mask_edit":{"what":"add","id":1,"name":"a","kind":"moon"}})",
-                             R"({"action":"mask","mask_edit":{"what":"add","id":1,"name":"a","kind":"lasso","polygon":[[1]]}})"})
+    for (const char* text :
+         {R"({"action":"mask"})", R"({"mask":-1})", R"({"mask":"all"})",
+          R"({"action":"mask","mask_edit":{"what":"add","id":1,"name":"a","kind":"moon"}})",
+          R"({"action":"mask","mask_edit":{"what":"add","id":1,"name":"a","kind":"lasso","polygon":[[1]]}})"})
         EXPECT_THROW(read_entry_json(text, s), Error) << text;
     Document p(model());
     Stroke masked = quick();

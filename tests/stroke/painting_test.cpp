@@ -39,8 +39,7 @@ TEST(Document, InkGivenByTheTuftIsInkOnTheTexels) {
         std::ofstream ppm(std::string(folder) + "/painting.ppm", std::ios::binary);
         ppm << "P6\n" << kSize << " " << kSize << "\n255\n";
         for (int j = kSize - 1; j >= 0; --j)
-            ppm.write(reinterpret_cast<const char*>(&map.texels[std::size_t{3} * kSize * j]),
-                      3 * kSize);
+            ppm.write(reinterpret_cast<const char*>(&map.texels[std::size_t{3} * kSize * j]), 3 * kSize);
     }
 }
 
@@ -82,8 +81,8 @@ TEST(Document, AFlickLeavesALineNotDots) {
             if (ink[x] > 0) first = std::min(first, x), last = x;
         double least = 1;
         for (std::size_t x = first + 2; x + 2 <= last; ++x) {
-            const double beside = std::min(*std::max_element(&ink[x - 2], &ink[x]),
-                                           *std::max_element(&ink[x + 1], &ink[x + 3]));
+            const double beside =
+                std::min(*std::max_element(&ink[x - 2], &ink[x]), *std::max_element(&ink[x + 1], &ink[x + 3]));
             if (beside > 0) least = std::min(least, ink[x] / beside);
         }
         // Where each stamp drew no further than the hand had gone, 0.35: a row of dots.
@@ -168,8 +167,7 @@ TEST(Document, UndoTakesTheTexelsBackAndRedoMakesThemAgain) {
         // Pigment names stay known; the texels are what counts.
         EXPECT_EQ(painting.canvas().hash(), one);
         EXPECT_TRUE(painting.undo());
-        EXPECT_TRUE(painting.canvas().touched_slots().empty() ||
-                    painting.canvas().hash() == empty ||
+        EXPECT_TRUE(painting.canvas().touched_slots().empty() || painting.canvas().hash() == empty ||
                     painting.canvas().total(model.texels, 0) == 0);
         EXPECT_FALSE(painting.undo());
         EXPECT_TRUE(painting.redo());
@@ -187,8 +185,7 @@ TEST(Document, AStrokeInPiecesIsTheWholeStroke) {
     Stroke header = whole;
     header.trace.samples.clear();
     in_pieces.begin(header);
-    for (const brush::Pose& pose : spatial_poses(whole.trace))
-        in_pieces.extend(std::span(&pose, 1));
+    for (const brush::Pose& pose : spatial_poses(whole.trace)) in_pieces.extend(std::span(&pose, 1));
     in_pieces.end();
     EXPECT_EQ(in_pieces.canvas().hash(), at_once.canvas().hash());
     ASSERT_EQ(in_pieces.journal().strokes().size(), 1u);
@@ -216,14 +213,11 @@ TEST(Document, AStopWithinABatchOfStampsLeavesEverythingAsItWas) {
     wide.settings.spacing = 3;  // coarse is enough here, and quick
     const std::uint64_t before = painting.canvas().hash();
     int asked = 0;
-    const StrokeReport report =
-        Document(model).paint(wide, [&](std::string_view, double) { return ++asked > 0; });
-    EXPECT_GT(asked, static_cast<int>(report.stamps + report.stamps / StampBatch::kStamps))
-        << "within batches too";
+    const StrokeReport report = Document(model).paint(wide, [&](std::string_view, double) { return ++asked > 0; });
+    EXPECT_GT(asked, static_cast<int>(report.stamps + report.stamps / StampBatch::kStamps)) << "within batches too";
     for (int last = asked / 2; last < asked / 2 + 12; ++last) {  // a batch and more
         int n = 0;
-        EXPECT_THROW(painting.paint(wide, [&](std::string_view, double) { return ++n < last; }),
-                     Cancelled);
+        EXPECT_THROW(painting.paint(wide, [&](std::string_view, double) { return ++n < last; }), Cancelled);
         EXPECT_EQ(n, last) << "it stops at once";
         EXPECT_EQ(painting.canvas().hash(), before);
     }
@@ -271,8 +265,7 @@ TEST(Document, TurningSheetAndHandTogetherKeepsTheWidth) {
     // tenth of a cell of the stamps' pictures, half a texel, which lie to the outline as they
     // happen to, alike along the line: 2 × 3 µm, 0.25 % at most; 0.13 % at six angles.
     const auto at_angle = [](const Frame& sheet, double angle) {
-        return make_frame(sheet.origin, sheet.n,
-                          std::cos(angle) * sheet.t + std::sin(angle) * sheet.b);
+        return make_frame(sheet.origin, sheet.n, std::cos(angle) * sheet.t + std::sin(angle) * sheet.b);
     };
     for (const double angle : {0.2, 0.5, 1.1}) {
         const Frame way = at_angle({}, angle), turned_way = at_angle(turned, angle);
@@ -330,8 +323,8 @@ Stroke sway(double rate) {
         p.time = u;
         p.rotation = glm::angleAxis(0.25 * std::sin(4 * pi * u), Vec3{0, 1, 0}) *
                      glm::angleAxis(0.6 * std::sin(2 * pi * u), Vec3{0, 0, 1});
-        p.position = {-0.018 + 0.036 * (u - std::sin(2 * pi * u) / (2 * pi)),
-                      4e-3 * std::sin(3 * pi * u), length + 1e-3 - 5e-3 * press * press};
+        p.position = {-0.018 + 0.036 * (u - std::sin(2 * pi * u) / (2 * pi)), 4e-3 * std::sin(3 * pi * u),
+                      length + 1e-3 - 5e-3 * press * press};
         s.trace.samples.push_back(p);
     }
     return s;

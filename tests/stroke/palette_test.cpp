@@ -44,8 +44,11 @@ Stroke rinse(const std::string& ink) {
 }
 
 std::vector<Stroke> mixing() {
-    return {pool("cinnabar", {-0.012, 0, 0}), pool("gamboge", {0.012, 0, 0}), rinse("cinnabar"),
-            through({-0.012, 0, 0}, kPaletteLayer, "cinnabar"), through({0.012, 0, 0}, kPaletteLayer, "cinnabar"),
+    return {pool("cinnabar", {-0.012, 0, 0}),
+            pool("gamboge", {0.012, 0, 0}),
+            rinse("cinnabar"),
+            through({-0.012, 0, 0}, kPaletteLayer, "cinnabar"),
+            through({0.012, 0, 0}, kPaletteLayer, "cinnabar"),
             through({0, 0, 0}, kFirstLayer, "cinnabar")};
 }
 
@@ -66,7 +69,8 @@ TEST(Palette, ItsTexelsLieWhereTheyAreSaidTo) {
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             if (plate.texels.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
             const std::uint32_t tile = plate.texels.tile_of_slot[slot];
-            const double i = tile % plate.texels.tiles_per_side * 16.0 + t % 16, j = tile / plate.texels.tiles_per_side * 16.0 + t / 16;
+            const double i = tile % plate.texels.tiles_per_side * 16.0 + t % 16,
+                         j = tile / plate.texels.tiles_per_side * 16.0 + t / 16;
             const Vec3 wanted{(i + 0.5) * kPaletteTexel - 0.064, (j + 0.5) * kPaletteTexel - 0.049, 0};
             // Positions are floats of some centimetres.
             EXPECT_LT(glm::distance(Vec3(plate.texels.position(slot, t)), wanted), 1e-8);
@@ -106,7 +110,8 @@ TEST(Palette, ABrushMixesOnItAndPaintsTheMixture) {
     ASSERT_EQ(painting.canvas().pigments().size(), 2u);
     // A cone of 50 units: π r² h / 3, times the pigment's part of the ink.
     const double cone = 3.14159265 * 0.008 * 0.008 * 50 / 3 * painting.ink("cinnabar").parts[0].fraction;
-    EXPECT_NEAR(painting.palette()->total(painting.palette_model().texels, red) / cone, 1, 1e-3);  // texels of 1/64 of its width
+    EXPECT_NEAR(painting.palette()->total(painting.palette_model().texels, red) / cone, 1,
+                1e-3);  // texels of 1/64 of its width
     const double before[] = {all_of(painting, red), all_of(painting, yellow)};
     EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), 0);
 
@@ -165,7 +170,8 @@ TEST(Palette, FiveCirclesThroughTwoPoolsMixThem) {
     circles.trace.samples.clear();
     const double length = brush::load_preset(kBrush).length, turn = 0.8, seconds = 5 * turn;
     for (int i = 0; i <= 800; ++i) {
-        const double t = seconds * i / 800, angle = 2 * 3.14159265 * t / turn, press = std::min({1.0, t / 0.15, (seconds - t) / 0.15});
+        const double t = seconds * i / 800, angle = 2 * 3.14159265 * t / turn,
+                     press = std::min({1.0, t / 0.15, (seconds - t) / 0.15});
         TraceSample s = upright;
         s.time = t;
         s.position = {0.014 * std::cos(angle), 0.014 * std::sin(angle), length + 1e-3 - 0.013 * press};
@@ -223,7 +229,9 @@ TEST(Palette, PicturesShowThePoolsInTheirPlaces) {
     inked = bare;
     refresh(inked, painting, painting.take_palette_dirty());
     // 0.03 m to the right of the middle and 0.02 above it, in pixels of 0.25 mm.
-    const auto at = [](const PalettePicture& p, int x, int y) { return &p.rgb[3 * static_cast<std::size_t>(y * p.width + x)]; };
+    const auto at = [](const PalettePicture& p, int x, int y) {
+        return &p.rgb[3 * static_cast<std::size_t>(y * p.width + x)];
+    };
     const std::uint8_t *there = at(inked, 240 + 120, 180 - 80), *mirrored = at(inked, 240 + 120, 180 + 80);
     EXPECT_GT(there[0], there[2] + 60) << "red";
     EXPECT_EQ(std::vector(mirrored, mirrored + 3), std::vector(at(bare, 360, 260), at(bare, 360, 260) + 3));

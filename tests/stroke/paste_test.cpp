@@ -1,3 +1,5 @@
+#include "ink/film/paste.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -5,7 +7,6 @@
 
 #include "core/parallel.h"
 #include "ink/colour/composite.h"
-#include "ink/film/paste.h"
 #include "sheet.h"
 
 namespace tuft::stroke {
@@ -26,7 +27,9 @@ Stroke stroke_of(const std::string& ink, const Frame& frame) {
     return s;
 }
 
-double capacity() { return ink::film_of_millilitres(brush::load_preset(kBrush).capacity * 1e6); }
+double capacity() {
+    return ink::film_of_millilitres(brush::load_preset(kBrush).capacity * 1e6);
+}
 
 // Heights along a line across the stroke, micrometres.
 std::vector<double> heights_across(const Document& painting, double x) {
@@ -104,7 +107,8 @@ TEST(PasteStroke, ThinInkOverDryPasteStandsInItsFurrows) {
     const std::vector<double> relief = heights_across(painting, 0);
     Stroke glaze = stroke_of("carbon", make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0}));
     painting.paint(glaze);
-    EXPECT_NEAR((painting.canvas().total(model.texels, 1) + painting.held(kBrush)->reservoir.pigment(1)) / capacity(), 1, 1e-6);
+    EXPECT_NEAR((painting.canvas().total(model.texels, 1) + painting.held(kBrush)->reservoir.pigment(1)) / capacity(),
+                1, 1e-6);
     const ink::AtlasMap<float> amounts = ink::compose_amounts(painting.stack(), model.texels);
     double ridges = 0, n_ridges = 0, furrows = 0, n_furrows = 0;
     const double texel = model.texels.texel_size;
@@ -113,7 +117,8 @@ TEST(PasteStroke, ThinInkOverDryPasteStandsInItsFurrows) {
         const auto [low, high] = std::minmax_element(relief.begin() + static_cast<std::ptrdiff_t>(row - reach),
                                                      relief.begin() + static_cast<std::ptrdiff_t>(row + reach));
         if (*high - *low < 30) continue;
-        const double ink = static_cast<double>(amounts.texels[(row * kSize + kSize / 2) * static_cast<std::size_t>(amounts.channels) + 1]);
+        const double ink = static_cast<double>(
+            amounts.texels[(row * kSize + kSize / 2) * static_cast<std::size_t>(amounts.channels) + 1]);
         if (relief[row] > *low + 0.8 * (*high - *low)) ridges += ink, n_ridges += 1;
         if (relief[row] < *low + 0.2 * (*high - *low)) furrows += ink, n_furrows += 1;
     }
@@ -147,8 +152,7 @@ TEST(PasteStroke, AWashTakesOfItsSurfaceAndLeavesItsBodyStanding) {
     const ink::Reservoir& brush = painting.held(kBrush)->reservoir;
     EXPECT_GT(brush.pigment(0), 0) << "it tints itself";
     EXPECT_NEAR((white() + brush.pigment(0)) / all, 1, 1e-6) << "floats";
-    EXPECT_NEAR((painting.canvas().total(model.texels, 1) + brush.pigment(1)) / capacity(), 1,
-                1e-6);
+    EXPECT_NEAR((painting.canvas().total(model.texels, 1) + brush.pigment(1)) / capacity(), 1, 1e-6);
     const std::vector<double> after = heights_across(painting, 0);
     double lost = 0, n = 0;
     for (std::size_t row = 0; row < kSize; ++row) {

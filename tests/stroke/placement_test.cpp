@@ -23,8 +23,7 @@ TEST(Placement, WrapAndProjectOnTheSheetAreTheIdentity) {
         EXPECT_EQ(mapped.missed, 0u);
         EXPECT_NEAR(mapped.origin_gap, 0.003, 1e-9);
         for (std::size_t i = 0; i < mapped.samples.size(); ++i) {
-            const Vec3 want(0.012 + trace.samples[i].position.x,
-                            -0.007 - trace.samples[i].position.y, 0);
+            const Vec3 want(0.012 + trace.samples[i].position.x, -0.007 - trace.samples[i].position.y, 0);
             // Vertices are floats: 0.1 m carries 7e-9 m.
             EXPECT_LT(glm::length(mapped.samples[i].position - want), 5e-8);
             EXPECT_LT(glm::length(mapped.samples[i].right - Vec3(1, 0, 0)), 1e-6);
@@ -50,8 +49,7 @@ TEST(Placement, WrapOnACylinderUnrollsIt) {
     for (std::size_t i = 0; i < mapped.samples.size(); ++i) {
         const Vec3 flat = trace.samples[i].position;
         const double a = a0 + flat.x / kCylinderRadius;
-        const Vec3 want(kCylinderRadius * std::cos(a), kCylinderRadius * std::sin(a),
-                        0.01 - flat.y);
+        const Vec3 want(kCylinderRadius * std::cos(a), kCylinderRadius * std::sin(a), 0.01 - flat.y);
         EXPECT_LT(glm::length(mapped.samples[i].position - want), 2 * sagitta + 0.045 * 1e-4);
         // The frame does not turn; the facets' normals differ from the circle's by pi/180 at most.
         EXPECT_LT(glm::length(mapped.samples[i].right - Vec3(-std::sin(a), std::cos(a), 0)), 0.02);
@@ -96,8 +94,7 @@ TEST(Placement, WalkThereAndBackReturns) {
     const TriangleMesh sphere = make_sphere();
     const SurfaceQuery query(sphere);
     for (int i = 0; i < 50; ++i) {
-        const Vec3 p{uniform(1, 3 * i) - 0.5, uniform(1, 3 * i + 1) - 0.5,
-                     uniform(1, 3 * i + 2) - 0.5};
+        const Vec3 p{uniform(1, 3 * i) - 0.5, uniform(1, 3 * i + 1) - 0.5, uniform(1, 3 * i + 2) - 0.5};
         const auto start = query.closest_point(p);
         ASSERT_TRUE(start);
         const StraightestGeodesic there = trace_geodesic(sphere, *start, Vec3(0.3, 1, -0.2), 0.1);
@@ -148,11 +145,9 @@ TEST(Placement, ProjectTakesTheFirstSurfaceFromOutside) {
         EXPECT_NEAR(p.y, points[i].x, 1e-8);
         EXPECT_NEAR(p.z, -points[i].y, 1e-8);
         // On the facets: at most their sagitta below the sphere, steeper where it turns away.
-        EXPECT_NEAR(p.x, std::sqrt(kSphereRadius * kSphereRadius - glm::dot(points[i], points[i])),
-                    5e-5);
+        EXPECT_NEAR(p.x, std::sqrt(kSphereRadius * kSphereRadius - glm::dot(points[i], points[i])), 5e-5);
     }
-    const SurfaceTrace off =
-        map_to_surface(query, make_trace(place, {{0.03, 0}, {0.049, 0}, {0.06, 0}, {0.08, 0}}));
+    const SurfaceTrace off = map_to_surface(query, make_trace(place, {{0.03, 0}, {0.049, 0}, {0.06, 0}, {0.08, 0}}));
     EXPECT_EQ(off.missed, 2u);
     EXPECT_NEAR(off.samples[3].position.y, 0.08, 1e-12);
     EXPECT_NEAR(off.samples[3].position.x, off.samples[1].position.x, 1e-12);
@@ -161,14 +156,12 @@ TEST(Placement, ProjectTakesTheFirstSurfaceFromOutside) {
 TEST(Placement, HeldTuftReachesThePressedDepth) {
     const TriangleMesh sphere = make_sphere();
     const SurfaceQuery query(sphere);
-    Trace trace =
-        make_trace({{0, -1, 0}, {1, 0, 0}, {0, 0, -1}, SurfaceMapping::wrap}, scattered(40, 0.02));
+    Trace trace = make_trace({{0, -1, 0}, {1, 0, 0}, {0, 0, -1}, SurfaceMapping::wrap}, scattered(40, 0.02));
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         trace.samples[i].pressure = double(i % 5) / 4;
         trace.samples[i].tilt = {0.3 * uniform(3, i), -0.4 * uniform(4, i)};
     }
-    const HolderOptions options{
-        .tuft_length = 0.03, .working_depth = 0.01, .hover = 0.004, .steady = 0, .tip_lag = {}};
+    const HolderOptions options{.tuft_length = 0.03, .working_depth = 0.01, .hover = 0.004, .steady = 0, .tip_lag = {}};
     const HandPath path = hand_path(query, trace, options);
     ASSERT_EQ(path.poses.size(), trace.samples.size());
     for (std::size_t i = 0; i < path.poses.size(); ++i) {
@@ -188,16 +181,24 @@ TEST(Placement, HeldTuftReachesThePressedDepth) {
 /// z(x), which has 0.25 mm between vertices.
 std::vector<double> tip_heights(const std::function<double(double)>& z, double scale = 1) {
     const TriangleMesh m = make_grid(
-        320, 40, [&](double u, double v) { const double x = 0.08 * (u - 0.5); return scale * Vec3(x, 0.08 * (v - 0.5), z(x)); },
+        320, 40,
+        [&](double u, double v) {
+            const double x = 0.08 * (u - 0.5);
+            return scale * Vec3(x, 0.08 * (v - 0.5), z(x));
+        },
         [](const Vec3&) { return Vec3(0, 0, 1); });
     const SurfaceQuery query(m);
     std::vector<Vec2> points;
     for (int i = -200; i <= 200; ++i) points.push_back(scale * Vec2(1e-4 * i, 1.3e-5 * i));
-    const HolderOptions options{.tuft_length = 0.02 * scale, .working_depth = 0.01 * scale, .steady = 0.008 * scale, .tip_lag = {}};
+    const HolderOptions options{
+        .tuft_length = 0.02 * scale, .working_depth = 0.01 * scale, .steady = 0.008 * scale, .tip_lag = {}};
     std::vector<double> heights;
     for (const brush::Pose& pose :
-         hand_path(query, make_trace({{0, 0, scale * z(0)}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::project}, points), options).poses)
-        heights.push_back((pose.position + options.tuft_length * pose.axis()).z / scale + 0.5 * options.working_depth / scale);
+         hand_path(query, make_trace({{0, 0, scale * z(0)}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::project}, points),
+                   options)
+             .poses)
+        heights.push_back((pose.position + options.tuft_length * pose.axis()).z / scale +
+                          0.5 * options.working_depth / scale);
     return heights;
 }
 
@@ -214,15 +215,18 @@ TEST(Placement, SteadyHandFollowsRidgesAndValleys) {
     for (const double sign : {-1.0, 1.0}) {
         const auto ground = [=](double x) { return sign * 0.8 * std::hypot(x, 0.8 * 0.004); };
         const std::vector<double> heights = tip_heights(ground);
-        // Half of the depth that a line of 1 mm takes with a brush of 10 mm. The mean over 8 mm is 1.4 mm off at the top.
-        for (std::size_t i = 0; i < heights.size(); ++i) EXPECT_NEAR(heights[i], ground(1e-4 * (double(i) - 200)), 2.5e-4) << i;
+        // Half of the depth that a line of 1 mm takes with a brush of 10 mm. The mean over 8 mm is 1.4 mm off at the
+        // top.
+        for (std::size_t i = 0; i < heights.size(); ++i)
+            EXPECT_NEAR(heights[i], ground(1e-4 * (double(i) - 200)), 2.5e-4) << i;
     }
 }
 
 TEST(Placement, SteadyHandDoesNotTrembleOnNoise) {
     // Vertices 1 mm apart with +-0.4 mm, evenly distributed, as a poor scan has them: the surface has 0.15 mm rms.
-    TriangleMesh m = make_grid(80, 80, [](double u, double v) { return Vec3(0.08 * (u - 0.5), 0.08 * (v - 0.5), 0); },
-                               [](const Vec3&) { return Vec3(0, 0, 1); });
+    TriangleMesh m = make_grid(
+        80, 80, [](double u, double v) { return Vec3(0.08 * (u - 0.5), 0.08 * (v - 0.5), 0); },
+        [](const Vec3&) { return Vec3(0, 0, 1); });
     for (std::size_t i = 0; i < m.positions.size(); ++i) m.positions[i].z += float(0.0004 * (2 * uniform(5, i) - 1));
     m.bounds.add(Vec3(0, 0, 4e-4));
     m.bounds.add(Vec3(0, 0, -4e-4));
@@ -255,8 +259,7 @@ TEST(Placement, SteadyHandKeepsItsHeightOnCurvedSurfaces) {
     const SurfaceQuery query(cylinder);
     std::vector<Vec2> points;
     for (int i = 0; i <= 400; ++i) points.push_back({1e-4 * i, 0});
-    Trace trace =
-        make_trace({{kCylinderRadius, 0, 0}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::wrap}, points);
+    Trace trace = make_trace({{kCylinderRadius, 0, 0}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::wrap}, points);
     const HolderOptions options{.tip_lag = {}};
     const double shift = options.steady * options.steady / (200 * kCylinderRadius);
     for (const brush::Pose& pose : hand_path(query, trace, options).poses) {
@@ -290,12 +293,10 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     // sin φ = l/R with the string tangent to the inner circle of radius sqrt(R² - l²).
     const double radius = 0.01, l = options.tip_lag_turn;
     points.clear();
-    for (int i = 0; i <= 20000; ++i)
-        points.push_back(radius * Vec2(std::cos(1e-3 * i), std::sin(1e-3 * i)));
+    for (int i = 0; i <= 20000; ++i) points.push_back(radius * Vec2(std::cos(1e-3 * i), std::sin(1e-3 * i)));
     trace = make_trace({}, points);
     led = lead_hand(trace, options);
-    const Vec2 p(trace.samples.back().position),
-        d = (Vec2(led.samples.back().position) - p) / 0.003;
+    const Vec2 p(trace.samples.back().position), d = (Vec2(led.samples.back().position) - p) / 0.003;
     EXPECT_NEAR(glm::length(d), 1, 1e-9);
     EXPECT_NEAR(glm::dot(d, p / radius), l / radius, 6e-4);  // half a sample's step over R: 5e-4
     // There and back: the lead passes through zero and turns round.

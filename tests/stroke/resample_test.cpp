@@ -44,8 +44,7 @@ TEST(Resample, SplineConvergesToTheMotionWithTheThirdPowerOfTheSampling) {
         double worst = 0;
         for (const Pose& p : resample(circle(samples), {.step = 1e-4, .drift = 0}))
             // The ends go on straight and are of lower order: look at the middle.
-            if (p.time > 0.2 && p.time < 0.8)
-                worst = std::max(worst, std::abs(glm::length(p.position) - 0.02));
+            if (p.time > 0.2 && p.time < 0.8) worst = std::max(worst, std::abs(glm::length(p.position) - 0.02));
         return worst;
     };
     EXPECT_GT(error(20) / error(40), 6.0);  // third order or better: 8, with room for the end effects
@@ -77,8 +76,15 @@ TEST(Resample, TimeConvergesToTheMotionWithTheThirdPowerOfTheSampling) {
 TEST(Resample, TimeNeverFalls) {
     // From rest to a jump, with samples a micrometre apart and others at one time.
     std::vector<Pose> raw;
-    for (const auto& [x, t] : {std::pair{0.0, 0.0}, {1e-6, 0.3}, {2e-6, 0.31}, {0.02, 0.311}, {0.021, 0.311},
-                               {0.0211, 0.9}, {0.05, 0.91}, {0.0500001, 1.5}, {0.06, 1.6}}) {
+    for (const auto& [x, t] : {std::pair{0.0, 0.0},
+                               {1e-6, 0.3},
+                               {2e-6, 0.31},
+                               {0.02, 0.311},
+                               {0.021, 0.311},
+                               {0.0211, 0.9},
+                               {0.05, 0.91},
+                               {0.0500001, 1.5},
+                               {0.06, 1.6}}) {
         Pose p;
         p.position = {x, 0, 0};
         p.time = t;
@@ -96,8 +102,8 @@ TEST(Resample, RotationsConvergeToTheMotionWithTheThirdPowerOfTheSampling) {
         Pose p;
         p.time = t;
         p.position = {0.05 * t, 0, 0};
-        p.rotation = glm::angleAxis(0.4 * std::sin(7 * t), Vec3{0, 1, 0}) *
-                     glm::angleAxis(0.8 * std::cos(5 * t), Vec3{0, 0, 1});
+        p.rotation =
+            glm::angleAxis(0.4 * std::sin(7 * t), Vec3{0, 1, 0}) * glm::angleAxis(0.8 * std::cos(5 * t), Vec3{0, 0, 1});
         return p;
     };
     const auto error = [&](int samples) {

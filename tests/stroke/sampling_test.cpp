@@ -18,9 +18,9 @@ namespace {
 
 /// A curved line of 32 mm at 40 mm/s under a pressed brush, which rests `rest` seconds after 12 mm of it.
 struct Motion {
-    double rest = 0;       // seconds
-    double tremble = 0;    // metres, of the resting hand
-    double speed = 0.04;   // m/s
+    double rest = 0;      // seconds
+    double tremble = 0;   // metres, of the resting hand
+    double speed = 0.04;  // m/s
 
     double length() const { return 0.032; }
     double time() const { return length() / speed + rest; }
@@ -63,7 +63,8 @@ struct Wall {
 };
 
 Wall wall(SurfaceMapping mapping) {
-    return {make_cylinder(), {{kCylinderRadius, 0, 0.01}, glm::normalize(Vec3(0, 1, -0.3)), glm::normalize(Vec3(0, -0.3, -1)), mapping}};
+    return {make_cylinder(),
+            {{kCylinderRadius, 0, 0.01}, glm::normalize(Vec3(0, 1, -0.3)), glm::normalize(Vec3(0, -0.3, -1)), mapping}};
 }
 
 HolderOptions options_on(const TriangleMesh& mesh) {
@@ -85,14 +86,16 @@ TEST(Sampling, AHolderGoesOnAfterARestAsWithoutOne) {
         const HolderOptions options = options_on(w.mesh);
         for (const double rate : {100.0, 250.0, 1000.0})
             for (const double tremble : {0.0, 2e-5}) {
-                SCOPED_TRACE(std::string(surface_mapping_name(mapping)) + ", " + std::to_string(rate) + " Hz, trembling by " + std::to_string(tremble));
+                SCOPED_TRACE(std::string(surface_mapping_name(mapping)) + ", " + std::to_string(rate) +
+                             " Hz, trembling by " + std::to_string(tremble));
                 const Motion rests{.rest = 0.5, .tremble = tremble};
                 const Trace with = sampled(rests, rate, w.place), without = sampled({}, rate, w.place);
                 const HandPath a = hand_path(query, with, options), b = hand_path(query, without, options);
                 const auto rested = own_poses(a, with), straight = own_poses(b, without);
                 const std::size_t before = std::size_t(std::lround(0.3 * rate)), more = rested.size() - straight.size();
                 Difference d;
-                for (std::size_t i = 0; i < straight.size(); ++i) d.take(rested[i <= before ? i : i + more], straight[i]);
+                for (std::size_t i = 0; i < straight.size(); ++i)
+                    d.take(rested[i <= before ? i : i + more], straight[i]);
                 // Without trembling the paths are the same to rounding. A tremble of 20 µm turns the string of
                 // 1.5 mm that the lead of 7 mm goes by: 20 µm 7 / 1.5. A mean over samples gave 2.2 mm and 5 degrees.
                 EXPECT_LT(d.metres, tremble > 0 ? 1.5e-4 : 1e-9);
@@ -114,8 +117,9 @@ TEST(Sampling, AHolderDoesTheSameAtEveryRate) {
             Difference d;
             for (std::size_t i = 0; i < trace.samples.size(); ++i)
                 d.take(own_poses(path, trace)[i], own_poses(finest, fine)[i * std::size_t(1000 / rate)]);
-            // 0.4 mm apart at 100 Hz: chords of a way of 30 mm radius, 0.7 µm off, from which the direction of the first
-            // 0.75 mm, the pace of the press and the lean at the start are taken. 1.5 mm and 3.4 degrees by samples.
+            // 0.4 mm apart at 100 Hz: chords of a way of 30 mm radius, 0.7 µm off, from which the direction of the
+            // first 0.75 mm, the pace of the press and the lean at the start are taken. 1.5 mm and 3.4 degrees by
+            // samples.
             EXPECT_LT(d.metres, rate < 200 ? 5e-5 : 1.5e-5) << surface_mapping_name(mapping) << ", " << rate;
             EXPECT_LT(d.radians, rate < 200 ? 2e-3 : 5e-4) << surface_mapping_name(mapping) << ", " << rate;
         }
@@ -127,7 +131,11 @@ Model bent_sheet() {
     constexpr double kWide = 0.06, kRadius = 0.04;
     constexpr std::uint32_t kTexels = 512;
     TriangleMesh m = make_grid(
-        60, 10, [](double u, double v) { const double a = kWide * (u - 0.5) / kRadius; return Vec3(kRadius * std::sin(a), kWide * (v - 0.5), kRadius * std::cos(a)); },
+        60, 10,
+        [](double u, double v) {
+            const double a = kWide * (u - 0.5) / kRadius;
+            return Vec3(kRadius * std::sin(a), kWide * (v - 0.5), kRadius * std::cos(a));
+        },
         [](const Vec3& p) { return glm::normalize(Vec3(p.x, 0, p.z)); });
     atlas::Atlas a;
     a.size = kTexels;
@@ -169,7 +177,9 @@ TEST(Sampling, InkIsTheSameAtEveryRateAndPastARest) {
     const Model model = bent_sheet();
     const auto paint = [&](const Motion& motion, double rate, double from) {
         Stroke s;
-        s.trace = sampled(motion, rate, {{0.04 * std::sin(-0.4), 0.005, 0.04 * std::cos(-0.4)}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape});
+        s.trace = sampled(
+            motion, rate,
+            {{0.04 * std::sin(-0.4), 0.005, 0.04 * std::cos(-0.4)}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape});
         for (TraceSample& sample : s.trace.samples) sample.pressure = 0.4;
         s.trace.brush = "mixed-medium";
         s.trace.ink = "carbon";
@@ -180,11 +190,13 @@ TEST(Sampling, InkIsTheSameAtEveryRateAndPastARest) {
     const std::vector<float> all = paint({}, 1000, -1);
     // The steps fall elsewhere between samples, by parts of a texel, at edges that are one texel wide: 0.016 measured.
     for (const double rate : {100.0, 250.0}) EXPECT_LT(difference(paint({}, rate, -1), all), 0.025) << rate;
-    // The rest is at -16 + 12 mm; the tuft, 6 mm ahead and wide, leaves more ink about it. 8 mm past it a mean over samples
-    // turned the holder, and left two knuckles of a millimetre. The steps fall elsewhere here, too, and some ink is gone: 0.05.
+    // The rest is at -16 + 12 mm; the tuft, 6 mm ahead and wide, leaves more ink about it. 8 mm past it a mean over
+    // samples turned the holder, and left two knuckles of a millimetre. The steps fall elsewhere here, too, and some
+    // ink is gone: 0.05.
     const double past = -0.016 + 0.012 + 0.008;
     const std::vector<float> straight = paint({}, 250, past);
-    for (const double rate : {100.0, 250.0, 1000.0}) EXPECT_LT(difference(paint({.rest = 0.5}, rate, past), straight), 0.075) << rate;
+    for (const double rate : {100.0, 250.0, 1000.0})
+        EXPECT_LT(difference(paint({.rest = 0.5}, rate, past), straight), 0.075) << rate;
 }
 
 /// Speeds of holder and hand over a trace, m/s, and what bounds the holder's; see `lead_hand`.
@@ -193,13 +205,17 @@ void expect_bounded(const SurfaceQuery& query, const Trace& trace, const HolderO
     const auto& samples = path.mapped.samples;
     double pace = kSlowestSetDown, fastest = 0;
     for (std::size_t i = 1; i < trace.samples.size(); ++i)
-        pace = std::max(pace, glm::distance(trace.samples[i].position, trace.samples[i - 1].position) / (trace.samples[i].time - trace.samples[i - 1].time));
+        pace = std::max(pace, glm::distance(trace.samples[i].position, trace.samples[i - 1].position) /
+                                  (trace.samples[i].time - trace.samples[i - 1].time));
     for (std::size_t i = 1; i < path.poses.size(); ++i) {
         const double dt = path.poses[i].time - path.poses[i - 1].time;
         const SurfaceSample &a = samples[i - 1], &b = samples[i];
         const double lead = std::max(glm::length(a.tip_lag), glm::length(b.tip_lag)), length = options.tuft_length;
-        double most = (1 + lead / options.tip_lag_turn + 2 * curvature * length + 1.5) * glm::distance(a.position, b.position) / dt +
-                      4 * (options.working_depth * std::abs(b.pressure - a.pressure) + length * glm::length(b.tilt - a.tilt)) / dt;
+        double most =
+            (1 + lead / options.tip_lag_turn + 2 * curvature * length + 1.5) * glm::distance(a.position, b.position) /
+                dt +
+            4 * (options.working_depth * std::abs(b.pressure - a.pressure) + length * glm::length(b.tilt - a.tilt)) /
+                dt;
         if (a.pressure <= 0 || b.pressure <= 0) most += options.hover / kHoverTime + pace;
         // Pressing at one place is the program's own motion there.
         if (i <= path.set_down) most = 1.2 * kSetDownPace * pace;
@@ -220,13 +236,18 @@ TEST(Sampling, AHolderIsNoFasterThanItsHandMakesIt) {
         for (const double speed : {0.01, 0.04, 0.25})
             for (const char* press : {"at once", "slowly", "twice"})
                 for (const Vec2 tilt : {Vec2{0.02, 0.01}, Vec2{0, 0.5}}) {
-                    SCOPED_TRACE(std::string(name) + " at " + std::to_string(speed) + " m/s, pressed " + press + ", leaning " + std::to_string(tilt.y));
+                    SCOPED_TRACE(std::string(name) + " at " + std::to_string(speed) + " m/s, pressed " + press +
+                                 ", leaning " + std::to_string(tilt.y));
                     Trace trace;
                     for (int i = 0; 1e-3 * i * speed < 0.03; ++i) {
                         const double s = 1e-3 * i * speed, up = smooth_step(s / 5e-3) * smooth_step((0.03 - s) / 5e-3);
                         const double gap = smooth_step(std::abs(s - 0.015) / 3e-3 - 0.5);
-                        trace.samples.push_back({.time = 1e-3 * i, .position = {s - 0.015, 0, 0},
-                                                 .pressure = 0.4 * (press[0] == 'a' ? 1 : press[0] == 's' ? up : up * gap), .tilt = tilt});
+                        trace.samples.push_back({.time = 1e-3 * i,
+                                                 .position = {s - 0.015, 0, 0},
+                                                 .pressure = 0.4 * (press[0] == 'a'   ? 1
+                                                                    : press[0] == 's' ? up
+                                                                                      : up * gap),
+                                                 .tilt = tilt});
                     }
                     trace.samples.back().pressure = press[0] == 'a' ? 0.4 : 0;
                     HolderOptions options = holder_options(preset, flat);
@@ -241,8 +262,10 @@ TEST(Sampling, AHolderIsNoFasterThanItsHandMakesIt) {
 
 /// Fast and slow, turning, pressing and leaning.
 TraceSample busy(double t) {
-    return {.time = t, .position = {0.05 * (t - 0.7 * std::sin(2 * pi * t) / (2 * pi)), 0.008 * std::sin(9 * t), 0},
-            .pressure = 0.5 + 0.2 * std::sin(7 * t), .tilt = {0.3 * std::sin(5 * t), 0.2}};
+    return {.time = t,
+            .position = {0.05 * (t - 0.7 * std::sin(2 * pi * t) / (2 * pi)), 0.008 * std::sin(9 * t), 0},
+            .pressure = 0.5 + 0.2 * std::sin(7 * t),
+            .tilt = {0.3 * std::sin(5 * t), 0.2}};
 }
 
 TEST(Sampling, EveryStageOfTheHandDoesTheSameAtEveryRate) {
@@ -252,8 +275,8 @@ TEST(Sampling, EveryStageOfTheHandDoesTheSameAtEveryRate) {
         double metres, pressure, tilt;  // that 100 Hz may differ from 2000 Hz by
     };
     std::vector<Stage> stages(3);
-    // The filter follows samples that lie on straight lines exactly, but for its cutoff, which changes between them: 44 µm
-    // measured. As a backward difference it was 124 µm off, and the string, sample by sample, 135 µm.
+    // The filter follows samples that lie on straight lines exactly, but for its cutoff, which changes between them: 44
+    // µm measured. As a backward difference it was 124 µm off, and the string, sample by sample, 135 µm.
     stages[0] = {"smooth", {}, 8e-5, 0.003, 0.003};
     stages[0].settings.smooth = 1;
     stages[1] = {"stabilise", {}, 1e-5, 0.001, 0.001};
@@ -290,7 +313,8 @@ TEST(Sampling, PosesThatArriveOneByOneDoTheSameAtEveryRate) {
             std::vector<brush::Pose> poses;
             for (int i = 0; i <= rate; ++i) {
                 const TraceSample s = busy(double(i) / rate);
-                poses.push_back(steady(hand, brush::Pose{s.position, glm::angleAxis(s.tilt.x, Vec3(0, 1, 0)), s.time}, settings));
+                poses.push_back(
+                    steady(hand, brush::Pose{s.position, glm::angleAxis(s.tilt.x, Vec3(0, 1, 0)), s.time}, settings));
             }
             return poses;
         };
@@ -308,7 +332,9 @@ TEST(Sampling, PosesThatArriveOneByOneDoTheSameAtEveryRate) {
 TEST(Sampling, AStringIsDrawnTheSameInOneStepAsInMany) {
     // In space, from every side, slack at first or taut.
     for (int k = 0; k < 200; ++k) {
-        const auto any = [&](int i) { return Vec3(uniform(11, 9 * k + 3 * i), uniform(11, 9 * k + 3 * i + 1), uniform(11, 9 * k + 3 * i + 2)); };
+        const auto any = [&](int i) {
+            return Vec3(uniform(11, 9 * k + 3 * i), uniform(11, 9 * k + 3 * i + 1), uniform(11, 9 * k + 3 * i + 2));
+        };
         const Vec3 end = any(0), to = 3.0 * any(2);
         const Vec3 from = end + (any(1) - end) * std::min(1.0, 1 / glm::length(any(1) - end));  // 1 m of string
         const Vec3 once = drag_string(end, from, to, 1.0);

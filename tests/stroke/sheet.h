@@ -8,8 +8,8 @@
 /// A sheet and strokes over it, shared by the tests of this module.
 namespace tuft::stroke {
 
-inline constexpr double kSide = 0.06;        // metres
-inline constexpr std::uint32_t kSize = 1024; // texels; the sheet covers all but a margin of 8
+inline constexpr double kSide = 0.06;         // metres
+inline constexpr std::uint32_t kSize = 1024;  // texels; the sheet covers all but a margin of 8
 
 // A flat sheet in the plane through `centre` spanned by `frame`, with the UVs of a photograph.
 inline Model sheet(const Frame& frame = {}, std::uint32_t size = kSize) {
@@ -52,7 +52,7 @@ inline Model sheet(const Frame& frame = {}, std::uint32_t size = kSize) {
 
 // The holder upright over the sheet, pressed `depth` and moved along x with an entry and a lift.
 inline Stroke line(const std::string& brush, double depth, const Frame& frame = {}, double speed = 0.03,
-            int rate = 200) {
+                   int rate = 200) {
     const double length = brush::load_preset(brush).length;
     Stroke s;
     s.trace.flat = false;

@@ -1,5 +1,3 @@
-#include "stroke/painting/surface_stencil.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "core/error.h"
 #include "sheet.h"
 #include "stroke/journal/journal.h"
+#include "stroke/painting/surface_stencil.h"
 
 namespace tuft::stroke {
 namespace {
@@ -25,8 +24,7 @@ std::vector<Vec2> star(double r) {
 
 std::vector<StencilEdge> tape_round(const std::vector<Vec2>& ring) {
     std::vector<StencilEdge> tape;
-    for (std::size_t i = 0; i < ring.size(); ++i)
-        tape.push_back({ring[i], ring[(i + 1) % ring.size()]});
+    for (std::size_t i = 0; i < ring.size(); ++i) tape.push_back({ring[i], ring[(i + 1) % ring.size()]});
     return tape;
 }
 
@@ -58,15 +56,13 @@ Stroke over_a_star(const Frame& frame, double r) {
     s.trace.ink = "carbon";
     s.trace.placement = {frame.origin, frame.t, -frame.b};
     for (int i = 0; i <= 200; ++i)
-        s.trace.samples.push_back(
-            {.time = 0.005 * i, .position = {1e-4 * i - 0.01, 0, 0}, .pressure = 0.6});
+        s.trace.samples.push_back({.time = 0.005 * i, .position = {1e-4 * i - 0.01, 0, 0}, .pressure = 0.6});
     s.trace.stencil = tape_round(star(r));
     return s;
 }
 
 TEST(Tape, InkStaysWithinAndFillsWhatItFilled) {
-    for (const Frame& frame :
-         {Frame{}, make_frame({0.1, -0.2, 0.05}, glm::normalize(Vec3{1, 2, -0.5}))}) {
+    for (const Frame& frame : {Frame{}, make_frame({0.1, -0.2, 0.05}, glm::normalize(Vec3{1, 2, -0.5}))}) {
         const Model model = sheet(frame);
         Stroke taped = over_a_star(frame, 5e-3), free = taped;
         free.trace.stencil.clear();
@@ -80,8 +76,7 @@ TEST(Tape, InkStaysWithinAndFillsWhatItFilled) {
             for (int t = 0; q && t < atlas::kTileTexels; ++t) {
                 if (model.texels.tiles[slot].area[t] <= 0 || (*q)[t] < 0.5f) continue;
                 const Vec3 at = Vec3(model.texels.position(slot, t)) - frame.origin;
-                const double d =
-                    inside_stencil(taped.trace.stencil, {glm::dot(at, frame.t), -glm::dot(at, frame.b)});
+                const double d = inside_stencil(taped.trace.stencil, {glm::dot(at, frame.t), -glm::dot(at, frame.b)});
                 const double film = p ? (*p)[t] : 0;
                 // A footprint is swept over the step from the one before, which is a texel.
                 if (d < -2 * texel) {
@@ -141,8 +136,8 @@ TEST(Tape, IsKeptInTheJournal) {
     s.trace.stencil.clear();
     read_entry_json(entry_json(s), back);
     EXPECT_TRUE(back.trace.stencil.empty());
-    for (const char* bad : {R"({"tape":7})", R"({"tape":[1,2,3]})", R"({"tape":[1,2,3,"4"]})",
-                            R"({"tape":[1,2,3,1e999]})"})
+    for (const char* bad :
+         {R"({"tape":7})", R"({"tape":[1,2,3]})", R"({"tape":[1,2,3,"4"]})", R"({"tape":[1,2,3,1e999]})"})
         EXPECT_THROW(read_entry_json(bad, back), Error) << bad;
 }
 

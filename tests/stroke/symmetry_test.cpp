@@ -8,7 +8,8 @@
 namespace tuft::stroke {
 namespace {
 
-const brush::Pose kPose{.position = {0.03, -0.02, 0.05}, .rotation = glm::normalize(Quat(0.8, 0.2, -0.5, 0.1)), .time = 1.5};
+const brush::Pose kPose{
+    .position = {0.03, -0.02, 0.05}, .rotation = glm::normalize(Quat(0.8, 0.2, -0.5, 0.1)), .time = 1.5};
 
 TEST(Symmetry, GroupsHaveTheirOrder) {
     EXPECT_EQ(symmetry_copies({}).size(), 0u);

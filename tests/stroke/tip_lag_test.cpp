@@ -105,7 +105,8 @@ std::vector<Vec2> inked_cells(Trace trace) {
 }
 
 TEST(TipLag, AStrokeSetDownFineStaysOnItsWayInEveryDirection) {
-    // Hair that touches ahead of the hand by a lean that nobody meant was pushed, and turned over after some millimetres.
+    // Hair that touches ahead of the hand by a lean that nobody meant was pushed, and turned over after some
+    // millimetres.
     for (const char* brush : {"wolf-medium", "goat-medium", "mixed-medium"})
         for (int k = 0; k < 8; ++k) {
             SCOPED_TRACE(std::string(brush) + " " + std::to_string(45 * k));
@@ -114,13 +115,16 @@ TEST(TipLag, AStrokeSetDownFineStaysOnItsWayInEveryDirection) {
             Trace trace{.brush = brush};
             for (int i = 0; i <= 90; ++i) {
                 const double x = 2e-4 * i;
-                trace.samples.push_back({.time = x / 0.045, .position = Vec3(x * way, 0), .pressure = 0.35 * smooth_step(x / 4e-3)});
+                trace.samples.push_back(
+                    {.time = x / 0.045, .position = Vec3(x * way, 0), .pressure = 0.35 * smooth_step(x / 4e-3)});
             }
             double body = 0, head = 0;  // how far to the side the ink reaches, within the first 8 mm and beyond
             for (const Vec2& p : inked_cells(trace)) {
                 const double along = glm::dot(p, way), aside = std::abs(p.x * way.y - p.y * way.x);
-                if (along < 8e-3) head = std::max(head, aside);
-                else if (along < 15e-3) body = std::max(body, aside);
+                if (along < 8e-3)
+                    head = std::max(head, aside);
+                else if (along < 15e-3)
+                    body = std::max(body, aside);
             }
             // The tuft stands where it is set down, and is up to half as wide again there (LineWidth.*).
             EXPECT_LT(head, 1.5 * body);
@@ -128,26 +132,34 @@ TEST(TipLag, AStrokeSetDownFineStaysOnItsWayInEveryDirection) {
 }
 
 TEST(TipLag, ATapIsADropWhereverTheHandDrifts) {
-    const std::array<Vec2, 7> drifts{Vec2{0, 0}, {3e-4, 0}, {-3e-4, 0}, {0, -3e-4}, {0, 3e-4}, {5e-4, -5e-4}, {-5e-4, 3e-4}};
+    const std::array<Vec2, 7> drifts{Vec2{0, 0}, {3e-4, 0},     {-3e-4, 0},   {0, -3e-4},
+                                     {0, 3e-4},  {5e-4, -5e-4}, {-5e-4, 3e-4}};
     for (const char* brush : {"wolf-medium", "goat-medium", "mixed-medium"})
         for (const Vec2& drift : drifts) {
             SCOPED_TRACE(std::string(brush) + " " + std::to_string(drift.x) + " " + std::to_string(drift.y));
             Trace trace{.brush = brush};
             for (int i = 0; i <= 100; ++i)
-                trace.samples.push_back({.time = 2.5e-3 * i, .position = Vec3(0.01 * i * drift, 0), .pressure = 0.3 * std::sin(std::numbers::pi * i / 100)});
+                trace.samples.push_back({.time = 2.5e-3 * i,
+                                         .position = Vec3(0.01 * i * drift, 0),
+                                         .pressure = 0.3 * std::sin(std::numbers::pi * i / 100)});
             const std::vector<Vec2> cells = inked_cells(trace);
             ASSERT_GT(cells.size(), 100u);
-            // Its hull by directions: a drop is convex but for its point, a V or a row of dots leaves a third of it bare.
+            // Its hull by directions: a drop is convex but for its point, a V or a row of dots leaves a third of it
+            // bare.
             std::size_t hull = 0;
             std::array<double, 64> most;
             most.fill(-1);
-            const auto across = [](std::size_t k) { return Vec2(std::cos(2 * std::numbers::pi * double(k) / 64), std::sin(2 * std::numbers::pi * double(k) / 64)); };
+            const auto across = [](std::size_t k) {
+                return Vec2(std::cos(2 * std::numbers::pi * double(k) / 64),
+                            std::sin(2 * std::numbers::pi * double(k) / 64));
+            };
             for (const Vec2& p : cells)
                 for (std::size_t k = 0; k < most.size(); ++k) most[k] = std::max(most[k], glm::dot(p, across(k)));
             for (double y = -0.025; y < 0.025; y += 1e-4)
                 for (double x = -0.025; x < 0.025; x += 1e-4) {
                     bool in = true;
-                    for (std::size_t k = 0; k < most.size() && in; ++k) in = glm::dot(Vec2(x, y), across(k)) <= most[k] + 1e-9;
+                    for (std::size_t k = 0; k < most.size() && in; ++k)
+                        in = glm::dot(Vec2(x, y), across(k)) <= most[k] + 1e-9;
                     hull += in;
                 }
             EXPECT_GT(static_cast<double>(cells.size()), 0.75 * static_cast<double>(hull));

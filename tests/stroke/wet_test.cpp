@@ -129,7 +129,8 @@ TEST(WetInk, NothingStaysOfAStrokeThatTheSameStrokeErases) {
     for (const std::uint32_t slot : painting.canvas().touched_slots())
         if (const ink::Plane* w = painting.canvas().plane(slot, 0))
             for (const float v : *w) most = std::max(most, static_cast<double>(v));
-    EXPECT_LT(most, 0.02) << "of 1.8: a reflectance less by 8 %, on single texels; 0.3 on a rim where the ink had run on";
+    EXPECT_LT(most, 0.02)
+        << "of 1.8: a reflectance less by 8 %, on single texels; 0.3 on a rim where the ink had run on";
     EXPECT_LT(painting.canvas().total(model.texels, 0), 1e-4 * painted);
     EXPECT_NEAR((report.removed.pigment[0] + painting.canvas().total(model.texels, 0)) / painted, 1, 1e-6);
     painting.undo();
@@ -166,7 +167,8 @@ TEST(WetInk, YellowThroughWetPurplePicksItUpAndNotWhenItIsDry) {
         picked[i] = 0;
         for (std::uint32_t slot = 0; slot < model.texels.n_slots(); ++slot)
             for (int t = 0; t < atlas::kTileTexels; ++t)
-                if (const ink::Plane* w = painting.canvas().plane(slot, 0); w && std::abs(model.texels.position(slot, t).y) > 6e-3f)
+                if (const ink::Plane* w = painting.canvas().plane(slot, 0);
+                    w && std::abs(model.texels.position(slot, t).y) > 6e-3f)
                     picked[i] += static_cast<double>((*w)[t] * model.texels.tiles[slot].area[t]);
     }
     EXPECT_GT(picked[0], 1e-7) << "film m2: 0.1 mm2 at one unit";

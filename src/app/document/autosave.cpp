@@ -1,8 +1,9 @@
 #include "app/document/autosave.h"
-#include "io/appearance.h"
 
 #include <algorithm>
 #include <utility>
+
+#include "io/appearance.h"
 
 namespace tuft::app {
 
@@ -31,10 +32,12 @@ void Autosave::change(const Action& action) {
 
 void Autosave::rewrite(const std::string& source, const FileFrame& frame, stroke::Document& painting) {
     behind_ = true;
-    if (std::string fault = start(wanted_ ? wanted_->path : path(), source, frame, painting); !fault.empty()) trouble_ = std::move(fault);
+    if (std::string fault = start(wanted_ ? wanted_->path : path(), source, frame, painting); !fault.empty())
+        trouble_ = std::move(fault);
 }
 
-void Autosave::start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame, const std::string& fault, bool has_work) {
+void Autosave::start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
+                           const std::string& fault, bool has_work) {
     wanted_ = {path, source, frame, fault};
     trouble_ = fault;
     project_.reset();
@@ -83,24 +86,28 @@ std::optional<io::Project> Autosave::read_again() {
 }
 
 std::string Autosave::start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
-                          stroke::Document& painting) {
+                            stroke::Document& painting) {
     std::error_code ec;
-    if (project_ && std::filesystem::equivalent(path, this->path(), ec) && overtaken() && !viewing_) return io::ChangedOutside(path).what();
+    if (project_ && std::filesystem::equivalent(path, this->path(), ec) && overtaken() && !viewing_)
+        return io::ChangedOutside(path).what();
     try {
         const stroke::Model& model = painting.model();
-        io::Project project = io::Project::create(path, {.source = source,
-                                                         .frame = frame,
-                                                         .mesh = *model.mesh,
-                                                         .atlas = model.atlas,
-                                                         .substrate = ink::substrate_toml(painting.painted_on())},
+        io::Project project = io::Project::create(path,
+                                                  {.source = source,
+                                                   .frame = frame,
+                                                   .mesh = *model.mesh,
+                                                   .atlas = model.atlas,
+                                                   .substrate = ink::substrate_toml(painting.painted_on())},
                                                   [&](io::Project& fresh) {
                                                       io::store_looks(fresh, painting);
                                                       for (const auto& preset : brushes_) fresh.put_brush(preset);
                                                       for (const auto& preset : inks_) fresh.put_ink(preset);
-                                                      for (const auto& [key, attachment] : attached_) fresh.put_attachment(key.first, attachment);
+                                                      for (const auto& [key, attachment] : attached_)
+                                                          fresh.put_attachment(key.first, attachment);
                                                       fresh.append(painting.journal().strokes());
                                                       if (!painting.journal().empty())
-                                                          fresh.save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
+                                                          fresh.save_canvases(painting.all_canvases(),
+                                                                              painting.journal().strokes().back().id);
                                                   });
         project_ = std::move(project);
         on_disk_ = stroke::marks_of(painting.journal().strokes());
@@ -117,7 +124,8 @@ std::string Autosave::start(const std::filesystem::path& path, const std::string
 void Autosave::prepare(stroke::Document& painting, const std::string& brush, const std::string& ink) {
     if (wanted_) {
         const Wanted wanted = *wanted_;
-        if (std::string fault = start(wanted.path, wanted.source, wanted.frame, painting); !fault.empty()) wanted_->fault = trouble_ = std::move(fault);
+        if (std::string fault = start(wanted.path, wanted.source, wanted.frame, painting); !fault.empty())
+            wanted_->fault = trouble_ = std::move(fault);
     }
     if (!brush.empty() && !brushes_.contains(brush)) {
         const std::string toml = brush::preset_toml(painting.brush(brush));
@@ -125,7 +133,9 @@ void Autosave::prepare(stroke::Document& painting, const std::string& brush, con
         preset.name = brush;
         painting.use_brush(preset);
         brushes_[brush] = toml;
-        attempt([&] { if (project_ && !viewing_) project_->put_brush({brush, toml}); });
+        attempt([&] {
+            if (project_ && !viewing_) project_->put_brush({brush, toml});
+        });
     }
     if (!ink.empty() && !inks_.contains(ink)) {
         const std::string toml = ink::ink_toml(painting.ink(ink));
@@ -133,12 +143,16 @@ void Autosave::prepare(stroke::Document& painting, const std::string& brush, con
         parsed.name = ink;
         painting.use_ink(parsed);
         inks_[ink] = toml;
-        attempt([&] { if (project_ && !viewing_) project_->put_ink({ink, toml}); });
+        attempt([&] {
+            if (project_ && !viewing_) project_->put_ink({ink, toml});
+        });
     }
 }
 
 void Autosave::store_looks(const stroke::Document& painting) {
-    attempt([&] { if (project_ && !viewing_) io::store_looks(*project_, painting); });
+    attempt([&] {
+        if (project_ && !viewing_) io::store_looks(*project_, painting);
+    });
 }
 
 std::vector<std::string> Autosave::inks() const {
@@ -212,7 +226,8 @@ std::optional<io::Attachment> Autosave::attachment(const std::string& kind, cons
 
 void Autosave::take_attachments(const io::Project& project) {
     for (const char* kind : {io::kReferences, io::kSnapshots})
-        for (io::Attachment& attachment : project.attachments(kind)) attached_.insert_or_assign({kind, attachment.name}, std::move(attachment));
+        for (io::Attachment& attachment : project.attachments(kind))
+            attached_.insert_or_assign({kind, attachment.name}, std::move(attachment));
 }
 
 void Autosave::remove(std::uint64_t id) {
@@ -242,7 +257,10 @@ void Autosave::set_hidden(std::uint64_t id, bool hidden) {
 
 void Autosave::store_canvas(const stroke::Document& painting) {
     if (painting.journal().empty()) return;
-    attempt([&] { if (project_ && !viewing_ && pending_.empty() && !behind_) project_->save_canvases(painting.all_canvases(), painting.journal().strokes().back().id); });
+    attempt([&] {
+        if (project_ && !viewing_ && pending_.empty() && !behind_)
+            project_->save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
+    });
 }
 
 }  // namespace tuft::app

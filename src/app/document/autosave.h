@@ -33,7 +33,8 @@ class Autosave {
 
     /// There is no file that can be written: all waits in memory, and `start` is tried again before each stroke.
     /// `has_work`: there is something already that no file holds.
-    void start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame, const std::string& fault, bool has_work = false);
+    void start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
+                     const std::string& fault, bool has_work = false);
 
     /// `start` in the place of the file there is, which rows alone cannot bring up to date.
     void rewrite(const std::string& source, const FileFrame& frame, stroke::Document& painting);
@@ -45,7 +46,8 @@ class Autosave {
     void catch_up(std::span<const stroke::Stroke> entries);
     /// Stores what the painting is shown as.
     void store_looks(const stroke::Document& painting);
-    /// Stores what goes along with the work (io/attachments.h), in the place of one of that kind and name; and takes it out.
+    /// Stores what goes along with the work (io/attachments.h), in the place of one of that kind and name; and takes it
+    /// out.
     void attach(const std::string& kind, const io::Attachment& attachment);
     void detach(const std::string& kind, const std::string& name);
     std::vector<io::Attachment> attachments(const std::string& kind) const;  ///< by name
@@ -88,13 +90,13 @@ class Autosave {
         std::filesystem::path path;
         std::string source;
         FileFrame frame;
-        std::string fault;        ///< why it is not there yet
+        std::string fault;  ///< why it is not there yet
     };
     std::optional<io::Project> project_;
     std::optional<Wanted> wanted_;
     std::vector<stroke::Stroke> pending_;
     std::vector<stroke::EntryMark> on_disk_;
-    std::map<std::string, std::string> brushes_, inks_;  ///< TOML by name
+    std::map<std::string, std::string> brushes_, inks_;                       ///< TOML by name
     std::map<std::pair<std::string, std::string>, io::Attachment> attached_;  ///< by kind and name
     std::string trouble_;
     bool behind_ = false, overtaken_ = false, viewing_ = false;

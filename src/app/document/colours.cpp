@@ -16,8 +16,12 @@ namespace {
 constexpr std::size_t kRecent = 16;
 constexpr std::size_t kMostSaved = 200;
 
-fs::path recent_path() { return state_folder() / "colours"; }
-fs::path saved_folder() { return state_folder() / "inks"; }
+fs::path recent_path() {
+    return state_folder() / "colours";
+}
+fs::path saved_folder() {
+    return state_folder() / "inks";
+}
 
 // A name for a file: what a path would take amiss becomes a dash.
 fs::path file_of(const std::string& name) {
@@ -48,7 +52,8 @@ void MixFinder::want(ColourWish wish) {
 }
 
 std::optional<ink::ColourMatch> MixFinder::poll() {
-    if (!running_.valid() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
+    if (!running_.valid() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+        return std::nullopt;
     std::optional<ink::ColourMatch> match;
     try {
         match = running_.get();

@@ -15,10 +15,10 @@ namespace tuft::app {
 
 /// A colour that is wanted of an ink.
 struct ColourWish {
-    ink::Rgb colour{};                  ///< linear sRGB
+    ink::Rgb colour{};                    ///< linear sRGB
     std::string substrate = "porcelain";  ///< preset name
-    double film = 0;                    ///< film units; 0: as many as it needs
-    std::vector<ink::Pigment> held;     ///< pigments of the work: see `ink::match_on_canvas`
+    double film = 0;                      ///< film units; 0: as many as it needs
+    std::vector<ink::Pigment> held;       ///< pigments of the work: see `ink::match_on_canvas`
 };
 
 /// Finds mixes on a thread of its own; only the newest wish counts.
@@ -37,20 +37,20 @@ class MixFinder {
 enum class ColourSliders { rgb, hsv, lab };
 
 struct ColourChoice {
-    bool shown = false;                 ///< its window
+    bool shown = false;                                   ///< its window
     std::array<float, 3> wanted{0.753f, 0.188f, 0.125f};  ///< sRGB, 0–1
     ColourSliders sliders = ColourSliders::hsv;
-    std::array<float, 3> hsv{0.017f, 0.833f, 0.753f};     ///< keeps the hue of greys
-    double film = ink::kMixFilm;        ///< film units
-    bool free_film = true;              ///< as many as the colour needs, instead
+    std::array<float, 3> hsv{0.017f, 0.833f, 0.753f};  ///< keeps the hue of greys
+    double film = ink::kMixFilm;                       ///< film units
+    bool free_film = true;                             ///< as many as the colour needs, instead
     MixFinder finder;
     std::optional<ink::ColourMatch> match;  ///< the newest mix found
-    bool take = false;                  ///< the mix that comes next goes into the brush
-    std::optional<ink::Ink> in_hand;    ///< chosen, and not yet part of the work
-    bool taken = false;                 ///< on its way into it
-    std::string hex = "#c03020", name;  ///< as typed
-    std::vector<std::string> recent;    ///< painted with, `#rrggbb`, the newest first
-    std::vector<ink::Ink> saved;        ///< of the person, for every work
+    bool take = false;                      ///< the mix that comes next goes into the brush
+    std::optional<ink::Ink> in_hand;        ///< chosen, and not yet part of the work
+    bool taken = false;                     ///< on its way into it
+    std::string hex = "#c03020", name;      ///< as typed
+    std::vector<std::string> recent;        ///< painted with, `#rrggbb`, the newest first
+    std::vector<ink::Ink> saved;            ///< of the person, for every work
 };
 
 /// Colours painted with and inks saved, of earlier runs: under `state_folder()`. What cannot be read is left out.

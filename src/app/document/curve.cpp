@@ -10,15 +10,17 @@
 namespace tuft::app {
 namespace {
 
-constexpr double kReach = 0.005;        // metres, besides half a span
-constexpr double kTangent = 0.001;      // metres to both sides over which the direction is taken
-constexpr double kSample = 0.004;       // seconds between two samples of the hand
+constexpr double kReach = 0.005;    // metres, besides half a span
+constexpr double kTangent = 0.001;  // metres to both sides over which the direction is taken
+constexpr double kSample = 0.004;   // seconds between two samples of the hand
 constexpr std::size_t kMostSamples = 50'000;
 
 Vec3 spline(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3, double u) {
     const auto knot = [](const Vec3& a, const Vec3& b) { return std::max(1e-6, std::sqrt(glm::distance(a, b))); };
     const double t1 = knot(p0, p1), t2 = t1 + knot(p1, p2), t3 = t2 + knot(p2, p3), t = t1 + u * (t2 - t1);
-    const auto mix = [t](const Vec3& a, const Vec3& b, double ta, double tb) { return ((tb - t) * a + (t - ta) * b) / (tb - ta); };
+    const auto mix = [t](const Vec3& a, const Vec3& b, double ta, double tb) {
+        return ((tb - t) * a + (t - ta) * b) / (tb - ta);
+    };
     const Vec3 a1 = mix(p0, p1, 0, t1), a2 = mix(p1, p2, t1, t2), a3 = mix(p2, p3, t2, t3);
     return mix(mix(a1, a2, 0, t2), mix(a2, a3, t1, t3), t1, t2);
 }
@@ -38,33 +40,46 @@ CurvePlace lay(const mesh::SurfaceQuery& query, const Vec3& p, const Vec3& outwa
 
 // Place at a length along the curve; before and after it goes on straight.
 CurvePlace at_length(std::span<const CurvePlace> curve, double s) {
-    const auto above = std::lower_bound(curve.begin(), curve.end(), s, [](const CurvePlace& c, double v) { return c.along < v; });
+    const auto above =
+        std::lower_bound(curve.begin(), curve.end(), s, [](const CurvePlace& c, double v) { return c.along < v; });
     const std::size_t i = std::clamp<std::size_t>(static_cast<std::size_t>(above - curve.begin()), 1, curve.size() - 1);
     const CurvePlace &a = curve[i - 1], &b = curve[i];
     const double u = (s - a.along) / std::max(1e-9, b.along - a.along), v = std::clamp(u, 0.0, 1.0);
-    return {.position = a.position + u * (b.position - a.position), .normal = glm::normalize(glm::mix(a.normal, b.normal, v)), .along = s,
+    return {.position = a.position + u * (b.position - a.position),
+            .normal = glm::normalize(glm::mix(a.normal, b.normal, v)),
+            .along = s,
             .pressure = glm::mix(a.pressure, b.pressure, v)};
 }
 
-std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<const CurvePlace> curve, const CurveHand& hand) {
-    const double length = curve.back().along - curve.front().along, step = std::max(hand.settings.speed * kSample, length / kMostSamples);
+std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<const CurvePlace> curve,
+                                     const CurveHand& hand) {
+    const double length = curve.back().along - curve.front().along,
+                 step = std::max(hand.settings.speed * kSample, length / kMostSamples);
     const auto n = static_cast<std::size_t>(std::max(2.0, std::ceil(length / step)));
     std::vector<stroke::SurfaceSample> samples;
     for (std::size_t i = 0; i <= n; ++i) {
         const double part = static_cast<double>(i) / static_cast<double>(n), s = curve.front().along + part * length;
-        const double press = hand.pressure * at_length(curve, s).pressure * smooth_step(part / std::max(1e-3, hand.settings.taper_in)) *
+        const double press = hand.pressure * at_length(curve, s).pressure *
+                             smooth_step(part / std::max(1e-3, hand.settings.taper_in)) *
                              smooth_step((1 - part) / std::max(1e-3, hand.settings.taper_out));
         const CurvePlace place = at_length(curve, s);
         // The hand runs straight ahead, and under a lean aside: the tuft is dragged behind it, along the curve.
         const Vec3 way = at_length(curve, s + kTangent).position - at_length(curve, s - kTangent).position;
         const stroke::Axes axes = stroke::axes_across(place.normal, hand.right, hand.down);
         const Vec2 ahead{glm::dot(way, axes.right), glm::dot(way, axes.down)};
-        stroke::SurfaceSample sample{.position = place.position, .normal = place.normal, .right = axes.right, .down = axes.down,
-                                  .time = part * length / hand.settings.speed, .pressure = press, .tilt = hand.tilt};
-        if (press > 0 && glm::length(ahead) > 1e-9) sample.tip_lag = stroke::lead_of(hand.hold, press, hand.tilt, glm::normalize(ahead));
+        stroke::SurfaceSample sample{.position = place.position,
+                                     .normal = place.normal,
+                                     .right = axes.right,
+                                     .down = axes.down,
+                                     .time = part * length / hand.settings.speed,
+                                     .pressure = press,
+                                     .tilt = hand.tilt};
+        if (press > 0 && glm::length(ahead) > 1e-9)
+            sample.tip_lag = stroke::lead_of(hand.hold, press, hand.tilt, glm::normalize(ahead));
         if (const auto on = query.closest_point(place.position, 0.01)) {
             sample.on = *on;
-            sample.on_surface = glm::dot(on->normal, place.normal) > 0 && glm::distance(on->position, place.position) < 1e-3;
+            sample.on_surface =
+                glm::dot(on->normal, place.normal) > 0 && glm::distance(on->position, place.position) < 1e-3;
         }
         samples.push_back(sample);
     }
@@ -95,7 +110,8 @@ std::vector<CurvePlace> lay_curve(const mesh::SurfaceQuery& query, std::span<con
     return curve;
 }
 
-std::vector<std::vector<brush::Pose>> curve_poses(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points, const CurveHand& hand) {
+std::vector<std::vector<brush::Pose>> curve_poses(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points,
+                                                  const CurveHand& hand) {
     const std::vector<CurvePlace> curve = lay_curve(query, points);
     std::vector<std::vector<brush::Pose>> strokes;
     for (std::size_t i = 0; i < curve.size();) {

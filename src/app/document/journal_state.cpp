@@ -19,7 +19,8 @@ std::vector<JournalRow> journal_rows(const std::vector<StrokeLine>& lines, const
         if (group->second.back() != i) continue;  // listed already
         rows.push_back({.group = id, .lines = group->second});
         if (!open_groups.contains(id)) continue;
-        for (std::size_t k = group->second.size(); k-- > 0;) rows.push_back({.lines = {group->second[k]}, .inside = true});
+        for (std::size_t k = group->second.size(); k-- > 0;)
+            rows.push_back({.lines = {group->second[k]}, .inside = true});
     }
     return rows;
 }

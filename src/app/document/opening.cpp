@@ -106,7 +106,8 @@ void carry_strokes(const fs::path& former, PaintThread::Work& work, const Progre
     const auto length_of = [&](const std::string& brush) { return work.painting->brush(brush).length; };
     const mesh::SurfaceQuery before(mesh);
     const std::optional<stroke::ModelMotion> motion = stroke::find_motion(before, *work.model->query);
-    const std::vector<stroke::StrokeFit> fits = stroke::compare_fit(strokes, length_of, before, *work.model->query, motion);
+    const std::vector<stroke::StrokeFit> fits =
+        stroke::compare_fit(strokes, length_of, before, *work.model->query, motion);
     work.mismatches = stroke::find_mismatches(reports, fits);
     work.fit = {stroke::describe(stroke::total_of(fits, work.mismatches)) + "."};
     if (motion) work.fit.push_back("The revised model is the former one " + stroke::describe(*motion) + ".");
@@ -115,10 +116,12 @@ void carry_strokes(const fs::path& former, PaintThread::Work& work, const Progre
 // In a file from now on, or in memory until there can be one.
 void keep(PaintThread::Work& work, const fs::path& file) {
     const std::string fault = work.autosave.start(file, work.source, work.frame, *work.painting);
-    if (!fault.empty()) work.autosave.start_later(file, work.source, work.frame, fault, !work.painting->journal().empty());
+    if (!fault.empty())
+        work.autosave.start_later(file, work.source, work.frame, fault, !work.painting->journal().empty());
 }
 
-PaintThread::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former, const fs::path& project, const ProgressFn& progress) {
+PaintThread::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former,
+                                const fs::path& project, const ProgressFn& progress) {
     PaintThread::Work work;
     stroke::ModelOptions prepare;
     const auto fixed = io::metres_per_unit_of(in.path);
@@ -130,7 +133,8 @@ PaintThread::Work prepare_model(Inspected in, const OpenOptions& options, const 
     work.frame = options.frame;
     if (!options.own_colours) mesh::drop_colours(in.soup);
     work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
-    work.painting = std::make_unique<stroke::Document>(*work.model, stroke::DocumentOptions{.substrate = options.substrate});
+    work.painting =
+        std::make_unique<stroke::Document>(*work.model, stroke::DocumentOptions{.substrate = options.substrate});
     if (!former.empty()) carry_strokes(former, work, progress);
     work.texture = std::make_unique<Texture>(*work.painting, progress);
     work.pixels = work.texture->pixels();
@@ -275,11 +279,14 @@ Opening::Result Opening::poll() {
     return result;
 }
 
-double expected_texel(double area, std::uint32_t size) { return std::sqrt(area / 0.75) / std::max(1u, size); }
+double expected_texel(double area, std::uint32_t size) {
+    return std::sqrt(area / 0.75) / std::max(1u, size);
+}
 
 std::uint32_t proposed_size(double area) {
     constexpr double kFine = 0.4 * kMillimetre;
-    return expected_texel(area, 2048) > kFine && 2 * stroke::atlas_memory(4096) < stroke::available_memory() ? 4096 : 2048;
+    return expected_texel(area, 2048) > kFine && 2 * stroke::atlas_memory(4096) < stroke::available_memory() ? 4096
+                                                                                                             : 2048;
 }
 
 }  // namespace tuft::app

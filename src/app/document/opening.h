@@ -52,14 +52,15 @@ class Opening {
     void inspect(const std::filesystem::path& path);
     void prepare(Inspected inspected, const OpenOptions& options, const std::filesystem::path& project);
     /// The same for a model that takes the place of another: paints the strokes of `former` on it.
-    void revise(Inspected inspected, const OpenOptions& options, const std::filesystem::path& former, const std::filesystem::path& project);
+    void revise(Inspected inspected, const OpenOptions& options, const std::filesystem::path& former,
+                const std::filesystem::path& project);
     /// `session`: where a copy goes.
     void load(const std::filesystem::path& project, const std::filesystem::path& session, OpenAs as = OpenAs::work);
     void cancel();
 
     bool running() const { return job_ != nullptr; }
-    std::string phase() const;    ///< for a person, English
-    double fraction() const;      ///< of the whole
+    std::string phase() const;  ///< for a person, English
+    double fraction() const;    ///< of the whole
 
     /// Appearance whether the step is done; results are taken once. The error is one line, "" if none.
     struct Result {
@@ -77,7 +78,7 @@ class Opening {
     void start(Step step);
 
     std::unique_ptr<Job> job_;
-    std::filesystem::path loaded_;  ///< project of the last `load`
+    std::filesystem::path loaded_;               ///< project of the last `load`
     std::vector<std::unique_ptr<Job>> leaving_;  ///< cancelled, not ended yet
 };
 

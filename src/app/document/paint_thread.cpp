@@ -29,7 +29,8 @@ PaintThread::PaintThread(Work work) : work_(std::move(work)) {
     work_.painting->take_dirty();
     const std::vector<std::string> shipped = ink::list_inks();
     for (const std::string& name : work_.autosave.inks())
-        if (std::find(shipped.begin(), shipped.end(), name) == shipped.end()) own_inks_.push_back(work_.painting->ink(name));
+        if (std::find(shipped.begin(), shipped.end(), name) == shipped.end())
+            own_inks_.push_back(work_.painting->ink(name));
     update_.own_inks = own_inks_;
     publish_looks();
     if (work_.painting->palette()) {
@@ -43,7 +44,9 @@ PaintThread::PaintThread(Work work) : work_(std::move(work)) {
     thread_ = std::thread([this] { run(); });
 }
 
-PaintThread::~PaintThread() { finish(); }
+PaintThread::~PaintThread() {
+    finish();
+}
 
 std::filesystem::path PaintThread::finish() {
     {
@@ -66,7 +69,9 @@ void PaintThread::post(Command command) {
 const atlas::AtlasReport* PaintThread::atlas_report() {
     const stroke::Model& model = *work_.model;
     if (model.atlas_report.charts > 0) return &model.atlas_report;
-    if (!measured_.valid()) measured_ = std::async(std::launch::async, [&model] { return atlas::measure(*model.mesh, model.atlas); }).share();
+    if (!measured_.valid())
+        measured_ =
+            std::async(std::launch::async, [&model] { return atlas::measure(*model.mesh, model.atlas); }).share();
     return measured_.wait_for(std::chrono::seconds(0)) == std::future_status::ready ? &measured_.get() : nullptr;
 }
 
@@ -152,7 +157,9 @@ void PaintThread::run() {
     look_outside();
     Autosave& autosave = work_.autosave;
     autosave.retry(work_.source, work_.frame, *work_.painting);
-    if (autosave.unkept() && !work_.spare.empty() && autosave.start(work_.spare, work_.source, work_.frame, *work_.painting).empty()) spared_ = work_.spare;
+    if (autosave.unkept() && !work_.spare.empty() &&
+        autosave.start(work_.spare, work_.source, work_.frame, *work_.painting).empty())
+        spared_ = work_.spare;
     autosave.store_canvas(*work_.painting);
 }
 
@@ -160,25 +167,32 @@ namespace {
 
 // What a person who only looks at a project may not ask for.
 bool changes_work(const Command& command) {
-    return std::visit(Overloaded{[](const BeginStroke&) { return true; }, [](const PaintDrawing&) { return true; }, [](const ActOnBrush&) { return true; },
-                                 [](const UndoStroke&) { return true; }, [](const RedoStroke&) { return true; }, [](const EditStrokes&) { return true; },
-                                 [](const AttachToProject&) { return true; }, [](const DetachFromProject&) { return true; }, [](const TakeSnapshot&) { return true; },
-                                 [](const RenameSnapshot&) { return true; }, [](const RestoreSnapshot&) { return true; },
-                                 [](const FillModel&) { return true; }, [](const ChangeLayers&) { return true; }, [](const ChangeMasks&) { return true; },
-                                 [](const auto&) { return false; }},
-                      command);
+    return std::visit(
+        Overloaded{[](const BeginStroke&) { return true; }, [](const PaintDrawing&) { return true; },
+                   [](const ActOnBrush&) { return true; }, [](const UndoStroke&) { return true; },
+                   [](const RedoStroke&) { return true; }, [](const EditStrokes&) { return true; },
+                   [](const AttachToProject&) { return true; }, [](const DetachFromProject&) { return true; },
+                   [](const TakeSnapshot&) { return true; }, [](const RenameSnapshot&) { return true; },
+                   [](const RestoreSnapshot&) { return true; }, [](const FillModel&) { return true; },
+                   [](const ChangeLayers&) { return true; }, [](const ChangeMasks&) { return true; },
+                   [](const auto&) { return false; }},
+        command);
 }
 
 }  // namespace
 
 void PaintThread::perform(Command& command) {
     stop_ = false;
-    if (work_.autosave.viewing() && changes_work(command)) return say("This project is only looked at; File > Save as... makes a copy to work on.");
-    std::visit(Overloaded{[this](BeginStroke& c) { begin(c); }, [this](ExtendStroke& c) { extend(c); },
+    if (work_.autosave.viewing() && changes_work(command))
+        return say("This project is only looked at; File > Save as... makes a copy to work on.");
+    std::visit(Overloaded{[this](BeginStroke& c) { begin(c); },
+                          [this](ExtendStroke& c) { extend(c); },
                           [this](EndStroke&) { end(); },
-                          [this](ActOnBrush& c) { care(c); }, [this](PaintDrawing& c) { paint_drawing(c); },
+                          [this](ActOnBrush& c) { care(c); },
+                          [this](PaintDrawing& c) { paint_drawing(c); },
                           [this](CancelStroke&) { cancel(); },
-                          [this](UndoStroke&) { undo(); }, [this](RedoStroke&) { redo(); },
+                          [this](UndoStroke&) { undo(); },
+                          [this](RedoStroke&) { redo(); },
                           [this](SaveProject& c) {
                               const std::string fault =
                                   work_.autosave.start(c.path, work_.source, work_.frame, *work_.painting);
@@ -192,26 +206,36 @@ void PaintThread::perform(Command& command) {
                               work_.autosave.retry(work_.source, work_.frame, *work_.painting);
                               publish();
                           },
-                          [this](FillModel& c) { fill(c); }, [this](ChangeLayers& c) { change_layers(c); },
+                          [this](FillModel& c) { fill(c); },
+                          [this](ChangeLayers& c) { change_layers(c); },
                           [this](SendTexture& c) {
                               publish();
                               work_.texture->show_wetness(c.wetness, *work_.painting);
                               send_pixels();
                           },
-                          [this](PickInk& c) { pick(c); }, [this](TakeInk& c) { add_ink(std::move(c.ink)); },
-                          [this](RecolourInk& c) { recolour(c); }, [this](PreviewSubstrate& c) { preview_substrate(c); },
-                          [this](ChangeMasks& c) { change_masks(c); }, [this](ShowMask& c) { show_mask(c); },
+                          [this](PickInk& c) { pick(c); },
+                          [this](TakeInk& c) { add_ink(std::move(c.ink)); },
+                          [this](RecolourInk& c) { recolour(c); },
+                          [this](PreviewSubstrate& c) { preview_substrate(c); },
+                          [this](ChangeMasks& c) { change_masks(c); },
+                          [this](ShowMask& c) { show_mask(c); },
                           [this](LookFrom& c) { thumbnails_.look_from(*work_.model, c.camera); },
-                          [this](ExportModel& c) { export_model(c); }, [this](EditStrokes& c) { edit(c); },
+                          [this](ExportModel& c) { export_model(c); },
+                          [this](EditStrokes& c) { edit(c); },
                           [this](HighlightStrokes& c) { highlight(c); },
-                          [this](AttachToProject& c) { work_.autosave.attach(c.kind, c.attachment); publish(); },
+                          [this](AttachToProject& c) {
+                              work_.autosave.attach(c.kind, c.attachment);
+                              publish();
+                          },
                           [this](DetachFromProject& c) {
                               work_.autosave.detach(c.kind, c.name);
                               publish_snapshots();
                               publish();
                           },
-                          [this](TakeSnapshot& c) { take_snapshot(c); }, [this](RenameSnapshot& c) { rename_snapshot(c); },
-                          [this](ShowSnapshot& c) { show_snapshot(c); }, [this](RestoreSnapshot& c) { restore_snapshot(c); }},
+                          [this](TakeSnapshot& c) { take_snapshot(c); },
+                          [this](RenameSnapshot& c) { rename_snapshot(c); },
+                          [this](ShowSnapshot& c) { show_snapshot(c); },
+                          [this](RestoreSnapshot& c) { restore_snapshot(c); }},
                command);
 }
 
@@ -264,7 +288,8 @@ void PaintThread::publish(bool strokes_changed) {
     update_.fullness = held ? held->reservoir.fullness() : 1;
     update_.layers = painting.layers();
     update_.masks = painting.masks();
-    update_.wet = std::ranges::any_of(painting.canvases(), [](const stroke::LayerTexels& l) { return l.canvas->wet(); });
+    update_.wet =
+        std::ranges::any_of(painting.canvases(), [](const stroke::LayerTexels& l) { return l.canvas->wet(); });
     update_.can_undo = !steps_.empty() && !work_.autosave.viewing();
     update_.undo_seconds = undo_seconds_;
     update_.can_redo = !undone_.empty();
@@ -281,13 +306,15 @@ void PaintThread::send_tiles(std::vector<render::TilePixels> tiles) {
     std::set<std::uint32_t> fresh;
     for (const render::TilePixels& tile : tiles) fresh.insert(tile.tile);
     std::erase_if(update_.tiles, [&](const render::TilePixels& t) { return fresh.contains(t.tile); });
-    update_.tiles.insert(update_.tiles.end(), std::make_move_iterator(tiles.begin()), std::make_move_iterator(tiles.end()));
+    update_.tiles.insert(update_.tiles.end(), std::make_move_iterator(tiles.begin()),
+                         std::make_move_iterator(tiles.end()));
 }
 
 void PaintThread::begin(const BeginStroke& command) {
     cancel();
     current_ = command;
-    if (const stroke::BrushInHand* held = work_.painting->held(command.brush); command.as_it_is && held) current_.ink = held->named;
+    if (const stroke::BrushInHand* held = work_.painting->held(command.brush); command.as_it_is && held)
+        current_.ink = held->named;
     work_.autosave.prepare(*work_.painting, command.brush, command.ink);
     if (!command.tip_ink.empty()) undone_before_ = work_.painting->journal().undone();
     load_tip(command, loads_);
@@ -323,7 +350,8 @@ void PaintThread::change_layers(const ChangeLayers& command) {
     entry.trace.flat = false;
     entry.trace.label = command.edit.layer.name;
     if (command.edit.what == stroke::LayerChange::remove)
-        if (const stroke::Layer* layer = work_.painting->layers().find(command.edit.layer.id)) entry.trace.label = layer->name;
+        if (const stroke::Layer* layer = work_.painting->layers().find(command.edit.layer.id))
+            entry.trace.label = layer->name;
     entry.edit = command.edit;
     // The button may be pressed twice before the first new layer is shown.
     if (stroke::Layer& layer = entry.edit.layer; command.edit.what == stroke::LayerChange::add) {
@@ -333,7 +361,8 @@ void PaintThread::change_layers(const ChangeLayers& command) {
             entry.edit.place = static_cast<std::uint32_t>(table.layers.size());
         }
         const std::string stem = layer.name.substr(0, layer.name.find_last_not_of("0123456789") + 1);
-        for (std::size_t n = table.layers.size() + 1; table.find(std::string_view(layer.name)); ++n) layer.name = stem + std::to_string(n);
+        for (std::size_t n = table.layers.size() + 1; table.find(std::string_view(layer.name)); ++n)
+            layer.name = stem + std::to_string(n);
         entry.trace.label = layer.name;
     }
     act(std::move(entry));
@@ -374,13 +403,15 @@ void PaintThread::paint_drawing(PaintDrawing& command) {
     shown("", 0);
     PlacedWriting& drawing = command.drawing;
     drawing.fit.film = [this](const std::string& ink) { return work_.painting->ink(ink).film * ink::kFilmUnit; };
-    stroke::choose_brushes(drawing.entries, stroke::drawing_in(drawing.entries, true), drawing.scale, drawing.extent, drawing.fit, widths_);
+    stroke::choose_brushes(drawing.entries, stroke::drawing_in(drawing.entries, true), drawing.scale, drawing.extent,
+                           drawing.fit, widths_);
     stroke::redip_long_lines(drawing.entries, drawing.fit, widths_);
     stroke::press_to_widths(drawing.entries, widths_);
     std::vector<stroke::Stroke> all = drawing.entries;
     const std::size_t in_group = std::max<std::size_t>(1, all.size());
     for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry)) {
-        const double reads = glm::determinant(map.linear) < 0 ? -1 : 1;  // with its right turned back it reads as the original
+        const double reads =
+            glm::determinant(map.linear) < 0 ? -1 : 1;  // with its right turned back it reads as the original
         for (stroke::Stroke entry : drawing.entries) {
             stroke::Placement& p = entry.trace.placement;
             p = {map.point(p.origin), reads * (map.linear * p.right), map.linear * p.down, p.mapping};
@@ -396,7 +427,8 @@ void PaintThread::paint_drawing(PaintDrawing& command) {
         all[i].layer = layer_of(command.layer);
         all[i].mask = command.mask;
         if (command.wet) all[i].settings.film = "wet";
-        if (i % in_group == 0 && !command.name.empty()) group = {work_.painting->journal().next_group_id(), command.name};
+        if (i % in_group == 0 && !command.name.empty())
+            group = {work_.painting->journal().next_group_id(), command.name};
         all[i].group = group;
         work_.painting->paint(std::move(all[i]));
         work_.autosave.add(work_.painting->journal().strokes().back());

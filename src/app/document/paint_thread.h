@@ -33,33 +33,33 @@ inline constexpr std::uint32_t kNewestLayer = stroke::kPaletteLayer - 1;
 struct BeginStroke {
     std::string brush, ink;
     stroke::Symmetry symmetry;
-    bool carry = false;           ///< goes on with the hair and ink of the stroke before
-    bool as_it_is = false;        ///< with what is in the brush, whatever ink is chosen; where it is held
+    bool carry = false;                         ///< goes on with the hair and ink of the stroke before
+    bool as_it_is = false;                      ///< with what is in the brush, whatever ink is chosen; where it is held
     std::uint32_t layer = stroke::kFirstLayer;  ///< or the palette
-    std::uint32_t mask = 0;       ///< kept to; 0: none
-    bool erases = false;          ///< takes ink off
-    bool wet = false;             ///< ink that flows and mixes
-    std::string tip_ink;          ///< every stroke begins with this one in the tip; empty: with one ink
-    double tip_depth = 0.3;       ///< of it, part of the tuft's length
-    bool joined = false;          ///< is undone together with the one before it
+    std::uint32_t mask = 0;                     ///< kept to; 0: none
+    bool erases = false;                        ///< takes ink off
+    bool wet = false;                           ///< ink that flows and mixes
+    std::string tip_ink;                        ///< every stroke begins with this one in the tip; empty: with one ink
+    double tip_depth = 0.3;                     ///< of it, part of the tuft's length
+    bool joined = false;                        ///< is undone together with the one before it
 };
 /// Dips, rinses, wipes or combs a brush, or lets the ink dry.
 struct ActOnBrush {
     stroke::Action action = stroke::Action::dip;
     std::string brush, ink;
-    double seconds = 0;           ///< of drying; 0: until all is dry
-    stroke::Extent extent = {};   ///< of a dip or a wipe
+    double seconds = 0;          ///< of drying; 0: until all is dry
+    stroke::Extent extent = {};  ///< of a dip or a wipe
 };
 struct ExtendStroke {
     std::vector<brush::Pose> poses;
-    double asked = 0;             ///< seconds on the window's clock, comes back in `Update::done`
+    double asked = 0;  ///< seconds on the window's clock, comes back in `Update::done`
 };
 struct EndStroke {};
 /// Paints a drawing that has been placed on the model; undone together.
 struct PaintDrawing {
     PlacedWriting drawing;
-    std::string name;             ///< its strokes are a group of this name, each symmetric copy another one; empty: no groups
-    stroke::Symmetry symmetry;    ///< the drawing reads the same way in each copy, also beyond a mirror plane
+    std::string name;  ///< its strokes are a group of this name, each symmetric copy another one; empty: no groups
+    stroke::Symmetry symmetry;  ///< the drawing reads the same way in each copy, also beyond a mirror plane
     std::uint32_t layer = stroke::kFirstLayer;
     std::uint32_t mask = 0;
     bool wet = false;
@@ -76,7 +76,7 @@ struct FillModel {
 };
 /// The eyedropper: what lies at a place becomes an ink of its own.
 struct PickInk {
-    Vec3 point{0};                ///< metres, frame of the model or the palette
+    Vec3 point{0};  ///< metres, frame of the model or the palette
     bool on_palette = false;
 };
 /// Takes an ink in from outside.
@@ -95,7 +95,7 @@ struct PreviewSubstrate {
 /// Makes or ends a mask.
 struct ChangeMasks {
     stroke::MaskEdit edit;
-    std::uint32_t with = 0;       ///< a new one: another mask that it is taken together with; 0: none
+    std::uint32_t with = 0;  ///< a new one: another mask that it is taken together with; 0: none
     stroke::MaskKind how = stroke::MaskKind::unite;  ///< or intersect
 };
 /// Veils what a mask leaves out; 0: nothing.
@@ -112,7 +112,7 @@ struct LookFrom {
 };
 /// Hands over the whole texture anew.
 struct SendTexture {
-    bool wetness = false;         ///< its fourth channel: the liquid, not the ink's height
+    bool wetness = false;  ///< its fourth channel: the liquid, not the ink's height
 };
 struct SaveProject {
     std::filesystem::path path;
@@ -121,16 +121,16 @@ struct SaveProject {
 struct RetryKeeping {};
 struct ExportModel {
     std::filesystem::path path;
-    bool height = true, orm = true;  ///< maps besides the base colour
-    bool pigments = false;        ///< likewise, where the path is an .exr file
-    std::uint32_t size = 0;       ///< texels per side; 0: as painted
-    int pictures = 0;             ///< of the model beside it: none, one, or that many all round
-    int picture_width = 1280;     ///< pixels; 16 : 9
+    bool height = true, orm = true;        ///< maps besides the base colour
+    bool pigments = false;                 ///< likewise, where the path is an .exr file
+    std::uint32_t size = 0;                ///< texels per side; 0: as painted
+    int pictures = 0;                      ///< of the model beside it: none, one, or that many all round
+    int picture_width = 1280;              ///< pixels; 16 : 9
     double azimuth = 0, elevation = 0.45;  ///< radians, from where they are seen
 };
 /// p → to + rotation (p − from)
 struct RigidMove {
-    Vec3 from{0}, to{0};          ///< metres
+    Vec3 from{0}, to{0};  ///< metres
     Quat rotation{1, 0, 0, 0};
 };
 /// Changes entries that are already there, all at once and undone as one; the rest is painted again.
@@ -170,8 +170,11 @@ struct ShowSnapshot {
 struct RestoreSnapshot {
     std::string id;
 };
-using Command = std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot, RestoreSnapshot, BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, ActOnBrush, UndoStroke, RedoStroke, SaveProject, RetryKeeping,
-                             ExportModel, EditStrokes, HighlightStrokes, FillModel, ChangeLayers, SendTexture, PickInk, TakeInk, RecolourInk, PreviewSubstrate, ChangeMasks, ShowMask, LookFrom>;
+using Command =
+    std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot, RestoreSnapshot,
+                 BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, ActOnBrush, UndoStroke, RedoStroke,
+                 SaveProject, RetryKeeping, ExportModel, EditStrokes, HighlightStrokes, FillModel, ChangeLayers,
+                 SendTexture, PickInk, TakeInk, RecolourInk, PreviewSubstrate, ChangeMasks, ShowMask, LookFrom>;
 
 /// A stroke for the list.
 struct StrokeLine {
@@ -180,11 +183,11 @@ struct StrokeLine {
     std::string brush, ink, label;
     stroke::EntryGroup group;
     bool hidden = false, erases = false, on_palette = false;
-    double length = 0;            ///< metres of the hand's way
-    std::vector<Vec3f> way;       ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
-    bool flat = false;            ///< `way` is in the frame of a drawing
-    Vec2 way_centre{0};           ///< metres: of the way (0.5, 0.5) there
-    double way_span = 0;          ///< metres: of [0, 1]
+    double length = 0;       ///< metres of the hand's way
+    std::vector<Vec3f> way;  ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
+    bool flat = false;       ///< `way` is in the frame of a drawing
+    Vec2 way_centre{0};      ///< metres: of the way (0.5, 0.5) there
+    double way_span = 0;     ///< metres: of [0, 1]
 };
 
 /// A place at the rim of highlighted ink.
@@ -196,7 +199,7 @@ struct OutlinePoint {
 struct Appearance {
     std::map<std::string, ink::Ink> recolours;  ///< by the name of the ink painted with
     std::string substrate, painted_on;
-    float roughness = 0.1f;       ///< of the bare surface, as shown
+    float roughness = 0.1f;  ///< of the bare surface, as shown
 };
 
 /// What changed since the last look.
@@ -205,33 +208,34 @@ struct Update {
     std::vector<render::TilePixels> tiles;
     std::optional<std::vector<StrokeLine>> strokes;
     std::vector<std::string> messages;
-    std::optional<brush::TuftState> tuft;  ///< of the stroke in work; no branches: none
-    double done = 0;              ///< the latest `ExtendStroke::asked` that is painted
-    std::size_t waiting = 0;      ///< commands not done yet
-    std::string busy;             ///< long work being done, ""
-    double fraction = 0;          ///< of it
-    double undo_seconds = 0;      ///< that the last undo took
-    double fullness = 1;          ///< ink in the brush last painted with, of its capacity
+    std::optional<brush::TuftState> tuft;                     ///< of the stroke in work; no branches: none
+    double done = 0;                                          ///< the latest `ExtendStroke::asked` that is painted
+    std::size_t waiting = 0;                                  ///< commands not done yet
+    std::string busy;                                         ///< long work being done, ""
+    double fraction = 0;                                      ///< of it
+    double undo_seconds = 0;                                  ///< that the last undo took
+    double fullness = 1;                                      ///< ink in the brush last painted with, of its capacity
     std::optional<std::array<std::uint8_t, 3>> brush_colour;  ///< sRGB of a full film of it
-    std::optional<stroke::PalettePicture> palette;  ///< what changed on it
-    bool on_palette = false;      ///< `tuft` is there
+    std::optional<stroke::PalettePicture> palette;            ///< what changed on it
+    bool on_palette = false;                                  ///< `tuft` is there
     bool can_undo = false, can_redo = false;
     stroke::LayerTable layers;
-    bool from_outside = false;    ///< another program had a part in the change
+    bool from_outside = false;  ///< another program had a part in the change
     stroke::MaskTable masks;
-    std::vector<Thumbnail> thumbnails;  ///< of layers, those that changed
+    std::vector<Thumbnail> thumbnails;              ///< of layers, those that changed
     std::optional<std::vector<ink::Ink>> own_inks;  ///< of this work, beside the shipped ones
     std::optional<Appearance> looks;
     std::optional<std::vector<SnapshotLine>> snapshots;
     std::optional<SnapshotPicture> snapshot_picture;
     std::optional<std::vector<OutlinePoint>> outline;  ///< of what was asked to be highlighted
-    std::string picked;           ///< name of an ink just picked up or taken in
-    bool wet = false;             ///< some ink is
-    std::optional<std::pair<std::filesystem::path, std::string>> not_saved;  ///< where a project could not be saved, and why
-    std::string trouble;          ///< why work is not being kept, ""
-    std::size_t unkept = 0;       ///< strokes that wait in memory for that
-    bool behind = false;          ///< and so does a change of one
-    bool viewing = false;         ///< another program works on the project; it is only looked at
+    std::string picked;                                ///< name of an ink just picked up or taken in
+    bool wet = false;                                  ///< some ink is
+    std::optional<std::pair<std::filesystem::path, std::string>>
+        not_saved;           ///< where a project could not be saved, and why
+    std::string trouble;     ///< why work is not being kept, ""
+    std::size_t unkept = 0;  ///< strokes that wait in memory for that
+    bool behind = false;     ///< and so does a change of one
+    bool viewing = false;    ///< another program works on the project; it is only looked at
     std::filesystem::path project;
 };
 
@@ -246,11 +250,11 @@ class PaintThread {
         render::MapPixels pixels;  ///< what the texture shows at the start, for the graphics card
         Autosave autosave;
         std::string source;
-        FileFrame frame;  ///< of the model file
+        FileFrame frame;                                 ///< of the model file
         std::vector<stroke::StrokeMismatch> mismatches;  ///< of a revised model: strokes that do not fit it
-        std::vector<std::string> fit;         ///< and how all of them lie on it, for people
-        std::filesystem::path spare;  ///< a file for work that cannot be kept in its own at the end
-        std::string note;             ///< for the person who opened it
+        std::vector<std::string> fit;                    ///< and how all of them lie on it, for people
+        std::filesystem::path spare;                     ///< a file for work that cannot be kept in its own at the end
+        std::string note;                                ///< for the person who opened it
     };
     explicit PaintThread(Work work);
     /// Finishes as `finish` does.
@@ -282,7 +286,7 @@ class PaintThread {
   private:
     /// An entry of the journal that was changed, or taken out.
     struct Change {
-        std::size_t at = 0;                   ///< its place in the journal before
+        std::size_t at = 0;  ///< its place in the journal before
         stroke::Stroke before;
         std::optional<stroke::Stroke> after;  ///< none: taken out
         bool in_rows = false;                 ///< the file's rows can follow it; else it is written anew
@@ -293,10 +297,10 @@ class PaintThread {
     };
     /// What one undo takes back.
     struct Step {
-        std::size_t made = 0;                 ///< entries at the journal's end
-        std::vector<Change> changes;          ///< or these, in the journal's order
-        std::optional<Journals> journals;     ///< or this
-        bool joined = false;                  ///< and the step before it
+        std::size_t made = 0;              ///< entries at the journal's end
+        std::vector<Change> changes;       ///< or these, in the journal's order
+        std::optional<Journals> journals;  ///< or this
+        bool joined = false;               ///< and the step before it
     };
     void run();
     void perform(Command& command);
@@ -354,7 +358,7 @@ class PaintThread {
     Work work_;
     std::shared_future<atlas::AtlasReport> measured_;
     BeginStroke current_;
-    std::size_t loads_ = 0;                ///< entries that loaded the brush for the stroke in work
+    std::size_t loads_ = 0;                      ///< entries that loaded the brush for the stroke in work
     std::vector<stroke::Stroke> undone_before_;  ///< them, of the journal
     std::vector<ink::Ink> own_inks_;
     stroke::WidthTables widths_;
@@ -363,8 +367,8 @@ class PaintThread {
     std::optional<std::array<std::uint8_t, 3>> brush_colour_;
     double undo_seconds_ = 0;
     double asked_ = 0, last_publish_ = 0;
-    std::vector<io::Attachment> carried_;     ///< reference images at the start
-    std::vector<Step> steps_, undone_;        ///< the last one at the back
+    std::vector<io::Attachment> carried_;  ///< reference images at the start
+    std::vector<Step> steps_, undone_;     ///< the last one at the back
     std::vector<StrokeLine> lines_;
 
     mutable std::mutex mutex_;
@@ -374,7 +378,7 @@ class PaintThread {
     Update update_;
     bool working_ = false, quit_ = false;
     std::atomic<bool> stop_{false};
-    std::filesystem::path spared_;            ///< the work is there at the end
+    std::filesystem::path spared_;  ///< the work is there at the end
     std::thread thread_;
 };
 

@@ -8,8 +8,8 @@
 namespace tuft::app {
 namespace {
 
-constexpr float kInked = 0.01f;          // film units from which a texel counts as inked
-constexpr double kShowEvery = 0.4;       // seconds between two looks at what was found so far
+constexpr float kInked = 0.01f;     // film units from which a texel counts as inked
+constexpr double kShowEvery = 0.4;  // seconds between two looks at what was found so far
 constexpr std::size_t kOutlinePoints = 1500;
 
 // The entry as it would paint on its own: with a full brush, still, on the first layer, an eraser as if it painted.
@@ -65,7 +65,8 @@ void PaintThread::highlight(const HighlightStrokes& command) {
         take_presets(blank, {});
         for (const stroke::Stroke& s : work_.painting->journal().strokes()) {
             const bool paints = s.action == stroke::Action::stroke || s.action == stroke::Action::fill;
-            if (s.action == stroke::Action::mask) blank.paint(s);
+            if (s.action == stroke::Action::mask)
+                blank.paint(s);
             else if (paints && wanted.contains(s.id) && s.layer != stroke::kPaletteLayer) {
                 blank.paint(alone(s), go_on);
                 add_inked(marks, blank.canvas());

@@ -29,7 +29,8 @@ std::string rebrushed(const std::string& before, const std::string& wanted) {
 }
 
 bool has_ink_of_its_own(const stroke::Stroke& entry) {
-    return !entry.trace.ink.empty() && (entry.action == stroke::Action::stroke || entry.action == stroke::Action::dip || entry.action == stroke::Action::fill);
+    return !entry.trace.ink.empty() && (entry.action == stroke::Action::stroke || entry.action == stroke::Action::dip ||
+                                        entry.action == stroke::Action::fill);
 }
 
 }  // namespace
@@ -72,9 +73,12 @@ void PaintThread::edit(const EditStrokes& command) {
     cancel();
     const stroke::Journal& journal = work_.painting->journal();
     const std::set<std::uint64_t> wanted(command.ids.begin(), command.ids.end());
-    const stroke::EntryGroup group = command.group && !command.group->empty() ? stroke::EntryGroup{journal.next_group_id(), *command.group} : stroke::EntryGroup{};
+    const stroke::EntryGroup group = command.group && !command.group->empty()
+                                         ? stroke::EntryGroup{journal.next_group_id(), *command.group}
+                                         : stroke::EntryGroup{};
     if (group.id != 0) stroke::check_name(group.name, "group");
-    const bool in_rows = command.remove || (command.hidden && !command.brush && !command.ink && !command.move && !command.group);
+    const bool in_rows =
+        command.remove || (command.hidden && !command.brush && !command.ink && !command.move && !command.group);
     std::vector<Change> changes;
     for (std::size_t i = 0; i < journal.strokes().size(); ++i) {
         const stroke::Stroke& before = journal.strokes()[i];
@@ -83,7 +87,8 @@ void PaintThread::edit(const EditStrokes& command) {
         if (!command.remove) {
             stroke::Stroke& after = change.after.emplace(before);
             if (command.hidden) after.hidden = *command.hidden;
-            if (command.brush && stroke::has_brush(before.action)) after.trace.brush = rebrushed(before.trace.brush, *command.brush);
+            if (command.brush && stroke::has_brush(before.action))
+                after.trace.brush = rebrushed(before.trace.brush, *command.brush);
             if (command.ink && has_ink_of_its_own(before)) after.trace.ink = *command.ink;
             if (command.move) shift(after, *command.move);
             if (command.group) after.group = group;
@@ -105,16 +110,22 @@ void PaintThread::put(const std::vector<Change>& changes, bool back) {
     std::vector<stroke::Stroke> strokes = work_.painting->journal().strokes();
     const auto at = [&](const Change& change) { return strokes.begin() + static_cast<std::ptrdiff_t>(change.at); };
     if (back)
-        for (const Change& change : changes) change.after ? void(*at(change) = change.before) : void(strokes.insert(at(change), change.before));
+        for (const Change& change : changes)
+            change.after ? void(*at(change) = change.before) : void(strokes.insert(at(change), change.before));
     else
-        for (auto change = changes.rbegin(); change != changes.rend(); ++change) change->after ? void(*at(*change) = *change->after) : void(strokes.erase(at(*change)));
+        for (auto change = changes.rbegin(); change != changes.rend(); ++change)
+            change->after ? void(*at(*change) = *change->after) : void(strokes.erase(at(*change)));
     rewrite(std::move(strokes));
-    // Rows can only be hidden and taken out: other changes, and several at once, write the file anew, whole or not at all.
+    // Rows can only be hidden and taken out: other changes, and several at once, write the file anew, whole or not at
+    // all.
     const Change& first = changes.front();
     const bool one_row = changes.size() == 1 && first.in_rows;
-    if (one_row && !first.after && !back) work_.autosave.remove(first.before.id);
-    else if (one_row && first.after) work_.autosave.set_hidden(first.before.id, back ? first.before.hidden : first.after->hidden);
-    else work_.autosave.rewrite(work_.source, work_.frame, *work_.painting);
+    if (one_row && !first.after && !back)
+        work_.autosave.remove(first.before.id);
+    else if (one_row && first.after)
+        work_.autosave.set_hidden(first.before.id, back ? first.before.hidden : first.after->hidden);
+    else
+        work_.autosave.rewrite(work_.source, work_.frame, *work_.painting);
 }
 
 // Puts other entries in the place of the whole journal.

@@ -11,8 +11,9 @@ namespace {
 
 bool has_model(const io::Project& file, const stroke::Model& model) {
     const io::ProjectModel there = file.model();
-    return there.mesh.positions == model.mesh->positions && there.mesh.triangles == model.mesh->triangles && there.atlas.size == model.atlas.size &&
-           there.atlas.pages == model.atlas.pages && there.atlas.corner_uvs == model.atlas.corner_uvs;
+    return there.mesh.positions == model.mesh->positions && there.mesh.triangles == model.mesh->triangles &&
+           there.atlas.size == model.atlas.size && there.atlas.pages == model.atlas.pages &&
+           there.atlas.corner_uvs == model.atlas.corner_uvs;
 }
 
 template <class Preset>
@@ -43,28 +44,37 @@ void PaintThread::take_outside() {
     const std::vector<stroke::Stroke> theirs = file->strokes();
     std::vector<stroke::EntryMark> marks = stroke::marks_of(theirs);
     const bool same_strokes = marks == autosave.on_disk() && !autosave.behind();
-    stroke::MergedJournal merged = stroke::merge_journals(autosave.on_disk(), work_.painting->journal().strokes(), theirs);
+    stroke::MergedJournal merged =
+        stroke::merge_journals(autosave.on_disk(), work_.painting->journal().strokes(), theirs);
     if (!same_strokes) {
         const std::lock_guard lock(mutex_);
         update_.from_outside = true;
     }
-    if (!same_strokes) paint_merged(*file, merged);
-    else io::show_looks(*file, *work_.painting);
+    if (!same_strokes)
+        paint_merged(*file, merged);
+    else
+        io::show_looks(*file, *work_.painting);
     const bool altered = merged.altered && !same_strokes;
-    if (viewing) autosave.view(std::move(*file), std::move(marks));
-    else autosave.adopt(std::move(*file), std::move(marks));
+    if (viewing)
+        autosave.view(std::move(*file), std::move(marks));
+    else
+        autosave.adopt(std::move(*file), std::move(marks));
     const std::vector<stroke::Stroke>& now = work_.painting->journal().strokes();
-    if (altered) autosave.rewrite(work_.source, work_.frame, *work_.painting);
-    else if (!viewing) autosave.catch_up(std::span(now).subspan(std::min(theirs.size(), now.size())));
+    if (altered)
+        autosave.rewrite(work_.source, work_.frame, *work_.painting);
+    else if (!viewing)
+        autosave.catch_up(std::span(now).subspan(std::min(theirs.size(), now.size())));
     if (merged.news > 0 && !viewing)
-        say("Another program changed this project; " + std::to_string(merged.news) + (merged.news == 1 ? " change of it is taken in." : " changes of it are taken in."));
+        say("Another program changed this project; " + std::to_string(merged.news) +
+            (merged.news == 1 ? " change of it is taken in." : " changes of it are taken in."));
     publish(true);
     publish_snapshots();
     publish_looks();
 }
 
 void PaintThread::paint_merged(const io::Project& file, const stroke::MergedJournal& merged) {
-    const auto shown = [this, name = std::string("Taking in the changes of another program")](std::string_view phase, double part) {
+    const auto shown = [this, name = std::string("Taking in the changes of another program")](std::string_view phase,
+                                                                                              double part) {
         progress(name)(phase, part);
         return true;  // half of them would be no journal of anybody
     };
@@ -103,13 +113,16 @@ bool PaintThread::follow(const io::Project& file, std::span<const stroke::Stroke
     stroke::Document& painting = *work_.painting;
     const std::vector<stroke::Stroke>& mine = painting.journal().strokes();
     const std::size_t n = mine.size();
-    if (theirs.size() < n || !std::equal(mine.begin(), mine.end(), theirs.begin(), [](const auto& a, const auto& b) { return stroke::mark_of(a) == stroke::mark_of(b); }))
+    if (theirs.size() < n || !std::equal(mine.begin(), mine.end(), theirs.begin(), [](const auto& a, const auto& b) {
+            return stroke::mark_of(a) == stroke::mark_of(b);
+        }))
         return false;
     const std::span<const stroke::Stroke> rest = theirs.subspan(n);
     std::set<std::string> brushes, inks;
     for (const stroke::Stroke& s : rest) {
         if (!stroke::has_brush(s.action)) continue;
-        if (s.settings.dip == "carry" && !brushes.contains(s.trace.brush) && !painting.held(s.trace.brush)) return false;
+        if (s.settings.dip == "carry" && !brushes.contains(s.trace.brush) && !painting.held(s.trace.brush))
+            return false;
         brushes.insert(s.trace.brush);
     }
     for (const stroke::Stroke& s : rest)
@@ -133,9 +146,11 @@ void PaintThread::leave_file() {
     const std::string name = work_.autosave.path().filename().string();
     const bool viewing = work_.autosave.viewing();
     const std::string fault = work_.autosave.start(work_.spare, work_.source, work_.frame, *work_.painting);
-    if (!fault.empty()) work_.autosave.start_later(work_.spare, work_.source, work_.frame, fault, !work_.painting->journal().empty());
-    say(viewing ? "Another program put another model into " + name + "; this is a copy of what was in it."
-                : "Another program put another model into " + name + "; your work goes on in a copy that has no name yet.");
+    if (!fault.empty())
+        work_.autosave.start_later(work_.spare, work_.source, work_.frame, fault, !work_.painting->journal().empty());
+    say(viewing
+            ? "Another program put another model into " + name + "; this is a copy of what was in it."
+            : "Another program put another model into " + name + "; your work goes on in a copy that has no name yet.");
     publish();
 }
 

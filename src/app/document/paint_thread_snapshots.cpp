@@ -23,7 +23,9 @@ SnapshotLine line_of(const io::Attachment& a) {
     return line;
 }
 
-std::string about_text(const SnapshotLine& line) { return nlohmann::json{{"name", line.name}, {"made", line.made}, {"strokes", line.strokes}}.dump(); }
+std::string about_text(const SnapshotLine& line) {
+    return nlohmann::json{{"name", line.name}, {"made", line.made}, {"strokes", line.strokes}}.dump();
+}
 
 }  // namespace
 
@@ -37,10 +39,12 @@ void PaintThread::publish_snapshots() {
 void PaintThread::take_snapshot(const TakeSnapshot& command) {
     stroke::check_name(command.name, "snapshot");
     const std::vector<io::Attachment> there = work_.autosave.attachments(kSnapshotKind);
-    if (there.size() >= io::kMostAttachments) return say("There are as many snapshots as a project can hold; delete one first.");
+    if (there.size() >= io::kMostAttachments)
+        return say("There are as many snapshots as a project can hold; delete one first.");
     const std::vector<stroke::Stroke>& entries = work_.painting->journal().strokes();
     SnapshotLine line{.name = command.name, .made = static_cast<std::int64_t>(std::time(nullptr))};
-    line.strokes = static_cast<std::size_t>(std::count_if(entries.begin(), entries.end(), [](const auto& s) { return s.action == stroke::Action::stroke; }));
+    line.strokes = static_cast<std::size_t>(std::count_if(
+        entries.begin(), entries.end(), [](const auto& s) { return s.action == stroke::Action::stroke; }));
     // Numbers in names sort as they were made.
     const unsigned long last = there.empty() ? 0 : std::strtoul(there.back().name.c_str(), nullptr, 10);
     char id[24];

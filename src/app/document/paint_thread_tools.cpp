@@ -32,7 +32,8 @@ void PaintThread::load_tip(const BeginStroke& command, std::size_t& made) {
 void PaintThread::add_ink(ink::Ink ink) {
     const auto known = [&](const std::string& name) {
         const std::vector<std::string> shipped = ink::list_inks(), kept = work_.autosave.inks();
-        return std::find(shipped.begin(), shipped.end(), name) != shipped.end() || std::find(kept.begin(), kept.end(), name) != kept.end();
+        return std::find(shipped.begin(), shipped.end(), name) != shipped.end() ||
+               std::find(kept.begin(), kept.end(), name) != kept.end();
     };
     const std::string wanted = ink.name;
     for (int n = 2; known(ink.name); ++n) ink.name = wanted + "-" + std::to_string(n);
@@ -47,8 +48,8 @@ void PaintThread::add_ink(ink::Ink ink) {
 
 void PaintThread::pick(const PickInk& command) {
     stroke::Document& painting = *work_.painting;
-    std::optional<ink::Ink> ink =
-        painting.ink_of(command.on_palette ? painting.pick_palette(command.point) : painting.pick(command.point), "mixture");
+    std::optional<ink::Ink> ink = painting.ink_of(
+        command.on_palette ? painting.pick_palette(command.point) : painting.pick(command.point), "mixture");
     if (!ink) return say("There is no ink here to pick up.");
     add_ink(std::move(*ink));
 }
@@ -66,13 +67,16 @@ void PaintThread::look_at_brush() {
     if (ink.parts.empty()) return;
     const ink::Rgb linear = ink::colour_of_film(ink, {0.88f, 0.88f, 0.88f});
     brush_colour_.emplace();
-    for (std::size_t c = 0; c < 3; ++c) (*brush_colour_)[c] = static_cast<std::uint8_t>(std::lround(255 * ink::srgb_encode(linear[c])));
+    for (std::size_t c = 0; c < 3; ++c)
+        (*brush_colour_)[c] = static_cast<std::uint8_t>(std::lround(255 * ink::srgb_encode(linear[c])));
 }
 
 void PaintThread::publish_looks() {
     const stroke::Document& painting = *work_.painting;
-    Appearance looks{.recolours = painting.recolours(), .substrate = painting.substrate().name, .painted_on = painting.painted_on().name,
-                .roughness = painting.substrate().roughness};
+    Appearance looks{.recolours = painting.recolours(),
+                     .substrate = painting.substrate().name,
+                     .painted_on = painting.painted_on().name,
+                     .roughness = painting.substrate().roughness};
     const std::lock_guard lock(mutex_);
     update_.looks = std::move(looks);
 }
@@ -86,8 +90,10 @@ void PaintThread::recolour(const RecolourInk& command) {
 
 void PaintThread::preview_substrate(const PreviewSubstrate& command) {
     stroke::Document& painting = *work_.painting;
-    if (command.substrate == painting.painted_on().name) painting.preview_substrate(std::nullopt);
-    else painting.preview_substrate(ink::load_substrate(command.substrate));
+    if (command.substrate == painting.painted_on().name)
+        painting.preview_substrate(std::nullopt);
+    else
+        painting.preview_substrate(ink::load_substrate(command.substrate));
     work_.autosave.store_looks(painting);
     painting.take_dirty();
     work_.texture->refresh_all(painting);

@@ -27,8 +27,10 @@ std::vector<std::uint8_t> shrink(int width, int height, const std::vector<std::u
     std::vector<std::uint8_t> out(static_cast<std::size_t>(3 * w * h));
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x) {
-            const int x0 = static_cast<int>(left + step * x), x1 = std::max(x0 + 1, static_cast<int>(left + step * (x + 1)));
-            const int y0 = static_cast<int>(top + step * y), y1 = std::max(y0 + 1, static_cast<int>(top + step * (y + 1)));
+            const int x0 = static_cast<int>(left + step * x),
+                      x1 = std::max(x0 + 1, static_cast<int>(left + step * (x + 1)));
+            const int y0 = static_cast<int>(top + step * y),
+                      y1 = std::max(y0 + 1, static_cast<int>(top + step * (y + 1)));
             for (int k = 0; k < 3; ++k) {
                 int sum = 0, n = 0;
                 for (int j = y0; j < std::min(y1, height); ++j)
@@ -109,8 +111,8 @@ std::vector<std::uint8_t> Pictures::make(const Job& job) {
         io::write_image(kept, io::view_of(kWidth, kHeight, 3, rgb.data()));
         return rgb;
     }
-    const bool newer = fs::exists(kept, ec) &&
-                       (fs::path(job.file).extension() == ".tuft" || fs::last_write_time(kept, ec) >= fs::last_write_time(job.file, ec));
+    const bool newer = fs::exists(kept, ec) && (fs::path(job.file).extension() == ".tuft" ||
+                                                fs::last_write_time(kept, ec) >= fs::last_write_time(job.file, ec));
     if (newer) {
         const io::Image8 image = io::read_image8(kept, std::size_t{1} << 22);
         if (image.channels >= 3 && image.width == kWidth && image.height == kHeight) {
@@ -120,11 +122,13 @@ std::vector<std::uint8_t> Pictures::make(const Job& job) {
             return rgb;
         }
     }
-    if (const std::string e = fs::path(job.file).extension().string(); e == ".png" || e == ".jpg" || e == ".jpeg" || e == ".tif" || e == ".tiff" || e == ".exr") {
+    if (const std::string e = fs::path(job.file).extension().string();
+        e == ".png" || e == ".jpg" || e == ".jpeg" || e == ".tif" || e == ".tiff" || e == ".exr") {
         const io::Image8 image = io::read_image8(job.file, kMostPixels);
         std::vector<std::uint8_t> rgb;
         for (std::size_t i = 0; i < image.pixels.size(); i += static_cast<std::size_t>(image.channels))
-            for (int k = 0; k < 3; ++k) rgb.push_back(image.pixels[i + static_cast<std::size_t>(image.channels < 3 ? 0 : k)]);
+            for (int k = 0; k < 3; ++k)
+                rgb.push_back(image.pixels[i + static_cast<std::size_t>(image.channels < 3 ? 0 : k)]);
         return shrink(image.width, image.height, rgb);
     }
     const ProgressFn progress = [this](std::string_view, double) { return !stop_.load(); };

@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 namespace tuft::app {
 
 io::Attachment to_attachment(const ReferenceImage& r) {
-    const nlohmann::json about{{"name", r.name}, {"x", r.at.x}, {"y", r.at.y}, {"width", r.width}, {"opacity", r.opacity}, {"shown", r.shown}};
+    const nlohmann::json about{{"name", r.name},   {"x", r.at.x},          {"y", r.at.y},
+                               {"width", r.width}, {"opacity", r.opacity}, {"shown", r.shown}};
     return {r.id, about.dump(), r.bytes};
 }
 
@@ -42,7 +43,9 @@ ReferenceImage read_reference(const fs::path& file) {
     std::error_code ec;
     if (!fs::is_regular_file(file, ec)) throw Error(file.string(), "is not there, or is no file");
     const std::uintmax_t size = fs::file_size(file, ec);
-    if (ec || size > kMostReferenceBytes) throw Error(file.string(), "is larger than " + std::to_string(kMostReferenceBytes >> 20) + " MB; scale the image down to pin it");
+    if (ec || size > kMostReferenceBytes)
+        throw Error(file.string(), "is larger than " + std::to_string(kMostReferenceBytes >> 20) +
+                                       " MB; scale the image down to pin it");
     std::ifstream in(file, std::ios::binary);
     ReferenceImage r{.name = stroke::group_name(file)};
     r.bytes.assign(std::istreambuf_iterator<char>(in), {});
@@ -51,7 +54,8 @@ ReferenceImage read_reference(const fs::path& file) {
     r.pixels_across = image.width;
     r.pixels_down = image.height;
     char id[20];
-    std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(hash_bytes(r.bytes.data(), r.bytes.size())));
+    std::snprintf(id, sizeof id, "%016llx",
+                  static_cast<unsigned long long>(hash_bytes(r.bytes.data(), r.bytes.size())));
     r.id = id;
     return r;
 }

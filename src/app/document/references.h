@@ -13,22 +13,22 @@ inline constexpr std::size_t kMostReferenceBytes = std::size_t{24} << 20;  ///< 
 inline constexpr double kLeastReference = 0.05, kMostReference = 1;        ///< of the view's width
 
 struct ReferenceImage {
-    std::string id;               ///< name of its attachment
-    std::string name;             ///< of the file, for people
-    std::vector<char> bytes;      ///< of the file
-    Vec2 at{0.03};                ///< upper left corner, parts of the view's width and height
-    double width = 0.3;           ///< part of the view's width
+    std::string id;           ///< name of its attachment
+    std::string name;         ///< of the file, for people
+    std::vector<char> bytes;  ///< of the file
+    Vec2 at{0.03};            ///< upper left corner, parts of the view's width and height
+    double width = 0.3;       ///< part of the view's width
     double opacity = 1;
     bool shown = true;
     int pixels_across = 0, pixels_down = 0;  ///< of the picture; 0: not decoded yet
-    unsigned texture = 0;         ///< OpenGL name; 0: none yet
-    bool broken = false;          ///< it cannot be decoded
+    unsigned texture = 0;                    ///< OpenGL name; 0: none yet
+    bool broken = false;                     ///< it cannot be decoded
 };
 
 /// What is pinned.
 struct References {
     std::vector<ReferenceImage> images;
-    bool hidden = false;          ///< all of them, for a look at the model
+    bool hidden = false;              ///< all of them, for a look at the model
     std::optional<std::size_t> held;  ///< the one that the mouse moves or sizes
     bool sizing = false;
 };

@@ -11,9 +11,9 @@
 namespace tuft::app {
 
 struct SnapshotLine {
-    std::string id;               ///< name of its attachment
+    std::string id;  ///< name of its attachment
     std::string name;
-    std::int64_t made = 0;        ///< seconds since 1970
+    std::int64_t made = 0;  ///< seconds since 1970
     std::size_t strokes = 0;
 };
 
@@ -25,15 +25,15 @@ struct SnapshotPicture {
 
 /// What the window shows of them.
 struct SnapshotState {
-    std::vector<SnapshotLine> lines;        ///< the oldest first
-    std::string chosen;                     ///< id
-    std::string compared;                   ///< id of the one beside the work; "": none
-    bool swipe = false;                     ///< one over the other with a line between them; else side by side
-    double line_at = 0.5;                   ///< part of the view's width that shows the snapshot
-    std::optional<SnapshotPicture> picture; ///< just arrived
-    bool ready = false;                     ///< the picture is on the graphics card
-    unsigned texture = 0;                   ///< OpenGL name of its part of a swiped view
-    int x = 0, y = 0, width = 0, height = 0;///< pixels of the window that show it side by side
+    std::vector<SnapshotLine> lines;          ///< the oldest first
+    std::string chosen;                       ///< id
+    std::string compared;                     ///< id of the one beside the work; "": none
+    bool swipe = false;                       ///< one over the other with a line between them; else side by side
+    double line_at = 0.5;                     ///< part of the view's width that shows the snapshot
+    std::optional<SnapshotPicture> picture;   ///< just arrived
+    bool ready = false;                       ///< the picture is on the graphics card
+    unsigned texture = 0;                     ///< OpenGL name of its part of a swiped view
+    int x = 0, y = 0, width = 0, height = 0;  ///< pixels of the window that show it side by side
 };
 
 }  // namespace tuft::app

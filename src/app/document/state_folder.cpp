@@ -51,8 +51,10 @@ bool abandoned(const fs::path& note) {
 
 fs::path state_folder() {
     fs::path base;
-    if (const char* state = std::getenv("XDG_STATE_HOME"); state && *state) base = state;
-    else if (const char* home = std::getenv("HOME"); home && *home) base = fs::path(home) / ".local" / "state";
+    if (const char* state = std::getenv("XDG_STATE_HOME"); state && *state)
+        base = state;
+    else if (const char* home = std::getenv("HOME"); home && *home)
+        base = fs::path(home) / ".local" / "state";
     const fs::path folder = made(base / "tuft");
     if (!base.empty() && ::access(folder.c_str(), W_OK) == 0) return folder;
     std::error_code ec;
@@ -76,7 +78,9 @@ SessionNote::~SessionNote() {
 
 fs::path SessionNote::new_project(const std::string& name) {
     fs::path path;
-    do path = made(state_folder() / "sessions") / (name + "-" + std::to_string(::getpid()) + "-" + std::to_string(++made_) + ".tuft");
+    do
+        path = made(state_folder() / "sessions") /
+               (name + "-" + std::to_string(::getpid()) + "-" + std::to_string(++made_) + ".tuft");
     while (fs::exists(path));
     return path;
 }
@@ -98,8 +102,10 @@ std::vector<LostWork> find_lost_work() {
     for (const auto& entry : fs::directory_iterator(state_folder() / "sessions", ec)) {
         if (entry.path().extension() != ".note" || !abandoned(entry.path())) continue;
         const std::vector<std::string> lines = read_lines(entry.path());
-        if (lines.size() >= 2 && fs::exists(lines[0])) found.push_back({entry.path(), lines[0], lines[1]});
-        else fs::remove(entry.path(), ec);
+        if (lines.size() >= 2 && fs::exists(lines[0]))
+            found.push_back({entry.path(), lines[0], lines[1]});
+        else
+            fs::remove(entry.path(), ec);
     }
     return found;
 }
@@ -112,7 +118,8 @@ void forget_lost_work(const LostWork& work, bool remove_project) {
 
 bool is_unnamed(const fs::path& project) {
     std::error_code ec;
-    return !project.empty() && fs::weakly_canonical(project, ec).parent_path() == fs::weakly_canonical(state_folder() / "sessions", ec);
+    return !project.empty() &&
+           fs::weakly_canonical(project, ec).parent_path() == fs::weakly_canonical(state_folder() / "sessions", ec);
 }
 
 std::vector<fs::path> recent_projects() {

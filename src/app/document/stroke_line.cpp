@@ -5,8 +5,15 @@
 namespace tuft::app {
 
 StrokeLine stroke_line(const stroke::Stroke& stroke) {
-    StrokeLine line{.id = stroke.id, .action = stroke.action, .brush = stroke.trace.brush, .ink = stroke.trace.ink, .label = stroke.trace.label, .group = stroke.group,
-                    .hidden = stroke.hidden, .erases = stroke.trace.erases, .on_palette = stroke.layer == stroke::kPaletteLayer};
+    StrokeLine line{.id = stroke.id,
+                    .action = stroke.action,
+                    .brush = stroke.trace.brush,
+                    .ink = stroke.trace.ink,
+                    .label = stroke.trace.label,
+                    .group = stroke.group,
+                    .hidden = stroke.hidden,
+                    .erases = stroke.trace.erases,
+                    .on_palette = stroke.layer == stroke::kPaletteLayer};
     const auto& samples = stroke.trace.samples;
     if (samples.empty()) return line;
     Vec3 normal(0);
@@ -28,7 +35,8 @@ StrokeLine stroke_line(const stroke::Stroke& stroke) {
     for (std::size_t i = 0; i < n; ++i) {
         const stroke::TraceSample& s = samples[i * (samples.size() - 1) / std::max<std::size_t>(1, n - 1)];
         const Vec3 d = s.position - mean;
-        points.emplace_back(glm::dot(d, right), glm::dot(d, down), stroke.trace.flat ? -s.pressure : glm::dot(d, normal));
+        points.emplace_back(glm::dot(d, right), glm::dot(d, down),
+                            stroke.trace.flat ? -s.pressure : glm::dot(d, normal));
         lo_x = std::min(lo_x, points.back().x), hi_x = std::max(hi_x, points.back().x);
         lo_y = std::min(lo_y, points.back().y), hi_y = std::max(hi_y, points.back().y);
         lo_z = std::min(lo_z, points.back().z), hi_z = std::max(hi_z, points.back().z);

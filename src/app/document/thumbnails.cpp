@@ -26,10 +26,12 @@ void Thumbnails::look_from(const stroke::Model& model, const render::GlCamera& c
             const render::GlRay ray = render::ray_at(camera, x + 0.5, y + 0.5);
             const auto hit = model.query->ray(ray.origin, ray.direction);
             if (!hit) continue;
-            const atlas::TexelRef texel = atlas::texel_at(*model.mesh, model.atlas, model.texels, hit->triangle, hit->position);
+            const atlas::TexelRef texel =
+                atlas::texel_at(*model.mesh, model.atlas, model.texels, hit->triangle, hit->position);
             if (!texel.valid()) continue;
             const double facing = std::abs(glm::dot(hit->normal, ray.direction));
-            pixels_[texel.slot].push_back({static_cast<std::uint32_t>(y * width_ + x), texel.texel, static_cast<float>(0.55 + 0.45 * facing)});
+            pixels_[texel.slot].push_back(
+                {static_cast<std::uint32_t>(y * width_ + x), texel.texel, static_cast<float>(0.55 + 0.45 * facing)});
         }
 }
 
@@ -41,7 +43,8 @@ bool Thumbnails::waiting(const stroke::Document& painting) const {
 }
 
 Thumbnail Thumbnails::bare(const ink::Substrate& substrate, std::uint32_t layer) const {
-    Thumbnail picture{layer, width_, height_, std::vector<std::uint8_t>(std::size_t{4} * static_cast<std::size_t>(width_ * height_), 0)};
+    Thumbnail picture{layer, width_, height_,
+                      std::vector<std::uint8_t>(std::size_t{4} * static_cast<std::size_t>(width_ * height_), 0)};
     for (const auto& [slot, pixels] : pixels_)
         for (const Pixel& pixel : pixels) put(picture, pixel.at, substrate.reflectance, pixel.light);
     return picture;
@@ -56,7 +59,10 @@ bool Thumbnails::paint(Thumbnail& picture, const ink::Canvas& canvas, const ink:
         ink::TileAppearance look;
         if (inked) look = ink::shade_tile(canvas, slot, substrate);
         for (const Pixel& pixel : pixels)
-            put(picture, pixel.at, inked ? ink::Rgb{look.colour[0][pixel.texel], look.colour[1][pixel.texel], look.colour[2][pixel.texel]} : substrate.reflectance, pixel.light);
+            put(picture, pixel.at,
+                inked ? ink::Rgb{look.colour[0][pixel.texel], look.colour[1][pixel.texel], look.colour[2][pixel.texel]}
+                      : substrate.reflectance,
+                pixel.light);
     };
     if (all)
         for (const auto& [slot, pixels] : pixels_)

@@ -15,8 +15,8 @@ namespace tuft::app {
 
 struct Thumbnail {
     std::uint32_t layer = 0;
-    int width = 0, height = 0;           ///< pixels
-    std::vector<std::uint8_t> rgba;      ///< [4 width height], rows from the top; transparent beside the model
+    int width = 0, height = 0;       ///< pixels
+    std::vector<std::uint8_t> rgba;  ///< [4 width height], rows from the top; transparent beside the model
 };
 
 /// Draws them on the painter's thread: a ray per pixel finds the texel once for a view; what is painted costs
@@ -36,9 +36,9 @@ class Thumbnails {
 
   private:
     struct Pixel {
-        std::uint32_t at = 0;            ///< index of the pixel
+        std::uint32_t at = 0;  ///< index of the pixel
         std::uint8_t texel = 0;
-        float light = 1;                 ///< of the surface there
+        float light = 1;  ///< of the surface there
     };
 
     Thumbnail bare(const ink::Substrate& substrate, std::uint32_t layer) const;

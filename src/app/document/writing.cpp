@@ -49,12 +49,9 @@ Writing read_writing(const std::filesystem::path& file) {
         out.notes.push_back(line.starts_with(prefix) ? line.substr(prefix.size()) : line);
     };
     out.traces = io::read_strokes(file, {.note = note});
-    std::erase_if(out.traces, [](const stroke::Trace& t) {
-        return !t.flat || t.on_palette || t.samples.empty();
-    });
+    std::erase_if(out.traces, [](const stroke::Trace& t) { return !t.flat || t.on_palette || t.samples.empty(); });
     if (out.traces.empty())
-        throw Error(file.string(),
-                    "its strokes lie in space already; only flat writing can be placed");
+        throw Error(file.string(), "its strokes lie in space already; only flat writing can be placed");
     const std::vector<stroke::Trace*> all = pointers(out.traces);
     if (out.traces.front().placed) out.mapping = out.traces.front().placement.mapping;
     stroke::arrange_parts(all);
@@ -65,8 +62,8 @@ Writing read_writing(const std::filesystem::path& file) {
     return out;
 }
 
-stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& query, const Vec3& at,
-                                const Vec3& normal, const Vec3& right, const Vec3& eye) {
+stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& query, const Vec3& at, const Vec3& normal,
+                                const Vec3& right, const Vec3& eye) {
     Vec3 place = at;
     for (int k = 0; k < 3; ++k) place[k] = kMillimetre * rounded(at[k] / kMillimetre, kPlaceStep);
     const auto on = query.closest_point(place);
@@ -79,8 +76,7 @@ stroke::Placement place_writing(const Writing& w, const mesh::SurfaceQuery& quer
     stroke::Placement out;
     if (w.mapping == stroke::SurfaceMapping::project) {
         // Straight through the picture: as it is seen now it comes to lie.
-        const Vec3 from = rounded_direction(eye), towards = glm::normalize(from),
-                   upright = stroke::reading_right(from);
+        const Vec3 from = rounded_direction(eye), towards = glm::normalize(from), upright = stroke::reading_right(from);
         out = stroke::placement_seen(on->position, towards, upright, turned(towards, upright));
     } else {
         out = stroke::upright_placement(on->position, n, turned(n, stroke::upright_right(n)));
@@ -99,9 +95,8 @@ std::string place_words(const Writing& w, const stroke::Placement& p) {
     const bool project = w.mapping == stroke::SurfaceMapping::project;
     const Vec3 from = rounded_direction(normal),
                upright = project ? stroke::reading_right(from) : stroke::upright_right(normal);
-    std::string words =
-        fmt::format("--place {:.3f},{:.3f},{:.3f} --place-width {:.3f} --place-turn {:.2f}", at.x,
-                    at.y, at.z, width_mm(w), stroke::turn_of(normal, upright, p.right) / kDegree);
+    std::string words = fmt::format("--place {:.3f},{:.3f},{:.3f} --place-width {:.3f} --place-turn {:.2f}", at.x, at.y,
+                                    at.z, width_mm(w), stroke::turn_of(normal, upright, p.right) / kDegree);
     if (w.mirrored) words += " --place-mirror";
     if (w.mapping != stroke::SurfaceMapping::drape)
         words += " --mapping " + std::string(stroke::surface_mapping_name(w.mapping));
@@ -110,23 +105,19 @@ std::string place_words(const Writing& w, const stroke::Placement& p) {
 }
 
 bool has_widths(const Writing& w) {
-    return std::any_of(w.traces.begin(), w.traces.end(),
-                       [](const auto& t) { return t.line_width > 0 && !t.pressed; });
+    return std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return t.line_width > 0 && !t.pressed; });
 }
 
-PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placement,
-                             const WritingHand& hand) {
+PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placement, const WritingHand& hand) {
     std::vector<stroke::Trace> traces = w.traces;
     for (stroke::Trace& trace : traces) {
-        std::erase_if(trace.before,
-                      [](const stroke::BrushAction& care) { return !belongs_to_brush(care); });
+        std::erase_if(trace.before, [](const stroke::BrushAction& care) { return !belongs_to_brush(care); });
         trace.placement.mapping = w.mapping;
         trace.layer.clear();
         trace.mask.clear();
         if (!w.own_width) trace.line_width = 0;
         if (!trace.pressed && !(trace.line_width > 0))
-            for (stroke::TraceSample& s : trace.samples)
-                s.pressure = std::min(1.0, s.pressure * hand.pressure);
+            for (stroke::TraceSample& s : trace.samples) s.pressure = std::min(1.0, s.pressure * hand.pressure);
     }
     PlacedWriting out{.entries = {},
                       .scale = painted_scale(w),
@@ -145,8 +136,7 @@ PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placemen
 }
 
 std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& w,
-                                                 const stroke::Placement& placement,
-                                                 std::size_t most) {
+                                                 const stroke::Placement& placement, std::size_t most) {
     std::size_t all = 0;
     for (const stroke::Trace& trace : w.traces) all += trace.samples.size();
     const std::size_t step = std::max<std::size_t>(1, all / most);

@@ -34,9 +34,8 @@ Writing read_writing(const std::filesystem::path& file);
 /// points towards the eye, which is in the direction `eye` (unit) from there. Origin and turn are
 /// those of `tuft paint --place --place-turn --read-from`, to 0.001 mm and 0.01°, so that
 /// `place_words` give them exactly.
-stroke::Placement place_writing(const Writing& writing, const mesh::SurfaceQuery& query,
-                                const Vec3& at, const Vec3& normal, const Vec3& right,
-                                const Vec3& eye);
+stroke::Placement place_writing(const Writing& writing, const mesh::SurfaceQuery& query, const Vec3& at,
+                                const Vec3& normal, const Vec3& right, const Vec3& eye);
 
 /// The scale at which it is painted: `writing.scale`, its width to 0.001 mm.
 double painted_scale(const Writing& writing);
@@ -62,8 +61,7 @@ struct PlacedWriting {
     double extent = 0;  ///< metres, the larger side as painted
     stroke::BrushFit fit;
 };
-PlacedWriting placed_writing(const Writing& writing, const stroke::Placement& placement,
-                             const WritingHand& hand);
+PlacedWriting placed_writing(const Writing& writing, const stroke::Placement& placement, const WritingHand& hand);
 
 /// How it would lie: one line for each piece of a trace on the surface, with its normals, of at
 /// most `most` samples in all.
@@ -71,9 +69,7 @@ struct GhostPoint {
     Vec3 position, normal;
     bool seen = true;  ///< nothing of the model lies before it
 };
-std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query,
-                                                 const Writing& writing,
-                                                 const stroke::Placement& placement,
-                                                 std::size_t most = 3000);
+std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& writing,
+                                                 const stroke::Placement& placement, std::size_t most = 3000);
 
 }  // namespace tuft::app

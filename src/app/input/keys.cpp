@@ -59,10 +59,21 @@ constexpr std::array<Shipped, static_cast<std::size_t>(Act::count)> kShipped{{
     {"panels", "Fold the panels", {GLFW_KEY_TAB, 0}},
 }};
 
-constexpr std::pair<int, const char*> kNames[] = {
-    {GLFW_KEY_SPACE, "Space"}, {GLFW_KEY_ESCAPE, "Esc"}, {GLFW_KEY_ENTER, "Enter"}, {GLFW_KEY_TAB, "Tab"}, {GLFW_KEY_BACKSPACE, "Backspace"},
-    {GLFW_KEY_INSERT, "Insert"}, {GLFW_KEY_DELETE, "Delete"}, {GLFW_KEY_RIGHT, "Right"}, {GLFW_KEY_LEFT, "Left"}, {GLFW_KEY_DOWN, "Down"},
-    {GLFW_KEY_UP, "Up"}, {GLFW_KEY_PAGE_UP, "PageUp"}, {GLFW_KEY_PAGE_DOWN, "PageDown"}, {GLFW_KEY_HOME, "Home"}, {GLFW_KEY_END, "End"}};
+constexpr std::pair<int, const char*> kNames[] = {{GLFW_KEY_SPACE, "Space"},
+                                                  {GLFW_KEY_ESCAPE, "Esc"},
+                                                  {GLFW_KEY_ENTER, "Enter"},
+                                                  {GLFW_KEY_TAB, "Tab"},
+                                                  {GLFW_KEY_BACKSPACE, "Backspace"},
+                                                  {GLFW_KEY_INSERT, "Insert"},
+                                                  {GLFW_KEY_DELETE, "Delete"},
+                                                  {GLFW_KEY_RIGHT, "Right"},
+                                                  {GLFW_KEY_LEFT, "Left"},
+                                                  {GLFW_KEY_DOWN, "Down"},
+                                                  {GLFW_KEY_UP, "Up"},
+                                                  {GLFW_KEY_PAGE_UP, "PageUp"},
+                                                  {GLFW_KEY_PAGE_DOWN, "PageDown"},
+                                                  {GLFW_KEY_HOME, "Home"},
+                                                  {GLFW_KEY_END, "End"}};
 
 // Keys of the number pad do what the same keys above the letters do.
 int plain(int key) {
@@ -74,8 +85,12 @@ int plain(int key) {
 
 }  // namespace
 
-const char* title_of(Act act) { return kShipped[static_cast<std::size_t>(act)].title; }
-const char* word_of(Act act) { return kShipped[static_cast<std::size_t>(act)].word; }
+const char* title_of(Act act) {
+    return kShipped[static_cast<std::size_t>(act)].title;
+}
+const char* word_of(Act act) {
+    return kShipped[static_cast<std::size_t>(act)].word;
+}
 
 std::string name_of(const Chord& chord) {
     if (chord.key == 0) return "";
@@ -85,7 +100,8 @@ std::string name_of(const Chord& chord) {
     if (chord.modifiers & kAlt) out += "Alt+";
     for (const auto& [key, name] : kNames)
         if (key == chord.key) return out + name;
-    if (chord.key >= GLFW_KEY_F1 && chord.key <= GLFW_KEY_F25) return out + "F" + std::to_string(chord.key - GLFW_KEY_F1 + 1);
+    if (chord.key >= GLFW_KEY_F1 && chord.key <= GLFW_KEY_F25)
+        return out + "F" + std::to_string(chord.key - GLFW_KEY_F1 + 1);
     if (chord.key > ' ' && chord.key < 127) return out + static_cast<char>(chord.key);
     return "";
 }
@@ -100,7 +116,8 @@ std::optional<Chord> chord_of(const std::string& name) {
         }
     for (const auto& [key, text] : kNames)
         if (rest == text) chord.key = key;
-    if (rest.size() == 1 && rest[0] > ' ' && rest[0] < 127) chord.key = std::toupper(static_cast<unsigned char>(rest[0]));
+    if (rest.size() == 1 && rest[0] > ' ' && rest[0] < 127)
+        chord.key = std::toupper(static_cast<unsigned char>(rest[0]));
     if (rest.size() > 1 && rest[0] == 'F')
         for (int i = 1; i <= 25; ++i)
             if (rest == "F" + std::to_string(i)) chord.key = GLFW_KEY_F1 + i - 1;
@@ -136,15 +153,18 @@ std::optional<Act> KeyTable::assign(Act act, const Chord& chord) {
 std::vector<std::pair<std::string, std::string>> KeyTable::changes() const {
     std::vector<std::pair<std::string, std::string>> out;
     for (const auto& [act, chord] : chords_)
-        if (chord != kShipped[static_cast<std::size_t>(act)].chord) out.emplace_back(word_of(act), chord.key ? name_of(chord) : "none");
+        if (chord != kShipped[static_cast<std::size_t>(act)].chord)
+            out.emplace_back(word_of(act), chord.key ? name_of(chord) : "none");
     return out;
 }
 
 void KeyTable::restore(const std::string& word, const std::string& chord) {
     for (std::size_t i = 0; i < kShipped.size(); ++i)
         if (word == kShipped[i].word) {
-            if (chord == "none") chords_[static_cast<Act>(i)] = {};
-            else if (const auto read = chord_of(chord)) chords_[static_cast<Act>(i)] = *read;
+            if (chord == "none")
+                chords_[static_cast<Act>(i)] = {};
+            else if (const auto read = chord_of(chord))
+                chords_[static_cast<Act>(i)] = *read;
         }
 }
 

@@ -9,18 +9,51 @@
 namespace tuft::app {
 
 enum class Act {
-    open, save, export_to, quit, keys,
-    undo, redo, delete_stroke,
-    brush, line, curve, writing, eraser, fill, pick, mask,
-    lighter, heavier, smaller, larger, lean_left, lean_right, lean_away, lean_near, upright,
-    frame_all, frame_cursor, front, back, right, left, top, bottom, parallel,
-    see_through, atlas, palette, next_shading, panels,
+    open,
+    save,
+    export_to,
+    quit,
+    keys,
+    undo,
+    redo,
+    delete_stroke,
+    brush,
+    line,
+    curve,
+    writing,
+    eraser,
+    fill,
+    pick,
+    mask,
+    lighter,
+    heavier,
+    smaller,
+    larger,
+    lean_left,
+    lean_right,
+    lean_away,
+    lean_near,
+    upright,
+    frame_all,
+    frame_cursor,
+    front,
+    back,
+    right,
+    left,
+    top,
+    bottom,
+    parallel,
+    see_through,
+    atlas,
+    palette,
+    next_shading,
+    panels,
     count
 };
 
 /// A key with Ctrl, Shift and Alt (`Modifier` bits).
 struct Chord {
-    int key = 0;              ///< GLFW key code; 0: none
+    int key = 0;  ///< GLFW key code; 0: none
     unsigned modifiers = 0;
     bool operator==(const Chord&) const = default;
 };
@@ -35,7 +68,7 @@ const char* word_of(Act act);
 
 class KeyTable {
   public:
-    KeyTable();               ///< as shipped
+    KeyTable();  ///< as shipped
     std::optional<Act> find(const Chord& chord) const;
     Chord chord(Act act) const { return chords_.at(act); }
     /// Gives an action a key; another one that had it goes without. Returns that other one.

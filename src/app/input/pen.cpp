@@ -16,7 +16,9 @@ namespace {
 
 // A tablet that is unplugged while its devices are asked for must not end the program; GLFW's
 // own connection has a handler of its own while it needs one.
-int ignore_x_error(::Display*, XErrorEvent*) { return 0; }
+int ignore_x_error(::Display*, XErrorEvent*) {
+    return 0;
+}
 
 class X11Pen : public Pen {
   public:
@@ -37,7 +39,9 @@ class X11Pen : public Pen {
         while (XPending(display_)) {
             XEvent event;
             XNextEvent(display_, &event);
-            if (event.xcookie.type != GenericEvent || event.xcookie.extension != opcode_ || !XGetEventData(display_, &event.xcookie)) continue;
+            if (event.xcookie.type != GenericEvent || event.xcookie.extension != opcode_ ||
+                !XGetEventData(display_, &event.xcookie))
+                continue;
             if (event.xcookie.evtype == XI_HierarchyChanged) {
                 gone = find_pens() || gone;
             } else {
@@ -63,8 +67,13 @@ class X11Pen : public Pen {
     }
 
     static PenReport report_of(const XIDeviceEvent& event) {
-        PenReport report{.device = event.deviceid, .motion = event.evtype == XI_Motion, .button = event.detail, .pressed = event.evtype == XI_ButtonPress, .time = static_cast<double>(event.time) * 1e-3,
-                         .window_x = event.event_x, .window_y = event.event_y};
+        PenReport report{.device = event.deviceid,
+                         .motion = event.evtype == XI_Motion,
+                         .button = event.detail,
+                         .pressed = event.evtype == XI_ButtonPress,
+                         .time = static_cast<double>(event.time) * 1e-3,
+                         .window_x = event.event_x,
+                         .window_y = event.event_y};
         const double* value = event.valuators.values;
         for (int i = 0; i < event.valuators.mask_len * 8; ++i)
             if (XIMaskIsSet(event.valuators.mask, i)) {
@@ -78,7 +87,8 @@ class X11Pen : public Pen {
         std::map<int, PenDevice> devices;
         int count = 0;
         XIDeviceInfo* list = XIQueryDevice(display_, XIAllDevices, &count);
-        const Atom pressure = XInternAtom(display_, "Abs Pressure", True), tilt_x = XInternAtom(display_, "Abs Tilt X", True),
+        const Atom pressure = XInternAtom(display_, "Abs Pressure", True),
+                   tilt_x = XInternAtom(display_, "Abs Tilt X", True),
                    tilt_y = XInternAtom(display_, "Abs Tilt Y", True), wheel = XInternAtom(display_, "Abs Wheel", True),
                    rotary = XInternAtom(display_, "Abs Rotary Z", True);
         for (int i = 0; list && i < count; ++i) {
@@ -93,7 +103,8 @@ class X11Pen : public Pen {
                 if (pressure != None && v.label == pressure) d.pressure = axis;
                 if (tilt_x != None && v.label == tilt_x) d.tilt_x = axis;
                 if (tilt_y != None && v.label == tilt_y) d.tilt_y = axis;
-                if (v.label != None && (v.label == wheel || v.label == rotary)) d.turn = axis;  // wacom's art pen; others
+                if (v.label != None && (v.label == wheel || v.label == rotary))
+                    d.turn = axis;  // wacom's art pen; others
             }
             if (d.pressure.number < 0) continue;
             d.eraser = std::strstr(list[i].name, "raser") != nullptr;
@@ -122,7 +133,8 @@ std::unique_ptr<Pen> open_pen(GLFWwindow* window) {
     ::Display* display = XOpenDisplay(nullptr);
     if (!display) return nullptr;
     int opcode = 0, event = 0, error = 0, major = 2, minor = 2;
-    if (!XQueryExtension(display, "XInputExtension", &opcode, &event, &error) || XIQueryVersion(display, &major, &minor) != Success) {
+    if (!XQueryExtension(display, "XInputExtension", &opcode, &event, &error) ||
+        XIQueryVersion(display, &major, &minor) != Success) {
         XCloseDisplay(display);
         return nullptr;
     }

@@ -14,20 +14,27 @@ constexpr double kNear = 8;        // pixels
 constexpr double kPatience = 0.1;  // seconds that the window's copy of a button is waited for
 
 // Axes count degrees; wacom's go from -64 to 63.
-double tilt_of(const PenAxis& axis) { return axis.number < 0 ? 0 : std::clamp(axis.value, -64.0, 64.0) * kDegree; }
+double tilt_of(const PenAxis& axis) {
+    return axis.number < 0 ? 0 : std::clamp(axis.value, -64.0, 64.0) * kDegree;
+}
 
 // From -π to π; an axis that never moves says 0.
 double turn_of(const PenAxis& axis) {
     const double range = axis.hi - axis.lo + 1;
-    return axis.number < 0 || range < 2 ? 0 : 2 * std::numbers::pi * std::clamp((axis.value - 0.5 * (axis.lo + axis.hi + 1)) / range, -0.5, 0.5);
+    return axis.number < 0 || range < 2
+               ? 0
+               : 2 * std::numbers::pi * std::clamp((axis.value - 0.5 * (axis.lo + axis.hi + 1)) / range, -0.5, 0.5);
 }
 
 }  // namespace
 
-double PenAxis::part() const { return hi > lo ? std::clamp((value - lo) / (hi - lo), 0.0, 1.0) : 0; }
+double PenAxis::part() const {
+    return hi > lo ? std::clamp((value - lo) / (hi - lo), 0.0, 1.0) : 0;
+}
 
 bool PenSamples::set_devices(std::map<int, PenDevice> devices) {
-    const bool gone = std::any_of(devices_.begin(), devices_.end(), [&](const auto& d) { return !devices.contains(d.first); });
+    const bool gone =
+        std::any_of(devices_.begin(), devices_.end(), [&](const auto& d) { return !devices.contains(d.first); });
     devices_ = std::move(devices);
     return gone;
 }
@@ -46,8 +53,11 @@ void PenSamples::take(const PenReport& report, const PenScreen& screen, double n
     const double time = std::min(now, report.time + offset_);
     if (!report.motion) {
         if (report.button < 1 || report.button > 3) return;
-        samples_.push_back({.kind = report.pressed ? Event::Kind::press : Event::Kind::release, .time = time,
-                            .button = report.button == 1 ? 0 : report.button == 2 ? 2 : 1});
+        samples_.push_back({.kind = report.pressed ? Event::Kind::press : Event::Kind::release,
+                            .time = time,
+                            .button = report.button == 1   ? 0
+                                      : report.button == 2 ? 2
+                                                           : 1});
         return;
     }
     Event e{.kind = Event::Kind::move, .pressure = d.pressure.part(), .eraser = d.eraser};
@@ -97,7 +107,8 @@ void PenSamples::merge(EventQueue& events, double now) {
             --ahead_;
             continue;
         }
-        const auto copy = std::find_if(own.begin(), own.end(), [&](const Event& e) { return e.kind == s.kind && e.button == s.button; });
+        const auto copy = std::find_if(own.begin(), own.end(),
+                                       [&](const Event& e) { return e.kind == s.kind && e.button == s.button; });
         if (copy == own.end()) {
             if (held_since_ < 0) held_since_ = now;
             if (now - held_since_ < kPatience) break;

@@ -13,7 +13,7 @@ namespace tuft::app {
 
 /// One axis of a device: its number among the valuators and its range.
 struct PenAxis {
-    int number = -1;          ///< below 0: the device has none
+    int number = -1;  ///< below 0: the device has none
     double lo = 0, hi = 1, value = 0;
 
     /// Position in the range, 0–1.
@@ -29,20 +29,20 @@ struct PenDevice {
 /// One XIDeviceEvent: only axes that changed are in it, lowest number first.
 struct PenReport {
     int device = 0;
-    bool motion = true;       ///< else a button
-    int button = 0;           ///< its number at the server: 1 left (the tip), 2 middle, 3 right
+    bool motion = true;  ///< else a button
+    int button = 0;      ///< its number at the server: 1 left (the tip), 2 middle, 3 right
     bool pressed = false;
-    double time = 0;          ///< seconds on the server's clock
-    std::vector<int> axes;    ///< numbers, rising
+    double time = 0;        ///< seconds on the server's clock
+    std::vector<int> axes;  ///< numbers, rising
     std::vector<double> values;
     double window_x = 0, window_y = 0;  ///< the server's own position, window coordinates
 };
 
 /// Where the window lies on the screen.
 struct PenScreen {
-    double left = 0, top = 0;           ///< of the window, screen coordinates
-    double width = 1, height = 1;       ///< of the screen
-    double scale = 1;                   ///< picture pixels per window coordinate
+    double left = 0, top = 0;      ///< of the window, screen coordinates
+    double width = 1, height = 1;  ///< of the screen
+    double scale = 1;              ///< picture pixels per window coordinate
 };
 
 class PenSamples {
@@ -65,10 +65,10 @@ class PenSamples {
     Event with_pen(Event event);
 
     std::map<int, PenDevice> devices_;
-    std::vector<Event> samples_;            ///< and presses and releases among them
+    std::vector<Event> samples_;  ///< and presses and releases among them
     Event last_;
-    bool down_ = false;                     ///< the tip
-    int ahead_ = 0;                         ///< buttons that the window told of before the pen
+    bool down_ = false;  ///< the tip
+    int ahead_ = 0;      ///< buttons that the window told of before the pen
     double last_sample_ = -1, held_since_ = -1, offset_ = 0;
     bool synchronised_ = false;
 };

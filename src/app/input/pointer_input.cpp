@@ -19,30 +19,36 @@ constexpr double kReport = 0.01;  // seconds between a tablet's reports while so
 constexpr double kJump = 0.004;   // metres between two aims that may be an edge of the outline
 constexpr double kGrazing = 6;    // times further on a slanting surface than across the view
 constexpr double kMaxTilt = 1.2;  // radians
-constexpr double kMostFelt = 0.008, kFeltOfModel = 0.02;  // metres round the aim, and part of the model's diagonal, at most
-constexpr double kShallow = 0.2;  // of how far gaps are felt: what is less deep is relief, and followed
-constexpr double kBent = 0.5;     // of it: how far two sides of a gap may lie out of one plane
-constexpr int kPairs = 12;        // of rays round the aim
-constexpr std::size_t kAgreeing = 3;  // of them that must lie on ground
-constexpr double kKnown = 3;      // pixels after which the direction of a clean stroke is known
-constexpr double kPatience = 0.15;  // seconds after which a hand that rests presses straight down
-constexpr double kSetDown = 0.05; // seconds in which a clean stroke is pressed down
-constexpr double kTouch = 0.7;    // of the pressure, that it is pressed down with; the rest comes along the way
-// Pressed down in place, the tip is pushed back behind the first place by this part of the tuft's length, at pressure 1;
-// the holder goes as far ahead of it there, and loses that over this part of the length. A fast start pulls the tip along.
+constexpr double kMostFelt = 0.008,
+                 kFeltOfModel = 0.02;  // metres round the aim, and part of the model's diagonal, at most
+constexpr double kShallow = 0.2;       // of how far gaps are felt: what is less deep is relief, and followed
+constexpr double kBent = 0.5;          // of it: how far two sides of a gap may lie out of one plane
+constexpr int kPairs = 12;             // of rays round the aim
+constexpr std::size_t kAgreeing = 3;   // of them that must lie on ground
+constexpr double kKnown = 3;           // pixels after which the direction of a clean stroke is known
+constexpr double kPatience = 0.15;     // seconds after which a hand that rests presses straight down
+constexpr double kSetDown = 0.05;      // seconds in which a clean stroke is pressed down
+constexpr double kTouch = 0.7;         // of the pressure, that it is pressed down with; the rest comes along the way
+// Pressed down in place, the tip is pushed back behind the first place by this part of the tuft's length, at pressure
+// 1; the holder goes as far ahead of it there, and loses that over this part of the length. A fast start pulls the tip
+// along.
 constexpr double kSpread = 0.1, kSpreadGone = 0.2;
-constexpr double kTips = 0.12, kTipTurns = 4;  // radians that the holder is tipped ahead at first, over so many `tip_lag_turn`
-constexpr double kSlowest = 0.2;  // seconds in which it arrives at its end, at most
-constexpr double kFlick = 1.5;    // of the working depth: a way to the end on which the brush lifts by the next part
+constexpr double kTips = 0.12,
+                 kTipTurns = 4;      // radians that the holder is tipped ahead at first, over so many `tip_lag_turn`
+constexpr double kSlowest = 0.2;     // seconds in which it arrives at its end, at most
+constexpr double kFlick = 1.5;       // of the working depth: a way to the end on which the brush lifts by the next part
 constexpr double kFlickLift = 0.75;  // of its pressure; the rest goes at the end
-constexpr double kSlanting = 0.35;  // cosine to the line of sight under which no gap is told from an edge
+constexpr double kSlanting = 0.35;   // cosine to the line of sight under which no gap is told from an edge
 
-double part(double dt, double constant) { return 1.0 - std::exp(-dt / std::max(constant, 1e-6)); }
+double part(double dt, double constant) {
+    return 1.0 - std::exp(-dt / std::max(constant, 1e-6));
+}
 
 }  // namespace
 
 double pen_depth(const PointerSettings& s, double pressure) {
-    return std::pow(std::clamp((pressure - s.pen_least) / std::max(1e-3, s.pen_full - s.pen_least), 0.0, 1.0), s.pen_gamma);
+    return std::pow(std::clamp((pressure - s.pen_least) / std::max(1e-3, s.pen_full - s.pen_least), 0.0, 1.0),
+                    s.pen_gamma);
 }
 
 std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, const Aim& aim) {
@@ -55,15 +61,20 @@ std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, cons
     return std::nullopt;
 }
 
-PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const PointerSettings& settings, TipLag lag)
-    : surface_(surface), hold_(stroke::holder_options(preset, surface.mesh())), settings_(settings),
+PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Preset& preset,
+                           const PointerSettings& settings, TipLag lag)
+    : surface_(surface),
+      hold_(stroke::holder_options(preset, surface.mesh())),
+      settings_(settings),
       reach_(std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()})) {
     hold_.tip_lag = std::move(lag.upright);
     hold_.leaned = std::move(lag.leaned);
 }
 
 std::optional<BaseColour> PointerInput::ground(const Aim& aim) const {
-    const auto facing = [&](const mesh::SurfacePoint& p) { return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal; };
+    const auto facing = [&](const mesh::SurfacePoint& p) {
+        return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal;
+    };
     const auto hit = aim_at(surface_, aim);
     const double nothing = std::numeric_limits<double>::infinity(), centre = hit ? hit->distance : nothing;
     struct Pair {
@@ -82,7 +93,8 @@ std::optional<BaseColour> PointerInput::ground(const Aim& aim) const {
         // On one ground, flat or evenly bent: each lies as far out of the other's plane. Else it is a rim or a step.
         const Vec3 na = facing(*a), nb = facing(*b), way = b->position - a->position;
         const double out_a = glm::dot(na, way), out_b = glm::dot(nb, way);
-        if (std::abs(out_a + out_b) < kShallow * reach_ && std::abs(out_a) < kBent * reach_) pairs.push_back({0.5 * (a->distance + b->distance), na + nb});
+        if (std::abs(out_a + out_b) < kShallow * reach_ && std::abs(out_a) < kBent * reach_)
+            pairs.push_back({0.5 * (a->distance + b->distance), na + nb});
     }
     std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.depth < b.depth; });
     const double level = pairs.size() < kAgreeing ? nothing : pairs[pairs.size() / 2].depth;
@@ -90,7 +102,8 @@ std::optional<BaseColour> PointerInput::ground(const Aim& aim) const {
     std::size_t agree = 0;
     for (const Pair& pair : pairs)
         if (std::abs(pair.depth - level) < kShallow * reach_) normal += pair.normal, ++agree;
-    const bool gap = agree >= kAgreeing && level < centre - kShallow * reach_ && glm::dot(normal, -aim.ray.direction) > kSlanting * glm::length(normal);
+    const bool gap = agree >= kAgreeing && level < centre - kShallow * reach_ &&
+                     glm::dot(normal, -aim.ray.direction) > kSlanting * glm::length(normal);
     if (gap) return BaseColour{aim.ray.origin + level * aim.ray.direction, glm::normalize(normal), level, true};
     if (!hit) return std::nullopt;
     return BaseColour{hit->position, facing(*hit), hit->distance, false};
@@ -109,14 +122,16 @@ void PointerInput::onto_surface() {
     if (settings_.string > 0) normal_ = side * on->normal;
 }
 
-brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const {
+brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure,
+                                  double time) const {
     const Vec2 tilt = glm::clamp(aim.tilt.value_or(settings_.tilt), -kMaxTilt, kMaxTilt);
     const auto along = [&](const Vec3& v) {
         const Vec3 d = v - glm::dot(v, normal) * normal;
         return glm::length(d) > 1e-6 ? glm::normalize(d) : Vec3(0);
     };
     const double tipped = kTips * (1 - smooth_step(gone_ / (kTipTurns * hold_.tip_lag_turn)));
-    const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) + std::tan(tilt.y) * along(aim.view_up) + tipped * string_);
+    const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) +
+                                   std::tan(tilt.y) * along(aim.view_up) + tipped * string_);
     const Frame f = make_frame(point, up);
     const Quat upright = glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n)));
     const double height = hold_.tuft_length + (pressure > 0 ? -pressure * hold_.working_depth : hold_.hover);
@@ -132,7 +147,8 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
     const stroke::Axes axes = stroke::axes_across(normal, aim.view_right, -aim.view_up);
     const Vec2 ahead{glm::dot(string_, axes.right), glm::dot(string_, axes.down)};
     if (glm::length(ahead) < 1e-9) return Vec3(0);
-    const Vec2 lag = taut * stroke::lead_of(hold_, pressure, {settings_.tilt.x, -settings_.tilt.y}, glm::normalize(ahead));
+    const Vec2 lag =
+        taut * stroke::lead_of(hold_, pressure, {settings_.tilt.x, -settings_.tilt.y}, glm::normalize(ahead));
     const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * hold_.tuft_length)));
     return lag.x * axes.right + lag.y * axes.down + spread * string_;
 }
@@ -153,7 +169,8 @@ double PointerInput::goal_pressure(const Aim& aim) const {
     return std::clamp(settings_.pressure * slow + rested, 0.02, 1.0);
 }
 
-void PointerInput::touch_down(const Aim& aim, const BaseColour& hit, const Vec3& towards, std::vector<HandStep>& steps) {
+void PointerInput::touch_down(const Aim& aim, const BaseColour& hit, const Vec3& towards,
+                              std::vector<HandStep>& steps) {
     down_ = true;
     goal_ = point_ = hit.position;
     normal_ = hit.normal;
@@ -186,7 +203,8 @@ void PointerInput::set_down(std::vector<HandStep>& steps) {
     Vec3 way = last.ground.position - first.ground.position;
     way -= glm::dot(way, first.ground.normal) * first.ground.normal;
     const double length = glm::length(way);
-    touch_down(first.aim, first.ground, length >= 0.5 * kKnown * last.aim.metres_per_pixel ? way / length : Vec3(0), steps);
+    touch_down(first.aim, first.ground, length >= 0.5 * kKnown * last.aim.metres_per_pixel ? way / length : Vec3(0),
+               steps);
     start_ -= kSetDown;  // as if it had begun earlier: it lags no further behind
     speed_ = length / std::max(kFrame, last.aim.time - first.aim.time);
     spread_ = kSpread * hold_.tuft_length * (1 - std::min(1.0, speed_ / settings_.fast));
@@ -240,10 +258,9 @@ std::vector<HandStep> PointerInput::move(const Aim& aim) {
     const auto hit = ground(aim);
     // A small movement of the cursor that goes far on the model crossed an edge of its outline.
     const double expected = drawing() && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
-                                               glm::distance(aim.ray.direction, aim_.ray.direction) * hit->distance
-                                         : 0;
-    if (drawing() && (!hit || glm::distance(hit->position, goal_) > kJump + kGrazing * expected))
-        steps = lift();
+                                                   glm::distance(aim.ray.direction, aim_.ray.direction) * hit->distance
+                                             : 0;
+    if (drawing() && (!hit || glm::distance(hit->position, goal_) > kJump + kGrazing * expected)) steps = lift();
     if (!hit) return steps;
     if (!down_ && is_clean(aim)) {
         wait(aim, *hit, steps);

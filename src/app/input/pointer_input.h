@@ -12,17 +12,18 @@
 namespace tuft::app {
 
 struct PointerSettings {
-    double pressure = 0.45;       ///< 0–1 of the working depth at rest
-    double speed_effect = 0.5;    ///< part of the pressure lost at `fast`
-    double dwell_effect = 0.25;   ///< pressure added by resting for `dwell`
-    double fast = 0.25;           ///< m/s
-    double dwell = 0.8;           ///< seconds
-    double smoothing = 0.03;      ///< seconds of the low-pass on position
-    double string = 0;            ///< metres of the string on which the brush is drawn behind the cursor
-    double pen_least = 0, pen_full = 1;  ///< a pen's pressure where the brush begins to sink, and where it is at its deepest
-    double pen_gamma = 1;         ///< exponent in between
-    Vec2 tilt{0};                 ///< radians, lean of the holder to the right and upwards in the view
-    bool clean_ends = true;       ///< of strokes without a pen: see `PointerInput`
+    double pressure = 0.45;      ///< 0–1 of the working depth at rest
+    double speed_effect = 0.5;   ///< part of the pressure lost at `fast`
+    double dwell_effect = 0.25;  ///< pressure added by resting for `dwell`
+    double fast = 0.25;          ///< m/s
+    double dwell = 0.8;          ///< seconds
+    double smoothing = 0.03;     ///< seconds of the low-pass on position
+    double string = 0;           ///< metres of the string on which the brush is drawn behind the cursor
+    double pen_least = 0,
+           pen_full = 1;     ///< a pen's pressure where the brush begins to sink, and where it is at its deepest
+    double pen_gamma = 1;    ///< exponent in between
+    Vec2 tilt{0};            ///< radians, lean of the holder to the right and upwards in the view
+    bool clean_ends = true;  ///< of strokes without a pen: see `PointerInput`
 };
 
 /// Part of the working depth, 0–1, for a pen's pressure: ((p − least) / (full − least)) ^ gamma, cut.
@@ -48,10 +49,10 @@ struct TipLag {
 
 /// What lies under the brush, as a hand feels it.
 struct BaseColour {
-    Vec3 position{0};                            ///< metres
-    Vec3 normal{0, 0, 1};                        ///< unit, towards who looks
-    double distance = 0;                         ///< metres from the eye
-    bool bridged = false;                        ///< over a gap or groove
+    Vec3 position{0};      ///< metres
+    Vec3 normal{0, 0, 1};  ///< unit, towards who looks
+    double distance = 0;   ///< metres from the eye
+    bool bridged = false;  ///< over a gap or groove
 };
 
 /// Part of a stroke, for the painter.
@@ -77,7 +78,8 @@ struct HandStep {
 /// the way. Pens have ends of their own: their pressure.
 class PointerInput {
   public:
-    PointerInput(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const PointerSettings& settings, TipLag lag = {});
+    PointerInput(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const PointerSettings& settings,
+                 TipLag lag = {});
 
     std::vector<HandStep> move(const Aim& aim);
     /// The hand lifts off.
@@ -112,15 +114,15 @@ class PointerInput {
     const mesh::SurfaceQuery& surface_;
     stroke::HolderOptions hold_;
     PointerSettings settings_;
-    double reach_;                         ///< metres round the aim in which gaps are felt
-    double bridged_ = -1;                  ///< `time_` when the goal was last over a gap; below 0: never
+    double reach_;         ///< metres round the aim in which gaps are felt
+    double bridged_ = -1;  ///< `time_` when the goal was last over a gap; below 0: never
     bool down_ = false;
-    Aim aim_;                              ///< the last one
-    std::vector<Waiting> waiting_;         ///< of a clean stroke, until its direction is known
-    Vec3 dragged_{0};                      ///< metres: what the point drags on a string of `tip_lag_turn`
-    Vec3 string_{0};                       ///< that string, of length 1 where it is taut
-    double gone_ = 0;                      ///< metres since the touch
-    double spread_ = 0;                    ///< metres that the holder is further ahead there, at pressure 1
+    Aim aim_;                       ///< the last one
+    std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
+    Vec3 dragged_{0};               ///< metres: what the point drags on a string of `tip_lag_turn`
+    Vec3 string_{0};                ///< that string, of length 1 where it is taut
+    double gone_ = 0;               ///< metres since the touch
+    double spread_ = 0;             ///< metres that the holder is further ahead there, at pressure 1
     Vec3 goal_{0}, goal_normal_{0, 0, 1}, point_{0}, normal_{0, 0, 1};
     double pressure_ = 0, time_ = 0, speed_ = 0, rest_ = 0, start_ = 0;
 };

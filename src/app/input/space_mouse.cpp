@@ -23,19 +23,21 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kFull = 350;       // counts of a cap pushed all the way (SpaceNavigator at sensitivity 1)
-constexpr double kMost = 3;         // full deflections: no sensitivity makes the view jump
-constexpr double kLongestGap = 0.1; // seconds that one look may cover
+constexpr double kFull = 350;        // counts of a cap pushed all the way (SpaceNavigator at sensitivity 1)
+constexpr double kMost = 3;          // full deflections: no sensitivity makes the view jump
+constexpr double kLongestGap = 0.1;  // seconds that one look may cover
 
 class Daemon : public SpaceMouse {
   public:
-    Daemon(std::function<void()> wake, double retry) : wake_(std::move(wake)), retry_ms_(static_cast<int>(1e3 * retry)) {
+    Daemon(std::function<void()> wake, double retry)
+        : wake_(std::move(wake)), retry_ms_(static_cast<int>(1e3 * retry)) {
         if (pipe(stop_.data()) == 0) thread_ = std::thread([this] { listen(); });
     }
     ~Daemon() override {
         if (!thread_.joinable()) return;
         const char byte = 0;
-        while (write(stop_[1], &byte, 1) < 0 && errno == EINTR) {}
+        while (write(stop_[1], &byte, 1) < 0 && errno == EINTR) {
+        }
         thread_.join();
         for (const int end : stop_) close(end);
     }
@@ -45,10 +47,12 @@ class Daemon : public SpaceMouse {
         advance();
         const double part = way_seconds_ > kLongestGap ? kLongestGap / way_seconds_ : 1;
         if (way_.push != Vec3(0) || way_.twist != Vec3(0))
-            events.push_back({.kind = Event::Kind::fly, .time = now, .push = part * way_.push, .twist = part * way_.twist});
+            events.push_back(
+                {.kind = Event::Kind::fly, .time = now, .push = part * way_.push, .twist = part * way_.twist});
         way_ = {};
         way_seconds_ = 0;
-        for (const int button : std::exchange(buttons_, {})) events.push_back({.kind = Event::Kind::cap_button, .time = now, .button = button});
+        for (const int button : std::exchange(buttons_, {}))
+            events.push_back({.kind = Event::Kind::cap_button, .time = now, .button = button});
     }
     bool held() const override {
         const std::scoped_lock lock(mutex_);
@@ -93,7 +97,8 @@ class Daemon : public SpaceMouse {
             const std::scoped_lock lock(mutex_);
             buttons_.push_back(event.button.bnum);
         } else if (event.type == SPNAV_EVENT_DEV) {
-            put({}, event.dev.op == SPNAV_DEV_RM ? "The SpaceMouse was unplugged; the mouse goes on." : "The SpaceMouse is ready.");
+            put({}, event.dev.op == SPNAV_DEV_RM ? "The SpaceMouse was unplugged; the mouse goes on."
+                                                 : "The SpaceMouse is ready.");
         }
         wake_();
     }
@@ -137,7 +142,7 @@ class Daemon : public SpaceMouse {
     int retry_ms_;
     std::array<int, 2> stop_{-1, -1};
     mutable std::mutex mutex_;
-    Cap cap_, way_;               // deflection now; its integral since the last look
+    Cap cap_, way_;  // deflection now; its integral since the last look
     double way_seconds_ = 0;
     Clock::time_point since_ = Clock::now();
     std::vector<int> buttons_;
@@ -147,11 +152,15 @@ class Daemon : public SpaceMouse {
 
 }  // namespace
 
-std::unique_ptr<SpaceMouse> open_space_mouse(std::function<void()> wake, double retry) { return std::make_unique<Daemon>(std::move(wake), retry); }
+std::unique_ptr<SpaceMouse> open_space_mouse(std::function<void()> wake, double retry) {
+    return std::make_unique<Daemon>(std::move(wake), retry);
+}
 
 #else
 
-std::unique_ptr<SpaceMouse> open_space_mouse(std::function<void()>, double) { return nullptr; }
+std::unique_ptr<SpaceMouse> open_space_mouse(std::function<void()>, double) {
+    return nullptr;
+}
 
 #endif
 

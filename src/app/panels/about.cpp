@@ -20,8 +20,7 @@ std::string gl_text(GLenum name) {
 // Name and value of what a report of a fault should say.
 std::vector<std::pair<const char*, std::string>> facts_now() {
     const BuildFacts& b = build_facts();
-    return {{"Version",
-             b.version + " (" + b.released + ")" + (b.commit.empty() ? "" : ", " + b.commit)},
+    return {{"Version", b.version + " (" + b.released + ")" + (b.commit.empty() ? "" : ", " + b.commit)},
             {"Licence", "MIT; with CGAL under GPL-3.0-or-later"},
             {"System", b.system},
             {"Compiler", b.compiler + ", " + b.build_type},

@@ -20,7 +20,8 @@ ink::Rgb linear_of(const std::array<float, 3>& srgb) {
 }
 
 unsigned packed(const ink::Rgb& linear) {
-    return IM_COL32(ink::code_of_linear(linear[0]), ink::code_of_linear(linear[1]), ink::code_of_linear(linear[2]), 255);
+    return IM_COL32(ink::code_of_linear(linear[0]), ink::code_of_linear(linear[1]), ink::code_of_linear(linear[2]),
+                    255);
 }
 
 // A colour was chosen; with `take` the mix found for it goes into the brush.
@@ -28,7 +29,10 @@ void wish(Session& s, bool take) {
     ColourChoice& c = s.colour;
     c.hex = ink::to_hex(linear_of(c.wanted));
     c.take = take;
-    c.finder.want({.colour = linear_of(c.wanted), .substrate = s.looks.painted_on, .film = c.free_film ? 0 : c.film, .held = pigments_in_use(s)});
+    c.finder.want({.colour = linear_of(c.wanted),
+                   .substrate = s.looks.painted_on,
+                   .film = c.free_film ? 0 : c.film,
+                   .held = pigments_in_use(s)});
 }
 
 void keep_hsv(ColourChoice& c) {
@@ -44,8 +48,9 @@ void wheel(Session& s) {
     ColourChoice& c = s.colour;
     const float side = ImGui::GetContentRegionAvail().x;
     ImGui::SetNextItemWidth(side);
-    constexpr ImGuiColorEditFlags flags = ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoInputs |
-                                          ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoAlpha | ImGuiColorEditFlags_NoOptions |
+    constexpr ImGuiColorEditFlags flags = ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_NoSidePreview |
+                                          ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel |
+                                          ImGuiColorEditFlags_NoAlpha | ImGuiColorEditFlags_NoOptions |
                                           ImGuiColorEditFlags_NoSmallPreview;
     if (ImGui::ColorPicker3("##wheel", c.wanted.data(), flags)) {
         keep_hsv(c);
@@ -66,7 +71,8 @@ void hex_field(Session& s) {
     s.ui.mark("Hex");
     if (ImGui::IsItemActive() || entered) c.hex = text;
     if (entered || ImGui::IsItemDeactivatedAfterEdit()) set_colour(s, c.hex);
-    static constexpr std::pair<ColourSliders, const char*> modes[] = {{ColourSliders::rgb, "RGB"}, {ColourSliders::hsv, "HSV"}, {ColourSliders::lab, "Lab"}};
+    static constexpr std::pair<ColourSliders, const char*> modes[] = {
+        {ColourSliders::rgb, "RGB"}, {ColourSliders::hsv, "HSV"}, {ColourSliders::lab, "Lab"}};
     for (const auto& [mode, name] : modes) {
         ImGui::SameLine(0, s.ui.px(4));
         if (s.ui.choice(name, c.sliders == mode, nullptr, 38)) c.sliders = mode;
@@ -94,13 +100,15 @@ void sliders(Session& s) {
         if (changed) ImGui::ColorConvertHSVtoRGB(c.hsv[0], c.hsv[1], c.hsv[2], c.wanted[0], c.wanted[1], c.wanted[2]);
     } else {
         const ink::Rgb linear = linear_of(c.wanted);
-        v = ink::lab_of_rgb({static_cast<double>(linear[0]), static_cast<double>(linear[1]), static_cast<double>(linear[2])});
+        v = ink::lab_of_rgb(
+            {static_cast<double>(linear[0]), static_cast<double>(linear[1]), static_cast<double>(linear[2])});
         changed |= ui.slider("Lightness", v[0], 0, 100, "%.0f");
         changed |= ui.slider("Green - red", v[1], -110, 110, "%.0f");
         changed |= ui.slider("Blue - yellow", v[2], -110, 110, "%.0f");
         if (changed) {
             const std::array<double, 3> rgb = ink::rgb_of_lab(v);
-            const ink::Rgb inside = ink::into_gamut({static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])});
+            const ink::Rgb inside =
+                ink::into_gamut({static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])});
             for (std::size_t i = 0; i < 3; ++i) c.wanted[i] = ink::srgb_encode(inside[i]);
             keep_hsv(c);
         }
@@ -115,8 +123,10 @@ void result(Session& s) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = ui.px(30), middle = at.x + 0.5f * width;
-    draw->AddRectFilled(at, ImVec2(middle, at.y + height), packed(linear_of(c.wanted)), ui.px(4), ImDrawFlags_RoundCornersLeft);
-    draw->AddRectFilled(ImVec2(middle, at.y), ImVec2(at.x + width, at.y + height), packed(c.match ? c.match->reached : linear_of(c.wanted)), ui.px(4),
+    draw->AddRectFilled(at, ImVec2(middle, at.y + height), packed(linear_of(c.wanted)), ui.px(4),
+                        ImDrawFlags_RoundCornersLeft);
+    draw->AddRectFilled(ImVec2(middle, at.y), ImVec2(at.x + width, at.y + height),
+                        packed(c.match ? c.match->reached : linear_of(c.wanted)), ui.px(4),
                         ImDrawFlags_RoundCornersRight);
     ImGui::Dummy(ImVec2(width, height));
     ImGui::TextDisabled("%s", ui.tr("Wanted"));
@@ -124,18 +134,23 @@ void result(Session& s) {
     ImGui::TextDisabled("%s %s", ui.tr("Reached"), c.match ? ink::to_hex(c.match->reached).c_str() : "");
     if (!c.match) return;
     char text[160];
-    std::snprintf(text, sizeof text, "\xce\x94""E %.1f: %s", c.match->delta_e, ui.tr(ink::difference_in_words(c.match->delta_e)));
+    std::snprintf(text, sizeof text,
+                  "\xce\x94"
+                  "E %.1f: %s",
+                  c.match->delta_e, ui.tr(ink::difference_in_words(c.match->delta_e)));
     ui.wrapped(text);
     std::string recipe;
     for (const ink::InkPart& part : c.match->ink.parts) {
-        std::snprintf(text, sizeof text, "%s%.3g %% %s", recipe.empty() ? "" : ", ", 100 * part.fraction, ui.tr(part.pigment.name.c_str()));
+        std::snprintf(text, sizeof text, "%s%.3g %% %s", recipe.empty() ? "" : ", ", 100 * part.fraction,
+                      ui.tr(part.pigment.name.c_str()));
         recipe += text;
     }
     if (const double water = 1 - c.match->ink.strength(); water > 5e-4) {
         std::snprintf(text, sizeof text, ", %.3g %% %s", 100 * water, ui.tr("water"));
         recipe += text;
     }
-    std::snprintf(text, sizeof text, " (%.0f \xce\xbcm, %s)", kUnitUm * c.match->ink.film, ui.tr(s.looks.painted_on.c_str()));
+    std::snprintf(text, sizeof text, " (%.0f \xce\xbcm, %s)", kUnitUm * c.match->ink.film,
+                  ui.tr(s.looks.painted_on.c_str()));
     ui.note(recipe + text);
 }
 
@@ -149,7 +164,8 @@ void recent(Session& s) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const bool pressed = ImGui::InvisibleButton(("recent " + hex).c_str(), ImVec2(size, 0.7f * size));
         s.ui.mark("recent " + hex);
-        ImGui::GetWindowDrawList()->AddRectFilled(at, ImVec2(at.x + size, at.y + 0.7f * size), packed(*ink::colour_of_hex(hex)), s.ui.px(3));
+        ImGui::GetWindowDrawList()->AddRectFilled(at, ImVec2(at.x + size, at.y + 0.7f * size),
+                                                  packed(*ink::colour_of_hex(hex)), s.ui.px(3));
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", hex.c_str());
         if (pressed) {
             set_colour(s, hex);
@@ -163,11 +179,13 @@ void save(Session& s) {
     const ink::Ink* ink = find_ink(s, s.ink);
     char name[64];
     std::snprintf(name, sizeof name, "%s", c.name.c_str());
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - s.ui.button_width("Save ink", 84) - ImGui::GetStyle().ItemSpacing.x);
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - s.ui.button_width("Save ink", 84) -
+                            ImGui::GetStyle().ItemSpacing.x);
     if (ImGui::InputTextWithHint("##ink name", s.ui.tr("Name of the ink in hand"), name, sizeof name)) c.name = name;
     s.ui.mark("Ink name");
     ImGui::SameLine();
-    if (!s.ui.button("Save ink", "Keeps the ink in hand for every work, among your own", 84, ink && !c.name.empty())) return;
+    if (!s.ui.button("Save ink", "Keeps the ink in hand for every work, among your own", 84, ink && !c.name.empty()))
+        return;
     try {
         ink::Ink own = *ink;
         stroke::check_name(c.name, "ink");
@@ -201,17 +219,23 @@ void colour_panel(Session& s) {
     ImGui::SetNextWindowPos(ImVec2(x, static_cast<float>(s.area.y) + pad), ImGuiCond_Appearing);
     ImGui::SetNextWindowSize(ImVec2(width, 0));
     ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, static_cast<float>(s.area.height) - 2 * pad));
-    ImGui::Begin("###colour", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings |
-                                           ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoCollapse);
+    ImGui::Begin("###colour", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoCollapse);
     if (!c.match && !c.finder.busy()) wish(s, false);
     wheel(s);
     hex_field(s);
     sliders(s);
-    if (ui.toggle("As thick as it needs", c.free_film, "Else the film has the thickness below; a thicker one reaches more colours")) wish(s, true);
-    if (!c.free_film && ui.slider("Film", c.film, 0.5, ink::kThickestMix, "%.0f \xce\xbcm", "Thickness of the wet ink that a full brush leaves", 1 / kUnitUm)) wish(s, true);
+    if (ui.toggle("As thick as it needs", c.free_film,
+                  "Else the film has the thickness below; a thicker one reaches more colours"))
+        wish(s, true);
+    if (!c.free_film && ui.slider("Film", c.film, 0.5, ink::kThickestMix, "%.0f \xce\xbcm",
+                                  "Thickness of the wet ink that a full brush leaves", 1 / kUnitUm))
+        wish(s, true);
     result(s);
     const bool in_brush = c.match && s.ink == c.match->ink.name;
-    if (!in_brush && c.match && ui.primary_button("Paint with it", (width - 2 * ImGui::GetStyle().WindowPadding.x) / ui.settings().scale))
+    if (!in_brush && c.match &&
+        ui.primary_button("Paint with it", (width - 2 * ImGui::GetStyle().WindowPadding.x) / ui.settings().scale))
         take_mix(s, c.match->ink);
     save(s);
     recent(s);

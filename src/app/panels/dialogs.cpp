@@ -16,8 +16,9 @@ bool begin_dialog(Session& s, const char* title, float width) {
     ImGui::SetNextWindowSize(ImVec2(s.ui.px(width), 0));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(s.ui.px(18), s.ui.px(14)));
     const std::string name = std::string(s.ui.tr(title)) + "###dialog " + title;
-    const bool open = ImGui::Begin(name.c_str(), nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
-                                                              ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+    const bool open = ImGui::Begin(name.c_str(), nullptr,
+                                   ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
+                                       ImGuiWindowFlags_NoSavedSettings);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
     s.ui.in_dialog = true;
     return open;
@@ -76,9 +77,12 @@ void open_dialog(Session& s) {
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    if (in.unit_fixed) ImGui::TextDisabled("%s", ui.tr("the format says so"));
-    else if (s.open_options.frame.unit == m.unit.unit) ImGui::TextDisabled("%s", ui.tr("guessed from the size"));
-    else ImGui::TextDisabled("%s: %s", ui.tr("guessed"), m.unit.unit.c_str());
+    if (in.unit_fixed)
+        ImGui::TextDisabled("%s", ui.tr("the format says so"));
+    else if (s.open_options.frame.unit == m.unit.unit)
+        ImGui::TextDisabled("%s", ui.tr("guessed from the size"));
+    else
+        ImGui::TextDisabled("%s: %s", ui.tr("guessed"), m.unit.unit.c_str());
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", ui.tr("Upward axis"));
     ImGui::SameLine(ui.px(150));
@@ -97,7 +101,8 @@ void open_dialog(Session& s) {
     ImGui::SameLine(ui.px(150));
     static const std::vector<std::string> sizes{"1024", "2048", "4096", "8192"};
     std::string atlas = std::to_string(s.open_options.atlas_size);
-    if (ui.combo("Atlas size", atlas, sizes, 90)) s.open_options.atlas_size = static_cast<std::uint32_t>(std::stoul(atlas));
+    if (ui.combo("Atlas size", atlas, sizes, 90))
+        s.open_options.atlas_size = static_cast<std::uint32_t>(std::stoul(atlas));
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     const double texel = expected_texel(m.area * factor * factor, s.open_options.atlas_size);
@@ -124,8 +129,10 @@ void open_dialog(Session& s) {
     ImGui::SameLine();
     const bool accepted = ui.primary_button(action, 120, fits);
     end_dialog(s);
-    if (accepted) accept_inspected(s);
-    else if (cancelled) s.inspected.reset();
+    if (accepted)
+        accept_inspected(s);
+    else if (cancelled)
+        s.inspected.reset();
 }
 
 void opening_progress(Session& s) {
@@ -144,10 +151,12 @@ void recovery_dialog(Session& s) {
     if (!begin_dialog(s, s.sure_to_delete ? "Delete this work?" : "Your work is still here", 480)) return end_dialog(s);
     Ui& ui = s.ui;
     const LostWork work = s.lost.front();
-    ui.wrapped(ui.tr("tuft studio stopped before you saved this. Nothing is lost: every stroke that you finished is here."));
+    ui.wrapped(
+        ui.tr("tuft studio stopped before you saved this. Nothing is lost: every stroke that you finished is here."));
     ImGui::Dummy(ImVec2(0, ui.px(2)));
     if (const unsigned texture = s.pictures.texture(work.project)) {
-        ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), ImVec2(ui.px(180), ui.px(120)));
+        ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)),
+                     ImVec2(ui.px(180), ui.px(120)));
         ImGui::Dummy(ImVec2(0, ui.px(2)));
     }
     fact(s, "Model", fs::path(work.source).filename().string());
@@ -165,7 +174,9 @@ void recovery_dialog(Session& s) {
         const bool unnamed = is_unnamed(work.project);
         const char* away = unnamed ? "Delete..." : "Leave it";
         ui.buttons_at_right({{away, 100}, {"Not now", 100}, {"Continue", 140}});
-        const bool leave = ui.button(away, unnamed ? "Removes this work for good" : "The project stays where it is; it is not offered again", 100);
+        const bool leave = ui.button(
+            away, unnamed ? "Removes this work for good" : "The project stays where it is; it is not offered again",
+            100);
         ImGui::SameLine();
         later = ui.button("Not now", "It is offered again at the next start", 100);
         ImGui::SameLine();
@@ -191,10 +202,12 @@ void settings_dialog(Session& s) {
     UiSettings& w = s.wanted;
     bool changed = false;
     ui.heading("Language");
-    if (ui.choice("English", w.language == Language::english, nullptr, 120)) w.language = Language::english, changed = true;
+    if (ui.choice("English", w.language == Language::english, nullptr, 120))
+        w.language = Language::english, changed = true;
     ImGui::SameLine();
     // In its own script, for those who read no other.
-    if (ui.choice(ui.has_chinese ? "中文" : "Chinese", w.language == Language::chinese, nullptr, 120)) w.language = Language::chinese, changed = true;
+    if (ui.choice(ui.has_chinese ? "中文" : "Chinese", w.language == Language::chinese, nullptr, 120))
+        w.language = Language::chinese, changed = true;
     ui.heading("Colours");
     if (ui.choice("Dark", w.theme == Theme::dark, nullptr, 120)) w.theme = Theme::dark, changed = true;
     ImGui::SameLine();
@@ -205,19 +218,24 @@ void settings_dialog(Session& s) {
         char label[16];
         std::snprintf(label, sizeof label, "%.0f %%", 100.0 * static_cast<double>(scale));
         if (scale != 2.5f) ImGui::SameLine();
-        if (ui.choice(label, w.own_scale && std::abs(w.scale - scale) < 0.01f, nullptr, 64)) w.scale = scale, w.own_scale = changed = true;
+        if (ui.choice(label, w.own_scale && std::abs(w.scale - scale) < 0.01f, nullptr, 64))
+            w.scale = scale, w.own_scale = changed = true;
     }
     ui.heading("Mouse and hand");
-    if (ui.choice("As in Blender", s.keymap == Keymap::blender, "Turn with the middle button", 150)) s.keymap = Keymap::blender, changed = true;
+    if (ui.choice("As in Blender", s.keymap == Keymap::blender, "Turn with the middle button", 150))
+        s.keymap = Keymap::blender, changed = true;
     ImGui::SameLine();
-    if (ui.choice("As in Maya", s.keymap == Keymap::maya, "Turn with Alt and the left button", 150)) s.keymap = Keymap::maya, changed = true;
+    if (ui.choice("As in Maya", s.keymap == Keymap::maya, "Turn with Alt and the left button", 150))
+        s.keymap = Keymap::maya, changed = true;
     changed |= ui.toggle("Left-handed: tools on the right", w.left_handed);
     bool cap = false;
     if (s.cap.seen) {
         ui.heading("SpaceMouse");
-        if (ui.choice("Moves the model", !s.cap.moves_eye, "It goes where you push and turn the cap", 150)) s.cap.moves_eye = false, cap = true;
+        if (ui.choice("Moves the model", !s.cap.moves_eye, "It goes where you push and turn the cap", 150))
+            s.cap.moves_eye = false, cap = true;
         ImGui::SameLine();
-        if (ui.choice("Moves the eye", s.cap.moves_eye, "The cap is your head", 150)) s.cap.moves_eye = true, cap = true;
+        if (ui.choice("Moves the eye", s.cap.moves_eye, "The cap is your head", 150))
+            s.cap.moves_eye = true, cap = true;
         cap |= ui.toggle("Keep the horizon level", s.cap.level);
         cap |= ui.slider("Cap speed", s.cap.speed, 0.1, 4, "%.1f");
     }

@@ -11,7 +11,7 @@ namespace {
 struct Preset {
     const char *name, *extension, *note;
     bool roughness, relief;
-    std::uint32_t most;           ///< texels per side; 0: any
+    std::uint32_t most;  ///< texels per side; 0: any
 };
 constexpr Preset kPresets[] = {
     {"Blender", ".glb", "One GLB file; File > Import > glTF 2.0", true, true, 0},
@@ -25,7 +25,8 @@ constexpr Preset kPresets[] = {
 };
 
 const Preset& preset_of(const std::string& name) {
-    const auto at = std::find_if(std::begin(kPresets), std::end(kPresets), [&](const Preset& p) { return name == p.name; });
+    const auto at =
+        std::find_if(std::begin(kPresets), std::end(kPresets), [&](const Preset& p) { return name == p.name; });
     return at == std::end(kPresets) ? kPresets[0] : *at;
 }
 
@@ -47,8 +48,15 @@ void row(Session& s, const char* name) {
 
 ExportModel export_command(const Session& s, const std::filesystem::path& path) {
     const ExportChoice& c = s.export_choice;
-    return {.path = path, .height = c.relief, .orm = c.roughness, .pigments = c.pigments, .size = c.size, .pictures = c.picture, .picture_width = c.picture_width,
-            .azimuth = s.view.orbit.azimuth, .elevation = s.view.orbit.elevation};
+    return {.path = path,
+            .height = c.relief,
+            .orm = c.roughness,
+            .pigments = c.pigments,
+            .size = c.size,
+            .pictures = c.picture,
+            .picture_width = c.picture_width,
+            .azimuth = s.view.orbit.azimuth,
+            .elevation = s.view.orbit.elevation};
 }
 
 void export_dialog(Session& s) {
@@ -62,7 +70,9 @@ void export_dialog(Session& s) {
     if (ui.combo("Preset", c.preset, names)) choose_preset(s);
     ui.note(ui.tr(preset_of(c.preset).note));
     const bool strokes_alone = preset_of(c.preset).extension == std::string(".inkml");
-    if (strokes_alone && std::any_of(s.strokes.begin(), s.strokes.end(), [](const StrokeLine& l) { return l.action == stroke::Action::layer || l.action == stroke::Action::mask; }))
+    if (strokes_alone && std::any_of(s.strokes.begin(), s.strokes.end(), [](const StrokeLine& l) {
+            return l.action == stroke::Action::layer || l.action == stroke::Action::mask;
+        }))
         ui.wrapped(ui.tr("Strokes name their layer and mask; what layers and masks are stays in the project."));
     ImGui::BeginDisabled(strokes_alone);
     row(s, "Maps");
@@ -81,7 +91,8 @@ void export_dialog(Session& s) {
     row(s, "Texels per side");
     static const std::vector<std::string> sizes{"As painted", "512", "1024", "2048", "4096", "8192"};
     std::string size = c.size ? std::to_string(c.size) : "As painted";
-    if (ui.combo("Export size", size, sizes, 130)) c.size = size == "As painted" ? 0 : static_cast<std::uint32_t>(std::stoul(size));
+    if (ui.combo("Export size", size, sizes, 130))
+        c.size = size == "As painted" ? 0 : static_cast<std::uint32_t>(std::stoul(size));
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%u", s.painter->model().atlas.size);
@@ -89,9 +100,11 @@ void export_dialog(Session& s) {
     row(s, "Pictures");
     static const std::vector<std::string> pictures{"None", "One, as seen now", "24 all round", "72 all round"};
     static constexpr int counts[] = {0, 1, 24, 72};
-    const auto at = static_cast<std::size_t>(std::find(std::begin(counts), std::end(counts), c.picture) - std::begin(counts));
+    const auto at =
+        static_cast<std::size_t>(std::find(std::begin(counts), std::end(counts), c.picture) - std::begin(counts));
     std::string picture = pictures[std::min<std::size_t>(at, 3)];
-    if (ui.combo("Pictures of it", picture, pictures, 200)) c.picture = counts[std::find(pictures.begin(), pictures.end(), picture) - pictures.begin()];
+    if (ui.combo("Pictures of it", picture, pictures, 200))
+        c.picture = counts[std::find(pictures.begin(), pictures.end(), picture) - pictures.begin()];
     if (c.picture) {
         row(s, "");
         static const std::vector<std::string> widths{"640", "1280", "1920", "3840"};

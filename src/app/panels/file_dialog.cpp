@@ -33,7 +33,8 @@ bool is_one_of(const std::string& extension, std::initializer_list<const char*> 
 // The end of a path that there is room for.
 std::string path_end(const std::string& path, float width) {
     std::size_t from = 0;
-    while (from < path.size() && ImGui::CalcTextSize(("..." + path.substr(from)).c_str()).x > width) from = std::min(path.find('/', from + 1), path.size());
+    while (from < path.size() && ImGui::CalcTextSize(("..." + path.substr(from)).c_str()).x > width)
+        from = std::min(path.find('/', from + 1), path.size());
     return from == 0 ? path : "..." + path.substr(from);
 }
 
@@ -59,7 +60,9 @@ void remember_folder(const fs::path& folder) {
     }
 }
 
-bool FileDialog::reads() const { return purpose_ != Purpose::save && purpose_ != Purpose::export_model && purpose_ != Purpose::save_ink; }
+bool FileDialog::reads() const {
+    return purpose_ != Purpose::save && purpose_ != Purpose::export_model && purpose_ != Purpose::save_ink;
+}
 
 bool FileDialog::suits(const fs::path& file) const {
     const std::string e = lower(file.extension().string());
@@ -68,7 +71,8 @@ bool FileDialog::suits(const fs::path& file) const {
     if (purpose_ == Purpose::ink || purpose_ == Purpose::save_ink) return e == ".toml";
     if (purpose_ == Purpose::writing) return is_one_of(e, {".svg", ".inkml"});
     if (purpose_ == Purpose::reference) return is_one_of(e, {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff"});
-    return (e == ".tuft" && purpose_ != Purpose::revise) || is_one_of(e, {".ply", ".obj", ".stl", ".off", ".glb", ".gltf"});
+    return (e == ".tuft" && purpose_ != Purpose::revise) ||
+           is_one_of(e, {".ply", ".obj", ".stl", ".off", ".glb", ".gltf"});
 }
 
 void FileDialog::show(Purpose purpose, const fs::path& start) {
@@ -111,7 +115,8 @@ void FileDialog::go(const fs::path& folder) {
 }
 
 void FileDialog::read_folder() {
-    entries_ = list_folder(folder_, [this](const fs::path& file) { return suits(file); }, fault_);
+    entries_ = list_folder(
+        folder_, [this](const fs::path& file) { return suits(file); }, fault_);
     if (!fault_.empty()) fault_ = "This folder cannot be read: " + fault_;
     sort_entries(entries_, order_, downward_);
 }
@@ -130,7 +135,8 @@ std::optional<fs::path> FileDialog::accept() {
     } else {
         if (!suits(path)) path += extension_;
         if (!fs::is_directory(path.parent_path(), ec)) return refuse("There is no folder of that name."), std::nullopt;
-        if (::access(path.parent_path().c_str(), W_OK) != 0) return refuse("Nothing can be written into this folder."), std::nullopt;
+        if (::access(path.parent_path().c_str(), W_OK) != 0)
+            return refuse("Nothing can be written into this folder."), std::nullopt;
         if (fs::is_directory(path, ec)) return refuse("There is a folder of that name."), std::nullopt;
         if (fs::exists(path, ec) && !ask_replace_) {
             ask_replace_ = true;
@@ -147,7 +153,10 @@ std::optional<fs::path> FileDialog::accept() {
 void FileDialog::draw_places(Ui& ui) {
     ui.heading("Places");
     if (const char* home = std::getenv("HOME"); home && ImGui::Selectable(ui.tr("Home"))) go(home);
-    if (ImGui::Selectable(ui.tr("Samples"))) go(data_folder() / (purpose_ == Purpose::writing ? "samples/strokes" : purpose_ == Purpose::ink ? "models/inks" : "models"));
+    if (ImGui::Selectable(ui.tr("Samples")))
+        go(data_folder() / (purpose_ == Purpose::writing ? "samples/strokes"
+                            : purpose_ == Purpose::ink   ? "models/inks"
+                                                         : "models"));
     std::error_code ec;
     if (ImGui::Selectable(ui.tr("Here"))) go(fs::current_path(ec));
     const std::vector<fs::path> recent = recent_folders();
@@ -165,7 +174,8 @@ void FileDialog::draw_places(Ui& ui) {
 
 void FileDialog::make_folder(Ui& ui) {
     ImGui::SetNextItemWidth(ui.px(200));
-    const bool entered = ImGui::InputTextWithHint("##folder", ui.tr("name of the new folder"), new_folder_, sizeof new_folder_, ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool entered = ImGui::InputTextWithHint("##folder", ui.tr("name of the new folder"), new_folder_,
+                                                  sizeof new_folder_, ImGuiInputTextFlags_EnterReturnsTrue);
     ui.mark("name of the new folder");
     ImGui::SameLine();
     const bool made = ui.button("Make it", nullptr, 0, new_folder_[0] != 0);
@@ -207,10 +217,13 @@ bool FileDialog::draw_list(Ui& ui, float width) {
     ImGui::BeginChild("list", ImVec2(width, 0));
     const float all = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
     const std::tuple<FileOrder, const char*, float, float> columns[] = {
-        {FileOrder::name, "Name", 0, all - dates - sizes}, {FileOrder::size, "Size", all - dates - sizes, sizes}, {FileOrder::date, "Changed", all - dates, dates}};
+        {FileOrder::name, "Name", 0, all - dates - sizes},
+        {FileOrder::size, "Size", all - dates - sizes, sizes},
+        {FileOrder::date, "Changed", all - dates, dates}};
     for (const auto& [order, name, from, wide] : columns) {
         if (from > 0) ImGui::SameLine(from);
-        const std::string text = std::string(ui.tr(name)) + (order_ == order ? downward_ ? " \xe2\x86\x93" : " \xe2\x86\x91" : "") + "##" + name;
+        const std::string text = std::string(ui.tr(name)) +
+                                 (order_ == order ? downward_ ? " \xe2\x86\x93" : " \xe2\x86\x91" : "") + "##" + name;
         ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
         if (ImGui::Selectable(text.c_str(), false, 0, ImVec2(wide, 0))) {
             downward_ = order_ == order && !downward_;
@@ -230,8 +243,10 @@ bool FileDialog::draw_list(Ui& ui, float width) {
         const std::string text = ui.fitted(entry.folder ? entry.name + "/" : entry.name, all - dates - sizes - letter);
         ImGui::PushID(entry.name.c_str());
         if (ImGui::Selectable(text.c_str(), entry.name == name_, ImGuiSelectableFlags_AllowDoubleClick)) {
-            if (entry.folder) enter = folder_ / entry.name;
-            else choose_name(entry.name);
+            if (entry.folder)
+                enter = folder_ / entry.name;
+            else
+                choose_name(entry.name);
             twice = twice || (!entry.folder && ImGui::IsMouseDoubleClicked(0));
         }
         ImGui::PopID();
@@ -243,7 +258,9 @@ bool FileDialog::draw_list(Ui& ui, float width) {
         ImGui::SameLine(all - dates);
         ImGui::TextDisabled("%s", date_text(entry.changed).c_str());
     }
-    if (!any && fault_.empty()) ImGui::TextDisabled("%s", ui.tr(filter_[0] ? "Nothing here has that in its name." : "Nothing here that can be opened."));
+    if (!any && fault_.empty())
+        ImGui::TextDisabled(
+            "%s", ui.tr(filter_[0] ? "Nothing here has that in its name." : "Nothing here that can be opened."));
     ImGui::EndChild();
     ImGui::EndChild();
     if (!enter.empty()) go(enter);
@@ -263,7 +280,8 @@ void FileDialog::load_sketch() {
         const double span = std::max({drawing.width, drawing.height, 1e-9});
         for (const stroke::Trace& trace : drawing.traces) {
             std::vector<Vec2>& line = sketch_.emplace_back();
-            for (const stroke::TraceSample& s : trace.samples) line.push_back((Vec2(s.position) - drawing.centre) / span + 0.5);
+            for (const stroke::TraceSample& s : trace.samples)
+                line.push_back((Vec2(s.position) - drawing.centre) / span + 0.5);
         }
     } catch (const std::exception&) {
         // Who opens it hears what is wrong.
@@ -275,7 +293,8 @@ void FileDialog::draw_preview(Ui& ui, Pictures& pictures, float width) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float height = width * Pictures::kHeight / Pictures::kWidth;
     ImDrawList* draw = ImGui::GetWindowDrawList();
-    const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const FileEntry& e) { return !e.folder && e.name == name_; });
+    const auto entry = std::find_if(entries_.begin(), entries_.end(),
+                                    [&](const FileEntry& e) { return !e.folder && e.name == name_; });
     draw->AddRectFilled(at, ImVec2(at.x + width, at.y + height), ImGui::GetColorU32(ImGuiCol_FrameBg), ui.px(4));
     ImGui::Dummy(ImVec2(width, height));
     if (entry != entries_.end()) {
@@ -287,13 +306,18 @@ void FileDialog::draw_preview(Ui& ui, Pictures& pictures, float width) {
             draw->AddRectFilled(at, ImVec2(at.x + width, at.y + height), IM_COL32(238, 236, 230, 255), ui.px(4));
             for (const std::vector<Vec2>& line : sketch_) {
                 std::vector<ImVec2> points;
-                for (const Vec2& p : line) points.emplace_back(at.x + 0.5f * width + static_cast<float>(p.x - 0.5) * side, at.y + 0.5f * height + static_cast<float>(p.y - 0.5) * side);
-                draw->AddPolyline(points.data(), static_cast<int>(points.size()), IM_COL32(30, 28, 26, 255), 0, ui.px(1.2f));
+                for (const Vec2& p : line)
+                    points.emplace_back(at.x + 0.5f * width + static_cast<float>(p.x - 0.5) * side,
+                                        at.y + 0.5f * height + static_cast<float>(p.y - 0.5) * side);
+                draw->AddPolyline(points.data(), static_cast<int>(points.size()), IM_COL32(30, 28, 26, 255), 0,
+                                  ui.px(1.2f));
             }
         } else if (e != ".toml" && entry->bytes <= kMostDrawn) {
             pictures.go_on();
             if (const unsigned texture = pictures.texture(file))
-                draw->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at, ImVec2(at.x + width, at.y + height), ImVec2(0, 0), ImVec2(1, 1), IM_COL32_WHITE, ui.px(4));
+                draw->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at,
+                                      ImVec2(at.x + width, at.y + height), ImVec2(0, 0), ImVec2(1, 1), IM_COL32_WHITE,
+                                      ui.px(4));
         }
         ui.mark("Preview");
         ui.wrapped(entry->name);
@@ -308,15 +332,19 @@ bool FileDialog::draw_name(Ui& ui) {
         auto& self = *static_cast<FileDialog*>(data->UserData);
         if (!self.select_stem_ || data->BufTextLen == 0) return 0;
         self.select_stem_ = false;
-        const std::string stem = fs::path(std::string(data->Buf, static_cast<std::size_t>(data->BufTextLen))).filename().stem().string();
+        const std::string stem =
+            fs::path(std::string(data->Buf, static_cast<std::size_t>(data->BufTextLen))).filename().stem().string();
         data->SelectionStart = data->BufTextLen - static_cast<int>(fs::path(data->Buf).filename().string().size());
         data->SelectionEnd = data->CursorPos = data->SelectionStart + static_cast<int>(stem.size());
         return 0;
     };
-    const float buttons = ui.button_width("Cancel", 100) + ui.button_width("Replace", 100) + 2 * ImGui::GetStyle().ItemSpacing.x;
+    const float buttons =
+        ui.button_width("Cancel", 100) + ui.button_width("Replace", 100) + 2 * ImGui::GetStyle().ItemSpacing.x;
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - buttons);
     if (std::exchange(take_focus_, false)) ImGui::SetKeyboardFocusHere();
-    const bool entered = ImGui::InputTextWithHint("##name", ui.tr("file name"), name_, sizeof name_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, select, this);
+    const bool entered = ImGui::InputTextWithHint(
+        "##name", ui.tr("file name"), name_, sizeof name_,
+        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, select, this);
     if (ImGui::IsItemEdited()) ask_replace_ = false;
     ui.mark("file name");
     return entered;
@@ -328,13 +356,17 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.5f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowSize(ImVec2(std::min(ui.px(860), screen.x - 20), std::min(ui.px(520), screen.y - 20)));
-    static constexpr const char* titles[] = {"Open a model or project", "Save project as", "Export to", "Writing or drawing to place", "Revised model", "Open an ink", "Save the ink as", "Reference image"};
+    static constexpr const char* titles[] = {
+        "Open a model or project", "Save project as", "Export to",       "Writing or drawing to place",
+        "Revised model",           "Open an ink",     "Save the ink as", "Reference image"};
     const char* title = titles[static_cast<int>(purpose_)];
     ImGui::Begin((std::string(ui.tr(title)) + "###files").c_str(), nullptr,
-                 ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+                 ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
     const bool told = !fault_.empty() || ask_replace_;
-    const float below = ImGui::GetFrameHeightWithSpacing() + ui.px(8) + (told ? ImGui::GetTextLineHeightWithSpacing() : 0);
+    const float below =
+        ImGui::GetFrameHeightWithSpacing() + ui.px(8) + (told ? ImGui::GetTextLineHeightWithSpacing() : 0);
     draw_top(ui);
     ImGui::Separator();
     ImGui::BeginChild("middle", ImVec2(0, -below));
@@ -353,11 +385,16 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
     ImGui::Separator();
     if (told) {
         const std::string why = ui.tr_sentence(ask_replace_ ? "Replace it?" : fault_);
-        ImGui::TextColored(ui.settings().theme == Theme::dark ? ImVec4(1, 0.62f, 0.45f, 1) : ImVec4(0.72f, 0.10f, 0.02f, 1), "%s", ui.fitted(why, ImGui::GetContentRegionAvail().x).c_str());
+        ImGui::TextColored(
+            ui.settings().theme == Theme::dark ? ImVec4(1, 0.62f, 0.45f, 1) : ImVec4(0.72f, 0.10f, 0.02f, 1), "%s",
+            ui.fitted(why, ImGui::GetContentRegionAvail().x).c_str());
     }
     const bool entered = draw_name(ui);
     ImGui::SameLine();
-    const char* action = ask_replace_ ? "Replace" : reads() ? "Open" : purpose_ == Purpose::export_model ? "Export" : "Save";
+    const char* action = ask_replace_                        ? "Replace"
+                         : reads()                           ? "Open"
+                         : purpose_ == Purpose::export_model ? "Export"
+                                                             : "Save";
     if (ui.button("Cancel", nullptr, 100)) shown_ = false;
     ImGui::SameLine();
     const bool pressed = ui.primary_button(action, 100, name_[0] != 0);

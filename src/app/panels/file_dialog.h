@@ -20,7 +20,7 @@ class FileDialog {
     bool shown() const { return shown_; }
     void close() { shown_ = false; }
     Purpose purpose() const { return purpose_; }
-    bool reads() const;           ///< a file that is there; else one to be written
+    bool reads() const;  ///< a file that is there; else one to be written
     const std::filesystem::path& folder() const { return folder_; }
     /// Draws it; a path when one was chosen.
     std::optional<std::filesystem::path> draw(Ui& ui, Pictures& pictures);
@@ -55,10 +55,11 @@ class FileDialog {
     FileOrder order_ = FileOrder::name;
     bool downward_ = false;
     std::string fault_;
-    std::string extension_;       ///< that a name without one gets
+    std::string extension_;  ///< that a name without one gets
     char name_[512] = "", filter_[128] = "", new_folder_[256] = "";
-    bool asks_folder_ = false;    ///< a name for a new folder
-    bool take_focus_ = false, select_stem_ = false;  ///< the name field is to have the keyboard; its name up to the dot is to be selected
+    bool asks_folder_ = false;  ///< a name for a new folder
+    bool take_focus_ = false,
+         select_stem_ = false;    ///< the name field is to have the keyboard; its name up to the dot is to be selected
     std::optional<Chosen> last_;  ///< what was chosen last
     std::string sketched_;        ///< file whose lines are shown
     std::vector<std::vector<Vec2>> sketch_;  ///< in [0, 1], y down

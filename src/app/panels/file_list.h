@@ -15,11 +15,12 @@ struct FileEntry {
     std::string name;
     bool folder = false;
     std::uintmax_t bytes = 0;
-    std::int64_t changed = 0;     ///< seconds since 1970
+    std::int64_t changed = 0;  ///< seconds since 1970
 };
 
 /// Folders, and the files that suit; without hidden ones. `fault`: why the folder cannot be read, "" when it can.
-std::vector<FileEntry> list_folder(const std::filesystem::path& folder, const std::function<bool(const std::filesystem::path&)>& suits, std::string& fault);
+std::vector<FileEntry> list_folder(const std::filesystem::path& folder,
+                                   const std::function<bool(const std::filesystem::path&)>& suits, std::string& fault);
 
 /// Folders first, by name; then files by the order asked for. Equal ones by name.
 void sort_entries(std::vector<FileEntry>& entries, FileOrder order, bool downward);

@@ -18,16 +18,28 @@ bool turned(const Session& s) {
     const Orbit& o = s.view.orbit;
     return std::abs(o.azimuth - s.help.azimuth) + std::abs(o.elevation - s.help.elevation) > 0.15;  // radians
 }
-bool nearer(const Session& s) { return std::abs(s.view.orbit.distance / s.help.distance - 1) > 0.05; }
-bool another_brush(const Session& s) { return s.brush != s.help.brush; }
-bool painted(const Session& s) { return s.strokes.size() > s.help.strokes; }
-bool taken_back(const Session& s) { return s.last.can_redo && s.strokes.size() < s.help.strokes; }
-bool named(const Session& s) { return !s.last.project.empty() && !is_unnamed(s.last.project); }
+bool nearer(const Session& s) {
+    return std::abs(s.view.orbit.distance / s.help.distance - 1) > 0.05;
+}
+bool another_brush(const Session& s) {
+    return s.brush != s.help.brush;
+}
+bool painted(const Session& s) {
+    return s.strokes.size() > s.help.strokes;
+}
+bool taken_back(const Session& s) {
+    return s.last.can_redo && s.strokes.size() < s.help.strokes;
+}
+bool named(const Session& s) {
+    return !s.last.project.empty() && !is_unnamed(s.last.project);
+}
 
 constexpr Step kSteps[] = {
-    {"Turn the model", "Drag with the middle or the right mouse button.", "Hold Alt and drag with the left mouse button.", turned},
+    {"Turn the model", "Drag with the middle or the right mouse button.",
+     "Hold Alt and drag with the left mouse button.", turned},
     {"Come nearer", "Turn the mouse wheel over the model.", nullptr, nearer},
-    {"Choose a brush", "Click another brush on the rack. \"Tuft size\" below it makes it larger or smaller.", nullptr, another_brush},
+    {"Choose a brush", "Click another brush on the rack. \"Tuft size\" below it makes it larger or smaller.", nullptr,
+     another_brush},
     {"Paint", "Drag over the model with the left mouse button. The brush bends where it touches.", nullptr, painted},
     {"Take it back", "Press Ctrl and Z, or the Undo button. Redo brings it again.", nullptr, taken_back},
     {"Give it a name", "Press Ctrl and S. Every stroke is on disk already; now you decide where.", nullptr, named},
@@ -45,7 +57,9 @@ void go_to_step(Session& s, int step) {
 
 }  // namespace
 
-void start_guide(Session& s) { go_to_step(s, 0); }
+void start_guide(Session& s) {
+    go_to_step(s, 0);
+}
 
 void guide(Session& s) {
     HelpState& h = s.help;
@@ -62,10 +76,14 @@ void guide(Session& s) {
     if (!s.hand_down && step.done(s)) return go_to_step(s, h.step + 1);
     Ui& ui = s.ui;
     const float width = std::min(ui.px(400), static_cast<float>(s.area.width) - ui.px(40));
-    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.area.x) + 0.5f * static_cast<float>(s.area.width), static_cast<float>(s.area.y) + ui.px(14)), ImGuiCond_Always, ImVec2(0.5f, 0));
+    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.area.x) + 0.5f * static_cast<float>(s.area.width),
+                                   static_cast<float>(s.area.y) + ui.px(14)),
+                            ImGuiCond_Always, ImVec2(0.5f, 0));
     ImGui::SetNextWindowSize(ImVec2(width, 0));
     ImGui::SetNextWindowBgAlpha(0.95f);
-    ImGui::Begin("###guide", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::Begin("###guide", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoFocusOnAppearing);
     char count[16];
     std::snprintf(count, sizeof count, "%d / %d", h.step + 1, kCount);
     ImGui::PushFont(ui.large);
@@ -83,8 +101,10 @@ void guide(Session& s) {
     ui.buttons_at_right({{on, 90}});
     const bool next = ui.button(on, nullptr, 90);
     ImGui::End();
-    if (skip) go_to_step(s, kCount);
-    else if (next) go_to_step(s, h.step + 1);
+    if (skip)
+        go_to_step(s, kCount);
+    else if (next)
+        go_to_step(s, h.step + 1);
 }
 
 }  // namespace tuft::app

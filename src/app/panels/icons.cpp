@@ -51,7 +51,8 @@ void draw_curve(const IconPen& p) {
 // A drawing with handles at its corners.
 void draw_place(const IconPen& p) {
     p.line({{5, 5}, {19, 5}, {19, 19}, {5, 19}}, true);
-    for (const ImVec2& c : {ImVec2(5, 5), ImVec2(19, 5), ImVec2(19, 19), ImVec2(5, 19)}) p.area({{c.x - 2, c.y - 2}, {c.x + 2, c.y - 2}, {c.x + 2, c.y + 2}, {c.x - 2, c.y + 2}});
+    for (const ImVec2& c : {ImVec2(5, 5), ImVec2(19, 5), ImVec2(19, 19), ImVec2(5, 19)})
+        p.area({{c.x - 2, c.y - 2}, {c.x + 2, c.y - 2}, {c.x + 2, c.y + 2}, {c.x - 2, c.y + 2}});
     p.bezier({8, 15}, {10, 6}, {14, 18}, {16, 9});
 }
 
@@ -100,19 +101,28 @@ void draw_references(const IconPen& p) {
 void draw_icon(ImDrawList* draw, Icon icon, const ImVec2& at, float size, unsigned colour) {
     const IconPen p{draw, at, size / 24, colour, size / 24 * 1.7f};
     switch (icon) {
-        case Icon::brush: return draw_brush(p);
+        case Icon::brush:
+            return draw_brush(p);
         case Icon::line:
             p.line({{5, 19}, {19, 5}});
             p.dot(5, 19, 2.2f);
             return p.dot(19, 5, 2.2f);
-        case Icon::curve: return draw_curve(p);
-        case Icon::place: return draw_place(p);
-        case Icon::eraser: return draw_eraser(p);
-        case Icon::fill: return draw_fill(p);
-        case Icon::pick: return draw_pick(p);
-        case Icon::mask: return draw_mask(p);
-        case Icon::palette: return draw_palette(p);
-        case Icon::references: return draw_references(p);
+        case Icon::curve:
+            return draw_curve(p);
+        case Icon::place:
+            return draw_place(p);
+        case Icon::eraser:
+            return draw_eraser(p);
+        case Icon::fill:
+            return draw_fill(p);
+        case Icon::pick:
+            return draw_pick(p);
+        case Icon::mask:
+            return draw_mask(p);
+        case Icon::palette:
+            return draw_palette(p);
+        case Icon::references:
+            return draw_references(p);
     }
 }
 

@@ -31,14 +31,16 @@ std::string recipe_text(const Session& s, const std::string& name) {
     if (!ink || ink->parts.size() < 2) return text;
     for (const ink::InkPart& part : ink->parts) {
         char line[96];
-        std::snprintf(line, sizeof line, "\n%.0f %%  %s", 100 * part.fraction / ink->strength(), s.ui.tr(part.pigment.name.c_str()));
+        std::snprintf(line, sizeof line, "\n%.0f %%  %s", 100 * part.fraction / ink->strength(),
+                      s.ui.tr(part.pigment.name.c_str()));
         text += line;
     }
     return text;
 }
 
 // A swatch with its name under it; true when it was pressed.
-bool named_swatch(Session& s, const std::string& id, const std::string& title, unsigned colour, bool chosen, float width) {
+bool named_swatch(Session& s, const std::string& id, const std::string& title, unsigned colour, bool chosen,
+                  float width) {
     const float height = s.ui.px(40), radius = s.ui.px(11);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool pressed = ImGui::InvisibleButton(("ink " + id).c_str(), ImVec2(width, height));
@@ -49,7 +51,9 @@ bool named_swatch(Session& s, const std::string& id, const std::string& title, u
     const float size = 0.72f * ImGui::GetFontSize(), part = size / ImGui::GetFontSize();
     const std::string text = s.ui.fitted(title, width / part);
     const float length = part * ImGui::CalcTextSize(text.c_str()).x;
-    draw->AddText(ImGui::GetFont(), size, ImVec2(std::round(centre.x - 0.5f * length), std::round(at.y + height - size - s.ui.px(1))), chosen ? s.ui.strong : s.ui.faint, text.c_str());
+    draw->AddText(ImGui::GetFont(), size,
+                  ImVec2(std::round(centre.x - 0.5f * length), std::round(at.y + height - size - s.ui.px(1))),
+                  chosen ? s.ui.strong : s.ui.faint, text.c_str());
     return pressed;
 }
 
@@ -57,7 +61,8 @@ void swatches(Session& s) {
     constexpr std::size_t columns = 5;
     const float gap = s.ui.px(2), width = (ImGui::GetContentRegionAvail().x + gap) / columns - gap;
     std::vector<std::string> names = ink_names(s);
-    if (s.colour.in_hand && std::find(names.begin(), names.end(), s.colour.in_hand->name) == names.end()) names.push_back(s.colour.in_hand->name);
+    if (s.colour.in_hand && std::find(names.begin(), names.end(), s.colour.in_hand->name) == names.end())
+        names.push_back(s.colour.in_hand->name);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, s.ui.px(2)));
     std::size_t i = 0;
     for (const std::string& name : names) {
@@ -84,7 +89,8 @@ void swatches(Session& s) {
 }
 
 float part_of_row(Session& s, int n) {
-    return (ImGui::GetContentRegionAvail().x - static_cast<float>(n - 1) * ImGui::GetStyle().ItemSpacing.x) / static_cast<float>(n) / s.ui.settings().scale;
+    return (ImGui::GetContentRegionAvail().x - static_cast<float>(n - 1) * ImGui::GetStyle().ItemSpacing.x) /
+           static_cast<float>(n) / s.ui.settings().scale;
 }
 
 // What is done with a brush between strokes.
@@ -93,16 +99,25 @@ void care(Session& s) {
     const float half = part_of_row(s, 2);
     const auto act = [&](stroke::Action action, double depth = 1, double side = 0) {
         bring_in_colour(s);
-        s.painter->post(ActOnBrush{.action = action, .brush = s.brush, .ink = s.ink, .extent = {.depth = depth, .side = side}});
+        s.painter->post(
+            ActOnBrush{.action = action, .brush = s.brush, .ink = s.ink, .extent = {.depth = depth, .side = side}});
     };
-    if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", half)) act(stroke::Action::dip, s.dip_depth, s.dip_side);
+    if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", half))
+        act(stroke::Action::dip, s.dip_depth, s.dip_side);
     ImGui::SameLine();
-    if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", half)) act(stroke::Action::wipe, s.dip_depth, s.dip_side);
+    if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", half))
+        act(stroke::Action::wipe, s.dip_depth, s.dip_side);
     if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", half)) act(stroke::Action::rinse);
     ImGui::SameLine();
     if (ui.button("Comb", "Hair straight and together, the ink stays", half)) act(stroke::Action::reshape);
-    ui.slider("How deep", s.dip_depth, 0.05, 1, "%.0f %%", "Part of the hair, from the tip. Wipe the tip and dip it into another ink: it is darker than the belly then", 0.01);
-    ui.slider("Which side", s.dip_side, -1, 1, "%.0f %%", "Part of the hair's width that is dipped or wiped, from the right flank, or from the left when negative; 0: all of it. Wipe one side and dip it into another ink: the stroke shows both side by side", 0.01);
+    ui.slider(
+        "How deep", s.dip_depth, 0.05, 1, "%.0f %%",
+        "Part of the hair, from the tip. Wipe the tip and dip it into another ink: it is darker than the belly then",
+        0.01);
+    ui.slider("Which side", s.dip_side, -1, 1, "%.0f %%",
+              "Part of the hair's width that is dipped or wiped, from the right flank, or from the left when negative; "
+              "0: all of it. Wipe one side and dip it into another ink: the stroke shows both side by side",
+              0.01);
     if (s.last.brush_colour) {
         const auto& c = *s.last.brush_colour;
         ImGui::PushStyleColor(ImGuiCol_PlotHistogram, IM_COL32(c[0], c[1], c[2], 255));
@@ -114,11 +129,13 @@ void care(Session& s) {
 
 void two_inks(Session& s) {
     Ui& ui = s.ui;
-    ui.toggle("Another ink in the tip", s.two_inks, "Every stroke begins with the chosen ink in the belly and another one in the tip: petals, leaves");
+    ui.toggle("Another ink in the tip", s.two_inks,
+              "Every stroke begins with the chosen ink in the belly and another one in the tip: petals, leaves");
     if (!s.two_inks) return;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float size = ImGui::GetFrameHeight();
-    swatch(ImGui::GetWindowDrawList(), ImVec2(at.x + 0.5f * size, at.y + 0.5f * size), 0.36f * size, ink_colour(s, s.tip_ink));
+    swatch(ImGui::GetWindowDrawList(), ImVec2(at.x + 0.5f * size, at.y + 0.5f * size), 0.36f * size,
+           ink_colour(s, s.tip_ink));
     ImGui::Dummy(ImVec2(size, size));
     ImGui::SameLine();
     ui.combo("Tip ink", s.tip_ink, ink_names(s));
@@ -131,23 +148,34 @@ void ink_section(Session& s) {
     Ui& ui = s.ui;
     if (!ui.section("Ink", true, ui.tr(s.ink.c_str()))) return;
     swatches(s);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons, which fill the row
+    ImGui::PushStyleVar(
+        ImGuiStyleVar_FramePadding,
+        ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons, which fill the row
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(4), ImGui::GetStyle().ItemSpacing.y));
-    if (ui.choice("Colour...", s.colour.shown, "Any colour, on a wheel or as a hex code: the nearest mix of pigments is found for it", 0)) s.colour.shown = !s.colour.shown;
+    if (ui.choice("Colour...", s.colour.shown,
+                  "Any colour, on a wheel or as a hex code: the nearest mix of pigments is found for it", 0))
+        s.colour.shown = !s.colour.shown;
     ImGui::SameLine();
     if (ui.button("Load...", "An ink from a file", 0)) s.files.show(FileDialog::Purpose::ink, {});
     ImGui::SameLine();
-    if (ui.button("Save ink...", "Writes the ink in hand to a file, for other work", part_of_row(s, 1))) s.files.show(FileDialog::Purpose::save_ink, s.ink + ".toml");
+    if (ui.button("Save ink...", "Writes the ink in hand to a file, for other work", part_of_row(s, 1)))
+        s.files.show(FileDialog::Purpose::save_ink, s.ink + ".toml");
     ImGui::PopStyleVar(2);
-    ui.toggle("Wet ink", s.wet, "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
+    ui.toggle("Wet ink", s.wet,
+              "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
     if (s.wet || s.last.wet) {
-        if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0)) s.painter->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
+        if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0))
+            s.painter->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
         ImGui::SameLine();
-        if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(s, 1))) s.painter->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush});
+        if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(s, 1)))
+            s.painter->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush});
     }
-    ui.toggle("Don't reload", s.carry, "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
-    if (s.carry) care(s);
-    else two_inks(s);
+    ui.toggle("Don't reload", s.carry,
+              "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
+    if (s.carry)
+        care(s);
+    else
+        two_inks(s);
 }
 
 unsigned ink_colour(const ink::Ink& ink) {
@@ -161,7 +189,8 @@ unsigned ink_colour(const Session& s, const std::string& name) {
     static std::map<const ink::Ink*, unsigned> shipped;
     const ink::Ink* ink = find_ink(s, name);
     if (!ink) return IM_COL32(40, 40, 40, 255);
-    if (!s.own_inks.empty() && ink >= s.own_inks.data() && ink < s.own_inks.data() + s.own_inks.size()) return ink_colour(*ink);
+    if (!s.own_inks.empty() && ink >= s.own_inks.data() && ink < s.own_inks.data() + s.own_inks.size())
+        return ink_colour(*ink);
     if (s.colour.in_hand && ink == &*s.colour.in_hand) return ink_colour(*ink);
     const auto [at, is_new] = shipped.try_emplace(ink);
     if (is_new) at->second = ink_colour(*ink);
@@ -177,7 +206,8 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
         double others = 0;
         for (const ink::InkPart& other : edited.parts)
             if (&other != &part) others += other.fraction;
-        s.ui.slider(part.pigment.name.c_str(), part.fraction, 0, std::max(0.01, 1 - others), "%.0f %%", "Part of the wet ink; the rest is water", 0.01);
+        s.ui.slider(part.pigment.name.c_str(), part.fraction, 0, std::max(0.01, 1 - others), "%.0f %%",
+                    "Part of the wet ink; the rest is water", 0.01);
         released = released || ImGui::IsItemDeactivatedAfterEdit();
         held = held || ImGui::IsItemActive();
     }
@@ -185,7 +215,8 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
     std::string more = s.ui.tr("Add a pigment...");
     if (s.ui.combo("Add a pigment", more, pigments)) {
         try {
-            const bool there = std::any_of(edited.parts.begin(), edited.parts.end(), [&](const ink::InkPart& p) { return p.pigment.name == more; });
+            const bool there = std::any_of(edited.parts.begin(), edited.parts.end(),
+                                           [&](const ink::InkPart& p) { return p.pigment.name == more; });
             const double room = 1 - edited.strength();
             if (!there) edited.parts.push_back({ink::load_pigment(more), std::min(0.1, std::max(0.0, room))});
             released = true;
@@ -193,8 +224,10 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
             say(s, error.what());
         }
     }
-    if (released) s.painter->post(RecolourInk{name, edited});
-    else if (!held && s.painter->idle()) edited = shown;
+    if (released)
+        s.painter->post(RecolourInk{name, edited});
+    else if (!held && s.painter->idle())
+        edited = shown;
 }
 
 }  // namespace
@@ -216,13 +249,15 @@ void colours_panel(Session& s, float top, float bottom, float left) {
         ImGui::PushID(name.c_str());
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float size = ImGui::GetFrameHeight();
-        swatch(ImGui::GetWindowDrawList(), ImVec2(at.x + 0.5f * size, at.y + 0.5f * size), 0.40f * size, ink_colour(*shown));
+        swatch(ImGui::GetWindowDrawList(), ImVec2(at.x + 0.5f * size, at.y + 0.5f * size), 0.40f * size,
+               ink_colour(*shown));
         ImGui::Dummy(ImVec2(size, size));
         ImGui::SameLine();
         ImGui::AlignTextToFramePadding();
         ImGui::Text("%s %s", ui.tr(name.c_str()), ui.tr("as"));
         std::string wanted = shown->name;
-        if (ui.combo(("As " + name).c_str(), wanted, names, part_of_row(s, 1) - 80) && find_ink(s, wanted)) s.painter->post(RecolourInk{name, *find_ink(s, wanted)});
+        if (ui.combo(("As " + name).c_str(), wanted, names, part_of_row(s, 1) - 80) && find_ink(s, wanted))
+            s.painter->post(RecolourInk{name, *find_ink(s, wanted)});
         ImGui::SameLine();
         if (ui.choice("Recipe", s.recipe_of == name, "Its pigments", part_of_row(s, 1))) {
             s.recipe_of = s.recipe_of == name ? "" : name;
@@ -230,7 +265,8 @@ void colours_panel(Session& s, float top, float bottom, float left) {
         }
         std::string shared;
         for (const std::string& with : used)
-            if (const ink::Ink *a = find_ink(s, name), *b = find_ink(s, with); with != name && a && b && !ink::shared_pigments(*a, *b).empty())
+            if (const ink::Ink* a = find_ink(s, name), *b = find_ink(s, with);
+                with != name && a && b && !ink::shared_pigments(*a, *b).empty())
                 shared += (shared.empty() ? "" : ", ") + with;
         if (shown->name != name && !shared.empty()) ui.note(std::string(ui.tr("Changes with it:")) + " " + shared);
         if (s.recipe_of == name) recipe_sliders(s, name, *shown);
@@ -239,7 +275,8 @@ void colours_panel(Session& s, float top, float bottom, float left) {
     ui.heading("Material");
     std::string material = s.looks.substrate;
     if (ui.combo("Shown on", material, s.substrates)) s.painter->post(PreviewSubstrate{material});
-    if (material != s.looks.painted_on) ImGui::TextDisabled("%s %s", ui.tr("painted on"), ui.tr(s.looks.painted_on.c_str()));
+    if (material != s.looks.painted_on)
+        ImGui::TextDisabled("%s %s", ui.tr("painted on"), ui.tr(s.looks.painted_on.c_str()));
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     if (ui.primary_button("Back to the tools", part_of_row(s, 1))) s.show_colours = false;
     ImGui::End();

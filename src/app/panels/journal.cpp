@@ -14,7 +14,9 @@ constexpr std::size_t kThumbnailStrokes = 300;  // of a group, that its picture 
 
 using Lines = std::vector<const StrokeLine*>;
 
-bool is_stroke(const StrokeLine& line) { return line.action == stroke::Action::stroke; }
+bool is_stroke(const StrokeLine& line) {
+    return line.action == stroke::Action::stroke;
+}
 
 unsigned colour_of(const Session& s, const StrokeLine& line) {
     return (ink_colour(s, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
@@ -51,8 +53,11 @@ void draw_entry(const Session& s, const StrokeLine& line, ImVec2 at, float size)
     }
     draw_sheet(at, size, line.hidden);
     const float pad = 0.16f * size, inner = size - 2 * pad;
-    if (line.length < 1e-3) draw->AddCircleFilled(middle, 0.07f * size, colour_of(s, line), 16);  // a touch, no way
-    else draw_way(s, line, size, [&](const Vec3f& p) { return ImVec2(at.x + pad + p.x * inner, at.y + pad + p.y * inner); });
+    if (line.length < 1e-3)
+        draw->AddCircleFilled(middle, 0.07f * size, colour_of(s, line), 16);  // a touch, no way
+    else
+        draw_way(s, line, size,
+                 [&](const Vec3f& p) { return ImVec2(at.x + pad + p.x * inner, at.y + pad + p.y * inner); });
 }
 
 // A drawing in its own frame, all strokes in one picture; other groups by their first stroke.
@@ -75,7 +80,8 @@ void draw_group(const Session& s, const Lines& lines, ImVec2 at, float size) {
         if (!line.flat) continue;
         draw_way(s, line, 0.3f * size, [&](const Vec3f& p) {
             const Vec2 d = (line.way_centre + line.way_span * (Vec2(p) - 0.5) - Vec2(box.centre())) / span;
-            return ImVec2(at.x + 0.5f * (size - shift) + static_cast<float>(d.x) * inner, at.y + shift + 0.5f * (size - shift) + static_cast<float>(d.y) * inner);
+            return ImVec2(at.x + 0.5f * (size - shift) + static_cast<float>(d.x) * inner,
+                          at.y + shift + 0.5f * (size - shift) + static_cast<float>(d.y) * inner);
         });
     }
 }
@@ -132,14 +138,19 @@ void edit_chosen(Session& s) {
     const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
     if (lines.size() > 1) ui.note(ui.tr_sentence(std::to_string(lines.size()) + " entries chosen"));
-    if (ui.button(hidden ? "Show" : "Hide", hidden ? "Paints it again in its place" : "The other strokes are painted again without it", half))
+    if (ui.button(hidden ? "Show" : "Hide",
+                  hidden ? "Paints it again in its place" : "The other strokes are painted again without it", half))
         post(s, {.hidden = !hidden}, lines);
     ImGui::SameLine();
-    if (ui.button("Delete", "Takes the stroke away and paints the others again", half)) post(s, {.remove = true}, lines);
+    if (ui.button("Delete", "Takes the stroke away and paints the others again", half))
+        post(s, {.remove = true}, lines);
     if (std::none_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); })) return;
     const bool on_model = std::any_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return !l->on_palette; });
-    if (on_model && ui.choice("Move", s.journal.moves, "Then drag it over the model with the left button", 2 * half + 8)) s.journal.moves = !s.journal.moves;
-    std::string brush = common(lines, [](const StrokeLine& l) { return brush::sized_name(l.brush).base; }), ink = common(lines, [](const StrokeLine& l) { return l.ink; });
+    if (on_model &&
+        ui.choice("Move", s.journal.moves, "Then drag it over the model with the left button", 2 * half + 8))
+        s.journal.moves = !s.journal.moves;
+    std::string brush = common(lines, [](const StrokeLine&l) { return brush::sized_name(l.brush).base; }),
+                ink = common(lines, [](const StrokeLine&l) { return l.ink; });
     if (brush.empty()) brush = "Several brushes";
     if (ink.empty()) ink = "Several inks";
     if (ui.combo("Change brush", brush, s.brushes)) post(s, {.brush = brush}, lines);
@@ -185,10 +196,12 @@ void choose_row(Session& s, const JournalRow& row) {
     const bool all = std::all_of(ids.begin(), ids.end(), [&](std::uint64_t id) { return j.holds(id); });
     const ImGuiIO& io = ImGui::GetIO();
     std::set<std::uint64_t> chosen = io.KeyCtrl || io.KeyShift ? j.selected : std::set<std::uint64_t>{};
-    const auto anchor = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == j.anchor; });
+    const auto anchor =
+        std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == j.anchor; });
     if (io.KeyShift && anchor != s.strokes.end()) {
         const auto from = static_cast<std::size_t>(anchor - s.strokes.begin());
-        for (std::size_t i = std::min(from, row.lines.front()); i <= std::max(from, row.lines.back()); ++i) chosen.insert(s.strokes[i].id);
+        for (std::size_t i = std::min(from, row.lines.front()); i <= std::max(from, row.lines.back()); ++i)
+            chosen.insert(s.strokes[i].id);
     } else if (all && (io.KeyCtrl || j.selected.size() == ids.size())) {
         for (const std::uint64_t id : ids) chosen.erase(id);
     } else {
@@ -210,9 +223,12 @@ RowText text_of(const Session& s, const StrokeLine& line, std::size_t number) {
     std::string title = std::to_string(number) + "   ";
     char length[32];
     std::snprintf(length, sizeof length, "%.0f mm", line.length * 1e3);
-    if (line.on_palette) title += s.ui.tr("Palette");
-    else if (!is_stroke(line)) title += s.ui.tr(actions[static_cast<int>(line.action)]);
-    else title += length + (line.erases ? std::string("   ") + s.ui.tr("erased") : std::string());
+    if (line.on_palette)
+        title += s.ui.tr("Palette");
+    else if (!is_stroke(line))
+        title += s.ui.tr(actions[static_cast<int>(line.action)]);
+    else
+        title += length + (line.erases ? std::string("   ") + s.ui.tr("erased") : std::string());
     if (stroke::keeps_texels(line.action)) return {title, line.label};
     const char* between = line.ink.empty() || line.brush.empty() ? "" : " \xc2\xb7 ";
     return {title, s.ui.title(line.brush) + between + s.ui.tr(line.ink.c_str())};
@@ -222,7 +238,8 @@ RowText text_of(const Session& s, const StrokeLine& line, std::size_t number) {
 void fold_arrow(Session& s, std::uint64_t group, const std::string& name, float size) {
     const bool open = s.journal.open_groups.contains(group);
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    if (ImGui::InvisibleButton("##open", ImVec2(s.ui.px(kIndent), size))) open ? void(s.journal.open_groups.erase(group)) : void(s.journal.open_groups.insert(group));
+    if (ImGui::InvisibleButton("##open", ImVec2(s.ui.px(kIndent), size)))
+        open ? void(s.journal.open_groups.erase(group)) : void(s.journal.open_groups.insert(group));
     s.ui.mark("open " + name);
     s.ui.fold_arrow(at.x + 0.4f * s.ui.px(kIndent), at.y + 0.5f * size, open);
     ImGui::SameLine(0, 0);
@@ -237,18 +254,21 @@ void draw_row(Session& s, const JournalRow& row) {
     if (row.group) ImGui::PushID("group");
     if (row.group) fold_arrow(s, row.group, newest.group.name, size);
     if (row.inside) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + s.ui.px(kIndent));
-    const bool chosen = std::all_of(lines.begin(), lines.end(), [&](const StrokeLine* l) { return s.journal.holds(l->id); });
+    const bool chosen =
+        std::all_of(lines.begin(), lines.end(), [&](const StrokeLine* l) { return s.journal.holds(l->id); });
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (ImGui::Selectable("##row", chosen, 0, ImVec2(0, size))) choose_row(s, row);
     if (ImGui::IsItemClicked(1) && !chosen) choose_row(s, row);
-    const std::string name = row.group ? "group " + newest.group.name : "stroke " + std::to_string(row.lines.front() + 1);
+    const std::string name =
+        row.group ? "group " + newest.group.name : "stroke " + std::to_string(row.lines.front() + 1);
     s.ui.mark(name);
     const bool over = ImGui::IsItemHovered();
     context_menu(s);
     RowText text;
     if (row.group) {
         draw_group(s, lines, at, size);
-        const auto n = static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); }));
+        const auto n = static_cast<std::size_t>(
+            std::count_if(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); }));
         text = {newest.group.name, s.ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke" : " strokes"))};
     } else {
         draw_entry(s, newest, at, size);
@@ -261,10 +281,13 @@ void draw_row(Session& s, const JournalRow& row) {
     const std::string title = s.ui.fitted(text.title, room), below = s.ui.fitted(text.below, room);
     draw->AddText(ImVec2(x, at.y + 0.5f * size - line_height - 1), hidden ? s.ui.faint : s.ui.strong, title.c_str());
     draw->AddText(ImVec2(x, at.y + 0.5f * size + 1), chosen ? s.ui.strong : s.ui.faint, below.c_str());
-    if (over && !row.group && !newest.label.empty()) ImGui::SetTooltip("%s", newest.label.c_str());
-    else if (over && (title != text.title || below != text.below)) ImGui::SetTooltip("%s\n%s", text.title.c_str(), text.below.c_str());
+    if (over && !row.group && !newest.label.empty())
+        ImGui::SetTooltip("%s", newest.label.c_str());
+    else if (over && (title != text.title || below != text.below))
+        ImGui::SetTooltip("%s\n%s", text.title.c_str(), text.below.c_str());
     // Below the row that was clicked last.
-    if (newest.id == s.journal.anchor && s.journal.holds(newest.id) && row.inside == s.journal.anchor_inside) edit_chosen(s);
+    if (newest.id == s.journal.anchor && s.journal.holds(newest.id) && row.inside == s.journal.anchor_inside)
+        edit_chosen(s);
     if (row.group) ImGui::PopID();
     ImGui::PopID();
 }
@@ -274,14 +297,16 @@ void draw_rows(Session& s) {
     const float height = s.ui.px(kRowHeight) + ImGui::GetStyle().ItemSpacing.y;
     // Rows are of one height but for the one with the buttons below it.
     const auto edited = std::find_if(rows.begin(), rows.end(), [&](const JournalRow& row) {
-        return s.journal.holds(s.journal.anchor) && s.strokes[row.lines.back()].id == s.journal.anchor && row.inside == s.journal.anchor_inside;
+        return s.journal.holds(s.journal.anchor) && s.strokes[row.lines.back()].id == s.journal.anchor &&
+               row.inside == s.journal.anchor_inside;
     });
     const auto clipped = [&](std::size_t from, std::size_t to) {
         if (from >= to) return;
         ImGuiListClipper clipper;
         clipper.Begin(static_cast<int>(to - from), height);
         while (clipper.Step())
-            for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) draw_row(s, rows[from + static_cast<std::size_t>(i)]);
+            for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
+                draw_row(s, rows[from + static_cast<std::size_t>(i)]);
     };
     const auto at = static_cast<std::size_t>(edited - rows.begin());
     clipped(0, at);
@@ -295,11 +320,15 @@ void draw_rows(Session& s) {
 void journal_panel(Session& s, float top, float bottom, float left) {
     Ui& ui = s.ui;
     begin_side_panel(s, "###journal", left, top, kJournalWidth, bottom);
-    if (!s.journal_fits && ui.primary_button("Back to the tools", ImGui::GetContentRegionAvail().x / ui.settings().scale)) s.show_journal = false;
+    if (!s.journal_fits &&
+        ui.primary_button("Back to the tools", ImGui::GetContentRegionAvail().x / ui.settings().scale))
+        s.show_journal = false;
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
-    if (ui.button("Undo", name_of(s.keys.chord(Act::undo)).c_str(), half, s.last.can_undo)) s.painter->post(UndoStroke{});
+    if (ui.button("Undo", name_of(s.keys.chord(Act::undo)).c_str(), half, s.last.can_undo))
+        s.painter->post(UndoStroke{});
     ImGui::SameLine();
-    if (ui.button("Redo", name_of(s.keys.chord(Act::redo)).c_str(), half, s.last.can_redo)) s.painter->post(RedoStroke{});
+    if (ui.button("Redo", name_of(s.keys.chord(Act::redo)).c_str(), half, s.last.can_redo))
+        s.painter->post(RedoStroke{});
     if (!s.last.busy.empty()) {
         ImGui::TextUnformatted(ui.tr(s.last.busy.c_str()));
         ImGui::ProgressBar(static_cast<float>(s.last.fraction), ImVec2(-1, ui.px(16)), "");
@@ -309,7 +338,8 @@ void journal_panel(Session& s, float top, float bottom, float left) {
     references_section(s);
     snapshots_section(s);
     ui.heading("Journal");
-    if (s.strokes.empty()) ui.note(ui.tr("Every stroke you paint is listed here, and can be hidden, changed or taken out later."));
+    if (s.strokes.empty())
+        ui.note(ui.tr("Every stroke you paint is listed here, and can be hidden, changed or taken out later."));
     // The list has room for its scrollbar beside the rows.
     const float width = ImGui::GetContentRegionAvail().x;
     ImGui::SetNextWindowContentSize(ImVec2(width, 0));

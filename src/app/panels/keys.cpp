@@ -34,9 +34,12 @@ void key_rows(Session& s) {
         ImGui::TextUnformatted(ui.tr(title_of(act)));
         ImGui::SameLine(ui.px(300));
         const bool asked = s.key_asked == act;
-        const std::string name = asked ? ui.tr("press a key...") : name_of(s.keys.chord(act)).empty() ? "\xe2\x80\x93" : name_of(s.keys.chord(act));
+        const std::string name = asked                                ? ui.tr("press a key...")
+                                 : name_of(s.keys.chord(act)).empty() ? "\xe2\x80\x93"
+                                                                      : name_of(s.keys.chord(act));
         if (asked) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));
-        if (ImGui::Button((name + "##chord").c_str(), ImVec2(ui.px(150), 0))) s.key_asked = asked ? std::nullopt : std::optional(act);
+        if (ImGui::Button((name + "##chord").c_str(), ImVec2(ui.px(150), 0)))
+            s.key_asked = asked ? std::nullopt : std::optional(act);
         if (asked) ImGui::PopStyleColor();
         ui.mark(std::string("key ") + word_of(act));
         ImGui::PopID();

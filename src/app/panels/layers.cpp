@@ -12,7 +12,9 @@ namespace {
 
 using stroke::Layer;
 
-void change(Session& s, const stroke::LayerEdit& edit) { s.painter->post(ChangeLayers{edit}); }
+void change(Session& s, const stroke::LayerEdit& edit) {
+    s.painter->post(ChangeLayers{edit});
+}
 
 // A name that no layer has yet.
 std::string fresh_name(const Session& s) {
@@ -26,11 +28,15 @@ std::string fresh_name(const Session& s) {
 template <class Fn>
 void change(Session& s, Layer layer, Fn&& how) {
     how(layer);
-    if (const Layer* now = s.last.layers.find(layer.id); now && !(*now == layer)) change(s, stroke::changed(s.last.layers, layer));
+    if (const Layer* now = s.last.layers.find(layer.id); now && !(*now == layer))
+        change(s, stroke::changed(s.last.layers, layer));
 }
 
-constexpr std::pair<ink::Blend, const char*> kBlends[] = {{ink::Blend::normal, "Normal"}, {ink::Blend::glaze, "Glazing"}, {ink::Blend::multiply, "Multiply"}};
-constexpr const char* kBlendHint = "Normal: paint that covers and lets through. Glazing: only absorbs, as colour in clear varnish. Multiply: a filter of its colour";
+constexpr std::pair<ink::Blend, const char*> kBlends[] = {
+    {ink::Blend::normal, "Normal"}, {ink::Blend::glaze, "Glazing"}, {ink::Blend::multiply, "Multiply"}};
+constexpr const char* kBlendHint =
+    "Normal: paint that covers and lets through. Glazing: only absorbs, as colour in clear varnish. Multiply: a filter "
+    "of its colour";
 
 void duplicate(Session& s, const Layer& layer) {
     change(s, stroke::duplicated(s.last.layers, layer.id, stroke::free_name(s.last.layers, layer.name + " copy")));
@@ -57,7 +63,8 @@ void name_field(Session& s, const Layer& layer) {
     ImGui::SetNextItemWidth(-1);
     const bool appeared = std::exchange(s.layer_list.focus, false);
     if (appeared) ImGui::SetKeyboardFocusHere();
-    const bool entered = ImGui::InputText("##name", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    const bool entered = ImGui::InputText("##name", name, sizeof name,
+                                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     s.ui.mark("Layer name");
     if (!entered && (appeared || !ImGui::IsItemDeactivated())) return;
     s.layer_list.renamed = 0;
@@ -75,13 +82,16 @@ void context_menu(Session& s, const Layer& layer, std::size_t place) {
     if (ui.menu_item("Merge down", nullptr, false, place > 0)) merge(s, layer);
     if (ui.begin_menu("Blend")) {
         for (const auto& [blend, name] : kBlends)
-            if (ui.menu_item(name, nullptr, layer.blend == blend)) change(s, layer, [b = blend](Layer& l) { l.blend = b; });
+            if (ui.menu_item(name, nullptr, layer.blend == blend))
+                change(s, layer, [b = blend](Layer& l) { l.blend = b; });
         ImGui::EndMenu();
     }
     if (ui.menu_item("Locked", nullptr, layer.locked)) change(s, layer, [](Layer& l) { l.locked = !l.locked; });
     ImGui::Separator();
-    if (ui.menu_item("Higher", nullptr, false, place + 1 < all.size())) change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place + 1)));
-    if (ui.menu_item("Lower", nullptr, false, place > 0)) change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place - 1)));
+    if (ui.menu_item("Higher", nullptr, false, place + 1 < all.size()))
+        change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place + 1)));
+    if (ui.menu_item("Lower", nullptr, false, place > 0))
+        change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place - 1)));
     ImGui::Separator();
     if (ui.menu_item("Remove layer", nullptr, false, all.size() > 1)) change(s, stroke::removed(layer.id));
     ImGui::EndPopup();
@@ -98,7 +108,8 @@ void drag(Session& s, const Layer& layer, std::size_t place) {
     if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload("layer")) {
         std::uint32_t id = 0;
         std::memcpy(&id, payload->Data, sizeof id);
-        if (id != layer.id && s.last.layers.find(id)) change(s, stroke::moved(s.last.layers, id, static_cast<std::uint32_t>(place)));
+        if (id != layer.id && s.last.layers.find(id))
+            change(s, stroke::moved(s.last.layers, id, static_cast<std::uint32_t>(place)));
     }
     ImGui::EndDragDropTarget();
 }
@@ -109,19 +120,24 @@ void details(Session& s, const Layer& layer, std::size_t place) {
     const auto& all = s.last.layers.layers;
     if (s.layer_opacity < 0) s.layer_opacity = layer.opacity;
     ui.slider("Opacity", s.layer_opacity, 0, 1, "%.0f %%", "Of the whole layer over those below", 0.01);
-    if (ImGui::IsItemDeactivatedAfterEdit() && s.layer_opacity != layer.opacity) change(s, layer, [&](Layer& l) { l.opacity = s.layer_opacity; });
+    if (ImGui::IsItemDeactivatedAfterEdit() && s.layer_opacity != layer.opacity)
+        change(s, layer, [&](Layer& l) { l.opacity = s.layer_opacity; });
     if (!ImGui::IsItemActive()) s.layer_opacity = -1;
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
     for (const auto& [blend, name] : kBlends) {
         if (blend != ink::Blend::normal) ImGui::SameLine();
-        if (ui.choice(name, layer.blend == blend, kBlendHint, third)) change(s, layer, [b = blend](Layer& l) { l.blend = b; });
+        if (ui.choice(name, layer.blend == blend, kBlendHint, third))
+            change(s, layer, [b = blend](Layer& l) { l.blend = b; });
     }
     if (ui.button("Duplicate", "A copy right above it", third, all.size() < stroke::kMaxLayers)) duplicate(s, layer);
     ImGui::SameLine();
-    if (ui.button("Merge down", "Lays its films on the layer below; it looks the same", third, place > 0)) merge(s, layer);
+    if (ui.button("Merge down", "Lays its films on the layer below; it looks the same", third, place > 0))
+        merge(s, layer);
     ImGui::SameLine();
-    if (ui.button("Remove", "With its strokes; Undo brings them back", 0, all.size() > 1)) change(s, stroke::removed(layer.id));
+    if (ui.button("Remove", "With its strokes; Undo brings them back", 0, all.size() > 1))
+        change(s, stroke::removed(layer.id));
     ImGui::PopStyleVar();
     bool locked = layer.locked;
     if (ui.toggle("Locked", locked, "Takes no strokes")) change(s, layer, [locked](Layer& l) { l.locked = locked; });
@@ -156,7 +172,8 @@ void row(Session& s, const Layer& layer, std::size_t place) {
     }
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (ImGui::Selectable("##row", chosen, ImGuiSelectableFlags_AllowDoubleClick, ImVec2(0, height))) {
-        if (ImGui::IsMouseDoubleClicked(0)) begin_renaming(s, layer);
+        if (ImGui::IsMouseDoubleClicked(0))
+            begin_renaming(s, layer);
         else {
             s.layer_details = chosen ? !s.layer_details : true;
             s.layer = layer.id;
@@ -168,11 +185,14 @@ void row(Session& s, const Layer& layer, std::size_t place) {
     drag(s, layer, place);
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const float width = height * 4 / 3;
-    if (const auto texture = s.layer_list.textures.find(layer.id); texture != s.layer_list.textures.end() && s.layer_list.pictures.contains(layer.id))
-        draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture->second)), at, ImVec2(at.x + width, at.y + height));
+    if (const auto texture = s.layer_list.textures.find(layer.id);
+        texture != s.layer_list.textures.end() && s.layer_list.pictures.contains(layer.id))
+        draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture->second)), at,
+                       ImVec2(at.x + width, at.y + height));
     const std::string text = row_text(s, layer);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-    draw->AddText(ImVec2(at.x + width + ui.px(8), at.y + 0.5f * (height - size.y)), layer.visible ? ui.strong : ui.faint, text.c_str());
+    draw->AddText(ImVec2(at.x + width + ui.px(8), at.y + 0.5f * (height - size.y)),
+                  layer.visible ? ui.strong : ui.faint, text.c_str());
 }
 
 }  // namespace
@@ -189,7 +209,8 @@ void layers_section(Session& s) {
         if (layer.id == s.layer && s.layer_details) details(s, layer, i);
         ImGui::PopID();
     }
-    if (ui.button("Add a layer", "Strokes on it can be shown, faded and moved apart from the others", 0, all.size() < stroke::kMaxLayers))
+    if (ui.button("Add a layer", "Strokes on it can be shown, faded and moved apart from the others", 0,
+                  all.size() < stroke::kMaxLayers))
         add_layer(s, fresh_name(s));
 }
 

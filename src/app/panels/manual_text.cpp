@@ -5,7 +5,8 @@ namespace {
 
 constexpr ManualPage kPages[] = {
     {"First steps",
-     "Open a model, or take one of the samples. The dialog says how large it is and what was repaired; then it is unwrapped, and you can paint.\n"
+     "Open a model, or take one of the samples. The dialog says how large it is and what was repaired; then it is "
+     "unwrapped, and you can paint.\n"
      "* Drag with the left button: the brush paints where it touches the surface.\n"
      "* Drag with the middle or right button: the model turns. The wheel goes nearer.\n"
      "* {undo} takes the last stroke back, {redo} brings it again.\n"
@@ -19,10 +20,13 @@ constexpr ManualPage kPages[] = {
      "* {save} 为作品命名。即使尚未命名，每一笔松开时也已存到磁盘。\n"
      "笔画就是作品：可以换尺寸、换墨，或在修订后的模型上重新绘制。\n"},
     {"Looking at the model",
-     "* Middle or right button: turn. With Shift: move. With Ctrl, or the wheel: nearer and further. Ctrl and wheel: roll.\n"
-     "* {front}, {right}, {top}: along an axis. {frame-all}: all of the model. {frame-cursor}: what is under the cursor. {parallel}: without perspective.\n"
+     "* Middle or right button: turn. With Shift: move. With Ctrl, or the wheel: nearer and further. Ctrl and wheel: "
+     "roll.\n"
+     "* {front}, {right}, {top}: along an axis. {frame-all}: all of the model. {frame-cursor}: what is under the "
+     "cursor. {parallel}: without perspective.\n"
      "* Look inside, in the panel: cuts the model open, so that the brush reaches the inner wall.\n"
-     "* The lists at the upper right choose what is shown (glaze, clay, height of the ink, wetness, texels) and the light. Raking light shows the ridges of thick paint.\n"
+     "* The lists at the upper right choose what is shown (glaze, clay, height of the ink, wetness, texels) and the "
+     "light. Raking light shows the ridges of thick paint.\n"
      "* {atlas}: the atlas beside the model; a click on it turns the model there.\n"
      "* {panels}: folds the panels away.\n",
      "查看模型",
@@ -33,10 +37,12 @@ constexpr ManualPage kPages[] = {
      "* {atlas}：贴图与模型并列；单击贴图，模型转到该处。\n"
      "* {panels}：收起面板。\n"},
     {"Brush and hand",
-     "The rack holds goat, mixed and wolf hair from small to large; \"Tuft size\" makes any of them larger or smaller.\n"
+     "The rack holds goat, mixed and wolf hair from small to large; \"Tuft size\" makes any of them larger or "
+     "smaller.\n"
      "* {lighter} and {heavier} press less and more, {smaller} and {larger} change the size.\n"
      "* Arrow keys lean the holder, {upright} holds it upright.\n"
-     "* A pen gives its own pressure and tilt; \"More...\" shows the curve between its force and the depth of the brush.\n"
+     "* A pen gives its own pressure and tilt; \"More...\" shows the curve between its force and the depth of the "
+     "brush.\n"
      "* \"Stabiliser\" draws the brush behind the cursor on a string, for long calm lines.\n"
      "* \"Symmetry\" paints mirrored and radial copies, each where the model really is.\n"
      "* {see-through} lets you see through the brush.\n",
@@ -50,8 +56,10 @@ constexpr ManualPage kPages[] = {
      "* {see-through}：透视笔头。\n"},
     {"Ink",
      "Choose an ink by its colour; its name and what it is made of show under the cursor.\n"
-     "* \"Don't reload\": the brush runs dry as it paints, until you dip it. Else every stroke begins with a full brush.\n"
-     "* \"Wet ink\": it flows, soaks in and mixes with wet ink under the brush. \"Wait a minute\" and \"Dry\" let it go its way.\n"
+     "* \"Don't reload\": the brush runs dry as it paints, until you dip it. Else every stroke begins with a full "
+     "brush.\n"
+     "* \"Wet ink\": it flows, soaks in and mixes with wet ink under the brush. \"Wait a minute\" and \"Dry\" let it "
+     "go its way.\n"
      "* \"Another ink in the tip\": petals and leaves in one stroke.\n"
      "* {pick}: a click makes the pigments that lie there an ink of your own.\n"
      "* {palette}: a plate for mixing. Pour inks on it, stir them, paint with what the brush took up.\n"
@@ -66,9 +74,12 @@ constexpr ManualPage kPages[] = {
      "* 编辑菜单中的“换色”以其他墨显示已画的内容，无需重画。\n"},
     {"Lines, curves and drawings",
      "* {line}: a straight line from press to release. Its ends can be pulled afterwards.\n"
-     "* {curve}: click to set points, Enter paints. The wheel over a point changes the pressure there; Backspace takes one away.\n"
-     "* {place}: writing and drawings (InkML, SVG) follow the cursor. The wheel sizes them, Shift and wheel turns them, a click places them.\n"
-     "\"Drape\" bridges small grooves, panel gaps and scan noise; \"Wrap\" goes into each groove; \"Straight\" goes through the picture plane. Strokes scale with the drawing.\n"
+     "* {curve}: click to set points, Enter paints. The wheel over a point changes the pressure there; Backspace takes "
+     "one away.\n"
+     "* {place}: writing and drawings (InkML, SVG) follow the cursor. The wheel sizes them, Shift and wheel turns "
+     "them, a click places them.\n"
+     "\"Drape\" bridges small grooves, panel gaps and scan noise; \"Wrap\" goes into each groove; \"Straight\" goes "
+     "through the picture plane. Strokes scale with the drawing.\n"
      "A placed drawing is one group in the journal: hidden, moved, inked and deleted as one.\n",
      "直线、曲线与图稿",
      "* {line}：按下起，松开止的直线。两端之后可拖动。\n"
@@ -80,7 +91,8 @@ constexpr ManualPage kPages[] = {
      "* Strokes go onto the chosen layer. Layers are shown, faded, ordered and locked apart from each other.\n"
      "* {eraser} takes ink off the chosen layer, as deep as it is pressed.\n"
      "* {fill} lays ink over the model, a part or a chart.\n"
-     "* {mask}: what faces one way, a chart, a group of the file or a lasso. The rest is veiled and takes no ink. \"Mask off\" paints everywhere again.\n",
+     "* {mask}: what faces one way, a chart, a group of the file or a lasso. The rest is veiled and takes no ink. "
+     "\"Mask off\" paints everywhere again.\n",
      "图层、遮罩与填充",
      "* 笔画落在所选图层。图层可分别显示、淡化、排序与锁定。\n"
      "* {eraser} 擦去所选图层的墨，压得越重擦得越多。\n"
@@ -88,9 +100,12 @@ constexpr ManualPage kPages[] = {
      "* {mask}：朝同一方向之处、分片、文件中的组，或套索。其余蒙上薄纱，不着墨。“关闭遮罩”后又可处处着墨。\n"},
     {"Journal and snapshots",
      "The journal lists all that was done, the newest on top.\n"
-     "* A click chooses an entry, and its ink is highlighted on the model. Ctrl adds more, Shift takes a range, Esc chooses none.\n"
-     "* The right button opens what can be done: hide, move, another brush, another ink, group, delete. The rest is painted again.\n"
-     "* \"Take a snapshot\" keeps the work as it is now under a name. Later it can be compared with what is there, side by side or by a swipe, and restored.\n"
+     "* A click chooses an entry, and its ink is highlighted on the model. Ctrl adds more, Shift takes a range, Esc "
+     "chooses none.\n"
+     "* The right button opens what can be done: hide, move, another brush, another ink, group, delete. The rest is "
+     "painted again.\n"
+     "* \"Take a snapshot\" keeps the work as it is now under a name. Later it can be compared with what is there, "
+     "side by side or by a swipe, and restored.\n"
      "Restoring loses nothing: {undo} brings back what was there.\n",
      "笔迹与快照",
      "笔迹列出做过的一切，最新的在上。\n"
@@ -109,10 +124,12 @@ constexpr ManualPage kPages[] = {
      "* 滑块改变透明度，眼睛隐藏。\n"
      "图片保存在项目中。\n"},
     {"Saving and exporting",
-     "* A project (.tuft) is one file with the model, the strokes and all that belongs to them. {save} gives it a name.\n"
+     "* A project (.tuft) is one file with the model, the strokes and all that belongs to them. {save} gives it a "
+     "name.\n"
      "* {export} writes GLB, glTF, OBJ, single maps, or the strokes alone. The list says which suits which program.\n"
      "* After a crash or a power cut the work is offered at the next start, with every finished stroke.\n"
-     "* Revised model, in the File menu, paints the strokes on a new version of the model and lists those that do not fit it.\n",
+     "* Revised model, in the File menu, paints the strokes on a new version of the model and lists those that do not "
+     "fit it.\n",
      "保存与导出",
      "* 项目（.tuft）是一个文件，含模型、笔画及所属的一切。{save} 为它命名。\n"
      "* {export} 写出 GLB、glTF、OBJ、单张贴图，或只有笔画。列表说明各适合什么程序。\n"
@@ -122,7 +139,9 @@ constexpr ManualPage kPages[] = {
 
 }  // namespace
 
-std::span<const ManualPage> manual_pages() { return kPages; }
+std::span<const ManualPage> manual_pages() {
+    return kPages;
+}
 
 std::string manual_text(const ManualPage& page, Language language, const KeyTable& keys) {
     std::string text = language == Language::chinese ? page.chinese_text : page.text;

@@ -9,8 +9,8 @@
 /// The built-in manual: short pages in both languages.
 namespace tuft::app {
 
-/// A page; paragraphs end with a line break, points begin with "* ". {undo} and the like stand for the key of an action,
-/// by its word in the settings.
+/// A page; paragraphs end with a line break, points begin with "* ". {undo} and the like stand for the key of an
+/// action, by its word in the settings.
 struct ManualPage {
     const char *title, *text;
     const char *chinese_title, *chinese_text;

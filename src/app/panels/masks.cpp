@@ -72,15 +72,19 @@ void mask_section(Session& s) {
     MaskChoice& c = s.mask_choice;
     ui.heading("Mask");
     const stroke::Model& model = s.painter->model();
-    static constexpr std::pair<MaskKind, const char*> kinds[] = {
-        {MaskKind::angle, "Facing"}, {MaskKind::chart, "Chart mask"}, {MaskKind::lasso, "Lasso"}, {MaskKind::group, "Group"}};
+    static constexpr std::pair<MaskKind, const char*> kinds[] = {{MaskKind::angle, "Facing"},
+                                                                 {MaskKind::chart, "Chart mask"},
+                                                                 {MaskKind::lasso, "Lasso"},
+                                                                 {MaskKind::group, "Group"}};
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
     for (std::size_t i = 0; i < std::size(kinds); ++i) {
         if (i % 2) ImGui::SameLine();
-        if (ui.choice(kinds[i].second, c.kind == kinds[i].first, "How the mask is found", half)) c.kind = kinds[i].first;
+        if (ui.choice(kinds[i].second, c.kind == kinds[i].first, "How the mask is found", half))
+            c.kind = kinds[i].first;
     }
     if (c.kind == MaskKind::angle) {
-        ui.slider("Within", c.within, 0, 180 * kDegree, "%.0f\xc2\xb0", "Of the direction that the surface has where you click", kDegree);
+        ui.slider("Within", c.within, 0, 180 * kDegree, "%.0f\xc2\xb0",
+                  "Of the direction that the surface has where you click", kDegree);
         ui.slider("Soft edge", c.soft, 0, 45 * kDegree, "%.0f\xc2\xb0", nullptr, kDegree);
         ui.note(ui.tr("Click on the model: what faces as it does there."));
     } else if (c.kind == MaskKind::chart) {
@@ -101,9 +105,11 @@ void mask_section(Session& s) {
         }
     }
     if (s.mask != 0) {
-        static const std::vector<std::string> ways{"By itself", "Added to the chosen one", "Only within the chosen one"};
+        static const std::vector<std::string> ways{"By itself", "Added to the chosen one",
+                                                   "Only within the chosen one"};
         std::string way = ways[static_cast<std::size_t>(c.with)];
-        if (ui.combo("With the chosen one", way, ways)) c.with = static_cast<int>(std::find(ways.begin(), ways.end(), way) - ways.begin());
+        if (ui.combo("With the chosen one", way, ways))
+            c.with = static_cast<int>(std::find(ways.begin(), ways.end(), way) - ways.begin());
     }
     list(s);
 }

@@ -30,15 +30,18 @@ void mismatch_dialog(Session& s) {
     const float rows = std::min(8.0f, static_cast<float>(s.mismatches.size()));
     ImGui::BeginChild("mismatches", ImVec2(0, rows * ImGui::GetTextLineHeightWithSpacing() + ui.px(6)));
     for (const stroke::StrokeMismatch& mismatch : s.mismatches) {
-        const auto line = std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == mismatch.stroke; });
+        const auto line = std::find_if(s.strokes.begin(), s.strokes.end(),
+                                       [&](const StrokeLine& l) { return l.id == mismatch.stroke; });
         if (line == s.strokes.end()) continue;
         char text[160];
-        std::snprintf(text, sizeof text, "%td   %s \xc2\xb7 %s", line - s.strokes.begin() + 1, ui.title(line->brush).c_str(), ui.tr(line->ink.c_str()));
+        std::snprintf(text, sizeof text, "%td   %s \xc2\xb7 %s", line - s.strokes.begin() + 1,
+                      ui.title(line->brush).c_str(), ui.tr(line->ink.c_str()));
         const float room = ImGui::GetContentRegionAvail().x;
         const std::string all = translated(ui, mismatch.reason), why = ui.fitted(all, room - ui.px(170));
         const float right = ImGui::CalcTextSize(why.c_str()).x + ui.px(6);
         ImGui::PushID(static_cast<int>(mismatch.stroke));
-        if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(), s.journal.holds(mismatch.stroke))) select_entries(s, {mismatch.stroke});
+        if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(), s.journal.holds(mismatch.stroke)))
+            select_entries(s, {mismatch.stroke});
         ImGui::PopID();
         ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - right);
         ImGui::TextDisabled("%s", why.c_str());

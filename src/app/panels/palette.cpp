@@ -20,21 +20,25 @@ void marks(const Session& s, ImDrawList* draw) {
     for (const brush::Branch& branch : p.tuft.branches) {
         std::vector<ImVec2> left, right;
         for (const brush::Section& section : branch.sections) {
-            const Vec3 across = std::abs(section.a) > std::abs(section.b) ? section.a * section.e : section.b * section.m;
+            const Vec3 across =
+                std::abs(section.a) > std::abs(section.b) ? section.a * section.e : section.b * section.m;
             left.push_back(on_picture(p, section.centre + across));
             right.push_back(on_picture(p, section.centre - across));
         }
         if (left.size() < 2) continue;
         left.insert(left.end(), right.rbegin(), right.rend());
-        draw->AddPolyline(left.data(), static_cast<int>(left.size()), IM_COL32(255, 255, 255, 200), ImDrawFlags_Closed, s.ui.px(3));
-        draw->AddPolyline(left.data(), static_cast<int>(left.size()), IM_COL32(40, 36, 32, 230), ImDrawFlags_Closed, s.ui.px(1.5f));
+        draw->AddPolyline(left.data(), static_cast<int>(left.size()), IM_COL32(255, 255, 255, 200), ImDrawFlags_Closed,
+                          s.ui.px(3));
+        draw->AddPolyline(left.data(), static_cast<int>(left.size()), IM_COL32(40, 36, 32, 230), ImDrawFlags_Closed,
+                          s.ui.px(1.5f));
     }
     if (!p.tuft.branches.empty() || !ImGui::IsItemHovered()) return;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const double radius = p.tool == PaletteTool::pour ? p.radius : p.tool == PaletteTool::brush ? 1e-3 : 0.5e-3;
     const auto pixels = static_cast<float>(radius / stroke::kPaletteWidth * p.width);
     draw->AddCircle(mouse, pixels, IM_COL32(255, 255, 255, 200), 32, s.ui.px(3));
-    draw->AddCircle(mouse, pixels, p.tool == PaletteTool::pour ? ink_colour(s, s.ink) : IM_COL32(40, 36, 32, 230), 32, s.ui.px(1.5f));
+    draw->AddCircle(mouse, pixels, p.tool == PaletteTool::pour ? ink_colour(s, s.ink) : IM_COL32(40, 36, 32, 230), 32,
+                    s.ui.px(1.5f));
 }
 
 }  // namespace
@@ -49,17 +53,21 @@ void palette_panel(Session& s) {
     ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.area.x) + pad, static_cast<float>(s.area.y) + pad));
     ImGui::SetNextWindowSize(ImVec2(width, 0));
     ImGui::SetNextWindowBgAlpha(0.94f);
-    ImGui::Begin("###palette", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                            ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus);
-    const float third = (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) / 4 / ui.settings().scale;
+    ImGui::Begin("###palette", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    const float third =
+        (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) / 4 / ui.settings().scale;
     const auto tool = [&](PaletteTool which, const char* name, const char* hint) {
         if (ui.choice(name, p.tool == which, hint, third)) p.tool = which;
         ImGui::SameLine();
     };
-    tool(PaletteTool::brush, "Stir", "With the brush, as on the model: it takes up what lies there and leaves what is in it");
+    tool(PaletteTool::brush, "Stir",
+         "With the brush, as on the model: it takes up what lies there and leaves what is in it");
     tool(PaletteTool::pour, "Pour", "Click: a pool of the chosen ink");
     tool(PaletteTool::pick, "Take", "Click: the mixture there becomes an ink of its own");
-    if (ui.button("Wash", "Cleans the palette; Undo brings it back", third)) s.painter->post(ActOnBrush{.action = stroke::Action::wash});
+    if (ui.button("Wash", "Cleans the palette; Undo brings it back", third))
+        s.painter->post(ActOnBrush{.action = stroke::Action::wash});
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float picture = ImGui::GetContentRegionAvail().x;
     p.x = static_cast<double>(at.x);
@@ -68,15 +76,16 @@ void palette_panel(Session& s) {
     p.height = p.width * stroke::kPaletteHeight / stroke::kPaletteWidth;
     const ImVec2 size(picture, static_cast<float>(p.height));
     ImDrawList* draw = ImGui::GetWindowDrawList();
-    draw->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(p.texture)), at, ImVec2(at.x + size.x, at.y + size.y), ImVec2(0, 0),
-                          ImVec2(1, 1), IM_COL32_WHITE, ui.px(8));
+    draw->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(p.texture)), at,
+                          ImVec2(at.x + size.x, at.y + size.y), ImVec2(0, 0), ImVec2(1, 1), IM_COL32_WHITE, ui.px(8));
     ImGui::InvisibleButton("plate", size);
     ui.mark("Plate");
     draw->PushClipRect(at, ImVec2(at.x + size.x, at.y + size.y), true);
     marks(s, draw);
     draw->PopClipRect();
     draw->AddRect(at, ImVec2(at.x + size.x, at.y + size.y), IM_COL32(128, 128, 128, 160), ui.px(8));
-    if (p.tool == PaletteTool::pour) ui.slider("Pool", p.radius, 0.003, 0.02, "%.0f mm", "How wide, to each side", kMillimetre);
+    if (p.tool == PaletteTool::pour)
+        ui.slider("Pool", p.radius, 0.003, 0.02, "%.0f mm", "How wide, to each side", kMillimetre);
     else if (ui.button("Rinse the brush", "No ink left in it, hair straight and together", 0))
         s.painter->post(ActOnBrush{.action = stroke::Action::rinse, .brush = s.brush, .ink = s.ink});
     ImGui::End();

@@ -70,7 +70,8 @@ double height_range(const Session& s);
 /// sRGB colour (ImU32) of a full film of this ink on porcelain.
 /// A column of the window between two heights, `width` in units of the display scale; ends with ImGui::End.
 /// What is in it keeps its width when a scrollbar comes. A panel that does not scroll fits what it holds.
-void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom, bool scrolls = true);
+void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom,
+                      bool scrolls = true);
 /// At the view's edges: fold away or bring back the panels beside it.
 void panel_handles(Session& s);
 unsigned ink_colour(const Session& s, const std::string& ink);

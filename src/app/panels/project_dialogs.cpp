@@ -11,8 +11,11 @@ void in_use_dialog(Session& s) {
         return;
     }
     Ui& ui = s.ui;
-    ui.wrapped(s.in_use->project.filename().string() + ": " + io::name_of(s.in_use->holder) + ui.tr(" is working on it."));
-    ui.wrapped(ui.tr("Close it there to go on with it here. A view shows what is painted there, stroke by stroke; a copy goes on by itself."));
+    ui.wrapped(s.in_use->project.filename().string() + ": " + io::name_of(s.in_use->holder) +
+               ui.tr(" is working on it."));
+    ui.wrapped(
+        ui.tr("Close it there to go on with it here. A view shows what is painted there, stroke by stroke; a copy goes "
+              "on by itself."));
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Cancel", 100}, {"Look at it", 110}, {"Work on a copy", 140}});
     const bool cancelled = ui.button("Cancel", nullptr, 100);
@@ -21,8 +24,10 @@ void in_use_dialog(Session& s) {
     ImGui::SameLine();
     const bool copy = ui.primary_button("Work on a copy", 140);
     end_dialog(s);
-    if (copy || view) open_in_use(s, copy ? OpenAs::copy : OpenAs::view);
-    else if (cancelled) s.in_use.reset();
+    if (copy || view)
+        open_in_use(s, copy ? OpenAs::copy : OpenAs::view);
+    else if (cancelled)
+        s.in_use.reset();
 }
 
 void leave_dialog(Session& s) {
@@ -32,14 +37,18 @@ void leave_dialog(Session& s) {
     }
     Ui& ui = s.ui;
     const std::size_t n = s.last.unkept;
-    if (n > 0) ui.wrapped(ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory" : " strokes wait in memory")) + ":");
-    else ui.wrapped(ui.tr("The last change waits in memory:"));
+    if (n > 0)
+        ui.wrapped(
+            ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory" : " strokes wait in memory")) + ":");
+    else
+        ui.wrapped(ui.tr("The last change waits in memory:"));
     ui.wrapped(s.last.trouble);
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Go back", 90}, {"Leave all the same", 140}, {"Save as...", 110}, {"Try again", 110}});
     const bool back = ui.button("Go back", nullptr, 90);
     ImGui::SameLine();
-    const bool leave = ui.button("Leave all the same", "What can be written goes into a copy that is offered at the next start", 140);
+    const bool leave =
+        ui.button("Leave all the same", "What can be written goes into a copy that is offered at the next start", 140);
     ImGui::SameLine();
     const bool save = ui.button("Save as...", nullptr, 110);
     ImGui::SameLine();

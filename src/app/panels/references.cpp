@@ -14,11 +14,14 @@ namespace {
 
 constexpr int kMostAcross = 2048;  // pixels of a texture
 
-void keep_reference(Session& s, const ReferenceImage& r) { s.painter->post(AttachToProject{io::kReferences, to_attachment(r)}); }
+void keep_reference(Session& s, const ReferenceImage& r) {
+    s.painter->post(AttachToProject{io::kReferences, to_attachment(r)});
+}
 
 // RGB of the picture, made smaller by whole steps until it suits a graphics card.
 std::vector<std::uint8_t> fitted_pixels(const io::Image8& image, int step, int width, int height) {
-    std::vector<std::uint8_t> rgb(static_cast<std::size_t>(3) * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    std::vector<std::uint8_t> rgb(static_cast<std::size_t>(3) * static_cast<std::size_t>(width) *
+                                  static_cast<std::size_t>(height));
     const auto c = static_cast<std::size_t>(image.channels);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
@@ -26,10 +29,13 @@ std::vector<std::uint8_t> fitted_pixels(const io::Image8& image, int step, int w
                 unsigned sum = 0;
                 for (int j = 0; j < step; ++j)
                     for (int i = 0; i < step; ++i) {
-                        const std::size_t at = static_cast<std::size_t>(y * step + j) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x * step + i);
+                        const std::size_t at =
+                            static_cast<std::size_t>(y * step + j) * static_cast<std::size_t>(image.width) +
+                            static_cast<std::size_t>(x * step + i);
                         sum += image.pixels[c * at + (c < 3 ? 0 : k)];
                     }
-                rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) + k] = static_cast<std::uint8_t>(sum / static_cast<unsigned>(step * step));
+                rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) +
+                    k] = static_cast<std::uint8_t>(sum / static_cast<unsigned>(step * step));
             }
     return rgb;
 }
@@ -40,8 +46,10 @@ unsigned reference_texture(Session& s, ReferenceImage& r) {
         const io::Image8 image = io::decode_image8(r.bytes, r.name, std::size_t{1} << 26);
         r.pixels_across = image.width;
         r.pixels_down = image.height;
-        const int step = 1 + (std::max(image.width, image.height) - 1) / kMostAcross, width = std::max(1, image.width / step), height = std::max(1, image.height / step);
-        const std::vector<std::uint8_t> rgb = fitted_pixels(image, image.width < step || image.height < step ? 1 : step, width, height);
+        const int step = 1 + (std::max(image.width, image.height) - 1) / kMostAcross,
+                  width = std::max(1, image.width / step), height = std::max(1, image.height / step);
+        const std::vector<std::uint8_t> rgb =
+            fitted_pixels(image, image.width < step || image.height < step ? 1 : step, width, height);
         glGenTextures(1, &r.texture);
         glBindTexture(GL_TEXTURE_2D, r.texture);
         glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -80,7 +88,8 @@ bool image_bar(Session& s, ReferenceImage& r, float width) {
     ImGui::PushStyleColor(ImGuiCol_FrameBg, IM_COL32(30, 30, 32, 210));
     ImGui::SetNextItemWidth(std::max(ui.px(40), std::min(ui.px(120), width - ui.px(90))));
     auto opacity = static_cast<float>(100 * r.opacity);
-    if (ImGui::SliderFloat("##opacity", &opacity, 5, 100, "%.0f %%", ImGuiSliderFlags_AlwaysClamp)) r.opacity = static_cast<double>(opacity) / 100;
+    if (ImGui::SliderFloat("##opacity", &opacity, 5, 100, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+        r.opacity = static_cast<double>(opacity) / 100;
     if (ImGui::IsItemDeactivatedAfterEdit()) keep_reference(s, r);
     ui.mark("Opacity of " + r.name);
     ImGui::PopStyleColor();
@@ -98,7 +107,8 @@ bool draw_reference(Session& s, ReferenceImage& r, std::size_t index) {
     const unsigned texture = reference_texture(s, r);
     if (!r.shown || !texture || r.pixels_across <= 0) return false;
     const auto across = static_cast<double>(s.area.width), down = static_cast<double>(s.area.height);
-    const double aspect = across * r.pixels_down / r.pixels_across / down;  // its height in parts of the view's, for a width of 1
+    const double aspect =
+        across * r.pixels_down / r.pixels_across / down;  // its height in parts of the view's, for a width of 1
     keep_in_view(r, aspect);
     const ImVec2 at(static_cast<float>(s.area.x + r.at.x * across), static_cast<float>(s.area.y + r.at.y * down));
     const ImVec2 size(static_cast<float>(r.width * across), static_cast<float>(r.width * aspect * down));
@@ -107,11 +117,14 @@ bool draw_reference(Session& s, ReferenceImage& r, std::size_t index) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(4, 4));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
-    ImGui::Begin(("###reference " + r.id).c_str(), nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
-                                                                ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+    ImGui::Begin(("###reference " + r.id).c_str(), nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 end(at.x + size.x, at.y + size.y);
-    draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at, end, ImVec2(0, 0), ImVec2(1, 1), IM_COL32(255, 255, 255, static_cast<int>(std::lround(255 * r.opacity))));
+    draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at, end, ImVec2(0, 0),
+                   ImVec2(1, 1), IM_COL32(255, 255, 255, static_cast<int>(std::lround(255 * r.opacity))));
     const bool over = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
     const float corner = ui.px(16);
     ImGui::SetCursorPos(ImVec2(0, 0));
@@ -127,8 +140,10 @@ bool draw_reference(Session& s, ReferenceImage& r, std::size_t index) {
     const bool held = s.references.held == index && ImGui::IsItemActive();
     if (held && !grabbed) {
         const ImVec2 way = ImGui::GetIO().MouseDelta;
-        if (s.references.sizing) r.width += static_cast<double>(way.x) / across;
-        else r.at += Vec2(static_cast<double>(way.x) / across, static_cast<double>(way.y) / down);
+        if (s.references.sizing)
+            r.width += static_cast<double>(way.x) / across;
+        else
+            r.at += Vec2(static_cast<double>(way.x) / across, static_cast<double>(way.y) / down);
     }
     if (ImGui::IsItemDeactivated() && s.references.held == index) {
         s.references.held.reset();
@@ -182,7 +197,8 @@ void references_section(Session& s) {
         ImGui::PopID();
         if (gone) return remove_reference(s, i);
     }
-    if (ui.button("Add an image...", "Pins it over the view, to paint after. It is kept in the project", 0)) s.files.show(FileDialog::Purpose::reference, {});
+    if (ui.button("Add an image...", "Pins it over the view, to paint after. It is kept in the project", 0))
+        s.files.show(FileDialog::Purpose::reference, {});
     if (all.images.empty()) return;
     ImGui::SameLine();
     ui.toggle("Hide all", all.hidden);

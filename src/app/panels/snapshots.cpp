@@ -10,14 +10,17 @@ namespace tuft::app {
 namespace {
 
 const SnapshotLine* find_snapshot(const Session& s, const std::string& id) {
-    const auto at = std::find_if(s.snapshots.lines.begin(), s.snapshots.lines.end(), [&](const SnapshotLine& l) { return l.id == id; });
+    const auto at = std::find_if(s.snapshots.lines.begin(), s.snapshots.lines.end(),
+                                 [&](const SnapshotLine& l) { return l.id == id; });
     return at == s.snapshots.lines.end() ? nullptr : &*at;
 }
 
 std::string fresh_snapshot_name(const Session& s) {
     for (std::size_t n = s.snapshots.lines.size() + 1;; ++n) {
         std::string name = std::string(s.ui.tr("Snapshot")) + " " + std::to_string(n);
-        if (std::none_of(s.snapshots.lines.begin(), s.snapshots.lines.end(), [&](const SnapshotLine& l) { return l.name == name; })) return name;
+        if (std::none_of(s.snapshots.lines.begin(), s.snapshots.lines.end(),
+                         [&](const SnapshotLine& l) { return l.name == name; }))
+            return name;
     }
 }
 
@@ -26,11 +29,14 @@ void snapshot_details(Session& s, const SnapshotLine& line) {
     char name[stroke::kMaxNameBytes + 1];
     std::snprintf(name, sizeof name, "%s", line.name.c_str());
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::InputText("##name", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue) && name[0] && line.name != name) s.painter->post(RenameSnapshot{line.id, name});
+    if (ImGui::InputText("##name", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue) && name[0] &&
+        line.name != name)
+        s.painter->post(RenameSnapshot{line.id, name});
     ui.mark("Snapshot name");
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
     const bool compared = s.snapshots.compared == line.id;
-    if (ui.choice("Compare", compared, "Shows it beside the work as it is now", half)) compare_with(s, compared ? "" : line.id);
+    if (ui.choice("Compare", compared, "Shows it beside the work as it is now", half))
+        compare_with(s, compared ? "" : line.id);
     ImGui::SameLine();
     if (ui.button("Restore", "Goes back to it; Undo brings back what is there now", half)) {
         compare_with(s, "");
@@ -45,9 +51,11 @@ void snapshot_details(Session& s, const SnapshotLine& line) {
 // Says at the bottom of the view which part shows what; to the left or to the right of `x`.
 void draw_tag(const Session& s, const std::string& text, float x, bool to_left) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-    const float pad = s.ui.px(7), left = to_left ? x - size.x - 3 * pad : x + pad, y = static_cast<float>(s.area.y + s.area.height) - size.y - 9 * pad;  // above the scale
+    const float pad = s.ui.px(7), left = to_left ? x - size.x - 3 * pad : x + pad,
+                y = static_cast<float>(s.area.y + s.area.height) - size.y - 9 * pad;  // above the scale
     ImDrawList* draw = ImGui::GetBackgroundDrawList();
-    draw->AddRectFilled(ImVec2(left, y), ImVec2(left + size.x + 2 * pad, y + size.y + pad), IM_COL32(24, 24, 26, 200), s.ui.px(4));
+    draw->AddRectFilled(ImVec2(left, y), ImVec2(left + size.x + 2 * pad, y + size.y + pad), IM_COL32(24, 24, 26, 200),
+                        s.ui.px(4));
     draw->AddText(ImVec2(left + pad, y + 0.5f * pad), IM_COL32(240, 240, 240, 255), text.c_str());
 }
 
@@ -60,9 +68,12 @@ void snapshots_section(Session& s) {
     for (const SnapshotLine& line : all.lines) {
         ImGui::PushID(line.id.c_str());
         const bool chosen = all.chosen == line.id;
-        const std::string count = ui.tr_sentence(std::to_string(line.strokes) + (line.strokes == 1 ? " stroke" : " strokes"));
-        const float right = ImGui::CalcTextSize(count.c_str()).x, room = ImGui::GetContentRegionAvail().x, x = ImGui::GetCursorPosX();
-        if (ImGui::Selectable(ui.fitted(line.name, room - right - ui.px(10)).c_str(), chosen)) all.chosen = chosen ? "" : line.id;
+        const std::string count =
+            ui.tr_sentence(std::to_string(line.strokes) + (line.strokes == 1 ? " stroke" : " strokes"));
+        const float right = ImGui::CalcTextSize(count.c_str()).x, room = ImGui::GetContentRegionAvail().x,
+                    x = ImGui::GetCursorPosX();
+        if (ImGui::Selectable(ui.fitted(line.name, room - right - ui.px(10)).c_str(), chosen))
+            all.chosen = chosen ? "" : line.id;
         ui.mark("snapshot " + line.name);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s\n%s", line.name.c_str(), date_text(line.made).c_str());
         ImGui::SameLine(x + room - right);
@@ -70,7 +81,8 @@ void snapshots_section(Session& s) {
         if (chosen) snapshot_details(s, line);
         ImGui::PopID();
     }
-    if (ui.button("Take a snapshot", "Keeps the work as it is now, to compare with it or to go back to it", 0)) s.painter->post(TakeSnapshot{fresh_snapshot_name(s)});
+    if (ui.button("Take a snapshot", "Keeps the work as it is now, to compare with it or to go back to it", 0))
+        s.painter->post(TakeSnapshot{fresh_snapshot_name(s)});
 }
 
 void comparison_bar(Session& s) {
@@ -78,11 +90,14 @@ void comparison_bar(Session& s) {
     const SnapshotLine* line = find_snapshot(s, all.compared);
     if (!line || !s.painter) return;
     Ui& ui = s.ui;
-    const auto left = static_cast<float>(all.swipe || all.width == 0 ? s.area.x : all.x), right = static_cast<float>(s.area.x + s.area.width);
-    ImGui::SetNextWindowPos(ImVec2(0.5f * (left + right), static_cast<float>(s.area.y) + ui.px(10)), ImGuiCond_Always, ImVec2(0.5f, 0));
+    const auto left = static_cast<float>(all.swipe || all.width == 0 ? s.area.x : all.x),
+               right = static_cast<float>(s.area.x + s.area.width);
+    ImGui::SetNextWindowPos(ImVec2(0.5f * (left + right), static_cast<float>(s.area.y) + ui.px(10)), ImGuiCond_Always,
+                            ImVec2(0.5f, 0));
     ImGui::SetNextWindowBgAlpha(0.9f);
-    ImGui::Begin("###comparison", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
-                                               ImGuiWindowFlags_NoFocusOnAppearing);  // above the images
+    ImGui::Begin("###comparison", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);  // above the images
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(all.ready ? ui.fitted(line->name, ui.px(140)).c_str() : ui.tr("Document the snapshot"));
     ImGui::SameLine();
@@ -95,7 +110,8 @@ void comparison_bar(Session& s) {
     const bool done = ui.button("Done");
     ImGui::End();
     if (all.ready) {
-        const float middle = all.swipe ? static_cast<float>(s.area.x + all.line_at * s.area.width) : static_cast<float>(s.area.x);
+        const float middle =
+            all.swipe ? static_cast<float>(s.area.x + all.line_at * s.area.width) : static_cast<float>(s.area.x);
         draw_tag(s, ui.fitted(line->name, ui.px(140)), middle, true);
         draw_tag(s, ui.tr("Now"), middle, false);
     }
@@ -107,25 +123,32 @@ void swipe_line(Session& s) {
     SnapshotState& all = s.snapshots;
     if (all.compared.empty() || !all.swipe || !all.ready) return;
     Ui& ui = s.ui;
-    const auto x0 = static_cast<float>(s.area.x), y0 = static_cast<float>(s.area.y), width = static_cast<float>(s.area.width), height = static_cast<float>(s.area.height);
+    const auto x0 = static_cast<float>(s.area.x), y0 = static_cast<float>(s.area.y),
+               width = static_cast<float>(s.area.width), height = static_cast<float>(s.area.height);
     const float at = x0 + static_cast<float>(all.line_at) * width, grip = ui.px(14);
     ImDrawList* draw = ImGui::GetBackgroundDrawList();
-    draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(all.texture)), ImVec2(x0, y0), ImVec2(at, y0 + height), ImVec2(0, 1), ImVec2(static_cast<float>(all.line_at), 0));
+    draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(all.texture)), ImVec2(x0, y0),
+                   ImVec2(at, y0 + height), ImVec2(0, 1), ImVec2(static_cast<float>(all.line_at), 0));
     draw->AddLine(ImVec2(at, y0), ImVec2(at, y0 + height), IM_COL32(20, 20, 22, 255), ui.px(4));
     draw->AddLine(ImVec2(at, y0), ImVec2(at, y0 + height), IM_COL32(245, 245, 245, 255), ui.px(1.6f));
     ImGui::SetNextWindowPos(ImVec2(at - grip, y0));
     ImGui::SetNextWindowSize(ImVec2(2 * grip, height));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-    ImGui::Begin("###swipe", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
-                                          ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::Begin("###swipe", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::InvisibleButton("##line", ImVec2(2 * grip, height));
     ui.mark("Swipe line");
     if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    if (ImGui::IsItemActive()) all.line_at = std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - x0) / width), 0.02, 0.98);
+    if (ImGui::IsItemActive())
+        all.line_at = std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - x0) / width), 0.02, 0.98);
     const ImVec2 c(at, y0 + 0.5f * height);
     draw->AddCircleFilled(c, ui.px(11), IM_COL32(245, 245, 245, 255), 24);
-    draw->AddTriangleFilled(ImVec2(c.x - ui.px(7), c.y), ImVec2(c.x - ui.px(2), c.y - ui.px(4)), ImVec2(c.x - ui.px(2), c.y + ui.px(4)), IM_COL32(30, 30, 32, 255));
-    draw->AddTriangleFilled(ImVec2(c.x + ui.px(7), c.y), ImVec2(c.x + ui.px(2), c.y - ui.px(4)), ImVec2(c.x + ui.px(2), c.y + ui.px(4)), IM_COL32(30, 30, 32, 255));
+    draw->AddTriangleFilled(ImVec2(c.x - ui.px(7), c.y), ImVec2(c.x - ui.px(2), c.y - ui.px(4)),
+                            ImVec2(c.x - ui.px(2), c.y + ui.px(4)), IM_COL32(30, 30, 32, 255));
+    draw->AddTriangleFilled(ImVec2(c.x + ui.px(7), c.y), ImVec2(c.x + ui.px(2), c.y - ui.px(4)),
+                            ImVec2(c.x + ui.px(2), c.y + ui.px(4)), IM_COL32(30, 30, 32, 255));
     ImGui::End();
     ImGui::PopStyleVar();
 }

@@ -30,15 +30,26 @@ struct ToolText {
 ToolText text_of_tool(const Session& s) {
     if (s.journal.moves) return {"Move", "Drag the chosen ink over the model    Esc: leave it"};
     switch (s.tool) {
-        case Tool::brush: return {"Brush", "Drag: paint    [ and ]: pressure    Shift: size"};
-        case Tool::line: return {"Line", "Drag: a line    Shift: steps of 15\xc2\xb0    Drag its ends: change it"};
-        case Tool::curve: return {"Curve", "Click: set points    Enter: paint    Esc: drop them"};
-        case Tool::writing: return {"Place", s.writing.empty() ? "Choose writing or a drawing in the panel" : "Click: place it    Wheel: size    Shift + wheel: turn"};
-        case Tool::eraser: return {"Eraser", "Drag: take ink off    [ and ]: pressure"};
+        case Tool::brush:
+            return {"Brush", "Drag: paint    [ and ]: pressure    Shift: size"};
+        case Tool::line:
+            return {"Line", "Drag: a line    Shift: steps of 15\xc2\xb0    Drag its ends: change it"};
+        case Tool::curve:
+            return {"Curve", "Click: set points    Enter: paint    Esc: drop them"};
+        case Tool::writing:
+            return {"Place", s.writing.empty() ? "Choose writing or a drawing in the panel"
+                                               : "Click: place it    Wheel: size    Shift + wheel: turn"};
+        case Tool::eraser:
+            return {"Eraser", "Drag: take ink off    [ and ]: pressure"};
         case Tool::fill:
-            return {"Fill", s.fill.region == stroke::Region::all ? "Click: fill the model" : s.fill.region == stroke::Region::part ? "Click: fill the part there" : "Click: fill the chart there"};
-        case Tool::pick: return {"Pick", "Click: the ink there becomes one of your own"};
-        case Tool::mask: return {"Mask", s.mask_choice.kind == stroke::MaskKind::lasso ? "Draw round a part of the model" : "Click on the model to make a mask"};
+            return {"Fill", s.fill.region == stroke::Region::all    ? "Click: fill the model"
+                            : s.fill.region == stroke::Region::part ? "Click: fill the part there"
+                                                                    : "Click: fill the chart there"};
+        case Tool::pick:
+            return {"Pick", "Click: the ink there becomes one of your own"};
+        case Tool::mask:
+            return {"Mask", s.mask_choice.kind == stroke::MaskKind::lasso ? "Draw round a part of the model"
+                                                                          : "Click on the model to make a mask"};
     }
     return {"", ""};
 }
@@ -61,8 +72,9 @@ void status_bar(Session& s, float top) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui.px(12), ui.px(6)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
-    ImGui::Begin("###status", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                           ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::Begin("###status", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
     s.message_time += ImGui::GetIO().DeltaTime;
     const float end = screen.x - ui.px(12);
     const ToolText tool = text_of_tool(s);
@@ -70,8 +82,14 @@ void status_bar(Session& s, float top) {
     put(s, ui.tr(tool.hint), ui.faint, end);
     if (!s.last.trouble.empty()) {
         const std::size_t n = s.last.unkept;
-        const std::string waits = n == 0 ? "" : " (" + ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory" : " strokes wait in memory")) + ")";
-        const unsigned red = ui.settings().theme == Theme::dark ? IM_COL32(255, 140, 107, 255) : IM_COL32(184, 26, 5, 255);
+        const std::string waits = n == 0
+                                      ? ""
+                                      : " (" +
+                                            ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory"
+                                                                                       : " strokes wait in memory")) +
+                                            ")";
+        const unsigned red =
+            ui.settings().theme == Theme::dark ? IM_COL32(255, 140, 107, 255) : IM_COL32(184, 26, 5, 255);
         put(s, ui.tr("Not kept on disk") + waits + ": " + s.last.trouble, red, end);
     } else if (!s.message.empty() && s.message_time < 12) {
         put(s, ui.tr_sentence(s.message), ui.strong, end);
@@ -79,11 +97,14 @@ void status_bar(Session& s, float top) {
         char text[160] = "";
         if (s.painter) {
             const stroke::Model& m = s.painter->model();
-            std::snprintf(text, sizeof text, ui.tr("%u \xc3\x97 %u   %.2f mm/texel"), m.atlas.size, m.atlas.size, m.atlas.texel_size * 1e3);
+            std::snprintf(text, sizeof text, ui.tr("%u \xc3\x97 %u   %.2f mm/texel"), m.atlas.size, m.atlas.size,
+                          m.atlas.texel_size * 1e3);
         }
         const float x = screen.x - ImGui::CalcTextSize(text).x - ui.px(14);
-        put(s, ui.tr(s.keymap == Keymap::blender ? "Middle or right: turn    Shift + middle: move    Wheel: nearer    F1: keys"
-                                                 : "Alt + left: turn    Alt + middle: move    Alt + right: nearer    F1: keys"),
+        put(s,
+            ui.tr(s.keymap == Keymap::blender
+                      ? "Middle or right: turn    Shift + middle: move    Wheel: nearer    F1: keys"
+                      : "Alt + left: turn    Alt + middle: move    Alt + right: nearer    F1: keys"),
             ui.faint, x - ui.px(16));
         if (ImGui::GetItemRectMax().x + ui.px(12) < x) {
             ImGui::SameLine(x);
@@ -104,7 +125,8 @@ struct SideView {
 
     ImVec2 at(const Vec3& p) const {
         const Vec3 d = p - mouth;
-        return {origin.x + scale * static_cast<float>(glm::dot(d, along)), origin.y - scale * static_cast<float>(glm::dot(d, up))};
+        return {origin.x + scale * static_cast<float>(glm::dot(d, along)),
+                origin.y - scale * static_cast<float>(glm::dot(d, up))};
     }
 };
 
@@ -141,12 +163,15 @@ void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
             };
             const brush::Section &p = b.sections[i - 1], &q = b.sections[i];
             const Vec3f hair = hair_colour(static_cast<double>(i) / static_cast<double>(b.sections.size()), ink);
-            draw->AddQuadFilled(edge(p, 1), edge(q, 1), edge(q, -1), edge(p, -1),
-                                ImGui::ColorConvertFloat4ToU32(ImVec4(encoded(hair[0]), encoded(hair[1]), encoded(hair[2]), 1)));
-            if (p.pressure > 0 && q.pressure > 0) draw->AddLine(v.at(p.centre), v.at(q.centre), s.ui.accent, s.ui.px(2.5f));
+            draw->AddQuadFilled(
+                edge(p, 1), edge(q, 1), edge(q, -1), edge(p, -1),
+                ImGui::ColorConvertFloat4ToU32(ImVec4(encoded(hair[0]), encoded(hair[1]), encoded(hair[2]), 1)));
+            if (p.pressure > 0 && q.pressure > 0)
+                draw->AddLine(v.at(p.centre), v.at(q.centre), s.ui.accent, s.ui.px(2.5f));
         }
     const auto r = static_cast<float>(std::max(root.a, root.b)) * v.scale * 1.1f;
-    draw->AddRectFilled(ImVec2(v.origin.x - r, at.y), ImVec2(v.origin.x + r, v.origin.y), IM_COL32(150, 104, 58, 255), 2);
+    draw->AddRectFilled(ImVec2(v.origin.x - r, at.y), ImVec2(v.origin.x + r, v.origin.y), IM_COL32(150, 104, 58, 255),
+                        2);
 }
 
 }  // namespace
@@ -155,12 +180,16 @@ void tuft_inset(Session& s) {
     if (!s.view.inset || !s.painter || s.tuft.branches.empty()) return;
     Ui& ui = s.ui;
     const float width = ui.px(190), height = ui.px(206), pad = ui.px(10);
-    if (static_cast<float>(s.area.width) < 2.5f * width || static_cast<float>(s.area.height) < 2 * height) return;  // the model needs the module
-    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.area.x) + pad, static_cast<float>(s.area.y + s.area.height) - height - pad));
+    if (static_cast<float>(s.area.width) < 2.5f * width || static_cast<float>(s.area.height) < 2 * height)
+        return;  // the model needs the module
+    ImGui::SetNextWindowPos(
+        ImVec2(static_cast<float>(s.area.x) + pad, static_cast<float>(s.area.y + s.area.height) - height - pad));
     ImGui::SetNextWindowSize(ImVec2(width, height));
     ImGui::SetNextWindowBgAlpha(0.82f);
-    ImGui::Begin("###tuft", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                         ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::Begin("###tuft", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 size(ImGui::GetContentRegionAvail().x, ui.px(126));
     ImGui::PushClipRect(at, ImVec2(at.x + size.x, at.y + size.y), true);

@@ -14,12 +14,17 @@ struct Entry {
 };
 constexpr Entry kEntries[] = {
     {Tool::brush, Icon::brush, "Brush", "Paint freely (B)"},
-    {Tool::line, Icon::line, "Line", "Straight as you see it, from press to release; Shift for steps of 15 degrees. Its ends can be moved afterwards (L)"},
-    {Tool::curve, Icon::curve, "Curve", "Click to set points, drag to move them, the wheel over one changes its pressure, Enter paints (C)"},
+    {Tool::line, Icon::line, "Line",
+     "Straight as you see it, from press to release; Shift for steps of 15 degrees. Its ends can be moved afterwards "
+     "(L)"},
+    {Tool::curve, Icon::curve, "Curve",
+     "Click to set points, drag to move them, the wheel over one changes its pressure, Enter paints (C)"},
     {Tool::writing, Icon::place, "Place", "Places writing or a drawing from a file where you click (T)"},
-    {Tool::eraser, Icon::eraser, "Eraser", "Takes ink off with the brush, as deep as it is pressed; a pen's other end does so too (E)"},
+    {Tool::eraser, Icon::eraser, "Eraser",
+     "Takes ink off with the brush, as deep as it is pressed; a pen's other end does so too (E)"},
     {Tool::fill, Icon::fill, "Fill", "Lays the chosen ink over the whole model, a part or a chart where you click (G)"},
-    {Tool::pick, Icon::pick, "Pick", "Click: the pigments that lie there become an ink of their own, in the proportions they have (I)"},
+    {Tool::pick, Icon::pick, "Pick",
+     "Click: the pigments that lie there become an ink of their own, in the proportions they have (I)"},
     {Tool::mask, Icon::mask, "Mask", "Says where strokes and fills may leave ink (M)"}};
 
 // An icon over a name; true when it was pressed.
@@ -33,7 +38,8 @@ bool cell(Session& s, Icon icon, const char* name, const char* hint, bool chosen
     const bool over = ImGui::IsItemHovered();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 end(at.x + width, at.y + height);
-    if (chosen || over) draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : ImGuiCol_FrameBgHovered), ui.px(5));
+    if (chosen || over)
+        draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : ImGuiCol_FrameBgHovered), ui.px(5));
     // Names shrink with the cell before icons do.
     const float letters = 0.8f * ImGui::GetFontSize(), line = 1.1f * letters;
     const bool named = height >= line + ui.px(20);
@@ -43,7 +49,8 @@ bool cell(Session& s, Icon icon, const char* name, const char* hint, bool chosen
     if (!named) return pressed;
     const char* text = ui.tr(name);
     const ImVec2 size = ImGui::GetFont()->CalcTextSizeA(letters, 1e9f, 0, text);
-    draw->AddText(ImGui::GetFont(), letters, ImVec2(at.x + 0.5f * (width - size.x), at.y + gap + picture), ui.strong, text);
+    draw->AddText(ImGui::GetFont(), letters, ImVec2(at.x + 0.5f * (width - size.x), at.y + gap + picture), ui.strong,
+                  text);
     return pressed;
 }
 
@@ -58,9 +65,12 @@ void tool_strip(Session& s, float top, float bottom, float left) {
     for (const Entry& e : kEntries)
         if (cell(s, e.icon, e.name, e.hint, s.tool == e.tool, height)) s.tool = e.tool;
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::GetWindowDrawList()->AddLine(ImVec2(at.x + s.ui.px(6), at.y), ImVec2(at.x + ImGui::GetContentRegionAvail().x - s.ui.px(6), at.y), ImGui::GetColorU32(ImGuiCol_Separator));
+    ImGui::GetWindowDrawList()->AddLine(ImVec2(at.x + s.ui.px(6), at.y),
+                                        ImVec2(at.x + ImGui::GetContentRegionAvail().x - s.ui.px(6), at.y),
+                                        ImGui::GetColorU32(ImGuiCol_Separator));
     ImGui::Dummy(ImVec2(0, gap));
-    if (cell(s, Icon::palette, "Palette", "A plate on which brushes mix inks (P)", s.palette.shown, height)) show_palette(s, !s.palette.shown);
+    if (cell(s, Icon::palette, "Palette", "A plate on which brushes mix inks (P)", s.palette.shown, height))
+        show_palette(s, !s.palette.shown);
     ImGui::PopStyleVar();
     ImGui::End();
     ImGui::PopStyleVar();

@@ -35,7 +35,9 @@ void draw_tuft_icon(Session& s, const brush::Preset& preset, unsigned hair, ImVe
         for (int i = 0; i <= n; ++i) {
             const double u = static_cast<double>(side ? n - i : i) / n;
             // A little wider than to scale, so that small ones are seen.
-            const auto r = (static_cast<float>(brush::rest_radius(preset, u)) * 1.35f * scale + (u < 0.97 ? s.ui.px(0.8f) : 0)) * (side ? -1.0f : 1.0f);
+            const auto r =
+                (static_cast<float>(brush::rest_radius(preset, u)) * 1.35f * scale + (u < 0.97 ? s.ui.px(0.8f) : 0)) *
+                (side ? -1.0f : 1.0f);
             outline.emplace_back(x + r, top + static_cast<float>(u * preset.length) * scale);
         }
     // Smoothed edges of the pieces would show between them: the outline smooths the whole.
@@ -46,7 +48,8 @@ void draw_tuft_icon(Session& s, const brush::Preset& preset, unsigned hair, ImVe
         draw->AddQuadFilled(outline[i], outline[i + 1], outline[j - 1], outline[j], hair);
     }
     draw->Flags = flags;
-    draw->AddPolyline(outline.data(), static_cast<int>(outline.size()), IM_COL32(70, 52, 36, 255), ImDrawFlags_Closed, 1.0f);
+    draw->AddPolyline(outline.data(), static_cast<int>(outline.size()), IM_COL32(70, 52, 36, 255), ImDrawFlags_Closed,
+                      1.0f);
     const auto r = static_cast<float>(brush::rest_radius(preset, 0)) * scale * 1.5f + s.ui.px(0.8f);
     draw->AddRectFilled(ImVec2(x - r, at.y + 0.05f * height), ImVec2(x + r, top), IM_COL32(122, 78, 38, 255), 1.5f);
 }
@@ -67,13 +70,16 @@ void brush_cell(Session& s, const std::string& name, const std::string& sort, fl
     const bool over = ImGui::IsItemHovered();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 end(at.x + width, at.y + height);
-    if (chosen || over) draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : ImGuiCol_FrameBgHovered), s.ui.px(4));
+    if (chosen || over)
+        draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : ImGuiCol_FrameBgHovered),
+                            s.ui.px(4));
     if (chosen) draw->AddRect(at, end, s.ui.accent, s.ui.px(4), 0, s.ui.px(2));
     const brush::Preset& preset = preset_of(name);
     draw_tuft_icon(s, preset, hair_colour(sort), at, width, height);
     if (!over) return;
     char text[256];
-    std::snprintf(text, sizeof text, s.ui.tr("%.0f mm long, %.1f mm thick"), preset.length * 1e3, 2 * preset.radius * 1e3);
+    std::snprintf(text, sizeof text, s.ui.tr("%.0f mm long, %.1f mm thick"), preset.length * 1e3,
+                  2 * preset.radius * 1e3);
     ImGui::SetTooltip("%s\n%s", s.ui.tr(name.c_str()), text);
 }
 
@@ -86,16 +92,20 @@ void brush_rack(Session& s) {
     std::vector<std::pair<std::string, std::vector<std::string>>> groups;
     std::vector<std::string> single;
     for (auto& [sort, names] : by_sort) {
-        if (names.size() == 1) single.push_back(names.front());
-        else groups.emplace_back(sort, names);
+        if (names.size() == 1)
+            single.push_back(names.front());
+        else
+            groups.emplace_back(sort, names);
     }
     if (!single.empty()) groups.emplace_back("other", single);
-    const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = s.ui.px(8), letters = 0.8f * ImGui::GetFontSize();
+    const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = s.ui.px(8),
+                letters = 0.8f * ImGui::GetFontSize();
     // Tufts are thin: as many fit in a row as have room for one each.
     const float cell = std::min(s.ui.px(26), (all - 3 * gap) / 10), row = s.ui.px(kRackHeight) + 1.2f * letters;
     float x = 0, y = ImGui::GetCursorPosY();
     for (auto& [sort, names] : groups) {
-        std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) { return preset_of(a).length < preset_of(b).length; });
+        std::sort(names.begin(), names.end(),
+                  [](const std::string& a, const std::string& b) { return preset_of(a).length < preset_of(b).length; });
         const char* title = s.ui.tr(sort.c_str());
         const float text = ImGui::GetFont()->CalcTextSizeA(letters, 1e9f, 0, title).x;
         const float width = cell * static_cast<float>(names.size()), taken = std::max(width, text);
@@ -114,7 +124,8 @@ void brush_rack(Session& s) {
     brush::SizedName sized = brush::sized_name(s.brush);
     const double thick = 2 * preset_of(sized.base).radius;
     double now = thick * sized.factor;
-    if (s.ui.slider("Tuft size", now, thick * brush::kLeastSize, thick * brush::kMostSize, "%.1f mm", "How thick it is; its length goes with it", kMillimetre))
+    if (s.ui.slider("Tuft size", now, thick * brush::kLeastSize, thick * brush::kMostSize, "%.1f mm",
+                    "How thick it is; its length goes with it", kMillimetre))
         size_brush(s, now / thick);
 }
 
@@ -130,7 +141,8 @@ void pen_curve(Session& s) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const float pad = ui.px(8);
     const auto place = [&](double x, double y) {
-        return ImVec2(at.x + pad + static_cast<float>(x) * (size.x - 2 * pad), at.y + size.y - pad - static_cast<float>(y) * (size.y - 2 * pad));
+        return ImVec2(at.x + pad + static_cast<float>(x) * (size.x - 2 * pad),
+                      at.y + size.y - pad - static_cast<float>(y) * (size.y - 2 * pad));
     };
     const double x = std::clamp(static_cast<double>((mouse.x - at.x - pad) / (size.x - 2 * pad)), 0.0, 1.0);
     const double y = std::clamp(static_cast<double>((at.y + size.y - pad - mouse.y) / (size.y - 2 * pad)), 0.02, 0.98);
@@ -166,31 +178,41 @@ void pen_curve(Session& s) {
 void hand_section(Session& s) {
     Ui& ui = s.ui;
     if (!ui.section("PointerInput")) return;
-    ui.slider("Pressure", s.hand.pressure, 0.02, 1, "%.2f", "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]");
-    ui.slider("Stabiliser", s.hand.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length", kMillimetre);
+    ui.slider("Pressure", s.hand.pressure, 0.02, 1, "%.2f",
+              "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]");
+    ui.slider("Stabiliser", s.hand.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length",
+              kMillimetre);
     if (ui.button(s.more_hand ? "Less" : "More...", nullptr, 80)) s.more_hand = !s.more_hand;
     if (!s.more_hand) return;
-    ui.toggle("Clean ends", s.hand.clean_ends, "Strokes of a mouse begin where the button goes down and end where it comes up: the brush is set down in the stroke's direction and runs ahead of the cursor by what its tip lags behind. A pen has its pressure for that");
-    ui.slider("Speed lightens", s.hand.speed_effect, 0, 1, "%.2f", "As a hand does. Only for a mouse; a pen says its own pressure");
+    ui.toggle(
+        "Clean ends", s.hand.clean_ends,
+        "Strokes of a mouse begin where the button goes down and end where it comes up: the brush is set down in the "
+        "stroke's direction and runs ahead of the cursor by what its tip lags behind. A pen has its pressure for that");
+    ui.slider("Speed lightens", s.hand.speed_effect, 0, 1, "%.2f",
+              "As a hand does. Only for a mouse; a pen says its own pressure");
     ui.slider("Rest deepens", s.hand.dwell_effect, 0, 1, "%.2f", "A mouse that stays where it is sinks in slowly");
     ui.note(ui.tr("Pen: from its force to the brush's depth"));
     pen_curve(s);
     double right = s.hand.tilt.x, up = s.hand.tilt.y;
-    ui.slider("Lean sideways", right, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", "Of the holder, seen on the screen. Arrow keys", kDegree);
-    ui.slider("Lean away", up, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", "Of the holder, seen on the screen. Arrow keys", kDegree);
+    ui.slider("Lean sideways", right, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0",
+              "Of the holder, seen on the screen. Arrow keys", kDegree);
+    ui.slider("Lean away", up, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0",
+              "Of the holder, seen on the screen. Arrow keys", kDegree);
     s.hand.tilt = {right, up};
 }
 
 void symmetry_section(Session& s) {
     Ui& ui = s.ui;
     if (!ui.section("Symmetry", false)) return;
-    ui.toggle("X", s.symmetry.mirror_x, "Mirror left and right; the copy is painted anew and meets the model as it is there");
+    ui.toggle("X", s.symmetry.mirror_x,
+              "Mirror left and right; the copy is painted anew and meets the model as it is there");
     ImGui::SameLine();
     ui.toggle("Y", s.symmetry.mirror_y, "Mirror front and back");
     ImGui::SameLine();
     ui.toggle("Z", s.symmetry.mirror_z, "Mirror above and below");
     double n = s.symmetry.radial;
-    if (ui.slider("Radial copies", n, 1, 16, "%.0f", "For plates and bowls; the axis stands upright through the middle"))
+    if (ui.slider("Radial copies", n, 1, 16, "%.0f",
+                  "For plates and bowls; the axis stands upright through the middle"))
         s.symmetry.radial = static_cast<int>(std::lround(n));
 }
 
@@ -216,36 +238,44 @@ void fill_section(Session& s) {
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
     for (const auto& [region, name] : regions) {
         if (region != stroke::Region::all) ImGui::SameLine();
-        if (ui.choice(name, s.fill.region == region, "What the ink is laid over where you click", third)) s.fill.region = region;
+        if (ui.choice(name, s.fill.region == region, "What the ink is laid over where you click", third))
+            s.fill.region = region;
     }
-    if (ui.slider("Thickness", s.fill.film, 0.05, 5, "%.1f \xce\xbcm", "Of the wet coat", 0.1)) s.fill.to_film = s.fill.film;
+    if (ui.slider("Thickness", s.fill.film, 0.05, 5, "%.1f \xce\xbcm", "Of the wet coat", 0.1))
+        s.fill.to_film = s.fill.film;
 }
 
 void writing_section(Session& s) {
     if (s.tool != Tool::writing) return;
     Ui& ui = s.ui;
     ui.heading("Place");
-    if (ui.button("Writing or drawing...", "InkML or SVG", 0)) s.files.show(FileDialog::Purpose::writing, data_folder() / "samples" / "strokes");
+    if (ui.button("Writing or drawing...", "InkML or SVG", 0))
+        s.files.show(FileDialog::Purpose::writing, data_folder() / "samples" / "strokes");
     if (s.writing.empty()) return;
     Writing& w = s.writing;
     ImGui::TextUnformatted(w.file.filename().c_str());
     for (const std::string& note : w.notes) ui.note(note.c_str());
     double width = w.width * w.scale;
-    if (w.width > 0 && ui.slider("Width", width, 0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm", "Wheel over the model", kMillimetre)) w.scale = width / w.width;
+    if (w.width > 0 && ui.slider("Width", width, 0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm",
+                                 "Wheel over the model", kMillimetre))
+        w.scale = width / w.width;
     ui.slider("Turn", w.turn, -180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", "Shift and wheel over the model", kDegree);
     ui.toggle("Mirrored", w.mirrored);
     const std::tuple<stroke::SurfaceMapping, const char*, const char*> mappings[] = {
-        {stroke::SurfaceMapping::drape, "Drape", "Bent round the surface; bridges small grooves, panel gaps and scan noise"},
+        {stroke::SurfaceMapping::drape, "Drape",
+         "Bent round the surface; bridges small grooves, panel gaps and scan noise"},
         {stroke::SurfaceMapping::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
         {stroke::SurfaceMapping::project, "Straight", "Straight through the picture plane"}};
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
     for (const auto& [mapping, name, hint] : mappings) {
         if (mapping != stroke::SurfaceMapping::drape) ImGui::SameLine();
         if (ui.choice(name, w.mapping == mapping, hint, third)) w.mapping = mapping;
     }
     ImGui::PopStyleVar();
-    const bool names = std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
+    const bool names =
+        std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
     if (names) ui.toggle("Its brush and ink", w.own_ink, "As the file names them; strokes scale with the drawing");
     if (has_widths(w)) ui.toggle("Its line widths", w.own_width, "The brush is taken in the size that draws them");
 }
@@ -268,11 +298,15 @@ void begin_side_panel(Session& s, const char* name, float left, float top, float
     const float pad = ImGui::GetStyle().WindowPadding.x, all = s.ui.px(width);
     ImGui::SetNextWindowPos(ImVec2(left, top));
     ImGui::SetNextWindowSize(ImVec2(all, bottom - top));
-    ImGui::SetNextWindowContentSize(ImVec2(all - pad - std::max(pad, scrolls ? ImGui::GetStyle().ScrollbarSize + s.ui.px(6) : 0), 0));
+    ImGui::SetNextWindowContentSize(
+        ImVec2(all - pad - std::max(pad, scrolls ? ImGui::GetStyle().ScrollbarSize + s.ui.px(6) : 0), 0));
     // The window is cleared to the panels' colour; to blend it over that again costs a software driver milliseconds.
-    ImGui::Begin(name, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
-                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus | (scrolls ? 0 : ImGuiWindowFlags_NoScrollbar));
-    ImGui::GetBackgroundDrawList()->AddRect(ImVec2(left, top), ImVec2(left + all, bottom), ImGui::GetColorU32(ImGuiCol_Border));
+    ImGui::Begin(name, nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | (scrolls ? 0 : ImGuiWindowFlags_NoScrollbar));
+    ImGui::GetBackgroundDrawList()->AddRect(ImVec2(left, top), ImVec2(left + all, bottom),
+                                            ImGui::GetColorU32(ImGuiCol_Border));
 }
 
 void tool_panel(Session& s, float top, float bottom, float left) {
@@ -292,10 +326,12 @@ void tool_panel(Session& s, float top, float bottom, float left) {
 
 namespace {
 
-// A narrow button in the middle of an edge of the view, with a triangle that points to where the panel goes or comes from.
+// A narrow button in the middle of an edge of the view, with a triangle that points to where the panel goes or comes
+// from.
 void handle(Session& s, const char* name, const char* hint, float x, bool to_left, bool& shown) {
     Ui& ui = s.ui;
-    const float width = ui.px(11), height = ui.px(46), y = static_cast<float>(s.area.y) + 0.5f * (static_cast<float>(s.area.height) - height);
+    const float width = ui.px(11), height = ui.px(46),
+                y = static_cast<float>(s.area.y) + 0.5f * (static_cast<float>(s.area.height) - height);
     ImGui::SetNextWindowPos(ImVec2(x, y));
     ImGui::SetNextWindowSize(ImVec2(width, height));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
@@ -303,14 +339,17 @@ void handle(Session& s, const char* name, const char* hint, float x, bool to_lef
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui.px(3));
     ImGui::SetNextWindowBgAlpha(0.75f);
-    ImGui::Begin((std::string("###handle ") + name).c_str(), nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                                                            ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::Begin((std::string("###handle ") + name).c_str(), nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus);
     const bool pressed = ImGui::InvisibleButton("##handle", ImVec2(width, height));
     ui.mark(name);
     ui.hint(hint);
     const ImVec2 c(x + 0.5f * width, y + 0.5f * height);
     const float r = ui.px(3.5f), tip = to_left ? -r : r;
-    ImGui::GetWindowDrawList()->AddTriangleFilled(ImVec2(c.x + tip, c.y), ImVec2(c.x - tip, c.y - 1.3f * r), ImVec2(c.x - tip, c.y + 1.3f * r), ImGui::IsItemHovered() ? ui.strong : ui.faint);
+    ImGui::GetWindowDrawList()->AddTriangleFilled(ImVec2(c.x + tip, c.y), ImVec2(c.x - tip, c.y - 1.3f * r),
+                                                  ImVec2(c.x - tip, c.y + 1.3f * r),
+                                                  ImGui::IsItemHovered() ? ui.strong : ui.faint);
     ImGui::End();
     ImGui::PopStyleVar(4);
     if (!pressed) return;
@@ -323,10 +362,14 @@ void handle(Session& s, const char* name, const char* hint, float x, bool to_lef
 void panel_handles(Session& s) {
     const bool beside = !s.snapshots.compared.empty() && !s.snapshots.swipe && s.snapshots.width > 0;
     const auto left = static_cast<float>(beside ? s.snapshots.x : s.area.x);
-    const auto right = static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width) - s.ui.px(11);
+    const auto right =
+        static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width) - s.ui.px(11);
     const bool swapped = s.wanted.left_handed;
-    handle(s, "Fold the tools", "Puts the settings of the tools away, or brings them back (Tab: all panels)", swapped ? right : left, s.tools_shown != swapped, s.tools_shown);
-    if (s.journal_fits) handle(s, "Fold the journal", "Puts the journal away, or brings it back (Tab: all panels)", swapped ? left : right, s.journal_shown == swapped, s.journal_shown);
+    handle(s, "Fold the tools", "Puts the settings of the tools away, or brings them back (Tab: all panels)",
+           swapped ? right : left, s.tools_shown != swapped, s.tools_shown);
+    if (s.journal_fits)
+        handle(s, "Fold the journal", "Puts the journal away, or brings it back (Tab: all panels)",
+               swapped ? left : right, s.journal_shown == swapped, s.journal_shown);
 }
 
 }  // namespace tuft::app

@@ -39,7 +39,9 @@ std::string first_of(const std::map<std::string, std::string>& fonts, std::initi
     return {};
 }
 
-ImVec4 grey(float v, float alpha = 1) { return {v, v, v * 1.015f, alpha}; }
+ImVec4 grey(float v, float alpha = 1) {
+    return {v, v, v * 1.015f, alpha};
+}
 
 }  // namespace
 
@@ -49,15 +51,19 @@ float scale_for(float content, int width, int height) {
 }
 
 std::string find_chinese_font(const std::map<std::string, std::string>& fonts) {
-    if (std::string known = first_of(fonts, {"NotoSansCJK-Regular.ttc", "NotoSansCJKsc-Regular.otf", "NotoSansSC-Regular.otf", "NotoSansSC-Regular.ttf", "SourceHanSansSC-Regular.otf",
-                                             "SourceHanSansCN-Regular.otf", "SourceHanSans-Regular.ttc", "wqy-microhei.ttc", "wqy-zenhei.ttc", "LXGWWenKai-Regular.ttf",
-                                             "DroidSansFallbackFull.ttf", "DroidSansFallback.ttf", "NotoSerifCJK-Regular.ttc", "uming.ttc", "ukai.ttc"});
+    if (std::string known =
+            first_of(fonts, {"NotoSansCJK-Regular.ttc", "NotoSansCJKsc-Regular.otf", "NotoSansSC-Regular.otf",
+                             "NotoSansSC-Regular.ttf", "SourceHanSansSC-Regular.otf", "SourceHanSansCN-Regular.otf",
+                             "SourceHanSans-Regular.ttc", "wqy-microhei.ttc", "wqy-zenhei.ttc",
+                             "LXGWWenKai-Regular.ttf", "DroidSansFallbackFull.ttf", "DroidSansFallback.ttf",
+                             "NotoSerifCJK-Regular.ttc", "uming.ttc", "ukai.ttc"});
         !known.empty())
         return known;
     // Others say in their names what they hold.
     for (const auto& [name, path] : fonts) {
         const bool font = name.ends_with(".ttf") || name.ends_with(".otf") || name.ends_with(".ttc");
-        for (const char* word : {"CJK", "SansSC", "SansCN", "SansHans", "SerifSC", "SerifCN", "wqy-", "simsun", "simhei", "msyh"})
+        for (const char* word :
+             {"CJK", "SansSC", "SansCN", "SansHans", "SerifSC", "SerifCN", "wqy-", "simsun", "simhei", "msyh"})
             if (font && name.find(word) != std::string::npos) return path;
     }
     return {};
@@ -70,9 +76,11 @@ std::string Ui::prepare(const UiSettings& settings) {
     std::string missing;
     has_chinese = false;
     const std::map<std::string, std::string> fonts = list_fonts();
-    const std::string latin = first_of(fonts, {"NotoSans-Regular.ttf", "Inter-Regular.ttf", "Ubuntu-R.ttf", "Cantarell-Regular.otf",
-                                               "DejaVuSans.ttf", "LiberationSans-Regular.ttf", "FreeSans.ttf"});
-    static const ImWchar latin_range[] = {0x20, 0x17f, 0x2010, 0x2027, 0x2190, 0x2193, 0x00b0, 0x00b7, 0x0394, 0x0394, 0x03bc, 0x03bc, 0};
+    const std::string latin =
+        first_of(fonts, {"NotoSans-Regular.ttf", "Inter-Regular.ttf", "Ubuntu-R.ttf", "Cantarell-Regular.otf",
+                         "DejaVuSans.ttf", "LiberationSans-Regular.ttf", "FreeSans.ttf"});
+    static const ImWchar latin_range[] = {0x20,   0x17f,  0x2010, 0x2027, 0x2190, 0x2193, 0x00b0,
+                                          0x00b7, 0x0394, 0x0394, 0x03bc, 0x03bc, 0};
     const float size = std::round(kFontSize * settings.scale);
     if (latin.empty()) {
         missing = "No font of the system was found; the built-in one is used.";
@@ -88,7 +96,8 @@ std::string Ui::prepare(const UiSettings& settings) {
         ranges.clear();
         ImFontGlyphRangesBuilder builder;
         builder.AddText(all_chinese_text().c_str());
-        if (settings.language == Language::chinese) builder.AddRanges(io.Fonts->GetGlyphRangesChineseSimplifiedCommon());
+        if (settings.language == Language::chinese)
+            builder.AddRanges(io.Fonts->GetGlyphRangesChineseSimplifiedCommon());
         builder.BuildRanges(&ranges);
         // A square character needs more room than a Latin letter of the same size to be read.
         const float square = std::round(1.14f * size);
@@ -99,10 +108,13 @@ std::string Ui::prepare(const UiSettings& settings) {
         io.Fonts->AddFontFromFileTTF(chinese.c_str(), square, &config, ranges.Data);
         has_chinese = true;
     } else if (settings.language == Language::chinese) {
-        missing = "No Chinese font is installed. Install fonts-noto-cjk (Debian, Ubuntu), google-noto-sans-cjk-fonts (Fedora) or noto-fonts-cjk (Arch), then choose the language again.";
+        missing =
+            "No Chinese font is installed. Install fonts-noto-cjk (Debian, Ubuntu), google-noto-sans-cjk-fonts "
+            "(Fedora) or noto-fonts-cjk (Arch), then choose the language again.";
         settings_.language = Language::english;
     }
-    large = latin.empty() ? io.Fonts->Fonts[0] : io.Fonts->AddFontFromFileTTF(latin.c_str(), std::round(1.6f * size), nullptr, latin_range);
+    large = latin.empty() ? io.Fonts->Fonts[0]
+                          : io.Fonts->AddFontFromFileTTF(latin.c_str(), std::round(1.6f * size), nullptr, latin_range);
     style();
     return missing;
 }
@@ -200,7 +212,9 @@ std::string Ui::tr_sentence(const std::string& english) const {
     return out;
 }
 
-std::string Ui::id(const char* label) const { return std::string(tr(label)) + "##" + label; }
+std::string Ui::id(const char* label) const {
+    return std::string(tr(label)) + "##" + label;
+}
 
 void Ui::begin_frame() {
     places_.clear();
@@ -254,7 +268,8 @@ bool Ui::button(const char* label, const char* text, float width, bool enabled) 
 
 bool Ui::primary_button(const char* label, float width, bool enabled) {
     ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(kPrimary[0], kPrimary[1], kPrimary[2], 1));
-    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(kPrimaryHovered[0], kPrimaryHovered[1], kPrimaryHovered[2], 1));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered,
+                          ImVec4(kPrimaryHovered[0], kPrimaryHovered[1], kPrimaryHovered[2], 1));
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 1, 1, 1));
     bool pressed = button(label, nullptr, width, enabled);
     ImGui::PopStyleColor(3);
@@ -286,8 +301,12 @@ namespace {
 
 // The triangle of what can be folded: down when it is open, to the right else.
 void draw_arrow(ImDrawList* draw, ImVec2 c, float r, bool open, unsigned colour) {
-    if (open) draw->AddTriangleFilled(ImVec2(c.x - r, c.y - 0.6f * r), ImVec2(c.x + r, c.y - 0.6f * r), ImVec2(c.x, c.y + 0.8f * r), colour);
-    else draw->AddTriangleFilled(ImVec2(c.x - 0.6f * r, c.y - r), ImVec2(c.x + 0.8f * r, c.y), ImVec2(c.x - 0.6f * r, c.y + r), colour);
+    if (open)
+        draw->AddTriangleFilled(ImVec2(c.x - r, c.y - 0.6f * r), ImVec2(c.x + r, c.y - 0.6f * r),
+                                ImVec2(c.x, c.y + 0.8f * r), colour);
+    else
+        draw->AddTriangleFilled(ImVec2(c.x - 0.6f * r, c.y - r), ImVec2(c.x + 0.8f * r, c.y),
+                                ImVec2(c.x - 0.6f * r, c.y + r), colour);
 }
 
 // What lies behind a slider: filled from zero, or from its lower end, to the value, so that the number on it can be
@@ -297,17 +316,23 @@ void draw_slider_ground(float lo, float hi, float value, float grab) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 end(at.x + ImGui::GetContentRegionAvail().x, at.y + ImGui::GetFrameHeight());
     const float round = ImGui::GetStyle().FrameRounding;
-    const auto place = [&](float v) { return at.x + pad + 0.5f * grab + std::clamp((v - lo) / (hi - lo), 0.0f, 1.0f) * (end.x - at.x - 2 * pad - grab); };
-    const bool over = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem) && ImGui::IsMouseHoveringRect(at, end);
+    const auto place = [&](float v) {
+        return at.x + pad + 0.5f * grab +
+               std::clamp((v - lo) / (hi - lo), 0.0f, 1.0f) * (end.x - at.x - 2 * pad - grab);
+    };
+    const bool over =
+        ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem) && ImGui::IsMouseHoveringRect(at, end);
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->AddRectFilled(at, end, ImGui::GetColorU32(over ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), round);
     const float zero = lo < 0 ? place(0) : at.x, now = place(value);
-    draw->AddRectFilled({std::min(zero, now), at.y}, {std::max(zero, now), end.y}, ImGui::GetColorU32(ImGuiCol_Header), lo < 0 ? 0 : round);
+    draw->AddRectFilled({std::min(zero, now), at.y}, {std::max(zero, now), end.y}, ImGui::GetColorU32(ImGuiCol_Header),
+                        lo < 0 ? 0 : round);
 }
 
 }  // namespace
 
-bool Ui::slider(const char* label, double& value, double lo, double hi, const char* format, const char* text, double unit) {
+bool Ui::slider(const char* label, double& value, double lo, double hi, const char* format, const char* text,
+                double unit) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(tr(label));
     hint(text);
@@ -318,7 +343,8 @@ bool Ui::slider(const char* label, double& value, double lo, double hi, const ch
     const auto least = static_cast<float>(lo / unit), most = static_cast<float>(hi / unit);
     draw_slider_ground(least, most, v, px(4));
     ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, px(4));
-    for (const int ground : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive}) ImGui::PushStyleColor(ground, IM_COL32_BLACK_TRANS);
+    for (const int ground : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive})
+        ImGui::PushStyleColor(ground, IM_COL32_BLACK_TRANS);
     const bool changed = ImGui::SliderFloat(name.c_str(), &v, least, most, format, ImGuiSliderFlags_AlwaysClamp);
     ImGui::PopStyleColor(3);
     ImGui::PopStyleVar();
@@ -352,7 +378,9 @@ bool Ui::menu_item(const char* label, const char* shortcut, bool chosen, bool en
     return pressed;
 }
 
-void Ui::fold_arrow(float x, float y, bool open) const { draw_arrow(ImGui::GetWindowDrawList(), ImVec2(x, y), px(4), open, strong); }
+void Ui::fold_arrow(float x, float y, bool open) const {
+    draw_arrow(ImGui::GetWindowDrawList(), ImVec2(x, y), px(4), open, strong);
+}
 
 bool Ui::begin_menu(const char* label) {
     const bool open = ImGui::BeginMenu(id(label).c_str());
@@ -366,14 +394,16 @@ void Ui::heading(const char* text) {
     ImGui::TextUnformatted(tr(text));
     ImGui::PopStyleColor();
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::GetWindowDrawList()->AddLine(ImVec2(at.x, at.y - px(3)), ImVec2(at.x + ImGui::GetContentRegionAvail().x, at.y - px(3)),
+    ImGui::GetWindowDrawList()->AddLine(ImVec2(at.x, at.y - px(3)),
+                                        ImVec2(at.x + ImGui::GetContentRegionAvail().x, at.y - px(3)),
                                         ImGui::GetColorU32(ImGuiCol_Separator));
     ImGui::Dummy(ImVec2(0, px(1)));
 }
 
 bool Ui::section(const char* title, bool open, const char* value) {
     if (const auto known = sections.find(title); known != sections.end()) open = known->second;
-    const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight() + px(4));
+    const ImVec2 at = ImGui::GetCursorScreenPos(),
+                 size(ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight() + px(4));
     if (ImGui::InvisibleButton((std::string("##fold ") + title).c_str(), size)) {
         sections[title] = open = !open;
         sections_changed = true;
@@ -387,7 +417,8 @@ bool Ui::section(const char* title, bool open, const char* value) {
         const std::string shown = fitted(value, size.x - px(25) - ImGui::CalcTextSize(tr(title)).x);
         draw->AddText(ImVec2(at.x + size.x - ImGui::CalcTextSize(shown.c_str()).x, at.y), strong, shown.c_str());
     }
-    draw->AddLine(ImVec2(at.x, at.y + size.y - px(1)), ImVec2(at.x + size.x, at.y + size.y - px(1)), ImGui::GetColorU32(ImGuiCol_Separator));
+    draw->AddLine(ImVec2(at.x, at.y + size.y - px(1)), ImVec2(at.x + size.x, at.y + size.y - px(1)),
+                  ImGui::GetColorU32(ImGuiCol_Separator));
     return open;
 }
 

@@ -19,9 +19,9 @@ enum class Theme { dark, light };
 struct UiSettings {
     Language language = Language::english;
     Theme theme = Theme::dark;
-    float scale = 1;              ///< of all sizes
-    bool own_scale = false;       ///< chosen by the person; else it follows the display
-    bool left_handed = false;     ///< tools on the right
+    float scale = 1;           ///< of all sizes
+    bool own_scale = false;    ///< chosen by the person; else it follows the display
+    bool left_handed = false;  ///< tools on the right
 };
 
 /// The scale for a picture of that size on a display that asks for `content`: what it asks for, and at least as much
@@ -51,10 +51,10 @@ class Ui {
     float px(float length) const { return length * settings_.scale; }
 
     void begin_frame();
-    bool enter = false;           ///< Enter was pressed: the primary button of the dialog takes it
+    bool enter = false;  ///< Enter was pressed: the primary button of the dialog takes it
     bool in_dialog = false;
-    bool in_menu = false;         ///< what is drawn now is a menu over the rest: its names go before those below
-    bool modal = false;           ///< a dialog is open: what lies behind it says nothing
+    bool in_menu = false;  ///< what is drawn now is a menu over the rest: its names go before those below
+    bool modal = false;    ///< a dialog is open: what lies behind it says nothing
     bool button(const char* label, const char* hint = nullptr, float width = 0, bool enabled = true);
     /// Pixels of a button's width: at least `least` at a scale of 1, and as much as the text needs.
     float button_width(const char* label, float least) const;
@@ -67,8 +67,8 @@ class Ui {
     bool menu_item(const char* label, const char* shortcut = nullptr, bool chosen = false, bool enabled = true);
     bool begin_menu(const char* label);
     void heading(const char* text);
-    /// A heading that a click folds and unfolds; true when what is under it is to be drawn. `open`: as shipped; `value`:
-    /// what is chosen there, already in the chosen language, at the heading's right end.
+    /// A heading that a click folds and unfolds; true when what is under it is to be drawn. `open`: as shipped;
+    /// `value`: what is chosen there, already in the chosen language, at the heading's right end.
     bool section(const char* title, bool open = true, const char* value = nullptr);
     /// The triangle of such a heading with its middle at a place of the window, pixels.
     void fold_arrow(float x, float y, bool open) const;
@@ -82,8 +82,8 @@ class Ui {
     /// Remembers where the last item is, under a name.
     void mark(const std::string& name);
     struct Place {
-        double x = 0, y = 0;      ///< pixels, centre
-        bool on_top = false;      ///< in a menu that lies over the rest
+        double x = 0, y = 0;  ///< pixels, centre
+        bool on_top = false;  ///< in a menu that lies over the rest
     };
     /// Where the widget of that name was in the last frame; nullptr: it was not drawn.
     const Place* find(const std::string& name) const;
@@ -93,7 +93,7 @@ class Ui {
     void buttons_at_right(std::initializer_list<std::pair<const char*, float>> buttons) const;
 
     ImFont* large = nullptr;
-    bool has_chinese = false;     ///< a font of the system has Chinese characters
+    bool has_chinese = false;                    ///< a font of the system has Chinese characters
     unsigned accent = 0, faint = 0, strong = 0;  ///< ImU32 colours of the theme
 
   private:

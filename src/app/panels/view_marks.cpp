@@ -23,7 +23,8 @@ void contact_outline(const Session& s, const render::GlCamera& c, ImDrawList* dr
         std::vector<ImVec2> left, right;
         for (const brush::Section& section : branch.sections) {
             if (section.pressure <= 0) continue;
-            const Vec3 across = std::abs(section.a) > std::abs(section.b) ? section.a * section.e : section.b * section.m;
+            const Vec3 across =
+                std::abs(section.a) > std::abs(section.b) ? section.a * section.e : section.b * section.m;
             for (const double side : {1.0, -1.0}) {
                 const auto on = query.closest_point(section.centre + side * across, 0.02);
                 if (on) (side > 0 ? left : right).push_back(on_screen(s, c, on->position));
@@ -31,13 +32,15 @@ void contact_outline(const Session& s, const render::GlCamera& c, ImDrawList* dr
         }
         if (left.size() < 2) continue;
         left.insert(left.end(), right.rbegin(), right.rend());
-        draw->AddPolyline(left.data(), static_cast<int>(left.size()), IM_COL32(255, 176, 32, 200), ImDrawFlags_Closed, s.ui.px(1.5f));
+        draw->AddPolyline(left.data(), static_cast<int>(left.size()), IM_COL32(255, 176, 32, 200), ImDrawFlags_Closed,
+                          s.ui.px(1.5f));
     }
 }
 
 // Ring on the surface below a hovering tuft, as wide as its belly.
 void hover_ring(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
-    const brush::Section &tip = s.tuft.branches.front().sections.front(), &root = s.tuft.branches.front().sections.back();
+    const brush::Section &tip = s.tuft.branches.front().sections.front(),
+                         &root = s.tuft.branches.front().sections.back();
     const Vec3 axis = glm::normalize(tip.centre - root.centre);
     const auto hit = s.painter->model().query->ray(root.centre, axis, 0, 0.2);
     if (!hit) return;
@@ -48,15 +51,18 @@ void hover_ring(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
         const double a = 2 * std::numbers::pi * i / 40;
         ring.push_back(on_screen(s, c, f.origin + radius * (std::cos(a) * f.t + std::sin(a) * f.b)));
     }
-    draw->AddPolyline(ring.data(), static_cast<int>(ring.size()), IM_COL32(255, 255, 255, 190), ImDrawFlags_Closed, s.ui.px(3));
-    draw->AddPolyline(ring.data(), static_cast<int>(ring.size()), IM_COL32(30, 30, 30, 220), ImDrawFlags_Closed, s.ui.px(1.3f));
+    draw->AddPolyline(ring.data(), static_cast<int>(ring.size()), IM_COL32(255, 255, 255, 190), ImDrawFlags_Closed,
+                      s.ui.px(3));
+    draw->AddPolyline(ring.data(), static_cast<int>(ring.size()), IM_COL32(30, 30, 30, 220), ImDrawFlags_Closed,
+                      s.ui.px(1.3f));
 }
 
 // Where the symmetric copies of the brush would touch: a dot on the surface, faint where it is not seen.
 void copy_dots(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     const std::vector<stroke::PoseMap> copies = stroke::symmetry_copies(s.symmetry);
     if (copies.empty()) return;
-    const brush::Section &tip = s.tuft.branches.front().sections.front(), &root = s.tuft.branches.front().sections.back();
+    const brush::Section &tip = s.tuft.branches.front().sections.front(),
+                         &root = s.tuft.branches.front().sections.back();
     const mesh::SurfaceQuery& query = *s.painter->model().query;
     for (const stroke::PoseMap& map : copies) {
         const Vec3 from = map.point(root.centre), to = map.point(tip.centre), way = glm::normalize(to - from);
@@ -66,19 +72,22 @@ void copy_dots(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
         const Vec3 eye = c.parallel_height > 0 ? -c.forward : glm::normalize(c.eye - on->position);
         const bool seen = !query.ray(on->position + 1e-4 * eye, eye, 0);
         draw->AddCircleFilled(on_screen(s, c, on->position), s.ui.px(4), IM_COL32(255, 255, 255, seen ? 220 : 60), 16);
-        draw->AddCircleFilled(on_screen(s, c, on->position), s.ui.px(2.6f), IM_COL32(255, 150, 30, seen ? 255 : 70), 16);
+        draw->AddCircleFilled(on_screen(s, c, on->position), s.ui.px(2.6f), IM_COL32(255, 150, 30, seen ? 255 : 70),
+                              16);
     }
 }
 
 void axis_cross(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     const float size = s.ui.px(26);
-    const ImVec2 origin(static_cast<float>(s.area.x + s.area.width) - s.ui.px(44), static_cast<float>(s.area.y) + s.ui.px(44));
+    const ImVec2 origin(static_cast<float>(s.area.x + s.area.width) - s.ui.px(44),
+                        static_cast<float>(s.area.y) + s.ui.px(44));
     struct Arm {
         Vec3 direction;
         unsigned colour;
         const char* name;
     };
-    Arm arms[] = {{{1, 0, 0}, IM_COL32(226, 92, 84, 255), "X"}, {{0, 1, 0}, IM_COL32(118, 178, 72, 255), "Y"},
+    Arm arms[] = {{{1, 0, 0}, IM_COL32(226, 92, 84, 255), "X"},
+                  {{0, 1, 0}, IM_COL32(118, 178, 72, 255), "Y"},
                   {{0, 0, 1}, IM_COL32(86, 140, 226, 255), "Z"}};
     std::sort(std::begin(arms), std::end(arms), [&](const Arm& a, const Arm& b) {
         return glm::dot(a.direction, c.forward) > glm::dot(b.direction, c.forward);
@@ -89,7 +98,8 @@ void axis_cross(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
         draw->AddLine(origin, end, arm.colour, s.ui.px(2));
         draw->AddCircleFilled(end, s.ui.px(8), arm.colour);
         const ImVec2 text = ImGui::CalcTextSize(arm.name);
-        draw->AddText(ImGui::GetFont(), ImGui::GetFontSize() * 0.8f, ImVec2(end.x - 0.4f * text.x, end.y - 0.4f * text.y), IM_COL32(20, 20, 20, 255), arm.name);
+        draw->AddText(ImGui::GetFont(), ImGui::GetFontSize() * 0.8f,
+                      ImVec2(end.x - 0.4f * text.x, end.y - 0.4f * text.y), IM_COL32(20, 20, 20, 255), arm.name);
     }
 }
 
@@ -97,8 +107,10 @@ void lasso_marks(const Session& s, ImDrawList* draw) {
     if (s.lasso.empty()) return;
     std::vector<ImVec2> line;
     for (const Vec2& p : s.lasso) line.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
-    draw->AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(20, 20, 24, 200), ImDrawFlags_Closed, s.ui.px(3.5f));
-    draw->AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(255, 196, 64, 255), ImDrawFlags_Closed, s.ui.px(1.5f));
+    draw->AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(20, 20, 24, 200), ImDrawFlags_Closed,
+                      s.ui.px(3.5f));
+    draw->AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(255, 196, 64, 255), ImDrawFlags_Closed,
+                      s.ui.px(1.5f));
 }
 
 // A bar of a round length for the scale at the model's middle.
@@ -108,7 +120,8 @@ void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     const double power = std::pow(10, std::floor(std::log10(want)));
     const double length = want / power >= 5 ? 5 * power : want / power >= 2 ? 2 * power : power;
     const auto width = static_cast<float>(length * 1e-3 / pixel);
-    const float right = static_cast<float>(s.area.x + s.area.width) - s.ui.px(20), y = static_cast<float>(s.area.y + s.area.height) - s.ui.px(20);
+    const float right = static_cast<float>(s.area.x + s.area.width) - s.ui.px(20),
+                y = static_cast<float>(s.area.y + s.area.height) - s.ui.px(20);
     // Light with a dark rim: to be read on any ground.
     constexpr unsigned rim = IM_COL32(24, 24, 26, 210), light = IM_COL32(245, 245, 245, 255);
     for (const auto& [colour, more] : {std::pair{rim, 1.0f}, std::pair{light, 0.0f}}) {
@@ -119,7 +132,9 @@ void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     char text[32];
     std::snprintf(text, sizeof text, length >= 1000 ? "%.0f m" : "%g mm", length >= 1000 ? length / 1000 : length);
     const ImVec2 at(right - width, y - s.ui.px(25)), size = ImGui::CalcTextSize(text);
-    draw->AddRectFilled(ImVec2(at.x - s.ui.px(5), at.y - s.ui.px(1)), ImVec2(at.x + size.x + s.ui.px(5), at.y + size.y + s.ui.px(1)), IM_COL32(24, 24, 26, 190), s.ui.px(4));
+    draw->AddRectFilled(ImVec2(at.x - s.ui.px(5), at.y - s.ui.px(1)),
+                        ImVec2(at.x + size.x + s.ui.px(5), at.y + size.y + s.ui.px(1)), IM_COL32(24, 24, 26, 190),
+                        s.ui.px(4));
     draw->AddText(at, light, text);
 }
 
@@ -128,10 +143,12 @@ void curve_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
     const auto& points = s.curve.points;
     if (points.empty()) return;
     const std::vector<CurvePlace> places = lay_curve(*s.painter->model().query, points, 32);
-    for (const auto& [colour, width] : {std::pair{IM_COL32(20, 20, 24, 170), 4.0f}, std::pair{IM_COL32(255, 196, 64, 255), 1.8f}})
+    for (const auto& [colour, width] :
+         {std::pair{IM_COL32(20, 20, 24, 170), 4.0f}, std::pair{IM_COL32(255, 196, 64, 255), 1.8f}})
         for (std::size_t i = 1; i < places.size(); ++i)
             if (places[i].on && places[i - 1].on)
-                draw->AddLine(on_screen(s, c, places[i - 1].position), on_screen(s, c, places[i].position), colour, s.ui.px(width));
+                draw->AddLine(on_screen(s, c, places[i - 1].position), on_screen(s, c, places[i].position), colour,
+                              s.ui.px(width));
     for (std::size_t i = 0; i < points.size(); ++i) {
         const bool held = static_cast<int>(i) == s.curve.grabbed || static_cast<int>(i) == s.curve.over;
         const ImVec2 at = on_screen(s, c, points[i].position);
@@ -147,7 +164,8 @@ void ghost_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
     for (const auto& line : s.ghost)
         for (std::size_t i = 1; i < line.size(); ++i)
             if (line[i - 1].seen && line[i].seen)
-                draw->AddLine(on_screen(s, c, line[i - 1].position), on_screen(s, c, line[i].position), IM_COL32(255, 150, 30, 230), s.ui.px(1.6f));
+                draw->AddLine(on_screen(s, c, line[i - 1].position), on_screen(s, c, line[i].position),
+                              IM_COL32(255, 150, 30, 230), s.ui.px(1.6f));
 }
 
 // Where the chosen ink would lie while it is moved: dots round it.
@@ -160,7 +178,8 @@ void shift_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
     const double tolerance = 2e-3 * s.painter->model().mesh->bounds.diagonal();
     for (const OutlinePoint& p : j.outline) {
         const auto on = query.closest_point(m.to + m.rotation * (Vec3(p.position) - m.from));
-        if (on && is_seen(query, c, section, on->position, tolerance)) draw->AddCircleFilled(on_screen(s, c, on->position), s.ui.px(1.6f), IM_COL32(0, 190, 255, 255), 6);
+        if (on && is_seen(query, c, section, on->position, tolerance))
+            draw->AddCircleFilled(on_screen(s, c, on->position), s.ui.px(1.6f), IM_COL32(0, 190, 255, 255), 6);
     }
 }
 
@@ -174,13 +193,17 @@ void legend(const Session& s, ImDrawList* draw, std::span<const Stop> stops, con
     const float width = s.ui.px(190), height = s.ui.px(10);
     // In a narrow view the tuft's inset takes the module below.
     const bool narrow = static_cast<float>(s.area.width) < s.ui.px(460);
-    const ImVec2 at(narrow ? static_cast<float>(s.area.x) + s.ui.px(20) : static_cast<float>(s.area.x + s.area.width) - s.ui.px(20) - width,
-                    narrow ? static_cast<float>(s.area.y) + s.ui.px(20) : static_cast<float>(s.area.y + s.area.height) - s.ui.px(98));
-    draw->AddRectFilled(ImVec2(at.x - s.ui.px(10), at.y - s.ui.px(10)), ImVec2(at.x + width + s.ui.px(10), at.y + height + s.ui.px(28)),
-                        IM_COL32(24, 24, 26, 190), s.ui.px(5));
+    const ImVec2 at(narrow ? static_cast<float>(s.area.x) + s.ui.px(20)
+                           : static_cast<float>(s.area.x + s.area.width) - s.ui.px(20) - width,
+                    narrow ? static_cast<float>(s.area.y) + s.ui.px(20)
+                           : static_cast<float>(s.area.y + s.area.height) - s.ui.px(98));
+    draw->AddRectFilled(ImVec2(at.x - s.ui.px(10), at.y - s.ui.px(10)),
+                        ImVec2(at.x + width + s.ui.px(10), at.y + height + s.ui.px(28)), IM_COL32(24, 24, 26, 190),
+                        s.ui.px(5));
     for (std::size_t i = 1; i < stops.size(); ++i)
-        draw->AddRectFilledMultiColor(ImVec2(at.x + stops[i - 1].at * width, at.y), ImVec2(at.x + stops[i].at * width, at.y + height),
-                                      stops[i - 1].colour, stops[i].colour, stops[i].colour, stops[i - 1].colour);
+        draw->AddRectFilledMultiColor(ImVec2(at.x + stops[i - 1].at * width, at.y),
+                                      ImVec2(at.x + stops[i].at * width, at.y + height), stops[i - 1].colour,
+                                      stops[i].colour, stops[i].colour, stops[i - 1].colour);
     const unsigned text = IM_COL32(240, 240, 240, 255);
     draw->AddText(ImVec2(at.x, at.y + height + s.ui.px(4)), text, low);
     draw->AddText(ImVec2(at.x + width - ImGui::CalcTextSize(high).x, at.y + height + s.ui.px(4)), text, high);
@@ -189,14 +212,18 @@ void legend(const Session& s, ImDrawList* draw, std::span<const Stop> stops, con
 void legends(const Session& s, ImDrawList* draw) {
     if (s.view.shown == ModelView::height || s.view.shown == ModelView::wetness) {
         // As `ramp` in mesh.frag.
-        static constexpr Stop stops[] = {{IM_COL32(33, 31, 77, 255), 0}, {IM_COL32(46, 94, 140, 255), 0.25f}, {IM_COL32(41, 153, 140, 255), 0.5f},
-                                         {IM_COL32(140, 201, 82, 255), 0.75f}, {IM_COL32(252, 232, 102, 255), 1}};
+        static constexpr Stop stops[] = {{IM_COL32(33, 31, 77, 255), 0},
+                                         {IM_COL32(46, 94, 140, 255), 0.25f},
+                                         {IM_COL32(41, 153, 140, 255), 0.5f},
+                                         {IM_COL32(140, 201, 82, 255), 0.75f},
+                                         {IM_COL32(252, 232, 102, 255), 1}};
         char high[32];
         std::snprintf(high, sizeof high, "%g \xce\xbcm", height_range(s));
         legend(s, draw, stops, "0", high);
     } else if (s.view.shown == ModelView::stretch) {
         // As `stretch_colours`.
-        static constexpr Stop stops[] = {{IM_COL32(36, 87, 214, 255), 0}, {IM_COL32(184, 184, 184, 255), 0.5f}, {IM_COL32(219, 51, 31, 255), 1}};
+        static constexpr Stop stops[] = {
+            {IM_COL32(36, 87, 214, 255), 0}, {IM_COL32(184, 184, 184, 255), 0.5f}, {IM_COL32(219, 51, 31, 255), 1}};
         legend(s, draw, stops, s.ui.tr("coarser \xc3\x97 1.5"), s.ui.tr("finer \xc3\x97 1.5"));
     }
 }
@@ -210,8 +237,9 @@ double height_range(const Session& s) {
 
 void view_marks(const Session& s, const render::GlCamera& c) {
     ImDrawList* draw = ImGui::GetBackgroundDrawList();
-    draw->PushClipRect(ImVec2(static_cast<float>(s.area.x), static_cast<float>(s.area.y)),
-                       ImVec2(static_cast<float>(s.area.x + s.area.width), static_cast<float>(s.area.y + s.area.height)), true);
+    draw->PushClipRect(
+        ImVec2(static_cast<float>(s.area.x), static_cast<float>(s.area.y)),
+        ImVec2(static_cast<float>(s.area.x + s.area.width), static_cast<float>(s.area.y + s.area.height)), true);
     if (!s.tuft.branches.empty()) s.pressed ? contact_outline(s, c, draw) : hover_ring(s, c, draw);
     if (!s.tuft.branches.empty()) copy_dots(s, c, draw);
     curve_marks(s, c, draw);

@@ -27,17 +27,20 @@ bool card(Session& s, const fs::path& file, const std::string& name, float width
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const bool over = ImGui::IsItemHovered();
     const float round = s.ui.px(5);
-    draw->AddRectFilled(at, ImVec2(at.x + width, at.y + height + text), ImGui::GetColorU32(over ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), round);
+    draw->AddRectFilled(at, ImVec2(at.x + width, at.y + height + text),
+                        ImGui::GetColorU32(over ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), round);
     const unsigned texture = s.pictures.texture(file);
     if (texture)
         draw->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at,
                               ImVec2(at.x + width, at.y + height), ImVec2(0, 0), ImVec2(1, 1), IM_COL32_WHITE, round,
                               ImDrawFlags_RoundCornersTop);
     else
-        draw->AddRectFilled(at, ImVec2(at.x + width, at.y + height), IM_COL32(120, 120, 124, 40), round, ImDrawFlags_RoundCornersTop);
+        draw->AddRectFilled(at, ImVec2(at.x + width, at.y + height), IM_COL32(120, 120, 124, 40), round,
+                            ImDrawFlags_RoundCornersTop);
     const ImVec2 size = ImGui::CalcTextSize(name.c_str());
     draw->PushClipRect(at, ImVec2(at.x + width, at.y + height + text), true);
-    draw->AddText(ImVec2(at.x + std::max(s.ui.px(6), 0.5f * (width - size.x)), at.y + height + 0.5f * (text - size.y)), s.ui.strong, name.c_str());
+    draw->AddText(ImVec2(at.x + std::max(s.ui.px(6), 0.5f * (width - size.x)), at.y + height + 0.5f * (text - size.y)),
+                  s.ui.strong, name.c_str());
     draw->PopClipRect();
     if (over) ImGui::SetTooltip("%s", file.c_str());
     ImGui::PopID();
@@ -66,8 +69,9 @@ void welcome(Session& s) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(side, ui.px(22)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
-    ImGui::Begin("###welcome", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::Begin("###welcome", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::PopStyleVar(3);
     ImGui::PushFont(ui.large);
     ImGui::TextUnformatted("tuft studio");

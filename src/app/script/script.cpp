@@ -19,22 +19,27 @@
 namespace tuft::app {
 namespace {
 
-constexpr double kStrokeSpeed = 260;   // pixels per second
-constexpr double kLongestWait = 120;   // seconds until a wait is given up, where the script names no other
-constexpr double kLabelWait = 5;       // seconds until a label is given up
+constexpr double kStrokeSpeed = 260;  // pixels per second
+constexpr double kLongestWait = 120;  // seconds until a wait is given up, where the script names no other
+constexpr double kLabelWait = 5;      // seconds until a label is given up
 
 int key_code(const std::string& name) {
     static const std::map<std::string, int> names{
-        {"home", GLFW_KEY_HOME}, {"end", GLFW_KEY_END}, {"escape", GLFW_KEY_ESCAPE}, {"enter", GLFW_KEY_ENTER}, {"tab", GLFW_KEY_TAB},
-        {"space", GLFW_KEY_SPACE}, {"left", GLFW_KEY_LEFT}, {"right", GLFW_KEY_RIGHT}, {"up", GLFW_KEY_UP}, {"down", GLFW_KEY_DOWN},
-        {"delete", GLFW_KEY_DELETE}, {"backspace", GLFW_KEY_BACKSPACE}, {"f1", GLFW_KEY_F1}, {"f2", GLFW_KEY_F2}};
+        {"home", GLFW_KEY_HOME},   {"end", GLFW_KEY_END},       {"escape", GLFW_KEY_ESCAPE},
+        {"enter", GLFW_KEY_ENTER}, {"tab", GLFW_KEY_TAB},       {"space", GLFW_KEY_SPACE},
+        {"left", GLFW_KEY_LEFT},   {"right", GLFW_KEY_RIGHT},   {"up", GLFW_KEY_UP},
+        {"down", GLFW_KEY_DOWN},   {"delete", GLFW_KEY_DELETE}, {"backspace", GLFW_KEY_BACKSPACE},
+        {"f1", GLFW_KEY_F1},       {"f2", GLFW_KEY_F2}};
     if (const auto at = names.find(name); at != names.end()) return at->second;
     if (name.size() == 1) return std::toupper(static_cast<unsigned char>(name[0]));
     return -1;
 }
 
 unsigned modifier_of(const std::string& name) {
-    return name == "ctrl" ? unsigned{kControl} : name == "shift" ? unsigned{kShift} : name == "alt" ? unsigned{kAlt} : 0u;
+    return name == "ctrl"    ? unsigned{kControl}
+           : name == "shift" ? unsigned{kShift}
+           : name == "alt"   ? unsigned{kAlt}
+                             : 0u;
 }
 
 int button_of(const ScriptCommand& c) {
@@ -46,13 +51,16 @@ int button_of(const ScriptCommand& c) {
 
 Script::Script(const std::filesystem::path& path) : path_(path), commands_(parse_script(path)) {}
 
-void Script::fail(const ScriptCommand& command, const std::string& why) const { throw Error(path_.string(), command.line, why); }
+void Script::fail(const ScriptCommand& command, const std::string& why) const {
+    throw Error(path_.string(), command.line, why);
+}
 
 void Script::add(Event event, double after) {
     clock_ += after;
     event.time = clock_;
     if (event.kind != Event::Kind::text) event.modifiers |= held_;
-    if (event.kind != Event::Kind::key_down && event.kind != Event::Kind::key_up && event.kind != Event::Kind::text) cursor_ = event;
+    if (event.kind != Event::Kind::key_down && event.kind != Event::Kind::key_up && event.kind != Event::Kind::text)
+        cursor_ = event;
     pending_.push_back(std::move(event));
 }
 
@@ -77,7 +85,8 @@ void Script::press_key(const std::string& chord, int line) {
 }
 
 void Script::hold(const std::string& chord, int line) {
-    static constexpr std::pair<unsigned, int> keys[] = {{kShift, GLFW_KEY_LEFT_SHIFT}, {kControl, GLFW_KEY_LEFT_CONTROL}, {kAlt, GLFW_KEY_LEFT_ALT}};
+    static constexpr std::pair<unsigned, int> keys[] = {
+        {kShift, GLFW_KEY_LEFT_SHIFT}, {kControl, GLFW_KEY_LEFT_CONTROL}, {kAlt, GLFW_KEY_LEFT_ALT}};
     unsigned wanted = 0;
     std::istringstream names(chord == "none" ? "" : chord);
     for (std::string name; std::getline(names, name, '+');) {
@@ -97,7 +106,8 @@ void Script::stroke(Studio& studio, const ScriptCommand& command) {
     const Area& area = studio.session().area;
     std::vector<Vec3> places;
     for (const ScriptPoint& p : command.points)
-        places.emplace_back(p.relative_x ? area.x + p.x * area.width : p.x, p.relative_y ? area.y + p.y * area.height : p.y, p.pressure);
+        places.emplace_back(p.relative_x ? area.x + p.x * area.width : p.x,
+                            p.relative_y ? area.y + p.y * area.height : p.y, p.pressure);
     add({.kind = Event::Kind::move, .x = places[0].x, .y = places[0].y}, 0.05);
     add({.kind = Event::Kind::press, .x = places[0].x, .y = places[0].y, .pressure = places[0].z}, 0.02);
     for (std::size_t i = 1; i < places.size(); ++i) {
@@ -108,28 +118,38 @@ void Script::stroke(Studio& studio, const ScriptCommand& command) {
             add({.kind = Event::Kind::move, .x = p.x, .y = p.y, .pressure = p.z}, sample_);
         }
     }
-    add({.kind = Event::Kind::release, .x = places.back().x, .y = places.back().y, .pressure = places.back().z}, sample_);
+    add({.kind = Event::Kind::release, .x = places.back().x, .y = places.back().y, .pressure = places.back().z},
+        sample_);
 }
 
 void Script::report(Studio& studio, double now) {
     const double seconds = now - report_start_;
     std::vector<double> delays = studio.take_delays();
     std::sort(delays.begin(), delays.end());
-    const auto at = [&](double q) { return delays.empty() ? 0.0 : 1e3 * delays[static_cast<std::size_t>(q * static_cast<double>(delays.size() - 1))]; };
+    const auto at = [&](double q) {
+        return delays.empty() ? 0.0
+                              : 1e3 * delays[static_cast<std::size_t>(q * static_cast<double>(delays.size() - 1))];
+    };
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
-    const auto seconds_of = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+    const auto seconds_of = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
     const double cpu = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
-    std::printf("{\"frames\": %zu, \"seconds\": %.3f, \"frames_per_second\": %.1f, \"delay_ms_median\": %.1f, \"delay_ms_p95\": %.1f, "
-                "\"samples\": %zu, \"strokes\": %zu, \"undo_ms\": %.1f, \"since_start\": %.3f, \"cpu_seconds\": %.2f, \"peak_mb\": %.0f, "
-                "\"quits\": %zu, \"azimuth_deg\": %.3f, \"elevation_deg\": %.3f, \"distance_mm\": %.3f, "
-                "\"roll_deg\": %.3f, \"target_mm\": [%.3f, %.3f, %.3f]}\n",
-                report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95), studio.samples(),
-                studio.session().strokes.size(), 1e3 * studio.session().last.undo_seconds, now, cpu - report_cpu_,
-                static_cast<double>(usage.ru_maxrss) / 1024, quits_, studio.session().view.orbit.azimuth / kDegree,
-                studio.session().view.orbit.elevation / kDegree, studio.session().view.orbit.distance / kMillimetre,
-                studio.session().view.orbit.roll / kDegree, studio.session().view.orbit.target.x / kMillimetre,
-                studio.session().view.orbit.target.y / kMillimetre, studio.session().view.orbit.target.z / kMillimetre);
+    std::printf(
+        "{\"frames\": %zu, \"seconds\": %.3f, \"frames_per_second\": %.1f, \"delay_ms_median\": %.1f, "
+        "\"delay_ms_p95\": %.1f, "
+        "\"samples\": %zu, \"strokes\": %zu, \"undo_ms\": %.1f, \"since_start\": %.3f, \"cpu_seconds\": %.2f, "
+        "\"peak_mb\": %.0f, "
+        "\"quits\": %zu, \"azimuth_deg\": %.3f, \"elevation_deg\": %.3f, \"distance_mm\": %.3f, "
+        "\"roll_deg\": %.3f, \"target_mm\": [%.3f, %.3f, %.3f]}\n",
+        report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95),
+        studio.samples(), studio.session().strokes.size(), 1e3 * studio.session().last.undo_seconds, now,
+        cpu - report_cpu_, static_cast<double>(usage.ru_maxrss) / 1024, quits_,
+        studio.session().view.orbit.azimuth / kDegree, studio.session().view.orbit.elevation / kDegree,
+        studio.session().view.orbit.distance / kMillimetre, studio.session().view.orbit.roll / kDegree,
+        studio.session().view.orbit.target.x / kMillimetre, studio.session().view.orbit.target.y / kMillimetre,
+        studio.session().view.orbit.target.z / kMillimetre);
     report_cpu_ = cpu;
     std::fflush(stdout);
     report_frames_ = 0;
@@ -144,11 +164,13 @@ void Script::expect(Studio& studio, const ScriptCommand& c) const {
         if (s.strokes.size() != static_cast<std::size_t>(std::atoi(value.c_str())))
             fail(c, "there are " + std::to_string(s.strokes.size()) + " strokes, not " + value);
     } else if (what == "model" || what == "no-model") {
-        if ((s.painter != nullptr) != (what == "model")) fail(c, s.painter ? "a model is open" : "no model is open: " + s.message);
+        if ((s.painter != nullptr) != (what == "model"))
+            fail(c, s.painter ? "a model is open" : "no model is open: " + s.message);
     } else if (what == "kept") {
         if (!s.last.trouble.empty()) fail(c, s.last.trouble);
     } else if (what == "message") {
-        if (s.message.find(value) == std::string::npos && s.last.trouble.find(value) == std::string::npos) fail(c, "the message is '" + s.message + "'");
+        if (s.message.find(value) == std::string::npos && s.last.trouble.find(value) == std::string::npos)
+            fail(c, "the message is '" + s.message + "'");
     } else if (what == "label") {
         if (!s.ui.find(value)) fail(c, "'" + value + "' is not on the screen");
     } else {
@@ -162,27 +184,38 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     const std::string word = c.words.empty() ? "" : c.words[0];
     if (waiting_since_ < 0) waiting_since_ = now;
     const double waited = now - waiting_since_;
-    if (c.name == "revise") revise_with(s, word);
-    else if (c.name == "open") add({.kind = Event::Kind::drop, .text = word}, 0);
+    if (c.name == "revise")
+        revise_with(s, word);
+    else if (c.name == "open")
+        add({.kind = Event::Kind::drop, .text = word}, 0);
     else if (c.name == "wait-ready") {
         if (waited > (word.empty() ? kLongestWait : std::atof(word.c_str()))) fail(c, "waited too long");
         return settled(s) && !s.model_is_new && waited > 0 && frames_ > 1;
-    } else if (c.name == "wait") return waited >= std::atof(word.c_str());
+    } else if (c.name == "wait")
+        return waited >= std::atof(word.c_str());
     else if (c.name == "move") {
         const ScriptPoint& p = c.points[0];
-        add({.kind = Event::Kind::move, .x = p.relative_x ? s.area.x + p.x * s.area.width : p.x,
-             .y = p.relative_y ? s.area.y + p.y * s.area.height : p.y, .pressure = p.pressure}, sample_);
+        add({.kind = Event::Kind::move,
+             .x = p.relative_x ? s.area.x + p.x * s.area.width : p.x,
+             .y = p.relative_y ? s.area.y + p.y * s.area.height : p.y,
+             .pressure = p.pressure},
+            sample_);
     } else if (c.name == "press" || c.name == "release") {
         Event e = cursor_;
         e.modifiers = 0;
         e.kind = c.name == "press" ? Event::Kind::press : Event::Kind::release;
         e.button = button_of(c);
         add(e, 0.02);
-    } else if (c.name == "stroke") stroke(studio, c);
-    else if (c.name == "rate") sample_ = 1.0 / std::clamp(std::atof(word.c_str()), 10.0, 10000.0);
-    else if (c.name == "key") press_key(word, c.line);
-    else if (c.name == "hold") hold(word, c.line);
-    else if (c.name == "type") add({.kind = Event::Kind::text, .text = word}, 0.02);
+    } else if (c.name == "stroke")
+        stroke(studio, c);
+    else if (c.name == "rate")
+        sample_ = 1.0 / std::clamp(std::atof(word.c_str()), 10.0, 10000.0);
+    else if (c.name == "key")
+        press_key(word, c.line);
+    else if (c.name == "hold")
+        hold(word, c.line);
+    else if (c.name == "type")
+        add({.kind = Event::Kind::text, .text = word}, 0.02);
     else if (c.name == "scroll") {
         Event e = cursor_;
         e.modifiers = 0;
@@ -199,22 +232,26 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
             return false;
         }
         click(place->x, place->y, c.name == "right-click" ? 1 : 0);
-    } else if (c.name == "set") studio.set(word, c.words[1]);
-    else if (c.name == "undo") press_key("ctrl+z", c.line);
-    else if (c.name == "redo") press_key("ctrl+shift+z", c.line);
-    else if (c.name == "save") save_as(s, word);
+    } else if (c.name == "set")
+        studio.set(word, c.words[1]);
+    else if (c.name == "undo")
+        press_key("ctrl+z", c.line);
+    else if (c.name == "redo")
+        press_key("ctrl+shift+z", c.line);
+    else if (c.name == "save")
+        save_as(s, word);
     else if (c.name == "export") {
         if (s.painter) s.painter->post(export_command(s, word));
     } else if (c.name == "close") {
         studio.finish();
         s.recent = recent_projects();
         s.lost = find_lost_work();
-    } else if (c.name == "screenshot") picture_ = word;
+    } else if (c.name == "screenshot")
+        picture_ = word;
     else if (c.name == "expect") {
         if (word == "label" && !s.ui.find(c.words.back()) && waited < kLabelWait) return false;
         expect(studio, c);
-    }
-    else if (c.name == "await") {
+    } else if (c.name == "await") {
         try {
             expect(studio, c);
         } catch (const Error&) {
@@ -226,20 +263,26 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         pace_start_ = now;
         pace_from_ = clock_;
     } else if (c.name == "random") {
-        if (!monkey_) monkey_.emplace(static_cast<std::size_t>(std::max(0, std::atoi(word.c_str()))), static_cast<std::uint64_t>(std::atoll(c.words[1].c_str())));
+        if (!monkey_)
+            monkey_.emplace(static_cast<std::size_t>(std::max(0, std::atoi(word.c_str()))),
+                            static_cast<std::uint64_t>(std::atoll(c.words[1].c_str())));
         for (Event& event : monkey_->next(studio)) add(std::move(event), monkey_->pause());
         if (!pending_.empty()) return false;
         quits_ += monkey_->quits();
         monkey_.reset();
-    }
-    else if (c.name == "resize") size_ = {std::clamp(std::atoi(word.c_str()), 320, 8192), std::clamp(std::atoi(c.words[1].c_str()), 240, 8192)};
-    else if (c.name == "lose-graphics") lose_ = true;
-    else if (c.name == "report") report(studio, now);
+    } else if (c.name == "resize")
+        size_ = {std::clamp(std::atoi(word.c_str()), 320, 8192), std::clamp(std::atoi(c.words[1].c_str()), 240, 8192)};
+    else if (c.name == "lose-graphics")
+        lose_ = true;
+    else if (c.name == "report")
+        report(studio, now);
     else if (c.name == "names") {
         for (const std::string& name : s.ui.names()) std::printf("%s\n", name.c_str());
     } else if (c.name == "places") {
-        for (const std::string& name : s.ui.names()) std::printf("%.1f %.1f %s\n", s.ui.find(name)->x, s.ui.find(name)->y, name.c_str());
-    } else if (c.name == "quit") leave(s, {});
+        for (const std::string& name : s.ui.names())
+            std::printf("%.1f %.1f %s\n", s.ui.find(name)->x, s.ui.find(name)->y, name.c_str());
+    } else if (c.name == "quit")
+        leave(s, {});
     return true;
 }
 

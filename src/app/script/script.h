@@ -25,8 +25,8 @@ struct ScriptPoint {
 struct ScriptCommand {
     int line = 0;
     std::string name;
-    std::vector<std::string> words;        ///< arguments, quotes taken off
-    std::vector<ScriptPoint> points;       ///< of `move`, `stroke`
+    std::vector<std::string> words;   ///< arguments, quotes taken off
+    std::vector<ScriptPoint> points;  ///< of `move`, `stroke`
 };
 
 /// Reads a script; the format is described in script_parse.cpp. Throws `Error` with file
@@ -64,21 +64,21 @@ class Script {
     std::filesystem::path path_;
     std::vector<ScriptCommand> commands_;
     std::size_t next_ = 0;
-    std::deque<Event> pending_;        ///< to be played, by time on the script's clock
-    double sample_ = 0.004;       ///< seconds between two samples of a stroke
-    double clock_ = 0;                 ///< seconds, of the last event made
-    bool paced_ = false;               ///< events come when their time has come
+    std::deque<Event> pending_;  ///< to be played, by time on the script's clock
+    double sample_ = 0.004;      ///< seconds between two samples of a stroke
+    double clock_ = 0;           ///< seconds, of the last event made
+    bool paced_ = false;         ///< events come when their time has come
     double pace_start_ = 0, pace_from_ = 0;
     double waiting_since_ = -1;
     Event cursor_;
-    unsigned held_ = 0;                ///< modifiers
-    ScriptPoint last_place_;           ///< of the label a click waits for
+    unsigned held_ = 0;       ///< modifiers
+    ScriptPoint last_place_;  ///< of the label a click waits for
     std::string picture_;
     bool lose_ = false;
     std::optional<std::pair<int, int>> size_;
-    std::optional<UiFuzzer> monkey_;     ///< while `random` plays
-    std::size_t quits_ = 0;            ///< times that it would have ended the program
-    bool waiting_ = false;             ///< the last command waits for something
+    std::optional<UiFuzzer> monkey_;  ///< while `random` plays
+    std::size_t quits_ = 0;           ///< times that it would have ended the program
+    bool waiting_ = false;            ///< the last command waits for something
     std::size_t frames_ = 0, report_frames_ = 0;
     double report_start_ = 0, report_cpu_ = 0;
 };

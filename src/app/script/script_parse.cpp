@@ -25,10 +25,13 @@
 ///   scroll STEPS
 ///   click LABEL             the button, entry or menu of that English name
 ///   right-click LABEL       the same with the right button, for its menu
-///   set NAME VALUE          texels (of the model asked about), brush, brush-size, ink, colour (#rrggbb), clean-ends, shading, light, parallel, azimuth, elevation, zoom,
+///   set NAME VALUE          texels (of the model asked about), brush, brush-size, ink, colour (#rrggbb), clean-ends,
+///   shading, light, parallel, azimuth, elevation, zoom,
 ///                           layer, export-size, export-pictures,
-///                           export-picture-width, pressure, writing-width (mm), writing-turn (degrees, anticlockwise), writing-mirror, writing-mapping, string, radial, mirror, carry, tool, language, theme, scale, left-handed, keymap, section, section-axis,
-///                           see-through, atlas, draw-every (frames of which one is drawn, for tests)
+///                           export-picture-width, pressure, writing-width (mm), writing-turn (degrees, anticlockwise),
+///                           writing-mirror, writing-mapping, string, radial, mirror, carry, tool, language, theme,
+///                           scale, left-handed, keymap, section, section-axis, see-through, atlas, draw-every (frames
+///                           of which one is drawn, for tests)
 ///   undo  redo  save FILE  export FILE  close
 ///   screenshot FILE.png
 ///   expect strokes N | expect model | expect no-model | expect kept | expect message TEXT | expect label LABEL
@@ -37,7 +40,8 @@
 ///   resize WIDTH HEIGHT     the window, pixels
 ///   random COUNT SEED       that many events of any kind, also resizing and lost graphics; what would end the
 ///                           program is only counted
-///   report                  frames, seconds, delays from each sample to its ink on the screen and processor time since the last one, the time of
+///   report                  frames, seconds, delays from each sample to its ink on the screen and processor time since
+///   the last one, the time of
 ///                           the last undo, the peak of memory and where the view is, on standard output
 ///   lose-graphics           as if the graphics driver had been reset
 ///   names                   labels that can be clicked, on standard output
@@ -48,10 +52,14 @@ namespace {
 
 // Least and most words after the command.
 const std::map<std::string, std::pair<int, int>> kCommands{
-    {"open", {1, 1}}, {"revise", {1, 1}}, {"wait-ready", {0, 1}}, {"wait", {1, 1}}, {"move", {1, 1}}, {"press", {0, 1}}, {"release", {0, 1}},
-    {"stroke", {2, 10000}}, {"rate", {1, 1}}, {"key", {1, 1}}, {"hold", {1, 1}}, {"type", {1, 1}}, {"scroll", {1, 1}}, {"click", {1, 1}}, {"right-click", {1, 1}}, {"set", {2, 2}},
-    {"undo", {0, 0}}, {"redo", {0, 0}}, {"save", {1, 1}}, {"export", {1, 1}}, {"close", {0, 0}}, {"screenshot", {1, 1}},
-    {"expect", {1, 2}}, {"await", {1, 2}}, {"pace", {1, 1}}, {"random", {2, 2}}, {"resize", {2, 2}}, {"report", {0, 0}}, {"lose-graphics", {0, 0}}, {"names", {0, 0}}, {"places", {0, 0}}, {"quit", {0, 0}}};
+    {"open", {1, 1}},          {"revise", {1, 1}},     {"wait-ready", {0, 1}},  {"wait", {1, 1}},
+    {"move", {1, 1}},          {"press", {0, 1}},      {"release", {0, 1}},     {"stroke", {2, 10000}},
+    {"rate", {1, 1}},          {"key", {1, 1}},        {"hold", {1, 1}},        {"type", {1, 1}},
+    {"scroll", {1, 1}},        {"click", {1, 1}},      {"right-click", {1, 1}}, {"set", {2, 2}},
+    {"undo", {0, 0}},          {"redo", {0, 0}},       {"save", {1, 1}},        {"export", {1, 1}},
+    {"close", {0, 0}},         {"screenshot", {1, 1}}, {"expect", {1, 2}},      {"await", {1, 2}},
+    {"pace", {1, 1}},          {"random", {2, 2}},     {"resize", {2, 2}},      {"report", {0, 0}},
+    {"lose-graphics", {0, 0}}, {"names", {0, 0}},      {"places", {0, 0}},      {"quit", {0, 0}}};
 
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 constexpr double kMostNumber = 1e6;  // of a place, in pixels or per cent
@@ -138,11 +146,13 @@ std::vector<ScriptCommand> parse_script(const std::filesystem::path& path) {
             std::vector<std::string> names;
             for (const auto& [name, counts] : kCommands) names.push_back(name);
             const std::string near = nearest_name(c.name, names);
-            throw Error(path.string(), number, "unknown command '" + c.name + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
+            throw Error(path.string(), number,
+                        "unknown command '" + c.name + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
         }
         const int n = static_cast<int>(c.words.size());
         if (n < known->second.first || n > known->second.second)
-            throw Error(path.string(), number, "'" + c.name + "' needs " + std::to_string(known->second.first) + " word(s) after it");
+            throw Error(path.string(), number,
+                        "'" + c.name + "' needs " + std::to_string(known->second.first) + " word(s) after it");
         if (c.name == "move" || c.name == "stroke")
             for (const std::string& word : c.words) c.points.push_back(parse_point(word, path.string(), number));
         check_numbers(c, path.string());

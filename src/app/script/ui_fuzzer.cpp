@@ -17,22 +17,53 @@ namespace {
 
 constexpr std::size_t kAtOnce = 40;  // events, before it looks at the screen again
 
-constexpr int kKeys[] = {GLFW_KEY_Z, GLFW_KEY_Y, GLFW_KEY_HOME, GLFW_KEY_1, GLFW_KEY_3, GLFW_KEY_7, GLFW_KEY_5, GLFW_KEY_LEFT_BRACKET,
-                         GLFW_KEY_RIGHT_BRACKET, GLFW_KEY_LEFT, GLFW_KEY_UP, GLFW_KEY_B, GLFW_KEY_L, GLFW_KEY_X, GLFW_KEY_ESCAPE,
-                         GLFW_KEY_PERIOD, GLFW_KEY_F1, GLFW_KEY_BACKSLASH, GLFW_KEY_E, GLFW_KEY_C, GLFW_KEY_G, GLFW_KEY_I, GLFW_KEY_M,
-                         GLFW_KEY_T, GLFW_KEY_P, GLFW_KEY_TAB, GLFW_KEY_U, GLFW_KEY_V, GLFW_KEY_ENTER, GLFW_KEY_DELETE, GLFW_KEY_BACKSPACE};
+constexpr int kKeys[] = {GLFW_KEY_Z,
+                         GLFW_KEY_Y,
+                         GLFW_KEY_HOME,
+                         GLFW_KEY_1,
+                         GLFW_KEY_3,
+                         GLFW_KEY_7,
+                         GLFW_KEY_5,
+                         GLFW_KEY_LEFT_BRACKET,
+                         GLFW_KEY_RIGHT_BRACKET,
+                         GLFW_KEY_LEFT,
+                         GLFW_KEY_UP,
+                         GLFW_KEY_B,
+                         GLFW_KEY_L,
+                         GLFW_KEY_X,
+                         GLFW_KEY_ESCAPE,
+                         GLFW_KEY_PERIOD,
+                         GLFW_KEY_F1,
+                         GLFW_KEY_BACKSLASH,
+                         GLFW_KEY_E,
+                         GLFW_KEY_C,
+                         GLFW_KEY_G,
+                         GLFW_KEY_I,
+                         GLFW_KEY_M,
+                         GLFW_KEY_T,
+                         GLFW_KEY_P,
+                         GLFW_KEY_TAB,
+                         GLFW_KEY_U,
+                         GLFW_KEY_V,
+                         GLFW_KEY_ENTER,
+                         GLFW_KEY_DELETE,
+                         GLFW_KEY_BACKSPACE};
 constexpr int kDialogs[] = {GLFW_KEY_O, GLFW_KEY_S, GLFW_KEY_E};
 
 template <class List>
 const auto& one_of(const List& list, Random& random) {
-    return list[std::min(std::size(list) - 1, static_cast<std::size_t>(random.uniform(0, static_cast<double>(std::size(list)))))];
+    return list[std::min(std::size(list) - 1,
+                         static_cast<std::size_t>(random.uniform(0, static_cast<double>(std::size(list)))))];
 }
 
-Event key(int code, unsigned modifiers = 0) { return {.kind = Event::Kind::key_down, .key = code, .modifiers = modifiers}; }
+Event key(int code, unsigned modifiers = 0) {
+    return {.kind = Event::Kind::key_down, .key = code, .modifiers = modifiers};
+}
 
 }  // namespace
 
-UiFuzzer::UiFuzzer(std::size_t count, std::uint64_t seed) : left_(count), random_(seed), home_(fs::weakly_canonical(fs::current_path())) {}
+UiFuzzer::UiFuzzer(std::size_t count, std::uint64_t seed)
+    : left_(count), random_(seed), home_(fs::weakly_canonical(fs::current_path())) {}
 
 void UiFuzzer::single(std::vector<Event>& events) {
     Event e = at_;
@@ -56,7 +87,8 @@ void UiFuzzer::single(std::vector<Event>& events) {
     } else if (what < 0.97) {
         e.kind = random_.uniform() < 0.5 ? Event::Kind::key_down : Event::Kind::key_up;
         e.key = one_of(kKeys, random_);
-        if (e.key == GLFW_KEY_Z && random_.uniform() < 0.5) e.modifiers = kControl | (random_.uniform() < 0.5 ? unsigned{kShift} : 0u);
+        if (e.key == GLFW_KEY_Z && random_.uniform() < 0.5)
+            e.modifiers = kControl | (random_.uniform() < 0.5 ? unsigned{kShift} : 0u);
     } else if (what < 0.975) {
         events.push_back(key(one_of(kDialogs, random_), kControl));
         // Mostly cancelled: a dialog that stays keeps all else away.
@@ -132,10 +164,14 @@ std::vector<Event> UiFuzzer::next(const Studio& studio) {
     std::vector<Event> events;
     if (left_ == 0) return events;
     const double what = random_.uniform();
-    if (what < 0.1) calm(events);
-    else if (what < 0.35) draw(studio, events);
-    else if (what < 0.6) click_label(studio, events);
-    else for (std::size_t i = 0; i < kAtOnce; ++i) single(events);
+    if (what < 0.1)
+        calm(events);
+    else if (what < 0.35)
+        draw(studio, events);
+    else if (what < 0.6)
+        click_label(studio, events);
+    else
+        for (std::size_t i = 0; i < kAtOnce; ++i) single(events);
     if (events.size() >= left_) {
         calm(events);
         left_ = 0;

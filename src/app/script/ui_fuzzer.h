@@ -35,7 +35,7 @@ class UiFuzzer {
 
     std::size_t left_;
     Random random_;
-    std::filesystem::path home_;  ///< the folder it runs in
+    std::filesystem::path home_;         ///< the folder it runs in
     double width_ = 860, height_ = 520;  ///< pixels of the window
     Event at_;
     bool down_[3] = {};

@@ -40,7 +40,8 @@ TriangleColours stretch_colours(const mesh::TriangleMesh& mesh, const atlas::Atl
         const Vec2 u = Vec2(atlas.corner_uvs[3 * t + 1]) - Vec2(atlas.corner_uvs[3 * t]),
                    v = Vec2(atlas.corner_uvs[3 * t + 2]) - Vec2(atlas.corner_uvs[3 * t]);
         // Edges in the triangle's plane: a = (x, 0), b = (y, z).
-        const double x = glm::length(a), y = x > 0 ? glm::dot(a, b) / x : 0, z = std::sqrt(std::max(0.0, glm::dot(b, b) - y * y));
+        const double x = glm::length(a), y = x > 0 ? glm::dot(a, b) / x : 0,
+                     z = std::sqrt(std::max(0.0, glm::dot(b, b) - y * y));
         if (x <= 0 || z <= 0) {
             colours.push_back({128, 128, 128, 255});
             continue;

@@ -36,8 +36,9 @@ class Offscreen : public Display {
         make_context();
     }
     void make_context() {
-        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                     EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+        const EGLint attributes[] = {
+            EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
         context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
         if (context_ == EGL_NO_CONTEXT || !eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
             eglTerminate(display_);
@@ -75,6 +76,8 @@ class Offscreen : public Display {
 
 }  // namespace
 
-std::unique_ptr<Display> open_offscreen(int width, int height) { return std::make_unique<Offscreen>(width, height); }
+std::unique_ptr<Display> open_offscreen(int width, int height) {
+    return std::make_unique<Offscreen>(width, height);
+}
 
 }  // namespace tuft::app

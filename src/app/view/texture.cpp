@@ -11,11 +11,11 @@ namespace {
 
 using Rgba = std::array<std::uint8_t, 4>;
 
-constexpr int kVeil = 42;                            // percent of the veil's colour
+constexpr int kVeil = 42;                                // percent of the veil's colour
 constexpr std::array<int, 3> kVeilColour{64, 104, 178};  // sRGB
-constexpr int kRimTexels = 2;                        // charts lie further apart than that
-constexpr std::array<int, 3> kMarkColour{0, 190, 255};  // sRGB
-constexpr int kMarked[] = {0, 22, 92};               // percent of it: where there is none, ink, its rim
+constexpr int kRimTexels = 2;                            // charts lie further apart than that
+constexpr std::array<int, 3> kMarkColour{0, 190, 255};   // sRGB
+constexpr int kMarked[] = {0, 22, 92};                   // percent of it: where there is none, ink, its rim
 
 // Averages are of light, not of its code values.
 struct SrgbTable {
@@ -23,7 +23,8 @@ struct SrgbTable {
     std::array<std::uint8_t, 4096> encode{};
     SrgbTable() {
         for (std::size_t i = 0; i < encode.size(); ++i)
-            encode[i] = static_cast<std::uint8_t>(std::lround(255.0f * ink::srgb_encode(static_cast<float>(i) / 4095.0f)));
+            encode[i] =
+                static_cast<std::uint8_t>(std::lround(255.0f * ink::srgb_encode(static_cast<float>(i) / 4095.0f)));
     }
 };
 
@@ -52,7 +53,8 @@ void halve(const Rgba* from, Rgba* to, std::size_t side, std::size_t first_row, 
 }
 
 std::uint8_t code_of(float micrometres) {
-    return static_cast<std::uint8_t>(std::lround(std::min(255.0, render::code_of_height(std::max(0.0, static_cast<double>(micrometres))))));
+    return static_cast<std::uint8_t>(
+        std::lround(std::min(255.0, render::code_of_height(std::max(0.0, static_cast<double>(micrometres))))));
 }
 
 // Micrometres of liquid on and in the surface, of all layers.
@@ -61,7 +63,8 @@ std::array<float, atlas::kTileTexels> liquid_of(const stroke::Document& painting
     for (const stroke::LayerTexels& layer : painting.canvases())
         for (const ink::Liquid where : {ink::Liquid::film, ink::Liquid::pores})
             if (const ink::Plane* plane = layer.canvas->liquid(slot, where))
-                for (std::size_t t = 0; t < atlas::kTileTexels; ++t) wet[t] += static_cast<float>(1e6 * ink::kFilmUnit) * (*plane)[t];
+                for (std::size_t t = 0; t < atlas::kTileTexels; ++t)
+                    wet[t] += static_cast<float>(1e6 * ink::kFilmUnit) * (*plane)[t];
     return wet;
 }
 
@@ -93,8 +96,10 @@ void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke
         const std::size_t tile = map.tile_of_slot[slot];
         const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
         const bool inked = stack.touched(slot);
-        const ink::TileAppearance look = inked ? ink::shade_tile(stack, slot, painting.substrate()) : ink::TileAppearance{};
-        const std::array<float, atlas::kTileTexels> wet = wetness_ ? liquid_of(painting, slot) : std::array<float, atlas::kTileTexels>{};
+        const ink::TileAppearance look =
+            inked ? ink::shade_tile(stack, slot, painting.substrate()) : ink::TileAppearance{};
+        const std::array<float, atlas::kTileTexels> wet =
+            wetness_ ? liquid_of(painting, slot) : std::array<float, atlas::kTileTexels>{};
         for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
             const std::size_t x = x0 + t % atlas::kTile, y = y0 + t / atlas::kTile;
             if (x < size && y < size && map.tiles[slot].cluster[t] != atlas::kNoCluster)
@@ -105,7 +110,8 @@ void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke
 }
 
 // Gutter texels that take something from the slot take it now.
-void Texture::continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot, const stroke::Document& painting) const {
+void Texture::continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot,
+                                  const stroke::Document& painting) const {
     const atlas::TexelMap& map = painting.model().texels;
     const ink::GutterPlan& plan = *painting.compose_options().seams;
     const std::size_t size = colour_.size;
@@ -114,7 +120,8 @@ void Texture::continue_over_seams(std::vector<std::uint8_t>& values, std::uint32
         float sum = 0;
         for (std::uint32_t k = plan.gutter.start[entry]; k < plan.gutter.start[entry + 1]; ++k) {
             const atlas::GutterTap& tap = plan.gutter.taps[k];
-            const std::size_t tile = map.tile_of_slot[tap.texel / atlas::kTileTexels], t = tap.texel % atlas::kTileTexels;
+            const std::size_t tile = map.tile_of_slot[tap.texel / atlas::kTileTexels],
+                              t = tap.texel % atlas::kTileTexels;
             const std::size_t x = tile % map.tiles_per_side * atlas::kTile + t % atlas::kTile;
             const std::size_t y = tile / map.tiles_per_side * atlas::kTile + t / atlas::kTile;
             sum += tap.weight * static_cast<float>(values[y * size + x]);
@@ -133,7 +140,8 @@ void Texture::show_veil(const stroke::MaskTexels* mask, const stroke::Document& 
         const std::size_t tile = map.tile_of_slot[slot];
         const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
         for (int t = 0; t < atlas::kTileTexels; ++t) {
-            const std::size_t x = x0 + static_cast<std::size_t>(t % atlas::kTile), y = y0 + static_cast<std::size_t>(t / atlas::kTile);
+            const std::size_t x = x0 + static_cast<std::size_t>(t % atlas::kTile),
+                              y = y0 + static_cast<std::size_t>(t / atlas::kTile);
             if (x < size && y < size && map.tiles[slot].cluster[static_cast<std::size_t>(t)] != atlas::kNoCluster)
                 veil_[y * size + x] = static_cast<std::uint8_t>(255 - mask->coverage(slot, t));
         }
@@ -149,14 +157,16 @@ std::vector<render::TilePixels> Texture::show_marks(Marks marks, const stroke::D
         for (int t = 0; t < atlas::kTileTexels; ++t)
             if (tile[static_cast<std::size_t>(t)] == kInked) {
                 const auto at = static_cast<int>(map.tile_of_slot[slot]);
-                inked.push_back({at % per_side * atlas::kTile + t % atlas::kTile, at / per_side * atlas::kTile + t / atlas::kTile});
+                inked.push_back(
+                    {at % per_side * atlas::kTile + t % atlas::kTile, at / per_side * atlas::kTile + t / atlas::kTile});
             }
     for (const auto& [x0, y0] : inked)
         for (int dy = -kRimTexels; dy <= kRimTexels; ++dy)
             for (int dx = -kRimTexels; dx <= kRimTexels; ++dx) {
                 const int x = x0 + dx, y = y0 + dy;
                 if (dx * dx + dy * dy > kRimTexels * kRimTexels || x < 0 || y < 0 || x >= most || y >= most) continue;
-                const std::uint32_t slot = map.slot_of_tile[static_cast<std::size_t>(y / atlas::kTile * per_side + x / atlas::kTile)];
+                const std::uint32_t slot =
+                    map.slot_of_tile[static_cast<std::size_t>(y / atlas::kTile * per_side + x / atlas::kTile)];
                 const auto t = static_cast<std::size_t>(y % atlas::kTile * atlas::kTile + x % atlas::kTile);
                 if (slot == kNone || map.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
                 std::uint8_t& mark = marks[slot][t];
@@ -177,7 +187,8 @@ std::vector<render::TilePixels> Texture::show_marks(Marks marks, const stroke::D
 }
 
 void Texture::refresh_all(const stroke::Document& painting) {
-    colour_ = ink::compose_srgb8(painting.stack(), painting.model().texels, painting.substrate(), painting.compose_options());
+    colour_ =
+        ink::compose_srgb8(painting.stack(), painting.model().texels, painting.substrate(), painting.compose_options());
     refresh_heights(painting.stack().touched_slots(), painting);
 }
 
@@ -185,12 +196,15 @@ std::array<std::uint8_t, 4> Texture::texel(std::size_t x, std::size_t y) const {
     const std::size_t at = y * colour_.size + x;
     Rgba out{colour_.texels[3 * at], colour_.texels[3 * at + 1], colour_.texels[3 * at + 2], height_[at]};
     if (!veil_.empty() && veil_[at] != 0)
-        for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(out[c] + veil_[at] * kVeil * (kVeilColour[c] - out[c]) / (255 * 100));
+        for (std::size_t c = 0; c < 3; ++c)
+            out[c] = static_cast<std::uint8_t>(out[c] + veil_[at] * kVeil * (kVeilColour[c] - out[c]) / (255 * 100));
     if (marks_of_tile_.empty()) return out;
-    const auto marked = marks_of_tile_.find(static_cast<std::uint32_t>(y / atlas::kTile * (padded_ / atlas::kTile) + x / atlas::kTile));
+    const auto marked =
+        marks_of_tile_.find(static_cast<std::uint32_t>(y / atlas::kTile * (padded_ / atlas::kTile) + x / atlas::kTile));
     if (marked == marks_of_tile_.end()) return out;
     if (const int part = kMarked[(*marked->second)[y % atlas::kTile * atlas::kTile + x % atlas::kTile]])
-        for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(out[c] + part * (kMarkColour[c] - out[c]) / 100);
+        for (std::size_t c = 0; c < 3; ++c)
+            out[c] = static_cast<std::uint8_t>(out[c] + part * (kMarkColour[c] - out[c]) / 100);
     return out;
 }
 
@@ -218,7 +232,8 @@ render::MapPixels Texture::pixels() const {
     map.levels[0].resize(padded * padded);
     parallel_for(padded, 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y)
-            for (std::size_t x = 0; x < padded; ++x) map.levels[0][y * padded + x] = texel(std::min(size - 1, x), std::min(size - 1, y));
+            for (std::size_t x = 0; x < padded; ++x)
+                map.levels[0][y * padded + x] = texel(std::min(size - 1, x), std::min(size - 1, y));
     });
     for (std::size_t level = 1; level < render::kTextureLevels; ++level) {
         const std::size_t side = padded >> level;
@@ -230,7 +245,8 @@ render::MapPixels Texture::pixels() const {
     return map;
 }
 
-std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> slots, const stroke::Document& painting) {
+std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> slots,
+                                                 const stroke::Document& painting) {
     std::vector<render::TilePixels> tiles;
     if (slots.empty()) return tiles;
     const stroke::Model& model = painting.model();
@@ -264,11 +280,13 @@ const std::vector<render::GlBox>& Texture::boxes_of(std::uint32_t index, const a
     const auto texel = static_cast<float>(map.texel_size);
     const float widest = 4 * atlas::kTile * texel;
     const int per_side = static_cast<int>(map.tiles_per_side);
-    const int x0 = static_cast<int>(index) % per_side * atlas::kTile, y0 = static_cast<int>(index) / per_side * atlas::kTile;
+    const int x0 = static_cast<int>(index) % per_side * atlas::kTile,
+              y0 = static_cast<int>(index) / per_side * atlas::kTile;
     const int most = per_side * atlas::kTile;
     for (int y = std::max(0, y0 - kReach); y < std::min(most, y0 + atlas::kTile + kReach); ++y)
         for (int x = std::max(0, x0 - kReach); x < std::min(most, x0 + atlas::kTile + kReach); ++x) {
-            const std::uint32_t slot = map.slot_of_tile[static_cast<std::size_t>(y / atlas::kTile * per_side + x / atlas::kTile)];
+            const std::uint32_t slot =
+                map.slot_of_tile[static_cast<std::size_t>(y / atlas::kTile * per_side + x / atlas::kTile)];
             const int t = y % atlas::kTile * atlas::kTile + x % atlas::kTile;
             if (slot == kNone || map.tiles[slot].cluster[static_cast<std::size_t>(t)] == atlas::kNoCluster) continue;
             const Vec3f lo = map.position(slot, t) - 2 * texel, hi = map.position(slot, t) + 2 * texel;
@@ -276,8 +294,10 @@ const std::vector<render::GlBox>& Texture::boxes_of(std::uint32_t index, const a
                 const Vec3f size = glm::max(b.hi, hi) - glm::min(b.lo, lo);
                 return std::max({size.x, size.y, size.z}) <= widest;
             });
-            if (near == boxes.end()) boxes.push_back({lo, hi});
-            else *near = {glm::min(near->lo, lo), glm::max(near->hi, hi)};
+            if (near == boxes.end())
+                boxes.push_back({lo, hi});
+            else
+                *near = {glm::min(near->lo, lo), glm::max(near->hi, hi)};
         }
     return boxes;
 }

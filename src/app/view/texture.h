@@ -44,15 +44,16 @@ class Texture {
     const std::vector<render::GlBox>& boxes_of(std::uint32_t tile, const atlas::TexelMap& map);
     void refresh_heights(std::span<const std::uint32_t> slots, const stroke::Document& painting);
     render::TilePixels tile(std::uint32_t index) const;
-    void continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot, const stroke::Document& painting) const;
+    void continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot,
+                             const stroke::Document& painting) const;
     std::array<std::uint8_t, 4> texel(std::size_t x, std::size_t y) const;
 
     std::uint32_t padded_ = 0;
     bool wetness_ = false;
     ink::AtlasMap<std::uint8_t> colour_;
-    std::vector<std::uint8_t> height_;  ///< [size²]
+    std::vector<std::uint8_t> height_;                                     ///< [size²]
     std::unordered_map<std::uint32_t, std::vector<render::GlBox>> boxes_;  ///< by tile, of those that changed so far
-    std::vector<std::uint8_t> veil_;    ///< [size²], 0–255; empty: none
+    std::vector<std::uint8_t> veil_;                                       ///< [size²], 0–255; empty: none
     Marks marks_;
     std::unordered_map<std::uint32_t, const std::array<std::uint8_t, atlas::kTileTexels>*> marks_of_tile_;
 };

@@ -35,8 +35,10 @@ void Orbit::look_from(StandardView view) {
     parallel_until_turned = parallel_until_turned || !parallel;
     parallel = true;
     elevation = view == StandardView::top ? kQuarter : view == StandardView::bottom ? -kQuarter : 0;
-    azimuth = view == StandardView::back ? 2 * kQuarter : view == StandardView::right ? kQuarter
-              : view == StandardView::left ? -kQuarter : 0;
+    azimuth = view == StandardView::back    ? 2 * kQuarter
+              : view == StandardView::right ? kQuarter
+              : view == StandardView::left  ? -kQuarter
+                                            : 0;
 }
 
 void Orbit::set_parallel(bool on) {

@@ -9,13 +9,13 @@ enum class StandardView { front, back, right, left, top, bottom };
 
 /// Turntable camera: the world's z stays up, unless rolled.
 struct Orbit {
-    Vec3 target{0};           ///< metres, looked at and turned about
-    double distance = 0.5;    ///< metres
-    double azimuth = 0.5;     ///< radians; 0 looks along +y
-    double elevation = 0.5;   ///< radians
-    double roll = 0;          ///< radians, of the head to the right
-    double field_of_view = 0.55;  ///< radians over the shorter side of the picture
-    bool parallel = false;    ///< orthographic
+    Vec3 target{0};                      ///< metres, looked at and turned about
+    double distance = 0.5;               ///< metres
+    double azimuth = 0.5;                ///< radians; 0 looks along +y
+    double elevation = 0.5;              ///< radians
+    double roll = 0;                     ///< radians, of the head to the right
+    double field_of_view = 0.55;         ///< radians over the shorter side of the picture
+    bool parallel = false;               ///< orthographic
     bool parallel_until_turned = false;  ///< only for one of the standard views
 
     /// Places the camera so that the whole box is seen.

@@ -4,7 +4,8 @@
 
 namespace tuft::app {
 
-bool is_seen(const mesh::SurfaceQuery& query, const render::GlCamera& camera, const Vec4f& section, const Vec3& place, double tolerance) {
+bool is_seen(const mesh::SurfaceQuery& query, const render::GlCamera& camera, const Vec4f& section, const Vec3& place,
+             double tolerance) {
     const Vec3 at = render::picture_point(camera, place);
     const Aim aim{.ray = render::ray_at(camera, at.x, at.y), .section = section};
     const double depth = glm::dot(place - aim.ray.origin, aim.ray.direction);

@@ -16,14 +16,19 @@ namespace tuft::app {
 namespace {
 
 unsigned modifiers_of(int mods) {
-    return (mods & GLFW_MOD_SHIFT ? kShift : 0u) | (mods & GLFW_MOD_CONTROL ? kControl : 0u) | (mods & GLFW_MOD_ALT ? kAlt : 0u);
+    return (mods & GLFW_MOD_SHIFT ? kShift : 0u) | (mods & GLFW_MOD_CONTROL ? kControl : 0u) |
+           (mods & GLFW_MOD_ALT ? kAlt : 0u);
 }
 
 std::string utf8(unsigned c) {
     std::string out;
-    if (c < 0x80) out += static_cast<char>(c);
-    else if (c < 0x800) out += {static_cast<char>(0xc0 | c >> 6), static_cast<char>(0x80 | (c & 0x3f))};
-    else if (c < 0x10000) out += {static_cast<char>(0xe0 | c >> 12), static_cast<char>(0x80 | (c >> 6 & 0x3f)), static_cast<char>(0x80 | (c & 0x3f))};
+    if (c < 0x80)
+        out += static_cast<char>(c);
+    else if (c < 0x800)
+        out += {static_cast<char>(0xc0 | c >> 6), static_cast<char>(0x80 | (c & 0x3f))};
+    else if (c < 0x10000)
+        out += {static_cast<char>(0xe0 | c >> 12), static_cast<char>(0x80 | (c >> 6 & 0x3f)),
+                static_cast<char>(0x80 | (c & 0x3f))};
     return out;
 }
 
@@ -78,8 +83,10 @@ class Window : public Display {
         const double before = last_poll_;
         fresh_.clear();
         if (space_mouse_ && space_mouse_->held()) wait = 0;
-        if (wait > 0) glfwWaitEventsTimeout(wait);
-        else glfwPollEvents();
+        if (wait > 0)
+            glfwWaitEventsTimeout(wait);
+        else
+            glfwPollEvents();
         last_poll_ = now();
         // Movements since the last call carry no time of their own: they are spread evenly.
         std::size_t moves = 0, done = 0;
@@ -87,9 +94,11 @@ class Window : public Display {
         const double from = std::max(before, last_poll_ - 0.1);
         for (Event& e : fresh_) {
             if (e.kind == Event::Kind::move) ++done;
-            e.time = from + (last_poll_ - from) * (moves ? static_cast<double>(done) / static_cast<double>(moves) : 1.0);
+            e.time =
+                from + (last_poll_ - from) * (moves ? static_cast<double>(done) / static_cast<double>(moves) : 1.0);
         }
-        if (pen_ && pen_->merge(fresh_, last_poll_, scale_factor())) trouble_ = "The pen was unplugged; the mouse goes on.";
+        if (pen_ && pen_->merge(fresh_, last_poll_, scale_factor()))
+            trouble_ = "The pen was unplugged; the mouse goes on.";
         take_space_mouse();
         events.insert(events.end(), std::make_move_iterator(fresh_.begin()), std::make_move_iterator(fresh_.end()));
         show_cursor();
@@ -142,8 +151,12 @@ class Window : public Display {
     Event event(Event::Kind kind) {
         double x = 0, y = 0;
         glfwGetCursorPos(window_, &x, &y);
-        const auto held = [this](int a, int b) { return glfwGetKey(window_, a) == GLFW_PRESS || glfwGetKey(window_, b) == GLFW_PRESS; };
-        return {.kind = kind, .x = x * scale_factor(), .y = y * scale_factor(),
+        const auto held = [this](int a, int b) {
+            return glfwGetKey(window_, a) == GLFW_PRESS || glfwGetKey(window_, b) == GLFW_PRESS;
+        };
+        return {.kind = kind,
+                .x = x * scale_factor(),
+                .y = y * scale_factor(),
                 .modifiers = (held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT) ? kShift : 0u) |
                              (held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL) ? kControl : 0u) |
                              (held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT) ? kAlt : 0u)};
@@ -200,6 +213,8 @@ class Window : public Display {
 
 }  // namespace
 
-std::unique_ptr<Display> open_window(int width, int height) { return std::make_unique<Window>(width, height); }
+std::unique_ptr<Display> open_window(int width, int height) {
+    return std::make_unique<Window>(width, height);
+}
 
 }  // namespace tuft::app

@@ -32,8 +32,7 @@ bool walk_border(const ChartMesh& chart, std::vector<std::uint32_t>& loop) {
 }  // namespace
 
 ChartMesh make_chart(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> glued,
-                     std::vector<std::uint32_t> triangles, double unit,
-                     std::span<std::uint32_t> place) {
+                     std::vector<std::uint32_t> triangles, double unit, std::span<std::uint32_t> place) {
     ChartMesh chart;
     chart.triangles = std::move(triangles);
     const auto n = static_cast<std::uint32_t>(chart.triangles.size());
@@ -54,10 +53,8 @@ ChartMesh make_chart(const mesh::TriangleMesh& mesh, std::span<const std::uint32
         n_border += chart.twin[c] == kNone;
         if (chart.faces[c / 3][c % 3] != kNone) continue;
         const auto v = static_cast<std::uint32_t>(chart.position.size());
-        chart.position.push_back(
-            (mesh.position(chart.triangles[c / 3], static_cast<int>(c % 3)) - origin) / unit);
-        for (std::uint32_t h = c; h != kNone && chart.faces[h / 3][h % 3] == kNone;
-             h = chart.twin[prev_half(h)])
+        chart.position.push_back((mesh.position(chart.triangles[c / 3], static_cast<int>(c % 3)) - origin) / unit);
+        for (std::uint32_t h = c; h != kNone && chart.faces[h / 3][h % 3] == kNone; h = chart.twin[prev_half(h)])
             chart.faces[h / 3][h % 3] = v;
         for (std::uint32_t g = chart.twin[c]; g != kNone;) {
             const std::uint32_t h = next_half(g);
@@ -149,8 +146,7 @@ namespace {
 struct EdgeGrid {
     std::vector<std::uint32_t> start, items;
 
-    EdgeGrid(const std::vector<Vec2>& p, const Vec2& lo, const Vec2& hi, double cell,
-             double reach) {
+    EdgeGrid(const std::vector<Vec2>& p, const Vec2& lo, const Vec2& hi, double cell, double reach) {
         const std::size_t n = p.size();
         const auto columns = static_cast<std::size_t>((hi.x - lo.x) / cell) + 1;
         const auto rows = static_cast<std::size_t>((hi.y - lo.y) / cell) + 1;
@@ -172,8 +168,7 @@ struct EdgeGrid {
                     xb = std::min(xb, std::max(x0, x1) + 1e-6 * cell);
                 }
                 const std::size_t x1 = index(xb + reach, columns);
-                for (std::size_t x = index(xa - reach, columns); x <= x1; ++x)
-                    visit(y * columns + x);
+                for (std::size_t x = index(xa - reach, columns); x <= x1; ++x) visit(y * columns + x);
             }
         };
         start.assign(columns * rows + 1, 0);
@@ -224,8 +219,7 @@ bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap
         if (!(gap > 0)) return false;
         if (apart < 16 * gap) return false;
         // The chart lies left of its border: only what is near on the right is too near.
-        if (height(a, b - a, 0.5 * (c + d)) > 0 || height(c, d - c, 0.5 * (a + b)) > 0)
-            return false;
+        if (height(a, b - a, 0.5 * (c + d)) > 0 || height(c, d - c, 0.5 * (a + b)) > 0) return false;
         if (std::min(std::min(segment_distance(c, d, a), segment_distance(c, d, b)),
                      std::min(segment_distance(a, b, c), segment_distance(a, b, d))) >= gap)
             return false;
@@ -237,8 +231,7 @@ bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap
     for (std::size_t c = 0; c + 1 < grid.start.size(); ++c)
         for (std::uint32_t x = grid.start[c]; x < grid.start[c + 1]; ++x)
             for (std::uint32_t y = x + 1; y < grid.start[c + 1]; ++y)
-                if (grid.items[x] != grid.items[y] && meet(grid.items[x], grid.items[y]))
-                    return true;
+                if (grid.items[x] != grid.items[y] && meet(grid.items[x], grid.items[y])) return true;
     return false;
 }
 

@@ -13,11 +13,11 @@ namespace tuft::atlas {
 struct ChartMesh {
     std::vector<std::uint32_t> triangles;             ///< [n] triangle of the mesh
     std::vector<std::array<std::uint32_t, 3>> faces;  ///< [n] vertices of the chart
-    std::vector<std::uint32_t> twin;  ///< [3n] half-edge of the chart, kNone on its border
-    std::vector<Vec3> position;       ///< [n_vertices] from the chart's first corner, over `unit`
-    std::vector<std::uint32_t> loop;  ///< border vertices in order, when the chart is a disk
-    double area = 0;                  ///< over unit²
-    bool disk = false;                ///< connected, one border, Euler characteristic 1
+    std::vector<std::uint32_t> twin;                  ///< [3n] half-edge of the chart, kNone on its border
+    std::vector<Vec3> position;                       ///< [n_vertices] from the chart's first corner, over `unit`
+    std::vector<std::uint32_t> loop;                  ///< border vertices in order, when the chart is a disk
+    double area = 0;                                  ///< over unit²
+    bool disk = false;                                ///< connected, one border, Euler characteristic 1
 
     std::size_t n_vertices() const { return position.size(); }
 };
@@ -26,8 +26,7 @@ struct ChartMesh {
 /// seams; none may lead out of `triangles` (ascending). `place` [n_triangles of the mesh] is
 /// room to work in, of which only the chart's own triangles are touched; without it, slower.
 ChartMesh make_chart(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> glued,
-                     std::vector<std::uint32_t> triangles, double unit,
-                     std::span<std::uint32_t> place = {});
+                     std::vector<std::uint32_t> triangles, double unit, std::span<std::uint32_t> place = {});
 
 /// Triangles of each chart (ascending), charts in the order of their first triangle.
 std::vector<std::vector<std::uint32_t>> connected_charts(std::span<const std::uint32_t> glued);

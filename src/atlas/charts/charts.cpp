@@ -5,9 +5,9 @@
 #include <limits>
 #include <numeric>
 
-#include "atlas/charts/requested_seams.h"
 #include "atlas/charts/developable.h"
 #include "atlas/charts/phase_progress.h"
+#include "atlas/charts/requested_seams.h"
 #include "atlas/charts/straighten.h"
 #include "atlas/charts/tasks.h"
 #include "atlas/flatten/hull.h"
@@ -102,8 +102,8 @@ std::vector<Piece> cut_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const
 }
 
 /// Lays the piece flat; false when that stretches it too much.
-bool flatten_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const Piece& piece,
-                   const ChartOptions& options, TaskProgress phase, FlatChart& flat) {
+bool flatten_piece(const mesh::TriangleMesh& mesh, CutMesh& cut, const Piece& piece, const ChartOptions& options,
+                   TaskProgress phase, FlatChart& flat) {
     flat.mesh = make_chart(mesh, cut.glued, piece.triangles, cut.unit, cut.place);
     ArapOptions arap = trial_arap(options);
     const double step = static_cast<double>(piece.triangles.size()) / arap.iterations;
@@ -126,9 +126,8 @@ void flatten_pieces(const mesh::TriangleMesh& mesh, CutMesh& cut, std::vector<Pi
     // Pieces that are cut are laid flat again: as much more as is usual.
     PhaseProgress phase(progress, "flatten", 1.3 * all);
     while (!pieces.empty()) {
-        std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
-            return a.triangles.size() > b.triangles.size();
-        });
+        std::stable_sort(pieces.begin(), pieces.end(),
+                         [](const Piece& a, const Piece& b) { return a.triangles.size() > b.triangles.size(); });
         std::vector<FlatChart> flat(pieces.size());
         std::vector<std::vector<Piece>> parts(pieces.size());
         const auto size = [&](std::size_t i) { return static_cast<double>(pieces[i].triangles.size()); };
@@ -167,11 +166,9 @@ std::vector<Piece> cut_long_charts(CutMesh& cut, const ChartOptions& options) {
         };
         for (std::uint32_t h = 0; h < chart.mesh.twin.size(); ++h) {
             const std::uint32_t g = chart.mesh.twin[h];
-            if (g != kNone && slice(h / 3) != slice(g / 3))
-                cut_edge(cut, 3 * chart.mesh.triangles[h / 3] + h % 3);
+            if (g != kNone && slice(h / 3) != slice(g / 3)) cut_edge(cut, 3 * chart.mesh.triangles[h / 3] + h % 3);
         }
-        for (Triangles& part : parts_of(cut, chart.mesh.triangles))
-            pieces.push_back({std::move(part), 0});
+        for (Triangles& part : parts_of(cut, chart.mesh.triangles)) pieces.push_back({std::move(part), 0});
     }
     cut.charts = std::move(kept);
     return pieces;
@@ -187,14 +184,12 @@ StretchBudget::StretchBudget(const CutMesh& cut, double l2) {
     }
 }
 
-bool StretchBudget::allows(std::span<const FlatChart* const> before,
-                           std::span<const FlatChart* const> now) const {
+bool StretchBudget::allows(std::span<const FlatChart* const> before, std::span<const FlatChart* const> now) const {
     const double more = difference(before, now);
     return more <= 0 || used_ + more <= all_;
 }
 
-void StretchBudget::spend(std::span<const FlatChart* const> before,
-                          std::span<const FlatChart* const> now) {
+void StretchBudget::spend(std::span<const FlatChart* const> before, std::span<const FlatChart* const> now) {
     used_ += difference(before, now);
 }
 
@@ -231,8 +226,7 @@ ArapOptions trial_arap(const ChartOptions& options) {
     return arap;
 }
 
-CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options,
-                        const ProgressFn& progress) {
+CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options, const ProgressFn& progress) {
     CutMesh cut;
     cut.twin = twin_half_edges(mesh);
     cut_requested_seams(mesh, options.seams, cut.twin);
@@ -279,9 +273,8 @@ void cut_out(const mesh::TriangleMesh& mesh, CutMesh& cut, std::span<const std::
     std::vector<FlatChart> kept;
     for (FlatChart& chart : cut.charts) {
         const Triangles& own = chart.mesh.triangles;
-        const bool hit = std::any_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
-            return std::binary_search(own.begin(), own.end(), t);
-        });
+        const bool hit = std::any_of(triangles.begin(), triangles.end(),
+                                     [&](std::uint32_t t) { return std::binary_search(own.begin(), own.end(), t); });
         if (!hit) {
             kept.push_back(std::move(chart));
             continue;

@@ -15,17 +15,17 @@
 namespace tuft::atlas {
 
 struct ChartOptions {
-    double l2 = 1.0045;     ///< stretch that a chart may have on average
-    double largest = 1.35;  ///< and at 99.9 % of its area
-    double l2_all = 1.0028; ///< and that all may have together, once they are merged
-    double worst = 3;       ///< and anywhere, where that can be helped
-    double longest = 1.35;  ///< long side of a chart's smallest rectangle, over the unit: no longer
-                            ///< than a page that charts cover to a half is wide
-    double grown = 0.3;     ///< part of the surface that a chart may grow to as seams move
+    double l2 = 1.0045;                ///< stretch that a chart may have on average
+    double largest = 1.35;             ///< and at 99.9 % of its area
+    double l2_all = 1.0028;            ///< and that all may have together, once they are merged
+    double worst = 3;                  ///< and anywhere, where that can be helped
+    double longest = 1.35;             ///< long side of a chart's smallest rectangle, over the unit: no longer
+                                       ///< than a page that charts cover to a half is wide
+    double grown = 0.3;                ///< part of the surface that a chart may grow to as seams move
     std::uint32_t triangles = 200000;  ///< of a chart, at most: what laying it flat costs grows
                                        ///< faster than they do
-    RequestedSeams seams;       ///< no chart crosses these
-    double gap = 0;         ///< that parts of a chart's border keep from each other, over the unit
+    RequestedSeams seams;              ///< no chart crosses these
+    double gap = 0;                    ///< that parts of a chart's border keep from each other, over the unit
 };
 
 /// How well charts are laid out to see whether they can be: stops early where that is clear.
@@ -39,8 +39,8 @@ inline constexpr std::size_t kBlockwiseThreshold = 500000;
 struct FlatChart {
     ChartMesh mesh;
     std::vector<Vec2> uv;
-    double l2 = 1;     ///< stretch
-    double worst = 1;  ///< largest stretch of a triangle
+    double l2 = 1;              ///< stretch
+    double worst = 1;           ///< largest stretch of a triangle
     std::uint32_t version = 0;  ///< another one for every chart and change; 0: none yet
 };
 
@@ -55,8 +55,7 @@ struct CutMesh {
 };
 
 /// Cuts and flattens the whole mesh. Every triangle lies in one chart.
-CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options,
-                        const ProgressFn& progress);
+CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options, const ProgressFn& progress);
 
 /// The stretch of all charts together, L2² times area, as charts change.
 class StretchBudget {

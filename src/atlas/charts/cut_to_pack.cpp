@@ -15,8 +15,8 @@ namespace tuft::atlas {
 namespace {
 
 constexpr int kMostCuts = 9;
-constexpr double kLeastOfUse = 0.98;  // that is left when a cut is made for the sake of the next
-constexpr double kBeyond = 1.03;  // of the goal, once charts are cut: a short search errs by this
+constexpr double kLeastOfUse = 0.98;     // that is left when a cut is made for the sake of the next
+constexpr double kBeyond = 1.03;         // of the goal, once charts are cut: a short search errs by this
 constexpr double kAsLong = 0.85;         // of the longest chart's length
 constexpr std::size_t kCandidates = 6;   // largest charts that are tried
 constexpr std::size_t kMostCharts = 48;  // with more, small ones fill the gaps
@@ -38,8 +38,7 @@ double use_of(const Packing& packing, double area) {
 
 /// A layout of the charts, as good as `goal` asks for where that is near: with many charts, small
 /// ones fill the gaps whichever way they are turned.
-Packing pack_well(const std::vector<std::vector<Vec2>>& borders, double area, PackOptions options,
-                  double goal) {
+Packing pack_well(const std::vector<std::vector<Vec2>>& borders, double area, PackOptions options, double goal) {
     constexpr std::size_t kMany = 128;
     constexpr double kNear = 0.94;  // of what is good enough
     options.search = Search::full;
@@ -79,14 +78,12 @@ std::optional<FlatChart> part_of(const Whole& of, std::span<const std::uint32_t>
     if (!part.mesh.disk) return std::nullopt;
     part.uv.resize(part.mesh.n_vertices());
     for (std::size_t i = 0; i < faces.size(); ++i)
-        for (int k = 0; k < 3; ++k)
-            part.uv[part.mesh.faces[i][k]] = whole.uv[whole.mesh.faces[faces[i]][k]];
+        for (int k = 0; k < 3; ++k) part.uv[part.mesh.faces[i][k]] = whole.uv[whole.mesh.faces[faces[i]][k]];
     if (!check_flat(part.mesh, part.uv, of.gap).sound()) return std::nullopt;
     return part;
 }
 
-std::optional<Halves> halve(const mesh::TriangleMesh& mesh, const CutMesh& cut,
-                            const FlatChart& chart, double gap) {
+std::optional<Halves> halve(const mesh::TriangleMesh& mesh, const CutMesh& cut, const FlatChart& chart, double gap) {
     const ChartMesh& m = chart.mesh;
     if (m.faces.size() < 2 || m.faces.size() > kDear) return std::nullopt;
     const Rectangle box = smallest_rectangle(chart_hull(chart));
@@ -144,32 +141,26 @@ std::vector<Proposal> proposals(const mesh::TriangleMesh& mesh, const CutMesh& c
     }
     std::vector<std::uint32_t> order(box.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return box[a] > box[b]; });
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return box[a] > box[b]; });
     order.resize(std::min(order.size(), kCandidates));
     std::vector<std::optional<Halves>> halves(order.size());
-    run_tasks(order.size(),
-              [&](std::size_t i) { halves[i] = halve(mesh, cut, cut.charts[order[i]], gap); });
+    run_tasks(order.size(), [&](std::size_t i) { halves[i] = halve(mesh, cut, cut.charts[order[i]], gap); });
     std::vector<Proposal> all;
     for (std::size_t i = 0; i < order.size(); ++i)
         if (halves[i]) all.push_back({{order[i], *halves[i]}});
-    if (order.size() > 1 && halves[0] && halves[1])
-        all.push_back({{order[0], *halves[0]}, {order[1], *halves[1]}});
+    if (order.size() > 1 && halves[0] && halves[1]) all.push_back({{order[0], *halves[0]}, {order[1], *halves[1]}});
     const double longest = *std::max_element(length.begin(), length.end());
     Proposal together;
     for (std::size_t i = 0; i < order.size(); ++i)
-        if (halves[i] && length[order[i]] >= kAsLong * longest)
-            together.push_back({order[i], *halves[i]});
+        if (halves[i] && length[order[i]] >= kAsLong * longest) together.push_back({order[i], *halves[i]});
     if (together.size() > 1) all.push_back(std::move(together));
     return all;
 }
 
-std::vector<std::vector<Vec2>> borders_after(std::vector<std::vector<Vec2>> borders,
-                                             const Proposal& proposal) {
+std::vector<std::vector<Vec2>> borders_after(std::vector<std::vector<Vec2>> borders, const Proposal& proposal) {
     for (const auto& [chart, halves] : proposal) {
         borders[chart] = border_of(halves.parts[0]);
-        for (std::size_t p = 1; p < halves.parts.size(); ++p)
-            borders.push_back(border_of(halves.parts[p]));
+        for (std::size_t p = 1; p < halves.parts.size(); ++p) borders.push_back(border_of(halves.parts[p]));
     }
     return borders;
 }
@@ -192,8 +183,8 @@ struct Start {
 
 /// Cuts while coarse masks show that it gains, until they show the goal or nothing helps; the
 /// number of cuts.
-int cut_while_it_gains(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap,
-                       const PackOptions& options, const Start& start, double goal, int most) {
+int cut_while_it_gains(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, const PackOptions& options,
+                       const Start& start, double goal, int most) {
     const double area = start.area;
     double use = start.use;
     std::vector<std::vector<Vec2>> borders = chart_borders(cut);
@@ -220,8 +211,7 @@ int cut_while_it_gains(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap,
 
 }  // namespace
 
-CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options,
-                      double goal) {
+CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options, double goal) {
     CutToPack result;
     double area = 0;
     for (const FlatChart& chart : cut.charts) area += chart.mesh.area;

@@ -14,8 +14,7 @@ struct CutToPack {
 /// bows, a few large squares. Only while less than `goal` of the page is covered, and only if
 /// the cuts gain a part of `kCutGain` each, or reach the goal. The halves lie flat as the whole
 /// did. `gap` as in `ChartOptions`.
-CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options,
-                      double goal);
+CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options, double goal);
 
 inline constexpr double kGoodUse = 0.65;   ///< covered part of a page that is good enough
 inline constexpr double kTightUse = 0.85;  ///< where it shall be as large as it can

@@ -54,16 +54,14 @@ std::vector<Triangles> compact_blocks(const mesh::TriangleMesh& mesh) {
 }  // namespace
 
 std::vector<std::uint8_t> developable_seams(const Patch& patch, std::span<const std::uint8_t> seam,
-                                            const GluingLimits& limits,
-                                            const ProgressFn& progress) {
+                                            const GluingLimits& limits, const ProgressFn& progress) {
     SeamGraph graph(patch, seam);
     graph.glue_developable(limits, progress);
     return graph.seams();
 }
 
-std::vector<std::uint8_t> small_chart_seams(const mesh::TriangleMesh& mesh,
-                                            std::span<const std::uint32_t> twin, double unit,
-                                            GluingLimits limits, const ProgressFn& progress) {
+std::vector<std::uint8_t> small_chart_seams(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> twin,
+                                            double unit, GluingLimits limits, const ProgressFn& progress) {
     if (mesh.n_triangles() < kBlockwiseThreshold) return {};
     limits.triangles = std::min(limits.triangles, kSmallChart);
     std::vector<Triangles> blocks = compact_blocks(mesh);
@@ -74,8 +72,7 @@ std::vector<std::uint8_t> small_chart_seams(const mesh::TriangleMesh& mesh,
         TaskProgress part(phase, size);
         const Patch patch = make_patch(mesh, twin, std::move(blocks[i]), unit);
         const std::vector<std::uint8_t> own = developable_seams(patch, {}, limits, {});
-        for (std::size_t h = 0; h < own.size(); ++h)
-            seam[3 * std::size_t{patch.triangles[h / 3]} + h % 3] = own[h];
+        for (std::size_t h = 0; h < own.size(); ++h) seam[3 * std::size_t{patch.triangles[h / 3]} + h % 3] = own[h];
         part.finish();
     });
     return seam;

@@ -15,8 +15,7 @@ std::vector<std::uint8_t> developable_seams(const Patch& patch, std::span<const 
 /// split into blocks of compact shape, glued each by itself on all threads, because the order in
 /// which far charts are glued does not matter while they are small. Empty below `kBlockwiseThreshold`
 /// triangles. `twin` as in `make_patch`. The same for any number of threads.
-std::vector<std::uint8_t> small_chart_seams(const mesh::TriangleMesh& mesh,
-                                            std::span<const std::uint32_t> twin, double unit,
-                                            GluingLimits limits, const ProgressFn& progress);
+std::vector<std::uint8_t> small_chart_seams(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> twin,
+                                            double unit, GluingLimits limits, const ProgressFn& progress);
 
 }  // namespace tuft::atlas

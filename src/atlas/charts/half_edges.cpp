@@ -49,8 +49,7 @@ Patch make_patch(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> 
     for (std::uint32_t c = 0; c < 3 * n; ++c) {
         if (patch.vertex[c] != kNone) continue;
         const std::uint32_t v = patch.n_vertices++;
-        for (std::uint32_t h = c; h != kNone && patch.vertex[h] == kNone;
-             h = patch.twin[prev_half(h)])
+        for (std::uint32_t h = c; h != kNone && patch.vertex[h] == kNone; h = patch.twin[prev_half(h)])
             patch.vertex[h] = v;
         for (std::uint32_t g = patch.twin[c]; g != kNone;) {
             const std::uint32_t h = next_half(g);
@@ -70,8 +69,7 @@ Patch make_patch(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> 
         const double twice = glm::length(cross);
         patch.normal[t] = twice > 0 ? Vec3f(cross / twice) : Vec3f(0, 0, 1);
         patch.area[t] = static_cast<float>(0.5 * twice);
-        for (int k = 0; k < 3; ++k)
-            patch.length[3 * t + k] = static_cast<float>(glm::length(p[(k + 1) % 3] - p[k]));
+        for (int k = 0; k < 3; ++k) patch.length[3 * t + k] = static_cast<float>(glm::length(p[(k + 1) % 3] - p[k]));
     }
     patch.triangles = std::move(triangles);
     return patch;
@@ -83,8 +81,8 @@ std::vector<float> vertex_angles(const Patch& patch) {
         const double a = patch.length[h], b = patch.length[prev_half(h)];
         const double c = patch.length[next_half(h)];
         if (!(a > 0) || !(b > 0)) continue;
-        angle[patch.vertex[h]] += static_cast<float>(
-            std::acos(std::clamp((a * a + b * b - c * c) / (2 * a * b), -1.0, 1.0)));
+        angle[patch.vertex[h]] +=
+            static_cast<float>(std::acos(std::clamp((a * a + b * b - c * c) / (2 * a * b), -1.0, 1.0)));
     }
     return angle;
 }

@@ -28,7 +28,7 @@ std::uint32_t local_half(std::span<const std::uint32_t> triangles, std::uint32_t
 struct Patch {
     std::vector<std::uint32_t> triangles;  ///< [n] triangle of the mesh
     std::vector<std::uint32_t> twin;       ///< [3n] half-edges of the patch
-    std::vector<std::uint32_t> vertex;  ///< [3n] corner to vertex; a vertex is one fan of triangles
+    std::vector<std::uint32_t> vertex;     ///< [3n] corner to vertex; a vertex is one fan of triangles
     std::uint32_t n_vertices = 0;
     std::vector<Vec3f> normal;  ///< [n] unit
     std::vector<float> area;    ///< [n] m² over `unit`²

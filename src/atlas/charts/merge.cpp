@@ -40,8 +40,8 @@ Vec2 corner_uv(const FlatChart& chart, std::uint32_t h) {
 
 /// The motion of b's UVs that brings the two sides of the chain together best, and the
 /// root mean square distance that is left.
-std::pair<RigidMotion, double> fit_sides(const FlatChart& a, const FlatChart& b,
-                                         std::span<const std::uint32_t> twin, const Trial& trial) {
+std::pair<RigidMotion, double> fit_sides(const FlatChart& a, const FlatChart& b, std::span<const std::uint32_t> twin,
+                                         const Trial& trial) {
     std::vector<std::array<Vec2, 2>> pairs;
     for (std::size_t i = 0; i < trial.n_chain; ++i) {
         std::uint32_t h = trial.halves[i], g = twin[h];
@@ -93,8 +93,7 @@ Form form_of(const FlatChart& chart) {
 
 class Merger {
   public:
-    Merger(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options,
-           const MergeOptions& merge)
+    Merger(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options, const MergeOptions& merge)
         : mesh_(mesh),
           cut_(cut),
           options_(options),
@@ -117,13 +116,12 @@ class Merger {
             for (const Trial& t : trials) set_glued(t, true);
             const std::vector<std::uint32_t> order = largest_first(trials);
             const auto size = [&](std::size_t i) { return double(n_triangles(trials[order[i]])); };
-            run_tasks_within(order.size(), flattened_at_once(mesh_.n_triangles()), size,
-                             [&](std::size_t i) {
-                                 Trial& t = trials[order[i]];
-                                 TaskProgress part(phase, double(n_triangles(t)));
-                                 attempt(t, part);
-                                 part.finish();
-                             });
+            run_tasks_within(order.size(), flattened_at_once(mesh_.n_triangles()), size, [&](std::size_t i) {
+                Trial& t = trials[order[i]];
+                TaskProgress part(phase, double(n_triangles(t)));
+                attempt(t, part);
+                part.finish();
+            });
             for (Trial& t : trials) conclude(t);
         }
         std::erase_if(cut_.charts, [](const FlatChart& c) { return c.mesh.faces.empty(); });
@@ -156,18 +154,15 @@ class Merger {
             const double area_a = graph_.moments(c.chart_a).area;
             const double area_b = graph_.moments(c.chart_b).area;
             if (area_a + area_b > merge_.largest_chart) continue;
-            if (graph_.n_triangles(c.chart_a) + graph_.n_triangles(c.chart_b) > options_.triangles)
-                continue;
+            if (graph_.n_triangles(c.chart_a) + graph_.n_triangles(c.chart_b) > options_.triangles) continue;
             Trial t;
             t.chain = c.id;
             t.a = c.chart_a;
             t.b = c.chart_b;
-            t.rank = c.length / std::max(1e-300, std::min(perimeter[chart_at_[t.a]],
-                                                          perimeter[chart_at_[t.b]]));
+            t.rank = c.length / std::max(1e-300, std::min(perimeter[chart_at_[t.a]], perimeter[chart_at_[t.b]]));
             all.push_back(std::move(t));
         }
-        std::stable_sort(all.begin(), all.end(),
-                         [](const Trial& x, const Trial& y) { return x.rank > y.rank; });
+        std::stable_sort(all.begin(), all.end(), [](const Trial& x, const Trial& y) { return x.rank > y.rank; });
         std::vector<std::uint8_t> used(cut_.charts.size(), 0);
         std::vector<Trial> chosen;
         for (Trial& t : all) {
@@ -183,8 +178,7 @@ class Merger {
     }
 
     std::size_t n_triangles(const Trial& t) const {
-        return cut_.charts[chart_at_[t.a]].mesh.faces.size() +
-               cut_.charts[chart_at_[t.b]].mesh.faces.size();
+        return cut_.charts[chart_at_[t.a]].mesh.faces.size() + cut_.charts[chart_at_[t.b]].mesh.faces.size();
     }
 
     std::vector<std::uint32_t> largest_first(const std::vector<Trial>& trials) const {
@@ -197,8 +191,7 @@ class Merger {
     }
 
     bool lies_flat(const FlatCheck& check, double worst) const {
-        return check.sound() && check.l2 <= options_.l2 && check.stretch_999 <= options_.largest &&
-               check.linf <= worst;
+        return check.sound() && check.l2 <= options_.l2 && check.stretch_999 <= options_.largest && check.linf <= worst;
     }
 
     /// Flattens the two charts as one from where they lie now.
@@ -211,8 +204,8 @@ class Merger {
         if (fit_error > merge_.largest_gap * length) return;
 
         std::vector<std::uint32_t> triangles(a.mesh.triangles.size() + b.mesh.triangles.size());
-        std::merge(a.mesh.triangles.begin(), a.mesh.triangles.end(), b.mesh.triangles.begin(),
-                   b.mesh.triangles.end(), triangles.begin());
+        std::merge(a.mesh.triangles.begin(), a.mesh.triangles.end(), b.mesh.triangles.begin(), b.mesh.triangles.end(),
+                   triangles.begin());
         t.flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit, cut_.place);
         ChartMesh& mesh = t.flat.mesh;
         if (!mesh.disk) return;
@@ -262,8 +255,7 @@ class Merger {
 
     /// Whether a chart of two parts is too ragged or too long, by more than `slack`.
     bool misshapen(const Form& whole, const std::array<Form, 2>& parts, double slack) const {
-        if (slack * whole.fill < std::min({merge_.least_fill, parts[0].fill, parts[1].fill}))
-            return true;
+        if (slack * whole.fill < std::min({merge_.least_fill, parts[0].fill, parts[1].fill})) return true;
         // Two that lie beside each other may be as long as the longer of them.
         const double longer = std::max(parts[0].length, parts[1].length);
         return whole.length > slack * std::max(merge_.longest, kAsLong * longer);
@@ -272,14 +264,12 @@ class Merger {
     RejectedChanges::Change change(std::uint32_t chain, std::uint32_t a, std::uint32_t b) const {
         std::uint32_t first = kNone;
         for (const std::uint32_t h : graph_.half_edges(chain)) first = std::min(first, h);
-        const auto [v, w] =
-            std::minmax(cut_.charts[chart_at_[a]].version, cut_.charts[chart_at_[b]].version);
+        const auto [v, w] = std::minmax(cut_.charts[chart_at_[a]].version, cut_.charts[chart_at_[b]].version);
         return {first, v, w};
     }
 
     void conclude(Trial& t) {
-        const std::array<const FlatChart*, 2> before{&cut_.charts[chart_at_[t.a]],
-                                                     &cut_.charts[chart_at_[t.b]]};
+        const std::array<const FlatChart*, 2> before{&cut_.charts[chart_at_[t.a]], &cut_.charts[chart_at_[t.b]]};
         const std::array<const FlatChart*, 1> now{&t.flat};
         if (!t.merged || !budget_.allows(before, now)) {
             set_glued(t, false);
@@ -310,8 +300,8 @@ class Merger {
 
 }  // namespace
 
-void merge_charts(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options,
-                  const MergeOptions& merge, const ProgressFn& progress) {
+void merge_charts(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options, const MergeOptions& merge,
+                  const ProgressFn& progress) {
     Merger(mesh, cut, options, merge).run(progress);
 }
 

@@ -17,11 +17,11 @@ namespace {
 
 constexpr int kReaches = 2;
 constexpr float kReach[kReaches] = {0.25f, 0.08f};  // tried one after the other
-constexpr double kLeastSaved = 0.02;     // of a seam's length, for which charts are laid anew
-constexpr int kIterations = 8;           // from where a chart lies, most of it well
-constexpr double kLeastValue = 0.05;     // saved, over the unit, for laying all of the mesh anew
-constexpr double kLeastValueDear = 0.1;  // the same where that takes many seconds
-constexpr double kMostWork = 8;          // triangles laid flat, over those of the mesh
+constexpr double kLeastSaved = 0.02;                // of a seam's length, for which charts are laid anew
+constexpr int kIterations = 8;                      // from where a chart lies, most of it well
+constexpr double kLeastValue = 0.05;                // saved, over the unit, for laying all of the mesh anew
+constexpr double kLeastValueDear = 0.1;             // the same where that takes many seconds
+constexpr double kMostWork = 8;                     // triangles laid flat, over those of the mesh
 
 struct Trial {
     SeamMove move;
@@ -54,21 +54,18 @@ class Mover {
             std::vector<Trial> trials = next_trials();
             if (trials.empty()) break;
             for (Trial& t : trials) apply(t);
-            std::stable_sort(trials.begin(), trials.end(), [&](const Trial& a, const Trial& b) {
-                return n_triangles(a) > n_triangles(b);
-            });
+            std::stable_sort(trials.begin(), trials.end(),
+                             [&](const Trial& a, const Trial& b) { return n_triangles(a) > n_triangles(b); });
             const auto size = [&](std::size_t i) { return double(n_triangles(trials[i])); };
-            run_tasks_within(trials.size(), flattened_at_once(mesh_.n_triangles()), size,
-                             [&](std::size_t i) {
-                                 Trial& t = trials[i];
-                                 TaskProgress part(phase, double(n_triangles(t)));
-                                 t.good = true;
-                                 // The chart that grows is the one that may not lie flat.
-                                 const int first = t.swept[0].size() > t.swept[1].size();
-                                 for (int k = 0; k < t.n_charts() && t.good; ++k)
-                                     t.good = lay(t, first ^ k);
-                                 part.finish();
-                             });
+            run_tasks_within(trials.size(), flattened_at_once(mesh_.n_triangles()), size, [&](std::size_t i) {
+                Trial& t = trials[i];
+                TaskProgress part(phase, double(n_triangles(t)));
+                t.good = true;
+                // The chart that grows is the one that may not lie flat.
+                const int first = t.swept[0].size() > t.swept[1].size();
+                for (int k = 0; k < t.n_charts() && t.good; ++k) t.good = lay(t, first ^ k);
+                part.finish();
+            });
             for (Trial& t : trials) {
                 work += double(n_triangles(t));
                 conclude(t);
@@ -87,8 +84,7 @@ class Mover {
     }
 
     std::size_t n_triangles(const Trial& t) const {
-        return cut_.charts[t.chart[0]].mesh.faces.size() +
-               cut_.charts[t.chart[1]].mesh.faces.size();
+        return cut_.charts[t.chart[0]].mesh.faces.size() + cut_.charts[t.chart[1]].mesh.faces.size();
     }
 
     /// The newest version of each chart and those next to it.
@@ -119,8 +115,7 @@ class Mover {
     };
 
     void search(Candidate& c, PathSearch& search) const {
-        if (const auto known = found_.find(c.around);
-            known != found_.end() && known->second.rejected == *c.rejected) {
+        if (const auto known = found_.find(c.around); known != found_.end() && known->second.rejected == *c.rejected) {
             c.trial.move = known->second.move;
             return;
         }
@@ -147,17 +142,14 @@ class Mover {
             c.chain = paths_.chain_from(h);
             for (const std::uint32_t g : c.chain) seen[g] = seen[patch_.twin[g]] = 1;
             c.trial.chart = {paths_.charts()[h / 3], paths_.charts()[patch_.twin[h] / 3]};
-            c.trial.change = {h, cut_.charts[c.trial.chart[0]].version,
-                              cut_.charts[c.trial.chart[1]].version};
+            c.trial.change = {h, cut_.charts[c.trial.chart[0]].version, cut_.charts[c.trial.chart[1]].version};
             c.rejected = &cut_.rejected.moved[c.trial.change];
             c.around = {h, newest[c.trial.chart[0]], newest[c.trial.chart[1]]};
             candidates.push_back(std::move(c));
         }
-        while (searches_.size() < static_cast<std::size_t>(thread_count()))
-            searches_.emplace_back(patch_);
-        run_tasks_by_worker(candidates.size(), [&](std::size_t i, std::size_t worker) {
-            search(candidates[i], searches_[worker]);
-        });
+        while (searches_.size() < static_cast<std::size_t>(thread_count())) searches_.emplace_back(patch_);
+        run_tasks_by_worker(candidates.size(),
+                            [&](std::size_t i, std::size_t worker) { search(candidates[i], searches_[worker]); });
         std::map<RejectedChanges::Change, Found> found;
         std::vector<Trial> all;
         for (Candidate& c : candidates) {
@@ -166,9 +158,8 @@ class Mover {
             all.push_back(std::move(c.trial));
         }
         found_ = std::move(found);
-        std::stable_sort(all.begin(), all.end(), [](const Trial& a, const Trial& b) {
-            return a.move.saved > b.move.saved;
-        });
+        std::stable_sort(all.begin(), all.end(),
+                         [](const Trial& a, const Trial& b) { return a.move.saved > b.move.saved; });
         std::vector<std::uint8_t> used(cut_.charts.size(), 0);
         std::vector<Trial> chosen;
         for (Trial& t : all) {
@@ -230,14 +221,12 @@ class Mover {
     }
 
     /// The triangles of one of the charts after the move, of which it has taken some over.
-    std::vector<std::uint32_t> triangles_after(const Trial& t, int side,
-                                               const std::vector<std::uint32_t>& come) const {
+    std::vector<std::uint32_t> triangles_after(const Trial& t, int side, const std::vector<std::uint32_t>& come) const {
         const std::vector<std::uint32_t>& own = cut_.charts[t.chart[side]].mesh.triangles;
         if (t.n_charts() == 1) return own;
         std::vector<std::uint32_t> kept, gone = t.swept[side];
         std::sort(gone.begin(), gone.end());
-        std::set_difference(own.begin(), own.end(), gone.begin(), gone.end(),
-                            std::back_inserter(kept));
+        std::set_difference(own.begin(), own.end(), gone.begin(), gone.end(), std::back_inserter(kept));
         std::vector<std::uint32_t> after(kept.size() + come.size());
         std::merge(kept.begin(), kept.end(), come.begin(), come.end(), after.begin());
         return kept.empty() ? kept : after;
@@ -254,14 +243,12 @@ class Mover {
         if (!flat.mesh.disk) return false;
         if (flat.mesh.area > old.mesh.area && flat.mesh.area > options_.grown) return false;
         const bool large = flat.mesh.faces.size() > kLargeChart;
-        flat.uv = large ? carry_uvs(old, cut_.charts[t.chart[1 - side]], come, flat.mesh)
-                        : unfold_uvs(old, flat.mesh);
+        flat.uv = large ? carry_uvs(old, cut_.charts[t.chart[1 - side]], come, flat.mesh) : unfold_uvs(old, flat.mesh);
         // A large chart that only gave triangles away is left as it lies, no less flat than before.
         if (!large || !come.empty()) {
             ArapOptions trial = trial_arap(options_);
             trial.iterations = kIterations;
-            arap(flat.mesh, flat.uv, trial,
-                 large ? faces_around(flat.mesh, come) : std::vector<std::uint32_t>{});
+            arap(flat.mesh, flat.uv, trial, large ? faces_around(flat.mesh, come) : std::vector<std::uint32_t>{});
         }
         scale_to_area(flat.mesh, flat.uv);
         const FlatCheck check = check_flat(flat.mesh, flat.uv, options_.gap);
@@ -313,14 +300,13 @@ class Mover {
         int rejected = 0;  // how often before
         SeamMove move;
     };
-    std::map<RejectedChanges::Change, Found> found_;       // in the last round
-    std::set<std::vector<std::uint32_t>> refused_;  // moves of large charts
+    std::map<RejectedChanges::Change, Found> found_;  // in the last round
+    std::set<std::vector<std::uint32_t>> refused_;    // moves of large charts
 };
 
 }  // namespace
 
-bool move_seams(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options,
-                const ProgressFn& progress) {
+bool move_seams(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options, const ProgressFn& progress) {
     return Mover(mesh, cut, options).run(progress);
 }
 

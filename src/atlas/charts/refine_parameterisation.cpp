@@ -13,8 +13,7 @@ void refine_parameterisation(CutMesh& cut, const ChartOptions& options, const Pr
     std::vector<std::uint32_t> order(cut.charts.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto size = [&](std::uint32_t c) { return cut.charts[c].mesh.faces.size(); };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return size(a) > size(b); });
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return size(a) > size(b); });
     double all = 0;
     for (const std::uint32_t c : order) all += double(size(c));
     PhaseProgress phase(progress, "polish", all);

@@ -16,12 +16,10 @@ Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t t) {
 
 }  // namespace
 
-void cut_requested_seams(const mesh::TriangleMesh& mesh, const RequestedSeams& seams,
-                     std::span<std::uint32_t> twin) {
+void cut_requested_seams(const mesh::TriangleMesh& mesh, const RequestedSeams& seams, std::span<std::uint32_t> twin) {
     const bool groups = seams.groups && !mesh.triangle_groups.empty();
     const bool sharp = seams.sharp_angle > 0;
-    if (seams.groups && !groups && !sharp)
-        throw Error("the model has no face groups for seams to follow");
+    if (seams.groups && !groups && !sharp) throw Error("the model has no face groups for seams to follow");
     if (!groups && !sharp) return;
     const double least_cos = std::cos(std::min(seams.sharp_angle, std::numbers::pi));
     for (std::uint32_t h = 0; h < twin.size(); ++h) {
@@ -29,8 +27,7 @@ void cut_requested_seams(const mesh::TriangleMesh& mesh, const RequestedSeams& s
         if (g == kNone || g < h) continue;
         const std::uint32_t s = h / 3, t = g / 3;
         bool cut = groups && mesh.triangle_groups[s] != mesh.triangle_groups[t];
-        if (!cut && sharp)
-            cut = glm::dot(face_normal(mesh, s), face_normal(mesh, t)) < least_cos;
+        if (!cut && sharp) cut = glm::dot(face_normal(mesh, s), face_normal(mesh, t)) < least_cos;
         if (cut) twin[h] = twin[g] = kNone;
     }
 }

@@ -35,8 +35,7 @@ double least_eigenvalue(const std::array<double, 6>& m) {
     const double off = m[1] * m[1] + m[2] * m[2] + m[4] * m[4];
     const double p = std::sqrt((a * a + b * b + c * c + 2 * off) / 6);
     if (!(p > 0)) return q;
-    const double det = a * (b * c - m[4] * m[4]) - m[1] * (m[1] * c - m[4] * m[2]) +
-                       m[2] * (m[1] * m[4] - b * m[2]);
+    const double det = a * (b * c - m[4] * m[4]) - m[1] * (m[1] * c - m[4] * m[2]) + m[2] * (m[1] * m[4] - b * m[2]);
     const double r = std::clamp(det / (2 * p * p * p), -1.0, 1.0);
     return q + 2 * p * std::cos(std::acos(r) / 3 + 2 * std::numbers::pi / 3);
 }
@@ -45,18 +44,17 @@ double dihedral(const Patch& patch, std::uint32_t h) {
     const std::uint32_t g = patch.twin[h];
     const double flat = kFlatTriangle * patch.length[h] * patch.length[h];
     if (patch.area[h / 3] < flat || patch.area[g / 3] < flat) return 0;
-    return std::acos(std::clamp(
-        static_cast<double>(glm::dot(patch.normal[h / 3], patch.normal[g / 3])), -1.0, 1.0));
+    return std::acos(std::clamp(static_cast<double>(glm::dot(patch.normal[h / 3], patch.normal[g / 3])), -1.0, 1.0));
 }
 
 }  // namespace
 
 NormalMoments NormalMoments::of(double area, const Vec3f& normal) {
     const Vec3 n(normal);
-    return {area,
-            area * n,
-            {area * n.x * n.x, area * n.x * n.y, area * n.x * n.z, area * n.y * n.y,
-             area * n.y * n.z, area * n.z * n.z}};
+    return {
+        area,
+        area * n,
+        {area * n.x * n.x, area * n.x * n.y, area * n.x * n.z, area * n.y * n.y, area * n.y * n.z, area * n.z * n.z}};
 }
 
 void NormalMoments::add(const NormalMoments& m) {
@@ -189,8 +187,7 @@ int SeamGraph::seam_edges_at(std::uint32_t vertex, std::array<std::uint32_t, 3>&
         const std::uint32_t g = patch_.twin[prev_half(h)];
         if (g == kNone) {  // the other side of the fan, up to the border
             take(prev_half(h));
-            for (std::uint32_t b = patch_.twin[start]; b != kNone; b = patch_.twin[next_half(b)])
-                take(next_half(b));
+            for (std::uint32_t b = patch_.twin[start]; b != kNone; b = patch_.twin[next_half(b)]) take(next_half(b));
             break;
         }
         h = g;
@@ -199,9 +196,7 @@ int SeamGraph::seam_edges_at(std::uint32_t vertex, std::array<std::uint32_t, 3>&
 }
 
 void SeamGraph::join(std::uint32_t a, std::uint32_t b, std::uint32_t vertex) {
-    const auto other_end = [&](std::uint32_t c) {
-        return ends_[c].a == vertex ? ends_[c].b : ends_[c].a;
-    };
+    const auto other_end = [&](std::uint32_t c) { return ends_[c].a == vertex ? ends_[c].b : ends_[c].a; };
     const Ends ends{other_end(a), other_end(b)};
     next_[tail_[a]] = b;
     tail_[a] = tail_[b];
@@ -273,8 +268,7 @@ double SeamGraph::cost(std::uint32_t chain, const GluingLimits& limits) const {
     NormalMoments both = moments_[a];
     both.add(moments_[b]);
     if (both.area > limits.area) return kNever;
-    if (glm::dot(both.first, both.first) <
-        limits.mean_normal * limits.mean_normal * both.area * both.area)
+    if (glm::dot(both.first, both.first) < limits.mean_normal * limits.mean_normal * both.area * both.area)
         return kNever;
     const double error = both.error();
     if (error > limits.error * both.area) return kNever;
@@ -291,9 +285,7 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
     struct Entry {
         double cost;
         std::uint32_t chain, version;
-        bool operator<(const Entry& o) const {
-            return cost != o.cost ? cost < o.cost : chain < o.chain;
-        }
+        bool operator<(const Entry& o) const { return cost != o.cost ? cost < o.cost : chain < o.chain; }
     };
     struct Later {
         bool operator()(const Entry& a, const Entry& b) const { return b < a; }
@@ -324,8 +316,7 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
             const Entry top = back ? queue.top() : start[next++];
             if (back) queue.pop();
             if ((++steps & 0xfff) == 0)
-                report(progress, "charts",
-                       1.0 - static_cast<double>(left) / static_cast<double>(all));
+                report(progress, "charts", 1.0 - static_cast<double>(left) / static_cast<double>(all));
             const std::uint32_t c = top.chain;
             if (!seam_[c] || chain_parent_[c] != c || version_[c] != top.version) continue;
             const double now = cost(c, limits);
@@ -342,8 +333,7 @@ void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& p
             glued = true;
             left -= left > 0;
             for (const std::uint32_t j : changed)
-                if (seam_[j] && chain_parent_[j] == j)
-                    queue.push({cost(j, limits), j, version_[j]});
+                if (seam_[j] && chain_parent_[j] == j) queue.push({cost(j, limits), j, version_[j]});
         }
         start.clear();
         for (const Entry& e : rejected) {

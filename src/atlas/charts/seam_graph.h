@@ -14,11 +14,11 @@
 namespace tuft::atlas {
 
 struct GluingLimits {
-    double error = 0.02;        ///< developability error over area of a chart
-    double mean_normal = 0.55;  ///< length of the mean unit normal: no chart wraps round
-    double crease = 0.87;       ///< radians; chains bent more (on average) stay
-    double small = 1e-3;        ///< weight of the smaller chart's area in the cost
-    double area = 1e300;        ///< largest area of a chart, over unit²
+    double error = 0.02;              ///< developability error over area of a chart
+    double mean_normal = 0.55;        ///< length of the mean unit normal: no chart wraps round
+    double crease = 0.87;             ///< radians; chains bent more (on average) stay
+    double small = 1e-3;              ///< weight of the smaller chart's area in the cost
+    double area = 1e300;              ///< largest area of a chart, over unit²
     std::uint32_t triangles = kNone;  ///< most triangles of a chart
 };
 
@@ -86,9 +86,9 @@ class SeamGraph {
     int seam_edges_at(std::uint32_t vertex, std::array<std::uint32_t, 3>& edges) const;
 
     const Patch& patch_;
-    std::vector<std::uint32_t> edge_of_;  // [3n], kNone where there was no seam to begin with
-    std::vector<std::uint32_t> half_;     // [n_edges] one half-edge each
-    std::vector<std::uint8_t> seam_;      // [n_edges]
+    std::vector<std::uint32_t> edge_of_;      // [3n], kNone where there was no seam to begin with
+    std::vector<std::uint32_t> half_;         // [n_edges] one half-edge each
+    std::vector<std::uint8_t> seam_;          // [n_edges]
     std::vector<std::uint32_t> first_chart_;  // [n]
     mutable std::vector<std::uint32_t> chain_parent_, chart_parent_;
     std::vector<std::uint32_t> next_, tail_;  // lists of the edges of a chain

@@ -31,8 +31,7 @@ void around(const Patch& patch, std::uint32_t start, Visit&& visit) {
 
 }  // namespace
 
-SeamPaths::SeamPaths(const Patch& patch, std::vector<std::uint8_t> seam,
-                     std::vector<std::uint32_t> chart)
+SeamPaths::SeamPaths(const Patch& patch, std::vector<std::uint8_t> seam, std::vector<std::uint32_t> chart)
     : patch_(patch),
       seam_(std::move(seam)),
       chart_(std::move(chart)),
@@ -77,11 +76,9 @@ std::vector<std::uint32_t> SeamPaths::chain_from(std::uint32_t h) const {
 /// seams, h included.
 std::vector<std::uint32_t> SeamPaths::wedge(std::uint32_t h) const {
     std::vector<std::uint32_t> out{h};
-    for (std::uint32_t g = patch_.twin[prev_half(h)]; g != kNone && !seam_[g];
-         g = patch_.twin[prev_half(g)])
+    for (std::uint32_t g = patch_.twin[prev_half(h)]; g != kNone && !seam_[g]; g = patch_.twin[prev_half(g)])
         out.push_back(g);
-    for (std::uint32_t g = next_half(patch_.twin[h]); !seam_[g]; g = next_half(patch_.twin[g]))
-        out.push_back(g);
+    for (std::uint32_t g = next_half(patch_.twin[h]); !seam_[g]; g = next_half(patch_.twin[g])) out.push_back(g);
     return out;
 }
 
@@ -112,8 +109,7 @@ void SeamPaths::slide(std::uint32_t h, float reach, std::vector<std::uint32_t>& 
 }
 
 /// Marks inner vertices within `reach` of the chain.
-void SeamPaths::mark_band(const std::vector<std::uint32_t>& chain, float reach,
-                          PathSearch& s) const {
+void SeamPaths::mark_band(const std::vector<std::uint32_t>& chain, float reach, PathSearch& s) const {
     Queue queue;
     const auto offer = [&](std::uint32_t v, float d, std::uint32_t h) {
         if (d >= s.band_[v] || d > reach) return;
@@ -137,8 +133,7 @@ void SeamPaths::mark_band(const std::vector<std::uint32_t>& chain, float reach,
     }
 }
 
-SeamMove SeamPaths::shorten(std::vector<std::uint32_t> chain, float reach, Corners corners,
-                            PathSearch& s) const {
+SeamMove SeamPaths::shorten(std::vector<std::uint32_t> chain, float reach, Corners corners, PathSearch& s) const {
     SeamMove move;
     move.chain = std::move(chain);
     if (origin(move.chain.front()) == end(move.chain.back())) return move;
@@ -183,14 +178,12 @@ SeamMove SeamPaths::shorten(std::vector<std::uint32_t> chain, float reach, Corne
         queue.pop();
         if (top.distance >= best) break;
         if (top.distance > s.distance_[top.vertex]) continue;
-        around(patch_, patch_.twin[top.half],
-               [&](std::uint32_t h) { offer(h, top.distance + weight_[h]); });
+        around(patch_, patch_.twin[top.half], [&](std::uint32_t h) { offer(h, top.distance + weight_[h]); });
     }
     if (last != kNone) {
         move.saved = now - best;
         move.path.assign(1, last);
-        while (!s.start_[origin(move.path.back())])
-            move.path.push_back(s.weight_from_[origin(move.path.back())]);
+        while (!s.start_[origin(move.path.back())]) move.path.push_back(s.weight_from_[origin(move.path.back())]);
         std::reverse(move.path.begin(), move.path.end());
     }
     for (const std::uint32_t v : s.touched_) s.distance_[v] = kFar;

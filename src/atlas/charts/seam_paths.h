@@ -52,8 +52,7 @@ class SeamPaths {
   public:
     /// `seam` [3n], borders included; `chart` [n] of each triangle, found from the seams when
     /// it is empty.
-    SeamPaths(const Patch& patch, std::vector<std::uint8_t> seam,
-              std::vector<std::uint32_t> chart = {});
+    SeamPaths(const Patch& patch, std::vector<std::uint8_t> seam, std::vector<std::uint32_t> chart = {});
 
     const std::vector<std::uint8_t>& seams() const { return seam_; }
     const std::vector<std::uint32_t>& charts() const { return chart_; }
@@ -66,8 +65,7 @@ class SeamPaths {
 
     /// The shortest path that stays within `reach` of the chain, over its length. Bent edges
     /// count less, so that seams keep to creases. `path` is empty where none is shorter.
-    SeamMove shorten(std::vector<std::uint32_t> chain, float reach, Corners corners,
-                     PathSearch& search) const;
+    SeamMove shorten(std::vector<std::uint32_t> chain, float reach, Corners corners, PathSearch& search) const;
 
     /// Moves a seam; the triangles that change from the chart on its left to the other one and
     /// back are added to `swept`, for each of the two.
@@ -78,9 +76,7 @@ class SeamPaths {
     struct Entry {
         float distance;
         std::uint32_t vertex, half;  // a half-edge that leaves (band) or reaches (path) the vertex
-        bool operator<(const Entry& o) const {
-            return distance != o.distance ? distance > o.distance : half > o.half;
-        }
+        bool operator<(const Entry& o) const { return distance != o.distance ? distance > o.distance : half > o.half; }
     };
     using Queue = std::priority_queue<Entry>;
 

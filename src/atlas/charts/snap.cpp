@@ -29,8 +29,7 @@ class Snapper {
 
     std::int64_t worst(std::uint32_t v) const {
         std::int64_t least = area(around_[start_[v]]);
-        for (std::uint32_t i = start_[v] + 1; i < start_[v + 1]; ++i)
-            least = std::min(least, area(around_[i]));
+        for (std::uint32_t i = start_[v] + 1; i < start_[v + 1]; ++i) least = std::min(least, area(around_[i]));
         return least;
     }
 
@@ -42,13 +41,9 @@ class Snapper {
         GridPoint better = here;
         for (std::int64_t r = 1; r <= reach && best <= 0; r *= 2)
             for (int k = 0; k < 16; ++k) {
-                constexpr std::int64_t kDx[] = {4,  4,  4,  2,  0, -2, -4, -4,
-                                                -4, -4, -4, -2, 0, 2,  4,  4};
-                constexpr std::int64_t kDy[] = {0, 2,  4,  4,  4,  4,  4,  2,
-                                                0, -2, -4, -4, -4, -4, -4, -2};
-                const auto step = [r](std::int64_t d) {
-                    return d >= 0 ? (d * r + 3) / 4 : -((-d * r + 3) / 4);
-                };
+                constexpr std::int64_t kDx[] = {4, 4, 4, 2, 0, -2, -4, -4, -4, -4, -4, -2, 0, 2, 4, 4};
+                constexpr std::int64_t kDy[] = {0, 2, 4, 4, 4, 4, 4, 2, 0, -2, -4, -4, -4, -4, -4, -2};
+                const auto step = [r](std::int64_t d) { return d >= 0 ? (d * r + 3) / 4 : -((-d * r + 3) / 4); };
                 p_[v] = {here[0] + step(kDx[k]), here[1] + step(kDy[k])};
                 if (p_[v][0] < 0 || p_[v][1] < 0 || p_[v][0] > std::int64_t(kUvGrid) ||
                     p_[v][1] > std::int64_t(kUvGrid))
@@ -71,12 +66,11 @@ class Snapper {
 
 }  // namespace
 
-std::vector<std::uint32_t> snap_to_floats(const std::vector<std::array<std::uint32_t, 3>>& faces,
-                                          std::vector<Vec2>& uv, std::uint32_t size) {
+std::vector<std::uint32_t> snap_to_floats(const std::vector<std::array<std::uint32_t, 3>>& faces, std::vector<Vec2>& uv,
+                                          std::uint32_t size) {
     std::vector<GridPoint> p(uv.size());
     for (std::size_t v = 0; v < uv.size(); ++v)
-        for (int k = 0; k < 2; ++k)
-            p[v][k] = std::llround(std::clamp(uv[v][k], 0.0, 1.0) * kUvGrid);
+        for (int k = 0; k < 2; ++k) p[v][k] = std::llround(std::clamp(uv[v][k], 0.0, 1.0) * kUvGrid);
     std::vector<std::uint32_t> bad;
     for (std::uint32_t t = 0; t < faces.size(); ++t)
         if (twice_area(p[faces[t][0]], p[faces[t][1]], p[faces[t][2]]) <= 0) bad.push_back(t);
@@ -86,8 +80,7 @@ std::vector<std::uint32_t> snap_to_floats(const std::vector<std::array<std::uint
         for (int sweep = 0; sweep < 16; ++sweep) {
             bool moved = false;
             for (const std::uint32_t t : bad)
-                for (int k = 0; k < 3 && snapper.area(t) <= 0; ++k)
-                    moved |= snapper.move(faces[t][k], reach);
+                for (int k = 0; k < 3 && snapper.area(t) <= 0; ++k) moved |= snapper.move(faces[t][k], reach);
             if (!moved) break;
         }
         bad.clear();

@@ -75,7 +75,8 @@ void run_tasks_within(std::size_t n, double most, Weight&& weight, Task&& task) 
     });
 }
 
-/// Triangles of a mesh that are laid flat at once: a quarter of it, and 300,000 at least. Each takes some 0.7 kB meanwhile.
+/// Triangles of a mesh that are laid flat at once: a quarter of it, and 300,000 at least. Each takes some 0.7 kB
+/// meanwhile.
 inline double flattened_at_once(std::size_t n_triangles) {
     return std::max(3e5, 0.25 * static_cast<double>(n_triangles));
 }

@@ -34,8 +34,7 @@ Part whole(const ChartMesh& chart) {
     for (auto& f : part.faces)
         for (std::uint32_t& v : f) v = v > 0 ? v - 1 : n - 1;
     part.references.resize(part.faces.size());
-    for (std::size_t t = 0; t < part.references.size(); ++t)
-        part.references[t] = reference_triangle(chart, t);
+    for (std::size_t t = 0; t < part.references.size(); ++t) part.references[t] = reference_triangle(chart, t);
     part.area = chart.area;
     return part;
 }
@@ -95,13 +94,15 @@ Stiffness stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<V
             else if (i < part.n_free)
                 held[i] += w * uv[j];
         }
-    for (std::uint32_t v = 0; v < part.n_free; ++v) entries.emplace_back(static_cast<int>(v), static_cast<int>(v), diagonal[v]);
+    for (std::uint32_t v = 0; v < part.n_free; ++v)
+        entries.emplace_back(static_cast<int>(v), static_cast<int>(v), diagonal[v]);
     Stiffness matrix(static_cast<Eigen::Index>(part.n_free), static_cast<Eigen::Index>(part.n_free));
     matrix.setFromTriplets(entries.begin(), entries.end());
     return matrix;
 }
 
-/// Two right hand sides at a time, the coordinates of the vertices. One thread, no pivoting, the same bits on every CPU.
+/// Two right hand sides at a time, the coordinates of the vertices. One thread, no pivoting, the same bits on every
+/// CPU.
 using Factor = Eigen::SimplicialLDLT<Stiffness, Eigen::Lower, Eigen::AMDOrdering<int>>;
 using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
@@ -111,8 +112,7 @@ struct Rotation {
 };
 
 /// Closest rotation (c, −s; s, c) to Σ w (u_i − u_j)(x_i − x_j)ᵀ over the edges of a triangle.
-Rotation closest_rotation(const std::array<std::uint32_t, 3>& f, const Reference& r,
-                          const std::vector<Vec2>& uv) {
+Rotation closest_rotation(const std::array<std::uint32_t, 3>& f, const Reference& r, const std::vector<Vec2>& uv) {
     double c = 0, s = 0, square = 0;
     for (int k = 0; k < 3; ++k) {
         const int l = (k + 1) % 3;

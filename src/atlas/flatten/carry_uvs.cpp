@@ -24,8 +24,7 @@ Vec2 unfold(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec2& a, const
 
 class Carrier {
   public:
-    Carrier(const FlatChart& old, const FlatChart& donor, std::span<const std::uint32_t> taken,
-            const ChartMesh& chart)
+    Carrier(const FlatChart& old, const FlatChart& donor, std::span<const std::uint32_t> taken, const ChartMesh& chart)
         : donor_(donor),
           chart_(chart),
           uv_(chart.n_vertices()),
@@ -85,8 +84,7 @@ class Carrier {
             const std::array<Vec2, 3> at = in_donor(f);
             const std::size_t before = pairs.size();
             for (int c = 0; c < 3; ++c)
-                if (const std::uint32_t v = chart_.faces[f][c]; known_[v])
-                    pairs.push_back({uv_[v], at[c]});
+                if (const std::uint32_t v = chart_.faces[f][c]; known_[v]) pairs.push_back({uv_[v], at[c]});
             taken_[f] = 1;
             if (pairs.size() == before) continue;
             queue.push_back(f);
@@ -96,8 +94,7 @@ class Carrier {
         for (const std::uint32_t f : queue) {
             const std::array<Vec2, 3> at = in_donor(f);
             for (int c = 0; c < 3; ++c)
-                if (const std::uint32_t v = chart_.faces[f][c]; known_[v] == 1)
-                    open_[v] = uv_[v] - motion(at[c]);
+                if (const std::uint32_t v = chart_.faces[f][c]; known_[v] == 1) open_[v] = uv_[v] - motion(at[c]);
         }
         // From the border inwards, each corner by what is open at those before it.
         for (std::size_t i = 0; i < queue.size(); ++i) {
@@ -137,8 +134,8 @@ class Carrier {
 
 }  // namespace
 
-std::vector<Vec2> carry_uvs(const FlatChart& old, const FlatChart& donor,
-                            std::span<const std::uint32_t> taken, const ChartMesh& chart) {
+std::vector<Vec2> carry_uvs(const FlatChart& old, const FlatChart& donor, std::span<const std::uint32_t> taken,
+                            const ChartMesh& chart) {
     return Carrier(old, donor, taken, chart).run();
 }
 
@@ -183,8 +180,7 @@ std::vector<std::uint32_t> faces_around(const ChartMesh& chart, std::span<const 
     };
     for (std::size_t f = 0, k = 0; f < chart.faces.size(); ++f) {
         while (k < come.size() && come[k] < chart.triangles[f]) ++k;
-        if (k < come.size() && come[k] == chart.triangles[f])
-            add(static_cast<std::uint32_t>(f));
+        if (k < come.size() && come[k] == chart.triangles[f]) add(static_cast<std::uint32_t>(f));
     }
     for (std::size_t i = 0; i < faces.size() && faces.size() < wanted; ++i)
         for (std::uint32_t h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h)

@@ -16,8 +16,8 @@ inline constexpr std::size_t kLargeChart = 20000;
 /// it lies in `donor`, moved rigidly to where it fits best along the border with the others; what
 /// is still open there is shared out over it. `donor` may be `old` itself, where a part goes over
 /// to the other side of a slit.
-std::vector<Vec2> carry_uvs(const FlatChart& old, const FlatChart& donor,
-                            std::span<const std::uint32_t> taken, const ChartMesh& chart);
+std::vector<Vec2> carry_uvs(const FlatChart& old, const FlatChart& donor, std::span<const std::uint32_t> taken,
+                            const ChartMesh& chart);
 
 /// The same for a small chart: the triangles that it shares with `old` stay, the others are
 /// unfolded from those one by one, which follows a winding border better.

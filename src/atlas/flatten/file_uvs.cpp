@@ -61,7 +61,9 @@ void turn_mirrored(Atlas& atlas, const Charts& charts) {
     std::vector<Bounds> bounds(charts.size());
     std::map<double, bool> all;  // by page: no chart of it is not
     const auto column = [&](std::size_t c) { return std::floor(0.5 * k * (bounds[c].lo.x + bounds[c].hi.x)); };
-    const auto page = [&](std::size_t c) { return column(c) + k * std::floor(0.5 * k * (bounds[c].lo.y + bounds[c].hi.y)); };
+    const auto page = [&](std::size_t c) {
+        return column(c) + k * std::floor(0.5 * k * (bounds[c].lo.y + bounds[c].hi.y));
+    };
     for (std::size_t c = 0; c < charts.size(); ++c) {
         double area = 0;
         for (const std::uint32_t t : charts[c]) area += signed_area(atlas, t);
@@ -147,8 +149,8 @@ std::string lay_pages(Atlas& atlas, const Charts& charts) {
         const Bounds b = bounds_of(atlas, chart);
         const std::optional<Tile> tile = tile_of(b);
         if (!tile) {
-            const bool on_pages = std::min(b.lo.x, b.lo.y) >= -kBeyond && b.hi.x <= kColumns + kBeyond &&
-                                  b.hi.y <= kRows + kBeyond;
+            const bool on_pages =
+                std::min(b.lo.x, b.lo.y) >= -kBeyond && b.hi.x <= kColumns + kBeyond && b.hi.y <= kRows + kBeyond;
             return on_pages ? "a chart lies on more than one page"
                             : "some lie outside [0, 1] and the UDIM pages 1001 to 2000";
         }
@@ -186,8 +188,7 @@ void snap_charts(const mesh::TriangleMesh& mesh, Atlas& atlas, const Charts& cha
     for (std::size_t h = 0; h < glued.size(); ++h)
         if (seam[h]) glued[h] = kNone;
     for (const auto& chart : charts) {
-        if (std::all_of(chart.begin(), chart.end(),
-                        [&](std::uint32_t t) { return signed_area(atlas, t) > 0; }))
+        if (std::all_of(chart.begin(), chart.end(), [&](std::uint32_t t) { return signed_area(atlas, t) > 0; }))
             continue;
         const ChartMesh m = make_chart(mesh, glued, chart, 1);
         std::vector<Vec2> uv(m.n_vertices());
@@ -216,10 +217,10 @@ std::string give_size(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
         const std::string most = ", more than the " + std::to_string(options.max_size) + " allowed";
         if (options.size > 0)
             return std::to_string(atlas.pages) + " pages of " + all +
-                   " texels are together more than fit a square of " +
-                   std::to_string(options.max_size) + " texels; use smaller pages";
-        return "a texel of " + std::to_string(options.texel_size * 1e3) +
-               " mm needs an atlas of " + all + " texels with them" + most;
+                   " texels are together more than fit a square of " + std::to_string(options.max_size) +
+                   " texels; use smaller pages";
+        return "a texel of " + std::to_string(options.texel_size * 1e3) + " mm needs an atlas of " + all +
+               " texels with them" + most;
     }
     atlas.size = static_cast<std::uint32_t>(size) * k;
     atlas.texel_size = side / size;
@@ -255,8 +256,7 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
         if (std::string what = lay_pages(atlas, charts); !what.empty()) return fault(std::move(what));
     atlas.gutter = options.gutter;
     atlas.from_file = true;
-    if (std::string what = give_size(mesh, options, atlas); !what.empty())
-        return fault(std::move(what));
+    if (std::string what = give_size(mesh, options, atlas); !what.empty()) return fault(std::move(what));
     const std::vector<Vec2f> read = atlas.corner_uvs;
     turn_mirrored(atlas, charts);
     if (atlas.pages > 1) snap_charts(mesh, atlas, charts);
@@ -276,8 +276,8 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
     const int gap = smallest_gap(seam, atlas);
     const int least = std::min<int>(options.uvs == UvPolicy::keep ? 1 : 2, int(options.gutter));
     if (gap < least)
-        return fault("charts are less than " + std::to_string(least) +
-                     " texels apart at a size of " + std::to_string(atlas.page_size()));
+        return fault("charts are less than " + std::to_string(least) + " texels apart at a size of " +
+                     std::to_string(atlas.page_size()));
     return found;
 }
 

@@ -16,13 +16,11 @@ constexpr double kMinHeightAlone = 1.0 / 64;
 constexpr double kPlaneCos = 1 - 1e-10;
 
 bool all_positive(const ChartMesh& chart, const std::vector<Vec2>& uv) {
-    return std::all_of(chart.faces.begin(), chart.faces.end(),
-                       [&](const auto& f) { return signed_area(f, uv) > 0; });
+    return std::all_of(chart.faces.begin(), chart.faces.end(), [&](const auto& f) { return signed_area(f, uv) > 0; });
 }
 
 bool all_finite(const std::vector<Vec2>& uv) {
-    return std::all_of(uv.begin(), uv.end(),
-                       [](const Vec2& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
+    return std::all_of(uv.begin(), uv.end(), [](const Vec2& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
 }
 
 /// UVs of a plane chart, seen from its normal; empty when it is not plane.
@@ -31,8 +29,8 @@ std::vector<Vec2> project_plane(const ChartMesh& chart, bool only_if_plane) {
     std::vector<Vec3> normal(chart.faces.size());
     for (std::size_t t = 0; t < normal.size(); ++t) {
         const auto& f = chart.faces[t];
-        normal[t] = glm::cross(chart.position[f[1]] - chart.position[f[0]],
-                               chart.position[f[2]] - chart.position[f[0]]);
+        normal[t] =
+            glm::cross(chart.position[f[1]] - chart.position[f[0]], chart.position[f[2]] - chart.position[f[0]]);
         sum += normal[t];
     }
     const double length = glm::length(sum);
@@ -58,15 +56,14 @@ bool untangle(const ChartMesh& chart, std::vector<Vec2>& uv) {
     for (std::size_t v = 0; v < n; ++v) start[v + 1] += start[v];
     std::vector<std::uint32_t> fill(start.begin(), start.end() - 1);
     for (std::size_t t = 0; t < chart.faces.size(); ++t)
-        for (const std::uint32_t v : chart.faces[t])
-            around[fill[v]++] = static_cast<std::uint32_t>(t);
+        for (const std::uint32_t v : chart.faces[t]) around[fill[v]++] = static_cast<std::uint32_t>(t);
 
     // The worst triangle around a vertex, its area over the area it should have.
     const auto worst = [&](std::uint32_t v) {
         double least = 1e300;
         for (std::uint32_t i = start[v]; i < start[v + 1]; ++i)
-            least = std::min(least, signed_area(chart.faces[around[i]], uv) /
-                                        reference_triangle(chart, around[i]).area);
+            least =
+                std::min(least, signed_area(chart.faces[around[i]], uv) / reference_triangle(chart, around[i]).area);
         return least;
     };
     constexpr double kEnough = 0.05;

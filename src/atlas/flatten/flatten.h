@@ -13,10 +13,10 @@ namespace tuft::atlas {
 /// Energies below are per area of the chart: the mean of (σ₁ − 1)² + (σ₂ − 1)².
 struct ArapOptions {
     int iterations = 40;
-    double tolerance = 1e-3;  ///< stop when the energy falls by less than this part per step
-    double enough = 1e-12;    ///< stop below this energy
-    double hopeless = 1e300;  ///< stop when the energy will stay above this, as far as can be told
-    std::function<void()> on_step;  ///< called before each iteration; may throw to stop
+    double tolerance = 1e-3;                 ///< stop when the energy falls by less than this part per step
+    double enough = 1e-12;                   ///< stop below this energy
+    double hopeless = 1e300;                 ///< stop when the energy will stay above this, as far as can be told
+    std::function<void()> on_step;           ///< called before each iteration; may throw to stop
     std::function<bool(int steps)> in_vain;  ///< asked after each of them, `uv` being as it is
                                              ///< then: true stops
 };
@@ -29,9 +29,9 @@ std::optional<std::vector<Vec2>> lscm(const ChartMesh& chart);
 /// R_t per triangle, by turns (Liu et al. 2008: local/global). The matrix is factorised
 /// once, by Eigen's simplicial L D Lᵀ with an approximate minimum degree ordering: against CHOLMOD with AMD,
 /// with METIS and supernodal, unwrapping a car of 0.12, 0.48 and 1.1 million triangles takes 0.90, 0.52 and 0.71 of the
-/// time, and no BLAS makes bits depend on the CPU. Slivers are laid out a little fatter so that their weights stay finite. `uv` is
-/// the start and the result; returns its energy before the last step. With `faces`, only those
-/// are laid anew, and the corners that they share with others stay where they are.
+/// time, and no BLAS makes bits depend on the CPU. Slivers are laid out a little fatter so that their weights stay
+/// finite. `uv` is the start and the result; returns its energy before the last step. With `faces`, only those are laid
+/// anew, and the corners that they share with others stay where they are.
 double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& options = {},
             std::span<const std::uint32_t> faces = {});
 /// That energy of UVs as they are.

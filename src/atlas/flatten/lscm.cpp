@@ -32,8 +32,7 @@ std::optional<std::vector<Vec2>> lscm(const ChartMesh& chart) {
     for (const Vec3& p : chart.position) mesh.add_vertex({p.x, p.y, p.z});
     using Vertex = Mesh::Vertex_index;
     for (const auto& f : chart.faces)
-        if (mesh.add_face(Vertex(f[0]), Vertex(f[1]), Vertex(f[2])) == Mesh::null_face())
-            return std::nullopt;
+        if (mesh.add_face(Vertex(f[0]), Vertex(f[1]), Vertex(f[2])) == Mesh::null_face()) return std::nullopt;
     Mesh::Halfedge_index border = Mesh::null_halfedge();
     for (const Mesh::Halfedge_index h : mesh.halfedges())
         if (mesh.is_border(h)) {

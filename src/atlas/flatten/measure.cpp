@@ -36,8 +36,7 @@ Sums sum_triangles(std::size_t n, Body&& body) {
     std::vector<Sums> parts((n + kBlock - 1) / kBlock);
     parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
-            for (std::size_t t = b * kBlock; t < std::min(n, (b + 1) * kBlock); ++t)
-                body(t, parts[b]);
+            for (std::size_t t = b * kBlock; t < std::min(n, (b + 1) * kBlock); ++t) body(t, parts[b]);
     });
     Sums all;
     for (const Sums& s : parts) all.add(s);
@@ -81,9 +80,7 @@ void measure_stretch(const mesh::TriangleMesh& mesh, const Atlas& atlas, AtlasRe
         const UvTriangle u = uv_triangle(mesh, atlas, t);
         // Slivers without a measurable area, on the surface or in the atlas, say nothing.
         if (u.area3 <= 1e-12 * diagonal * diagonal) return;
-        if (!std::isfinite(u.area_uv) ||
-            !(std::abs(u.area_uv) > 1e-9 * u.area3 / sizes.area3))
-            return;
+        if (!std::isfinite(u.area_uv) || !(std::abs(u.area_uv) > 1e-9 * u.area3 / sizes.area3)) return;
         const Vec2 d1 = u.d1 / scale, d2 = u.d2 / scale;
         const double det = d1.x * d2.y - d1.y * d2.x;
         const Vec3 su = (u.e1 * d2.y - u.e2 * d1.y) / det, sv = (u.e2 * d1.x - u.e1 * d2.x) / det;
@@ -127,10 +124,7 @@ AtlasReport measure(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
     const double page = atlas.page_size();
     const double texels = atlas.pages * page * page;
     report.utilisation = texels > 0 ? static_cast<double>(coverage.covered) / texels : 0;
-    report.smallest_gap =
-        report.overlapping_texels > 0
-            ? 0
-            : smallest_gap(seam, atlas);
+    report.smallest_gap = report.overlapping_texels > 0 ? 0 : smallest_gap(seam, atlas);
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
     report.seconds = {{"measure", time.count()}};
     return report;

@@ -11,9 +11,7 @@ namespace tuft::atlas {
 struct RigidMotion {
     double c = 1, s = 0;
     Vec2 shift{0};
-    Vec2 operator()(const Vec2& p) const {
-        return Vec2(c * p.x - s * p.y, s * p.x + c * p.y) + shift;
-    }
+    Vec2 operator()(const Vec2& p) const { return Vec2(c * p.x - s * p.y, s * p.x + c * p.y) + shift; }
 };
 
 /// The motion that brings the second places of the pairs nearest to the first ones, by least

@@ -64,8 +64,7 @@ class SegmentGrid {
                 xa = std::max(xa, std::min(p, q) - 1e-6 * cell_);
                 xb = std::min(xb, std::max(p, q) + 1e-6 * cell_);
             }
-            for (std::size_t x = index(xa - reach); x <= index(xb + reach); ++x)
-                visit(y * columns_ + x);
+            for (std::size_t x = index(xa - reach); x <= index(xb + reach); ++x) visit(y * columns_ + x);
         }
     }
 
@@ -77,26 +76,22 @@ class SegmentGrid {
 
 }  // namespace
 
-std::vector<std::uint8_t> uv_seams(std::span<const std::uint32_t> twin,
-                                   std::span<const Vec2f> corner_uvs) {
+std::vector<std::uint8_t> uv_seams(std::span<const std::uint32_t> twin, std::span<const Vec2f> corner_uvs) {
     std::vector<std::uint8_t> seam(twin.size(), 1);
     for (std::uint32_t h = 0; h < twin.size(); ++h) {
         const std::uint32_t g = twin[h];
         if (g == kNone) continue;
-        seam[h] =
-            corner_uvs[h] != corner_uvs[next_half(g)] || corner_uvs[next_half(h)] != corner_uvs[g];
+        seam[h] = corner_uvs[h] != corner_uvs[next_half(g)] || corner_uvs[next_half(h)] != corner_uvs[g];
     }
     return seam;
 }
 
-Coverage cover(std::span<const Vec2f> corner_uvs, std::span<const std::uint32_t> triangle_chart,
-               std::uint32_t size) {
+Coverage cover(std::span<const Vec2f> corner_uvs, std::span<const std::uint32_t> triangle_chart, std::uint32_t size) {
     const std::size_t words = (std::size_t{size} + 63) / 64;
     std::vector<std::uint64_t> once(words * size, 0), twice(words * size, 0);
     const std::size_t n = corner_uvs.size() / 3;
     const auto for_words = [&](std::size_t t, auto&& visit) {
-        const std::array<Vec2f, 3> uv{corner_uvs[3 * t], corner_uvs[3 * t + 1],
-                                      corner_uvs[3 * t + 2]};
+        const std::array<Vec2f, 3> uv{corner_uvs[3 * t], corner_uvs[3 * t + 1], corner_uvs[3 * t + 2]};
         raster_rows(uv, size, [&](std::uint32_t row, std::uint32_t first, std::uint32_t last) {
             for (std::uint32_t w = first / 64; w <= last / 64; ++w) {
                 std::uint64_t bits = ~std::uint64_t{0};
@@ -137,8 +132,7 @@ int smallest_gap(std::span<const std::uint8_t> seam, std::span<const Vec2f> corn
         if (!is_finite(a) || !is_finite(b) || a == b) continue;
         const Vec2f lo = glm::min(a, b), hi = glm::max(a, b);
         if (std::max(lo.x, lo.y) > 1 || std::min(hi.x, hi.y) < 0) continue;
-        segments.push_back(
-            {Vec2(a) * double(size), Vec2(b) * double(size), triangle_chart[h / 3]});
+        segments.push_back({Vec2(a) * double(size), Vec2(b) * double(size), triangle_chart[h / 3]});
     }
     constexpr double kMost = 64;
     for (double reach = 2; reach <= kMost; reach *= 2) {
@@ -157,8 +151,7 @@ int smallest_gap(std::span<const std::uint8_t> seam, std::span<const Vec2f> corn
 }
 
 int smallest_gap(std::span<const std::uint8_t> seam, const Atlas& atlas) {
-    if (atlas.pages == 1)
-        return smallest_gap(seam, atlas.corner_uvs, atlas.triangle_chart, atlas.size);
+    if (atlas.pages == 1) return smallest_gap(seam, atlas.corner_uvs, atlas.triangle_chart, atlas.size);
     std::vector<std::vector<std::uint32_t>> halves(atlas.pages);
     for (std::uint32_t h = 0; h < seam.size(); ++h)
         if (seam[h]) halves[std::min(atlas.page_of(h / 3), atlas.pages - 1)].push_back(h);
@@ -166,8 +159,7 @@ int smallest_gap(std::span<const std::uint8_t> seam, const Atlas& atlas) {
     int least = std::numeric_limits<int>::max();
     for (const std::vector<std::uint32_t>& page : halves) {
         for (const std::uint32_t h : page) of_page[h] = 1;
-        least = std::min(
-            least, smallest_gap(of_page, atlas.corner_uvs, atlas.triangle_chart, atlas.size));
+        least = std::min(least, smallest_gap(of_page, atlas.corner_uvs, atlas.triangle_chart, atlas.size));
         for (const std::uint32_t h : page) of_page[h] = 0;
     }
     return least;

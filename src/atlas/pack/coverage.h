@@ -10,8 +10,7 @@
 namespace tuft::atlas {
 
 /// Half-edges across which the UVs do not agree at both ends, and borders. [3n]
-std::vector<std::uint8_t> uv_seams(std::span<const std::uint32_t> twin,
-                                   std::span<const Vec2f> corner_uvs);
+std::vector<std::uint8_t> uv_seams(std::span<const std::uint32_t> twin, std::span<const Vec2f> corner_uvs);
 
 struct Coverage {
     std::size_t covered = 0;                  ///< texel centres inside a triangle
@@ -21,8 +20,7 @@ struct Coverage {
 
 /// Rasters all triangles into a page of size × size texels: 2 bits per texel.
 /// `charts_twice` is filled when `triangle_chart` is given.
-Coverage cover(std::span<const Vec2f> corner_uvs, std::span<const std::uint32_t> triangle_chart,
-               std::uint32_t size);
+Coverage cover(std::span<const Vec2f> corner_uvs, std::span<const std::uint32_t> triangle_chart, std::uint32_t size);
 
 /// Texels between the two nearest charts, rounded down, 64 at most; from the exact
 /// distance of their borders, the half-edges marked in `seam`. UVs that are not finite are

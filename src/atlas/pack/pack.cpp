@@ -16,30 +16,29 @@
 namespace tuft::atlas {
 namespace {
 
-constexpr double kSmallest = 0.25;  // texels: extent below which a chart is enlarged
-constexpr double kLeastUse = 1e-3;  // part of the page that charts must cover to "fit"
-constexpr std::uint32_t kCells =
-    1024;  // cells per side of the page that masks are made on, at most
+constexpr double kSmallest = 0.25;           // texels: extent below which a chart is enlarged
+constexpr double kLeastUse = 1e-3;           // part of the page that charts must cover to "fit"
+constexpr std::uint32_t kCells = 1024;       // cells per side of the page that masks are made on, at most
 constexpr std::uint32_t kCoarseCells = 256;  // the same while searching
 constexpr std::uint32_t kMiddleCells = 512;  // and for a second search from where that ends
 constexpr double kStep = 1.01;               // by which the search raises the scale
 constexpr double kFineStep = 1.003;          // the same in the second search
 constexpr double kFinerGain = 1.03;          // of the scale that finer masks allow, at most
 constexpr double kFinerFall = 0.996;         // steps down from there
-constexpr double kOverhang = 1.3;  // height of the strip while searching, over the page's
+constexpr double kOverhang = 1.3;            // height of the strip while searching, over the page's
 constexpr int kSecondShare = 3;              // of the trials, that the second search gets
 constexpr double kTrials = 8000;             // charts placed while searching, about
 constexpr double kCoarseTrials = 800;        // the same when layouts are only compared
 constexpr int kStarts = 3;                   // searches, of which the best counts
-constexpr int kMostRounds = 2;         // of patient searches, for as long as less than this part
-constexpr double kGoodEnough = 0.655;  // of the page is covered,
-constexpr double kWithinReach = 0.96;  // but not less than this part of that
-constexpr int kFineTurns = 4;  // parts of a right angle by which a patient search turns charts
+constexpr int kMostRounds = 2;               // of patient searches, for as long as less than this part
+constexpr double kGoodEnough = 0.655;        // of the page is covered,
+constexpr double kWithinReach = 0.96;        // but not less than this part of that
+constexpr int kFineTurns = 4;                // parts of a right angle by which a patient search turns charts
 
-constexpr double kAllOrNothing = -1;   // excess with which the first chart that finds no place ends it
+constexpr double kAllOrNothing = -1;  // excess with which the first chart that finds no place ends it
 
 struct Layout {
-    double excess = 0;  // sum of area × rows beyond the page, all of the strip's without a place
+    double excess = 0;                   // sum of area × rows beyond the page, all of the strip's without a place
     std::uint32_t first_beyond = kNone;  // the first chart that reaches beyond the page
     std::uint32_t rows = 0;              // cells, up to the highest chart of the first page
     double scale = 0;
@@ -112,8 +111,7 @@ struct Target {
 
 class Packer {
   public:
-    Packer(const std::vector<std::vector<Vec2>>& borders, std::uint32_t gutter,
-           const ProgressFn& progress)
+    Packer(const std::vector<std::vector<Vec2>>& borders, std::uint32_t gutter, const ProgressFn& progress)
         : gutter_(gutter), progress_(progress) {
         for (const auto& border : borders) {
             shapes_.push_back(make_shape(border));
@@ -196,8 +194,7 @@ class Packer {
             layout.page[i] = p;
             layout.placements[i] = {
                 masks.chart_scale, found.mask->c, found.mask->s,
-                Vec2(found.spot.x, found.spot.y) * double(page.cell) + Vec2(margin()) -
-                    found.mask->corner};
+                Vec2(found.spot.x, found.spot.y) * double(page.cell) + Vec2(margin()) - found.mask->corner};
         }
         layout.pages = std::max(n_filled, 1u);
         if (n_filled > 0) layout.rows = filled[0].strip.top();
@@ -246,8 +243,7 @@ class Packer {
 
     /// Three climbs from `first`, of which the best goes on with finer masks.
     Layout search_once(const Layout& first, const Target& coarse, Search search, Random& random) {
-        const int trials =
-            search == Search::coarse ? this->trials(kCoarseTrials, 64) : this->trials(kTrials, 300);
+        const int trials = search == Search::coarse ? this->trials(kCoarseTrials, 64) : this->trials(kTrials, 300);
         const std::uint32_t size = coarse.page.size, pages = coarse.pages;
         const Plan first_plan = plan_;
         Layout best = first;
@@ -294,8 +290,7 @@ class Packer {
             const Plan before = plan_;
             const Filled filled_before = last_;
             if (!climbing) vary(random, failed);
-            Layout layout =
-                fill(target.page, target.step * best.scale, kOverhang, target.pages, excess);
+            Layout layout = fill(target.page, target.step * best.scale, kOverhang, target.pages, excess);
             climbing = layout.complete();
             if (climbing) {
                 best = std::move(layout);
@@ -312,9 +307,7 @@ class Packer {
     }
 
     /// All charts at a given scale within the page.
-    Layout at_scale(std::uint32_t size, double scale, double limit) {
-        return fill(page(size, kCells), scale, limit);
-    }
+    Layout at_scale(std::uint32_t size, double scale, double limit) { return fill(page(size, kCells), scale, limit); }
 
     /// Charts of a given scale on as many pages as they need, up to `most`; with more than area
     /// alone asks for, an order is sought that needs one less.
@@ -340,9 +333,8 @@ class Packer {
         std::vector<std::uint32_t> too_large;
         for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
             const std::vector<Mask>& turned = masks_of(i, scale, fine.cell).turned;
-            if (std::none_of(turned.begin(), turned.end(), [&](const Mask& m) {
-                    return m.width <= fine.cells && m.height <= fine.cells;
-                }))
+            if (std::none_of(turned.begin(), turned.end(),
+                             [&](const Mask& m) { return m.width <= fine.cells && m.height <= fine.cells; }))
                 too_large.push_back(i);
         }
         return too_large;
@@ -379,8 +371,7 @@ class Packer {
 
     /// How many layouts are tried: fewer with many charts.
     int trials(double charts, int most) const {
-        return std::clamp(static_cast<int>(charts / static_cast<double>(shapes_.size() + 1)), 9,
-                          most);
+        return std::clamp(static_cast<int>(charts / static_cast<double>(shapes_.size() + 1)), 9, most);
     }
 
     std::uint32_t margin() const { return (gutter_ + 1) / 2; }
@@ -420,8 +411,8 @@ class Packer {
         const double kind = random.uniform();
         if (failed != kNone && kind < 0.3) {
             const auto at = std::find(order.begin(), order.end(), failed);
-            const auto earlier = static_cast<std::ptrdiff_t>(
-                random.uniform() * static_cast<double>(at - order.begin()));
+            const auto earlier =
+                static_cast<std::ptrdiff_t>(random.uniform() * static_cast<double>(at - order.begin()));
             std::rotate(order.begin() + earlier, at, at + 1);
             if (kind < 0.15) plan_.turn[failed] = random.uniform(0, std::numbers::pi / 2);
         } else if (kind < 0.65) {

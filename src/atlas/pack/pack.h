@@ -19,7 +19,7 @@ struct PackOptions {
     double texels_per_unit = 0;  ///< scale; 0: the largest that fits `size`
     std::uint32_t gutter = 4;    ///< texels free between charts; half of it along the page's edge
     Search search = Search::full;
-    std::uint32_t pages = 1;     ///< most pages; above 1, `size` must be given
+    std::uint32_t pages = 1;  ///< most pages; above 1, `size` must be given
     ProgressFn progress;
 };
 
@@ -30,9 +30,9 @@ struct Placement {
 };
 
 struct Packing {
-    bool fits = false;       ///< with at least 0.1 % of the page covered
-    std::uint32_t size = 0;  ///< of the page; when it does not fit, one that would
-    std::uint32_t pages = 1;  ///< that are used, or would be
+    bool fits = false;                     ///< with at least 0.1 % of the page covered
+    std::uint32_t size = 0;                ///< of the page; when it does not fit, one that would
+    std::uint32_t pages = 1;               ///< that are used, or would be
     std::vector<std::uint32_t> page;       ///< [n_charts] with more than one page allowed
     std::vector<std::uint32_t> too_large;  ///< charts that no page can hold, ascending
     double texels_per_unit = 0;

@@ -32,20 +32,16 @@ struct Bits {
     std::size_t words = 0;  // per row
     std::vector<std::uint64_t> bits;
 
-    Bits(std::uint32_t w, std::uint32_t h)
-        : width(w), height(h), words((w + 63) / 64), bits(words * h, 0) {}
+    Bits(std::uint32_t w, std::uint32_t h) : width(w), height(h), words((w + 63) / 64), bits(words * h, 0) {}
 
     std::span<std::uint64_t> row(std::uint32_t y) { return {bits.data() + y * words, words}; }
-    std::span<const std::uint64_t> row(std::uint32_t y) const {
-        return {bits.data() + y * words, words};
-    }
+    std::span<const std::uint64_t> row(std::uint32_t y) const { return {bits.data() + y * words, words}; }
 };
 
 /// Takes the cells of a row from those of `a` to those of `b`.
 void take(Bits& cells, std::uint32_t row, double a, double b) {
     const auto first = static_cast<std::size_t>(std::max(a, 0.0));
-    const auto last =
-        std::min<std::size_t>(static_cast<std::size_t>(std::max(b, 0.0)), cells.width - 1);
+    const auto last = std::min<std::size_t>(static_cast<std::size_t>(std::max(b, 0.0)), cells.width - 1);
     const std::span line = cells.row(row);
     for (std::size_t w = first / 64; w <= last / 64; ++w) {
         std::uint64_t m = ~std::uint64_t{0};
@@ -104,8 +100,7 @@ Bits transposed(const Bits& cells) {
         for (std::size_t w = 0; w < cells.words; ++w) {
             const std::uint32_t rows = std::min(64u, cells.height - y0);
             std::uint64_t any = 0;
-            for (std::uint32_t i = 0; i < 64; ++i)
-                any |= block[i] = i < rows ? cells.row(y0 + i)[w] : 0;
+            for (std::uint32_t i = 0; i < 64; ++i) any |= block[i] = i < rows ? cells.row(y0 + i)[w] : 0;
             if (any == 0) continue;
             std::uint64_t low = 0xffffffffull;  // H. S. Warren, Hacker's Delight, 7-3
             for (int j = 32; j != 0; j /= 2, low ^= low << j)
@@ -115,8 +110,7 @@ Bits transposed(const Bits& cells) {
                     block[i | j] ^= t;
                 }
             const auto x0 = static_cast<std::uint32_t>(64 * w);
-            for (std::uint32_t i = 0; i < 64 && x0 + i < cells.width; ++i)
-                out.row(x0 + i)[y0 / 64] = block[i];
+            for (std::uint32_t i = 0; i < 64 && x0 + i < cells.width; ++i) out.row(x0 + i)[y0 / 64] = block[i];
         }
     return out;
 }
@@ -146,16 +140,13 @@ std::vector<Run> in_order_of_tests(const std::vector<Run>& rows) {
             if (std::min(std::countr_zero(r.row | 1u << 31), 4) == stride) runs.push_back(r);
         if (stride >= 3)
             std::stable_sort(runs.begin() + static_cast<std::ptrdiff_t>(from), runs.end(),
-                             [](const Run& a, const Run& b) {
-                                 return a.last - a.first > b.last - b.first;
-                             });
+                             [](const Run& a, const Run& b) { return a.last - a.first > b.last - b.first; });
     }
     return runs;
 }
 
 /// The same cells turned by half a circle.
-std::vector<Run> turned_round(const std::vector<Run>& rows, std::uint32_t width,
-                              std::uint32_t height) {
+std::vector<Run> turned_round(const std::vector<Run>& rows, std::uint32_t width, std::uint32_t height) {
     std::vector<Run> turned;
     turned.reserve(rows.size());
     for (auto r = rows.rbegin(); r != rows.rend(); ++r)
@@ -192,8 +183,7 @@ Shape make_shape(const std::vector<Vec2>& border) {
     return shape;
 }
 
-std::vector<Mask> make_masks(const Shape& shape, double scale, double angle, double cell,
-                             bool all) {
+std::vector<Mask> make_masks(const Shape& shape, double scale, double angle, double cell, bool all) {
     const double c = std::cos(angle), s = std::sin(angle);
     std::vector<Vec2> p(shape.border->size());
     Vec2 lo(std::numeric_limits<double>::infinity()), hi = -lo;

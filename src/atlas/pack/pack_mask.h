@@ -37,7 +37,6 @@ Shape make_shape(const std::vector<Vec2>& border);
 /// All cells of side `cell` texels that the shape touches when it is turned by `angle`
 /// and scaled, from the lower left corner of its box on; with `all` also those cells turned
 /// by one, two and three quarters of a circle.
-std::vector<Mask> make_masks(const Shape& shape, double scale, double angle, double cell,
-                             bool all);
+std::vector<Mask> make_masks(const Shape& shape, double scale, double angle, double cell, bool all);
 
 }  // namespace tuft::atlas

@@ -24,8 +24,7 @@ Strip::Strip(std::uint32_t width, std::vector<int> reach)
     while ((1u << (levels_ + 1)) <= width_) ++levels_;
     ++levels_;
     beyond_.assign(stride_, 0);
-    for (std::uint32_t x = width_; x < 64 * stride_; ++x)
-        beyond_[x / 64] |= std::uint64_t{1} << (x % 64);
+    for (std::uint32_t x = width_; x < 64 * stride_; ++x) beyond_[x / 64] |= std::uint64_t{1} << (x % 64);
 }
 
 void Strip::place(const Mask& mask, const Spot& spot) {
@@ -78,8 +77,7 @@ void Strip::build_level(std::uint32_t y, int k) {
         const std::size_t shift = std::size_t{1} << (built_[y] - 1);
         const std::uint64_t* moved = from + shift / 64;
         const int i = static_cast<int>(shift % 64);
-        for (std::size_t w = 0; w < words_; ++w)
-            to[w] = from[w] | moved[w] >> i | moved[w + 1] << 1 << (63 - i);
+        for (std::size_t w = 0; w < words_; ++w) to[w] = from[w] | moved[w] >> i | moved[w + 1] << 1 << (63 - i);
         for (std::size_t w = words_; w < stride_; ++w) to[w] = ~std::uint64_t{0};
     }
 }
@@ -136,9 +134,8 @@ template <class Words>
     const std::span tests(mask.runs.data(), std::min(mask.runs.size(), kGapTests));
     std::size_t killer = 0;
     for (std::uint32_t y = from_row; y + mask.height <= limit; ++y) {
-        if (!std::all_of(tests.begin(), tests.end(), [&](const Run& r) {
-                return has_gap(y + r.row, r.last - r.first + 1);
-            }))
+        if (!std::all_of(tests.begin(), tests.end(),
+                         [&](const Run& r) { return has_gap(y + r.row, r.last - r.first + 1); }))
             continue;
         std::fill(valid.begin(), valid.end(), ~std::uint64_t{0});
         valid[words - 1] = last;

@@ -30,8 +30,7 @@ class Strip {
   private:
     std::uint64_t* level(std::uint32_t y, int k) {
         return rows_.data() +
-               (std::size_t{y} * static_cast<std::size_t>(levels_) + static_cast<std::size_t>(k)) *
-                   stride_;
+               (std::size_t{y} * static_cast<std::size_t>(levels_) + static_cast<std::size_t>(k)) * stride_;
     }
     void grow(std::uint32_t rows);
     void take(std::uint32_t y, std::int64_t first, std::int64_t last);

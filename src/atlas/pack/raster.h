@@ -26,25 +26,22 @@ inline std::array<std::int64_t, 2> uv_grid(const Vec2f& uv) {
 }
 
 /// Twice the signed area in grid steps, exact.
-inline std::int64_t twice_area(const std::array<std::int64_t, 2>& a,
-                               const std::array<std::int64_t, 2>& b,
+inline std::int64_t twice_area(const std::array<std::int64_t, 2>& a, const std::array<std::int64_t, 2>& b,
                                const std::array<std::int64_t, 2>& c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
 /// As `raster_rows`, of a triangle with positive area in grid steps; `Wide` holds what comes up.
 template <class Wide, class Run>
-void raster_rows_in(const std::array<std::array<std::int64_t, 2>, 3>& p, std::uint32_t size,
-                    Run&& run) {
+void raster_rows_in(const std::array<std::array<std::int64_t, 2>, 3>& p, std::uint32_t size, Run&& run) {
     // In units of 1 / (2 size) of a grid step, texel i has its centre at (2i + 1) 2²⁴.
     const auto n = static_cast<std::int64_t>(size);
     constexpr auto grid = static_cast<std::int64_t>(kUvGrid);
     const auto floor_div = [](Wide a, Wide b) { return a >= 0 ? a / b : -((-a + b - 1) / b); };
     const auto [y_lo, y_hi] = std::minmax({p[0][1], p[1][1], p[2][1]});
-    const auto first_row = static_cast<std::int64_t>(
-        std::max<Wide>(0, floor_div(Wide{y_lo} * 2 * n - grid, 2 * grid)));
-    const auto last_row = static_cast<std::int64_t>(
-        std::min<Wide>(n - 1, floor_div(Wide{y_hi} * 2 * n - grid, 2 * grid) + 1));
+    const auto first_row = static_cast<std::int64_t>(std::max<Wide>(0, floor_div(Wide{y_lo} * 2 * n - grid, 2 * grid)));
+    const auto last_row =
+        static_cast<std::int64_t>(std::min<Wide>(n - 1, floor_div(Wide{y_hi} * 2 * n - grid, 2 * grid) + 1));
     for (std::int64_t j = first_row; j <= last_row; ++j) {
         const Wide centre = Wide{2 * j + 1} * grid;
         Wide first = 0, last = n - 1;
@@ -54,8 +51,8 @@ void raster_rows_in(const std::array<std::array<std::int64_t, 2>, 3>& p, std::ui
             const std::int64_t dx = b[0] - a[0], dy = b[1] - a[1];
             const bool owns = dy < 0 || (dy == 0 && dx > 0);  // a centre on the edge is inside
             // Inside where value(i) = start + slope i is positive (or zero, if owned).
-            const Wide start = Wide{dx} * (centre - Wide{a[1]} * 2 * n) -
-                               Wide{dy} * (grid - Wide{a[0]} * 2 * n) - (owns ? 0 : 1);
+            const Wide start =
+                Wide{dx} * (centre - Wide{a[1]} * 2 * n) - Wide{dy} * (grid - Wide{a[0]} * 2 * n) - (owns ? 0 : 1);
             const Wide slope = -Wide{dy} * 2 * grid;
             if (slope == 0) {
                 if (start < 0) last = -1;
@@ -66,8 +63,7 @@ void raster_rows_in(const std::array<std::array<std::int64_t, 2>, 3>& p, std::ui
             }
         }
         if (first <= last)
-            run(static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(first),
-                static_cast<std::uint32_t>(last));
+            run(static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
     }
 }
 

@@ -12,17 +12,17 @@
 namespace tuft::atlas {
 namespace {
 
-constexpr double kSpacing = 0.5;      // texels between samples of a seam
-constexpr double kSearch = 1.9;       // texels from the seam to texels beside it
-constexpr double kFarthest = 1.45;    // diagonals of a texel: whoever is farther off has no face with it
-constexpr double kReachDiagonals = 3; // `TexelMap::reach` over that diagonal
-constexpr double kGhost = 1.1;       // of a texel's side: where no texel is so near, the surface ends
-constexpr double kLeastDistance = 0.35; // of a texel's side, between texels over a seam: less would ask for steps
-                                        // of time too short for all
+constexpr double kSpacing = 0.5;         // texels between samples of a seam
+constexpr double kSearch = 1.9;          // texels from the seam to texels beside it
+constexpr double kFarthest = 1.45;       // diagonals of a texel: whoever is farther off has no face with it
+constexpr double kReachDiagonals = 3;    // `TexelMap::reach` over that diagonal
+constexpr double kGhost = 1.1;           // of a texel's side: where no texel is so near, the surface ends
+constexpr double kLeastDistance = 0.35;  // of a texel's side, between texels over a seam: less would ask for steps
+                                         // of time too short for all
 
-constexpr double kLeastArea = 0.25, kMostArea = 2; // of a whole texel: many seams at once
-constexpr double kTapRadius = 1.5;    // of a texel's side
-constexpr double kLeastPlane = 0.02;  // of a unit cube's determinant
+constexpr double kLeastArea = 0.25, kMostArea = 2;  // of a whole texel: many seams at once
+constexpr double kTapRadius = 1.5;                  // of a texel's side
+constexpr double kLeastPlane = 0.02;                // of a unit cube's determinant
 
 /// Texel b over the seam as seen from texel a, and the other way round; metres, in their tangent
 /// planes. a before b.
@@ -75,8 +75,10 @@ struct Beside {
 void find_beside(const TexelMap& map, std::uint32_t chart, const Vec2& uv, const Vec3& position, const Vec3& along,
                  const Vec3& inwards, std::vector<Beside>& found) {
     found.clear();
-    const auto x0 = static_cast<std::int64_t>(std::ceil(uv.x - 0.5 - kSearch)), x1 = static_cast<std::int64_t>(std::floor(uv.x - 0.5 + kSearch));
-    const auto y0 = static_cast<std::int64_t>(std::ceil(uv.y - 0.5 - kSearch)), y1 = static_cast<std::int64_t>(std::floor(uv.y - 0.5 + kSearch));
+    const auto x0 = static_cast<std::int64_t>(std::ceil(uv.x - 0.5 - kSearch)),
+               x1 = static_cast<std::int64_t>(std::floor(uv.x - 0.5 + kSearch));
+    const auto y0 = static_cast<std::int64_t>(std::ceil(uv.y - 0.5 - kSearch)),
+               y1 = static_cast<std::int64_t>(std::floor(uv.y - 0.5 + kSearch));
     for (std::int64_t y = y0; y <= y1; ++y)
         for (std::int64_t x = x0; x <= x1; ++x) {
             const Vec2 d = Vec2(double(x) + 0.5, double(y) + 0.5) - uv;
@@ -104,11 +106,13 @@ Vec3 inwards_of(const mesh::TriangleMesh& mesh, std::uint32_t triangle, int corn
 /// All pairs over one edge of the mesh.
 void cross(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, const SeamEdge& edge,
            std::vector<SeamSample>& samples, std::array<std::vector<Beside>, 2>& beside, std::vector<Crossing>& found) {
-    const Vec3 from = mesh.position(edge.triangle_a, edge.corner_a), to = mesh.position(edge.triangle_a, (edge.corner_a + 1) % 3);
+    const Vec3 from = mesh.position(edge.triangle_a, edge.corner_a),
+               to = mesh.position(edge.triangle_a, (edge.corner_a + 1) % 3);
     const double length = glm::length(to - from);
     if (!(length > 0)) return;
     const Vec3 along = (to - from) / length;
-    const Vec3 in_a = inwards_of(mesh, edge.triangle_a, edge.corner_a, along), in_b = inwards_of(mesh, edge.triangle_b, edge.corner_b, along);
+    const Vec3 in_a = inwards_of(mesh, edge.triangle_a, edge.corner_a, along),
+               in_b = inwards_of(mesh, edge.triangle_b, edge.corner_b, along);
     samples.clear();
     sample_seam(mesh, atlas, edge, kSpacing, samples);
     for (const SeamSample& s : samples) {
@@ -118,8 +122,11 @@ void cross(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& m
         for (const Beside& a : beside[0])
             for (const Beside& b : beside[1]) {
                 const double along_ab = b.along - a.along, across = a.across + b.across;
-                const double farthest = kFarthest / kReachDiagonals * static_cast<double>(std::min(map.reach[a.ref.slot], map.reach[b.ref.slot]));
-                if (along_ab * along_ab + across * across > farthest * farthest || a.ref == b.ref || grid_neighbours(map, a.ref, b.ref)) continue;
+                const double farthest = kFarthest / kReachDiagonals *
+                                        static_cast<double>(std::min(map.reach[a.ref.slot], map.reach[b.ref.slot]));
+                if (along_ab * along_ab + across * across > farthest * farthest || a.ref == b.ref ||
+                    grid_neighbours(map, a.ref, b.ref))
+                    continue;
                 const Vec3f ab(along_ab * along - across * in_a), ba(-along_ab * along - across * in_b);
                 const auto way = static_cast<float>(std::hypot(a.along, a.across) + std::hypot(b.along, b.across));
                 if (before(a.ref, b.ref))
@@ -143,8 +150,7 @@ void keep_shortest(std::vector<Crossing>& crossings) {
     std::sort(keys.begin(), keys.end(), [](const Key& x, const Key& y) {
         return std::tie(x.pair, x.way, x.index) < std::tie(y.pair, y.way, y.index);
     });
-    keys.erase(std::unique(keys.begin(), keys.end(),
-                           [](const Key& x, const Key& y) { return x.pair == y.pair; }),
+    keys.erase(std::unique(keys.begin(), keys.end(), [](const Key& x, const Key& y) { return x.pair == y.pair; }),
                keys.end());
     std::vector<Crossing> kept;
     kept.reserve(keys.size());
@@ -162,8 +168,7 @@ class Opposites {
             sides_.push_back({pair_key(c.a, c.b), 2 * i});
             sides_.push_back({pair_key(c.b, c.a), 2 * i + 1});
         }
-        std::sort(sides_.begin(), sides_.end(),
-                  [](const Side& x, const Side& y) { return x.pair < y.pair; });
+        std::sort(sides_.begin(), sides_.end(), [](const Side& x, const Side& y) { return x.pair < y.pair; });
         for (std::size_t i = 0; i < sides_.size(); ++i)
             if (i == 0 || sides_[i].pair >> 32 != sides_[i - 1].pair >> 32) start_.push_back(i);
         start_.push_back(sides_.size());
@@ -244,8 +249,8 @@ struct Polygon {
 };
 
 struct Site {
-    Vec2 at{0};      ///< metres
-    TexelRef ref;    ///< not valid: a texel that might be there
+    Vec2 at{0};    ///< metres
+    TexelRef ref;  ///< not valid: a texel that might be there
     bool over = false;
 };
 
@@ -262,7 +267,8 @@ struct Frame {
 
 struct Sites {
     std::vector<Site> all;
-    std::array<Vec2, 4> missing{};  ///< to the sides: where a neighbour of the grid would be; 0: it is there, or nothing is
+    std::array<Vec2, 4>
+        missing{};  ///< to the sides: where a neighbour of the grid would be; 0: it is there, or nothing is
 };
 
 /// The eight of the grid and those over seams; where neither is, whole texels end.
@@ -270,7 +276,8 @@ Sites sites_of(const TexelMap& map, const TexelRef& here, std::span<const Opposi
     const Vec3 position(map.position(here.slot, here.texel));
     const Frame frame(Vec3(map.normal(here.slot, here.texel)));
     const auto reach = static_cast<double>(map.reach[here.slot]);
-    constexpr std::array<std::array<int, 2>, 8> kAround{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
+    constexpr std::array<std::array<int, 2>, 8> kAround{
+        {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
     std::array<Site, 8> grid;
     Sites result;
     std::vector<Site>& sites = result.all;
@@ -290,11 +297,11 @@ Sites sites_of(const TexelMap& map, const TexelRef& here, std::span<const Opposi
         const Site& across = grid[i ^ 2];
         if (grid[i].ref.valid() || !across.ref.valid()) continue;
         const double near = kGhost * kGhost * glm::dot(across.at, across.at) * (i < 4 ? 1 : 0.5);
-        if (std::none_of(sites.begin(), sites.begin() + static_cast<std::ptrdiff_t>(real), [&](const Site& s) {
-                return glm::dot(s.at + across.at, s.at + across.at) < near;
-            }))
+        if (std::none_of(sites.begin(), sites.begin() + static_cast<std::ptrdiff_t>(real),
+                         [&](const Site& s) { return glm::dot(s.at + across.at, s.at + across.at) < near; }))
             sites.push_back({-across.at, {}});
-        else if (i < 4) result.missing[i] = -across.at;
+        else if (i < 4)
+            result.missing[i] = -across.at;
     }
     return result;
 }
@@ -314,7 +321,8 @@ void tap(const Sites& sites, int side, const TexelRef& here, double scale, std::
         if (!s.ref.valid()) continue;
         const Vec2 d = offset(s);
         const double w = weight_of(d);
-        m[0] += w, m[1] += w * d.x, m[2] += w * d.y, m[3] += w * d.x * d.x, m[4] += w * d.x * d.y, m[5] += w * d.y * d.y;
+        m[0] += w, m[1] += w * d.x, m[2] += w * d.y, m[3] += w * d.x * d.x, m[4] += w * d.x * d.y,
+            m[5] += w * d.y * d.y;
     }
     // First row of its inverse, over the determinant.
     const double c0 = m[3] * m[5] - m[4] * m[4], c1 = m[2] * m[4] - m[1] * m[5], c2 = m[1] * m[4] - m[2] * m[3];
@@ -336,8 +344,7 @@ struct Cell {
 };
 
 /// `only_area`: without taps and faces.
-Cell cell_of(const TexelMap& map, const TexelRef& here, std::span<const Opposite> over,
-             bool only_area) {
+Cell cell_of(const TexelMap& map, const TexelRef& here, std::span<const Opposite> over, bool only_area) {
     const Sites all = sites_of(map, here, over);
     const std::vector<Site>& sites = all.all;
     const double side = std::sqrt(static_cast<double>(map.tiles[here.slot].area[here.texel]));
@@ -354,7 +361,8 @@ Cell cell_of(const TexelMap& map, const TexelRef& here, std::span<const Opposite
         if (!s.ref.valid()) continue;
         const double length = glm::length(polygon.corner[(i + 1) % polygon.n] - polygon.corner[i]);
         const double least = s.over ? kLeastDistance * side : 0.0;
-        cell.faces.push_back({here, s.ref, length / std::max(glm::length(s.at), least), glm::length(s.at) / side, s.over});
+        cell.faces.push_back(
+            {here, s.ref, length / std::max(glm::length(s.at), least), glm::length(s.at) / side, s.over});
     }
     for (int i = 0; i < 4; ++i) tap(all, i, here, side, cell.taps);
     return cell;
@@ -362,7 +370,8 @@ Cell cell_of(const TexelMap& map, const TexelRef& here, std::span<const Opposite
 
 }  // namespace
 
-BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, bool only_cells) {
+BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
+                               bool only_cells) {
     const std::vector<SeamEdge> seams = find_seams(mesh, atlas);
     constexpr std::size_t kChunk = 64;
     std::vector<std::vector<Crossing>> by_chunk((seams.size() + kChunk - 1) / kChunk);
@@ -371,7 +380,8 @@ BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atla
         std::array<std::vector<Beside>, 2> beside;
         for (std::size_t chunk = begin; chunk < end; ++chunk) {
             const std::size_t last = std::min(seams.size(), (chunk + 1) * kChunk);
-            for (std::size_t e = chunk * kChunk; e < last; ++e) cross(mesh, atlas, map, seams[e], samples, beside, by_chunk[chunk]);
+            for (std::size_t e = chunk * kChunk; e < last; ++e)
+                cross(mesh, atlas, map, seams[e], samples, beside, by_chunk[chunk]);
             keep_shortest(by_chunk[chunk]);
             by_chunk[chunk].shrink_to_fit();
         }
@@ -408,7 +418,8 @@ BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atla
     for (const auto& t : taps) result.taps.insert(result.taps.end(), t.begin(), t.end());
     // Each cell gives half of its faces: on curved surfaces the two do not quite agree.
     const auto is_cell = [&](const TexelRef& t) {
-        const auto at = std::lower_bound(result.cells.begin(), result.cells.end(), t, [](const BorderCell& c, const TexelRef& r) { return before(c.texel, r); });
+        const auto at = std::lower_bound(result.cells.begin(), result.cells.end(), t,
+                                         [](const BorderCell& c, const TexelRef& r) { return before(c.texel, r); });
         return at != result.cells.end() && at->texel == t;
     };
     for (const auto& of : faces)
@@ -420,11 +431,14 @@ BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atla
             result.faces.push_back(f);
         }
     const auto key = [](const BorderFace& f) { return std::tie(f.a.slot, f.a.texel, f.b.slot, f.b.texel); };
-    std::stable_sort(result.faces.begin(), result.faces.end(), [&](const BorderFace& x, const BorderFace& y) { return key(x) < key(y); });
+    std::stable_sort(result.faces.begin(), result.faces.end(),
+                     [&](const BorderFace& x, const BorderFace& y) { return key(x) < key(y); });
     std::size_t n = 0;
     for (const BorderFace& f : result.faces) {
-        if (n > 0 && key(result.faces[n - 1]) == key(f)) result.faces[n - 1].conductance += f.conductance, result.faces[n - 1].distance += f.distance;
-        else result.faces[n++] = f;
+        if (n > 0 && key(result.faces[n - 1]) == key(f))
+            result.faces[n - 1].conductance += f.conductance, result.faces[n - 1].distance += f.distance;
+        else
+            result.faces[n++] = f;
     }
     result.faces.resize(n);
     return result;

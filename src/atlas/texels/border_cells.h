@@ -13,7 +13,7 @@ namespace tuft::atlas {
 struct BorderFace {
     TexelRef a, b;  ///< a before b by slot, then texel
     double conductance = 0;
-    double distance = 0;    ///< texels
+    double distance = 0;  ///< texels
     bool over_seam = false;
 };
 
@@ -43,6 +43,7 @@ struct BorderCells {
 /// flux = k · conductance · (w_a − w_b) is exact for linear w (Eymard, Gallouët and Herbin 2000, admissible
 /// meshes). Beyond borders of the surface and more than one seam at once, texels are whole. The same bits for any
 /// number of threads. `only_cells`: without taps and faces, in half of the memory.
-BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, bool only_cells = false);
+BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
+                               bool only_cells = false);
 
 }  // namespace tuft::atlas

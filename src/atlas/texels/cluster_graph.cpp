@@ -16,11 +16,15 @@ constexpr double kSeamSearch = 2.0;   // texels from a seam to the nearest texel
 constexpr double kStep = 3;           // texels between the points of a way over a cluster
 const double kCreaseCos = std::cos(20 * 0.017453292519943295);
 
-Vec3f position(const TexelShape& shape, int t) { return {shape.px[t], shape.py[t], shape.pz[t]}; }
-Vec3f normal(const TexelShape& shape, int t) { return {shape.nx[t], shape.ny[t], shape.nz[t]}; }
+Vec3f position(const TexelShape& shape, int t) {
+    return {shape.px[t], shape.py[t], shape.pz[t]};
+}
+Vec3f normal(const TexelShape& shape, int t) {
+    return {shape.nx[t], shape.ny[t], shape.nz[t]};
+}
 
-TexelCluster make_piece(const TexelTile& tile, const TexelShape& shape, std::uint32_t slot,
-                 std::uint8_t index, std::uint32_t chart) {
+TexelCluster make_piece(const TexelTile& tile, const TexelShape& shape, std::uint32_t slot, std::uint8_t index,
+                        std::uint32_t chart) {
     TexelCluster cluster{.slot = slot, .chart = chart, .index = index};
     Vec3 mean{0};
     int n = 0, first = kTile, last = 0;
@@ -43,8 +47,7 @@ TexelCluster make_piece(const TexelTile& tile, const TexelShape& shape, std::uin
         cluster.centre_texel = static_cast<std::uint8_t>(t);
     }
     cluster.centre = position(shape, cluster.centre_texel);
-    const Frame frame =
-        make_frame(Vec3(cluster.centre), glm::normalize(Vec3(normal(shape, cluster.centre_texel))));
+    const Frame frame = make_frame(Vec3(cluster.centre), glm::normalize(Vec3(normal(shape, cluster.centre_texel))));
     cluster.normal = Vec3f(frame.n);
     cluster.tangent = Vec3f(frame.t);
     for (int t = 0; t < kTileTexels; ++t) {
@@ -125,8 +128,7 @@ void meet_inside_charts(const TexelMap& map, const std::vector<TexelCluster>& cl
         for (const auto& [dx, dy] : kForward) {
             const TexelRef other = texel_ref(map, x0 + x + dx, y0 + y + dy);
             if (!other.valid()) continue;
-            const std::uint32_t j =
-                map.cluster_start[other.slot] + map.tiles[other.slot].cluster[other.texel];
+            const std::uint32_t j = map.cluster_start[other.slot] + map.tiles[other.slot].cluster[other.texel];
             if (i == j || clusters[i].chart != clusters[j].chart) continue;
             const Vec3 pa(map.position(slot, t)), pb(map.position(other.slot, other.texel));
             const double reach = std::max(map.reach[slot], map.reach[other.slot]);
@@ -142,23 +144,22 @@ void meet_inside_charts(const TexelMap& map, const std::vector<TexelCluster>& cl
 
 /// Texel on one side of a seam; where that side's chart is too thin to have one near by,
 /// that of the surface beyond it.
-TexelRef seam_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                    const SeamSide& side, const Vec3& position) {
-    const TexelRef near =
-        nearest_texel(map, atlas.triangle_chart[side.triangle], side.uv, position, kSeamSearch);
+TexelRef seam_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, const SeamSide& side,
+                    const Vec3& position) {
+    const TexelRef near = nearest_texel(map, atlas.triangle_chart[side.triangle], side.uv, position, kSeamSearch);
     return near.valid() ? near : texel_at(mesh, atlas, map, side.triangle, position);
 }
 
 Vec3 edge_direction(const mesh::TriangleMesh& mesh, const SeamEdge& edge) {
-    const Vec3 along = mesh.position(edge.triangle_a, (edge.corner_a + 1) % 3) -
-                       mesh.position(edge.triangle_a, edge.corner_a);
+    const Vec3 along =
+        mesh.position(edge.triangle_a, (edge.corner_a + 1) % 3) - mesh.position(edge.triangle_a, edge.corner_a);
     const double length = glm::length(along);
     return length > 0 ? along / length : Vec3{0};
 }
 
 void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                     const std::vector<TexelCluster>& clusters, const SeamEdge& edge,
-                     std::vector<SeamSample>& samples, Meetings& meetings) {
+                     const std::vector<TexelCluster>& clusters, const SeamEdge& edge, std::vector<SeamSample>& samples,
+                     Meetings& meetings) {
     samples.clear();
     sample_seam(mesh, atlas, edge, kSeamSpacing, samples);
     for (const SeamSample& s : samples) {
@@ -218,8 +219,7 @@ Way way_to_border(const TexelMap& map, const TexelCluster& cluster, std::uint8_t
         const Vec2 at = glm::round(from + (double(k) / n) * (to - from));
         const int t = static_cast<int>(at.y) * kTile + static_cast<int>(at.x);
         const Vec3 m = Vec3(map.normal(cluster.slot, t));
-        if (map.tiles[cluster.slot].cluster[t] != cluster.index ||
-            glm::dot(m, way.frame.n) < kLogMapMinCos) {
+        if (map.tiles[cluster.slot].cluster[t] != cluster.index || glm::dot(m, way.frame.n) < kLogMapMinCos) {
             way = {.frame = start};
             break;
         }
@@ -238,7 +238,8 @@ Vec2 unfolded(const Frame& i, const Frame& j, const Vec3& fold) {
     return Vec2{a.x * b.x + a.y * b.y, a.y * b.x - a.x * b.y} / lengths;
 }
 
-Sides sides_of(const TexelMap& map, const Meeting& m, const std::vector<TexelCluster>& clusters, const std::vector<Sides>& seams) {
+Sides sides_of(const TexelMap& map, const Meeting& m, const std::vector<TexelCluster>& clusters,
+               const std::vector<Sides>& seams) {
     if (m.seam != kNone) return seams[m.seam];
     const Vec3 ni(map.normal(clusters[m.i].slot, m.texel_i)), nj(map.normal(clusters[m.j].slot, m.texel_j));
     if (!(glm::dot(ni, nj) > kCreaseCos)) return {ni, nj};
@@ -248,7 +249,8 @@ Sides sides_of(const TexelMap& map, const Meeting& m, const std::vector<TexelClu
 
 /// The motion i → j of a meeting: hop = log_i(q) − R log_j(q), R from carrying both tangents
 /// to the border and j's over the normals on both sides of it.
-ClusterEdge edge_of(const TexelMap& map, const Meeting& m, const Sides& sides, const std::vector<TexelCluster>& clusters) {
+ClusterEdge edge_of(const TexelMap& map, const Meeting& m, const Sides& sides,
+                    const std::vector<TexelCluster>& clusters) {
     const Way i = way_to_border(map, clusters[m.i], m.texel_i, m.point, sides.normal_i);
     const Way j = way_to_border(map, clusters[m.j], m.texel_j, m.point, sides.normal_j);
     const Vec2 turn = unfolded(i.frame, j.frame, sides.fold);
@@ -280,30 +282,28 @@ void gather(std::vector<Meetings>& parts, Meetings& all) {
 
 void store_edges(const TexelMap& map, Meetings& all, ClusterGraph& graph) {
     std::vector<Meeting>& meetings = all.found;
-    std::sort(meetings.begin(), meetings.end(),
-              [](const Meeting& a, const Meeting& b) { return a.key() < b.key(); });
+    std::sort(meetings.begin(), meetings.end(), [](const Meeting& a, const Meeting& b) { return a.key() < b.key(); });
     const auto same = [](const Meeting& a, const Meeting& b) { return a.i == b.i && a.j == b.j; };
     meetings.erase(std::unique(meetings.begin(), meetings.end(), same), meetings.end());
     std::vector<ClusterEdge> forward(meetings.size());
     parallel_for(meetings.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k)
-            forward[k] = edge_of(map, meetings[k], sides_of(map, meetings[k], graph.clusters, all.seams), graph.clusters);
+            forward[k] =
+                edge_of(map, meetings[k], sides_of(map, meetings[k], graph.clusters, all.seams), graph.clusters);
     });
     graph.edge_start.assign(graph.n_clusters() + 1, 0);
     for (const Meeting& m : meetings) {
         ++graph.edge_start[m.i + 1];
         ++graph.edge_start[m.j + 1];
     }
-    for (std::size_t i = 0; i < graph.n_clusters(); ++i)
-        graph.edge_start[i + 1] += graph.edge_start[i];
+    for (std::size_t i = 0; i < graph.n_clusters(); ++i) graph.edge_start[i + 1] += graph.edge_start[i];
     graph.edges.resize(graph.edge_start.back());
     std::vector<std::uint32_t> next(graph.edge_start.begin(), graph.edge_start.end() - 1);
     // Backward edges first: meetings are sorted by (i, j) with i < j, so both passes
     // leave the edges of each cluster sorted by their other end.
     for (std::size_t k = 0; k < meetings.size(); ++k)
         graph.edges[next[meetings[k].j]++] = inverse(forward[k], meetings[k].i);
-    for (std::size_t k = 0; k < meetings.size(); ++k)
-        graph.edges[next[meetings[k].i]++] = forward[k];
+    for (std::size_t k = 0; k < meetings.size(); ++k) graph.edges[next[meetings[k].i]++] = forward[k];
 }
 
 /// Tells clusters on which sides the surface ends.
@@ -341,8 +341,8 @@ Frame frame_of(const TexelCluster& cluster) {
     return f;
 }
 
-ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
-                             const TexelMap& map, const ProgressFn& progress) {
+ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
+                                 const ProgressFn& progress) {
     report(progress, "cluster graph", 0);
     ClusterGraph graph;
     graph.cluster_start = map.cluster_start;
@@ -353,9 +353,9 @@ ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& at
         for (std::uint32_t slot = static_cast<std::uint32_t>(begin); slot < end; ++slot) {
             const TexelShape& shape = shape_of(map, slot, room);
             for (std::uint32_t i = map.cluster_start[slot]; i < map.cluster_start[slot + 1]; ++i)
-                graph.clusters[i] = make_piece(map.tiles[slot], shape, slot,
-                                             static_cast<std::uint8_t>(i - map.cluster_start[slot]),
-                                             map.cluster_chart[i]);
+                graph.clusters[i] =
+                    make_piece(map.tiles[slot], shape, slot, static_cast<std::uint8_t>(i - map.cluster_start[slot]),
+                               map.cluster_chart[i]);
         }
     });
 

@@ -39,11 +39,10 @@ struct ClusterEdge {
 };
 
 struct ClusterGraph {
-    std::vector<TexelCluster> clusters;  ///< slot by slot
-    std::vector<std::uint32_t>
-        cluster_start;  ///< [n_slots + 1]; cluster k of slot s is cluster_start[s] + k
-    std::vector<std::uint32_t> edge_start;  ///< [n_clusters + 1]
-    std::vector<ClusterEdge> edges;           ///< sorted by `to` within a cluster
+    std::vector<TexelCluster> clusters;        ///< slot by slot
+    std::vector<std::uint32_t> cluster_start;  ///< [n_slots + 1]; cluster k of slot s is cluster_start[s] + k
+    std::vector<std::uint32_t> edge_start;     ///< [n_clusters + 1]
+    std::vector<ClusterEdge> edges;            ///< sorted by `to` within a cluster
 
     std::size_t n_clusters() const { return clusters.size(); }
 };
@@ -52,13 +51,13 @@ struct ClusterGraph {
 /// chart that hang together, and texels on both sides of every mesh edge along
 /// which charts meet. About 0.5 s and 10 MB at 4096²; the same bits for any
 /// number of threads.
-ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas,
-                             const TexelMap& map, const ProgressFn& progress = {});
+ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
+                                 const ProgressFn& progress = {});
 
 /// The texel that stands for a point of the mesh: the covered one that is nearest in
 /// space, among those near the point's place in the atlas; where the triangle and its
 /// surroundings are too thin to hold any, among those near its neighbours' places.
-TexelRef texel_at(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                  std::uint32_t triangle, const Vec3& position);
+TexelRef texel_at(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, std::uint32_t triangle,
+                  const Vec3& position);
 
 }  // namespace tuft::atlas

@@ -17,7 +17,7 @@ struct FitKind {
 };
 // More reach, and less freedom, where the first finds too little.
 constexpr std::array<FitKind, 3> kFits{{{2.4, 0.4}, {2.4, 1e6}, {3.0, 1e6}}};
-constexpr double kOnEdge = 0.01;             // texels; an uncovered centre may lie that far inside
+constexpr double kOnEdge = 0.01;  // texels; an uncovered centre may lie that far inside
 constexpr std::size_t kMaxTaps = 10;
 constexpr double kMaxGain = 2.0;  // Σ |weight| of a fit that is trusted
 
@@ -34,12 +34,9 @@ struct Border {
     std::uint32_t other_chart = 0;
 
     Vec2 to_atlas(const Vec2& xy) const { return start + xy.x * along + xy.y * out; }
-    Vec2 local(const Vec2& uv) const {
-        return {glm::dot(uv - start, along), glm::dot(uv - start, out)};
-    }
+    Vec2 local(const Vec2& uv) const { return {glm::dot(uv - start, along), glm::dot(uv - start, out)}; }
     Vec2 to_other(const Vec2& xy) const {
-        return other_start + (xy.x * along_scale + xy.y * shear) * other_along +
-               xy.y * in_scale * other_in;
+        return other_start + (xy.x * along_scale + xy.y * shear) * other_along + xy.y * in_scale * other_in;
     }
     Vec2 from_other(const Vec2& uv) const {
         const double y = glm::dot(uv - other_start, other_in) / in_scale;
@@ -76,10 +73,9 @@ struct Across {
 };
 
 /// `third` is the corner off the edge, in texels along and across; `from` and `to` end the edge.
-Across across(const mesh::TriangleMesh& mesh, std::uint32_t triangle, int from, int to,
-              const Vec2& third, double metres_per_texel) {
-    const Vec3 p = mesh.position(triangle, from),
-               e = glm::normalize(mesh.position(triangle, to) - p);
+Across across(const mesh::TriangleMesh& mesh, std::uint32_t triangle, int from, int to, const Vec2& third,
+              double metres_per_texel) {
+    const Vec3 p = mesh.position(triangle, from), e = glm::normalize(mesh.position(triangle, to) - p);
     const Vec3 d = mesh.position(triangle, 3 - from - to) - p;
     const double along = glm::dot(d, e), height = glm::length(d - along * e);
     return {(along - third.x * metres_per_texel) / third.y, height / std::abs(third.y)};
@@ -87,13 +83,12 @@ Across across(const mesh::TriangleMesh& mesh, std::uint32_t triangle, int from, 
 
 /// Unfolds the other side over the edge; its corner `from` lies at the start of this border.
 /// The map between both pictures is that of the two triangles laid flat.
-void join_other(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle, int k,
-                std::uint32_t other, int from, int to, Border& border) {
+void join_other(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle, int k, std::uint32_t other,
+                int from, int to, Border& border) {
     const Vec2 p = corner(atlas, other, from), q = corner(atlas, other, to);
     const Vec2 r = corner(atlas, other, 3 - from - to);
     const double length = glm::length(q - p);
-    const double edge =
-        glm::length(mesh.position(triangle, k) - mesh.position(triangle, (k + 1) % 3));
+    const double edge = glm::length(mesh.position(triangle, k) - mesh.position(triangle, (k + 1) % 3));
     if (!(length > 0) || !(border.length > 0) || !(edge > 0)) return;
     border.has_other = true;
     border.other_start = p;
@@ -122,18 +117,15 @@ std::vector<Border> find_borders(const mesh::TriangleMesh& mesh, const Atlas& at
     std::vector<Border> borders;
     for (const SeamEdge& e : find_seams(mesh, atlas)) {
         Border a = make_border(atlas, e.triangle_a, e.corner_a);
-        join_other(mesh, atlas, e.triangle_a, e.corner_a, e.triangle_b, (e.corner_b + 1) % 3,
-                   e.corner_b, a);
+        join_other(mesh, atlas, e.triangle_a, e.corner_a, e.triangle_b, (e.corner_b + 1) % 3, e.corner_b, a);
         Border b = make_border(atlas, e.triangle_b, e.corner_b);
-        join_other(mesh, atlas, e.triangle_b, e.corner_b, e.triangle_a, (e.corner_a + 1) % 3,
-                   e.corner_a, b);
+        join_other(mesh, atlas, e.triangle_b, e.corner_b, e.triangle_a, (e.corner_a + 1) % 3, e.corner_a, b);
         borders.push_back(a);
         borders.push_back(b);
     }
     for (std::uint32_t t = 0; t < mesh.n_triangles(); ++t) {
         for (int k = 0; k < 3; ++k) {
-            if (mesh.neighbours[3 * std::size_t{t} + k] == kNone)
-                borders.push_back(make_border(atlas, t, k));
+            if (mesh.neighbours[3 * std::size_t{t} + k] == kNone) borders.push_back(make_border(atlas, t, k));
         }
     }
     std::erase_if(borders, [](const Border& b) { return !finite(b); });
@@ -150,8 +142,8 @@ struct Candidate {
 /// Adds the covered texels of `chart` round `centre` whose place beside the gutter texel at
 /// `target` is within `radius`; `place` takes them there, `reach` is the radius where they lie.
 template <class Place>
-void collect(const TexelMap& map, std::uint32_t chart, const Vec2& centre, double reach,
-             const Vec2& target, double radius, Place&& place, std::vector<Candidate>& found) {
+void collect(const TexelMap& map, std::uint32_t chart, const Vec2& centre, double reach, const Vec2& target,
+             double radius, Place&& place, std::vector<Candidate>& found) {
     const auto x0 = static_cast<std::int64_t>(std::floor(centre.x - reach));
     const auto x1 = static_cast<std::int64_t>(std::floor(centre.x + reach));
     const auto y0 = static_cast<std::int64_t>(std::floor(centre.y - reach));
@@ -227,9 +219,8 @@ struct Near {
 };
 
 /// Taps of one gutter texel at `uv`.
-void find_taps(const TexelMap& map, const std::vector<Border>& borders, const Near& near,
-               const Vec2& uv, std::vector<Candidate>& found, std::vector<double>& weights,
-               std::vector<GutterTap>& taps) {
+void find_taps(const TexelMap& map, const std::vector<Border>& borders, const Near& near, const Vec2& uv,
+               std::vector<Candidate>& found, std::vector<double>& weights, std::vector<GutterTap>& taps) {
     const std::uint32_t chart = borders[near.border[0]].chart;
     for (const auto& [radius, stiffness] : kFits) {
         found.clear();
@@ -238,19 +229,16 @@ void find_taps(const TexelMap& map, const std::vector<Border>& borders, const Ne
         for (const std::uint32_t k : near.border) {
             if (k == kNone || borders[k].chart != chart || !borders[k].has_other) continue;
             const Border& border = borders[k];
-            const double stretch =
-                std::max({border.along_scale, border.in_scale, 1.0}) + std::abs(border.shear);
+            const double stretch = std::max({border.along_scale, border.in_scale, 1.0}) + std::abs(border.shear);
             collect(
-                map, border.other_chart, border.to_other(border.local(uv)), radius * stretch, uv,
-                radius, [&](const Vec2& p) { return border.to_atlas(border.from_other(p)); },
-                found);
+                map, border.other_chart, border.to_other(border.local(uv)), radius * stretch, uv, radius,
+                [&](const Vec2& p) { return border.to_atlas(border.from_other(p)); }, found);
         }
         std::stable_sort(found.begin(), found.end(),
                          [](const Candidate& a, const Candidate& b) { return a.fade > b.fade; });
         if (found.size() > kMaxTaps) found.resize(kMaxTaps);
         if (!fit_weights(found, stiffness, weights)) continue;
-        for (std::size_t k = 0; k < found.size(); ++k)
-            taps.push_back({found[k].texel, static_cast<float>(weights[k])});
+        for (std::size_t k = 0; k < found.size(); ++k) taps.push_back({found[k].texel, static_cast<float>(weights[k])});
         return;
     }
     // Nothing holds a linear function (the mesh ends here, or a sliver): a mean.
@@ -260,8 +248,7 @@ void find_taps(const TexelMap& map, const std::vector<Border>& borders, const Ne
 }
 
 /// Nearest texel of the chart itself, for places further out than the fit reaches.
-void take_nearest(const TexelMap& map, const Border& border, const Vec2& uv,
-                  std::vector<GutterTap>& taps) {
+void take_nearest(const TexelMap& map, const Border& border, const Vec2& uv, std::vector<GutterTap>& taps) {
     const Vec2 local = border.local(uv);
     const Vec2 foot = border.start + std::clamp(local.x, 0.0, border.length) * border.along;
     TexelRef best;
@@ -284,10 +271,8 @@ void take_nearest(const TexelMap& map, const Border& border, const Vec2& uv,
 /// the same seam only the nearest stays.
 void insert(const std::vector<Border>& borders, std::uint32_t b, float distance, Near& near) {
     const auto same_seam = [&](std::uint32_t k) {
-        return borders[k].chart == borders[b].chart &&
-               borders[k].has_other == borders[b].has_other &&
-               borders[k].other_chart == borders[b].other_chart &&
-               glm::dot(borders[k].out, borders[b].out) > 0.5;
+        return borders[k].chart == borders[b].chart && borders[k].has_other == borders[b].has_other &&
+               borders[k].other_chart == borders[b].other_chart && glm::dot(borders[k].out, borders[b].out) > 0.5;
     };
     int last = Near::kMax - 1;  // the one to be replaced
     for (int k = 0; k < Near::kMax; ++k) {
@@ -309,21 +294,18 @@ void insert(const std::vector<Border>& borders, std::uint32_t b, float distance,
 }
 
 /// Borders near each uncovered texel of the rows [row, row + kTile).
-void find_near(const TexelMap& map, const std::vector<Border>& borders,
-               std::span<const std::uint32_t> members, std::int64_t row, double width,
-               std::vector<Near>& near) {
+void find_near(const TexelMap& map, const std::vector<Border>& borders, std::span<const std::uint32_t> members,
+               std::int64_t row, double width, std::vector<Near>& near) {
     const std::int64_t size = map.size;
     near.assign(static_cast<std::size_t>(size) * kTile, {});
     for (const std::uint32_t b : members) {
         const Border& border = borders[b];
         const Vec2 end = border.start + border.length * border.along;
-        const Vec2 lo = glm::min(border.start, end) - width,
-                   hi = glm::max(border.start, end) + width;
+        const Vec2 lo = glm::min(border.start, end) - width, hi = glm::max(border.start, end) + width;
         const std::int64_t x0 = std::max<std::int64_t>(0, std::int64_t(std::floor(lo.x)));
         const std::int64_t x1 = std::min<std::int64_t>(size - 1, std::int64_t(std::floor(hi.x)));
         const std::int64_t y0 = std::max<std::int64_t>(row, std::int64_t(std::floor(lo.y)));
-        const std::int64_t y1 =
-            std::min<std::int64_t>({row + kTile - 1, size - 1, std::int64_t(std::floor(hi.y))});
+        const std::int64_t y1 = std::min<std::int64_t>({row + kTile - 1, size - 1, std::int64_t(std::floor(hi.y))});
         for (std::int64_t y = y0; y <= y1; ++y) {
             for (std::int64_t x = x0; x <= x1; ++x) {
                 const Vec2 p = border.local(Vec2(double(x) + 0.5, double(y) + 0.5));
@@ -338,8 +320,7 @@ void find_near(const TexelMap& map, const std::vector<Border>& borders,
 
 }  // namespace
 
-Gutter build_gutter(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                    std::uint32_t width) {
+Gutter build_gutter(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, std::uint32_t width) {
     const std::vector<Border> borders = find_borders(mesh, atlas);
     const std::size_t n_bands = map.tiles_per_side;
     std::vector<std::vector<std::uint32_t>> members(n_bands);
@@ -348,8 +329,7 @@ Gutter build_gutter(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Te
         const double last = double(n_bands) - 1;
         const auto lo = std::clamp(std::floor((std::min(y0, y1) - width) / kTile), 0.0, last);
         const auto hi = std::clamp(std::floor((std::max(y0, y1) + width) / kTile), 0.0, last);
-        for (auto band = std::size_t(lo); band <= std::size_t(hi); ++band)
-            members[band].push_back(b);
+        for (auto band = std::size_t(lo); band <= std::size_t(hi); ++band) members[band].push_back(b);
     }
     std::vector<Gutter> parts(n_bands);
     parallel_for(n_bands, 1, [&](std::size_t begin, std::size_t end) {
@@ -362,13 +342,11 @@ Gutter build_gutter(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Te
             Gutter& part = parts[band];
             for (std::size_t i = 0; i < near.size(); ++i) {
                 if (near[i].border[0] == kNone) continue;
-                const std::int64_t x = std::int64_t(i % map.size),
-                                   y = row + std::int64_t(i / map.size);
+                const std::int64_t x = std::int64_t(i % map.size), y = row + std::int64_t(i / map.size);
                 const Vec2 uv{double(x) + 0.5, double(y) + 0.5};
                 const std::size_t before = part.taps.size();
                 find_taps(map, borders, near[i], uv, found, weights, part.taps);
-                if (part.taps.size() == before)
-                    take_nearest(map, borders[near[i].border[0]], uv, part.taps);
+                if (part.taps.size() == before) take_nearest(map, borders[near[i].border[0]], uv, part.taps);
                 if (part.taps.size() == before) continue;
                 part.texels.push_back(static_cast<std::uint32_t>(y * map.size + x));
                 part.start.push_back(static_cast<std::uint32_t>(part.taps.size()));

@@ -28,10 +28,9 @@ struct Gutter {
 /// unfolded over the nearest border edge, and a quadratic function, stiff in its squares, is
 /// fitted to the texels of both charts round that place by moving least squares (weights
 /// (1 − d²/r²)², r = 2.4 texels); linear functions are kept. A bilinear lookup then differs over
-/// a seam by 1 % rms and 3.5 % at most for waves of 16 texels. Beside the border of the mesh, to the chart's own. The same bits for any
-/// number of threads. About 0.3 s for 300 000 texels of seam.
-Gutter build_gutter(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                    std::uint32_t width);
+/// a seam by 1 % rms and 3.5 % at most for waves of 16 texels. Beside the border of the mesh, to the chart's own. The
+/// same bits for any number of threads. About 0.3 s for 300 000 texels of seam.
+Gutter build_gutter(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, std::uint32_t width);
 
 /// Fills the gutter texels of an interleaved image [size * size * channels], row 0 at v = 0,
 /// from its covered texels.
@@ -49,7 +48,7 @@ struct MipLevel {
 /// between charts (`atlas.gutter`) falls below 2 texels, which both sides of a bilinear lookup
 /// need, or before charts less than 4 texels long make up 1 % of the atlas. Costs a texel map
 /// and a gutter of each level's size.
-std::vector<MipLevel> mip_levels(const mesh::TriangleMesh& mesh, const Atlas& atlas,
-                                 const TexelMap& map, int channels, std::span<const float> image);
+std::vector<MipLevel> mip_levels(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, int channels,
+                                 std::span<const float> image);
 
 }  // namespace tuft::atlas

@@ -12,8 +12,7 @@ Vec2 log_map(const Frame& frame, const Vec3& p, const Vec3& m) {
     double series = kLogMapSeries.back();
     for (std::size_t i = kLogMapSeries.size() - 1; i-- > 0;) series = series * x + kLogMapSeries[i];
     const double h = 0.5 * (series * (md - nd) - (md + nd) / (1 + c));
-    return {glm::dot(d, frame.t) + h * glm::dot(m, frame.t),
-            glm::dot(d, frame.b) + h * glm::dot(m, frame.b)};
+    return {glm::dot(d, frame.t) + h * glm::dot(m, frame.t), glm::dot(d, frame.b) + h * glm::dot(m, frame.b)};
 }
 
 Vec2 carried_direction(const Frame& frame, const Vec3& t, const Vec3& from) {

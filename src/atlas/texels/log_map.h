@@ -10,9 +10,8 @@ namespace tuft::atlas {
 
 /// Coefficients of x = 1 − c, lowest power first, of (1 + c) K(c) with
 /// K(c) = (θ / sin θ − 1) / sin² θ, θ = acos c; within 2e-5 for c in [−0.36, 1].
-inline constexpr std::array<double, 8> kLogMapSeries{0.33332254,   0.134294424,  0.0432825248,
-                                                     0.10015319,   -0.180975939, 0.26225653,
-                                                     -0.171078885, 0.0495550044};
+inline constexpr std::array<double, 8> kLogMapSeries{0.33332254,   0.134294424, 0.0432825248, 0.10015319,
+                                                     -0.180975939, 0.26225653,  -0.171078885, 0.0495550044};
 
 /// The smallest dot product of two normals for which the map holds.
 inline constexpr double kLogMapMinCos = -0.35;

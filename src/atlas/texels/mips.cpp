@@ -38,8 +38,7 @@ ChartSizes chart_sizes(const Atlas& atlas) {
         sizes.area[c] += area;
         sizes.total += area;
     }
-    for (std::uint32_t c = 0; c < n; ++c)
-        sizes.length[c] = std::max({hi[c].x - lo[c].x, hi[c].y - lo[c].y, 0.0});
+    for (std::uint32_t c = 0; c < n; ++c) sizes.length[c] = std::max({hi[c].x - lo[c].x, hi[c].y - lo[c].y, 0.0});
     return sizes;
 }
 
@@ -66,12 +65,11 @@ void shrink(const TexelMap& below, std::span<const float> from, const TexelMap& 
             const std::uint32_t tile = map.tile_of_slot[slot];
             const std::size_t x = std::size_t{tile % map.tiles_per_side} * kTile + texel % kTile;
             const std::size_t y = std::size_t{tile / map.tiles_per_side} * kTile + texel / kTile;
-            const std::uint32_t chart =
-                map.cluster_chart[map.cluster_start[slot] + map.tiles[slot].cluster[texel]];
+            const std::uint32_t chart = map.cluster_chart[map.cluster_start[slot] + map.tiles[slot].cluster[texel]];
             std::array<bool, 4> own{};
             for (int k = 0; k < 4; ++k) {
-                const std::uint32_t c = chart_of(
-                    below, texel_ref(below, std::int64_t(2 * x) + k % 2, std::int64_t(2 * y) + k / 2));
+                const std::uint32_t c =
+                    chart_of(below, texel_ref(below, std::int64_t(2 * x) + k % 2, std::int64_t(2 * y) + k / 2));
                 own[k] = c == chart || c == kNone;
             }
             if (own == std::array<bool, 4>{}) own.fill(true);
@@ -88,23 +86,22 @@ void shrink(const TexelMap& below, std::span<const float> from, const TexelMap& 
 
 }  // namespace
 
-std::vector<MipLevel> mip_levels(const mesh::TriangleMesh& mesh, const Atlas& atlas,
-                                 const TexelMap& map, int channels, std::span<const float> image) {
+std::vector<MipLevel> mip_levels(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, int channels,
+                                 std::span<const float> image) {
     assert(image.size() == std::size_t{map.size} * map.size * channels);
     std::vector<MipLevel> levels;
     const ChartSizes sizes = chart_sizes(atlas);
     Atlas small = atlas;
     TexelMap before;
     const TexelMap* below = &map;
-    while (small.size % 2 == 0 && small.gutter / 2 >= kLeastGap &&
-           worth_a_level(sizes, small.size / 2)) {
+    while (small.size % 2 == 0 && small.gutter / 2 >= kLeastGap && worth_a_level(sizes, small.size / 2)) {
         small.size /= 2;
         small.gutter /= 2;
         small.texel_size *= 2;
         TexelMap level_map = build_texel_map(mesh, small);
         MipLevel level{small.size, std::vector<float>(std::size_t{small.size} * small.size * channels, 0)};
-        shrink(*below, levels.empty() ? image : std::span<const float>(levels.back().image), level_map,
-               channels, level.image);
+        shrink(*below, levels.empty() ? image : std::span<const float>(levels.back().image), level_map, channels,
+               level.image);
         fill_gutter(build_gutter(mesh, small, level_map, small.gutter), level_map, channels, level.image);
         levels.push_back(std::move(level));
         before = std::move(level_map);

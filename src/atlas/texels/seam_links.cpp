@@ -41,7 +41,8 @@ SeamLinks build_seam_links(const mesh::TriangleMesh& mesh, const Atlas& atlas, c
             const auto apart = static_cast<std::uint8_t>(std::min(std::round(64 * f.distance), 255.0));
             links.push_back({f.a.slot, {f.b.slot, weight, f.a.texel, f.b.texel, apart}});
             links.push_back({f.b.slot, {f.a.slot, weight, f.b.texel, f.a.texel, apart}});
-        } else faces.push_back(held(map, f));
+        } else
+            faces.push_back(held(map, f));
     }
     std::sort(links.begin(), links.end(), [](const auto& x, const auto& y) {
         return std::tie(x.first, x.second.texel, x.second.other_slot, x.second.other_texel) <
@@ -64,7 +65,8 @@ SeamLinks build_seam_links(const mesh::TriangleMesh& mesh, const Atlas& atlas, c
     result.tap_start.assign(map.n_slots() + 1, 0);
     for (const BorderTap& t : border.taps) {
         ++result.tap_start[t.texel.slot + 1];
-        SeamTap& tap = result.taps.emplace_back(SeamTap{t.other.slot, static_cast<float>(t.weight), t.texel.texel, t.other.texel, t.side});
+        SeamTap& tap = result.taps.emplace_back(
+            SeamTap{t.other.slot, static_cast<float>(t.weight), t.texel.texel, t.other.texel, t.side});
         if (t.over_seam) continue;
         const auto from = place(map, t.texel), to = place(map, t.other);
         tap.other_slot = kNone;

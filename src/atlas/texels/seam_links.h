@@ -37,12 +37,12 @@ struct SeamTap {
 };
 
 struct SeamLinks {
-    std::vector<std::uint32_t> start;  ///< [n_slots + 1]
-    std::vector<SeamLink> links;       ///< by slot, then texel, then other end
+    std::vector<std::uint32_t> start;       ///< [n_slots + 1]
+    std::vector<SeamLink> links;            ///< by slot, then texel, then other end
     std::vector<std::uint32_t> face_start;  ///< [n_slots + 1]
-    std::vector<SeamFace> faces;       ///< by slot, then texel: they take the place of the grid's own
-    std::vector<std::uint32_t> tap_start;  ///< [n_slots + 1]
-    std::vector<SeamTap> taps;         ///< by slot, then texel, then side
+    std::vector<SeamFace> faces;            ///< by slot, then texel: they take the place of the grid's own
+    std::vector<std::uint32_t> tap_start;   ///< [n_slots + 1]
+    std::vector<SeamTap> taps;              ///< by slot, then texel, then side
 };
 
 /// The faces of `build_border_cells`, as tiles hold them. The same bits for any number of threads.

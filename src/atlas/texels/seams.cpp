@@ -12,8 +12,7 @@ namespace {
 constexpr double kSameCorner = 1.0 / 64;
 
 /// Corner of `other` at which its side of the edge (corner k → k+1 of `triangle`) starts, or −1.
-int facing_corner(const mesh::TriangleMesh& mesh, std::uint32_t triangle, int k,
-                  std::uint32_t other) {
+int facing_corner(const mesh::TriangleMesh& mesh, std::uint32_t triangle, int k, std::uint32_t other) {
     const auto& t = mesh.triangles[triangle];
     const auto& o = mesh.triangles[other];
     for (int l = 0; l < 3; ++l) {
@@ -44,8 +43,8 @@ std::vector<SeamEdge> find_seams(const mesh::TriangleMesh& mesh, const Atlas& at
             const Vec2 a0 = corner_texels(atlas, a, k), a1 = corner_texels(atlas, a, (k + 1) % 3);
             const Vec2 b0 = corner_texels(atlas, b, (l + 1) % 3), b1 = corner_texels(atlas, b, l);
             if (!finite(a0) || !finite(a1) || !finite(b0) || !finite(b1)) continue;
-            if (atlas.triangle_chart[a] == atlas.triangle_chart[b] &&
-                glm::length(a0 - b0) < kSameCorner && glm::length(a1 - b1) < kSameCorner)
+            if (atlas.triangle_chart[a] == atlas.triangle_chart[b] && glm::length(a0 - b0) < kSameCorner &&
+                glm::length(a1 - b1) < kSameCorner)
                 continue;
             seams.push_back({a, b, k, l});
         }
@@ -53,8 +52,8 @@ std::vector<SeamEdge> find_seams(const mesh::TriangleMesh& mesh, const Atlas& at
     return seams;
 }
 
-void sample_seam(const mesh::TriangleMesh& mesh, const Atlas& atlas, const SeamEdge& edge,
-                 double spacing, std::vector<SeamSample>& samples) {
+void sample_seam(const mesh::TriangleMesh& mesh, const Atlas& atlas, const SeamEdge& edge, double spacing,
+                 std::vector<SeamSample>& samples) {
     const int a_end = (edge.corner_a + 1) % 3, b_end = (edge.corner_b + 1) % 3;
     const Vec2 a0 = corner_texels(atlas, edge.triangle_a, edge.corner_a);
     const Vec2 a1 = corner_texels(atlas, edge.triangle_a, a_end);
@@ -71,21 +70,19 @@ void sample_seam(const mesh::TriangleMesh& mesh, const Atlas& atlas, const SeamE
     for (int i = 0; i < n; ++i) {
         const double f = (i + 0.5) / n;
         SeamSample s;
-        s.position = (1 - f) * mesh.position(edge.triangle_a, edge.corner_a) +
-                     f * mesh.position(edge.triangle_a, a_end);
+        s.position =
+            (1 - f) * mesh.position(edge.triangle_a, edge.corner_a) + f * mesh.position(edge.triangle_a, a_end);
         s.length = 0.5 * (length_a + length_b) / n;
-        s.a = {edge.triangle_a, (1 - f) * a0 + f * a1,
-               length_a > 0 ? (a1 - a0) / length_a : Vec2{1, 0},
+        s.a = {edge.triangle_a, (1 - f) * a0 + f * a1, length_a > 0 ? (a1 - a0) / length_a : Vec2{1, 0},
                normal(edge.triangle_a, edge.corner_a, a_end, f)};
-        s.b = {edge.triangle_b, (1 - f) * b0 + f * b1,
-               length_b > 0 ? (b1 - b0) / length_b : Vec2{1, 0},
+        s.b = {edge.triangle_b, (1 - f) * b0 + f * b1, length_b > 0 ? (b1 - b0) / length_b : Vec2{1, 0},
                normal(edge.triangle_b, b_end, edge.corner_b, f)};
         samples.push_back(s);
     }
 }
 
-TexelRef nearest_texel(const TexelMap& map, std::uint32_t chart, const Vec2& uv,
-                       const Vec3& position, double max_distance) {
+TexelRef nearest_texel(const TexelMap& map, std::uint32_t chart, const Vec2& uv, const Vec3& position,
+                       double max_distance) {
     const std::int64_t x0 = static_cast<std::int64_t>(std::ceil(uv.x - 0.5 - max_distance));
     const std::int64_t x1 = static_cast<std::int64_t>(std::floor(uv.x - 0.5 + max_distance));
     const std::int64_t y0 = static_cast<std::int64_t>(std::ceil(uv.y - 0.5 - max_distance));

@@ -37,12 +37,12 @@ Vec2 corner_texels(const Atlas& atlas, std::uint32_t triangle, int corner);
 std::vector<SeamEdge> find_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas);
 
 /// Samples of one edge, evenly spread, at most `spacing` texels apart on either side.
-void sample_seam(const mesh::TriangleMesh& mesh, const Atlas& atlas, const SeamEdge& edge,
-                 double spacing, std::vector<SeamSample>& samples);
+void sample_seam(const mesh::TriangleMesh& mesh, const Atlas& atlas, const SeamEdge& edge, double spacing,
+                 std::vector<SeamSample>& samples);
 
 /// The covered texel of `chart` whose centre is nearest to `uv` (texels), at most
 /// `max_distance` texels away and hanging together with the surface at `position`.
-TexelRef nearest_texel(const TexelMap& map, std::uint32_t chart, const Vec2& uv,
-                       const Vec3& position, double max_distance);
+TexelRef nearest_texel(const TexelMap& map, std::uint32_t chart, const Vec2& uv, const Vec3& position,
+                       double max_distance);
 
 }  // namespace tuft::atlas

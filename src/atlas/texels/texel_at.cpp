@@ -24,12 +24,11 @@ Vec3 clamped_weights(const mesh::TriangleMesh& mesh, std::uint32_t triangle, con
 
 /// Covered texel within `search` texels of the triangle's place in the atlas that is
 /// nearest to `p` in space.
-TexelRef texel_near(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                    std::uint32_t triangle, const Vec3& p, int search) {
+TexelRef texel_near(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, std::uint32_t triangle,
+                    const Vec3& p, int search) {
     const Vec3 w = clamped_weights(mesh, triangle, p);
     Vec2 uv{0};
-    for (int k = 0; k < 3; ++k)
-        uv += w[k] * Vec2(atlas.corner_uvs[3 * std::size_t{triangle} + k]) * double(atlas.size);
+    for (int k = 0; k < 3; ++k) uv += w[k] * Vec2(atlas.corner_uvs[3 * std::size_t{triangle} + k]) * double(atlas.size);
     if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return {};
     const auto x = static_cast<std::int64_t>(std::floor(std::clamp(uv.x, 0.0, double(atlas.size))));
     const auto y = static_cast<std::int64_t>(std::floor(std::clamp(uv.y, 0.0, double(atlas.size))));
@@ -40,9 +39,7 @@ TexelRef texel_near(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Te
             const TexelRef ref = texel_ref(map, x + dx, y + dy);
             if (!ref.valid()) continue;
             const std::uint8_t cluster = map.tiles[ref.slot].cluster[ref.texel];
-            if (map.cluster_chart[map.cluster_start[ref.slot] + cluster] !=
-                atlas.triangle_chart[triangle])
-                continue;
+            if (map.cluster_chart[map.cluster_start[ref.slot] + cluster] != atlas.triangle_chart[triangle]) continue;
             const Vec3 d = Vec3(map.position(ref.slot, ref.texel)) - p;
             const double distance = glm::dot(d, d);
             const double reach = (search + 1) * double(map.reach[ref.slot]);
@@ -56,8 +53,8 @@ TexelRef texel_near(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Te
 
 }  // namespace
 
-TexelRef texel_at(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                  std::uint32_t triangle, const Vec3& position) {
+TexelRef texel_at(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, std::uint32_t triangle,
+                  const Vec3& position) {
     if (triangle >= mesh.n_triangles()) return {};
     constexpr std::size_t kMaxVisited = 64;
     std::array<std::uint32_t, kMaxVisited> queue{triangle};
@@ -68,8 +65,7 @@ TexelRef texel_at(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Texe
         for (int k = 0; k < 3 && n < kMaxVisited; ++k) {
             const std::uint32_t next = mesh.neighbours[3 * std::size_t{queue[i]} + k];
             if (next >= mesh.n_triangles()) continue;
-            if (std::find(queue.begin(), queue.begin() + n, next) == queue.begin() + n)
-                queue[n++] = next;
+            if (std::find(queue.begin(), queue.begin() + n, next) == queue.begin() + n) queue[n++] = next;
         }
     }
     return texel_near(mesh, atlas, map, triangle, position, 4);

@@ -64,8 +64,7 @@ std::pair<std::int64_t, std::int64_t> row_range(const SnappedTriangle& s) {
 
 /// Columns [begin, end) of a texel row whose centres lie in the triangle. An edge that
 /// points up, or straight left, owns the centres on it.
-std::pair<std::int64_t, std::int64_t> column_range(const SnappedTriangle& s, std::int64_t row,
-                                                   std::int64_t size) {
+std::pair<std::int64_t, std::int64_t> column_range(const SnappedTriangle& s, std::int64_t row, std::int64_t size) {
     const std::int64_t y = row * kSnap + kSnap / 2;
     std::int64_t begin = 0, end = size;
     for (int k = 0; k < 3; ++k) {
@@ -102,8 +101,7 @@ Bands sort_into_bands(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::u
             range[i] = {0, 0};
             const std::int64_t last = std::min<std::int64_t>(hi, atlas.size);
             if (s.area2 == 0 || lo >= last) continue;
-            range[i] = {static_cast<std::uint16_t>(lo / kTile),
-                        static_cast<std::uint16_t>((last - 1) / kTile + 1)};
+            range[i] = {static_cast<std::uint16_t>(lo / kTile), static_cast<std::uint16_t>((last - 1) / kTile + 1)};
         }
     });
     Bands bands;
@@ -115,8 +113,7 @@ Bands sort_into_bands(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::u
     bands.triangles.resize(bands.start.back());
     std::vector<std::size_t> next(bands.start.begin(), bands.start.end() - 1);
     for (std::size_t i = 0; i < n; ++i) {
-        for (int b = range[i][0]; b < range[i][1]; ++b)
-            bands.triangles[next[b]++] = static_cast<std::uint32_t>(i);
+        for (int b = range[i][0]; b < range[i][1]; ++b) bands.triangles[next[b]++] = static_cast<std::uint32_t>(i);
     }
     return bands;
 }
@@ -149,9 +146,8 @@ void draw_ids(const Atlas& atlas, const Bands& bands, std::size_t band, std::vec
 
 /// Surface point, normal and area of the texel centre (x, y); returns the length in
 /// metres of the longest side of the texel's image.
-float shade_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle,
-                  std::int64_t column, std::int64_t row, TexelShape& shape, float& texel_area,
-                  int texel) {
+float shade_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle, std::int64_t column,
+                  std::int64_t row, TexelShape& shape, float& texel_area, int texel) {
     const SnappedTriangle s = snapped_triangle(atlas, triangle);
     const std::int64_t x = column * kSnap + kSnap / 2, y = row * kSnap + kSnap / 2;
     const double scale = 1.0 / static_cast<double>(s.area2);
@@ -186,16 +182,14 @@ float shade_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint3
 }
 
 bool hang_together(const TexelShape& shape, int a, int b, float reach) {
-    const float dx = shape.px[a] - shape.px[b], dy = shape.py[a] - shape.py[b],
-                dz = shape.pz[a] - shape.pz[b];
+    const float dx = shape.px[a] - shape.px[b], dy = shape.py[a] - shape.py[b], dz = shape.pz[a] - shape.pz[b];
     return dx * dx + dy * dy + dz * dz <= reach * reach;
 }
 
 /// Grows the cluster `cluster` from `seed` over unassigned texels of the same chart in the same square of
 /// `side` × `side` texels.
-void grow_cluster(const TexelShape& shape, TexelTile& tile,
-                const std::array<std::uint32_t, kTileTexels>& chart, float reach, int seed,
-                std::uint8_t cluster, float min_cos, int side) {
+void grow_cluster(const TexelShape& shape, TexelTile& tile, const std::array<std::uint32_t, kTileTexels>& chart,
+                  float reach, int seed, std::uint8_t cluster, float min_cos, int side) {
     std::array<std::uint8_t, kTileTexels> open;
     int n_open = 0;
     const float nx = shape.nx[seed], ny = shape.ny[seed], nz = shape.nz[seed];
@@ -237,8 +231,7 @@ bool bends(const TexelShape& shape, const std::array<std::uint32_t, kTileTexels>
 /// A tile so rough that it would need more than 254 is split by charts and gaps alone;
 /// texels beyond that (one-texel charts side by side) are given up.
 std::vector<std::uint32_t> split_into_clusters(const TexelShape& shape, TexelTile& tile,
-                                             const std::array<std::uint32_t, kTileTexels>& chart,
-                                             float reach) {
+                                               const std::array<std::uint32_t, kTileTexels>& chart, float reach) {
     const int side = bends(shape, chart) ? kTile / 2 : kTile;
     for (const float min_cos : {kPieceCos, -2.0f}) {
         std::vector<std::uint32_t> charts;
@@ -257,10 +250,9 @@ std::vector<std::uint32_t> split_into_clusters(const TexelShape& shape, TexelTil
 }
 
 /// Fills one tile from the triangle of each of its texels; returns the charts of its clusters.
-std::vector<std::uint32_t> fill_tile(const mesh::TriangleMesh& mesh, const Atlas& atlas,
-                                     std::uint32_t tile_index, std::uint32_t tiles_per_side,
-                                     const std::uint32_t* ids, TexelShape& shape, TexelTile& tile,
-                                     float& reach) {
+std::vector<std::uint32_t> fill_tile(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t tile_index,
+                                     std::uint32_t tiles_per_side, const std::uint32_t* ids, TexelShape& shape,
+                                     TexelTile& tile, float& reach) {
     const std::int64_t x0 = std::int64_t{tile_index % tiles_per_side} * kTile;
     const std::int64_t y0 = std::int64_t{tile_index / tiles_per_side} * kTile;
     std::array<std::uint32_t, kTileTexels> chart;
@@ -297,15 +289,14 @@ void check_sizes(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
     const std::size_t n = mesh.n_triangles();
     if (atlas.size == 0 || atlas.size > 16384)
         throw Error("atlas size " + std::to_string(atlas.size) + " is not between 1 and 16384");
-    if (atlas.corner_uvs.size() != 3 * n || atlas.triangle_chart.size() != n ||
-        mesh.corner_normals.size() != 3 * n)
+    if (atlas.corner_uvs.size() != 3 * n || atlas.triangle_chart.size() != n || mesh.corner_normals.size() != 3 * n)
         throw Error("the atlas was made for another mesh");
 }
 
 }  // namespace
 
-TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
-                         const ProgressFn& progress, TexelStore store) {
+TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, const ProgressFn& progress,
+                         TexelStore store) {
     check_sizes(mesh, atlas);
     report(progress, "texel map", 0);
     TexelMap map;
@@ -318,11 +309,9 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
     std::vector<std::uint8_t> occupied(std::size_t{side} * side, 0);
     parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t band = begin; band < end; ++band) {
-            draw_band(atlas, bands, band,
-                      [&](int, std::int64_t x0, std::int64_t x1, std::uint32_t) {
-                          for (std::int64_t tx = x0 / kTile; tx <= (x1 - 1) / kTile; ++tx)
-                              occupied[band * side + tx] = 1;
-                      });
+            draw_band(atlas, bands, band, [&](int, std::int64_t x0, std::int64_t x1, std::uint32_t) {
+                for (std::int64_t tx = x0 / kTile; tx <= (x1 - 1) / kTile; ++tx) occupied[band * side + tx] = 1;
+            });
         }
     });
     map.slot_of_tile.assign(occupied.size(), kNone);
@@ -351,8 +340,7 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
                 const std::uint32_t slot = map.slot_of_tile[tile];
                 if (slot == kNone) continue;
                 TexelShape& shape = packed ? room : map.shapes[slot];
-                charts[slot] = fill_tile(mesh, atlas, tile, side, ids.data(), shape,
-                                         map.tiles[slot], map.reach[slot]);
+                charts[slot] = fill_tile(mesh, atlas, tile, side, ids.data(), shape, map.tiles[slot], map.reach[slot]);
                 if (!packed) continue;
                 boxes[slot].resize(charts[slot].size());
                 map.packed[slot] = pack_shape(shape, map.tiles[slot], boxes[slot]);
@@ -393,8 +381,9 @@ void visit_texels(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Texe
                 const SnappedTriangle s = snapped_triangle(atlas, ids[i]);
                 Vec3 weights(0);
                 for (int k = 0; k < 3; ++k)  // corner k faces edge k+1 -> k+2
-                    weights[s.corner[k]] = static_cast<double>(edge_value(s, (k + 1) % 3, x * kSnap + kSnap / 2, y * kSnap + kSnap / 2)) /
-                                           static_cast<double>(s.area2);
+                    weights[s.corner[k]] =
+                        static_cast<double>(edge_value(s, (k + 1) % 3, x * kSnap + kSnap / 2, y * kSnap + kSnap / 2)) /
+                        static_cast<double>(s.area2);
                 visit(at.slot, at.texel, ids[i], weights);
             }
         }

@@ -21,8 +21,7 @@ inline constexpr std::uint8_t kNoCluster = 255;
 struct TexelTile {
     /// m² of surface the texel stands for; beside seams those of both charts share it (border_cells.h)
     alignas(64) std::array<float, kTileTexels> area;
-    alignas(64)
-        std::array<std::uint8_t, kTileTexels> cluster;  ///< index of the texel's cluster in this tile
+    alignas(64) std::array<std::uint8_t, kTileTexels> cluster;  ///< index of the texel's cluster in this tile
 };
 
 /// Where the texels of one tile lie, structure of arrays. Texels outside every chart: anything.
@@ -58,19 +57,19 @@ struct PackedBox {
 /// Occupied tiles ("slots") of an atlas in row-major tile order. Everything that is
 /// stored per texel elsewhere (ink, wetness) is stored per slot in this order.
 struct TexelMap {
-    std::uint32_t size = 0;                   ///< texels per side of the atlas
-    std::uint32_t tiles_per_side = 0;         ///< ceil(size / 16)
-    double texel_size = 0;                    ///< metres, mean
-    std::vector<std::uint32_t> slot_of_tile;  ///< [tiles_per_side²] slot or kNone
-    std::vector<std::uint32_t> tile_of_slot;  ///< [n_slots] tile index = ty * tiles_per_side + tx
-    std::vector<TexelTile> tiles;             ///< [n_slots]
-    std::vector<TexelShape> shapes;           ///< [n_slots], or empty when packed
-    std::vector<PackedShape> packed;          ///< [n_slots], or empty
-    std::vector<PackedBox> boxes;             ///< [n_clusters] when packed
-    std::vector<float> reach;                 ///< [n_slots] metres: neighbouring texels further
-                                              ///< apart than this do not hang together
-    std::vector<std::uint32_t> cluster_start;   ///< [n_slots + 1] clusters, counted slot by slot
-    std::vector<std::uint32_t> cluster_chart;   ///< [n_clusters]
+    std::uint32_t size = 0;                    ///< texels per side of the atlas
+    std::uint32_t tiles_per_side = 0;          ///< ceil(size / 16)
+    double texel_size = 0;                     ///< metres, mean
+    std::vector<std::uint32_t> slot_of_tile;   ///< [tiles_per_side²] slot or kNone
+    std::vector<std::uint32_t> tile_of_slot;   ///< [n_slots] tile index = ty * tiles_per_side + tx
+    std::vector<TexelTile> tiles;              ///< [n_slots]
+    std::vector<TexelShape> shapes;            ///< [n_slots], or empty when packed
+    std::vector<PackedShape> packed;           ///< [n_slots], or empty
+    std::vector<PackedBox> boxes;              ///< [n_clusters] when packed
+    std::vector<float> reach;                  ///< [n_slots] metres: neighbouring texels further
+                                               ///< apart than this do not hang together
+    std::vector<std::uint32_t> cluster_start;  ///< [n_slots + 1] clusters, counted slot by slot
+    std::vector<std::uint32_t> cluster_chart;  ///< [n_clusters]
 
     std::size_t n_slots() const { return tiles.size(); }
     Vec3f position(std::uint32_t slot, int texel) const;
@@ -108,13 +107,11 @@ inline TexelRef texel_ref(const TexelMap& map, std::int64_t x, std::int64_t y) {
 /// 35° of the first; where normals of the tile stray further than 30° from their mean, of the same quarter of it. The
 /// same bits for any number of threads; about 1 s at 4096² on two threads, memory for occupied tiles only. Tiles and
 /// clusters do not depend on `store`, nor do areas, but for a thousandth beside seams.
-TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas,
-                         const ProgressFn& progress = {},
+TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, const ProgressFn& progress = {},
                          TexelStore store = TexelStore::automatic);
 
 /// A covered texel, the triangle its centre lies in, and the weights of that triangle's corners there.
-using TexelVisit =
-    std::function<void(std::uint32_t slot, int texel, std::uint32_t triangle, const Vec3& weights)>;
+using TexelVisit = std::function<void(std::uint32_t slot, int texel, std::uint32_t triangle, const Vec3& weights)>;
 
 /// Calls `visit` once for every covered texel of the map, which must be of this atlas; from several threads, each
 /// with slots of its own.

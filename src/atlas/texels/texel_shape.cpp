@@ -37,8 +37,7 @@ struct Axes {
     float* __restrict z;
 };
 
-[[gnu::always_inline]] inline void unpack_normal(std::uint16_t nu, std::uint16_t nv, float& x,
-                                                 float& y, float& z) {
+[[gnu::always_inline]] inline void unpack_normal(std::uint16_t nu, std::uint16_t nv, float& x, float& y, float& z) {
     const float u = static_cast<float>(int{nu}) * (1 / kHalf) - 1;
     const float v = static_cast<float>(int{nv}) * (1 / kHalf) - 1;
     const float up = 1 - std::abs(u) - std::abs(v);
@@ -61,9 +60,8 @@ TUFT_CLONES void unpack_normals(const PackedShape& p, TexelShape& s) {
     }
 }
 
-TUFT_CLONES void unpack_axis(const std::uint16_t* __restrict q,
-                             const std::uint8_t* __restrict cluster, std::uint8_t which, float lo,
-                             float step, float* __restrict p) {
+TUFT_CLONES void unpack_axis(const std::uint16_t* __restrict q, const std::uint8_t* __restrict cluster,
+                             std::uint8_t which, float lo, float step, float* __restrict p) {
 #pragma omp simd
     for (int t = 0; t < kTileTexels; ++t) {
         const float at = lo + step * static_cast<float>(int{q[t]});
@@ -71,8 +69,7 @@ TUFT_CLONES void unpack_axis(const std::uint16_t* __restrict q,
     }
 }
 
-TUFT_CLONES void unpack_axis(const std::uint16_t* __restrict q, float lo, float step,
-                             float* __restrict p) {
+TUFT_CLONES void unpack_axis(const std::uint16_t* __restrict q, float lo, float step, float* __restrict p) {
 #pragma omp simd
     for (int t = 0; t < kTileTexels; ++t) p[t] = lo + step * static_cast<float>(int{q[t]});
 }

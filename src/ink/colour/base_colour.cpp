@@ -16,8 +16,7 @@ struct Level {
 
     Vec3f at(int x, int y) const {
         const std::uint8_t* p =
-            &rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                      static_cast<std::size_t>(x))];
+            &rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x))];
         const std::array<float, 256>& linear = linear_of_code();
         return {linear[p[0]], linear[p[1]], linear[p[2]]};
     }
@@ -32,10 +31,8 @@ Level half_of(const Level& from) {
             for (int x = 0; x < to.width; ++x) {
                 const int x0 = 2 * x, x1 = std::min(x0 + 1, from.width - 1);
                 const int y0 = 2 * static_cast<int>(row), y1 = std::min(y0 + 1, from.height - 1);
-                const Vec3f mean =
-                    0.25f * (from.at(x0, y0) + from.at(x1, y0) + from.at(x0, y1) + from.at(x1, y1));
-                std::uint8_t* p = &to.rgb[3 * (row * static_cast<std::size_t>(to.width) +
-                                               static_cast<std::size_t>(x))];
+                const Vec3f mean = 0.25f * (from.at(x0, y0) + from.at(x1, y0) + from.at(x0, y1) + from.at(x1, y1));
+                std::uint8_t* p = &to.rgb[3 * (row * static_cast<std::size_t>(to.width) + static_cast<std::size_t>(x))];
                 for (int c = 0; c < 3; ++c) p[c] = code_of_linear(mean[c]);
             }
     });
@@ -53,8 +50,7 @@ class MipMap {
   public:
     explicit MipMap(const mesh::Picture& picture) {
         levels_.push_back({picture.width, picture.height, picture.rgb});
-        while (levels_.back().width > 1 || levels_.back().height > 1)
-            levels_.push_back(half_of(levels_.back()));
+        while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half_of(levels_.back()));
     }
 
     /// Linear colour at UV, v up; `round`: over the ends to the opposite ones.
@@ -63,8 +59,7 @@ class MipMap {
         const std::size_t level = std::min(static_cast<std::size_t>(log + 0.5), levels_.size() - 1);
         const Level& l = levels_[level];
         const double x = uv.x * l.width - 0.5, y = (1 - uv.y) * l.height - 0.5;
-        const auto x0 = static_cast<std::int64_t>(std::floor(x)),
-                   y0 = static_cast<std::int64_t>(std::floor(y));
+        const auto x0 = static_cast<std::int64_t>(std::floor(x)), y0 = static_cast<std::int64_t>(std::floor(y));
         const auto fx = static_cast<float>(x - static_cast<double>(x0)),
                    fy = static_cast<float>(y - static_cast<double>(y0));
         const int xa = wrapped(x0, l.width, round), xb = wrapped(x0 + 1, l.width, round);
@@ -89,11 +84,9 @@ double twice_area(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
 
 class Colours {
   public:
-    Colours(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas)
-        : mesh_(mesh), atlas_(atlas) {
+    Colours(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas) : mesh_(mesh), atlas_(atlas) {
         for (const mesh::Material& m : mesh.materials)
-            if (m.picture && !mesh.corner_uvs.empty())
-                pictures_.try_emplace(m.picture.get(), *m.picture);
+            if (m.picture && !mesh.corner_uvs.empty()) pictures_.try_emplace(m.picture.get(), *m.picture);
     }
 
     Vec3f at(std::uint32_t triangle, const Vec3& weights) const {
@@ -101,15 +94,13 @@ class Colours {
         const mesh::Material& material =
             mesh_.materials.empty()
                 ? kWhite
-                : mesh_.materials[mesh_.triangle_groups.empty() ? 0
-                                                                : mesh_.triangle_groups[triangle]];
+                : mesh_.materials[mesh_.triangle_groups.empty() ? 0 : mesh_.triangle_groups[triangle]];
         Vec3f colour;
         for (int c = 0; c < 3; ++c) colour[c] = srgb_decode(material.colour[c]);
         const auto picture = pictures_.find(material.picture.get());
         const bool pictured = picture != pictures_.end();
         if (pictured) colour *= picture_at(picture->second, triangle, weights);
-        if (!mesh_.vertex_colours.empty() && (!pictured || material.tinted))
-            colour *= vertex_colour(triangle, weights);
+        if (!mesh_.vertex_colours.empty() && (!pictured || material.tinted)) colour *= vertex_colour(triangle, weights);
         return colour;
     }
 
@@ -133,8 +124,7 @@ class Colours {
     Vec3f vertex_colour(std::uint32_t triangle, const Vec3& weights) const {
         Vec3f sum(0);
         for (int k = 0; k < 3; ++k) {
-            const std::array<std::uint8_t, 4>& c =
-                mesh_.vertex_colours[mesh_.triangles[triangle][k]];
+            const std::array<std::uint8_t, 4>& c = mesh_.vertex_colours[mesh_.triangles[triangle][k]];
             const std::array<float, 256>& linear = linear_of_code();
             sum += static_cast<float>(weights[k]) * Vec3f(linear[c[0]], linear[c[1]], linear[c[2]]);
         }
@@ -148,21 +138,18 @@ class Colours {
 
 }  // namespace
 
-BaseColour base_colour_of(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
-                  const atlas::TexelMap& map) {
+BaseColour base_colour_of(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, const atlas::TexelMap& map) {
     BaseColour ground;
     if (!mesh::has_colours(mesh)) return ground;
     const Colours colours(mesh, atlas);
     ground.tiles.resize(map.n_slots());
     for (BaseColour::Tile& tile : ground.tiles)
         for (auto& channel : tile.rgb) channel.fill(255);
-    atlas::visit_texels(
-        mesh, atlas, map,
-        [&](std::uint32_t slot, int texel, std::uint32_t triangle, const Vec3& weights) {
-            const Vec3f colour = colours.at(triangle, weights);
-            for (int c = 0; c < 3; ++c)
-                ground.tiles[slot].rgb[c][texel] = code_of_linear(colour[c]);
-        });
+    atlas::visit_texels(mesh, atlas, map,
+                        [&](std::uint32_t slot, int texel, std::uint32_t triangle, const Vec3& weights) {
+                            const Vec3f colour = colours.at(triangle, weights);
+                            for (int c = 0; c < 3; ++c) ground.tiles[slot].rgb[c][texel] = code_of_linear(colour[c]);
+                        });
     return ground;
 }
 

@@ -24,7 +24,6 @@ struct BaseColour {
 /// whose pixels are as large as texels, round its ends or up to them: where all UVs of a triangle
 /// lie in [0, 1], colours of the opposite end stay out. Empty for a mesh without colours. The same
 /// bits for any number of threads; about 0.5 s at 4096² on two.
-BaseColour base_colour_of(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
-                  const atlas::TexelMap& map);
+BaseColour base_colour_of(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, const atlas::TexelMap& map);
 
 }  // namespace tuft::ink

@@ -21,11 +21,9 @@ using TileOut = std::array<std::array<T, C>, kN>;
 
 /// Writes one tile of a map, clipped to its size; only texels of charts when `map` has them.
 template <class T, int C>
-void write_tile(AtlasMap<T>& image, const atlas::TexelMap& map, std::uint32_t slot,
-                const TileOut<T, C>& out) {
+void write_tile(AtlasMap<T>& image, const atlas::TexelMap& map, std::uint32_t slot, const TileOut<T, C>& out) {
     const std::uint32_t tile = map.tile_of_slot[slot];
-    const std::uint32_t x0 = tile % map.tiles_per_side * kSide,
-                        y0 = tile / map.tiles_per_side * kSide;
+    const std::uint32_t x0 = tile % map.tiles_per_side * kSide, y0 = tile / map.tiles_per_side * kSide;
     const std::uint32_t columns = std::min<std::uint32_t>(kSide, image.size - x0);
     const std::uint32_t rows = std::min<std::uint32_t>(kSide, image.size - y0);
     const auto& cluster = map.tiles[slot].cluster;
@@ -65,11 +63,9 @@ void fill_gutter(AtlasMap<T>& image, const atlas::TexelMap& map, std::uint32_t t
     for (int y = std::max(0, y0 - radius); y < std::min(size, y0 + kSide + radius); ++y) {
         for (int x = std::max(0, x0 - radius); x < std::min(size, x0 + kSide + radius); ++x) {
             const std::uint32_t slot =
-                map.slot_of_tile[static_cast<std::size_t>(y / kSide) * map.tiles_per_side +
-                                 x / kSide];
+                map.slot_of_tile[static_cast<std::size_t>(y / kSide) * map.tiles_per_side + x / kSide];
             valid[(y - y0 + radius) * side + x - x0 + radius] =
-                slot != kNone &&
-                map.tiles[slot].cluster[y % kSide * kSide + x % kSide] != atlas::kNoCluster;
+                slot != kNone && map.tiles[slot].cluster[y % kSide * kSide + x % kSide] != atlas::kNoCluster;
         }
     }
     for (int y = y0; y < std::min(size, y0 + kSide); ++y) {
@@ -79,8 +75,7 @@ void fill_gutter(AtlasMap<T>& image, const atlas::TexelMap& map, std::uint32_t t
             for (const Offset& o : offsets) {
                 if (!valid[here + o.dy * side + o.dx]) continue;
                 std::memcpy(&image.texels[(std::size_t(y) * size + x) * C],
-                            &image.texels[(std::size_t(y + o.dy) * size + x + o.dx) * C],
-                            C * sizeof(T));
+                            &image.texels[(std::size_t(y + o.dy) * size + x + o.dx) * C], C * sizeof(T));
                 break;
             }
         }
@@ -88,8 +83,7 @@ void fill_gutter(AtlasMap<T>& image, const atlas::TexelMap& map, std::uint32_t t
 }
 
 /// Tiles of `slots` and those beside them, ascending.
-std::vector<std::uint32_t> with_neighbours(const atlas::TexelMap& map,
-                                           std::span<const std::uint32_t> slots) {
+std::vector<std::uint32_t> with_neighbours(const atlas::TexelMap& map, std::span<const std::uint32_t> slots) {
     std::vector<std::uint8_t> wanted(map.slot_of_tile.size(), 0);
     const int n = static_cast<int>(map.tiles_per_side);
     for (const std::uint32_t slot : slots) {
@@ -123,8 +117,8 @@ struct FloatCode {
 /// Gutter texels that take something from `slots`: weighted sums of texels on both sides of
 /// the seam.
 template <class T, int C, class Code>
-void continue_over_seams(AtlasMap<T>& image, std::span<const std::uint32_t> slots,
-                         const atlas::TexelMap& map, const GutterPlan& plan, const Code& code) {
+void continue_over_seams(AtlasMap<T>& image, std::span<const std::uint32_t> slots, const atlas::TexelMap& map,
+                         const GutterPlan& plan, const Code& code) {
     std::vector<std::uint32_t> wanted;
     for (const std::uint32_t slot : slots)
         wanted.insert(wanted.end(), plan.entries.begin() + plan.first_of_slot[slot],
@@ -141,11 +135,9 @@ void continue_over_seams(AtlasMap<T>& image, std::span<const std::uint32_t> slot
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t entry = wanted[i];
             std::array<float, C> sum{};
-            for (std::uint32_t k = plan.gutter.start[entry]; k < plan.gutter.start[entry + 1];
-                 ++k) {
+            for (std::uint32_t k = plan.gutter.start[entry]; k < plan.gutter.start[entry + 1]; ++k) {
                 const T* from = &image.texels[place(plan.gutter.taps[k].texel)];
-                for (int c = 0; c < C; ++c)
-                    sum[c] += plan.gutter.taps[k].weight * code.from(from[c]);
+                for (int c = 0; c < C; ++c) sum[c] += plan.gutter.taps[k].weight * code.from(from[c]);
             }
             T* to = &image.texels[std::size_t{plan.gutter.texels[entry]} * C];
             for (int c = 0; c < C; ++c) to[c] = code.to(sum[c]);
@@ -175,8 +167,7 @@ void refresh(AtlasMap<T>& image, std::span<const std::uint32_t> slots, const atl
         const std::vector<Offset> offsets = ring_offsets(radius);
         const std::vector<std::uint32_t> tiles = with_neighbours(map, slots);
         parallel_for(tiles.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                fill_gutter<T, C>(image, map, tiles[i], radius, offsets);
+            for (std::size_t i = begin; i < end; ++i) fill_gutter<T, C>(image, map, tiles[i], radius, offsets);
         });
     }
     report(options.progress, "colour", 1);
@@ -184,8 +175,7 @@ void refresh(AtlasMap<T>& image, std::span<const std::uint32_t> slots, const atl
 
 template <class T, int C, class Fn, class Code>
 AtlasMap<T> compose(std::span<const std::uint32_t> slots, const atlas::TexelMap& map,
-                    const std::array<T, C>& background, const ComposeOptions& options, Fn&& look,
-                    const Code& code) {
+                    const std::array<T, C>& background, const ComposeOptions& options, Fn&& look, const Code& code) {
     AtlasMap<T> image{.size = map.size, .channels = C, .texels = {}};
     image.texels.resize(std::size_t{map.size} * map.size * C);
     for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i] = background[i % C];
@@ -207,8 +197,7 @@ float film_on(const Stack& stack, std::uint32_t slot, int texel) {
     for (const LayerView& layer : stack.layers)
         for (int film = kFirstDryFilm; film < kFilms; ++film)
             for (int p = 0; p < static_cast<int>(layer.canvas->pigments().size()); ++p)
-                if (const Plane* w = layer.canvas->film_plane(slot, film, p))
-                    sum += layer.opacity * (*w)[texel];
+                if (const Plane* w = layer.canvas->film_plane(slot, film, p)) sum += layer.opacity * (*w)[texel];
     return sum;
 }
 
@@ -221,27 +210,24 @@ TileOut<std::uint8_t, 3> srgb8_of(const TileAppearance& look) {
 
 }  // namespace
 
-AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& map,
-                                     const Substrate& substrate, const ComposeOptions& options) {
+AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
+                                     const ComposeOptions& options) {
     std::array<std::uint8_t, 3> background;
     for (int b = 0; b < 3; ++b) background[b] = code_of_linear(substrate.reflectance[b]);
     return compose<std::uint8_t, 3>(
         coloured_slots(stack), map, background, options,
-        [&](std::uint32_t slot) { return srgb8_of(shade_tile(stack, slot, substrate)); },
-        SrgbCode{});
+        [&](std::uint32_t slot) { return srgb8_of(shade_tile(stack, slot, substrate)); }, SrgbCode{});
 }
 
-void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t> slots,
-                   const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
-                   const ComposeOptions& options) {
+void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t> slots, const Stack& stack,
+                   const atlas::TexelMap& map, const Substrate& substrate, const ComposeOptions& options) {
     refresh<std::uint8_t, 3>(
-        image, slots, map, options,
-        [&](std::uint32_t slot) { return srgb8_of(shade_tile(stack, slot, substrate)); },
+        image, slots, map, options, [&](std::uint32_t slot) { return srgb8_of(shade_tile(stack, slot, substrate)); },
         SrgbCode{});
 }
 
-AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map,
-                               const Substrate& substrate, const ComposeOptions& options) {
+AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
+                               const ComposeOptions& options) {
     return compose<float, 3>(
         coloured_slots(stack), map, substrate.reflectance, options,
         [&](std::uint32_t slot) {
@@ -254,8 +240,7 @@ AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map,
         FloatCode{});
 }
 
-AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map,
-                               const ComposeOptions& options) {
+AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map, const ComposeOptions& options) {
     return compose<float, 1>(
         stack.touched_slots(), map, {0.0f}, options,
         [&](std::uint32_t slot) {
@@ -267,8 +252,8 @@ AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map,
         FloatCode{});
 }
 
-AtlasMap<float> compose_roughness(const Stack& stack, const atlas::TexelMap& map,
-                                  const Substrate& substrate, const ComposeOptions& options) {
+AtlasMap<float> compose_roughness(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
+                                  const ComposeOptions& options) {
     return compose<float, 1>(
         stack.touched_slots(), map, {substrate.roughness}, options,
         [&](std::uint32_t slot) {
@@ -280,8 +265,7 @@ AtlasMap<float> compose_roughness(const Stack& stack, const atlas::TexelMap& map
         FloatCode{});
 }
 
-AtlasMap<float> compose_amounts(const Stack& stack, const atlas::TexelMap& map,
-                                const ComposeOptions& options) {
+AtlasMap<float> compose_amounts(const Stack& stack, const atlas::TexelMap& map, const ComposeOptions& options) {
     std::size_t n = 0;
     for (const LayerView& layer : stack.layers) n = std::max(n, layer.canvas->pigments().size());
     AtlasMap<float> all{.size = map.size, .channels = static_cast<int>(n), .texels = {}};
@@ -303,10 +287,9 @@ AtlasMap<float> compose_amounts(const Stack& stack, const atlas::TexelMap& map,
     return all;
 }
 
-AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& map,
-                                    const Substrate& substrate, const ComposeOptions& options) {
-    const std::array<std::uint8_t, 3> background{255, unit8(substrate.roughness),
-                                                 unit8(substrate.metallic)};
+AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
+                                    const ComposeOptions& options) {
+    const std::array<std::uint8_t, 3> background{255, unit8(substrate.roughness), unit8(substrate.metallic)};
     return compose<std::uint8_t, 3>(
         stack.touched_slots(), map, background, options,
         [&](std::uint32_t slot) {
@@ -315,16 +298,14 @@ AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& m
             for (int t = 0; t < kN; ++t) {
                 // Ink hides the substrate's metal as it hides its microfacets.
                 const float film = substrate.metallic > 0 ? film_on(stack, slot, t) : 0;
-                out[t] = {255, unit8(look.roughness[t]),
-                          unit8(substrate.metallic * std::exp(-4 * film))};
+                out[t] = {255, unit8(look.roughness[t]), unit8(substrate.metallic * std::exp(-4 * film))};
             }
             return out;
         },
         UnitCode{});
 }
 
-GutterPlan plan_gutter(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
-                       const atlas::TexelMap& map) {
+GutterPlan plan_gutter(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, const atlas::TexelMap& map) {
     GutterPlan plan;
     plan.gutter = atlas::build_gutter(mesh, atlas, map, atlas.gutter);
     const atlas::Gutter& gutter = plan.gutter;

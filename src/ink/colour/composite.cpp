@@ -20,8 +20,7 @@ TUFT_CLONES void add_scaled(float* __restrict sum, const float* __restrict w, fl
 }
 
 /// `layer` and `over` of kubelka_munk.h for K X and S X per texel, put over R in `r`.
-TUFT_CLONES void film_over(float* __restrict r, const float* __restrict k,
-                           const float* __restrict s) {
+TUFT_CLONES void film_over(float* __restrict r, const float* __restrict k, const float* __restrict s) {
     for (int t = 0; t < kN; ++t) {
         const float y2 = k[t] * (k[t] + 2 * s[t]);
         const float y = std::sqrt(y2);
@@ -39,8 +38,7 @@ TUFT_CLONES void film_over(float* __restrict r, const float* __restrict k,
 }
 
 /// to += (from − to) · part, part in [0, 1].
-TUFT_CLONES void blend(float* __restrict to, const float* __restrict from,
-                       const float* __restrict part) {
+TUFT_CLONES void blend(float* __restrict to, const float* __restrict from, const float* __restrict part) {
     for (int t = 0; t < kN; ++t) to[t] += (from[t] - to[t]) * part[t];
 }
 
@@ -64,8 +62,7 @@ TUFT_CLONES void wet_part(float* __restrict wet, const float* __restrict water, 
 }
 
 /// `saunderson` without k1, k2 = 0.6 times the part of the surface with an interface.
-TUFT_CLONES void under_interface(float* __restrict r, const float* __restrict wet, float dry,
-                                 float k2) {
+TUFT_CLONES void under_interface(float* __restrict r, const float* __restrict wet, float dry, float k2) {
     for (int t = 0; t < kN; ++t) {
         const float k = k2 * (dry + (1 - dry) * wet[t]);
         r[t] = (1 - k) * r[t] / (1 - k * r[t]);
@@ -73,8 +70,7 @@ TUFT_CLONES void under_interface(float* __restrict r, const float* __restrict we
 }
 
 /// Roughness under the substrate's glaze and under water.
-TUFT_CLONES void gloss(float* __restrict roughness, const float* __restrict wet, float glaze,
-                       float substrate) {
+TUFT_CLONES void gloss(float* __restrict roughness, const float* __restrict wet, float glaze, float substrate) {
     for (int t = 0; t < kN; ++t) {
         const float dry = roughness[t] + (substrate - roughness[t]) * glaze;
         roughness[t] = dry + (kWetRoughness - dry) * wet[t];
@@ -82,8 +78,7 @@ TUFT_CLONES void gloss(float* __restrict roughness, const float* __restrict wet,
 }
 
 /// Into the gamut of sRGB along the line to the grey of the same luminance.
-TUFT_CLONES void into_gamut(float* __restrict red, float* __restrict green,
-                            float* __restrict blue) {
+TUFT_CLONES void into_gamut(float* __restrict red, float* __restrict green, float* __restrict blue) {
     for (int t = 0; t < kN; ++t) {
         const float y = 0.212639f * red[t] + 0.715169f * green[t] + 0.072192f * blue[t];
         const float grey = y > 0 ? (y < 1 ? y : 1) : 0;
@@ -101,8 +96,8 @@ TUFT_CLONES void into_gamut(float* __restrict red, float* __restrict green,
 }
 
 bool empty(const TileFilm& film) {
-    return film.opacity <= 0 || std::all_of(film.pigments.begin(), film.pigments.end(),
-                                            [](const Plane* w) { return !w; });
+    return film.opacity <= 0 ||
+           std::all_of(film.pigments.begin(), film.pigments.end(), [](const Plane* w) { return !w; });
 }
 
 /// Reflectances below the boundary; `bands` is 0 where only the surface is asked for.
@@ -115,8 +110,8 @@ struct Reflectances {
 };
 
 /// Lays one film over the reflectances `r` of what is below it; with `absorbs_only` its S is 0.
-void lay_film(Reflectances& r, TileAppearance& look, const TileFilm& film,
-              std::span<const Pigment> pigments, bool absorbs_only = false) {
+void lay_film(Reflectances& r, TileAppearance& look, const TileFilm& film, std::span<const Pigment> pigments,
+              bool absorbs_only = false) {
     alignas(64) Texels k, s, part, thickness{}, rough{}, height{};
     part.fill(film.opacity);
     if (film.mask)
@@ -182,8 +177,7 @@ void begin_look(Reflectances& r, TileAppearance& look, const Substrate& substrat
     for (int b = 0; b < r.bands; ++b)
         r[b].fill(static_cast<float>(saunderson_inverse(
             static_cast<double>(bare[b]),
-            {.k1 = 0, .k2 = static_cast<double>(static_cast<float>(kInterface.k2) * substrate.interface)},
-            false)));
+            {.k1 = 0, .k2 = static_cast<double>(static_cast<float>(kInterface.k2) * substrate.interface)}, false)));
 }
 
 TUFT_CLONES void cut_to_unit(float* __restrict r) {
@@ -266,10 +260,8 @@ void end_look(Reflectances& r, TileAppearance& look, const Plane* water, const S
     if (r.bands == 0) return;
     for (int c = 0; c < 3; ++c) look.colour[c].fill(0);
     for (int b = 0; b < r.bands; ++b) {
-        if (water || substrate.interface > 0)
-            under_interface(r[b].data(), wet.data(), substrate.interface, k2);
-        for (int c = 0; c < 3; ++c)
-            add_scaled(look.colour[c].data(), r[b].data(), band_weights()[c][b]);
+        if (water || substrate.interface > 0) under_interface(r[b].data(), wet.data(), substrate.interface, k2);
+        for (int c = 0; c < 3; ++c) add_scaled(look.colour[c].data(), r[b].data(), band_weights()[c][b]);
     }
     into_gamut(look.colour[0].data(), look.colour[1].data(), look.colour[2].data());
 }
@@ -304,9 +296,8 @@ void lay_layer(Reflectances& r, TileAppearance& look, const TileLayer& layer) {
 
 }  // namespace
 
-TileAppearance shade_films(std::span<const TileFilm> films, const Plane* water,
-                       std::span<const Pigment> pigments, const Substrate& substrate,
-                       bool with_colour) {
+TileAppearance shade_films(std::span<const TileFilm> films, const Plane* water, std::span<const Pigment> pigments,
+                           const Substrate& substrate, bool with_colour) {
     TileAppearance look;
     Reflectances r(with_colour);
     begin_look(r, look, substrate);
@@ -316,15 +307,13 @@ TileAppearance shade_films(std::span<const TileFilm> films, const Plane* water,
     return look;
 }
 
-TileAppearance shade_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate,
-                      bool with_colour) {
+TileAppearance shade_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate, bool with_colour) {
     const TileLayer layer = layer_of(canvas, slot, 1);
-    return shade_films(std::span(layer.films.data(), layer.n_films), layer.water, layer.pigments,
-                         substrate, with_colour);
+    return shade_films(std::span(layer.films.data(), layer.n_films), layer.water, layer.pigments, substrate,
+                       with_colour);
 }
 
-TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate,
-                      bool with_colour) {
+TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate, bool with_colour) {
     TileAppearance look;
     const BaseColour::Tile* tile = with_colour && stack.has_base_colour() ? &stack.ground->tiles[slot] : nullptr;
     Reflectances r(with_colour && (!tile || stack.touched(slot)));
@@ -356,7 +345,9 @@ namespace {
 constexpr const char* kBlends[] = {"normal", "glaze", "multiply"};
 }
 
-const char* name_of(Blend blend) { return kBlends[static_cast<int>(blend)]; }
+const char* name_of(Blend blend) {
+    return kBlends[static_cast<int>(blend)];
+}
 
 std::optional<Blend> blend_of(std::string_view name) {
     const auto at = std::find(std::begin(kBlends), std::end(kBlends), name);
@@ -365,8 +356,7 @@ std::optional<Blend> blend_of(std::string_view name) {
 }
 
 bool Stack::touched(std::uint32_t slot) const {
-    return std::any_of(layers.begin(), layers.end(),
-                       [slot](const LayerView& v) { return v.canvas->touched(slot); });
+    return std::any_of(layers.begin(), layers.end(), [slot](const LayerView& v) { return v.canvas->touched(slot); });
 }
 
 std::vector<std::uint32_t> Stack::touched_slots() const {
@@ -390,8 +380,7 @@ Rgb colour_of_film(const Ink& ink, const Rgb& ground, double film) {
             k += part.fraction * static_cast<double>(part.pigment.k[b]);
             s += part.fraction * static_cast<double>(part.pigment.s[b]);
         }
-        seen[b] = static_cast<float>(
-            over(layer(k, s, film > 0 ? film : ink.film), static_cast<double>(under[b])));
+        seen[b] = static_cast<float>(over(layer(k, s, film > 0 ? film : ink.film), static_cast<double>(under[b])));
     }
     return into_gamut(rgb_of_bands(seen));
 }

@@ -8,8 +8,8 @@
 #include "atlas/texels/gutter.h"
 #include "core/progress.h"
 #include "ink/canvas.h"
-#include "ink/colour/blend.h"
 #include "ink/colour/base_colour.h"
+#include "ink/colour/blend.h"
 #include "ink/colour/srgb.h"
 
 /// From pigment amounts to what is seen.
@@ -18,8 +18,8 @@ namespace tuft::ink {
 /// Colour and surface of one tile, planar, texel t = row * 16 + column.
 struct alignas(64) TileAppearance {
     std::array<std::array<float, atlas::kTileTexels>, 3> colour;  ///< linear sRGB, in [0, 1]
-    std::array<float, atlas::kTileTexels> height;     ///< micrometres above the substrate
-    std::array<float, atlas::kTileTexels> roughness;  ///< glTF perceptual roughness
+    std::array<float, atlas::kTileTexels> height;                 ///< micrometres above the substrate
+    std::array<float, atlas::kTileTexels> roughness;              ///< glTF perceptual roughness
 };
 
 /// One film on a tile: what was laid down before it dried, or one user layer.
@@ -27,7 +27,7 @@ struct TileFilm {
     std::array<const Plane*, kMaxPigments> pigments{};  ///< amounts, film units; null: none
     const Plane* mask = nullptr;                        ///< 0–1 per texel; null: 1 everywhere
     float opacity = 1;                                  ///< of the whole film, 0–1
-    bool inside = false;  ///< soaked into the substrate: its surface stays as it is
+    bool inside = false;                                ///< soaked into the substrate: its surface stays as it is
 };
 
 /// Colour, height and roughness of a stack of films, the lowest first. In each band
@@ -49,14 +49,13 @@ struct TileFilm {
 /// roughness goes from the substrate's to the films' own, back to the substrate's under its
 /// glaze, and to that of a wet surface. Agrees with the scalar
 /// formulas to 2e-6; same bits on every instruction set. About 0.3 µs per film and band.
-TileAppearance shade_films(std::span<const TileFilm> films, const Plane* water,
-                       std::span<const Pigment> pigments, const Substrate& substrate,
-                       bool with_colour = true);
+TileAppearance shade_films(std::span<const TileFilm> films, const Plane* water, std::span<const Pigment> pigments,
+                           const Substrate& substrate, bool with_colour = true);
 
 /// The look of what the canvas holds in a slot: its films from the soaked one to the open one,
 /// and the liquid on top.
 TileAppearance shade_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate,
-                      bool with_colour = true);
+                          bool with_colour = true);
 
 /// Colour of one film of an ink, `film` units thick (0: as a full brush leaves it), over a
 /// matte ground: for palettes and charts.
@@ -97,8 +96,7 @@ struct Stack {
 /// Over a ground the substrate's reflectance is, texel by texel, the smooth one of the ground's
 /// colour. What its bands lack of a deep colour (`bands_of_rgb`) is added in the proportion in
 /// which the ground is seen, so that bare texels have the ground's colour exactly.
-TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate,
-                      bool with_colour = true);
+TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate, bool with_colour = true);
 
 /// A map over the whole atlas, rows from v = 0 upwards, channels interleaved.
 template <class T>
@@ -116,12 +114,10 @@ struct GutterPlan {
 };
 
 /// Built once for a model; `atlas.gutter` texels wide. About 0.3 s.
-GutterPlan plan_gutter(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
-                       const atlas::TexelMap& map);
+GutterPlan plan_gutter(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, const atlas::TexelMap& map);
 
 struct ComposeOptions {
-    std::uint32_t gutter =
-        4;  ///< texels round the charts that are filled with the nearest texel's value
+    std::uint32_t gutter = 4;  ///< texels round the charts that are filled with the nearest texel's value
     /// When given, the gutter is continued over the seams instead, so that bilinear lookups on
     /// both sides of a seam agree. Must live as long as the call.
     const GutterPlan* seams = nullptr;
@@ -130,30 +126,27 @@ struct ComposeOptions {
 
 /// Base colour, sRGB-encoded 8 bit (3 channels). Texels far from any chart have the
 /// substrate's colour. Over a ground all texels of charts are drawn, not those with ink only.
-AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& map,
-                                     const Substrate& substrate,
+AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                                      const ComposeOptions& options = {});
 /// Base colour, linear RGB.
-AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map,
-                               const Substrate& substrate, const ComposeOptions& options = {});
-/// Film units of each pigment in all films of a texel together, layers times their opacity (one
-/// channel per pigment, in the order of the canvas that knows most). Takes 4 bytes per texel and pigment, and once more for one pigment.
-AtlasMap<float> compose_amounts(const Stack& stack, const atlas::TexelMap& map,
-                                const ComposeOptions& options = {});
-/// glTF perceptual roughness (1 channel).
-AtlasMap<float> compose_roughness(const Stack& stack, const atlas::TexelMap& map,
-                                  const Substrate& substrate, const ComposeOptions& options = {});
-/// Height of the film, micrometres (1 channel).
-AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map,
+AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                                const ComposeOptions& options = {});
+/// Film units of each pigment in all films of a texel together, layers times their opacity (one
+/// channel per pigment, in the order of the canvas that knows most). Takes 4 bytes per texel and pigment, and once more
+/// for one pigment.
+AtlasMap<float> compose_amounts(const Stack& stack, const atlas::TexelMap& map, const ComposeOptions& options = {});
+/// glTF perceptual roughness (1 channel).
+AtlasMap<float> compose_roughness(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
+                                  const ComposeOptions& options = {});
+/// Height of the film, micrometres (1 channel).
+AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map, const ComposeOptions& options = {});
 /// glTF occlusion (255), roughness, metallic in R, G, B, 8 bit linear.
-AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& map,
-                                    const Substrate& substrate, const ComposeOptions& options = {});
+AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
+                                    const ComposeOptions& options = {});
 
 /// Brings the tiles of `slots` and the gutter texels that depend on them up to date in a map
 /// made by `compose_srgb8` with the same arguments.
-void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t> slots,
-                   const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
-                   const ComposeOptions& options = {});
+void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t> slots, const Stack& stack,
+                   const atlas::TexelMap& map, const Substrate& substrate, const ComposeOptions& options = {});
 
 }  // namespace tuft::ink

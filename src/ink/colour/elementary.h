@@ -31,8 +31,7 @@ inline float log_of(float x) {
     const float m = std::bit_cast<float>((bits & 0x007fffff) + 0x3f3504f3);
     const float s = (m - 1) / (m + 1);
     const float s2 = s * s;
-    const float series =
-        2 * s * (1 + s2 * (0.333333333f + s2 * (0.2f + s2 * (0.142857143f + s2 * 0.111111111f))));
+    const float series = 2 * s * (1 + s2 * (0.333333333f + s2 * (0.2f + s2 * (0.142857143f + s2 * 0.111111111f))));
     return e * 0.693147181f + series;
 }
 

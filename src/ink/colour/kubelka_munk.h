@@ -59,7 +59,6 @@ struct Interface {
 double saunderson(double r, const Interface& interface = {}, bool specular_included = true);
 
 /// The film reflectance that `saunderson` takes to `r_measured`.
-double saunderson_inverse(double r_measured, const Interface& interface = {},
-                          bool specular_included = true);
+double saunderson_inverse(double r_measured, const Interface& interface = {}, bool specular_included = true);
 
 }  // namespace tuft::ink

@@ -16,15 +16,14 @@
 namespace tuft::ink {
 namespace {
 
-constexpr std::size_t kStarts = 60;  // samples that are refined
-constexpr std::size_t kStartsOfSet =
-    3;  // of them of one set of pigments, at most where there are many sets
-constexpr std::size_t kPolished = 8;   // of the refined ones that are not the colour yet
-constexpr std::size_t kExtended = 10;  // of the refined ones, that get a fourth pigment
-constexpr int kSteps = 60;             // of Levenberg–Marquardt, at most
-constexpr double kExact = 1e-3;        // ΔE2000 at which a mix is the colour
-constexpr double kPolishFrom = 0.05;   // ΔE2000 from which that is worth while
-constexpr double kLeastAmount = 1e-4;  // fraction of the least part that an ink file takes
+constexpr std::size_t kStarts = 60;      // samples that are refined
+constexpr std::size_t kStartsOfSet = 3;  // of them of one set of pigments, at most where there are many sets
+constexpr std::size_t kPolished = 8;     // of the refined ones that are not the colour yet
+constexpr std::size_t kExtended = 10;    // of the refined ones, that get a fourth pigment
+constexpr int kSteps = 60;               // of Levenberg–Marquardt, at most
+constexpr double kExact = 1e-3;          // ΔE2000 at which a mix is the colour
+constexpr double kPolishFrom = 0.05;     // ΔE2000 from which that is worth while
+constexpr double kLeastAmount = 1e-4;    // fraction of the least part that an ink file takes
 
 /// The interface of a dry film on a substrate, without the reflection at its outside.
 Interface interface_of(const Substrate& substrate) {
@@ -45,11 +44,9 @@ using Colour = std::array<double, 3>;  // linear sRGB
 /// Into the gamut as `into_gamut` (spectrum.h) does, in double: differences of colours need its
 /// digits.
 Colour cut_to_gamut(const Colour& c) {
-    const double y = 0.212639 * c[0] + 0.715169 * c[1] + 0.072192 * c[2],
-                 grey = std::clamp(y, 0.0, 1.0);
+    const double y = 0.212639 * c[0] + 0.715169 * c[1] + 0.072192 * c[2], grey = std::clamp(y, 0.0, 1.0);
     const auto [low, high] = std::minmax_element(c.begin(), c.end());
-    const double part = std::min(*low < 0 ? grey / (grey - *low) : 1.0,
-                                 *high > 1 ? (1 - grey) / (*high - grey) : 1.0);
+    const double part = std::min(*low < 0 ? grey / (grey - *low) : 1.0, *high > 1 ? (1 - grey) / (*high - grey) : 1.0);
     return {grey + (c[0] - grey) * part, grey + (c[1] - grey) * part, grey + (c[2] - grey) * part};
 }
 
@@ -69,8 +66,7 @@ Rgb rgb_of(const Colour& c) {
 }
 
 Lab lab_of(const Rgb& c) {
-    return lab_of_rgb(
-        {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])});
+    return lab_of_rgb({static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])});
 }
 
 /// Three numbers whose squares sum to ΔE²: l, c + r h / 2, h √(1 − r²/4).
@@ -82,8 +78,7 @@ Eigen::Vector3d residual(const Lab& lab, const Lab& wanted) {
 /// Levels of an amount from a hundredth of `most` up to it, evenly in the logarithm.
 std::vector<double> levels(double most, int n) {
     std::vector<double> out;
-    for (int i = 0; i < n; ++i)
-        out.push_back(most * std::pow(0.01, static_cast<double>(n - 1 - i) / (n - 1)));
+    for (int i = 0; i < n; ++i) out.push_back(most * std::pow(0.01, static_cast<double>(n - 1 - i) / (n - 1)));
     return out;
 }
 
@@ -101,17 +96,13 @@ Rgb colour_on(const Ink& ink, const Substrate& substrate, double film) {
 }
 
 MixSearch::MixSearch(std::vector<Pigment> pigments, const Substrate& substrate, double film)
-    : pigments_(std::move(pigments)),
-      substrate_(substrate),
-      bare_(bare_bands(substrate)),
-      film_(film) {
+    : pigments_(std::move(pigments)), substrate_(substrate), bare_(bare_bands(substrate)), film_(film) {
     if (pigments_.empty()) throw Error("a mix needs at least one pigment to choose from");
     if (pigments_.size() > kMostCandidates)
-        throw Error("a mix is chosen from at most " + std::to_string(kMostCandidates) +
-                    " pigments");
+        throw Error("a mix is chosen from at most " + std::to_string(kMostCandidates) + " pigments");
     if (!(film > 0 && film <= kThickestMix))
-        throw Error("the film of a mix is more than 0 and at most " +
-                    std::to_string(static_cast<int>(kThickestMix)) + " film units");
+        throw Error("the film of a mix is more than 0 and at most " + std::to_string(static_cast<int>(kThickestMix)) +
+                    " film units");
     for (const Pigment& p : pigments_) {
         double sum = 0;
         for (int b = 0; b < kBands; ++b) sum += static_cast<double>(p.k[b] + p.s[b]) / kBands;
@@ -122,8 +113,7 @@ MixSearch::MixSearch(std::vector<Pigment> pigments, const Substrate& substrate, 
 
 void MixSearch::sample_mixes() {
     const std::size_t n = pigments_.size();
-    const auto add = [&](std::vector<std::size_t> pigment, const std::vector<double>& share,
-                         double optical) {
+    const auto add = [&](std::vector<std::size_t> pigment, const std::vector<double>& share, double optical) {
         Mix mix{std::move(pigment), {}, 0};
         double sum = 0;
         for (std::size_t i = 0; i < mix.pigment.size(); ++i) {
@@ -149,14 +139,12 @@ void MixSearch::sample_mixes() {
         for (const double x : levels(strength_[a] * film_, 16)) add({a}, {1}, x);
         for (std::size_t b = a + 1; b < n; ++b) {
             for (const double x : levels(most, 7))
-                for (const double share : {0.04, 0.2, 0.5, 0.8, 0.96})
-                    add({a, b}, {share, 1 - share}, x);
+                for (const double share : {0.04, 0.2, 0.5, 0.8, 0.96}) add({a, b}, {share, 1 - share}, x);
             for (std::size_t c = b + 1; c < n; ++c)
                 for (const double x : levels(most, 6))
                     for (int i = 0; i <= 3; ++i)
                         for (int j = 0; i + j <= 3; ++j)
-                            add({a, b, c}, {(i + 0.33) / 4, (j + 0.33) / 4, (3 - i - j + 0.33) / 4},
-                                x);
+                            add({a, b, c}, {(i + 0.33) / 4, (j + 0.33) / 4, (3 - i - j + 0.33) / 4}, x);
         }
     }
 }
@@ -188,14 +176,12 @@ MixSearch::Mix MixSearch::refine(Mix mix, const Lab& wanted) const {
         }
         const Eigen::VectorXd gradient = jacobian.transpose() * r;
         Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
-        const Eigen::VectorXd scale =
-            normal.diagonal().array().max(1e-9 * normal.diagonal().maxCoeff() + 1e-12);
+        const Eigen::VectorXd scale = normal.diagonal().array().max(1e-9 * normal.diagonal().maxCoeff() + 1e-12);
         normal.diagonal() += lambda * scale;
         double sum = 0;
         for (const double a : mix.amount) sum += a;
         Eigen::VectorXd move = -normal.ldlt().solve(gradient);
-        if (sum >= film_ * (1 - 1e-9) &&
-            move.sum() > 0) {  // along Σ w = X: no water is left to replace
+        if (sum >= film_ * (1 - 1e-9) && move.sum() > 0) {  // along Σ w = X: no water is left to replace
             const Eigen::VectorXd even = normal.ldlt().solve(Eigen::VectorXd::Ones(n));
             move -= move.sum() / even.sum() * even;
         }
@@ -266,8 +252,7 @@ std::vector<MixSearch::Mix> MixSearch::starts(const Lab& wanted, std::size_t mos
     std::vector<std::pair<double, const Sample*>> order;
     for (const Sample& s : samples_) {
         if (s.parts > most_parts) continue;
-        const Lab seen{static_cast<double>(s.lab[0]), static_cast<double>(s.lab[1]),
-                       static_cast<double>(s.lab[2])};
+        const Lab seen{static_cast<double>(s.lab[0]), static_cast<double>(s.lab[1]), static_cast<double>(s.lab[2])};
         order.emplace_back(delta_e_2000(seen, wanted), &s);
     }
     std::sort(order.begin(), order.end());
@@ -299,8 +284,7 @@ ColourMatch MixSearch::nearest(const Rgb& wanted, std::size_t most_parts) const 
     const Lab goal = lab_of(wanted);
     const auto nearer = [](const Mix& a, const Mix& b) { return a.error < b.error; };
     std::vector<Mix> mixes;
-    for (const Mix& start : starts(goal, std::min<std::size_t>(most_parts, 3)))
-        mixes.push_back(refine(start, goal));
+    for (const Mix& start : starts(goal, std::min<std::size_t>(most_parts, 3))) mixes.push_back(refine(start, goal));
     std::stable_sort(mixes.begin(), mixes.end(), nearer);
     if (most_parts > 3 && mixes.front().error > kExact) {
         std::vector<Mix> extended;
@@ -324,15 +308,12 @@ ColourMatch MixSearch::nearest(const Rgb& wanted, std::size_t most_parts) const 
         std::stable_sort(mixes.begin(), mixes.end(), nearer);
     }
     if (mixes.front().error > kPolishFrom) {
-        for (std::size_t m = 0; m < std::min(kPolished, mixes.size()); ++m)
-            mixes[m] = polish(mixes[m], goal);
+        for (std::size_t m = 0; m < std::min(kPolished, mixes.size()); ++m) mixes[m] = polish(mixes[m], goal);
         std::stable_sort(mixes.begin(), mixes.end(), nearer);
     }
     const Mix* best = &mixes.front();
     for (const Mix& mix : mixes)
-        if (mix.error <= mixes.front().error + kSameColour &&
-            mix.pigment.size() < best->pigment.size())
-            best = &mix;
+        if (mix.error <= mixes.front().error + kSameColour && mix.pigment.size() < best->pigment.size()) best = &mix;
     ColourMatch match{.ink = {}, .wanted = wanted};
     match.ink.name = to_hex(wanted);
     match.ink.title = match.ink.name;
@@ -346,16 +327,13 @@ ColourMatch MixSearch::nearest(const Rgb& wanted, std::size_t most_parts) const 
     return match;
 }
 
-ColourMatch match_colour(const Rgb& wanted, const std::vector<Pigment>& pigments,
-                         const Substrate& substrate, const MatchOptions& options) {
-    if (options.film > 0)
-        return MixSearch(pigments, substrate, options.film).nearest(wanted, options.most_parts);
-    const double most =
-        std::min(kThickestMix, std::max(0.5, static_cast<double>(substrate.capacity)));
+ColourMatch match_colour(const Rgb& wanted, const std::vector<Pigment>& pigments, const Substrate& substrate,
+                         const MatchOptions& options) {
+    if (options.film > 0) return MixSearch(pigments, substrate, options.film).nearest(wanted, options.most_parts);
+    const double most = std::min(kThickestMix, std::max(0.5, static_cast<double>(substrate.capacity)));
     std::vector<ColourMatch> all;
     for (const double film : {2.0, 4.0, 8.0}) {
-        all.push_back(MixSearch(pigments, substrate, std::min(film, most))
-                          .nearest(wanted, options.most_parts));
+        all.push_back(MixSearch(pigments, substrate, std::min(film, most)).nearest(wanted, options.most_parts));
         if (film >= most) break;
     }
     double best = all.front().delta_e;
@@ -374,34 +352,30 @@ std::vector<Pigment> shipped_pigments() {
 std::optional<Rgb> colour_of_hex(std::string_view text) {
     if (text.empty() || text[0] != '#') return std::nullopt;
     std::string digits(text.substr(1));
-    if (digits.size() == 3)
-        digits = {digits[0], digits[0], digits[1], digits[1], digits[2], digits[2]};
-    if (digits.size() != 6 || !std::all_of(digits.begin(), digits.end(),
-                                           [](unsigned char c) { return std::isxdigit(c); }))
+    if (digits.size() == 3) digits = {digits[0], digits[0], digits[1], digits[1], digits[2], digits[2]};
+    if (digits.size() != 6 ||
+        !std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isxdigit(c); }))
         return std::nullopt;
     Rgb colour;
-    for (std::size_t c = 0; c < 3; ++c)
-        colour[c] = linear_of_code()[std::stoul(digits.substr(2 * c, 2), nullptr, 16)];
+    for (std::size_t c = 0; c < 3; ++c) colour[c] = linear_of_code()[std::stoul(digits.substr(2 * c, 2), nullptr, 16)];
     return colour;
 }
 
 std::string to_hex(const Rgb& linear) {
     char text[8];
-    std::snprintf(text, sizeof text, "#%02x%02x%02x", code_of_linear(linear[0]),
-                  code_of_linear(linear[1]), code_of_linear(linear[2]));
+    std::snprintf(text, sizeof text, "#%02x%02x%02x", code_of_linear(linear[0]), code_of_linear(linear[1]),
+                  code_of_linear(linear[2]));
     return text;
 }
 
-ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate,
-                            std::span<const Pigment> held, const MatchOptions& options) {
+ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::span<const Pigment> held,
+                            const MatchOptions& options) {
     static const std::vector<Pigment> shipped = shipped_pigments();
     ColourMatch match = match_colour(wanted, shipped, substrate, options);
     const auto is_new = [&](const InkPart& part) {
-        return std::none_of(held.begin(), held.end(),
-                            [&](const Pigment& p) { return p.name == part.pigment.name; });
+        return std::none_of(held.begin(), held.end(), [&](const Pigment& p) { return p.name == part.pigment.name; });
     };
-    const auto more = static_cast<std::size_t>(
-        std::count_if(match.ink.parts.begin(), match.ink.parts.end(), is_new));
+    const auto more = static_cast<std::size_t>(std::count_if(match.ink.parts.begin(), match.ink.parts.end(), is_new));
     if (!held.empty() && held.size() + more > static_cast<std::size_t>(kMaxPigments))
         match = match_colour(wanted, {held.begin(), held.end()}, substrate, options);
     return match;
@@ -410,8 +384,7 @@ ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate,
 Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> held) {
     if (name.empty() || name[0] != '#') return load_ink(name);
     const std::optional<Rgb> wanted = colour_of_hex(name);
-    if (!wanted)
-        throw Error("'" + std::string(name) + "' is no colour; write #rrggbb, such as #c03020");
+    if (!wanted) throw Error("'" + std::string(name) + "' is no colour; write #rrggbb, such as #c03020");
     Ink ink = match_on_canvas(*wanted, substrate, held, {.film = 0}).ink;
     ink.name = name;
     return ink;

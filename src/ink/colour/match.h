@@ -32,8 +32,8 @@ inline constexpr double kWorthThickness = 0.5;
 Rgb colour_on(const Ink& ink, const Substrate& substrate, double film = 0);
 
 struct MatchOptions {
-    double film = kMixFilm;  ///< X, film units; 0: as many as the colour needs, up to
-                             ///< `kThickestMix` and to what stays on the substrate
+    double film = kMixFilm;      ///< X, film units; 0: as many as the colour needs, up to
+                                 ///< `kThickestMix` and to what stays on the substrate
     std::size_t most_parts = 4;  ///< pigments in the mix, 1 to 4
 };
 
@@ -96,16 +96,15 @@ class MixSearch {
     Substrate substrate_;
     std::array<double, kBands> bare_;  ///< its reflectance below the interface
     double film_;
-    std::vector<double>
-        strength_;  ///< mean K + S of each pigment, which brings amounts to one scale
+    std::vector<double> strength_;  ///< mean K + S of each pigment, which brings amounts to one scale
     std::vector<Sample> samples_;
 };
 
 /// The same for one colour, with the film's thickness chosen where `film` is 0: the thinnest of 2,
 /// 4 and 8 units, cut to what stays on the substrate, that comes within `kWorthThickness` of the
 /// best.
-ColourMatch match_colour(const Rgb& wanted, const std::vector<Pigment>& pigments,
-                         const Substrate& substrate, const MatchOptions& options = {});
+ColourMatch match_colour(const Rgb& wanted, const std::vector<Pigment>& pigments, const Substrate& substrate,
+                         const MatchOptions& options = {});
 
 /// All pigments in models/pigments.
 std::vector<Pigment> shipped_pigments();
@@ -116,14 +115,13 @@ std::string to_hex(const Rgb& linear);
 
 /// The same, or where a canvas that has the pigments `held` has no room for those of the mix
 /// (`kMaxPigments`), the nearest mix of the held ones.
-ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate,
-                            std::span<const Pigment> held, const MatchOptions& options = {});
+ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::span<const Pigment> held,
+                            const MatchOptions& options = {});
 
 /// `load_ink`, which also takes a colour: `#rrggbb` is the nearest mix of the shipped pigments on
 /// `substrate`, as thick as it needs (`match_on_canvas`). Throws `Error` as `load_ink` does, and for
 /// a `#` without a colour after it.
-Ink ink_named(std::string_view name, const Substrate& substrate,
-              std::span<const Pigment> held = {});
+Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> held = {});
 
 /// What a ΔE2000 means to the eye, for people: "the same to the eye" below 1, and so on.
 const char* difference_in_words(double delta_e);

@@ -40,17 +40,15 @@ PigmentCurve read_curve(const preset::Reader& in) {
     }
     curve.nm = in.numbers("wavelengths", 2, kMaxSamples, 200, 3000);
     for (std::size_t i = 1; i < curve.nm.size(); ++i)
-        if (!(curve.nm[i] > curve.nm[i - 1]))
-            in.fail(in.line_of("wavelengths"), "'wavelengths' must ascend");
+        if (!(curve.nm[i] > curve.nm[i - 1])) in.fail(in.line_of("wavelengths"), "'wavelengths' must ascend");
     curve.k = in.numbers("K", curve.nm.size(), curve.nm.size(), 0, 1e6);
     curve.s = in.numbers("S", curve.nm.size(), curve.nm.size(), 0, 1e6);
     return curve;
 }
 
 const std::initializer_list<std::string_view> kPigmentKeys{
-    "name",        "fraction", "preset", "title",     "colour_index", "wavelengths", "K",
-    "S",           "scale",    "density", "granulation", "staining",   "height_um",   "roughness",
-    "source"};
+    "name",  "fraction", "preset",      "title",    "colour_index", "wavelengths", "K",     "S",
+    "scale", "density",  "granulation", "staining", "height_um",    "roughness",   "source"};
 
 Pigment read_pigment(const preset::Reader& in) {
     Pigment p;
@@ -72,8 +70,7 @@ Pigment read_part(const preset::Reader& in) {
     if (!in.has("preset")) return read_pigment(in);
     const std::string name = in.text("preset", std::nullopt);
     for (const char* key : {"name", "K", "S", "wavelengths"})
-        if (in.has(key))
-            in.fail(in.line_of(key), "'" + std::string(key) + "' comes from the preset '" + name + "'");
+        if (in.has(key)) in.fail(in.line_of(key), "'" + std::string(key) + "' comes from the preset '" + name + "'");
     return load_pigment(name);
 }
 
@@ -81,18 +78,15 @@ std::string pigment_text(const Pigment& p) {
     std::ostringstream out;
     if (!p.curve.nm.empty()) out << "wavelengths = " << list_text(p.curve.nm) << "\n";
     if (p.curve.k.empty()) {  // made from bands, not from a file
-        out << "wavelengths = " << list_text(band_nm()) << "\nK = " << list_text(p.k)
-            << "\nS = " << list_text(p.s) << "\n";
+        out << "wavelengths = " << list_text(band_nm()) << "\nK = " << list_text(p.k) << "\nS = " << list_text(p.s)
+            << "\n";
     } else {
         out << "K = " << list_text(p.curve.k) << "\nS = " << list_text(p.curve.s) << "\n";
         if (p.curve.scale != 1) out << "scale = " << shortest_float(p.curve.scale) << "\n";
     }
-    out << "density = " << shortest_float(p.density)
-        << "\ngranulation = " << shortest_float(p.granulation)
-        << "\nstaining = " << shortest_float(p.staining)
-        << "\nheight_um = " << shortest_in(p.height, 1e-6)
-        << "\nroughness = " << shortest_float(p.roughness) << "\nsource = " << quoted(p.source)
-        << "\n";
+    out << "density = " << shortest_float(p.density) << "\ngranulation = " << shortest_float(p.granulation)
+        << "\nstaining = " << shortest_float(p.staining) << "\nheight_um = " << shortest_in(p.height, 1e-6)
+        << "\nroughness = " << shortest_float(p.roughness) << "\nsource = " << quoted(p.source) << "\n";
     return out.str();
 }
 
@@ -106,7 +100,8 @@ Coefficients coefficients_at(const PigmentCurve& curve, float nm) {
 void use_curve(Pigment& pigment) {
     PigmentCurve curve = pigment.curve;
     if (curve.nm.empty()) {
-        const Curves smooth = upsample_pigment({curve.k[0], curve.k[1], curve.k[2]}, {curve.s[0], curve.s[1], curve.s[2]});
+        const Curves smooth =
+            upsample_pigment({curve.k[0], curve.k[1], curve.k[2]}, {curve.s[0], curve.s[1], curve.s[2]});
         curve.k.assign(smooth.k.begin(), smooth.k.end());
         curve.s.assign(smooth.s.begin(), smooth.s.end());
         for (int i = 0; i < kWavelengths; ++i) curve.nm.push_back(static_cast<float>(wavelength_nm(i)));
@@ -127,8 +122,7 @@ double Ink::strength() const {
 Ink parse_ink(std::string_view text, const std::string& source) {
     const toml::table table = preset::parse_table(text, source);
     const preset::Reader in(table, source);
-    in.only(
-        {"name", "title", "film", "supply", "supply_length_mm", "transfer_length_mm", "yield_pa", "pigment"});
+    in.only({"name", "title", "film", "supply", "supply_length_mm", "transfer_length_mm", "yield_pa", "pigment"});
     Ink ink;
     ink.name = in.text("name", "");
     ink.title = in.text("title", ink.name);
@@ -136,8 +130,7 @@ Ink parse_ink(std::string_view text, const std::string& source) {
     ink.film = in.number("film", 0.01, ink.yield > 0 ? kThickestPaste : kThickest, ink.film);
     ink.supply = in.number("supply", 1e-6, 1, ink.supply);
     ink.supply_length = in.number("supply_length_mm", 0.001, 100, ink.supply_length * 1e3) * 1e-3;
-    ink.transfer_length =
-        in.number("transfer_length_mm", 0.001, 100, ink.transfer_length * 1e3) * 1e-3;
+    ink.transfer_length = in.number("transfer_length_mm", 0.001, 100, ink.transfer_length * 1e3) * 1e-3;
     const toml::array* parts = table["pigment"].as_array();
     if (!parts) in.fail(in.line(), "an ink needs at least one [[pigment]] (clean water: pigment = [])");
     if (parts->size() > 8) in.fail(in.line(), "an ink has at most 8 pigments");
@@ -153,22 +146,20 @@ Ink parse_ink(std::string_view text, const std::string& source) {
         ink.parts.push_back(std::move(p));
     }
     if (ink.strength() > 1 + 1e-9)
-        in.fail(in.line(),
-                "the fractions sum to " + shortest(ink.strength()) + "; at most 1 is possible");
+        in.fail(in.line(), "the fractions sum to " + shortest(ink.strength()) + "; at most 1 is possible");
     return ink;
 }
 
 std::string ink_toml(const Ink& ink) {
     std::ostringstream out;
-    out << "name = " << quoted(ink.name) << "\ntitle = " << quoted(ink.title)
-        << "\nfilm = " << shortest(ink.film) << "\nsupply = " << shortest(ink.supply)
-        << "\nsupply_length_mm = " << shortest_in(ink.supply_length, 1e-3)
+    out << "name = " << quoted(ink.name) << "\ntitle = " << quoted(ink.title) << "\nfilm = " << shortest(ink.film)
+        << "\nsupply = " << shortest(ink.supply) << "\nsupply_length_mm = " << shortest_in(ink.supply_length, 1e-3)
         << "\ntransfer_length_mm = " << shortest_in(ink.transfer_length, 1e-3) << "\n";
     if (ink.yield > 0) out << "yield_pa = " << shortest(ink.yield) << "\n";
     if (ink.parts.empty()) out << "pigment = []\n";
     for (const InkPart& part : ink.parts) {
-        out << "\n[[pigment]]\nname = " << quoted(part.pigment.name)
-            << "\nfraction = " << shortest(part.fraction) << "\n"
+        out << "\n[[pigment]]\nname = " << quoted(part.pigment.name) << "\nfraction = " << shortest(part.fraction)
+            << "\n"
             << pigment_text(part.pigment);
     }
     return out.str();

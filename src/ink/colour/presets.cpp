@@ -25,13 +25,12 @@ void Reader::only(std::initializer_list<std::string_view> keys) const {
         if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
         const std::vector<std::string> known(keys.begin(), keys.end());
         const std::string near = nearest_name(key.str(), known);
-        fail(key.source().begin.line, "unknown key '" + std::string(key.str()) + "'" +
-                                          (near.empty() ? "" : ", did you mean '" + near + "'?"));
+        fail(key.source().begin.line,
+             "unknown key '" + std::string(key.str()) + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
     }
 }
 
-double Reader::number(std::string_view key, double lo, double hi,
-                      std::optional<double> fallback) const {
+double Reader::number(std::string_view key, double lo, double hi, std::optional<double> fallback) const {
     const toml::node* node = table_.get(key);
     if (!node) {
         if (!fallback) fail(line(), "'" + std::string(key) + "' is missing");
@@ -42,24 +41,20 @@ double Reader::number(std::string_view key, double lo, double hi,
 
 Rgb Reader::rgb(std::string_view key, double lo, double hi) const {
     const toml::array& values = array(key);
-    if (values.size() != 3)
-        fail(line_of(key), "'" + std::string(key) + "' must be 3 numbers (red, green, blue)");
+    if (values.size() != 3) fail(line_of(key), "'" + std::string(key) + "' must be 3 numbers (red, green, blue)");
     Rgb result;
-    for (std::size_t b = 0; b < 3; ++b)
-        result[b] = static_cast<float>(in_range(*values.get(b), key, lo, hi));
+    for (std::size_t b = 0; b < 3; ++b) result[b] = static_cast<float>(in_range(*values.get(b), key, lo, hi));
     return result;
 }
 
-std::vector<float> Reader::numbers(std::string_view key, std::size_t min, std::size_t max, double lo,
-                                   double hi) const {
+std::vector<float> Reader::numbers(std::string_view key, std::size_t min, std::size_t max, double lo, double hi) const {
     const toml::array& values = array(key);
     if (values.size() < min || values.size() > max)
         fail(line_of(key), "'" + std::string(key) + "' must be " + std::to_string(min) +
                                (min == max ? "" : " to " + std::to_string(max)) + " numbers, not " +
                                std::to_string(values.size()));
     std::vector<float> result;
-    for (const toml::node& node : values)
-        result.push_back(static_cast<float>(in_range(node, key, lo, hi)));
+    for (const toml::node& node : values) result.push_back(static_cast<float>(in_range(node, key, lo, hi)));
     return result;
 }
 
@@ -70,8 +65,7 @@ std::string Reader::text(std::string_view key, std::optional<std::string> fallba
         return *fallback;
     }
     const auto value = node->value<std::string>();
-    if (!value || !node->is_string())
-        fail(node->source().begin.line, "'" + std::string(key) + "' must be text");
+    if (!value || !node->is_string()) fail(node->source().begin.line, "'" + std::string(key) + "' must be text");
     return *value;
 }
 
@@ -86,8 +80,7 @@ long Reader::line_of(std::string_view key) const {
 
 double Reader::in_range(const toml::node& node, std::string_view key, double lo, double hi) const {
     const auto value = node.value<double>();
-    if (!value || !node.is_number())
-        fail(node.source().begin.line, "'" + std::string(key) + "' must be a number");
+    if (!value || !node.is_number()) fail(node.source().begin.line, "'" + std::string(key) + "' must be a number");
     if (!(*value >= lo && *value <= hi)) {
         std::ostringstream range;
         range << "'" << key << "' must lie in [" << lo << ", " << hi << "], not be " << *value;
@@ -163,8 +156,7 @@ std::string shortest_in(double v, double unit) {
     char buffer[40];
     for (int step = 0; step <= 4; ++step) {
         double number = v / unit;
-        for (int k = 0; k < (step + 1) / 2; ++k)
-            number = std::nextafter(number, step % 2 == 1 ? HUGE_VAL : -HUGE_VAL);
+        for (int k = 0; k < (step + 1) / 2; ++k) number = std::nextafter(number, step % 2 == 1 ? HUGE_VAL : -HUGE_VAL);
         for (int digits = 6; digits <= 17; ++digits) {
             std::snprintf(buffer, sizeof buffer, "%.*g", digits, number);
             if (std::strtod(buffer, nullptr) * unit == v) return buffer;
@@ -184,8 +176,7 @@ std::string shortest_in(float v, double unit) {
 
 std::string list_text(std::span<const float> values) {
     std::string out = "[";
-    for (std::size_t i = 0; i < values.size(); ++i)
-        out += (i ? ", " : "") + shortest_float(values[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) out += (i ? ", " : "") + shortest_float(values[i]);
     return out + "]";
 }
 

@@ -24,8 +24,7 @@ class Reader {
     double number(std::string_view key, double lo, double hi, std::optional<double> fallback) const;
     Rgb rgb(std::string_view key, double lo, double hi) const;
     /// A list of `min` to `max` numbers.
-    std::vector<float> numbers(std::string_view key, std::size_t min, std::size_t max, double lo,
-                               double hi) const;
+    std::vector<float> numbers(std::string_view key, std::size_t min, std::size_t max, double lo, double hi) const;
     std::string text(std::string_view key, std::optional<std::string> fallback) const;
     [[noreturn]] void fail(long line, const std::string& what) const;
     long line() const { return table_.source().begin.line; }
@@ -52,9 +51,9 @@ struct Text {
 /// what to call it in messages.
 Text load(std::string_view name, const char* folder, const char* kind);
 
-std::string quoted(const std::string& text);    ///< TOML basic string
-std::string shortest(double v);                 ///< TOML number
-std::string shortest_float(float v);            ///< fewest digits that read back as the same float
+std::string quoted(const std::string& text);  ///< TOML basic string
+std::string shortest(double v);               ///< TOML number
+std::string shortest_float(float v);          ///< fewest digits that read back as the same float
 /// The number of units that is read back, times `unit`, as the same value: a project's replay gives the same bits.
 std::string shortest_in(float v, double unit);
 std::string shortest_in(double v, double unit);

@@ -38,7 +38,8 @@ void recolour(Canvas& canvas, const Ink& painted, const Ink& wanted) {
         if (!part_named(painted, part.pigment.name)) added.add(part.pigment, part.fraction / strength);
     for (const InkPart& old : painted.parts) {
         const auto& all = canvas.pigments();
-        const auto at = std::find_if(all.begin(), all.end(), [&](const Pigment& p) { return p.name == old.pigment.name; });
+        const auto at =
+            std::find_if(all.begin(), all.end(), [&](const Pigment& p) { return p.name == old.pigment.name; });
         if (at == all.end()) continue;
         Sum sum = added;
         if (const InkPart* same = part_named(wanted, old.pigment.name))

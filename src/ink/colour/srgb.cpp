@@ -25,8 +25,7 @@ const std::array<std::uint8_t, 65536>& codes_of_linear() {
     static const auto table = [] {
         std::array<std::uint8_t, 65536> t{};
         for (std::size_t i = 0; i < t.size(); ++i)
-            t[i] = static_cast<std::uint8_t>(
-                std::lround(255 * srgb_encode(static_cast<float>(i) / 65535.0f)));
+            t[i] = static_cast<std::uint8_t>(std::lround(255 * srgb_encode(static_cast<float>(i) / 65535.0f)));
         return t;
     }();
     return table;

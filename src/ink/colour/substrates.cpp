@@ -11,12 +11,11 @@ using preset::shortest_in;
 Substrate parse_substrate(std::string_view text, const std::string& source) {
     const toml::table table = preset::parse_table(text, source);
     const preset::Reader in(table, source);
-    in.only({"name", "title", "reflectance", "roughness", "metallic", "capacity", "interface",
-             "relief_um", "relief_length_um", "absorbency", "pores", "retention", "diffusion", "threshold", "edge",
-             "evaporation", "source"});
+    in.only({"name", "title", "reflectance", "roughness", "metallic", "capacity", "interface", "relief_um",
+             "relief_length_um", "absorbency", "pores", "retention", "diffusion", "threshold", "edge", "evaporation",
+             "source"});
     Substrate s;
-    const auto read = [&](float& field, std::string_view key, double lo, double hi,
-                          double unit = 1) {
+    const auto read = [&](float& field, std::string_view key, double lo, double hi, double unit = 1) {
         const double value = in.number(key, lo, hi, static_cast<double>(field) / unit);
         field = static_cast<float>(value * unit);
     };
@@ -40,20 +39,14 @@ Substrate parse_substrate(std::string_view text, const std::string& source) {
 }
 
 std::string substrate_toml(const Substrate& s) {
-    return "name = " + quoted(s.name) + "\ntitle = " + quoted(s.title) +
-           "\nreflectance = " + list_text(s.reflectance) +
-           "\nroughness = " + shortest_float(s.roughness) +
-           "\nmetallic = " + shortest_float(s.metallic) +
-           "\ncapacity = " + shortest_float(s.capacity) +
-           "\ninterface = " + shortest_float(s.interface) +
+    return "name = " + quoted(s.name) + "\ntitle = " + quoted(s.title) + "\nreflectance = " + list_text(s.reflectance) +
+           "\nroughness = " + shortest_float(s.roughness) + "\nmetallic = " + shortest_float(s.metallic) +
+           "\ncapacity = " + shortest_float(s.capacity) + "\ninterface = " + shortest_float(s.interface) +
            "\nrelief_um = " + shortest_in(s.relief, 1e-6) +
            "\nrelief_length_um = " + shortest_in(s.relief_length, 1e-6) +
-           "\nabsorbency = " + shortest_float(s.absorbency) +
-           "\npores = " + shortest_float(s.pores) +
-           "\nretention = " + shortest_float(s.retention) +
-           "\ndiffusion = " + shortest_float(s.diffusion) +
-           "\nthreshold = " + shortest_float(s.threshold) +
-           "\nedge = " + shortest_float(s.edge) +
+           "\nabsorbency = " + shortest_float(s.absorbency) + "\npores = " + shortest_float(s.pores) +
+           "\nretention = " + shortest_float(s.retention) + "\ndiffusion = " + shortest_float(s.diffusion) +
+           "\nthreshold = " + shortest_float(s.threshold) + "\nedge = " + shortest_float(s.edge) +
            "\nevaporation = " + shortest_float(s.evaporation) + "\n";
 }
 

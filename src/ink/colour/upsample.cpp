@@ -64,7 +64,9 @@ const std::array<std::array<double, kKnots>, kWavelengths>& splines() {
 
 /// A scale in which equal steps look about equal, for negative values too, and its slope.
 constexpr double kToe = 0.006;
-double scaled(double v) { return v / std::sqrt(std::abs(v) + kToe); }
+double scaled(double v) {
+    return v / std::sqrt(std::abs(v) + kToe);
+}
 double slope(double v) {
     const double a = std::abs(v) + kToe;
     return (0.5 * std::abs(v) + kToe) / (a * std::sqrt(a));
@@ -161,8 +163,7 @@ Curves upsample_pigment(const Rgb& k, const Rgb& s) {
     int row = 0;
     for (const double x : kThickness)
         for (const double under : kUnder)
-            for (int ch = 0; ch < 3; ++ch, ++row)
-                problem.goal[row] = scaled(film(k[ch], s[ch], x, under));
+            for (int ch = 0; ch < 3; ++ch, ++row) problem.goal[row] = scaled(film(k[ch], s[ch], x, under));
     Parameters p;
     for (int j = 0; j < kKnots; ++j) {
         const double nm = kFirstKnot + kKnotStep * j;

@@ -9,9 +9,9 @@ namespace {
 
 constexpr int kN = atlas::kTileTexels, kSide = atlas::kTile;
 constexpr int kTimes = 2;
-constexpr float kGone = 0.02f;     // of what was there
-constexpr float kRim = 1.0f / 3;   // of what was there: more is ink that stays
-constexpr int kBroad = 5;          // texels: as wide is ink that stays, too
+constexpr float kGone = 0.02f;    // of what was there
+constexpr float kRim = 1.0f / 3;  // of what was there: more is ink that stays
+constexpr int kBroad = 5;         // texels: as wide is ink that stays, too
 
 /// Film on the texels of a tile before and after.
 struct Film {
@@ -107,15 +107,18 @@ class Blotting {
 };
 
 /// The slots that were erased from, and those next to them, ascending.
-std::vector<std::uint32_t> slots_about(const atlas::TexelMap& map, const atlas::SeamLinks& seams, const EraseStarts& starts) {
+std::vector<std::uint32_t> slots_about(const atlas::TexelMap& map, const atlas::SeamLinks& seams,
+                                       const EraseStarts& starts) {
     std::vector<std::uint32_t> slots;
     const auto n = static_cast<std::int64_t>(map.tiles_per_side);
     for (const auto& [slot, start] : starts) {
         const std::int64_t x = map.tile_of_slot[slot] % n, y = map.tile_of_slot[slot] / n;
         for (std::int64_t by = std::max<std::int64_t>(y - 1, 0); by <= std::min(y + 1, n - 1); ++by)
             for (std::int64_t bx = std::max<std::int64_t>(x - 1, 0); bx <= std::min(x + 1, n - 1); ++bx)
-                if (const std::uint32_t s = map.slot_of_tile[static_cast<std::size_t>(by * n + bx)]; s != kNone) slots.push_back(s);
-        for (std::uint32_t k = seams.start[slot]; k < seams.start[slot + 1]; ++k) slots.push_back(seams.links[k].other_slot);
+                if (const std::uint32_t s = map.slot_of_tile[static_cast<std::size_t>(by * n + bx)]; s != kNone)
+                    slots.push_back(s);
+        for (std::uint32_t k = seams.start[slot]; k < seams.start[slot + 1]; ++k)
+            slots.push_back(seams.links[k].other_slot);
     }
     std::sort(slots.begin(), slots.end());
     slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
@@ -147,7 +150,8 @@ Amounts blot(Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLinks&
             };
             for (int film = 0; film < kFilms; ++film)
                 for (int p = 0; p < kMaxPigments; ++p)
-                    if (canvas.film_plane(slot, film, p)) empty(canvas.touch_film(slot, film, p), texel, gone.pigment[p]);
+                    if (canvas.film_plane(slot, film, p))
+                        empty(canvas.touch_film(slot, film, p), texel, gone.pigment[p]);
             for (const Liquid where : {Liquid::film, Liquid::pores})
                 if (canvas.liquid(slot, where)) empty(canvas.touch_liquid(slot, where), texel, gone.liquid);
         }

@@ -21,8 +21,8 @@ inline float limited(float x, float last) {
 }
 
 TUFT_CLONES void place(float* __restrict along, float* __restrict across, const float* __restrict x,
-                       const float* __restrict y, const float* __restrict z, const Vec3f& origin,
-                       const Vec3f& a, const Vec3f& b, float a0, float b0) {
+                       const float* __restrict y, const float* __restrict z, const Vec3f& origin, const Vec3f& a,
+                       const Vec3f& b, float a0, float b0) {
     for (int t = 0; t < kN; ++t) {
         const float dx = x[t] - origin.x, dy = y[t] - origin.y, dz = z[t] - origin.z;
         along[t] = limited(dx * a.x + dy * a.y + dz * a.z + a0, kAlong - 1);
@@ -30,8 +30,8 @@ TUFT_CLONES void place(float* __restrict along, float* __restrict across, const 
     }
 }
 
-TUFT_CLONES void values_at(float* __restrict out, const float* __restrict across,
-                           const float* __restrict furrows, float scale) {
+TUFT_CLONES void values_at(float* __restrict out, const float* __restrict across, const float* __restrict furrows,
+                           float scale) {
     for (int t = 0; t < kN; ++t) {
         const float x = across[t] * scale;
         int i = static_cast<int>(x);
@@ -40,16 +40,14 @@ TUFT_CLONES void values_at(float* __restrict out, const float* __restrict across
     }
 }
 
-TUFT_CLONES void hat(float* __restrict out, const float* __restrict at,
-                     const float* __restrict coverage, float node) {
+TUFT_CLONES void hat(float* __restrict out, const float* __restrict at, const float* __restrict coverage, float node) {
     for (int t = 0; t < kN; ++t) {
         const float d = at[t] - node, w = 1 - (d < 0 ? -d : d);
         out[t] = w > 0 && coverage[t] > 0 ? w : 0;
     }
 }
 
-TUFT_CLONES void product(float* __restrict out, const float* __restrict a,
-                         const float* __restrict b) {
+TUFT_CLONES void product(float* __restrict out, const float* __restrict a, const float* __restrict b) {
     for (int t = 0; t < kN; ++t) out[t] = a[t] * b[t];
 }
 
@@ -59,8 +57,7 @@ constexpr int kAtOnce = 4;
 
 /// out, or 0 if fresh, plus Σ of kCount planes of weights times their values.
 template <int kCount, bool kFresh>
-inline __attribute__((always_inline)) void add_scaled(float* __restrict out,
-                                                      const float* __restrict w,
+inline __attribute__((always_inline)) void add_scaled(float* __restrict out, const float* __restrict w,
                                                       const float* value) {
     float v[kCount];
     for (int k = 0; k < kCount; ++k) v[k] = value[k];
@@ -70,8 +67,7 @@ inline __attribute__((always_inline)) void add_scaled(float* __restrict out,
         out[t] = sum;
     }
 }
-TUFT_CLONES void weighted_sum(float* __restrict out, const float* __restrict w, const float* values,
-                              int count) {
+TUFT_CLONES void weighted_sum(float* __restrict out, const float* __restrict w, const float* values, int count) {
     int k = 0;
     if (count >= kAtOnce)
         add_scaled<kAtOnce, true>(out, w, values), k = kAtOnce;
@@ -79,15 +75,15 @@ TUFT_CLONES void weighted_sum(float* __restrict out, const float* __restrict w, 
         add_scaled<2, true>(out, w, values), k = 2;
     else
         add_scaled<1, true>(out, w, values), k = 1;
-    for (; k + kAtOnce <= count; k += kAtOnce)
-        add_scaled<kAtOnce, false>(out, w + k * kN, values + k);
+    for (; k + kAtOnce <= count; k += kAtOnce) add_scaled<kAtOnce, false>(out, w + k * kN, values + k);
     for (; k + 2 <= count; k += 2) add_scaled<2, false>(out, w + k * kN, values + k);
     for (; k < count; ++k) add_scaled<1, false>(out, w + k * kN, values + k);
 }
 
 /// Σ of kCount planes of weights times x. Several sums at once do not wait for each other.
 template <int kCount>
-inline __attribute__((always_inline)) void few_dots(float* __restrict out, const float* __restrict w, const float* __restrict x) {
+inline __attribute__((always_inline)) void few_dots(float* __restrict out, const float* __restrict w,
+                                                    const float* __restrict x) {
     static_assert(kCount <= 4);
     float a[kSums] = {}, b[kSums] = {}, c[kSums] = {}, d[kSums] = {};
     for (int t = 0; t < kN; t += kSums)
@@ -145,8 +141,7 @@ TUFT_CLONES void extent(float* __restrict lo, float* __restrict hi, const float*
 Range reached(const Texels& at, std::span<const float, kN> coverage, int nodes) {
     std::array<float, kSums> least, most;
     extent(least.data(), most.data(), at.data(), coverage.data());
-    const float lo = *std::min_element(least.begin(), least.end()),
-                hi = *std::max_element(most.begin(), most.end());
+    const float lo = *std::min_element(least.begin(), least.end()), hi = *std::max_element(most.begin(), most.end());
     if (!(lo <= hi)) return {0, -1};
     return {static_cast<int>(lo), std::min(static_cast<int>(hi) + 1, nodes - 1)};
 }
@@ -167,13 +162,11 @@ ContactGrid make_contact_grid(std::span<const Vec2> places, const Vec2& axis) {
     return grid;
 }
 
-void place_texels(TexelPlaces& out, const ContactGrid& grid, const Frame& frame,
-                  const atlas::TexelShape& shape) {
+void place_texels(TexelPlaces& out, const ContactGrid& grid, const Frame& frame, const atlas::TexelShape& shape) {
     const Vec3 along = (grid.axis.x * frame.t + grid.axis.y * frame.b) / grid.step.x;
     const Vec3 across = (grid.axis.x * frame.b - grid.axis.y * frame.t) / grid.step.y;
-    place(out.along.data(), out.across.data(), shape.px.data(), shape.py.data(), shape.pz.data(),
-          Vec3f(frame.origin), Vec3f(along), Vec3f(across),
-          static_cast<float>(-grid.lo.x / grid.step.x),
+    place(out.along.data(), out.across.data(), shape.px.data(), shape.py.data(), shape.pz.data(), Vec3f(frame.origin),
+          Vec3f(along), Vec3f(across), static_cast<float>(-grid.lo.x / grid.step.x),
           static_cast<float>(-grid.lo.y / grid.step.y));
 }
 
@@ -182,8 +175,7 @@ void furrow_depth_at(std::span<float, kN> out, const TexelPlaces& places, const 
 }
 
 void hat_basis(HatBasis& out, const TexelPlaces& places, std::span<const float, kN> coverage) {
-    const Range along = reached(places.along, coverage, kAlong),
-                across = reached(places.across, coverage, kAcross);
+    const Range along = reached(places.along, coverage, kAlong), across = reached(places.across, coverage, kAcross);
     alignas(64) Texels rows;
     alignas(64) std::array<Texels, kAcross> columns;
     for (int j = across.first; j <= across.last; ++j)
@@ -200,7 +192,7 @@ void hat_basis(HatBasis& out, const TexelPlaces& places, std::span<const float, 
 }
 
 void integrate_hats(std::span<double, kNodes> out, const HatBasis& hats, const float* x,
-               std::span<const float, kN> area) {
+                    std::span<const float, kN> area) {
     alignas(64) Texels amounts;
     if (x) product(amounts.data(), x, area.data());
     const float* by = x ? amounts.data() : area.data();

@@ -23,9 +23,7 @@ struct ContactGrid {
     Vec2 step{1};     ///< metres between nodes, > 0
 
     /// Node coordinates (along, across) of a place, not limited to the nodes.
-    Vec2 at(const Vec2& d) const {
-        return (Vec2{glm::dot(axis, d), axis.x * d.y - axis.y * d.x} - lo) / step;
-    }
+    Vec2 at(const Vec2& d) const { return (Vec2{glm::dot(axis, d), axis.x * d.y - axis.y * d.x} - lo) / step; }
 };
 
 /// The grid that spans these places along `axis`; of no places, that about the origin.
@@ -60,7 +58,7 @@ void hat_basis(HatBasis& out, const TexelPlaces& places, std::span<const float, 
 
 /// Σ w · x · area over a tile for each of the hats, in an order of its own; x may be null: 1. Float sums.
 void integrate_hats(std::span<double, kNodes> out, const HatBasis& hats, const float* x,
-               std::span<const float, atlas::kTileTexels> area);
+                    std::span<const float, atlas::kTileTexels> area);
 
 /// Σ (after − before) · area over a tile, in an order of its own. Double sums.
 double change_sum(const float* after, const float* before, const float* area);

@@ -47,7 +47,7 @@ int nearest_with_hair(const std::array<double, kNodes>& sums, int node) {
 }  // namespace
 
 NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::span<const HairSample> samples,
-                     const ContactCells& touch) {
+                         const ContactCells& touch) {
     const std::size_t cells = tuft.n_cells(), n = tuft.content.size();
     std::vector<double> weight(kNodes * n, 0);
     std::array<double, kNodes> sums{};
@@ -71,7 +71,7 @@ NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::sp
     for (int node = 0; node < kNodes; ++node) {
         const int from = sums[node] > 0 ? node : nearest_with_hair(sums, node);
         for (std::uint32_t i = 0; i < n; ++i) {
-            const double part = from >= 0          ? weight[static_cast<std::size_t>(from) * n + i] / sums[from]
+            const double part = from >= 0           ? weight[static_cast<std::size_t>(from) * n + i] / sums[from]
                                 : touch.size() == n ? static_cast<double>(touch[i])
                                                     : tuft.cell_capacity[i] / tuft.capacity;
             if (part > 0) out.shares.push_back({i, static_cast<float>(part)});

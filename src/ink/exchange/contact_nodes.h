@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "ink/exchange/reservoir.h"
 #include "ink/exchange/contact_grid.h"
+#include "ink/exchange/reservoir.h"
 
 /// Which hair gives its ink where: cells of the tuft and nodes of the contact patch.
 namespace tuft::ink {
@@ -43,7 +43,7 @@ using NodeMixes = std::array<std::array<float, kNodes>, Reservoir::kPlanes>;
 /// bundle whose middles it lies between. A node without hair has what the nearest one has; without
 /// any sample all have the cells of `touch`.
 NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::span<const HairSample> samples,
-                     const ContactCells& touch);
+                         const ContactCells& touch);
 
 /// Whether what would leave differs from cell to cell, by more than rounding makes.
 bool is_mixed(const Reservoir& tuft);

@@ -19,8 +19,7 @@ constexpr int kN = atlas::kTileTexels, kRow = atlas::kTile;
 // All on n texels, whole rows.
 
 /// film = the least of film and w / part.
-TUFT_CLONES void limit_film(float* __restrict film, const float* __restrict w, float inverse_part,
-                            int n) {
+TUFT_CLONES void limit_film(float* __restrict film, const float* __restrict w, float inverse_part, int n) {
     for (int t = 0; t < n; ++t) {
         const float f = w[t] * inverse_part;
         film[t] = f < film[t] ? f : film[t];
@@ -31,20 +30,19 @@ TUFT_CLONES void add_film(float* __restrict all, const float* __restrict w, int 
     for (int t = 0; t < n; ++t) all[t] += w[t];
 }
 
-TUFT_CLONES void linear_goals(float* __restrict goal, const float* __restrict coverage,
-                              float target, int n) {
+TUFT_CLONES void linear_goals(float* __restrict goal, const float* __restrict coverage, float target, int n) {
     for (int t = 0; t < n; ++t) goal[t] = target * coverage[t];
 }
 
 /// goal = −ln(1 − f hidden) / ε.
-TUFT_CLONES void goals(float* __restrict goal, const float* __restrict coverage, float hidden,
-                       float inverse_extinction, int n) {
+TUFT_CLONES void goals(float* __restrict goal, const float* __restrict coverage, float hidden, float inverse_extinction,
+                       int n) {
     for (int t = 0; t < n; ++t) goal[t] = -log_of(1 - coverage[t] * hidden) * inverse_extinction;
 }
 
 /// film becomes dw; returns whether any is positive.
-TUFT_CLONES bool increments(float* __restrict film, const float* __restrict all,
-                            const float* __restrict goal, float capacity, float rate, int n) {
+TUFT_CLONES bool increments(float* __restrict film, const float* __restrict all, const float* __restrict goal,
+                            float capacity, float rate, int n) {
     for (int t = 0; t < n; ++t) {
         const float room = film[t] + capacity - all[t];
         const float limit = goal[t] < room ? goal[t] : room;
@@ -83,8 +81,8 @@ struct Alone {
 /// The film of such an ink in one pass: goals, increments and what is stored, as `law_goals`,
 /// `increments` and `store_change` have them, to the bit. Returns Σ (stored change) · area;
 /// `wanted`: whether any increment is positive.
-TUFT_CLONES double lay_alone(float* __restrict w, const float* __restrict coverage,
-                             const float* __restrict area, const Alone& law, int n, bool& wanted) {
+TUFT_CLONES double lay_alone(float* __restrict w, const float* __restrict coverage, const float* __restrict area,
+                             const Alone& law, int n, bool& wanted) {
     double sum[kRow] = {};
     alignas(64) float goal[kRow];
     const float inverse_part = 1.0f / law.part;
@@ -93,8 +91,7 @@ TUFT_CLONES double lay_alone(float* __restrict w, const float* __restrict covera
         const float* f = coverage + row;
         if (row == 0 || !same_row(f, f - kRow)) {
             if (law.hidden > 0)
-                for (int t = 0; t < kRow; ++t)
-                    goal[t] = -log_of(1 - f[t] * law.hidden) * law.inverse_extinction;
+                for (int t = 0; t < kRow; ++t) goal[t] = -log_of(1 - f[t] * law.hidden) * law.inverse_extinction;
             else
                 for (int t = 0; t < kRow; ++t) goal[t] = law.target * f[t];
         }
@@ -107,8 +104,7 @@ TUFT_CLONES double lay_alone(float* __restrict w, const float* __restrict covera
             const float after = before + law.part * dw;
             any |= dw > 0;
             w[row + t] = after;
-            sum[t] += (static_cast<double>(after) - static_cast<double>(before)) *
-                      static_cast<double>(area[row + t]);
+            sum[t] += (static_cast<double>(after) - static_cast<double>(before)) * static_cast<double>(area[row + t]);
         }
     }
     wanted = any != 0;
@@ -132,8 +128,7 @@ int only_pigment(const Mix& mix) {
 
 Mix mix_of(Canvas& canvas, const Ink& ink) {
     Mix mix{};
-    for (const InkPart& part : ink.parts)
-        mix[canvas.add_pigment(part.pigment)] += static_cast<float>(part.fraction);
+    for (const InkPart& part : ink.parts) mix[canvas.add_pigment(part.pigment)] += static_cast<float>(part.fraction);
     return mix;
 }
 
@@ -158,8 +153,7 @@ float extinction_of(const Ink& ink) {
         for (int i = 0; i < kWavelengths; ++i) {
             const Coefficients at = coefficients_at(curve, static_cast<float>(wavelength_nm(i)));
             for (int c = 0; c < 3; ++c)
-                sum += part.fraction * static_cast<double>(kLuminance[c]) * rgb_matching()[c][i] *
-                       (2 * at.k + at.s);
+                sum += part.fraction * static_cast<double>(kLuminance[c]) * rgb_matching()[c][i] * (2 * at.k + at.s);
         }
     }
     return static_cast<float>(std::max(sum, 0.0));
@@ -178,19 +172,17 @@ DepositLaw deposit_law(const DepositParams& params, double ds) {
     return law;
 }
 
-void film_goals(std::span<float, kN> goal, std::span<const float, kN> coverage,
-                const DepositParams& params) {
+void film_goals(std::span<float, kN> goal, std::span<const float, kN> coverage, const DepositParams& params) {
     law_goals(goal.data(), coverage.data(), params.target, deposit_law(params, 0), kN);
 }
 
-double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
-               std::span<const float, kN> area, double ds, const DepositParams& params) {
+double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, std::span<const float, kN> area,
+               double ds, const DepositParams& params) {
     return deposit(canvas, slot, coverage, area, params, deposit_law(params, ds));
 }
 
-double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
-               std::span<const float, kN> area, const DepositParams& params,
-               const DepositLaw& law) {
+double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, std::span<const float, kN> area,
+               const DepositParams& params, const DepositLaw& law) {
     // Nothing happens in rows without coverage.
     int begin = 0, end = kN;
     while (begin < end && is_bare(&coverage[begin])) begin += kRow;
@@ -199,14 +191,12 @@ double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
     if (n == 0) return 0;
     const auto planes = canvas.open_planes(slot);
     if (const int only = only_pigment(params.mix);
-        only >= 0 && planes[only] != nullptr &&
-        std::count(planes.begin(), planes.end(), nullptr) == kMaxPigments - 1) {
+        only >= 0 && planes[only] != nullptr && std::count(planes.begin(), planes.end(), nullptr) == kMaxPigments - 1) {
         if (!(params.target > 0) || !(law.rate > 0)) return 0;
         const Alone alone{params.target,   law.hidden, law.inverse_extinction,
                           params.capacity, law.rate,   params.mix[only]};
         bool wanted = false;
-        const double stored = lay_alone(planes[only]->data() + begin, &coverage[begin],
-                                        &area[begin], alone, n, wanted);
+        const double stored = lay_alone(planes[only]->data() + begin, &coverage[begin], &area[begin], alone, n, wanted);
         if (!wanted) return 0;
         canvas.mark_dirty(slot);
         return stored / static_cast<double>(params.mix[only]);
@@ -233,8 +223,7 @@ double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
     double given = 0;
     for (int p = 0; p < kMaxPigments; ++p)
         if (params.mix[p] > 0)
-            given += store_change(canvas.touch(slot, p).data() + begin, film, params.mix[p],
-                                  &area[begin], n);
+            given += store_change(canvas.touch(slot, p).data() + begin, film, params.mix[p], &area[begin], n);
     return given / strength;
 }
 

@@ -20,7 +20,7 @@ struct DepositParams {
     float target = 1.8f;               ///< c: film units of this ink under full coverage
     float transfer_length = 0.08e-3f;  ///< s0, metres of travel
     float capacity = 8;                ///< film units that stay on a texel, all inks together
-    float extinction = 0;  ///< ε: how fast the ink's film hides, per film unit; 0: not regarded
+    float extinction = 0;              ///< ε: how fast the ink's film hides, per film unit; 0: not regarded
 };
 
 /// ε of an ink: 2K + S of its mixture, weighted over the bands by luminance.
@@ -28,14 +28,14 @@ float extinction_of(const Ink& ink);
 
 /// What `deposit` needs of its parameters and the way, worked out once for all tiles of a stamp.
 struct DepositLaw {
-    float rate = 0;                           ///< 1 − exp(−ds/s0)
-    float hidden = 0, inverse_extinction = 0; ///< 1 − exp(−ε c) and 1/ε; 0: g(f) = c f
+    float rate = 0;                            ///< 1 − exp(−ds/s0)
+    float hidden = 0, inverse_extinction = 0;  ///< 1 − exp(−ε c) and 1/ε; 0: g(f) = c f
 };
 DepositLaw deposit_law(const DepositParams& params, double ds);
 
 /// g(f) of `deposit` for a tile: the film that texels with coverage f tend to.
-void film_goals(std::span<float, atlas::kTileTexels> goal,
-                std::span<const float, atlas::kTileTexels> coverage, const DepositParams& params);
+void film_goals(std::span<float, atlas::kTileTexels> goal, std::span<const float, atlas::kTileTexels> coverage,
+                const DepositParams& params);
 
 /// Lays down one stamp on one tile:
 ///
@@ -54,13 +54,9 @@ void film_goals(std::span<float, atlas::kTileTexels> goal,
 /// the stamp stands for. Returns the ink given, film·m²: the sum of what was really
 /// stored times `area`, so tuft and texels balance. Different slots may be done by
 /// different threads; the bits do not depend on the instruction set. About 0.2 µs.
-double deposit(Canvas& canvas, std::uint32_t slot,
-               std::span<const float, atlas::kTileTexels> coverage,
-               std::span<const float, atlas::kTileTexels> area, double ds,
-               const DepositParams& params);
-double deposit(Canvas& canvas, std::uint32_t slot,
-               std::span<const float, atlas::kTileTexels> coverage,
-               std::span<const float, atlas::kTileTexels> area, const DepositParams& params,
-               const DepositLaw& law);
+double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
+               std::span<const float, atlas::kTileTexels> area, double ds, const DepositParams& params);
+double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
+               std::span<const float, atlas::kTileTexels> area, const DepositParams& params, const DepositLaw& law);
 
 }  // namespace tuft::ink

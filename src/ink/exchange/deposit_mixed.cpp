@@ -15,7 +15,9 @@ constexpr double kMostGiven = 0.8;  // of a pigment in one stamp: areas on the s
 
 using Texels = std::array<float, kN>;
 
-inline float positive(float a) { return a > 0 ? a : 0; }
+inline float positive(float a) {
+    return a > 0 ? a : 0;
+}
 
 TUFT_CLONES void add(float* __restrict sum, const float* __restrict w) {
     for (int t = 0; t < kN; ++t) sum[t] += w[t];

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "ink/exchange/deposit.h"
 #include "ink/exchange/contact_nodes.h"
+#include "ink/exchange/deposit.h"
 
 /// Ink from a tuft that holds several, or that holds it thicker on one side.
 namespace tuft::ink {
@@ -21,9 +21,8 @@ NodeMixes mixes_within(const Reservoir& tuft, const NodeContact& nodes, double t
 /// parts of the tuft pass takes of each pigment the most that any of them would leave, in whatever
 /// steps, and a mixture that changes from stamp to stamp does not pile up. `params.mix` does not
 /// count. Adds to `given`, film·m², what was stored and the water it brought.
-void deposit_mixed(Canvas& canvas, std::uint32_t slot,
-                   std::span<const float, atlas::kTileTexels> coverage, const HatBasis& hats,
-                   std::span<const float, atlas::kTileTexels> area, double ds,
+void deposit_mixed(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
+                   const HatBasis& hats, std::span<const float, atlas::kTileTexels> area, double ds,
                    const DepositParams& params, const NodeMixes& mixes, NodeContents& given);
 
 }  // namespace tuft::ink

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "ink/colour/elementary.h"
+#include "ink/exchange/deposit.h"
 #include "ink/simd.h"
 #include "ink/tile_store.h"
-#include "ink/exchange/deposit.h"
 
 namespace tuft::ink {
 namespace {
@@ -43,8 +43,8 @@ TUFT_CLONES double scale(float* __restrict w, const float* __restrict factor, co
         for (int lane = 0; lane < kLanes; ++lane) {
             const float before = w[t + lane], after = before * factor[t + lane];
             w[t + lane] = after;
-            sum[lane] += (static_cast<double>(before) - static_cast<double>(after)) *
-                         static_cast<double>(area[t + lane]);
+            sum[lane] +=
+                (static_cast<double>(before) - static_cast<double>(after)) * static_cast<double>(area[t + lane]);
         }
     }
     double total = 0;
@@ -85,8 +85,8 @@ EraseStart erase_start(const Canvas& canvas, std::uint32_t slot) {
     return start;
 }
 
-Amounts erase(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
-              std::span<const float, kN> area, double ds, const EraseStart& start, const EraseParams& params) {
+Amounts erase(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, std::span<const float, kN> area,
+              double ds, const EraseStart& start, const EraseParams& params) {
     Amounts gone;
     if (!canvas.touched(slot) || !(ds > 0) || !(params.strength > 0)) return gone;
     const Plane film = erase_start(canvas, slot).film;
@@ -99,8 +99,7 @@ Amounts erase(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> cov
     for (int film_place = 0; film_place < kFilms; ++film_place)
         for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
             if (canvas.film_plane(slot, film_place, p))
-                gone.pigment[p] +=
-                    scale(canvas.touch_film(slot, film_place, p).data(), factor.data(), area.data());
+                gone.pigment[p] += scale(canvas.touch_film(slot, film_place, p).data(), factor.data(), area.data());
     for (const Liquid where : {Liquid::film, Liquid::pores})
         if (canvas.liquid(slot, where))
             gone.liquid += scale(canvas.touch_liquid(slot, where).data(), factor.data(), area.data());

@@ -55,7 +55,7 @@ struct Coat {
 
 /// Lays a coat into the open film, on top of what is there or into it where it is still open; no
 /// more than `capacity` film units lie on a texel then. Returns the pigments laid, film·m².
-Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> area,
-                 const Coat& coat, float capacity);
+Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> area, const Coat& coat,
+                 float capacity);
 
 }  // namespace tuft::ink

@@ -53,8 +53,10 @@ struct Pool {
         }
         Block* b = with_room;
         void* cell = b->free;
-        if (cell) b->free = b->free->next;
-        else cell = reinterpret_cast<char*>(b) + kCell * ++b->made;
+        if (cell)
+            b->free = b->free->next;
+        else
+            cell = reinterpret_cast<char*>(b) + kCell * ++b->made;
         if (++b->used == kCells) take_out(b);
         return cell;
     }
@@ -78,27 +80,41 @@ auto& pool_of() {
 
 template <class T>
 void* take(std::size_t bytes) {
-    if (bytes != sizeof(T)) return ::operator new(bytes, std::align_val_t{alignof(T)});
+    if (bytes != sizeof(T)) return ::operator new (bytes, std::align_val_t{alignof(T)});
     return pool_of<T>().take();
 }
 template <class T>
 void give(void* cell, std::size_t bytes) {
     if (!cell) return;
-    if (bytes != sizeof(T)) ::operator delete(cell, std::align_val_t{alignof(T)});
-    else pool_of<T>().give(cell);
+    if (bytes != sizeof(T))
+        ::operator delete (cell, std::align_val_t{alignof(T)});
+    else
+        pool_of<T>().give(cell);
 }
 
 }  // namespace
 
-void* Plane::operator new(std::size_t bytes) { return take<Plane>(bytes); }
-void Plane::operator delete(void* plane, std::size_t bytes) { give<Plane>(plane, bytes); }
+void* Plane::operator new(std::size_t bytes) {
+    return take<Plane>(bytes);
+}
+void Plane::operator delete(void* plane, std::size_t bytes) {
+    give<Plane>(plane, bytes);
+}
 
 namespace wet {
 
-void* Geometry::operator new(std::size_t bytes) { return take<Geometry>(bytes); }
-void Geometry::operator delete(void* geometry, std::size_t bytes) { give<Geometry>(geometry, bytes); }
-void* Geometry::Diagonals::operator new(std::size_t bytes) { return take<Diagonals>(bytes); }
-void Geometry::Diagonals::operator delete(void* diagonals, std::size_t bytes) { give<Diagonals>(diagonals, bytes); }
+void* Geometry::operator new(std::size_t bytes) {
+    return take<Geometry>(bytes);
+}
+void Geometry::operator delete(void* geometry, std::size_t bytes) {
+    give<Geometry>(geometry, bytes);
+}
+void* Geometry::Diagonals::operator new(std::size_t bytes) {
+    return take<Diagonals>(bytes);
+}
+void Geometry::Diagonals::operator delete(void* diagonals, std::size_t bytes) {
+    give<Diagonals>(diagonals, bytes);
+}
 
 }  // namespace wet
 }  // namespace tuft::ink

@@ -10,16 +10,16 @@
 namespace tuft::ink {
 namespace {
 
-constexpr double kThread = 0.6;  ///< part of the film below which the ink under a hair breaks
+constexpr double kThread = 0.6;      ///< part of the film below which the ink under a hair breaks
 constexpr double kThreadWets = 0.1;  ///< of the travel that a film takes: the thread under a hair is there at once
 
 /// Part of the supply that comes without any bending: hair wets what it touches.
 constexpr double kCapillarySupply = 0.25;
-constexpr double kFlowStep = 0.005;  // seconds
-constexpr double kSoftEdge = 0.1;  // of the width
+constexpr double kFlowStep = 0.005;                  // seconds
+constexpr double kSoftEdge = 0.1;                    // of the width
 constexpr double kWeight = 9810, kViscosity = 2e-3;  // N/m³, Pa·s: watery ink
-constexpr int kNeighbours = 4;       // of a bundle that it shares ink with, at least
-constexpr std::size_t kMostSteps = 1000;  // of flow at once: 5 s, after which all is even
+constexpr int kNeighbours = 4;                       // of a bundle that it shares ink with, at least
+constexpr std::size_t kMostSteps = 1000;             // of flow at once: 5 s, after which all is even
 
 using Content = Reservoir::Content;
 constexpr int kPlanes = Reservoir::kPlanes;
@@ -151,7 +151,9 @@ double Reservoir::pigment(int plane) const {
     return sum;
 }
 
-double Reservoir::fullness() const { return capacity > 0 ? remaining() / capacity : 0; }
+double Reservoir::fullness() const {
+    return capacity > 0 ? remaining() / capacity : 0;
+}
 
 double Reservoir::saturation(std::size_t cell) const {
     return cell_capacity[cell] > 0 ? sum_of(content[cell]) / cell_capacity[cell] : 0;
@@ -195,7 +197,8 @@ double dip(Reservoir& tuft, const Mix& mix, const Dip& how) {
     for (std::size_t i = 0; i < tuft.content.size(); ++i) {
         const double within = part_within(tuft.layout, i, {how.depth, how.side});
         // The dipped part of the cell is filled; what it holds is spread over all of it.
-        const double want = within * (std::min(how.level, kMostLevel) * tuft.cell_capacity[i] - sum_of(tuft.content[i]));
+        const double want =
+            within * (std::min(how.level, kMostLevel) * tuft.cell_capacity[i] - sum_of(tuft.content[i]));
         if (!(want > 0)) continue;
         for (int p = 0; p < kMaxPigments; ++p) tuft.content[i][p] += want * static_cast<double>(mix[p]);
         tuft.content[i][kMaxPigments] += want * std::max(0.0, 1 - pigments);
@@ -252,9 +255,8 @@ Content take(Reservoir& tuft, double amount, const ContactCells& touch) {
 
 double room_left(const Reservoir& tuft, const ContactCells& touch) {
     double sum = 0;
-    each_touched(tuft, touch, [&](std::size_t i, double) {
-        sum += std::max(0.0, tuft.cell_capacity[i] - sum_of(tuft.content[i]));
-    });
+    each_touched(tuft, touch,
+                 [&](std::size_t i, double) { sum += std::max(0.0, tuft.cell_capacity[i] - sum_of(tuft.content[i])); });
     return sum;
 }
 
@@ -282,8 +284,12 @@ void absorb(Reservoir& tuft, const Content& lifted, const ContactCells& touch) {
     }
 }
 
-Mix mix_at(const Reservoir& tuft, const ContactCells& touch) { return mix_over(tuft, touch); }
-double saturation_at(const Reservoir& tuft, const ContactCells& touch) { return saturation_over(tuft, touch); }
+Mix mix_at(const Reservoir& tuft, const ContactCells& touch) {
+    return mix_over(tuft, touch);
+}
+double saturation_at(const Reservoir& tuft, const ContactCells& touch) {
+    return saturation_over(tuft, touch);
+}
 
 void flow(Reservoir& tuft, double dt, FlowTo to) {
     if (tuft.links.empty() || !(dt > 0)) return;
@@ -313,8 +319,7 @@ double paper_quantity(double eta, double moment_factor, double remaining) {
     return eta * moment_factor * remaining;
 }
 
-double supply_quantity(double eta, double moment_factor, double remaining, double ds,
-                       double supply_length) {
+double supply_quantity(double eta, double moment_factor, double remaining, double ds, double supply_length) {
     return -remaining * std::expm1(-eta * moment_factor * ds / supply_length);
 }
 

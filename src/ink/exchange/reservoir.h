@@ -13,20 +13,20 @@ namespace tuft::ink {
 
 /// How the hair is divided for its ink: bundles side by side, each of cells from root to tip.
 struct ReservoirLayout {
-    std::vector<Vec2> bundles{Vec2{0}};  ///< places in the section, unit disc
-    std::vector<double> cell_ends{1};    ///< where each cell ends, part of the length from the root;
-                                         ///< rising, the last one is 1
-    std::vector<double> cell_capacities{1};   ///< part of a bundle's capacity in each cell; sums to one
-    double refill_time = 0.04;           ///< s in which a dry cell draws from a wet one above or below it
-    double side_time = 0.25;             ///< s the same between neighbouring bundles
-    double mix_time = 30;                ///< s in which cells one above the other become one mixture
+    std::vector<Vec2> bundles{Vec2{0}};      ///< places in the section, unit disc
+    std::vector<double> cell_ends{1};        ///< where each cell ends, part of the length from the root;
+                                             ///< rising, the last one is 1
+    std::vector<double> cell_capacities{1};  ///< part of a bundle's capacity in each cell; sums to one
+    double refill_time = 0.04;               ///< s in which a dry cell draws from a wet one above or below it
+    double side_time = 0.25;                 ///< s the same between neighbouring bundles
+    double mix_time = 30;                    ///< s in which cells one above the other become one mixture
 };
 
 /// What two cells exchange.
 struct CellLink {
     std::uint32_t a = 0, b = 0;
-    double flow = 0;     ///< film·m² per second and difference of saturation
-    double mixing = 0;   ///< per second, of the smaller content
+    double flow = 0;    ///< film·m² per second and difference of saturation
+    double mixing = 0;  ///< per second, of the smaller content
 };
 
 /// Ink held by the tuft, film·m² of wet ink, in cells. Plane p of a cell is the canvas' pigment
@@ -38,10 +38,10 @@ struct Reservoir {
 
     double capacity = film_of_millilitres(0.5);
     ReservoirLayout layout;
-    std::vector<double> cell_capacity;      ///< [bundles * cells], cell c of bundle k at k * cells + c, root first
-    std::vector<Content> content;  ///< likewise
+    std::vector<double> cell_capacity;  ///< [bundles * cells], cell c of bundle k at k * cells + c, root first
+    std::vector<Content> content;       ///< likewise
     std::vector<CellLink> links;
-    double unspent = 0;            ///< s of `flow` that did not fill a step yet
+    double unspent = 0;  ///< s of `flow` that did not fill a step yet
 
     std::size_t n_bundles() const { return layout.bundles.size(); }
     std::size_t n_cells() const { return layout.cell_ends.size(); }  ///< of each bundle
@@ -122,7 +122,7 @@ void flow(Reservoir& tuft, double dt, FlowTo to = FlowTo::whole_step);
 /// How liquid that hangs on a tuft runs down it.
 struct Drain {
     double length = 0.03, radius = 3e-3;  ///< metres, of the tuft
-    double slope = 1;      ///< part of its weight that drives it to where it touches, 0–1
+    double slope = 1;                     ///< part of its weight that drives it to where it touches, 0–1
 };
 
 /// What of the liquid that its hair does not hold by capillarity (beyond the capacity) leaves a tuft
@@ -140,16 +140,15 @@ double paper_quantity(double eta, double moment_factor, double remaining);
 
 /// The same independent of how densely the path is sampled:
 /// Q = Z (1 − exp(−η k Δs / l)); equals the recurrence for Δs = l and η k → 0.
-double supply_quantity(double eta, double moment_factor, double remaining, double ds,
-                       double supply_length);
+double supply_quantity(double eta, double moment_factor, double remaining, double ds, double supply_length);
 
 /// How a stamp touches.
 struct StampContact {
     double moment_factor = 1;  ///< k = |M| / M_max of the tuft, 0–1
     double width = 0;          ///< metres across the motion, gaps between hairs left out
     double area = 0;           ///< m² of the contact patch
-    double pending = 0;           ///< film·m² of what the tuft still holds that is laid down already
-    double by_hair = 0;        ///< 0–1: how much single hairs touch, which leave a film of their own thickness or none
+    double pending = 0;        ///< film·m² of what the tuft still holds that is laid down already
+    double by_hair = 0;  ///< 0–1: how much single hairs touch, which leave a film of their own thickness or none
     std::span<const float> touch = {};  ///< as `ContactCells`; empty: the whole tuft alike
 };
 

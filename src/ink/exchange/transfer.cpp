@@ -11,11 +11,11 @@ namespace {
 constexpr int kN = atlas::kTileTexels;
 constexpr int kWater = kMaxPigments;
 constexpr int kSums = 16;
-constexpr double kSkinFilm = 4;    // film units on full hair
-constexpr double kHalfFull = 0.5;  // saturation from which hair is wet outside all over
-constexpr double kSkinTime = 0.3;  // seconds
+constexpr double kSkinFilm = 4;                                // film units on full hair
+constexpr double kHalfFull = 0.5;                              // saturation from which hair is wet outside all over
+constexpr double kSkinTime = 0.3;                              // seconds
 constexpr double kExchangeLength = 4e-3, kExchangeTime = 0.5;  // metres, seconds
-constexpr double kGentle = 0.3;       // of the exchange under firm pressure
+constexpr double kGentle = 0.3;                                // of the exchange under firm pressure
 constexpr double kMostGiven = 0.999;  // of the liquid: rounding may not take more than there is
 
 using Texels = std::array<float, kN>;
@@ -48,9 +48,8 @@ struct Volumes {
     alignas(64) Texels down, up;
 };
 
-TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage,
-                         const float* __restrict goal, const float* __restrict w,
-                         const float* __restrict total, const float* __restrict film,
+TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const float* __restrict goal,
+                         const float* __restrict w, const float* __restrict total, const float* __restrict film,
                          const float* __restrict exchange, const TransferParams& p, float rate) {
     for (int t = 0; t < kN; ++t) {
         const float touched = coverage[t] > 0 ? 1.0f : 0.0f;
@@ -70,14 +69,12 @@ TUFT_CLONES void add(float* __restrict sum, const float* __restrict p) {
 }
 
 /// up becomes the part of the open film's pigments that goes with the liquid.
-TUFT_CLONES void lifted_part(float* __restrict up, const float* __restrict total,
-                             const float* __restrict pigments) {
+TUFT_CLONES void lifted_part(float* __restrict up, const float* __restrict total, const float* __restrict pigments) {
     for (int t = 0; t < kN; ++t) up[t] = total[t] > 0 ? up[t] / larger(total[t], pigments[t]) : 0;
 }
 
 /// down becomes the part that leaves of what the liquid can give.
-TUFT_CLONES void given_part(float* __restrict part, const float* __restrict down,
-                            const float* __restrict film) {
+TUFT_CLONES void given_part(float* __restrict part, const float* __restrict down, const float* __restrict film) {
     for (int t = 0; t < kN; ++t) part[t] = film[t] > 0 ? down[t] / film[t] : 0;
 }
 
@@ -85,12 +82,10 @@ TUFT_CLONES void given_part(float* __restrict part, const float* __restrict down
 struct Changes {
     double sums[kSums] = {};
 
-    inline __attribute__((always_inline)) void move(int lane, float& p, float up, float down,
-                                                    float area) {
+    inline __attribute__((always_inline)) void move(int lane, float& p, float up, float down, float area) {
         const float before = p;
         p = (before - up) + down;
-        sums[lane] +=
-            (static_cast<double>(p) - static_cast<double>(before)) * static_cast<double>(area);
+        sums[lane] += (static_cast<double>(p) - static_cast<double>(before)) * static_cast<double>(area);
     }
     double sum() const {
         double all = 0;
@@ -99,19 +94,18 @@ struct Changes {
     }
 };
 
-TUFT_CLONES double move_liquid(float* __restrict w, const float* __restrict up,
-                               const float* __restrict down, const float* __restrict area) {
+TUFT_CLONES double move_liquid(float* __restrict w, const float* __restrict up, const float* __restrict down,
+                               const float* __restrict area) {
     Changes changes;
     for (int t = 0; t < kN; t += kSums)
-        for (int i = 0; i < kSums; ++i)
-            changes.move(i, w[t + i], up[t + i], down[t + i], area[t + i]);
+        for (int i = 0; i < kSums; ++i) changes.move(i, w[t + i], up[t + i], down[t + i], area[t + i]);
     return changes.sum();
 }
 
 /// `up`: what goes up of a plane, its part `lifted`.
-TUFT_CLONES double move_pigment(float* __restrict p, float* __restrict up,
-                                const float* __restrict lifted, const float* __restrict part,
-                                const float* __restrict film, const float* __restrict area) {
+TUFT_CLONES double move_pigment(float* __restrict p, float* __restrict up, const float* __restrict lifted,
+                                const float* __restrict part, const float* __restrict film,
+                                const float* __restrict area) {
     Changes changes;
     for (int t = 0; t < kN; t += kSums)
         for (int i = 0; i < kSums; ++i) {
@@ -125,8 +119,7 @@ TUFT_CLONES double move_pigment(float* __restrict p, float* __restrict up,
 /// Planes lie here and there: all of a tile's are on their way while the first sums are made.
 void ask_for(const Plane* plane) {
     if (!plane) return;
-    for (int t = 0; t < kN; t += 64 / static_cast<int>(sizeof(float)))
-        __builtin_prefetch(plane->data() + t);
+    for (int t = 0; t < kN; t += 64 / static_cast<int>(sizeof(float))) __builtin_prefetch(plane->data() + t);
 }
 
 /// What a tile's nodes gave and took, before it is made to agree with what was stored.
@@ -139,13 +132,11 @@ struct Booked {
 
 /// Deals the stored change of each plane out to the nodes: what they took, and the rest by what
 /// lies over them, where the sums differ by the rounding of the texels.
-void settle(const Booked& b, const HatBasis& hats, const TransferParams& params,
-            NodeContents& given) {
+void settle(const Booked& b, const HatBasis& hats, const TransferParams& params, NodeContents& given) {
     double all = 0;
     for (int k = 0; k < hats.count; ++k) all += b.part[k] + b.taken[kWater][k];
     Reservoir::Content stored = b.stored;
-    for (int p = 0; p < kMaxPigments; ++p)
-        stored[kWater] -= stored[p];  // the liquid counts its pigments
+    for (int p = 0; p < kMaxPigments; ++p) stored[kWater] -= stored[p];  // the liquid counts its pigments
     for (int p = 0; p < Reservoir::kPlanes; ++p) {
         std::array<double, kNodes> net;
         double sum = 0;
@@ -157,8 +148,7 @@ void settle(const Booked& b, const HatBasis& hats, const TransferParams& params,
         }
         const double left = stored[p] - sum;
         for (int k = 0; k < hats.count; ++k) {
-            const double share =
-                all > 0 ? (b.part[k] + b.taken[kWater][k]) / all : 1.0 / hats.count;
+            const double share = all > 0 ? (b.part[k] + b.taken[kWater][k]) / all : 1.0 / hats.count;
             given[hats.node[k]][p] += net[k] + left * share;
         }
     }
@@ -222,8 +212,7 @@ void withdraw(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch,
 
 void refresh(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch, const NodeContact& nodes,
              const NodeAreas& areas, double dt, double pour) {
-    const double filled = std::min(1.0, saturation_at(tuft, touch) / kHalfFull),
-                 wet = filled * filled;
+    const double filled = std::min(1.0, saturation_at(tuft, touch) / kHalfFull), wet = filled * filled;
     const double part = -std::expm1(-std::max(dt, 0.0) / kSkinTime);
     std::array<double, kNodes> want, lack;
     NodeContents back{};
@@ -250,8 +239,8 @@ void refresh(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch, 
 }
 
 TransferParams transfer_params(const SurfaceLiquid& liquid, const Reservoir& tuft, const ContactCells& touch,
-                               const NodeAreas& areas, const DepositParams& deposit, double ds,
-                               double dt, double stress) {
+                               const NodeAreas& areas, const DepositParams& deposit, double ds, double dt,
+                               double stress) {
     TransferParams out;
     out.deposit = deposit;
     out.rub.fill(1);
@@ -267,23 +256,21 @@ TransferParams transfer_params(const SurfaceLiquid& liquid, const Reservoir& tuf
     for (int node = 0; node < kNodes; ++node) {
         if (!(areas[node] > 0)) continue;
         for (int p = 0; p < Reservoir::kPlanes; ++p)
-            out.film[p][node] =
-                static_cast<float>(kMostGiven * std::max(0.0, liquid.content[node][p]) / areas[node]);
+            out.film[p][node] = static_cast<float>(kMostGiven * std::max(0.0, liquid.content[node][p]) / areas[node]);
     }
     return out;
 }
 
-void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage,
-              const TexelPlaces& places, const HatBasis& hats, std::span<const float, kN> area,
-              double ds, const TransferParams& params, NodeContents& given) {
+void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const TexelPlaces& places,
+              const HatBasis& hats, std::span<const float, kN> area, double ds, const TransferParams& params,
+              NodeContents& given) {
     if (hats.count == 0) return;
     ask_for(canvas.liquid(slot, Liquid::film));
     ask_for(canvas.liquid(slot, Liquid::pores));
     for (int p = 0; p < kMaxPigments; ++p) ask_for(canvas.plane(slot, p));
     std::array<float, kNodes> over{};  // film units of all planes
     for (int k = 0; k < hats.count; ++k)
-        for (int p = 0; p < Reservoir::kPlanes; ++p)
-            over[hats.node[k]] += params.film[p][hats.node[k]];
+        for (int p = 0; p < Reservoir::kPlanes; ++p) over[hats.node[k]] += params.film[p][hats.node[k]];
     alignas(64) Texels film, exchange, goal, total, pigments{}, part, up;
     interpolate(film, hats, over);
     interpolate(exchange, hats, params.exchange);
@@ -294,10 +281,8 @@ void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> cov
     const Plane* s = canvas.liquid(slot, Liquid::pores);
     for (int t = 0; t < kN; ++t) total[t] = s ? w[t] + (*s)[t] : w[t];
     Volumes v;
-    const auto rate =
-        static_cast<float>(-std::expm1(-ds / static_cast<double>(params.deposit.transfer_length)));
-    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), exchange.data(),
-            params, rate);
+    const auto rate = static_cast<float>(-std::expm1(-ds / static_cast<double>(params.deposit.transfer_length)));
+    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), exchange.data(), params, rate);
     given_part(part.data(), v.down.data(), film.data());
     Booked booked;
     integrate_hats(booked.part, hats, part.data(), area);
@@ -312,8 +297,8 @@ void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> cov
         const bool there = canvas.plane(slot, p) != nullptr;
         if (!(most > 0) && !there) continue;
         interpolate(film, hats, params.film[p]);
-        booked.stored[p] = move_pigment(canvas.touch(slot, p).data(), up.data(), v.up.data(),
-                                        part.data(), film.data(), area.data());
+        booked.stored[p] =
+            move_pigment(canvas.touch(slot, p).data(), up.data(), v.up.data(), part.data(), film.data(), area.data());
         if (there) integrate_hats(booked.taken[p], hats, up.data(), area);
     }
     settle(booked, hats, params, given);

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "ink/exchange/deposit.h"
 #include "ink/exchange/contact_nodes.h"
+#include "ink/exchange/deposit.h"
 
 /// Ink both ways between a wet tuft and a wet surface.
 namespace tuft::ink {
@@ -27,18 +27,19 @@ struct SurfaceLiquid {
 /// then goes into the hair; hair that is not half full gives no more than it holds there, until `flow`
 /// brings more. What liquid and tuft hold together stays the same.
 /// `pour`: film units more, that run off a dripping tuft in this touch.
-void refresh(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch, const NodeContact& nodes, const NodeAreas& areas,
-             double dt, double pour = 0);
+void refresh(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch, const NodeContact& nodes,
+             const NodeAreas& areas, double dt, double pour = 0);
 /// After a stroke: all of it goes back into the hair.
 void withdraw(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch, const NodeContact& nodes);
 
 struct TransferParams {
-    DepositParams deposit;        ///< target, transfer_length, capacity, extinction; not its mix
+    DepositParams deposit;                 ///< target, transfer_length, capacity, extinction; not its mix
     std::array<float, kNodes> exchange{};  ///< part of the liquid that a touch renews at each node: 1 − exp(−...)
-    std::array<float, kFirmnessSamples> rub{};       ///< how firmly the bundles rub across the patch, over the mean: `rub_of`
-    float uptake = 0;             ///< 0–1: how much of what stands above the target is drawn up
-    float room = 0;               ///< film units that the hair can take beyond what it gives
-    float pour = 0;               ///< film units that run off the tuft, however thick the film is already
+    std::array<float, kFirmnessSamples>
+        rub{};         ///< how firmly the bundles rub across the patch, over the mean: `rub_of`
+    float uptake = 0;  ///< 0–1: how much of what stands above the target is drawn up
+    float room = 0;    ///< film units that the hair can take beyond what it gives
+    float pour = 0;    ///< film units that run off the tuft, however thick the film is already
     /// Film units that the liquid can give in this touch at each node, by plane, water last.
     std::array<std::array<float, kNodes>, Reservoir::kPlanes> film{};
 };
@@ -52,8 +53,8 @@ std::array<double, kAlong> firmness(const NodeAreas& areas);
 /// as wide as the patch is there over its widest place. The tip only grazes what the belly has left, however long it
 /// trails: else the middle of a stroke, where it passes, would be rubbed clean along a line.
 TransferParams transfer_params(const SurfaceLiquid& liquid, const Reservoir& tuft, const ContactCells& touch,
-                               const NodeAreas& areas, const DepositParams& deposit, double ds,
-                               double dt, double stress);
+                               const NodeAreas& areas, const DepositParams& deposit, double ds, double dt,
+                               double stress);
 
 /// One touch on one tile. With f the coverage, w the liquid on the surface, q what the liquid over
 /// the texel can give, c the target and g(f) as in `deposit`:
@@ -70,9 +71,8 @@ TransferParams transfer_params(const SurfaceLiquid& liquid, const Reservoir& tuf
 /// Adds to `given`, film·m², what each node gave less what it took: in the sum over the nodes it is
 /// what was stored, plane by plane, and no node gives more than it has. Different slots may be done
 /// by different threads; same bits on every instruction set.
-void transfer(Canvas& canvas, std::uint32_t slot,
-              std::span<const float, atlas::kTileTexels> coverage, const TexelPlaces& places, const HatBasis& hats,
-              std::span<const float, atlas::kTileTexels> area, double ds,
-              const TransferParams& params, NodeContents& given);
+void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
+              const TexelPlaces& places, const HatBasis& hats, std::span<const float, atlas::kTileTexels> area,
+              double ds, const TransferParams& params, NodeContents& given);
 
 }  // namespace tuft::ink

@@ -13,31 +13,33 @@ constexpr double kCapillaryLength = 2.7e-3;  // metres: √(σ / ρ g) of water
 constexpr double kLeastSteepness = 0.1;      // sin α: beads on flatter places would be puddles
 constexpr int kShifts = 6;                   // to the middle of the liquid, and from the critical radius to its own
 constexpr int kTilts = 3;
-constexpr double kCatchment = 2;             // radii from which a bead draws liquid in
-constexpr double kStart = 1.3;               // volumes that run on: with less a bead does not come off a film
-constexpr double kRing = 1.5;                // radii: about a bead lies the film that it stands on
-constexpr double kRim = 1.1;                 // a bead's own radius, and what it may have spread meanwhile
-constexpr double kBead = 1.5;                // hold: a film as thick as that is likely a bead
+constexpr double kCatchment = 2;  // radii from which a bead draws liquid in
+constexpr double kStart = 1.3;    // volumes that run on: with less a bead does not come off a film
+constexpr double kRing = 1.5;     // radii: about a bead lies the film that it stands on
+constexpr double kRim = 1.1;      // a bead's own radius, and what it may have spread meanwhile
+constexpr double kBead = 1.5;     // hold: a film as thick as that is likely a bead
 constexpr double kAny = std::numeric_limits<double>::infinity();
-constexpr double kApart = 2.2;               // critical radii between beads that move in the same step
+constexpr double kApart = 2.2;  // critical radii between beads that move in the same step
 constexpr double kLeastGrain = 0.8, kGrainPart = 0.5;
-constexpr double kHopeful = 0.3;             // of what runs: less about a place will not come together
-constexpr double kFastest = 1.5;             // bead_speed
-constexpr double kAtRest = 1.01;             // of the critical radius
-constexpr double kStops = 1.06;              // of the radius that a moving one needs: it comes to rest
-constexpr double kMoving = 0.65;             // of what holds a bead at rest: so much holds one that runs
-constexpr double kLying = 0.5;               // of bead_angle: a bead's that came to rest
-constexpr double kSummit = 0.3;              // radii: about the highest of a cap
-constexpr double kFull = 0.8;                // of the height of a cap of its volume: one that runs is as high
-constexpr double kTrack = 0.3;                // radii: of the trail next to the bead that left it, along and to each side
-constexpr double kThinnest = 0.5;            // of the trail: what stays behind the slowest bead
-constexpr double kTail = 5;                  // radii that a bead at rest is drawn out upwards
+constexpr double kHopeful = 0.3;   // of what runs: less about a place will not come together
+constexpr double kFastest = 1.5;   // bead_speed
+constexpr double kAtRest = 1.01;   // of the critical radius
+constexpr double kStops = 1.06;    // of the radius that a moving one needs: it comes to rest
+constexpr double kMoving = 0.65;   // of what holds a bead at rest: so much holds one that runs
+constexpr double kLying = 0.5;     // of bead_angle: a bead's that came to rest
+constexpr double kSummit = 0.3;    // radii: about the highest of a cap
+constexpr double kFull = 0.8;      // of the height of a cap of its volume: one that runs is as high
+constexpr double kTrack = 0.3;     // radii: of the trail next to the bead that left it, along and to each side
+constexpr double kThinnest = 0.5;  // of the trail: what stays behind the slowest bead
+constexpr double kTail = 5;        // radii that a bead at rest is drawn out upwards
 
 double critical_radius(double angle, double steepness) {
     return 2 * kCapillaryLength * std::sqrt(angle / (kPi * std::max(steepness, kLeastSteepness)));
 }
 /// Film units · m² of a bead.
-double amount_of(double radius, double angle) { return 0.25 * kPi * angle * radius * radius * radius / kFilmUnit; }
+double amount_of(double radius, double angle) {
+    return 0.25 * kPi * angle * radius * radius * radius / kFilmUnit;
+}
 /// Newton's method on the above, from a radius near by; rounds the same on every machine.
 double radius_of(double amount, double angle) {
     const double cube = amount * kFilmUnit * 4 / (kPi * angle);
@@ -92,14 +94,18 @@ void Drips::gather(const atlas::TexelRef& start, const Vec3& centre, double radi
         const Near here = disc_[i];
         const int column = here.ref.texel % atlas::kTile, row = here.ref.texel / atlas::kTile;
         for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
-            if (const atlas::TexelRef next = beside(here.ref, column + dx, row + dy); next.valid() && !apart(here.ref, next))
+            if (const atlas::TexelRef next = beside(here.ref, column + dx, row + dy);
+                next.valid() && !apart(here.ref, next))
                 visit(next, &here.at, static_cast<double>(std::max(map_.reach[here.ref.slot], map_.reach[next.slot])));
-        const auto links = std::span(seams_.links).subspan(seams_.start[here.ref.slot], seams_.start[here.ref.slot + 1] - seams_.start[here.ref.slot]);
+        const auto links =
+            std::span(seams_.links)
+                .subspan(seams_.start[here.ref.slot], seams_.start[here.ref.slot + 1] - seams_.start[here.ref.slot]);
         if (links.empty()) continue;
         const auto first = std::lower_bound(links.begin(), links.end(), here.ref.texel,
                                             [](const atlas::SeamLink& l, std::uint8_t t) { return l.texel < t; });
         for (auto l = first; l != links.end() && l->texel == here.ref.texel; ++l)
-            if (const atlas::TexelRef next{l->other_slot, l->other_texel}; !apart(here.ref, next)) visit(next, &here.at, 0);
+            if (const atlas::TexelRef next{l->other_slot, l->other_texel}; !apart(here.ref, next))
+                visit(next, &here.at, 0);
     }
     for (const std::uint32_t slot : seen_slots_) seen_of_slot_[slot] = kNone;
     seen_slots_.clear();
@@ -115,7 +121,8 @@ atlas::TexelRef Drips::beside(const atlas::TexelRef& ref, int column, int row) c
     constexpr int n = atlas::kTile;
     if (column >= 0 && column < n && row >= 0 && row < n) {
         const auto texel = static_cast<std::uint8_t>(row * n + column);
-        return map_.tiles[ref.slot].cluster[texel] == atlas::kNoCluster ? atlas::TexelRef{} : atlas::TexelRef{ref.slot, texel};
+        return map_.tiles[ref.slot].cluster[texel] == atlas::kNoCluster ? atlas::TexelRef{}
+                                                                        : atlas::TexelRef{ref.slot, texel};
     }
     const std::uint32_t tile = map_.tile_of_slot[ref.slot];
     return atlas::texel_ref(map_, std::int64_t{tile % map_.tiles_per_side} * n + column,
@@ -125,14 +132,18 @@ atlas::TexelRef Drips::beside(const atlas::TexelRef& ref, int column, int row) c
 struct Drips::Bead {
     atlas::TexelRef place;  ///< the texel next to its middle
     Vec3 at{0};
-    double amount = 0;      ///< film units · m²
+    double amount = 0;  ///< film units · m²
     std::array<double, kMaxPigments> pigment{};
 };
 
 class Drips::Run {
   public:
     Run(Drips& drips, Canvas& canvas, const FilmParams& params, const BeforeFn& before)
-        : d_(drips), canvas_(canvas), p_(params), before_(before), n_pigments_(static_cast<int>(canvas.pigments().size())) {}
+        : d_(drips),
+          canvas_(canvas),
+          p_(params),
+          before_(before),
+          n_pigments_(static_cast<int>(canvas.pigments().size())) {}
 
     std::vector<std::uint32_t> written;
 
@@ -155,12 +166,16 @@ class Drips::Run {
         d_.gather(bead.place, bead.at, kCatchment * reach);
         const BaseColour ground = target_model(bead, reach);
         const auto [inside, round] = amounts(bead, ground, reach);
-        const double least = is_running(bead, ground, inside) ? std::sqrt(kMoving) : kAtRest, runs = amount_of(least * radius, p_.bead_angle);
+        const double least = is_running(bead, ground, inside) ? std::sqrt(kMoving) : kAtRest,
+                     runs = amount_of(least * radius, p_.bead_angle);
         if (inside < runs && inside + round < starts) return;
         seen_.push_back({bead.at, reach});
         bead.amount = 0;
-        if (inside < runs) draw_in(bead, ground, reach, std::clamp((starts - inside) / round, 0.0, 1.0), kAny);
-        else draw_in(bead, ground, reach, std::min(p_.drain * seconds, 1.0), kBead * p_.hold);  // leaves other beads whole
+        if (inside < runs)
+            draw_in(bead, ground, reach, std::clamp((starts - inside) / round, 0.0, 1.0), kAny);
+        else
+            draw_in(bead, ground, reach, std::min(p_.drain * seconds, 1.0),
+                    kBead * p_.hold);  // leaves other beads whole
         lay_down(bead, move(bead, grain, seconds));
         seen_.push_back({bead.at, radius_of(bead.amount, p_.bead_angle)});
     }
@@ -212,7 +227,8 @@ class Drips::Run {
         double least = 1e300;
         const Near* nearest = nullptr;
         for (const Near& n : d_.disc_)
-            if (const double distance = glm::dot(n.at - at, n.at - at); distance < least) least = distance, nearest = &n;
+            if (const double distance = glm::dot(n.at - at, n.at - at); distance < least)
+                least = distance, nearest = &n;
         bead.place = nearest->ref;
         const Vec3 n(d_.map_.normal(bead.place.slot, bead.place.texel));
         bead.at = at - n * glm::dot(n, at - nearest->at);
@@ -267,20 +283,23 @@ class Drips::Run {
     }
     /// What it leaves there when it goes: the ground, or its trail.
     double rest(const Bead& bead, const BaseColour& ground, const Near& n) const {
-        return std::max(std::clamp(ground.mean + glm::dot(ground.slope, n.at - bead.at), 0.0, p_.hold), trail(n, ground.trail));
+        return std::max(std::clamp(ground.mean + glm::dot(ground.slope, n.at - bead.at), 0.0, p_.hold),
+                        trail(n, ground.trail));
     }
     /// Above the ground within `radius`, and above hold round it.
     std::pair<double, double> amounts(const Bead& bead, const BaseColour& ground, double radius) const {
         double inside = 0, round = 0;
         for (const Near& n : d_.disc_) {
             const auto w = static_cast<double>(liquid(n.ref));
-            if (n.distance < radius) inside += std::max(0.0, w - rest(bead, ground, n)) * n.area;
-            else round += std::max(0.0, w - p_.hold) * n.area;
+            if (n.distance < radius)
+                inside += std::max(0.0, w - rest(bead, ground, n)) * n.area;
+            else
+                round += std::max(0.0, w - p_.hold) * n.area;
         }
         return {inside, round};
     }
-    /// Whether what lies there was laid down as a cap, which one at rest is not any more, and hangs on a trail: a dot that
-    /// was put on dry surface is held by the line all round it. `gather` has been there.
+    /// Whether what lies there was laid down as a cap, which one at rest is not any more, and hangs on a trail: a dot
+    /// that was put on dry surface is held by the line all round it. `gather` has been there.
     bool is_running(const Bead& bead, const BaseColour& ground, double amount) const {
         const double radius = radius_of(amount, p_.bead_angle);
         return is_full(bead, ground, radius) && is_wet_behind(bead, radius);
@@ -299,7 +318,8 @@ class Drips::Run {
         double wet = 0, area = 0;
         for (const Near& n : d_.disc_) {
             const Vec3 d = n.at - bead.at;
-            const double behind = -glm::dot(d, down), across = std::sqrt(std::max(0.0, glm::dot(d, d) - behind * behind));
+            const double behind = -glm::dot(d, down),
+                         across = std::sqrt(std::max(0.0, glm::dot(d, d) - behind * behind));
             if (behind < from || behind > to || across > kTrack * radius) continue;
             wet += std::min(static_cast<double>(liquid(n.ref)), kThinnest * p_.trail) * n.area;
             area += n.area;
@@ -310,8 +330,10 @@ class Drips::Run {
     void draw_in(Bead& bead, const BaseColour& ground, double radius, double part, double thick) {
         for (const Near& n : d_.disc_) {
             const auto w = static_cast<double>(liquid(n.ref));
-            if (n.distance < radius) take(bead, n, rest(bead, ground, n));
-            else if (w > p_.hold && w < thick) take(bead, n, w - part * (w - p_.hold));
+            if (n.distance < radius)
+                take(bead, n, rest(bead, ground, n));
+            else if (w > p_.hold && w < thick)
+                take(bead, n, w - part * (w - p_.hold));
         }
     }
 
@@ -322,7 +344,8 @@ class Drips::Run {
             if (liquid(n.ref) > liquid(thickest->ref)) thickest = &n;
         if (static_cast<double>(liquid(thickest->ref)) > kBead * p_.hold) {
             Bead other{.place = thickest->ref, .at = thickest->at};
-            for (int i = 0; i < kShifts && centre(other, radius); ++i) {}
+            for (int i = 0; i < kShifts && centre(other, radius); ++i) {
+            }
             d_.gather(other.place, other.at, kRing * radius);
             const BaseColour ground = target_model(other, kRim * radius);
             for (const Near& n : d_.disc_)
@@ -361,7 +384,8 @@ class Drips::Run {
         };
         given_.amount += add(canvas_.touch_liquid(n.ref.slot, Liquid::film)[n.ref.texel], bead.amount);
         for (int k = 0; k < n_pigments_; ++k)
-            if (bead.pigment[k] > 0) given_.pigment[k] += add(canvas_.touch(n.ref.slot, k)[n.ref.texel], bead.pigment[k]);
+            if (bead.pigment[k] > 0)
+                given_.pigment[k] += add(canvas_.touch(n.ref.slot, k)[n.ref.texel], bead.pigment[k]);
     }
     void book(Bead& bead) {
         bead.amount = std::max(0.0, bead.amount - given_.amount);
@@ -413,7 +437,8 @@ class Drips::Run {
         // Texels lie unevenly at seams: without the tilt a bead would creep to one side, step by step.
         Vec3 tilt{0};
         const auto height = [&](const Near& n) {
-            return std::max(0.0, 1 - n.distance * n.distance / square) * n.area * std::clamp(1 - glm::dot(tilt, n.at - bead.at), 0.5, 1.5);
+            return std::max(0.0, 1 - n.distance * n.distance / square) * n.area *
+                   std::clamp(1 - glm::dot(tilt, n.at - bead.at), 0.5, 1.5);
         };
         double sum = 0;
         for (int i = 0; i < kTilts; ++i) {
@@ -432,7 +457,8 @@ class Drips::Run {
             const Vec3 d = n.at - bead.at;
             const double along = glm::dot(d, down), across = std::max(0.0, glm::dot(d, d) - along * along);
             const double behind = std::max(0.0, -along) / radius, front = std::max(0.0, along) / radius;
-            const double cap = std::max(0.0, 1 - across / (radius * radius) - front * front - behind * behind / (kTail * kTail));
+            const double cap =
+                std::max(0.0, 1 - across / (radius * radius) - front * front - behind * behind / (kTail * kTail));
             // A cap before its middle; behind, it runs out flat into the trail, where there is one.
             const double trail = std::clamp(static_cast<double>(liquid(n.ref)) / (kThinnest * p_.trail), 0.0, 1.0);
             const double wet = std::lerp(1.0, trail, std::clamp(2 * behind - 1, 0.0, 1.0));
@@ -465,7 +491,7 @@ class Drips::Run {
         Vec3 at;
         double radius;
     };
-    std::vector<Seen> seen_;     ///< beads, where they were and where they went
+    std::vector<Seen> seen_;  ///< beads, where they were and where they went
 };
 
 std::vector<std::uint32_t> Drips::run(Canvas& canvas, std::span<const Seed> seeds, const FilmParams& params,

@@ -14,17 +14,16 @@ namespace tuft::ink::wet {
 ///
 ///     R < R_c = 2 l √(θ / (π sin α)),   l² = σ / ρ g
 ///
-/// times the roughness of the place (`grain`). Contact lines that move hold less (Gao et al. 2018, Nature Physics 14, 191:
-/// on every surface they tried), here 0.65 of that, a choice, so that a bead once it runs is held where R < R_k = √0.65 R_c.
-/// It moves with
-/// bead_speed ((R / R_k)² − 1) (Le Grand, Daerr, Limat 2005: linear in the weight beyond the critical one), 1.5
-/// bead_speed at most, takes up what lies thicker than `hold` on its way, with its pigments, draws in what is above
-/// `hold` within 2 R, and leaves a trail of half width √(R R_k), rounded across, where it passed over
-/// less. It stops when the trail has used it up, and lies then at half its angle, drawn out up its trail, so that it dries
-/// as a soft bulb that fades into its trail. A film that is no bead yet starts one where 1.3 times what the surface
-/// holds lies above `hold` within 2 R.
-/// Nothing is kept between steps: what lies on the texels says where beads are, and which of them run: those that are as
-/// high as caps and hang on liquid behind. What stands on dry surface is held by the line all round it.
+/// times the roughness of the place (`grain`). Contact lines that move hold less (Gao et al. 2018, Nature Physics 14,
+/// 191: on every surface they tried), here 0.65 of that, a choice, so that a bead once it runs is held where R < R_k =
+/// √0.65 R_c. It moves with bead_speed ((R / R_k)² − 1) (Le Grand, Daerr, Limat 2005: linear in the weight beyond the
+/// critical one), 1.5 bead_speed at most, takes up what lies thicker than `hold` on its way, with its pigments, draws
+/// in what is above `hold` within 2 R, and leaves a trail of half width √(R R_k), rounded across, where it passed over
+/// less. It stops when the trail has used it up, and lies then at half its angle, drawn out up its trail, so that it
+/// dries as a soft bulb that fades into its trail. A film that is no bead yet starts one where 1.3 times what the
+/// surface holds lies above `hold` within 2 R. Nothing is kept between steps: what lies on the texels says where beads
+/// are, and which of them run: those that are as high as caps and hang on liquid behind. What stands on dry surface is
+/// held by the line all round it.
 ///
 /// Discs are measured in space along the texels that hang together, over seams too, so that
 /// neither shape nor path depends on the texels' directions.
@@ -63,11 +62,11 @@ class Drips {
     const atlas::TexelMap& map_;
     const atlas::SeamLinks& seams_;
     const WetFilm::FreeFn& free_;
-    std::vector<std::uint32_t> seen_of_slot_;                           ///< [n_slots] scratch
+    std::vector<std::uint32_t> seen_of_slot_;  ///< [n_slots] scratch
     std::vector<std::array<std::uint64_t, atlas::kTileTexels / 64>> seen_;
     std::vector<std::uint32_t> seen_slots_;
-    std::vector<Near> disc_;                                            ///< of the last `gather`
-    std::vector<double> part_;                                           ///< of a bead for each of those
+    std::vector<Near> disc_;    ///< of the last `gather`
+    std::vector<double> part_;  ///< of a bead for each of those
 };
 
 }  // namespace tuft::ink::wet

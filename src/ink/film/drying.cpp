@@ -64,8 +64,7 @@ struct Tile {
     }
     void close(int t, float part = 1) {
         Amounts amounts = at(kOpenFilm, t), rest{};
-        for (int p = 0; p < kMaxPigments && part < 1; ++p)
-            rest[p] = (1 - part) * amounts[p], amounts[p] -= rest[p];
+        for (int p = 0; p < kMaxPigments && part < 1; ++p) rest[p] = (1 - part) * amounts[p], amounts[p] -= rest[p];
         const float sum = sum_of(amounts);
         if (!(sum > 0)) return;
         put(kOpenFilm, t, rest);
@@ -100,8 +99,7 @@ struct Tile {
 
 }  // namespace
 
-void close_films(Canvas& canvas, std::uint32_t slot, std::span<const std::uint8_t, kN> closing,
-                 float stain) {
+void close_films(Canvas& canvas, std::uint32_t slot, std::span<const std::uint8_t, kN> closing, float stain) {
     if (!canvas.has_film(slot, kOpenFilm)) return;
     Tile tile{canvas, slot, stain};
     for (int t = 0; t < kN; ++t)

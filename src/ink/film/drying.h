@@ -17,13 +17,12 @@ namespace tuft::ink {
 /// all the others. On a texel without dry films, the part `stain` goes into the soaked film
 /// instead, below and beside the rest of it. Liquid is not regarded. Slots may be closed by
 /// different threads.
-void close_films(Canvas& canvas, std::uint32_t slot,
-                 std::span<const std::uint8_t, atlas::kTileTexels> closing, float stain = 0);
+void close_films(Canvas& canvas, std::uint32_t slot, std::span<const std::uint8_t, atlas::kTileTexels> closing,
+                 float stain = 0);
 
 /// The same for a part of what lies there: of each texel's open film `part` [256], 0–1, in its
 /// composition, becomes the next dry film below the rest of it. Nothing goes into the soaked film.
-void close_parts(Canvas& canvas, std::uint32_t slot,
-                 std::span<const float, atlas::kTileTexels> part);
+void close_parts(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> part);
 
 /// Lets everything dry at once: liquid goes without moving anything, every open film is
 /// closed. Returns the liquid that went, film·m².

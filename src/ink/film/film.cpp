@@ -20,13 +20,13 @@ namespace {
 
 using namespace wet;
 
-constexpr int kLines = 20;     // of memory asked for at once: as many as the processor waits for
-constexpr double kLeastMixing = 2e-10; // m²/s
-constexpr double kStirring = 0.02;     // film units: mixing over mobility
+constexpr int kLines = 20;              // of memory asked for at once: as many as the processor waits for
+constexpr double kLeastMixing = 2e-10;  // m²/s
+constexpr double kStirring = 0.02;      // film units: mixing over mobility
 constexpr double kMostUneven = 1.2;
 constexpr double kFilmHeight = 10e-6;  // metres: relief over which flow is as uneven as half of that
 constexpr float kFilmsPerMicrometre = 0.1f;
-constexpr double kRimLength = 1e-3;    // metres: what the rim of a wet spot adds to its area, as for drying
+constexpr double kRimLength = 1e-3;  // metres: what the rim of a wet spot adds to its area, as for drying
 
 /// What lies on a tile and on those around it.
 using Near = std::array<const Sources*, 9>;
@@ -49,10 +49,13 @@ bool load(Field& field, const Near& near, PlaneOf&& plane_of) {
 
 /// Of a tile's `others`.
 const Beyond* other_of(const Active& tile, std::uint32_t slot) {
-    return &*std::lower_bound(tile.others.begin(), tile.others.end(), slot, [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
+    return &*std::lower_bound(tile.others.begin(), tile.others.end(), slot,
+                              [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
 }
 
-float at(const Plane* plane, int t) { return plane ? (*plane)[t] : 0; }
+float at(const Plane* plane, int t) {
+    return plane ? (*plane)[t] : 0;
+}
 
 bool all_zero(const Plane& plane) {
     return std::all_of(plane.begin(), plane.end(), [](float v) { return v == 0.0f; });
@@ -74,7 +77,8 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
     p.rim_evaporation = p.evaporation * static_cast<double>(substrate.edge) * kRimLength;
     p.stain = p.pores / (p.pores + 2);
     if (substrate.pores > 0)
-        p.unevenness = kMostUneven * static_cast<double>(substrate.relief) / (static_cast<double>(substrate.relief) + kFilmHeight);
+        p.unevenness =
+            kMostUneven * static_cast<double>(substrate.relief) / (static_cast<double>(substrate.relief) + kFilmHeight);
     if (glm::length(down) > 0) p.down = glm::normalize(down);
     return p;
 }
@@ -87,11 +91,11 @@ struct WetFilm::State : TileList {
     /// [n_slots] of what is dry, film units: found once in an advance, null where it is plain.
     std::vector<std::unique_ptr<Plane>> relief;
     std::vector<std::unique_ptr<Plane>> paste;  ///< [n_slots] what is paste; null: none
-    std::vector<std::uint8_t> felt;  ///< [n_slots] whether that was looked for
+    std::vector<std::uint8_t> felt;             ///< [n_slots] whether that was looked for
     bool any_relief = false;
     std::unique_ptr<Drips> drips;
-    std::vector<Sources> sources;  ///< of the list; empty: not looked up yet
-    Part part = Part::whole;       ///< of the step in work
+    std::vector<Sources> sources;             ///< of the list; empty: not looked up yet
+    Part part = Part::whole;                  ///< of the step in work
     std::vector<std::uint32_t> beside_order;  ///< of `order` what lies beside seams
     std::mutex mutex;
     std::vector<std::unique_ptr<Worker>> workers;  ///< idle ones
@@ -153,7 +157,8 @@ struct WetFilm::State : TileList {
         paste[slot] = greatest(stands.data()) > 0 ? std::make_unique<Plane>(stands) : nullptr;
         for (int t = 0; t < kTexels && paste[slot]; ++t) z[t] += stands[t];
         float most = 0;
-        for (float& v : z) most = std::max(most, v = std::max(0.0f, v - static_cast<float>(kPlain)) * kFilmsPerMicrometre);
+        for (float& v : z)
+            most = std::max(most, v = std::max(0.0f, v - static_cast<float>(kPlain)) * kFilmsPerMicrometre);
         relief[slot] = most > 0 ? std::make_unique<Plane>(z) : nullptr;
     }
 
@@ -164,8 +169,7 @@ struct WetFilm::State : TileList {
             const std::uint32_t slot = list[i].slot;
             if (!paste[slot]) continue;
             std::array<float, kTexels> liquid;
-            for (int t = 0; t < kTexels; ++t)
-                liquid[t] = at(sources[i].liquid[0], t) + at(sources[i].liquid[1], t);
+            for (int t = 0; t < kTexels; ++t) liquid[t] = at(sources[i].liquid[0], t) + at(sources[i].liquid[1], t);
             if (!bed_paste(canvas, slot, *paste[slot], liquid, 0)) continue;
             felt[slot] = 0;
             any = true;
@@ -197,7 +201,8 @@ struct WetFilm::State : TileList {
     }
 
     /// Fluxes over the seams of a tile: added to dw, ds; what pigments need is kept.
-    void cross_seams(std::size_t index, int pigments, const Step& step, bool thin, Work& work, Crossing& crossing) const {
+    void cross_seams(std::size_t index, int pigments, const Step& step, bool thin, Work& work,
+                     Crossing& crossing) const {
         const Active& tile = list[index];
         crossing.clear(tile.links.size(), pigments);
         if (tile.links.empty()) return;
@@ -209,8 +214,10 @@ struct WetFilm::State : TileList {
             thin = thin || u < step.rim_depth;
             if (!(t + u > 0) || other == kNone || part == Part::outside) continue;
             for (int p = 0; p < pigments; ++p)
-                crossing.beyond[static_cast<std::size_t>(p) * crossing.links + crossing.size] = at(sources[other].open[p], l.other_texel);
-            for (int p = 0; p < pigments; ++p) crossing.pigments |= static_cast<std::uint32_t>(sources[other].open[p] != nullptr) << p;
+                crossing.beyond[static_cast<std::size_t>(p) * crossing.links + crossing.size] =
+                    at(sources[other].open[p], l.other_texel);
+            for (int p = 0; p < pigments; ++p)
+                crossing.pigments |= static_cast<std::uint32_t>(sources[other].open[p] != nullptr) << p;
             SeamLanes& lanes = crossing.lanes[crossing.size / kSide];
             const std::size_t lane = crossing.size % kSide;
             const bool both = t > 0 && u > 0;  // then what pins rims has no say, and lies in memory far away
@@ -251,13 +258,15 @@ struct WetFilm::State : TileList {
                 const atlas::SeamTap& tap = tile.taps[i];
                 tapped[tap.side] = true;
                 if (tap.other_slot == kNone) {
-                    beyond[tap.side] += tap.weight * work.total[k + tap.other_texel % 3 - 1 + (tap.other_texel / 3 - 1) * kRow];
+                    beyond[tap.side] +=
+                        tap.weight * work.total[k + tap.other_texel % 3 - 1 + (tap.other_texel / 3 - 1) * kRow];
                     continue;
                 }
                 if (other->slot != tap.other_slot) other = other_of(tile, tap.other_slot);
                 if (other->place == kNone) continue;
                 const Sources& there = sources[other->place];
-                beyond[tap.side] += tap.weight * (at(there.liquid[0], tap.other_texel) + at(there.liquid[1], tap.other_texel));
+                beyond[tap.side] +=
+                    tap.weight * (at(there.liquid[0], tap.other_texel) + at(there.liquid[1], tap.other_texel));
             }
             if (!(here > 0)) continue;
             const auto drop = [&](int side, int conductance, int neighbour) {
@@ -309,9 +318,8 @@ struct WetFilm::State : TileList {
         cross_seams(index, pigments, step, thin, work, worker.crossing);
         ahead.fetch(kLines);
         // From what is there and nothing else: the same whenever this journal is painted.
-        const std::uint64_t seed =
-            hash_bits(hash_bits(tile.slot, number),
-                      std::bit_cast<std::uint32_t>(tile.outcome.most_w + tile.outcome.most_s));
+        const std::uint64_t seed = hash_bits(hash_bits(tile.slot, number),
+                                             std::bit_cast<std::uint32_t>(tile.outcome.most_w + tile.outcome.most_s));
         const Outcome before = tile.outcome;
         const bool seam_was = tile.seam_wet;
         tile.outcome = {};
@@ -331,10 +339,10 @@ struct WetFilm::State : TileList {
         for (const atlas::SeamLink& l : tile.links)
             tile.seam_wet = tile.seam_wet || (*tile.w)[l.texel] + (*tile.s)[l.texel] > 0;
         // Until the list is looked at: a step may have parts.
-        tile.spreads = tile.spreads || before.sides != tile.outcome.sides ||
-                       seam_was != tile.seam_wet ||
+        tile.spreads = tile.spreads || before.sides != tile.outcome.sides || seam_was != tile.seam_wet ||
                        (before.most_w + before.most_s > 0) != tile.wet();
-        for (int p = 0; p < pigments; ++p) compute_pigment(index, near, p, seed + 1 + static_cast<std::uint64_t>(p), worker);
+        for (int p = 0; p < pigments; ++p)
+            compute_pigment(index, near, p, seed + 1 + static_cast<std::uint64_t>(p), worker);
     }
 
     void compute_pigment(std::size_t index, const Near& near, int p, std::uint64_t seed, Worker& worker) {
@@ -372,7 +380,8 @@ struct WetFilm::State : TileList {
     /// What `look_ahead` reads.
     void look_far_ahead(std::size_t index) const {
         const auto fetch = [](const auto& what) {
-            for (std::size_t i = 0; i < sizeof what; i += 64) __builtin_prefetch(reinterpret_cast<const char*>(&what) + i, 0, 2);
+            for (std::size_t i = 0; i < sizeof what; i += 64)
+                __builtin_prefetch(reinterpret_cast<const char*>(&what) + i, 0, 2);
         };
         fetch(list[index]);
         fetch(sources[index]);
@@ -388,7 +397,8 @@ struct WetFilm::State : TileList {
         };
         const Active& tile = list[index];
         planes_of(static_cast<std::uint32_t>(index), 0, sizeof(Plane));
-        for (const int above : {7, 8}) planes_of(tile.around[above], 0, 64);  // the row below was read before, and is at hand
+        for (const int above : {7, 8})
+            planes_of(tile.around[above], 0, 64);  // the row below was read before, and is at hand
         for (const Beyond& other : tile.others)
             for (unsigned lines = other.lines; lines && other.place != kNone; lines &= lines - 1) {
                 const std::size_t line = 64 * static_cast<std::size_t>(std::countr_zero(lines));
@@ -448,9 +458,7 @@ struct WetFilm::State : TileList {
     /// Counts who reads a tile's planes among those that a step goes through, the others stay as
     /// they are.
     std::span<const std::uint32_t> going() {
-        const auto set = [&](std::uint32_t i, std::uint32_t n) {
-            readers[i].store(n, std::memory_order_relaxed);
-        };
+        const auto set = [&](std::uint32_t i, std::uint32_t n) { readers[i].store(n, std::memory_order_relaxed); };
         if (part != Part::inside) {
             for (std::uint32_t i = 0; i < list.size(); ++i) set(i, n_readers[i]);
             return order;
@@ -463,15 +471,12 @@ struct WetFilm::State : TileList {
             list[i].idle = true;
         }
         for (const std::uint32_t i : beside_order)
-            each_read(i, [&](std::uint32_t read) {
-                set(read, readers[read].load(std::memory_order_relaxed) + 1);
-            });
+            each_read(i, [&](std::uint32_t read) { set(read, readers[read].load(std::memory_order_relaxed) + 1); });
         return beside_order;
     }
 
     /// `number`: of the step, another one for each of its parts.
-    void step(Canvas& canvas, const FilmParams& params, const Step& rates, std::uint64_t number,
-              FilmReport& report) {
+    void step(Canvas& canvas, const FilmParams& params, const Step& rates, std::uint64_t number, FilmReport& report) {
         const bool alone = thread_count() == 1;
         const std::span<const std::uint32_t> tiles = going();
         const int pigments = static_cast<int>(canvas.pigments().size());
@@ -486,8 +491,7 @@ struct WetFilm::State : TileList {
                     worker->ahead.clear();
                 if (i + 4 < end) look_far_ahead(tiles[i + 4]);
                 each_read(tiles[i], [&](std::uint32_t read) {
-                    if (readers[read].load(std::memory_order_relaxed) == 1)
-                        canvas.expect(list[read].slot);
+                    if (readers[read].load(std::memory_order_relaxed) == 1) canvas.expect(list[read].slot);
                 });
                 compute(tiles[i], pigments, rates, number, *worker);
                 each_read(tiles[i], [&](std::uint32_t read) {
@@ -503,8 +507,8 @@ struct WetFilm::State : TileList {
     }
 
     /// A step over the faces of `part`, and what follows from where it spread.
-    void go(Canvas& canvas, const FilmParams& params, Part faces, const Step& rates,
-            std::uint64_t number, FilmReport& report, const BeforeFn& before) {
+    void go(Canvas& canvas, const FilmParams& params, Part faces, const Step& rates, std::uint64_t number,
+            FilmReport& report, const BeforeFn& before) {
         if (sources.empty()) prepare(canvas);
         for (const Active& tile : list) tell(tile.slot, before);
         part = faces;
@@ -517,18 +521,16 @@ struct WetFilm::State : TileList {
         if (bedded) sources.clear();
     }
 
-    void step_in_parts(Canvas& canvas, const FilmParams& params, const Chosen& chosen,
-                       FilmReport& report, const BeforeFn& before) {
+    void step_in_parts(Canvas& canvas, const FilmParams& params, const Chosen& chosen, FilmReport& report,
+                       const BeforeFn& before) {
         const std::uint64_t number = report.steps++;
         const auto inside = [&](int first, int last) {
             for (int i = first; i < last && !list.empty(); ++i)
-                go(canvas, params, Part::inside, chosen.part, number | (i + 1ull) << 40, report,
-                   before);
+                go(canvas, params, Part::inside, chosen.part, number | (i + 1ull) << 40, report, before);
         };
         inside(0, chosen.parts / 2);
         if (!list.empty())
-            go(canvas, params, chosen.parts ? Part::outside : Part::whole, chosen.step, number,
-               report, before);
+            go(canvas, params, chosen.parts ? Part::outside : Part::whole, chosen.step, number, report, before);
         inside(chosen.parts / 2, chosen.parts);
     }
 };
@@ -538,7 +540,9 @@ WetFilm::WetFilm(const atlas::TexelMap& map, atlas::SeamLinks seams)
 WetFilm::~WetFilm() = default;
 WetFilm::WetFilm(WetFilm&&) noexcept = default;
 
-void WetFilm::keep_within(FreeFn free) { state_->set_free(std::move(free)); }
+void WetFilm::keep_within(FreeFn free) {
+    state_->set_free(std::move(free));
+}
 
 FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& params, const BeforeFn& before,
                             const ProgressFn& progress) {
@@ -584,7 +588,8 @@ FilmReport WetFilm::dry(Canvas& canvas, const FilmParams& params, const BeforeFn
     }
     if (before)
         for (const std::uint32_t slot : canvas.touched_slots())
-            if (canvas.has_film(slot, kOpenFilm) || canvas.liquid(slot, Liquid::film) || canvas.liquid(slot, Liquid::pores))
+            if (canvas.has_film(slot, kOpenFilm) || canvas.liquid(slot, Liquid::film) ||
+                canvas.liquid(slot, Liquid::pores))
                 before(slot);
     report.evaporated += dry_all(canvas, state_->map);
     return report;

@@ -13,31 +13,31 @@ namespace tuft::ink {
 
 /// How liquid behaves on a surface. Amounts of liquid in film units (10 µm).
 struct FilmParams {
-    double mobility = 1e-10;         ///< D, m²/s per film unit: thick liquid flows to thin
-    double threshold = 0.1;          ///< w_c: liquid below it is held by the surface
-    double pin = 1;                  ///< film units above w_c that it takes to wet dry surface
-    double mixing = 1e-10;           ///< m²/s: pigments' own diffusion within the liquid
-    double grip = 1;                 ///< film units: in thinner liquid, grains lie on the surface and lag behind
-    double absorbency = 0;           ///< 1/s: part of the liquid that empty pores draw in
-    double pores = 0;                ///< liquid that the substrate can hold inside; 0: none
-    double retention = 0;            ///< part of the pigments that stays behind when liquid seeps through pores
-    double evaporation = 1.0 / 60;   ///< film units a second
-    double rim_evaporation = 0;      ///< film units · m a second, more, per metre of rim
-    double rim_depth = 1;            ///< film units: rims are where less than that stands
-    double stain = 0;                ///< part of a drying film that stays in bare substrate
-    double unevenness = 0;           ///< rms of ln of how easily liquid flows, from place to place; 0: even
-    Vec3 down{0};                    ///< towards the ground, length 1; zero: no weight
-    double hold = 2;                 ///< film units that neither weight nor surface tension moves
-    double levelling = 1e-8;         ///< L, m²/s per film unit above `hold`: puddles draw together
-    double ridge = 0.4;              ///< film units that stay on the ridges of dry paint
-    double bead_angle = 0.15;        ///< radians: contact angle of a bead that runs down
-    double bead_speed = 8e-3;        ///< m/s of a bead of √2 times the radius at which it stops
-    double drain = 2;                ///< 1/s: part of the liquid above `hold` near a bead that it draws in
-    double trail = 0.9;              ///< film units that a bead leaves behind
-    double shortest_step = 0.05;     ///< seconds; a fifth on relief, half under liquid. Where
-                                     ///< stability asked for shorter steps, the fastest flows are
-                                     ///< held back instead, or go between blocks of texels; beside
-                                     ///< seams, where blocks end, such steps are divided
+    double mobility = 1e-10;        ///< D, m²/s per film unit: thick liquid flows to thin
+    double threshold = 0.1;         ///< w_c: liquid below it is held by the surface
+    double pin = 1;                 ///< film units above w_c that it takes to wet dry surface
+    double mixing = 1e-10;          ///< m²/s: pigments' own diffusion within the liquid
+    double grip = 1;                ///< film units: in thinner liquid, grains lie on the surface and lag behind
+    double absorbency = 0;          ///< 1/s: part of the liquid that empty pores draw in
+    double pores = 0;               ///< liquid that the substrate can hold inside; 0: none
+    double retention = 0;           ///< part of the pigments that stays behind when liquid seeps through pores
+    double evaporation = 1.0 / 60;  ///< film units a second
+    double rim_evaporation = 0;     ///< film units · m a second, more, per metre of rim
+    double rim_depth = 1;           ///< film units: rims are where less than that stands
+    double stain = 0;               ///< part of a drying film that stays in bare substrate
+    double unevenness = 0;          ///< rms of ln of how easily liquid flows, from place to place; 0: even
+    Vec3 down{0};                   ///< towards the ground, length 1; zero: no weight
+    double hold = 2;                ///< film units that neither weight nor surface tension moves
+    double levelling = 1e-8;        ///< L, m²/s per film unit above `hold`: puddles draw together
+    double ridge = 0.4;             ///< film units that stay on the ridges of dry paint
+    double bead_angle = 0.15;       ///< radians: contact angle of a bead that runs down
+    double bead_speed = 8e-3;       ///< m/s of a bead of √2 times the radius at which it stops
+    double drain = 2;               ///< 1/s: part of the liquid above `hold` near a bead that it draws in
+    double trail = 0.9;             ///< film units that a bead leaves behind
+    double shortest_step = 0.05;    ///< seconds; a fifth on relief, half under liquid. Where
+                                    ///< stability asked for shorter steps, the fastest flows are
+                                    ///< held back instead, or go between blocks of texels; beside
+                                    ///< seams, where blocks end, such steps are divided
 };
 
 /// What a surface does by its substance (`Substrate`: diffusion, threshold, edge, absorbency,
@@ -109,13 +109,13 @@ class WetFilm {
 
     /// Lets `seconds` pass. Does nothing on a dry canvas. `progress` is asked at every step; where it
     /// says stop, the canvas is left as far as it came, for the caller to take back.
-    FilmReport advance(Canvas& canvas, double seconds, const FilmParams& params,
-                       const BeforeFn& before = {}, const ProgressFn& progress = {});
+    FilmReport advance(Canvas& canvas, double seconds, const FilmParams& params, const BeforeFn& before = {},
+                       const ProgressFn& progress = {});
 
     /// Lets time pass until nothing is wet, at most `limit` seconds; then what is left dries
     /// where it is. Also closes open films that never were wet.
-    FilmReport dry(Canvas& canvas, const FilmParams& params, const BeforeFn& before = {},
-                   double limit = 3600, const ProgressFn& progress = {});
+    FilmReport dry(Canvas& canvas, const FilmParams& params, const BeforeFn& before = {}, double limit = 3600,
+                   const ProgressFn& progress = {});
 
   private:
     struct State;

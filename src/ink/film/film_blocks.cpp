@@ -6,8 +6,7 @@
 namespace tuft::ink::wet {
 namespace {
 
-constexpr float kMostOfBlock =
-    2;  // conductance of a face: from block to block a sixteenth of that, 1/8
+constexpr float kMostOfBlock = 2;    // conductance of a face: from block to block a sixteenth of that, 1/8
 constexpr float kLeastPart = 0.1f;   // of what the driest texel of a block has, through a face
 constexpr int kRound = kBlocks + 2;  // with those beside
 
@@ -38,8 +37,8 @@ inline __attribute__((always_inline)) float larger(float a, float b) {
 
 /// Sums and least of four rows of `kColumns`.
 template <int kColumns>
-inline __attribute__((always_inline)) void columns_of(float* __restrict sum, float* __restrict low,
-                                                      const float* s, int stride) {
+inline __attribute__((always_inline)) void columns_of(float* __restrict sum, float* __restrict low, const float* s,
+                                                      int stride) {
     for (int x = 0; x < kColumns; ++x) {
         const float a = s[x], b = s[stride + x], c = s[2 * stride + x], d = s[3 * stride + x];
         sum[x] = ((a + b) + c) + d;
@@ -48,22 +47,18 @@ inline __attribute__((always_inline)) void columns_of(float* __restrict sum, flo
 }
 TUFT_CLONES void columns_of_tile(float* __restrict sum, float* __restrict low, const float* s) {
     for (int row = 0; row < kBlocks; ++row)
-        columns_of<kSide>(sum + row * kSide, low + row * kSide, s + field_at(0, row * kBlock),
-                          kRow);
+        columns_of<kSide>(sum + row * kSide, low + row * kSide, s + field_at(0, row * kBlock), kRow);
 }
 
 Means means_of(const Field& liquid, const Beside& beside) {
     Means m;
-    const auto whole = [](std::uint16_t blocks, int column, int row) {
-        return blocks >> (row * kBlocks + column) & 1;
-    };
+    const auto whole = [](std::uint16_t blocks, int column, int row) { return blocks >> (row * kBlocks + column) & 1; };
     alignas(64) std::array<float, kBlocks * kSide> sum, low;
     columns_of_tile(sum.data(), low.data(), liquid.data());
     for (int row = 0; row < kBlocks; ++row)
         for (int column = 0; column < kBlocks; ++column)
             if (whole(beside.here, column, row))
-                m.set(column, row, &sum[row * kSide + column * kBlock],
-                      &low[row * kSide + column * kBlock]);
+                m.set(column, row, &sum[row * kSide + column * kBlock], &low[row * kSide + column * kBlock]);
     constexpr int kLast = kBlocks - 1;
     for (int i = 0; i < kBlocks; ++i) {
         const std::array<std::array<int, 4>, 4> sides{
@@ -71,8 +66,8 @@ Means means_of(const Field& liquid, const Beside& beside) {
         for (std::size_t side = 0; side < 4; ++side) {
             const auto& [column, row, to_column, to_row] = sides[side];
             if (!beside.liquid[side] || !whole(beside.blocks[side], column, row)) continue;
-            columns_of<kBlock>(sum.data(), low.data(),
-                               beside.liquid[side] + row * kBlock * kSide + column * kBlock, kSide);
+            columns_of<kBlock>(sum.data(), low.data(), beside.liquid[side] + row * kBlock * kSide + column * kBlock,
+                               kSide);
             m.set(to_column, to_row, sum.data(), low.data());
         }
     }
@@ -102,17 +97,15 @@ struct Fluxes {
 /// Through the sixteen texels' parts of the faces between two rows of blocks. Returns the greatest
 /// conductance that was held back.
 TUFT_CLONES float through_faces(float* __restrict flux, const Row& from, const Row& to,
-                                const std::uint16_t* __restrict conductance,
-                                const std::uint16_t* __restrict room, float most) {
+                                const std::uint16_t* __restrict conductance, const std::uint16_t* __restrict room,
+                                float most) {
     alignas(64) float any[kSide];
     for (int x = 0; x < kSide; ++x) {
         const float least = smaller(from.least[x], to.least[x]);
-        const float flow = 0.5f * (from.flow[x] + to.flow[x]),
-                    drop = (from.mean[x] - to.mean[x]) / kBlock;
+        const float flow = 0.5f * (from.flow[x] + to.flow[x]), drop = (from.mean[x] - to.mean[x]) / kBlock;
         const float k = (static_cast<float>(conductance[x]) * kConductanceUnit) * flow;
         const float over = larger(k - most * static_cast<float>(room[x]), 0);
-        const float held_back = least > 0 ? smaller(over, kMostOfBlock) : 0,
-                    limit = kLeastPart * least;
+        const float held_back = least > 0 ? smaller(over, kMostOfBlock) : 0, limit = kLeastPart * least;
         const float f = larger(smaller(held_back * drop, limit), -limit);
         flux[x] = least > 0 ? f : 0;
         any[x] = held_back;
@@ -152,20 +145,19 @@ Fluxes fluxes_of(Means m, const Geometry& g, const Medium& p) {
             room[row] = room_at(k, k + 1);
         }
         const auto at = static_cast<std::size_t>(face);
-        f.any |= through_faces(f.across[at].data(), across[from], across[to], conductance.data(),
-                               room.data(), p.most) > 0;
+        f.any |=
+            through_faces(f.across[at].data(), across[from], across[to], conductance.data(), room.data(), p.most) > 0;
         for (int column = 0; column < kSide; ++column)
             room[column] = room_at(field_at(column, before), field_at(column, before + 1));
         f.any |= through_faces(f.along[at].data(), along[from], along[to],
-                               &g.gy[static_cast<std::size_t>((before + 1) * kSide)], room.data(),
-                               p.most) > 0;
+                               &g.gy[static_cast<std::size_t>((before + 1) * kSide)], room.data(), p.most) > 0;
     }
     return f;
 }
 
 /// Sixteen faces from texel k to k + `to`.
-inline __attribute__((always_inline)) void carry(Faces& f, int k, int to, const float* flux,
-                                                 const float* rate, float passing) {
+inline __attribute__((always_inline)) void carry(Faces& f, int k, int to, const float* flux, const float* rate,
+                                                 float passing) {
     float *a = &f.a[k], *b = &f.b[k];
     const float *from = rate + k, *onto = from + to;
 #pragma GCC ivdep
@@ -201,8 +193,7 @@ TUFT_CLONES void spread(Work& work, float* d, const Fluxes& f, float passing) {
             work.x.b[k] += std::min(across[kSide] * passing, 0.0f) * work.rate[k + 1];
             float* into = d + row * kSide;
 #pragma GCC ivdep
-            for (int x = 0; x < kSide; ++x)
-                into[x] += (across[x] - across[x + 1]) + (last[x] - along[x]);
+            for (int x = 0; x < kSide; ++x) into[x] += (across[x] - across[x + 1]) + (last[x] - along[x]);
         }
         last = along;
     }
@@ -211,8 +202,7 @@ TUFT_CLONES void spread(Work& work, float* d, const Fluxes& f, float passing) {
 }  // namespace
 
 void film_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& p) {
-    const Fluxes fluxes =
-        fluxes_of(means_of(work.w, beside), g, {p.flow, p.threshold, p.levelling, p.hold, p.most});
+    const Fluxes fluxes = fluxes_of(means_of(work.w, beside), g, {p.flow, p.threshold, p.levelling, p.hold, p.most});
     if (fluxes.any) spread(work, work.dw.data(), fluxes, 1);
 }
 

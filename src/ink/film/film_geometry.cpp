@@ -8,14 +8,14 @@
 namespace tuft::ink::wet {
 namespace {
 
-constexpr int kWide = kSide + 4;      // two texels round the tile: metrics of the border need both sides
-constexpr double kMostConductance = 4; // over the smaller of the two areas
-constexpr double kNoShear = 0.05;     // of √g g^12: less is left out; a blot gets 2.5 % longer or wider
-constexpr double kLeastDiagonal = 0.02; // beside seams: less is left out, as it costs as much as more
-constexpr double kRoomAtSeams = 0.4;   // of the area
-constexpr double kLeastInBlock = 0.5;  // of the mean area
-constexpr double kGrainDepth = 0.4;   // of the mean
-constexpr double kFlocsRms = 0.437;    // of the octaves' sum
+constexpr int kWide = kSide + 4;         // two texels round the tile: metrics of the border need both sides
+constexpr double kMostConductance = 4;   // over the smaller of the two areas
+constexpr double kNoShear = 0.05;        // of √g g^12: less is left out; a blot gets 2.5 % longer or wider
+constexpr double kLeastDiagonal = 0.02;  // beside seams: less is left out, as it costs as much as more
+constexpr double kRoomAtSeams = 0.4;     // of the area
+constexpr double kLeastInBlock = 0.5;    // of the mean area
+constexpr double kGrainDepth = 0.4;      // of the mean
+constexpr double kFlocsRms = 0.437;      // of the octaves' sum
 constexpr std::uint64_t kGrainSeed = 0x66696c6d;
 
 struct Spot {
@@ -37,8 +37,7 @@ struct Neighbourhood {
 };
 
 bool together(const Spot& a, const Spot& b, double stretch = 1) {
-    return a.valid && b.valid &&
-           glm::distance(a.position, b.position) <= stretch * std::max(a.reach, b.reach);
+    return a.valid && b.valid && glm::distance(a.position, b.position) <= stretch * std::max(a.reach, b.reach);
 }
 
 /// Derivative of the position along the atlas at `s`, from the neighbours that hang together with it.
@@ -74,7 +73,8 @@ double shear(const Neighbourhood& n, int column, int row) {
 
 /// The diagonal at the corner above and right of a texel: > 0 from it to the next, < 0 the other one.
 double diagonal(const Neighbourhood& n, int column, int row) {
-    const Spot &a = n.at(column, row), &b = n.at(column + 1, row), &c = n.at(column, row + 1), &d = n.at(column + 1, row + 1);
+    const Spot &a = n.at(column, row), &b = n.at(column + 1, row), &c = n.at(column, row + 1),
+               &d = n.at(column + 1, row + 1);
     const bool broken = !(a.valid && b.valid && c.valid && d.valid);
     if (!broken && !(a.border && b.border && c.border && d.border)) return shear(n, column, row);
     const double up = a.faces[atlas::SeamFace::above_right], down = b.faces[atlas::SeamFace::above_left];
@@ -129,7 +129,8 @@ void take_borders(Neighbourhood& n, const atlas::SeamLinks& seams, std::uint32_t
     }
 }
 
-Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const BaseColour& ground) {
+Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot,
+                     const BaseColour& ground) {
     Neighbourhood n;
     const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kSide;
     const std::int64_t y0 = std::int64_t{map.tile_of_slot[slot] / map.tiles_per_side} * kSide;
@@ -161,14 +162,16 @@ Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, 
 }
 
 /// Of a straight face; m11 or m22 of both its texels, the shear on its two sides.
-double straight(const Spot& a, const Spot& b, atlas::SeamFace::Way way, double m_a, double m_b, double shear_a, double shear_b) {
+double straight(const Spot& a, const Spot& b, atlas::SeamFace::Way way, double m_a, double m_b, double shear_a,
+                double shear_b) {
     // Never quite closed: slopes are taken from one to the other all the same.
     if (a.border && b.border) return std::max(a.faces[way], static_cast<double>(kConductanceUnit));
     return 0.5 * (m_a + m_b) - 0.5 * (std::abs(shear_a) + std::abs(shear_b));
 }
 
 double conductance(double g, const Spot& a, const Spot& b, double mean_area) {
-    return std::clamp(g * (a.ease * b.ease) * passing(a.free, b.free), 0.0, kMostConductance * std::min(a.area, b.area) / mean_area);
+    return std::clamp(g * (a.ease * b.ease) * passing(a.free, b.free), 0.0,
+                      kMostConductance * std::min(a.area, b.area) / mean_area);
 }
 
 std::uint16_t packed(double g) {
@@ -187,7 +190,8 @@ bool whole(const Neighbourhood& n, int block, double least_area) {
 /// Σ conductances of a texel.
 float sum_at(const Geometry& g, int t) {
     const int column = t % kSide, row = t / kSide;
-    const int straight = g.gx[Geometry::right_of(column, row)] + g.gx[Geometry::right_of(column - 1, row)] + g.gy[t] + g.gy[t + kSide];
+    const int straight =
+        g.gx[Geometry::right_of(column, row)] + g.gx[Geometry::right_of(column - 1, row)] + g.gy[t] + g.gy[t + kSide];
     float sum = static_cast<float>(straight) * kConductanceUnit;
     if (!g.gd) return sum;
     const auto& d = *g.gd;
@@ -199,7 +203,9 @@ float sum_at(const Geometry& g, int t) {
 
 }  // namespace
 
-double ease_of_flow(const Vec3& position, double unevenness) { return exponential(unevenness * flocs(position)); }
+double ease_of_flow(const Vec3& position, double unevenness) {
+    return exponential(unevenness * flocs(position));
+}
 
 double passing(std::uint8_t free_a, std::uint8_t free_b) {
     if (free_a == 0 || free_b == 0) return free_a == free_b;
@@ -209,7 +215,8 @@ double passing(std::uint8_t free_a, std::uint8_t free_b) {
     return low < kSliver && high - low > kSliver ? 0 : low / 255.0;
 }
 
-Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const BaseColour& ground) {
+Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot,
+                       const BaseColour& ground) {
     const Neighbourhood n = gather(map, seams, slot, ground);
     const double mean = map.texel_size * map.texel_size;
     Geometry g;
@@ -231,10 +238,14 @@ Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams
             const Spot& s = n.at(column, row);
             if (const Spot& right = n.at(column + 1, row); row >= 0 && together(s, right))
                 g.gx[Geometry::right_of(column, row)] =
-                    packed(conductance(straight(s, right, atlas::SeamFace::right, s.m11, right.m11, shear(n, column, row), shear(n, column, row - 1)), s, right, mean));
+                    packed(conductance(straight(s, right, atlas::SeamFace::right, s.m11, right.m11,
+                                                shear(n, column, row), shear(n, column, row - 1)),
+                                       s, right, mean));
             if (const Spot& up = n.at(column, row + 1); column >= 0 && together(s, up))
                 g.gy[(row + 1) * kSide + column] =
-                    packed(conductance(straight(s, up, atlas::SeamFace::above, s.m22, up.m22, shear(n, column, row), shear(n, column - 1, row)), s, up, mean));
+                    packed(conductance(straight(s, up, atlas::SeamFace::above, s.m22, up.m22, shear(n, column, row),
+                                                shear(n, column - 1, row)),
+                                       s, up, mean));
             const double m = diagonal(n, column, row);
             const double size = m > 0 ? conductance(m, s, n.at(column + 1, row + 1), mean)
                                       : conductance(-m, n.at(column + 1, row), n.at(column, row + 1), mean);
@@ -244,7 +255,8 @@ Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams
             g.ups |= m > 0 && units > 0;
             g.downs |= m < 0 && units > 0;
         }
-    for (int block = 0; block < kBlocks * kBlocks; ++block) g.blocks |= static_cast<std::uint16_t>(whole(n, block, kLeastInBlock * mean) << block);
+    for (int block = 0; block < kBlocks * kBlocks; ++block)
+        g.blocks |= static_cast<std::uint16_t>(whole(n, block, kLeastInBlock * mean) << block);
     if (any) g.gd = std::make_unique<Geometry::Diagonals>(diagonals);
     for (int t = 0; t < kTexels; ++t) g.stiffness = std::max(g.stiffness, g.inverse[t] * sum_at(g, t));
     return g;
@@ -272,8 +284,7 @@ std::unique_ptr<SplitGeometry> split(const Geometry& g, const std::array<bool, 9
     const auto within = [&](int column, int row) {
         return in_zone[static_cast<std::size_t>(side(row) * 3 + side(column))];
     };
-    const auto deal = [](std::uint16_t conductance, bool both, std::uint16_t& inside,
-                         std::uint16_t& outside) {
+    const auto deal = [](std::uint16_t conductance, bool both, std::uint16_t& inside, std::uint16_t& outside) {
         inside = both ? conductance : 0;
         outside = both ? std::min<std::uint16_t>(conductance, 1) : conductance;
     };
@@ -281,13 +292,11 @@ std::unique_ptr<SplitGeometry> split(const Geometry& g, const std::array<bool, 9
         for (int column = -1; column < kSide; ++column) {
             if (row >= 0) {
                 const auto k = static_cast<std::size_t>(Geometry::right_of(column, row));
-                deal(g.gx[k], within(column, row) && within(column + 1, row), out->inside.gx[k],
-                     out->outside.gx[k]);
+                deal(g.gx[k], within(column, row) && within(column + 1, row), out->inside.gx[k], out->outside.gx[k]);
             }
             if (column >= 0) {
                 const auto k = static_cast<std::size_t>((row + 1) * kSide + column);
-                deal(g.gy[k], within(column, row) && within(column, row + 1), out->inside.gy[k],
-                     out->outside.gy[k]);
+                deal(g.gy[k], within(column, row) && within(column, row + 1), out->inside.gy[k], out->outside.gy[k]);
             }
             if (!g.gd) continue;
             const auto k = static_cast<std::size_t>(Geometry::corner_of(column, row));

@@ -15,14 +15,24 @@ namespace tuft::ink::wet {
 namespace {
 
 constexpr int kLanes = kSide;
-constexpr float kLeast = 1e-30f;     // film units: no division by zero in lanes that are dry
-constexpr float kMostNear = 8;       // of what smears between two texels, over that of whole texels side by side
+constexpr float kLeast = 1e-30f;  // film units: no division by zero in lanes that are dry
+constexpr float kMostNear = 8;    // of what smears between two texels, over that of whole texels side by side
 
-TUFT_INLINE float larger(float a, float b) { return a > b ? a : b; }
-TUFT_INLINE float smaller(float a, float b) { return a < b ? a : b; }
-TUFT_INLINE std::uint16_t smaller_of(std::uint16_t a, std::uint16_t b) { return a < b ? a : b; }
-TUFT_INLINE float positive(float a) { return a > 0 ? a : 0; }
-TUFT_INLINE float rate_of(float total, float grip) { return total > 0 ? 1 / larger(larger(total, grip), kLeast) : 0; }
+TUFT_INLINE float larger(float a, float b) {
+    return a > b ? a : b;
+}
+TUFT_INLINE float smaller(float a, float b) {
+    return a < b ? a : b;
+}
+TUFT_INLINE std::uint16_t smaller_of(std::uint16_t a, std::uint16_t b) {
+    return a < b ? a : b;
+}
+TUFT_INLINE float positive(float a) {
+    return a > 0 ? a : 0;
+}
+TUFT_INLINE float rate_of(float total, float grip) {
+    return total > 0 ? 1 / larger(larger(total, grip), kLeast) : 0;
+}
 
 /// One end of a face: what is there, and what of it counts.
 struct End {
@@ -34,16 +44,22 @@ struct Ends {
     const float *w, *s, *t, *rate, *grain, *above, *free, *carrying, *z;
     const std::uint16_t* room;
 
-    TUFT_INLINE End at(int x) const { return {w[x], s[x], t[x], rate[x], grain[x], above[x], free[x], carrying[x], z[x], room[x]}; }
+    TUFT_INLINE End at(int x) const {
+        return {w[x], s[x], t[x], rate[x], grain[x], above[x], free[x], carrying[x], z[x], room[x]};
+    }
 };
 TUFT_INLINE Ends ends(const Work& o, const Geometry& g, int k) {
-    return {&o.w[k], &o.s[k], &o.total[k], &o.rate[k], &g.grain[k], &o.above[k], &o.free[k], &o.carrying[k], &o.z[k], &g.room[static_cast<std::size_t>(k)]};
+    return {&o.w[k],     &o.s[k],    &o.total[k],    &o.rate[k], &g.grain[k],
+            &o.above[k], &o.free[k], &o.carrying[k], &o.z[k],    &g.room[static_cast<std::size_t>(k)]};
 }
 /// Fibres hold grains back from what seeps.
-TUFT_INLINE float passing_of(const Step& p) { return p.pores > 0 ? p.passing : 1; }
+TUFT_INLINE float passing_of(const Step& p) {
+    return p.pores > 0 ? p.passing : 1;
+}
 TUFT_INLINE End end_of(float w, float s, float grain, float z, const Step& p) {
     const float t = w + s;
-    return {w, s, t, rate_of(t, p.grip), grain, positive(w - p.threshold), positive(w - p.hold), w + passing_of(p) * s, z, 0};
+    return {w, s, t, rate_of(t, p.grip), grain, positive(w - p.threshold), positive(w - p.hold), w + passing_of(p) * s,
+            z, 0};
 }
 
 /// What differs between tiles; all give the same numbers where they apply.
@@ -65,7 +81,7 @@ struct Law {
     /// Flux of liquid on the surface between two texels, film units · mean area.
     static TUFT_INLINE float film_flux(float g, const End& e0, const End& e1, float most, const Step& p) {
         float above = e0.above + e1.above;  // the mean's double
-        float over0 = 0, over1 = 0;  // what may leave an end on relief
+        float over0 = 0, over1 = 0;         // what may leave an end on relief
         if constexpr (kRelief) over0 = positive(e0.w - p.ridge), over1 = positive(e1.w - p.ridge);
         if constexpr (kDry) {
             const float onto0 = e0.t > 0 ? 0 : p.pin * e0.grain, onto1 = e1.t > 0 ? 0 : p.pin * e1.grain;
@@ -131,10 +147,12 @@ TUFT_INLINE void face(float g, const End& e0, const End& e1, float& w, float& s,
 
 /// Sixteen faces from texel k to k + `on`; what flows into o.through.
 template <class Law, class Kind, class Packed>
-TUFT_INLINE void faces(Work& o, Faces& f, int k, int at, const Packed* g, const Ends& from, const Ends& to, const Step& p) {
+TUFT_INLINE void faces(Work& o, Faces& f, int k, int at, const Packed* g, const Ends& from, const Ends& to,
+                       const Step& p) {
     float *w = &o.through[0][at], *s = &o.through[1][at], *a = &f.a[k], *b = &f.b[k];
 #pragma GCC ivdep
-    for (int x = 0; x < kLanes; ++x) face<Law, Kind>(Kind::unpack(g[x]), from.at(x), to.at(x), w[x], s[x], a[x], b[x], p);
+    for (int x = 0; x < kLanes; ++x)
+        face<Law, Kind>(Kind::unpack(g[x]), from.at(x), to.at(x), w[x], s[x], a[x], b[x], p);
 }
 
 /// All faces' upper sides of a row, and what comes into its texels through their four sides.
@@ -163,7 +181,8 @@ TUFT_INLINE void row_of_faces(Work& o, int row, const Geometry& g, float* below_
 template <class Law, class Kind>
 TUFT_INLINE void diagonals(Work& o, Faces& f, const Geometry& g, int first, int second, const Step& p) {
     for (int k = 0; k < kSquares; k += kLanes)
-        faces<Law, Kind>(o, f, k, k, &(*g.gd)[static_cast<std::size_t>(k)], ends(o, g, k + first), ends(o, g, k + second), p);
+        faces<Law, Kind>(o, f, k, k, &(*g.gd)[static_cast<std::size_t>(k)], ends(o, g, k + first),
+                         ends(o, g, k + second), p);
     for (int row = 0; row < kSide; ++row) {
         const int k = field_at(0, row);
         const float *w = &o.through[0][k], *s = &o.through[1][k];
@@ -181,7 +200,8 @@ template <class Law>
 TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& step) {
     const Step p = step;  // where nothing that is written could change it
     for (int k = 0; k < kSide * kRow; k += kLanes)
-        faces<Law, Straight>(o, o.x, kRow + k, kRow + k, &g.gx[static_cast<std::size_t>(k)], ends(o, g, kRow + k), ends(o, g, kRow + k + 1), p);
+        faces<Law, Straight>(o, o.x, kRow + k, kRow + k, &g.gx[static_cast<std::size_t>(k)], ends(o, g, kRow + k),
+                             ends(o, g, kRow + k + 1), p);
     alignas(64) float below_w[kLanes], below_s[kLanes] = {};
     row_of_faces<Law, true>(o, -1, g, below_w, below_s, p);
     for (int row = 0; row < kSide; ++row) row_of_faces<Law, false>(o, row, g, below_w, below_s, p);
@@ -190,20 +210,36 @@ TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& step) {
 }
 template <bool kDry, bool kRelief>
 TUFT_INLINE void faces_of(Work& o, const Geometry& g, const Step& p) {
-    if (p.pores > 0) all_faces<Law<true, kDry, kRelief, false>>(o, g, p);
-    else all_faces<Law<false, kDry, kRelief, false>>(o, g, p);
+    if (p.pores > 0)
+        all_faces<Law<true, kDry, kRelief, false>>(o, g, p);
+    else
+        all_faces<Law<false, kDry, kRelief, false>>(o, g, p);
 }
 template <bool kDry, bool kRelief>
 TUFT_INLINE void held_faces_of(Work& o, const Geometry& g, const Step& p) {
-    if (p.pores > 0) all_faces<Law<true, kDry, kRelief, true>>(o, g, p);
-    else all_faces<Law<false, kDry, kRelief, true>>(o, g, p);
+    if (p.pores > 0)
+        all_faces<Law<true, kDry, kRelief, true>>(o, g, p);
+    else
+        all_faces<Law<false, kDry, kRelief, true>>(o, g, p);
 }
-TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Step& p) { faces_of<false, false>(o, g, p); }
-TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Step& p) { faces_of<true, false>(o, g, p); }
-TUFT_CLONES void faces_on_relief(Work& o, const Geometry& g, const Step& p) { faces_of<true, true>(o, g, p); }
-TUFT_CLONES void held_faces_wet(Work& o, const Geometry& g, const Step& p) { held_faces_of<false, false>(o, g, p); }
-TUFT_CLONES void held_faces_dry(Work& o, const Geometry& g, const Step& p) { held_faces_of<true, false>(o, g, p); }
-TUFT_CLONES void held_faces_on_relief(Work& o, const Geometry& g, const Step& p) { held_faces_of<true, true>(o, g, p); }
+TUFT_CLONES void faces_wet(Work& o, const Geometry& g, const Step& p) {
+    faces_of<false, false>(o, g, p);
+}
+TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Step& p) {
+    faces_of<true, false>(o, g, p);
+}
+TUFT_CLONES void faces_on_relief(Work& o, const Geometry& g, const Step& p) {
+    faces_of<true, true>(o, g, p);
+}
+TUFT_CLONES void held_faces_wet(Work& o, const Geometry& g, const Step& p) {
+    held_faces_of<false, false>(o, g, p);
+}
+TUFT_CLONES void held_faces_dry(Work& o, const Geometry& g, const Step& p) {
+    held_faces_of<true, false>(o, g, p);
+}
+TUFT_CLONES void held_faces_on_relief(Work& o, const Geometry& g, const Step& p) {
+    held_faces_of<true, true>(o, g, p);
+}
 
 /// What faces need of all texels and those round them; returns the least liquid.
 TUFT_CLONES float levels(Work& o, const Step& step) {
@@ -214,7 +250,8 @@ TUFT_CLONES float levels(Work& o, const Step& step) {
     constexpr int kAll = kRow * kRow / kLanes * kLanes;
     for (int k = 0; k < kField; k += kLanes) {
         const float *w = &o.w[k], *s = &o.s[k];
-        float *total = &o.total[k], *rate = &o.rate[k], *above = &o.above[k], *free = &o.free[k], *carrying = &o.carrying[k];
+        float *total = &o.total[k], *rate = &o.rate[k], *above = &o.above[k], *free = &o.free[k],
+              *carrying = &o.carrying[k];
 #pragma GCC ivdep
         for (int x = 0; x < kLanes; ++x) {
             const float t = w[x] + s[x];
@@ -275,10 +312,10 @@ TUFT_INLINE float sum_of(float a, float d, float noise) {
 
 struct Settled {
     float most_w = 0, most_s = 0, least = 0;  ///< the last: of both together
-    double air = 0;  ///< what went into the air, film units · mean area
+    double air = 0;                           ///< what went into the air, film units · mean area
 };
-/// Texels' new liquid, soaking and drying. Beside charts there is no air; 0 / 0 there, thrown away or not, is no number,
-/// which this file's options forbid (AVX2 then lost other lanes).
+/// Texels' new liquid, soaking and drying. Beside charts there is no air; 0 / 0 there, thrown away or not, is no
+/// number, which this file's options forbid (AVX2 then lost other lanes).
 TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work& o, const float* __restrict inverse,
                            const float* __restrict noise, const Step& step) {
     const float soak = step.soak, pores = step.pores, per_pores = pores > 0 ? 1 / pores : 0;
@@ -289,7 +326,8 @@ TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work&
 #pragma GCC ivdep
         for (int x = 0; x < kSide; ++x) {
             const int i = row * kSide + x, k = field_at(x, row);
-            float w1 = sum_of(o.w[k], o.dw[i] * inverse[i], noise[i]), s1 = sum_of(o.s[k], o.ds[i] * inverse[i], noise[i]);
+            float w1 = sum_of(o.w[k], o.dw[i] * inverse[i], noise[i]),
+                  s1 = sum_of(o.s[k], o.ds[i] * inverse[i], noise[i]);
             const float room = positive(pores - s1);
             float in = w1 * soak * (room * per_pores);
             // In units of the last place of the larger one, so that both sums are exact.
@@ -346,7 +384,8 @@ TUFT_INLINE float carried(const Faces& f, const float* p, int k, int from, int t
 /// Each flux is computed from the same numbers for both its texels, upwards once: the row above takes it from `below`.
 /// (Written down and read again one to the side, they would be twice as slow.)
 template <bool kUp, bool kDown, bool kSeams>
-TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __restrict inverse, const float* __restrict noise) {
+TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __restrict inverse,
+                       const float* __restrict noise) {
     const float* p = o.p.data();
     alignas(64) float below[kSide];
     for (int x = 0; x < kSide; ++x) {
@@ -360,8 +399,10 @@ TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __rest
             const float above = carried(o.y, p, k, k, k + kRow);
             float d = (carried(o.x, p, k - 1, k - 1, k) - carried(o.x, p, k, k, k + 1)) + (below[x] - above);
             below[x] = above;
-            if constexpr (kUp) d += carried(o.up, p, k - kRow - 1, k - kRow - 1, k) - carried(o.up, p, k, k, k + kRow + 1);
-            if constexpr (kDown) d += carried(o.down, p, k - kRow, k - kRow + 1, k) - carried(o.down, p, k - 1, k, k + kRow - 1);
+            if constexpr (kUp)
+                d += carried(o.up, p, k - kRow - 1, k - kRow - 1, k) - carried(o.up, p, k, k, k + kRow + 1);
+            if constexpr (kDown)
+                d += carried(o.down, p, k - kRow, k - kRow + 1, k) - carried(o.down, p, k - 1, k, k + kRow - 1);
             if constexpr (kSeams) d += o.dp[i];
             out[i] = sum_of(p[k], d * inverse[i], noise[i]);
         }
@@ -370,13 +411,21 @@ TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __rest
 template <bool kSeams>
 TUFT_INLINE void carry_all(float* __restrict out, const Work& o, const Geometry& g, const float* __restrict noise) {
     const float* inverse = g.inverse.data();
-    if (g.ups && g.downs) carry<true, true, kSeams>(out, o, inverse, noise);
-    else if (g.ups) carry<true, false, kSeams>(out, o, inverse, noise);
-    else if (g.downs) carry<false, true, kSeams>(out, o, inverse, noise);
-    else carry<false, false, kSeams>(out, o, inverse, noise);
+    if (g.ups && g.downs)
+        carry<true, true, kSeams>(out, o, inverse, noise);
+    else if (g.ups)
+        carry<true, false, kSeams>(out, o, inverse, noise);
+    else if (g.downs)
+        carry<false, true, kSeams>(out, o, inverse, noise);
+    else
+        carry<false, false, kSeams>(out, o, inverse, noise);
 }
-TUFT_CLONES void carry_inside(float* out, const Work& o, const Geometry& g, const float* noise) { carry_all<false>(out, o, g, noise); }
-TUFT_CLONES void carry_over_seams(float* out, const Work& o, const Geometry& g, const float* noise) { carry_all<true>(out, o, g, noise); }
+TUFT_CLONES void carry_inside(float* out, const Work& o, const Geometry& g, const float* noise) {
+    carry_all<false>(out, o, g, noise);
+}
+TUFT_CLONES void carry_over_seams(float* out, const Work& o, const Geometry& g, const float* noise) {
+    carry_all<true>(out, o, g, noise);
+}
 
 template <bool kPores, bool kHeld>
 TUFT_INLINE void seam_faces(SeamLanes& l, const Step& step) {
@@ -384,14 +433,15 @@ TUFT_INLINE void seam_faces(SeamLanes& l, const Step& step) {
     const Step p = step;
 #pragma GCC ivdep
     for (int x = 0; x < kLanes; ++x) {
-        const End e0 = end_of(l.w[0][x], l.s[0][x], l.grain[0][x], l.z[0][x], p), e1 = end_of(l.w[1][x], l.s[1][x], l.grain[1][x], l.z[1][x], p);
+        const End e0 = end_of(l.w[0][x], l.s[0][x], l.grain[0][x], l.z[0][x], p),
+                  e1 = end_of(l.w[1][x], l.s[1][x], l.grain[1][x], l.z[1][x], p);
         const float g = l.weight[x], most = p.most_of_link * l.room[x], w = Here::film_flux(g, e0, e1, most, p);
         float s = 0;
         if constexpr (kPores) s = Here::pore_flux(g, e0, e1, most, p);
         const float flux = w + p.passing * s;
         const Carriers c = carriers(g, flux, e0, e1, p);
-        // Nearer cells' middles lie farther apart than their texels, by whose distance their amounts differ: they mix more,
-        // by no more than what could flow.
+        // Nearer cells' middles lie farther apart than their texels, by whose distance their amounts differ: they mix
+        // more, by no more than what could flow.
         const float near = smaller(larger(1 / larger(l.apart[x] * l.apart[x], kLeast), 1), kMostNear) - 1;
         const float more = 0.5f * smaller(near * std::abs(flux), p.limit * g * smaller(e0.t, e1.t));
         l.through_w[x] = w;
@@ -401,17 +451,22 @@ TUFT_INLINE void seam_faces(SeamLanes& l, const Step& step) {
     }
 }
 TUFT_CLONES void sixteen_seams(SeamLanes& l, const Step& p) {
-    if (p.pores > 0) seam_faces<true, false>(l, p);
-    else seam_faces<false, false>(l, p);
+    if (p.pores > 0)
+        seam_faces<true, false>(l, p);
+    else
+        seam_faces<false, false>(l, p);
 }
 TUFT_CLONES void sixteen_held_seams(SeamLanes& l, const Step& p) {
-    if (p.pores > 0) seam_faces<true, true>(l, p);
-    else seam_faces<false, true>(l, p);
+    if (p.pores > 0)
+        seam_faces<true, true>(l, p);
+    else
+        seam_faces<false, true>(l, p);
 }
 
 TUFT_CLONES void gather_rows(float* __restrict to, const std::array<const float*, 9>& planes) {
     constexpr int kEnd = kTexels - kSide;
-    const auto row = [to](int r, const float* left, const float* here, const float* right) __attribute__((always_inline)) {
+    const auto row = [to](int r, const float* left, const float* here, const float* right)
+        __attribute__((always_inline)) {
         float* at = to + field_at(0, r);
         at[-1] = *left;
         std::memcpy(at, here, kSide * sizeof(float));
@@ -425,16 +480,22 @@ TUFT_CLONES void gather_rows(float* __restrict to, const std::array<const float*
 
 }  // namespace
 
-void gather(Field& field, const std::array<const float*, 9>& planes) { gather_rows(field.data(), planes); }
+void gather(Field& field, const std::array<const float*, 9>& planes) {
+    gather_rows(field.data(), planes);
+}
 
 bool fluxes(Work& work, const Geometry& g, const Step& step) {
     const float depth = step.rim > 0 ? step.rim_depth : 0, least = levels(work, step);
     const Least rims = least > 0 && least >= depth ? Least{} : look_for_rims(work, g, depth);
-    if (step.most > 0) (work.on_relief ? held_faces_on_relief : rims.dry ? held_faces_dry : held_faces_wet)(work, g, step);
-    else (work.on_relief ? faces_on_relief : rims.dry ? faces_dry : faces_wet)(work, g, step);
+    if (step.most > 0)
+        (work.on_relief ? held_faces_on_relief : rims.dry ? held_faces_dry : held_faces_wet)(work, g, step);
+    else
+        (work.on_relief ? faces_on_relief : rims.dry ? faces_dry : faces_wet)(work, g, step);
     if (!(step.pores > 0)) work.ds.fill(0);
-    if (rims.thin) slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
-    else if (work.sloping) work.rim_slope.fill(0);
+    if (rims.thin)
+        slope_to_rims(work.rim_slope.data(), work.total.data(), g, step.rim_depth);
+    else if (work.sloping)
+        work.rim_slope.fill(0);
     work.sloping = rims.thin;
     return rims.thin;
 }
@@ -443,8 +504,8 @@ void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std
     (seams ? carry_over_seams : carry_inside)(p, work, g, dither(seed));
 }
 
-Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step,
-                   std::uint64_t seed, std::array<std::uint8_t, kTexels>& closing) {
+Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step, std::uint64_t seed,
+                   std::array<std::uint8_t, kTexels>& closing) {
     const Settled settled = settle(w, s, work, g.inverse.data(), dither(seed), step);
     Outcome out{.most_w = settled.most_w, .most_s = settled.most_s, .evaporated = settled.air};
     if (settled.least > 0) {

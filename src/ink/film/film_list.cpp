@@ -90,16 +90,20 @@ void TileList::find_near() {
             if (other == kNone) return;
             const auto row = static_cast<std::uint16_t>(1u << texel / kSide);
             const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(first);
-            const auto at = std::lower_bound(begin, near_.end(), other, [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
-            if (at == near_.end() || at->slot != other) near_.insert(at, {other, kNone, linked, row});
-            else at->linked |= linked, at->lines |= row;
+            const auto at = std::lower_bound(begin, near_.end(), other,
+                                             [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
+            if (at == near_.end() || at->slot != other)
+                near_.insert(at, {other, kNone, linked, row});
+            else
+                at->linked |= linked, at->lines |= row;
         };
         for (const atlas::SeamLink& l : links_of(slot)) add(l.other_slot, l.other_texel, true);
         for (std::uint32_t i = seams.tap_start[slot]; i < seams.tap_start[slot + 1]; ++i)
             add(seams.taps[i].other_slot, seams.taps[i].other_texel, false);
         const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(first);
         for (const atlas::SeamLink& l : links_of(slot)) {
-            const auto at = std::lower_bound(begin, near_.end(), l.other_slot, [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
+            const auto at = std::lower_bound(begin, near_.end(), l.other_slot,
+                                             [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
             link_near_.push_back(static_cast<std::uint16_t>(at - begin));
         }
         near_start_.push_back(static_cast<std::uint32_t>(near_.size()));
@@ -159,11 +163,15 @@ void TileList::close_taps() {
         for (std::uint32_t i = seams.tap_start[slot], next = i; i < seams.tap_start[slot + 1]; i = next) {
             const atlas::SeamTap first = taps_[i];
             bool closed = false;
-            for (; next < seams.tap_start[slot + 1] && taps_[next].texel == first.texel && taps_[next].side == first.side; ++next)
+            for (;
+                 next < seams.tap_start[slot + 1] && taps_[next].texel == first.texel && taps_[next].side == first.side;
+                 ++next)
                 if (const atlas::SeamTap& tap = taps_[next]; tap.other_slot != kNone)
-                    closed = closed || passing(ground_.free(slot, tap.texel), ground_.free(tap.other_slot, tap.other_texel)) == 0;
+                    closed = closed ||
+                             passing(ground_.free(slot, tap.texel), ground_.free(tap.other_slot, tap.other_texel)) == 0;
             if (!closed) continue;
-            for (std::uint32_t k = i; k < next; ++k) seams.taps[k] = {kNone, k == i ? 1.0f : 0.0f, first.texel, 4, first.side};
+            for (std::uint32_t k = i; k < next; ++k)
+                seams.taps[k] = {kNone, k == i ? 1.0f : 0.0f, first.texel, 4, first.side};
         }
 }
 
@@ -175,17 +183,20 @@ void TileList::limit_links() {
         for (std::uint32_t i = seams.start[slot], next = i; i < seams.start[slot + 1]; i = next) {
             const std::uint8_t texel = seams.links[i].texel;
             weights.clear();
-            for (; next < seams.start[slot + 1] && seams.links[next].texel == texel; ++next) weights.push_back(seams.links[next].weight);
+            for (; next < seams.start[slot + 1] && seams.links[next].texel == texel; ++next)
+                weights.push_back(seams.links[next].weight);
             const double all = kSeamPart * static_cast<double>(map.tiles[slot].area[texel]) / mean;
             std::fill(most.begin() + i, most.begin() + next, most_of_links(weights, static_cast<float>(all)));
         }
     // Both texels hold a link with the same weight.
     const auto cut = [&](std::uint32_t slot, std::uint32_t i) {
         const atlas::SeamLink& l = seams.links[i];
-        const auto begin = seams.links.begin() + seams.start[l.other_slot], end = seams.links.begin() + seams.start[l.other_slot + 1];
-        const auto back = std::lower_bound(begin, end, std::tuple(l.other_texel, slot, l.texel), [](const atlas::SeamLink& a, const auto& key) {
-            return std::tuple(a.texel, a.other_slot, a.other_texel) < key;
-        });
+        const auto begin = seams.links.begin() + seams.start[l.other_slot],
+                   end = seams.links.begin() + seams.start[l.other_slot + 1];
+        const auto back = std::lower_bound(begin, end, std::tuple(l.other_texel, slot, l.texel),
+                                           [](const atlas::SeamLink& a, const auto& key) {
+                                               return std::tuple(a.texel, a.other_slot, a.other_texel) < key;
+                                           });
         return std::min(most[i], most[static_cast<std::size_t>(back - seams.links.begin())]);
     };
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
@@ -203,8 +214,7 @@ std::array<std::uint32_t, 9> TileList::around(std::uint32_t slot) const {
     const std::int64_t tx = map.tile_of_slot[slot] % n, ty = map.tile_of_slot[slot] / n;
     for (int i = 0; i < 9; ++i) {
         const std::int64_t x = tx + i % 3 - 1, y = ty + i / 3 - 1;
-        out[i] = x < 0 || y < 0 || x >= n || y >= n
-                     ? kNone : map.slot_of_tile[static_cast<std::size_t>(y * n + x)];
+        out[i] = x < 0 || y < 0 || x >= n || y >= n ? kNone : map.slot_of_tile[static_cast<std::size_t>(y * n + x)];
     }
     return out;
 }
@@ -246,9 +256,12 @@ void TileList::spread() {
         if (k < list.size() && list[k].slot == wanted[i]) next[i] = std::move(list[k]);
         next[i].slot = wanted[i];
         next[i].links = links_of(wanted[i]);
-        next[i].link_others = std::span<const std::uint16_t>(link_near_).subspan(seams.start[wanted[i]], next[i].links.size());
+        next[i].link_others =
+            std::span<const std::uint16_t>(link_near_).subspan(seams.start[wanted[i]], next[i].links.size());
         next[i].link_areas = std::span<const float>(link_areas_).subspan(seams.start[wanted[i]], next[i].links.size());
-        next[i].taps = std::span(seams.taps).subspan(seams.tap_start[wanted[i]], seams.tap_start[wanted[i] + 1] - seams.tap_start[wanted[i]]);
+        next[i].taps =
+            std::span(seams.taps)
+                .subspan(seams.tap_start[wanted[i]], seams.tap_start[wanted[i] + 1] - seams.tap_start[wanted[i]]);
         place_[wanted[i]] = static_cast<std::uint32_t>(i);
         mark_[wanted[i]] = 0;
     }
@@ -302,14 +315,18 @@ bool TileList::changed() {
         if (!tile.wet()) continue;
         wanted_[at] = 1;
         each_reached(tile, [&](int i) {
-            if (tile.around[i] != kNone) wanted_[tile.around[i]] = 1;
-            else more = more || (tile.absent >> i & 1);
+            if (tile.around[i] != kNone)
+                wanted_[tile.around[i]] = 1;
+            else
+                more = more || (tile.absent >> i & 1);
         });
         if (!tile.seam_wet) continue;
         for (const Beyond& other : tile.others) {
             if (!other.linked) continue;
-            if (other.place != kNone) wanted_[other.place] = 1;
-            else more = true;
+            if (other.place != kNone)
+                wanted_[other.place] = 1;
+            else
+                more = true;
         }
     }
     return more || std::find(wanted_.begin(), wanted_.end(), 0) != wanted_.end();
@@ -319,7 +336,8 @@ void TileList::look_at(const Canvas& canvas, std::span<const std::uint32_t> slot
     const std::size_t listed = list.size();
     for (const std::uint32_t slot : slots) {
         const auto end = list.begin() + static_cast<std::ptrdiff_t>(listed);
-        const auto at = std::lower_bound(list.begin(), end, slot, [](const Active& a, std::uint32_t s) { return a.slot < s; });
+        const auto at =
+            std::lower_bound(list.begin(), end, slot, [](const Active& a, std::uint32_t s) { return a.slot < s; });
         const bool known = at != end && at->slot == slot;
         if (!known) {
             list.emplace_back();
@@ -353,15 +371,18 @@ std::vector<Drips::Seed> TileList::seeds_of_beads(const Canvas& canvas, const Fi
                                      [&](const Found& f) { return f.cube == cube; });
             if (same == found.end()) same = found.insert(found.end(), Found{cube, 0, 0, {}});
             if (w[t] > same->weak * grain)
-                *same = {cube, w[t] / grain, static_cast<float>(-glm::dot(params.down, at)),
+                *same = {cube,
+                         w[t] / grain,
+                         static_cast<float>(-glm::dot(params.down, at)),
                          {{tile.slot, static_cast<std::uint8_t>(t)}, static_cast<double>(grain)}};
         }
     }
     std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
         return a.cube != b.cube ? a.cube < b.cube : a.weak > b.weak;
     });
-    found.erase(std::unique(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.cube == b.cube; }),
-                found.end());
+    found.erase(
+        std::unique(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.cube == b.cube; }),
+        found.end());
     std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.height < b.height; });
     std::vector<Drips::Seed> seeds;
     for (std::size_t i = 0; i < std::min(found.size(), kMostBeads); ++i) seeds.push_back(found[i].seed);

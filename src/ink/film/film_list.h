@@ -14,8 +14,9 @@
 /// The tiles that a step of the wet film goes through; inside `ink` only.
 namespace tuft::ink::wet {
 
-/// Conductances over seams together, over the texel's area: as much as a step allows. Less, and texels that nearly lie on
-/// each other lag behind at a front (of 300 random layouts of two charts 14 were more than 1 % of the peak off with 5; now 5).
+/// Conductances over seams together, over the texel's area: as much as a step allows. Less, and texels that nearly lie
+/// on each other lag behind at a front (of 300 random layouts of two charts 14 were more than 1 % of the peak off with
+/// 5; now 5).
 inline constexpr double kSeamPart = 7;
 
 using PlanePtr = std::unique_ptr<Plane>;
@@ -24,15 +25,15 @@ using PlanePtr = std::unique_ptr<Plane>;
 struct alignas(64) Sources {
     std::array<const Plane*, 2> liquid{};
     std::array<const Plane*, kMaxPigments> open{};
-    const Plane* relief = nullptr;          ///< of what is dry, film units; null: plain
+    const Plane* relief = nullptr;  ///< of what is dry, film units; null: plain
 };
 
 /// A tile over a seam from another one.
 struct Beyond {
     std::uint32_t slot = kNone;
-    std::uint32_t place = kNone;            ///< in the list
-    bool linked = false;                    ///< liquid goes there; else only slopes are taken from it
-    std::uint16_t lines = 0;                ///< bits: rows of texels there that this tile looks at
+    std::uint32_t place = kNone;  ///< in the list
+    bool linked = false;          ///< liquid goes there; else only slopes are taken from it
+    std::uint16_t lines = 0;      ///< bits: rows of texels there that this tile looks at
 };
 
 /// A tile in the list of a step.
@@ -44,16 +45,16 @@ struct Active {
     std::span<const Beyond> others;         ///< ascending slots
     std::span<const atlas::SeamLink> links;
     std::span<const std::uint16_t> link_others;  ///< of the links: places in `others`
-    std::span<const float> link_areas;      ///< of the links: area over the mean that each may empty
+    std::span<const float> link_areas;           ///< of the links: area over the mean that each may empty
     std::span<const atlas::SeamTap> taps;
     Outcome outcome;
     float stiffness = 0;
-    const Geometry* geometry = nullptr;     ///< null: not looked up yet
+    const Geometry* geometry = nullptr;              ///< null: not looked up yet
     const Geometry::Diagonals* diagonals = nullptr;  ///< its own; to be asked for before it is there
     bool seam_wet = false;
-    bool spreads = true;                    ///< wet in other places than when `changed` looked
-    bool idle = false;                      ///< nothing wet in sight
-    PlanePtr w, s;                          ///< of the step's end, until they are in the canvas
+    bool spreads = true;  ///< wet in other places than when `changed` looked
+    bool idle = false;    ///< nothing wet in sight
+    PlanePtr w, s;        ///< of the step's end, until they are in the canvas
     std::array<PlanePtr, kMaxPigments> p;
     std::unique_ptr<std::array<std::uint8_t, kTexels>> closing;  ///< where outcome.closing
 
@@ -62,18 +63,18 @@ struct Active {
 
 struct TileList {
     const atlas::TexelMap& map;
-    atlas::SeamLinks seams;                 ///< scaled: what goes over seams stays within what a step allows
+    atlas::SeamLinks seams;                           ///< scaled: what goes over seams stays within what a step allows
     std::vector<std::unique_ptr<Geometry>> geometry;  ///< [n_slots] null: never wet
     /// [n_slots] of tiles beside seams: what flows among them may go in shorter steps. Null: not
     /// looked up yet.
     std::vector<std::unique_ptr<SplitGeometry>> split_geometry;
-    std::vector<Active> list;               ///< ascending slots
+    std::vector<Active> list;  ///< ascending slots
     /// Places in the list as a step goes through them: strip by strip of the atlas, so that what a tile and the one
     /// below it read, and the planes that get free, are still in the second cache.
     std::vector<std::uint32_t> order;
     std::unique_ptr<std::atomic<std::uint32_t>[]> readers;  ///< of the list: tiles that still need this one's planes
 
-    std::vector<std::uint32_t> n_readers;   ///< of the list: how many there are in a step
+    std::vector<std::uint32_t> n_readers;  ///< of the list: how many there are in a step
 
     TileList(const atlas::TexelMap& m, atlas::SeamLinks s);
 
@@ -114,14 +115,14 @@ struct TileList {
     std::vector<atlas::SeamTap> taps_;  ///< as they came
     BaseColour ground_;
     std::vector<std::uint32_t> near_start_;  ///< [n_slots + 1]
-    std::vector<Beyond> near_;          ///< over seams, by slot; places unknown
+    std::vector<Beyond> near_;               ///< over seams, by slot; places unknown
     std::vector<std::uint16_t> link_near_;   ///< of the links: which of the slot's `near_`
-    std::vector<float> link_areas_;     ///< of the links
-    std::vector<Beyond> others_;        ///< of the list
-    std::vector<std::uint8_t> beside_;  ///< [n_slots]
-    std::vector<std::uint8_t> wanted_;  ///< of the list: scratch
-    std::vector<std::uint8_t> mark_;    ///< [n_slots] scratch
-    std::vector<std::uint32_t> place_;  ///< [n_slots] scratch
+    std::vector<float> link_areas_;          ///< of the links
+    std::vector<Beyond> others_;             ///< of the list
+    std::vector<std::uint8_t> beside_;       ///< [n_slots]
+    std::vector<std::uint8_t> wanted_;       ///< of the list: scratch
+    std::vector<std::uint8_t> mark_;         ///< [n_slots] scratch
+    std::vector<std::uint32_t> place_;       ///< [n_slots] scratch
 
     void find_near();
     void look_anew();

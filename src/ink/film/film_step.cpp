@@ -9,8 +9,8 @@ namespace {
 constexpr double kLongestStep = 0.25;  // seconds: between flow, soaking and drying
 // What may leave a texel in one step, of what it has: less than all of it together.
 constexpr double kFlowPart = 0.5, kMixingPart = 0.2;
-// What links add to the stiffness k of a tile's own faces, 4 at least: of what a texel has less than kFlowPart (k + kSeamPart) /
-// (k + kSeamStiffness) leaves it, 0.92 at most.
+// What links add to the stiffness k of a tile's own faces, 4 at least: of what a texel has less than kFlowPart (k +
+// kSeamPart) / (k + kSeamStiffness) leaves it, 0.92 at most.
 constexpr double kSeamStiffness = 2;
 static_assert(kFlowPart * (4 + kSeamPart) < 4 + kSeamStiffness);
 // The same where flows are held back: texels inside charts have 4 sides and 4 corners through which half as much goes,
@@ -28,16 +28,14 @@ struct Deepest {
 
     void take(const Active& tile) {
         const auto own = static_cast<double>(tile.stiffness);
-        stiffness = std::max(
-            {stiffness, own, tile.links.empty() ? 0 : std::max(4.0, own) + kSeamStiffness});
+        stiffness = std::max({stiffness, own, tile.links.empty() ? 0 : std::max(4.0, own) + kSeamStiffness});
         w = std::max(w, static_cast<double>(tile.outcome.most_w));
         s = std::max(s, static_cast<double>(tile.outcome.most_s));
     }
     double rate(const FilmParams& p, double levelling, double area, bool on_relief) const {
         const double over_ridges = on_relief ? p.levelling * std::max(0.0, w - p.ridge) : 0;
         return stiffness / area *
-               std::max(p.mobility * (w - p.threshold) +
-                            std::max(levelling * std::max(0.0, w - p.hold), over_ridges),
+               std::max(p.mobility * (w - p.threshold) + std::max(levelling * std::max(0.0, w - p.hold), over_ridges),
                         p.pores > 0 ? p.mobility * s : 0.0);
     }
 };
@@ -53,8 +51,8 @@ Step part_of(const Step& step, int parts, double stiffness) {
 
 }  // namespace
 
-Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size, bool on_relief,
-                   bool beads, double left) {
+Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size, bool on_relief, bool beads,
+                   double left) {
     const double area = texel_size * texel_size;
     const double levelling = glm::length(p.down) > 0 ? 0 : p.levelling;
     Deepest all, beside;
@@ -69,9 +67,7 @@ Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size
     if (flow > 0) dt = std::min(dt, kFlowPart / flow);
     const double mixing = p.mixing / area * stiffness;
     if (mixing > 0) dt = std::min(dt, kMixingPart / mixing);
-    const double shortest = p.shortest_step * (on_relief   ? kStepOnRelief
-                                               : all.w > 0 ? kStepOfFilm
-                                                           : 1);
+    const double shortest = p.shortest_step * (on_relief ? kStepOnRelief : all.w > 0 ? kStepOfFilm : 1);
     const bool held = dt < shortest;
     dt = std::max(dt, shortest);
     dt = left / std::ceil(left / dt * (1 - 1e-12));
@@ -96,8 +92,7 @@ Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size
     step.ridge = static_cast<float>(p.ridge);
     out.dt = dt;
     if (!held || !(beside.w + beside.s > 0)) return out;
-    const double longest =
-        std::max(beside.rate(p, levelling, area, on_relief) / kFlowPart, mixing / kMixingPart);
+    const double longest = std::max(beside.rate(p, levelling, area, on_relief) / kFlowPart, mixing / kMixingPart);
     out.parts = std::clamp(static_cast<int>(std::ceil(dt * longest)), 2, kMostParts) / 2 * 2;
     out.part = part_of(step, out.parts, beside.stiffness);
     return out;

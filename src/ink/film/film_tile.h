@@ -18,8 +18,8 @@ inline constexpr int kTexels = atlas::kTileTexels;
 inline constexpr int kSide = atlas::kTile;
 inline constexpr int kRow = kSide + 2;
 inline constexpr int kBlock = 4, kBlocks = kSide / kBlock;  ///< texels, blocks along a side
-inline constexpr int kSquares = 20 * kSide;  ///< 17 rows of them, in whole sixteens
-inline constexpr int kField = 22 * kSide;    ///< and the ends of those squares' diagonals
+inline constexpr int kSquares = 20 * kSide;                 ///< 17 rows of them, in whole sixteens
+inline constexpr int kField = 22 * kSide;                   ///< and the ends of those squares' diagonals
 static_assert(kSquares > (kSide + 1) * kRow - 2 && kField >= kSquares + kRow + 1);
 
 struct alignas(64) Field : std::array<float, kField> {};
@@ -32,8 +32,12 @@ inline constexpr float kRoomUnit = 0x1p-14f;
 
 inline constexpr double kGrainLength = 1.2e-3;  ///< metres over which the pin of a place varies
 
-inline constexpr int field_at(int column, int row) { return (row + 1) * kRow + 1 + column; }
-inline constexpr int field_of(int texel) { return field_at(texel % kSide, texel / kSide); }
+inline constexpr int field_at(int column, int row) {
+    return (row + 1) * kRow + 1 + column;
+}
+inline constexpr int field_of(int texel) {
+    return field_at(texel % kSide, texel / kSide);
+}
 
 /// What the metric says of a tile: made once, never changed.
 struct alignas(64) Geometry {
@@ -44,21 +48,22 @@ struct alignas(64) Geometry {
     /// right sides, rows of columns -1 to 16, 0 at 16; and of the sides below rows 0 to 16.
     std::array<std::uint16_t, kSide * kRow> gx{};
     std::array<std::uint16_t, kTexels + kSide> gy{};
-    std::array<float, kTexels> inverse{};  ///< mean texel's area over the texel's; 0 outside the charts
+    std::array<float, kTexels> inverse{};          ///< mean texel's area over the texel's; 0 outside the charts
     std::array<std::uint32_t, kSide + 2> valid{};  ///< bit column + 1: a texel of a chart
-    float stiffness = 0;                   ///< greatest Σ conductances over area
-    /// Of diagonals of the squares above and right of texels k of columns and rows -1 to 15, over kDiagonalUnit: > 0 from
-    /// that texel, < 0 (its size) from the one to its right; null: none.
+    float stiffness = 0;                           ///< greatest Σ conductances over area
+    /// Of diagonals of the squares above and right of texels k of columns and rows -1 to 15, over kDiagonalUnit: > 0
+    /// from that texel, < 0 (its size) from the one to its right; null: none.
     struct alignas(64) Diagonals : std::array<std::int16_t, kSquares> {
         static void* operator new(std::size_t bytes);
         static void operator delete(void* diagonals, std::size_t bytes);
     };
     std::unique_ptr<Diagonals> gd;
-    bool ups = false, downs = false;       ///< whether there are any > 0, < 0
-    Field grain{};                         ///< pin of the place, over the mean
-    /// Of texels and those round them, over kRoomUnit: area over the mean, less beside seams, where links take their part.
+    bool ups = false, downs = false;  ///< whether there are any > 0, < 0
+    Field grain{};                    ///< pin of the place, over the mean
+    /// Of texels and those round them, over kRoomUnit: area over the mean, less beside seams, where links take their
+    /// part.
     std::array<std::uint16_t, kField> room{};
-    std::uint16_t blocks = 0;              ///< bits: blocks of 4 × 4 texels, row by row, of one cluster, away from seams
+    std::uint16_t blocks = 0;  ///< bits: blocks of 4 × 4 texels, row by row, of one cluster, away from seams
 
     static constexpr int right_of(int column, int row) { return field_at(column, row) - kRow; }
     static constexpr int corner_of(int column, int row) { return field_at(column, row); }
@@ -70,7 +75,8 @@ struct BaseColour {
 };
 /// Of what flows between two texels that are all free: so much; 0 over the edge of a stencil edge.
 double passing(std::uint8_t free_a, std::uint8_t free_b);
-Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot, const BaseColour& ground);
+Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot,
+                       const BaseColour& ground);
 /// How easily liquid flows at a place, over the mean: exp(unevenness n), n noise of mean 0 and rms 1 over 0.6 to
 /// 2.4 mm, −2 to 1.5. On a plane the flow in the large is that of the geometric mean, 1 (Dykhne 1971).
 double ease_of_flow(const Vec3& position, double unevenness);
@@ -79,9 +85,7 @@ double ease_of_flow(const Vec3& position, double unevenness);
 struct SplitGeometry {
     Geometry inside, outside;
     static void* operator new(std::size_t bytes) { return Geometry::operator new(bytes); }
-    static void operator delete(void* split, std::size_t bytes) {
-        Geometry::operator delete(split, bytes);
-    }
+    static void operator delete(void* split, std::size_t bytes) { Geometry::operator delete(split, bytes); }
 };
 /// `inside` with the faces between texels of tiles of a zone, which `in_zone` says of the tile and
 /// those round it, and `outside` with all others. There what is closed is so but for what tells
@@ -90,23 +94,23 @@ std::unique_ptr<SplitGeometry> split(const Geometry& g, const std::array<bool, 9
 
 /// FilmParams for one step, in texels: rates times the step's length.
 struct Step {
-    float flow = 0;        ///< D dt / A per film unit
-    float levelling = 0;   ///< L dt / A per film unit above hold
-    float limit = 0;       ///< of flow × thickness, so that nothing gets negative
-    float most = 0;        ///< of flow × thickness × conductance over the module at the face, instead; 0: `limit` holds
+    float flow = 0;       ///< D dt / A per film unit
+    float levelling = 0;  ///< L dt / A per film unit above hold
+    float limit = 0;      ///< of flow × thickness, so that nothing gets negative
+    float most = 0;  ///< of flow × thickness × conductance over the module at the face, instead; 0: `limit` holds
     float most_of_link = 0;  ///< the same for links
     float threshold = 0, pin = 0;
-    float mixing = 0;      ///< D_p dt / A
+    float mixing = 0;  ///< D_p dt / A
     float grip = 0;
-    float soak = 0;        ///< part drawn in by empty pores: 1 − exp(−a dt)
+    float soak = 0;  ///< part drawn in by empty pores: 1 − exp(−a dt)
     float pores = 0;
-    float passing = 1;     ///< part of the pigments that what seeps through the pores takes along
-    float evaporation = 0; ///< film units
-    float rim = 0;         ///< film units more, per film unit of slope
+    float passing = 1;      ///< part of the pigments that what seeps through the pores takes along
+    float evaporation = 0;  ///< film units
+    float rim = 0;          ///< film units more, per film unit of slope
     float rim_depth = 0;
     float hold = 0;
-    float relief = 0;      ///< L dt / A, on relief
-    float ridge = 0;       ///< film units that stay on relief
+    float relief = 0;  ///< L dt / A, on relief
+    float ridge = 0;   ///< film units that stay on relief
 };
 
 /// Through faces, the carriers of pigments: flux = a p(one end) + b p(other end).
@@ -116,19 +120,19 @@ struct alignas(64) Faces {
 
 /// The fields of a tile in work: as few as can be, so that they stay in the first cache.
 struct alignas(64) Work {
-    Field w{}, s{}, total{};       ///< liquid
-    Field z{};                     ///< relief, film units; counts where `on_relief`
+    Field w{}, s{}, total{};  ///< liquid
+    Field z{};                ///< relief, film units; counts where `on_relief`
     bool on_relief = false;
-    Field rate{};                  ///< 1 / total, where that is thin 1 / grip, 0 where it is dry
-    Field above{}, free{};         ///< liquid above threshold, above hold
-    Field carrying{};              ///< liquid in which pigments move, M
-    Field p{};                     ///< one pigment
-    Faces x, y, up, down;          ///< up: of diagonals k to k + 19, down: k + 1 to k + 18
-    std::array<Field, 2> through{};  ///< scratch: what goes through faces of one kind
-    alignas(64) std::array<float, kTexels> dw, ds{};  ///< film units · mean area that come through faces and seams
+    Field rate{};                                        ///< 1 / total, where that is thin 1 / grip, 0 where it is dry
+    Field above{}, free{};                               ///< liquid above threshold, above hold
+    Field carrying{};                                    ///< liquid in which pigments move, M
+    Field p{};                                           ///< one pigment
+    Faces x, y, up, down;                                ///< up: of diagonals k to k + 19, down: k + 1 to k + 18
+    std::array<Field, 2> through{};                      ///< scratch: what goes through faces of one kind
+    alignas(64) std::array<float, kTexels> dw, ds{};     ///< film units · mean area that come through faces and seams
     alignas(64) std::array<float, kTexels> rim_slope{};  ///< of liquid no higher than `rim_depth`, a texel
-    bool sloping = false;          ///< `rim_slope` is not 0
-    alignas(64) std::array<float, kTexels> dp{};  ///< what seams bring of one pigment; 0 between steps
+    bool sloping = false;                                ///< `rim_slope` is not 0
+    alignas(64) std::array<float, kTexels> dp{};         ///< what seams bring of one pigment; 0 between steps
 };
 
 /// A plane with a border of one texel from the tiles around, row by row: [256] each, none null.
@@ -145,16 +149,17 @@ struct Beside {
     std::uint16_t here = 0;
 };
 /// Where `most` holds flows back inside wide wet places: the rest of what flows on the surface, or through the pores,
-/// between blocks of 4 × 4 texels, which is stable for steps 16 times as long. Adds to dw or ds and to what carries pigments.
+/// between blocks of 4 × 4 texels, which is stable for steps 16 times as long. Adds to dw or ds and to what carries
+/// pigments.
 void film_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& step);
 void pore_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& step);
 
 /// What a texel's liquid became.
 struct Outcome {
     float most_w = 0, most_s = 0;
-    bool closing = false;          ///< some texel had liquid and has none
-    double evaporated = 0;         ///< film · mean area
-    std::uint8_t sides = 0;        ///< wet texels in the first, last row, first, last column: bits 0–3
+    bool closing = false;    ///< some texel had liquid and has none
+    double evaporated = 0;   ///< film · mean area
+    std::uint8_t sides = 0;  ///< wet texels in the first, last row, first, last column: bits 0–3
 };
 /// Numbers from −½ to ½, over 2^23, for the 256 texels, another sequence for each seed. Sums are rounded
 /// after adding so many units of their last place: small changes are kept on average, where
@@ -163,8 +168,8 @@ const float* dither(std::uint64_t seed);
 
 /// w and s [256] become those of `work` with dw, ds, then soaking and evaporation; `closing` [256] is
 /// 1 where a texel that was wet is wet no more.
-Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step,
-                   std::uint64_t seed, std::array<std::uint8_t, kTexels>& closing);
+Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step, std::uint64_t seed,
+                   std::array<std::uint8_t, kTexels>& closing);
 /// The largest of [256], at least 0.
 float greatest(const float* plane);
 /// p [256] = work.p + what the faces bring, and dp if `seams`, over the area; never below 0.
@@ -175,11 +180,11 @@ void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std
 struct alignas(64) SeamLanes {
     using Lane = std::array<float, kSide>;
     Lane weight{};
-    Lane apart{};                                    ///< their distance, texels. What comes from upstream smears as over a whole texel
-    Lane room{};                                     ///< as `Geometry`'s, for one of a texel's links
-    std::array<Lane, 2> w{}, s{}, grain{}, z{};      ///< liquid, pin of the place, relief
+    Lane apart{};  ///< their distance, texels. What comes from upstream smears as over a whole texel
+    Lane room{};   ///< as `Geometry`'s, for one of a texel's links
+    std::array<Lane, 2> w{}, s{}, grain{}, z{};  ///< liquid, pin of the place, relief
     Lane through_w, through_s;
-    Lane a, b;                                       ///< pigment: a p1 + b p2
+    Lane a, b;  ///< pigment: a p1 + b p2
 };
 void seam_fluxes(std::span<SeamLanes> lanes, const Step& step);
 

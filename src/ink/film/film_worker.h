@@ -59,7 +59,8 @@ struct Ahead {
     void fetch(int lines) {
         for (; lines > 0 && next < n; ++next) {
             Piece& cluster = clusters[next];
-            for (; cluster.at < cluster.end && lines > 0; cluster.at += 64, --lines) __builtin_prefetch(cluster.at, 0, kSecondCache);
+            for (; cluster.at < cluster.end && lines > 0; cluster.at += 64, --lines)
+                __builtin_prefetch(cluster.at, 0, kSecondCache);
             if (cluster.at < cluster.end) return;
         }
     }

@@ -16,7 +16,9 @@ inline constexpr int kHaloRow = atlas::kTile + 2;
 using Halo = std::array<float, kHaloRow * kHaloRow>;  ///< a tile with the texels round it, corners 0
 
 /// Place of a texel of the tile, and of those round it: −1 to 16.
-constexpr int halo_at(int column, int row) { return (row + 1) * kHaloRow + column + 1; }
+constexpr int halo_at(int column, int row) {
+    return (row + 1) * kHaloRow + column + 1;
+}
 
 /// A tile of a list and where its neighbours are.
 struct HaloTile {
@@ -27,7 +29,8 @@ struct HaloTile {
 
 /// The tiles of the slots, which ascend, with their neighbours and links among them.
 template <class Tile>
-std::vector<Tile> halo_tiles(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::span<const std::uint32_t> slots) {
+std::vector<Tile> halo_tiles(const atlas::TexelMap& map, const atlas::SeamLinks& seams,
+                             std::span<const std::uint32_t> slots) {
     const auto place_of = [&](std::uint32_t slot) {
         const auto found = std::lower_bound(slots.begin(), slots.end(), slot);
         return found != slots.end() && *found == slot ? static_cast<std::uint32_t>(found - slots.begin()) : kNone;

@@ -18,9 +18,9 @@ constexpr int kMostSteps = 64;
 using Texels = std::array<float, kN>;
 
 struct Tile : HaloTile {
-    alignas(64) Texels area;              ///< m² of texels that take part; else 0
-    alignas(64) Halo reach;               ///< the same with those round it
-    alignas(64) Texels now, next;         ///< of the pigment in work
+    alignas(64) Texels area;       ///< m² of texels that take part; else 0
+    alignas(64) Halo reach;        ///< the same with those round it
+    alignas(64) Texels now, next;  ///< of the pigment in work
 };
 
 /// next = now + part Σ min(areas) (neighbour − now) / area.
@@ -49,8 +49,7 @@ std::vector<Tile> tiles_of(const Canvas& canvas, const atlas::TexelMap& map, con
     for (Tile& tile : tiles) {
         const Plane now = open_pigment(canvas, tile.slot);
         const Plane& was = *before.at(tile.slot);
-        for (int t = 0; t < kN; ++t)
-            tile.area[t] = now[t] > 0 && now[t] != was[t] ? map.tiles[tile.slot].area[t] : 0;
+        for (int t = 0; t < kN; ++t) tile.area[t] = now[t] > 0 && now[t] != was[t] ? map.tiles[tile.slot].area[t] : 0;
     }
     for (Tile& tile : tiles) fill_halo(tile.reach, tiles, tile, [](const Tile& t) -> const Texels& { return t.area; });
     return tiles;
@@ -58,8 +57,8 @@ std::vector<Tile> tiles_of(const Canvas& canvas, const atlas::TexelMap& map, con
 
 }  // namespace
 
-void level_paste(Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLinks& seams,
-                 const OpenBefore& before, double length) {
+void level_paste(Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLinks& seams, const OpenBefore& before,
+                 double length) {
     const double spread = length * length / (2 * map.texel_size * map.texel_size);  // steps times part
     const int steps = std::min(static_cast<int>(std::ceil(spread / kStep)), kMostSteps);
     if (steps < 1 || before.empty()) return;
@@ -72,8 +71,10 @@ void level_paste(Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLi
     };
     for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p) {
         each_tile([&](Tile& tile) {
-            if (const Plane* w = canvas.plane(tile.slot, p)) tile.now = *w;
-            else tile.now.fill(0);
+            if (const Plane* w = canvas.plane(tile.slot, p))
+                tile.now = *w;
+            else
+                tile.now.fill(0);
         });
         for (int k = 0; k < steps; ++k) {
             each_tile([&](Tile& tile) {
@@ -91,7 +92,8 @@ void level_paste(Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLi
             each_tile([](Tile& tile) { tile.now = tile.next; });
         }
         each_tile([&](Tile& tile) {
-            if (canvas.plane(tile.slot, p) || std::any_of(tile.now.begin(), tile.now.end(), [](float v) { return v > 0; }))
+            if (canvas.plane(tile.slot, p) ||
+                std::any_of(tile.now.begin(), tile.now.end(), [](float v) { return v > 0; }))
                 static_cast<Texels&>(canvas.touch(tile.slot, p)) = tile.now;
         });
     }

@@ -19,7 +19,7 @@ using OpenBefore = std::unordered_map<std::uint32_t, std::unique_ptr<Plane>>;
 /// they are. Explicit steps with antisymmetric fluxes: each pigment is kept to rounding. The same
 /// bits for any number of threads. About 1 µs per tile, step and pigment; `length` over a texel,
 /// squared and times 2.5, are steps, 64 at most.
-void level_paste(Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLinks& seams,
-                 const OpenBefore& before, double length);
+void level_paste(Canvas& canvas, const atlas::TexelMap& map, const atlas::SeamLinks& seams, const OpenBefore& before,
+                 double length);
 
 }  // namespace tuft::ink

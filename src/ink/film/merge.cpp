@@ -54,9 +54,8 @@ void lay_tile(Canvas& lower, const Canvas& upper, std::uint32_t slot) {
 
 void lay_films(Canvas& lower, const Canvas& upper) {
     const auto same = [](const Pigment& a, const Pigment& b) { return a.name == b.name; };
-    if (lower.n_slots() != upper.n_slots() ||
-        !std::equal(lower.pigments().begin(), lower.pigments().end(), upper.pigments().begin(),
-                    upper.pigments().end(), same))
+    if (lower.n_slots() != upper.n_slots() || !std::equal(lower.pigments().begin(), lower.pigments().end(),
+                                                          upper.pigments().begin(), upper.pigments().end(), same))
         throw Error("layers of different atlases or pigments cannot be merged");
     const std::vector<std::uint32_t> slots = upper.touched_slots();
     parallel_for(slots.size(), 16, [&](std::size_t begin, std::size_t end) {

@@ -22,13 +22,14 @@ constexpr double kHeld = 0.02;       // of its height: finer waves than those he
 constexpr double kLeastFilm = 0.15;  // of the mean: hair never scrapes to the ground
 constexpr double kRub = 0.6;         // of what bundles rub goes by where they lie, the rest is the liquid's
 
-constexpr double kWear = 1e-3;  // part of what hair slides over that comes off
-constexpr double kPunch =
-    2 + 3.14159265358979324;  // what bears over what shears, under a flat punch
+constexpr double kWear = 1e-3;                      // part of what hair slides over that comes off
+constexpr double kPunch = 2 + 3.14159265358979324;  // what bears over what shears, under a flat punch
 
 using Texels = std::array<float, kN>;
 
-inline float positive(float a) { return a > 0 ? a : 0; }
+inline float positive(float a) {
+    return a > 0 ? a : 0;
+}
 
 TUFT_CLONES void add(float* __restrict sum, const float* __restrict w) {
     for (int t = 0; t < kN; ++t) sum[t] += w[t];
@@ -39,8 +40,7 @@ TUFT_CLONES void add_scaled(float* __restrict sum, const float* __restrict w, fl
 }
 
 /// Leaves the height where it counts as paste's.
-TUFT_CLONES void where_dry(float* __restrict height, const float* __restrict film,
-                           const float* __restrict pores) {
+TUFT_CLONES void where_dry(float* __restrict height, const float* __restrict film, const float* __restrict pores) {
     for (int t = 0; t < kN; ++t) {
         const float h = height[t] > static_cast<float>(kPlain) ? height[t] : 0;
         height[t] = film[t] + pores[t] > 0 ? 0 : h;
@@ -76,9 +76,8 @@ TUFT_CLONES void part_of(float* __restrict up, const float* __restrict here) {
 }
 
 /// What goes up of a plane, what of the mixture comes down, and the plane after both.
-TUFT_CLONES void move(float* __restrict w, float* __restrict up, float* __restrict down,
-                      const float* __restrict part, const float* __restrict volume, const float* __restrict mix,
-                      const float* __restrict strength) {
+TUFT_CLONES void move(float* __restrict w, float* __restrict up, float* __restrict down, const float* __restrict part,
+                      const float* __restrict volume, const float* __restrict mix, const float* __restrict strength) {
     for (int t = 0; t < kN; ++t) {
         up[t] = w[t] * part[t];
         down[t] = strength[t] > 0 ? volume[t] * mix[t] / strength[t] : 0;
@@ -115,7 +114,8 @@ std::array<double, kFirmnessSamples> pushed_by(std::span<const BundleFirmness> b
     const double half = firm > 0 ? kTine / firm : 1;  // of the width: firm bundles lie 1 / firm apart
     for (int i = 0; i < kFirmnessSamples; ++i) {
         double pushed = 0;
-        for (const BundleFirmness& bundle : bundles) pushed += bundle.weight * bump((double(i) / (kFirmnessSamples - 1) - bundle.at) / half);
+        for (const BundleFirmness& bundle : bundles)
+            pushed += bundle.weight * bump((double(i) / (kFirmnessSamples - 1) - bundle.at) / half);
         out[i] = std::min(pushed, 1.0);
     }
     return out;
@@ -146,7 +146,8 @@ FurrowDepths furrow_depths(std::span<const BundleFirmness> bundles, const Furrow
     std::array<double, kFirmnessSamples> levelled{};
     for (int n = 1; n <= kModes; ++n) {
         double a = 0;
-        for (int i = 0; i < kFirmnessSamples; ++i) a += (i == 0 || i == kLast ? 1.0 : 2.0) * film[i] * wave[n * i % (2 * kLast)] / kLast;
+        for (int i = 0; i < kFirmnessSamples; ++i)
+            a += (i == 0 || i == kLast ? 1.0 : 2.0) * film[i] * wave[n * i % (2 * kLast)] / kLast;
         const double k = 3.14159265358979324 * n / o.width;
         const double most = o.yield / (kTension * k * k * k * o.film) / o.film;  // over the mean film
         const double held = std::clamp(a / mean, -most, most);
@@ -161,11 +162,14 @@ FurrowDepths rub_of(std::span<const BundleFirmness> bundles) {
     double mean = 0;
     for (const double l : lies) mean += l / kFirmnessSamples;
     FurrowDepths out;
-    for (int i = 0; i < kFirmnessSamples; ++i) out[i] = static_cast<float>(mean > 0 ? 1 + kRub * (lies[i] / mean - 1) : 1);
+    for (int i = 0; i < kFirmnessSamples; ++i)
+        out[i] = static_cast<float>(mean > 0 ? 1 + kRub * (lies[i] / mean - 1) : 1);
     return out;
 }
 
-double standing_film(double yield) { return std::max(yield, 0.0) / (kDensity * kGravity) / kFilmUnit; }
+double standing_film(double yield) {
+    return std::max(yield, 0.0) / (kDensity * kGravity) / kFilmUnit;
+}
 
 double levelling_length(double yield, double film) {
     return yield > 0 && film > 0 ? std::cbrt(kTension * kHeld * film * film / yield) : 0;
@@ -180,9 +184,9 @@ Plane open_pigment(const Canvas& canvas, std::uint32_t slot) {
 }
 
 double loosened(const Rub& rub) {
-    return rub.yield > 0 ? kWear * std::max(rub.pressure, 0.0) * std::max(rub.length, 0.0) /
-                               (kPunch * rub.yield) / kFilmUnit
-                         : 0;
+    return rub.yield > 0
+               ? kWear * std::max(rub.pressure, 0.0) * std::max(rub.length, 0.0) / (kPunch * rub.yield) / kFilmUnit
+               : 0;
 }
 
 Plane paste_height(const Canvas& canvas, std::uint32_t slot) {
@@ -196,14 +200,13 @@ Plane paste_height(const Canvas& canvas, std::uint32_t slot) {
         return height;
     }
     static constexpr Plane kDry{};
-    const Plane *film = canvas.liquid(slot, Liquid::film),
-                *pores = canvas.liquid(slot, Liquid::pores);
+    const Plane *film = canvas.liquid(slot, Liquid::film), *pores = canvas.liquid(slot, Liquid::pores);
     where_dry(height.data(), (film ? film : &kDry)->data(), (pores ? pores : &kDry)->data());
     return height;
 }
 
-bool bed_paste(Canvas& canvas, std::uint32_t slot, const Plane& height,
-               std::span<const float, kN> flooded, double loose) {
+bool bed_paste(Canvas& canvas, std::uint32_t slot, const Plane& height, std::span<const float, kN> flooded,
+               double loose) {
     if (!(wet::greatest(height.data()) > 0)) return false;
     const Plane all = open_pigment(canvas, slot);
     Texels part;
@@ -249,8 +252,10 @@ void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
         move(w.data(), up.data(), down.data(), v.up.data(), v.down.data(), mix[p].data(), strength.data());
         const double stored = change_sum(w.data(), old.data(), area.data());
         double lifted = 0;
-        if (there) integrate_hats(shares, hats, up.data(), area);
-        else shares.fill(0);
+        if (there)
+            integrate_hats(shares, hats, up.data(), area);
+        else
+            shares.fill(0);
         for (int k = 0; k < hats.count; ++k) lifted += shares[k];
         // What rounding makes of it: nothing may be given that does not come down.
         if (!used[p]) lifted = std::max(-stored, 0.0);

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "ink/exchange/deposit.h"
 #include "ink/exchange/contact_nodes.h"
+#include "ink/exchange/deposit.h"
 
 /// Ink that stands as it was put: thick paint, and the furrows that the hair leaves in it.
 namespace tuft::ink {
@@ -69,8 +69,8 @@ struct PasteParams {
 /// same bits on every instruction set.
 void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
                const TexelPlaces& places, const HatBasis& hats, std::span<const float, atlas::kTileTexels> area,
-               double ds, const PasteParams& params, const NodeMixes& mixes, const Plane& before,
-               NodeContents& given, NodeContents& taken);
+               double ds, const PasteParams& params, const NodeMixes& mixes, const Plane& before, NodeContents& given,
+               NodeContents& taken);
 
 /// Pigment in the open film of a tile, film units: `before` of the above.
 Plane open_pigment(const Canvas& canvas, std::uint32_t slot);

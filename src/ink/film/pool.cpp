@@ -11,25 +11,29 @@ namespace tuft::ink {
 namespace {
 
 constexpr int kN = atlas::kTileTexels, kSide = atlas::kTile;
-constexpr float kPart = 0.2f;        // of what could flow, to each of four sides
+constexpr float kPart = 0.2f;  // of what could flow, to each of four sides
 constexpr int kMostSteps = 96;
-constexpr float kHeightUnit = 1e-5f; // metres of paint in a film unit of height
+constexpr float kHeightUnit = 1e-5f;  // metres of paint in a film unit of height
 
 using Texels = std::array<float, kN>;
 
 struct Tile : HaloTile {
-    alignas(64) Texels relief, near, film;                      ///< film units of height, 0–1, film units
-    alignas(64) Texels area, inverse;                            ///< m² and 1 / m², of texels; 0 outside of charts
-    alignas(64) Halo surface, level, slack, spread;              ///< of a step: z + T, T, ⟨T − hold⟩, ⟨T − pin⟩
-    alignas(64) Halo nearness, size;                             ///< n, area
-    alignas(64) std::array<Halo, 2> faces;                       ///< flux to the right and upwards of a texel
-    alignas(64) std::array<Texels, kMaxPigments> loose, fixed;   ///< of the open film: what settles, and what lay there
-    std::vector<float> over;                                     ///< flux out over each link
-    unsigned pigments = 0;                                       ///< of which there is loose ink
+    alignas(64) Texels relief, near, film;           ///< film units of height, 0–1, film units
+    alignas(64) Texels area, inverse;                ///< m² and 1 / m², of texels; 0 outside of charts
+    alignas(64) Halo surface, level, slack, spread;  ///< of a step: z + T, T, ⟨T − hold⟩, ⟨T − pin⟩
+    alignas(64) Halo nearness, size;                 ///< n, area
+    alignas(64) std::array<Halo, 2> faces;           ///< flux to the right and upwards of a texel
+    alignas(64) std::array<Texels, kMaxPigments> loose, fixed;  ///< of the open film: what settles, and what lay there
+    std::vector<float> over;                                    ///< flux out over each link
+    unsigned pigments = 0;                                      ///< of which there is loose ink
 };
 
-inline float smaller(float a, float b) { return a < b ? a : b; }
-inline float positive(float a) { return a > 0 ? a : 0; }
+inline float smaller(float a, float b) {
+    return a < b ? a : b;
+}
+inline float positive(float a) {
+    return a > 0 ? a : 0;
+}
 
 /// From one end to the other, n film units; antisymmetric.
 inline float flux(float za, float ta, float sa, float pa, float zb, float tb, float sb, float pb, float n) {
@@ -43,7 +47,8 @@ TUFT_CLONES void face_fluxes(float* __restrict out, const Halo& z, const Halo& t
     for (int y = -1; y < kSide; ++y)
         for (int x = -1; x < kSide; ++x) {
             const int a = halo_at(x, y), b = a + to;
-            out[a] = flux(z[a], t[a], s[a], p[a], z[b], t[b], s[b], p[b], smaller(n[a], n[b]) * smaller(area[a], area[b]));
+            out[a] =
+                flux(z[a], t[a], s[a], p[a], z[b], t[b], s[b], p[b], smaller(n[a], n[b]) * smaller(area[a], area[b]));
         }
 }
 
@@ -58,7 +63,9 @@ TUFT_CLONES void film_after(float* __restrict film, const float* __restrict righ
 }
 
 /// What a face brings of a pigment whose part of the film is c at its ends.
-inline float carried(float f, float c_from, float c_to) { return f > 0 ? f * c_from : f * c_to; }
+inline float carried(float f, float c_from, float c_to) {
+    return f > 0 ? f * c_from : f * c_to;
+}
 
 TUFT_CLONES void pigment_after(float* __restrict p, const float* __restrict right, const float* __restrict up,
                                const float* __restrict c, const float* __restrict inverse) {
@@ -109,7 +116,8 @@ bool read(Tile& tile, const Canvas& canvas, const atlas::TexelMap& map, const Ti
     bool any = false;
     for (int t = 0; t < kN; ++t) {
         tile.relief[t] = positive(tile.relief[t] - static_cast<float>(kPlain * 1e-6) / kHeightUnit);
-        const bool out = map.tiles[tile.slot].cluster[t] == atlas::kNoCluster || (options.free && !options.free(tile.slot, t));
+        const bool out =
+            map.tiles[tile.slot].cluster[t] == atlas::kNoCluster || (options.free && !options.free(tile.slot, t));
         const float area = out ? 0 : map.tiles[tile.slot].area[t];
         tile.area[t] = area;
         tile.inverse[t] = area > 0 ? 1 / area : 0;
@@ -150,19 +158,23 @@ class Pool {
 
     void step() {
         each([&](std::size_t i) {
-            prepare(tiles_[i], surface_[i], slack_[i], spread_[i], static_cast<float>(o_.hold), static_cast<float>(o_.pin));
+            prepare(tiles_[i], surface_[i], slack_[i], spread_[i], static_cast<float>(o_.hold),
+                    static_cast<float>(o_.pin));
         });
         each([&](std::size_t i) {
             Tile& tile = tiles_[i];
             const auto from = [&](const std::vector<Texels>& all) {
-                return [&](const Tile& t) -> const Texels& { return all[static_cast<std::size_t>(&t - tiles_.data())]; };
+                return
+                    [&](const Tile& t) -> const Texels& { return all[static_cast<std::size_t>(&t - tiles_.data())]; };
             };
             fill(tile.surface, tile, from(surface_));
             fill(tile.slack, tile, from(slack_));
             fill(tile.spread, tile, from(spread_));
             fill(tile.level, tile, [](const Tile& t) -> const Texels& { return t.film; });
-            face_fluxes(tile.faces[0].data(), tile.surface, tile.level, tile.slack, tile.spread, tile.nearness, tile.size, 1);
-            face_fluxes(tile.faces[1].data(), tile.surface, tile.level, tile.slack, tile.spread, tile.nearness, tile.size, kHaloRow);
+            face_fluxes(tile.faces[0].data(), tile.surface, tile.level, tile.slack, tile.spread, tile.nearness,
+                        tile.size, 1);
+            face_fluxes(tile.faces[1].data(), tile.surface, tile.level, tile.slack, tile.spread, tile.nearness,
+                        tile.size, kHaloRow);
             tile.over.clear();
             for (const auto& [place, link] : tile.links) {
                 const int a = link.texel, b = link.other_texel;
@@ -173,7 +185,8 @@ class Pool {
             }
         });
         for (int p = 0; p < kMaxPigments; ++p) {
-            const bool any = std::any_of(tiles_.begin(), tiles_.end(), [p](const Tile& t) { return t.pigments >> p & 1; });
+            const bool any =
+                std::any_of(tiles_.begin(), tiles_.end(), [p](const Tile& t) { return t.pigments >> p & 1; });
             if (any) carry(p);
         }
         each([&](std::size_t i) {
@@ -197,7 +210,8 @@ class Pool {
         });
         each([&](std::size_t i) {
             Tile& tile = tiles_[i];
-            fill(tile.slack, tile, [&](const Tile& t) -> const Texels& { return slack_[static_cast<std::size_t>(&t - tiles_.data())]; });
+            fill(tile.slack, tile,
+                 [&](const Tile& t) -> const Texels& { return slack_[static_cast<std::size_t>(&t - tiles_.data())]; });
             pigment_after(tile.loose[p].data(), tile.faces[0].data(), tile.faces[1].data(), tile.slack.data(),
                           tile.inverse.data());
             for (std::size_t k = 0; k < tile.over.size(); ++k) {
@@ -215,7 +229,9 @@ class Pool {
         });
     }
     template <class Field>
-    void fill(Halo& out, const Tile& tile, Field field) const { fill_halo(out, tiles_, tile, field); }
+    void fill(Halo& out, const Tile& tile, Field field) const {
+        fill_halo(out, tiles_, tile, field);
+    }
 
     std::vector<Tile>& tiles_;
     const PoolOptions& o_;

@@ -12,10 +12,10 @@
 namespace tuft::ink {
 
 struct PoolOptions {
-    double hold = 0.4;        ///< film units that stay on the ridges, held by the wall
-    double pin = 1.5;         ///< film units from which dry texels are wetted
-    double reach = 0.6e-3;    ///< metres over which it settles
-    double strength = 1;      ///< of the ink: pigments in a film unit
+    double hold = 0.4;      ///< film units that stay on the ridges, held by the wall
+    double pin = 1.5;       ///< film units from which dry texels are wetted
+    double reach = 0.6e-3;  ///< metres over which it settles
+    double strength = 1;    ///< of the ink: pigments in a film unit
     std::function<bool(std::uint32_t slot, int texel)> free = {};  ///< empty: all; nothing goes onto or off what is not
 };
 

@@ -15,7 +15,8 @@ double lumps(const Vec3& p, std::uint64_t seed) {
                z = static_cast<std::int64_t>(cell.z);
     const auto value = [&](int i, int j, int k) {
         // Three whole numbers of 21 bits: lattices of a kilometre at a millimetre.
-        const auto key = (static_cast<std::uint64_t>(x + i) & 0x1fffff) | (static_cast<std::uint64_t>(y + j) & 0x1fffff) << 21 |
+        const auto key = (static_cast<std::uint64_t>(x + i) & 0x1fffff) |
+                         (static_cast<std::uint64_t>(y + j) & 0x1fffff) << 21 |
                          (static_cast<std::uint64_t>(z + k) & 0x1fffff) << 42;
         return 2 * uniform(seed, key) - 1;
     };
@@ -41,12 +42,11 @@ void relief_of_tile(const atlas::TexelShape& tile, double length, std::span<floa
         out[t] = static_cast<float>(relief_at({tile.px[t], tile.py[t], tile.pz[t]}, length));
 }
 
-void expose_relief(std::span<float, atlas::kTileTexels> exposure,
-                   std::span<const float, atlas::kTileTexels> relief, float rms, float film) {
+void expose_relief(std::span<float, atlas::kTileTexels> exposure, std::span<const float, atlas::kTileTexels> relief,
+                   float rms, float film) {
     if (!(rms > 0)) return;
     const float scale = 2 / rms, base = 0.5f + film * scale;
-    for (int t = 0; t < atlas::kTileTexels; ++t)
-        exposure[t] *= std::clamp(base - 2 * relief[t], 0.0f, 1.0f);
+    for (int t = 0; t < atlas::kTileTexels; ++t) exposure[t] *= std::clamp(base - 2 * relief[t], 0.0f, 1.0f);
 }
 
 }  // namespace tuft::ink

@@ -13,12 +13,11 @@ namespace tuft::ink {
 double relief_at(const Vec3& point, double length);
 
 /// The same at every texel of a tile.
-void relief_of_tile(const atlas::TexelShape& tile, double length,
-                    std::span<float, atlas::kTileTexels> out);
+void relief_of_tile(const atlas::TexelShape& tile, double length, std::span<float, atlas::kTileTexels> out);
 
 /// Leaves of each texel's exposure the part that hair with a film of `film` metres reaches:
 /// clamp(½ + 2 (film − ζ r) / ζ), ζ the grain's rms height (metres) and r from `relief_of_tile`.
-void expose_relief(std::span<float, atlas::kTileTexels> exposure,
-                   std::span<const float, atlas::kTileTexels> relief, float rms, float film);
+void expose_relief(std::span<float, atlas::kTileTexels> exposure, std::span<const float, atlas::kTileTexels> relief,
+                   float rms, float film);
 
 }  // namespace tuft::ink

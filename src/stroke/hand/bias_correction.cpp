@@ -9,16 +9,16 @@ namespace tuft::stroke {
 namespace {
 
 constexpr int kPoints = BiasPiece::kPoints;
-constexpr double kPieceLength = 6e-3;    // metres, of a piece; neighbours overlap by half
-constexpr int kMostPieces = 64;          // of one stroke
-constexpr double kDot = 2e-4;            // metres: a shorter stroke goes by time
-constexpr int kLike = 4;                 // pieces that a correction comes from
-constexpr double kRidge = 1e-3;          // pull of the linear map to the identity
-constexpr int kPairings = 20;            // times the linear map is fitted to new pairs
+constexpr double kPieceLength = 6e-3;  // metres, of a piece; neighbours overlap by half
+constexpr int kMostPieces = 64;        // of one stroke
+constexpr double kDot = 2e-4;          // metres: a shorter stroke goes by time
+constexpr int kLike = 4;               // pieces that a correction comes from
+constexpr double kRidge = 1e-3;        // pull of the linear map to the identity
+constexpr int kPairings = 20;          // times the linear map is fitted to new pairs
 constexpr double kMinRatio = 0.5, kMaxRatio = 2;
 // Differences that make two pieces unlike: of shape over length, log of length, place, pressure, tilt.
 constexpr double kShape = 0.12, kLength = 0.7, kPlace = 0.3, kPressure = 0.25, kTilt = 0.35;
-constexpr double kTrust = 3;             // unlikeness at which a shift is no longer believed
+constexpr double kTrust = 3;  // unlikeness at which a shift is no longer believed
 
 struct Point {
     Vec2 position{0};
@@ -257,7 +257,8 @@ BiasCorrection learn_bias(std::span<const Trace> intended, std::span<const Trace
     if (written.empty()) throw Error("there are no strokes to learn a bias from");
     for (const auto& traces : {intended, written})
         for (const Trace& t : traces)
-            if (!t.flat || t.samples.empty()) throw Error("a bias correction is learned from flat strokes with samples only");
+            if (!t.flat || t.samples.empty())
+                throw Error("a bias correction is learned from flat strokes with samples only");
 
     std::vector<Pair> pairs;
     const std::vector<std::size_t> groups = groups_of(written);

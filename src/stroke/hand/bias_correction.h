@@ -19,19 +19,19 @@ namespace tuft::stroke {
 /// A piece of a sample stroke: what the writer did, to be compared with, and what to do
 /// about it: cubic Bézier curves over the piece, by their four control values.
 struct BiasPiece {
-    static constexpr int kPoints = 12;          ///< at even arc length
-    double length = 0;                          ///< metres
-    double begin = 0, end = 1;                  ///< place in its stroke, parts of its length
-    std::array<Vec2, kPoints> shape{};          ///< about its middle, over its length
-    std::array<double, kPoints> pressure{};     ///< 0–1
-    std::array<Vec2, kPoints> tilt{};           ///< radians
+    static constexpr int kPoints = 12;                 ///< at even arc length
+    double length = 0;                                 ///< metres
+    double begin = 0, end = 1;                         ///< place in its stroke, parts of its length
+    std::array<Vec2, kPoints> shape{};                 ///< about its middle, over its length
+    std::array<double, kPoints> pressure{};            ///< 0–1
+    std::array<Vec2, kPoints> tilt{};                  ///< radians
     std::array<double, 4> pressure_ratio{1, 1, 1, 1};  ///< intended over written, in [1/2, 2]
-    std::array<Vec2, 4> shift{};                ///< metres, intended minus written, after `linear`
-    std::array<Vec2, 4> tilt_change{};          ///< radians, intended minus written
+    std::array<Vec2, 4> shift{};                       ///< metres, intended minus written, after `linear`
+    std::array<Vec2, 4> tilt_change{};                 ///< radians, intended minus written
 };
 
 struct BiasCorrection {
-    glm::dmat2 linear{1};      ///< of flat positions about the middle of what is written together
+    glm::dmat2 linear{1};  ///< of flat positions about the middle of what is written together
     std::vector<BiasPiece> pieces;
 };
 

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <cmath>
 #include <iterator>
-#include <toml++/toml.h>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -18,7 +18,8 @@ constexpr std::size_t kMaxPieces = 100'000;
 
 void add_row(std::string& out, const char* key, const double* values, std::size_t n, double unit) {
     fmt::format_to(std::back_inserter(out), "{} = [", key);
-    for (std::size_t i = 0; i < n; ++i) fmt::format_to(std::back_inserter(out), "{}{:.12g}", i ? ", " : "", values[i] / unit);
+    for (std::size_t i = 0; i < n; ++i)
+        fmt::format_to(std::back_inserter(out), "{}{:.12g}", i ? ", " : "", values[i] / unit);
     out += "]\n";
 }
 
@@ -31,24 +32,24 @@ void add_row(std::string& out, const char* key, const std::array<Vec2, N>& v, do
     throw Error(source, static_cast<long>(node.source().begin.line), what);
 }
 
-void read_number(const toml::node& node, const std::string& source, const std::string& key, double& out,
-                 double unit, double lo, double hi) {
+void read_number(const toml::node& node, const std::string& source, const std::string& key, double& out, double unit,
+                 double lo, double hi) {
     const auto v = node.value<double>();
     if (!node.is_number() || !v || !(*v >= lo && *v <= hi))
         fail(node, source, fmt::format("'{}' has a value that is no number from {} to {}", key, lo, hi));
     out = *v * unit;
 }
 
-void read_row(const toml::node& node, const std::string& source, const std::string& key, double* out,
-              std::size_t n, double unit, double lo, double hi) {
+void read_row(const toml::node& node, const std::string& source, const std::string& key, double* out, std::size_t n,
+              double unit, double lo, double hi) {
     const toml::array* row = node.as_array();
     if (!row || row->size() != n) fail(node, source, fmt::format("'{}' must be a row of {} numbers", key, n));
     for (std::size_t i = 0; i < n; ++i) read_number(*row->get(i), source, key, out[i], unit, lo, hi);
 }
 
 template <std::size_t N>
-void read_row(const toml::node& node, const std::string& source, const std::string& key,
-              std::array<Vec2, N>& out, double unit, double lo, double hi) {
+void read_row(const toml::node& node, const std::string& source, const std::string& key, std::array<Vec2, N>& out,
+              double unit, double lo, double hi) {
     read_row(node, source, key, &out[0].x, 2 * N, unit, lo, hi);
 }
 

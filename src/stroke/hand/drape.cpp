@@ -15,7 +15,7 @@ namespace {
 
 using mesh::SurfaceQuery;
 
-constexpr int kRays = 180;        // headings in which lines are walked; between them linear
+constexpr int kRays = 180;  // headings in which lines are walked; between them linear
 constexpr std::size_t kMostSteps = 20'000;
 
 /// One step of a straightest line: ahead on the osculating paraboloid, then onto the ground.
@@ -45,8 +45,8 @@ class Drape {
         const auto start = query.closest_point(place.origin);
         if (!start) throw Error("there is no surface to lay a stroke on");
         gap_ = start->distance;
-        BaseColour ground{start->position, start->normal, axes_across(start->normal, place.right, place.down).right,
-                      {0, 0, 0}, true};
+        BaseColour ground{
+            start->position, start->normal, axes_across(start->normal, place.right, place.down).right, {0, 0, 0}, true};
         for (int pass = 0; pass < 4; ++pass) ground = feel(query, ground, radius_);
         origin_ = ground;
         axes_ = axes_across(ground.normal, place.right, place.down);

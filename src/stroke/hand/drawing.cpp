@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "ink/colour/pigments.h"
-#include "stroke/hand/long_lines.h"
 #include "stroke/hand/fit_trajectory.h"
+#include "stroke/hand/long_lines.h"
 
 namespace tuft::stroke {
 namespace {
@@ -23,8 +23,8 @@ bool same_place(const Placement& a, const Placement& b) {
 
 /// Whether the hand presses as the drawing's line widths say.
 bool has_width(const Stroke& s) {
-    return s.action == Action::stroke && s.trace.flat && !s.trace.pressed &&
-           s.trace.line_width > 0 && s.settings.pressure == "none";
+    return s.action == Action::stroke && s.trace.flat && !s.trace.pressed && s.trace.line_width > 0 &&
+           s.settings.pressure == "none";
 }
 
 double film_of(const BrushFit& fit, const std::string& ink) {
@@ -47,8 +47,7 @@ Placement turned(const Vec3& origin, const Vec3& normal, const Vec3& right, doub
 }  // namespace
 
 Vec3 upright_right(const Vec3& n) {
-    return std::abs(n.z) < kLies ? glm::normalize(glm::cross(Vec3{0, 0, 1}, n))
-                                 : make_frame(Vec3{0}, n).t;
+    return std::abs(n.z) < kLies ? glm::normalize(glm::cross(Vec3{0, 0, 1}, n)) : make_frame(Vec3{0}, n).t;
 }
 
 void transform_trace(Trace& trace, const Vec2& centre, double scale, bool mirrored) {
@@ -61,8 +60,7 @@ void transform_trace(Trace& trace, const Vec2& centre, double scale, bool mirror
     trace.line_width *= scale;
     if (!mirrored) return;
     for (TraceSample& sample : trace.samples) sample.position.x *= -1, sample.tilt.x *= -1;
-    for (StencilEdge& edge : trace.stencil)
-        edge = {Vec2(-edge.to.x, edge.to.y), Vec2(-edge.from.x, edge.from.y)};
+    for (StencilEdge& edge : trace.stencil) edge = {Vec2(-edge.to.x, edge.to.y), Vec2(-edge.from.x, edge.from.y)};
 }
 
 Box extent_of(std::span<Trace* const> drawing) {
@@ -79,12 +77,10 @@ void arrange_parts(std::span<Trace* const> drawing) {
     double edge = 0;
     for (std::size_t i = 0; i < drawing.size();) {
         std::size_t end = i;
-        while (end < drawing.size() && same_place(drawing[end]->placement, drawing[i]->placement))
-            ++end;
+        while (end < drawing.size() && same_place(drawing[end]->placement, drawing[i]->placement)) ++end;
         const std::span<Trace* const> part = drawing.subspan(i, end - i);
         const Box box = extent_of(part);
-        const double shift =
-            i == 0 ? 0 : edge - box.lo.x + kPartGap * std::max(box.size().x, box.size().y);
+        const double shift = i == 0 ? 0 : edge - box.lo.x + kPartGap * std::max(box.size().x, box.size().y);
         if (shift != 0)
             for (Trace* trace : part) transform_trace(*trace, {-shift, 0}, 1);
         edge = box.hi.x + shift;
@@ -98,8 +94,7 @@ Placement upright_placement(const Vec3& origin, const Vec3& normal, double turn)
 
 Placement placement_seen(const Vec3& origin, const Vec3& normal, const Vec3& right, double turn) {
     const Vec3 along = right - glm::dot(right, normal) * normal;
-    if (!(glm::length(along) > 1e-6 * glm::length(right)))
-        return upright_placement(origin, normal, turn);
+    if (!(glm::length(along) > 1e-6 * glm::length(right))) return upright_placement(origin, normal, turn);
     return turned(origin, normal, glm::normalize(along), turn);
 }
 
@@ -116,8 +111,7 @@ double turn_of(const Vec3& normal, const Vec3& upright, const Vec3& right) {
 std::vector<Trace*> drawing_in(std::vector<Stroke>& entries, bool all) {
     std::vector<Trace*> drawing;
     for (Stroke& s : entries)
-        if (s.layer != kPaletteLayer && s.trace.flat && (all || !s.trace.placed))
-            drawing.push_back(&s.trace);
+        if (s.layer != kPaletteLayer && s.trace.flat && (all || !s.trace.placed)) drawing.push_back(&s.trace);
     return drawing;
 }
 
@@ -131,8 +125,8 @@ void place_drawing(std::span<Trace* const> drawing, const DrawingPlace& place) {
     }
 }
 
-void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawing, double scale,
-                    double extent, const BrushFit& fit, WidthTables& widths) {
+void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawing, double scale, double extent,
+                    const BrushFit& fit, WidthTables& widths) {
     // What is done with a brush before a stroke is done with the brush of that stroke.
     const std::unordered_set<const Trace*> among(drawing.begin(), drawing.end());
     std::string own, sized;
@@ -155,12 +149,9 @@ void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawin
                 // The line says how large the brush is, not the size that the brush was in.
                 const std::string base = brush::sized_name(sized).base;
                 const double length = length_of(trace),
-                             speed = length / std::max(trace.samples.back().time -
-                                                           trace.samples.front().time,
-                                                       1e-9);
-                sized =
-                    brush_for_line(base, widths, trace.line_width, s->settings.endless ? 0 : length,
-                                   film_of(fit, trace.ink), speed);
+                             speed = length / std::max(trace.samples.back().time - trace.samples.front().time, 1e-9);
+                sized = brush_for_line(base, widths, trace.line_width, s->settings.endless ? 0 : length,
+                                       film_of(fit, trace.ink), speed);
             }
             trace.brush = sized;
         } else if (trace.brush == own) {
@@ -203,8 +194,8 @@ WidthMismatch press_to_widths(std::vector<Stroke>& entries, WidthTables& tables)
         draw_to_width(s.trace, widths);
         drawn.push_back(&s.trace);
         if (width >= widths.least() && width <= widths.most()) continue;
-        mismatch = {s.trace.brush, std::min(mismatch.least, width), std::max(mismatch.most, width),
-                    widths.least(), widths.most()};
+        mismatch = {s.trace.brush, std::min(mismatch.least, width), std::max(mismatch.most, width), widths.least(),
+                    widths.most()};
     }
     fit_trajectory(drawn, tables);
     for (Stroke& s : entries) s.trace.line_width = 0;

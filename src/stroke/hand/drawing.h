@@ -89,8 +89,8 @@ void redip_long_lines(std::vector<Stroke>& entries, const BrushFit& fit, WidthTa
 
 /// Names the brush of every entry that has none, in the sizes that `fit` asks for. `drawing`
 /// (traces of `entries`) has been placed with `scale` and is `extent` metres large now.
-void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawing, double scale,
-                    double extent, const BrushFit& fit, WidthTables& widths);
+void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawing, double scale, double extent,
+                    const BrushFit& fit, WidthTables& widths);
 
 /// Line widths that a brush could not draw.
 struct WidthMismatch {

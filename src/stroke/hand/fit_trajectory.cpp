@@ -23,15 +23,14 @@ constexpr double kCell = 1.0 / 24;  // of the picture
 constexpr double kFarthest = 0.8;   // that ink is looked for beyond the wanted edge
 constexpr double kSoft = 0.4;       // of the way to both sides over which corrections are smoothed
 constexpr double kAbout = 2.5;      // of the way about a turn that is corrected
-constexpr double kMostMoved = 1.5;       // that the way moves
-constexpr double kOwn = 0.8;    // of the way from a place within which the tuft lays its ink there
-constexpr double kEdge = 0.08;  // of the half width within which a place still belongs to the edge
-constexpr double kUnder = 0.1;  // of another line's half width from its edge: less may be bare
-constexpr double kSharpLift = 1;  // of the way about a sharp turn in which the hand lifts at first
+constexpr double kMostMoved = 1.5;  // that the way moves
+constexpr double kOwn = 0.8;        // of the way from a place within which the tuft lays its ink there
+constexpr double kEdge = 0.08;      // of the half width within which a place still belongs to the edge
+constexpr double kUnder = 0.1;      // of another line's half width from its edge: less may be bare
+constexpr double kSharpLift = 1;    // of the way about a sharp turn in which the hand lifts at first
 
-constexpr double
-    kTurn = 0.35,
-    kSharp = 1.7;  // radians within a width: less is no corner; more, and the tuft turns over
+constexpr double kTurn = 0.35,
+                 kSharp = 1.7;    // radians within a width: less is no corner; more, and the tuft turns over
 constexpr double kFan = pi / 12;  // radians between looks round a corner
 constexpr double kLifted = 0.65;  // part of the width that a first try leaves out at a sharp turn
 constexpr double kShift = 0.6, kPress = 0.3, kKick = 2;  // parts of an error taken back at once
@@ -87,8 +86,7 @@ double angle_between(const Vec2& a, const Vec2& b) {
 }
 
 Vec2 turned(const Vec2& v, double angle) {
-    return {std::cos(angle) * v.x - std::sin(angle) * v.y,
-            std::sin(angle) * v.x + std::cos(angle) * v.y};
+    return {std::cos(angle) * v.x - std::sin(angle) * v.y, std::sin(angle) * v.x + std::cos(angle) * v.y};
 }
 
 }  // namespace
@@ -98,11 +96,9 @@ class DrawnArea {
   public:
     void add(std::size_t of_line, const Vec2& centre, double half) {
         if (!(half > 0)) return;
-        const Vec2 lo = glm::floor((centre - half) / kSquare),
-                   hi = glm::floor((centre + half) / kSquare);
+        const Vec2 lo = glm::floor((centre - half) / kSquare), hi = glm::floor((centre + half) / kSquare);
         for (auto j = static_cast<std::int64_t>(lo.y); j <= static_cast<std::int64_t>(hi.y); ++j)
-            for (auto i = static_cast<std::int64_t>(lo.x); i <= static_cast<std::int64_t>(hi.x);
-                 ++i)
+            for (auto i = static_cast<std::int64_t>(lo.x); i <= static_cast<std::int64_t>(hi.x); ++i)
                 squares_[key(i, j)].push_back({of_line, centre, half});
     }
     /// Whether a point lies by more than `slack` of their half widths within a disc of a line other
@@ -110,8 +106,7 @@ class DrawnArea {
     bool covers(const Vec2& p, std::size_t but, double slack) const {
         const auto at = squares_.find(key(static_cast<std::int64_t>(std::floor(p.x / kSquare)),
                                           static_cast<std::int64_t>(std::floor(p.y / kSquare))));
-        return at != squares_.end() &&
-               std::any_of(at->second.begin(), at->second.end(), [&](const Disc& d) {
+        return at != squares_.end() && std::any_of(at->second.begin(), at->second.end(), [&](const Disc& d) {
                    return d.line != but && glm::distance(p, d.centre) < (1 - slack) * d.half;
                });
     }
@@ -125,8 +120,7 @@ class DrawnArea {
         double half = 0;
     };
     static std::uint64_t key(std::int64_t i, std::int64_t j) {
-        return (static_cast<std::uint64_t>(i) << 32) ^
-               (static_cast<std::uint64_t>(j) & 0xFFFFFFFFu);
+        return (static_cast<std::uint64_t>(i) << 32) ^ (static_cast<std::uint64_t>(j) & 0xFFFFFFFFu);
     }
     std::unordered_map<std::uint64_t, std::vector<Disc>> squares_;
 };
@@ -134,8 +128,8 @@ class DrawnArea {
 namespace {
 
 /// The edge of the discs round the stations.
-std::vector<Look> looks_of(const std::vector<Station>& stations, const std::vector<double>& weight,
-                           double width, const DrawnArea* area) {
+std::vector<Look> looks_of(const std::vector<Station>& stations, const std::vector<double>& weight, double width,
+                           const DrawnArea* area) {
     std::vector<Look> looks;
     DrawnArea own;
     for (const Station& s : stations) own.add(0, s.centre, s.half);
@@ -143,8 +137,7 @@ std::vector<Look> looks_of(const std::vector<Station>& stations, const std::vect
         const Vec2 at = stations[i].centre + stations[i].half * out;
         if (own.covers(at, 1, kEdge) || (area && area->covers(at, area->line, kUnder))) return;
         double far = 0;
-        while (far < kFarthest * width && !own.covers(at + (far + 0.1 * width) * out, 1, 0))
-            far += 0.1 * width;
+        while (far < kFarthest * width && !own.covers(at + (far + 0.1 * width) * out, 1, 0)) far += 0.1 * width;
         looks.push_back({at, out, i, far});
     };
     for (std::size_t i = 0; i < stations.size(); ++i) {
@@ -188,8 +181,7 @@ double reach_over(const PlaneInk& ink, const Look& look, double half) {
 }
 
 /// By how much the way turns within half a width to both sides of each station, radians.
-std::vector<double> turns_of(const std::vector<Station>& stations, const std::vector<double>& along,
-                             double width) {
+std::vector<double> turns_of(const std::vector<Station>& stations, const std::vector<double>& along, double width) {
     const std::size_t n = stations.size();
     std::vector<double> turns(n, 0);
     for (std::size_t i = 0; i < n; ++i) {
@@ -197,25 +189,21 @@ std::vector<double> turns_of(const std::vector<Station>& stations, const std::ve
         while (a > 0 && along[i] - along[a] < 0.5 * width) --a;
         while (b + 1 < n && along[b] - along[i] < 0.5 * width) ++b;
         if (a < i && b > i)
-            turns[i] = std::abs(angle_between(stations[i].centre - stations[a].centre,
-                                              stations[b].centre - stations[i].centre));
+            turns[i] = std::abs(
+                angle_between(stations[i].centre - stations[a].centre, stations[b].centre - stations[i].centre));
     }
     return turns;
 }
 
 /// Metres along the way from each station to the nearest with a turn of more than `least`.
-std::vector<double> far_from_turns(const std::vector<double>& turns,
-                                   const std::vector<double>& along, double least) {
+std::vector<double> far_from_turns(const std::vector<double>& turns, const std::vector<double>& along, double least) {
     const std::size_t n = turns.size();
     std::vector<double> far(n, 1e30);
     for (std::size_t i = 0; i < n; ++i)
-        if (turns[i] > least && turns[i] >= turns[i > 0 ? i - 1 : i] &&
-            turns[i] >= turns[std::min(i + 1, n - 1)])
+        if (turns[i] > least && turns[i] >= turns[i > 0 ? i - 1 : i] && turns[i] >= turns[std::min(i + 1, n - 1)])
             far[i] = 0;
-    for (std::size_t i = 1; i < n; ++i)
-        far[i] = std::min(far[i], far[i - 1] + along[i] - along[i - 1]);
-    for (std::size_t i = n - 1; i-- > 0;)
-        far[i] = std::min(far[i], far[i + 1] + along[i + 1] - along[i]);
+    for (std::size_t i = 1; i < n; ++i) far[i] = std::min(far[i], far[i - 1] + along[i] - along[i - 1]);
+    for (std::size_t i = n - 1; i-- > 0;) far[i] = std::min(far[i], far[i + 1] + along[i + 1] - along[i]);
     return far;
 }
 
@@ -240,8 +228,8 @@ std::vector<T> smoothed(const std::vector<T>& v, const std::vector<double>& alon
 
 }  // namespace
 
-Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths& widths,
-               const HolderOptions& options, const DrawnArea* area) {
+Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths& widths, const HolderOptions& options,
+                     const DrawnArea* area) {
     if (!trace.flat || trace.samples.size() < 3 || !(trace.line_width > 0)) return trace;
     const double width = std::max(trace.line_width, widths.least());
     if (travelled<TraceSample>(trace.samples).back() > kLongest * width) return trace;
@@ -250,16 +238,13 @@ Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths&
     const std::size_t n = tried.samples.size();
     const std::vector<double> along = travelled<TraceSample>(tried.samples);
     std::vector<Station> wanted;
-    for (const TraceSample& s : tried.samples)
-        wanted.push_back({Vec2(s.position), 0.5 * widths.at(s.pressure)});
+    for (const TraceSample& s : tried.samples) wanted.push_back({Vec2(s.position), 0.5 * widths.at(s.pressure)});
     const std::vector<double> turns = turns_of(wanted, along, width);
     if (*std::max_element(turns.begin(), turns.end()) < kTurn) return trace;
-    std::vector<double> weight = far_from_turns(turns, along, kTurn),
-                        wider = far_from_turns(turns, along, kSharp);
+    std::vector<double> weight = far_from_turns(turns, along, kTurn), wider = far_from_turns(turns, along, kSharp);
     for (double& w : weight) w = 1 - smooth_step(w / width - kAbout + 1);
     for (std::size_t i = 0; i < n; ++i)
-        wider[i] =
-            -2 * kLifted * wanted[i].half * (1 - smooth_step(wider[i] / (kSharpLift * width)));
+        wider[i] = -2 * kLifted * wanted[i].half * (1 - smooth_step(wider[i] / (kSharpLift * width)));
     const std::vector<Look> looks = looks_of(wanted, weight, width, area);
     if (looks.empty()) return trace;
     std::vector<Vec2> moved(n, Vec2{0});
@@ -270,9 +255,8 @@ Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths&
         for (std::size_t i = 0; i < n; ++i) {
             TraceSample& s = tried.samples[i];
             s.position = Vec3(wanted[i].centre + moved[i], s.position.z);
-            s.pressure = wider[i] == 0 && moved[i] == Vec2(0)
-                             ? s.pressure
-                             : widths.pressure(2 * wanted[i].half + wider[i]);
+            s.pressure =
+                wider[i] == 0 && moved[i] == Vec2(0) ? s.pressure : widths.pressure(2 * wanted[i].half + wider[i]);
         }
         const PlaneInk ink = plane_ink(tried, preset, options, kStep * width, kCell * width);
         std::vector<Vec2> shift(n, Vec2{0});
@@ -286,11 +270,9 @@ Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths&
             if (e > 0) {
                 const Vec2 p = look.at + 0.7 * e * look.out;
                 const double when = ink.when({p.x, -p.y});
-                const auto at = std::lower_bound(
-                    tried.samples.begin(), tried.samples.end(), when,
-                    [](const TraceSample& s, double time) { return s.time < time; });
-                by = std::min<std::size_t>(static_cast<std::size_t>(at - tried.samples.begin()),
-                                           n - 1);
+                const auto at = std::lower_bound(tried.samples.begin(), tried.samples.end(), when,
+                                                 [](const TraceSample& s, double time) { return s.time < time; });
+                by = std::min<std::size_t>(static_cast<std::size_t>(at - tried.samples.begin()), n - 1);
             }
             if (std::abs(along[by] - along[look.station]) < kOwn * width) {
                 shift[look.station] -= e * look.out;
@@ -317,8 +299,7 @@ Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths&
             moved[i] += kShift * shift[i];
             if (const double far = glm::length(moved[i]); far > kMostMoved * width)
                 moved[i] *= kMostMoved * width / far;
-            wider[i] = std::clamp(wider[i] + kPress * press[i], -1.6 * wanted[i].half,
-                                  0.8 * wanted[i].half);
+            wider[i] = std::clamp(wider[i] + kPress * press[i], -1.6 * wanted[i].half, 0.8 * wanted[i].half);
         }
     }
     return best;
@@ -338,11 +319,10 @@ void fit_trajectory(std::span<Trace* const> drawing, WidthTables& tables) {
             const Trace& t = *drawing[i];
             if (done[i] || !together(t, *drawing[first])) continue;
             const LineWidths& widths = tables.of(t.brush);
-            if (t.samples.empty() || travelled<TraceSample>(t.samples).back() >
-                                         kLongest * std::max(t.line_width, widths.least()))
+            if (t.samples.empty() ||
+                travelled<TraceSample>(t.samples).back() > kLongest * std::max(t.line_width, widths.least()))
                 continue;
-            for (const TraceSample& s :
-                 evenly(t.samples, kApart * std::max(t.line_width, widths.least())))
+            for (const TraceSample& s : evenly(t.samples, kApart * std::max(t.line_width, widths.least())))
                 area.add(i, Vec2(s.position), 0.5 * widths.at(s.pressure));
         }
         for (std::size_t i = first; i < drawing.size(); ++i) {

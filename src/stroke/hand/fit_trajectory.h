@@ -16,8 +16,8 @@ namespace tuft::stroke {
 /// width and try; a trace without turns is not tried at all. What lies under `area` is not looked
 /// at, nor is a trace of which that is all.
 class DrawnArea;
-Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths& widths,
-               const HolderOptions& options, const DrawnArea* area = nullptr);
+Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths& widths, const HolderOptions& options,
+                     const DrawnArea* area = nullptr);
 
 /// All lines of a drawing by the brushes that they name, with their `line_width`s: each looks at
 /// what of its edge does not lie under others of its ink and place.

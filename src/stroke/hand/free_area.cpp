@@ -22,9 +22,8 @@ constexpr std::array<std::pair<Side, std::string_view>, 7> kSides{{{Side::front,
 
 constexpr int kMiddle = 64, kCells = 2 * kMiddle + 1;
 constexpr double kBent = 0.85, kTurned = 0.34, kSteep = 2;
-constexpr double kFilled =
-    0.5;  // cells between a ray's depth and the closed one from which on it looks into a gap
-constexpr int kRoughReach = 2;  // cells to each side over which roughness is taken
+constexpr double kFilled = 0.5;  // cells between a ray's depth and the closed one from which on it looks into a gap
+constexpr int kRoughReach = 2;   // cells to each side over which roughness is taken
 constexpr double kLeastScale = 1.0 / 32, kMostAspect = 32;
 constexpr int kAround = 8,
               kWalls = 6;  // horizontal rays about a point of the inside, and how many meet a wall
@@ -58,15 +57,13 @@ class Sums {
     }
     /// Over the cells i − hi … i + hi, j − hj … j + hj, cut at the grid's edge.
     Sum over(int i, int j, int hi, int hj) const {
-        const int a = std::max(0, i - hi), b = std::min(kCells, i + hi + 1),
-                  c = std::max(0, j - hj), d = std::min(kCells, j + hj + 1);
+        const int a = std::max(0, i - hi), b = std::min(kCells, i + hi + 1), c = std::max(0, j - hj),
+                  d = std::min(kCells, j + hj + 1);
         return at(b, d) - at(a, d) - at(b, c) + at(a, c);
     }
 
   private:
-    Sum& at(int i, int j) {
-        return sums_[static_cast<std::size_t>(j) * (kCells + 1) + static_cast<std::size_t>(i)];
-    }
+    Sum& at(int i, int j) { return sums_[static_cast<std::size_t>(j) * (kCells + 1) + static_cast<std::size_t>(i)]; }
     const Sum& at(int i, int j) const {
         return sums_[static_cast<std::size_t>(j) * (kCells + 1) + static_cast<std::size_t>(i)];
     }
@@ -95,11 +92,9 @@ class View {
         : query_(query), look_(look_at_side(side)), inside_(side == Side::inside) {
         const Box& box = query.mesh().bounds;
         const Vec3 right = glm::normalize(
-            glm::cross(look_, std::abs(look_.z) < 0.95 ? Vec3{0, 0, 1}
-                                                       : Vec3{0, look_.z > 0 ? -1.0 : 1.0, 0}));
+            glm::cross(look_, std::abs(look_.z) < 0.95 ? Vec3{0, 0, 1} : Vec3{0, look_.z > 0 ? -1.0 : 1.0, 0}));
         const Vec3 up = glm::cross(right, look_);
-        cell_ = {glm::dot(box.size(), glm::abs(right)) / kCells,
-                 glm::dot(box.size(), glm::abs(up)) / kCells};
+        cell_ = {glm::dot(box.size(), glm::abs(right)) / kCells, glm::dot(box.size(), glm::abs(up)) / kCells};
         right_ = cell_.x * right, up_ = cell_.y * up;
         before_ = box.centre() - box.diagonal() * look_;
         cast();
@@ -109,8 +104,7 @@ class View {
     const Vec2& cell() const { return cell_; }
     const Vec3& look() const { return look_; }
     std::optional<mesh::SurfacePoint> hit(int i, int j) const {
-        return query_.ray(before_ + double(i - kMiddle) * right_ + double(j - kMiddle) * up_,
-                          look_);
+        return query_.ray(before_ + double(i - kMiddle) * right_ + double(j - kMiddle) * up_, look_);
     }
     /// Cells that are rougher than this are not free.
     Sums calm(double rough) const {
@@ -140,10 +134,8 @@ class View {
                 if (!at || glm::dot(at->face_normal, look_) >= 0) continue;
                 depth[index(i, j)] = at->distance;
                 cells_[index(i, j)] = {
-                    -glm::dot(at->face_normal, look_) < kTurned || (inside_ && !has_walls(*at))
-                        ? 1.0
-                        : 0.0,
-                    1, at->face_normal};
+                    -glm::dot(at->face_normal, look_) < kTurned || (inside_ && !has_walls(*at)) ? 1.0 : 0.0, 1,
+                    at->face_normal};
             }
         // What is one or two rays wide, such as a shut line, is closed: a drawing is draped over
         // it.
@@ -190,18 +182,13 @@ struct Shape {
 
     Shape(const Vec2& cell, double aspect) {
         const Vec2 whole = static_cast<double>(kCells) * cell;
-        const double width =
-            std::min(whole.x, std::clamp(aspect, 1 / kMostAspect, kMostAspect) * whole.y);
+        const double width = std::min(whole.x, std::clamp(aspect, 1 / kMostAspect, kMostAspect) * whole.y);
         full = {width, width / std::clamp(aspect, 1 / kMostAspect, kMostAspect)};
     }
     Rectangle at(int i, int j, double scale, const Vec2& cell) const {
         const Vec2 half = 0.5 * (scale * full / cell - 1.0);
-        return {i,
-                j,
-                std::max(0, static_cast<int>(half.x + 1e-6)),
-                std::max(0, static_cast<int>(half.y + 1e-6)),
-                scale,
-                {}};
+        return {i,     j, std::max(0, static_cast<int>(half.x + 1e-6)), std::max(0, static_cast<int>(half.y + 1e-6)),
+                scale, {}};
     }
 };
 
@@ -216,8 +203,7 @@ bool fits(const Sums& sums, Rectangle& r, const Vec3& look) {
 /// Of places that fit, the one next to the middle of the largest group of neighbours.
 std::size_t middle_one(const std::vector<Rectangle>& found) {
     std::vector<int> at(kCells * kCells, -1), group(found.size(), -1);
-    for (std::size_t k = 0; k < found.size(); ++k)
-        at[index(found[k].i, found[k].j)] = static_cast<int>(k);
+    for (std::size_t k = 0; k < found.size(); ++k) at[index(found[k].i, found[k].j)] = static_cast<int>(k);
     std::size_t best = 0, most = 0;
     for (std::size_t k = 0; k < found.size(); ++k) {
         if (group[k] >= 0) continue;
@@ -229,8 +215,7 @@ std::size_t middle_one(const std::vector<Rectangle>& found) {
             sum += Vec2(r.i, r.j);
             for (int y = std::max(0, r.j - 1); y <= std::min(kCells - 1, r.j + 1); ++y)
                 for (int x = std::max(0, r.i - 1); x <= std::min(kCells - 1, r.i + 1); ++x)
-                    if (const int next = at[index(x, y)];
-                        next >= 0 && group[static_cast<std::size_t>(next)] < 0) {
+                    if (const int next = at[index(x, y)]; next >= 0 && group[static_cast<std::size_t>(next)] < 0) {
                         group[static_cast<std::size_t>(next)] = static_cast<int>(k);
                         members.push_back(static_cast<std::size_t>(next));
                     }
@@ -252,8 +237,7 @@ std::optional<Rectangle> largest(const View& view, const Sums& sums, const Shape
         std::vector<Rectangle> found;
         for (int j = 0; j < kCells; ++j)
             for (int i = 0; i < kCells; ++i)
-                if (Rectangle r = shape.at(i, j, scale, view.cell()); fits(sums, r, view.look()))
-                    found.push_back(r);
+                if (Rectangle r = shape.at(i, j, scale, view.cell()); fits(sums, r, view.look())) found.push_back(r);
         if (found.empty()) continue;
         Rectangle best = found[middle_one(found)];
         for (double larger = scale * 1.01; larger < scale * std::exp2(0.25); larger *= 1.01) {
@@ -269,9 +253,7 @@ std::optional<Rectangle> largest(const View& view, const Sums& sums, const Shape
 }  // namespace
 
 std::string_view side_name(Side side) {
-    return std::find_if(kSides.begin(), kSides.end(),
-                        [=](const auto& s) { return s.first == side; })
-        ->second;
+    return std::find_if(kSides.begin(), kSides.end(), [=](const auto& s) { return s.first == side; })->second;
 }
 
 std::optional<Side> side_named(std::string_view name) {
@@ -323,8 +305,7 @@ std::optional<FreeArea> find_free_area(const mesh::SurfaceQuery& query, Side sid
         at = view.hit(best->i + off, best->j);
     }
     if (!at) return {};
-    return FreeArea{*at, glm::normalize(best->normal),
-                    Vec2(2 * best->hi + 1, 2 * best->hj + 1) * view.cell()};
+    return FreeArea{*at, glm::normalize(best->normal), Vec2(2 * best->hi + 1, 2 * best->hj + 1) * view.cell()};
 }
 
 }  // namespace tuft::stroke

@@ -10,8 +10,7 @@ constexpr double kSlowestCatchUp = 0.02;    // m/s
 
 double mean_speed(const std::vector<TraceSample>& samples) {
     double way = 0;
-    for (std::size_t i = 1; i < samples.size(); ++i)
-        way += glm::length(samples[i].position - samples[i - 1].position);
+    for (std::size_t i = 1; i < samples.size(); ++i) way += glm::length(samples[i].position - samples[i - 1].position);
     const double time = samples.back().time - samples.front().time;
     return time > 0 ? std::max(way / time, kSlowestCatchUp) : kSlowestCatchUp;
 }

@@ -11,10 +11,14 @@ namespace {
 
 constexpr double kShortestStep = 1e-3;  // seconds; what a time that does not rise counts as
 
-double time_constant(double cutoff) { return 1 / (2 * std::numbers::pi * cutoff); }
+double time_constant(double cutoff) {
+    return 1 / (2 * std::numbers::pi * cutoff);
+}
 
 // Part of the way to a constant goal that a low-pass goes in dt.
-double share(double cutoff, double dt) { return -std::expm1(-dt / time_constant(cutoff)); }
+double share(double cutoff, double dt) {
+    return -std::expm1(-dt / time_constant(cutoff));
+}
 
 // A low-pass y of a signal that goes evenly from x0 to x1 in dt, solved exactly: y' = (x - y) / τ.
 template <class V>
@@ -24,9 +28,15 @@ V low_pass(const V& y, const V& x0, const V& x1, double dt, double cutoff) {
     return x1 - lag + std::exp(-dt / tau) * (y - x0 + lag);
 }
 
-double size(double v) { return std::abs(v); }
-double size(const Vec2& v) { return glm::length(v); }
-double size(const Vec3& v) { return glm::length(v); }
+double size(double v) {
+    return std::abs(v);
+}
+double size(const Vec2& v) {
+    return glm::length(v);
+}
+double size(const Vec3& v) {
+    return glm::length(v);
+}
 
 // Time of the next sample; rises always.
 double next_time(double before, double time) {
@@ -147,8 +157,7 @@ void let_go(String& s, double time, double speed, double spacing, std::vector<Tr
     for (int i = 1; i <= steps; ++i) {
         const double part = static_cast<double>(i) / steps;
         s.tip = start + part * (s.hand - start);
-        const String::Grip grip =
-            i == steps ? s.past.back() : grip_at(s, s.travel - (1 - part) * way);
+        const String::Grip grip = i == steps ? s.past.back() : grip_at(s, s.travel - (1 - part) * way);
         out.push_back({.time = time + part * way / speed,
                        .position = s.tip,
                        .pressure = grip.pressure,

@@ -20,9 +20,9 @@ namespace tuft::stroke {
 /// straight path stays straight. At constant speed v the output lies
 /// v / (2π (cutoff + beta v)) < 1 / (2π beta) behind, whatever the rate of the samples.
 struct OneEuroOptions {
-    double cutoff = 1.2;       ///< Hz, at rest
-    double beta = 0;           ///< Hz per unit of speed
-    double rate_cutoff = 3;    ///< Hz
+    double cutoff = 1.2;     ///< Hz, at rest
+    double beta = 0;         ///< Hz per unit of speed
+    double rate_cutoff = 3;  ///< Hz
 };
 
 template <class V>
@@ -42,7 +42,7 @@ struct OneEuroTurn {
     bool started = false, moved = false;
     double time = 0;
     Quat raw{1, 0, 0, 0}, value{1, 0, 0, 0};
-    double rate = 0;           ///< rad/s
+    double rate = 0;  ///< rad/s
 };
 Quat filter(OneEuroTurn& state, const Quat& sample, double time, const OneEuroOptions& options);
 
@@ -71,18 +71,18 @@ TraceSample smooth(HandFilter& state, const TraceSample& sample, const HandFilte
 brush::Pose smooth(HandFilter& state, const brush::Pose& pose, const HandFilterOptions& options = {});
 
 /// A tip pulled on a string: it stays where it is until the string is taut, then follows
-/// straight towards the hand (`drag_string`, exact for a hand that goes straight from sample to sample). |hand − tip| ≤ length always, and a wobble of the hand narrower
-/// than the string's length leaves the tip at rest.
+/// straight towards the hand (`drag_string`, exact for a hand that goes straight from sample to sample). |hand − tip| ≤
+/// length always, and a wobble of the hand narrower than the string's length leaves the tip at rest.
 struct String {
     bool started = false;
-    Vec3 tip{0}, hand{0};      ///< metres
-    double travel = 0;         ///< metres the hand has gone
+    Vec3 tip{0}, hand{0};  ///< metres
+    double travel = 0;     ///< metres the hand has gone
     struct Grip {
-        double travel = 0;     ///< metres the hand had gone
+        double travel = 0;  ///< metres the hand had gone
         double pressure = 0;
         Vec2 tilt{0};
     };
-    std::deque<Grip> past;     ///< what the tip has still to come through
+    std::deque<Grip> past;  ///< what the tip has still to come through
 };
 
 /// Moves the tip; `length` in metres. The answer has the tip's place, and the pressure and tilt

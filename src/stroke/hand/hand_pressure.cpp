@@ -9,16 +9,18 @@ namespace tuft::stroke {
 namespace {
 
 constexpr const char* kNames[] = {"none", "speed", "dwell", "speed+dwell"};
-constexpr double kTaper = 3e-3;        // metres over which the hand lifts
-constexpr double kTaperShare = 0.25;   // of the way, at most
-constexpr double kTaperEnd = 0.08;     // of the pressure, where the way ends
-constexpr double kBackShare = 0.6;     // of the taper that the lifting hand goes back
-constexpr double kLift = 0.06;         // seconds of it
+constexpr double kTaper = 3e-3;       // metres over which the hand lifts
+constexpr double kTaperShare = 0.25;  // of the way, at most
+constexpr double kTaperEnd = 0.08;    // of the pressure, where the way ends
+constexpr double kBackShare = 0.6;    // of the taper that the lifting hand goes back
+constexpr double kLift = 0.06;        // seconds of it
 constexpr int kLiftSamples = 8;
-constexpr double kLook = 0.03;         // seconds of the trace that tell its first speed
+constexpr double kLook = 0.03;  // seconds of the trace that tell its first speed
 
 // Part of the way to its goal that a first-order lag goes in dt.
-double settled_part(double dt, double constant) { return -std::expm1(-dt / std::max(constant, 1e-6)); }
+double settled_part(double dt, double constant) {
+    return -std::expm1(-dt / std::max(constant, 1e-6));
+}
 
 double goal_of(const PressureState& s, const PressureOptions& o) {
     double goal = o.level;
@@ -57,7 +59,9 @@ void lift_back(std::vector<TraceSample>& samples, const std::vector<double>& lef
 
 }  // namespace
 
-std::string name_of(PressureFrom from) { return kNames[static_cast<int>(from)]; }
+std::string name_of(PressureFrom from) {
+    return kNames[static_cast<int>(from)];
+}
 
 PressureFrom pressure_from(const std::string& name) {
     for (const auto from : {PressureFrom::none, PressureFrom::speed, PressureFrom::dwell, PressureFrom::speed_dwell})

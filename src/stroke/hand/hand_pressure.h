@@ -36,11 +36,11 @@ struct PressureOptions {
 
 struct PressureState {
     bool started = false;
-    double time = 0;            ///< seconds
-    Vec3 position{0};           ///< metres
-    double speed = 0;           ///< m/s, filtered
-    double rest = 0;            ///< q
-    double pressure = 0;        ///< 0–1
+    double time = 0;      ///< seconds
+    Vec3 position{0};     ///< metres
+    double speed = 0;     ///< m/s, filtered
+    double rest = 0;      ///< q
+    double pressure = 0;  ///< 0–1
 };
 
 /// The pressure of the next sample of a hand at `position` (metres). The first is 0: pen down.

@@ -16,8 +16,7 @@ struct HolderPose {
 };
 
 /// The ferrule over a place, as `hold` has it; `height`: metres of the ground over that place.
-brush::Pose pose_holder(const Vec3& place, double height, const HolderPose& held,
-                      const HolderOptions& options);
+brush::Pose pose_holder(const Vec3& place, double height, const HolderPose& held, const HolderOptions& options);
 
 /// Options for a brush over a plane, without a tip_lag.
 HolderOptions holder_options(const brush::Preset& preset);

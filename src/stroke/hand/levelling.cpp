@@ -10,11 +10,11 @@ namespace tuft::stroke {
 
 namespace {
 
-constexpr double kCells = 64;    // to a radius of path, over which normals are averaged first
-constexpr double kNear = 0.5;    // radians: normals further off belong to a groove's wall
-constexpr double kStations = 16; // to a radius of path, at which heights are found
-constexpr double kSoft = 0.25;   // radii over which a line is fitted to them
-constexpr double kMostCells = 2e6;    // cells, or stations, of one path
+constexpr double kCells = 64;       // to a radius of path, over which normals are averaged first
+constexpr double kNear = 0.5;       // radians: normals further off belong to a groove's wall
+constexpr double kStations = 16;    // to a radius of path, at which heights are found
+constexpr double kSoft = 0.25;      // radii over which a line is fitted to them
+constexpr double kMostCells = 2e6;  // cells, or stations, of one path
 
 /// Means of the normals over even cells of path.
 class CellNormals {
@@ -137,7 +137,8 @@ std::vector<LevelledSurface> level_surface(const mesh::SurfaceQuery& query, std:
             // Within a cell of an end the sample's own normal says more than the cell's.
             const double part = std::min(1.0, reach / (2 * cell));
             if (const auto mean = cells.mean(along[i] - reach, along[i] + reach))
-                if (const Vec3 n = glm::mix(levelled[i].normal, *mean, part); glm::length(n) > 1e-6) levelled[i].normal = glm::normalize(n);
+                if (const Vec3 n = glm::mix(levelled[i].normal, *mean, part); glm::length(n) > 1e-6)
+                    levelled[i].normal = glm::normalize(n);
         }
     }
     Stations stations(query, samples, along, levelled, radius);

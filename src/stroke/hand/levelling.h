@@ -30,8 +30,7 @@ struct LevelledSurface {
 /// nearest counting most. Both depend on the path alone: not on where the samples lie on it, how many
 /// they are, nor how long the hand rests. `radius` 0 leaves normals and heights as they are.
 /// Cost: some 5 µs a sample, and 50 µs a station.
-std::vector<LevelledSurface> level_surface(const mesh::SurfaceQuery& query,
-                                           std::span<const SurfaceSample> samples,
+std::vector<LevelledSurface> level_surface(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
                                            std::span<const double> along, double radius);
 
 }  // namespace tuft::stroke

@@ -7,8 +7,8 @@
 #include "brush/sweep.h"
 #include "core/ease.h"
 #include "stroke/hand/holder.h"
-#include "stroke/hand/tip_lag.h"
 #include "stroke/hand/placement.h"
+#include "stroke/hand/tip_lag.h"
 #include "stroke/hand/tractrix.h"
 
 namespace tuft::stroke {
@@ -16,8 +16,8 @@ namespace tuft::stroke {
 namespace {
 
 constexpr int kSteps = 12;
-constexpr double kMiddle = 0.5;              // made-up pressure of a line's whole width
-constexpr double kEase = 0.36;                 // in that of a brush chosen for a width: corners come out best
+constexpr double kMiddle = 0.5;               // made-up pressure of a line's whole width
+constexpr double kEase = 0.36;                // in that of a brush chosen for a width: corners come out best
 constexpr double kLight = 0.3, kHeavy = 0.7;  // a pressure between them draws lines with the brush that is there
 
 }  // namespace
@@ -65,15 +65,16 @@ std::string brush_for_width(const std::string& name, const LineWidths& widths, d
     if (width >= widths.at(kLight) && width <= widths.at(kHeavy)) return name;
     const brush::SizedName sized = brush::sized_name(name);
     const double hair = widths.at(kEase) - 2 * kSkinFilm;  // the ink round it is the same for all sizes
-    const double factor = std::clamp(sized.factor * (width - 2 * kSkinFilm) / hair, brush::kLeastSize, brush::kMostSize);
+    const double factor =
+        std::clamp(sized.factor * (width - 2 * kSkinFilm) / hair, brush::kLeastSize, brush::kMostSize);
     return brush::name_of({sized.base, std::pow(kBrushSizes, std::round(std::log(factor) / std::log(kBrushSizes)))});
 }
 
 namespace {
 
-constexpr double kEnd = 1.5;    // line widths over which a hand sets down and lifts
+constexpr double kEnd = 1.5;          // line widths over which a hand sets down and lifts
 constexpr double kMostOfLine = 0.25;  // of the line at most
-constexpr double kPoint = 0.4;  // part of the width that the line has at its very ends
+constexpr double kPoint = 0.4;        // part of the width that the line has at its very ends
 
 /// A line that ends where it began goes on along itself for `more` metres, at the same pace.
 void overlap(Trace& trace, double more) {
@@ -94,13 +95,16 @@ void overlap(Trace& trace, double more) {
 
 }  // namespace
 
-double line_end(double width) { return kEnd * width; }
+double line_end(double width) {
+    return kEnd * width;
+}
 
 void add_extent(Box& box, const Trace& trace) {
     for (const StencilEdge& edge : trace.stencil) box.add(Vec3(edge.from, 0)), box.add(Vec3(edge.to, 0));
     if (!trace.stencil.empty()) return;
     const Vec3 beside = 0.5 * trace.line_width * Vec3(1, 1, 0);
-    for (const TraceSample& sample : trace.samples) box.add(sample.position - beside), box.add(sample.position + beside);
+    for (const TraceSample& sample : trace.samples)
+        box.add(sample.position - beside), box.add(sample.position + beside);
 }
 
 void draw_to_width(Trace& trace, const LineWidths& widths) {
@@ -110,7 +114,8 @@ void draw_to_width(Trace& trace, const LineWidths& widths) {
     overlap(trace, 2 * end);
     const std::vector<double> along = travelled<TraceSample>(trace.samples);
     const auto part = [&](const TraceSample& s) { return s.pressure / kMiddle; };
-    const bool head = part(trace.samples.front()) > kPoint, tail = part(trace.samples.back()) > kPoint;  // else it runs out by itself
+    const bool head = part(trace.samples.front()) > kPoint,
+               tail = part(trace.samples.back()) > kPoint;  // else it runs out by itself
     for (std::size_t i = 0; i < along.size(); ++i) {
         double near = 1e30;
         if (head) near = along[i];

@@ -23,8 +23,8 @@ class LineWidths {
     /// Takes some 50 ms.
     explicit LineWidths(const brush::Preset& preset);
 
-    double at(double pressure) const;      ///< metres; pressure 0–1
-    double pressure(double width) const;   ///< kLightest–1: nearest to a width in metres
+    double at(double pressure) const;     ///< metres; pressure 0–1
+    double pressure(double width) const;  ///< kLightest–1: nearest to a width in metres
     double least() const { return at(kLightest); }
     double most() const { return at(1); }
 
@@ -50,13 +50,13 @@ class WidthTables {
 inline constexpr double kBrushSizes = 1.25;
 
 /// The brush in the size that its name has if a pressure from 0.3 to 0.7 draws the width, else in the size
-/// (`brush::scaled`; powers of `kBrushSizes`) that draws it at about 0.36, at which corners come out best: less, and the tuft
-/// is long for the line and swings out; more, and it lies and cuts them. `widths` is of `name`. Sizes are held to
-/// what brushes have.
+/// (`brush::scaled`; powers of `kBrushSizes`) that draws it at about 0.36, at which corners come out best: less, and
+/// the tuft is long for the line and swings out; more, and it lies and cuts them. `widths` is of `name`. Sizes are held
+/// to what brushes have.
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width);
 
-/// Adds what the ink of a line takes up to a box: its stencil edge, or its samples, with half of its width beside them where it has one;
-/// metres, in its own frame.
+/// Adds what the ink of a line takes up to a box: its stencil edge, or its samples, with half of its width beside them
+/// where it has one; metres, in its own frame.
 void add_extent(Box& box, const Trace& trace);
 
 /// Metres of a line with this width over which a hand that set down or lifts comes to its pressure.

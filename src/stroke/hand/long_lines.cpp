@@ -9,10 +9,10 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kInkGiven = 0.28;    // part of the ink that a brush gives before gaps show
-constexpr double kLeastPressure = 0.3;     // least pressure of a brush that is taken larger for its ink
-constexpr double kTipSupply = 30;  // seconds, of a brush that is taken larger
-constexpr double kCutSlack = 0.1;     // of a piece, to both sides, within which a cut is looked for
+constexpr double kInkGiven = 0.28;      // part of the ink that a brush gives before gaps show
+constexpr double kLeastPressure = 0.3;  // least pressure of a brush that is taken larger for its ink
+constexpr double kTipSupply = 30;       // seconds, of a brush that is taken larger
+constexpr double kCutSlack = 0.1;       // of a piece, to both sides, within which a cut is looked for
 constexpr double kShortestPiece = 4;    // overlaps
 
 TraceSample mix(const TraceSample& a, const TraceSample& b, double part) {
@@ -27,8 +27,7 @@ TraceSample mix(const TraceSample& a, const TraceSample& b, double part) {
 /// A line as a function of the metres along it; of a closed one, round and round.
 class Path {
   public:
-    explicit Path(const Trace& trace)
-        : samples_(trace.samples), along_(travelled<TraceSample>(trace.samples)) {
+    explicit Path(const Trace& trace) : samples_(trace.samples), along_(travelled<TraceSample>(trace.samples)) {
         turned_.assign(samples_.size(), 0);
         Vec2 before{0};
         for (std::size_t i = 1; i < samples_.size(); ++i) {
@@ -36,8 +35,7 @@ class Path {
             double turn = 0;
             if (glm::length(step) > 0) {
                 if (before != Vec2(0))
-                    turn = std::abs(
-                        std::atan2(before.x * step.y - before.y * step.x, glm::dot(before, step)));
+                    turn = std::abs(std::atan2(before.x * step.y - before.y * step.x, glm::dot(before, step)));
                 before = step;
             }
             turned_[i] = turned_[i - 1] + turn;
@@ -49,9 +47,7 @@ class Path {
                glm::length(samples_.back().position - samples_.front().position) <= 1e-6 * length();
     }
     /// Radians by which it turns within `reach` to both sides of a place.
-    double turn(double at, double reach) const {
-        return turned_at(at + reach) - turned_at(at - reach);
-    }
+    double turn(double at, double reach) const { return turned_at(at + reach) - turned_at(at - reach); }
 
     /// The samples from one place to another; what lies past the end goes on from the beginning.
     std::vector<TraceSample> part(double from, double to) const {
@@ -116,25 +112,22 @@ double supply_time(const brush::Preset& preset, double width, double film, doubl
 }
 
 void pace_line(Trace& trace, const brush::Preset& preset, double film) {
-    const double seconds =
-        trace.samples.empty() ? 0 : trace.samples.back().time - trace.samples.front().time;
+    const double seconds = trace.samples.empty() ? 0 : trace.samples.back().time - trace.samples.front().time;
     if (!(seconds > 0)) return;
-    const double slower =
-        kSteadySupply / supply_time(preset, trace.line_width, film, length_of(trace) / seconds);
+    const double slower = kSteadySupply / supply_time(preset, trace.line_width, film, length_of(trace) / seconds);
     if (slower > 1)
         for (TraceSample& s : trace.samples) s.time *= slower;
 }
 
-std::string brush_for_line(const std::string& name, WidthTables& tables, double width,
-                           double length, double film, double speed) {
+std::string brush_for_line(const std::string& name, WidthTables& tables, double width, double length, double film,
+                           double speed) {
     const LineWidths& widths = tables.of(name);
     const std::string fits = brush_for_width(name, widths, width);
     if (whole_length(tables.preset(fits), width, film) >= length) return fits;
     const brush::SizedName sized = brush::sized_name(fits);
     // Hair grows with the brush, the ink round it does not.
     const double hair = widths.at(kLeastPressure) - 2 * kSkinFilm;
-    const double most =
-        std::min(brush::kMostSize, (width - 2 * kSkinFilm) / hair * brush::sized_name(name).factor);
+    const double most = std::min(brush::kMostSize, (width - 2 * kSkinFilm) / hair * brush::sized_name(name).factor);
     std::string larger = fits;
     for (double size = std::log(sized.factor) / std::log(kBrushSizes);;) {
         size = std::floor(size + 1e-6) + 1;
@@ -156,14 +149,14 @@ std::vector<Trace> cut_line(const Trace& trace, double longest, double overlap) 
     if (trace.samples.size() < 2 || !(overlap > 0) || !(longest > 0)) return {trace};
     const Path path(trace);
     const double whole = path.length();
-    const auto n = static_cast<std::size_t>(
-        std::min(std::ceil(whole / longest), std::floor(whole / (kShortestPiece * overlap))));
+    const auto n =
+        static_cast<std::size_t>(std::min(std::ceil(whole / longest), std::floor(whole / (kShortestPiece * overlap))));
     if (n < 2) return {trace};
     const double even = whole / static_cast<double>(n);
     std::vector<double> cuts{0};
     for (std::size_t k = 1; k < n; ++k)
-        cuts.push_back(best_cut(path, even * static_cast<double>(k),
-                                std::min(kCutSlack * even, 0.5 * even - overlap), overlap));
+        cuts.push_back(
+            best_cut(path, even * static_cast<double>(k), std::min(kCutSlack * even, 0.5 * even - overlap), overlap));
     cuts.push_back(whole);
     std::vector<Trace> pieces;
     for (std::size_t k = 0; k < n; ++k) {

@@ -24,8 +24,8 @@ double whole_length(const brush::Preset& preset, double width, double film);
 /// pressure of 0.3 or more for the width, else the largest such size. Only where its supply time is
 /// 30 s or more: so large a brush touches with its tip alone. `name` is of the size that brushes
 /// are made in; `film` in metres, `speed` in m/s.
-std::string brush_for_line(const std::string& name, WidthTables& widths, double width,
-                           double length, double film, double speed);
+std::string brush_for_line(const std::string& name, WidthTables& widths, double width, double length, double film,
+                           double speed);
 
 /// Seconds in which a full brush would give all of its ink to a line `width` metres wide at
 /// `speed`, V / (film · width · speed). Under kSteadySupply ink comes to the tip of the hair more

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stroke/hand/smoothed_surface.h"
 #include "stroke/hand/holder.h"
+#include "stroke/hand/levelling.h"
+#include "stroke/hand/smoothed_surface.h"
 #include "stroke/hand/surface_mapping.h"
 #include "stroke/hand/tip_lag.h"
-#include "stroke/hand/levelling.h"
 #include "stroke/hand/tractrix.h"
 
 namespace tuft::stroke {
@@ -74,7 +74,8 @@ std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const S
         // A tuft that has not trailed yet touches where the hand is.
         if (const double tip_lag = glm::length(s.tip_lag); along[i] < tip_lag)
             height += (1 - along[i] / tip_lag) * rise(query, s.position, ahead, ground.normal, options.steady);
-        poses.push_back(pose_holder(s.position + ahead, height, {ground.normal, axes.right, axes.down, depths[i], s.tilt, s.time}, options));
+        poses.push_back(pose_holder(s.position + ahead, height,
+                                    {ground.normal, axes.right, axes.down, depths[i], s.tilt, s.time}, options));
     }
     return poses;
 }
@@ -82,13 +83,11 @@ std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const S
 std::vector<brush::Pose> spatial_poses(const Trace& trace) {
     std::vector<brush::Pose> poses;
     poses.reserve(trace.samples.size());
-    for (const TraceSample& s : trace.samples)
-        poses.push_back({s.position, glm::normalize(s.rotation), s.time});
+    for (const TraceSample& s : trace.samples) poses.push_back({s.position, glm::normalize(s.rotation), s.time});
     return poses;
 }
 
-HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace,
-                   const HolderOptions& options) {
+HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace, const HolderOptions& options) {
     if (!trace.flat) return {{}, spatial_poses(trace), 0};
     // Laid is where the ink is to be: over a hollow, the surface ahead leans otherwise.
     const Trace led = lead_hand(trace, options);

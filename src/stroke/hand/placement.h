@@ -25,14 +25,14 @@ struct SurfaceSample {
     double time = 0;         ///< seconds
     double pressure = 0;     ///< 0–1 of the working depth
     Vec2 tilt{0};            ///< radians, towards right, towards down
-    Vec2 tip_lag{0};            ///< metres to the right and down, in the plane of the surface there, that the
+    Vec2 tip_lag{0};         ///< metres to the right and down, in the plane of the surface there, that the
                              ///< hand is ahead of the ink
 };
 
 struct SurfaceTrace {
     std::vector<SurfaceSample> samples;  ///< one per sample of the trace, in order
-    std::size_t missed = 0;           ///< samples that are not on the surface
-    double origin_gap = 0;            ///< metres between the placement's origin and the surface
+    std::size_t missed = 0;              ///< samples that are not on the surface
+    double origin_gap = 0;               ///< metres between the placement's origin and the surface
 };
 
 /// Lays a flat trace onto the mesh.
@@ -72,8 +72,8 @@ struct StraightestGeodesic {
 
 /// Walks from `start` (a point of the mesh) along `direction`, which is taken into the
 /// triangle's plane. Bounded work: at most 4 n_triangles + 1000 crossings.
-StraightestGeodesic trace_geodesic(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& start, const Vec3& direction,
-          double length);
+StraightestGeodesic trace_geodesic(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& start,
+                                   const Vec3& direction, double length);
 
 /// How far the hand runs ahead of the ink at one depth.
 struct TipLag {
@@ -88,7 +88,7 @@ struct HolderOptions {
     double max_tilt = 1.2;         ///< radians; more lean than this is cut
     double steady = 0.008;         ///< metres to both sides over which the hand levels out height and normal: it
                                    ///< does not dip into grooves; 0: it feels every dent
-    std::vector<TipLag> tip_lag;     ///< rising in depth, linear between, constant outside; empty: none
+    std::vector<TipLag> tip_lag;   ///< rising in depth, linear between, constant outside; empty: none
     /// What a lean adds to the tip_lag: metres ahead and to the path's left, for a depth (metres) and a
     /// lean along the path and to its left (radians); see TiltedTipLag. None: it adds nothing.
     std::function<Vec2(double depth, const Vec2& lean)> leaned = {};
@@ -105,8 +105,9 @@ HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMe
 /// tilt, up ∝ normal + tan(tilt.x) right + tan(tilt.y) down; the unbent tip lies
 /// `tip_depths` below the sample, ahead of it by the tip_lag:
 /// where the ink is to lie, the hand does what it would do over the plane there.
-/// Normal and height are those of a steady hand (`level_surface` over `steady` of path). It follows ridges and valleys, and passes over grooves narrower than half of the radius.
-/// On a surface of curvature κ along the path the height is κ steady² / 200 off at most.
+/// Normal and height are those of a steady hand (`level_surface` over `steady` of path). It follows ridges and valleys,
+/// and passes over grooves narrower than half of the radius. On a surface of curvature κ along the path the height is κ
+/// steady² / 200 off at most.
 std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
                               const HolderOptions& options);
 

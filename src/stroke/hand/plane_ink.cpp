@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brush/upright_hair.h"
 #include "brush/tuft.h"
+#include "brush/upright_hair.h"
 #include "footprint/cuts.h"
 #include "stroke/hand/holder.h"
-#include "stroke/hand/tip_lag.h"
 #include "stroke/hand/line_width.h"
 #include "stroke/hand/resample.h"
+#include "stroke/hand/tip_lag.h"
 
 namespace tuft::stroke {
 namespace {
@@ -32,15 +32,13 @@ void PlaneInk::add(const footprint::Footprint& f, double time) {
         const std::int64_t j = j0 + y, tile_j = tile_of(j, kTile);
         for (int x = 0; x < f.width;) {
             const std::int64_t i = i0 + x, tile_i = tile_of(i, kTile);
-            const int in = static_cast<int>(i - tile_i * kTile),
-                      n = std::min(kTile - in, f.width - x);
+            const int in = static_cast<int>(i - tile_i * kTile), n = std::min(kTile - in, f.width - x);
             const std::uint8_t* from = f.coverage.data() + std::size_t(y) * f.width + x;
             if (std::any_of(from, from + n, [](std::uint8_t c) { return c > 0; })) {
                 Tile& tile = tiles_[key_of(tile_i, tile_j)];
                 const std::size_t at = std::size_t(j - tile_j * kTile) * kTile + in;
                 for (int k = 0; k < n; ++k) {
-                    if (from[k] > 127 && tile.coverage[at + k] <= 127)
-                        tile.first[at + k] = static_cast<float>(time);
+                    if (from[k] > 127 && tile.coverage[at + k] <= 127) tile.first[at + k] = static_cast<float>(time);
                     tile.coverage[at + k] = std::max(tile.coverage[at + k], from[k]);
                 }
             }
@@ -72,12 +70,12 @@ double PlaneInk::when(const Vec2& p) const {
 double PlaneInk::at(const Vec2& p) const {
     const Vec2 cells = p / cell_ - 0.5, low = glm::floor(cells), f = cells - low;
     const auto i = static_cast<std::int64_t>(low.x), j = static_cast<std::int64_t>(low.y);
-    return std::lerp(std::lerp(value(i, j), value(i + 1, j), f.x),
-                     std::lerp(value(i, j + 1), value(i + 1, j + 1), f.x), f.y);
+    return std::lerp(std::lerp(value(i, j), value(i + 1, j), f.x), std::lerp(value(i, j + 1), value(i + 1, j + 1), f.x),
+                     f.y);
 }
 
-PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const HolderOptions& options,
-                   double step, double cell) {
+PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const HolderOptions& options, double step,
+                   double cell) {
     const Frame plane_frame;
     std::vector<brush::Pose> poses;
     const Trace led = lift_off(lead_hand(trace, options), options);
@@ -85,7 +83,7 @@ PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const Holder
     for (std::size_t i = 0; i < led.samples.size(); ++i) {
         const TraceSample& s = led.samples[i];
         poses.push_back(pose_holder({s.position.x, -s.position.y, 0}, 0,
-                                  {.depth = depths[i], .tilt = s.tilt, .time = s.time}, options));
+                                    {.depth = depths[i], .tilt = s.tilt, .time = s.time}, options));
     }
     brush::Tuft tuft = brush::make_tuft(preset);
     const brush::ContactPlane plane;
@@ -94,18 +92,15 @@ PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const Holder
     bool first = true;
     std::vector<footprint::Outline> outlines;
     for (const brush::Pose& pose : resample(poses, {.step = step, .lever = preset.length})) {
-        const brush::TuftState state =
-            brush::step(tuft, pose, {&plane, 1}, first ? 0 : pose.time - time);
+        const brush::TuftState state = brush::step(tuft, pose, {&plane, 1}, first ? 0 : pose.time - time);
         time = pose.time;
         first = false;
         if (!state.touching) continue;
-        std::vector<footprint::Trail> trails =
-            footprint::trails(state, plane_frame, {}, preset.length, kSkinFilm);
+        std::vector<footprint::Trail> trails = footprint::trails(state, plane_frame, {}, preset.length, kSkinFilm);
         footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft, plane), plane_frame, kSkinFilm);
         outlines.clear();
         for (const footprint::Trail& trail : trails)
-            if (footprint::Outline o =
-                    footprint::outline_of(trail, footprint::OutlineOptions{}.points);
+            if (footprint::Outline o = footprint::outline_of(trail, footprint::OutlineOptions{}.points);
                 o.left.size() >= 3)
                 outlines.push_back(std::move(o));
         ink.add(footprint::rasterise(outlines, plane_frame, 0, cell), std::max(0.0, time));

@@ -17,15 +17,16 @@ constexpr int kPieces = 8;
 double pose_distance(const Pose& a, const Pose& b, const ResampleOptions& o) {
     const double dx = glm::distance(a.position, b.position);
     // Chord of the unit quaternions: sin is exact for small angles where acos is not.
-    const Quat d = glm::dot(a.rotation, b.rotation) < 0 ? a.rotation + b.rotation
-                                                        : a.rotation - b.rotation;
+    const Quat d = glm::dot(a.rotation, b.rotation) < 0 ? a.rotation + b.rotation : a.rotation - b.rotation;
     const double turn = o.lever * 4.0 * std::asin(std::min(1.0, 0.5 * glm::length(d)));
     const double rest = o.drift * (b.time - a.time);
     return std::sqrt(dx * dx + turn * turn + rest * rest);
 }
 
 /// Between knots of the centripetal spline.
-double knot(const Vec3& a, const Vec3& b) { return std::max(std::sqrt(glm::distance(a, b)), 1e-9); }
+double knot(const Vec3& a, const Vec3& b) {
+    return std::max(std::sqrt(glm::distance(a, b)), 1e-9);
+}
 
 // Barry and Goldman's pyramid for the centripetal spline between p1 and p2.
 Vec3 catmull_rom(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3, double s) {
@@ -118,8 +119,7 @@ Pose between(const Pose& a, const Pose& b, const Pose& c, const Pose& d, double 
 
 /// The path beyond its end at b, where it came from a: straight on, at the same pace.
 Pose beyond(const Pose& a, const Pose& b) {
-    return {2.0 * b.position - a.position, turned(b.rotation, half_turn(a.rotation, b.rotation)),
-            2 * b.time - a.time};
+    return {2.0 * b.position - a.position, turned(b.rotation, half_turn(a.rotation, b.rotation)), 2 * b.time - a.time};
 }
 
 }  // namespace
@@ -128,8 +128,8 @@ Resampler::Resampler(const ResampleOptions& options) : options_(options) {}
 
 void Resampler::emit(const Pose& pose, std::vector<Pose>& out) {
     if (++emitted_ > options_.max_poses)
-        throw Error("the stroke is too long: more than " + std::to_string(options_.max_poses) +
-                    " steps of " + std::to_string(options_.step * 1e3) + " mm");
+        throw Error("the stroke is too long: more than " + std::to_string(options_.max_poses) + " steps of " +
+                    std::to_string(options_.step * 1e3) + " mm");
     out.push_back(pose);
 }
 

@@ -10,9 +10,9 @@
 namespace tuft::stroke {
 
 struct ResampleOptions {
-    double step = 1e-4;       ///< metres between two poses, in the measure below
-    double lever = 0.02;      ///< metres: what a turn by one radian counts as (the tuft's length)
-    double drift = 2e-3;      ///< m/s: what resting counts as, so that a dwell keeps its time
+    double step = 1e-4;   ///< metres between two poses, in the measure below
+    double lever = 0.02;  ///< metres: what a turn by one radian counts as (the tuft's length)
+    double drift = 2e-3;  ///< m/s: what resting counts as, so that a dwell keeps its time
     std::size_t max_poses = 4'000'000;
 };
 
@@ -36,8 +36,9 @@ class Resampler {
     void push(brush::Pose sample, std::vector<brush::Pose>& out);
     /// Ends the path: appends what is left, ending with the last sample.
     void finish(std::vector<brush::Pose>& out);
-    /// Where the samples lie among the poses given out, in steps from the first pose: pose k lies at k, but the one that
-    /// `finish` ends with, which lies at the last sample. One for each sample pushed that lies behind the last pose.
+    /// Where the samples lie among the poses given out, in steps from the first pose: pose k lies at k, but the one
+    /// that `finish` ends with, which lies at the last sample. One for each sample pushed that lies behind the last
+    /// pose.
     std::vector<double> places() const;
 
   private:
@@ -47,14 +48,13 @@ class Resampler {
     ResampleOptions options_;
     std::deque<brush::Pose> window_;  ///< up to four samples; the segment in work is the middle one
     std::size_t emitted_ = 0;
-    double since_last_ = 0;           ///< length since the last pose given out, metres
+    double since_last_ = 0;  ///< length since the last pose given out, metres
     bool has_before_ = false;
     std::vector<std::uint32_t> merged_;  ///< for each sample pushed, which of those that differ it is
     std::vector<double> places_;         ///< of those that differ
 };
 
 /// All at once.
-std::vector<brush::Pose> resample(std::span<const brush::Pose> poses,
-                                  const ResampleOptions& options = {});
+std::vector<brush::Pose> resample(std::span<const brush::Pose> poses, const ResampleOptions& options = {});
 
 }  // namespace tuft::stroke

@@ -13,12 +13,12 @@ namespace {
 
 using mesh::SurfaceQuery;
 
-constexpr int kRings = 3;         // of the hexagonal pattern of samples
-constexpr double kFit = 0.7;      // part of the pattern that must lie on ground for its curvature
-constexpr double kLeast = 0.35;   // and for its slope
+constexpr int kRings = 3;        // of the hexagonal pattern of samples
+constexpr double kFit = 0.7;     // part of the pattern that must lie on ground for its curvature
+constexpr double kLeast = 0.35;  // and for its slope
 // `level_at`: mismatch in parts of its radius, and of a disk half as wide in parts of the wider one's
 constexpr double kTrusted = 0.005, kDoubted = 0.02, kSame = 0.75, kBetter = 0.25;
-constexpr double kBelow = 0.3;    // there; a hand rests on what is high
+constexpr double kBelow = 0.3;  // there; a hand rests on what is high
 
 const std::vector<Vec2>& pattern() {
     static const std::vector<Vec2> points = [] {
@@ -53,7 +53,9 @@ struct Height {
     double a, b, z;  ///< over the disk, in radii
 };
 
-std::array<double, 6> terms(const Height& h) { return {1, h.a, h.b, 0.5 * h.a * h.a, h.a * h.b, 0.5 * h.b * h.b}; }
+std::array<double, 6> terms(const Height& h) {
+    return {1, h.a, h.b, 0.5 * h.a * h.a, h.a * h.b, 0.5 * h.b * h.b};
+}
 
 template <int N>
 double rest_of(const Height& h, const std::array<double, N>& c) {
@@ -76,7 +78,8 @@ bool fit(const std::vector<Height>& heights, double below, std::array<double, N>
         for (const Height& h : heights) {
             const std::array<double, 6> all = terms(h);
             const double rest = rest_of<N>(h, c);
-            const double weight = pass == 0 ? 1 : (rest < 0 ? below : 1) / std::sqrt(1 + rest * rest / (kNarrow * kNarrow));
+            const double weight =
+                pass == 0 ? 1 : (rest < 0 ? below : 1) / std::sqrt(1 + rest * rest / (kNarrow * kNarrow));
             for (int i = 0; i < N; ++i) {
                 rhs[i] += weight * all[i] * h.z;
                 for (int j = 0; j < N; ++j) lhs[i][j] += weight * all[i] * all[j];
@@ -114,7 +117,8 @@ Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t t) {
 double clearance(const SurfaceQuery& query, const Vec3& p, const Vec3& normal, double most) {
     double from = 0;
     for (int hop = 0; hop < 4; ++hop) {  // a point within a bump first meets the bump's outside
-        const mesh::RayHit hit = query.trace(Vec3f(p + from * normal), Vec3f(normal), float(1e-3 * most), float(most - from));
+        const mesh::RayHit hit =
+            query.trace(Vec3f(p + from * normal), Vec3f(normal), float(1e-3 * most), float(most - from));
         if (hit.triangle == kNone) return most;
         const double at = from + hit.distance;
         if (glm::dot(face_normal(query.mesh(), hit.triangle), normal) < 0) return 0.5 * at;
@@ -131,9 +135,9 @@ BaseColour feel(const SurfaceQuery& query, const BaseColour& guess, double radiu
     std::vector<Height> heights;
     heights.reserve(pattern().size());
     for (const Vec2& p : pattern()) {
-        const double bulge = 0.5 * radius *
-                             (guess.curvature[0] * p.x * p.x + 2 * guess.curvature[1] * p.x * p.y +
-                              guess.curvature[2] * p.y * p.y);
+        const double bulge =
+            0.5 * radius *
+            (guess.curvature[0] * p.x * p.x + 2 * guess.curvature[1] * p.x * p.y + guess.curvature[2] * p.y * p.y);
         const Vec3 eye = guess.position + radius * (p.x * guess.heading + p.y * side) +
                          (up + std::clamp(radius * bulge, -radius, radius)) * guess.normal;
         const mesh::RayHit hit = query.trace(Vec3f(eye), down, 0, float(up + radius));
@@ -152,9 +156,9 @@ BaseColour feel(const SurfaceQuery& query, const BaseColour& guess, double radiu
         for (int k = 0; k < 3; ++k) ground.curvature[k] = std::clamp(c[3 + k], -most, most) / radius;
     } else if (std::array<double, 3> d; part >= kLeast) {
         for (Height& h : heights)
-            h.z -= 0.5 * radius *
-                   (guess.curvature[0] * h.a * h.a + 2 * guess.curvature[1] * h.a * h.b +
-                    guess.curvature[2] * h.b * h.b);
+            h.z -=
+                0.5 * radius *
+                (guess.curvature[0] * h.a * h.a + 2 * guess.curvature[1] * h.a * h.b + guess.curvature[2] * h.b * h.b);
         if (!fit<3>(heights, below, d)) return ground;
         fit_error = fit_error_of<3>(heights, d);
         height = d[0];
@@ -175,7 +179,7 @@ double level_at(const SurfaceQuery& query, const Vec3& position, const Vec3& nor
     double height = 0, left = 1, before = 0;
     for (int scale = 0; scale < kScales; ++scale) {
         const BaseColour ground = feel(query, {.position = position, .normal = normal, .heading = any_across(normal)},
-                                   radius / double(1 << scale), kBelow);
+                                       radius / double(1 << scale), kBelow);
         if (!ground.found) continue;
         const double up = glm::dot(ground.position - position, normal);
         if (before > 0) left *= smooth_step((kSame - ground.fit_error / before) / (kSame - kBetter));

@@ -14,7 +14,7 @@ struct BaseColour {
     Vec3 normal{0, 0, 1};
     Vec3 heading{1, 0, 0};
     std::array<double, 3> curvature{0, 0, 0};  ///< 1/m: along, mixed, across
-    double fit_error = 0;                         ///< metres: median distance of the surface from it
+    double fit_error = 0;                      ///< metres: median distance of the surface from it
     bool found = false;
 };
 

@@ -29,8 +29,7 @@ struct Corners {
 };
 
 Corners corners(const TriangleMesh& mesh, std::uint32_t triangle) {
-    Corners c{{mesh.position(triangle, 0), mesh.position(triangle, 1), mesh.position(triangle, 2)},
-              {}};
+    Corners c{{mesh.position(triangle, 0), mesh.position(triangle, 1), mesh.position(triangle, 2)}, {}};
     c.normal = glm::normalize(glm::cross(c.p[1] - c.p[0], c.p[2] - c.p[0]));
     return c;
 }
@@ -46,8 +45,7 @@ std::array<double, 3> weight_rates(const Corners& c, const Vec3& direction) {
 }
 
 /// Where the ray meets the plane of the triangle that was hit, in double.
-SurfacePoint refine_hit(const TriangleMesh& mesh, const SurfacePoint& hit, const Vec3& origin,
-                        const Vec3& direction) {
+SurfacePoint refine_hit(const TriangleMesh& mesh, const SurfacePoint& hit, const Vec3& origin, const Vec3& direction) {
     const Corners c = corners(mesh, hit.triangle);
     const double slope = glm::dot(direction, c.normal);
     if (std::abs(slope) < 1e-3) return hit;  // grazing: the plane says little
@@ -59,9 +57,7 @@ SurfacePoint refine_hit(const TriangleMesh& mesh, const SurfacePoint& hit, const
 
 void check(const Trace& trace) {
     if (!trace.flat) throw Error("a trace in space cannot be mapped onto the model");
-    const auto finite = [](const Vec3& v) {
-        return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-    };
+    const auto finite = [](const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
     const Placement& p = trace.placement;
     if (!finite(p.origin) || !finite(p.right) || !finite(p.down))
         throw Error("the placement of a stroke is not finite");
@@ -69,8 +65,8 @@ void check(const Trace& trace) {
     if (!(area > 1e-6 * glm::length(p.right) * glm::length(p.down)) || !(area > 0))
         throw Error("the placement of a stroke has directions that are zero or parallel");
     for (const TraceSample& s : trace.samples)
-        if (!finite(s.position) || !std::isfinite(s.time) || !std::isfinite(s.pressure) ||
-            !std::isfinite(s.tilt.x) || !std::isfinite(s.tilt.y))
+        if (!finite(s.position) || !std::isfinite(s.time) || !std::isfinite(s.pressure) || !std::isfinite(s.tilt.x) ||
+            !std::isfinite(s.tilt.y))
             throw Error("a stroke has a sample that is not finite");
 }
 
@@ -88,8 +84,7 @@ SurfaceTrace lay_wrapped(const mesh::SurfaceQuery& query, const Trace& trace) {
         check_interrupt();
         SurfaceSample out = hand_data(s);
         const double length = std::hypot(s.position.x, s.position.y);
-        const Vec3 heading =
-            length > 0 ? (s.position.x * right0 + s.position.y * down0) / length : right0;
+        const Vec3 heading = length > 0 ? (s.position.x * right0 + s.position.y * down0) / length : right0;
         const StraightestGeodesic line = trace_geodesic(query.mesh(), *start, heading, length);
         out.on = line.end;
         out.on.distance = 0;
@@ -216,15 +211,15 @@ SurfaceSample hand_data(const TraceSample& s) {
     return mapped;
 }
 
-std::optional<SurfacePoint> exact_ray(const mesh::SurfaceQuery& query, const Vec3& origin,
-                                      const Vec3& direction, double t_max) {
+std::optional<SurfacePoint> exact_ray(const mesh::SurfaceQuery& query, const Vec3& origin, const Vec3& direction,
+                                      double t_max) {
     const auto hit = query.ray(origin, direction, 0, t_max);
     if (!hit) return hit;
     return refine_hit(query.mesh(), *hit, origin, direction);
 }
 
 StraightestGeodesic trace_geodesic(const TriangleMesh& mesh, const SurfacePoint& start, const Vec3& direction,
-          double length) {
+                                   double length) {
     std::uint32_t triangle = start.triangle;
     Corners c = corners(mesh, triangle);
     Vec3 d = into_plane(direction, c.normal);
@@ -283,9 +278,12 @@ StraightestGeodesic trace_geodesic(const TriangleMesh& mesh, const SurfacePoint&
 SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const Trace& trace) {
     check(trace);
     switch (trace.placement.mapping) {
-        case SurfaceMapping::project: return lay_projected(query, trace);
-        case SurfaceMapping::drape: return lay_draped(query, trace);
-        case SurfaceMapping::wrap: break;
+        case SurfaceMapping::project:
+            return lay_projected(query, trace);
+        case SurfaceMapping::drape:
+            return lay_draped(query, trace);
+        case SurfaceMapping::wrap:
+            break;
     }
     return lay_wrapped(query, trace);
 }

@@ -21,8 +21,8 @@ Vec3 into_plane(const Vec3& direction, const Vec3& normal);
 
 /// The first point of the surface that a ray meets at a distance in [0, t_max], where it meets
 /// the plane of the triangle, in double.
-std::optional<mesh::SurfacePoint> exact_ray(const mesh::SurfaceQuery& query, const Vec3& origin,
-                                            const Vec3& direction, double t_max);
+std::optional<mesh::SurfacePoint> exact_ray(const mesh::SurfaceQuery& query, const Vec3& origin, const Vec3& direction,
+                                            double t_max);
 
 /// What a sample brings with it from the hand.
 SurfaceSample hand_data(const TraceSample& sample);

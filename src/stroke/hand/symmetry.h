@@ -10,9 +10,9 @@ namespace tuft::stroke {
 
 struct Symmetry {
     bool mirror_x = false, mirror_y = false, mirror_z = false;  ///< planes through the centre
-    int radial = 1;            ///< copies round the axis, 1–32, the original counted
-    Vec3 centre{0};            ///< metres, model frame
-    Vec3 axis{0, 0, 1};        ///< unit, of the radial copies
+    int radial = 1;                                             ///< copies round the axis, 1–32, the original counted
+    Vec3 centre{0};                                             ///< metres, model frame
+    Vec3 axis{0, 0, 1};                                         ///< unit, of the radial copies
 
     bool any() const { return mirror_x || mirror_y || mirror_z || radial > 1; }
 };

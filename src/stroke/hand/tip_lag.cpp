@@ -11,7 +11,7 @@ namespace tuft::stroke {
 namespace {
 
 constexpr double kUpright = 0.05, kLeans = 0.15;  // radians
-constexpr double kPlumb = 0.3;                    // of the tuft's length, of travel over which an upright holder comes to its lean
+constexpr double kPlumb = 0.3;  // of the tuft's length, of travel over which an upright holder comes to its lean
 
 /// Where x lies between the grid's values, held to its ends.
 template <std::size_t N>
@@ -73,17 +73,17 @@ namespace {
 double tip_lag_length(std::span<const TipLag> table, double depth) {
     if (table.empty()) return 0;
     if (depth <= table.front().depth)
-        return table.front().depth > 0 ? table.front().length * depth / table.front().depth
-                                       : table.front().length;
+        return table.front().depth > 0 ? table.front().length * depth / table.front().depth : table.front().length;
     for (std::size_t i = 1; i < table.size(); ++i) {
         const TipLag &a = table[i - 1], &b = table[i];
-        if (depth <= b.depth)
-            return a.length + (b.length - a.length) * (depth - a.depth) / (b.depth - a.depth);
+        if (depth <= b.depth) return a.length + (b.length - a.length) * (depth - a.depth) / (b.depth - a.depth);
     }
     return table.back().length;
 }
 
-double depth_of(const HolderOptions& options, double pressure) { return std::clamp(pressure, 0.0, 1.0) * options.working_depth; }
+double depth_of(const HolderOptions& options, double pressure) {
+    return std::clamp(pressure, 0.0, 1.0) * options.working_depth;
+}
 
 /// What a lean adds to the tip_lag, `along` the path; that is 1 long where the string is taut.
 Vec2 tilted_tip_lag(const HolderOptions& options, const Vec2& tilt, double depth, const Vec2& along) {
@@ -106,9 +106,9 @@ Vec2 lead_of(const HolderOptions& options, double pressure, const Vec2& tilt, co
 
 namespace {
 
-constexpr double kLean = 0.12;      // radians by which the holder tips ahead where it sets down pressed
-constexpr double kLeanTurns = 4;    // over so many `tip_lag_turn` of travel it comes upright
-constexpr double kAiming = 0.5;     // of `tip_lag_turn`: distance from the first sample at which its direction is taken
+constexpr double kLean = 0.12;    // radians by which the holder tips ahead where it sets down pressed
+constexpr double kLeanTurns = 4;  // over so many `tip_lag_turn` of travel it comes upright
+constexpr double kAiming = 0.5;   // of `tip_lag_turn`: distance from the first sample at which its direction is taken
 
 /// Direction in which a trace sets out: that of the place where it first is `away` metres from its
 /// first sample. Zero where it never is.
@@ -141,11 +141,11 @@ double first_pace(std::span<const TraceSample> samples, double way) {
 // begins and trails from there. Set down from above it would bend to any side, and a tuft that is
 // pushed before the hand turns over only after centimetres.
 bool set_down(Trace& trace, const HolderOptions& options, const Vec2& ahead) {
-    constexpr double kStep = 2.5e-4;                 // metres between samples, less where they would be few
+    constexpr double kStep = 2.5e-4;  // metres between samples, less where they would be few
     constexpr double kFewest = 8, kMost = 100;
-    constexpr double kWay = 3e-3;                    // metres over which the pace is taken
-    constexpr int kPieces = 64;                      // of the press, whose length is measured
-    constexpr double kTouch = 1e-6;                  // of the pressure: the tip is down from the first sample
+    constexpr double kWay = 3e-3;    // metres over which the pace is taken
+    constexpr int kPieces = 64;      // of the press, whose length is measured
+    constexpr double kTouch = 1e-6;  // of the pressure: the tip is down from the first sample
     const TraceSample first = trace.samples.front();
     if (!(tip_lag_length(options.tip_lag, depth_of(options, first.pressure)) > 0)) return false;
     const double pace = first_pace(trace.samples, kWay);
@@ -176,8 +176,8 @@ bool set_down(Trace& trace, const HolderOptions& options, const Vec2& ahead) {
     return true;
 }
 
-// BaseColour that is not quite as the hand takes it leans the tuft, and one that leans tip ahead is pushed. The holder is
-// tipped ahead by more than that until the tuft trails.
+// BaseColour that is not quite as the hand takes it leans the tuft, and one that leans tip ahead is pushed. The holder
+// is tipped ahead by more than that until the tuft trails.
 void lean_ahead(Trace& trace, const HolderOptions& options, const Vec2& ahead) {
     const double until = kLeanTurns * options.tip_lag_turn;
     double gone = 0;
@@ -188,8 +188,8 @@ void lean_ahead(Trace& trace, const HolderOptions& options, const Vec2& ahead) {
     }
 }
 
-// A hand that holds the brush upright, give or take a little, sets it down plumb: hair that touches ahead of the hand by
-// a lean that nobody meant would be pushed, and turn over late. The lean comes as the hair is drawn to one side.
+// A hand that holds the brush upright, give or take a little, sets it down plumb: hair that touches ahead of the hand
+// by a lean that nobody meant would be pushed, and turn over late. The lean comes as the hair is drawn to one side.
 void set_down_plumb(Trace& trace, const HolderOptions& options) {
     const double whole = kPlumb * options.tuft_length;
     double along = 0;

@@ -7,24 +7,20 @@ namespace tuft::stroke {
 namespace {
 
 std::vector<BrushAction> actions_before(const Trace& trace, const std::vector<Stroke>& entries,
-                                 const EntryOptions& options) {
+                                        const EntryOptions& options) {
     const auto is_first = [&] {
         return std::none_of(entries.begin(), entries.end(),
                             [&](const Stroke& s) { return s.trace.brush == trace.brush; });
     };
     std::vector<BrushAction> actions;
-    if (!options.prepare.empty() && !trace.samples.empty() &&
-        (options.settings.dip == "each" || is_first()))
+    if (!options.prepare.empty() && !trace.samples.empty() && (options.settings.dip == "each" || is_first()))
         actions = options.prepare;
     actions.insert(actions.end(), trace.before.begin(), trace.before.end());
     return actions;
 }
 
 Stroke action_entry(const BrushAction& care, const Trace& trace, const Settings& settings) {
-    Stroke entry{.settings = settings,
-                 .action = care.action,
-                 .seconds = care.seconds,
-                 .extent = care.extent};
+    Stroke entry{.settings = settings, .action = care.action, .seconds = care.seconds, .extent = care.extent};
     entry.trace.flat = false;
     entry.trace.brush = trace.brush;
     entry.trace.seed = trace.seed;  // lays the hair of a fresh one
@@ -38,8 +34,7 @@ Stroke action_entry(const BrushAction& care, const Trace& trace, const Settings&
 
 }  // namespace
 
-void append_entries(std::vector<Stroke>& entries, std::vector<Trace> traces,
-                    const EntryOptions& options) {
+void append_entries(std::vector<Stroke>& entries, std::vector<Trace> traces, const EntryOptions& options) {
     for (Trace& trace : traces) {
         if (!options.brush.empty()) trace.brush = options.brush;
         if (!options.ink.empty()) trace.ink = options.ink;

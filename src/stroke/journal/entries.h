@@ -10,19 +10,17 @@
 namespace tuft::stroke {
 
 struct EntryOptions {
-    Settings settings = {};            ///< of traces that bring none
-    std::string brush, ink;            ///< presets for all traces; empty: as the traces name
-    std::string other_ink = "carbon";  ///< of traces that name none
-    std::string pressure =
-        "none";  ///< as `Settings::pressure`, of flat traces with made-up pressures
+    Settings settings = {};                 ///< of traces that bring none
+    std::string brush, ink;                 ///< presets for all traces; empty: as the traces name
+    std::string other_ink = "carbon";       ///< of traces that name none
+    std::string pressure = "none";          ///< as `Settings::pressure`, of flat traces with made-up pressures
     std::vector<BrushAction> prepare = {};  ///< done with each brush before its first stroke; with
-                                     ///< `settings.dip` "each" before every stroke
-    bool erases = false;  ///< all strokes take ink away
+                                            ///< `settings.dip` "each" before every stroke
+    bool erases = false;                    ///< all strokes take ink away
 };
 
 /// Appends each trace as a stroke, after entries for what its file wants done with the brush before
 /// it. A trace without samples gives these entries alone. Brushes that no one names stay empty.
-void append_entries(std::vector<Stroke>& entries, std::vector<Trace> traces,
-                    const EntryOptions& options);
+void append_entries(std::vector<Stroke>& entries, std::vector<Trace> traces, const EntryOptions& options);
 
 }  // namespace tuft::stroke

@@ -37,8 +37,7 @@ struct Place {
     Vec3 gone{0};  ///< where it would lie now, on the surface or not
 };
 
-void add_places(StrokeFit& fit, const std::vector<Place>& places,
-                const std::optional<ModelMotion>& motion) {
+void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::optional<ModelMotion>& motion) {
     std::vector<double> moved, slid;
     double piece = 0, now = 0;
     const auto end_piece = [&] {
@@ -75,8 +74,7 @@ void add_places(StrokeFit& fit, const std::vector<Place>& places,
 }
 
 StrokeFit fit_in_space(const Stroke& stroke, double length, const mesh::SurfaceQuery& former,
-                       const mesh::SurfaceQuery& revised,
-                       const std::optional<ModelMotion>& motion) {
+                       const mesh::SurfaceQuery& revised, const std::optional<ModelMotion>& motion) {
     StrokeFit fit{.stroke = stroke.id};
     std::vector<double> depths, changes;
     std::vector<Place> places;
@@ -102,8 +100,8 @@ StrokeFit fit_in_space(const Stroke& stroke, double length, const mesh::SurfaceQ
     return fit;
 }
 
-StrokeFit fit_flat(const Stroke& stroke, const mesh::SurfaceQuery& former,
-                   const mesh::SurfaceQuery& revised, const std::optional<ModelMotion>& motion) {
+StrokeFit fit_flat(const Stroke& stroke, const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
+                   const std::optional<ModelMotion>& motion) {
     StrokeFit fit{.stroke = stroke.id, .flat = true};
     const Trace trace = steady(stroke.trace, stroke.settings);
     const SurfaceTrace was = map_to_surface(former, trace), now = map_to_surface(revised, trace);
@@ -125,8 +123,7 @@ StrokeFit fit_flat(const Stroke& stroke, const mesh::SurfaceQuery& former,
 
 std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes,
                                    const std::function<double(const std::string&)>& length_of,
-                                   const mesh::SurfaceQuery& former,
-                                   const mesh::SurfaceQuery& revised,
+                                   const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
                                    const std::optional<ModelMotion>& motion) {
     std::vector<const Stroke*> compared;
     std::vector<double> lengths;  // asked for here: presets are loaded one at a time
@@ -138,26 +135,22 @@ std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes,
     std::vector<StrokeFit> fits(compared.size());
     parallel_for(compared.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            fits[i] = compared[i]->trace.flat
-                          ? fit_flat(*compared[i], former, revised, motion)
-                          : fit_in_space(*compared[i], lengths[i], former, revised, motion);
+            fits[i] = compared[i]->trace.flat ? fit_flat(*compared[i], former, revised, motion)
+                                              : fit_in_space(*compared[i], lengths[i], former, revised, motion);
     });
     return fits;
 }
 
 std::string mismatch_reason(const StrokeFit& fit) {
     if (fit.way <= 0) return "";
-    const auto percent = [&](double part) {
-        return static_cast<int>(std::lround(100 * part / fit.way));
-    };
+    const auto percent = [&](double part) { return static_cast<int>(std::lround(100 * part / fit.way)); };
     const double far = std::max(kLeastMove, kMovePart * fit.way);
     std::vector<std::string> reasons;
     // A place in space is the hand's: it moves along the hair only, which the depth tells.
     if (fit.flat && fit.moved > far)
         reasons.push_back(fmt::format("lies {:.1f} mm from where it lay", 1e3 * fit.moved));
     if (fit.slid && *fit.slid > far)
-        reasons.push_back(
-            fmt::format("lies {:.1f} mm from its place on the model", 1e3 * *fit.slid));
+        reasons.push_back(fmt::format("lies {:.1f} mm from its place on the model", 1e3 * *fit.slid));
     const bool sank = std::abs(fit.deeper) > std::max(kLeastChange, kDepthPart * fit.depth);
     // A surface that sank loses the light ends of a stroke too: that it sank says more.
     const double least = (sank ? kMost : kPart) * fit.way;
@@ -166,21 +159,20 @@ std::string mismatch_reason(const StrokeFit& fit) {
     else if (fit.buried > least)
         reasons.push_back(fmt::format("{} % of it lies inside the model", percent(fit.buried)));
     else if (sank)
-        reasons.push_back(fmt::format("pressed {:.1f} mm {}", 1e3 * std::abs(fit.deeper),
-                                      fit.deeper > 0 ? "deeper" : "less deep"));
+        reasons.push_back(
+            fmt::format("pressed {:.1f} mm {}", 1e3 * std::abs(fit.deeper), fit.deeper > 0 ? "deeper" : "less deep"));
     if (fit.stretched > kPart * fit.way)
-        reasons.push_back(fmt::format("{} % of it is stretched or squeezed by more than a quarter",
-                                      percent(fit.stretched)));
+        reasons.push_back(
+            fmt::format("{} % of it is stretched or squeezed by more than a quarter", percent(fit.stretched)));
     return fmt::format("{}", fmt::join(reasons, "; "));
 }
 
 std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& reports,
-                                 const std::vector<StrokeFit>& fits) {
+                                            const std::vector<StrokeFit>& fits) {
     std::vector<StrokeMismatch> found;
     for (const StrokeReport& report : reports) {
-        const auto fit = std::find_if(fits.begin(), fits.end(), [&](const StrokeFit& f) {
-            return f.stroke == report.stroke_id;
-        });
+        const auto fit =
+            std::find_if(fits.begin(), fits.end(), [&](const StrokeFit& f) { return f.stroke == report.stroke_id; });
         std::string reason;
         if (fit != fits.end() && (report.touched() || !fit->reached))
             reason = mismatch_reason(*fit);
@@ -217,8 +209,7 @@ std::string describe(const FitTotal& t) {
         "{} of {} strokes no longer fit: they lie {:.1f} mm from where they lay ({:.1f} mm at "
         "most){}, {:.0f} % of their ink is missing, {:.0f} % of it is "
         "stretched or squeezed by more than a quarter",
-        t.mismatches, t.strokes, 1e3 * t.moved, 1e3 * t.moved_most, on_model, 100 * t.missing,
-        100 * t.stretched);
+        t.mismatches, t.strokes, 1e3 * t.moved, 1e3 * t.moved_most, on_model, 100 * t.missing, 100 * t.stretched);
 }
 
 }  // namespace tuft::stroke

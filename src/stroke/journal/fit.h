@@ -17,26 +17,23 @@ namespace tuft::stroke {
 /// draped or projected, and where the axis of a holder in space meets the surface.
 struct StrokeFit {
     std::uint64_t stroke = 0;
-    bool reached = false;  ///< the former model was within a tuft's length of the mouth somewhere
-    double way = 0;        ///< in all
-    double lost = 0;       ///< of it, where there is no surface for the ink in the other model
-    double buried = 0;  ///< of it, where the other model's surface lies above the ferrule's mouth
-    double depth = 0;   ///< median depth of the straight tip in the former model, of what is
-                        ///< neither; in space only
-    double deeper = 0;  ///< median of how much deeper it lies in the other one; below 0: less deep
-    bool flat = false;  ///< laid on the model anew, in the place of the former one
-    double moved = 0;   ///< median way of the place of the ink from one model to the other
+    bool reached = false;        ///< the former model was within a tuft's length of the mouth somewhere
+    double way = 0;              ///< in all
+    double lost = 0;             ///< of it, where there is no surface for the ink in the other model
+    double buried = 0;           ///< of it, where the other model's surface lies above the ferrule's mouth
+    double depth = 0;            ///< median depth of the straight tip in the former model, of what is
+                                 ///< neither; in space only
+    double deeper = 0;           ///< median of how much deeper it lies in the other one; below 0: less deep
+    bool flat = false;           ///< laid on the model anew, in the place of the former one
+    double moved = 0;            ///< median way of the place of the ink from one model to the other
     double moved_most = 0;       ///< and the longest
     std::optional<double> slid;  ///< median distance from where the ink's place on the former model
                                  ///< went; without a motion: nothing
-    double kept = 0;      ///< length of the path where both models have ink, on the former one
-    double kept_now = 0;  ///< the same on the other one
-    double stretched =
-        0;  ///< of `kept`, where 5 mm of it are more than a quarter longer or shorter now
+    double kept = 0;             ///< length of the path where both models have ink, on the former one
+    double kept_now = 0;         ///< the same on the other one
+    double stretched = 0;        ///< of `kept`, where 5 mm of it are more than a quarter longer or shorter now
 
-    double missing() const {
-        return way > 0 ? (lost + buried) / way : 0;
-    }  ///< part of the ink's path, 0–1
+    double missing() const { return way > 0 ? (lost + buried) / way : 0; }  ///< part of the ink's path, 0–1
 };
 
 /// Compares the surfaces along the hair: at each sample of a stroke in space rays leave the
@@ -45,8 +42,7 @@ struct StrokeFit {
 /// strokes and the palette's are left out. Cost: two rays a sample, or twice what laying takes.
 std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes,
                                    const std::function<double(const std::string& brush)>& length_of,
-                                   const mesh::SurfaceQuery& former,
-                                   const mesh::SurfaceQuery& revised,
+                                   const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
                                    const std::optional<ModelMotion>& motion = {});
 
 /// Why a stroke does not fit any more, in a sentence for people; "" when it fits. Reported is what
@@ -67,7 +63,7 @@ struct StrokeMismatch {
 /// Of a replay on the other model (its reports) and its fits, in the journal's order: strokes that
 /// touch nothing any more, and those for which `mismatch_reason` has one.
 std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& reports,
-                                 const std::vector<StrokeFit>& fits);
+                                            const std::vector<StrokeFit>& fits);
 
 /// All strokes of a replay on another model together.
 struct FitTotal {

@@ -17,21 +17,29 @@ namespace tuft::stroke {
 
 namespace {
 
-constexpr double kLongestString = 1.0;    // metres
+constexpr double kLongestString = 1.0;  // metres
 constexpr double kStrongestFilter = 100;
-constexpr double kLongestWait = 86400;    // seconds
-constexpr double kLongestStroke = 1e8;    // seconds; clocks of devices that count from their start are kept
+constexpr double kLongestWait = 86400;     // seconds
+constexpr double kLongestStroke = 1e8;     // seconds; clocks of devices that count from their start are kept
 constexpr double kLongestDirection = 1e6;  // of a vector that shall be normalised; the least is its inverse
-constexpr double kMostPressure = 10;      // of the working depth
-constexpr double kMostTilt = 1.6;         // radians: a holder lies flat
+constexpr double kMostPressure = 10;       // of the working depth
+constexpr double kMostTilt = 1.6;          // radians: a holder lies flat
 constexpr std::uint64_t kMostGroupId = std::uint64_t{1} << 62;  // ids in files are signed
-constexpr const char* kActions[] = {"stroke", "dip", "rinse", "reshape", "dry", "layer", "mask", "fill", "wipe", "wash"};
+constexpr const char* kActions[] = {"stroke", "dip",  "rinse", "reshape", "dry",
+                                    "layer",  "mask", "fill",  "wipe",    "wash"};
 
 nlohmann::json json_of(const Settings& s) {
-    nlohmann::json j = {{"spine", s.spine},         {"footprint", s.footprint}, {"contact", s.contact},
-            {"spacing", s.spacing},     {"lead", s.compensate_tip_lag},           {"dip", s.dip},
-            {"pressure", s.pressure},   {"smooth", s.smooth},       {"stabilise", s.stabilise},
-            {"film", s.film},           {"down", {s.down.x, s.down.y, s.down.z}}};
+    nlohmann::json j = {{"spine", s.spine},
+                        {"footprint", s.footprint},
+                        {"contact", s.contact},
+                        {"spacing", s.spacing},
+                        {"lead", s.compensate_tip_lag},
+                        {"dip", s.dip},
+                        {"pressure", s.pressure},
+                        {"smooth", s.smooth},
+                        {"stabilise", s.stabilise},
+                        {"film", s.film},
+                        {"down", {s.down.x, s.down.y, s.down.z}}};
     if (s.endless) j["endless"] = true;  // left out by default: entries stay as older versions wrote them
     return j;
 }
@@ -75,11 +83,13 @@ bool among(const std::string& word, std::initializer_list<const char*> words) {
 
 std::vector<StencilEdge> tape_of(const nlohmann::json& j) {
     const auto is_number = [](const nlohmann::json& x) { return x.is_number() && std::isfinite(x.get<double>()); };
-    if (!j.is_array() || j.size() % 4 != 0 || j.size() > 4 * kMaxStencilEdges || !std::all_of(j.begin(), j.end(), is_number))
+    if (!j.is_array() || j.size() % 4 != 0 || j.size() > 4 * kMaxStencilEdges ||
+        !std::all_of(j.begin(), j.end(), is_number))
         throw Error("the tape of a journal's entry cannot be read");
     std::vector<StencilEdge> tape;
     for (std::size_t i = 0; i < j.size(); i += 4)
-        tape.push_back({{j[i].get<double>(), j[i + 1].get<double>()}, {j[i + 2].get<double>(), j[i + 3].get<double>()}});
+        tape.push_back(
+            {{j[i].get<double>(), j[i + 1].get<double>()}, {j[i + 2].get<double>(), j[i + 3].get<double>()}});
     return tape;
 }
 
@@ -87,7 +97,8 @@ EntryGroup group_of(const nlohmann::json& j) {
     const auto id = j.find("group");
     if (id == j.end()) return {};
     const auto name = j.find("group_name");
-    if (!id->is_number_unsigned() || id->get<std::uint64_t>() == 0 || id->get<std::uint64_t>() > kMostGroupId || name == j.end() || !name->is_string())
+    if (!id->is_number_unsigned() || id->get<std::uint64_t>() == 0 || id->get<std::uint64_t>() > kMostGroupId ||
+        name == j.end() || !name->is_string())
         throw Error("the group of a journal's entry cannot be read");
     EntryGroup group{id->get<std::uint64_t>(), name->get<std::string>()};
     check_name(group.name, "group");
@@ -98,8 +109,7 @@ EntryGroup group_of(const nlohmann::json& j) {
 
 void check_settings(const Settings& s) {
     if (!(s.spacing > 0 && s.spacing < 1000)) throw Error("spacing is out of range");
-    if (!among(s.dip, {"each", "carry"}))
-        throw Error("dip is 'each' or 'carry', not '" + s.dip + "'");
+    if (!among(s.dip, {"each", "carry"})) throw Error("dip is 'each' or 'carry', not '" + s.dip + "'");
     if (!among(s.pressure, {"none", "speed", "dwell", "speed+dwell"}))
         throw Error("pressure is 'none', 'speed', 'dwell' or 'speed+dwell', not '" + s.pressure + "'");
     if (!among(s.film, {"still", "wet"})) throw Error("film is 'still' or 'wet', not '" + s.film + "'");
@@ -110,7 +120,9 @@ void check_settings(const Settings& s) {
 
 void check_trace(const Trace& trace) {
     const auto refuse = [](const char* what) { throw Error(std::string(what) + " is no number, or out of range"); };
-    const auto is_direction = [](const Vec3& v) { return within(v, kLongestDirection) && glm::length(v) > 1 / kLongestDirection; };
+    const auto is_direction = [](const Vec3& v) {
+        return within(v, kLongestDirection) && glm::length(v) > 1 / kLongestDirection;
+    };
     const Placement& p = trace.placement;
     if (!within(p.origin)) refuse("the place of a drawing");
     if (trace.flat && !(is_direction(p.right) && is_direction(p.down))) refuse("the direction of a drawing");
@@ -131,16 +143,22 @@ void check_seconds(double seconds) {
         throw Error("ink dries for 0 to " + std::to_string(static_cast<int>(kLongestWait)) + " seconds");
 }
 
-std::string to_json(const Settings& s) { return json_of(s).dump(); }
-Settings settings_from_json(const std::string& json) { return settings_of(parsed(json)); }
+std::string to_json(const Settings& s) {
+    return json_of(s).dump();
+}
+Settings settings_from_json(const std::string& json) {
+    return settings_of(parsed(json));
+}
 
 std::string entry_json(const Stroke& entry) {
     nlohmann::json j = json_of(entry.settings);
     if (entry.action != Action::stroke) j["action"] = name_of(entry.action);
     if (entry.action == Action::dry) j["seconds"] = entry.seconds;
     if (entry.action == Action::layer) j["edit"] = json_of(entry.edit);
-    if (entry.layer == kPaletteLayer) j["on"] = "palette";
-    else if (entry.layer != kFirstLayer) j["layer"] = entry.layer;
+    if (entry.layer == kPaletteLayer)
+        j["on"] = "palette";
+    else if (entry.layer != kFirstLayer)
+        j["layer"] = entry.layer;
     if (entry.action == Action::mask) j["mask_edit"] = json_of(entry.mask_edit);
     if (entry.mask != 0) j["mask"] = entry.mask;
     if (entry.action == Action::fill) j["fill"] = json_of(entry.fill);
@@ -176,12 +194,14 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     entry.layer = id("layer", entry.layer);
     entry.mask = id("mask", entry.mask);
     if (const auto on = j.find("on"); on != j.end()) {
-        if (*on != "palette" && *on != "model") throw Error("a stroke is on the palette or the model, not on " + excerpt(on->dump(), 40));
+        if (*on != "palette" && *on != "model")
+            throw Error("a stroke is on the palette or the model, not on " + excerpt(on->dump(), 40));
         if (*on == "palette") entry.layer = kPaletteLayer;
     }
     entry.trace.erases = false;
     if (const auto tool = j.find("tool"); tool != j.end()) {
-        if (*tool != "eraser" && *tool != "brush") throw Error("the tool of a stroke is brush or eraser, not " + excerpt(tool->dump(), 40));
+        if (*tool != "eraser" && *tool != "brush")
+            throw Error("the tool of a stroke is brush or eraser, not " + excerpt(tool->dump(), 40));
         entry.trace.erases = *tool == "eraser";
     }
     entry.trace.stencil.clear();
@@ -192,8 +212,7 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     if (!action->is_string()) throw Error("the action of a journal's entry cannot be read");
     entry.action = action_of(action->get<std::string>());
     if (entry.action == Action::layer) entry.edit = layer_edit_of(j.value("edit", nlohmann::json::object()));
-    if (entry.action == Action::mask)
-        entry.mask_edit = mask_edit_of(j.value("mask_edit", nlohmann::json::object()));
+    if (entry.action == Action::mask) entry.mask_edit = mask_edit_of(j.value("mask_edit", nlohmann::json::object()));
     if (entry.action == Action::fill) entry.fill = fill_of(j.value("fill", nlohmann::json::object()));
     const auto seconds = j.find("seconds");
     if (seconds != j.end() && !seconds->is_number()) throw Error("the seconds of a journal's entry cannot be read");
@@ -208,13 +227,17 @@ void read_entry_json(const std::string& json, Stroke& entry) {
     check_extent(entry.extent, entry.action);
 }
 
-std::string name_of(Action action) { return kActions[static_cast<int>(action)]; }
+std::string name_of(Action action) {
+    return kActions[static_cast<int>(action)];
+}
 
 Action action_of(const std::string& name) {
     for (const Action a : {Action::stroke, Action::dip, Action::rinse, Action::reshape, Action::dry, Action::layer,
                            Action::mask, Action::fill, Action::wipe, Action::wash})
         if (name == name_of(a)) return a;
-    throw Error("'" + excerpt(name) + "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe and wash");
+    throw Error(
+        "'" + excerpt(name) +
+        "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe and wash");
 }
 
 void check_extent(const Extent& e, Action action) {
@@ -258,7 +281,8 @@ BrushAction action_of_text(const std::string& text) {
                         : name == "side"   ? &care.extent.side
                                            : nullptr;
         if (!value || equal == std::string::npos || (care.action != Action::dip && care.action != Action::wipe))
-            throw Error("'" + part + "' in '" + text + "' is none of depth=PART, amount=PART and side=PART of a dip or wipe");
+            throw Error("'" + part + "' in '" + text +
+                        "' is none of depth=PART, amount=PART and side=PART of a dip or wipe");
         const char* last = part.data() + part.size();
         const auto [rest, error] = std::from_chars(part.data() + equal + 1, last, *value);
         if (error != std::errc{} || rest != last) throw Error("'" + part + "' in '" + text + "' is no number");
@@ -272,11 +296,14 @@ bool has_brush(Action action) {
     return action != Action::dry && action != Action::fill && action != Action::wash && !keeps_texels(action);
 }
 
-bool keeps_texels(Action action) { return action == Action::layer || action == Action::mask; }
+bool keeps_texels(Action action) {
+    return action == Action::layer || action == Action::mask;
+}
 
 std::vector<std::string> inks_of(const Stroke& entry) {
     std::vector<std::string> inks;
-    const bool none = entry.action == Action::dry || entry.action == Action::wash || keeps_texels(entry.action) || entry.trace.erases;
+    const bool none =
+        entry.action == Action::dry || entry.action == Action::wash || keeps_texels(entry.action) || entry.trace.erases;
     if (!none && !entry.trace.ink.empty()) inks.push_back(entry.trace.ink);
     if (entry.action == Action::fill && !entry.fill.to_ink.empty()) inks.push_back(entry.fill.to_ink);
     return inks;

@@ -18,7 +18,7 @@ struct Settings {
     std::string footprint = "surface";  ///< surface | plane
     std::string contact = "exact";      ///< exact | vertices
     double spacing = 1.0;               ///< texels between two stamps
-    bool compensate_tip_lag = true;                   ///< flat traces: the hand runs ahead so that the ink lies on them
+    bool compensate_tip_lag = true;     ///< flat traces: the hand runs ahead so that the ink lies on them
     std::string dip = "each";           ///< each: every stroke with a fresh full brush | carry: with
                                         ///< the hair and ink that the last one with it left
     bool endless = false;               ///< the ink that leaves the tuft is replaced at once, and what it takes up from
@@ -42,16 +42,16 @@ void check_settings(const Settings& settings);
 /// Throws `Error` for a time that ink cannot dry for.
 void check_seconds(double seconds);
 void check_extent(const Extent& extent, Action action);
-/// Throws `Error` for samples, a placement or stencil edge that no hand can have made: numbers that are not finite, places
-/// beyond `kFarthest`, times beyond three years, pressures and tilts out of range, rotations and directions that
+/// Throws `Error` for samples, a placement or stencil edge that no hand can have made: numbers that are not finite,
+/// places beyond `kFarthest`, times beyond three years, pressures and tilts out of range, rotations and directions that
 /// are none.
 void check_trace(const Trace& trace);
 
 /// Entries that belong together, such as the strokes of one drawing: they are listed, hidden, moved, changed and
 /// deleted as one.
 struct EntryGroup {
-    std::uint64_t id = 0;     ///< of no other group in its journal; 0: none
-    std::string name;         ///< for people, such as the drawing's file; the same in all entries of the group
+    std::uint64_t id = 0;  ///< of no other group in its journal; 0: none
+    std::string name;      ///< for people, such as the drawing's file; the same in all entries of the group
 
     bool operator==(const EntryGroup&) const = default;
 };
@@ -62,19 +62,19 @@ std::string group_name(const std::filesystem::path& file);
 /// it names a brush, and for a dip the ink. Drying, fills and changes of layers and masks leave the brush
 /// as it is and need not name one.
 struct Stroke {
-    std::uint64_t id = 0;     ///< unique in its journal, never used again
-    Trace trace;              ///< with the names of its brush and ink filled in
+    std::uint64_t id = 0;  ///< unique in its journal, never used again
+    Trace trace;           ///< with the names of its brush and ink filled in
     Settings settings;
-    bool hidden = false;      ///< kept, but not painted
+    bool hidden = false;  ///< kept, but not painted
     Action action = Action::stroke;
-    double seconds = 0;       ///< of `Action::dry`; 0: until all is dry
+    double seconds = 0;                 ///< of `Action::dry`; 0: until all is dry
     std::uint32_t layer = kFirstLayer;  ///< that is painted on, or `kPaletteLayer`
-    std::uint32_t mask = 0;   ///< that a stroke or fill keeps to; 0: none
-    LayerEdit edit = {};      ///< of `Action::layer`
-    MaskEdit mask_edit = {};  ///< of `Action::mask`
-    Fill fill = {};           ///< of `Action::fill`, which names its first ink as strokes do
-    Extent extent = {};       ///< of a dip or a wipe
-    EntryGroup group = {};    ///< that it belongs to
+    std::uint32_t mask = 0;             ///< that a stroke or fill keeps to; 0: none
+    LayerEdit edit = {};                ///< of `Action::layer`
+    MaskEdit mask_edit = {};            ///< of `Action::mask`
+    Fill fill = {};                     ///< of `Action::fill`, which names its first ink as strokes do
+    Extent extent = {};                 ///< of a dip or a wipe
+    EntryGroup group = {};              ///< that it belongs to
 };
 
 /// The settings of an entry as above, with the entry's action, seconds and extent as more keys.

@@ -9,8 +9,10 @@ JournalTraces traces_of(std::span<const Stroke> entries) {
     for (const Stroke& entry : entries) {
         if (entry.hidden) continue;
         if (entry.action == Action::layer || entry.action == Action::mask) {
-            if (entry.action == Action::layer) apply(layers, entry.edit);
-            else apply(masks, entry.mask_edit);
+            if (entry.action == Action::layer)
+                apply(layers, entry.edit);
+            else
+                apply(masks, entry.mask_edit);
             out.left_out += entry.action == Action::mask || entry.edit.what != LayerChange::add;
             continue;
         }

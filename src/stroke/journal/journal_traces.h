@@ -9,8 +9,8 @@
 namespace tuft::stroke {
 
 struct JournalTraces {
-    std::vector<Trace> traces;     ///< with names of layers and masks, and settings
-    std::size_t left_out = 0;      ///< entries that traces cannot say: changes of layers and masks
+    std::vector<Trace> traces;  ///< with names of layers and masks, and settings
+    std::size_t left_out = 0;   ///< entries that traces cannot say: changes of layers and masks
 };
 
 /// The entries in their order without the hidden ones. A stroke becomes its trace; what is done

@@ -13,8 +13,7 @@ constexpr const char* kChanges[] = {"add", "change", "remove", "duplicate", "mer
 
 template <class Table>
 auto place_of(Table& table, std::uint32_t id) {
-    const auto at = std::find_if(table.layers.begin(), table.layers.end(),
-                                 [id](const Layer& l) { return l.id == id; });
+    const auto at = std::find_if(table.layers.begin(), table.layers.end(), [id](const Layer& l) { return l.id == id; });
     if (at == table.layers.end()) throw Error("there is no layer " + std::to_string(id));
     return at;
 }
@@ -31,16 +30,17 @@ void check_layer(const LayerTable& table, const Layer& layer) {
 void check_name(std::string_view name, const char* of_what) {
     const std::string what = std::string("the name of a ") + of_what;
     if (name.empty()) throw Error(what + " is empty");
-    if (name.size() > kMaxNameBytes)
-        throw Error(what + " is longer than " + std::to_string(kMaxNameBytes) + " bytes");
+    if (name.size() > kMaxNameBytes) throw Error(what + " is longer than " + std::to_string(kMaxNameBytes) + " bytes");
     int following = 0;  // bytes of a UTF-8 sequence still to come
     for (const char c : name) {
         const auto b = static_cast<unsigned char>(c);
         const bool continues = (b & 0xc0) == 0x80;
         if (continues != (following > 0) || b < 0x20 || b == 0x7f || b > 0xf4)
             throw Error(what + " is no readable text");
-        if (continues) --following;
-        else following = b >= 0xf0 ? 3 : b >= 0xe0 ? 2 : b >= 0xc0 ? 1 : 0;
+        if (continues)
+            --following;
+        else
+            following = b >= 0xf0 ? 3 : b >= 0xe0 ? 2 : b >= 0xc0 ? 1 : 0;
     }
     if (following > 0) throw Error(what + " is no readable text");
 }
@@ -128,10 +128,12 @@ LayerEdit merged_down(const LayerTable& table, std::uint32_t id) {
         if (layer->opacity < 1)
             throw Error(what + "faded, which one layer of ink cannot show; give it opacity 1 before layers are merged");
         if (layer->blend == ink::Blend::multiply)
-            throw Error(what + "multiplied, which one layer of ink cannot show; blend it normally before layers are merged");
+            throw Error(what +
+                        "multiplied, which one layer of ink cannot show; blend it normally before layers are merged");
     }
     if (upper.blend != lower.blend)
-        throw Error("layers '" + upper.name + "' and '" + lower.name + "' blend differently; make both normal or both glaze before they are merged");
+        throw Error("layers '" + upper.name + "' and '" + lower.name +
+                    "' blend differently; make both normal or both glaze before they are merged");
     return {LayerChange::merge, Layer{.id = id}, 0, lower.id};
 }
 
@@ -163,7 +165,8 @@ LayerEdit layer_edit_of(const nlohmann::json& j) {
         edit.what = static_cast<LayerChange>(at - std::begin(kChanges));
         const auto whole = [&j](const char* key) {
             const auto value = j.at(key).get<std::int64_t>();
-            if (value < 0 || value >= std::int64_t{kNone}) throw Error(std::string("the ") + key + " of a layer is out of range");
+            if (value < 0 || value >= std::int64_t{kNone})
+                throw Error(std::string("the ") + key + " of a layer is out of range");
             return static_cast<std::uint32_t>(value);
         };
         edit.layer.id = whole("id");

@@ -21,11 +21,11 @@ inline constexpr std::size_t kMaxNameBytes = 200;
 
 /// What is known of a layer besides its texels.
 struct Layer {
-    std::uint32_t id = kFirstLayer;   ///< unique in its painting, never used again
-    std::string name = "Layer 1";     ///< unique among the layers that there are
+    std::uint32_t id = kFirstLayer;  ///< unique in its painting, never used again
+    std::string name = "Layer 1";    ///< unique among the layers that there are
     bool visible = true;
-    double opacity = 1;               ///< 0–1, see ink::shade_tile
-    bool locked = false;              ///< takes no strokes from the hand
+    double opacity = 1;                     ///< 0–1, see ink::shade_tile
+    bool locked = false;                    ///< takes no strokes from the hand
     ink::Blend blend = ink::Blend::normal;  ///< how its films meet what lies below
 
     bool operator==(const Layer&) const = default;
@@ -49,10 +49,10 @@ enum class LayerChange { add, change, remove, duplicate, merge };
 /// One change of the table: a new layer, another state or place of one, or its end.
 struct LayerEdit {
     LayerChange what = LayerChange::add;
-    Layer layer;                      ///< as it is to be; `remove` and `merge` look at the id only.
-                                      ///< `add` and `duplicate` with id 0: the next one
-    std::uint32_t place = 0;          ///< index from the bottom that it is to have
-    std::uint32_t other = 0;          ///< `duplicate`: the layer copied; `merge`: the one merged into
+    Layer layer;              ///< as it is to be; `remove` and `merge` look at the id only.
+                              ///< `add` and `duplicate` with id 0: the next one
+    std::uint32_t place = 0;  ///< index from the bottom that it is to have
+    std::uint32_t other = 0;  ///< `duplicate`: the layer copied; `merge`: the one merged into
 
     bool operator==(const LayerEdit&) const = default;
 };

@@ -38,10 +38,7 @@ std::string free_name(const Table& table, const std::string& name) {
 class Follower {
   public:
     explicit Follower(std::vector<Stroke>& entries, std::uint64_t first_free)
-        : entries_(entries),
-          next_id_(first_free),
-          layers_(layers_after(entries)),
-          masks_(masks_after(entries)) {
+        : entries_(entries), next_id_(first_free), layers_(layers_after(entries)), masks_(masks_after(entries)) {
         for (const Stroke& s : entries) ids_.insert(s.id);
     }
 
@@ -74,8 +71,7 @@ class Follower {
             own_masks_[mine.mask_edit.mask.id] = mine.mask_edit.mask;
     }
 
-    static std::uint32_t mapped(const std::map<std::uint32_t, std::uint32_t>& map,
-                                std::uint32_t id) {
+    static std::uint32_t mapped(const std::map<std::uint32_t, std::uint32_t>& map, std::uint32_t id) {
         const auto at = map.find(id);
         return at == map.end() ? id : at->second;
     }
@@ -99,8 +95,7 @@ class Follower {
             edit.place = std::min(edit.place, static_cast<std::uint32_t>(layers_.layers.size()));
         } else {
             layer.id = mapped(new_layer_, layer.id);
-            edit.place =
-                std::min(edit.place, static_cast<std::uint32_t>(layers_.layers.size() - 1));
+            edit.place = std::min(edit.place, static_cast<std::uint32_t>(layers_.layers.size() - 1));
         }
         return possible(layers_, edit);
     }
@@ -138,8 +133,7 @@ class Follower {
         Stroke entry = action();
         entry.action = Action::layer;
         const auto name = layer_names_.find(id);
-        entry.edit = add_on_top(
-            layers_, free_name(layers_, name == layer_names_.end() ? Layer{}.name : name->second));
+        entry.edit = add_on_top(layers_, free_name(layers_, name == layer_names_.end() ? Layer{}.name : name->second));
         const std::uint32_t added = new_layer_[id] = entry.edit.layer.id;
         put(std::move(entry));
         return added;
@@ -228,8 +222,7 @@ std::vector<EntryMark> marks_of(std::span<const Stroke> entries) {
     return marks;
 }
 
-MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<Stroke> mine,
-                             std::vector<Stroke> theirs) {
+MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<Stroke> mine, std::vector<Stroke> theirs) {
     const Marks was = by_id(base), own = by_id(marks_of(mine)), other = by_id(marks_of(theirs));
     std::unordered_map<std::uint64_t, const Stroke*> mine_by_id;
     for (const Stroke& s : mine) mine_by_id[s.id] = &s;

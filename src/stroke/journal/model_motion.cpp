@@ -17,10 +17,9 @@ constexpr std::size_t kPoints = 600;  // of each model
 constexpr double kCountsAs = 0.02;    // of the diagonal: farther is as far as it gets
 constexpr double kSameShape = 0.002;  // of the diagonal, mean distance of models of one shape
 constexpr double kBetter = 0.5;       // of the distance that a smaller motion leaves
-constexpr double kSamePlace =
-    1e-4;  // of the diagonal, mean distance of models of which neither moved
-constexpr double kSameBox = 0.02;    // of a box's side
-constexpr double kSameSize = 0.002;  // of a size: not another one
+constexpr double kSamePlace = 1e-4;   // of the diagonal, mean distance of models of which neither moved
+constexpr double kSameBox = 0.02;     // of a box's side
+constexpr double kSameSize = 0.002;   // of a size: not another one
 
 // Points even over the area, the same at each call.
 std::vector<Vec3> points_of(const mesh::TriangleMesh& mesh) {
@@ -34,9 +33,9 @@ std::vector<Vec3> points_of(const mesh::TriangleMesh& mesh) {
     std::vector<Vec3> points;
     for (std::size_t i = 0; i < kPoints && area > 0; ++i) {
         const double at = area * (static_cast<double>(i) + uniform(1, i)) / kPoints;
-        const auto t = static_cast<std::uint32_t>(std::min<std::ptrdiff_t>(
-            std::upper_bound(until.begin(), until.end(), at) - until.begin(),
-            static_cast<std::ptrdiff_t>(until.size()) - 1));
+        const auto t = static_cast<std::uint32_t>(
+            std::min<std::ptrdiff_t>(std::upper_bound(until.begin(), until.end(), at) - until.begin(),
+                                     static_cast<std::ptrdiff_t>(until.size()) - 1));
         const double r = std::sqrt(uniform(2, i)), s = uniform(3, i);
         points.push_back((1 - r) * mesh.position(t, 0) + r * (1 - s) * mesh.position(t, 1) +
                          r * s * mesh.position(t, 2));
@@ -49,8 +48,7 @@ struct Side {
     Box box;
     std::vector<Vec3> points;
 
-    explicit Side(const mesh::SurfaceQuery& q)
-        : query(q), box(q.mesh().bounds), points(points_of(q.mesh())) {}
+    explicit Side(const mesh::SurfaceQuery& q) : query(q), box(q.mesh().bounds), points(points_of(q.mesh())) {}
 };
 
 double distance(const mesh::SurfaceQuery& query, const Vec3& p, double most) {
@@ -65,8 +63,7 @@ double gap(const Side& former, const Side& revised, const ModelMotion& motion) {
     for (const Vec3& p : former.points) sum += distance(revised.query, motion(p), most);
     for (const Vec3& p : revised.points)
         sum += motion.scale * distance(former.query, motion.back(p), most / motion.scale);
-    return sum / static_cast<double>(
-                     std::max<std::size_t>(1, former.points.size() + revised.points.size()));
+    return sum / static_cast<double>(std::max<std::size_t>(1, former.points.size() + revised.points.size()));
 }
 
 // The 24 turns that take axes to axes, the smallest first.
@@ -78,8 +75,7 @@ std::vector<Quat> axis_turns() {
             for (const double y : {-1.0, -r, -0.5, 0.0, 0.5, r, 1.0})
                 for (const double z : {-1.0, -r, -0.5, 0.0, 0.5, r, 1.0}) {
                     if (std::abs(w * w + x * x + y * y + z * z - 1) > 1e-9) continue;
-                    const Vec3 e =
-                        Quat(w, x, y, z) * Vec3(1, 2, 4);  // of a turn of axes all parts are whole
+                    const Vec3 e = Quat(w, x, y, z) * Vec3(1, 2, 4);  // of a turn of axes all parts are whole
                     if (glm::length(e - glm::round(e)) > 1e-9) continue;
                     const bool twice = std::ranges::any_of(turns, [&](const Quat& q) {
                         return std::abs(std::abs(glm::dot(q, Quat(w, x, y, z))) - 1) < 1e-9;
@@ -95,11 +91,9 @@ std::optional<ModelMotion> fitted(const Box& former, const Box& revised, const Q
     double scale = glm::length(wanted) / std::max(1e-30, glm::length(size));
     if (!std::isfinite(scale) || !(scale > 0)) return std::nullopt;
     for (int k = 0; k < 3; ++k)
-        if (std::abs(scale * size[k] - wanted[k]) > kSameBox * glm::length(wanted))
-            return std::nullopt;
+        if (std::abs(scale * size[k] - wanted[k]) > kSameBox * glm::length(wanted)) return std::nullopt;
     if (std::abs(scale - 1) < kSameSize) scale = 1;
-    return ModelMotion{
-        .from = former.centre(), .to = revised.centre(), .rotation = turn, .scale = scale};
+    return ModelMotion{.from = former.centre(), .to = revised.centre(), .rotation = turn, .scale = scale};
 }
 
 }  // namespace
@@ -137,15 +131,12 @@ std::string describe(const ModelMotion& motion) {
     const Vec3 by_size = (motion.scale - 1) * (motion.rotation * motion.from) / kMillimetre +
                          (motion.rotation * motion.from - motion.from) / kMillimetre;
     const bool about_origin = glm::length(shift - by_size) < 0.05;
-    if (turn_of(motion) > 1e-6)
-        parts.push_back(fmt::format("turned by {:.0f} degrees", turn_of(motion) / kDegree));
+    if (turn_of(motion) > 1e-6) parts.push_back(fmt::format("turned by {:.0f} degrees", turn_of(motion) / kDegree));
     if (motion.scale != 1) parts.push_back(fmt::format("{:.4g} times as large", motion.scale));
     if (parts.empty() || !about_origin)
-        parts.push_back(
-            fmt::format("shifted by ({:.1f}, {:.1f}, {:.1f}) mm", shift.x, shift.y, shift.z));
+        parts.push_back(fmt::format("shifted by ({:.1f}, {:.1f}, {:.1f}) mm", shift.x, shift.y, shift.z));
     std::string text = parts.front();
-    for (std::size_t i = 1; i < parts.size(); ++i)
-        text += (i + 1 == parts.size() ? " and " : ", ") + parts[i];
+    for (std::size_t i = 1; i < parts.size(); ++i) text += (i + 1 == parts.size() ? " and " : ", ") + parts[i];
     return text;
 }
 

@@ -28,8 +28,7 @@ struct ModelMotion {
 /// is more than 0.01 % of D. So a finer or coarser mesh, a hole or a new part is no motion; a
 /// motion that takes the shape to itself is not seen. Cost: 1,200 closest points for each of at
 /// most 24 turns that the boxes allow.
-std::optional<ModelMotion> find_motion(const mesh::SurfaceQuery& former,
-                                       const mesh::SurfaceQuery& revised);
+std::optional<ModelMotion> find_motion(const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised);
 
 /// In words: "shifted by (20.0, 0.0, 0.0) mm", "1.200 times as large", "turned by 90 degrees".
 std::string describe(const ModelMotion& motion);

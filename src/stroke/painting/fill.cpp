@@ -25,7 +25,9 @@ Word word_of(const std::string& name, const char* const (&words)[N], const char*
     throw Error("'" + name + "' is no " + what + "; there are " + all);
 }
 
-nlohmann::json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+nlohmann::json json_of(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
 
 Vec3 vector_of(const nlohmann::json& j) {
     const auto v = j.get<std::array<double, 3>>();
@@ -34,10 +36,18 @@ Vec3 vector_of(const nlohmann::json& j) {
 
 }  // namespace
 
-std::string name_of(Region region) { return kRegions[static_cast<int>(region)]; }
-std::string name_of(Gradient gradient) { return kGradients[static_cast<int>(gradient)]; }
-Region region_of(const std::string& name) { return word_of<Region>(name, kRegions, "region to fill"); }
-Gradient gradient_of(const std::string& name) { return word_of<Gradient>(name, kGradients, "gradient"); }
+std::string name_of(Region region) {
+    return kRegions[static_cast<int>(region)];
+}
+std::string name_of(Gradient gradient) {
+    return kGradients[static_cast<int>(gradient)];
+}
+Region region_of(const std::string& name) {
+    return word_of<Region>(name, kRegions, "region to fill");
+}
+Gradient gradient_of(const std::string& name) {
+    return word_of<Gradient>(name, kGradients, "gradient");
+}
 
 void check_fill(const Fill& f) {
     for (const double film : {f.film, f.to_film})

@@ -30,10 +30,10 @@ struct Fill {
     double film = 1.8;
     Gradient gradient = Gradient::none;
     double to_film = 1.8;
-    std::string to_ink;      ///< empty: the same
+    std::string to_ink;  ///< empty: the same
     Vec3 from{0}, to{0};
     Region region = Region::all;
-    Vec3 at{0};              ///< a point on or near the surface, for `part` and `chart`
+    Vec3 at{0};  ///< a point on or near the surface, for `part` and `chart`
 
     bool operator==(const Fill&) const = default;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-
 #include <nlohmann/json.hpp>
 
 #include "core/bounds.h"
@@ -17,8 +16,8 @@ constexpr const char* kKinds[] = {"group", "angle", "chart", "lasso", "invert", 
 constexpr std::size_t kMaxMasks = 1000, kMaxPoints = 10000;
 
 void check_view(const LassoView& v) {
-    const double off = std::abs(glm::length(v.right) - 1) + std::abs(glm::length(v.up) - 1) +
-                       std::abs(glm::dot(v.right, v.up));
+    const double off =
+        std::abs(glm::length(v.right) - 1) + std::abs(glm::length(v.up) - 1) + std::abs(glm::dot(v.right, v.up));
     if (!within(v.origin) || !(off < 1e-6)) throw Error("the view of a lasso is no view");
 }
 
@@ -52,7 +51,9 @@ void check_mask(const MaskTable& table, const Mask& m) {
 
 }  // namespace
 
-std::string name_of(MaskKind kind) { return kKinds[static_cast<int>(kind)]; }
+std::string name_of(MaskKind kind) {
+    return kKinds[static_cast<int>(kind)];
+}
 
 MaskKind mask_kind_of(const std::string& name) {
     for (int i = 0; i <= static_cast<int>(MaskKind::unite); ++i)
@@ -92,7 +93,9 @@ void apply(MaskTable& table, const MaskEdit& edit) {
 
 namespace {
 
-nlohmann::json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+nlohmann::json json_of(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
 
 Vec3 vector_of(const nlohmann::json& j) {
     const auto v = j.get<std::array<double, 3>>();
@@ -113,8 +116,10 @@ nlohmann::json json_of(const MaskEdit& edit) {
     if (m.kind == MaskKind::chart)
         for (const Vec3& p : m.points) j["points"].push_back(json_of(p));
     if (m.kind == MaskKind::lasso) {
-        j["view"] = {{"origin", json_of(m.view.origin)}, {"right", json_of(m.view.right)},
-                     {"up", json_of(m.view.up)}, {"perspective", m.view.perspective},
+        j["view"] = {{"origin", json_of(m.view.origin)},
+                     {"right", json_of(m.view.right)},
+                     {"up", json_of(m.view.up)},
+                     {"perspective", m.view.perspective},
                      {"through", m.view.through}};
         for (const Vec2& p : m.polygon) j["polygon"].push_back({p.x, p.y});
     }
@@ -152,7 +157,8 @@ MaskEdit mask_edit_of(const nlohmann::json& j) {
         }
         m.of = j.value("of", std::vector<std::uint32_t>{});
     } catch (const nlohmann::json::exception&) {
-        throw Error("a mask cannot be read: " + j.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace).substr(0, 80));
+        throw Error("a mask cannot be read: " +
+                    j.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace).substr(0, 80));
     }
     return edit;
 }
@@ -178,8 +184,7 @@ std::uint8_t MaskTexels::coverage(std::uint32_t slot, int texel) const {
 
 void MaskTexels::apply(std::uint32_t slot, std::span<float, atlas::kTileTexels> exposure) const {
     if (place_[slot] == kAll_) return;
-    for (int t = 0; t < atlas::kTileTexels; ++t)
-        exposure[t] *= static_cast<float>(coverage(slot, t)) * (1.0f / 255);
+    for (int t = 0; t < atlas::kTileTexels; ++t) exposure[t] *= static_cast<float>(coverage(slot, t)) * (1.0f / 255);
 }
 
 std::size_t MaskTexels::memory_bytes() const {

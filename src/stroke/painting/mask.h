@@ -28,24 +28,24 @@ struct LassoView {
     Vec3 origin{0};
     Vec3 right{1, 0, 0}, up{0, 1, 0};  ///< unit, at right angles; forward = up × right
     bool perspective = false;
-    bool through = false;              ///< also what faces away or is hidden behind something
+    bool through = false;  ///< also what faces away or is hidden behind something
 
     bool operator==(const LassoView&) const = default;
 };
 
 /// A mask as it was asked for: it holds for any atlas and any revised mesh.
 struct Mask {
-    std::uint32_t id = 0;              ///< unique in its painting, never used again; 0: none
+    std::uint32_t id = 0;  ///< unique in its painting, never used again; 0: none
     std::string name;
     MaskKind kind = MaskKind::angle;
-    std::vector<std::string> groups;   ///< group
-    Vec3 direction{0, 0, 1};           ///< angle: any length but 0
-    double within = 0.785398;          ///< angle: radians
-    double soft = 0;                   ///< angle: coverage falls from 1 to 0 over within ± soft
-    std::vector<Vec3> points;          ///< chart: metres, near the surface
-    LassoView view;                    ///< lasso
-    std::vector<Vec2> polygon;         ///< lasso: corners in the view, closed by itself; even-odd
-    std::vector<std::uint32_t> of;     ///< invert (one), intersect, unite: ids of masks
+    std::vector<std::string> groups;  ///< group
+    Vec3 direction{0, 0, 1};          ///< angle: any length but 0
+    double within = 0.785398;         ///< angle: radians
+    double soft = 0;                  ///< angle: coverage falls from 1 to 0 over within ± soft
+    std::vector<Vec3> points;         ///< chart: metres, near the surface
+    LassoView view;                   ///< lasso
+    std::vector<Vec2> polygon;        ///< lasso: corners in the view, closed by itself; even-odd
+    std::vector<std::uint32_t> of;    ///< invert (one), intersect, unite: ids of masks
 
     bool operator==(const Mask&) const = default;
 };

@@ -26,7 +26,8 @@ MaskTexels by_texel(const Model& model, Fn&& coverage) {
             std::uint8_t lowest = 255;
             for (int t = 0; t < atlas::kTileTexels; ++t) {
                 if (map.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
-                const double c = std::clamp(static_cast<double>(coverage(static_cast<std::uint32_t>(slot), t)), 0.0, 1.0);
+                const double c =
+                    std::clamp(static_cast<double>(coverage(static_cast<std::uint32_t>(slot), t)), 0.0, 1.0);
                 tiles[slot][t] = static_cast<std::uint8_t>(std::lround(255 * c));
                 lowest = std::min(lowest, tiles[slot][t]);
             }
@@ -48,12 +49,13 @@ std::vector<Coverage> texels_of(const std::vector<std::uint8_t>& chosen, const M
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         const std::uint8_t value = chosen[i] ? 1 : 2;
         const Vec2f* uv = &model.atlas.corner_uvs[3 * i];
-        atlas::raster_rows({uv[0], uv[1], uv[2]}, map.size, [&](std::uint32_t y, std::uint32_t first, std::uint32_t last) {
-            for (std::uint32_t x = first; x <= last; ++x) {
-                const atlas::TexelRef texel = atlas::texel_ref(map, x, y);
-                if (texel.valid()) in[texel.slot][texel.texel] = value;
-            }
-        });
+        atlas::raster_rows({uv[0], uv[1], uv[2]}, map.size,
+                           [&](std::uint32_t y, std::uint32_t first, std::uint32_t last) {
+                               for (std::uint32_t x = first; x <= last; ++x) {
+                                   const atlas::TexelRef texel = atlas::texel_ref(map, x, y);
+                                   if (texel.valid()) in[texel.slot][texel.texel] = value;
+                               }
+                           });
     }
     return in;
 }
@@ -65,7 +67,8 @@ MaskTexels by_group(const Mask& mask, const Model& model) {
         const auto at = std::find(mesh.group_names.begin(), mesh.group_names.end(), name);
         if (at == mesh.group_names.end() || mesh.triangle_groups.empty()) {
             const std::string near = nearest_name(name, mesh.group_names);
-            throw Error("the mesh has no group '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+            throw Error("the mesh has no group '" + name + "'" +
+                        (near.empty() ? "" : "; did you mean '" + near + "'?"));
         }
         wanted[static_cast<std::size_t>(at - mesh.group_names.begin())] = 1;
     }
@@ -158,13 +161,18 @@ MaskTexels of_masks(const Mask& mask, const Parts& done, const Model& model) {
 
 MaskTexels evaluate_one(const Mask& mask, const Parts& done, const Model& model) {
     switch (mask.kind) {
-        case MaskKind::group: return by_group(mask, model);
-        case MaskKind::angle: return by_angle(mask, model);
-        case MaskKind::chart: return by_chart(mask, model);
-        case MaskKind::lasso: return by_lasso(mask, model);
+        case MaskKind::group:
+            return by_group(mask, model);
+        case MaskKind::angle:
+            return by_angle(mask, model);
+        case MaskKind::chart:
+            return by_chart(mask, model);
+        case MaskKind::lasso:
+            return by_lasso(mask, model);
         case MaskKind::invert:
         case MaskKind::intersect:
-        case MaskKind::unite: break;
+        case MaskKind::unite:
+            break;
     }
     return of_masks(mask, done, model);
 }

@@ -21,9 +21,8 @@ void check_memory(std::uint32_t size, atlas::TexelStore texels, std::size_t limi
     if (limit == 0) limit = available_memory();
     const std::size_t needed = atlas_memory(size, texels);
     if (needed > limit)
-        throw Error("an atlas of " + std::to_string(size) + " x " + std::to_string(size) +
-                    " texels needs " + std::to_string(needed >> 20) + " MiB, but only " +
-                    std::to_string(limit >> 20) +
+        throw Error("an atlas of " + std::to_string(size) + " x " + std::to_string(size) + " texels needs " +
+                    std::to_string(needed >> 20) + " MiB, but only " + std::to_string(limit >> 20) +
                     " MiB are free; choose a smaller --atlas-size or a larger --texel-size");
 }
 
@@ -50,14 +49,12 @@ void give_atlas(Model& model, const atlas::UnwrapOptions& unwrap, const ModelOpt
     if (unwrap.size == 0 && unwrap.texel_size > 0) {
         // Before the charts are made: their area alone asks for this many texels.
         const double side = std::sqrt(mesh::surface_area(*model.mesh)) / unwrap.texel_size;
-        check_memory(static_cast<std::uint32_t>(std::min(side, 4e9)), options.texels,
-                     options.memory_limit);
+        check_memory(static_cast<std::uint32_t>(std::min(side, 4e9)), options.texels, options.memory_limit);
     }
     atlas::Unwrapped unwrapped = atlas::unwrap(*model.mesh, unwrap);
     model.atlas = std::move(unwrapped.atlas);
     model.atlas_report = std::move(unwrapped.report);
-    check_memory(side_of_pages(model.atlas.page_size(), model.atlas.pages), options.texels,
-                 options.memory_limit);
+    check_memory(side_of_pages(model.atlas.page_size(), model.atlas.pages), options.texels, options.memory_limit);
     finish(model, options.texels, options.progress);
 }
 
@@ -66,7 +63,8 @@ void give_atlas(Model& model, const atlas::UnwrapOptions& unwrap, const ModelOpt
 std::size_t atlas_memory(std::uint32_t size, atlas::TexelStore texels) {
     const double shape = atlas::is_packed(texels, size) ? kPackedShape : kFloatShape;
     constexpr double kMost = 1e18;  // what no machine has, and std::size_t still holds
-    return static_cast<std::size_t>(std::min(kMost, static_cast<double>(size) * size * kOccupied * (kBytesPerTexel + shape)));
+    return static_cast<std::size_t>(
+        std::min(kMost, static_cast<double>(size) * size * kOccupied * (kBytesPerTexel + shape)));
 }
 
 std::size_t available_memory() {
@@ -83,8 +81,7 @@ std::size_t available_memory() {
     }
     std::ifstream limit_file("/sys/fs/cgroup/memory.max"), used_file("/sys/fs/cgroup/memory.current");
     std::size_t limit = 0, used = 0;
-    if (limit_file >> limit && used_file >> used)
-        available = std::min(available, limit > used ? limit - used : 0);
+    if (limit_file >> limit && used_file >> used) available = std::min(available, limit > used ? limit - used : 0);
     return available;
 }
 
@@ -110,8 +107,7 @@ Model rescale_model(Model model, const ModelOptions& options) {
     return model;
 }
 
-Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress,
-                    atlas::TexelStore texels) {
+Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress, atlas::TexelStore texels) {
     Model model;
     model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(mesh));
     model.atlas = std::move(atlas);

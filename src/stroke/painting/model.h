@@ -28,10 +28,10 @@ struct Model {
 };
 
 struct ModelOptions {
-    mesh::RepairOptions repair;     ///< its `progress` is set from the one below
-    atlas::UnwrapOptions unwrap;    ///< likewise
+    mesh::RepairOptions repair;   ///< its `progress` is set from the one below
+    atlas::UnwrapOptions unwrap;  ///< likewise
     atlas::TexelStore texels = atlas::TexelStore::automatic;
-    std::size_t memory_limit = 0;   ///< bytes; 0: what the machine has free
+    std::size_t memory_limit = 0;  ///< bytes; 0: what the machine has free
     ProgressFn progress;
 };
 
@@ -48,8 +48,7 @@ Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressF
 Model rescale_model(Model model, const ModelOptions& options);
 
 /// Bytes that painting on an atlas of size × size texels takes at most.
-std::size_t atlas_memory(std::uint32_t size,
-                         atlas::TexelStore texels = atlas::TexelStore::automatic);
+std::size_t atlas_memory(std::uint32_t size, atlas::TexelStore texels = atlas::TexelStore::automatic);
 
 /// Bytes this process may still take: free memory of the machine or of its control group.
 std::size_t available_memory();

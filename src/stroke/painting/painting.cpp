@@ -25,7 +25,9 @@ void Document::use_brush(const brush::Preset& preset) {
     brushes_[preset.name] = preset;
     held_.erase(preset.name);
 }
-void Document::use_ink(const ink::Ink& ink) { inks_[ink.name] = ink; }
+void Document::use_ink(const ink::Ink& ink) {
+    inks_[ink.name] = ink;
+}
 
 const brush::Preset& Document::brush(const std::string& name) {
     const auto found = brushes_.find(name);
@@ -46,7 +48,8 @@ const BrushInHand* Document::held(const std::string& brush) const {
 
 // A brush that is not held is fresh; the entry says so, for replays that hold it.
 void Document::settle(Stroke& entry) const {
-    if (entry.action == Action::layer && (entry.edit.what == LayerChange::add || entry.edit.what == LayerChange::duplicate) && entry.edit.layer.id == 0)
+    if (entry.action == Action::layer &&
+        (entry.edit.what == LayerChange::add || entry.edit.what == LayerChange::duplicate) && entry.edit.layer.id == 0)
         entry.edit.layer.id = layers_.next_id;
     if (entry.action == Action::mask && !entry.mask_edit.remove && entry.mask_edit.mask.id == 0)
         entry.mask_edit.mask.id = masks_.next_id;
@@ -137,18 +140,23 @@ void Document::act(const Stroke& entry, const ProgressFn& progress) {
                      {.depth = entry.extent.depth, .level = entry.extent.amount, .side = entry.extent.side});
             brush.dipped = entry.trace.ink;
             break;
-        case Action::wipe: ink::wipe(brush.reservoir, entry.extent.amount, {entry.extent.depth, entry.extent.side}); break;
+        case Action::wipe:
+            ink::wipe(brush.reservoir, entry.extent.amount, {entry.extent.depth, entry.extent.side});
+            break;
         case Action::rinse:
             ink::rinse(brush.reservoir);
             brush::reset(brush.tuft);
             break;
-        case Action::reshape: brush::reshape(brush.tuft); break;
+        case Action::reshape:
+            brush::reshape(brush.tuft);
+            break;
         case Action::dry:
         case Action::layer:
         case Action::mask:
         case Action::fill:
         case Action::wash:
-        case Action::stroke: break;
+        case Action::stroke:
+            break;
     }
     brush.tuft.ink_left = brush.reservoir.fullness();
     brush.tuft.wetness = wetness_of(brush.reservoir);
@@ -186,13 +194,17 @@ void Document::begin_session(Stroke stroke) {
     const bool erases = stroke.trace.erases, on_model = &model == model_;
     WetFilmInUse wet;
     if (stroke.settings.film == "wet" && !erases) {
-        if (on_model) wet = {&film(stroke.mask), ink::film_params(substrate, stroke.settings.down)};
-        else wet = {plate().film.get(), plate().params};
+        if (on_model)
+            wet = {&film(stroke.mask), ink::film_params(substrate, stroke.settings.down)};
+        else
+            wet = {plate().film.get(), plate().params};
     }
     ink::Canvas& canvas = this->canvas(stroke.layer);
     // Masks are of the model's texels.
     const MaskTexels* mask = stroke.mask && on_model ? &this->mask(stroke.mask) : nullptr;
-    const SeamLinksFn links = [this, on_model]() -> const atlas::SeamLinks& { return on_model ? seams() : plate().seams; };
+    const SeamLinksFn links = [this, on_model]() -> const atlas::SeamLinks& {
+        return on_model ? seams() : plate().seams;
+    };
     session_ = std::make_unique<StrokeSession>(SessionInput{.stroke = std::move(stroke),
                                                             .brush = std::move(brush),
                                                             .ink = ink,
@@ -206,7 +218,9 @@ void Document::begin_session(Stroke stroke) {
                                                             .record_forces = options_.record_forces});
 }
 
-void Document::extend(std::span<const brush::Pose> poses) { session_->extend(poses); }
+void Document::extend(std::span<const brush::Pose> poses) {
+    session_->extend(poses);
+}
 
 // Ends the stroke in work without a word to the journal.
 StrokeReport Document::finish_session() {
@@ -270,9 +284,11 @@ StrokeReport Document::draw(const Stroke& stroke, const ProgressFn& progress) {
     session_->begin_with_set_down(path.set_down);
     try {
         for (std::size_t i = 0; i < poses.size(); ++i)
-            session_->advance(std::span(poses).subspan(i, 1), static_cast<double>(i + 1) / static_cast<double>(poses.size()));
+            session_->advance(std::span(poses).subspan(i, 1),
+                              static_cast<double>(i + 1) / static_cast<double>(poses.size()));
         StrokeReport report = finish_session();
-        if (stroke.trace.flat) report.origin_inside = contact::depth_inside(*target_model(stroke).query, stroke.trace.placement.origin);
+        if (stroke.trace.flat)
+            report.origin_inside = contact::depth_inside(*target_model(stroke).query, stroke.trace.placement.origin);
         return report;
     } catch (...) {
         cancel();
@@ -298,13 +314,16 @@ StrokeReport Document::paint(Stroke stroke, const ProgressFn& progress) {
 
 ink::ComposeOptions Document::compose_options() const {
     if (!gutter_)
-        gutter_ = std::make_unique<ink::GutterPlan>(
-            ink::plan_gutter(*model_->mesh, model_->atlas, model_->texels));
+        gutter_ = std::make_unique<ink::GutterPlan>(ink::plan_gutter(*model_->mesh, model_->atlas, model_->texels));
     return {.gutter = model_->atlas.gutter, .seams = gutter_.get()};
 }
 
-Vec3 Document::device_force() const { return session_ ? session_->device_force() : Vec3{0}; }
-const brush::TuftState* Document::tuft() const { return session_ ? &session_->tuft() : nullptr; }
+Vec3 Document::device_force() const {
+    return session_ ? session_->device_force() : Vec3{0};
+}
+const brush::TuftState* Document::tuft() const {
+    return session_ ? &session_->tuft() : nullptr;
+}
 
 std::vector<StrokeReport> Document::replay(std::vector<Stroke> strokes, const ProgressFn& progress) {
     std::vector<StrokeReport> reports;
@@ -351,8 +370,10 @@ bool Document::undo() {
     }
     Undo& last = undo_.back();
     take_back_layers(last);
-    if (last.brush_before) held_.insert_or_assign(last.brush, std::move(*last.brush_before));
-    else if (!last.brush.empty()) held_.erase(last.brush);
+    if (last.brush_before)
+        held_.insert_or_assign(last.brush, std::move(*last.brush_before));
+    else if (!last.brush.empty())
+        held_.erase(last.brush);
     forget_pigments(last.pigments);
     undo_bytes_ -= last.bytes;
     undo_.pop_back();

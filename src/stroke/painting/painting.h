@@ -13,8 +13,8 @@
 #include "ink/colour/composite.h"
 #include "ink/colour/pigments.h"
 #include "ink/film/film.h"
-#include "stroke/hand/tip_lag.h"
 #include "stroke/hand/placement.h"
+#include "stroke/hand/tip_lag.h"
 #include "stroke/journal/journal.h"
 #include "stroke/painting/model.h"
 #include "stroke/painting/palette.h"
@@ -24,7 +24,7 @@
 namespace tuft::stroke {
 
 struct DocumentOptions {
-    std::string substrate = "porcelain";   ///< preset name; `use_substrate` takes any other
+    std::string substrate = "porcelain";              ///< preset name; `use_substrate` takes any other
     std::size_t undo_bytes = std::size_t{256} << 20;  ///< kept copies of tiles; older strokes undo by replay
     bool record_forces = false;
 };
@@ -32,17 +32,17 @@ struct DocumentOptions {
 /// One film of a texel, film units by pigment plane.
 struct PickedFilm {
     std::uint32_t layer = kFirstLayer;
-    int film = ink::kOpenFilm;      ///< as in ink::Canvas, from the soaked one to the open one
+    int film = ink::kOpenFilm;  ///< as in ink::Canvas, from the soaked one to the open one
     std::array<double, ink::kMaxPigments> amounts{};
 };
 
 /// What lies on the surface at a point.
 struct Pick {
-    mesh::SurfacePoint at;          ///< nearest to the point asked for
+    mesh::SurfacePoint at;  ///< nearest to the point asked for
     atlas::TexelRef texel;
-    std::vector<PickedFilm> films;  ///< of the layers to be seen, the lowest first, none empty
+    std::vector<PickedFilm> films;                    ///< of the layers to be seen, the lowest first, none empty
     std::array<double, ink::kMaxPigments> amounts{};  ///< of them all, by plane of `Document::canvas`
-    double liquid = 0;              ///< film units, on the surface and in it
+    double liquid = 0;                                ///< film units, on the surface and in it
 };
 
 /// The layers that these entries of a journal make. Throws `Error` where one cannot be.
@@ -252,29 +252,29 @@ class Document {
     DocumentOptions options_;
     ink::Substrate substrate_;
     std::optional<ink::Substrate> previewed_substrate_;
-    std::map<std::string, ink::Ink> recolours_;  ///< by the name of the ink painted with
-    ink::Canvas canvas_;                              ///< of kFirstLayer
-    std::map<std::uint32_t, ink::Canvas> upper_;      ///< of the other layers
+    std::map<std::string, ink::Ink> recolours_;   ///< by the name of the ink painted with
+    ink::Canvas canvas_;                          ///< of kFirstLayer
+    std::map<std::uint32_t, ink::Canvas> upper_;  ///< of the other layers
     LayerTable layers_;
-    std::unique_ptr<Palette> palette_;                ///< made when something is put on it
+    std::unique_ptr<Palette> palette_;  ///< made when something is put on it
     MaskTable masks_;
     std::map<std::uint32_t, MaskTexels> mask_texels_;  ///< of those that were asked for
-    std::vector<std::uint32_t> shown_;                ///< of `show_only`
-    std::vector<std::uint32_t> changed_;              ///< slots whose look changed, not their films
+    std::vector<std::uint32_t> shown_;                 ///< of `show_only`
+    std::vector<std::uint32_t> changed_;               ///< slots whose look changed, not their films
     Journal journal_;
     std::map<std::string, brush::Preset> brushes_;
     std::map<std::string, ink::Ink> inks_;
     std::map<std::string, BrushInHand> held_;
     std::map<std::string, std::vector<TipLag>> tip_lags_;  ///< by brush
-    std::map<std::string, TiltedTipLag> tilted_tip_lags_;     ///< by brush
+    std::map<std::string, TiltedTipLag> tilted_tip_lags_;  ///< by brush
     std::deque<Undo> undo_;
     std::size_t undo_bytes_ = 0;
-    std::size_t known_pigments_ = 0;                  ///< by the entries of the journal
+    std::size_t known_pigments_ = 0;  ///< by the entries of the journal
     std::unique_ptr<PlanScratchPool> plan_scratch_;
-    std::unique_ptr<StrokeSession> session_;          ///< the stroke in work
-    std::unique_ptr<ink::WetFilm> film_;              ///< made when something is wet
-    std::uint32_t film_mask_ = 0;                     ///< the mask that it keeps within
-    std::unique_ptr<atlas::SeamLinks> seams_;         ///< made for it, or for paste
+    std::unique_ptr<StrokeSession> session_;   ///< the stroke in work
+    std::unique_ptr<ink::WetFilm> film_;       ///< made when something is wet
+    std::uint32_t film_mask_ = 0;              ///< the mask that it keeps within
+    std::unique_ptr<atlas::SeamLinks> seams_;  ///< made for it, or for paste
     mutable std::unique_ptr<ink::GutterPlan> gutter_;
 };
 

@@ -47,11 +47,11 @@ StrokeReport Document::lay_fill(const Stroke& entry) {
             const atlas::TexelTile& tile = map.tiles[slots[i]];
             for (int t = 0; t < atlas::kTileTexels; ++t) {
                 const std::uint8_t cluster = tile.cluster[t];
-                const bool in = cluster != atlas::kNoCluster && charts[map.cluster_chart[map.cluster_start[slots[i]] + cluster]];
+                const bool in =
+                    cluster != atlas::kNoCluster && charts[map.cluster_chart[map.cluster_start[slots[i]] + cluster]];
                 const double along = in ? along_gradient(fill, Vec3(map.position(slots[i], t))) : 0;
-                const double film = fill.gradient == Gradient::none
-                                        ? fill.film
-                                        : fill.film + along * (fill.to_film - fill.film);
+                const double film =
+                    fill.gradient == Gradient::none ? fill.film : fill.film + along * (fill.to_film - fill.film);
                 coat.film[t] = in ? static_cast<float>(film) : 0.0f;
                 coat.towards[t] = static_cast<float>(along);
             }

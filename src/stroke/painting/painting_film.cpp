@@ -11,7 +11,8 @@ constexpr double kDryLimit = 3600;  // seconds, in which all is dry
 
 const atlas::SeamLinks& Document::seams() {
     if (!seams_)
-        seams_ = std::make_unique<atlas::SeamLinks>(atlas::build_seam_links(*model_->mesh, model_->atlas, model_->texels));
+        seams_ =
+            std::make_unique<atlas::SeamLinks>(atlas::build_seam_links(*model_->mesh, model_->atlas, model_->texels));
     return *seams_;
 }
 
@@ -19,7 +20,8 @@ ink::WetFilm& Document::film(std::uint32_t mask) {
     if (!film_) film_ = std::make_unique<ink::WetFilm>(model_->texels, seams());
     if (mask == film_mask_) return *film_;
     ink::WetFilm::FreeFn free;
-    if (mask) free = [texels = &this->mask(mask)](std::uint32_t slot, int texel) { return texels->coverage(slot, texel); };
+    if (mask)
+        free = [texels = &this->mask(mask)](std::uint32_t slot, int texel) { return texels->coverage(slot, texel); };
     film_->keep_within(std::move(free));
     film_mask_ = mask;
     return *film_;
@@ -61,8 +63,10 @@ void Document::dry(const Stroke& entry, const ProgressFn& progress) {
         };
         try {
             ink::WetFilm& film = this->film(tape_on(layer.id, entry.id));
-            if (entry.seconds > 0) film.advance(canvas, entry.seconds, params, keep, progress);
-            else film.dry(canvas, params, keep, kDryLimit, progress);
+            if (entry.seconds > 0)
+                film.advance(canvas, entry.seconds, params, keep, progress);
+            else
+                film.dry(canvas, params, keep, kDryLimit, progress);
         } catch (...) {
             take_back(undo.before);
             throw;

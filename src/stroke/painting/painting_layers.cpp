@@ -70,8 +70,8 @@ std::vector<LayerTexels> Document::shown_layers() const {
     std::vector<LayerTexels> shown;
     for (const LayerTexels& texels : canvases()) {
         const Layer& layer = *layers_.find(texels.layer);
-        const bool is = shown_.empty() ? layer.visible
-                                       : std::find(shown_.begin(), shown_.end(), layer.id) != shown_.end();
+        const bool is =
+            shown_.empty() ? layer.visible : std::find(shown_.begin(), shown_.end(), layer.id) != shown_.end();
         if (is && layer.opacity > 0) shown.push_back(texels);
     }
     return shown;
@@ -132,8 +132,7 @@ void Document::check_layer(const Stroke& entry) const {
     const Layer* layer = layers_.find(entry.layer);
     if (!layer) throw Error("there is no layer " + std::to_string(entry.layer) + " to paint on");
     if (entry.mask && !masks_.find(entry.mask)) throw Error("there is no mask " + std::to_string(entry.mask));
-    if (layer->locked)
-        throw Error("layer '" + layer->name + "' is locked; unlock it or paint on another one");
+    if (layer->locked) throw Error("layer '" + layer->name + "' is locked; unlock it or paint on another one");
 }
 
 void Document::edit_layers(const Stroke& entry) {
@@ -142,8 +141,12 @@ void Document::edit_layers(const Stroke& entry) {
     if (entry.edit.what == LayerChange::merge) canvas(id);  // knows all pigments now
     apply(layers_, entry.edit);
     switch (entry.edit.what) {
-        case LayerChange::add: upper_.emplace(id, ink::Canvas(model_->texels.n_slots())); break;
-        case LayerChange::change: touch_look(id); break;
+        case LayerChange::add:
+            upper_.emplace(id, ink::Canvas(model_->texels.n_slots()));
+            break;
+        case LayerChange::change:
+            touch_look(id);
+            break;
         case LayerChange::duplicate: {
             const ink::Canvas copy = canvas(entry.edit.other);
             upper_.emplace(id, copy);
@@ -154,7 +157,9 @@ void Document::edit_layers(const Stroke& entry) {
             undo.canvas.emplace(take_texels(id));
             undo.before.push_back(merge_texels(entry.edit.other, undo.canvas->canvas));
             break;
-        case LayerChange::remove: undo.canvas.emplace(take_texels(id)); break;
+        case LayerChange::remove:
+            undo.canvas.emplace(take_texels(id));
+            break;
     }
     keep_undo(std::move(undo));
 }
@@ -221,12 +226,11 @@ void Document::take_back_layers(Undo& undo) {
 void Document::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canvases, std::uint64_t stroke_id) {
     for (const LayerCanvas& layer : canvases) {
         const Model& model = layer.layer == kPaletteLayer ? plate().model : *model_;
-        if (layer.canvas.n_slots() != model.texels.n_slots())
-            throw Error("the stored texels belong to another atlas");
+        if (layer.canvas.n_slots() != model.texels.n_slots()) throw Error("the stored texels belong to another atlas");
     }
     if (!fits(strokes, stroke_id)) throw Error("the stored texels belong to other strokes");
-    const auto last = std::find_if(strokes.begin(), strokes.end(),
-                                   [stroke_id](const Stroke& s) { return s.id == stroke_id; });
+    const auto last =
+        std::find_if(strokes.begin(), strokes.end(), [stroke_id](const Stroke& s) { return s.id == stroke_id; });
     const auto rest = last == strokes.end() ? last : last + 1;
     LayerTable table = layers_after({strokes.begin(), rest});
     MaskTable masks = masks_after({strokes.begin(), rest});
@@ -234,9 +238,12 @@ void Document::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canva
     std::map<std::uint32_t, ink::Canvas> upper;
     if (palette_) palette_->canvas.clear();
     for (LayerCanvas& layer : canvases) {
-        if (layer.layer == kFirstLayer) first = std::move(layer.canvas);
-        else if (layer.layer == kPaletteLayer) plate().canvas = std::move(layer.canvas);
-        else upper.insert_or_assign(layer.layer, std::move(layer.canvas));
+        if (layer.layer == kFirstLayer)
+            first = std::move(layer.canvas);
+        else if (layer.layer == kPaletteLayer)
+            plate().canvas = std::move(layer.canvas);
+        else
+            upper.insert_or_assign(layer.layer, std::move(layer.canvas));
     }
     for (const auto& [id, canvas] : upper) {
         if (!table.find(id)) throw Error("the stored texels belong to other layers");

@@ -62,8 +62,8 @@ void refresh(PalettePicture& picture, const Document& painting, std::span<const 
             const int y = picture.height - 1 - (tile / per_side * atlas::kTile + t / atlas::kTile - kFirstRow);
             if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) continue;
             for (std::size_t c = 0; c < 3; ++c)
-                picture.rgb[3 * static_cast<std::size_t>(y * picture.width + x) + c] =
-                    static_cast<std::uint8_t>(std::lround(255 * ink::srgb_encode(look.colour[c][static_cast<std::size_t>(t)])));
+                picture.rgb[3 * static_cast<std::size_t>(y * picture.width + x) + c] = static_cast<std::uint8_t>(
+                    std::lround(255 * ink::srgb_encode(look.colour[c][static_cast<std::size_t>(t)])));
         }
     }
 }

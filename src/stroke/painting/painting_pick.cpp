@@ -6,7 +6,9 @@
 /// The eyedropper.
 namespace tuft::stroke {
 
-Pick Document::pick(const Vec3& point) const { return pick_at(point, *model_, shown_layers()); }
+Pick Document::pick(const Vec3& point) const {
+    return pick_at(point, *model_, shown_layers());
+}
 
 Pick Document::pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels> layers) const {
     const auto at = model.query->closest_point(point);

@@ -5,7 +5,7 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kCell = 0.01;                                  // metres, of its mesh
+constexpr double kCell = 0.01;  // metres, of its mesh
 constexpr int kColumns = 12, kRows = 9;
 constexpr double kPoolEdge = 25;  // film units that stand at the rim of a pool on glaze
 constexpr Vec2 kCorner{kPaletteTexels / 2 * kPaletteTexel, 0.049};  // uv (0, 0) lies at − this
@@ -21,7 +21,8 @@ Model make_palette() {
     const auto add = [&](std::initializer_list<int> corners) {
         for (const int c : corners) {
             soup.corners.push_back(static_cast<std::uint32_t>(c));
-            const Vec2 uv = (Vec2(soup.points[static_cast<std::size_t>(c)]) + kCorner) / (kPaletteTexels * kPaletteTexel);
+            const Vec2 uv =
+                (Vec2(soup.points[static_cast<std::size_t>(c)]) + kCorner) / (kPaletteTexels * kPaletteTexel);
             soup.corner_uvs.emplace_back(uv);
         }
         soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));

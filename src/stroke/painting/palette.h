@@ -9,8 +9,8 @@
 namespace tuft::stroke {
 
 inline constexpr double kPaletteWidth = 0.12, kPaletteHeight = 0.09;  ///< metres
-inline constexpr std::uint32_t kPaletteTexels = 512;  ///< of its atlas, a side
-inline constexpr double kPaletteTexel = 0.25e-3;      ///< metres a side, of each of them
+inline constexpr std::uint32_t kPaletteTexels = 512;                  ///< of its atlas, a side
+inline constexpr double kPaletteTexel = 0.25e-3;                      ///< metres a side, of each of them
 
 /// The plate: x to the right, y up, its middle at the origin, its face z = 0 upwards. The texel
 /// (i, j) of its atlas has its middle at ((i + ½, j + ½) 0.25 mm − (64, 49) mm). Always the

@@ -30,8 +30,7 @@ struct Nearest {
 
     void meet(double to, double by) {
         const bool nearer = to < distance * (1 - kSame);
-        if (nearer || (to <= distance * (1 + kSame) && std::abs(by) > std::abs(side)))
-            distance = to, side = by;
+        if (nearer || (to <= distance * (1 + kSame) && std::abs(by) > std::abs(side))) distance = to, side = by;
     }
     double inside() const { return side < 0 ? -distance : distance; }
 };
@@ -40,8 +39,7 @@ struct Nearest {
 /// may be the nearest to one of its cells.
 class Cut {
   public:
-    Cut(footprint::Footprint& f, std::span<const StencilEdge> edges)
-        : f_(f), edges_(edges), near_(edges.size()) {
+    Cut(footprint::Footprint& f, std::span<const StencilEdge> edges) : f_(f), edges_(edges), near_(edges.size()) {
         for (std::uint32_t i = 0; i < edges.size(); ++i) near_[i] = i;
     }
     void all() { box(0, 0, f_.width, f_.height, 0); }
@@ -62,8 +60,7 @@ class Cut {
         }
         if (nearest.distance > corner + f_.cell) {
             if (nearest.side < 0)
-                for (int y = y0; y < y1; ++y)
-                    std::fill_n(&coverage(x0, y), x1 - x0, std::uint8_t{0});
+                for (int y = y0; y < y1; ++y) std::fill_n(&coverage(x0, y), x1 - x0, std::uint8_t{0});
             return;
         }
         const double most = (nearest.distance + 2 * corner) * (1 + 1e-6);
@@ -92,14 +89,13 @@ class Cut {
                     const StencilEdge& e = edges_[near_[i]];
                     nearest.meet(segment_distance(e.from, e.to, place), beside(e, place));
                 }
-                c = static_cast<std::uint8_t>(
-                    std::lround(std::clamp(0.5 + nearest.inside() / f_.cell, 0.0, 1.0) * c));
+                c = static_cast<std::uint8_t>(std::lround(std::clamp(0.5 + nearest.inside() / f_.cell, 0.0, 1.0) * c));
             }
     }
 
     std::uint8_t& coverage(int x, int y) {
-        return f_.coverage[static_cast<std::size_t>(y) * static_cast<std::size_t>(f_.width) +
-                           static_cast<std::size_t>(x)];
+        return f_
+            .coverage[static_cast<std::size_t>(y) * static_cast<std::size_t>(f_.width) + static_cast<std::size_t>(x)];
     }
 
     footprint::Footprint& f_;
@@ -122,8 +118,7 @@ SurfaceStencil::SurfaceStencil(const mesh::SurfaceQuery& query, const Trace& tra
         if (!(length > 0) || !std::isfinite(whole)) continue;
         const auto n = static_cast<int>(std::ceil(length / cluster));
         for (int i = 0; i <= n; ++i) {
-            ends.samples.push_back(
-                {.position = Vec3(glm::mix(e.from, e.to, static_cast<double>(i) / n), 0)});
+            ends.samples.push_back({.position = Vec3(glm::mix(e.from, e.to, static_cast<double>(i) / n), 0)});
             ways.push_back(i < n ? (e.to - e.from) / length : Vec2(0));
         }
     }
@@ -141,20 +136,18 @@ void SurfaceStencil::gather() {
     const auto n = static_cast<std::uint32_t>(pieces_.size());
     for (std::uint32_t begin = 0; begin < n; begin += kRun) {
         Run run{begin, std::min(begin + kRun, n), Vec3(0), 0};
-        for (std::uint32_t i = begin; i < run.end; ++i)
-            run.centre += 0.5 * (pieces_[i].from + pieces_[i].to);
+        for (std::uint32_t i = begin; i < run.end; ++i) run.centre += 0.5 * (pieces_[i].from + pieces_[i].to);
         run.centre /= static_cast<double>(run.end - begin);
         for (std::uint32_t i = begin; i < run.end; ++i)
-            run.radius = std::max({run.radius, glm::distance(run.centre, pieces_[i].from),
-                                   glm::distance(run.centre, pieces_[i].to)});
+            run.radius = std::max(
+                {run.radius, glm::distance(run.centre, pieces_[i].from), glm::distance(run.centre, pieces_[i].to)});
         runs_.push_back(run);
     }
 }
 
 double inside_stencil(std::span<const StencilEdge> tape, const Vec2& place) {
     Nearest nearest;
-    for (const StencilEdge& e : tape)
-        nearest.meet(segment_distance(e.from, e.to, place), beside(e, place));
+    for (const StencilEdge& e : tape) nearest.meet(segment_distance(e.from, e.to, place), beside(e, place));
     return nearest.inside();
 }
 
@@ -183,8 +176,7 @@ void SurfaceStencil::cut_off(footprint::Footprint& f) const {
     Nearest nearest;
     const Vec3& origin = f.frame.origin;
     for (const Run& run : runs_) {
-        if (glm::distance(run.centre, origin) - run.radius > nearest.distance * (1 + kSame))
-            continue;
+        if (glm::distance(run.centre, origin) - run.radius > nearest.distance * (1 + kSame)) continue;
         for (std::uint32_t i = run.begin; i < run.end; ++i)
             nearest.meet(segment_distance(pieces_[i].from, pieces_[i].to, origin),
                          glm::dot(origin - pieces_[i].from, pieces_[i].inward));

@@ -9,13 +9,14 @@ namespace {
 
 class MixedDeposit : public DepositModel {
   public:
-    MixedDeposit(StampTarget& target, const DepositOptions& options) : target_(target), exposure_(target, options.stamp) {}
+    MixedDeposit(StampTarget& target, const DepositOptions& options)
+        : target_(target), exposure_(target, options.stamp) {}
 
     double deposit(Stamp stamp, TuftInHand& tuft, const DepositContact& contact) override {
         ink::Reservoir& reservoir = tuft.brush.reservoir;
         exposure_.expose(stamp);
-        const ink::NodeMixes mixes = ink::mixes_within(reservoir, contact.hair.nodes(), static_cast<double>(stamp.ink.target),
-                                                       covered_area(stamp.footprint));
+        const ink::NodeMixes mixes = ink::mixes_within(
+            reservoir, contact.hair.nodes(), static_cast<double>(stamp.ink.target), covered_area(stamp.footprint));
         const ink::NodeContents given = exposure_.deposit(stamp.ink, mixes, stamp.ds);
         ink::spend(reservoir, given, contact.hair.nodes());
         double sum = 0;

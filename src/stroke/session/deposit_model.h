@@ -48,8 +48,8 @@ class DepositModel {
 
 struct DepositOptions {
     footprint::StampOptions stamp;
-    WetFilmInUse wet;           ///< with a film, what is wet flows meanwhile
-    ProgressFn progress;        ///< asked between tiles and steps of the film
+    WetFilmInUse wet;     ///< with a film, what is wet flows meanwhile
+    ProgressFn progress;  ///< asked between tiles and steps of the film
 };
 
 std::unique_ptr<DepositModel> make_still_deposit(StampTarget& target, const DepositOptions& options);

@@ -11,8 +11,8 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kShoulder = 1.5;      // length of the rounded edge over the film's thickness
-constexpr double kMixLength = 25e-3;   // metres of travel in which hair and texel exchange their paste
+constexpr double kShoulder = 1.5;     // length of the rounded edge over the film's thickness
+constexpr double kMixLength = 25e-3;  // metres of travel in which hair and texel exchange their paste
 // Under a gentle and, added to that, a firm press.
 constexpr double kDepth[] = {0.35, 0.45};  // of the furrows
 constexpr double kRim[] = {0.1, 0.5};      // pushed out at the sides
@@ -42,7 +42,8 @@ class PasteDeposit : public DepositModel {
         ink::absorb(reservoir, exchanged.taken, hair.nodes(), hair.cells());
         double sum = 0;
         for (int node = 0; node < ink::kNodes; ++node)
-            for (int p = 0; p < ink::Reservoir::kPlanes; ++p) sum += exchanged.given[node][p] - exchanged.taken[node][p];
+            for (int p = 0; p < ink::Reservoir::kPlanes; ++p)
+                sum += exchanged.given[node][p] - exchanged.taken[node][p];
         return sum;
     }
 
@@ -53,24 +54,26 @@ class PasteDeposit : public DepositModel {
     }
 
   private:
-    ink::PasteParams paste_params(const Stamp& stamp, const TuftInHand& tuft, const DepositContact& contact, double area) {
-        const auto pressed = [&](const double (&of)[2]) { return of[0] + of[1] * contact.stress; };
+    ink::PasteParams paste_params(const Stamp& stamp, const TuftInHand& tuft, const DepositContact& contact,
+                                  double area) {
+        const auto pressed = [&](const double(&of)[2]) { return of[0] + of[1] * contact.stress; };
         // Paste is pushed out beside the path, not before and behind.
         const double distance = glm::length(stamp.motion.shift);
         const double beside = distance > 0 ? std::abs(glm::dot(stamp.motion.shift, contact.hair.axis())) / distance : 1;
         const double target = static_cast<double>(stamp.ink.target);
-        ink::PasteParams params{.target = target,
-                                .transfer_length = tuft.ink.transfer_length,
-                                .capacity = static_cast<double>(stamp.ink.capacity),
-                                .dig = pressed(kDig),
-                                .exchange = -std::expm1(-stamp.ds / kMixLength),
-                                .room = area > 0 ? ink::room_left(tuft.brush.reservoir, contact.hair.cells()) / area : 0};
+        ink::PasteParams params{
+            .target = target,
+            .transfer_length = tuft.ink.transfer_length,
+            .capacity = static_cast<double>(stamp.ink.capacity),
+            .dig = pressed(kDig),
+            .exchange = -std::expm1(-stamp.ds / kMixLength),
+            .room = area > 0 ? ink::room_left(tuft.brush.reservoir, contact.hair.cells()) / area : 0};
         params.furrows = ink::furrow_depths(furrows_.advance(tuft, contact.hair, contact.motion.travel),
-                                   {.width = stamp.grid.step.y * (ink::kAcross - 1),
-                                    .film = target * ink::kFilmUnit,
-                                    .yield = tuft.ink.yield,
-                                    .depth = pressed(kDepth),
-                                    .rim = pressed(kRim) * beside * beside});
+                                            {.width = stamp.grid.step.y * (ink::kAcross - 1),
+                                             .film = target * ink::kFilmUnit,
+                                             .yield = tuft.ink.yield,
+                                             .depth = pressed(kDepth),
+                                             .rim = pressed(kRim) * beside * beside});
         return params;
     }
 

@@ -61,8 +61,9 @@ class StillDeposit : public DepositModel {
     }
 
     ProgressFn progress_;
-    double pending_ = 0, per_stamp_ = 0;  // film·m² of the last batch that the reservoir still holds; that each stamp takes
-    ink::ContactCells pending_cells_;            // that it came from
+    double pending_ = 0,
+           per_stamp_ = 0;  // film·m² of the last batch that the reservoir still holds; that each stamp takes
+    ink::ContactCells pending_cells_;  // that it came from
 };
 
 class Eraser : public StillDeposit {

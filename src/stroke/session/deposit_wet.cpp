@@ -48,7 +48,8 @@ class WetDeposit : public DepositModel {
         params.pour = static_cast<float>(pour);
         since_stamp_ = 0;
         const double loose =
-            area > 0 ? ink::loosened({.pressure = contact.normal_force / area, .length = length_along_motion(stamp)}) : 0;
+            area > 0 ? ink::loosened({.pressure = contact.normal_force / area, .length = length_along_motion(stamp)})
+                     : 0;
         const ink::NodeContents given = exposure_.exchange(params, stamp.ds, loose);
         double sum = 0;
         for (int node = 0; node < ink::kNodes; ++node)
@@ -70,9 +71,9 @@ class WetDeposit : public DepositModel {
     FilmClock film_;
     bool mixed_;
     FurrowProfile furrows_;
-    ink::SurfaceLiquid liquid_;         // on the hair where it touches
-    double since_stamp_ = 0;   // seconds since the last stamp
-    double last_step_ = 0;     // seconds since the last pose, touching or not
+    ink::SurfaceLiquid liquid_;  // on the hair where it touches
+    double since_stamp_ = 0;     // seconds since the last stamp
+    double last_step_ = 0;       // seconds since the last pose, touching or not
 };
 
 }  // namespace

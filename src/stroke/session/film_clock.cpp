@@ -15,7 +15,8 @@ void FilmClock::pass(double seconds) {
 
 void FilmClock::catch_up() {
     if (!wet_.film) return;
-    wet_.film->advance(target_.canvas(), behind_, wet_.params, [this](std::uint32_t slot) { target_.snapshot(slot); }, progress_);
+    wet_.film->advance(
+        target_.canvas(), behind_, wet_.params, [this](std::uint32_t slot) { target_.snapshot(slot); }, progress_);
     behind_ = 0;
 }
 

@@ -14,13 +14,15 @@ constexpr double kRollLength = 9e-3;      // metres over which a furrow deepens 
 /// Value noise in [0, 1] along a line, smooth over one unit.
 double value_noise(std::uint64_t seed, double x) {
     const double cell = std::floor(x), f = x - cell, g = f * f * (3 - 2 * f);
-    const double a = uniform(seed, static_cast<std::uint64_t>(cell)), b = uniform(seed, static_cast<std::uint64_t>(cell) + 1);
+    const double a = uniform(seed, static_cast<std::uint64_t>(cell)),
+                 b = uniform(seed, static_cast<std::uint64_t>(cell) + 1);
     return a + g * (b - a);
 }
 
 }  // namespace
 
-std::vector<ink::BundleFirmness> FurrowProfile::advance(const TuftInHand& tuft, const HairContact& hair, double travel) {
+std::vector<ink::BundleFirmness> FurrowProfile::advance(const TuftInHand& tuft, const HairContact& hair,
+                                                        double travel) {
     const ink::Reservoir& reservoir = tuft.brush.reservoir;
     const brush::Bundles& bundles = tuft.brush.tuft.bundles;
     const std::size_t n = reservoir.n_bundles(), n_cells = reservoir.n_cells();

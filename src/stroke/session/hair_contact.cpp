@@ -14,11 +14,12 @@ namespace {
 // Metres of ink under hair that holds half of what closes its gaps, over twice that; what holds more fills the grain
 // of bisque, then that of paper.
 constexpr double kGrainFilm = 7.5e-6;
-constexpr double kHeldUp = 1;             // rms heights over the mean of the grain that dry hair is held up by its hills
-constexpr double kSoakLength = 0.2e-3;    // metres of travel over which ink comes to the parts of the hair that touch
-constexpr double kAxisLength = 1e-3;      // metres of hair on the surface that turn the grid of its ink
-constexpr double kSeparateLack = 0.05;    // mean lack of wetness of the bundles at which all of a tuft touches by single hairs
-constexpr double kSpreadLack = 0.4;       // lack of wetness at which no water holds the tip together
+constexpr double kHeldUp = 1;           // rms heights over the mean of the grain that dry hair is held up by its hills
+constexpr double kSoakLength = 0.2e-3;  // metres of travel over which ink comes to the parts of the hair that touch
+constexpr double kAxisLength = 1e-3;    // metres of hair on the surface that turn the grid of its ink
+constexpr double kSeparateLack =
+    0.05;  // mean lack of wetness of the bundles at which all of a tuft touches by single hairs
+constexpr double kSpreadLack = 0.4;  // lack of wetness at which no water holds the tip together
 
 std::vector<footprint::Outline> outlines_of(std::span<const footprint::Trail> trails) {
     std::vector<footprint::Outline> outlines;
@@ -38,7 +39,8 @@ ink::ContactCells HairContact::take_cells_since() {
     return std::exchange(cells_since_, {});
 }
 
-HairContact::Wetness HairContact::bundle_wetness(TuftInHand& tuft, const MotionTracker& motion, double stress, double dt) {
+HairContact::Wetness HairContact::bundle_wetness(TuftInHand& tuft, const MotionTracker& motion, double stress,
+                                                 double dt) {
     const ink::Reservoir& reservoir = tuft.brush.reservoir;
     brush::Bundles& bundles = tuft.brush.tuft.bundles;
     const std::size_t n = reservoir.n_bundles(), n_cells = reservoir.n_cells();
@@ -61,11 +63,12 @@ HairContact::Wetness HairContact::bundle_wetness(TuftInHand& tuft, const MotionT
     return wetness;
 }
 
-void HairContact::draw_hairs(Stamp& stamp, const TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion,
-                             const Wetness& wetness, std::span<const footprint::Trail> trails,
-                             std::span<const footprint::Outline> outlines) {
+void HairContact::draw_hairs(Stamp& stamp, const TuftInHand& tuft, const contact::Result& contact,
+                             const MotionTracker& motion, const Wetness& wetness,
+                             std::span<const footprint::Trail> trails, std::span<const footprint::Outline> outlines) {
     const Frame& frame = contact.frame;
-    const Vec2 hand(frame.to_local(frame.origin + motion.hand_course)), hair(frame.to_local(frame.origin + motion.hair_course));
+    const Vec2 hand(frame.to_local(frame.origin + motion.hand_course)),
+        hair(frame.to_local(frame.origin + motion.hair_course));
     const double lengths = glm::length(hand) * glm::length(hair);
     const double swings = lengths > 0 ? std::abs(hand.x * hair.y - hand.y * hair.x) / lengths : 0;
     footprint::HairMarks marks = footprint::hair_marks(
@@ -104,7 +107,8 @@ void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, std::span<co
     orientation_ = axis_.x * e.y - axis_.y * e.x < 0 ? -1 : 1;
 }
 
-Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion, double dt) {
+Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion,
+                              double dt) {
     const double length = tuft.preset().length;
     if (!motion.touching) tracks_ = {};
     std::vector<footprint::Trail> trails =
@@ -126,11 +130,14 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
         lying = trails;
     }
     if (!contact.planes.empty())
-        footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft.brush.tuft, contact.planes.front()), contact.frame, kSkinFilm);
+        footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft.brush.tuft, contact.planes.front()),
+                                      contact.frame, kSkinFilm);
     const std::vector<footprint::Outline> outlines = outlines_of(trails);
     Stamp stamp;
-    if (by_hair_) draw_hairs(stamp, tuft, contact, motion, wetness, trails, outlines);
-    else stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, options_.cell);
+    if (by_hair_)
+        draw_hairs(stamp, tuft, contact, motion, wetness, trails, outlines);
+    else
+        stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, options_.cell);
     previous_ = std::move(lying);
     previous_frame_ = contact.frame;
     if (options_.places_nodes) place_nodes(stamp, tuft, trails, outlines);

@@ -12,10 +12,10 @@
 namespace tuft::stroke {
 
 struct HairContactOptions {
-    double cell = 1e-4;            ///< metres, of footprints
-    bool always_closed = false;    ///< what lies there fills the gaps of dry hair, as a pool does
-    bool places_nodes = false;     ///< ink differs over the footprint: find the grid of its nodes
-    double relief = 0;             ///< metres, rms height of the substrate's grain
+    double cell = 1e-4;          ///< metres, of footprints
+    bool always_closed = false;  ///< what lies there fills the gaps of dry hair, as a pool does
+    bool places_nodes = false;   ///< ink differs over the footprint: find the grid of its nodes
+    double relief = 0;           ///< metres, rms height of the substrate's grain
 };
 
 /// The hair that touches at one pose: from the bent tuft to a footprint, in one closed shape where the hair is wet
@@ -24,8 +24,8 @@ class HairContact {
   public:
     explicit HairContact(const HairContactOptions& options) : options_(options) {}
 
-    /// Makes the stamp of the next pose: its footprint, how far it is single hairs, its grid. Its motion and ink are the
-    /// caller's. Splits and merges the tuft's bundles by their wetness. `dt`: seconds since the pose before.
+    /// Makes the stamp of the next pose: its footprint, how far it is single hairs, its grid. Its motion and ink are
+    /// the caller's. Splits and merges the tuft's bundles by their wetness. `dt`: seconds since the pose before.
     Stamp make_stamp(TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion, double dt);
 
     /// Which cells of the hair touch, parts that sum to one; nodes of the stamp's grid, where they were asked for.

@@ -11,13 +11,15 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kLeap = 0.5;  // of a patch's size: beyond, single marks would part
+constexpr double kLeap = 0.5;          // of a patch's size: beyond, single marks would part
 constexpr double kPrintTravel = 1e-4;  // metres that dry hair slides after it came to touch until it prints
 
 // Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
 constexpr double kPasteSpacing = 1e-4, kPasteCell = 4e-5;
 
-bool is_paste(const SessionInput& in) { return in.ink.yield > 0; }
+bool is_paste(const SessionInput& in) {
+    return in.ink.yield > 0;
+}
 
 double spacing_of(const SessionInput& in) {
     return std::max(in.stroke.settings.spacing * in.model.texels.texel_size, is_paste(in) ? kPasteSpacing : 0.0);
@@ -46,8 +48,7 @@ StrokeSession::StrokeSession(SessionInput input)
     if (input_.stroke.settings.contact == "vertices") contact_.options.method = contact::Method::vertices;
     report_.nearest = std::numeric_limits<double>::infinity();
     report_.full_at_start = tuft_.brush.reservoir.fullness();
-    if (input_.stroke.settings.endless && !input_.stroke.trace.erases)
-        refill_ = tuft_.brush.reservoir;
+    if (input_.stroke.settings.endless && !input_.stroke.trace.erases) refill_ = tuft_.brush.reservoir;
 }
 
 std::unique_ptr<DepositModel> StrokeSession::make_deposit() {
@@ -113,22 +114,22 @@ contact::Result StrokeSession::bend_on_surface(const brush::Pose& pose, double d
 // And a patch that leaps by more than it is long, as a tip does that springs back while it is lifted, leaves its line
 // along its own path.
 void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double area) const {
-    const double leap =
-        smooth_step(glm::length(moved.hair - moved.hand) / std::sqrt(std::max(area, 1e-30)) / kLeap);
+    const double leap = smooth_step(glm::length(moved.hair - moved.hand) / std::sqrt(std::max(area, 1e-30)) / kLeap);
     stamp.motion.shift = glm::mix(moved.hand, moved.hair, std::max(leap, static_cast<double>(stamp.separation)));
-    // Dry hair leaves ink by how it is drawn: where it only comes to touch, a tip that leans would print a speck that its
-    // stroke, which begins where it has been pressed aside, does not reach.
+    // Dry hair leaves ink by how it is drawn: where it only comes to touch, a tip that leans would print a speck that
+    // its stroke, which begins where it has been pressed aside, does not reach.
     const bool prints = motion_.contact_travel >= kPrintTravel;
     stamp.ds = prints ? spacing_ : (1 - static_cast<double>(stamp.separation)) * spacing_;
 }
 
 void StrokeSession::set_ink(Stamp& stamp, double area) const {
-    const ink::StampContact touch{.moment_factor = tuft_.stress(),
-                                  .width = hair_.closed_area() > 0 ? area / std::sqrt(hair_.closed_area()) : std::sqrt(area),
-                                  .area = area * static_cast<double>(deposit_->stamps_per_batch()),
-                                  .pending = deposit_->pending(),
-                                  .by_hair = static_cast<double>(stamp.separation),
-                                  .touch = hair_.cells()};
+    const ink::StampContact touch{
+        .moment_factor = tuft_.stress(),
+        .width = hair_.closed_area() > 0 ? area / std::sqrt(hair_.closed_area()) : std::sqrt(area),
+        .area = area * static_cast<double>(deposit_->stamps_per_batch()),
+        .pending = deposit_->pending(),
+        .by_hair = static_cast<double>(stamp.separation),
+        .touch = hair_.cells()};
     stamp.ink = ink::stamp_deposit(tuft_.brush.reservoir, tuft_.ink, touch, input_.substrate);
     stamp.ink.capacity = std::max(input_.substrate.capacity, static_cast<float>(ink::standing_film(tuft_.ink.yield)));
 }
@@ -168,13 +169,13 @@ void StrokeSession::step(const brush::Pose& pose) {
     set_motion(stamp, moved, area);
     set_ink(stamp, area);
     note_dryness(static_cast<double>(stamp.ink.target) * hair_.coverage(hair_area), glm::length(moved.hand));
-    report_.ink_given += deposit_->deposit(
-        std::move(stamp), tuft_,
-        {.hair = hair_,
-         .motion = motion_,
-         .stress = tuft_.stress(),
-         .normal_force = std::abs(glm::dot(contact.tuft.force, contact.frame.n)),
-         .drain = tuft_.drain(pose, contact.frame.origin, input_.stroke.settings.down)});
+    report_.ink_given +=
+        deposit_->deposit(std::move(stamp), tuft_,
+                          {.hair = hair_,
+                           .motion = motion_,
+                           .stress = tuft_.stress(),
+                           .normal_force = std::abs(glm::dot(contact.tuft.force, contact.frame.n)),
+                           .drain = tuft_.drain(pose, contact.frame.origin, input_.stroke.settings.down)});
 }
 
 // Linear in path between the poses to both sides of each sample.

@@ -15,24 +15,24 @@ namespace tuft::stroke {
 
 /// What a stroke is painted with and onto. What is referred to must outlive the session.
 struct SessionInput {
-    Stroke stroke;                      ///< settings and stencil; its samples may still be empty
-    BrushInHand brush;                  ///< as the stroke begins
-    ink::Ink ink;                       ///< that the brush was dipped into
+    Stroke stroke;      ///< settings and stencil; its samples may still be empty
+    BrushInHand brush;  ///< as the stroke begins
+    ink::Ink ink;       ///< that the brush was dipped into
     const Model& model;
     const ink::Substrate& substrate;
-    ink::Canvas& canvas;                ///< of the stroke's layer
-    const MaskTexels* mask = nullptr;   ///< what may be changed; null: everything
-    WetFilmInUse wet;                   ///< a film for strokes with wet ink
+    ink::Canvas& canvas;               ///< of the stroke's layer
+    const MaskTexels* mask = nullptr;  ///< what may be changed; null: everything
+    WetFilmInUse wet;                  ///< a film for strokes with wet ink
     PlanScratchPool& scratch;
-    SeamLinksFn seams;                  ///< of the model; asked for at most once, at the end
+    SeamLinksFn seams;  ///< of the model; asked for at most once, at the end
     bool record_forces = false;
 };
 
 /// A finished stroke.
 struct SessionResult {
     StrokeReport report;
-    BrushInHand brush;                       ///< as the stroke left it
-    std::vector<ink::TileSnapshot> before;   ///< the tiles that it wrote to as they were, by slot
+    BrushInHand brush;                      ///< as the stroke left it
+    std::vector<ink::TileSnapshot> before;  ///< the tiles that it wrote to as they were, by slot
 };
 
 /// One stroke, from pen down to pen up:
@@ -83,9 +83,9 @@ class StrokeSession {
     };
     /// What is recorded of the forces, where it is asked for.
     struct ForceLog {
-        std::vector<brush::Pose> samples;   // as they were resampled
-        std::vector<ForceRecord> poses;     // at every pose of the resampled path
-        std::size_t before_first = 0;       // samples before the stroke's own
+        std::vector<brush::Pose> samples;  // as they were resampled
+        std::vector<ForceRecord> poses;    // at every pose of the resampled path
+        std::size_t before_first = 0;      // samples before the stroke's own
     };
     std::unique_ptr<DepositModel> make_deposit();
     std::vector<ForceRecord> forces_at_samples() const;
@@ -97,8 +97,8 @@ class StrokeSession {
     void note_dryness(double film, double displacement);
 
     SessionInput input_;
-    bool mixed_ = false;         // the tuft holds several inks, or thicker ink on one side
-    double spacing_ = 0;         // metres between poses
+    bool mixed_ = false;  // the tuft holds several inks, or thicker ink on one side
+    double spacing_ = 0;  // metres between poses
     TuftInHand tuft_;
     Path path_;
     ContactState contact_;
@@ -110,8 +110,8 @@ class StrokeSession {
     ForceLog forces_;
     StrokeReport report_;
     ProgressFn progress_;
-    double done_ = 0;            // part of the stroke
-    double wet_from_ = 0;        // metres of the hand's path up to the last stamp that lacked ink
+    double done_ = 0;                       // part of the stroke
+    double wet_from_ = 0;                   // metres of the hand's path up to the last stamp that lacked ink
     std::optional<ink::Reservoir> refill_;  // what the tuft holds before every pose; none: it runs dry
 };
 

@@ -20,7 +20,8 @@ double covered_area(const footprint::Footprint& f) {
 footprint::Motion joined_motion(const Stamp& stamp, double texel) {
     footprint::Motion motion = stamp.motion;
     const double distance = glm::length(motion.shift);
-    if (stamp.separation > 0 && distance > 0) motion.shift *= 1 + static_cast<double>(stamp.separation) * texel / distance;
+    if (stamp.separation > 0 && distance > 0)
+        motion.shift *= 1 + static_cast<double>(stamp.separation) * texel / distance;
     return motion;
 }
 

@@ -2,8 +2,8 @@
 
 #include "footprint/footprint.h"
 #include "footprint/stamp.h"
-#include "ink/exchange/deposit.h"
 #include "ink/exchange/contact_grid.h"
+#include "ink/exchange/deposit.h"
 
 /// \file
 /// One stamp: a footprint with the ink it brings. The session makes stamps, deposit models put them onto texels.
@@ -11,14 +11,14 @@ namespace tuft::stroke {
 
 struct Stamp {
     footprint::Footprint footprint;
-    footprint::Motion motion;    ///< since the stamp before, in the footprint's frame
+    footprint::Motion motion;  ///< since the stamp before, in the footprint's frame
     ink::DepositParams ink;
-    double ds = 0;               ///< metres of travel it stands for
-    double erases = 0;           ///< strength of an eraser, which takes ink instead; 0: it is none
-    bool by_hair = false;        ///< drawn by single hairs: the surface's grain shows where it is not filled
-    float separation = 0;        ///< 0–1: how much of it is single hairs; 0: one closed patch
-    double grain_film = 0;       ///< for `by_hair`: metres of ink under the hair over the grain's mean height
-    ink::ContactGrid grid;         ///< over the footprint, for ink that is not the same all over it
+    double ds = 0;          ///< metres of travel it stands for
+    double erases = 0;      ///< strength of an eraser, which takes ink instead; 0: it is none
+    bool by_hair = false;   ///< drawn by single hairs: the surface's grain shows where it is not filled
+    float separation = 0;   ///< 0–1: how much of it is single hairs; 0: one closed patch
+    double grain_film = 0;  ///< for `by_hair`: metres of ink under the hair over the grain's mean height
+    ink::ContactGrid grid;  ///< over the footprint, for ink that is not the same all over it
 };
 
 /// m² of a footprint, by its coverage.

@@ -37,8 +37,8 @@ class StampBatch {
     };
     void plan();
     std::vector<TileStamp> sort_by_tile();
-    void write_tile(std::span<const TileStamp> stamps, std::span<const ink::DepositLaw> laws, std::span<ink::Amounts> erased,
-                    std::span<double> given, footprint::Unpacked& unpacked);
+    void write_tile(std::span<const TileStamp> stamps, std::span<const ink::DepositLaw> laws,
+                    std::span<ink::Amounts> erased, std::span<double> given, footprint::Unpacked& unpacked);
 
     StampTarget& target_;
     footprint::StampOptions options_;

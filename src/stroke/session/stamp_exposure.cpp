@@ -28,7 +28,8 @@ void StampExposure::expose_tile(Tile& tile, const Stamp& stamp, const footprint:
     if (mask) mask->apply(job.slot, tile.exposure);
     tile.slot = job.slot;
     if (stamp.by_hair) target_.expose_grain(job.slot, tile.exposure, stamp.grain_film);
-    ink::place_texels(tile.places, stamp.grid, stamp.footprint.frame, atlas::shape_of(target_.texels(), job.slot, scratch.shape));
+    ink::place_texels(tile.places, stamp.grid, stamp.footprint.frame,
+                      atlas::shape_of(target_.texels(), job.slot, scratch.shape));
     ink::HatBasis& basis = scratch.basis;
     ink::hat_basis(basis, tile.places, tile.exposure);
     ink::NodeAreas areas;
@@ -39,8 +40,9 @@ void StampExposure::expose_tile(Tile& tile, const Stamp& stamp, const footprint:
 ink::NodeAreas StampExposure::expose(const Stamp& stamp) {
     {
         PlanScratchPool::Lease scratch(target_.scratch());
-        plan_ = footprint::plan_stamp(target_.model().surface(), stamp.footprint, joined_motion(stamp, target_.texels().texel_size),
-                                      stamp_options(options_, stamp), scratch, std::move(plan_));
+        plan_ = footprint::plan_stamp(target_.model().surface(), stamp.footprint,
+                                      joined_motion(stamp, target_.texels().texel_size), stamp_options(options_, stamp),
+                                      scratch, std::move(plan_));
     }
     tiles_.clear();
     if (plan_.empty()) return {};
@@ -81,15 +83,15 @@ ink::NodeContents StampExposure::exchange(const ink::TransferParams& params, dou
     return act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
         if (canvas.has_film(tile.slot, ink::kOpenFilm))
             ink::bed_paste(canvas, tile.slot, ink::paste_height(canvas, tile.slot), tile.exposure, loose);
-        ink::transfer(canvas, tile.slot, tile.exposure, tile.places, basis, target_.texels().tiles[tile.slot].area, ds, params,
-                      tile.given);
+        ink::transfer(canvas, tile.slot, tile.exposure, tile.places, basis, target_.texels().tiles[tile.slot].area, ds,
+                      params, tile.given);
     });
 }
 
 ink::NodeContents StampExposure::deposit(const ink::DepositParams& params, const ink::NodeMixes& mixes, double ds) {
     return act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
-        ink::deposit_mixed(target_.canvas(), tile.slot, tile.exposure, basis, target_.texels().tiles[tile.slot].area, ds, params,
-                           mixes, tile.given);
+        ink::deposit_mixed(target_.canvas(), tile.slot, tile.exposure, basis, target_.texels().tiles[tile.slot].area,
+                           ds, params, mixes, tile.given);
     });
 }
 
@@ -99,8 +101,9 @@ StampExposure::Exchanged StampExposure::plough(const ink::PasteParams& params, c
             pastes_.emplace(tile.slot, std::make_unique<ink::Plane>(ink::open_pigment(target_.canvas(), tile.slot)));
     Exchanged exchanged;
     exchanged.given = act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
-        ink::lay_paste(target_.canvas(), tile.slot, tile.exposure, tile.places, basis, target_.texels().tiles[tile.slot].area, ds,
-                       params, mixes, *pastes_.at(tile.slot), tile.given, tile.taken);
+        ink::lay_paste(target_.canvas(), tile.slot, tile.exposure, tile.places, basis,
+                       target_.texels().tiles[tile.slot].area, ds, params, mixes, *pastes_.at(tile.slot), tile.given,
+                       tile.taken);
     });
     for (const Tile& tile : tiles_) add(exchanged.taken, tile.taken);
     return exchanged;

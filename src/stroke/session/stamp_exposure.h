@@ -1,9 +1,9 @@
 #pragma once
 
-#include "ink/film/level.h"
-#include "ink/film/paste.h"
 #include "ink/exchange/deposit_mixed.h"
 #include "ink/exchange/transfer.h"
+#include "ink/film/level.h"
+#include "ink/film/paste.h"
 #include "stroke/session/stamp.h"
 #include "stroke/session/stamp_target.h"
 

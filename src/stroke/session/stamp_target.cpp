@@ -6,8 +6,8 @@
 
 namespace tuft::stroke {
 
-StampTarget::StampTarget(const Model& model, ink::Canvas& canvas, const ink::Substrate& substrate, const MaskTexels* mask,
-                         PlanScratchPool& scratch)
+StampTarget::StampTarget(const Model& model, ink::Canvas& canvas, const ink::Substrate& substrate,
+                         const MaskTexels* mask, PlanScratchPool& scratch)
     : model_(model),
       canvas_(canvas),
       mask_(mask),
@@ -23,7 +23,8 @@ const StampTarget::Grain& StampTarget::grain(std::uint32_t slot) {
     if (!grain_[slot]) {
         grain_[slot] = std::make_unique<Grain>();
         atlas::TexelShape buffer;
-        ink::relief_of_tile(atlas::shape_of(model_.texels, slot, buffer), static_cast<double>(grain_length_), *grain_[slot]);
+        ink::relief_of_tile(atlas::shape_of(model_.texels, slot, buffer), static_cast<double>(grain_length_),
+                            *grain_[slot]);
     }
     return *grain_[slot];
 }

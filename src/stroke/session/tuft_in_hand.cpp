@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "brush/bundles.h"
-#include "ink/exchange/stir.h"
 #include "ink/exchange/contact_nodes.h"
+#include "ink/exchange/stir.h"
 
 namespace tuft::stroke {
 namespace {
@@ -24,8 +24,8 @@ double wetness_of(const ink::Reservoir& reservoir) {
 ink::Reservoir empty_reservoir(const brush::Tuft& tuft) {
     brush::HairCells cells = brush::hair_cells(tuft.preset);
     return ink::make_reservoir(tuft.preset.capacity * 1e6, {.bundles = tuft.bundles.place,
-                                                           .cell_ends = std::move(cells.ends),
-                                                           .cell_capacities = std::move(cells.capacities)});
+                                                            .cell_ends = std::move(cells.ends),
+                                                            .cell_capacities = std::move(cells.capacities)});
 }
 
 void TuftInHand::update_wetness() {

@@ -12,8 +12,8 @@ namespace tuft::stroke {
 struct BrushInHand {
     brush::Tuft tuft;
     ink::Reservoir reservoir;
-    std::string dipped;        ///< the ink it was last dipped into
-    std::string named;         ///< the ink that its last stroke named
+    std::string dipped;  ///< the ink it was last dipped into
+    std::string named;   ///< the ink that its last stroke named
 };
 
 /// 0 dry … 1 wet: hair is wet while it holds ink; the last quarter of its fill leaves it to dry.
@@ -25,9 +25,9 @@ ink::Reservoir empty_reservoir(const brush::Tuft& tuft);
 /// The brush during one stroke: its hair, its ink, and how it bends.
 struct TuftInHand {
     BrushInHand brush;
-    ink::Ink ink;              ///< that it was dipped into
-    brush::TuftState state;    ///< at the last pose
-    Quat rotation{1, 0, 0, 0}; ///< of the ferrule at the last pose
+    ink::Ink ink;               ///< that it was dipped into
+    brush::TuftState state;     ///< at the last pose
+    Quat rotation{1, 0, 0, 0};  ///< of the ferrule at the last pose
 
     const brush::Preset& preset() const { return brush.tuft.preset; }
     /// Tells the hair how much ink it holds: friction, cohesion, plasticity and splitting depend on it.
