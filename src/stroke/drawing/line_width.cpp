@@ -16,7 +16,7 @@ namespace tuft::stroke {
 namespace {
 
 constexpr int kSteps = 12;
-constexpr double kMiddle = 0.5;               // made-up pressure of a line's whole width
+constexpr double kMidPressure = 0.5;          // made-up pressure of a line's whole width
 constexpr double kEase = 0.36;                // in that of a brush chosen for a width: corners come out best
 constexpr double kLight = 0.3, kHeavy = 0.7;  // a pressure between them draws lines with the brush that is there
 
@@ -113,7 +113,7 @@ void draw_to_width(Trace& trace, const LineWidths& widths) {
     const double end = std::min(line_end(trace.line_width), kMostOfLine * whole);
     overlap(trace, 2 * end);
     const std::vector<double> along = travelled<TraceSample>(trace.samples);
-    const auto part = [&](const TraceSample& s) { return s.pressure / kMiddle; };
+    const auto part = [&](const TraceSample& s) { return s.pressure / kMidPressure; };
     const bool head = part(trace.samples.front()) > kPoint,
                tail = part(trace.samples.back()) > kPoint;  // else it runs out by itself
     for (std::size_t i = 0; i < along.size(); ++i) {
