@@ -12,7 +12,7 @@
 
 #include "app/input/imgui_feed.h"
 #include "app/script/script.h"
-#include "app/studio.h"
+#include "app/studio/studio.h"
 #include "app/view/display.h"
 #include "core/build_facts.h"
 #include "core/manual.h"

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <thread>
 
-#include "app/document/paint_thread.h"
+#include "app/paint/paint_thread.h"
 #include "io/project.h"
 #include "io/restore.h"
 #include "models.h"

@@ -1,4 +1,4 @@
-#include "app/document/paint_thread.h"
+#include "app/paint/paint_thread.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "app/panels/ui.h"
+#include "app/widgets/ui.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "app/document/paint_thread.h"
+#include "app/paint/paint_thread.h"
 #include "io/inkml.h"
 #include "models.h"
 #include "paths.h"

@@ -20,7 +20,7 @@ class Autosave {
   public:
     /// Goes on with a project that is open already and holds the entries that these were made from.
     void adopt(io::Project project, std::vector<stroke::EntryMark> on_disk);
-    /// Appearance at a project that another program works on: nothing is written until `start` gives the
+    /// Looks at a project that another program works on: nothing is written until `start` gives the
     /// work a file of its own.
     void view(io::Project project, std::vector<stroke::EntryMark> on_disk);
     bool viewing() const { return viewing_; }

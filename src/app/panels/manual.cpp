@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "app/panels/manual_text.h"
 #include "app/panels/panels.h"
+#include "app/widgets/manual_text.h"
 
 /// The manual's dialog.
 namespace tuft::app {

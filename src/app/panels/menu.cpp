@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "app/panels/icons.h"
 #include "app/panels/panels.h"
+#include "app/widgets/icons.h"
 
 namespace tuft::app {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/session.h"
+#include "app/session/session.h"
 
 /// What is drawn round and over the model. Each function draws one panel and writes what
 /// the person changed into the session.

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/panels/icons.h"
 #include "app/panels/panels.h"
+#include "app/widgets/icons.h"
 #include "io/image.h"
 
 /// Reference images over the view, and their list.

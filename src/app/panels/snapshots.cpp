@@ -99,7 +99,7 @@ void comparison_bar(Session& s) {
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);  // above the images
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(all.ready ? ui.fitted(line->name, ui.px(140)).c_str() : ui.tr("Document the snapshot"));
+    ImGui::TextUnformatted(all.ready ? ui.fitted(line->name, ui.px(140)).c_str() : ui.tr("Painting the snapshot"));
     ImGui::SameLine();
     if (ui.choice("Side by side", !all.swipe)) all.swipe = false;
     ImGui::SameLine();

@@ -181,7 +181,7 @@ void tuft_inset(Session& s) {
     Ui& ui = s.ui;
     const float width = ui.px(190), height = ui.px(206), pad = ui.px(10);
     if (static_cast<float>(s.area.width) < 2.5f * width || static_cast<float>(s.area.height) < 2 * height)
-        return;  // the model needs the module
+        return;  // the model needs the room
     ImGui::SetNextWindowPos(
         ImVec2(static_cast<float>(s.area.x) + pad, static_cast<float>(s.area.y + s.area.height) - height - pad));
     ImGui::SetNextWindowSize(ImVec2(width, height));

@@ -1,7 +1,7 @@
 #include <imgui.h>
 
-#include "app/panels/icons.h"
 #include "app/panels/panels.h"
+#include "app/widgets/icons.h"
 
 /// The column of tools: an icon each, its name under it.
 namespace tuft::app {

@@ -177,7 +177,7 @@ void pen_curve(Session& s) {
 
 void hand_section(Session& s) {
     Ui& ui = s.ui;
-    if (!ui.section("PointerInput")) return;
+    if (!ui.section("Hand")) return;
     ui.slider("Pressure", s.hand.pressure, 0.02, 1, "%.2f",
               "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]");
     ui.slider("Stabiliser", s.hand.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length",

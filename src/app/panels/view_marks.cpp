@@ -191,7 +191,7 @@ struct Stop {
 // Colours from left to right with a text at each end, in the lower right above the scale.
 void legend(const Session& s, ImDrawList* draw, std::span<const Stop> stops, const char* low, const char* high) {
     const float width = s.ui.px(190), height = s.ui.px(10);
-    // In a narrow view the tuft's inset takes the module below.
+    // In a narrow view the tuft's inset takes the room below.
     const bool narrow = static_cast<float>(s.area.width) < s.ui.px(460);
     const ImVec2 at(narrow ? static_cast<float>(s.area.x) + s.ui.px(20)
                            : static_cast<float>(s.area.x + s.area.width) - s.ui.px(20) - width,

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "app/panels/panels.h"
-#include "app/studio.h"
+#include "app/studio/studio.h"
 #include "core/units.h"
 #include "io/image.h"
 #include "render/gl_target.h"

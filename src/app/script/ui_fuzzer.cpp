@@ -8,7 +8,7 @@
 #include <iterator>
 #include <string>
 
-#include "app/studio.h"
+#include "app/studio/studio.h"
 
 namespace fs = std::filesystem;
 
