@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "app/document/thumbnails.h"
-#include "app/session/session.h"
+#include "app/session/brush_settings.h"
 #include "app/view/viewport.h"
 #include "brush/preset.h"
 #include "brush/sweep.h"

@@ -65,7 +65,7 @@ void library_rows(Session& s) {
 }  // namespace
 
 void about_dialog(Session& s) {
-    if (!s.show_about) return;
+    if (!s.dialogs.show_about) return;
     if (!begin_dialog(s, "About tuft studio", 560)) return end_dialog(s);
     Ui& ui = s.ui;
     ui.wrapped(ui.tr("Ink and a bending hair brush on the surface of 3D models."));
@@ -80,7 +80,7 @@ void about_dialog(Session& s) {
     ImGui::SameLine();
     const bool close = ui.button("Close", nullptr, 110);
     end_dialog(s);
-    if (close) s.show_about = false;
+    if (close) s.dialogs.show_about = false;
 }
 
 }  // namespace tuft::app

@@ -31,11 +31,11 @@ const Preset& preset_of(const std::string& name) {
 }
 
 void choose_preset(Session& s) {
-    const Preset& p = preset_of(s.export_choice.preset);
-    s.export_choice.relief = p.relief;
-    s.export_choice.roughness = p.roughness;
-    const std::uint32_t painted = s.painter ? s.painter->model().atlas.size : 0;
-    s.export_choice.size = p.most && painted > p.most ? p.most : 0;
+    const Preset& p = preset_of(s.dialogs.export_settings.preset);
+    s.dialogs.export_settings.relief = p.relief;
+    s.dialogs.export_settings.roughness = p.roughness;
+    const std::uint32_t painted = s.paint_thread ? s.paint_thread->model().atlas.size : 0;
+    s.dialogs.export_settings.size = p.most && painted > p.most ? p.most : 0;
 }
 
 void row(Session& s, const char* name) {
@@ -47,7 +47,7 @@ void row(Session& s, const char* name) {
 }  // namespace
 
 ExportModel export_command(const Session& s, const std::filesystem::path& path) {
-    const ExportChoice& c = s.export_choice;
+    const ExportSettings& c = s.dialogs.export_settings;
     return {.path = path,
             .height = c.relief,
             .orm = c.roughness,
@@ -60,17 +60,17 @@ ExportModel export_command(const Session& s, const std::filesystem::path& path) 
 }
 
 void export_dialog(Session& s) {
-    if (!s.show_export || !s.painter) return;
+    if (!s.dialogs.show_export || !s.paint_thread) return;
     if (!begin_dialog(s, "Export", 460)) return end_dialog(s);
     Ui& ui = s.ui;
-    ExportChoice& c = s.export_choice;
+    ExportSettings& c = s.dialogs.export_settings;
     std::vector<std::string> names;
     for (const Preset& p : kPresets) names.emplace_back(p.name);
     row(s, "For");
     if (ui.combo("Preset", c.preset, names)) choose_preset(s);
     ui.note(ui.tr(preset_of(c.preset).note));
     const bool strokes_alone = preset_of(c.preset).extension == std::string(".inkml");
-    if (strokes_alone && std::any_of(s.strokes.begin(), s.strokes.end(), [](const StrokeLine& l) {
+    if (strokes_alone && std::any_of(s.journal.lines.begin(), s.journal.lines.end(), [](const StrokeLine& l) {
             return l.action == stroke::Action::layer || l.action == stroke::Action::mask;
         }))
         ui.wrapped(ui.tr("Strokes name their layer and mask; what layers and masks are stays in the project."));
@@ -95,7 +95,7 @@ void export_dialog(Session& s) {
         c.size = size == "As painted" ? 0 : static_cast<std::uint32_t>(std::stoul(size));
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%u", s.painter->model().atlas.size);
+    ImGui::TextDisabled("%u", s.paint_thread->model().atlas.size);
     ui.hint("Another size is painted anew from the strokes, not scaled");
     row(s, "Pictures");
     static const std::vector<std::string> pictures{"None", "One, as seen now", "24 all round", "72 all round"};
@@ -121,8 +121,10 @@ void export_dialog(Session& s) {
     ImGui::SameLine();
     const bool go = ui.primary_button("Choose a file...", 160);
     end_dialog(s);
-    if (go) s.files.show(FileDialog::Purpose::export_model, project_name(s) + preset_of(c.preset).extension);
-    if (go || cancel) s.show_export = false;
+    if (go)
+        s.dialogs.file.show(FileDialog::Purpose::export_model,
+                            project_name(s.paint_thread.get(), s.reported.project) + preset_of(c.preset).extension);
+    if (go || cancel) s.dialogs.show_export = false;
 }
 
 }  // namespace tuft::app

@@ -8,7 +8,7 @@ namespace tuft::app {
 namespace {
 
 void mouse_rows(Session& s) {
-    const bool maya = s.keymap == Keymap::maya;
+    const bool maya = s.preferences.keymap == Keymap::maya;
     const std::pair<const char*, const char*> rows[] = {
         {"Left button", "Paint"},
         {maya ? "Alt + left" : "Middle, right, Alt + left", "Turn the view"},
@@ -33,13 +33,14 @@ void key_rows(Session& s) {
         ImGui::AlignTextToFramePadding();
         ImGui::TextUnformatted(ui.tr(title_of(act)));
         ImGui::SameLine(ui.px(300));
-        const bool asked = s.key_asked == act;
-        const std::string name = asked                                ? ui.tr("press a key...")
-                                 : name_of(s.keys.chord(act)).empty() ? "\xe2\x80\x93"
-                                                                      : name_of(s.keys.chord(act));
+        const bool asked = s.dialogs.key_to_assign == act;
+        const std::string name = asked ? ui.tr("press a key...")
+                                 : name_of(s.preferences.keys.chord(act)).empty()
+                                     ? "\xe2\x80\x93"
+                                     : name_of(s.preferences.keys.chord(act));
         if (asked) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));
         if (ImGui::Button((name + "##chord").c_str(), ImVec2(ui.px(150), 0)))
-            s.key_asked = asked ? std::nullopt : std::optional(act);
+            s.dialogs.key_to_assign = asked ? std::nullopt : std::optional(act);
         if (asked) ImGui::PopStyleColor();
         ui.mark(std::string("key ") + word_of(act));
         ImGui::PopID();
@@ -49,7 +50,7 @@ void key_rows(Session& s) {
 }  // namespace
 
 void keys_dialog(Session& s) {
-    if (!s.show_keys) return;
+    if (!s.dialogs.show_keys) return;
     if (!begin_dialog(s, "Keys and mouse", 520)) return end_dialog(s);
     Ui& ui = s.ui;
     const float screen = ImGui::GetIO().DisplaySize.y;
@@ -62,14 +63,14 @@ void keys_dialog(Session& s) {
     ImGui::EndChild();
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Reset", 130}, {"Close", 110}});
-    if (ui.button("Reset", nullptr, 130, !s.keys.shipped())) {
-        s.keys = {};
+    if (ui.button("Reset", nullptr, 130, !s.preferences.keys.shipped())) {
+        s.preferences.keys = {};
         store_settings(s);
     }
     ImGui::SameLine();
     const bool close = ui.button("Close", nullptr, 110);
     end_dialog(s);
-    if (close) s.show_keys = false, s.key_asked.reset();
+    if (close) s.dialogs.show_keys = false, s.dialogs.key_to_assign.reset();
 }
 
 }  // namespace tuft::app

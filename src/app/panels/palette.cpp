@@ -16,7 +16,7 @@ ImVec2 on_picture(const PaletteState& p, const Vec3& at) {
 
 // The pressed tuft from above, or where a pool would be poured.
 void marks(const Session& s, ImDrawList* draw) {
-    const PaletteState& p = s.palette;
+    const PaletteState& p = s.colours.palette;
     for (const brush::Branch& branch : p.tuft.branches) {
         std::vector<ImVec2> left, right;
         for (const brush::Section& section : branch.sections) {
@@ -37,20 +37,20 @@ void marks(const Session& s, ImDrawList* draw) {
     const double radius = p.tool == PaletteTool::pour ? p.radius : p.tool == PaletteTool::brush ? 1e-3 : 0.5e-3;
     const auto pixels = static_cast<float>(radius / stroke::kPaletteWidth * p.width);
     draw->AddCircle(mouse, pixels, IM_COL32(255, 255, 255, 200), 32, s.ui.px(3));
-    draw->AddCircle(mouse, pixels, p.tool == PaletteTool::pour ? ink_colour(s, s.ink) : IM_COL32(40, 36, 32, 230), 32,
-                    s.ui.px(1.5f));
+    draw->AddCircle(mouse, pixels, p.tool == PaletteTool::pour ? ink_colour(s, s.brush.ink) : IM_COL32(40, 36, 32, 230),
+                    32, s.ui.px(1.5f));
 }
 
 }  // namespace
 
 void palette_panel(Session& s) {
-    PaletteState& p = s.palette;
+    PaletteState& p = s.colours.palette;
     p.width = 0;
-    if (!p.shown || !s.painter) return;
+    if (!p.shown || !s.paint_thread) return;
     Ui& ui = s.ui;
-    const float pad = ui.px(10), room = static_cast<float>(s.area.width) - 2 * pad;
+    const float pad = ui.px(10), room = static_cast<float>(s.view.area.width) - 2 * pad;
     const float width = std::min({ui.px(330), room, std::max(ui.px(256), 0.55f * room)});
-    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.area.x) + pad, static_cast<float>(s.area.y) + pad));
+    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.view.area.x) + pad, static_cast<float>(s.view.area.y) + pad));
     ImGui::SetNextWindowSize(ImVec2(width, 0));
     ImGui::SetNextWindowBgAlpha(0.94f);
     ImGui::Begin("###palette", nullptr,
@@ -67,7 +67,7 @@ void palette_panel(Session& s) {
     tool(PaletteTool::pour, "Pour", "Click: a pool of the chosen ink");
     tool(PaletteTool::pick, "Take", "Click: the mixture there becomes an ink of its own");
     if (ui.button("Wash", "Cleans the palette; Undo brings it back", third))
-        s.painter->post(ActOnBrush{.action = stroke::Action::wash});
+        s.paint_thread->post(ActOnBrush{.action = stroke::Action::wash});
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float picture = ImGui::GetContentRegionAvail().x;
     p.x = static_cast<double>(at.x);
@@ -87,7 +87,7 @@ void palette_panel(Session& s) {
     if (p.tool == PaletteTool::pour)
         ui.slider("Pool", p.radius, 0.003, 0.02, "%.0f mm", "How wide, to each side", kMillimetre);
     else if (ui.button("Rinse the brush", "No ink left in it, hair straight and together", 0))
-        s.painter->post(ActOnBrush{.action = stroke::Action::rinse, .brush = s.brush, .ink = s.ink});
+        s.paint_thread->post(ActOnBrush{.action = stroke::Action::rinse, .brush = s.brush.preset, .ink = s.brush.ink});
     ImGui::End();
 }
 

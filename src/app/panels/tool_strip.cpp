@@ -63,14 +63,14 @@ void tool_strip(Session& s, float top, float bottom, float left) {
     const float height = std::min(s.ui.px(50), (room - 9 * gap) / 9 - s.ui.px(1));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, gap));
     for (const Entry& e : kEntries)
-        if (cell(s, e.icon, e.name, e.hint, s.tool == e.tool, height)) s.tool = e.tool;
+        if (cell(s, e.icon, e.name, e.hint, s.tools.active == e.tool, height)) s.tools.active = e.tool;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::GetWindowDrawList()->AddLine(ImVec2(at.x + s.ui.px(6), at.y),
                                         ImVec2(at.x + ImGui::GetContentRegionAvail().x - s.ui.px(6), at.y),
                                         ImGui::GetColorU32(ImGuiCol_Separator));
     ImGui::Dummy(ImVec2(0, gap));
-    if (cell(s, Icon::palette, "Palette", "A plate on which brushes mix inks (P)", s.palette.shown, height))
-        show_palette(s, !s.palette.shown);
+    if (cell(s, Icon::palette, "Palette", "A plate on which brushes mix inks (P)", s.colours.palette.shown, height))
+        show_palette(s.colours.palette, s.brush, s.status, !s.colours.palette.shown);
     ImGui::PopStyleVar();
     ImGui::End();
     ImGui::PopStyleVar();

@@ -103,7 +103,7 @@ void Script::hold(const std::string& chord, int line) {
 }
 
 void Script::stroke(Studio& studio, const ScriptCommand& command) {
-    const Area& area = studio.session().area;
+    const Area& area = studio.session().view.area;
     std::vector<Vec3> places;
     for (const ScriptPoint& p : command.points)
         places.emplace_back(p.relative_x ? area.x + p.x * area.width : p.x,
@@ -144,7 +144,7 @@ void Script::report(Studio& studio, double now) {
         "\"quits\": %zu, \"azimuth_deg\": %.3f, \"elevation_deg\": %.3f, \"distance_mm\": %.3f, "
         "\"roll_deg\": %.3f, \"target_mm\": [%.3f, %.3f, %.3f]}\n",
         report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95),
-        studio.samples(), studio.session().strokes.size(), 1e3 * studio.session().last.undo_seconds, now,
+        studio.samples(), studio.session().journal.lines.size(), 1e3 * studio.session().reported.undo_seconds, now,
         cpu - report_cpu_, static_cast<double>(usage.ru_maxrss) / 1024, quits_,
         studio.session().view.orbit.azimuth / kDegree, studio.session().view.orbit.elevation / kDegree,
         studio.session().view.orbit.distance / kMillimetre, studio.session().view.orbit.roll / kDegree,
@@ -161,16 +161,16 @@ void Script::expect(Studio& studio, const ScriptCommand& c) const {
     const std::string& what = c.words[0];
     const std::string value = c.words.size() > 1 ? c.words[1] : "";
     if (what == "strokes") {
-        if (s.strokes.size() != static_cast<std::size_t>(std::atoi(value.c_str())))
-            fail(c, "there are " + std::to_string(s.strokes.size()) + " strokes, not " + value);
+        if (s.journal.lines.size() != static_cast<std::size_t>(std::atoi(value.c_str())))
+            fail(c, "there are " + std::to_string(s.journal.lines.size()) + " strokes, not " + value);
     } else if (what == "model" || what == "no-model") {
-        if ((s.painter != nullptr) != (what == "model"))
-            fail(c, s.painter ? "a model is open" : "no model is open: " + s.message);
+        if ((s.paint_thread != nullptr) != (what == "model"))
+            fail(c, s.paint_thread ? "a model is open" : "no model is open: " + s.status.text);
     } else if (what == "kept") {
-        if (!s.last.trouble.empty()) fail(c, s.last.trouble);
+        if (!s.reported.trouble.empty()) fail(c, s.reported.trouble);
     } else if (what == "message") {
-        if (s.message.find(value) == std::string::npos && s.last.trouble.find(value) == std::string::npos)
-            fail(c, "the message is '" + s.message + "'");
+        if (s.status.text.find(value) == std::string::npos && s.reported.trouble.find(value) == std::string::npos)
+            fail(c, "the message is '" + s.status.text + "'");
     } else if (what == "label") {
         if (!s.ui.find(value)) fail(c, "'" + value + "' is not on the screen");
     } else {
@@ -190,14 +190,14 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         add({.kind = Event::Kind::drop, .text = word}, 0);
     else if (c.name == "wait-ready") {
         if (waited > (word.empty() ? kLongestWait : std::atof(word.c_str()))) fail(c, "waited too long");
-        return settled(s) && !s.model_is_new && waited > 0 && frames_ > 1;
+        return is_settled(s) && !s.view.model_changed && waited > 0 && frames_ > 1;
     } else if (c.name == "wait")
         return waited >= std::atof(word.c_str());
     else if (c.name == "move") {
         const ScriptPoint& p = c.points[0];
         add({.kind = Event::Kind::move,
-             .x = p.relative_x ? s.area.x + p.x * s.area.width : p.x,
-             .y = p.relative_y ? s.area.y + p.y * s.area.height : p.y,
+             .x = p.relative_x ? s.view.area.x + p.x * s.view.area.width : p.x,
+             .y = p.relative_y ? s.view.area.y + p.y * s.view.area.height : p.y,
              .pressure = p.pressure},
             sample_);
     } else if (c.name == "press" || c.name == "release") {
@@ -241,11 +241,11 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     else if (c.name == "save")
         save_as(s, word);
     else if (c.name == "export") {
-        if (s.painter) s.painter->post(export_command(s, word));
+        if (s.paint_thread) s.paint_thread->post(export_command(s, word));
     } else if (c.name == "close") {
         studio.finish();
-        s.recent = recent_projects();
-        s.lost = find_lost_work();
+        s.project.start_page.recent = recent_projects();
+        s.project.recovery.lost = find_lost_work();
     } else if (c.name == "screenshot")
         picture_ = word;
     else if (c.name == "expect") {
@@ -282,7 +282,7 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         for (const std::string& name : s.ui.names())
             std::printf("%.1f %.1f %s\n", s.ui.find(name)->x, s.ui.find(name)->y, name.c_str());
     } else if (c.name == "quit")
-        leave(s, {});
+        request_close(s, {});
     return true;
 }
 

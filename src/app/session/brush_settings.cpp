@@ -1,9 +1,12 @@
+#include "app/session/brush_settings.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
 
-#include "app/session/session.h"
+#include "app/document/state_folder.h"
+#include "app/paint/paint_thread.h"
 #include "brush/preset.h"
 #include "brush/sweep.h"
 #include "core/files.h"
@@ -85,32 +88,42 @@ std::string first_brush(const std::vector<std::string>& brushes, const std::stri
     return brush::name_of({best, factor});
 }
 
-void choose_brush(Session& s) {
-    const auto take = [&](const std::string& brush) {
-        if (!loads(brush)) return false;
-        s.brush = s.brush_remembered = brush;
+void choose_brush(BrushSettings& brush, const PaintThread& work, std::span<const StrokeLine> lines, double pressure) {
+    const auto take = [&](const std::string& name) {
+        if (!loads(name)) return false;
+        brush.preset = brush.remembered = name;
         return true;
     };
-    for (const auto& [brush, model] : memory())
-        if (model == s.painter->source() && take(brush)) return;
-    for (auto line = s.strokes.rbegin(); line != s.strokes.rend(); ++line)
+    for (const auto& [name, model] : memory())
+        if (model == work.source() && take(name)) return;
+    for (auto line = lines.rbegin(); line != lines.rend(); ++line)
         if (line->action == stroke::Action::stroke && !line->on_palette && take(line->brush)) return;
-    take(first_brush(s.brushes, s.brush, s.hand.pressure, first_line_width(s.painter->model().mesh->bounds)));
+    take(first_brush(brush.presets, brush.preset, pressure, first_line_width(work.model().mesh->bounds)));
 }
 
-void remember_brush(Session& s) {
-    if (!s.painter || s.brush == s.brush_remembered) return;
-    s.brush_remembered = s.brush;
+void remember_brush(BrushSettings& brush, const PaintThread* work) {
+    if (!work || brush.preset == brush.remembered) return;
+    brush.remembered = brush.preset;
     std::vector<std::pair<std::string, std::string>> all = memory();
-    std::erase_if(all, [&](const auto& entry) { return entry.second == s.painter->source(); });
-    all.insert(all.begin(), {s.brush, s.painter->source()});
+    std::erase_if(all, [&](const auto& entry) { return entry.second == work->source(); });
+    all.insert(all.begin(), {brush.preset, work->source()});
     if (all.size() > kMostModels) all.resize(kMostModels);
     std::string text;
-    for (const auto& [brush, model] : all) text += brush + "\t" + model + "\n";
+    for (const auto& [name, model] : all) text += name + "\t" + model + "\n";
     try {
         write_file(memory_path(), text.data(), text.size());
     } catch (const Error&) {
         // It holds for this run then.
+    }
+}
+
+void size_brush(BrushSettings& brush, StatusMessage& status, double factor) {
+    const std::string sized = brush::name_of({brush::sized_name(brush.preset).base, std::round(1e3 * factor) / 1e3});
+    try {
+        brush::load_preset(sized);
+        brush.preset = sized;
+    } catch (const Error& error) {
+        show_message(status, error.what());  // not every brush has every size
     }
 }
 

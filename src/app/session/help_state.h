@@ -20,4 +20,10 @@ struct HelpState {
     std::string brush;
 };
 
+/// Begins the guided first minute.
+inline void start_guide(HelpState& help) {
+    help.step = 0;
+    help.fresh = true;
+}
+
 }  // namespace tuft::app

@@ -25,4 +25,22 @@ std::vector<JournalRow> journal_rows(const std::vector<StrokeLine>& lines, const
     return rows;
 }
 
+void select_entries(JournalState& j, PaintThread* work, std::set<std::uint64_t> ids) {
+    if (j.selected.empty() && ids.empty()) return;
+    j.selected = std::move(ids);
+    j.moves = false;
+    j.from.reset();
+    j.to.reset();
+    if (work) work->post(HighlightStrokes{{j.selected.begin(), j.selected.end()}});
+}
+
+void compare_with(SnapshotState& all, AtlasView& atlas, PaintThread* work, const std::string& id) {
+    all.compared = id;
+    all.ready = false;
+    all.picture.reset();
+    if (id.empty() || !work) return;
+    atlas.shown = false;
+    work->post(ShowSnapshot{id});
+}
+
 }  // namespace tuft::app

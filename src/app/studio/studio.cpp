@@ -10,7 +10,9 @@
 
 #include "app/input/imgui_feed.h"
 #include "app/panels/panels.h"
+#include "app/session/top_dialog.h"
 #include "app/view/model_colours.h"
+#include "app/view/tuft_solid.h"
 #include "core/files.h"
 
 namespace fs = std::filesystem;
@@ -38,24 +40,24 @@ double highest_of(std::span<const std::array<std::uint8_t, 4>> texels) {
 
 Studio::Studio() : scene_(std::make_unique<render::GlScene>()), view_(std::make_unique<render::GlView>()) {
     Session& s = session_;
-    s.brushes = brush::list_presets();
-    s.inks = ink::list_inks();
-    s.substrates = ink::list_substrates();
+    s.brush.presets = brush::list_presets();
+    s.colours.shipped = ink::list_inks();
+    s.colours.substrates = ink::list_substrates();
     std::error_code ec;
     for (const auto& entry : fs::directory_iterator(data_folder() / "models", ec))
-        if (entry.path().extension() == ".ply") s.samples.push_back(entry.path());
-    std::sort(s.samples.begin(), s.samples.end());
-    s.recent = recent_projects();
-    s.lost = find_lost_work();
-    load_colours(s.colour);
+        if (entry.path().extension() == ".ply") s.project.start_page.samples.push_back(entry.path());
+    std::sort(s.project.start_page.samples.begin(), s.project.start_page.samples.end());
+    s.project.start_page.recent = recent_projects();
+    s.project.recovery.lost = find_lost_work();
+    load_colours(s.colours.choice);
     load_settings(s);
-    if (const std::string missing = s.ui.prepare(s.wanted); !missing.empty()) say(s, missing);
+    if (const std::string missing = s.ui.prepare(s.preferences.ui); !missing.empty()) show_message(s.status, missing);
     cursor_.x = cursor_.y = -1;
 }
 
 Studio::~Studio() {
     finish();
-    session_.pictures.release();
+    session_.project.start_page.pictures.release();
 }
 
 void Studio::drop_graphics() {
@@ -63,36 +65,37 @@ void Studio::drop_graphics() {
     view_.reset();
     compare_scene_.reset();
     compare_view_.reset();
-    for (ReferenceImage& image : session_.references.images) image.texture = 0;
-    session_.snapshots.texture = 0;
-    session_.pictures.release();
+    for (ReferenceImage& image : session_.view.references.images) image.texture = 0;
+    session_.journal.snapshots.texture = 0;
+    session_.project.start_page.pictures.release();
 }
 
 void Studio::make_graphics() {
     Session& s = session_;
     scene_ = std::make_unique<render::GlScene>();
     view_ = std::make_unique<render::GlView>();
-    s.palette.texture = 0;
-    s.layer_list.textures.clear();
-    for (const auto& [layer, picture] : s.layer_list.pictures) s.layer_list.fresh.insert(layer);
-    s.palette.fresh = true;
+    s.colours.palette.texture = 0;
+    s.layers.list.textures.clear();
+    for (const auto& [layer, picture] : s.layers.list.pictures) s.layers.list.fresh.insert(layer);
+    s.colours.palette.fresh = true;
     colours_shown_ = ModelView::glaze;
-    if (s.painter && !s.model_is_new) {
-        const stroke::Model& m = s.painter->model();
+    if (s.paint_thread && !s.view.model_changed) {
+        const stroke::Model& m = s.paint_thread->model();
         scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
-        s.painter->post(SendTexture{});
-        if (comparing()) compare_with(s, s.snapshots.compared);
+        s.paint_thread->post(SendTexture{});
+        if (comparing())
+            compare_with(s.journal.snapshots, s.view.atlas, s.paint_thread.get(), s.journal.snapshots.compared);
     }
-    say(s, "The graphics driver was reset; the picture was made anew, and no stroke is lost.");
+    show_message(s.status, "The graphics driver was reset; the picture was made anew, and no stroke is lost.");
 }
 
 void Studio::finish() {
     Session& s = session_;
-    if (hand_ && s.painter) post(hand_->lift(), now_);
+    if (hand_ && s.paint_thread) post(hand_->lift(), now_);
     hand_.reset();
-    if (s.painter && (picture_due_ != 0 || s.strokes.size() != strokes_seen_)) {
-        s.painter->wait_idle(kPictureWait);
-        poll_painter(s);
+    if (s.paint_thread && (picture_due_ != 0 || s.journal.lines.size() != strokes_seen_)) {
+        s.paint_thread->wait_idle(kPictureWait);
+        poll_paint_thread(s);
         take_model();
         draw_scene(framebuffer_, height_);
         picture_due_ = now_;
@@ -103,11 +106,12 @@ void Studio::finish() {
 
 double Studio::patience() const {
     const Session& s = session_;
-    if (s.model_is_new || !s.last.tiles.empty() || s.restyle || hand_ || drag_ != Drag::none) return 0;
-    if (s.opening.running() || !s.last.busy.empty()) return kProgressEvery;
-    if (!settled(s)) return kInkEvery;
+    if (s.view.model_changed || !s.reported.tiles.empty() || s.preferences.restyle || hand_ || drag_ != Drag::none)
+        return 0;
+    if (s.project.opening.running() || !s.reported.busy.empty()) return kProgressEvery;
+    if (!is_settled(s)) return kInkEvery;
     if (now_ - last_event_ < kStillAfter) return kStillEvery;
-    return s.pictures.busy() ? 0.1 : 0.5;
+    return s.project.start_page.pictures.busy() ? 0.1 : 0.5;
 }
 
 void Studio::layout(int width, int height) {
@@ -116,45 +120,43 @@ void Studio::layout(int width, int height) {
     // Where there is no room for both, the model is worth more than the list.
     const int strip = static_cast<int>(s.ui.px(kStripWidth));
     const int beside = static_cast<int>(s.ui.px(kToolWidth)), whole = static_cast<int>(s.ui.px(kJournalWidth));
-    s.journal_fits = static_cast<float>(width - strip - beside - whole) >= s.ui.px(kLeastView);
-    const int tools = strip + (s.tools_shown || s.show_colours || (!s.journal_fits && s.show_journal) ? beside : 0);
-    const int journal = s.journal_fits && s.journal_shown ? whole : 0;
-    const int left = s.wanted.left_handed ? journal : tools;
-    s.area = {left, static_cast<int>(top), std::max(16, width - tools - journal),
-              std::max(16, height - static_cast<int>(top) - static_cast<int>(s.ui.px(kStatusHeight)))};
-    s.atlas_area = {};
+    s.panels.journal_fits = static_cast<float>(width - strip - beside - whole) >= s.ui.px(kLeastView);
+    const int tools = strip + (s.panels.show_tools || s.panels.show_appearance ||
+                                       (!s.panels.journal_fits && s.panels.journal_over_tools)
+                                   ? beside
+                                   : 0);
+    const int journal = s.panels.journal_fits && s.panels.show_journal ? whole : 0;
+    const int left = s.preferences.ui.left_handed ? journal : tools;
+    s.view.area = {left, static_cast<int>(top), std::max(16, width - tools - journal),
+                   std::max(16, height - static_cast<int>(top) - static_cast<int>(s.ui.px(kStatusHeight)))};
+    s.view.atlas.area = {};
     layout_comparison();
-    if (!s.view.atlas || !s.painter || comparing()) return;
-    s.atlas_area = s.area;
-    s.area.width /= 2;
-    s.atlas_area.x += s.area.width + 1;
-    s.atlas_area.width -= s.area.width + 1;
-}
-
-bool Studio::dialog_open() const {
-    const Session& s = session_;
-    return s.inspected || s.opening.running() || (!s.lost.empty() && !s.painter) || s.show_export || s.show_settings ||
-           s.show_keys || s.show_about || s.help.manual || s.show_mismatches || s.in_use || s.leaving ||
-           s.files.shown();
+    if (!s.view.atlas.shown || !s.paint_thread || comparing()) return;
+    s.view.atlas.area = s.view.area;
+    s.view.area.width /= 2;
+    s.view.atlas.area.x += s.view.area.width + 1;
+    s.view.atlas.area.width -= s.view.area.width + 1;
 }
 
 void Studio::panels() {
     Session& s = session_;
     menu_bar(s);
-    s.ui.modal = dialog_open();
+    s.ui.modal = is_dialog_open(session_);
     ImGui::BeginDisabled(s.ui.modal);
-    if (s.painter) {
-        const auto top = static_cast<float>(s.area.y), bottom = static_cast<float>(s.area.y + s.area.height);
-        const auto right =
-            static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width);
-        const bool swapped = !s.journal_fits && s.show_journal && !s.show_colours;
+    if (s.paint_thread) {
+        const auto top = static_cast<float>(s.view.area.y),
+                   bottom = static_cast<float>(s.view.area.y + s.view.area.height);
+        const auto right = static_cast<float>(s.view.atlas.shown ? s.view.atlas.area.x + s.view.atlas.area.width
+                                                                 : s.view.area.x + s.view.area.width);
+        const bool swapped = !s.panels.journal_fits && s.panels.journal_over_tools && !s.panels.show_appearance;
         const float strip = s.ui.px(kStripWidth), screen = ImGui::GetIO().DisplaySize.x;
-        tool_strip(s, top, bottom, s.wanted.left_handed ? screen - strip : 0);
-        if (s.show_colours || s.tools_shown || swapped)
-            (s.show_colours ? colours_panel
-             : swapped      ? journal_panel
-                            : tool_panel)(s, top, bottom, s.wanted.left_handed ? right : strip);
-        if (s.journal_fits && s.journal_shown) journal_panel(s, top, bottom, s.wanted.left_handed ? 0 : right);
+        tool_strip(s, top, bottom, s.preferences.ui.left_handed ? screen - strip : 0);
+        if (s.panels.show_appearance || s.panels.show_tools || swapped)
+            (s.panels.show_appearance ? colours_panel
+             : swapped                ? journal_panel
+                                      : tool_panel)(s, top, bottom, s.preferences.ui.left_handed ? right : strip);
+        if (s.panels.journal_fits && s.panels.show_journal)
+            journal_panel(s, top, bottom, s.preferences.ui.left_handed ? 0 : right);
         status_bar(s, bottom);
         panel_handles(s);
         tuft_inset(s);
@@ -172,15 +174,15 @@ void Studio::panels() {
         welcome(s);
     }
     ImGui::EndDisabled();
-    if (s.opening.running())
+    if (s.project.opening.running())
         opening_progress(s);
-    else if (s.leaving)
+    else if (s.project.closing.request)
         leave_dialog(s);
-    else if (s.in_use)
+    else if (s.project.in_use)
         in_use_dialog(s);
-    else if (s.inspected)
+    else if (s.project.inspected)
         open_dialog(s);
-    else if (!s.lost.empty() && !s.painter)
+    else if (!s.project.recovery.lost.empty() && !s.paint_thread)
         recovery_dialog(s);
     export_dialog(s);
     settings_dialog(s);
@@ -188,41 +190,41 @@ void Studio::panels() {
     keys_dialog(s);
     about_dialog(s);
     mismatch_dialog(s);
-    if (const auto path = s.files.draw(s.ui, s.pictures)) {
-        if (s.files.purpose() == FileDialog::Purpose::open)
+    if (const auto path = s.dialogs.file.draw(s.ui, s.project.start_page.pictures)) {
+        if (s.dialogs.file.purpose() == FileDialog::Purpose::open)
             open_path(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::save)
+        else if (s.dialogs.file.purpose() == FileDialog::Purpose::save)
             save_as(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::revise)
+        else if (s.dialogs.file.purpose() == FileDialog::Purpose::revise)
             revise_with(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::writing)
+        else if (s.dialogs.file.purpose() == FileDialog::Purpose::writing)
             open_writing(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::reference)
-            pin_reference(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::ink)
-            open_ink(s, *path);
-        else if (s.files.purpose() == FileDialog::Purpose::save_ink)
-            save_ink(s, *path);
-        else if (s.painter)
-            s.painter->post(export_command(s, *path));
+        else if (s.dialogs.file.purpose() == FileDialog::Purpose::reference)
+            pin_reference(s.view.references, s.paint_thread.get(), s.status, *path);
+        else if (s.dialogs.file.purpose() == FileDialog::Purpose::ink)
+            open_ink(s.paint_thread.get(), s.status, *path);
+        else if (s.dialogs.file.purpose() == FileDialog::Purpose::save_ink)
+            save_ink(s.colours, s.brush.ink, s.status, *path);
+        else if (s.paint_thread)
+            s.paint_thread->post(export_command(s, *path));
     }
 }
 
 void Studio::take_model() {
     Session& s = session_;
-    if (s.model_is_new) {
-        const stroke::Model& m = s.painter->model();
+    if (s.view.model_changed) {
+        const stroke::Model& m = s.paint_thread->model();
         hand_.reset();
         line_start_.reset();
         thumbnails_from_.reset();
-        s.hand_down = false;
+        s.tools.pointer_down = false;
         scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
-        const render::MapPixels pixels = s.painter->take_pixels();
+        const render::MapPixels pixels = s.paint_thread->take_pixels();
         scene_->set_texture(pixels);
-        s.highest = highest_of(pixels.levels[0]);
+        s.view.max_ink_height = highest_of(pixels.levels[0]);
         view_->scene_changed();
         colours_shown_ = ModelView::glaze;
-        if (!std::exchange(s.keeps_view, false)) {
+        if (!std::exchange(s.view.keep_camera, false)) {
             const Orbit fresh;
             s.view.orbit.azimuth = fresh.azimuth;
             s.view.orbit.elevation = fresh.elevation;
@@ -230,68 +232,69 @@ void Studio::take_model() {
             if (s.view.orbit.parallel_until_turned) s.view.orbit.set_parallel(false);
             s.view.orbit.frame(m.mesh->bounds);
         }
-        s.model_is_new = false;
-        strokes_seen_ = s.strokes.size();
+        s.view.model_changed = false;
+        strokes_seen_ = s.journal.lines.size();
     }
-    if (s.last.pixels) {
-        scene_->set_texture(*s.last.pixels);
-        s.highest = highest_of(s.last.pixels->levels[0]);
-        s.last.pixels.reset();
+    if (s.reported.pixels) {
+        scene_->set_texture(*s.reported.pixels);
+        s.view.max_ink_height = highest_of(s.reported.pixels->levels[0]);
+        s.reported.pixels.reset();
         view_->scene_changed();
     }
-    scene_->update_tiles(s.last.tiles);
-    for (const render::TilePixels& tile : s.last.tiles)
-        s.highest = std::max(s.highest, highest_of(std::span(tile.rgba).first(256)));
-    for (const render::TilePixels& tile : s.last.tiles) view_->texture_changed(tile.boxes);
-    s.last.tiles.clear();
-    if (s.strokes.size() != strokes_seen_ || (s.last.project != pictured_ && !s.strokes.empty())) {
-        strokes_seen_ = s.strokes.size();
-        pictured_ = s.last.project;
+    scene_->update_tiles(s.reported.tiles);
+    for (const render::TilePixels& tile : s.reported.tiles)
+        s.view.max_ink_height = std::max(s.view.max_ink_height, highest_of(std::span(tile.rgba).first(256)));
+    for (const render::TilePixels& tile : s.reported.tiles) view_->texture_changed(tile.boxes);
+    s.reported.tiles.clear();
+    if (s.journal.lines.size() != strokes_seen_ || (s.reported.project != pictured_ && !s.journal.lines.empty())) {
+        strokes_seen_ = s.journal.lines.size();
+        pictured_ = s.reported.project;
         picture_due_ = now_ + kPictureAfter;
     }
 }
 
 void Studio::show_colours() {
     Session& s = session_;
-    if (s.view.shown == colours_shown_) return;
-    if ((colours_shown_ == ModelView::wetness) != (s.view.shown == ModelView::wetness)) {
-        s.painter->post(SendTexture{s.view.shown == ModelView::wetness});
-        s.highest = 0;
+    if (s.view.shading == colours_shown_) return;
+    if ((colours_shown_ == ModelView::wetness) != (s.view.shading == ModelView::wetness)) {
+        s.paint_thread->post(SendTexture{s.view.shading == ModelView::wetness});
+        s.view.max_ink_height = 0;
     }
-    colours_shown_ = s.view.shown;
+    colours_shown_ = s.view.shading;
     view_->scene_changed();
-    const stroke::Model& m = s.painter->model();
-    if (s.view.shown == ModelView::charts) scene_->set_triangle_colours(chart_colours(m.atlas));
-    if (s.view.shown == ModelView::stretch) scene_->set_triangle_colours(stretch_colours(*m.mesh, m.atlas));
+    const stroke::Model& m = s.paint_thread->model();
+    if (s.view.shading == ModelView::charts) scene_->set_triangle_colours(chart_colours(m.atlas));
+    if (s.view.shading == ModelView::stretch) scene_->set_triangle_colours(stretch_colours(*m.mesh, m.atlas));
 }
 
 void Studio::update_tuft(double now) {
     Session& s = session_;
-    s.tuft = {};
-    s.depth = 0;
-    s.palette.tuft = s.last.on_palette && s.last.tuft ? *s.last.tuft : brush::TuftState{};
-    s.pressed = s.last.tuft && !s.last.tuft->branches.empty() && !s.last.on_palette;
-    if (s.pressed) {
-        s.tuft = *s.last.tuft;
-    } else if (s.tool != Tool::writing && s.tool != Tool::fill && s.tool != Tool::pick && s.tool != Tool::mask &&
-               !s.journal.moves && cursor_inside_ && drag_ == Drag::none && !dialog_open()) {
-        if (!preview_ || preview_brush_ != s.brush) {
-            preview_ = brush::make_tuft(brush::load_preset(s.brush));
-            preview_brush_ = s.brush;
+    s.view.tuft.state = {};
+    s.view.tuft.depth = 0;
+    s.colours.palette.tuft = s.reported.on_palette && s.reported.tuft ? *s.reported.tuft : brush::TuftState{};
+    s.view.tuft.pressed = s.reported.tuft && !s.reported.tuft->branches.empty() && !s.reported.on_palette;
+    if (s.view.tuft.pressed) {
+        s.view.tuft.state = *s.reported.tuft;
+    } else if (s.tools.active != Tool::writing && s.tools.active != Tool::fill && s.tools.active != Tool::pick &&
+               s.tools.active != Tool::mask && !s.journal.moves && cursor_inside_ && drag_ == Drag::none &&
+               !is_dialog_open(session_)) {
+        if (!preview_ || preview_brush_ != s.brush.preset) {
+            preview_ = brush::make_tuft(brush::load_preset(s.brush.preset));
+            preview_brush_ = s.brush.preset;
         }
         Event at = cursor_;
         at.time = now;
-        const PointerInput hand(*s.painter->model().query, preview_->preset, s.hand);
-        if (const auto pose = hand.hover(aim_of(at))) s.tuft = brush::step(*preview_, *pose, {}, 0.01);
+        const PointerInput hand(*s.paint_thread->model().query, preview_->preset, s.tools.pointer);
+        if (const auto pose = hand.hover(aim_of(at))) s.view.tuft.state = brush::step(*preview_, *pose, {}, 0.01);
     }
-    if (s.tuft.branches.empty() || !s.pressed) return;
-    const brush::Section& root = s.tuft.branches.front().sections.back();
+    if (s.view.tuft.state.branches.empty() || !s.view.tuft.pressed) return;
+    const brush::Section& root = s.view.tuft.state.branches.front().sections.back();
     double length = 0;
-    const auto& sections = s.tuft.branches.front().sections;
+    const auto& sections = s.view.tuft.state.branches.front().sections;
     for (std::size_t i = 1; i < sections.size(); ++i)
         length += glm::distance(sections[i].centre, sections[i - 1].centre);
-    const auto hit = s.painter->model().query->ray(root.centre, root.tangent, 0, length);
-    if (hit) s.depth = length - hit->distance;
+    const auto hit = s.paint_thread->model().query->ray(root.centre, root.tangent, 0, length);
+    if (hit) s.view.tuft.depth = length - hit->distance;
 }
 
 void Studio::draw_scene(unsigned framebuffer, int height) {
@@ -301,31 +304,31 @@ void Studio::draw_scene(unsigned framebuffer, int height) {
     const float shade = s.ui.settings().theme == Theme::dark ? 0.155f : 0.94f;
     glClearColor(shade, shade, shade, 1);
     glClear(GL_COLOR_BUFFER_BIT);
-    if (!s.painter || s.model_is_new) return;
+    if (!s.paint_thread || s.view.model_changed) return;
     show_colours();
     static constexpr render::Shading shadings[] = {
         render::Shading::glaze,  render::Shading::clay,   render::Shading::flat,      render::Shading::height,
         render::Shading::height, render::Shading::texels, render::Shading::triangles, render::Shading::triangles};
     const bool dark = s.ui.settings().theme == Theme::dark;
-    const render::GlSolid solid = solid_of(s.tuft, colour_in_tuft(s));
+    const render::GlSolid solid = solid_of(s.view.tuft.state, colour_in_tuft(s));
     render::GlView::Frame f{.camera = camera(),
                             .solid = &solid,
-                            .opacity = s.view.see_through ? 0.25f
-                                       : s.pressed        ? 0.92f
-                                                          : 0.72f};
-    f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shown)],
-                      .roughness = s.looks.roughness,
-                      .section = section_plane(s)};
+                            .opacity = s.view.see_through    ? 0.25f
+                                       : s.view.tuft.pressed ? 0.92f
+                                                             : 0.72f};
+    f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shading)],
+                      .roughness = s.colours.appearance.roughness,
+                      .section = section_plane(s.view, s.paint_thread->model().mesh->bounds)};
     // Only where it is shown: more ink than before must not draw everything anew.
     if (f.look.options.shading == render::Shading::height)
-        f.look.options.height_range = static_cast<float>(height_range(s));
+        f.look.options.height_range = static_cast<float>(height_range(s.view.max_ink_height));
     f.look.light = render::make_light(s.view.rig, f.camera);
     f.look.low = dark ? Vec3f(0.27f) : Vec3f(0.62f);
     f.look.high = dark ? Vec3f(0.40f, 0.405f, 0.415f) : Vec3f(0.80f, 0.805f, 0.815f);
     f.moving = drag_ != Drag::none || now_ - last_turn_ < kTurnPause;
     f.framebuffer = framebuffer;
-    f.x = s.area.x;
-    f.y = height - s.area.y - s.area.height;
+    f.x = s.view.area.x;
+    f.y = height - s.view.area.y - s.view.area.height;
     draw_comparison(f, height);
     view_->draw(*scene_, f);
     draw_atlas(f.look.options, framebuffer, height);
@@ -333,24 +336,24 @@ void Studio::draw_scene(unsigned framebuffer, int height) {
 
 void Studio::keep_picture() {
     Session& s = session_;
-    if (picture_due_ == 0 || now_ < picture_due_ || !s.painter || s.pressed || !settled(s)) return;
+    if (picture_due_ == 0 || now_ < picture_due_ || !s.paint_thread || s.view.tuft.pressed || !is_settled(s)) return;
     picture_due_ = 0;
-    if (s.last.project.empty()) return;
-    s.pictures.keep(s.last.project, s.area.width, s.area.height,
-                    render::read_pixels(s.area.x, 0, s.area.width, s.area.height));
+    if (s.reported.project.empty()) return;
+    s.project.start_page.pictures.keep(s.reported.project, s.view.area.width, s.view.area.height,
+                                       render::read_pixels(s.view.area.x, 0, s.view.area.width, s.view.area.height));
 }
 
 // While the hand draws, the ink of its newest samples shall be in this frame and not in the next:
 // the painter gets a part of the time that a frame takes, if it keeps up at all.
 void Studio::await_ink(double since_last) {
     Session& s = session_;
-    s.painter->wait_idle(std::min(kInkWait, kInkPart * since_last));
-    poll_painter(s);
+    s.paint_thread->wait_idle(std::min(kInkWait, kInkPart * since_last));
+    poll_paint_thread(s);
     take_model();
 }
 
 void Studio::shown(double now) {
-    for (; !asked_.empty() && asked_.front() <= session_.last.done; asked_.pop_front())
+    for (; !asked_.empty() && asked_.front() <= session_.reported.done; asked_.pop_front())
         delays_.push_back(now - asked_.front());
 }
 
@@ -360,16 +363,18 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     now_ = now;
     framebuffer_ = framebuffer;
     height_ = height;
-    if (const float scale = scale_for(content_scale_, width, height); !s.wanted.own_scale && s.wanted.scale != scale) {
-        s.wanted.scale = scale;
-        s.restyle = true;
+    if (const float scale = scale_for(content_scale_, width, height);
+        !s.preferences.ui.own_scale && s.preferences.ui.scale != scale) {
+        s.preferences.ui.scale = scale;
+        s.preferences.restyle = true;
     }
     if (std::exchange(s.ui.sections_changed, false)) store_settings(s);
-    if (s.restyle) {
-        s.restyle = false;
-        if (const std::string missing = s.ui.prepare(s.wanted); !missing.empty()) say(s, missing);
-        if (s.wanted.language != s.ui.settings().language) {  // there is no font for it
-            s.wanted.language = s.ui.settings().language;
+    if (s.preferences.restyle) {
+        s.preferences.restyle = false;
+        if (const std::string missing = s.ui.prepare(s.preferences.ui); !missing.empty())
+            show_message(s.status, missing);
+        if (s.preferences.ui.language != s.ui.settings().language) {  // there is no font for it
+            s.preferences.ui.language = s.ui.settings().language;
             store_settings(s);
         }
         ImGui_ImplOpenGL3_DestroyFontsTexture();
@@ -382,11 +387,11 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     ImGui::NewFrame();
     s.ui.begin_frame();
     layout(width, height);
-    if (s.painter) take_model();
-    const bool keeps_up = s.painter && s.painter->idle();
+    if (s.paint_thread) take_model();
+    const bool keeps_up = s.paint_thread && s.paint_thread->idle();
     for (const Event& event : events) handle(event);
-    if (s.painter && hand_ && keeps_up && !events.empty()) await_ink(dt);
-    if (s.painter) {
+    if (s.paint_thread && hand_ && keeps_up && !events.empty()) await_ink(dt);
+    if (s.paint_thread) {
         watch_curve();
         watch_writing();
         update_tuft(now);
@@ -404,8 +409,8 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
 
 render::GlCamera Studio::camera() const {
     const Session& s = session_;
-    return s.view.orbit.camera(s.area.width, s.area.height,
-                               s.painter ? s.painter->model().mesh->bounds : Box{{-1, -1, -1}, {1, 1, 1}});
+    return s.view.orbit.camera(s.view.area.width, s.view.area.height,
+                               s.paint_thread ? s.paint_thread->model().mesh->bounds : Box{{-1, -1, -1}, {1, 1, 1}});
 }
 
 }  // namespace tuft::app

@@ -51,7 +51,6 @@ class Studio {
 
     void layout(int width, int height);
     void panels();
-    bool dialog_open() const;
     void take_model();
     void handle(const Event& event);
     void fly(const Event& event);
@@ -141,8 +140,5 @@ class Studio {
     std::deque<double> asked_;        ///< when each sample was taken whose ink is not shown yet
     std::size_t samples_ = 0;
 };
-
-/// Hair, as it is dipped into an ink of that colour (sRGB), and ferrule as triangles for drawing.
-render::GlSolid solid_of(const brush::TuftState& tuft, unsigned ink);
 
 }  // namespace tuft::app

@@ -8,34 +8,34 @@
 namespace tuft::app {
 
 bool Studio::comparing() const {
-    return session_.painter && !session_.snapshots.compared.empty();
+    return session_.paint_thread && !session_.journal.snapshots.compared.empty();
 }
 
 // The snapshot has the left half of the view, the work the right one; swiped, both have all of it.
 void Studio::layout_comparison() {
     Session& s = session_;
-    SnapshotState& c = s.snapshots;
+    SnapshotState& c = s.journal.snapshots;
     c.width = 0;
     if (!comparing() || c.swipe) return;
-    c.x = s.area.x;
-    c.y = s.area.y;
-    c.width = s.area.width / 2;
-    c.height = s.area.height;
-    s.area.x += c.width + 1;
-    s.area.width = std::max(16, s.area.width - c.width - 1);
-    c.width = s.area.width;  // both look the same way at the same size
+    c.x = s.view.area.x;
+    c.y = s.view.area.y;
+    c.width = s.view.area.width / 2;
+    c.height = s.view.area.height;
+    s.view.area.x += c.width + 1;
+    s.view.area.width = std::max(16, s.view.area.width - c.width - 1);
+    c.width = s.view.area.width;  // both look the same way at the same size
 }
 
 void Studio::take_snapshot_picture() {
     Session& s = session_;
-    SnapshotState& c = s.snapshots;
+    SnapshotState& c = s.journal.snapshots;
     if (!comparing()) {
         compare_scene_.reset();
         compare_view_.reset();
         return;
     }
     if (!c.picture || c.picture->id != c.compared) return;
-    const stroke::Model& m = s.painter->model();
+    const stroke::Model& m = s.paint_thread->model();
     compare_scene_ = std::make_unique<render::GlScene>();
     compare_view_ = std::make_unique<render::GlView>();
     compare_scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
@@ -47,7 +47,7 @@ void Studio::take_snapshot_picture() {
 // Before the work is drawn: swiped, it would lie under it, so what was drawn is kept as a texture.
 void Studio::draw_comparison(const render::GlView::Frame& of_work, int height) {
     Session& s = session_;
-    SnapshotState& c = s.snapshots;
+    SnapshotState& c = s.journal.snapshots;
     take_snapshot_picture();
     if (!comparing() || !c.ready || !compare_scene_) return;
     render::GlView::Frame f = of_work;
@@ -61,16 +61,16 @@ void Studio::draw_comparison(const render::GlView::Frame& of_work, int height) {
     glBindTexture(GL_TEXTURE_2D, c.texture);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, s.area.x, height - s.area.y - s.area.height, s.area.width,
-                     s.area.height, 0);
+    glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, s.view.area.x, height - s.view.area.y - s.view.area.height,
+                     s.view.area.width, s.view.area.height, 0);
 }
 
 // Whether a press is one on the work, not on the snapshot beside or over it.
 bool Studio::on_work(const Event& e) const {
     const Session& s = session_;
-    const SnapshotState& c = s.snapshots;
+    const SnapshotState& c = s.journal.snapshots;
     if (!comparing()) return true;
-    return e.x >= s.area.x + (c.swipe && c.ready ? c.line_at * s.area.width : 0);
+    return e.x >= s.view.area.x + (c.swipe && c.ready ? c.line_at * s.view.area.width : 0);
 }
 
 }  // namespace tuft::app

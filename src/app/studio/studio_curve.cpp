@@ -24,9 +24,9 @@ int Studio::curve_point_at(const Event& e) const {
     const render::GlCamera c = camera();
     int nearest = -1;
     double least = kGrab * static_cast<double>(s.ui.settings().scale);
-    for (std::size_t i = 0; i < s.curve.points.size(); ++i) {
-        const Vec3 at = render::picture_point(c, s.curve.points[i].position);
-        const double away = std::hypot(at.x + s.area.x - e.x, at.y + s.area.y - e.y);
+    for (std::size_t i = 0; i < s.tools.curve.points.size(); ++i) {
+        const Vec3 at = render::picture_point(c, s.tools.curve.points[i].position);
+        const double away = std::hypot(at.x + s.view.area.x - e.x, at.y + s.view.area.y - e.y);
         if (away < least) least = away, nearest = static_cast<int>(i);
     }
     return nearest;
@@ -34,32 +34,33 @@ int Studio::curve_point_at(const Event& e) const {
 
 std::optional<CurvePoint> Studio::curve_point(const Event& e) const {
     const Aim aim = aim_of(e);
-    const auto hit = aim_at(*session_.painter->model().query, aim);
+    const auto hit = aim_at(*session_.paint_thread->model().query, aim);
     if (!hit) return std::nullopt;
     return CurvePoint{.position = hit->position, .outward = -aim.ray.direction};
 }
 
 bool Studio::curve_editable() const {
     const Session& s = session_;
-    return s.curve.last_stroke != 0 && !s.strokes.empty() && s.strokes.back().id == s.curve.last_stroke;
+    return s.tools.curve.last_stroke != 0 && !s.journal.lines.empty() &&
+           s.journal.lines.back().id == s.tools.curve.last_stroke;
 }
 
 void Studio::curve_press(const Event& e) {
-    CurveInWork& curve = session_.curve;
+    CurveInWork& curve = session_.tools.curve;
     curve.grabbed = curve_point_at(e);
     if (curve.grabbed >= 0) return;
     const auto point = curve_point(e);
     if (!point) return;
     // A painted line or curve is done when a new one is begun.
-    if (session_.tool == Tool::line || curve.last_stroke || curve.waits) curve = {};
+    if (session_.tools.active == Tool::line || curve.last_stroke || curve.waits) curve = {};
     curve.points.push_back(*point);
-    if (session_.tool == Tool::line) curve.points.push_back(*point);
+    if (session_.tools.active == Tool::line) curve.points.push_back(*point);
     curve.grabbed = static_cast<int>(curve.points.size()) - 1;
     line_start_ = e;
 }
 
 void Studio::curve_drag(const Event& e) {
-    CurveInWork& curve = session_.curve;
+    CurveInWork& curve = session_.tools.curve;
     if (curve.grabbed < 0) return;
     CurvePoint& grabbed = curve.points[static_cast<std::size_t>(curve.grabbed)];
     Event at = e;
@@ -67,11 +68,11 @@ void Studio::curve_drag(const Event& e) {
         // Steps of 15° round the neighbour, as seen.
         const std::size_t other = curve.grabbed > 0 ? static_cast<std::size_t>(curve.grabbed) - 1 : 1;
         const Vec3 pivot = render::picture_point(camera(), curve.points[other].position);
-        const double x = e.x - session_.area.x - pivot.x, y = e.y - session_.area.y - pivot.y;
+        const double x = e.x - session_.view.area.x - pivot.x, y = e.y - session_.view.area.y - pivot.y;
         const double angle = kSnap * std::round(std::atan2(y, x) / kSnap),
                      length = x * std::cos(angle) + y * std::sin(angle);
-        at.x = pivot.x + session_.area.x + length * std::cos(angle);
-        at.y = pivot.y + session_.area.y + length * std::sin(angle);
+        at.x = pivot.x + session_.view.area.x + length * std::cos(angle);
+        at.y = pivot.y + session_.view.area.y + length * std::sin(angle);
     }
     if (auto point = curve_point(at)) {
         point->pressure = grabbed.pressure;
@@ -81,8 +82,8 @@ void Studio::curve_drag(const Event& e) {
 }
 
 void Studio::curve_release(const Event& e) {
-    CurveInWork& curve = session_.curve;
-    const bool fresh_line = session_.tool == Tool::line && line_start_ && !curve.last_stroke;
+    CurveInWork& curve = session_.tools.curve;
+    const bool fresh_line = session_.tools.active == Tool::line && line_start_ && !curve.last_stroke;
     const bool moved = line_start_ && std::hypot(e.x - line_start_->x, e.y - line_start_->y) >= kShortest;
     curve.grabbed = -1;
     line_start_.reset();
@@ -93,7 +94,7 @@ void Studio::curve_release(const Event& e) {
 }
 
 void Studio::curve_wheel(const Event& e) {
-    CurveInWork& curve = session_.curve;
+    CurveInWork& curve = session_.tools.curve;
     double& pressure = curve.points[static_cast<std::size_t>(curve.over)].pressure;
     pressure = std::clamp(pressure + 0.1 * e.steps, 0.0, 2.0);
     curve.changed = true;
@@ -101,7 +102,7 @@ void Studio::curve_wheel(const Event& e) {
 }
 
 bool Studio::curve_key(const Event& e) {
-    CurveInWork& curve = session_.curve;
+    CurveInWork& curve = session_.tools.curve;
     if (curve.points.empty()) return false;
     if (e.key == GLFW_KEY_ENTER || e.key == GLFW_KEY_KP_ENTER) {
         if (curve.changed || !curve.last_stroke)
@@ -111,7 +112,7 @@ bool Studio::curve_key(const Event& e) {
     } else if (e.key == GLFW_KEY_ESCAPE) {
         curve = {};
         line_start_.reset();
-    } else if ((e.key == GLFW_KEY_BACKSPACE || e.key == GLFW_KEY_DELETE) && session_.tool == Tool::curve) {
+    } else if ((e.key == GLFW_KEY_BACKSPACE || e.key == GLFW_KEY_DELETE) && session_.tools.active == Tool::curve) {
         curve.points.erase(curve.points.begin() +
                            (curve.over >= 0 ? curve.over : static_cast<int>(curve.points.size()) - 1));
         curve.over = curve.grabbed = -1;
@@ -128,10 +129,10 @@ bool Studio::curve_key(const Event& e) {
 
 // Of the brush in hand; found anew where it is another one.
 TipLag Studio::tip_lag(const brush::Preset& preset) {
-    if (tip_lag_brush_ != session_.brush) {
+    if (tip_lag_brush_ != session_.brush.preset) {
         tip_lag_ = stroke::measure_tip_lag(preset);
         tilted_tip_lag_.emplace(preset);
-        tip_lag_brush_ = session_.brush;
+        tip_lag_brush_ = session_.brush.preset;
     }
     return {tip_lag_, [this](double depth, const Vec2& lean) { return tilted_tip_lag_->at(depth, lean); }};
 }
@@ -139,28 +140,28 @@ TipLag Studio::tip_lag(const brush::Preset& preset) {
 // Paints it, in the place of what was painted before when that is the last stroke.
 void Studio::paint_curve() {
     Session& s = session_;
-    CurveInWork& curve = s.curve;
+    CurveInWork& curve = s.tools.curve;
     if (curve.points.size() < 2) return;
-    const brush::Preset preset = brush::load_preset(s.brush);
+    const brush::Preset preset = brush::load_preset(s.brush.preset);
     const TipLag lag = tip_lag(preset);
     const render::GlCamera c = camera();
-    CurveHand hand{.hold = stroke::holder_options(preset, s.painter->model().query->mesh()),
-                   .settings = s.curve_settings,
-                   .pressure = s.hand.pressure,
-                   .tilt = {s.hand.tilt.x, -s.hand.tilt.y},
+    CurveHand hand{.hold = stroke::holder_options(preset, s.paint_thread->model().query->mesh()),
+                   .settings = s.tools.curve_settings,
+                   .pressure = s.tools.pointer.pressure,
+                   .tilt = {s.tools.pointer.tilt.x, -s.tools.pointer.tilt.y},
                    .right = c.right,
                    .down = -c.up};
     hand.hold.tip_lag = lag.upright;
     hand.hold.leaned = lag.leaned;
-    const auto strokes = curve_poses(*s.painter->model().query, curve.points, hand);
-    if (strokes.empty()) return say(s, "The line does not lie on the model.");
-    if (curve_editable()) s.painter->post(UndoStroke{});
+    const auto strokes = curve_poses(*s.paint_thread->model().query, curve.points, hand);
+    if (strokes.empty()) return show_message(s.status, "The line does not lie on the model.");
+    if (curve_editable()) s.paint_thread->post(UndoStroke{});
     for (std::size_t i = 0; i < strokes.size(); ++i) {
         BeginStroke begin = stroke_to_begin();
         begin.joined = i > 0;
-        s.painter->post(std::move(begin));
-        s.painter->post(ExtendStroke{strokes[i], now_});
-        s.painter->post(EndStroke{});
+        s.paint_thread->post(std::move(begin));
+        s.paint_thread->post(ExtendStroke{strokes[i], now_});
+        s.paint_thread->post(EndStroke{});
     }
     curve.changed = false;
     curve.waits = true;
@@ -169,14 +170,14 @@ void Studio::paint_curve() {
 
 void Studio::watch_curve() {
     Session& s = session_;
-    CurveInWork& curve = s.curve;
-    if (curve.waits && s.painter->idle() && s.last.waiting == 0) {
+    CurveInWork& curve = s.tools.curve;
+    if (curve.waits && s.paint_thread->idle() && s.reported.waiting == 0) {
         curve.waits = false;
-        curve.last_stroke = s.strokes.empty() ? 0 : s.strokes.back().id;
+        curve.last_stroke = s.journal.lines.empty() ? 0 : s.journal.lines.back().id;
     }
     // Undone, or something was painted after it: it is history now.
-    if (curve.last_stroke && !curve_editable() && settled(s)) curve = {};
-    const bool tool = s.tool == Tool::line || s.tool == Tool::curve;
+    if (curve.last_stroke && !curve_editable() && is_settled(s)) curve = {};
+    const bool tool = s.tools.active == Tool::line || s.tools.active == Tool::curve;
     if (!tool && !curve.points.empty()) curve = {};
     if (curve.grabbed < 0) curve.over = tool && cursor_inside_ ? curve_point_at(cursor_) : -1;
 }

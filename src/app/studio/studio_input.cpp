@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/panels/panels.h"
+#include "app/session/top_dialog.h"
 #include "app/studio/studio.h"
 
 /// What the window does with a person's events: painting, looking round, keys.
@@ -18,13 +19,13 @@ constexpr double kTurnPixels = 1.0;
 
 Aim Studio::aim_of(const Event& e) const {
     const render::GlCamera c = camera();
-    Aim aim{.ray = render::ray_at(c, e.x - session_.area.x, e.y - session_.area.y),
+    Aim aim{.ray = render::ray_at(c, e.x - session_.view.area.x, e.y - session_.view.area.y),
             .view_right = c.right,
             .view_up = c.up,
             .metres_per_pixel = render::metres_per_pixel(c, session_.view.orbit.target),
             .time = e.time,
             .pressure = e.pressure,
-            .section = section_plane(session_)};
+            .section = section_plane(session_.view, session_.paint_thread->model().mesh->bounds)};
     if (e.pressure >= 0) {
         aim.tilt = Vec2(e.tilt.x, -e.tilt.y);
         aim.turn = e.turn;
@@ -35,37 +36,37 @@ Aim Studio::aim_of(const Event& e) const {
 // What a stroke is painted with, by hand or along a line.
 BeginStroke Studio::stroke_to_begin() const {
     const Session& s = session_;
-    return {.brush = s.brush,
-            .ink = s.ink,
-            .symmetry = s.symmetry,
-            .carry = s.carry,
-            .as_it_is = s.carry && s.palette.shown,
-            .layer = s.layer,
-            .mask = s.mask,
-            .erases = s.erasing,
-            .wet = s.wet,
-            .tip_ink = s.two_inks ? s.tip_ink : "",
-            .tip_depth = s.tip_depth};
+    return {.brush = s.brush.preset,
+            .ink = s.brush.ink,
+            .symmetry = s.tools.symmetry,
+            .carry = s.brush.persistent,
+            .as_it_is = s.brush.persistent && s.colours.palette.shown,
+            .layer = s.layers.active,
+            .mask = s.masks.active,
+            .erases = s.brush.erases,
+            .wet = s.brush.wet,
+            .tip_ink = s.brush.two_inks ? s.brush.tip_ink : "",
+            .tip_depth = s.brush.tip_depth};
 }
 
 void Studio::post(std::vector<HandStep> steps, double time) {
     Session& s = session_;
     for (HandStep& step : steps) {
         if (step.kind == HandStep::Kind::begin && on_plate_)
-            s.painter->post(BeginStroke{.brush = s.brush,
-                                        .ink = s.ink,
-                                        .carry = true,
-                                        .as_it_is = true,
-                                        .layer = stroke::kPaletteLayer,
-                                        .wet = true});
+            s.paint_thread->post(BeginStroke{.brush = s.brush.preset,
+                                             .ink = s.brush.ink,
+                                             .carry = true,
+                                             .as_it_is = true,
+                                             .layer = stroke::kPaletteLayer,
+                                             .wet = true});
         else if (step.kind == HandStep::Kind::begin)
-            s.painter->post(stroke_to_begin());
+            s.paint_thread->post(stroke_to_begin());
         else if (step.kind == HandStep::Kind::end)
-            s.painter->post(EndStroke{});
+            s.paint_thread->post(EndStroke{});
         else {
             ++samples_;
             asked_.push_back(time);
-            s.painter->post(ExtendStroke{std::move(step.poses), time});
+            s.paint_thread->post(ExtendStroke{std::move(step.poses), time});
         }
     }
 }
@@ -92,42 +93,44 @@ void Studio::handle(const Event& e) {
             fly(e);
             return;
         case Event::Kind::cap_button:
-            s.cap.seen = true;
-            if (s.painter && !dialog_open()) perform(e.button == 0 ? Act::frame_all : Act::frame_cursor);
+            s.preferences.space_mouse.seen = true;
+            if (s.paint_thread && !is_dialog_open(session_))
+                perform(e.button == 0 ? Act::frame_all : Act::frame_cursor);
             return;
         case Event::Kind::hover_end:
             cursor_inside_ = false;
             return;
         case Event::Kind::scroll:
-            if (!s.painter || ImGui::GetIO().WantCaptureMouse) return;
+            if (!s.paint_thread || ImGui::GetIO().WantCaptureMouse) return;
             if (in_atlas(e)) return atlas_wheel(e);
-            if (s.curve.over >= 0) return curve_wheel(e);
-            if (s.tool == Tool::writing && !s.writing.empty() && !(e.modifiers & (kAlt | kControl)))
+            if (s.tools.curve.over >= 0) return curve_wheel(e);
+            if (s.tools.active == Tool::writing && !s.tools.writing.empty() && !(e.modifiers & (kAlt | kControl)))
                 return writing_wheel(e);
             last_turn_ = now_;
             if (e.modifiers & kControl)
                 s.view.orbit.roll += 0.06 * e.steps;
             else {
-                const auto hit = aim_at(*s.painter->model().query, aim_of(e));
+                const auto hit = aim_at(*s.paint_thread->model().query, aim_of(e));
                 s.view.orbit.zoom(e.steps, hit ? hit->position : s.view.orbit.target);
             }
             return;
         default:
             return;
     }
-    if (e.pressure >= 0) s.pen_pressure = e.pressure;
+    if (e.pressure >= 0) s.tools.pen_pressure = e.pressure;
     cursor_ = e;
-    cursor_inside_ = !ImGui::GetIO().WantCaptureMouse && e.x >= s.area.x && e.y >= s.area.y &&
-                     e.x < s.area.x + s.area.width && e.y < s.area.y + s.area.height;
+    cursor_inside_ = !ImGui::GetIO().WantCaptureMouse && e.x >= s.view.area.x && e.y >= s.view.area.y &&
+                     e.x < s.view.area.x + s.view.area.width && e.y < s.view.area.y + s.view.area.height;
 }
 
 // The view may turn while the hand paints: the stroke goes on under the cursor, as on a banding wheel.
 void Studio::fly(const Event& e) {
     Session& s = session_;
-    s.cap.seen = true;
-    if (!s.painter || dialog_open()) return;
-    const double way = s.cap.moves_eye ? -s.cap.speed : s.cap.speed;
-    s.view.orbit.fly(way * e.push, way * e.twist, s.cap.level);
+    s.preferences.space_mouse.seen = true;
+    if (!s.paint_thread || is_dialog_open(session_)) return;
+    const double way =
+        s.preferences.space_mouse.moves_eye ? -s.preferences.space_mouse.speed : s.preferences.space_mouse.speed;
+    s.view.orbit.fly(way * e.push, way * e.twist, s.preferences.space_mouse.level);
     last_turn_ = now_;
     if (!hand_ || on_plate_) return;
     Event at = cursor_;
@@ -138,42 +141,45 @@ void Studio::fly(const Event& e) {
 void Studio::press(const Event& e) {
     Session& s = session_;
     if (!ImGui::GetIO().WantCaptureMouse || in_palette(e)) {
-        bring_in_colour(s);
-        remember_brush(s);
+        bring_in_colour(s.colours, s.brush.ink, s.paint_thread.get());
+        remember_brush(s.brush, s.paint_thread.get());
     }
-    if (s.painter && !dialog_open() && !hand_ && in_palette(e)) return palette_press(e);
-    if (!s.painter || ImGui::GetIO().WantCaptureMouse || dialog_open() || hand_ || s.curve.grabbed >= 0) return;
+    if (s.paint_thread && !is_dialog_open(session_) && !hand_ && in_palette(e)) return palette_press(e);
+    if (!s.paint_thread || ImGui::GetIO().WantCaptureMouse || is_dialog_open(session_) || hand_ ||
+        s.tools.curve.grabbed >= 0)
+        return;
     if (in_atlas(e)) return atlas_press(e);
     const bool shift = e.modifiers & kShift, control = e.modifiers & kControl, alt = e.modifiers & kAlt;
-    if (s.keymap == Keymap::maya && alt)
+    if (s.preferences.keymap == Keymap::maya && alt)
         drag_ = e.button == 0 ? Drag::turn : e.button == 2 ? Drag::pan : Drag::zoom;
     else if (e.button == 0 && alt)
         drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
-    else if (e.button != 0 && s.keymap == Keymap::blender)
+    else if (e.button != 0 && s.preferences.keymap == Keymap::blender)
         drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
     if (drag_ != Drag::none || e.button != 0 || !on_work(e)) return;
     if (shift_press(e)) return;
-    if (s.tool != Tool::mask && s.tool != Tool::pick) select_entries(s, {});  // ink is shown as it is while one paints
-    if (s.tool == Tool::writing) return lay_writing();
-    if (s.tool == Tool::pick) return pick_press(e);
-    if (s.tool == Tool::mask) return mask_press(e);
-    if (s.tool == Tool::fill) {
-        const auto hit = aim_at(*s.painter->model().query, aim_of(e));
+    if (s.tools.active != Tool::mask && s.tools.active != Tool::pick)
+        select_entries(s.journal, s.paint_thread.get(), {});  // ink is shown as it is while one paints
+    if (s.tools.active == Tool::writing) return lay_writing();
+    if (s.tools.active == Tool::pick) return pick_press(e);
+    if (s.tools.active == Tool::mask) return mask_press(e);
+    if (s.tools.active == Tool::fill) {
+        const auto hit = aim_at(*s.paint_thread->model().query, aim_of(e));
         if (!hit) return;
-        s.fill.at = hit->position;
-        s.painter->post(FillModel{s.ink, s.fill, s.layer, s.mask});
+        s.tools.fill.at = hit->position;
+        s.paint_thread->post(FillModel{s.brush.ink, s.tools.fill, s.layers.active, s.masks.active});
         return;
     }
-    s.erasing = s.tool == Tool::eraser || e.eraser;
-    if (s.tool == Tool::line || s.tool == Tool::curve) return curve_press(e);
+    s.brush.erases = s.tools.active == Tool::eraser || e.eraser;
+    if (s.tools.active == Tool::line || s.tools.active == Tool::curve) return curve_press(e);
     try {
-        const brush::Preset preset = brush::load_preset(s.brush);
-        hand_.emplace(*s.painter->model().query, preset, s.hand, tip_lag(preset));
+        const brush::Preset preset = brush::load_preset(s.brush.preset);
+        hand_.emplace(*s.paint_thread->model().query, preset, s.tools.pointer, tip_lag(preset));
     } catch (const Error& error) {
-        say(s, error.what());
+        show_message(s.status, error.what());
         return;
     }
-    s.hand_down = true;
+    s.tools.pointer_down = true;
     on_plate_ = false;
     post(hand_->move(aim_of(e)), e.time);
 }
@@ -184,21 +190,21 @@ void Studio::move(const Event& e) {
         post(hand_->move(on_plate_ ? palette_aim(e) : aim_of(e)), e.time);
         return;
     }
-    if (s.curve.grabbed >= 0) return curve_drag(e);
-    if (!s.lasso.empty()) return lasso_move(e);
+    if (s.tools.curve.grabbed >= 0) return curve_drag(e);
+    if (!s.masks.lasso.empty()) return lasso_move(e);
     if (s.journal.from) {
-        if (const auto to = aim_at(*s.painter->model().query, aim_of(e))) s.journal.to = to;
+        if (const auto to = aim_at(*s.paint_thread->model().query, aim_of(e))) s.journal.to = to;
         return;
     }
     const double dx = kTurnPixels * (e.x - cursor_.x), dy = kTurnPixels * (e.y - cursor_.y);
     if (drag_ == Drag::atlas) {
-        const double side = s.view.atlas_zoom * std::min(s.atlas_area.width, s.atlas_area.height);
-        s.view.atlas_centre += Vec2(-(e.x - cursor_.x), e.y - cursor_.y) / side;
+        const double side = s.view.atlas.zoom * std::min(s.view.atlas.area.width, s.view.atlas.area.height);
+        s.view.atlas.centre += Vec2(-(e.x - cursor_.x), e.y - cursor_.y) / side;
     }
     if (drag_ == Drag::turn)
         s.view.orbit.turn(dx, dy);
     else if (drag_ == Drag::pan)
-        s.view.orbit.pan(dx, dy, std::min(s.area.width, s.area.height));
+        s.view.orbit.pan(dx, dy, std::min(s.view.area.width, s.view.area.height));
     else if (drag_ == Drag::zoom)
         s.view.orbit.zoom(0.03 * (dx - dy), s.view.orbit.target);
 }
@@ -209,11 +215,11 @@ void Studio::release(const Event& e) {
         post(hand_->move(on_plate_ ? palette_aim(e) : aim_of(e)), e.time);
         post(hand_->lift(), e.time);
         hand_.reset();
-        s.hand_down = false;
+        s.tools.pointer_down = false;
     }
-    if (e.button == 0 && !s.lasso.empty()) lasso_release();
+    if (e.button == 0 && !s.masks.lasso.empty()) lasso_release();
     if (e.button == 0 && s.journal.from) shift_release(e);
-    if (e.button == 0 && s.curve.grabbed >= 0) curve_release(e);
+    if (e.button == 0 && s.tools.curve.grabbed >= 0) curve_release(e);
     drag_ = Drag::none;
 }
 
@@ -222,69 +228,72 @@ void Studio::key(const Event& e) {
     if (ImGui::GetIO().WantTextInput && e.key != GLFW_KEY_ESCAPE) return;
     if (e.key == GLFW_KEY_ESCAPE && hand_) {
         hand_.reset();
-        s.hand_down = false;
-        s.painter->post(CancelStroke{});
+        s.tools.pointer_down = false;
+        s.paint_thread->post(CancelStroke{});
         return;
     }
     if (hand_) return;
-    if (e.key == GLFW_KEY_ESCAPE && !s.lasso.empty()) return s.lasso.clear();
-    if (e.key == GLFW_KEY_ESCAPE && close_dialog(s)) return;
+    if (e.key == GLFW_KEY_ESCAPE && !s.masks.lasso.empty()) return s.masks.lasso.clear();
+    if (e.key == GLFW_KEY_ESCAPE && close_top_dialog(s)) return;
     if (ImGui::GetIO().WantTextInput) return;
-    if ((e.key == GLFW_KEY_ENTER || e.key == GLFW_KEY_KP_ENTER) && !s.key_asked && dialog_open()) {
+    if ((e.key == GLFW_KEY_ENTER || e.key == GLFW_KEY_KP_ENTER) && !s.dialogs.key_to_assign &&
+        is_dialog_open(session_)) {
         s.ui.enter = true;
         return;
     }
-    if (s.key_asked) {
+    if (s.dialogs.key_to_assign) {
         const bool modifier = e.key >= GLFW_KEY_LEFT_SHIFT && e.key <= GLFW_KEY_RIGHT_SUPER;
         if (modifier || name_of(Chord{e.key, e.modifiers}).empty()) return;
-        if (const auto other = s.keys.assign(*s.key_asked, {e.key, e.modifiers}))
-            say(s, std::string(s.ui.tr(title_of(*other))) + s.ui.tr(" has no key now."));
-        s.key_asked.reset();
+        if (const auto other = s.preferences.keys.assign(*s.dialogs.key_to_assign, {e.key, e.modifiers}))
+            show_message(s.status, std::string(s.ui.tr(title_of(*other))) + s.ui.tr(" has no key now."));
+        s.dialogs.key_to_assign.reset();
         store_settings(s);
         return;
     }
-    if (s.painter && !dialog_open() && curve_key(e)) return;
-    if (s.painter && !dialog_open() && e.key == GLFW_KEY_F2) {
-        s.layer_list.renamed = s.layer;
-        s.layer_list.focus = true;
+    if (s.paint_thread && !is_dialog_open(session_) && curve_key(e)) return;
+    if (s.paint_thread && !is_dialog_open(session_) && e.key == GLFW_KEY_F2) {
+        s.layers.list.renamed = s.layers.active;
+        s.layers.list.focus = true;
         return;
     }
-    if (const auto act = s.keys.find({e.key, e.modifiers & (kShift | kControl | kAlt)})) perform(*act);
+    if (const auto act = s.preferences.keys.find({e.key, e.modifiers & (kShift | kControl | kAlt)})) perform(*act);
 }
 
 void Studio::perform(Act act) {
     Session& s = session_;
-    if (act == Act::open) return s.files.show(FileDialog::Purpose::open, {});
-    if (act == Act::quit) leave(s, {});
-    if (act == Act::keys) s.show_keys = !s.show_keys;
-    if (!s.painter || dialog_open()) return;
+    if (act == Act::open) return s.dialogs.file.show(FileDialog::Purpose::open, {});
+    if (act == Act::quit) request_close(s, {});
+    if (act == Act::keys) s.dialogs.show_keys = !s.dialogs.show_keys;
+    if (!s.paint_thread || is_dialog_open(session_)) return;
     const auto tilt = [&](double x, double y) {
-        s.hand.tilt = glm::clamp(s.hand.tilt + Vec2(x, y) * 0.0872664626, -1.0471975512, 1.0471975512);
+        s.tools.pointer.tilt =
+            glm::clamp(s.tools.pointer.tilt + Vec2(x, y) * 0.0872664626, -1.0471975512, 1.0471975512);
     };
     Orbit& o = s.view.orbit;
     switch (act) {
         case Act::undo:
-            s.painter->post(UndoStroke{});
+            s.paint_thread->post(UndoStroke{});
             break;
         case Act::redo:
-            s.painter->post(RedoStroke{});
+            s.paint_thread->post(RedoStroke{});
             break;
         case Act::delete_stroke:
             if (!s.journal.selected.empty())
-                s.painter->post(
+                s.paint_thread->post(
                     EditStrokes{.ids = {s.journal.selected.begin(), s.journal.selected.end()}, .remove = true});
             break;
         case Act::save:
-            s.files.show(FileDialog::Purpose::save, project_name(s) + ".tuft");
+            s.dialogs.file.show(FileDialog::Purpose::save,
+                                project_name(s.paint_thread.get(), s.reported.project) + ".tuft");
             break;
         case Act::export_to:
-            s.show_export = true;
+            s.dialogs.show_export = true;
             break;
         case Act::frame_all:
-            o.frame(s.painter->model().mesh->bounds);
+            o.frame(s.paint_thread->model().mesh->bounds);
             break;
         case Act::frame_cursor:
-            if (const auto hit = aim_at(*s.painter->model().query, aim_of(cursor_))) o.target = hit->position;
+            if (const auto hit = aim_at(*s.paint_thread->model().query, aim_of(cursor_))) o.target = hit->position;
             break;
         case Act::front:
             o.look_from(StandardView::front);
@@ -308,16 +317,16 @@ void Studio::perform(Act act) {
             o.set_parallel(!o.parallel);
             break;
         case Act::lighter:
-            s.hand.pressure = std::max(0.02, s.hand.pressure - 0.05);
+            s.tools.pointer.pressure = std::max(0.02, s.tools.pointer.pressure - 0.05);
             break;
         case Act::heavier:
-            s.hand.pressure = std::min(1.0, s.hand.pressure + 0.05);
+            s.tools.pointer.pressure = std::min(1.0, s.tools.pointer.pressure + 0.05);
             break;
         case Act::smaller:
-            size_brush(s, brush::sized_name(s.brush).factor / 1.1);
+            size_brush(s.brush, s.status, brush::sized_name(s.brush.preset).factor / 1.1);
             break;
         case Act::larger:
-            size_brush(s, brush::sized_name(s.brush).factor * 1.1);
+            size_brush(s.brush, s.status, brush::sized_name(s.brush.preset).factor * 1.1);
             break;
         case Act::lean_left:
             tilt(-1, 0);
@@ -332,43 +341,43 @@ void Studio::perform(Act act) {
             tilt(0, -1);
             break;
         case Act::upright:
-            s.hand.tilt = Vec2(0);
+            s.tools.pointer.tilt = Vec2(0);
             break;
         case Act::brush:
-            s.tool = Tool::brush;
+            s.tools.active = Tool::brush;
             break;
         case Act::line:
-            s.tool = Tool::line;
+            s.tools.active = Tool::line;
             break;
         case Act::curve:
-            s.tool = Tool::curve;
+            s.tools.active = Tool::curve;
             break;
         case Act::writing:
-            s.tool = Tool::writing;
+            s.tools.active = Tool::writing;
             break;
         case Act::eraser:
-            s.tool = Tool::eraser;
+            s.tools.active = Tool::eraser;
             break;
         case Act::fill:
-            s.tool = Tool::fill;
+            s.tools.active = Tool::fill;
             break;
         case Act::palette:
-            show_palette(s, !s.palette.shown);
+            show_palette(s.colours.palette, s.brush, s.status, !s.colours.palette.shown);
             break;
         case Act::pick:
-            s.tool = Tool::pick;
+            s.tools.active = Tool::pick;
             break;
         case Act::mask:
-            s.tool = Tool::mask;
+            s.tools.active = Tool::mask;
             break;
         case Act::atlas:
-            s.view.atlas = !s.view.atlas;
+            s.view.atlas.shown = !s.view.atlas.shown;
             break;
         case Act::see_through:
             s.view.see_through = !s.view.see_through;
             break;
         case Act::next_shading:
-            s.view.shown = static_cast<ModelView>((static_cast<int>(s.view.shown) + 1) % kModelViews);
+            s.view.shading = static_cast<ModelView>((static_cast<int>(s.view.shading) + 1) % kModelViews);
             break;
         case Act::panels:
             fold_panels(s);

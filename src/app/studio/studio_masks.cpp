@@ -13,46 +13,46 @@ constexpr double kLassoStep = 3;  // pixels between two of its corners
 }  // namespace
 
 void Studio::pick_press(const Event& e) {
-    const auto hit = aim_at(*session_.painter->model().query, aim_of(e));
+    const auto hit = aim_at(*session_.paint_thread->model().query, aim_of(e));
     if (hit)
-        session_.painter->post(PickInk{hit->position});
+        session_.paint_thread->post(PickInk{hit->position});
     else
-        say(session_, "Click on the model: the ink that lies there is picked up.");
+        show_message(session_.status, "Click on the model: the ink that lies there is picked up.");
 }
 
 void Studio::mask_press(const Event& e) {
     Session& s = session_;
     stroke::Mask mask;
-    mask.kind = s.mask_choice.kind;
+    mask.kind = s.masks.choice.kind;
     if (mask.kind == stroke::MaskKind::lasso) {
-        s.lasso = {Vec2(e.x, e.y)};
+        s.masks.lasso = {Vec2(e.x, e.y)};
         return;
     }
-    const stroke::Model& model = s.painter->model();
+    const stroke::Model& model = s.paint_thread->model();
     const auto hit = aim_at(*model.query, aim_of(e));
     if (!hit) return;
     if (mask.kind == stroke::MaskKind::angle) {
         mask.direction = hit->normal;
-        mask.within = s.mask_choice.within;
-        mask.soft = s.mask_choice.soft;
+        mask.within = s.masks.choice.within;
+        mask.soft = s.masks.choice.soft;
     } else if (mask.kind == stroke::MaskKind::chart) {
         mask.points = {hit->position};
     } else {
         if (model.mesh->triangle_groups.empty()) return;
-        s.mask_choice.group = model.mesh->group_names[model.mesh->triangle_groups[hit->triangle]];
-        mask.groups = {s.mask_choice.group};
+        s.masks.choice.group = model.mesh->group_names[model.mesh->triangle_groups[hit->triangle]];
+        mask.groups = {s.masks.choice.group};
     }
     make_mask(s, std::move(mask));
 }
 
 void Studio::lasso_move(const Event& e) {
-    std::vector<Vec2>& lasso = session_.lasso;
+    std::vector<Vec2>& lasso = session_.masks.lasso;
     if (std::hypot(e.x - lasso.back().x, e.y - lasso.back().y) >= kLassoStep) lasso.emplace_back(e.x, e.y);
 }
 
 void Studio::lasso_release() {
     Session& s = session_;
-    const std::vector<Vec2> pixels = std::exchange(s.lasso, {});
+    const std::vector<Vec2> pixels = std::exchange(s.masks.lasso, {});
     if (pixels.size() < 3) return;
     const render::GlCamera c = camera();
     stroke::Mask mask;
@@ -61,9 +61,9 @@ void Studio::lasso_release() {
                  .right = c.right,
                  .up = c.up,
                  .perspective = c.parallel_height == 0,
-                 .through = s.mask_choice.through};
+                 .through = s.masks.choice.through};
     for (const Vec2& p : pixels) {
-        const render::GlRay ray = render::ray_at(c, p.x - s.area.x, p.y - s.area.y);
+        const render::GlRay ray = render::ray_at(c, p.x - s.view.area.x, p.y - s.view.area.y);
         const Vec3 d = mask.view.perspective ? ray.direction / glm::dot(ray.direction, c.forward) : ray.origin - c.eye;
         mask.polygon.emplace_back(glm::dot(d, c.right), glm::dot(d, c.up));
     }

@@ -13,12 +13,12 @@ constexpr double kPoolDepth = 60;  // film units in the middle of a pool: 0.6 mm
 }  // namespace
 
 bool Studio::in_palette(const Event& e) const {
-    const PaletteState& p = session_.palette;
+    const PaletteState& p = session_.colours.palette;
     return p.shown && p.width > 0 && e.x >= p.x && e.y >= p.y && e.x < p.x + p.width && e.y < p.y + p.height;
 }
 
 Aim Studio::palette_aim(const Event& e) const {
-    const PaletteState& p = session_.palette;
+    const PaletteState& p = session_.colours.palette;
     const double width = p.width > 0 ? p.width : 1, height = p.width > 0 ? p.height : 1;
     const Vec3 from{((e.x - p.x) / width - 0.5) * stroke::kPaletteWidth,
                     (0.5 - (e.y - p.y) / height) * stroke::kPaletteHeight, kHigh};
@@ -37,30 +37,30 @@ void Studio::palette_press(const Event& e) {
     if (e.button != 0) return;
     const Aim aim = palette_aim(e);
     const Vec3 at{aim.ray.origin.x, aim.ray.origin.y, 0};
-    if (s.palette.tool == PaletteTool::pick) return s.painter->post(PickInk{at, true});
-    if (s.palette.tool == PaletteTool::pour) {
+    if (s.colours.palette.tool == PaletteTool::pick) return s.paint_thread->post(PickInk{at, true});
+    if (s.colours.palette.tool == PaletteTool::pour) {
         stroke::Fill pool{.film = kPoolDepth,
                           .gradient = stroke::Gradient::round,
                           .to_film = 0,
                           .from = at,
-                          .to = at + Vec3{s.palette.radius, 0, 0}};
-        return s.painter->post(FillModel{.ink = s.ink, .fill = pool, .layer = stroke::kPaletteLayer});
+                          .to = at + Vec3{s.colours.palette.radius, 0, 0}};
+        return s.paint_thread->post(FillModel{.ink = s.brush.ink, .fill = pool, .layer = stroke::kPaletteLayer});
     }
     try {
         if (!plate_) plate_ = stroke::make_palette();
-        const brush::Preset preset = brush::load_preset(s.brush);
-        hand_.emplace(*plate_->query, preset, s.hand, tip_lag(preset));
+        const brush::Preset preset = brush::load_preset(s.brush.preset);
+        hand_.emplace(*plate_->query, preset, s.tools.pointer, tip_lag(preset));
     } catch (const Error& error) {
-        say(s, error.what());
+        show_message(s.status, error.what());
         return;
     }
-    s.erasing = false;
-    s.hand_down = on_plate_ = true;
+    s.brush.erases = false;
+    s.tools.pointer_down = on_plate_ = true;
     post(hand_->move(aim), e.time);
 }
 
 void Studio::update_palette_picture() {
-    PaletteState& p = session_.palette;
+    PaletteState& p = session_.colours.palette;
     if (!p.shown || (!p.fresh && p.texture)) return;
     p.fresh = false;
     if (p.picture.rgb.empty()) {

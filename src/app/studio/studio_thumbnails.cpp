@@ -17,7 +17,7 @@ void Studio::update_thumbnails() {
     Session& s = session_;
     const auto scaled = [&](int length) { return static_cast<int>(s.ui.px(static_cast<float>(length))); };
     // From the same side, all of the model, as large as it fits.
-    const Box& bounds = s.painter->model().mesh->bounds;
+    const Box& bounds = s.paint_thread->model().mesh->bounds;
     Orbit orbit = s.view.orbit;
     orbit.frame(bounds);
     orbit.distance *= kCloser;
@@ -25,9 +25,9 @@ void Studio::update_thumbnails() {
     const bool still = drag_ == Drag::none && !hand_ && now_ - last_turn_ > kStill;
     if (still && (!thumbnails_from_ || !(*thumbnails_from_ == from))) {
         thumbnails_from_ = from;
-        s.painter->post(LookFrom{from});
+        s.paint_thread->post(LookFrom{from});
     }
-    LayerList& list = s.layer_list;
+    LayerList& list = s.layers.list;
     for (const std::uint32_t layer : list.fresh) {
         const auto at = list.pictures.find(layer);
         if (at == list.pictures.end()) continue;

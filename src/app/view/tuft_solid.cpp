@@ -1,11 +1,9 @@
-#include <imgui.h>
+#include "app/view/tuft_solid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "app/panels/panels.h"
-#include "app/studio/studio.h"
 #include "brush/tuft_surface.h"
 #include "core/ease.h"
 #include "ink/colour/composite.h"
@@ -42,14 +40,6 @@ Vec3f linear_of(unsigned colour) {
 }
 
 }  // namespace
-
-unsigned colour_in_tuft(const Session& s) {
-    if (s.carry && s.last.brush_colour) {
-        const auto& c = *s.last.brush_colour;
-        return IM_COL32(c[0], c[1], c[2], 255);
-    }
-    return ink_colour(s, s.ink);
-}
 
 // Wet hair is dark: of the ink's light a part stays in it. The root keeps its own colour.
 Vec3f hair_colour(double from_tip, unsigned ink) {
