@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/panels/panels.h"
 #include "app/studio/studio.h"
 
 /// The atlas beside the model; moving strokes over the model.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "app/panels/panels.h"
 #include "app/studio/studio.h"
 #include "core/units.h"
 
