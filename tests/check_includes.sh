@@ -14,8 +14,8 @@ while IFS=: read -r file line; do
     complain "$file: $line: $module (level ${level[$module]}) must not include $target (level ${level[$target]})"
   fi
 done < <(grep -rE --include='*.h' --include='*.cpp' '^#include "[a-z_]+/' "$src")
-# Within the studio: hand and keys, what is seen, what is kept, and over them the panels.
-declare -A storey=([input]=0 [view]=1 [document]=2)
+# Within the studio: from what a device does to the script that plays a person.
+declare -A storey=([input]=0 [view]=1 [document]=2 [work]=3 [paint]=4 [widgets]=5 [session]=6 [panels]=7 [studio]=8 [script]=9)
 while IFS=: read -r file line; do
   own=$(sed -E 's#.*/app/([a-z]+)/.*#\1#' <<<"$file")
   target=$(sed -E 's#.*"app/([a-z_]+)[/.].*#\1#' <<<"$line")

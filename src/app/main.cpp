@@ -137,8 +137,8 @@ void loop(app::Display& display, const Options& options) {
         if (script) script->after_frame(studio, display.width(), display.height());
         display.present();
         studio.shown(display.now());
-        const std::string name = app::project_name(session.paint_thread.get(), session.reported.project) +
-                                 (session.reported.viewing ? " (a view)" : "");
+        const std::string name = app::project_name(session.paint_thread.get(), session.reported.file.project) +
+                                 (session.reported.file.viewing ? " (a view)" : "");
         if (const std::string wanted = name.empty() ? "tuft studio" : name + " \xe2\x80\x93 tuft studio";
             wanted != title)
             display.set_title(title = wanted);

@@ -61,12 +61,12 @@ class WritingOnModel : public ::testing::Test {
                       const WritingHand& hand) {
         const std::string project = folder_ + "/studio.tuft";
         std::filesystem::remove(project);
-        PaintThread::Work work;
+        PaintWork work;
         work.model = std::make_unique<stroke::Model>(test::shipped_model(name, kTexels));
-        work.painting = std::make_unique<stroke::Document>(*work.model);
-        work.texture = std::make_unique<Texture>(*work.painting, ProgressFn{});
+        work.document = std::make_unique<stroke::Document>(*work.model);
+        work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
         work.source = source_folder() + "/models/" + name;
-        EXPECT_EQ(work.autosave.start(project, work.source, {}, *work.painting), "");
+        EXPECT_EQ(work.autosave.start(project, work.source, {}, *work.document), "");
         const mesh::SurfaceQuery& query = *work.model->query;
         const auto at = query.ray(from, along);
         EXPECT_TRUE(at);

@@ -94,16 +94,16 @@ Inspected inspect_file(const fs::path& path, const ProgressFn& progress) {
 }
 
 // Strokes of a former project, its presets and ground, on the new model.
-void carry_strokes(const fs::path& former, PaintThread::Work& work, const ProgressFn& progress) {
+void carry_strokes(const fs::path& former, PaintWork& work, const ProgressFn& progress) {
     const io::Project project = io::Project::open(former, {.access = io::Access::read, .progress = progress});
-    work.painting->use_substrate(ink::parse_substrate(project.model().substrate, former.string()));
-    io::use_presets(project, *work.painting);
+    work.document->use_substrate(ink::parse_substrate(project.model().substrate, former.string()));
+    io::use_presets(project, *work.document);
     work.autosave.take_presets(project);
     work.autosave.take_attachments(project);
     const std::vector<stroke::Stroke> strokes = project.strokes();
-    const std::vector<stroke::StrokeReport> reports = work.painting->replay(strokes, progress);
+    const std::vector<stroke::StrokeReport> reports = work.document->replay(strokes, progress);
     const mesh::TriangleMesh mesh = project.model().mesh;
-    const auto length_of = [&](const std::string& brush) { return work.painting->brush(brush).length; };
+    const auto length_of = [&](const std::string& brush) { return work.document->brush(brush).length; };
     const mesh::SurfaceQuery before(mesh);
     const std::optional<stroke::ModelMotion> motion = stroke::find_motion(before, *work.model->query);
     const std::vector<stroke::StrokeFit> fits =
@@ -114,15 +114,15 @@ void carry_strokes(const fs::path& former, PaintThread::Work& work, const Progre
 }
 
 // In a file from now on, or in memory until there can be one.
-void keep(PaintThread::Work& work, const fs::path& file) {
-    const std::string fault = work.autosave.start(file, work.source, work.frame, *work.painting);
+void keep(PaintWork& work, const fs::path& file) {
+    const std::string fault = work.autosave.start(file, work.source, work.frame, *work.document);
     if (!fault.empty())
-        work.autosave.start_later(file, work.source, work.frame, fault, !work.painting->journal().empty());
+        work.autosave.start_later(file, work.source, work.frame, fault, !work.document->journal().empty());
 }
 
-PaintThread::Work prepare_model(Inspected in, const OpenOptions& options, const fs::path& former,
-                                const fs::path& project, const ProgressFn& progress) {
-    PaintThread::Work work;
+PaintWork prepare_model(Inspected in, const OpenOptions& options, const fs::path& former, const fs::path& project,
+                        const ProgressFn& progress) {
+    PaintWork work;
     stroke::ModelOptions prepare;
     const auto fixed = io::metres_per_unit_of(in.path);
     prepare.repair.metres_per_unit = fixed.value_or(metres_per(options.frame.unit).value_or(kMillimetre));
@@ -133,10 +133,10 @@ PaintThread::Work prepare_model(Inspected in, const OpenOptions& options, const 
     work.frame = options.frame;
     if (!options.own_colours) mesh::drop_colours(in.soup);
     work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
-    work.painting =
+    work.document =
         std::make_unique<stroke::Document>(*work.model, stroke::DocumentOptions{.substrate = options.substrate});
     if (!former.empty()) carry_strokes(former, work, progress);
-    work.texture = std::make_unique<Texture>(*work.painting, progress);
+    work.texture = std::make_unique<Texture>(*work.document, progress);
     work.pixels = work.texture->pixels();
     keep(work, project);
     return work;
@@ -156,8 +156,8 @@ io::Project open_project(const fs::path& path, OpenAs as, const ProgressFn& prog
     return io::Project::open(path, {.access = io::Access::read, .progress = progress});
 }
 
-PaintThread::Work load_project(const fs::path& path, const fs::path& session, OpenAs as, const ProgressFn& progress) {
-    PaintThread::Work work;
+PaintWork load_project(const fs::path& path, const fs::path& session, OpenAs as, const ProgressFn& progress) {
+    PaintWork work;
     report(progress, "reading", 0);
     std::string why;
     io::Project project = open_project(path, as, progress, why);
@@ -167,15 +167,15 @@ PaintThread::Work load_project(const fs::path& path, const fs::path& session, Op
     const ink::Substrate substrate = ink::parse_substrate(stored.substrate, path.string());
     work.model = std::make_unique<stroke::Model>(
         stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas), progress));
-    work.painting = std::make_unique<stroke::Document>(*work.model);
-    work.painting->use_substrate(substrate);
-    io::use_presets(project, *work.painting);
-    io::restore_strokes(project, *work.painting, progress);
-    io::show_looks(project, *work.painting);
-    work.texture = std::make_unique<Texture>(*work.painting, progress);
+    work.document = std::make_unique<stroke::Document>(*work.model);
+    work.document->use_substrate(substrate);
+    io::use_presets(project, *work.document);
+    io::restore_strokes(project, *work.document, progress);
+    io::show_looks(project, *work.document);
+    work.texture = std::make_unique<Texture>(*work.document, progress);
     work.pixels = work.texture->pixels();
     project.listen({});
-    std::vector<stroke::EntryMark> marks = stroke::marks_of(work.painting->journal().strokes());
+    std::vector<stroke::EntryMark> marks = stroke::marks_of(work.document->journal().strokes());
     if (as == OpenAs::view) {
         work.autosave.view(std::move(project), std::move(marks));
     } else if (as == OpenAs::work && why.empty()) {

@@ -65,7 +65,7 @@ class Opening {
     /// Whether the step is done; results are taken once. The error is one line, "" if none.
     struct Result {
         std::optional<Inspected> inspected;
-        std::optional<PaintThread::Work> work;
+        std::optional<PaintWork> work;
         std::optional<InUse> in_use;  ///< and therefore not opened
         std::string error;
         bool done = false;

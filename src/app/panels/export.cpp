@@ -122,8 +122,9 @@ void export_dialog(Session& s) {
     const bool go = ui.primary_button("Choose a file...", 160);
     end_dialog(s);
     if (go)
-        s.dialogs.file.show(FileDialog::Purpose::export_model,
-                            project_name(s.paint_thread.get(), s.reported.project) + preset_of(c.preset).extension);
+        s.dialogs.file.show(
+            FileDialog::Purpose::export_model,
+            project_name(s.paint_thread.get(), s.reported.file.project) + preset_of(c.preset).extension);
     if (go || cancel) s.dialogs.show_export = false;
 }
 

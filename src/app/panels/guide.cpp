@@ -29,10 +29,10 @@ bool painted(const Session& s) {
     return s.journal.lines.size() > s.panels.help.strokes;
 }
 bool taken_back(const Session& s) {
-    return s.reported.can_redo && s.journal.lines.size() < s.panels.help.strokes;
+    return s.reported.document.can_redo && s.journal.lines.size() < s.panels.help.strokes;
 }
 bool named(const Session& s) {
-    return !s.reported.project.empty() && !is_unnamed(s.reported.project);
+    return !s.reported.file.project.empty() && !is_unnamed(s.reported.file.project);
 }
 
 constexpr Step kSteps[] = {

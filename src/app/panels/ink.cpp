@@ -121,12 +121,12 @@ void care(Session& s) {
               "Part of the hair's width that is dipped or wiped, from the right flank, or from the left when negative; "
               "0: all of it. Wipe one side and dip it into another ink: the stroke shows both side by side",
               0.01);
-    if (s.reported.brush_colour) {
-        const auto& c = *s.reported.brush_colour;
+    if (s.reported.brush.colour) {
+        const auto& c = *s.reported.brush.colour;
         ImGui::PushStyleColor(ImGuiCol_PlotHistogram, IM_COL32(c[0], c[1], c[2], 255));
     }
-    ImGui::ProgressBar(static_cast<float>(s.reported.fullness), ImVec2(-1, ui.px(14)), "");
-    if (s.reported.brush_colour) ImGui::PopStyleColor();
+    ImGui::ProgressBar(static_cast<float>(s.reported.brush.fullness), ImVec2(-1, ui.px(14)), "");
+    if (s.reported.brush.colour) ImGui::PopStyleColor();
     ui.hint("Ink left in the brush");
 }
 
@@ -166,7 +166,7 @@ void ink_section(Session& s) {
     ImGui::PopStyleVar(2);
     ui.toggle("Wet ink", s.brush.wet,
               "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
-    if (s.brush.wet || s.reported.wet) {
+    if (s.brush.wet || s.reported.document.wet) {
         if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0))
             s.paint_thread->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush.preset, .seconds = 60});
         ImGui::SameLine();
@@ -287,8 +287,8 @@ void colours_panel(Session& s, float top, float bottom, float left) {
 }
 
 unsigned colour_in_tuft(const Session& s) {
-    if (s.brush.persistent && s.reported.brush_colour) {
-        const auto& c = *s.reported.brush_colour;
+    if (s.brush.persistent && s.reported.brush.colour) {
+        const auto& c = *s.reported.brush.colour;
         return IM_COL32(c[0], c[1], c[2], 255);
     }
     return ink_colour(s, s.brush.ink);

@@ -325,14 +325,14 @@ void journal_panel(Session& s, float top, float bottom, float left) {
         ui.primary_button("Back to the tools", ImGui::GetContentRegionAvail().x / ui.settings().scale))
         s.panels.journal_over_tools = false;
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
-    if (ui.button("Undo", name_of(s.preferences.keys.chord(Act::undo)).c_str(), half, s.reported.can_undo))
+    if (ui.button("Undo", name_of(s.preferences.keys.chord(Act::undo)).c_str(), half, s.reported.document.can_undo))
         s.paint_thread->post(UndoStroke{});
     ImGui::SameLine();
-    if (ui.button("Redo", name_of(s.preferences.keys.chord(Act::redo)).c_str(), half, s.reported.can_redo))
+    if (ui.button("Redo", name_of(s.preferences.keys.chord(Act::redo)).c_str(), half, s.reported.document.can_redo))
         s.paint_thread->post(RedoStroke{});
-    if (!s.reported.busy.empty()) {
-        ImGui::TextUnformatted(ui.tr(s.reported.busy.c_str()));
-        ImGui::ProgressBar(static_cast<float>(s.reported.fraction), ImVec2(-1, ui.px(16)), "");
+    if (!s.reported.progress.busy.empty()) {
+        ImGui::TextUnformatted(ui.tr(s.reported.progress.busy.c_str()));
+        ImGui::ProgressBar(static_cast<float>(s.reported.progress.fraction), ImVec2(-1, ui.px(16)), "");
         if (ui.button("Stop")) s.paint_thread->stop_long_work();
     }
     layers_section(s);

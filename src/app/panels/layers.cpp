@@ -18,9 +18,9 @@ void change(Session& s, const stroke::LayerEdit& edit) {
 
 // A name that no layer has yet.
 std::string fresh_name(const Session& s) {
-    for (std::size_t n = s.reported.layers.layers.size() + 1;; ++n) {
+    for (std::size_t n = s.reported.document.layers.layers.size() + 1;; ++n) {
         const std::string name = std::string(s.ui.tr("Layer")) + " " + std::to_string(n);
-        if (!s.reported.layers.find(std::string_view(name))) return name;
+        if (!s.reported.document.layers.find(std::string_view(name))) return name;
     }
 }
 
@@ -28,8 +28,8 @@ std::string fresh_name(const Session& s) {
 template <class Fn>
 void change(Session& s, Layer layer, Fn&& how) {
     how(layer);
-    if (const Layer* now = s.reported.layers.find(layer.id); now && !(*now == layer))
-        change(s, stroke::changed(s.reported.layers, layer));
+    if (const Layer* now = s.reported.document.layers.find(layer.id); now && !(*now == layer))
+        change(s, stroke::changed(s.reported.document.layers, layer));
 }
 
 constexpr std::pair<ink::Blend, const char*> kBlends[] = {
@@ -39,13 +39,13 @@ constexpr const char* kBlendHint =
     "of its colour";
 
 void duplicate(Session& s, const Layer& layer) {
-    change(s,
-           stroke::duplicated(s.reported.layers, layer.id, stroke::free_name(s.reported.layers, layer.name + " copy")));
+    change(s, stroke::duplicated(s.reported.document.layers, layer.id,
+                                 stroke::free_name(s.reported.document.layers, layer.name + " copy")));
 }
 
 void merge(Session& s, const Layer& layer) {
     try {
-        const stroke::LayerEdit edit = stroke::merged_down(s.reported.layers, layer.id);
+        const stroke::LayerEdit edit = stroke::merged_down(s.reported.document.layers, layer.id);
         change(s, edit);
         s.layers.active = edit.other;
     } catch (const Error& error) {
@@ -75,7 +75,7 @@ void name_field(Session& s, const Layer& layer) {
 
 void context_menu(Session& s, const Layer& layer, std::size_t place) {
     Ui& ui = s.ui;
-    const auto& all = s.reported.layers.layers;
+    const auto& all = s.reported.document.layers.layers;
     if (!ImGui::BeginPopupContextItem("menu")) return;
     s.layers.active = layer.id;
     if (ui.menu_item("Rename", "F2")) begin_renaming(s, layer);
@@ -90,9 +90,9 @@ void context_menu(Session& s, const Layer& layer, std::size_t place) {
     if (ui.menu_item("Locked", nullptr, layer.locked)) change(s, layer, [](Layer& l) { l.locked = !l.locked; });
     ImGui::Separator();
     if (ui.menu_item("Higher", nullptr, false, place + 1 < all.size()))
-        change(s, stroke::moved(s.reported.layers, layer.id, static_cast<std::uint32_t>(place + 1)));
+        change(s, stroke::moved(s.reported.document.layers, layer.id, static_cast<std::uint32_t>(place + 1)));
     if (ui.menu_item("Lower", nullptr, false, place > 0))
-        change(s, stroke::moved(s.reported.layers, layer.id, static_cast<std::uint32_t>(place - 1)));
+        change(s, stroke::moved(s.reported.document.layers, layer.id, static_cast<std::uint32_t>(place - 1)));
     ImGui::Separator();
     if (ui.menu_item("Remove layer", nullptr, false, all.size() > 1)) change(s, stroke::removed(layer.id));
     ImGui::EndPopup();
@@ -109,8 +109,8 @@ void drag(Session& s, const Layer& layer, std::size_t place) {
     if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload("layer")) {
         std::uint32_t id = 0;
         std::memcpy(&id, payload->Data, sizeof id);
-        if (id != layer.id && s.reported.layers.find(id))
-            change(s, stroke::moved(s.reported.layers, id, static_cast<std::uint32_t>(place)));
+        if (id != layer.id && s.reported.document.layers.find(id))
+            change(s, stroke::moved(s.reported.document.layers, id, static_cast<std::uint32_t>(place)));
     }
     ImGui::EndDragDropTarget();
 }
@@ -118,7 +118,7 @@ void drag(Session& s, const Layer& layer, std::size_t place) {
 // Opacity and blend of the chosen layer, and what is done with it most.
 void details(Session& s, const Layer& layer, std::size_t place) {
     Ui& ui = s.ui;
-    const auto& all = s.reported.layers.layers;
+    const auto& all = s.reported.document.layers.layers;
     if (s.layers.opacity < 0) s.layers.opacity = layer.opacity;
     ui.slider("Opacity", s.layers.opacity, 0, 1, "%.0f %%", "Of the whole layer over those below", 0.01);
     if (ImGui::IsItemDeactivatedAfterEdit() && s.layers.opacity != layer.opacity)
@@ -200,7 +200,7 @@ void row(Session& s, const Layer& layer, std::size_t place) {
 
 void layers_section(Session& s) {
     Ui& ui = s.ui;
-    const auto& all = s.reported.layers.layers;
+    const auto& all = s.reported.document.layers.layers;
     if (all.empty()) return;
     ui.heading("Layers");
     for (std::size_t i = all.size(); i-- > 0;) {
@@ -212,7 +212,7 @@ void layers_section(Session& s) {
     }
     if (ui.button("Add a layer", "Strokes on it can be shown, faded and moved apart from the others", 0,
                   all.size() < stroke::kMaxLayers))
-        add_layer(s.layers, *s.paint_thread, s.reported.layers, fresh_name(s));
+        add_layer(s.layers, *s.paint_thread, s.reported.document.layers, fresh_name(s));
 }
 
 }  // namespace tuft::app

@@ -19,10 +19,10 @@ void remove(Session& s, std::uint32_t id) {
 
 void list(Session& s) {
     Ui& ui = s.ui;
-    if (s.reported.masks.masks.empty()) return;
+    if (s.reported.document.masks.masks.empty()) return;
     if (ImGui::Selectable(ui.tr("Everywhere"), s.masks.active == 0)) choose_mask(s.masks, s.paint_thread.get(), 0);
     ui.mark("mask none");
-    for (const stroke::Mask& mask : s.reported.masks.masks) {
+    for (const stroke::Mask& mask : s.reported.document.masks.masks) {
         ImGui::PushID(static_cast<int>(mask.id));
         if (ImGui::Selectable(mask.name.c_str(), s.masks.active == mask.id))
             choose_mask(s.masks, s.paint_thread.get(), mask.id);
@@ -44,7 +44,7 @@ void list(Session& s) {
 }  // namespace
 
 void make_mask(Session& s, stroke::Mask mask) {
-    const stroke::MaskTable& table = s.reported.masks;
+    const stroke::MaskTable& table = s.reported.document.masks;
     for (std::size_t n = table.masks.size() + 1;; ++n) {
         mask.name = std::string(s.ui.tr("Mask")) + " " + std::to_string(n);
         if (!table.find(std::string_view(mask.name))) break;
@@ -61,7 +61,7 @@ void make_mask(Session& s, stroke::Mask mask) {
 void mask_section(Session& s) {
     if (s.tools.active != Tool::mask) {
         if (s.masks.active == 0) return;
-        const stroke::Mask* mask = s.reported.masks.find(s.masks.active);
+        const stroke::Mask* mask = s.reported.document.masks.find(s.masks.active);
         s.ui.heading("Mask");
         ImGui::AlignTextToFramePadding();
         if (mask) ImGui::TextUnformatted(mask->name.c_str());

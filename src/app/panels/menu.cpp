@@ -15,7 +15,7 @@ void file_menu(Session& s) {
         s.dialogs.file.show(FileDialog::Purpose::open, {});
     if (s.ui.menu_item("Save as...", name_of(s.preferences.keys.chord(Act::save)).c_str(), false, ready))
         s.dialogs.file.show(FileDialog::Purpose::save,
-                            project_name(s.paint_thread.get(), s.reported.project) + ".tuft");
+                            project_name(s.paint_thread.get(), s.reported.file.project) + ".tuft");
     if (s.ui.menu_item("Export...", name_of(s.preferences.keys.chord(Act::export_to)).c_str(), false, ready))
         s.dialogs.show_export = true;
     if (s.ui.menu_item("Revised model...", nullptr, false, ready))
@@ -30,10 +30,12 @@ void file_menu(Session& s) {
 
 void edit_menu(Session& s) {
     if (!s.ui.begin_menu("Edit")) return;
-    if (s.ui.menu_item("Undo", name_of(s.preferences.keys.chord(Act::undo)).c_str(), false, s.reported.can_undo) &&
+    if (s.ui.menu_item("Undo", name_of(s.preferences.keys.chord(Act::undo)).c_str(), false,
+                       s.reported.document.can_undo) &&
         s.paint_thread)
         s.paint_thread->post(UndoStroke{});
-    if (s.ui.menu_item("Redo", name_of(s.preferences.keys.chord(Act::redo)).c_str(), false, s.reported.can_redo) &&
+    if (s.ui.menu_item("Redo", name_of(s.preferences.keys.chord(Act::redo)).c_str(), false,
+                       s.reported.document.can_redo) &&
         s.paint_thread)
         s.paint_thread->post(RedoStroke{});
     ImGui::Separator();
@@ -140,8 +142,8 @@ void menu_bar(Session& s) {
             ImGui::EndMenu();
         }
         if (s.paint_thread) {
-            const std::string name = project_name(s.paint_thread.get(), s.reported.project) +
-                                     (s.reported.viewing ? s.ui.tr(" (a view)") : "");
+            const std::string name = project_name(s.paint_thread.get(), s.reported.file.project) +
+                                     (s.reported.file.viewing ? s.ui.tr(" (a view)") : "");
             const float width = ImGui::GetWindowWidth();
             const float text = ImGui::CalcTextSize(name.c_str()).x,
                         x = std::max(0.5f * (width - text), ImGui::GetCursorPosX() + s.ui.px(8));

@@ -36,13 +36,13 @@ void leave_dialog(Session& s) {
         return;
     }
     Ui& ui = s.ui;
-    const std::size_t n = s.reported.unkept;
+    const std::size_t n = s.reported.file.unsaved;
     if (n > 0)
         ui.wrapped(
             ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory" : " strokes wait in memory")) + ":");
     else
         ui.wrapped(ui.tr("The last change waits in memory:"));
-    ui.wrapped(s.reported.trouble);
+    ui.wrapped(s.reported.file.trouble);
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Go back", 90}, {"Leave all the same", 140}, {"Save as...", 110}, {"Try again", 110}});
     const bool back = ui.button("Go back", nullptr, 90);
@@ -59,7 +59,7 @@ void leave_dialog(Session& s) {
     if (back || save) s.project.closing.request.reset();
     if (save)
         s.dialogs.file.show(FileDialog::Purpose::save,
-                            project_name(s.paint_thread.get(), s.reported.project) + ".tuft");
+                            project_name(s.paint_thread.get(), s.reported.file.project) + ".tuft");
 }
 
 }  // namespace tuft::app

@@ -81,8 +81,8 @@ void status_bar(Session& s, float top) {
     const ToolText tool = text_of_tool(s);
     ImGui::TextUnformatted(ui.tr(tool.name));
     put(s, ui.tr(tool.hint), ui.faint, end);
-    if (!s.reported.trouble.empty()) {
-        const std::size_t n = s.reported.unkept;
+    if (!s.reported.file.trouble.empty()) {
+        const std::size_t n = s.reported.file.unsaved;
         const std::string waits = n == 0
                                       ? ""
                                       : " (" +
@@ -91,7 +91,7 @@ void status_bar(Session& s, float top) {
                                             ")";
         const unsigned red =
             ui.settings().theme == Theme::dark ? IM_COL32(255, 140, 107, 255) : IM_COL32(184, 26, 5, 255);
-        put(s, ui.tr("Not kept on disk") + waits + ": " + s.reported.trouble, red, end);
+        put(s, ui.tr("Not kept on disk") + waits + ": " + s.reported.file.trouble, red, end);
     } else if (!s.status.text.empty() && s.status.seconds < 12) {
         put(s, ui.tr_sentence(s.status.text), ui.strong, end);
     } else {

@@ -144,8 +144,8 @@ void Script::report(Studio& studio, double now) {
         "\"quits\": %zu, \"azimuth_deg\": %.3f, \"elevation_deg\": %.3f, \"distance_mm\": %.3f, "
         "\"roll_deg\": %.3f, \"target_mm\": [%.3f, %.3f, %.3f]}\n",
         report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95),
-        studio.samples(), studio.session().journal.lines.size(), 1e3 * studio.session().reported.undo_seconds, now,
-        cpu - report_cpu_, static_cast<double>(usage.ru_maxrss) / 1024, quits_,
+        studio.samples(), studio.session().journal.lines.size(), 1e3 * studio.session().reported.document.undo_seconds,
+        now, cpu - report_cpu_, static_cast<double>(usage.ru_maxrss) / 1024, quits_,
         studio.session().view.orbit.azimuth / kDegree, studio.session().view.orbit.elevation / kDegree,
         studio.session().view.orbit.distance / kMillimetre, studio.session().view.orbit.roll / kDegree,
         studio.session().view.orbit.target.x / kMillimetre, studio.session().view.orbit.target.y / kMillimetre,
@@ -167,9 +167,9 @@ void Script::expect(Studio& studio, const ScriptCommand& c) const {
         if ((s.paint_thread != nullptr) != (what == "model"))
             fail(c, s.paint_thread ? "a model is open" : "no model is open: " + s.status.text);
     } else if (what == "kept") {
-        if (!s.reported.trouble.empty()) fail(c, s.reported.trouble);
+        if (!s.reported.file.trouble.empty()) fail(c, s.reported.file.trouble);
     } else if (what == "message") {
-        if (s.status.text.find(value) == std::string::npos && s.reported.trouble.find(value) == std::string::npos)
+        if (s.status.text.find(value) == std::string::npos && s.reported.file.trouble.find(value) == std::string::npos)
             fail(c, "the message is '" + s.status.text + "'");
     } else if (what == "label") {
         if (!s.ui.find(value)) fail(c, "'" + value + "' is not on the screen");

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/session/status_message.h"
+#include "app/widgets/status_message.h"
 #include "core/types.h"
 
 namespace tuft::app {

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 namespace tuft::app {
 namespace {
 
-std::unique_ptr<PaintThread> start_paint_thread(SessionNote& note, PaintThread::Work work) {
+std::unique_ptr<PaintThread> start_paint_thread(SessionNote& note, PaintWork work) {
     const fs::path project = work.autosave.path();
     if (project.empty() || work.autosave.viewing())
         note.clear();  // it is in memory only, or another program's
@@ -25,7 +25,7 @@ std::unique_ptr<PaintThread> start_paint_thread(SessionNote& note, PaintThread::
 
 // Saves what is in work and ends the paint thread. Returns the file that the work is in.
 fs::path finish_work(Session& s) {
-    fs::path project = s.reported.project;
+    fs::path project = s.reported.file.project;
     std::string& failure = s.project.closing.failure;
     failure.clear();
     if (const fs::path spare = s.paint_thread->finish(); !spare.empty()) {
@@ -34,7 +34,7 @@ fs::path finish_work(Session& s) {
         s.project.recovery.note.write(spare, s.paint_thread->source());
         remember_project(spare);
         project = spare;
-    } else if (s.paint_thread->unkept()) {
+    } else if (s.paint_thread->unsaved()) {
         failure = project.string() + " could not be written, and nothing else either: the last strokes are lost";
     }
     s.paint_thread.reset();
@@ -126,18 +126,19 @@ void accept_inspected(Session& s) {
 namespace {
 
 // A model or project is ready: it takes the place of the open one.
-void take_work(Session& s, PaintThread::Work work) {
+void take_work(Session& s, PaintWork work) {
     Revision& revision = s.project.revision;
     const fs::path source = revision.source;
     Revision next{.previous = source, .mismatches = std::move(work.mismatches), .fit = std::move(work.fit)};
     // Unnamed work that is left for other work is offered again at the next start.
-    if (s.paint_thread && !s.journal.lines.empty() && is_unnamed(s.reported.project))
-        remember_project(s.reported.project);
+    if (s.paint_thread && !s.journal.lines.empty() && is_unnamed(s.reported.file.project))
+        remember_project(s.reported.file.project);
     std::string note = std::move(work.note);
     close_model(s);
     if (!s.project.closing.failure.empty()) note = s.project.closing.failure;
     s.paint_thread = start_paint_thread(s.project.recovery.note, std::move(work));
     s.reported = {};
+    s.view.texels = {};
     if (!find_ink(s.colours, s.brush.ink)) s.brush.ink = "carbon";
     s.view.model_changed = true;
     s.view.keep_camera = !source.empty();
@@ -169,13 +170,13 @@ bool poll_opening(Session& s) {
 
 void revise_with(Session& s, const fs::path& path) {
     if (!s.paint_thread) return;
-    if (!s.reported.trouble.empty())
-        return show_message(s.status, s.ui.tr("The project must be on disk first: ") + s.reported.trouble);
+    if (!s.reported.file.trouble.empty())
+        return show_message(s.status, s.ui.tr("The project must be on disk first: ") + s.reported.file.trouble);
     const OpenOptions same{.frame = s.paint_thread->frame(),
                            .atlas_size = s.paint_thread->model().atlas.size,
                            .substrate = s.project.options.substrate,
                            .own_colours = s.project.options.own_colours};
-    const fs::path former = s.reported.project;
+    const fs::path former = s.reported.file.project;
     open_path(s, path);
     s.project.options = same;
     s.project.revision.source = former;
@@ -186,7 +187,7 @@ void open_previous(Session& s) {
 }
 
 bool has_unsaved_work(const Session& s) {
-    return s.paint_thread && (s.reported.unkept > 0 || s.reported.behind);
+    return s.paint_thread && (s.reported.file.unsaved > 0 || s.reported.file.behind);
 }
 
 void request_close(Session& s, CloseRequest request) {
@@ -213,7 +214,7 @@ void close_model(Session& s) {
     remember_brush(s.brush, s.paint_thread.get());
     s.colours.choice.in_hand.reset();
     s.layers.list.pictures.clear();
-    const bool empty = s.journal.lines.empty() && s.paint_thread->idle(), viewing = s.reported.viewing;
+    const bool empty = s.journal.lines.empty() && s.paint_thread->idle(), viewing = s.reported.file.viewing;
     const fs::path project = finish_work(s);
     forget_model(s);
     if (empty && !viewing && is_unnamed(project)) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
+#include <set>
+#include <utility>
 
 #include "app/session/open_close.h"
 
@@ -34,9 +37,43 @@ void take_file(Session& s, const fs::path& project) {
     s.project.start_page.recent = recent_projects();
     // The file that it had before it had a name is of no more use, but as what a revised model is made from.
     std::error_code ec;
-    if (const fs::path& before = s.reported.project;
+    if (const fs::path& before = s.reported.file.project;
         is_unnamed(before) && before != s.project.revision.source && before != s.project.revision.previous)
         fs::remove(before, ec);
+}
+
+void take_lines(JournalState& journal, PaintThread& work, std::vector<StrokeLine> lines) {
+    journal.lines = std::move(lines);
+    // What is chosen may be gone, or lie elsewhere.
+    std::set<std::uint64_t> there;
+    for (const StrokeLine& line : journal.lines)
+        if (journal.holds(line.id)) there.insert(line.id);
+    select_entries(journal, &work, std::move(there));
+}
+
+void take_events(Session& s, PaintEvents& e) {
+    // The scene has not taken those before yet.
+    if (e.texels.pixels) s.view.texels.pixels = std::move(e.texels.pixels);
+    std::vector<render::TilePixels>& tiles = s.view.texels.tiles;
+    tiles.insert(tiles.end(), std::make_move_iterator(e.texels.tiles.begin()),
+                 std::make_move_iterator(e.texels.tiles.end()));
+    if (e.strokes) take_lines(s.journal, *s.paint_thread, std::move(*e.strokes));
+    if (e.snapshots) s.journal.snapshots.lines = std::move(*e.snapshots);
+    if (e.snapshot_picture) s.journal.snapshots.picture = std::move(e.snapshot_picture);
+    if (e.outline) s.journal.outline = std::move(*e.outline);
+    for (Thumbnail& picture : e.thumbnails) {
+        s.layers.list.fresh.insert(picture.layer);
+        s.layers.list.pictures.insert_or_assign(picture.layer, std::move(picture));
+    }
+    if (e.palette) {
+        s.colours.palette.picture = std::move(*e.palette);
+        s.colours.palette.fresh = true;
+    }
+    if (e.own_inks) s.colours.own = std::move(*e.own_inks);
+    if (e.appearance) s.colours.appearance = std::move(*e.appearance);
+    if (!e.picked.empty()) take_picked(s, e.picked);
+    if (e.not_saved) s.dialogs.file.return_with(e.not_saved->path, e.not_saved->reason);
+    for (std::string& message : e.messages) show_message(s.status, std::move(message));
 }
 
 }  // namespace
@@ -50,48 +87,15 @@ void poll_session(Session& s) {
 
 void poll_paint_thread(Session& s) {
     if (!s.paint_thread) return;
-    Update u = s.paint_thread->take();
-    if (u.strokes) {
-        s.journal.lines = std::move(*u.strokes);
-        // What is chosen may be gone, or lie elsewhere.
-        std::set<std::uint64_t> there;
-        for (const StrokeLine& line : s.journal.lines)
-            if (s.journal.holds(line.id)) there.insert(line.id);
-        select_entries(s.journal, s.paint_thread.get(), std::move(there));
-    }
-    if (u.snapshots) s.journal.snapshots.lines = std::move(*u.snapshots);
-    if (u.snapshot_picture) s.journal.snapshots.picture = std::move(*u.snapshot_picture);
-    u.snapshots.reset();
-    u.snapshot_picture.reset();
-    if (u.outline) s.journal.outline = std::move(*u.outline);
-    u.outline.reset();
-    if (u.own_inks) s.colours.own = std::move(*u.own_inks);
-    for (Thumbnail& picture : u.thumbnails) {
-        s.layers.list.fresh.insert(picture.layer);
-        s.layers.list.pictures.insert_or_assign(picture.layer, std::move(picture));
-    }
-    u.thumbnails.clear();
-    if (u.palette) {
-        s.colours.palette.picture = std::move(*u.palette);
-        s.colours.palette.fresh = true;
-        u.palette.reset();
-    }
-    if (u.not_saved) s.dialogs.file.return_with(u.not_saved->first, u.not_saved->second);
-    u.not_saved.reset();
-    if (u.looks) s.colours.appearance = std::move(*u.looks);
-    if (!u.picked.empty()) take_picked(s, u.picked);
-    for (std::string& message : u.messages) show_message(s.status, std::move(message));
-    u.messages.clear();
-    if (!u.project.empty() && !u.viewing && u.project != s.reported.project) take_file(s, u.project);
-    // The scene takes the tiles.
-    std::vector<render::TilePixels> tiles = std::move(s.reported.tiles);
-    tiles.insert(tiles.end(), u.tiles.begin(), u.tiles.end());
-    u.tiles = std::move(tiles);
-    if (!u.pixels) u.pixels = std::move(s.reported.pixels);
-    if (!u.tuft) u.tuft = std::move(s.reported.tuft);
-    follow_layers(s.layers, u.layers, s.reported.layers, u.from_outside, s.paint_thread->idle());
-    follow_masks(s.masks, s.paint_thread.get(), u.masks);
-    s.reported = std::move(u);
+    Update update = s.paint_thread->take();
+    take_events(s, update.events);
+    const PaintStatus& now = update.status;
+    if (!now.file.project.empty() && !now.file.viewing && now.file.project != s.reported.file.project)
+        take_file(s, now.file.project);
+    follow_layers(s.layers, now.document.layers, s.reported.document.layers, update.events.from_outside,
+                  s.paint_thread->idle());
+    follow_masks(s.masks, s.paint_thread.get(), now.document.masks);
+    s.reported = std::move(update.status);
     // What was asked about is on disk now.
     if (s.project.closing.request && !has_unsaved_work(s) && s.paint_thread->idle())
         close_now(s, *s.project.closing.request);

@@ -10,11 +10,11 @@
 #include "app/session/layer_state.h"
 #include "app/session/mask_state.h"
 #include "app/session/panel_layout.h"
-#include "app/session/preferences.h"
 #include "app/session/project_state.h"
-#include "app/session/status_message.h"
 #include "app/session/tool_state.h"
 #include "app/view/view_state.h"
+#include "app/widgets/preferences.h"
+#include "app/widgets/status_message.h"
 #include "app/widgets/ui.h"
 
 namespace tuft::app {
@@ -29,7 +29,7 @@ struct Session {
 
     ProjectState project;
     std::unique_ptr<PaintThread> paint_thread;  ///< of the open model; null: none is
-    Update reported;                            ///< what it last reported
+    PaintStatus reported;                       ///< by it at the last look
 
     ViewState view;
     ToolState tools;

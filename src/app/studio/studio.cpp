@@ -106,9 +106,9 @@ void Studio::finish() {
 
 double Studio::patience() const {
     const Session& s = session_;
-    if (s.view.model_changed || !s.reported.tiles.empty() || s.preferences.restyle || hand_ || drag_ != Drag::none)
+    if (s.view.model_changed || !s.view.texels.tiles.empty() || s.preferences.restyle || hand_ || drag_ != Drag::none)
         return 0;
-    if (s.project.opening.running() || !s.reported.busy.empty()) return kProgressEvery;
+    if (s.project.opening.running() || !s.reported.progress.busy.empty()) return kProgressEvery;
     if (!is_settled(s)) return kInkEvery;
     if (now_ - last_event_ < kStillAfter) return kStillEvery;
     return s.project.start_page.pictures.busy() ? 0.1 : 0.5;
@@ -235,20 +235,20 @@ void Studio::take_model() {
         s.view.model_changed = false;
         strokes_seen_ = s.journal.lines.size();
     }
-    if (s.reported.pixels) {
-        scene_->set_texture(*s.reported.pixels);
-        s.view.max_ink_height = highest_of(s.reported.pixels->levels[0]);
-        s.reported.pixels.reset();
+    if (s.view.texels.pixels) {
+        scene_->set_texture(*s.view.texels.pixels);
+        s.view.max_ink_height = highest_of(s.view.texels.pixels->levels[0]);
+        s.view.texels.pixels.reset();
         view_->scene_changed();
     }
-    scene_->update_tiles(s.reported.tiles);
-    for (const render::TilePixels& tile : s.reported.tiles)
+    scene_->update_tiles(s.view.texels.tiles);
+    for (const render::TilePixels& tile : s.view.texels.tiles)
         s.view.max_ink_height = std::max(s.view.max_ink_height, highest_of(std::span(tile.rgba).first(256)));
-    for (const render::TilePixels& tile : s.reported.tiles) view_->texture_changed(tile.boxes);
-    s.reported.tiles.clear();
-    if (s.journal.lines.size() != strokes_seen_ || (s.reported.project != pictured_ && !s.journal.lines.empty())) {
+    for (const render::TilePixels& tile : s.view.texels.tiles) view_->texture_changed(tile.boxes);
+    s.view.texels.tiles.clear();
+    if (s.journal.lines.size() != strokes_seen_ || (s.reported.file.project != pictured_ && !s.journal.lines.empty())) {
         strokes_seen_ = s.journal.lines.size();
-        pictured_ = s.reported.project;
+        pictured_ = s.reported.file.project;
         picture_due_ = now_ + kPictureAfter;
     }
 }
@@ -271,10 +271,11 @@ void Studio::update_tuft(double now) {
     Session& s = session_;
     s.view.tuft.state = {};
     s.view.tuft.depth = 0;
-    s.colours.palette.tuft = s.reported.on_palette && s.reported.tuft ? *s.reported.tuft : brush::TuftState{};
-    s.view.tuft.pressed = s.reported.tuft && !s.reported.tuft->branches.empty() && !s.reported.on_palette;
+    const BrushStatus& painting = s.reported.brush;
+    s.colours.palette.tuft = painting.on_palette ? painting.tuft : brush::TuftState{};
+    s.view.tuft.pressed = !painting.tuft.branches.empty() && !painting.on_palette;
     if (s.view.tuft.pressed) {
-        s.view.tuft.state = *s.reported.tuft;
+        s.view.tuft.state = painting.tuft;
     } else if (s.tools.active != Tool::writing && s.tools.active != Tool::fill && s.tools.active != Tool::pick &&
                s.tools.active != Tool::mask && !s.journal.moves && cursor_inside_ && drag_ == Drag::none &&
                !is_dialog_open(session_)) {
@@ -338,8 +339,8 @@ void Studio::keep_picture() {
     Session& s = session_;
     if (picture_due_ == 0 || now_ < picture_due_ || !s.paint_thread || s.view.tuft.pressed || !is_settled(s)) return;
     picture_due_ = 0;
-    if (s.reported.project.empty()) return;
-    s.project.start_page.pictures.keep(s.reported.project, s.view.area.width, s.view.area.height,
+    if (s.reported.file.project.empty()) return;
+    s.project.start_page.pictures.keep(s.reported.file.project, s.view.area.width, s.view.area.height,
                                        render::read_pixels(s.view.area.x, 0, s.view.area.width, s.view.area.height));
 }
 
@@ -353,7 +354,7 @@ void Studio::await_ink(double since_last) {
 }
 
 void Studio::shown(double now) {
-    for (; !asked_.empty() && asked_.front() <= session_.reported.done; asked_.pop_front())
+    for (; !asked_.empty() && asked_.front() <= session_.reported.progress.done; asked_.pop_front())
         delays_.push_back(now - asked_.front());
 }
 

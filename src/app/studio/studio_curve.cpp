@@ -171,7 +171,7 @@ void Studio::paint_curve() {
 void Studio::watch_curve() {
     Session& s = session_;
     CurveInWork& curve = s.tools.curve;
-    if (curve.waits && s.paint_thread->idle() && s.reported.waiting == 0) {
+    if (curve.waits && s.paint_thread->idle() && s.reported.progress.waiting == 0) {
         curve.waits = false;
         curve.last_stroke = s.journal.lines.empty() ? 0 : s.journal.lines.back().id;
     }

@@ -284,7 +284,7 @@ void Studio::perform(Act act) {
             break;
         case Act::save:
             s.dialogs.file.show(FileDialog::Purpose::save,
-                                project_name(s.paint_thread.get(), s.reported.project) + ".tuft");
+                                project_name(s.paint_thread.get(), s.reported.file.project) + ".tuft");
             break;
         case Act::export_to:
             s.dialogs.show_export = true;

@@ -80,7 +80,7 @@ void Studio::set(const std::string& name, const std::string& value) {
     else if (name == "export-pictures")
         s.dialogs.export_settings.picture = std::clamp(static_cast<int>(number), 0, 360);
     else if (name == "layer") {
-        const stroke::Layer* layer = s.reported.layers.find(std::string_view(value));
+        const stroke::Layer* layer = s.reported.document.layers.find(std::string_view(value));
         if (!layer) throw Error("there is no layer '" + value + "'");
         s.layers.active = layer->id;
     } else if (name == "texels")

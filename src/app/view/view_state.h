@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/view/references.h"
+#include "app/view/texture.h"
 #include "app/view/viewport.h"
 #include "brush/tuft.h"
 #include "render/gl_scene.h"
@@ -49,6 +50,7 @@ struct ViewState {
     bool show_tuft_inset = true;  ///< side view of the tuft
     double max_ink_height = 0;    ///< micrometres, of the ink seen so far
     bool model_changed = false;   ///< the scene has to take the open model over
+    TexelUpdate texels;           ///< for the scene
     bool keep_camera = false;     ///< and looks at it as at the one before
     TuftView tuft;
     References references;

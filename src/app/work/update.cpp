@@ -1,6 +1,6 @@
-#include <algorithm>
+#include "app/work/update.h"
 
-#include "app/paint/paint_thread.h"
+#include <algorithm>
 
 namespace tuft::app {
 

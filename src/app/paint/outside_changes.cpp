@@ -1,11 +1,11 @@
+#include "app/paint/outside_changes.h"
+
 #include <algorithm>
 #include <set>
 
-#include "app/paint/paint_thread.h"
 #include "io/appearance.h"
 #include "io/restore.h"
 
-/// What other programs do to the project meanwhile: on the painter's thread.
 namespace tuft::app {
 namespace {
 
@@ -24,67 +24,66 @@ Preset named(Preset preset, const std::string& name) {
 
 }  // namespace
 
-void PaintThread::look_outside() {
-    if (work_.painting->in_stroke() || !work_.autosave.overtaken()) return;
+void OutsideChanges::look() {
+    if (context_.work.document->in_stroke() || !context_.work.autosave.overtaken()) return;
     try {
-        take_outside();
+        take();
     } catch (const std::exception& error) {
-        say(error.what());
-        publish(true);
+        context_.outbox.report(error.what());
+        context_.publisher.publish(true);
     }
 }
 
 // Takes in what another program wrote, and writes what it did not know of after that.
-void PaintThread::take_outside() {
-    Autosave& autosave = work_.autosave;
+void OutsideChanges::take() {
+    Autosave& autosave = context_.work.autosave;
     const bool viewing = autosave.viewing();
     std::optional<io::Project> file = autosave.read_again();
-    if (!file) return publish();
-    if (!has_model(*file, *work_.model)) return leave_file();
+    if (!file) return context_.publisher.publish();
+    if (!has_model(*file, *context_.work.model)) return leave_file();
     const std::vector<stroke::Stroke> theirs = file->strokes();
     std::vector<stroke::EntryMark> marks = stroke::marks_of(theirs);
     const bool same_strokes = marks == autosave.on_disk() && !autosave.behind();
     stroke::MergedJournal merged =
-        stroke::merge_journals(autosave.on_disk(), work_.painting->journal().strokes(), theirs);
+        stroke::merge_journals(autosave.on_disk(), context_.work.document->journal().strokes(), theirs);
     if (!same_strokes) {
-        const std::lock_guard lock(mutex_);
-        update_.from_outside = true;
+        context_.outbox.change([](Update& update) { update.events.from_outside = true; });
     }
     if (!same_strokes)
         paint_merged(*file, merged);
     else
-        io::show_looks(*file, *work_.painting);
+        io::show_looks(*file, *context_.work.document);
     const bool altered = merged.altered && !same_strokes;
     if (viewing)
         autosave.view(std::move(*file), std::move(marks));
     else
         autosave.adopt(std::move(*file), std::move(marks));
-    const std::vector<stroke::Stroke>& now = work_.painting->journal().strokes();
+    const std::vector<stroke::Stroke>& now = context_.work.document->journal().strokes();
     if (altered)
-        autosave.rewrite(work_.source, work_.frame, *work_.painting);
+        autosave.rewrite(context_.work.source, context_.work.frame, *context_.work.document);
     else if (!viewing)
         autosave.catch_up(std::span(now).subspan(std::min(theirs.size(), now.size())));
     if (merged.news > 0 && !viewing)
-        say("Another program changed this project; " + std::to_string(merged.news) +
-            (merged.news == 1 ? " change of it is taken in." : " changes of it are taken in."));
-    publish(true);
-    publish_snapshots();
-    publish_looks();
+        context_.outbox.report("Another program changed this project; " + std::to_string(merged.news) +
+                               (merged.news == 1 ? " change of it is taken in." : " changes of it are taken in."));
+    context_.publisher.publish(true);
+    context_.publisher.publish_snapshots();
+    context_.publisher.publish_appearance();
 }
 
-void PaintThread::paint_merged(const io::Project& file, const stroke::MergedJournal& merged) {
+void OutsideChanges::paint_merged(const io::Project& file, const stroke::MergedJournal& merged) {
     const auto shown = [this, name = std::string("Taking in the changes of another program")](std::string_view phase,
                                                                                               double part) {
-        progress(name)(phase, part);
+        context_.progress(name)(phase, part);
         return true;  // half of them would be no journal of anybody
     };
     const auto fresh = [&] {
-        auto painting = std::make_unique<stroke::Document>(*work_.model);
-        take_presets(*painting, {});
+        auto painting = std::make_unique<stroke::Document>(*context_.work.model);
+        context_.take_presets(*painting, {});
         io::use_presets(file, *painting);
         return painting;
     };
-    if (follow(file, merged.entries)) return publish(true);
+    if (follow(file, merged.entries)) return context_.publisher.publish(true);
     auto painting = fresh();
     const auto own = std::span(merged.entries).subspan(merged.from_theirs);
     bool whole = merged.altered || std::ranges::any_of(own, &stroke::Stroke::hidden);
@@ -99,18 +98,17 @@ void PaintThread::paint_merged(const io::Project& file, const stroke::MergedJour
     }
     if (whole) painting->replay(merged.entries, shown);
     io::show_looks(file, *painting);
-    steps_.assign(painting->journal().strokes().size(), Step{.made = 1});
-    undone_.clear();
+    context_.history.reset(painting->journal().strokes().size());
     for (const stroke::LayerTexels& layer : painting->canvases())
         for (const std::uint32_t slot : layer.canvas->touched_slots()) painting->canvas().mark_dirty(slot);
-    replace_painting(std::move(painting));
-    work_.texture->refresh_all(*work_.painting);  // they may show it otherwise
-    send_pixels();
+    context_.replace_document(std::move(painting));
+    context_.work.texture->refresh_all(*context_.work.document);  // they may show it otherwise
+    context_.publisher.send_texture();
 }
 
 // Where they only went on, what they did is done here too.
-bool PaintThread::follow(const io::Project& file, std::span<const stroke::Stroke> theirs) {
-    stroke::Document& painting = *work_.painting;
+bool OutsideChanges::follow(const io::Project& file, std::span<const stroke::Stroke> theirs) {
+    stroke::Document& painting = *context_.work.document;
     const std::vector<stroke::Stroke>& mine = painting.journal().strokes();
     const std::size_t n = mine.size();
     if (theirs.size() < n || !std::equal(mine.begin(), mine.end(), theirs.begin(), [](const auto& a, const auto& b) {
@@ -136,22 +134,25 @@ bool PaintThread::follow(const io::Project& file, std::span<const stroke::Stroke
     for (const auto& [name, toml] : file.inks())
         if (inks.contains(name)) painting.use_ink(named(ink::parse_ink(toml, name), name));
     painting.replay({rest.begin(), rest.end()}, {});
-    steps_.resize(theirs.size(), Step{.made = 1});
-    undone_.clear();
+    context_.history.done.resize(theirs.size(), EditStep{.made = 1});
+    context_.history.undone.clear();
     return true;
 }
 
 // Another model lies where the project was: what is here goes on in a file of its own.
-void PaintThread::leave_file() {
-    const std::string name = work_.autosave.path().filename().string();
-    const bool viewing = work_.autosave.viewing();
-    const std::string fault = work_.autosave.start(work_.spare, work_.source, work_.frame, *work_.painting);
+void OutsideChanges::leave_file() {
+    const std::string name = context_.work.autosave.path().filename().string();
+    const bool viewing = context_.work.autosave.viewing();
+    const std::string fault = context_.work.autosave.start(context_.work.spare, context_.work.source,
+                                                           context_.work.frame, *context_.work.document);
     if (!fault.empty())
-        work_.autosave.start_later(work_.spare, work_.source, work_.frame, fault, !work_.painting->journal().empty());
-    say(viewing
+        context_.work.autosave.start_later(context_.work.spare, context_.work.source, context_.work.frame, fault,
+                                           !context_.work.document->journal().empty());
+    context_.outbox.report(
+        viewing
             ? "Another program put another model into " + name + "; this is a copy of what was in it."
             : "Another program put another model into " + name + "; your work goes on in a copy that has no name yet.");
-    publish();
+    context_.publisher.publish();
 }
 
 }  // namespace tuft::app

@@ -1,10 +1,9 @@
+#include "app/paint/highlight_command.h"
+
 #include <algorithm>
 #include <chrono>
 #include <set>
 
-#include "app/paint/paint_thread.h"
-
-/// Highlighting what entries of the journal left on the model: on the painter's thread.
 namespace tuft::app {
 namespace {
 
@@ -45,25 +44,21 @@ std::vector<OutlinePoint> outline_of(const Texture::Marks& marks, const stroke::
 }  // namespace
 
 // The strokes are painted alone on a blank copy of the model; whatever else is asked for ends that.
-void PaintThread::highlight(const HighlightStrokes& command) {
+void highlight_strokes(PaintContext& context, const HighlightStrokes& command, const CommandQueue& queue) {
     const std::set<std::uint64_t> wanted(command.ids.begin(), command.ids.end());
     const auto show = [&](const Texture::Marks& marks) {
-        send_tiles(work_.texture->show_marks(marks, *work_.painting));
-        std::vector<OutlinePoint> outline = outline_of(work_.texture->marks(), *work_.model);
-        const std::lock_guard lock(mutex_);
-        update_.outline = std::move(outline);
+        context.publisher.send_tiles(context.work.texture->show_marks(marks, *context.work.document));
+        std::vector<OutlinePoint> outline = outline_of(context.work.texture->marks(), *context.work.model);
+        context.outbox.change([&](Update& update) { update.events.outline = std::move(outline); });
     };
-    if (wanted.empty() || work_.painting->in_stroke()) return show({});
-    const ProgressFn go_on = [this](std::string_view, double) {
-        const std::lock_guard lock(mutex_);
-        return queue_.empty() && !quit_ && !stop_.load();
-    };
+    if (wanted.empty() || context.work.document->in_stroke()) return show({});
+    const ProgressFn go_on = [&](std::string_view, double) { return !queue.interrupts() && !context.stop.load(); };
     Texture::Marks marks;
     auto shown = std::chrono::steady_clock::now();
     try {
-        stroke::Document blank(*work_.model);
-        take_presets(blank, {});
-        for (const stroke::Stroke& s : work_.painting->journal().strokes()) {
+        stroke::Document blank(*context.work.model);
+        context.take_presets(blank, {});
+        for (const stroke::Stroke& s : context.work.document->journal().strokes()) {
             const bool paints = s.action == stroke::Action::stroke || s.action == stroke::Action::fill;
             if (s.action == stroke::Action::mask)
                 blank.paint(s);
