@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct LayerList {
     std::map<std::uint32_t, Thumbnail> pictures;
     std::map<std::uint32_t, unsigned> textures;  ///< OpenGL names
     std::set<std::uint32_t> fresh;               ///< pictures that the graphics card has not got yet
+    std::optional<render::GlCamera> seen_from;   ///< by the pictures
 };
 
 struct LayerState {

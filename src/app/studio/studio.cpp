@@ -6,13 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "app/input/imgui_feed.h"
 #include "app/panels/panels.h"
 #include "app/session/top_dialog.h"
-#include "app/view/model_colours.h"
-#include "app/view/tuft_solid.h"
+#include "app/studio/aim.h"
+#include "app/studio/atlas_input.h"
+#include "app/studio/set_by_name.h"
+#include "app/studio/uploads.h"
+#include "brush/preset.h"
 #include "core/files.h"
 
 namespace fs = std::filesystem;
@@ -21,24 +23,17 @@ namespace tuft::app {
 namespace {
 
 constexpr double kTurnPause = 0.25;  // seconds without a turn of the wheel after which the view is still
+constexpr double kStill = 0.4;       // seconds without a turn after which the layers' pictures are drawn anew
 constexpr double kStillAfter = 0.4;  // seconds after the last event
 constexpr double kProgressEvery = 0.05, kInkEvery = 0.008, kStillEvery = 0.015;  // seconds between frames
-constexpr double kInkWait = 0.02,
-                 kInkPart = 0.2;       // seconds, and part of a frame's time, that the newest ink is waited for
-constexpr float kLeastView = 240;      // pixels at scale 1, of the model's view beside both panels
-constexpr double kPictureAfter = 1.5;  // seconds after the last stroke
-constexpr double kPictureWait = 3;     // seconds that leaving waits at most for the newest ink on it
-
-// Micrometres.
-double highest_of(std::span<const std::array<std::uint8_t, 4>> texels) {
-    std::uint8_t most = 0;
-    for (const auto& texel : texels) most = std::max(most, texel[3]);
-    return render::height_of_code(most);
-}
+// Seconds, and part of a frame's time, that the newest ink is waited for.
+constexpr double kInkWait = 0.02, kInkPart = 0.2;
+constexpr float kLeastView = 240;   // pixels at scale 1, of the model's view beside both panels
+constexpr double kPictureWait = 3;  // seconds that leaving waits at most for the newest ink on it
 
 }  // namespace
 
-Studio::Studio() : scene_(std::make_unique<render::GlScene>()), view_(std::make_unique<render::GlView>()) {
+Studio::Studio() : scene_(session_), input_(session_, scene_.comparison()), picture_(session_) {
     Session& s = session_;
     s.brush.presets = brush::list_presets();
     s.colours.shipped = ink::list_inks();
@@ -52,7 +47,6 @@ Studio::Studio() : scene_(std::make_unique<render::GlScene>()), view_(std::make_
     load_colours(s.colours.choice);
     load_settings(s);
     if (const std::string missing = s.ui.prepare(s.preferences.ui); !missing.empty()) show_message(s.status, missing);
-    cursor_.x = cursor_.y = -1;
 }
 
 Studio::~Studio() {
@@ -60,11 +54,15 @@ Studio::~Studio() {
     session_.project.start_page.pictures.release();
 }
 
+void Studio::set(const std::string& name, const std::string& value) {
+    if (name == "draw-every")
+        draw_every_ = static_cast<std::size_t>(std::clamp(number_of(value), 1.0, 1000.0));
+    else
+        set_by_name(session_, name, value);
+}
+
 void Studio::drop_graphics() {
-    scene_.reset();
-    view_.reset();
-    compare_scene_.reset();
-    compare_view_.reset();
+    scene_.drop_graphics();
     for (ReferenceImage& image : session_.view.references.images) image.texture = 0;
     session_.journal.snapshots.texture = 0;
     session_.project.start_page.pictures.release();
@@ -72,42 +70,31 @@ void Studio::drop_graphics() {
 
 void Studio::make_graphics() {
     Session& s = session_;
-    scene_ = std::make_unique<render::GlScene>();
-    view_ = std::make_unique<render::GlView>();
     s.colours.palette.texture = 0;
+    s.colours.palette.fresh = true;
     s.layers.list.textures.clear();
     for (const auto& [layer, picture] : s.layers.list.pictures) s.layers.list.fresh.insert(layer);
-    s.colours.palette.fresh = true;
-    colours_shown_ = ModelView::glaze;
-    if (s.paint_thread && !s.view.model_changed) {
-        const stroke::Model& m = s.paint_thread->model();
-        scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
-        s.paint_thread->post(SendTexture{});
-        if (comparing())
-            compare_with(s.journal.snapshots, s.view.atlas, s.paint_thread.get(), s.journal.snapshots.compared);
-    }
+    scene_.make_graphics();
     show_message(s.status, "The graphics driver was reset; the picture was made anew, and no stroke is lost.");
 }
 
 void Studio::finish() {
     Session& s = session_;
-    if (hand_ && s.paint_thread) post(hand_->lift(), now_);
-    hand_.reset();
-    if (s.paint_thread && (picture_due_ != 0 || s.journal.lines.size() != strokes_seen_)) {
+    input_.stroke().lift(now_);
+    if (s.paint_thread && picture_.outdated()) {
         s.paint_thread->wait_idle(kPictureWait);
         poll_paint_thread(s);
-        take_model();
-        draw_scene(framebuffer_, height_);
-        picture_due_ = now_;
-        keep_picture();
+        take_work();
+        scene_.draw(framebuffer_, height_, false);
+        picture_.store(now_, true);
     }
     close_model(s);
 }
 
 double Studio::patience() const {
     const Session& s = session_;
-    if (s.view.model_changed || !s.view.texels.tiles.empty() || s.preferences.restyle || hand_ || drag_ != Drag::none)
-        return 0;
+    const bool moves = input_.stroke().drawing() || input_.turning();
+    if (s.view.model_changed || !s.view.texels.tiles.empty() || s.preferences.restyle || moves) return 0;
     if (s.project.opening.running() || !s.reported.progress.busy.empty()) return kProgressEvery;
     if (!is_settled(s)) return kInkEvery;
     if (now_ - last_event_ < kStillAfter) return kStillEvery;
@@ -130,50 +117,59 @@ void Studio::layout(int width, int height) {
     s.view.area = {left, static_cast<int>(top), std::max(16, width - tools - journal),
                    std::max(16, height - static_cast<int>(top) - static_cast<int>(s.ui.px(kStatusHeight)))};
     s.view.atlas.area = {};
-    layout_comparison();
-    if (!s.view.atlas.shown || !s.paint_thread || comparing()) return;
+    scene_.comparison().layout();
+    if (!s.view.atlas.shown || !s.paint_thread || scene_.comparison().on()) return;
     s.view.atlas.area = s.view.area;
     s.view.area.width /= 2;
     s.view.atlas.area.x += s.view.area.width + 1;
     s.view.atlas.area.width -= s.view.area.width + 1;
 }
 
-void Studio::panels() {
+void Studio::draw_panels() {
     Session& s = session_;
     menu_bar(s);
-    s.ui.modal = is_dialog_open(session_);
+    s.ui.modal = is_dialog_open(s);
     ImGui::BeginDisabled(s.ui.modal);
-    if (s.paint_thread) {
-        const auto top = static_cast<float>(s.view.area.y),
-                   bottom = static_cast<float>(s.view.area.y + s.view.area.height);
-        const auto right = static_cast<float>(s.view.atlas.shown ? s.view.atlas.area.x + s.view.atlas.area.width
-                                                                 : s.view.area.x + s.view.area.width);
-        const bool swapped = !s.panels.journal_fits && s.panels.journal_over_tools && !s.panels.show_appearance;
-        const float strip = s.ui.px(kStripWidth), screen = ImGui::GetIO().DisplaySize.x;
-        tool_strip(s, top, bottom, s.preferences.ui.left_handed ? screen - strip : 0);
-        if (s.panels.show_appearance || s.panels.show_tools || swapped)
-            (s.panels.show_appearance ? colours_panel
-             : swapped                ? journal_panel
-                                      : tool_panel)(s, top, bottom, s.preferences.ui.left_handed ? right : strip);
-        if (s.panels.journal_fits && s.panels.show_journal)
-            journal_panel(s, top, bottom, s.preferences.ui.left_handed ? 0 : right);
-        status_bar(s, bottom);
-        panel_handles(s);
-        tuft_inset(s);
-        update_palette_picture();
-        palette_panel(s);
-        update_thumbnails();
-        colour_panel(s);
-        references_over_view(s);
-        swipe_line(s);
-        comparison_bar(s);
-        guide(s);
-        view_marks(s, camera());
-        atlas_marks(s, atlas_cursor());
-    } else {
+    if (s.paint_thread)
+        draw_side_panels();
+    else
         welcome(s);
-    }
     ImGui::EndDisabled();
+    draw_dialogs();
+}
+
+void Studio::draw_side_panels() {
+    Session& s = session_;
+    const auto top = static_cast<float>(s.view.area.y), bottom = static_cast<float>(s.view.area.y + s.view.area.height);
+    const auto right = static_cast<float>(s.view.atlas.shown ? s.view.atlas.area.x + s.view.atlas.area.width
+                                                             : s.view.area.x + s.view.area.width);
+    const bool swapped = !s.panels.journal_fits && s.panels.journal_over_tools && !s.panels.show_appearance;
+    const float strip = s.ui.px(kStripWidth), screen = ImGui::GetIO().DisplaySize.x;
+    tool_strip(s, top, bottom, s.preferences.ui.left_handed ? screen - strip : 0);
+    if (s.panels.show_appearance || s.panels.show_tools || swapped)
+        (s.panels.show_appearance ? colours_panel
+         : swapped                ? journal_panel
+                                  : tool_panel)(s, top, bottom, s.preferences.ui.left_handed ? right : strip);
+    if (s.panels.journal_fits && s.panels.show_journal)
+        journal_panel(s, top, bottom, s.preferences.ui.left_handed ? 0 : right);
+    status_bar(s, bottom);
+    panel_handles(s);
+    tuft_inset(s);
+    upload_palette(s.colours.palette);
+    palette_panel(s);
+    const bool still = !input_.stroke().drawing() && !input_.turned_within(kStill, now_);
+    upload_thumbnails(s, still);
+    colour_panel(s);
+    references_over_view(s);
+    swipe_line(s);
+    comparison_bar(s);
+    guide(s);
+    view_marks(s, camera_of(s));
+    atlas_marks(s, atlas_cursor(s, input_.cursor()));
+}
+
+void Studio::draw_dialogs() {
+    Session& s = session_;
     if (s.project.opening.running())
         opening_progress(s);
     else if (s.project.closing.request)
@@ -190,172 +186,70 @@ void Studio::panels() {
     keys_dialog(s);
     about_dialog(s);
     mismatch_dialog(s);
-    if (const auto path = s.dialogs.file.draw(s.ui, s.project.start_page.pictures)) {
-        if (s.dialogs.file.purpose() == FileDialog::Purpose::open)
-            open_path(s, *path);
-        else if (s.dialogs.file.purpose() == FileDialog::Purpose::save)
-            save_as(s, *path);
-        else if (s.dialogs.file.purpose() == FileDialog::Purpose::revise)
-            revise_with(s, *path);
-        else if (s.dialogs.file.purpose() == FileDialog::Purpose::writing)
-            open_writing(s, *path);
-        else if (s.dialogs.file.purpose() == FileDialog::Purpose::reference)
-            pin_reference(s.view.references, s.paint_thread.get(), s.status, *path);
-        else if (s.dialogs.file.purpose() == FileDialog::Purpose::ink)
-            open_ink(s.paint_thread.get(), s.status, *path);
-        else if (s.dialogs.file.purpose() == FileDialog::Purpose::save_ink)
-            save_ink(s.colours, s.brush.ink, s.status, *path);
-        else if (s.paint_thread)
-            s.paint_thread->post(export_command(s, *path));
+    if (const auto path = s.dialogs.file.draw(s.ui, s.project.start_page.pictures)) take_file(*path);
+}
+
+// What was chosen in the file dialog.
+void Studio::take_file(const fs::path& path) {
+    Session& s = session_;
+    switch (s.dialogs.file.purpose()) {
+        case FileDialog::Purpose::open:
+            return open_path(s, path);
+        case FileDialog::Purpose::save:
+            return save_as(s, path);
+        case FileDialog::Purpose::revise:
+            return revise_with(s, path);
+        case FileDialog::Purpose::writing:
+            return open_writing(s, path);
+        case FileDialog::Purpose::reference:
+            return pin_reference(s.view.references, s.paint_thread.get(), s.status, path);
+        case FileDialog::Purpose::ink:
+            return open_ink(s.paint_thread.get(), s.status, path);
+        case FileDialog::Purpose::save_ink:
+            return save_ink(s.colours, s.brush.ink, s.status, path);
+        case FileDialog::Purpose::export_model:
+            if (s.paint_thread) s.paint_thread->post(export_command(s, path));
     }
 }
 
-void Studio::take_model() {
+// What the paint thread has for the picture.
+void Studio::take_work() {
     Session& s = session_;
     if (s.view.model_changed) {
-        const stroke::Model& m = s.paint_thread->model();
-        hand_.reset();
-        line_start_.reset();
-        thumbnails_from_.reset();
-        s.tools.pointer_down = false;
-        scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
-        const render::MapPixels pixels = s.paint_thread->take_pixels();
-        scene_->set_texture(pixels);
-        s.view.max_ink_height = highest_of(pixels.levels[0]);
-        view_->scene_changed();
-        colours_shown_ = ModelView::glaze;
-        if (!std::exchange(s.view.keep_camera, false)) {
-            const Orbit fresh;
-            s.view.orbit.azimuth = fresh.azimuth;
-            s.view.orbit.elevation = fresh.elevation;
-            s.view.orbit.roll = 0;
-            if (s.view.orbit.parallel_until_turned) s.view.orbit.set_parallel(false);
-            s.view.orbit.frame(m.mesh->bounds);
-        }
-        s.view.model_changed = false;
-        strokes_seen_ = s.journal.lines.size();
+        input_.drop();
+        s.layers.list.seen_from.reset();
+        scene_.take_model();
+        picture_.reset();
     }
-    if (s.view.texels.pixels) {
-        scene_->set_texture(*s.view.texels.pixels);
-        s.view.max_ink_height = highest_of(s.view.texels.pixels->levels[0]);
-        s.view.texels.pixels.reset();
-        view_->scene_changed();
-    }
-    scene_->update_tiles(s.view.texels.tiles);
-    for (const render::TilePixels& tile : s.view.texels.tiles)
-        s.view.max_ink_height = std::max(s.view.max_ink_height, highest_of(std::span(tile.rgba).first(256)));
-    for (const render::TilePixels& tile : s.view.texels.tiles) view_->texture_changed(tile.boxes);
-    s.view.texels.tiles.clear();
-    if (s.journal.lines.size() != strokes_seen_ || (s.reported.file.project != pictured_ && !s.journal.lines.empty())) {
-        strokes_seen_ = s.journal.lines.size();
-        pictured_ = s.reported.file.project;
-        picture_due_ = now_ + kPictureAfter;
-    }
-}
-
-void Studio::show_colours() {
-    Session& s = session_;
-    if (s.view.shading == colours_shown_) return;
-    if ((colours_shown_ == ModelView::wetness) != (s.view.shading == ModelView::wetness)) {
-        s.paint_thread->post(SendTexture{s.view.shading == ModelView::wetness});
-        s.view.max_ink_height = 0;
-    }
-    colours_shown_ = s.view.shading;
-    view_->scene_changed();
-    const stroke::Model& m = s.paint_thread->model();
-    if (s.view.shading == ModelView::charts) scene_->set_triangle_colours(chart_colours(m.atlas));
-    if (s.view.shading == ModelView::stretch) scene_->set_triangle_colours(stretch_colours(*m.mesh, m.atlas));
-}
-
-void Studio::update_tuft(double now) {
-    Session& s = session_;
-    s.view.tuft.state = {};
-    s.view.tuft.depth = 0;
-    const BrushStatus& painting = s.reported.brush;
-    s.colours.palette.tuft = painting.on_palette ? painting.tuft : brush::TuftState{};
-    s.view.tuft.pressed = !painting.tuft.branches.empty() && !painting.on_palette;
-    if (s.view.tuft.pressed) {
-        s.view.tuft.state = painting.tuft;
-    } else if (s.tools.active != Tool::writing && s.tools.active != Tool::fill && s.tools.active != Tool::pick &&
-               s.tools.active != Tool::mask && !s.journal.moves && cursor_inside_ && drag_ == Drag::none &&
-               !is_dialog_open(session_)) {
-        if (!preview_ || preview_brush_ != s.brush.preset) {
-            preview_ = brush::make_tuft(brush::load_preset(s.brush.preset));
-            preview_brush_ = s.brush.preset;
-        }
-        Event at = cursor_;
-        at.time = now;
-        const PointerInput hand(*s.paint_thread->model().query, preview_->preset, s.tools.pointer);
-        if (const auto pose = hand.hover(aim_of(at))) s.view.tuft.state = brush::step(*preview_, *pose, {}, 0.01);
-    }
-    if (s.view.tuft.state.branches.empty() || !s.view.tuft.pressed) return;
-    const brush::Section& root = s.view.tuft.state.branches.front().sections.back();
-    double length = 0;
-    const auto& sections = s.view.tuft.state.branches.front().sections;
-    for (std::size_t i = 1; i < sections.size(); ++i)
-        length += glm::distance(sections[i].centre, sections[i - 1].centre);
-    const auto hit = s.paint_thread->model().query->ray(root.centre, root.tangent, 0, length);
-    if (hit) s.view.tuft.depth = length - hit->distance;
-}
-
-void Studio::draw_scene(unsigned framebuffer, int height) {
-    Session& s = session_;
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    glDisable(GL_SCISSOR_TEST);
-    const float shade = s.ui.settings().theme == Theme::dark ? 0.155f : 0.94f;
-    glClearColor(shade, shade, shade, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
-    if (!s.paint_thread || s.view.model_changed) return;
-    show_colours();
-    static constexpr render::Shading shadings[] = {
-        render::Shading::glaze,  render::Shading::clay,   render::Shading::flat,      render::Shading::height,
-        render::Shading::height, render::Shading::texels, render::Shading::triangles, render::Shading::triangles};
-    const bool dark = s.ui.settings().theme == Theme::dark;
-    const render::GlSolid solid = solid_of(s.view.tuft.state, colour_in_tuft(s));
-    render::GlView::Frame f{.camera = camera(),
-                            .solid = &solid,
-                            .opacity = s.view.see_through    ? 0.25f
-                                       : s.view.tuft.pressed ? 0.92f
-                                                             : 0.72f};
-    f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shading)],
-                      .roughness = s.colours.appearance.roughness,
-                      .section = section_plane(s.view, s.paint_thread->model().mesh->bounds)};
-    // Only where it is shown: more ink than before must not draw everything anew.
-    if (f.look.options.shading == render::Shading::height)
-        f.look.options.height_range = static_cast<float>(height_range(s.view.max_ink_height));
-    f.look.light = render::make_light(s.view.rig, f.camera);
-    f.look.low = dark ? Vec3f(0.27f) : Vec3f(0.62f);
-    f.look.high = dark ? Vec3f(0.40f, 0.405f, 0.415f) : Vec3f(0.80f, 0.805f, 0.815f);
-    f.moving = drag_ != Drag::none || now_ - last_turn_ < kTurnPause;
-    f.framebuffer = framebuffer;
-    f.x = s.view.area.x;
-    f.y = height - s.view.area.y - s.view.area.height;
-    draw_comparison(f, height);
-    view_->draw(*scene_, f);
-    draw_atlas(f.look.options, framebuffer, height);
-}
-
-void Studio::keep_picture() {
-    Session& s = session_;
-    if (picture_due_ == 0 || now_ < picture_due_ || !s.paint_thread || s.view.tuft.pressed || !is_settled(s)) return;
-    picture_due_ = 0;
-    if (s.reported.file.project.empty()) return;
-    s.project.start_page.pictures.keep(s.reported.file.project, s.view.area.width, s.view.area.height,
-                                       render::read_pixels(s.view.area.x, 0, s.view.area.width, s.view.area.height));
+    scene_.take_texels();
+    picture_.watch(now_);
 }
 
 // While the hand draws, the ink of its newest samples shall be in this frame and not in the next:
-// the painter gets a part of the time that a frame takes, if it keeps up at all.
+// the paint thread gets a part of the time that a frame takes, if it keeps up at all.
 void Studio::await_ink(double since_last) {
     Session& s = session_;
     s.paint_thread->wait_idle(std::min(kInkWait, kInkPart * since_last));
     poll_paint_thread(s);
-    take_model();
+    take_work();
 }
 
-void Studio::shown(double now) {
-    for (; !asked_.empty() && asked_.front() <= session_.reported.progress.done; asked_.pop_front())
-        delays_.push_back(now - asked_.front());
+void Studio::restyle(int width, int height) {
+    Session& s = session_;
+    Preferences& p = s.preferences;
+    if (const float scale = scale_for(content_scale_, width, height); !p.ui.own_scale && p.ui.scale != scale) {
+        p.ui.scale = scale;
+        p.restyle = true;
+    }
+    if (std::exchange(s.ui.sections_changed, false)) store_settings(s);
+    if (!std::exchange(p.restyle, false)) return;
+    if (const std::string missing = s.ui.prepare(p.ui); !missing.empty()) show_message(s.status, missing);
+    if (p.ui.language != s.ui.settings().language) {  // there is no font for it
+        p.ui.language = s.ui.settings().language;
+        store_settings(s);
+    }
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
 void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffer, double now) {
@@ -364,23 +258,7 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     now_ = now;
     framebuffer_ = framebuffer;
     height_ = height;
-    if (const float scale = scale_for(content_scale_, width, height);
-        !s.preferences.ui.own_scale && s.preferences.ui.scale != scale) {
-        s.preferences.ui.scale = scale;
-        s.preferences.restyle = true;
-    }
-    if (std::exchange(s.ui.sections_changed, false)) store_settings(s);
-    if (s.preferences.restyle) {
-        s.preferences.restyle = false;
-        if (const std::string missing = s.ui.prepare(s.preferences.ui); !missing.empty())
-            show_message(s.status, missing);
-        if (s.preferences.ui.language != s.ui.settings().language) {  // there is no font for it
-            s.preferences.ui.language = s.ui.settings().language;
-            store_settings(s);
-        }
-        ImGui_ImplOpenGL3_DestroyFontsTexture();
-        ImGui_ImplOpenGL3_CreateFontsTexture();
-    }
+    restyle(width, height);
     poll_session(s);
     if (!queue.empty()) last_event_ = now;
     const std::vector<Event> events = feed_imgui(queue, width, height, dt);
@@ -388,30 +266,23 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     ImGui::NewFrame();
     s.ui.begin_frame();
     layout(width, height);
-    if (s.paint_thread) take_model();
+    if (s.paint_thread) take_work();
     const bool keeps_up = s.paint_thread && s.paint_thread->idle();
-    for (const Event& event : events) handle(event);
-    if (s.paint_thread && hand_ && keeps_up && !events.empty()) await_ink(dt);
+    for (const Event& event : events) input_.handle(event, now);
+    if (s.paint_thread && input_.stroke().drawing() && keeps_up && !events.empty()) await_ink(dt);
     if (s.paint_thread) {
-        watch_curve();
-        watch_writing();
-        update_tuft(now);
+        input_.watch();
+        scene_.update_tuft(input_.turning() ? nullptr : input_.cursor(), now);
     }
-    panels();
+    draw_panels();
     s.ui.enter = false;
     if (++frames_ % draw_every_ != 0) return ImGui::EndFrame();
-    draw_scene(framebuffer, height);
-    keep_picture();
+    scene_.draw(framebuffer, height, input_.turned_within(kTurnPause, now));
+    picture_.store(now);
     ImGui::Render();
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, width, height);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-}
-
-render::GlCamera Studio::camera() const {
-    const Session& s = session_;
-    return s.view.orbit.camera(s.view.area.width, s.view.area.height,
-                               s.paint_thread ? s.paint_thread->model().mesh->bounds : Box{{-1, -1, -1}, {1, 1, 1}});
 }
 
 }  // namespace tuft::app

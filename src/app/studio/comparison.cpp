@@ -1,22 +1,21 @@
+#include "app/studio/comparison.h"
+
 #include <epoxy/gl.h>
 
 #include <algorithm>
 
-#include "app/studio/studio.h"
-
-/// The work beside one of its snapshots.
 namespace tuft::app {
 
-bool Studio::comparing() const {
+bool Comparison::on() const {
     return session_.paint_thread && !session_.journal.snapshots.compared.empty();
 }
 
 // The snapshot has the left half of the view, the work the right one; swiped, both have all of it.
-void Studio::layout_comparison() {
+void Comparison::layout() {
     Session& s = session_;
     SnapshotState& c = s.journal.snapshots;
     c.width = 0;
-    if (!comparing() || c.swipe) return;
+    if (!on() || c.swipe) return;
     c.x = s.view.area.x;
     c.y = s.view.area.y;
     c.width = s.view.area.width / 2;
@@ -26,35 +25,35 @@ void Studio::layout_comparison() {
     c.width = s.view.area.width;  // both look the same way at the same size
 }
 
-void Studio::take_snapshot_picture() {
+void Comparison::take_picture() {
     Session& s = session_;
     SnapshotState& c = s.journal.snapshots;
-    if (!comparing()) {
-        compare_scene_.reset();
-        compare_view_.reset();
+    if (!on()) {
+        scene_.reset();
+        view_.reset();
         return;
     }
     if (!c.picture || c.picture->id != c.compared) return;
     const stroke::Model& m = s.paint_thread->model();
-    compare_scene_ = std::make_unique<render::GlScene>();
-    compare_view_ = std::make_unique<render::GlView>();
-    compare_scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
-    compare_scene_->set_texture(c.picture->pixels);
+    scene_ = std::make_unique<render::GlScene>();
+    view_ = std::make_unique<render::GlView>();
+    scene_->set_mesh(*m.mesh, m.atlas.corner_uvs);
+    scene_->set_texture(c.picture->pixels);
     c.picture.reset();
     c.ready = true;
 }
 
 // Before the work is drawn: swiped, it would lie under it, so what was drawn is kept as a texture.
-void Studio::draw_comparison(const render::GlView::Frame& of_work, int height) {
+void Comparison::draw(const render::GlView::Frame& of_work, int height) {
     Session& s = session_;
     SnapshotState& c = s.journal.snapshots;
-    take_snapshot_picture();
-    if (!comparing() || !c.ready || !compare_scene_) return;
+    take_picture();
+    if (!on() || !c.ready || !scene_) return;
     render::GlView::Frame f = of_work;
     f.solid = nullptr;
     if (f.look.options.shading == render::Shading::triangles) f.look.options.shading = render::Shading::clay;
     if (!c.swipe) f.x = c.x;
-    compare_view_->draw(*compare_scene_, f);
+    view_->draw(*scene_, f);
     if (!c.swipe) return;
     glBindFramebuffer(GL_READ_FRAMEBUFFER, f.framebuffer);
     if (!c.texture) glGenTextures(1, &c.texture);
@@ -65,12 +64,16 @@ void Studio::draw_comparison(const render::GlView::Frame& of_work, int height) {
                      s.view.area.width, s.view.area.height, 0);
 }
 
-// Whether a press is one on the work, not on the snapshot beside or over it.
-bool Studio::on_work(const Event& e) const {
+bool Comparison::on_work(const Event& e) const {
     const Session& s = session_;
     const SnapshotState& c = s.journal.snapshots;
-    if (!comparing()) return true;
+    if (!on()) return true;
     return e.x >= s.view.area.x + (c.swipe && c.ready ? c.line_at * s.view.area.width : 0);
+}
+
+void Comparison::drop_graphics() {
+    scene_.reset();
+    view_.reset();
 }
 
 }  // namespace tuft::app

@@ -1,17 +1,14 @@
+#include "app/studio/set_by_name.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "app/panels/panels.h"
-#include "app/studio/studio.h"
 #include "core/units.h"
 
-/// Settings by name, for scripts.
 namespace tuft::app {
 
-namespace {
-
-/// The number that a value begins with, 0 where it is a word.
 double number_of(const std::string& value) {
     constexpr double kMost = 1e6;
     char* end = nullptr;
@@ -21,10 +18,7 @@ double number_of(const std::string& value) {
     return std::isfinite(number) ? number : 0;
 }
 
-}  // namespace
-
-void Studio::set(const std::string& name, const std::string& value) {
-    Session& s = session_;
+void set_by_name(Session& s, const std::string& name, const std::string& value) {
     const double number = number_of(value);
     const bool on = value == "on";
     const auto one_of = [&](const std::vector<std::string>& names) {
@@ -123,8 +117,6 @@ void Studio::set(const std::string& name, const std::string& value) {
         s.view.section.position = std::clamp(number, 0.02, 1.0);
     } else if (name == "atlas")
         s.view.atlas.shown = on;
-    else if (name == "draw-every")
-        draw_every_ = static_cast<std::size_t>(std::clamp(number, 1.0, 1000.0));
     else if (name == "guide")
         on ? start_guide(s.panels.help) : void(s.panels.help.step = -1);
     else if (name == "swipe")

@@ -1,12 +1,13 @@
+#include "app/studio/writing_tool.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "app/session/top_dialog.h"
-#include "app/studio/studio.h"
+#include "app/studio/aim.h"
 #include "app/view/visibility.h"
 #include "core/units.h"
 
-/// Placing writing and drawings with the mouse.
 namespace tuft::app {
 namespace {
 
@@ -15,11 +16,10 @@ constexpr double kGhostTolerance =
 
 }  // namespace
 
-std::optional<stroke::Placement> Studio::writing_placement() const {
+std::optional<stroke::Placement> WritingTool::placement(const Event* cursor) const {
     const Session& s = session_;
-    if (s.tools.active != Tool::writing || s.tools.writing.empty() || !cursor_inside_ || is_dialog_open(session_))
-        return std::nullopt;
-    const Aim aim = aim_of(cursor_);
+    if (s.tools.active != Tool::writing || s.tools.writing.empty() || !cursor || is_dialog_open(s)) return std::nullopt;
+    const Aim aim = aim_of(s, *cursor);
     const auto hit = aim_at(*s.paint_thread->model().query, aim);
     if (!hit) return std::nullopt;
     const Vec3 normal = glm::dot(hit->normal, aim.ray.direction) < 0 ? hit->normal : -hit->normal;
@@ -27,32 +27,32 @@ std::optional<stroke::Placement> Studio::writing_placement() const {
                          glm::cross(aim.view_right, aim.view_up));
 }
 
-void Studio::watch_writing() {
+void WritingTool::watch(const Event* cursor) {
     Session& s = session_;
-    const auto placement = writing_placement();
-    if (!placement) {
+    const auto at = placement(cursor);
+    if (!at) {
         s.tools.writing_preview.clear();
-        ghost_scale_ = 0;
+        scale_ = 0;
         return;
     }
-    const stroke::Placement& old = ghost_placement_;
-    const render::GlCamera seen_from = camera();
+    const stroke::Placement& old = placement_;
+    const render::GlCamera seen_from = camera_of(s);
     const Vec4f section = section_plane(s.view, s.paint_thread->model().mesh->bounds);
-    const bool same = placement->origin == old.origin && placement->right == old.right && placement->down == old.down &&
-                      placement->mapping == old.mapping && ghost_scale_ == s.tools.writing.scale;
-    if (same && seen_from == ghost_camera_ && section == ghost_section_) return;
-    ghost_placement_ = *placement;
-    ghost_scale_ = s.tools.writing.scale;
-    ghost_camera_ = seen_from;
-    ghost_section_ = section;
+    const bool same = at->origin == old.origin && at->right == old.right && at->down == old.down &&
+                      at->mapping == old.mapping && scale_ == s.tools.writing.scale;
+    if (same && seen_from == camera_ && section == section_) return;
+    placement_ = *at;
+    scale_ = s.tools.writing.scale;
+    camera_ = seen_from;
+    section_ = section;
     const mesh::SurfaceQuery& query = *s.paint_thread->model().query;
-    if (!same) s.tools.writing_preview = ghost_lines(query, s.tools.writing, *placement);
+    if (!same) s.tools.writing_preview = ghost_lines(query, s.tools.writing, *at);
     const double tolerance = kGhostTolerance * s.paint_thread->model().mesh->bounds.diagonal();
     for (auto& line : s.tools.writing_preview)
         for (GhostPoint& point : line) point.seen = is_seen(query, seen_from, section, point.position, tolerance);
 }
 
-void Studio::writing_wheel(const Event& e) {
+void WritingTool::wheel(const Event& e) {
     Writing& w = session_.tools.writing;
     if (e.modifiers & kShift)
         w.turn = std::remainder(w.turn + 3 * kDegree * e.steps, 360 * kDegree);
@@ -60,14 +60,14 @@ void Studio::writing_wheel(const Event& e) {
         w.scale = std::clamp(w.scale * std::pow(1.05, e.steps), 1e-3, 1e3);
 }
 
-void Studio::lay_writing() {
+void WritingTool::place(const Event* cursor) {
     Session& s = session_;
-    const auto placement = writing_placement();
-    if (!placement) return;
+    const auto at = placement(cursor);
+    if (!at) return;
     // Pressures that are made up stay as they are while the slider is where it is at first.
     const WritingHand hand{s.brush.preset, s.brush.ink, s.tools.pointer.pressure / PointerSettings{}.pressure};
-    show_message(s.status, s.ui.tr("Placed:") + (" " + place_words(s.tools.writing, *placement)));
-    s.paint_thread->post(PaintDrawing{placed_writing(s.tools.writing, *placement, hand),
+    show_message(s.status, s.ui.tr("Placed:") + (" " + place_words(s.tools.writing, *at)));
+    s.paint_thread->post(PaintDrawing{placed_writing(s.tools.writing, *at, hand),
                                       stroke::group_name(s.tools.writing.file), s.tools.symmetry, s.layers.active,
                                       s.masks.active, s.brush.wet});
 }

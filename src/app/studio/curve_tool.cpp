@@ -1,14 +1,15 @@
+#include "app/studio/curve_tool.h"
+
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "app/studio/studio.h"
+#include "app/studio/aim.h"
+#include "app/studio/stroke_input.h"
 
-/// Lines and curves: setting, moving and painting their control points.
 namespace tuft::app {
 namespace {
 
@@ -19,9 +20,9 @@ constexpr double kSnap = std::numbers::pi / 12;
 }  // namespace
 
 // The control point under the cursor, -1: none.
-int Studio::curve_point_at(const Event& e) const {
+int CurveTool::point_at(const Event& e) const {
     const Session& s = session_;
-    const render::GlCamera c = camera();
+    const render::GlCamera c = camera_of(session_);
     int nearest = -1;
     double least = kGrab * static_cast<double>(s.ui.settings().scale);
     for (std::size_t i = 0; i < s.tools.curve.points.size(); ++i) {
@@ -32,24 +33,24 @@ int Studio::curve_point_at(const Event& e) const {
     return nearest;
 }
 
-std::optional<CurvePoint> Studio::curve_point(const Event& e) const {
-    const Aim aim = aim_of(e);
+std::optional<CurvePoint> CurveTool::point_of(const Event& e) const {
+    const Aim aim = aim_of(session_, e);
     const auto hit = aim_at(*session_.paint_thread->model().query, aim);
     if (!hit) return std::nullopt;
     return CurvePoint{.position = hit->position, .outward = -aim.ray.direction};
 }
 
-bool Studio::curve_editable() const {
+bool CurveTool::editable() const {
     const Session& s = session_;
     return s.tools.curve.last_stroke != 0 && !s.journal.lines.empty() &&
            s.journal.lines.back().id == s.tools.curve.last_stroke;
 }
 
-void Studio::curve_press(const Event& e) {
+void CurveTool::press(const Event& e) {
     CurveInWork& curve = session_.tools.curve;
-    curve.grabbed = curve_point_at(e);
+    curve.grabbed = point_at(e);
     if (curve.grabbed >= 0) return;
-    const auto point = curve_point(e);
+    const auto point = point_of(e);
     if (!point) return;
     // A painted line or curve is done when a new one is begun.
     if (session_.tools.active == Tool::line || curve.last_stroke || curve.waits) curve = {};
@@ -59,7 +60,7 @@ void Studio::curve_press(const Event& e) {
     line_start_ = e;
 }
 
-void Studio::curve_drag(const Event& e) {
+void CurveTool::drag(const Event& e) {
     CurveInWork& curve = session_.tools.curve;
     if (curve.grabbed < 0) return;
     CurvePoint& grabbed = curve.points[static_cast<std::size_t>(curve.grabbed)];
@@ -67,21 +68,21 @@ void Studio::curve_drag(const Event& e) {
     if ((e.modifiers & kShift) && curve.points.size() >= 2) {
         // Steps of 15° round the neighbour, as seen.
         const std::size_t other = curve.grabbed > 0 ? static_cast<std::size_t>(curve.grabbed) - 1 : 1;
-        const Vec3 pivot = render::picture_point(camera(), curve.points[other].position);
+        const Vec3 pivot = render::picture_point(camera_of(session_), curve.points[other].position);
         const double x = e.x - session_.view.area.x - pivot.x, y = e.y - session_.view.area.y - pivot.y;
         const double angle = kSnap * std::round(std::atan2(y, x) / kSnap),
                      length = x * std::cos(angle) + y * std::sin(angle);
         at.x = pivot.x + session_.view.area.x + length * std::cos(angle);
         at.y = pivot.y + session_.view.area.y + length * std::sin(angle);
     }
-    if (auto point = curve_point(at)) {
+    if (auto point = point_of(at)) {
         point->pressure = grabbed.pressure;
         grabbed = *point;
         curve.changed = true;
     }
 }
 
-void Studio::curve_release(const Event& e) {
+void CurveTool::release(const Event& e, double now) {
     CurveInWork& curve = session_.tools.curve;
     const bool fresh_line = session_.tools.active == Tool::line && line_start_ && !curve.last_stroke;
     const bool moved = line_start_ && std::hypot(e.x - line_start_->x, e.y - line_start_->y) >= kShortest;
@@ -89,24 +90,24 @@ void Studio::curve_release(const Event& e) {
     line_start_.reset();
     if (fresh_line && !moved)
         curve = {};
-    else if (fresh_line || (curve.changed && curve_editable()))
-        paint_curve();
+    else if (fresh_line || (curve.changed && editable()))
+        paint(now);
 }
 
-void Studio::curve_wheel(const Event& e) {
+void CurveTool::wheel(const Event& e, double now) {
     CurveInWork& curve = session_.tools.curve;
     double& pressure = curve.points[static_cast<std::size_t>(curve.over)].pressure;
     pressure = std::clamp(pressure + 0.1 * e.steps, 0.0, 2.0);
     curve.changed = true;
-    if (curve_editable()) paint_curve();
+    if (editable()) paint(now);
 }
 
-bool Studio::curve_key(const Event& e) {
+bool CurveTool::key(const Event& e, double now) {
     CurveInWork& curve = session_.tools.curve;
     if (curve.points.empty()) return false;
     if (e.key == GLFW_KEY_ENTER || e.key == GLFW_KEY_KP_ENTER) {
         if (curve.changed || !curve.last_stroke)
-            paint_curve();
+            paint(now);
         else
             curve = {};
     } else if (e.key == GLFW_KEY_ESCAPE) {
@@ -119,32 +120,22 @@ bool Studio::curve_key(const Event& e) {
         curve.changed = true;
         if (curve.points.size() < 2 && curve.last_stroke)
             curve = {};
-        else if (curve_editable())
-            paint_curve();
+        else if (editable())
+            paint(now);
     } else {
         return false;
     }
     return true;
 }
 
-// Of the brush in hand; found anew where it is another one.
-TipLag Studio::tip_lag(const brush::Preset& preset) {
-    if (tip_lag_brush_ != session_.brush.preset) {
-        tip_lag_ = stroke::measure_tip_lag(preset);
-        tilted_tip_lag_.emplace(preset);
-        tip_lag_brush_ = session_.brush.preset;
-    }
-    return {tip_lag_, [this](double depth, const Vec2& lean) { return tilted_tip_lag_->at(depth, lean); }};
-}
-
 // Paints it, in the place of what was painted before when that is the last stroke.
-void Studio::paint_curve() {
+void CurveTool::paint(double now) {
     Session& s = session_;
     CurveInWork& curve = s.tools.curve;
     if (curve.points.size() < 2) return;
     const brush::Preset preset = brush::load_preset(s.brush.preset);
-    const TipLag lag = tip_lag(preset);
-    const render::GlCamera c = camera();
+    const TipLag lag = tip_lag_.find(s.brush.preset, preset);
+    const render::GlCamera c = camera_of(session_);
     CurveHand hand{.hold = stroke::holder_options(preset, s.paint_thread->model().query->mesh()),
                    .settings = s.tools.curve_settings,
                    .pressure = s.tools.pointer.pressure,
@@ -155,12 +146,12 @@ void Studio::paint_curve() {
     hand.hold.leaned = lag.leaned;
     const auto strokes = curve_poses(*s.paint_thread->model().query, curve.points, hand);
     if (strokes.empty()) return show_message(s.status, "The line does not lie on the model.");
-    if (curve_editable()) s.paint_thread->post(UndoStroke{});
+    if (editable()) s.paint_thread->post(UndoStroke{});
     for (std::size_t i = 0; i < strokes.size(); ++i) {
-        BeginStroke begin = stroke_to_begin();
+        BeginStroke begin = stroke_to_begin(s);
         begin.joined = i > 0;
         s.paint_thread->post(std::move(begin));
-        s.paint_thread->post(ExtendStroke{strokes[i], now_});
+        s.paint_thread->post(ExtendStroke{strokes[i], now});
         s.paint_thread->post(EndStroke{});
     }
     curve.changed = false;
@@ -168,7 +159,7 @@ void Studio::paint_curve() {
     curve.last_stroke = 0;
 }
 
-void Studio::watch_curve() {
+void CurveTool::watch(const Event* cursor) {
     Session& s = session_;
     CurveInWork& curve = s.tools.curve;
     if (curve.waits && s.paint_thread->idle() && s.reported.progress.waiting == 0) {
@@ -176,10 +167,10 @@ void Studio::watch_curve() {
         curve.last_stroke = s.journal.lines.empty() ? 0 : s.journal.lines.back().id;
     }
     // Undone, or something was painted after it: it is history now.
-    if (curve.last_stroke && !curve_editable() && is_settled(s)) curve = {};
+    if (curve.last_stroke && !editable() && is_settled(s)) curve = {};
     const bool tool = s.tools.active == Tool::line || s.tools.active == Tool::curve;
     if (!tool && !curve.points.empty()) curve = {};
-    if (curve.grabbed < 0) curve.over = tool && cursor_inside_ ? curve_point_at(cursor_) : -1;
+    if (curve.grabbed < 0) curve.over = tool && cursor ? point_at(*cursor) : -1;
 }
 
 }  // namespace tuft::app

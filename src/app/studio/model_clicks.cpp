@@ -1,10 +1,11 @@
+#include "app/studio/model_clicks.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "app/panels/panels.h"
-#include "app/studio/studio.h"
+#include "app/studio/aim.h"
 
-/// Making masks on the model; the eyedropper.
 namespace tuft::app {
 namespace {
 
@@ -12,16 +13,22 @@ constexpr double kLassoStep = 3;  // pixels between two of its corners
 
 }  // namespace
 
-void Studio::pick_press(const Event& e) {
-    const auto hit = aim_at(*session_.paint_thread->model().query, aim_of(e));
-    if (hit)
-        session_.paint_thread->post(PickInk{hit->position});
-    else
-        show_message(session_.status, "Click on the model: the ink that lies there is picked up.");
+void press_fill(Session& s, const Event& e) {
+    const auto hit = aim_at(*s.paint_thread->model().query, aim_of(s, e));
+    if (!hit) return;
+    s.tools.fill.at = hit->position;
+    s.paint_thread->post(FillModel{s.brush.ink, s.tools.fill, s.layers.active, s.masks.active});
 }
 
-void Studio::mask_press(const Event& e) {
-    Session& s = session_;
+void press_pick(Session& s, const Event& e) {
+    const auto hit = aim_at(*s.paint_thread->model().query, aim_of(s, e));
+    if (hit)
+        s.paint_thread->post(PickInk{hit->position});
+    else
+        show_message(s.status, "Click on the model: the ink that lies there is picked up.");
+}
+
+void press_mask(Session& s, const Event& e) {
     stroke::Mask mask;
     mask.kind = s.masks.choice.kind;
     if (mask.kind == stroke::MaskKind::lasso) {
@@ -29,7 +36,7 @@ void Studio::mask_press(const Event& e) {
         return;
     }
     const stroke::Model& model = s.paint_thread->model();
-    const auto hit = aim_at(*model.query, aim_of(e));
+    const auto hit = aim_at(*model.query, aim_of(s, e));
     if (!hit) return;
     if (mask.kind == stroke::MaskKind::angle) {
         mask.direction = hit->normal;
@@ -45,16 +52,15 @@ void Studio::mask_press(const Event& e) {
     make_mask(s, std::move(mask));
 }
 
-void Studio::lasso_move(const Event& e) {
-    std::vector<Vec2>& lasso = session_.masks.lasso;
+void move_lasso(Session& s, const Event& e) {
+    std::vector<Vec2>& lasso = s.masks.lasso;
     if (std::hypot(e.x - lasso.back().x, e.y - lasso.back().y) >= kLassoStep) lasso.emplace_back(e.x, e.y);
 }
 
-void Studio::lasso_release() {
-    Session& s = session_;
+void release_lasso(Session& s) {
     const std::vector<Vec2> pixels = std::exchange(s.masks.lasso, {});
     if (pixels.size() < 3) return;
-    const render::GlCamera c = camera();
+    const render::GlCamera c = camera_of(s);
     stroke::Mask mask;
     mask.kind = stroke::MaskKind::lasso;
     mask.view = {.origin = c.eye,
@@ -68,6 +74,27 @@ void Studio::lasso_release() {
         mask.polygon.emplace_back(glm::dot(d, c.right), glm::dot(d, c.up));
     }
     make_mask(s, std::move(mask));
+}
+
+bool press_move(Session& s, const Event& e) {
+    if (!s.journal.moves) return false;
+    s.journal.from = s.journal.to = aim_at(*s.paint_thread->model().query, aim_of(s, e));
+    return true;
+}
+
+void drag_move(Session& s, const Event& e) {
+    if (const auto to = aim_at(*s.paint_thread->model().query, aim_of(s, e))) s.journal.to = to;
+}
+
+void release_move(Session& s, const Event& e) {
+    JournalState& j = s.journal;
+    if (const auto to = aim_at(*s.paint_thread->model().query, aim_of(s, e))) j.to = to;
+    if (glm::distance(j.from->position, j.to->position) > 1e-5)
+        s.paint_thread->post(
+            EditStrokes{.ids = {j.selected.begin(), j.selected.end()}, .move = shift_between(*j.from, *j.to)});
+    j.from.reset();
+    j.to.reset();
+    j.moves = false;
 }
 
 }  // namespace tuft::app
