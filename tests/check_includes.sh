@@ -15,7 +15,7 @@ while IFS=: read -r file line; do
   fi
 done < <(grep -rE --include='*.h' --include='*.cpp' '^#include "[a-z_]+/' "$src")
 # Within the studio: from what a device does to the script that plays a person.
-declare -A storey=([input]=0 [view]=1 [document]=2 [work]=3 [paint]=4 [widgets]=5 [session]=6 [panels]=7 [studio]=8 [script]=9)
+declare -A storey=([input]=0 [view]=1 [document]=2 [work]=3 [paint]=4 [widgets]=5 [session]=6 [panels]=7 [tools]=8 [studio]=9 [script]=10)
 while IFS=: read -r file line; do
   own=$(sed -E 's#.*/app/([a-z]+)/.*#\1#' <<<"$file")
   target=$(sed -E 's#.*"app/([a-z_]+)[/.].*#\1#' <<<"$line")

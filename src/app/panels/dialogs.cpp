@@ -10,22 +10,22 @@ namespace fs = std::filesystem;
 
 namespace tuft::app {
 
-bool begin_dialog(Session& s, const char* title, float width) {
+bool begin_dialog(Ui& ui, const char* title, float width) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.48f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
-    ImGui::SetNextWindowSize(ImVec2(s.ui.px(width), 0));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(s.ui.px(18), s.ui.px(14)));
-    const std::string name = std::string(s.ui.tr(title)) + "###dialog " + title;
+    ImGui::SetNextWindowSize(ImVec2(ui.px(width), 0));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui.px(18), ui.px(14)));
+    const std::string name = std::string(ui.tr(title)) + "###dialog " + title;
     const bool open = ImGui::Begin(name.c_str(), nullptr,
                                    ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                                        ImGuiWindowFlags_NoSavedSettings);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
-    s.ui.in_dialog = true;
+    ui.in_dialog = true;
     return open;
 }
 
-void end_dialog(Session& s) {
-    s.ui.in_dialog = false;
+void end_dialog(Ui& ui) {
+    ui.in_dialog = false;
     ImGui::End();
     ImGui::PopStyleVar();
 }
@@ -33,10 +33,10 @@ void end_dialog(Session& s) {
 namespace {
 
 // Two columns: name and value.
-void fact(Session& s, const char* name, const std::string& value) {
-    ImGui::TextDisabled("%s", s.ui.tr(name));
-    ImGui::SameLine(s.ui.px(150));
-    s.ui.wrapped(value);
+void fact(Ui& ui, const char* name, const std::string& value) {
+    ImGui::TextDisabled("%s", ui.tr(name));
+    ImGui::SameLine(ui.px(150));
+    ui.wrapped(value);
 }
 
 std::string print(const char* format, double a, double b = 0, double c = 0) {
@@ -56,8 +56,8 @@ std::string grouped(std::size_t number) {
 
 void open_dialog(Session& s) {
     if (!s.project.inspected ||
-        !begin_dialog(s, s.project.revision.source.empty() ? "Open model" : "Revised model", 520)) {
-        if (s.project.inspected) end_dialog(s);
+        !begin_dialog(s.ui, s.project.revision.source.empty() ? "Open model" : "Revised model", 520)) {
+        if (s.project.inspected) end_dialog(s.ui);
         return;
     }
     Ui& ui = s.ui;
@@ -66,9 +66,9 @@ void open_dialog(Session& s) {
     const double factor = metres_per(s.project.options.frame.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
     Vec3 size = m.bounds.size() * factor * 1e3;
     if (s.project.options.frame.y_up && !in.unit_fixed) std::swap(size.y, size.z);
-    fact(s, "File", in.path.filename().string());
-    fact(s, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
-    fact(s, "Triangles", grouped(m.n_triangles));
+    fact(ui, "File", in.path.filename().string());
+    fact(ui, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
+    fact(ui, "Triangles", grouped(m.n_triangles));
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", ui.tr("Unit of the file"));
     ImGui::SameLine(ui.px(150));
@@ -129,7 +129,7 @@ void open_dialog(Session& s) {
     const bool cancelled = ui.button("Cancel", nullptr, 120);
     ImGui::SameLine();
     const bool accepted = ui.primary_button(action, 120, fits);
-    end_dialog(s);
+    end_dialog(s.ui);
     if (accepted)
         accept_inspected(s);
     else if (cancelled)
@@ -137,20 +137,20 @@ void open_dialog(Session& s) {
 }
 
 void opening_progress(Session& s) {
-    if (!begin_dialog(s, "Opening", 380)) return end_dialog(s);
+    if (!begin_dialog(s.ui, "Opening", 380)) return end_dialog(s.ui);
     std::string phase = s.project.opening.phase();
     ImGui::TextUnformatted(s.ui.tr(phase.c_str()));
     ImGui::ProgressBar(static_cast<float>(s.project.opening.fraction()), ImVec2(-1, s.ui.px(18)), "");
     s.ui.buttons_at_right({{"Cancel", 110}});
     const bool stop = s.ui.button("Cancel", nullptr, 110);
-    end_dialog(s);
+    end_dialog(s.ui);
     if (stop) s.project.opening.cancel();
 }
 
 void recovery_dialog(Session& s) {
     if (s.project.recovery.lost.empty()) return;
-    if (!begin_dialog(s, s.project.recovery.confirm_delete ? "Delete this work?" : "Your work is still here", 480))
-        return end_dialog(s);
+    if (!begin_dialog(s.ui, s.project.recovery.confirm_delete ? "Delete this work?" : "Your work is still here", 480))
+        return end_dialog(s.ui);
     Ui& ui = s.ui;
     const LostWork work = s.project.recovery.lost.front();
     ui.wrapped(
@@ -161,8 +161,8 @@ void recovery_dialog(Session& s) {
                      ImVec2(ui.px(180), ui.px(120)));
         ImGui::Dummy(ImVec2(0, ui.px(2)));
     }
-    fact(s, "Model", fs::path(work.source).filename().string());
-    fact(s, "Project", is_unnamed(work.project) ? ui.tr("not saved under a name yet") : work.project.string());
+    fact(ui, "Model", fs::path(work.source).filename().string());
+    fact(ui, "Project", is_unnamed(work.project) ? ui.tr("not saved under a name yet") : work.project.string());
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     bool go_on = false, later = false, drop = false;
     if (s.project.recovery.confirm_delete) {
@@ -186,7 +186,7 @@ void recovery_dialog(Session& s) {
         drop = leave && !unnamed;
         s.project.recovery.confirm_delete = leave && unnamed;
     }
-    end_dialog(s);
+    end_dialog(s.ui);
     if (go_on) {
         forget_lost_work(work, false);
         open_path(s, work.project);
@@ -199,7 +199,7 @@ void recovery_dialog(Session& s) {
 
 void settings_dialog(Session& s) {
     if (!s.dialogs.show_settings) return;
-    if (!begin_dialog(s, "Settings", 420)) return end_dialog(s);
+    if (!begin_dialog(s.ui, "Settings", 420)) return end_dialog(s.ui);
     Ui& ui = s.ui;
     UiSettings& w = s.preferences.ui;
     bool changed = false;
@@ -247,7 +247,7 @@ void settings_dialog(Session& s) {
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Close", 110}});
     const bool close = ui.button("Close", nullptr, 110);
-    end_dialog(s);
+    end_dialog(s.ui);
     if (changed) {
         s.preferences.restyle = true;
         store_settings(s);

@@ -68,7 +68,7 @@ void swatches(Session& s) {
     std::size_t i = 0;
     for (const std::string& name : names) {
         if (i++ % columns) ImGui::SameLine(0, gap);
-        if (named_swatch(s, name, s.ui.tr(name.c_str()), ink_colour(s, name), name == s.brush.ink, width))
+        if (named_swatch(s, name, s.ui.tr(name.c_str()), ink_colour(s.colours, name), name == s.brush.ink, width))
             s.brush.ink = name;
         s.ui.mark(name);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", recipe_text(s, name).c_str());
@@ -138,7 +138,7 @@ void two_inks(Session& s) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float size = ImGui::GetFrameHeight();
     swatch(ImGui::GetWindowDrawList(), ImVec2(at.x + 0.5f * size, at.y + 0.5f * size), 0.36f * size,
-           ink_colour(s, s.brush.tip_ink));
+           ink_colour(s.colours, s.brush.tip_ink));
     ImGui::Dummy(ImVec2(size, size));
     ImGui::SameLine();
     ui.combo("Tip ink", s.brush.tip_ink, ink_names(s));
@@ -188,13 +188,13 @@ unsigned ink_colour(const ink::Ink& ink) {
     return IM_COL32(rgb[0], rgb[1], rgb[2], 255);
 }
 
-unsigned ink_colour(const Session& s, const std::string& name) {
+unsigned ink_colour(const ColourState& colours, const std::string& name) {
     static std::map<const ink::Ink*, unsigned> shipped;
-    const ink::Ink* ink = find_ink(s.colours, name);
+    const ink::Ink* ink = find_ink(colours, name);
     if (!ink) return IM_COL32(40, 40, 40, 255);
-    if (!s.colours.own.empty() && ink >= s.colours.own.data() && ink < s.colours.own.data() + s.colours.own.size())
+    if (!colours.own.empty() && ink >= colours.own.data() && ink < colours.own.data() + colours.own.size())
         return ink_colour(*ink);
-    if (s.colours.choice.in_hand && ink == &*s.colours.choice.in_hand) return ink_colour(*ink);
+    if (colours.choice.in_hand && ink == &*colours.choice.in_hand) return ink_colour(*ink);
     const auto [at, is_new] = shipped.try_emplace(ink);
     if (is_new) at->second = ink_colour(*ink);
     return at->second;
@@ -237,7 +237,7 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
 
 void colours_panel(Session& s, float top, float bottom, float left) {
     Ui& ui = s.ui;
-    begin_side_panel(s, "###colours", left, top, kToolWidth, bottom);
+    begin_side_panel(s.ui, "###colours", left, top, kToolWidth, bottom);
     ui.heading("Recolour");
     ui.note(ui.tr("Pigment amounts stay as they were painted; only what they look like changes."));
     std::set<std::string> used;
@@ -286,12 +286,12 @@ void colours_panel(Session& s, float top, float bottom, float left) {
     ImGui::End();
 }
 
-unsigned colour_in_tuft(const Session& s) {
-    if (s.brush.persistent && s.reported.brush.colour) {
-        const auto& c = *s.reported.brush.colour;
+unsigned colour_in_tuft(const BrushSettings& brush, const ColourState& colours, const BrushStatus& painting) {
+    if (brush.persistent && painting.colour) {
+        const auto& c = *painting.colour;
         return IM_COL32(c[0], c[1], c[2], 255);
     }
-    return ink_colour(s, s.brush.ink);
+    return ink_colour(colours, brush.ink);
 }
 
 }  // namespace tuft::app

@@ -19,7 +19,7 @@ bool is_stroke(const StrokeLine& line) {
 }
 
 unsigned colour_of(const Session& s, const StrokeLine& line) {
-    return (ink_colour(s, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
+    return (ink_colour(s.colours, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
 }
 
 // The way of a stroke; `place` puts a point of it on the screen.
@@ -47,7 +47,7 @@ void draw_entry(const Session& s, const StrokeLine& line, ImVec2 at, float size)
     const ImVec2 middle(at.x + 0.5f * size, at.y + 0.5f * size);
     if (!is_stroke(line)) {
         const bool inked = line.action == stroke::Action::dip || line.action == stroke::Action::fill;
-        if (inked) draw->AddCircleFilled(middle, 0.24f * size, ink_colour(s, line.ink), 32);
+        if (inked) draw->AddCircleFilled(middle, 0.24f * size, ink_colour(s.colours, line.ink), 32);
         draw->AddCircle(middle, 0.24f * size, s.ui.faint, 32);
         return;
     }
@@ -320,7 +320,7 @@ void draw_rows(Session& s) {
 
 void journal_panel(Session& s, float top, float bottom, float left) {
     Ui& ui = s.ui;
-    begin_side_panel(s, "###journal", left, top, kJournalWidth, bottom);
+    begin_side_panel(s.ui, "###journal", left, top, kJournalWidth, bottom);
     if (!s.panels.journal_fits &&
         ui.primary_button("Back to the tools", ImGui::GetContentRegionAvail().x / ui.settings().scale))
         s.panels.journal_over_tools = false;

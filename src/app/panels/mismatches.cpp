@@ -23,7 +23,7 @@ std::string translated(const Ui& ui, const std::string& reasons) {
 
 void mismatch_dialog(Session& s) {
     if (!s.dialogs.show_mismatches || !s.paint_thread) return;
-    if (!begin_dialog(s, "Strokes that no longer fit", 640)) return end_dialog(s);
+    if (!begin_dialog(s.ui, "Strokes that no longer fit", 640)) return end_dialog(s.ui);
     Ui& ui = s.ui;
     ui.wrapped(ui.tr("These strokes do not lie on the revised model as they did. They stay in the journal."));
     for (const std::string& sentence : s.project.revision.fit) ui.note(ui.tr_sentence(sentence));
@@ -54,7 +54,7 @@ void mismatch_dialog(Session& s) {
     const bool hide = ui.button("Hide them", nullptr, 120);
     ImGui::SameLine();
     const bool keep = ui.primary_button("Keep them", 120);
-    end_dialog(s);
+    end_dialog(s.ui);
     if (back) return open_previous(s);
     if (hide) {
         EditStrokes edit{.hidden = true};

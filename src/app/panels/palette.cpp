@@ -15,8 +15,7 @@ ImVec2 on_picture(const PaletteState& p, const Vec3& at) {
 }
 
 // The pressed tuft from above, or where a pool would be poured.
-void marks(const Session& s, ImDrawList* draw) {
-    const PaletteState& p = s.colours.palette;
+void marks(const Ui& ui, const PaletteState& p, unsigned ink, ImDrawList* draw) {
     for (const brush::Branch& branch : p.tuft.branches) {
         std::vector<ImVec2> left, right;
         for (const brush::Section& section : branch.sections) {
@@ -28,17 +27,16 @@ void marks(const Session& s, ImDrawList* draw) {
         if (left.size() < 2) continue;
         left.insert(left.end(), right.rbegin(), right.rend());
         draw->AddPolyline(left.data(), static_cast<int>(left.size()), IM_COL32(255, 255, 255, 200), ImDrawFlags_Closed,
-                          s.ui.px(3));
+                          ui.px(3));
         draw->AddPolyline(left.data(), static_cast<int>(left.size()), IM_COL32(40, 36, 32, 230), ImDrawFlags_Closed,
-                          s.ui.px(1.5f));
+                          ui.px(1.5f));
     }
     if (!p.tuft.branches.empty() || !ImGui::IsItemHovered()) return;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const double radius = p.tool == PaletteTool::pour ? p.radius : p.tool == PaletteTool::brush ? 1e-3 : 0.5e-3;
     const auto pixels = static_cast<float>(radius / stroke::kPaletteWidth * p.width);
-    draw->AddCircle(mouse, pixels, IM_COL32(255, 255, 255, 200), 32, s.ui.px(3));
-    draw->AddCircle(mouse, pixels, p.tool == PaletteTool::pour ? ink_colour(s, s.brush.ink) : IM_COL32(40, 36, 32, 230),
-                    32, s.ui.px(1.5f));
+    draw->AddCircle(mouse, pixels, IM_COL32(255, 255, 255, 200), 32, ui.px(3));
+    draw->AddCircle(mouse, pixels, p.tool == PaletteTool::pour ? ink : IM_COL32(40, 36, 32, 230), 32, ui.px(1.5f));
 }
 
 }  // namespace
@@ -81,7 +79,7 @@ void palette_panel(Session& s) {
     ImGui::InvisibleButton("plate", size);
     ui.mark("Plate");
     draw->PushClipRect(at, ImVec2(at.x + size.x, at.y + size.y), true);
-    marks(s, draw);
+    marks(ui, p, ink_colour(s.colours, s.brush.ink), draw);
     draw->PopClipRect();
     draw->AddRect(at, ImVec2(at.x + size.x, at.y + size.y), IM_COL32(128, 128, 128, 160), ui.px(8));
     if (p.tool == PaletteTool::pour)

@@ -39,9 +39,9 @@ void leave_dialog(Session& s);
 void export_dialog(Session& s);
 void settings_dialog(Session& s);
 void keys_dialog(Session& s);
-void about_dialog(Session& s);
+void about_dialog(Ui& ui, DialogState& dialogs);
 /// The built-in manual.
-void manual_dialog(Session& s);
+void manual_dialog(Ui& ui, HelpState& help, DialogState& dialogs, const KeyTable& keys);
 /// The guided first minute, a box over the view.
 void guide(Session& s);
 /// Reference images over the view; their list.
@@ -59,9 +59,9 @@ void tuft_inset(Session& s);
 void view_marks(const Session& s, const render::GlCamera& camera);
 
 /// The export as the dialog says it.
-ExportModel export_command(const Session& s, const std::filesystem::path& path);
+ExportModel export_command(const ExportSettings& settings, const Orbit& seen_from, const std::filesystem::path& path);
 /// Marks on the atlas: its frame, figures, and where the cursor over the model is in it.
-void atlas_marks(const Session& s, const std::optional<Vec2>& cursor);
+void atlas_marks(const Ui& ui, const AtlasView& atlas, PaintThread& work, const std::optional<Vec2>& cursor);
 /// Makes a mask under a name that is free, with the chosen one if that is asked for.
 void make_mask(Session& s, stroke::Mask mask);
 /// Strokes that do not touch the revised model.
@@ -74,18 +74,17 @@ double height_range(double max_height);
 
 /// A column of the window between two heights, `width` in units of the display scale; ends with ImGui::End.
 /// What is in it keeps its width when a scrollbar comes. A panel that does not scroll fits what it holds.
-void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom,
-                      bool scrolls = true);
+void begin_side_panel(Ui& ui, const char* name, float left, float top, float width, float bottom, bool scrolls = true);
 /// At the view's edges: fold away or bring back the panels beside it.
 void panel_handles(Session& s);
 /// sRGB colour (ImU32) of a full film of this ink on porcelain.
-unsigned ink_colour(const Session& s, const std::string& ink);
+unsigned ink_colour(const ColourState& colours, const std::string& ink);
 unsigned ink_colour(const ink::Ink& ink);
 /// Of the ink that the next stroke lays down.
-unsigned colour_in_tuft(const Session& s);
+unsigned colour_in_tuft(const BrushSettings& brush, const ColourState& colours, const BrushStatus& painting);
 
 /// Modal window in the middle; true while it is drawn. Close it with `end_dialog`.
-bool begin_dialog(Session& s, const char* title, float width);
-void end_dialog(Session& s);
+bool begin_dialog(Ui& ui, const char* title, float width);
+void end_dialog(Ui& ui);
 
 }  // namespace tuft::app

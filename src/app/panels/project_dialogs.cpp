@@ -6,8 +6,8 @@
 namespace tuft::app {
 
 void in_use_dialog(Session& s) {
-    if (!s.project.in_use || !begin_dialog(s, "Project in use", 480)) {
-        if (s.project.in_use) end_dialog(s);
+    if (!s.project.in_use || !begin_dialog(s.ui, "Project in use", 480)) {
+        if (s.project.in_use) end_dialog(s.ui);
         return;
     }
     Ui& ui = s.ui;
@@ -23,7 +23,7 @@ void in_use_dialog(Session& s) {
     const bool view = ui.button("Look at it", "Nothing can be painted; Save as... makes a copy", 110);
     ImGui::SameLine();
     const bool copy = ui.primary_button("Work on a copy", 140);
-    end_dialog(s);
+    end_dialog(s.ui);
     if (copy || view)
         open_in_use(s, copy ? OpenAs::copy : OpenAs::view);
     else if (cancelled)
@@ -31,8 +31,8 @@ void in_use_dialog(Session& s) {
 }
 
 void leave_dialog(Session& s) {
-    if (!s.project.closing.request || !s.paint_thread || !begin_dialog(s, "Work that is not on disk", 560)) {
-        if (s.project.closing.request && s.paint_thread) end_dialog(s);
+    if (!s.project.closing.request || !s.paint_thread || !begin_dialog(s.ui, "Work that is not on disk", 560)) {
+        if (s.project.closing.request && s.paint_thread) end_dialog(s.ui);
         return;
     }
     Ui& ui = s.ui;
@@ -53,7 +53,7 @@ void leave_dialog(Session& s) {
     const bool save = ui.button("Save as...", nullptr, 110);
     ImGui::SameLine();
     const bool again = ui.primary_button("Try again", 110);
-    end_dialog(s);
+    end_dialog(s.ui);
     if (leave) return close_now(s, *s.project.closing.request);
     if (again) s.paint_thread->post(RetryKeeping{});
     if (back || save) s.project.closing.request.reset();

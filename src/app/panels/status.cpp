@@ -153,7 +153,7 @@ void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
         if (hit) ground.push_back(v.at(hit->position));
     }
     draw->AddPolyline(ground.data(), static_cast<int>(ground.size()), s.ui.faint, 0, s.ui.px(2));
-    const unsigned ink = colour_in_tuft(s);
+    const unsigned ink = colour_in_tuft(s.brush, s.colours, s.reported.brush);
     const auto encoded = [](float linear) { return ink::srgb_encode(linear); };
     for (const brush::Branch& b : s.view.tuft.state.branches)
         for (std::size_t i = 1; i < b.sections.size(); ++i) {

@@ -241,7 +241,7 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     else if (c.name == "save")
         save_as(s, word);
     else if (c.name == "export") {
-        if (s.paint_thread) s.paint_thread->post(export_command(s, word));
+        if (s.paint_thread) s.paint_thread->post(export_command(s.dialogs.export_settings, s.view.orbit, word));
     } else if (c.name == "close") {
         studio.finish();
         s.project.start_page.recent = recent_projects();

@@ -9,7 +9,7 @@
 
 #include "app/panels/panels.h"
 #include "app/session/top_dialog.h"
-#include "app/studio/aim.h"
+#include "app/tools/aim.h"
 #include "app/view/model_colours.h"
 #include "app/view/tuft_solid.h"
 
@@ -143,7 +143,7 @@ void SceneView::draw(unsigned framebuffer, int height, bool moving) {
         render::Shading::glaze,  render::Shading::clay,   render::Shading::flat,      render::Shading::height,
         render::Shading::height, render::Shading::texels, render::Shading::triangles, render::Shading::triangles};
     const bool dark = s.ui.settings().theme == Theme::dark;
-    const render::GlSolid solid = solid_of(s.view.tuft.state, colour_in_tuft(s));
+    const render::GlSolid solid = solid_of(s.view.tuft.state, colour_in_tuft(s.brush, s.colours, s.reported.brush));
     render::GlView::Frame f{.camera = camera_of(s),
                             .solid = &solid,
                             .opacity = s.view.see_through    ? 0.25f

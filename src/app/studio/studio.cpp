@@ -10,10 +10,10 @@
 #include "app/input/imgui_feed.h"
 #include "app/panels/panels.h"
 #include "app/session/top_dialog.h"
-#include "app/studio/aim.h"
-#include "app/studio/atlas_input.h"
 #include "app/studio/set_by_name.h"
 #include "app/studio/uploads.h"
+#include "app/tools/aim.h"
+#include "app/tools/atlas_input.h"
 #include "brush/preset.h"
 #include "core/files.h"
 
@@ -165,7 +165,7 @@ void Studio::draw_side_panels() {
     comparison_bar(s);
     guide(s);
     view_marks(s, camera_of(s));
-    atlas_marks(s, atlas_cursor(s, input_.cursor()));
+    atlas_marks(s.ui, s.view.atlas, *s.paint_thread, atlas_cursor(s, input_.cursor()));
 }
 
 void Studio::draw_dialogs() {
@@ -182,9 +182,9 @@ void Studio::draw_dialogs() {
         recovery_dialog(s);
     export_dialog(s);
     settings_dialog(s);
-    manual_dialog(s);
+    manual_dialog(s.ui, s.panels.help, s.dialogs, s.preferences.keys);
     keys_dialog(s);
-    about_dialog(s);
+    about_dialog(s.ui, s.dialogs);
     mismatch_dialog(s);
     if (const auto path = s.dialogs.file.draw(s.ui, s.project.start_page.pictures)) take_file(*path);
 }
@@ -208,7 +208,7 @@ void Studio::take_file(const fs::path& path) {
         case FileDialog::Purpose::save_ink:
             return save_ink(s.colours, s.brush.ink, s.status, path);
         case FileDialog::Purpose::export_model:
-            if (s.paint_thread) s.paint_thread->post(export_command(s, path));
+            if (s.paint_thread) s.paint_thread->post(export_command(s.dialogs.export_settings, s.view.orbit, path));
     }
 }
 

@@ -12,10 +12,10 @@
 #include "app/session/open_close.h"
 #include "app/session/settings_file.h"
 #include "app/session/top_dialog.h"
-#include "app/studio/aim.h"
-#include "app/studio/atlas_input.h"
-#include "app/studio/model_clicks.h"
-#include "app/studio/palette_input.h"
+#include "app/tools/aim.h"
+#include "app/tools/atlas_input.h"
+#include "app/tools/model_clicks.h"
+#include "app/tools/palette_input.h"
 #include "brush/preset.h"
 
 namespace tuft::app {

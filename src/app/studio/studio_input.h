@@ -3,9 +3,9 @@
 #include "app/input/events.h"
 #include "app/session/session.h"
 #include "app/studio/comparison.h"
-#include "app/studio/curve_tool.h"
-#include "app/studio/stroke_input.h"
-#include "app/studio/writing_tool.h"
+#include "app/tools/curve_tool.h"
+#include "app/tools/stroke_input.h"
+#include "app/tools/writing_tool.h"
 
 namespace tuft::app {
 

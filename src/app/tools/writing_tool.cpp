@@ -1,10 +1,10 @@
-#include "app/studio/writing_tool.h"
+#include "app/tools/writing_tool.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "app/session/top_dialog.h"
-#include "app/studio/aim.h"
+#include "app/tools/aim.h"
 #include "app/view/visibility.h"
 #include "core/units.h"
 

@@ -1,10 +1,10 @@
-#include "app/studio/model_clicks.h"
+#include "app/tools/model_clicks.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "app/panels/panels.h"
-#include "app/studio/aim.h"
+#include "app/tools/aim.h"
 
 namespace tuft::app {
 namespace {

@@ -1,7 +1,7 @@
-#include "app/studio/stroke_input.h"
+#include "app/tools/stroke_input.h"
 
-#include "app/studio/aim.h"
-#include "app/studio/palette_input.h"
+#include "app/tools/aim.h"
+#include "app/tools/palette_input.h"
 #include "brush/preset.h"
 
 namespace tuft::app {

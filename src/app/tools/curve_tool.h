@@ -4,7 +4,7 @@
 
 #include "app/input/events.h"
 #include "app/session/session.h"
-#include "app/studio/tip_lag_cache.h"
+#include "app/tools/tip_lag_cache.h"
 
 namespace tuft::app {
 

@@ -1,4 +1,4 @@
-#include "app/studio/palette_input.h"
+#include "app/tools/palette_input.h"
 
 namespace tuft::app {
 namespace {

@@ -1,9 +1,9 @@
-#include "app/studio/atlas_input.h"
+#include "app/tools/atlas_input.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/studio/aim.h"
+#include "app/tools/aim.h"
 
 namespace tuft::app {
 

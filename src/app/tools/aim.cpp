@@ -1,4 +1,4 @@
-#include "app/studio/aim.h"
+#include "app/tools/aim.h"
 
 namespace tuft::app {
 

@@ -1,4 +1,4 @@
-#include "app/studio/tip_lag_cache.h"
+#include "app/tools/tip_lag_cache.h"
 
 namespace tuft::app {
 

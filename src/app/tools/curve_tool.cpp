@@ -1,4 +1,4 @@
-#include "app/studio/curve_tool.h"
+#include "app/tools/curve_tool.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/studio/aim.h"
-#include "app/studio/stroke_input.h"
+#include "app/tools/aim.h"
+#include "app/tools/stroke_input.h"
 
 namespace tuft::app {
 namespace {
