@@ -31,6 +31,7 @@ double width_mm(const Writing& w) {
 
 std::vector<stroke::Trace*> pointers(std::vector<stroke::Trace>& traces) {
     std::vector<stroke::Trace*> all;
+    all.reserve(traces.size());
     for (stroke::Trace& trace : traces) all.push_back(&trace);
     return all;
 }
