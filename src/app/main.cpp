@@ -15,8 +15,8 @@
 #include "app/session/open_close.h"
 #include "app/studio/studio.h"
 #include "app/view/display.h"
-#include "core/build_facts.h"
-#include "core/manual.h"
+#include "core/manual/manual.h"
+#include "core/system/build_facts.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "io/attachments.h"
-#include "render/gl_scene.h"
+#include "io/project/attachments.h"
+#include "render/gl/gl_scene.h"
 
 /// \file
 /// Named states of the journal, to go back to and to compare with. The project carries each one as an attachment.

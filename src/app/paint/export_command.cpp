@@ -1,10 +1,10 @@
 #include "app/paint/export_command.h"
 
-#include "io/export.h"
-#include "io/export_maps.h"
-#include "io/image.h"
-#include "io/inkml.h"
-#include "render/picture.h"
+#include "io/export/export.h"
+#include "io/export/export_maps.h"
+#include "io/image/image.h"
+#include "io/strokes/inkml.h"
+#include "render/picture/picture.h"
 #include "stroke/journal/journal_traces.h"
 
 namespace fs = std::filesystem;

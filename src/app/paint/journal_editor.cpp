@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 
 namespace tuft::app {
 namespace {

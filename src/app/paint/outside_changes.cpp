@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
-#include "io/appearance.h"
-#include "io/restore.h"
+#include "io/project/appearance.h"
+#include "io/project/restore.h"
 
 namespace tuft::app {
 namespace {

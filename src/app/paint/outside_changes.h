@@ -3,8 +3,8 @@
 #include <span>
 
 #include "app/work/paint_context.h"
-#include "io/project.h"
-#include "stroke/journal/merge.h"
+#include "io/project/project.h"
+#include "stroke/painting/merge.h"
 
 namespace tuft::app {
 

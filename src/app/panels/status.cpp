@@ -5,7 +5,7 @@
 
 #include "app/panels/panels.h"
 #include "app/view/tuft_solid.h"
-#include "ink/colour/composite.h"
+#include "ink/composite/composite.h"
 
 namespace tuft::app {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/widgets/status_message.h"
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 namespace tuft::app {
 

@@ -7,7 +7,7 @@
 
 #include "app/paint/paint_thread.h"
 #include "app/view/view_state.h"
-#include "mesh/surface_query.h"
+#include "mesh/query/surface_query.h"
 
 namespace tuft::app {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/types.h"
-#include "stroke/painting/mask.h"
+#include "core/geometry/types.h"
+#include "stroke/journal/mask.h"
 
 namespace tuft::app {
 

@@ -4,8 +4,8 @@
 
 #include "app/session/open_files.h"
 #include "app/session/settings_file.h"
-#include "core/units.h"
-#include "io/read_model.h"
+#include "core/text/units.h"
+#include "io/model/read_model.h"
 
 namespace fs = std::filesystem;
 

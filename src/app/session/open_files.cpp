@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/files.h"
+#include "core/system/files.h"
 
 namespace fs = std::filesystem;
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/files.h"
+#include "core/system/files.h"
 
 namespace tuft::app {
 namespace {

@@ -5,8 +5,8 @@
 #include "app/document/curve.h"
 #include "app/document/writing.h"
 #include "app/input/pointer_input.h"
-#include "stroke/hand/symmetry.h"
-#include "stroke/painting/fill.h"
+#include "stroke/gesture/symmetry.h"
+#include "stroke/journal/fill.h"
 
 namespace tuft::app {
 

@@ -4,7 +4,7 @@
 
 #include "app/input/events.h"
 #include "app/session/session.h"
-#include "render/gl_view.h"
+#include "render/gl/gl_view.h"
 
 namespace tuft::app {
 

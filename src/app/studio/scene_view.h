@@ -7,8 +7,8 @@
 #include "app/input/events.h"
 #include "app/session/session.h"
 #include "app/studio/comparison.h"
-#include "brush/tuft.h"
-#include "render/gl_view.h"
+#include "brush/tuft/tuft.h"
+#include "render/gl/gl_view.h"
 
 namespace tuft::app {
 

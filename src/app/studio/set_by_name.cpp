@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "app/panels/panels.h"
-#include "core/units.h"
+#include "core/text/units.h"
 
 namespace tuft::app {
 

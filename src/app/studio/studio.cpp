@@ -14,8 +14,8 @@
 #include "app/studio/uploads.h"
 #include "app/tools/aim.h"
 #include "app/tools/atlas_input.h"
-#include "brush/preset.h"
-#include "core/files.h"
+#include "brush/preset/preset.h"
+#include "core/system/files.h"
 
 namespace fs = std::filesystem;
 

@@ -16,7 +16,7 @@
 #include "app/tools/atlas_input.h"
 #include "app/tools/model_clicks.h"
 #include "app/tools/palette_input.h"
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 
 namespace tuft::app {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <epoxy/gl.h>
 
-#include "ink/colour/kubelka_munk.h"
+#include "ink/spectra/kubelka_munk.h"
 
 namespace tuft::app {
 namespace {

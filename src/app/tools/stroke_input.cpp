@@ -2,7 +2,7 @@
 
 #include "app/tools/aim.h"
 #include "app/tools/palette_input.h"
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 
 namespace tuft::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/input/pointer_input.h"
-#include "stroke/hand/tip_lag.h"
+#include "stroke/placement/tip_lag.h"
 
 namespace tuft::app {
 

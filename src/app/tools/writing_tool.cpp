@@ -6,7 +6,7 @@
 #include "app/session/top_dialog.h"
 #include "app/tools/aim.h"
 #include "app/view/visibility.h"
-#include "core/units.h"
+#include "core/text/units.h"
 
 namespace tuft::app {
 namespace {

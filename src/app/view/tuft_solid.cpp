@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "brush/tuft_surface.h"
+#include "brush/tuft/tuft_surface.h"
 #include "core/ease.h"
-#include "ink/colour/composite.h"
+#include "ink/composite/composite.h"
 
 namespace tuft::app {
 namespace {

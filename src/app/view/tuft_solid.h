@@ -1,7 +1,7 @@
 #pragma once
 
-#include "brush/tuft.h"
-#include "render/gl_scene.h"
+#include "brush/tuft/tuft.h"
+#include "render/gl/gl_scene.h"
 
 namespace tuft::app {
 

@@ -3,8 +3,8 @@
 #include "app/view/references.h"
 #include "app/view/texture.h"
 #include "app/view/viewport.h"
-#include "brush/tuft.h"
-#include "render/gl_scene.h"
+#include "brush/tuft/tuft.h"
+#include "render/gl/gl_scene.h"
 
 namespace tuft::app {
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "app/document/writing.h"
-#include "brush/tuft.h"
-#include "io/attachments.h"
-#include "render/gl_camera.h"
-#include "stroke/hand/symmetry.h"
+#include "brush/tuft/tuft.h"
+#include "io/project/attachments.h"
+#include "render/gl/gl_camera.h"
+#include "stroke/gesture/symmetry.h"
 #include "stroke/painting/painting.h"
 
 /// \file
@@ -138,7 +138,7 @@ struct EditStrokes {
 struct HighlightStrokes {
     std::vector<std::uint64_t> ids;
 };
-/// Keeps something along with the work (io/attachments.h), or takes it out.
+/// Keeps something along with the work (io/project/attachments.h), or takes it out.
 struct AttachToProject {
     std::string kind;
     io::Attachment attachment;

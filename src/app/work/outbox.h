@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "app/work/update.h"
-#include "core/progress.h"
+#include "core/system/progress.h"
 
 namespace tuft::app {
 

@@ -7,7 +7,7 @@
 
 #include "app/document/autosave.h"
 #include "app/view/texture.h"
-#include "stroke/journal/fit.h"
+#include "stroke/painting/fit.h"
 #include "stroke/painting/painting.h"
 
 namespace tuft::app {

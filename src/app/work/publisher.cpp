@@ -6,9 +6,9 @@
 #include <iterator>
 #include <set>
 
-#include "ink/colour/composite.h"
-#include "ink/colour/kubelka_munk.h"
-#include "io/attachments.h"
+#include "ink/composite/composite.h"
+#include "ink/spectra/kubelka_munk.h"
+#include "io/project/attachments.h"
 
 namespace tuft::app {
 namespace {
