@@ -34,7 +34,7 @@ TEST(Writing, LiesWithItsMiddleAtTheCursorTurnedAndScaled) {
     const auto at = query.ray(mesh.bounds.centre() + Vec3(0.01, 0.02, 1), Vec3(0, 0, -1));
     ASSERT_TRUE(at);
     const auto lines =
-        ghost_lines(query, w, place_writing(w, query, at->position, Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, 1)));
+        preview_lines(query, w, place_writing(w, query, at->position, Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, 1)));
     ASSERT_EQ(lines.size(), 2u);
     // Seen from above with x to the right, a turn goes clockwise: the line's right end sinks.
     const Vec3 right = lines[0].back().position - at->position;

@@ -71,7 +71,7 @@ PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Prese
     hold_.leaned = std::move(lag.leaned);
 }
 
-std::optional<BaseColour> PointerInput::ground(const Aim& aim) const {
+std::optional<AimedSurface> PointerInput::find_surface(const Aim& aim) const {
     const auto facing = [&](const mesh::SurfacePoint& p) {
         return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal;
     };
@@ -104,9 +104,9 @@ std::optional<BaseColour> PointerInput::ground(const Aim& aim) const {
         if (std::abs(pair.depth - level) < kShallow * reach_) normal += pair.normal, ++agree;
     const bool gap = agree >= kAgreeing && level < centre - kShallow * reach_ &&
                      glm::dot(normal, -aim.ray.direction) > kSlanting * glm::length(normal);
-    if (gap) return BaseColour{aim.ray.origin + level * aim.ray.direction, glm::normalize(normal), level, true};
+    if (gap) return AimedSurface{aim.ray.origin + level * aim.ray.direction, glm::normalize(normal), level, true};
     if (!hit) return std::nullopt;
-    return BaseColour{hit->position, facing(*hit), hit->distance, false};
+    return AimedSurface{hit->position, facing(*hit), hit->distance, false};
 }
 
 // The smoothed point cuts the corners of a curved surface: it is brought back. Over a gap the nearest
@@ -169,7 +169,7 @@ double PointerInput::goal_pressure(const Aim& aim) const {
     return std::clamp(settings_.pressure * slow + rested, 0.02, 1.0);
 }
 
-void PointerInput::touch_down(const Aim& aim, const BaseColour& hit, const Vec3& towards,
+void PointerInput::touch_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards,
                               std::vector<HandStep>& steps) {
     down_ = true;
     goal_ = point_ = hit.position;
@@ -185,12 +185,12 @@ void PointerInput::touch_down(const Aim& aim, const BaseColour& hit, const Vec3&
 }
 
 // A clean stroke is asked for: nothing is touched until its direction is known.
-void PointerInput::wait(const Aim& aim, const BaseColour& hit, std::vector<HandStep>& steps) {
+void PointerInput::wait(const Aim& aim, const AimedSurface& hit, std::vector<HandStep>& steps) {
     waiting_.push_back({aim, hit});
     aim_ = aim;
     goal_ = hit.position;
     goal_normal_ = hit.normal;
-    const bool known = glm::distance(hit.position, waiting_.front().ground.position) >= kKnown * aim.metres_per_pixel;
+    const bool known = glm::distance(hit.position, waiting_.front().surface.position) >= kKnown * aim.metres_per_pixel;
     if (known || aim.time - waiting_.front().aim.time > kPatience) set_down(steps);
 }
 
@@ -200,10 +200,10 @@ void PointerInput::set_down(std::vector<HandStep>& steps) {
     waiting_.clear();
     const Waiting& first = waiting.front();
     const Waiting& last = waiting.back();
-    Vec3 way = last.ground.position - first.ground.position;
-    way -= glm::dot(way, first.ground.normal) * first.ground.normal;
+    Vec3 way = last.surface.position - first.surface.position;
+    way -= glm::dot(way, first.surface.normal) * first.surface.normal;
     const double length = glm::length(way);
-    touch_down(first.aim, first.ground, length >= 0.5 * kKnown * last.aim.metres_per_pixel ? way / length : Vec3(0),
+    touch_down(first.aim, first.surface, length >= 0.5 * kKnown * last.aim.metres_per_pixel ? way / length : Vec3(0),
                steps);
     start_ -= kSetDown;  // as if it had begun earlier: it lags no further behind
     speed_ = length / std::max(kFrame, last.aim.time - first.aim.time);
@@ -217,9 +217,9 @@ void PointerInput::set_down(std::vector<HandStep>& steps) {
         step.poses.push_back(pose_at(first.aim, point_, normal_, pressure_, time_));
     }
     for (std::size_t i = 1; i < waiting.size(); ++i) {
-        if (waiting[i].ground.bridged) bridged_ = time_;
-        follow(waiting[i].aim, waiting[i].ground.position, waiting[i].ground.normal, step.poses);
-        goal_normal_ = waiting[i].ground.normal;
+        if (waiting[i].surface.bridged) bridged_ = time_;
+        follow(waiting[i].aim, waiting[i].surface.position, waiting[i].surface.normal, step.poses);
+        goal_normal_ = waiting[i].surface.normal;
     }
     steps.push_back(std::move(step));
 }
@@ -255,7 +255,7 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
 
 std::vector<HandStep> PointerInput::move(const Aim& aim) {
     std::vector<HandStep> steps;
-    const auto hit = ground(aim);
+    const auto hit = find_surface(aim);
     // A small movement of the cursor that goes far on the model crossed an edge of its outline.
     const double expected = drawing() && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
                                                    glm::distance(aim.ray.direction, aim_.ray.direction) * hit->distance
@@ -328,7 +328,7 @@ std::vector<HandStep> PointerInput::lift() {
 }
 
 std::optional<brush::Pose> PointerInput::hover(const Aim& aim) const {
-    const auto hit = ground(aim);
+    const auto hit = find_surface(aim);
     if (!hit) return std::nullopt;
     return pose_at(aim, hit->position, hit->normal, 0, aim.time);
 }

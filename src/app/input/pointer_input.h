@@ -47,8 +47,8 @@ struct TipLag {
     std::function<Vec2(double depth, const Vec2& lean)> leaned = {};
 };
 
-/// What lies under the brush, as a hand feels it.
-struct BaseColour {
+/// The surface that an aim meets.
+struct AimedSurface {
     Vec3 position{0};      ///< metres
     Vec3 normal{0, 0, 1};  ///< unit, towards who looks
     double distance = 0;   ///< metres from the eye
@@ -91,19 +91,19 @@ class PointerInput {
     const stroke::HolderOptions& hold() const { return hold_; }
     /// What the aim meets; over a gap narrower than the tuft the ground on both sides of it. Found with
     /// pairs of rays on opposite sides of the aim: on a plane their mean depth is that of the aim.
-    std::optional<BaseColour> ground(const Aim& aim) const;
+    std::optional<AimedSurface> find_surface(const Aim& aim) const;
 
   private:
     struct Waiting {
         Aim aim;
-        BaseColour ground;
+        AimedSurface surface;
     };
 
     bool is_clean(const Aim& aim) const { return settings_.clean_ends && aim.pressure < 0; }
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
     Vec3 ahead_of(const Aim& aim, const Vec3& normal, double pressure) const;
-    void touch_down(const Aim& aim, const BaseColour& hit, const Vec3& towards, std::vector<HandStep>& steps);
-    void wait(const Aim& aim, const BaseColour& hit, std::vector<HandStep>& steps);
+    void touch_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards, std::vector<HandStep>& steps);
+    void wait(const Aim& aim, const AimedSurface& hit, std::vector<HandStep>& steps);
     void set_down(std::vector<HandStep>& steps);
     void arrive(std::vector<brush::Pose>& poses);
     void drag();

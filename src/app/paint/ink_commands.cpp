@@ -32,7 +32,7 @@ void pick_ink(PaintContext& context, const PickInk& command) {
 
 void recolour(PaintContext& context, const RecolourInk& command) {
     context.work.document->recolour(command.name, command.wanted);
-    context.work.autosave.store_looks(*context.work.document);
+    context.work.autosave.store_appearance(*context.work.document);
     context.publisher.publish();
     context.publisher.publish_appearance();
 }
@@ -43,7 +43,7 @@ void preview_substrate(PaintContext& context, const PreviewSubstrate& command) {
         painting.preview_substrate(std::nullopt);
     else
         painting.preview_substrate(ink::load_substrate(command.substrate));
-    context.work.autosave.store_looks(painting);
+    context.work.autosave.store_appearance(painting);
     painting.take_dirty();
     context.work.texture->refresh_all(painting);
     context.publisher.forget_thumbnails();

@@ -73,7 +73,7 @@ void PaintThread::run() {
             context_.publisher.publish(true);
         }
         if (!queue_.pending()) context_.publisher.draw_thumbnails();
-        if (context_.work.autosave.unkept()) outside_.look();
+        if (context_.work.autosave.has_unsaved()) outside_.look();
     }
     finish_file();
 }
@@ -84,7 +84,7 @@ void PaintThread::finish_file() {
     outside_.look();
     Autosave& autosave = work.autosave;
     autosave.retry(work.source, work.frame, *work.document);
-    if (autosave.unkept() && !work.spare.empty() &&
+    if (autosave.has_unsaved() && !work.spare.empty() &&
         autosave.start(work.spare, work.source, work.frame, *work.document).empty())
         spared_ = work.spare;
     autosave.store_canvas(*work.document);
@@ -132,7 +132,7 @@ void PaintThread::perform(Command& command) {
                           [&](HighlightStrokes& c) { highlight_strokes(context, c, queue_); },
                           [&](ExportModel& c) { export_model(context, c); },
                           [&](SaveProject& c) { save(c); },
-                          [&](RetryKeeping&) {
+                          [&](RetrySaving&) {
                               work.autosave.retry(work.source, work.frame, *work.document);
                               publisher.publish();
                           },

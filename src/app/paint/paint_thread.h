@@ -26,7 +26,7 @@ class PaintThread {
     /// Does everything that was asked for first and saves it: in `PaintWork::spare` where its own file cannot be
     /// written. Returns that path then; empty: all is in its own file, or it is lost, as `unsaved` says.
     std::filesystem::path finish();
-    bool unsaved() const { return context_.work.autosave.unkept(); }  ///< after `finish`
+    bool unsaved() const { return context_.work.autosave.has_unsaved(); }  ///< after `finish`
 
     void post(Command command) { queue_.post(std::move(command)); }
     Update take();

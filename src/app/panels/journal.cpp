@@ -24,11 +24,11 @@ unsigned colour_of(const Session& s, const StrokeLine& line) {
 
 // The way of a stroke; `place` puts a point of it on the screen.
 template <class Place>
-void draw_way(const Session& s, const StrokeLine& line, float size, const Place& place) {
+void draw_path(const Session& s, const StrokeLine& line, float size, const Place& place) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const unsigned colour = colour_of(s, line);
-    for (std::size_t i = 1; i < line.way.size(); ++i) {
-        const Vec3f &a = line.way[i - 1], &b = line.way[i];
+    for (std::size_t i = 1; i < line.path.size(); ++i) {
+        const Vec3f &a = line.path[i - 1], &b = line.path[i];
         const ImVec2 from = place(a), to = place(b);
         const float width = 1.0f + 0.055f * size * (a.z + b.z);
         draw->AddLine(from, to, colour, width);
@@ -56,8 +56,8 @@ void draw_entry(const Session& s, const StrokeLine& line, ImVec2 at, float size)
     if (line.length < 1e-3)
         draw->AddCircleFilled(middle, 0.07f * size, colour_of(s, line), 16);  // a touch, no way
     else
-        draw_way(s, line, size,
-                 [&](const Vec3f& p) { return ImVec2(at.x + pad + p.x * inner, at.y + pad + p.y * inner); });
+        draw_path(s, line, size,
+                  [&](const Vec3f& p) { return ImVec2(at.x + pad + p.x * inner, at.y + pad + p.y * inner); });
 }
 
 // A drawing in its own frame, all strokes in one picture; other groups by their first stroke.
@@ -68,8 +68,8 @@ void draw_group(const Session& s, const Lines& lines, ImVec2 at, float size) {
     draw_sheet(ImVec2(at.x, at.y + shift), size - shift, hidden);
     Box box;
     for (const StrokeLine* line : lines) {
-        if (!line->flat || line->way.empty()) continue;
-        for (const Vec3f& p : line->way) box.add(Vec3(line->way_centre + line->way_span * (Vec2(p) - 0.5), 0));
+        if (!line->flat || line->path.empty()) continue;
+        for (const Vec3f& p : line->path) box.add(Vec3(line->path_centre + line->path_span * (Vec2(p) - 0.5), 0));
     }
     const float inner = size - shift - 2 * 0.1f * size;
     if (!(box.hi.x >= box.lo.x)) return draw_entry(s, *lines.front(), ImVec2(at.x, at.y + shift), size - shift);
@@ -78,8 +78,8 @@ void draw_group(const Session& s, const Lines& lines, ImVec2 at, float size) {
     for (std::size_t i = 0; i < lines.size(); i += step) {
         const StrokeLine& line = *lines[i];
         if (!line.flat) continue;
-        draw_way(s, line, 0.3f * size, [&](const Vec3f& p) {
-            const Vec2 d = (line.way_centre + line.way_span * (Vec2(p) - 0.5) - Vec2(box.centre())) / span;
+        draw_path(s, line, 0.3f * size, [&](const Vec3f& p) {
+            const Vec2 d = (line.path_centre + line.path_span * (Vec2(p) - 0.5) - Vec2(box.centre())) / span;
             return ImVec2(at.x + 0.5f * (size - shift) + static_cast<float>(d.x) * inner,
                           at.y + shift + 0.5f * (size - shift) + static_cast<float>(d.y) * inner);
         });

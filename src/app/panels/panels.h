@@ -35,7 +35,7 @@ void recovery_dialog(Session& s);
 /// Another program has the project: look at it, or go on in a copy?
 void in_use_dialog(Session& s);
 /// Some work is in memory only: leave it?
-void leave_dialog(Session& s);
+void unsaved_work_dialog(Session& s);
 void export_dialog(Session& s);
 void settings_dialog(Session& s);
 void keys_dialog(Session& s);

@@ -30,7 +30,7 @@ void in_use_dialog(Session& s) {
         s.project.in_use.reset();
 }
 
-void leave_dialog(Session& s) {
+void unsaved_work_dialog(Session& s) {
     if (!s.project.closing.request || !s.paint_thread || !begin_dialog(s.ui, "Work that is not on disk", 560)) {
         if (s.project.closing.request && s.paint_thread) end_dialog(s.ui);
         return;
@@ -55,7 +55,7 @@ void leave_dialog(Session& s) {
     const bool again = ui.primary_button("Try again", 110);
     end_dialog(s.ui);
     if (leave) return close_now(s, *s.project.closing.request);
-    if (again) s.paint_thread->post(RetryKeeping{});
+    if (again) s.paint_thread->post(RetrySaving{});
     if (back || save) s.project.closing.request.reset();
     if (save)
         s.dialogs.file.show(FileDialog::Purpose::save,

@@ -143,7 +143,7 @@ void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
 void curve_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     const auto& points = s.tools.curve.points;
     if (points.empty()) return;
-    const std::vector<CurvePlace> places = lay_curve(*s.paint_thread->model().query, points, 32);
+    const std::vector<CurveSample> places = project_curve(*s.paint_thread->model().query, points, 32);
     for (const auto& [colour, width] :
          {std::pair{IM_COL32(20, 20, 24, 170), 4.0f}, std::pair{IM_COL32(255, 196, 64, 255), 1.8f}})
         for (std::size_t i = 1; i < places.size(); ++i)
@@ -160,7 +160,7 @@ void curve_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
 }
 
 // Where the writing would lie, as far as it is seen.
-void ghost_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+void writing_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     if (s.tools.active != Tool::writing) return;
     for (const auto& line : s.tools.writing_preview)
         for (std::size_t i = 1; i < line.size(); ++i)
@@ -249,7 +249,7 @@ void view_marks(const Session& s, const render::GlCamera& c) {
     if (!s.view.tuft.state.branches.empty()) s.view.tuft.pressed ? contact_outline(s, c, draw) : hover_ring(s, c, draw);
     if (!s.view.tuft.state.branches.empty()) copy_dots(s, c, draw);
     curve_marks(s, c, draw);
-    ghost_marks(s, c, draw);
+    writing_marks(s, c, draw);
     shift_marks(s, c, draw);
     lasso_marks(s, draw);
     axis_cross(s, c, draw);

@@ -194,7 +194,7 @@ void request_close(Session& s, CloseRequest request) {
     if (!has_unsaved_work(s)) return close_now(s, request);
     s.dialogs.file.close();
     s.project.closing.request = std::move(request);
-    s.paint_thread->post(RetryKeeping{});
+    s.paint_thread->post(RetrySaving{});
 }
 
 void close_now(Session& s, const CloseRequest& request) {

@@ -22,7 +22,7 @@ struct ToolState {
     CurveInWork curve;
     CurveSettings curve_settings;
     Writing writing;
-    std::vector<std::vector<GhostPoint>> writing_preview;  ///< where the writing would lie now
+    std::vector<std::vector<PreviewPoint>> writing_preview;  ///< where the writing would lie now
     stroke::Fill fill;
 };
 

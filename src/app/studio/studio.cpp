@@ -173,7 +173,7 @@ void Studio::draw_dialogs() {
     if (s.project.opening.running())
         opening_progress(s);
     else if (s.project.closing.request)
-        leave_dialog(s);
+        unsaved_work_dialog(s);
     else if (s.project.in_use)
         in_use_dialog(s);
     else if (s.project.inspected)

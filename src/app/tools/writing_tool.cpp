@@ -11,7 +11,7 @@
 namespace tuft::app {
 namespace {
 
-constexpr double kGhostTolerance =
+constexpr double kPreviewTolerance =
     2e-3;  // of the model's size: where it is seen edge-on, draped lines lie over its grooves
 
 }  // namespace
@@ -46,10 +46,10 @@ void WritingTool::watch(const Event* cursor) {
     camera_ = seen_from;
     section_ = section;
     const mesh::SurfaceQuery& query = *s.paint_thread->model().query;
-    if (!same) s.tools.writing_preview = ghost_lines(query, s.tools.writing, *at);
-    const double tolerance = kGhostTolerance * s.paint_thread->model().mesh->bounds.diagonal();
+    if (!same) s.tools.writing_preview = preview_lines(query, s.tools.writing, *at);
+    const double tolerance = kPreviewTolerance * s.paint_thread->model().mesh->bounds.diagonal();
     for (auto& line : s.tools.writing_preview)
-        for (GhostPoint& point : line) point.seen = is_seen(query, seen_from, section, point.position, tolerance);
+        for (PreviewPoint& point : line) point.seen = is_seen(query, seen_from, section, point.position, tolerance);
 }
 
 void WritingTool::wheel(const Event& e) {

@@ -109,7 +109,7 @@ struct SaveProject {
     std::filesystem::path path;
 };
 /// Tries once more to write what could not be written.
-struct RetryKeeping {};
+struct RetrySaving {};
 struct ExportModel {
     std::filesystem::path path;
     bool height = true, orm = true;        ///< maps besides the base colour
@@ -164,7 +164,7 @@ struct RestoreSnapshot {
 using Command =
     std::variant<AttachToProject, DetachFromProject, TakeSnapshot, RenameSnapshot, ShowSnapshot, RestoreSnapshot,
                  BeginStroke, ExtendStroke, EndStroke, CancelStroke, PaintDrawing, ActOnBrush, UndoStroke, RedoStroke,
-                 SaveProject, RetryKeeping, ExportModel, EditStrokes, HighlightStrokes, FillModel, ChangeLayers,
+                 SaveProject, RetrySaving, ExportModel, EditStrokes, HighlightStrokes, FillModel, ChangeLayers,
                  SendTexture, PickInk, TakeInk, RecolourInk, PreviewSubstrate, ChangeMasks, ShowMask, LookFrom>;
 
 /// The command changes the work. Who only looks at a project may not ask for it.

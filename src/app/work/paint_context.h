@@ -27,7 +27,7 @@ struct PaintContext {
     ProgressFn progress(const std::string& name);
     /// The layer itself where `kNewestLayer` stands for it.
     std::uint32_t layer_of(std::uint32_t requested) const;
-    /// Gives a document the base colour and appearance of the work, and the presets that its entries and these use.
+    /// Gives a document the material and appearance of the work, and the presets that its entries and these use.
     void take_presets(stroke::Document& document, const std::vector<stroke::Stroke>& entries);
     /// The same model with other strokes on it takes the place of the document.
     void replace_document(std::unique_ptr<stroke::Document> document);

@@ -43,11 +43,11 @@ StrokeLine stroke_line(const stroke::Stroke& stroke) {
     }
     const double span = std::max({hi_x - lo_x, hi_y - lo_y, 1e-4});
     line.flat = stroke.trace.flat;
-    line.way_centre = Vec2(mean) + Vec2(0.5 * (lo_x + hi_x), 0.5 * (lo_y + hi_y));
-    line.way_span = span;
+    line.path_centre = Vec2(mean) + Vec2(0.5 * (lo_x + hi_x), 0.5 * (lo_y + hi_y));
+    line.path_span = span;
     for (const Vec3& p : points)
-        line.way.emplace_back(0.5 + (p.x - 0.5 * (lo_x + hi_x)) / span, 0.5 + (p.y - 0.5 * (lo_y + hi_y)) / span,
-                              (hi_z - p.z) / std::max(1e-6, hi_z - lo_z));
+        line.path.emplace_back(0.5 + (p.x - 0.5 * (lo_x + hi_x)) / span, 0.5 + (p.y - 0.5 * (lo_y + hi_y)) / span,
+                               (hi_z - p.z) / std::max(1e-6, hi_z - lo_z));
     for (std::size_t i = 1; i < samples.size(); ++i)
         line.length += glm::distance(samples[i - 1].position, samples[i].position);
     return line;

@@ -25,11 +25,11 @@ struct StrokeLine {
     std::string brush, ink, label;
     stroke::EntryGroup group;
     bool hidden = false, erases = false, on_palette = false;
-    double length = 0;       ///< metres of the hand's way
-    std::vector<Vec3f> way;  ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
-    bool flat = false;       ///< `way` is in the frame of a drawing
-    Vec2 way_centre{0};      ///< metres: of the way (0.5, 0.5) there
-    double way_span = 0;     ///< metres: of [0, 1]
+    double length = 0;        ///< metres of the path
+    std::vector<Vec3f> path;  ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
+    bool flat = false;        ///< `path` is in the frame of a drawing
+    Vec2 path_centre{0};      ///< metres: of the path (0.5, 0.5) there
+    double path_span = 0;     ///< metres: of [0, 1]
 };
 
 /// A place at the rim of highlighted ink.
