@@ -78,16 +78,16 @@ bool FileDialog::suits(const fs::path& file) const {
 void FileDialog::show(Purpose purpose, const fs::path& start) {
     purpose_ = purpose;
     shown_ = true;
-    ask_replace_ = asks_folder_ = false;
-    filter_[0] = 0;
+    ask_replace_ = new_folder_.asked = false;
+    listing_.filter[0] = 0;
     std::error_code ec;
     const std::vector<fs::path> recent = recent_folders();
     const fs::path usual = recent.empty() ? fs::current_path(ec) : recent.front();
     const fs::path full = start.empty() ? usual : start.has_parent_path() ? fs::absolute(start, ec) : usual / start;
     const bool is_folder = fs::is_directory(full, ec);
-    extension_ = is_folder || reads() ? "" : full.extension().string();
+    name_.extension = is_folder || reads() ? "" : full.extension().string();
     choose_name(is_folder ? "" : full.filename().string());
-    take_focus_ = select_stem_ = true;
+    name_.take_focus = name_.select_stem = true;
     go(is_folder ? full : full.parent_path());
 }
 
@@ -99,14 +99,14 @@ void FileDialog::return_with(const fs::path& path, const std::string& fault) {
 }
 
 void FileDialog::choose_name(const std::string& name) {
-    std::snprintf(name_, sizeof name_, "%s", name.c_str());
+    std::snprintf(name_.text, sizeof name_.text, "%s", name.c_str());
     ask_replace_ = false;
 }
 
 // The name stays to be mended, and the keyboard with it.
 void FileDialog::refuse(const std::string& why) {
     fault_ = why;
-    take_focus_ = select_stem_ = true;
+    name_.take_focus = name_.select_stem = true;
 }
 
 void FileDialog::go(const fs::path& folder) {
@@ -115,16 +115,16 @@ void FileDialog::go(const fs::path& folder) {
 }
 
 void FileDialog::read_folder() {
-    entries_ = list_folder(
+    listing_.entries = list_folder(
         folder_, [this](const fs::path& file) { return suits(file); }, fault_);
     if (!fault_.empty()) fault_ = "This folder cannot be read: " + fault_;
-    sort_entries(entries_, order_, downward_);
+    sort_entries(listing_.entries, listing_.order, listing_.downward);
 }
 
 std::optional<fs::path> FileDialog::accept() {
     std::error_code ec;
-    fs::path path = fs::path(name_).is_absolute() ? fs::path(name_) : folder_ / name_;
-    if (name_[0] == '~' && std::getenv("HOME")) path = std::string(std::getenv("HOME")) + (name_ + 1);
+    fs::path path = fs::path(name_.text).is_absolute() ? fs::path(name_.text) : folder_ / name_.text;
+    if (name_.text[0] == '~' && std::getenv("HOME")) path = std::string(std::getenv("HOME")) + (name_.text + 1);
     if (fs::is_directory(path, ec)) {
         go(path);
         choose_name("");
@@ -133,7 +133,7 @@ std::optional<fs::path> FileDialog::accept() {
     if (reads()) {
         if (!fs::exists(path, ec)) return refuse("There is no file of that name."), std::nullopt;
     } else {
-        if (!suits(path)) path += extension_;
+        if (!suits(path)) path += name_.extension;
         if (!fs::is_directory(path.parent_path(), ec)) return refuse("There is no folder of that name."), std::nullopt;
         if (::access(path.parent_path().c_str(), W_OK) != 0)
             return refuse("Nothing can be written into this folder."), std::nullopt;
@@ -174,21 +174,21 @@ void FileDialog::draw_places(Ui& ui) {
 
 void FileDialog::make_folder(Ui& ui) {
     ImGui::SetNextItemWidth(ui.px(200));
-    const bool entered = ImGui::InputTextWithHint("##folder", ui.tr("name of the new folder"), new_folder_,
-                                                  sizeof new_folder_, ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool entered = ImGui::InputTextWithHint("##folder", ui.tr("name of the new folder"), new_folder_.name,
+                                                  sizeof new_folder_.name, ImGuiInputTextFlags_EnterReturnsTrue);
     ui.mark("name of the new folder");
     ImGui::SameLine();
-    const bool made = ui.button("Make it", nullptr, 0, new_folder_[0] != 0);
-    if (!(entered || made) || !new_folder_[0]) return;
+    const bool made = ui.button("Make it", nullptr, 0, new_folder_.name[0] != 0);
+    if (!(entered || made) || !new_folder_.name[0]) return;
     std::error_code ec;
-    const fs::path folder = folder_ / new_folder_;
+    const fs::path folder = folder_ / new_folder_.name;
     if (!fs::create_directory(folder, ec)) {
         fault_ = ec ? "The folder cannot be made: " + ec.message() : "There is a folder of that name.";
         return;
     }
-    asks_folder_ = false;
+    new_folder_.asked = false;
     go(folder);
-    take_focus_ = true;
+    name_.take_focus = true;
 }
 
 // Where one is, a filter, and a new folder.
@@ -201,14 +201,14 @@ void FileDialog::draw_top(Ui& ui) {
     ImGui::TextUnformatted(path_end(folder_.string(), room).c_str());
     ImGui::SameLine(start + room + ImGui::GetStyle().ItemSpacing.x);
     ImGui::SetNextItemWidth(ui.px(140));
-    ImGui::InputTextWithHint("##filter", ui.tr("filter"), filter_, sizeof filter_);
+    ImGui::InputTextWithHint("##filter", ui.tr("filter"), listing_.filter, sizeof listing_.filter);
     ui.mark("filter");
     ImGui::SameLine();
-    if (ui.choice("New folder", asks_folder_, nullptr, 100)) {
-        asks_folder_ = !asks_folder_;
-        new_folder_[0] = 0;
+    if (ui.choice("New folder", new_folder_.asked, nullptr, 100)) {
+        new_folder_.asked = !new_folder_.asked;
+        new_folder_.name[0] = 0;
     }
-    if (asks_folder_) make_folder(ui);
+    if (new_folder_.asked) make_folder(ui);
 }
 
 // True when a file was clicked twice.
@@ -222,13 +222,14 @@ bool FileDialog::draw_list(Ui& ui, float width) {
         {FileOrder::date, "Changed", all - dates, dates}};
     for (const auto& [order, name, from, wide] : columns) {
         if (from > 0) ImGui::SameLine(from);
-        const std::string text = std::string(ui.tr(name)) +
-                                 (order_ == order ? downward_ ? " \xe2\x86\x93" : " \xe2\x86\x91" : "") + "##" + name;
+        const std::string text =
+            std::string(ui.tr(name)) +
+            (listing_.order == order ? listing_.downward ? " \xe2\x86\x93" : " \xe2\x86\x91" : "") + "##" + name;
         ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
         if (ImGui::Selectable(text.c_str(), false, 0, ImVec2(wide, 0))) {
-            downward_ = order_ == order && !downward_;
-            order_ = order;
-            sort_entries(entries_, order_, downward_);
+            listing_.downward = listing_.order == order && !listing_.downward;
+            listing_.order = order;
+            sort_entries(listing_.entries, listing_.order, listing_.downward);
         }
         ImGui::PopStyleColor();
         ui.mark(std::string("by ") + name);
@@ -237,12 +238,12 @@ bool FileDialog::draw_list(Ui& ui, float width) {
     ImGui::BeginChild("entries");
     fs::path enter;
     bool twice = false, any = false;
-    for (const FileEntry& entry : entries_) {
-        if (filter_[0] && !matches_filter(entry.name, filter_)) continue;
+    for (const FileEntry& entry : listing_.entries) {
+        if (listing_.filter[0] && !matches_filter(entry.name, listing_.filter)) continue;
         any = true;
         const std::string text = ui.fitted(entry.folder ? entry.name + "/" : entry.name, all - dates - sizes - letter);
         ImGui::PushID(entry.name.c_str());
-        if (ImGui::Selectable(text.c_str(), entry.name == name_, ImGuiSelectableFlags_AllowDoubleClick)) {
+        if (ImGui::Selectable(text.c_str(), entry.name == name_.text, ImGuiSelectableFlags_AllowDoubleClick)) {
             if (entry.folder)
                 enter = folder_ / entry.name;
             else
@@ -259,8 +260,8 @@ bool FileDialog::draw_list(Ui& ui, float width) {
         ImGui::TextDisabled("%s", date_text(entry.changed).c_str());
     }
     if (!any && fault_.empty())
-        ImGui::TextDisabled(
-            "%s", ui.tr(filter_[0] ? "Nothing here has that in its name." : "Nothing here that can be opened."));
+        ImGui::TextDisabled("%s", ui.tr(listing_.filter[0] ? "Nothing here has that in its name."
+                                                           : "Nothing here that can be opened."));
     ImGui::EndChild();
     ImGui::EndChild();
     if (!enter.empty()) go(enter);
@@ -269,17 +270,17 @@ bool FileDialog::draw_list(Ui& ui, float width) {
 
 // The lines of the chosen drawing.
 void FileDialog::load_sketch() {
-    const fs::path file = folder_ / name_;
-    if (sketched_ == file.string()) return;
-    sketched_ = file.string();
-    sketch_.clear();
+    const fs::path file = folder_ / name_.text;
+    if (sketch_.file == file.string()) return;
+    sketch_.file = file.string();
+    sketch_.lines.clear();
     std::error_code ec;
     if (!fs::is_regular_file(file, ec) || fs::file_size(file, ec) > kMostSketched) return;
     try {
         const Writing drawing = read_writing(file);
         const double span = std::max({drawing.width, drawing.height, 1e-9});
         for (const stroke::Trace& trace : drawing.traces) {
-            std::vector<Vec2>& line = sketch_.emplace_back();
+            std::vector<Vec2>& line = sketch_.lines.emplace_back();
             for (const stroke::TraceSample& s : trace.samples)
                 line.push_back((Vec2(s.position) - drawing.centre) / span + 0.5);
         }
@@ -293,18 +294,18 @@ void FileDialog::draw_preview(Ui& ui, Pictures& pictures, float width) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float height = width * Pictures::kHeight / Pictures::kWidth;
     ImDrawList* draw = ImGui::GetWindowDrawList();
-    const auto entry = std::find_if(entries_.begin(), entries_.end(),
-                                    [&](const FileEntry& e) { return !e.folder && e.name == name_; });
+    const auto entry = std::find_if(listing_.entries.begin(), listing_.entries.end(),
+                                    [&](const FileEntry& e) { return !e.folder && e.name == name_.text; });
     draw->AddRectFilled(at, ImVec2(at.x + width, at.y + height), ImGui::GetColorU32(ImGuiCol_FrameBg), ui.px(4));
     ImGui::Dummy(ImVec2(width, height));
-    if (entry != entries_.end()) {
+    if (entry != listing_.entries.end()) {
         const fs::path file = folder_ / entry->name;
         const std::string e = lower(file.extension().string());
         if (is_one_of(e, {".svg", ".inkml"})) {
             load_sketch();
             const float side = 0.9f * height;
             draw->AddRectFilled(at, ImVec2(at.x + width, at.y + height), IM_COL32(238, 236, 230, 255), ui.px(4));
-            for (const std::vector<Vec2>& line : sketch_) {
+            for (const std::vector<Vec2>& line : sketch_.lines) {
                 std::vector<ImVec2> points;
                 for (const Vec2& p : line)
                     points.emplace_back(at.x + 0.5f * width + static_cast<float>(p.x - 0.5) * side,
@@ -330,8 +331,8 @@ void FileDialog::draw_preview(Ui& ui, Pictures& pictures, float width) {
 bool FileDialog::draw_name(Ui& ui) {
     const auto select = [](ImGuiInputTextCallbackData* data) {
         auto& self = *static_cast<FileDialog*>(data->UserData);
-        if (!self.select_stem_ || data->BufTextLen == 0) return 0;
-        self.select_stem_ = false;
+        if (!self.name_.select_stem || data->BufTextLen == 0) return 0;
+        self.name_.select_stem = false;
         const std::string stem =
             fs::path(std::string(data->Buf, static_cast<std::size_t>(data->BufTextLen))).filename().stem().string();
         data->SelectionStart = data->BufTextLen - static_cast<int>(fs::path(data->Buf).filename().string().size());
@@ -341,9 +342,9 @@ bool FileDialog::draw_name(Ui& ui) {
     const float buttons =
         ui.button_width("Cancel", 100) + ui.button_width("Replace", 100) + 2 * ImGui::GetStyle().ItemSpacing.x;
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - buttons);
-    if (std::exchange(take_focus_, false)) ImGui::SetKeyboardFocusHere();
+    if (std::exchange(name_.take_focus, false)) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputTextWithHint(
-        "##name", ui.tr("file name"), name_, sizeof name_,
+        "##name", ui.tr("file name"), name_.text, sizeof name_.text,
         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, select, this);
     if (ImGui::IsItemEdited()) ask_replace_ = false;
     ui.mark("file name");
@@ -397,8 +398,8 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
                                                              : "Save";
     if (ui.button("Cancel", nullptr, 100)) shown_ = false;
     ImGui::SameLine();
-    const bool pressed = ui.primary_button(action, 100, name_[0] != 0);
-    if ((pressed || entered || twice) && name_[0]) chosen = accept();
+    const bool pressed = ui.primary_button(action, 100, name_.text[0] != 0);
+    if ((pressed || entered || twice) && name_.text[0]) chosen = accept();
     ImGui::End();
     return chosen;
 }

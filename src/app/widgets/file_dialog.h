@@ -48,21 +48,38 @@ class FileDialog {
     bool draw_name(Ui& ui);
     void load_sketch();
 
+    /// What the folder holds, and how it is listed.
+    struct Listing {
+        std::vector<FileEntry> entries;
+        FileOrder order = FileOrder::name;
+        bool downward = false;
+        char filter[128] = "";
+    };
+    struct NameField {
+        char text[512] = "";
+        std::string extension;     ///< that a name without one gets
+        bool take_focus = false;   ///< it is to have the keyboard
+        bool select_stem = false;  ///< the name up to the dot is to be selected
+    };
+    struct NewFolder {
+        bool asked = false;  ///< for its name
+        char name[256] = "";
+    };
+    /// Lines of a drawing, for its preview.
+    struct Sketch {
+        std::string file;
+        std::vector<std::vector<Vec2>> lines;  ///< in [0, 1], y down
+    };
+
     bool shown_ = false, ask_replace_ = false;
     Purpose purpose_ = Purpose::open;
     std::filesystem::path folder_;
-    std::vector<FileEntry> entries_;
-    FileOrder order_ = FileOrder::name;
-    bool downward_ = false;
+    Listing listing_;
+    NameField name_;
+    NewFolder new_folder_;
+    Sketch sketch_;
     std::string fault_;
-    std::string extension_;  ///< that a name without one gets
-    char name_[512] = "", filter_[128] = "", new_folder_[256] = "";
-    bool asks_folder_ = false;  ///< a name for a new folder
-    bool take_focus_ = false,
-         select_stem_ = false;    ///< the name field is to have the keyboard; its name up to the dot is to be selected
     std::optional<Chosen> last_;  ///< what was chosen last
-    std::string sketched_;        ///< file whose lines are shown
-    std::vector<std::vector<Vec2>> sketch_;  ///< in [0, 1], y down
 };
 
 /// Folders that files were chosen in, the newest first.
