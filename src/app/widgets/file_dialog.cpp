@@ -307,6 +307,7 @@ void FileDialog::draw_preview(Ui& ui, Pictures& pictures, float width) {
             draw->AddRectFilled(at, ImVec2(at.x + width, at.y + height), IM_COL32(238, 236, 230, 255), ui.px(4));
             for (const std::vector<Vec2>& line : sketch_.lines) {
                 std::vector<ImVec2> points;
+                points.reserve(line.size());
                 for (const Vec2& p : line)
                     points.emplace_back(at.x + 0.5f * width + static_cast<float>(p.x - 0.5) * side,
                                         at.y + 0.5f * height + static_cast<float>(p.y - 0.5) * side);
