@@ -12,7 +12,8 @@
 
 #include "app/input/imgui_feed.h"
 #include "app/script/script.h"
-#include "app/studio.h"
+#include "app/session/open_close.h"
+#include "app/studio/studio.h"
 #include "app/view/display.h"
 #include "core/manual/manual.h"
 #include "core/system/build_facts.h"
@@ -109,15 +110,15 @@ void loop(app::Display& display, const Options& options) {
     if (!options.script.empty()) script.emplace(options.script);
     app::Studio studio;
     app::Session& session = studio.session();
-    session.help.by_itself = !script;
+    session.panels.help.by_itself = !script;
     if (!options.file.empty()) app::open_path(session, options.file);
     app::EventQueue events;
     std::string title;
-    while (!session.quit && !(script && script->finished())) {
+    while (!session.project.closing.quit && !(script && script->finished())) {
         display.poll(events, !events.empty() ? 0 : script ? script->patience(studio) : studio.patience());
         if (display.closed()) {
             display.stay_open();
-            app::leave(session, {});
+            app::request_close(session, {});
         }
         if (display.lost() || (script && script->take_loss())) {
             studio.drop_graphics();
@@ -127,7 +128,8 @@ void loop(app::Display& display, const Options& options) {
             studio.make_graphics();
         }
         if (const auto size = script ? script->take_size() : std::nullopt) display.resize(size->first, size->second);
-        if (std::string trouble = display.take_trouble(); !trouble.empty()) app::say(session, std::move(trouble));
+        if (std::string trouble = display.take_trouble(); !trouble.empty())
+            app::show_message(session.status, std::move(trouble));
         studio.set_content_scale(display.scale());  // another one on another monitor
         const double now = display.now();
         if (script) script->before_frame(studio, events, now);
@@ -135,13 +137,14 @@ void loop(app::Display& display, const Options& options) {
         if (script) script->after_frame(studio, display.width(), display.height());
         display.present();
         studio.shown(display.now());
-        const std::string name = app::project_name(session) + (session.last.viewing ? " (a view)" : "");
+        const std::string name = app::project_name(session.paint_thread.get(), session.reported.file.project) +
+                                 (session.reported.file.viewing ? " (a view)" : "");
         if (const std::string wanted = name.empty() ? "tuft studio" : name + " \xe2\x80\x93 tuft studio";
             wanted != title)
             display.set_title(title = wanted);
     }
     studio.finish();
-    if (!session.left_behind.empty()) throw Error(session.left_behind);
+    if (!session.project.closing.failure.empty()) throw Error(session.project.closing.failure);
 }
 
 int run(const Options& options) {

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "app/document/thumbnails.h"
-#include "app/session.h"
+#include "app/session/brush_settings.h"
 #include "app/view/viewport.h"
 #include "brush/calibration/sweep.h"
 #include "brush/preset/preset.h"

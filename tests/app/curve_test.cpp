@@ -19,7 +19,7 @@ TEST(Curve, TwoPointsOnASheetAreJoinedByAStraightLine) {
     const mesh::SurfaceQuery query(mesh);
     const Vec3 c(mesh.bounds.centre().x, mesh.bounds.centre().y, mesh.bounds.hi.z);
     const std::vector<CurvePoint> points{{.position = c - Vec3(0.04, 0, 0)}, {.position = c + Vec3(0.04, 0.02, 0)}};
-    const auto places = lay_curve(query, points, 10);
+    const auto places = project_curve(query, points, 10);
     ASSERT_EQ(places.size(), 11u);
     for (std::size_t i = 0; i < places.size(); ++i) {
         const Vec3 want = glm::mix(points[0].position, points[1].position, static_cast<double>(i) / 10);
@@ -40,10 +40,10 @@ TEST(Curve, GoesThroughItsPointsOnTheSideThatIsSeen) {
         ASSERT_TRUE(hit);
         points.push_back({.position = hit->position, .outward = out});
     }
-    const auto places = lay_curve(query, points, 16);
+    const auto places = project_curve(query, points, 16);
     for (std::size_t i = 0; i < points.size(); ++i)
         EXPECT_NEAR(glm::distance(places[16 * i].position, points[i].position), 0, 1e-6);
-    for (const CurvePlace& place : places) {
+    for (const CurveSample& place : places) {
         ASSERT_TRUE(place.on);
         // The inside of the thin wall faces the other way.
         EXPECT_GT(glm::dot(place.normal, glm::normalize(place.position - Vec3(middle.x, middle.y, place.position.z))),

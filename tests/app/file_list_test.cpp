@@ -1,4 +1,4 @@
-#include "app/panels/file_list.h"
+#include "app/widgets/file_list.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -236,7 +236,7 @@ TEST(HandOverAGap, AnEdgeIsNoGap) {
     const PointerInput hand(slabs.query, brush::load_preset("goat-large"), {});
     for (const double x : {-0.0155, -0.0145, -0.012, 0.0}) {
         const Aim aim{.ray = {{x, 0, 0.5}, {0, 0, -1}}, .view_up = {0, 1, 0}};
-        const auto ground = hand.ground(aim);
+        const auto ground = hand.find_surface(aim);
         const auto hit = aim_at(slabs.query, aim);
         ASSERT_TRUE(ground && hit);
         EXPECT_FALSE(ground->bridged) << x;

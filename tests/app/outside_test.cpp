@@ -11,7 +11,7 @@
 #include <sstream>
 #include <thread>
 
-#include "app/document/paint_thread.h"
+#include "app/paint/paint_thread.h"
 #include "io/project/project.h"
 #include "io/project/restore.h"
 #include "models.h"
@@ -31,12 +31,12 @@ class OutsideTest : public testing::Test {
         folder_ = fs::path(testing::TempDir()) / ("tuft_outside_" + std::to_string(getpid()));
         fs::create_directories(folder_ / "place");
         path_ = folder_ / "place" / "work.tuft";
-        PaintThread::Work work;
+        PaintWork work;
         work.model = std::make_unique<stroke::Model>(test::shipped_model("sheet.ply", 256));
-        work.painting = std::make_unique<stroke::Document>(*work.model);
-        work.texture = std::make_unique<Texture>(*work.painting, ProgressFn{});
+        work.document = std::make_unique<stroke::Document>(*work.model);
+        work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
         work.spare = folder_ / "spare.tuft";
-        ASSERT_EQ(work.autosave.start(path_, "sheet.ply", {}, *work.painting), "");
+        ASSERT_EQ(work.autosave.start(path_, "sheet.ply", {}, *work.document), "");
         painter_ = std::make_unique<PaintThread>(std::move(work));
     }
     void TearDown() override {
@@ -53,8 +53,8 @@ class OutsideTest : public testing::Test {
     }
     void look() {
         Update u = painter_->take();
-        if (u.strokes) lines_ = std::move(*u.strokes);
-        for (const std::string& m : u.messages) messages_ += m + '\n';
+        if (u.events.strokes) lines_ = std::move(*u.events.strokes);
+        for (const std::string& m : u.events.messages) messages_ += m + '\n';
         last_ = std::move(u);
     }
     void rest() {
@@ -105,7 +105,7 @@ TEST_F(OutsideTest, AChangeBesideIsSeenByItselfAndThePaintingGoesOnAfterIt) {
     })) << messages_;
     EXPECT_EQ(lines_.size(), 2u);
     stroke(0.01);
-    EXPECT_EQ(last_.trouble, "");
+    EXPECT_EQ(last_.status.file.trouble, "");
     painter_.reset();
     expect_file(3, path_);
 }
@@ -117,8 +117,9 @@ TEST_F(OutsideTest, AStrokeThatMeetsAChangeIsPaintedAfterIt) {
         as_old_program(kCopyFirst);
         stroke(0.01 * i);
         EXPECT_TRUE(comes([&] {
-            return lines_.size() == 1u + 2u * static_cast<unsigned>(i) && last_.unkept == 0 && last_.trouble.empty();
-        })) << last_.trouble;
+            return lines_.size() == 1u + 2u * static_cast<unsigned>(i) && last_.status.file.unsaved == 0 &&
+                   last_.status.file.trouble.empty();
+        })) << last_.status.file.trouble;
     }
     painter_->post(UndoStroke{});
     rest();
@@ -133,7 +134,8 @@ TEST_F(OutsideTest, AnUndoThatMeetsAChangeTakesBackWhatIsItsOwn) {
     as_old_program(kCopyFirst);
     painter_->post(UndoStroke{});
     rest();
-    EXPECT_TRUE(comes([&] { return lines_.size() == 2 && lines_[1].label == "theirs" && last_.trouble.empty(); }));
+    EXPECT_TRUE(
+        comes([&] { return lines_.size() == 2 && lines_[1].label == "theirs" && last_.status.file.trouble.empty(); }));
     painter_.reset();
     expect_file(2, path_);
 }
@@ -145,7 +147,8 @@ TEST_F(OutsideTest, AFilePutInThePlaceOfTheProjectIsTakenIn) {
     SQLite::Database((folder_ / "other.tuft").string(), SQLite::OPEN_READWRITE).exec(kCopyFirst);
     fs::rename(folder_ / "other.tuft", path_);
     stroke(0.01);
-    EXPECT_TRUE(comes([&] { return lines_.size() == 3 && last_.trouble.empty(); })) << last_.trouble;
+    EXPECT_TRUE(comes([&] { return lines_.size() == 3 && last_.status.file.trouble.empty(); }))
+        << last_.status.file.trouble;
     painter_.reset();
     expect_file(3, path_);
 }
@@ -161,8 +164,9 @@ TEST_F(OutsideTest, WhereAnotherModelIsPutInItsPlaceTheWorkGoesOnInACopy) {
     const auto size = fs::file_size(folder_ / "other.tuft");
     fs::rename(folder_ / "other.tuft", path_);
     stroke(0.01);
-    EXPECT_TRUE(comes([&] { return last_.project == folder_ / "spare.tuft" && last_.trouble.empty(); }))
-        << last_.trouble;
+    EXPECT_TRUE(comes([&] {
+        return last_.status.file.project == folder_ / "spare.tuft" && last_.status.file.trouble.empty();
+    })) << last_.status.file.trouble;
     painter_.reset();
     expect_file(2, folder_ / "spare.tuft");
     EXPECT_EQ(fs::file_size(path_), size) << "theirs is as it was";
@@ -173,8 +177,8 @@ TEST_F(OutsideTest, AtTheEndWorkThatItsOwnFileCannotTakeIsInTheSpareOne) {
     stroke(0);
     fs::rename(folder_ / "place", folder_ / "elsewhere");
     stroke(0.01);
-    EXPECT_EQ(last_.unkept, 1u);
-    EXPECT_NE(last_.trouble.find("is not there any more"), std::string::npos) << last_.trouble;
+    EXPECT_EQ(last_.status.file.unsaved, 1u);
+    EXPECT_NE(last_.status.file.trouble.find("is not there any more"), std::string::npos) << last_.status.file.trouble;
     EXPECT_EQ(painter_->finish(), folder_ / "spare.tuft");
     expect_file(2, folder_ / "spare.tuft");
 }
@@ -185,7 +189,7 @@ TEST_F(OutsideTest, AtTheEndAFolderThatCameBackIsEnough) {
     stroke(0.01);
     fs::rename(folder_ / "elsewhere", folder_ / "place");
     EXPECT_EQ(painter_->finish(), "");
-    EXPECT_FALSE(painter_->unkept());
+    EXPECT_FALSE(painter_->unsaved());
     expect_file(2, path_);
 }
 

@@ -1,4 +1,4 @@
-#include "app/document/paint_thread.h"
+#include "app/paint/paint_thread.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -19,11 +19,11 @@ class PainterTest : public testing::Test {
     void SetUp() override {
         folder_ = std::filesystem::path(testing::TempDir()) / ("tuft_painter_" + std::to_string(getpid()));
         std::filesystem::create_directories(folder_);
-        PaintThread::Work work;
+        PaintWork work;
         work.model = std::make_unique<stroke::Model>(test::shipped_model("sheet.ply", 256));
-        work.painting = std::make_unique<stroke::Document>(*work.model);
-        work.texture = std::make_unique<Texture>(*work.painting, ProgressFn{});
-        ASSERT_EQ(work.autosave.start(folder_ / "work.tuft", "sheet.ply", {}, *work.painting), "");
+        work.document = std::make_unique<stroke::Document>(*work.model);
+        work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
+        ASSERT_EQ(work.autosave.start(folder_ / "work.tuft", "sheet.ply", {}, *work.document), "");
         painter_ = std::make_unique<PaintThread>(std::move(work));
         preset_ = brush::load_preset("wolf-small");
     }
@@ -42,10 +42,10 @@ class PainterTest : public testing::Test {
     }
     void look() {
         Update u = painter_->take();
-        if (u.strokes) lines_ = std::move(*u.strokes);
-        messages_.insert(messages_.end(), u.messages.begin(), u.messages.end());
-        trouble_ = u.trouble;
-        busy_ = u.busy;
+        if (u.events.strokes) lines_ = std::move(*u.events.strokes);
+        messages_.insert(messages_.end(), u.events.messages.begin(), u.events.messages.end());
+        trouble_ = u.status.file.trouble;
+        busy_ = u.status.progress.busy;
     }
     void rest() {
         painter_->wait_idle(100);

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/panels/manual_text.h"
+#include "app/widgets/manual_text.h"
 #include "io/image/image.h"
 #include "io/project/project.h"
 #include "studio_program.h"

@@ -1,4 +1,4 @@
-#include "app/panels/ui.h"
+#include "app/widgets/ui.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>
@@ -76,7 +76,7 @@ TEST(UiText, AllChineseTextsAreThereForWhatTheKeysAreCalled) {
 // What the panels' sources give to the functions that show it, but for keys and names that are the same in both.
 TEST(UiText, EveryTextOfThePanelsHasAChineseOne) {
     const std::regex shown(
-        R"re((?:button|choice|toggle|slider|heading|section|menu_item|begin_menu|begin_dialog|fact|row|tr|note)\((?:s, )?"((?:[^"\\]|\\x..)*)")re");
+        R"re((?:button|choice|toggle|slider|heading|section|menu_item|begin_menu|begin_dialog|fact|row|tr|note)\((?:(?:s|ui|s\.ui), )?"((?:[^"\\]|\\x..)*)")re");
     const std::regex words("[a-z]{3}"), joint(R"("\s*\n\s*")");
     std::size_t seen = 0;
     for (const auto& file : std::filesystem::recursive_directory_iterator(source_folder() + "/src/app")) {

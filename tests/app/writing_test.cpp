@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "app/document/paint_thread.h"
+#include "app/paint/paint_thread.h"
 #include "io/strokes/inkml.h"
 #include "models.h"
 #include "paths.h"
@@ -34,7 +34,7 @@ TEST(Writing, LiesWithItsMiddleAtTheCursorTurnedAndScaled) {
     const auto at = query.ray(mesh.bounds.centre() + Vec3(0.01, 0.02, 1), Vec3(0, 0, -1));
     ASSERT_TRUE(at);
     const auto lines =
-        ghost_lines(query, w, place_writing(w, query, at->position, Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, 1)));
+        preview_lines(query, w, place_writing(w, query, at->position, Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, 1)));
     ASSERT_EQ(lines.size(), 2u);
     // Seen from above with x to the right, a turn goes clockwise: the line's right end sinks.
     const Vec3 right = lines[0].back().position - at->position;
@@ -61,12 +61,12 @@ class WritingOnModel : public ::testing::Test {
                       const WritingHand& hand) {
         const std::string project = folder_ + "/studio.tuft";
         std::filesystem::remove(project);
-        PaintThread::Work work;
+        PaintWork work;
         work.model = std::make_unique<stroke::Model>(test::shipped_model(name, kTexels));
-        work.painting = std::make_unique<stroke::Document>(*work.model);
-        work.texture = std::make_unique<Texture>(*work.painting, ProgressFn{});
+        work.document = std::make_unique<stroke::Document>(*work.model);
+        work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
         work.source = source_folder() + "/models/" + name;
-        EXPECT_EQ(work.autosave.start(project, work.source, {}, *work.painting), "");
+        EXPECT_EQ(work.autosave.start(project, work.source, {}, *work.document), "");
         const mesh::SurfaceQuery& query = *work.model->query;
         const auto at = query.ray(from, along);
         EXPECT_TRUE(at);

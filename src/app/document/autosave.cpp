@@ -149,7 +149,7 @@ void Autosave::prepare(stroke::Document& painting, const std::string& brush, con
     }
 }
 
-void Autosave::store_looks(const stroke::Document& painting) {
+void Autosave::store_appearance(const stroke::Document& painting) {
     attempt([&] {
         if (project_ && !viewing_) io::store_looks(*project_, painting);
     });

@@ -20,7 +20,7 @@ class Autosave {
   public:
     /// Goes on with a project that is open already and holds the entries that these were made from.
     void adopt(io::Project project, std::vector<stroke::EntryMark> on_disk);
-    /// Appearance at a project that another program works on: nothing is written until `start` gives the
+    /// Looks at a project that another program works on: nothing is written until `start` gives the
     /// work a file of its own.
     void view(io::Project project, std::vector<stroke::EntryMark> on_disk);
     bool viewing() const { return viewing_; }
@@ -45,7 +45,7 @@ class Autosave {
     /// Adds what an adopted file does not have yet: these entries, and presets.
     void catch_up(std::span<const stroke::Stroke> entries);
     /// Stores what the painting is shown as.
-    void store_looks(const stroke::Document& painting);
+    void store_appearance(const stroke::Document& painting);
     /// Stores what goes along with the work (io/project/attachments.h), in the place of one of that kind and name; and
     /// takes it out.
     void attach(const std::string& kind, const io::Attachment& attachment);
@@ -61,7 +61,7 @@ class Autosave {
     /// Tries once more to write what waits.
     void retry(const std::string& source, const FileFrame& frame, stroke::Document& painting);
     /// Some of the work is in memory only.
-    bool unkept() const { return !viewing_ && (!pending_.empty() || behind_); }
+    bool has_unsaved() const { return !viewing_ && (!pending_.empty() || behind_); }
 
     /// Another program changed the file, or put another one in its place, since it was last read or
     /// written here; looks, and costs microseconds.

@@ -25,8 +25,8 @@ Vec3 spline(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3, doub
     return mix(mix(a1, a2, 0, t2), mix(a2, a3, t1, t3), t1, t2);
 }
 
-CurvePlace lay(const mesh::SurfaceQuery& query, const Vec3& p, const Vec3& outward, double reach) {
-    CurvePlace place{.position = p, .normal = outward, .on = false};
+CurveSample lay(const mesh::SurfaceQuery& query, const Vec3& p, const Vec3& outward, double reach) {
+    CurveSample place{.position = p, .normal = outward, .on = false};
     const Vec3 from = p + reach * outward;
     double start = 0;
     for (int i = 0; i < 16; ++i) {
@@ -39,11 +39,11 @@ CurvePlace lay(const mesh::SurfaceQuery& query, const Vec3& p, const Vec3& outwa
 }
 
 // Place at a length along the curve; before and after it goes on straight.
-CurvePlace at_length(std::span<const CurvePlace> curve, double s) {
+CurveSample at_length(std::span<const CurveSample> curve, double s) {
     const auto above =
-        std::lower_bound(curve.begin(), curve.end(), s, [](const CurvePlace& c, double v) { return c.along < v; });
+        std::lower_bound(curve.begin(), curve.end(), s, [](const CurveSample& c, double v) { return c.along < v; });
     const std::size_t i = std::clamp<std::size_t>(static_cast<std::size_t>(above - curve.begin()), 1, curve.size() - 1);
-    const CurvePlace &a = curve[i - 1], &b = curve[i];
+    const CurveSample &a = curve[i - 1], &b = curve[i];
     const double u = (s - a.along) / std::max(1e-9, b.along - a.along), v = std::clamp(u, 0.0, 1.0);
     return {.position = a.position + u * (b.position - a.position),
             .normal = glm::normalize(glm::mix(a.normal, b.normal, v)),
@@ -51,7 +51,7 @@ CurvePlace at_length(std::span<const CurvePlace> curve, double s) {
             .pressure = glm::mix(a.pressure, b.pressure, v)};
 }
 
-std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<const CurvePlace> curve,
+std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<const CurveSample> curve,
                                      const CurveHand& hand) {
     const double length = curve.back().along - curve.front().along,
                  step = std::max(hand.settings.speed * kSample, length / kMostSamples);
@@ -62,7 +62,7 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
         const double press = hand.pressure * at_length(curve, s).pressure *
                              smooth_step(part / std::max(1e-3, hand.settings.taper_in)) *
                              smooth_step((1 - part) / std::max(1e-3, hand.settings.taper_out));
-        const CurvePlace place = at_length(curve, s);
+        const CurveSample place = at_length(curve, s);
         // The hand runs straight ahead, and under a lean aside: the tuft is dragged behind it, along the curve.
         const Vec3 way = at_length(curve, s + kTangent).position - at_length(curve, s - kTangent).position;
         const stroke::Axes axes = stroke::axes_across(place.normal, hand.right, hand.down);
@@ -88,8 +88,9 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
 
 }  // namespace
 
-std::vector<CurvePlace> lay_curve(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points, int per_span) {
-    std::vector<CurvePlace> curve;
+std::vector<CurveSample> project_curve(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points,
+                                       int per_span) {
+    std::vector<CurveSample> curve;
     if (points.size() < 2) return curve;
     const std::size_t last = points.size() - 1;
     for (std::size_t i = 0; i < last; ++i) {
@@ -101,7 +102,7 @@ std::vector<CurvePlace> lay_curve(const mesh::SurfaceQuery& query, std::span<con
             const double u = static_cast<double>(k) / per_span;
             const Vec3 outward = glm::mix(a.outward, b.outward, u);
             const Vec3 p = spline(before, a.position, b.position, after, u);
-            CurvePlace place = lay(query, p, glm::length(outward) > 1e-6 ? glm::normalize(outward) : a.outward, reach);
+            CurveSample place = lay(query, p, glm::length(outward) > 1e-6 ? glm::normalize(outward) : a.outward, reach);
             place.pressure = glm::mix(a.pressure, b.pressure, u);
             place.along = curve.empty() ? 0 : curve.back().along + glm::distance(curve.back().position, place.position);
             curve.push_back(place);
@@ -112,7 +113,7 @@ std::vector<CurvePlace> lay_curve(const mesh::SurfaceQuery& query, std::span<con
 
 std::vector<std::vector<brush::Pose>> curve_poses(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points,
                                                   const CurveHand& hand) {
-    const std::vector<CurvePlace> curve = lay_curve(query, points);
+    const std::vector<CurveSample> curve = project_curve(query, points);
     std::vector<std::vector<brush::Pose>> strokes;
     for (std::size_t i = 0; i < curve.size();) {
         if (!curve[i].on) {

@@ -23,8 +23,8 @@ struct CurveSettings {
     double speed = 0.08;     ///< m/s
 };
 
-/// A place of a curve that was laid onto a model.
-struct CurvePlace {
+/// A place of a curve on the model.
+struct CurveSample {
     Vec3 position{0}, normal{0, 0, 1};  ///< metres; unit, out of the side that is seen
     double along = 0;                   ///< metres from the start
     double pressure = 1;
@@ -35,12 +35,12 @@ struct CurvePlace {
 /// root of the chords: no loops, no overshoot; two points give a straight line), each of its
 /// points moved against the direction `outward`, which is interpolated linearly, onto the first
 /// surface that faces it. [`per_span` points per span + 1]; empty below two points.
-std::vector<CurvePlace> lay_curve(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points,
-                                  int per_span = 64);
+std::vector<CurveSample> project_curve(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points,
+                                       int per_span = 64);
 
 /// The poses of a hand along it, one list for each piece that lies on the model. `hold`: with
-/// a lead, and what a lean adds to it, so that the ink lies on the curve; `pressure` of the hand, 0–1; `tilt` radians
-/// to the right and down of whoever looks with `right` and `down`.
+/// the tip lag of the brush, upright and leaned, so that the ink lies on the curve; `pressure` of the hand, 0–1; `tilt`
+/// radians to the right and down of whoever looks with `right` and `down`.
 struct CurveHand {
     stroke::HolderOptions hold;
     CurveSettings settings;

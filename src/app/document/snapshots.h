@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "io/project/attachments.h"
 #include "render/gl/gl_scene.h"
 
-/// Named states of the journal, to go back to and to compare with.
+/// \file
+/// Named states of the journal, to go back to and to compare with. The project carries each one as an attachment.
 namespace tuft::app {
 
 struct SnapshotLine {
@@ -16,6 +18,10 @@ struct SnapshotLine {
     std::int64_t made = 0;  ///< seconds since 1970
     std::size_t strokes = 0;
 };
+
+/// What the attachment says about it, without the journal; and the text for that.
+SnapshotLine line_of(const io::Attachment& attachment);
+std::string about_text(const SnapshotLine& line);
 
 /// A snapshot's picture, for the window.
 struct SnapshotPicture {

@@ -31,6 +31,7 @@ double width_mm(const Writing& w) {
 
 std::vector<stroke::Trace*> pointers(std::vector<stroke::Trace>& traces) {
     std::vector<stroke::Trace*> all;
+    all.reserve(traces.size());
     for (stroke::Trace& trace : traces) all.push_back(&trace);
     return all;
 }
@@ -135,8 +136,8 @@ PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placemen
     return out;
 }
 
-std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& w,
-                                                 const stroke::Placement& placement, std::size_t most) {
+std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query, const Writing& w,
+                                                     const stroke::Placement& placement, std::size_t most) {
     std::size_t all = 0;
     for (const stroke::Trace& trace : w.traces) all += trace.samples.size();
     const std::size_t step = std::max<std::size_t>(1, all / most);
@@ -151,7 +152,7 @@ std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query
     }
     stroke::transform_trace(thin, w.centre, painted_scale(w), w.mirrored);
     const std::vector<stroke::SurfaceSample> laid = stroke::map_to_surface(query, thin).samples;
-    std::vector<std::vector<GhostPoint>> lines;
+    std::vector<std::vector<PreviewPoint>> lines;
     for (std::size_t i = 0, next = 0; i < laid.size(); ++i) {
         while (next < starts.size() && starts[next] == i) {
             lines.emplace_back();

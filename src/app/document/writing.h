@@ -65,11 +65,11 @@ PlacedWriting placed_writing(const Writing& writing, const stroke::Placement& pl
 
 /// How it would lie: one line for each piece of a trace on the surface, with its normals, of at
 /// most `most` samples in all.
-struct GhostPoint {
+struct PreviewPoint {
     Vec3 position, normal;
     bool seen = true;  ///< nothing of the model lies before it
 };
-std::vector<std::vector<GhostPoint>> ghost_lines(const mesh::SurfaceQuery& query, const Writing& writing,
-                                                 const stroke::Placement& placement, std::size_t most = 3000);
+std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query, const Writing& writing,
+                                                     const stroke::Placement& placement, std::size_t most = 3000);
 
 }  // namespace tuft::app

@@ -71,7 +71,7 @@ PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Prese
     hold_.leaned = std::move(lag.leaned);
 }
 
-std::optional<BaseColour> PointerInput::ground(const Aim& aim) const {
+std::optional<AimedSurface> PointerInput::find_surface(const Aim& aim) const {
     const auto facing = [&](const mesh::SurfacePoint& p) {
         return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal;
     };
@@ -104,9 +104,9 @@ std::optional<BaseColour> PointerInput::ground(const Aim& aim) const {
         if (std::abs(pair.depth - level) < kShallow * reach_) normal += pair.normal, ++agree;
     const bool gap = agree >= kAgreeing && level < centre - kShallow * reach_ &&
                      glm::dot(normal, -aim.ray.direction) > kSlanting * glm::length(normal);
-    if (gap) return BaseColour{aim.ray.origin + level * aim.ray.direction, glm::normalize(normal), level, true};
+    if (gap) return AimedSurface{aim.ray.origin + level * aim.ray.direction, glm::normalize(normal), level, true};
     if (!hit) return std::nullopt;
-    return BaseColour{hit->position, facing(*hit), hit->distance, false};
+    return AimedSurface{hit->position, facing(*hit), hit->distance, false};
 }
 
 // The smoothed point cuts the corners of a curved surface: it is brought back. Over a gap the nearest
@@ -116,7 +116,7 @@ void PointerInput::onto_surface() {
     if (!on) return;
     const Vec3 way = on->position - point_;
     const bool sideways = glm::length(way - glm::dot(way, normal_) * normal_) > 0.5 * glm::length(way);
-    if (bridged_ >= 0 && time_ - bridged_ < 5 * settings_.smoothing + 2 * kFrame && sideways) return;
+    if (bridged_ >= 0 && motion_.time - bridged_ < 5 * settings_.smoothing + 2 * kFrame && sideways) return;
     const double side = glm::dot(on->normal, normal_) < 0 ? -1 : 1;
     point_ = on->position;
     if (settings_.string > 0) normal_ = side * on->normal;
@@ -131,7 +131,7 @@ brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3&
     };
     const double tipped = kTips * (1 - smooth_step(gone_ / (kTipTurns * hold_.tip_lag_turn)));
     const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) +
-                                   std::tan(tilt.y) * along(aim.view_up) + tipped * string_);
+                                   std::tan(tilt.y) * along(aim.view_up) + tipped * dragged_.string);
     const Frame f = make_frame(point, up);
     const Quat upright = glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n)));
     const double height = hold_.tuft_length + (pressure > 0 ? -pressure * hold_.working_depth : hold_.hover);
@@ -142,55 +142,55 @@ brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3&
 
 // Where the holder is for ink at the point: ahead along the string, and under a lean aside.
 Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure) const {
-    const double taut = glm::length(string_);
+    const double taut = glm::length(dragged_.string);
     if (hold_.tip_lag.empty() || !(pressure > 0) || taut < 1e-9) return Vec3(0);
     const stroke::Axes axes = stroke::axes_across(normal, aim.view_right, -aim.view_up);
-    const Vec2 ahead{glm::dot(string_, axes.right), glm::dot(string_, axes.down)};
+    const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
     if (glm::length(ahead) < 1e-9) return Vec3(0);
     const Vec2 lag =
         taut * stroke::lead_of(hold_, pressure, {settings_.tilt.x, -settings_.tilt.y}, glm::normalize(ahead));
     const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * hold_.tuft_length)));
-    return lag.x * axes.right + lag.y * axes.down + spread * string_;
+    return lag.x * axes.right + lag.y * axes.down + spread * dragged_.string;
 }
 
 // The point has moved: what it drags follows on the string, along the surface.
 void PointerInput::drag() {
-    Vec3 way = point_ - dragged_;
+    Vec3 way = point_ - dragged_.position;
     way -= glm::dot(way, normal_) * normal_;
     if (const double length = glm::length(way); length > hold_.tip_lag_turn) way *= hold_.tip_lag_turn / length;
-    dragged_ = point_ - way;
-    string_ = way / hold_.tip_lag_turn;
+    dragged_.position = point_ - way;
+    dragged_.string = way / hold_.tip_lag_turn;
 }
 
 double PointerInput::goal_pressure(const Aim& aim) const {
     if (aim.pressure >= 0) return pen_depth(settings_, aim.pressure);
-    const double slow = 1.0 - settings_.speed_effect * std::min(1.0, speed_ / settings_.fast);
-    const double rested = settings_.dwell_effect * std::min(1.0, rest_ / settings_.dwell);
+    const double slow = 1.0 - settings_.speed_effect * std::min(1.0, motion_.speed / settings_.fast);
+    const double rested = settings_.dwell_effect * std::min(1.0, motion_.rest / settings_.dwell);
     return std::clamp(settings_.pressure * slow + rested, 0.02, 1.0);
 }
 
-void PointerInput::touch_down(const Aim& aim, const BaseColour& hit, const Vec3& towards,
+void PointerInput::touch_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards,
                               std::vector<HandStep>& steps) {
     down_ = true;
     goal_ = point_ = hit.position;
     normal_ = hit.normal;
     bridged_ = -1;
-    start_ = aim.time;
-    time_ = speed_ = rest_ = pressure_ = gone_ = 0;
+    motion_.start = aim.time;
+    motion_.time = motion_.speed = motion_.rest = motion_.pressure = gone_ = 0;
     spread_ = 0;
-    string_ = towards;
-    dragged_ = point_ - hold_.tip_lag_turn * string_;
+    dragged_.string = towards;
+    dragged_.position = point_ - hold_.tip_lag_turn * dragged_.string;
     steps.push_back({HandStep::Kind::begin, {}});
     steps.push_back({HandStep::Kind::poses, {pose_at(aim, point_, normal_, 0, 0)}});
 }
 
 // A clean stroke is asked for: nothing is touched until its direction is known.
-void PointerInput::wait(const Aim& aim, const BaseColour& hit, std::vector<HandStep>& steps) {
+void PointerInput::wait(const Aim& aim, const AimedSurface& hit, std::vector<HandStep>& steps) {
     waiting_.push_back({aim, hit});
     aim_ = aim;
     goal_ = hit.position;
     goal_normal_ = hit.normal;
-    const bool known = glm::distance(hit.position, waiting_.front().ground.position) >= kKnown * aim.metres_per_pixel;
+    const bool known = glm::distance(hit.position, waiting_.front().surface.position) >= kKnown * aim.metres_per_pixel;
     if (known || aim.time - waiting_.front().aim.time > kPatience) set_down(steps);
 }
 
@@ -200,32 +200,32 @@ void PointerInput::set_down(std::vector<HandStep>& steps) {
     waiting_.clear();
     const Waiting& first = waiting.front();
     const Waiting& last = waiting.back();
-    Vec3 way = last.ground.position - first.ground.position;
-    way -= glm::dot(way, first.ground.normal) * first.ground.normal;
+    Vec3 way = last.surface.position - first.surface.position;
+    way -= glm::dot(way, first.surface.normal) * first.surface.normal;
     const double length = glm::length(way);
-    touch_down(first.aim, first.ground, length >= 0.5 * kKnown * last.aim.metres_per_pixel ? way / length : Vec3(0),
+    touch_down(first.aim, first.surface, length >= 0.5 * kKnown * last.aim.metres_per_pixel ? way / length : Vec3(0),
                steps);
-    start_ -= kSetDown;  // as if it had begun earlier: it lags no further behind
-    speed_ = length / std::max(kFrame, last.aim.time - first.aim.time);
-    spread_ = kSpread * hold_.tuft_length * (1 - std::min(1.0, speed_ / settings_.fast));
-    const double pressure = (glm::length(string_) > 0 ? kTouch : 1.0) * goal_pressure(first.aim);
+    motion_.start -= kSetDown;  // as if it had begun earlier: it lags no further behind
+    motion_.speed = length / std::max(kFrame, last.aim.time - first.aim.time);
+    spread_ = kSpread * hold_.tuft_length * (1 - std::min(1.0, motion_.speed / settings_.fast));
+    const double pressure = (glm::length(dragged_.string) > 0 ? kTouch : 1.0) * goal_pressure(first.aim);
     const int n = static_cast<int>(std::ceil(kSetDown / kFrame));
     HandStep step;
     for (int i = 1; i <= n; ++i) {
-        time_ = kSetDown * i / n;
-        pressure_ = pressure * i / n;
-        step.poses.push_back(pose_at(first.aim, point_, normal_, pressure_, time_));
+        motion_.time = kSetDown * i / n;
+        motion_.pressure = pressure * i / n;
+        step.poses.push_back(pose_at(first.aim, point_, normal_, motion_.pressure, motion_.time));
     }
     for (std::size_t i = 1; i < waiting.size(); ++i) {
-        if (waiting[i].ground.bridged) bridged_ = time_;
-        follow(waiting[i].aim, waiting[i].ground.position, waiting[i].ground.normal, step.poses);
-        goal_normal_ = waiting[i].ground.normal;
+        if (waiting[i].surface.bridged) bridged_ = motion_.time;
+        follow(waiting[i].aim, waiting[i].surface.position, waiting[i].surface.normal, step.poses);
+        goal_normal_ = waiting[i].surface.normal;
     }
     steps.push_back(std::move(step));
 }
 
 void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vector<brush::Pose>& poses) {
-    const double span = std::max(1e-4, aim.time - start_ - time_);
+    const double span = std::max(1e-4, aim.time - motion_.start - motion_.time);
     const int steps = std::clamp(static_cast<int>(std::ceil(span / kFrame)), 1, 64);
     const double dt = span / steps;
     for (int i = 0; i < steps; ++i) {
@@ -244,18 +244,18 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
         if (is_clean(aim)) drag();
         gone_ += glm::distance(before, point_);
         const double v = glm::distance(before, point_) / dt;
-        speed_ += part(dt, 0.05) * (v - speed_);
-        rest_ = speed_ < 0.004 ? rest_ + dt : 0;
-        pressure_ += part(dt, aim.pressure >= 0 ? 0.004 : kRise) * (goal_pressure(aim) - pressure_);
-        time_ += dt;
-        poses.push_back(pose_at(aim, point_, normal_, pressure_, time_));
+        motion_.speed += part(dt, 0.05) * (v - motion_.speed);
+        motion_.rest = motion_.speed < 0.004 ? motion_.rest + dt : 0;
+        motion_.pressure += part(dt, aim.pressure >= 0 ? 0.004 : kRise) * (goal_pressure(aim) - motion_.pressure);
+        motion_.time += dt;
+        poses.push_back(pose_at(aim, point_, normal_, motion_.pressure, motion_.time));
     }
     goal_ = goal;
 }
 
 std::vector<HandStep> PointerInput::move(const Aim& aim) {
     std::vector<HandStep> steps;
-    const auto hit = ground(aim);
+    const auto hit = find_surface(aim);
     // A small movement of the cursor that goes far on the model crossed an edge of its outline.
     const double expected = drawing() && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
                                                    glm::distance(aim.ray.direction, aim_.ray.direction) * hit->distance
@@ -276,7 +276,7 @@ std::vector<HandStep> PointerInput::move(const Aim& aim) {
             still.time = aim.time - kReport;
             follow(still, goal_, goal_normal_, step.poses);
         }
-        if (hit->bridged) bridged_ = time_;
+        if (hit->bridged) bridged_ = motion_.time;
         follow(aim, hit->position, hit->normal, step.poses);
         steps.push_back(std::move(step));
     }
@@ -291,7 +291,8 @@ void PointerInput::arrive(std::vector<brush::Pose>& poses) {
     const Vec3 from = point_;
     const double way = glm::distance(goal_, from);
     if (way < 0.25 * aim_.metres_per_pixel) return;
-    const double seconds = std::clamp(2 * way / std::max(speed_, 1e-6), kFrame, kSlowest), start = pressure_;
+    const double seconds = std::clamp(2 * way / std::max(motion_.speed, 1e-6), kFrame, kSlowest),
+                 start = motion_.pressure;
     const int n = static_cast<int>(std::ceil(seconds / kFrame));
     const double flick = std::min(1.0, way / (kFlick * hold_.working_depth));
     for (int i = 1; i <= n; ++i) {
@@ -302,9 +303,9 @@ void PointerInput::arrive(std::vector<brush::Pose>& poses) {
         onto_surface();
         drag();
         gone_ += glm::distance(before, point_);
-        pressure_ = start * (1 - kFlickLift * flick * (1 - left));
-        time_ += seconds / n;
-        poses.push_back(pose_at(aim_, point_, normal_, pressure_, time_));
+        motion_.pressure = start * (1 - kFlickLift * flick * (1 - left));
+        motion_.time += seconds / n;
+        poses.push_back(pose_at(aim_, point_, normal_, motion_.pressure, motion_.time));
     }
 }
 
@@ -315,11 +316,11 @@ std::vector<HandStep> PointerInput::lift() {
     constexpr int count = 12;
     HandStep step;
     if (is_clean(aim_)) arrive(step.poses);
-    const double start = pressure_;
+    const double start = motion_.pressure;
     for (int i = 1; i <= count; ++i) {
         const double s = static_cast<double>(i) / count;
-        time_ += kLift / count;
-        step.poses.push_back(pose_at(aim_, point_, normal_, i == count ? 0.0 : start * (1 - s), time_));
+        motion_.time += kLift / count;
+        step.poses.push_back(pose_at(aim_, point_, normal_, i == count ? 0.0 : start * (1 - s), motion_.time));
     }
     down_ = false;
     steps.push_back(std::move(step));
@@ -328,7 +329,7 @@ std::vector<HandStep> PointerInput::lift() {
 }
 
 std::optional<brush::Pose> PointerInput::hover(const Aim& aim) const {
-    const auto hit = ground(aim);
+    const auto hit = find_surface(aim);
     if (!hit) return std::nullopt;
     return pose_at(aim, hit->position, hit->normal, 0, aim.time);
 }

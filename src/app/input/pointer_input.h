@@ -47,8 +47,8 @@ struct TipLag {
     std::function<Vec2(double depth, const Vec2& lean)> leaned = {};
 };
 
-/// What lies under the brush, as a hand feels it.
-struct BaseColour {
+/// The surface that an aim meets.
+struct AimedSurface {
     Vec3 position{0};      ///< metres
     Vec3 normal{0, 0, 1};  ///< unit, towards who looks
     double distance = 0;   ///< metres from the eye
@@ -91,19 +91,29 @@ class PointerInput {
     const stroke::HolderOptions& hold() const { return hold_; }
     /// What the aim meets; over a gap narrower than the tuft the ground on both sides of it. Found with
     /// pairs of rays on opposite sides of the aim: on a plane their mean depth is that of the aim.
-    std::optional<BaseColour> ground(const Aim& aim) const;
+    std::optional<AimedSurface> find_surface(const Aim& aim) const;
 
   private:
     struct Waiting {
         Aim aim;
-        BaseColour ground;
+        AimedSurface surface;
+    };
+
+    struct DraggedPoint {
+        Vec3 position{0};  ///< metres: what the point drags on a string of `tip_lag_turn`
+        Vec3 string{0};    ///< that string, of length 1 where it is taut
+    };
+    struct Motion {
+        double pressure = 0;                   ///< 0-1
+        double time = 0, rest = 0, start = 0;  ///< seconds
+        double speed = 0;                      ///< m/s
     };
 
     bool is_clean(const Aim& aim) const { return settings_.clean_ends && aim.pressure < 0; }
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
     Vec3 ahead_of(const Aim& aim, const Vec3& normal, double pressure) const;
-    void touch_down(const Aim& aim, const BaseColour& hit, const Vec3& towards, std::vector<HandStep>& steps);
-    void wait(const Aim& aim, const BaseColour& hit, std::vector<HandStep>& steps);
+    void touch_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards, std::vector<HandStep>& steps);
+    void wait(const Aim& aim, const AimedSurface& hit, std::vector<HandStep>& steps);
     void set_down(std::vector<HandStep>& steps);
     void arrive(std::vector<brush::Pose>& poses);
     void drag();
@@ -119,12 +129,11 @@ class PointerInput {
     bool down_ = false;
     Aim aim_;                       ///< the last one
     std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
-    Vec3 dragged_{0};               ///< metres: what the point drags on a string of `tip_lag_turn`
-    Vec3 string_{0};                ///< that string, of length 1 where it is taut
-    double gone_ = 0;               ///< metres since the touch
-    double spread_ = 0;             ///< metres that the holder is further ahead there, at pressure 1
+    DraggedPoint dragged_;
+    double gone_ = 0;    ///< metres since the touch
+    double spread_ = 0;  ///< metres that the holder is further ahead there, at pressure 1
     Vec3 goal_{0}, goal_normal_{0, 0, 1}, point_{0}, normal_{0, 0, 1};
-    double pressure_ = 0, time_ = 0, speed_ = 0, rest_ = 0, start_ = 0;
+    Motion motion_;
 };
 
 /// First place the aim meets that its section does not hide.

@@ -36,16 +36,16 @@ std::string as_text() {
     return text;
 }
 
-void fact_rows(Session& s) {
+void fact_rows(Ui& ui) {
     for (const auto& [name, value] : facts_now()) {
-        ImGui::TextDisabled("%s", s.ui.tr(name));
-        ImGui::SameLine(s.ui.px(110));
-        s.ui.wrapped(value);
+        ImGui::TextDisabled("%s", ui.tr(name));
+        ImGui::SameLine(ui.px(110));
+        ui.wrapped(value);
     }
 }
 
 // In three columns, read downward.
-void library_rows(Session& s) {
+void library_rows(Ui& ui) {
     constexpr std::size_t kColumns = 3;
     const auto& libraries = build_facts().libraries;
     const std::size_t rows = (libraries.size() + kColumns - 1) / kColumns;
@@ -57,30 +57,29 @@ void library_rows(Session& s) {
             if (i >= libraries.size()) continue;
             if (column > 0) ImGui::SameLine(left + static_cast<float>(column) * width);
             ImGui::Text("%s", libraries[i].first.c_str());
-            ImGui::SameLine(0, s.ui.px(6));
+            ImGui::SameLine(0, ui.px(6));
             ImGui::TextDisabled("%s", libraries[i].second.c_str());
         }
 }
 
 }  // namespace
 
-void about_dialog(Session& s) {
-    if (!s.show_about) return;
-    if (!begin_dialog(s, "About tuft studio", 560)) return end_dialog(s);
-    Ui& ui = s.ui;
+void about_dialog(Ui& ui, DialogState& dialogs) {
+    if (!dialogs.show_about) return;
+    if (!begin_dialog(ui, "About tuft studio", 560)) return end_dialog(ui);
     ui.wrapped(ui.tr("Ink and a bending hair brush on the surface of 3D models."));
     ImGui::Dummy(ImVec2(0, ui.px(4)));
-    fact_rows(s);
+    fact_rows(ui);
     ui.heading("Libraries");
-    library_rows(s);
+    library_rows(ui);
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Copy", 110}, {"Close", 110}});
     if (ui.button("Copy", "Puts all this on the clipboard, for a report", 110))
         ImGui::SetClipboardText(as_text().c_str());
     ImGui::SameLine();
     const bool close = ui.button("Close", nullptr, 110);
-    end_dialog(s);
-    if (close) s.show_about = false;
+    end_dialog(ui);
+    if (close) dialogs.show_about = false;
 }
 
 }  // namespace tuft::app

@@ -26,13 +26,13 @@ unsigned packed(const ink::Rgb& linear) {
 
 // A colour was chosen; with `take` the mix found for it goes into the brush.
 void wish(Session& s, bool take) {
-    ColourChoice& c = s.colour;
+    ColourChoice& c = s.colours.choice;
     c.hex = ink::to_hex(linear_of(c.wanted));
     c.take = take;
     c.finder.want({.colour = linear_of(c.wanted),
-                   .substrate = s.looks.painted_on,
+                   .substrate = s.colours.appearance.painted_on,
                    .film = c.free_film ? 0 : c.film,
-                   .held = pigments_in_use(s)});
+                   .held = pigments_in_use(s.colours, s.journal.lines)});
 }
 
 void keep_hsv(ColourChoice& c) {
@@ -45,7 +45,7 @@ void keep_hsv(ColourChoice& c) {
 }
 
 void wheel(Session& s) {
-    ColourChoice& c = s.colour;
+    ColourChoice& c = s.colours.choice;
     const float side = ImGui::GetContentRegionAvail().x;
     ImGui::SetNextItemWidth(side);
     constexpr ImGuiColorEditFlags flags = ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_NoSidePreview |
@@ -60,7 +60,7 @@ void wheel(Session& s) {
 }
 
 void hex_field(Session& s) {
-    ColourChoice& c = s.colour;
+    ColourChoice& c = s.colours.choice;
     char text[16];
     std::snprintf(text, sizeof text, "%s", c.hex.c_str());
     ImGui::AlignTextToFramePadding();
@@ -80,7 +80,7 @@ void hex_field(Session& s) {
 }
 
 void sliders(Session& s) {
-    ColourChoice& c = s.colour;
+    ColourChoice& c = s.colours.choice;
     Ui& ui = s.ui;
     bool changed = false;
     std::array<double, 3> v;
@@ -118,7 +118,7 @@ void sliders(Session& s) {
 
 // Both colours side by side, how far they are apart, and the recipe.
 void result(Session& s) {
-    ColourChoice& c = s.colour;
+    ColourChoice& c = s.colours.choice;
     Ui& ui = s.ui;
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -150,12 +150,12 @@ void result(Session& s) {
         recipe += text;
     }
     std::snprintf(text, sizeof text, " (%.0f \xce\xbcm, %s)", kUnitUm * c.match->ink.film,
-                  ui.tr(s.looks.painted_on.c_str()));
+                  ui.tr(s.colours.appearance.painted_on.c_str()));
     ui.note(recipe + text);
 }
 
 void recent(Session& s) {
-    ColourChoice& c = s.colour;
+    ColourChoice& c = s.colours.choice;
     if (c.recent.empty()) return;
     const float gap = s.ui.px(4), size = (ImGui::GetContentRegionAvail().x - 7 * gap) / 8;
     for (std::size_t i = 0; i < c.recent.size(); ++i) {
@@ -175,8 +175,8 @@ void recent(Session& s) {
 }
 
 void save(Session& s) {
-    ColourChoice& c = s.colour;
-    const ink::Ink* ink = find_ink(s, s.ink);
+    ColourChoice& c = s.colours.choice;
+    const ink::Ink* ink = find_ink(s.colours, s.brush.ink);
     char name[64];
     std::snprintf(name, sizeof name, "%s", c.name.c_str());
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - s.ui.button_width("Save ink", 84) -
@@ -191,10 +191,10 @@ void save(Session& s) {
         stroke::check_name(c.name, "ink");
         own.name = c.name;
         save_own_ink(c, std::move(own));
-        say(s, "Saved as " + c.name);
+        show_message(s.status, "Saved as " + c.name);
         c.name.clear();
     } catch (const Error& error) {
-        say(s, error.what());
+        show_message(s.status, error.what());
     }
 }
 
@@ -202,23 +202,24 @@ void save(Session& s) {
 
 void set_colour(Session& s, const std::string& hex) {
     const auto colour = ink::colour_of_hex(hex.starts_with('#') ? hex : "#" + hex);
-    if (!colour) return say(s, "A colour is written #rrggbb, such as #c03020.");
-    ColourChoice& c = s.colour;
+    if (!colour) return show_message(s.status, "A colour is written #rrggbb, such as #c03020.");
+    ColourChoice& c = s.colours.choice;
     for (std::size_t i = 0; i < 3; ++i) c.wanted[i] = ink::srgb_encode((*colour)[i]);
     keep_hsv(c);
     wish(s, true);
 }
 
 void colour_panel(Session& s) {
-    ColourChoice& c = s.colour;
-    if (!c.shown || !s.painter) return;
+    ColourChoice& c = s.colours.choice;
+    if (!c.shown || !s.paint_thread) return;
     Ui& ui = s.ui;
     const float pad = ui.px(10), width = ui.px(kWidth);
-    float x = static_cast<float>(s.area.x) + pad;
-    if (s.wanted.left_handed) x = static_cast<float>(s.area.x + s.area.width) - pad - width;
-    ImGui::SetNextWindowPos(ImVec2(x, static_cast<float>(s.area.y) + pad), ImGuiCond_Appearing);
+    float x = static_cast<float>(s.view.area.x) + pad;
+    if (s.preferences.ui.left_handed) x = static_cast<float>(s.view.area.x + s.view.area.width) - pad - width;
+    ImGui::SetNextWindowPos(ImVec2(x, static_cast<float>(s.view.area.y) + pad), ImGuiCond_Appearing);
     ImGui::SetNextWindowSize(ImVec2(width, 0));
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, static_cast<float>(s.area.height) - 2 * pad));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0),
+                                        ImVec2(width, static_cast<float>(s.view.area.height) - 2 * pad));
     ImGui::Begin("###colour", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoCollapse);
@@ -233,10 +234,10 @@ void colour_panel(Session& s) {
                                   "Thickness of the wet ink that a full brush leaves", 1 / kUnitUm))
         wish(s, true);
     result(s);
-    const bool in_brush = c.match && s.ink == c.match->ink.name;
+    const bool in_brush = c.match && s.brush.ink == c.match->ink.name;
     if (!in_brush && c.match &&
         ui.primary_button("Paint with it", (width - 2 * ImGui::GetStyle().WindowPadding.x) / ui.settings().scale))
-        take_mix(s, c.match->ink);
+        take_mix(s.colours, s.brush, c.match->ink);
     save(s);
     recent(s);
     if (ui.button("Close the wheel", nullptr, 0)) c.shown = false;

@@ -10,22 +10,22 @@ namespace fs = std::filesystem;
 
 namespace tuft::app {
 
-bool begin_dialog(Session& s, const char* title, float width) {
+bool begin_dialog(Ui& ui, const char* title, float width) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.48f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
-    ImGui::SetNextWindowSize(ImVec2(s.ui.px(width), 0));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(s.ui.px(18), s.ui.px(14)));
-    const std::string name = std::string(s.ui.tr(title)) + "###dialog " + title;
+    ImGui::SetNextWindowSize(ImVec2(ui.px(width), 0));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui.px(18), ui.px(14)));
+    const std::string name = std::string(ui.tr(title)) + "###dialog " + title;
     const bool open = ImGui::Begin(name.c_str(), nullptr,
                                    ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                                        ImGuiWindowFlags_NoSavedSettings);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
-    s.ui.in_dialog = true;
+    ui.in_dialog = true;
     return open;
 }
 
-void end_dialog(Session& s) {
-    s.ui.in_dialog = false;
+void end_dialog(Ui& ui) {
+    ui.in_dialog = false;
     ImGui::End();
     ImGui::PopStyleVar();
 }
@@ -33,10 +33,10 @@ void end_dialog(Session& s) {
 namespace {
 
 // Two columns: name and value.
-void fact(Session& s, const char* name, const std::string& value) {
-    ImGui::TextDisabled("%s", s.ui.tr(name));
-    ImGui::SameLine(s.ui.px(150));
-    s.ui.wrapped(value);
+void fact(Ui& ui, const char* name, const std::string& value) {
+    ImGui::TextDisabled("%s", ui.tr(name));
+    ImGui::SameLine(ui.px(150));
+    ui.wrapped(value);
 }
 
 std::string print(const char* format, double a, double b = 0, double c = 0) {
@@ -55,31 +55,32 @@ std::string grouped(std::size_t number) {
 }  // namespace
 
 void open_dialog(Session& s) {
-    if (!s.inspected || !begin_dialog(s, s.revises.empty() ? "Open model" : "Revised model", 520)) {
-        if (s.inspected) end_dialog(s);
+    if (!s.project.inspected ||
+        !begin_dialog(s.ui, s.project.revision.source.empty() ? "Open model" : "Revised model", 520)) {
+        if (s.project.inspected) end_dialog(s.ui);
         return;
     }
     Ui& ui = s.ui;
-    const Inspected& in = *s.inspected;
+    const Inspected& in = *s.project.inspected;
     const mesh::MeshSummary& m = in.summary;
-    const double factor = metres_per(s.open_options.frame.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
+    const double factor = metres_per(s.project.options.frame.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
     Vec3 size = m.bounds.size() * factor * 1e3;
-    if (s.open_options.frame.y_up && !in.unit_fixed) std::swap(size.y, size.z);
-    fact(s, "File", in.path.filename().string());
-    fact(s, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
-    fact(s, "Triangles", grouped(m.n_triangles));
+    if (s.project.options.frame.y_up && !in.unit_fixed) std::swap(size.y, size.z);
+    fact(ui, "File", in.path.filename().string());
+    fact(ui, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
+    fact(ui, "Triangles", grouped(m.n_triangles));
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", ui.tr("Unit of the file"));
     ImGui::SameLine(ui.px(150));
     static const std::vector<std::string> units{"um", "mm", "cm", "m", "in", "ft"};
     ImGui::BeginDisabled(in.unit_fixed);
-    ui.combo("Unit", s.open_options.frame.unit, units, 90);
+    ui.combo("Unit", s.project.options.frame.unit, units, 90);
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     if (in.unit_fixed)
         ImGui::TextDisabled("%s", ui.tr("the format says so"));
-    else if (s.open_options.frame.unit == m.unit.unit)
+    else if (s.project.options.frame.unit == m.unit.unit)
         ImGui::TextDisabled("%s", ui.tr("guessed from the size"));
     else
         ImGui::TextDisabled("%s: %s", ui.tr("guessed"), m.unit.unit.c_str());
@@ -87,9 +88,9 @@ void open_dialog(Session& s) {
     ImGui::TextDisabled("%s", ui.tr("Upward axis"));
     ImGui::SameLine(ui.px(150));
     static const std::vector<std::string> axes{"z", "y"};
-    std::string up = s.open_options.frame.y_up || in.unit_fixed ? "y" : "z";
+    std::string up = s.project.options.frame.y_up || in.unit_fixed ? "y" : "z";
     ImGui::BeginDisabled(in.unit_fixed);
-    if (ui.combo("Up", up, axes, 90)) s.open_options.frame.y_up = up == "y";
+    if (ui.combo("Up", up, axes, 90)) s.project.options.frame.y_up = up == "y";
     ImGui::EndDisabled();
     if (in.unit_fixed) {
         ImGui::SameLine();
@@ -100,75 +101,76 @@ void open_dialog(Session& s) {
     ImGui::TextDisabled("%s", ui.tr("Texels per side"));
     ImGui::SameLine(ui.px(150));
     static const std::vector<std::string> sizes{"1024", "2048", "4096", "8192"};
-    std::string atlas = std::to_string(s.open_options.atlas_size);
+    std::string atlas = std::to_string(s.project.options.atlas_size);
     if (ui.combo("Atlas size", atlas, sizes, 90))
-        s.open_options.atlas_size = static_cast<std::uint32_t>(std::stoul(atlas));
+        s.project.options.atlas_size = static_cast<std::uint32_t>(std::stoul(atlas));
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    const double texel = expected_texel(m.area * factor * factor, s.open_options.atlas_size);
+    const double texel = expected_texel(m.area * factor * factor, s.project.options.atlas_size);
     ImGui::TextDisabled("%s", print(ui.tr("one texel is about %.2f mm"), texel * 1e3).c_str());
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", ui.tr("Material"));
     ImGui::SameLine(ui.px(150));
-    ui.combo("Surface", s.open_options.substrate, s.substrates, 160);
+    ui.combo("Surface", s.project.options.substrate, s.colours.substrates, 160);
     if (m.has_colours) {
         ImGui::SameLine();
-        ui.toggle("in its own colours", s.open_options.own_colours);
+        ui.toggle("in its own colours", s.project.options.own_colours);
     }
     ui.heading("Checked and repaired");
     if (in.defects.empty()) ui.note(ui.tr("The mesh is sound; nothing had to be repaired."));
     for (const std::string& line : in.defects) ui.wrapped("\xc2\xb7 " + ui.tr_sentence(line));
     for (const std::string& line : m.report.warnings) ui.wrapped("\xc2\xb7 " + line);
-    const std::size_t memory = stroke::atlas_memory(s.open_options.atlas_size);
+    const std::size_t memory = stroke::atlas_memory(s.project.options.atlas_size);
     const bool fits = memory < stroke::available_memory();
     if (!fits) ui.wrapped(ui.tr("This many texels need more memory than is free."));
     ImGui::Dummy(ImVec2(0, ui.px(4)));
-    const char* action = s.revises.empty() ? "Unwrap and paint" : "Unwrap and repaint";
+    const char* action = s.project.revision.source.empty() ? "Unwrap and paint" : "Unwrap and repaint";
     ui.buttons_at_right({{"Cancel", 120}, {action, 120}});
     const bool cancelled = ui.button("Cancel", nullptr, 120);
     ImGui::SameLine();
     const bool accepted = ui.primary_button(action, 120, fits);
-    end_dialog(s);
+    end_dialog(s.ui);
     if (accepted)
         accept_inspected(s);
     else if (cancelled)
-        s.inspected.reset();
+        s.project.inspected.reset();
 }
 
 void opening_progress(Session& s) {
-    if (!begin_dialog(s, "Opening", 380)) return end_dialog(s);
-    std::string phase = s.opening.phase();
+    if (!begin_dialog(s.ui, "Opening", 380)) return end_dialog(s.ui);
+    std::string phase = s.project.opening.phase();
     ImGui::TextUnformatted(s.ui.tr(phase.c_str()));
-    ImGui::ProgressBar(static_cast<float>(s.opening.fraction()), ImVec2(-1, s.ui.px(18)), "");
+    ImGui::ProgressBar(static_cast<float>(s.project.opening.fraction()), ImVec2(-1, s.ui.px(18)), "");
     s.ui.buttons_at_right({{"Cancel", 110}});
     const bool stop = s.ui.button("Cancel", nullptr, 110);
-    end_dialog(s);
-    if (stop) s.opening.cancel();
+    end_dialog(s.ui);
+    if (stop) s.project.opening.cancel();
 }
 
 void recovery_dialog(Session& s) {
-    if (s.lost.empty()) return;
-    if (!begin_dialog(s, s.sure_to_delete ? "Delete this work?" : "Your work is still here", 480)) return end_dialog(s);
+    if (s.project.recovery.lost.empty()) return;
+    if (!begin_dialog(s.ui, s.project.recovery.confirm_delete ? "Delete this work?" : "Your work is still here", 480))
+        return end_dialog(s.ui);
     Ui& ui = s.ui;
-    const LostWork work = s.lost.front();
+    const LostWork work = s.project.recovery.lost.front();
     ui.wrapped(
         ui.tr("tuft studio stopped before you saved this. Nothing is lost: every stroke that you finished is here."));
     ImGui::Dummy(ImVec2(0, ui.px(2)));
-    if (const unsigned texture = s.pictures.texture(work.project)) {
+    if (const unsigned texture = s.project.start_page.pictures.texture(work.project)) {
         ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)),
                      ImVec2(ui.px(180), ui.px(120)));
         ImGui::Dummy(ImVec2(0, ui.px(2)));
     }
-    fact(s, "Model", fs::path(work.source).filename().string());
-    fact(s, "Project", is_unnamed(work.project) ? ui.tr("not saved under a name yet") : work.project.string());
+    fact(ui, "Model", fs::path(work.source).filename().string());
+    fact(ui, "Project", is_unnamed(work.project) ? ui.tr("not saved under a name yet") : work.project.string());
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     bool go_on = false, later = false, drop = false;
-    if (s.sure_to_delete) {
+    if (s.project.recovery.confirm_delete) {
         ui.wrapped(ui.tr("It cannot be brought back."));
         ui.buttons_at_right({{"Keep it", 120}, {"Delete for good", 140}});
         drop = ui.button("Delete for good", nullptr, 140);
         ImGui::SameLine();
-        if (ui.primary_button("Keep it", 120)) s.sure_to_delete = false;
+        if (ui.primary_button("Keep it", 120)) s.project.recovery.confirm_delete = false;
     } else {
         // A project of its own stays where it is; only the offer goes.
         const bool unnamed = is_unnamed(work.project);
@@ -182,24 +184,24 @@ void recovery_dialog(Session& s) {
         ImGui::SameLine();
         go_on = ui.primary_button("Continue", 140);
         drop = leave && !unnamed;
-        s.sure_to_delete = leave && unnamed;
+        s.project.recovery.confirm_delete = leave && unnamed;
     }
-    end_dialog(s);
+    end_dialog(s.ui);
     if (go_on) {
         forget_lost_work(work, false);
         open_path(s, work.project);
     } else if (drop) {
         forget_lost_work(work, true);
-        s.sure_to_delete = false;
+        s.project.recovery.confirm_delete = false;
     }
-    if (go_on || later || drop) s.lost.erase(s.lost.begin());
+    if (go_on || later || drop) s.project.recovery.lost.erase(s.project.recovery.lost.begin());
 }
 
 void settings_dialog(Session& s) {
-    if (!s.show_settings) return;
-    if (!begin_dialog(s, "Settings", 420)) return end_dialog(s);
+    if (!s.dialogs.show_settings) return;
+    if (!begin_dialog(s.ui, "Settings", 420)) return end_dialog(s.ui);
     Ui& ui = s.ui;
-    UiSettings& w = s.wanted;
+    UiSettings& w = s.preferences.ui;
     bool changed = false;
     ui.heading("Language");
     if (ui.choice("English", w.language == Language::english, nullptr, 120))
@@ -222,34 +224,35 @@ void settings_dialog(Session& s) {
             w.scale = scale, w.own_scale = changed = true;
     }
     ui.heading("Mouse and hand");
-    if (ui.choice("As in Blender", s.keymap == Keymap::blender, "Turn with the middle button", 150))
-        s.keymap = Keymap::blender, changed = true;
+    if (ui.choice("As in Blender", s.preferences.keymap == Keymap::blender, "Turn with the middle button", 150))
+        s.preferences.keymap = Keymap::blender, changed = true;
     ImGui::SameLine();
-    if (ui.choice("As in Maya", s.keymap == Keymap::maya, "Turn with Alt and the left button", 150))
-        s.keymap = Keymap::maya, changed = true;
+    if (ui.choice("As in Maya", s.preferences.keymap == Keymap::maya, "Turn with Alt and the left button", 150))
+        s.preferences.keymap = Keymap::maya, changed = true;
     changed |= ui.toggle("Left-handed: tools on the right", w.left_handed);
     bool cap = false;
-    if (s.cap.seen) {
+    if (s.preferences.space_mouse.seen) {
         ui.heading("SpaceMouse");
-        if (ui.choice("Moves the model", !s.cap.moves_eye, "It goes where you push and turn the cap", 150))
-            s.cap.moves_eye = false, cap = true;
+        if (ui.choice("Moves the model", !s.preferences.space_mouse.moves_eye,
+                      "It goes where you push and turn the cap", 150))
+            s.preferences.space_mouse.moves_eye = false, cap = true;
         ImGui::SameLine();
-        if (ui.choice("Moves the eye", s.cap.moves_eye, "The cap is your head", 150))
-            s.cap.moves_eye = true, cap = true;
-        cap |= ui.toggle("Keep the horizon level", s.cap.level);
-        cap |= ui.slider("Cap speed", s.cap.speed, 0.1, 4, "%.1f");
+        if (ui.choice("Moves the eye", s.preferences.space_mouse.moves_eye, "The cap is your head", 150))
+            s.preferences.space_mouse.moves_eye = true, cap = true;
+        cap |= ui.toggle("Keep the horizon level", s.preferences.space_mouse.level);
+        cap |= ui.slider("Cap speed", s.preferences.space_mouse.speed, 0.1, 4, "%.1f");
     }
     if (cap) store_settings(s);
-    if (ui.button("Keys...", "Look up and change what the keys do", 150)) s.show_keys = true;
+    if (ui.button("Keys...", "Look up and change what the keys do", 150)) s.dialogs.show_keys = true;
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Close", 110}});
     const bool close = ui.button("Close", nullptr, 110);
-    end_dialog(s);
+    end_dialog(s.ui);
     if (changed) {
-        s.restyle = true;
+        s.preferences.restyle = true;
         store_settings(s);
     }
-    if (close) s.show_settings = false;
+    if (close) s.dialogs.show_settings = false;
 }
 
 }  // namespace tuft::app

@@ -31,23 +31,22 @@ const Preset& preset_of(const std::string& name) {
 }
 
 void choose_preset(Session& s) {
-    const Preset& p = preset_of(s.export_choice.preset);
-    s.export_choice.relief = p.relief;
-    s.export_choice.roughness = p.roughness;
-    const std::uint32_t painted = s.painter ? s.painter->model().atlas.size : 0;
-    s.export_choice.size = p.most && painted > p.most ? p.most : 0;
+    const Preset& p = preset_of(s.dialogs.export_settings.preset);
+    s.dialogs.export_settings.relief = p.relief;
+    s.dialogs.export_settings.roughness = p.roughness;
+    const std::uint32_t painted = s.paint_thread ? s.paint_thread->model().atlas.size : 0;
+    s.dialogs.export_settings.size = p.most && painted > p.most ? p.most : 0;
 }
 
-void row(Session& s, const char* name) {
+void row(Ui& ui, const char* name) {
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", s.ui.tr(name));
-    ImGui::SameLine(s.ui.px(130));
+    ImGui::TextDisabled("%s", ui.tr(name));
+    ImGui::SameLine(ui.px(130));
 }
 
 }  // namespace
 
-ExportModel export_command(const Session& s, const std::filesystem::path& path) {
-    const ExportChoice& c = s.export_choice;
+ExportModel export_command(const ExportSettings& c, const Orbit& seen_from, const std::filesystem::path& path) {
     return {.path = path,
             .height = c.relief,
             .orm = c.roughness,
@@ -55,49 +54,49 @@ ExportModel export_command(const Session& s, const std::filesystem::path& path) 
             .size = c.size,
             .pictures = c.picture,
             .picture_width = c.picture_width,
-            .azimuth = s.view.orbit.azimuth,
-            .elevation = s.view.orbit.elevation};
+            .azimuth = seen_from.azimuth,
+            .elevation = seen_from.elevation};
 }
 
 void export_dialog(Session& s) {
-    if (!s.show_export || !s.painter) return;
-    if (!begin_dialog(s, "Export", 460)) return end_dialog(s);
+    if (!s.dialogs.show_export || !s.paint_thread) return;
+    if (!begin_dialog(s.ui, "Export", 460)) return end_dialog(s.ui);
     Ui& ui = s.ui;
-    ExportChoice& c = s.export_choice;
+    ExportSettings& c = s.dialogs.export_settings;
     std::vector<std::string> names;
     for (const Preset& p : kPresets) names.emplace_back(p.name);
-    row(s, "For");
+    row(ui, "For");
     if (ui.combo("Preset", c.preset, names)) choose_preset(s);
     ui.note(ui.tr(preset_of(c.preset).note));
     const bool strokes_alone = preset_of(c.preset).extension == std::string(".inkml");
-    if (strokes_alone && std::any_of(s.strokes.begin(), s.strokes.end(), [](const StrokeLine& l) {
+    if (strokes_alone && std::any_of(s.journal.lines.begin(), s.journal.lines.end(), [](const StrokeLine& l) {
             return l.action == stroke::Action::layer || l.action == stroke::Action::mask;
         }))
         ui.wrapped(ui.tr("Strokes name their layer and mask; what layers and masks are stays in the project."));
     ImGui::BeginDisabled(strokes_alone);
-    row(s, "Maps");
+    row(ui, "Maps");
     bool colour = true;
     ImGui::BeginDisabled();
     ui.toggle("Base colour", colour);
     ImGui::EndDisabled();
-    row(s, "");
+    row(ui, "");
     ui.toggle("Roughness", c.roughness, "Occlusion, roughness and metal in one picture");
-    row(s, "");
+    row(ui, "");
     ui.toggle("Relief of the ink", c.relief, "A normal map made from the film's height");
     if (preset_of(c.preset).extension == std::string(".exr")) {
-        row(s, "");
+        row(ui, "");
         ui.toggle("Pigment amounts", c.pigments, "A channel for each pigment, in film units");
     }
-    row(s, "Texels per side");
+    row(ui, "Texels per side");
     static const std::vector<std::string> sizes{"As painted", "512", "1024", "2048", "4096", "8192"};
     std::string size = c.size ? std::to_string(c.size) : "As painted";
     if (ui.combo("Export size", size, sizes, 130))
         c.size = size == "As painted" ? 0 : static_cast<std::uint32_t>(std::stoul(size));
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%u", s.painter->model().atlas.size);
+    ImGui::TextDisabled("%u", s.paint_thread->model().atlas.size);
     ui.hint("Another size is painted anew from the strokes, not scaled");
-    row(s, "Pictures");
+    row(ui, "Pictures");
     static const std::vector<std::string> pictures{"None", "One, as seen now", "24 all round", "72 all round"};
     static constexpr int counts[] = {0, 1, 24, 72};
     const auto at =
@@ -106,7 +105,7 @@ void export_dialog(Session& s) {
     if (ui.combo("Pictures of it", picture, pictures, 200))
         c.picture = counts[std::find(pictures.begin(), pictures.end(), picture) - pictures.begin()];
     if (c.picture) {
-        row(s, "");
+        row(ui, "");
         static const std::vector<std::string> widths{"640", "1280", "1920", "3840"};
         std::string width = std::to_string(c.picture_width);
         if (ui.combo("Picture width", width, widths, 100)) c.picture_width = std::stoi(width);
@@ -120,9 +119,12 @@ void export_dialog(Session& s) {
     const bool cancel = ui.button("Cancel", nullptr, 110);
     ImGui::SameLine();
     const bool go = ui.primary_button("Choose a file...", 160);
-    end_dialog(s);
-    if (go) s.files.show(FileDialog::Purpose::export_model, project_name(s) + preset_of(c.preset).extension);
-    if (go || cancel) s.show_export = false;
+    end_dialog(s.ui);
+    if (go)
+        s.dialogs.file.show(
+            FileDialog::Purpose::export_model,
+            project_name(s.paint_thread.get(), s.reported.file.project) + preset_of(c.preset).extension);
+    if (go || cancel) s.dialogs.show_export = false;
 }
 
 }  // namespace tuft::app

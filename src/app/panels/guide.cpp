@@ -16,22 +16,23 @@ struct Step {
 
 bool turned(const Session& s) {
     const Orbit& o = s.view.orbit;
-    return std::abs(o.azimuth - s.help.azimuth) + std::abs(o.elevation - s.help.elevation) > 0.15;  // radians
+    return std::abs(o.azimuth - s.panels.help.azimuth) + std::abs(o.elevation - s.panels.help.elevation) >
+           0.15;  // radians
 }
 bool nearer(const Session& s) {
-    return std::abs(s.view.orbit.distance / s.help.distance - 1) > 0.05;
+    return std::abs(s.view.orbit.distance / s.panels.help.distance - 1) > 0.05;
 }
 bool another_brush(const Session& s) {
-    return s.brush != s.help.brush;
+    return s.brush.preset != s.panels.help.brush;
 }
 bool painted(const Session& s) {
-    return s.strokes.size() > s.help.strokes;
+    return s.journal.lines.size() > s.panels.help.strokes;
 }
 bool taken_back(const Session& s) {
-    return s.last.can_redo && s.strokes.size() < s.help.strokes;
+    return s.reported.document.can_redo && s.journal.lines.size() < s.panels.help.strokes;
 }
 bool named(const Session& s) {
-    return !s.last.project.empty() && !is_unnamed(s.last.project);
+    return !s.reported.file.project.empty() && !is_unnamed(s.reported.file.project);
 }
 
 constexpr Step kSteps[] = {
@@ -47,7 +48,7 @@ constexpr Step kSteps[] = {
 constexpr int kCount = static_cast<int>(std::size(kSteps));
 
 void go_to_step(Session& s, int step) {
-    HelpState& h = s.help;
+    HelpState& h = s.panels.help;
     h.step = step < kCount ? step : -1;
     h.fresh = true;
     if (h.step >= 0) return;
@@ -62,22 +63,22 @@ void start_guide(Session& s) {
 }
 
 void guide(Session& s) {
-    HelpState& h = s.help;
-    if (h.step < 0 || h.step >= kCount || !s.painter) return;
+    HelpState& h = s.panels.help;
+    if (h.step < 0 || h.step >= kCount || !s.paint_thread) return;
     const Step& step = kSteps[h.step];
     if (h.fresh) {
         h.fresh = false;
         h.azimuth = s.view.orbit.azimuth;
         h.elevation = s.view.orbit.elevation;
         h.distance = s.view.orbit.distance;
-        h.strokes = s.strokes.size();
-        h.brush = s.brush;
+        h.strokes = s.journal.lines.size();
+        h.brush = s.brush.preset;
     }
-    if (!s.hand_down && step.done(s)) return go_to_step(s, h.step + 1);
+    if (!s.tools.pointer_down && step.done(s)) return go_to_step(s, h.step + 1);
     Ui& ui = s.ui;
-    const float width = std::min(ui.px(400), static_cast<float>(s.area.width) - ui.px(40));
-    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.area.x) + 0.5f * static_cast<float>(s.area.width),
-                                   static_cast<float>(s.area.y) + ui.px(14)),
+    const float width = std::min(ui.px(400), static_cast<float>(s.view.area.width) - ui.px(40));
+    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.view.area.x) + 0.5f * static_cast<float>(s.view.area.width),
+                                   static_cast<float>(s.view.area.y) + ui.px(14)),
                             ImGuiCond_Always, ImVec2(0.5f, 0));
     ImGui::SetNextWindowSize(ImVec2(width, 0));
     ImGui::SetNextWindowBgAlpha(0.95f);
@@ -93,7 +94,7 @@ void guide(Session& s) {
     if (ui.settings().language != Language::english) ImGui::TextUnformatted(ui.tr(step.title));
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(count).x);
     ImGui::TextDisabled("%s", count);
-    ui.wrapped(ui.tr(s.keymap == Keymap::maya && step.maya_text ? step.maya_text : step.text));
+    ui.wrapped(ui.tr(s.preferences.keymap == Keymap::maya && step.maya_text ? step.maya_text : step.text));
     const bool skip = ui.button("Skip the guide", "It is in the Help menu", 0);
     ImGui::SameLine();
     const bool last = h.step + 1 == kCount;

@@ -19,15 +19,15 @@ void swatch(ImDrawList* draw, ImVec2 centre, float radius, unsigned colour) {
 }
 
 std::vector<std::string> ink_names(const Session& s) {
-    std::vector<std::string> names = s.inks;
-    for (const ink::Ink& ink : s.own_inks) names.push_back(ink.name);
+    std::vector<std::string> names = s.colours.shipped;
+    for (const ink::Ink& ink : s.colours.own) names.push_back(ink.name);
     return names;
 }
 
 // What an ink is made of, for people.
 std::string recipe_text(const Session& s, const std::string& name) {
     std::string text = s.ui.tr(name.c_str());
-    const ink::Ink* ink = find_ink(s, name);
+    const ink::Ink* ink = find_ink(s.colours, name);
     if (!ink || ink->parts.size() < 2) return text;
     for (const ink::InkPart& part : ink->parts) {
         char line[96];
@@ -61,28 +61,31 @@ void swatches(Session& s) {
     constexpr std::size_t columns = 5;
     const float gap = s.ui.px(2), width = (ImGui::GetContentRegionAvail().x + gap) / columns - gap;
     std::vector<std::string> names = ink_names(s);
-    if (s.colour.in_hand && std::find(names.begin(), names.end(), s.colour.in_hand->name) == names.end())
-        names.push_back(s.colour.in_hand->name);
+    if (s.colours.choice.in_hand &&
+        std::find(names.begin(), names.end(), s.colours.choice.in_hand->name) == names.end())
+        names.push_back(s.colours.choice.in_hand->name);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, s.ui.px(2)));
     std::size_t i = 0;
     for (const std::string& name : names) {
         if (i++ % columns) ImGui::SameLine(0, gap);
-        if (named_swatch(s, name, s.ui.tr(name.c_str()), ink_colour(s, name), name == s.ink, width)) s.ink = name;
+        if (named_swatch(s, name, s.ui.tr(name.c_str()), ink_colour(s.colours, name), name == s.brush.ink, width))
+            s.brush.ink = name;
         s.ui.mark(name);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", recipe_text(s, name).c_str());
     }
     // The person's own, but for those that are part of this work already.
-    for (std::size_t k = 0; k < s.colour.saved.size(); ++k) {
-        const ink::Ink& own = s.colour.saved[k];
+    for (std::size_t k = 0; k < s.colours.choice.saved.size(); ++k) {
+        const ink::Ink& own = s.colours.choice.saved[k];
         if (std::find(names.begin(), names.end(), own.name) != names.end()) continue;
         if (i++ % columns) ImGui::SameLine(0, gap);
-        if (named_swatch(s, "own " + own.name, own.name, ink_colour(own), false, width)) take_mix(s, own);
+        if (named_swatch(s, "own " + own.name, own.name, ink_colour(own), false, width))
+            take_mix(s.colours, s.brush, own);
         s.ui.mark("own " + own.name);
         if (ImGui::BeginPopupContextItem()) {
             const std::string name = own.name;
-            if (s.ui.menu_item("Forget this ink")) forget_own_ink(s.colour, name);
+            if (s.ui.menu_item("Forget this ink")) forget_own_ink(s.colours.choice, name);
             ImGui::EndPopup();
-            if (k >= s.colour.saved.size() || s.colour.saved[k].name != name) break;
+            if (k >= s.colours.choice.saved.size() || s.colours.choice.saved[k].name != name) break;
         }
     }
     ImGui::PopStyleVar();
@@ -98,81 +101,81 @@ void care(Session& s) {
     Ui& ui = s.ui;
     const float half = part_of_row(s, 2);
     const auto act = [&](stroke::Action action, double depth = 1, double side = 0) {
-        bring_in_colour(s);
-        s.painter->post(
-            ActOnBrush{.action = action, .brush = s.brush, .ink = s.ink, .extent = {.depth = depth, .side = side}});
+        bring_in_colour(s.colours, s.brush.ink, s.paint_thread.get());
+        s.paint_thread->post(ActOnBrush{
+            .action = action, .brush = s.brush.preset, .ink = s.brush.ink, .extent = {.depth = depth, .side = side}});
     };
     if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", half))
-        act(stroke::Action::dip, s.dip_depth, s.dip_side);
+        act(stroke::Action::dip, s.brush.dip_depth, s.brush.dip_side);
     ImGui::SameLine();
     if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", half))
-        act(stroke::Action::wipe, s.dip_depth, s.dip_side);
+        act(stroke::Action::wipe, s.brush.dip_depth, s.brush.dip_side);
     if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", half)) act(stroke::Action::rinse);
     ImGui::SameLine();
     if (ui.button("Comb", "Hair straight and together, the ink stays", half)) act(stroke::Action::reshape);
     ui.slider(
-        "How deep", s.dip_depth, 0.05, 1, "%.0f %%",
+        "How deep", s.brush.dip_depth, 0.05, 1, "%.0f %%",
         "Part of the hair, from the tip. Wipe the tip and dip it into another ink: it is darker than the belly then",
         0.01);
-    ui.slider("Which side", s.dip_side, -1, 1, "%.0f %%",
+    ui.slider("Which side", s.brush.dip_side, -1, 1, "%.0f %%",
               "Part of the hair's width that is dipped or wiped, from the right flank, or from the left when negative; "
               "0: all of it. Wipe one side and dip it into another ink: the stroke shows both side by side",
               0.01);
-    if (s.last.brush_colour) {
-        const auto& c = *s.last.brush_colour;
+    if (s.reported.brush.colour) {
+        const auto& c = *s.reported.brush.colour;
         ImGui::PushStyleColor(ImGuiCol_PlotHistogram, IM_COL32(c[0], c[1], c[2], 255));
     }
-    ImGui::ProgressBar(static_cast<float>(s.last.fullness), ImVec2(-1, ui.px(14)), "");
-    if (s.last.brush_colour) ImGui::PopStyleColor();
+    ImGui::ProgressBar(static_cast<float>(s.reported.brush.fullness), ImVec2(-1, ui.px(14)), "");
+    if (s.reported.brush.colour) ImGui::PopStyleColor();
     ui.hint("Ink left in the brush");
 }
 
 void two_inks(Session& s) {
     Ui& ui = s.ui;
-    ui.toggle("Another ink in the tip", s.two_inks,
+    ui.toggle("Another ink in the tip", s.brush.two_inks,
               "Every stroke begins with the chosen ink in the belly and another one in the tip: petals, leaves");
-    if (!s.two_inks) return;
+    if (!s.brush.two_inks) return;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float size = ImGui::GetFrameHeight();
     swatch(ImGui::GetWindowDrawList(), ImVec2(at.x + 0.5f * size, at.y + 0.5f * size), 0.36f * size,
-           ink_colour(s, s.tip_ink));
+           ink_colour(s.colours, s.brush.tip_ink));
     ImGui::Dummy(ImVec2(size, size));
     ImGui::SameLine();
-    ui.combo("Tip ink", s.tip_ink, ink_names(s));
-    ui.slider("Tip", s.tip_depth, 0.05, 0.9, "%.0f %%", "How far up the hair it goes", 0.01);
+    ui.combo("Tip ink", s.brush.tip_ink, ink_names(s));
+    ui.slider("Tip", s.brush.tip_depth, 0.05, 0.9, "%.0f %%", "How far up the hair it goes", 0.01);
 }
 
 }  // namespace
 
 void ink_section(Session& s) {
     Ui& ui = s.ui;
-    if (!ui.section("Ink", true, ui.tr(s.ink.c_str()))) return;
+    if (!ui.section("Ink", true, ui.tr(s.brush.ink.c_str()))) return;
     swatches(s);
     ImGui::PushStyleVar(
         ImGuiStyleVar_FramePadding,
         ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons, which fill the row
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(4), ImGui::GetStyle().ItemSpacing.y));
-    if (ui.choice("Colour...", s.colour.shown,
+    if (ui.choice("Colour...", s.colours.choice.shown,
                   "Any colour, on a wheel or as a hex code: the nearest mix of pigments is found for it", 0))
-        s.colour.shown = !s.colour.shown;
+        s.colours.choice.shown = !s.colours.choice.shown;
     ImGui::SameLine();
-    if (ui.button("Load...", "An ink from a file", 0)) s.files.show(FileDialog::Purpose::ink, {});
+    if (ui.button("Load...", "An ink from a file", 0)) s.dialogs.file.show(FileDialog::Purpose::ink, {});
     ImGui::SameLine();
     if (ui.button("Save ink...", "Writes the ink in hand to a file, for other work", part_of_row(s, 1)))
-        s.files.show(FileDialog::Purpose::save_ink, s.ink + ".toml");
+        s.dialogs.file.show(FileDialog::Purpose::save_ink, s.brush.ink + ".toml");
     ImGui::PopStyleVar(2);
-    ui.toggle("Wet ink", s.wet,
+    ui.toggle("Wet ink", s.brush.wet,
               "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
-    if (s.wet || s.last.wet) {
+    if (s.brush.wet || s.reported.document.wet) {
         if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0))
-            s.painter->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
+            s.paint_thread->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush.preset, .seconds = 60});
         ImGui::SameLine();
         if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(s, 1)))
-            s.painter->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush});
+            s.paint_thread->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush.preset});
     }
-    ui.toggle("Don't reload", s.carry,
+    ui.toggle("Don't reload", s.brush.persistent,
               "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
-    if (s.carry)
+    if (s.brush.persistent)
         care(s);
     else
         two_inks(s);
@@ -185,13 +188,13 @@ unsigned ink_colour(const ink::Ink& ink) {
     return IM_COL32(rgb[0], rgb[1], rgb[2], 255);
 }
 
-unsigned ink_colour(const Session& s, const std::string& name) {
+unsigned ink_colour(const ColourState& colours, const std::string& name) {
     static std::map<const ink::Ink*, unsigned> shipped;
-    const ink::Ink* ink = find_ink(s, name);
+    const ink::Ink* ink = find_ink(colours, name);
     if (!ink) return IM_COL32(40, 40, 40, 255);
-    if (!s.own_inks.empty() && ink >= s.own_inks.data() && ink < s.own_inks.data() + s.own_inks.size())
+    if (!colours.own.empty() && ink >= colours.own.data() && ink < colours.own.data() + colours.own.size())
         return ink_colour(*ink);
-    if (s.colour.in_hand && ink == &*s.colour.in_hand) return ink_colour(*ink);
+    if (colours.choice.in_hand && ink == &*colours.choice.in_hand) return ink_colour(*ink);
     const auto [at, is_new] = shipped.try_emplace(ink);
     if (is_new) at->second = ink_colour(*ink);
     return at->second;
@@ -200,7 +203,7 @@ unsigned ink_colour(const Session& s, const std::string& name) {
 namespace {
 
 void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) {
-    ink::Ink& edited = s.recipe;
+    ink::Ink& edited = s.colours.recipe;
     bool released = false, held = false;
     for (ink::InkPart& part : edited.parts) {
         double others = 0;
@@ -221,12 +224,12 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
             if (!there) edited.parts.push_back({ink::load_pigment(more), std::min(0.1, std::max(0.0, room))});
             released = true;
         } catch (const Error& error) {
-            say(s, error.what());
+            show_message(s.status, error.what());
         }
     }
     if (released)
-        s.painter->post(RecolourInk{name, edited});
-    else if (!held && s.painter->idle())
+        s.paint_thread->post(RecolourInk{name, edited});
+    else if (!held && s.paint_thread->idle())
         edited = shown;
 }
 
@@ -234,17 +237,18 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
 
 void colours_panel(Session& s, float top, float bottom, float left) {
     Ui& ui = s.ui;
-    begin_side_panel(s, "###colours", left, top, kToolWidth, bottom);
+    begin_side_panel(s.ui, "###colours", left, top, kToolWidth, bottom);
     ui.heading("Recolour");
     ui.note(ui.tr("Pigment amounts stay as they were painted; only what they look like changes."));
     std::set<std::string> used;
-    for (const StrokeLine& line : s.strokes)
+    for (const StrokeLine& line : s.journal.lines)
         if (!line.ink.empty() && !line.erases) used.insert(line.ink);
     const std::vector<std::string> names = ink_names(s);
     if (used.empty()) ui.note(ui.tr("Nothing is painted yet."));
     for (const std::string& name : used) {
-        const auto other = s.looks.recolours.find(name);
-        const ink::Ink* shown = other != s.looks.recolours.end() ? &other->second : find_ink(s, name);
+        const auto other = s.colours.appearance.recolours.find(name);
+        const ink::Ink* shown =
+            other != s.colours.appearance.recolours.end() ? &other->second : find_ink(s.colours, name);
         if (!shown) continue;
         ImGui::PushID(name.c_str());
         const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -256,30 +260,38 @@ void colours_panel(Session& s, float top, float bottom, float left) {
         ImGui::AlignTextToFramePadding();
         ImGui::Text("%s %s", ui.tr(name.c_str()), ui.tr("as"));
         std::string wanted = shown->name;
-        if (ui.combo(("As " + name).c_str(), wanted, names, part_of_row(s, 1) - 80) && find_ink(s, wanted))
-            s.painter->post(RecolourInk{name, *find_ink(s, wanted)});
+        if (ui.combo(("As " + name).c_str(), wanted, names, part_of_row(s, 1) - 80) && find_ink(s.colours, wanted))
+            s.paint_thread->post(RecolourInk{name, *find_ink(s.colours, wanted)});
         ImGui::SameLine();
-        if (ui.choice("Recipe", s.recipe_of == name, "Its pigments", part_of_row(s, 1))) {
-            s.recipe_of = s.recipe_of == name ? "" : name;
-            s.recipe = *shown;
+        if (ui.choice("Recipe", s.colours.edited == name, "Its pigments", part_of_row(s, 1))) {
+            s.colours.edited = s.colours.edited == name ? "" : name;
+            s.colours.recipe = *shown;
         }
         std::string shared;
         for (const std::string& with : used)
-            if (const ink::Ink* a = find_ink(s, name), *b = find_ink(s, with);
+            if (const ink::Ink* a = find_ink(s.colours, name), *b = find_ink(s.colours, with);
                 with != name && a && b && !ink::shared_pigments(*a, *b).empty())
                 shared += (shared.empty() ? "" : ", ") + with;
         if (shown->name != name && !shared.empty()) ui.note(std::string(ui.tr("Changes with it:")) + " " + shared);
-        if (s.recipe_of == name) recipe_sliders(s, name, *shown);
+        if (s.colours.edited == name) recipe_sliders(s, name, *shown);
         ImGui::PopID();
     }
     ui.heading("Material");
-    std::string material = s.looks.substrate;
-    if (ui.combo("Shown on", material, s.substrates)) s.painter->post(PreviewSubstrate{material});
-    if (material != s.looks.painted_on)
-        ImGui::TextDisabled("%s %s", ui.tr("painted on"), ui.tr(s.looks.painted_on.c_str()));
+    std::string material = s.colours.appearance.substrate;
+    if (ui.combo("Shown on", material, s.colours.substrates)) s.paint_thread->post(PreviewSubstrate{material});
+    if (material != s.colours.appearance.painted_on)
+        ImGui::TextDisabled("%s %s", ui.tr("painted on"), ui.tr(s.colours.appearance.painted_on.c_str()));
     ImGui::Dummy(ImVec2(0, ui.px(4)));
-    if (ui.primary_button("Back to the tools", part_of_row(s, 1))) s.show_colours = false;
+    if (ui.primary_button("Back to the tools", part_of_row(s, 1))) s.panels.show_appearance = false;
     ImGui::End();
+}
+
+unsigned colour_in_tuft(const BrushSettings& brush, const ColourState& colours, const BrushStatus& painting) {
+    if (brush.persistent && painting.colour) {
+        const auto& c = *painting.colour;
+        return IM_COL32(c[0], c[1], c[2], 255);
+    }
+    return ink_colour(colours, brush.ink);
 }
 
 }  // namespace tuft::app

@@ -19,16 +19,16 @@ bool is_stroke(const StrokeLine& line) {
 }
 
 unsigned colour_of(const Session& s, const StrokeLine& line) {
-    return (ink_colour(s, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
+    return (ink_colour(s.colours, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
 }
 
 // The way of a stroke; `place` puts a point of it on the screen.
 template <class Place>
-void draw_way(const Session& s, const StrokeLine& line, float size, const Place& place) {
+void draw_path(const Session& s, const StrokeLine& line, float size, const Place& place) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const unsigned colour = colour_of(s, line);
-    for (std::size_t i = 1; i < line.way.size(); ++i) {
-        const Vec3f &a = line.way[i - 1], &b = line.way[i];
+    for (std::size_t i = 1; i < line.path.size(); ++i) {
+        const Vec3f &a = line.path[i - 1], &b = line.path[i];
         const ImVec2 from = place(a), to = place(b);
         const float width = 1.0f + 0.055f * size * (a.z + b.z);
         draw->AddLine(from, to, colour, width);
@@ -47,7 +47,7 @@ void draw_entry(const Session& s, const StrokeLine& line, ImVec2 at, float size)
     const ImVec2 middle(at.x + 0.5f * size, at.y + 0.5f * size);
     if (!is_stroke(line)) {
         const bool inked = line.action == stroke::Action::dip || line.action == stroke::Action::fill;
-        if (inked) draw->AddCircleFilled(middle, 0.24f * size, ink_colour(s, line.ink), 32);
+        if (inked) draw->AddCircleFilled(middle, 0.24f * size, ink_colour(s.colours, line.ink), 32);
         draw->AddCircle(middle, 0.24f * size, s.ui.faint, 32);
         return;
     }
@@ -56,8 +56,8 @@ void draw_entry(const Session& s, const StrokeLine& line, ImVec2 at, float size)
     if (line.length < 1e-3)
         draw->AddCircleFilled(middle, 0.07f * size, colour_of(s, line), 16);  // a touch, no way
     else
-        draw_way(s, line, size,
-                 [&](const Vec3f& p) { return ImVec2(at.x + pad + p.x * inner, at.y + pad + p.y * inner); });
+        draw_path(s, line, size,
+                  [&](const Vec3f& p) { return ImVec2(at.x + pad + p.x * inner, at.y + pad + p.y * inner); });
 }
 
 // A drawing in its own frame, all strokes in one picture; other groups by their first stroke.
@@ -68,8 +68,8 @@ void draw_group(const Session& s, const Lines& lines, ImVec2 at, float size) {
     draw_sheet(ImVec2(at.x, at.y + shift), size - shift, hidden);
     Box box;
     for (const StrokeLine* line : lines) {
-        if (!line->flat || line->way.empty()) continue;
-        for (const Vec3f& p : line->way) box.add(Vec3(line->way_centre + line->way_span * (Vec2(p) - 0.5), 0));
+        if (!line->flat || line->path.empty()) continue;
+        for (const Vec3f& p : line->path) box.add(Vec3(line->path_centre + line->path_span * (Vec2(p) - 0.5), 0));
     }
     const float inner = size - shift - 2 * 0.1f * size;
     if (!(box.hi.x >= box.lo.x)) return draw_entry(s, *lines.front(), ImVec2(at.x, at.y + shift), size - shift);
@@ -78,8 +78,8 @@ void draw_group(const Session& s, const Lines& lines, ImVec2 at, float size) {
     for (std::size_t i = 0; i < lines.size(); i += step) {
         const StrokeLine& line = *lines[i];
         if (!line.flat) continue;
-        draw_way(s, line, 0.3f * size, [&](const Vec3f& p) {
-            const Vec2 d = (line.way_centre + line.way_span * (Vec2(p) - 0.5) - Vec2(box.centre())) / span;
+        draw_path(s, line, 0.3f * size, [&](const Vec3f& p) {
+            const Vec2 d = (line.path_centre + line.path_span * (Vec2(p) - 0.5) - Vec2(box.centre())) / span;
             return ImVec2(at.x + 0.5f * (size - shift) + static_cast<float>(d.x) * inner,
                           at.y + shift + 0.5f * (size - shift) + static_cast<float>(d.y) * inner);
         });
@@ -94,7 +94,7 @@ std::vector<std::uint64_t> ids_of(const Lines& lines) {
 
 Lines chosen_lines(const Session& s) {
     Lines lines;
-    for (const StrokeLine& line : s.strokes)
+    for (const StrokeLine& line : s.journal.lines)
         if (s.journal.holds(line.id)) lines.push_back(&line);
     return lines;
 }
@@ -113,12 +113,12 @@ std::string common(const Lines& lines, const Of& of) {
 
 void post(Session& s, EditStrokes edit, const Lines& lines) {
     edit.ids = ids_of(lines);
-    s.painter->post(std::move(edit));
+    s.paint_thread->post(std::move(edit));
 }
 
 std::vector<std::string> all_inks(const Session& s) {
-    std::vector<std::string> names = s.inks;
-    for (const ink::Ink& own : s.own_inks) names.push_back(own.name);
+    std::vector<std::string> names = s.colours.shipped;
+    for (const ink::Ink& own : s.colours.own) names.push_back(own.name);
     return names;
 }
 
@@ -153,7 +153,7 @@ void edit_chosen(Session& s) {
                 ink = common(lines, [](const StrokeLine&l) { return l.ink; });
     if (brush.empty()) brush = "Several brushes";
     if (ink.empty()) ink = "Several inks";
-    if (ui.combo("Change brush", brush, s.brushes)) post(s, {.brush = brush}, lines);
+    if (ui.combo("Change brush", brush, s.brush.presets)) post(s, {.brush = brush}, lines);
     if (ui.combo("Change ink", ink, all_inks(s))) post(s, {.ink = ink}, lines);
 }
 
@@ -169,7 +169,7 @@ void context_menu(Session& s) {
     if (ui.menu_item(hidden ? "Show" : "Hide")) post(s, {.hidden = !hidden}, lines);
     if (ui.menu_item("Move", nullptr, s.journal.moves, strokes)) s.journal.moves = !s.journal.moves;
     if (strokes && ui.begin_menu("Brush")) {
-        for (const std::string& name : s.brushes)
+        for (const std::string& name : s.brush.presets)
             if (ui.menu_item(name.c_str())) post(s, {.brush = name}, lines);
         ImGui::EndMenu();
     }
@@ -183,7 +183,8 @@ void context_menu(Session& s) {
     if (ui.menu_item("Group", nullptr, false, lines.size() > 1)) post(s, {.group = ui.tr("Group")}, lines);
     if (ui.menu_item("Ungroup", nullptr, false, grouped)) post(s, {.group = ""}, lines);
     ImGui::Separator();
-    if (ui.menu_item("Delete", name_of(s.keys.chord(Act::delete_stroke)).c_str())) post(s, {.remove = true}, lines);
+    if (ui.menu_item("Delete", name_of(s.preferences.keys.chord(Act::delete_stroke)).c_str()))
+        post(s, {.remove = true}, lines);
     ui.in_menu = false;
     ImGui::EndPopup();
 }
@@ -192,26 +193,26 @@ void context_menu(Session& s) {
 void choose_row(Session& s, const JournalRow& row) {
     JournalState& j = s.journal;
     std::set<std::uint64_t> ids;
-    for (const std::size_t i : row.lines) ids.insert(s.strokes[i].id);
+    for (const std::size_t i : row.lines) ids.insert(s.journal.lines[i].id);
     const bool all = std::all_of(ids.begin(), ids.end(), [&](std::uint64_t id) { return j.holds(id); });
     const ImGuiIO& io = ImGui::GetIO();
     std::set<std::uint64_t> chosen = io.KeyCtrl || io.KeyShift ? j.selected : std::set<std::uint64_t>{};
-    const auto anchor =
-        std::find_if(s.strokes.begin(), s.strokes.end(), [&](const StrokeLine& l) { return l.id == j.anchor; });
-    if (io.KeyShift && anchor != s.strokes.end()) {
-        const auto from = static_cast<std::size_t>(anchor - s.strokes.begin());
+    const auto anchor = std::find_if(s.journal.lines.begin(), s.journal.lines.end(),
+                                     [&](const StrokeLine& l) { return l.id == j.anchor; });
+    if (io.KeyShift && anchor != s.journal.lines.end()) {
+        const auto from = static_cast<std::size_t>(anchor - s.journal.lines.begin());
         for (std::size_t i = std::min(from, row.lines.front()); i <= std::max(from, row.lines.back()); ++i)
-            chosen.insert(s.strokes[i].id);
+            chosen.insert(s.journal.lines[i].id);
     } else if (all && (io.KeyCtrl || j.selected.size() == ids.size())) {
         for (const std::uint64_t id : ids) chosen.erase(id);
     } else {
         chosen.insert(ids.begin(), ids.end());
     }
     if (!io.KeyShift) {
-        j.anchor = s.strokes[row.lines.back()].id;
+        j.anchor = s.journal.lines[row.lines.back()].id;
         j.anchor_inside = row.inside;
     }
-    select_entries(s, std::move(chosen));
+    select_entries(s.journal, s.paint_thread.get(), std::move(chosen));
 }
 
 struct RowText {
@@ -248,7 +249,7 @@ void fold_arrow(Session& s, std::uint64_t group, const std::string& name, float 
 void draw_row(Session& s, const JournalRow& row) {
     const float size = s.ui.px(kRowHeight);
     Lines lines;
-    for (const std::size_t i : row.lines) lines.push_back(&s.strokes[i]);
+    for (const std::size_t i : row.lines) lines.push_back(&s.journal.lines[i]);
     const StrokeLine& newest = *lines.back();
     ImGui::PushID(static_cast<int>(row.group ? row.group : newest.id));
     if (row.group) ImGui::PushID("group");
@@ -293,11 +294,11 @@ void draw_row(Session& s, const JournalRow& row) {
 }
 
 void draw_rows(Session& s) {
-    const std::vector<JournalRow> rows = journal_rows(s.strokes, s.journal.open_groups);
+    const std::vector<JournalRow> rows = journal_rows(s.journal.lines, s.journal.open_groups);
     const float height = s.ui.px(kRowHeight) + ImGui::GetStyle().ItemSpacing.y;
     // Rows are of one height but for the one with the buttons below it.
     const auto edited = std::find_if(rows.begin(), rows.end(), [&](const JournalRow& row) {
-        return s.journal.holds(s.journal.anchor) && s.strokes[row.lines.back()].id == s.journal.anchor &&
+        return s.journal.holds(s.journal.anchor) && s.journal.lines[row.lines.back()].id == s.journal.anchor &&
                row.inside == s.journal.anchor_inside;
     });
     const auto clipped = [&](std::size_t from, std::size_t to) {
@@ -319,26 +320,26 @@ void draw_rows(Session& s) {
 
 void journal_panel(Session& s, float top, float bottom, float left) {
     Ui& ui = s.ui;
-    begin_side_panel(s, "###journal", left, top, kJournalWidth, bottom);
-    if (!s.journal_fits &&
+    begin_side_panel(s.ui, "###journal", left, top, kJournalWidth, bottom);
+    if (!s.panels.journal_fits &&
         ui.primary_button("Back to the tools", ImGui::GetContentRegionAvail().x / ui.settings().scale))
-        s.show_journal = false;
+        s.panels.journal_over_tools = false;
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
-    if (ui.button("Undo", name_of(s.keys.chord(Act::undo)).c_str(), half, s.last.can_undo))
-        s.painter->post(UndoStroke{});
+    if (ui.button("Undo", name_of(s.preferences.keys.chord(Act::undo)).c_str(), half, s.reported.document.can_undo))
+        s.paint_thread->post(UndoStroke{});
     ImGui::SameLine();
-    if (ui.button("Redo", name_of(s.keys.chord(Act::redo)).c_str(), half, s.last.can_redo))
-        s.painter->post(RedoStroke{});
-    if (!s.last.busy.empty()) {
-        ImGui::TextUnformatted(ui.tr(s.last.busy.c_str()));
-        ImGui::ProgressBar(static_cast<float>(s.last.fraction), ImVec2(-1, ui.px(16)), "");
-        if (ui.button("Stop")) s.painter->stop_long_work();
+    if (ui.button("Redo", name_of(s.preferences.keys.chord(Act::redo)).c_str(), half, s.reported.document.can_redo))
+        s.paint_thread->post(RedoStroke{});
+    if (!s.reported.progress.busy.empty()) {
+        ImGui::TextUnformatted(ui.tr(s.reported.progress.busy.c_str()));
+        ImGui::ProgressBar(static_cast<float>(s.reported.progress.fraction), ImVec2(-1, ui.px(16)), "");
+        if (ui.button("Stop")) s.paint_thread->stop_long_work();
     }
     layers_section(s);
     references_section(s);
     snapshots_section(s);
     ui.heading("Journal");
-    if (s.strokes.empty())
+    if (s.journal.lines.empty())
         ui.note(ui.tr("Every stroke you paint is listed here, and can be hidden, changed or taken out later."));
     // The list has room for its scrollbar beside the rows.
     const float width = ImGui::GetContentRegionAvail().x;

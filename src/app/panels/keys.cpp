@@ -7,8 +7,8 @@
 namespace tuft::app {
 namespace {
 
-void mouse_rows(Session& s) {
-    const bool maya = s.keymap == Keymap::maya;
+void mouse_rows(Ui& ui, Keymap keymap) {
+    const bool maya = keymap == Keymap::maya;
     const std::pair<const char*, const char*> rows[] = {
         {"Left button", "Paint"},
         {maya ? "Alt + left" : "Middle, right, Alt + left", "Turn the view"},
@@ -19,27 +19,26 @@ void mouse_rows(Session& s) {
         {"Esc while painting", "Take the stroke in hand back"},
     };
     for (const auto& [key, what] : rows) {
-        ImGui::TextUnformatted(s.ui.tr(what));
-        ImGui::SameLine(s.ui.px(300));
-        ImGui::TextDisabled("%s", s.ui.tr(key));
+        ImGui::TextUnformatted(ui.tr(what));
+        ImGui::SameLine(ui.px(300));
+        ImGui::TextDisabled("%s", ui.tr(key));
     }
 }
 
-void key_rows(Session& s) {
-    Ui& ui = s.ui;
+void key_rows(Ui& ui, const KeyTable& keys, std::optional<Act>& to_assign) {
     for (int i = 0; i < static_cast<int>(Act::count); ++i) {
         const auto act = static_cast<Act>(i);
         ImGui::PushID(i);
         ImGui::AlignTextToFramePadding();
         ImGui::TextUnformatted(ui.tr(title_of(act)));
         ImGui::SameLine(ui.px(300));
-        const bool asked = s.key_asked == act;
-        const std::string name = asked                                ? ui.tr("press a key...")
-                                 : name_of(s.keys.chord(act)).empty() ? "\xe2\x80\x93"
-                                                                      : name_of(s.keys.chord(act));
+        const bool asked = to_assign == act;
+        const std::string name = asked                              ? ui.tr("press a key...")
+                                 : name_of(keys.chord(act)).empty() ? "\xe2\x80\x93"
+                                                                    : name_of(keys.chord(act));
         if (asked) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));
         if (ImGui::Button((name + "##chord").c_str(), ImVec2(ui.px(150), 0)))
-            s.key_asked = asked ? std::nullopt : std::optional(act);
+            to_assign = asked ? std::nullopt : std::optional(act);
         if (asked) ImGui::PopStyleColor();
         ui.mark(std::string("key ") + word_of(act));
         ImGui::PopID();
@@ -49,27 +48,27 @@ void key_rows(Session& s) {
 }  // namespace
 
 void keys_dialog(Session& s) {
-    if (!s.show_keys) return;
-    if (!begin_dialog(s, "Keys and mouse", 520)) return end_dialog(s);
+    if (!s.dialogs.show_keys) return;
+    if (!begin_dialog(s.ui, "Keys and mouse", 520)) return end_dialog(s.ui);
     Ui& ui = s.ui;
     const float screen = ImGui::GetIO().DisplaySize.y;
     ImGui::BeginChild("keys", ImVec2(0, std::min(ui.px(460), screen - ui.px(150))));
     ui.heading("Mouse");
-    mouse_rows(s);
+    mouse_rows(ui, s.preferences.keymap);
     ui.heading("Keys");
     ui.note(ui.tr("Click a key to change it."));
-    key_rows(s);
+    key_rows(ui, s.preferences.keys, s.dialogs.key_to_assign);
     ImGui::EndChild();
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Reset", 130}, {"Close", 110}});
-    if (ui.button("Reset", nullptr, 130, !s.keys.shipped())) {
-        s.keys = {};
+    if (ui.button("Reset", nullptr, 130, !s.preferences.keys.shipped())) {
+        s.preferences.keys = {};
         store_settings(s);
     }
     ImGui::SameLine();
     const bool close = ui.button("Close", nullptr, 110);
-    end_dialog(s);
-    if (close) s.show_keys = false, s.key_asked.reset();
+    end_dialog(s.ui);
+    if (close) s.dialogs.show_keys = false, s.dialogs.key_to_assign.reset();
 }
 
 }  // namespace tuft::app

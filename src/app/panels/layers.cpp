@@ -13,14 +13,14 @@ namespace {
 using stroke::Layer;
 
 void change(Session& s, const stroke::LayerEdit& edit) {
-    s.painter->post(ChangeLayers{edit});
+    s.paint_thread->post(ChangeLayers{edit});
 }
 
 // A name that no layer has yet.
 std::string fresh_name(const Session& s) {
-    for (std::size_t n = s.last.layers.layers.size() + 1;; ++n) {
+    for (std::size_t n = s.reported.document.layers.layers.size() + 1;; ++n) {
         const std::string name = std::string(s.ui.tr("Layer")) + " " + std::to_string(n);
-        if (!s.last.layers.find(std::string_view(name))) return name;
+        if (!s.reported.document.layers.find(std::string_view(name))) return name;
     }
 }
 
@@ -28,8 +28,8 @@ std::string fresh_name(const Session& s) {
 template <class Fn>
 void change(Session& s, Layer layer, Fn&& how) {
     how(layer);
-    if (const Layer* now = s.last.layers.find(layer.id); now && !(*now == layer))
-        change(s, stroke::changed(s.last.layers, layer));
+    if (const Layer* now = s.reported.document.layers.find(layer.id); now && !(*now == layer))
+        change(s, stroke::changed(s.reported.document.layers, layer));
 }
 
 constexpr std::pair<ink::Blend, const char*> kBlends[] = {
@@ -39,44 +39,45 @@ constexpr const char* kBlendHint =
     "of its colour";
 
 void duplicate(Session& s, const Layer& layer) {
-    change(s, stroke::duplicated(s.last.layers, layer.id, stroke::free_name(s.last.layers, layer.name + " copy")));
+    change(s, stroke::duplicated(s.reported.document.layers, layer.id,
+                                 stroke::free_name(s.reported.document.layers, layer.name + " copy")));
 }
 
 void merge(Session& s, const Layer& layer) {
     try {
-        const stroke::LayerEdit edit = stroke::merged_down(s.last.layers, layer.id);
+        const stroke::LayerEdit edit = stroke::merged_down(s.reported.document.layers, layer.id);
         change(s, edit);
-        s.layer = edit.other;
+        s.layers.active = edit.other;
     } catch (const Error& error) {
-        say(s, error.what());
+        show_message(s.status, error.what());
     }
 }
 
 void begin_renaming(Session& s, const Layer& layer) {
-    s.layer_list.renamed = layer.id;
-    s.layer_list.focus = true;
+    s.layers.list.renamed = layer.id;
+    s.layers.list.focus = true;
 }
 
 void name_field(Session& s, const Layer& layer) {
     char name[stroke::kMaxNameBytes + 1];
     std::snprintf(name, sizeof name, "%s", layer.name.c_str());
     ImGui::SetNextItemWidth(-1);
-    const bool appeared = std::exchange(s.layer_list.focus, false);
+    const bool appeared = std::exchange(s.layers.list.focus, false);
     if (appeared) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputText("##name", name, sizeof name,
                                           ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     s.ui.mark("Layer name");
     if (!entered && (appeared || !ImGui::IsItemDeactivated())) return;
-    s.layer_list.renamed = 0;
+    s.layers.list.renamed = 0;
     // Escape leaves the text as it was.
     if (layer.name != name && name[0]) change(s, layer, [&](Layer& l) { l.name = name; });
 }
 
 void context_menu(Session& s, const Layer& layer, std::size_t place) {
     Ui& ui = s.ui;
-    const auto& all = s.last.layers.layers;
+    const auto& all = s.reported.document.layers.layers;
     if (!ImGui::BeginPopupContextItem("menu")) return;
-    s.layer = layer.id;
+    s.layers.active = layer.id;
     if (ui.menu_item("Rename", "F2")) begin_renaming(s, layer);
     if (ui.menu_item("Duplicate", nullptr, false, all.size() < stroke::kMaxLayers)) duplicate(s, layer);
     if (ui.menu_item("Merge down", nullptr, false, place > 0)) merge(s, layer);
@@ -89,9 +90,9 @@ void context_menu(Session& s, const Layer& layer, std::size_t place) {
     if (ui.menu_item("Locked", nullptr, layer.locked)) change(s, layer, [](Layer& l) { l.locked = !l.locked; });
     ImGui::Separator();
     if (ui.menu_item("Higher", nullptr, false, place + 1 < all.size()))
-        change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place + 1)));
+        change(s, stroke::moved(s.reported.document.layers, layer.id, static_cast<std::uint32_t>(place + 1)));
     if (ui.menu_item("Lower", nullptr, false, place > 0))
-        change(s, stroke::moved(s.last.layers, layer.id, static_cast<std::uint32_t>(place - 1)));
+        change(s, stroke::moved(s.reported.document.layers, layer.id, static_cast<std::uint32_t>(place - 1)));
     ImGui::Separator();
     if (ui.menu_item("Remove layer", nullptr, false, all.size() > 1)) change(s, stroke::removed(layer.id));
     ImGui::EndPopup();
@@ -108,8 +109,8 @@ void drag(Session& s, const Layer& layer, std::size_t place) {
     if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload("layer")) {
         std::uint32_t id = 0;
         std::memcpy(&id, payload->Data, sizeof id);
-        if (id != layer.id && s.last.layers.find(id))
-            change(s, stroke::moved(s.last.layers, id, static_cast<std::uint32_t>(place)));
+        if (id != layer.id && s.reported.document.layers.find(id))
+            change(s, stroke::moved(s.reported.document.layers, id, static_cast<std::uint32_t>(place)));
     }
     ImGui::EndDragDropTarget();
 }
@@ -117,12 +118,12 @@ void drag(Session& s, const Layer& layer, std::size_t place) {
 // Opacity and blend of the chosen layer, and what is done with it most.
 void details(Session& s, const Layer& layer, std::size_t place) {
     Ui& ui = s.ui;
-    const auto& all = s.last.layers.layers;
-    if (s.layer_opacity < 0) s.layer_opacity = layer.opacity;
-    ui.slider("Opacity", s.layer_opacity, 0, 1, "%.0f %%", "Of the whole layer over those below", 0.01);
-    if (ImGui::IsItemDeactivatedAfterEdit() && s.layer_opacity != layer.opacity)
-        change(s, layer, [&](Layer& l) { l.opacity = s.layer_opacity; });
-    if (!ImGui::IsItemActive()) s.layer_opacity = -1;
+    const auto& all = s.reported.document.layers.layers;
+    if (s.layers.opacity < 0) s.layers.opacity = layer.opacity;
+    ui.slider("Opacity", s.layers.opacity, 0, 1, "%.0f %%", "Of the whole layer over those below", 0.01);
+    if (ImGui::IsItemDeactivatedAfterEdit() && s.layers.opacity != layer.opacity)
+        change(s, layer, [&](Layer& l) { l.opacity = s.layers.opacity; });
+    if (!ImGui::IsItemActive()) s.layers.opacity = -1;
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
@@ -163,8 +164,8 @@ void row(Session& s, const Layer& layer, std::size_t place) {
     ui.hint("Seen or not");
     ImGui::SameLine();
     ImGui::SetCursorPosY(top);
-    const bool chosen = layer.id == s.layer;
-    if (s.layer_list.renamed == layer.id) {
+    const bool chosen = layer.id == s.layers.active;
+    if (s.layers.list.renamed == layer.id) {
         ImGui::SetCursorPosY(top + middle);
         name_field(s, layer);
         ImGui::SetCursorPosY(top + height + ImGui::GetStyle().ItemSpacing.y);
@@ -175,9 +176,9 @@ void row(Session& s, const Layer& layer, std::size_t place) {
         if (ImGui::IsMouseDoubleClicked(0))
             begin_renaming(s, layer);
         else {
-            s.layer_details = chosen ? !s.layer_details : true;
-            s.layer = layer.id;
-            s.layer_opacity = -1;
+            s.layers.show_details = chosen ? !s.layers.show_details : true;
+            s.layers.active = layer.id;
+            s.layers.opacity = -1;
         }
     }
     ui.mark("layer " + layer.name);
@@ -185,8 +186,8 @@ void row(Session& s, const Layer& layer, std::size_t place) {
     drag(s, layer, place);
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const float width = height * 4 / 3;
-    if (const auto texture = s.layer_list.textures.find(layer.id);
-        texture != s.layer_list.textures.end() && s.layer_list.pictures.contains(layer.id))
+    if (const auto texture = s.layers.list.textures.find(layer.id);
+        texture != s.layers.list.textures.end() && s.layers.list.pictures.contains(layer.id))
         draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture->second)), at,
                        ImVec2(at.x + width, at.y + height));
     const std::string text = row_text(s, layer);
@@ -199,19 +200,19 @@ void row(Session& s, const Layer& layer, std::size_t place) {
 
 void layers_section(Session& s) {
     Ui& ui = s.ui;
-    const auto& all = s.last.layers.layers;
+    const auto& all = s.reported.document.layers.layers;
     if (all.empty()) return;
     ui.heading("Layers");
     for (std::size_t i = all.size(); i-- > 0;) {
         const Layer layer = all[i];
         ImGui::PushID(static_cast<int>(layer.id));
         row(s, layer, i);
-        if (layer.id == s.layer && s.layer_details) details(s, layer, i);
+        if (layer.id == s.layers.active && s.layers.show_details) details(s, layer, i);
         ImGui::PopID();
     }
     if (ui.button("Add a layer", "Strokes on it can be shown, faded and moved apart from the others", 0,
                   all.size() < stroke::kMaxLayers))
-        add_layer(s, fresh_name(s));
+        add_layer(s.layers, *s.paint_thread, s.reported.document.layers, fresh_name(s));
 }
 
 }  // namespace tuft::app

@@ -3,30 +3,29 @@
 #include <algorithm>
 #include <sstream>
 
-#include "app/panels/manual_text.h"
 #include "app/panels/panels.h"
+#include "app/widgets/manual_text.h"
 
 /// The manual's dialog.
 namespace tuft::app {
 
-void manual_dialog(Session& s) {
-    if (!s.help.manual) return;
-    if (!begin_dialog(s, "Manual", 760)) return end_dialog(s);
-    Ui& ui = s.ui;
+void manual_dialog(Ui& ui, HelpState& help, DialogState& dialogs, const KeyTable& keys) {
+    if (!help.manual) return;
+    if (!begin_dialog(ui, "Manual", 760)) return end_dialog(ui);
     const Language language = ui.settings().language;
     const auto pages = manual_pages();
-    s.help.page = std::min(s.help.page, pages.size() - 1);
+    help.page = std::min(help.page, pages.size() - 1);
     const float height = std::min(ui.px(400), ImGui::GetIO().DisplaySize.y - ui.px(130));
     ImGui::BeginChild("pages", ImVec2(ui.px(200), height));
     for (std::size_t i = 0; i < pages.size(); ++i) {
         const char* title = language == Language::chinese ? pages[i].chinese_title : pages[i].title;
-        if (ImGui::Selectable(title, s.help.page == i)) s.help.page = i;
+        if (ImGui::Selectable(title, help.page == i)) help.page = i;
         ui.mark(std::string("page ") + pages[i].title);
     }
     ImGui::EndChild();
     ImGui::SameLine();
     ImGui::BeginChild("text", ImVec2(0, height));
-    std::istringstream lines(manual_text(pages[s.help.page], language, s.keys));
+    std::istringstream lines(manual_text(pages[help.page], language, keys));
     for (std::string line; std::getline(lines, line);) {
         const bool point = line.starts_with("* ");
         if (point) {
@@ -37,11 +36,11 @@ void manual_dialog(Session& s) {
     }
     ImGui::EndChild();
     ui.buttons_at_right({{"Keys and mouse", 120}, {"Close", 110}});
-    if (ui.button("Keys and mouse", nullptr, 120)) s.show_keys = true;
+    if (ui.button("Keys and mouse", nullptr, 120)) dialogs.show_keys = true;
     ImGui::SameLine();
     const bool close = ui.button("Close", nullptr, 110);
-    end_dialog(s);
-    if (close) s.help.manual = false;
+    end_dialog(ui);
+    if (close) help.manual = false;
 }
 
 }  // namespace tuft::app

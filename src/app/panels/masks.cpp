@@ -14,64 +14,66 @@ void remove(Session& s, std::uint32_t id) {
     ChangeMasks command;
     command.edit.remove = true;
     command.edit.mask.id = id;
-    s.painter->post(std::move(command));
+    s.paint_thread->post(std::move(command));
 }
 
 void list(Session& s) {
     Ui& ui = s.ui;
-    if (s.last.masks.masks.empty()) return;
-    if (ImGui::Selectable(ui.tr("Everywhere"), s.mask == 0)) choose_mask(s, 0);
+    if (s.reported.document.masks.masks.empty()) return;
+    if (ImGui::Selectable(ui.tr("Everywhere"), s.masks.active == 0)) choose_mask(s.masks, s.paint_thread.get(), 0);
     ui.mark("mask none");
-    for (const stroke::Mask& mask : s.last.masks.masks) {
+    for (const stroke::Mask& mask : s.reported.document.masks.masks) {
         ImGui::PushID(static_cast<int>(mask.id));
-        if (ImGui::Selectable(mask.name.c_str(), s.mask == mask.id)) choose_mask(s, mask.id);
+        if (ImGui::Selectable(mask.name.c_str(), s.masks.active == mask.id))
+            choose_mask(s.masks, s.paint_thread.get(), mask.id);
         ui.mark("mask " + mask.name);
         ImGui::PopID();
     }
-    if (s.mask == 0) return;
+    if (s.masks.active == 0) return;
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
     if (ui.button("Invert", "A mask of what this one leaves out", half)) {
         stroke::Mask mask;
         mask.kind = MaskKind::invert;
-        mask.of = {s.mask};
+        mask.of = {s.masks.active};
         make_mask(s, std::move(mask));
     }
     ImGui::SameLine();
-    if (ui.button("Remove mask", "Strokes that keep to it stay as they are", half)) remove(s, s.mask);
+    if (ui.button("Remove mask", "Strokes that keep to it stay as they are", half)) remove(s, s.masks.active);
 }
 
 }  // namespace
 
 void make_mask(Session& s, stroke::Mask mask) {
-    const stroke::MaskTable& table = s.last.masks;
+    const stroke::MaskTable& table = s.reported.document.masks;
     for (std::size_t n = table.masks.size() + 1;; ++n) {
         mask.name = std::string(s.ui.tr("Mask")) + " " + std::to_string(n);
         if (!table.find(std::string_view(mask.name))) break;
     }
     ChangeMasks command;
     command.edit.mask = std::move(mask);
-    if (s.mask_choice.with > 0 && command.edit.mask.kind != MaskKind::invert) {
-        command.with = s.mask;
-        command.how = s.mask_choice.with == 1 ? MaskKind::unite : MaskKind::intersect;
+    if (s.masks.choice.with > 0 && command.edit.mask.kind != MaskKind::invert) {
+        command.with = s.masks.active;
+        command.how = s.masks.choice.with == 1 ? MaskKind::unite : MaskKind::intersect;
     }
-    s.painter->post(std::move(command));
+    s.paint_thread->post(std::move(command));
 }
 
 void mask_section(Session& s) {
-    if (s.tool != Tool::mask) {
-        if (s.mask == 0) return;
-        const stroke::Mask* mask = s.last.masks.find(s.mask);
+    if (s.tools.active != Tool::mask) {
+        if (s.masks.active == 0) return;
+        const stroke::Mask* mask = s.reported.document.masks.find(s.masks.active);
         s.ui.heading("Mask");
         ImGui::AlignTextToFramePadding();
         if (mask) ImGui::TextUnformatted(mask->name.c_str());
         ImGui::SameLine();
-        if (s.ui.button("Mask off", "Strokes leave ink everywhere again", 0)) choose_mask(s, 0);
+        if (s.ui.button("Mask off", "Strokes leave ink everywhere again", 0))
+            choose_mask(s.masks, s.paint_thread.get(), 0);
         return;
     }
     Ui& ui = s.ui;
-    MaskChoice& c = s.mask_choice;
+    MaskChoice& c = s.masks.choice;
     ui.heading("Mask");
-    const stroke::Model& model = s.painter->model();
+    const stroke::Model& model = s.paint_thread->model();
     static constexpr std::pair<MaskKind, const char*> kinds[] = {{MaskKind::angle, "Facing"},
                                                                  {MaskKind::chart, "Chart mask"},
                                                                  {MaskKind::lasso, "Lasso"},
@@ -104,7 +106,7 @@ void mask_section(Session& s) {
             make_mask(s, std::move(mask));
         }
     }
-    if (s.mask != 0) {
+    if (s.masks.active != 0) {
         static const std::vector<std::string> ways{"By itself", "Added to the chosen one",
                                                    "Only within the chosen one"};
         std::string way = ways[static_cast<std::size_t>(c.with)];

@@ -22,26 +22,26 @@ std::string translated(const Ui& ui, const std::string& reasons) {
 }  // namespace
 
 void mismatch_dialog(Session& s) {
-    if (!s.show_mismatches || !s.painter) return;
-    if (!begin_dialog(s, "Strokes that no longer fit", 640)) return end_dialog(s);
+    if (!s.dialogs.show_mismatches || !s.paint_thread) return;
+    if (!begin_dialog(s.ui, "Strokes that no longer fit", 640)) return end_dialog(s.ui);
     Ui& ui = s.ui;
     ui.wrapped(ui.tr("These strokes do not lie on the revised model as they did. They stay in the journal."));
-    for (const std::string& sentence : s.fit) ui.note(ui.tr_sentence(sentence));
-    const float rows = std::min(8.0f, static_cast<float>(s.mismatches.size()));
+    for (const std::string& sentence : s.project.revision.fit) ui.note(ui.tr_sentence(sentence));
+    const float rows = std::min(8.0f, static_cast<float>(s.project.revision.mismatches.size()));
     ImGui::BeginChild("mismatches", ImVec2(0, rows * ImGui::GetTextLineHeightWithSpacing() + ui.px(6)));
-    for (const stroke::StrokeMismatch& mismatch : s.mismatches) {
-        const auto line = std::find_if(s.strokes.begin(), s.strokes.end(),
+    for (const stroke::StrokeMismatch& mismatch : s.project.revision.mismatches) {
+        const auto line = std::find_if(s.journal.lines.begin(), s.journal.lines.end(),
                                        [&](const StrokeLine& l) { return l.id == mismatch.stroke; });
-        if (line == s.strokes.end()) continue;
+        if (line == s.journal.lines.end()) continue;
         char text[160];
-        std::snprintf(text, sizeof text, "%td   %s \xc2\xb7 %s", line - s.strokes.begin() + 1,
+        std::snprintf(text, sizeof text, "%td   %s \xc2\xb7 %s", line - s.journal.lines.begin() + 1,
                       ui.title(line->brush).c_str(), ui.tr(line->ink.c_str()));
         const float room = ImGui::GetContentRegionAvail().x;
         const std::string all = translated(ui, mismatch.reason), why = ui.fitted(all, room - ui.px(170));
         const float right = ImGui::CalcTextSize(why.c_str()).x + ui.px(6);
         ImGui::PushID(static_cast<int>(mismatch.stroke));
         if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(), s.journal.holds(mismatch.stroke)))
-            select_entries(s, {mismatch.stroke});
+            select_entries(s.journal, s.paint_thread.get(), {mismatch.stroke});
         ImGui::PopID();
         ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - right);
         ImGui::TextDisabled("%s", why.c_str());
@@ -54,14 +54,15 @@ void mismatch_dialog(Session& s) {
     const bool hide = ui.button("Hide them", nullptr, 120);
     ImGui::SameLine();
     const bool keep = ui.primary_button("Keep them", 120);
-    end_dialog(s);
-    if (back) return open_former(s);
+    end_dialog(s.ui);
+    if (back) return open_previous(s);
     if (hide) {
         EditStrokes edit{.hidden = true};
-        for (const stroke::StrokeMismatch& mismatch : s.mismatches) edit.ids.push_back(mismatch.stroke);
-        s.painter->post(std::move(edit));
+        for (const stroke::StrokeMismatch& mismatch : s.project.revision.mismatches)
+            edit.ids.push_back(mismatch.stroke);
+        s.paint_thread->post(std::move(edit));
     }
-    if (hide || keep) s.show_mismatches = false;
+    if (hide || keep) s.dialogs.show_mismatches = false;
 }
 
 }  // namespace tuft::app

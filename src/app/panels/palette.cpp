@@ -15,8 +15,7 @@ ImVec2 on_picture(const PaletteState& p, const Vec3& at) {
 }
 
 // The pressed tuft from above, or where a pool would be poured.
-void marks(const Session& s, ImDrawList* draw) {
-    const PaletteState& p = s.palette;
+void marks(const Ui& ui, const PaletteState& p, unsigned ink, ImDrawList* draw) {
     for (const brush::Branch& branch : p.tuft.branches) {
         std::vector<ImVec2> left, right;
         for (const brush::Section& section : branch.sections) {
@@ -28,29 +27,28 @@ void marks(const Session& s, ImDrawList* draw) {
         if (left.size() < 2) continue;
         left.insert(left.end(), right.rbegin(), right.rend());
         draw->AddPolyline(left.data(), static_cast<int>(left.size()), IM_COL32(255, 255, 255, 200), ImDrawFlags_Closed,
-                          s.ui.px(3));
+                          ui.px(3));
         draw->AddPolyline(left.data(), static_cast<int>(left.size()), IM_COL32(40, 36, 32, 230), ImDrawFlags_Closed,
-                          s.ui.px(1.5f));
+                          ui.px(1.5f));
     }
     if (!p.tuft.branches.empty() || !ImGui::IsItemHovered()) return;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const double radius = p.tool == PaletteTool::pour ? p.radius : p.tool == PaletteTool::brush ? 1e-3 : 0.5e-3;
     const auto pixels = static_cast<float>(radius / stroke::kPaletteWidth * p.width);
-    draw->AddCircle(mouse, pixels, IM_COL32(255, 255, 255, 200), 32, s.ui.px(3));
-    draw->AddCircle(mouse, pixels, p.tool == PaletteTool::pour ? ink_colour(s, s.ink) : IM_COL32(40, 36, 32, 230), 32,
-                    s.ui.px(1.5f));
+    draw->AddCircle(mouse, pixels, IM_COL32(255, 255, 255, 200), 32, ui.px(3));
+    draw->AddCircle(mouse, pixels, p.tool == PaletteTool::pour ? ink : IM_COL32(40, 36, 32, 230), 32, ui.px(1.5f));
 }
 
 }  // namespace
 
 void palette_panel(Session& s) {
-    PaletteState& p = s.palette;
+    PaletteState& p = s.colours.palette;
     p.width = 0;
-    if (!p.shown || !s.painter) return;
+    if (!p.shown || !s.paint_thread) return;
     Ui& ui = s.ui;
-    const float pad = ui.px(10), room = static_cast<float>(s.area.width) - 2 * pad;
+    const float pad = ui.px(10), room = static_cast<float>(s.view.area.width) - 2 * pad;
     const float width = std::min({ui.px(330), room, std::max(ui.px(256), 0.55f * room)});
-    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.area.x) + pad, static_cast<float>(s.area.y) + pad));
+    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.view.area.x) + pad, static_cast<float>(s.view.area.y) + pad));
     ImGui::SetNextWindowSize(ImVec2(width, 0));
     ImGui::SetNextWindowBgAlpha(0.94f);
     ImGui::Begin("###palette", nullptr,
@@ -67,7 +65,7 @@ void palette_panel(Session& s) {
     tool(PaletteTool::pour, "Pour", "Click: a pool of the chosen ink");
     tool(PaletteTool::pick, "Take", "Click: the mixture there becomes an ink of its own");
     if (ui.button("Wash", "Cleans the palette; Undo brings it back", third))
-        s.painter->post(ActOnBrush{.action = stroke::Action::wash});
+        s.paint_thread->post(ActOnBrush{.action = stroke::Action::wash});
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float picture = ImGui::GetContentRegionAvail().x;
     p.x = static_cast<double>(at.x);
@@ -81,13 +79,13 @@ void palette_panel(Session& s) {
     ImGui::InvisibleButton("plate", size);
     ui.mark("Plate");
     draw->PushClipRect(at, ImVec2(at.x + size.x, at.y + size.y), true);
-    marks(s, draw);
+    marks(ui, p, ink_colour(s.colours, s.brush.ink), draw);
     draw->PopClipRect();
     draw->AddRect(at, ImVec2(at.x + size.x, at.y + size.y), IM_COL32(128, 128, 128, 160), ui.px(8));
     if (p.tool == PaletteTool::pour)
         ui.slider("Pool", p.radius, 0.003, 0.02, "%.0f mm", "How wide, to each side", kMillimetre);
     else if (ui.button("Rinse the brush", "No ink left in it, hair straight and together", 0))
-        s.painter->post(ActOnBrush{.action = stroke::Action::rinse, .brush = s.brush, .ink = s.ink});
+        s.paint_thread->post(ActOnBrush{.action = stroke::Action::rinse, .brush = s.brush.preset, .ink = s.brush.ink});
     ImGui::End();
 }
 

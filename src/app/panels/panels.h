@@ -1,6 +1,9 @@
 #pragma once
 
-#include "app/session.h"
+#include "app/session/open_close.h"
+#include "app/session/open_files.h"
+#include "app/session/session.h"
+#include "app/session/settings_file.h"
 
 /// What is drawn round and over the model. Each function draws one panel and writes what
 /// the person changed into the session.
@@ -19,6 +22,8 @@ void colours_panel(Session& s, float top, float bottom, float left);
 void journal_panel(Session& s, float top, float bottom, float left);
 void layers_section(Session& s);
 void ink_section(Session& s);
+/// Chooses a colour by its hex code; the mix found for it comes into the hand.
+void set_colour(Session& s, const std::string& hex);
 /// The colour wheel over the view, where it is shown.
 void colour_panel(Session& s);
 void mask_section(Session& s);
@@ -30,13 +35,13 @@ void recovery_dialog(Session& s);
 /// Another program has the project: look at it, or go on in a copy?
 void in_use_dialog(Session& s);
 /// Some work is in memory only: leave it?
-void leave_dialog(Session& s);
+void unsaved_work_dialog(Session& s);
 void export_dialog(Session& s);
 void settings_dialog(Session& s);
 void keys_dialog(Session& s);
-void about_dialog(Session& s);
+void about_dialog(Ui& ui, DialogState& dialogs);
 /// The built-in manual.
-void manual_dialog(Session& s);
+void manual_dialog(Ui& ui, HelpState& help, DialogState& dialogs, const KeyTable& keys);
 /// The guided first minute, a box over the view.
 void guide(Session& s);
 /// Reference images over the view; their list.
@@ -54,9 +59,9 @@ void tuft_inset(Session& s);
 void view_marks(const Session& s, const render::GlCamera& camera);
 
 /// The export as the dialog says it.
-ExportModel export_command(const Session& s, const std::filesystem::path& path);
+ExportModel export_command(const ExportSettings& settings, const Orbit& seen_from, const std::filesystem::path& path);
 /// Marks on the atlas: its frame, figures, and where the cursor over the model is in it.
-void atlas_marks(const Session& s, const std::optional<Vec2>& cursor);
+void atlas_marks(const Ui& ui, const AtlasView& atlas, PaintThread& work, const std::optional<Vec2>& cursor);
 /// Makes a mask under a name that is free, with the chosen one if that is asked for.
 void make_mask(Session& s, stroke::Mask mask);
 /// Strokes that do not touch the revised model.
@@ -65,24 +70,21 @@ void mismatch_dialog(Session& s);
 RigidMove shift_between(const mesh::SurfacePoint& from, const mesh::SurfacePoint& to);
 
 /// Micrometres at the end of the height view's colours: 1, 2 or 5 times a power of ten.
-double height_range(const Session& s);
+double height_range(double max_height);
 
-/// sRGB colour (ImU32) of a full film of this ink on porcelain.
 /// A column of the window between two heights, `width` in units of the display scale; ends with ImGui::End.
 /// What is in it keeps its width when a scrollbar comes. A panel that does not scroll fits what it holds.
-void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom,
-                      bool scrolls = true);
+void begin_side_panel(Ui& ui, const char* name, float left, float top, float width, float bottom, bool scrolls = true);
 /// At the view's edges: fold away or bring back the panels beside it.
 void panel_handles(Session& s);
-unsigned ink_colour(const Session& s, const std::string& ink);
+/// sRGB colour (ImU32) of a full film of this ink on porcelain.
+unsigned ink_colour(const ColourState& colours, const std::string& ink);
 unsigned ink_colour(const ink::Ink& ink);
 /// Of the ink that the next stroke lays down.
-unsigned colour_in_tuft(const Session& s);
-/// Linear colour of hair at a place between the tip (0) and the root (1) of a tuft dipped into `ink`.
-Vec3f hair_colour(double from_tip, unsigned ink);
+unsigned colour_in_tuft(const BrushSettings& brush, const ColourState& colours, const BrushStatus& painting);
 
 /// Modal window in the middle; true while it is drawn. Close it with `end_dialog`.
-bool begin_dialog(Session& s, const char* title, float width);
-void end_dialog(Session& s);
+bool begin_dialog(Ui& ui, const char* title, float width);
+void end_dialog(Ui& ui);
 
 }  // namespace tuft::app

@@ -6,12 +6,12 @@
 namespace tuft::app {
 
 void in_use_dialog(Session& s) {
-    if (!s.in_use || !begin_dialog(s, "Project in use", 480)) {
-        if (s.in_use) end_dialog(s);
+    if (!s.project.in_use || !begin_dialog(s.ui, "Project in use", 480)) {
+        if (s.project.in_use) end_dialog(s.ui);
         return;
     }
     Ui& ui = s.ui;
-    ui.wrapped(s.in_use->project.filename().string() + ": " + io::name_of(s.in_use->holder) +
+    ui.wrapped(s.project.in_use->project.filename().string() + ": " + io::name_of(s.project.in_use->holder) +
                ui.tr(" is working on it."));
     ui.wrapped(
         ui.tr("Close it there to go on with it here. A view shows what is painted there, stroke by stroke; a copy goes "
@@ -23,26 +23,26 @@ void in_use_dialog(Session& s) {
     const bool view = ui.button("Look at it", "Nothing can be painted; Save as... makes a copy", 110);
     ImGui::SameLine();
     const bool copy = ui.primary_button("Work on a copy", 140);
-    end_dialog(s);
+    end_dialog(s.ui);
     if (copy || view)
         open_in_use(s, copy ? OpenAs::copy : OpenAs::view);
     else if (cancelled)
-        s.in_use.reset();
+        s.project.in_use.reset();
 }
 
-void leave_dialog(Session& s) {
-    if (!s.leaving || !s.painter || !begin_dialog(s, "Work that is not on disk", 560)) {
-        if (s.leaving && s.painter) end_dialog(s);
+void unsaved_work_dialog(Session& s) {
+    if (!s.project.closing.request || !s.paint_thread || !begin_dialog(s.ui, "Work that is not on disk", 560)) {
+        if (s.project.closing.request && s.paint_thread) end_dialog(s.ui);
         return;
     }
     Ui& ui = s.ui;
-    const std::size_t n = s.last.unkept;
+    const std::size_t n = s.reported.file.unsaved;
     if (n > 0)
         ui.wrapped(
             ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory" : " strokes wait in memory")) + ":");
     else
         ui.wrapped(ui.tr("The last change waits in memory:"));
-    ui.wrapped(s.last.trouble);
+    ui.wrapped(s.reported.file.trouble);
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Go back", 90}, {"Leave all the same", 140}, {"Save as...", 110}, {"Try again", 110}});
     const bool back = ui.button("Go back", nullptr, 90);
@@ -53,11 +53,13 @@ void leave_dialog(Session& s) {
     const bool save = ui.button("Save as...", nullptr, 110);
     ImGui::SameLine();
     const bool again = ui.primary_button("Try again", 110);
-    end_dialog(s);
-    if (leave) return leave_at_once(s, *s.leaving);
-    if (again) s.painter->post(RetryKeeping{});
-    if (back || save) s.leaving.reset();
-    if (save) s.files.show(FileDialog::Purpose::save, project_name(s) + ".tuft");
+    end_dialog(s.ui);
+    if (leave) return close_now(s, *s.project.closing.request);
+    if (again) s.paint_thread->post(RetrySaving{});
+    if (back || save) s.project.closing.request.reset();
+    if (save)
+        s.dialogs.file.show(FileDialog::Purpose::save,
+                            project_name(s.paint_thread.get(), s.reported.file.project) + ".tuft");
 }
 
 }  // namespace tuft::app

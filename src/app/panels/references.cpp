@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/panels/icons.h"
 #include "app/panels/panels.h"
+#include "app/widgets/icons.h"
 #include "io/image/image.h"
 
 /// Reference images over the view, and their list.
@@ -15,7 +15,7 @@ namespace {
 constexpr int kMostAcross = 2048;  // pixels of a texture
 
 void keep_reference(Session& s, const ReferenceImage& r) {
-    s.painter->post(AttachToProject{io::kReferences, to_attachment(r)});
+    s.paint_thread->post(AttachToProject{io::kReferences, to_attachment(r)});
 }
 
 // RGB of the picture, made smaller by whole steps until it suits a graphics card.
@@ -60,16 +60,16 @@ unsigned reference_texture(Session& s, ReferenceImage& r) {
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     } catch (const std::exception& error) {
         r.broken = true;
-        say(s, error.what());
+        show_message(s.status, error.what());
     }
     return r.texture;
 }
 
 void remove_reference(Session& s, std::size_t i) {
-    ReferenceImage& r = s.references.images[i];
+    ReferenceImage& r = s.view.references.images[i];
     if (r.texture) glDeleteTextures(1, &r.texture);
-    s.painter->post(DetachFromProject{io::kReferences, r.id});
-    s.references.images.erase(s.references.images.begin() + static_cast<std::ptrdiff_t>(i));
+    s.paint_thread->post(DetachFromProject{io::kReferences, r.id});
+    s.view.references.images.erase(s.view.references.images.begin() + static_cast<std::ptrdiff_t>(i));
 }
 
 // A part of it stays in the view, wherever it is dragged.
@@ -106,11 +106,12 @@ bool draw_reference(Session& s, ReferenceImage& r, std::size_t index) {
     Ui& ui = s.ui;
     const unsigned texture = reference_texture(s, r);
     if (!r.shown || !texture || r.pixels_across <= 0) return false;
-    const auto across = static_cast<double>(s.area.width), down = static_cast<double>(s.area.height);
+    const auto across = static_cast<double>(s.view.area.width), down = static_cast<double>(s.view.area.height);
     const double aspect =
         across * r.pixels_down / r.pixels_across / down;  // its height in parts of the view's, for a width of 1
     keep_in_view(r, aspect);
-    const ImVec2 at(static_cast<float>(s.area.x + r.at.x * across), static_cast<float>(s.area.y + r.at.y * down));
+    const ImVec2 at(static_cast<float>(s.view.area.x + r.at.x * across),
+                    static_cast<float>(s.view.area.y + r.at.y * down));
     const ImVec2 size(static_cast<float>(r.width * across), static_cast<float>(r.width * aspect * down));
     ImGui::SetNextWindowPos(at);
     ImGui::SetNextWindowSize(size);
@@ -134,19 +135,19 @@ bool draw_reference(Session& s, ReferenceImage& r, std::size_t index) {
     const bool grabbed = ImGui::IsItemActivated();
     if (grabbed) {
         const ImVec2 mouse = ImGui::GetIO().MousePos;
-        s.references.held = index;
-        s.references.sizing = mouse.x > end.x - corner && mouse.y > end.y - corner;
+        s.view.references.held = index;
+        s.view.references.sizing = mouse.x > end.x - corner && mouse.y > end.y - corner;
     }
-    const bool held = s.references.held == index && ImGui::IsItemActive();
+    const bool held = s.view.references.held == index && ImGui::IsItemActive();
     if (held && !grabbed) {
         const ImVec2 way = ImGui::GetIO().MouseDelta;
-        if (s.references.sizing)
+        if (s.view.references.sizing)
             r.width += static_cast<double>(way.x) / across;
         else
             r.at += Vec2(static_cast<double>(way.x) / across, static_cast<double>(way.y) / down);
     }
-    if (ImGui::IsItemDeactivated() && s.references.held == index) {
-        s.references.held.reset();
+    if (ImGui::IsItemDeactivated() && s.view.references.held == index) {
+        s.view.references.held.reset();
         keep_reference(s, r);
     }
     bool removed = false;
@@ -167,8 +168,8 @@ bool draw_reference(Session& s, ReferenceImage& r, std::size_t index) {
 }  // namespace
 
 void references_over_view(Session& s) {
-    References& all = s.references;
-    if (all.hidden || !s.painter) return;
+    References& all = s.view.references;
+    if (all.hidden || !s.paint_thread) return;
     for (std::size_t i = 0; i < all.images.size(); ++i)
         if (draw_reference(s, all.images[i], i)) {
             remove_reference(s, i);
@@ -179,7 +180,7 @@ void references_over_view(Session& s) {
 void references_section(Session& s) {
     Ui& ui = s.ui;
     if (!ui.section("References", false)) return;
-    References& all = s.references;
+    References& all = s.view.references;
     for (std::size_t i = 0; i < all.images.size(); ++i) {
         ReferenceImage& r = all.images[i];
         ImGui::PushID(r.id.c_str());
@@ -198,7 +199,7 @@ void references_section(Session& s) {
         if (gone) return remove_reference(s, i);
     }
     if (ui.button("Add an image...", "Pins it over the view, to paint after. It is kept in the project", 0))
-        s.files.show(FileDialog::Purpose::reference, {});
+        s.dialogs.file.show(FileDialog::Purpose::reference, {});
     if (all.images.empty()) return;
     ImGui::SameLine();
     ui.toggle("Hide all", all.hidden);

@@ -10,15 +10,15 @@ namespace tuft::app {
 namespace {
 
 const SnapshotLine* find_snapshot(const Session& s, const std::string& id) {
-    const auto at = std::find_if(s.snapshots.lines.begin(), s.snapshots.lines.end(),
+    const auto at = std::find_if(s.journal.snapshots.lines.begin(), s.journal.snapshots.lines.end(),
                                  [&](const SnapshotLine& l) { return l.id == id; });
-    return at == s.snapshots.lines.end() ? nullptr : &*at;
+    return at == s.journal.snapshots.lines.end() ? nullptr : &*at;
 }
 
 std::string fresh_snapshot_name(const Session& s) {
-    for (std::size_t n = s.snapshots.lines.size() + 1;; ++n) {
+    for (std::size_t n = s.journal.snapshots.lines.size() + 1;; ++n) {
         std::string name = std::string(s.ui.tr("Snapshot")) + " " + std::to_string(n);
-        if (std::none_of(s.snapshots.lines.begin(), s.snapshots.lines.end(),
+        if (std::none_of(s.journal.snapshots.lines.begin(), s.journal.snapshots.lines.end(),
                          [&](const SnapshotLine& l) { return l.name == name; }))
             return name;
     }
@@ -31,20 +31,20 @@ void snapshot_details(Session& s, const SnapshotLine& line) {
     ImGui::SetNextItemWidth(-1);
     if (ImGui::InputText("##name", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue) && name[0] &&
         line.name != name)
-        s.painter->post(RenameSnapshot{line.id, name});
+        s.paint_thread->post(RenameSnapshot{line.id, name});
     ui.mark("Snapshot name");
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
-    const bool compared = s.snapshots.compared == line.id;
+    const bool compared = s.journal.snapshots.compared == line.id;
     if (ui.choice("Compare", compared, "Shows it beside the work as it is now", half))
-        compare_with(s, compared ? "" : line.id);
+        compare_with(s.journal.snapshots, s.view.atlas, s.paint_thread.get(), compared ? "" : line.id);
     ImGui::SameLine();
     if (ui.button("Restore", "Goes back to it; Undo brings back what is there now", half)) {
-        compare_with(s, "");
-        s.painter->post(RestoreSnapshot{line.id});
+        compare_with(s.journal.snapshots, s.view.atlas, s.paint_thread.get(), "");
+        s.paint_thread->post(RestoreSnapshot{line.id});
     }
     if (ui.button("Delete the snapshot", "The work stays as it is", 2 * half + 8)) {
-        if (compared) compare_with(s, "");
-        s.painter->post(DetachFromProject{io::kSnapshots, line.id});
+        if (compared) compare_with(s.journal.snapshots, s.view.atlas, s.paint_thread.get(), "");
+        s.paint_thread->post(DetachFromProject{io::kSnapshots, line.id});
     }
 }
 
@@ -52,7 +52,7 @@ void snapshot_details(Session& s, const SnapshotLine& line) {
 void draw_tag(const Session& s, const std::string& text, float x, bool to_left) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float pad = s.ui.px(7), left = to_left ? x - size.x - 3 * pad : x + pad,
-                y = static_cast<float>(s.area.y + s.area.height) - size.y - 9 * pad;  // above the scale
+                y = static_cast<float>(s.view.area.y + s.view.area.height) - size.y - 9 * pad;  // above the scale
     ImDrawList* draw = ImGui::GetBackgroundDrawList();
     draw->AddRectFilled(ImVec2(left, y), ImVec2(left + size.x + 2 * pad, y + size.y + pad), IM_COL32(24, 24, 26, 200),
                         s.ui.px(4));
@@ -64,7 +64,7 @@ void draw_tag(const Session& s, const std::string& text, float x, bool to_left) 
 void snapshots_section(Session& s) {
     Ui& ui = s.ui;
     if (!ui.section("Snapshots", false)) return;
-    SnapshotState& all = s.snapshots;
+    SnapshotState& all = s.journal.snapshots;
     for (const SnapshotLine& line : all.lines) {
         ImGui::PushID(line.id.c_str());
         const bool chosen = all.chosen == line.id;
@@ -82,24 +82,24 @@ void snapshots_section(Session& s) {
         ImGui::PopID();
     }
     if (ui.button("Take a snapshot", "Keeps the work as it is now, to compare with it or to go back to it", 0))
-        s.painter->post(TakeSnapshot{fresh_snapshot_name(s)});
+        s.paint_thread->post(TakeSnapshot{fresh_snapshot_name(s)});
 }
 
 void comparison_bar(Session& s) {
-    SnapshotState& all = s.snapshots;
+    SnapshotState& all = s.journal.snapshots;
     const SnapshotLine* line = find_snapshot(s, all.compared);
-    if (!line || !s.painter) return;
+    if (!line || !s.paint_thread) return;
     Ui& ui = s.ui;
-    const auto left = static_cast<float>(all.swipe || all.width == 0 ? s.area.x : all.x),
-               right = static_cast<float>(s.area.x + s.area.width);
-    ImGui::SetNextWindowPos(ImVec2(0.5f * (left + right), static_cast<float>(s.area.y) + ui.px(10)), ImGuiCond_Always,
-                            ImVec2(0.5f, 0));
+    const auto left = static_cast<float>(all.swipe || all.width == 0 ? s.view.area.x : all.x),
+               right = static_cast<float>(s.view.area.x + s.view.area.width);
+    ImGui::SetNextWindowPos(ImVec2(0.5f * (left + right), static_cast<float>(s.view.area.y) + ui.px(10)),
+                            ImGuiCond_Always, ImVec2(0.5f, 0));
     ImGui::SetNextWindowBgAlpha(0.9f);
     ImGui::Begin("###comparison", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);  // above the images
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(all.ready ? ui.fitted(line->name, ui.px(140)).c_str() : ui.tr("Document the snapshot"));
+    ImGui::TextUnformatted(all.ready ? ui.fitted(line->name, ui.px(140)).c_str() : ui.tr("Painting the snapshot"));
     ImGui::SameLine();
     if (ui.choice("Side by side", !all.swipe)) all.swipe = false;
     ImGui::SameLine();
@@ -110,21 +110,21 @@ void comparison_bar(Session& s) {
     const bool done = ui.button("Done");
     ImGui::End();
     if (all.ready) {
-        const float middle =
-            all.swipe ? static_cast<float>(s.area.x + all.line_at * s.area.width) : static_cast<float>(s.area.x);
+        const float middle = all.swipe ? static_cast<float>(s.view.area.x + all.line_at * s.view.area.width)
+                                       : static_cast<float>(s.view.area.x);
         draw_tag(s, ui.fitted(line->name, ui.px(140)), middle, true);
         draw_tag(s, ui.tr("Now"), middle, false);
     }
-    if (restore) s.painter->post(RestoreSnapshot{all.compared});
-    if (restore || done) compare_with(s, "");
+    if (restore) s.paint_thread->post(RestoreSnapshot{all.compared});
+    if (restore || done) compare_with(s.journal.snapshots, s.view.atlas, s.paint_thread.get(), "");
 }
 
 void swipe_line(Session& s) {
-    SnapshotState& all = s.snapshots;
+    SnapshotState& all = s.journal.snapshots;
     if (all.compared.empty() || !all.swipe || !all.ready) return;
     Ui& ui = s.ui;
-    const auto x0 = static_cast<float>(s.area.x), y0 = static_cast<float>(s.area.y),
-               width = static_cast<float>(s.area.width), height = static_cast<float>(s.area.height);
+    const auto x0 = static_cast<float>(s.view.area.x), y0 = static_cast<float>(s.view.area.y),
+               width = static_cast<float>(s.view.area.width), height = static_cast<float>(s.view.area.height);
     const float at = x0 + static_cast<float>(all.line_at) * width, grip = ui.px(14);
     ImDrawList* draw = ImGui::GetBackgroundDrawList();
     draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(all.texture)), ImVec2(x0, y0),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/panels/panels.h"
+#include "app/view/tuft_solid.h"
 #include "ink/composite/composite.h"
 
 namespace tuft::app {
@@ -29,7 +30,7 @@ struct ToolText {
 // What the left button does now.
 ToolText text_of_tool(const Session& s) {
     if (s.journal.moves) return {"Move", "Drag the chosen ink over the model    Esc: leave it"};
-    switch (s.tool) {
+    switch (s.tools.active) {
         case Tool::brush:
             return {"Brush", "Drag: paint    [ and ]: pressure    Shift: size"};
         case Tool::line:
@@ -37,19 +38,19 @@ ToolText text_of_tool(const Session& s) {
         case Tool::curve:
             return {"Curve", "Click: set points    Enter: paint    Esc: drop them"};
         case Tool::writing:
-            return {"Place", s.writing.empty() ? "Choose writing or a drawing in the panel"
-                                               : "Click: place it    Wheel: size    Shift + wheel: turn"};
+            return {"Place", s.tools.writing.empty() ? "Choose writing or a drawing in the panel"
+                                                     : "Click: place it    Wheel: size    Shift + wheel: turn"};
         case Tool::eraser:
             return {"Eraser", "Drag: take ink off    [ and ]: pressure"};
         case Tool::fill:
-            return {"Fill", s.fill.region == stroke::Region::all    ? "Click: fill the model"
-                            : s.fill.region == stroke::Region::part ? "Click: fill the part there"
-                                                                    : "Click: fill the chart there"};
+            return {"Fill", s.tools.fill.region == stroke::Region::all    ? "Click: fill the model"
+                            : s.tools.fill.region == stroke::Region::part ? "Click: fill the part there"
+                                                                          : "Click: fill the chart there"};
         case Tool::pick:
             return {"Pick", "Click: the ink there becomes one of your own"};
         case Tool::mask:
-            return {"Mask", s.mask_choice.kind == stroke::MaskKind::lasso ? "Draw round a part of the model"
-                                                                          : "Click on the model to make a mask"};
+            return {"Mask", s.masks.choice.kind == stroke::MaskKind::lasso ? "Draw round a part of the model"
+                                                                           : "Click on the model to make a mask"};
     }
     return {"", ""};
 }
@@ -75,13 +76,13 @@ void status_bar(Session& s, float top) {
     ImGui::Begin("###status", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
-    s.message_time += ImGui::GetIO().DeltaTime;
+    s.status.seconds += ImGui::GetIO().DeltaTime;
     const float end = screen.x - ui.px(12);
     const ToolText tool = text_of_tool(s);
     ImGui::TextUnformatted(ui.tr(tool.name));
     put(s, ui.tr(tool.hint), ui.faint, end);
-    if (!s.last.trouble.empty()) {
-        const std::size_t n = s.last.unkept;
+    if (!s.reported.file.trouble.empty()) {
+        const std::size_t n = s.reported.file.unsaved;
         const std::string waits = n == 0
                                       ? ""
                                       : " (" +
@@ -90,19 +91,19 @@ void status_bar(Session& s, float top) {
                                             ")";
         const unsigned red =
             ui.settings().theme == Theme::dark ? IM_COL32(255, 140, 107, 255) : IM_COL32(184, 26, 5, 255);
-        put(s, ui.tr("Not kept on disk") + waits + ": " + s.last.trouble, red, end);
-    } else if (!s.message.empty() && s.message_time < 12) {
-        put(s, ui.tr_sentence(s.message), ui.strong, end);
+        put(s, ui.tr("Not kept on disk") + waits + ": " + s.reported.file.trouble, red, end);
+    } else if (!s.status.text.empty() && s.status.seconds < 12) {
+        put(s, ui.tr_sentence(s.status.text), ui.strong, end);
     } else {
         char text[160] = "";
-        if (s.painter) {
-            const stroke::Model& m = s.painter->model();
+        if (s.paint_thread) {
+            const stroke::Model& m = s.paint_thread->model();
             std::snprintf(text, sizeof text, ui.tr("%u \xc3\x97 %u   %.2f mm/texel"), m.atlas.size, m.atlas.size,
                           m.atlas.texel_size * 1e3);
         }
         const float x = screen.x - ImGui::CalcTextSize(text).x - ui.px(14);
         put(s,
-            ui.tr(s.keymap == Keymap::blender
+            ui.tr(s.preferences.keymap == Keymap::blender
                       ? "Middle or right: turn    Shift + middle: move    Wheel: nearer    F1: keys"
                       : "Alt + left: turn    Alt + middle: move    Alt + right: nearer    F1: keys"),
             ui.faint, x - ui.px(16));
@@ -131,7 +132,7 @@ struct SideView {
 };
 
 void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
-    const brush::Branch& branch = s.tuft.branches.front();
+    const brush::Branch& branch = s.view.tuft.state.branches.front();
     const brush::Section &root = branch.sections.back(), &tip = branch.sections.front();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     SideView v{.mouth = root.centre, .up = -root.tangent};
@@ -144,7 +145,7 @@ void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
     v.scale = static_cast<float>(0.72 * size.y / length);
     v.origin = {at.x + 0.40f * size.x, at.y + 0.2f * size.y};
     // The surface below, a point for every few pixels.
-    const mesh::SurfaceQuery& query = *s.painter->model().query;
+    const mesh::SurfaceQuery& query = *s.paint_thread->model().query;
     std::vector<ImVec2> ground;
     for (float x = at.x; x <= at.x + size.x; x += s.ui.px(4)) {
         const Vec3 from = v.mouth + static_cast<double>((x - v.origin.x) / v.scale) * v.along + 0.3 * length * v.up;
@@ -152,9 +153,9 @@ void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
         if (hit) ground.push_back(v.at(hit->position));
     }
     draw->AddPolyline(ground.data(), static_cast<int>(ground.size()), s.ui.faint, 0, s.ui.px(2));
-    const unsigned ink = colour_in_tuft(s);
+    const unsigned ink = colour_in_tuft(s.brush, s.colours, s.reported.brush);
     const auto encoded = [](float linear) { return ink::srgb_encode(linear); };
-    for (const brush::Branch& b : s.tuft.branches)
+    for (const brush::Branch& b : s.view.tuft.state.branches)
         for (std::size_t i = 1; i < b.sections.size(); ++i) {
             const auto edge = [&](const brush::Section& c, double side) {
                 const Vec3 across = glm::cross(c.tangent, glm::cross(v.up, v.along));
@@ -177,13 +178,13 @@ void draw_side(const Session& s, ImVec2 at, ImVec2 size) {
 }  // namespace
 
 void tuft_inset(Session& s) {
-    if (!s.view.inset || !s.painter || s.tuft.branches.empty()) return;
+    if (!s.view.show_tuft_inset || !s.paint_thread || s.view.tuft.state.branches.empty()) return;
     Ui& ui = s.ui;
     const float width = ui.px(190), height = ui.px(206), pad = ui.px(10);
-    if (static_cast<float>(s.area.width) < 2.5f * width || static_cast<float>(s.area.height) < 2 * height)
-        return;  // the model needs the module
-    ImGui::SetNextWindowPos(
-        ImVec2(static_cast<float>(s.area.x) + pad, static_cast<float>(s.area.y + s.area.height) - height - pad));
+    if (static_cast<float>(s.view.area.width) < 2.5f * width || static_cast<float>(s.view.area.height) < 2 * height)
+        return;  // the model needs the room
+    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.view.area.x) + pad,
+                                   static_cast<float>(s.view.area.y + s.view.area.height) - height - pad));
     ImGui::SetNextWindowSize(ImVec2(width, height));
     ImGui::SetNextWindowBgAlpha(0.82f);
     ImGui::Begin("###tuft", nullptr,
@@ -198,15 +199,15 @@ void tuft_inset(Session& s) {
     ImGui::Dummy(size);
     const auto line = [&](const char* name, const char* format, double value) {
         char text[48] = "\xe2\x80\x93";
-        if (s.tuft.touching) std::snprintf(text, sizeof text, format, value);
+        if (s.view.tuft.state.touching) std::snprintf(text, sizeof text, format, value);
         ImGui::TextDisabled("%s", ui.tr(name));
         ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text).x);
         ImGui::TextUnformatted(text);
     };
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(8), ui.px(1)));
-    line("Force", "%.0f mN", s.tuft.normal_force * 1e3);
-    line("Moment", "%.2f mN m", std::abs(s.tuft.root_moment) * 1e3);
-    line("Depth", "%.1f mm", s.depth * 1e3);
+    line("Force", "%.0f mN", s.view.tuft.state.normal_force * 1e3);
+    line("Moment", "%.2f mN m", std::abs(s.view.tuft.state.root_moment) * 1e3);
+    line("Depth", "%.1f mm", s.view.tuft.depth * 1e3);
     ImGui::PopStyleVar();
     ImGui::End();
 }

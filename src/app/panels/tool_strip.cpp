@@ -1,7 +1,7 @@
 #include <imgui.h>
 
-#include "app/panels/icons.h"
 #include "app/panels/panels.h"
+#include "app/widgets/icons.h"
 
 /// The column of tools: an icon each, its name under it.
 namespace tuft::app {
@@ -28,8 +28,7 @@ constexpr Entry kEntries[] = {
     {Tool::mask, Icon::mask, "Mask", "Says where strokes and fills may leave ink (M)"}};
 
 // An icon over a name; true when it was pressed.
-bool cell(Session& s, Icon icon, const char* name, const char* hint, bool chosen, float height) {
-    Ui& ui = s.ui;
+bool cell(Ui& ui, Icon icon, const char* name, const char* hint, bool chosen, float height) {
     const float width = ImGui::GetContentRegionAvail().x;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool pressed = ImGui::InvisibleButton(name, ImVec2(width, height));
@@ -58,19 +57,19 @@ bool cell(Session& s, Icon icon, const char* name, const char* hint, bool chosen
 
 void tool_strip(Session& s, float top, float bottom, float left) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(s.ui.px(4), s.ui.px(4)));
-    begin_side_panel(s, "###strip", left, top, kStripWidth, bottom, false);
+    begin_side_panel(s.ui, "###strip", left, top, kStripWidth, bottom, false);
     const float gap = s.ui.px(2), room = bottom - top - s.ui.px(8);
     const float height = std::min(s.ui.px(50), (room - 9 * gap) / 9 - s.ui.px(1));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, gap));
     for (const Entry& e : kEntries)
-        if (cell(s, e.icon, e.name, e.hint, s.tool == e.tool, height)) s.tool = e.tool;
+        if (cell(s.ui, e.icon, e.name, e.hint, s.tools.active == e.tool, height)) s.tools.active = e.tool;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::GetWindowDrawList()->AddLine(ImVec2(at.x + s.ui.px(6), at.y),
                                         ImVec2(at.x + ImGui::GetContentRegionAvail().x - s.ui.px(6), at.y),
                                         ImGui::GetColorU32(ImGuiCol_Separator));
     ImGui::Dummy(ImVec2(0, gap));
-    if (cell(s, Icon::palette, "Palette", "A plate on which brushes mix inks (P)", s.palette.shown, height))
-        show_palette(s, !s.palette.shown);
+    if (cell(s.ui, Icon::palette, "Palette", "A plate on which brushes mix inks (P)", s.colours.palette.shown, height))
+        show_palette(s.colours.palette, s.brush, s.status, !s.colours.palette.shown);
     ImGui::PopStyleVar();
     ImGui::End();
     ImGui::PopStyleVar();

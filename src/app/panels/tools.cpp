@@ -24,7 +24,7 @@ unsigned hair_colour(const std::string& sort) {
 }
 
 // The tuft's outline, ferrule above, tip below.
-void draw_tuft_icon(Session& s, const brush::Preset& preset, unsigned hair, ImVec2 at, float width, float height) {
+void draw_tuft_icon(const Ui& ui, const brush::Preset& preset, unsigned hair, ImVec2 at, float width, float height) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     constexpr double longest = 0.048;  // metres that fill the icon
     const auto scale = static_cast<float>(height * 0.74f / longest);
@@ -36,7 +36,7 @@ void draw_tuft_icon(Session& s, const brush::Preset& preset, unsigned hair, ImVe
             const double u = static_cast<double>(side ? n - i : i) / n;
             // A little wider than to scale, so that small ones are seen.
             const auto r =
-                (static_cast<float>(brush::rest_radius(preset, u)) * 1.35f * scale + (u < 0.97 ? s.ui.px(0.8f) : 0)) *
+                (static_cast<float>(brush::rest_radius(preset, u)) * 1.35f * scale + (u < 0.97 ? ui.px(0.8f) : 0)) *
                 (side ? -1.0f : 1.0f);
             outline.emplace_back(x + r, top + static_cast<float>(u * preset.length) * scale);
         }
@@ -50,7 +50,7 @@ void draw_tuft_icon(Session& s, const brush::Preset& preset, unsigned hair, ImVe
     draw->Flags = flags;
     draw->AddPolyline(outline.data(), static_cast<int>(outline.size()), IM_COL32(70, 52, 36, 255), ImDrawFlags_Closed,
                       1.0f);
-    const auto r = static_cast<float>(brush::rest_radius(preset, 0)) * scale * 1.5f + s.ui.px(0.8f);
+    const auto r = static_cast<float>(brush::rest_radius(preset, 0)) * scale * 1.5f + ui.px(0.8f);
     draw->AddRectFilled(ImVec2(x - r, at.y + 0.05f * height), ImVec2(x + r, top), IM_COL32(122, 78, 38, 255), 1.5f);
 }
 
@@ -61,34 +61,33 @@ const brush::Preset& preset_of(const std::string& name) {
     return at->second;
 }
 
-void brush_cell(Session& s, const std::string& name, const std::string& sort, float width) {
+void brush_cell(Ui& ui, BrushSettings& brush, const std::string& name, const std::string& sort, float width) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const bool chosen = name == brush::sized_name(s.brush).base;
-    const float height = s.ui.px(kRackHeight);
-    if (ImGui::InvisibleButton(name.c_str(), ImVec2(width, height))) s.brush = name;
-    s.ui.mark(name);
+    const bool chosen = name == brush::sized_name(brush.preset).base;
+    const float height = ui.px(kRackHeight);
+    if (ImGui::InvisibleButton(name.c_str(), ImVec2(width, height))) brush.preset = name;
+    ui.mark(name);
     const bool over = ImGui::IsItemHovered();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 end(at.x + width, at.y + height);
     if (chosen || over)
-        draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : ImGuiCol_FrameBgHovered),
-                            s.ui.px(4));
-    if (chosen) draw->AddRect(at, end, s.ui.accent, s.ui.px(4), 0, s.ui.px(2));
+        draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : ImGuiCol_FrameBgHovered), ui.px(4));
+    if (chosen) draw->AddRect(at, end, ui.accent, ui.px(4), 0, ui.px(2));
     const brush::Preset& preset = preset_of(name);
-    draw_tuft_icon(s, preset, hair_colour(sort), at, width, height);
+    draw_tuft_icon(ui, preset, hair_colour(sort), at, width, height);
     if (!over) return;
     char text[256];
-    std::snprintf(text, sizeof text, s.ui.tr("%.0f mm long, %.1f mm thick"), preset.length * 1e3,
+    std::snprintf(text, sizeof text, ui.tr("%.0f mm long, %.1f mm thick"), preset.length * 1e3,
                   2 * preset.radius * 1e3);
-    ImGui::SetTooltip("%s\n%s", s.ui.tr(name.c_str()), text);
+    ImGui::SetTooltip("%s\n%s", ui.tr(name.c_str()), text);
 }
 
 // All brushes hang in rows, a group for each sort of hair from small to large, its name under it; sorts with a single
 // brush are a group together.
-void brush_rack(Session& s) {
-    if (!s.ui.section("Brush", true, s.ui.tr(brush::sized_name(s.brush).base.c_str()))) return;
+void brush_rack(Ui& ui, BrushSettings& brush, StatusMessage& status) {
+    if (!ui.section("Brush", true, ui.tr(brush::sized_name(brush.preset).base.c_str()))) return;
     std::map<std::string, std::vector<std::string>> by_sort;
-    for (const std::string& name : s.brushes) by_sort[name.substr(0, name.find('-'))].push_back(name);
+    for (const std::string& name : brush.presets) by_sort[name.substr(0, name.find('-'))].push_back(name);
     std::vector<std::pair<std::string, std::vector<std::string>>> groups;
     std::vector<std::string> single;
     for (auto& [sort, names] : by_sort) {
@@ -98,42 +97,41 @@ void brush_rack(Session& s) {
             groups.emplace_back(sort, names);
     }
     if (!single.empty()) groups.emplace_back("other", single);
-    const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = s.ui.px(8),
+    const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = ui.px(8),
                 letters = 0.8f * ImGui::GetFontSize();
     // Tufts are thin: as many fit in a row as have room for one each.
-    const float cell = std::min(s.ui.px(26), (all - 3 * gap) / 10), row = s.ui.px(kRackHeight) + 1.2f * letters;
+    const float cell = std::min(ui.px(26), (all - 3 * gap) / 10), row = ui.px(kRackHeight) + 1.2f * letters;
     float x = 0, y = ImGui::GetCursorPosY();
     for (auto& [sort, names] : groups) {
         std::sort(names.begin(), names.end(),
                   [](const std::string& a, const std::string& b) { return preset_of(a).length < preset_of(b).length; });
-        const char* title = s.ui.tr(sort.c_str());
+        const char* title = ui.tr(sort.c_str());
         const float text = ImGui::GetFont()->CalcTextSizeA(letters, 1e9f, 0, title).x;
         const float width = cell * static_cast<float>(names.size()), taken = std::max(width, text);
         if (x > 0 && x + width > all + 1) x = 0, y += row;
         for (std::size_t i = 0; i < names.size(); ++i) {
             ImGui::SetCursorPos(ImVec2(left + x + cell * static_cast<float>(i), y));
-            brush_cell(s, names[i], names[i].substr(0, names[i].find('-')), cell);
+            brush_cell(ui, brush, names[i], names[i].substr(0, names[i].find('-')), cell);
         }
-        ImGui::SetCursorPos(ImVec2(left + x, y + s.ui.px(kRackHeight)));
+        ImGui::SetCursorPos(ImVec2(left + x, y + ui.px(kRackHeight)));
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float middle = std::min(at.x + 0.5f * (width - text), at.x + all - x - text);
-        ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), letters, ImVec2(middle, at.y), s.ui.faint, title);
+        ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), letters, ImVec2(middle, at.y), ui.faint, title);
         x += taken + gap;
     }
     ImGui::SetCursorPos(ImVec2(left, y + row));
-    brush::SizedName sized = brush::sized_name(s.brush);
+    brush::SizedName sized = brush::sized_name(brush.preset);
     const double thick = 2 * preset_of(sized.base).radius;
     double now = thick * sized.factor;
-    if (s.ui.slider("Tuft size", now, thick * brush::kLeastSize, thick * brush::kMostSize, "%.1f mm",
-                    "How thick it is; its length goes with it", kMillimetre))
-        size_brush(s, now / thick);
+    if (ui.slider("Tuft size", now, thick * brush::kLeastSize, thick * brush::kMostSize, "%.1f mm",
+                  "How thick it is; its length goes with it", kMillimetre))
+        size_brush(brush, status, now / thick);
 }
 
 // The curve from a pen's pressure to the brush's depth; its ends and its middle can be dragged. The dot
 // is what the pen does now.
-void pen_curve(Session& s) {
-    Ui& ui = s.ui;
-    PointerSettings& h = s.hand;
+void pen_curve(Ui& ui, ToolState& tools, int& handle) {
+    PointerSettings& h = tools.pointer;
     const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, ui.px(96));
     ImGui::InvisibleButton("pen curve", size);
     ui.mark("Pen curve");
@@ -150,11 +148,11 @@ void pen_curve(Session& s) {
     if (ImGui::IsItemActivated()) {
         const double to_least = std::abs(x - h.pen_least) + y, to_full = std::abs(x - h.pen_full) + 1 - y;
         const double to_middle = std::abs(x - middle) + std::abs(y - std::pow(0.5, h.pen_gamma));
-        s.pen_handle = to_middle <= std::min(to_least, to_full) ? 1 : to_least < to_full ? 0 : 2;
+        handle = to_middle <= std::min(to_least, to_full) ? 1 : to_least < to_full ? 0 : 2;
     }
-    if (held && s.pen_handle == 0) h.pen_least = std::min(x, h.pen_full - 0.1);
-    if (held && s.pen_handle == 2) h.pen_full = std::max(x, h.pen_least + 0.1);
-    if (held && s.pen_handle == 1) h.pen_gamma = std::clamp(std::log(y) / std::log(0.5), 0.25, 4.0);
+    if (held && handle == 0) h.pen_least = std::min(x, h.pen_full - 0.1);
+    if (held && handle == 2) h.pen_full = std::max(x, h.pen_least + 0.1);
+    if (held && handle == 1) h.pen_gamma = std::clamp(std::log(y) / std::log(0.5), 0.25, 4.0);
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) h.pen_least = 0, h.pen_full = 1, h.pen_gamma = 1;
     ui.hint("Drag its ends and its middle; a double click makes it straight");
     ImDrawList* draw = ImGui::GetWindowDrawList();
@@ -168,91 +166,88 @@ void pen_curve(Session& s) {
     draw->AddPolyline(points, 49, ui.accent, 0, ui.px(2));
     for (const ImVec2& p : {place(h.pen_least, 0), place(middle, std::pow(0.5, h.pen_gamma)), place(h.pen_full, 1)})
         draw->AddCircleFilled(p, ui.px(4.5f), ui.strong);
-    if (s.pen_pressure >= 0) {
-        const ImVec2 dot = place(std::min(1.0, s.pen_pressure), pen_depth(h, s.pen_pressure));
-        draw->AddLine(dot, place(std::min(1.0, s.pen_pressure), 0), IM_COL32(255, 176, 32, 160), ui.px(1));
+    if (tools.pen_pressure >= 0) {
+        const ImVec2 dot = place(std::min(1.0, tools.pen_pressure), pen_depth(h, tools.pen_pressure));
+        draw->AddLine(dot, place(std::min(1.0, tools.pen_pressure), 0), IM_COL32(255, 176, 32, 160), ui.px(1));
         draw->AddCircleFilled(dot, ui.px(5), IM_COL32(255, 176, 32, 255));
     }
 }
 
-void hand_section(Session& s) {
-    Ui& ui = s.ui;
-    if (!ui.section("PointerInput")) return;
-    ui.slider("Pressure", s.hand.pressure, 0.02, 1, "%.2f",
+void pointer_section(Ui& ui, ToolState& tools, PanelLayout& panels) {
+    if (!ui.section("Hand")) return;
+    ui.slider("Pressure", tools.pointer.pressure, 0.02, 1, "%.2f",
               "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]");
-    ui.slider("Stabiliser", s.hand.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length",
+    ui.slider("Stabiliser", tools.pointer.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length",
               kMillimetre);
-    if (ui.button(s.more_hand ? "Less" : "More...", nullptr, 80)) s.more_hand = !s.more_hand;
-    if (!s.more_hand) return;
+    if (ui.button(panels.show_pointer_details ? "Less" : "More...", nullptr, 80))
+        panels.show_pointer_details = !panels.show_pointer_details;
+    if (!panels.show_pointer_details) return;
     ui.toggle(
-        "Clean ends", s.hand.clean_ends,
+        "Clean ends", tools.pointer.clean_ends,
         "Strokes of a mouse begin where the button goes down and end where it comes up: the brush is set down in the "
         "stroke's direction and runs ahead of the cursor by what its tip lags behind. A pen has its pressure for that");
-    ui.slider("Speed lightens", s.hand.speed_effect, 0, 1, "%.2f",
+    ui.slider("Speed lightens", tools.pointer.speed_effect, 0, 1, "%.2f",
               "As a hand does. Only for a mouse; a pen says its own pressure");
-    ui.slider("Rest deepens", s.hand.dwell_effect, 0, 1, "%.2f", "A mouse that stays where it is sinks in slowly");
+    ui.slider("Rest deepens", tools.pointer.dwell_effect, 0, 1, "%.2f",
+              "A mouse that stays where it is sinks in slowly");
     ui.note(ui.tr("Pen: from its force to the brush's depth"));
-    pen_curve(s);
-    double right = s.hand.tilt.x, up = s.hand.tilt.y;
+    pen_curve(ui, tools, panels.pen_curve_handle);
+    double right = tools.pointer.tilt.x, up = tools.pointer.tilt.y;
     ui.slider("Lean sideways", right, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0",
               "Of the holder, seen on the screen. Arrow keys", kDegree);
     ui.slider("Lean away", up, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0",
               "Of the holder, seen on the screen. Arrow keys", kDegree);
-    s.hand.tilt = {right, up};
+    tools.pointer.tilt = {right, up};
 }
 
-void symmetry_section(Session& s) {
-    Ui& ui = s.ui;
+void symmetry_section(Ui& ui, stroke::Symmetry& symmetry) {
     if (!ui.section("Symmetry", false)) return;
-    ui.toggle("X", s.symmetry.mirror_x,
+    ui.toggle("X", symmetry.mirror_x,
               "Mirror left and right; the copy is painted anew and meets the model as it is there");
     ImGui::SameLine();
-    ui.toggle("Y", s.symmetry.mirror_y, "Mirror front and back");
+    ui.toggle("Y", symmetry.mirror_y, "Mirror front and back");
     ImGui::SameLine();
-    ui.toggle("Z", s.symmetry.mirror_z, "Mirror above and below");
-    double n = s.symmetry.radial;
+    ui.toggle("Z", symmetry.mirror_z, "Mirror above and below");
+    double n = symmetry.radial;
     if (ui.slider("Radial copies", n, 1, 16, "%.0f",
                   "For plates and bowls; the axis stands upright through the middle"))
-        s.symmetry.radial = static_cast<int>(std::lround(n));
+        symmetry.radial = static_cast<int>(std::lround(n));
 }
 
-void section_section(Session& s) {
-    Ui& ui = s.ui;
+void section_section(Ui& ui, SectionView& section) {
     if (!ui.section("Look inside", false)) return;
-    ui.toggle("Cut open", s.view.section, "Hides a part of the model; the brush reaches what is behind");
-    if (!s.view.section) return;
+    ui.toggle("Cut open", section.on, "Hides a part of the model; the brush reaches what is behind");
+    if (!section.on) return;
     static const char* axes[] = {"Across", "Along", "From above"};
     for (int k = 0; k < 3; ++k) {
         if (k) ImGui::SameLine();
-        if (ui.choice(axes[k], s.view.section_axis == k)) s.view.section_axis = k;
+        if (ui.choice(axes[k], section.axis == k)) section.axis = k;
     }
-    ui.slider("What stays", s.view.section_at, 0.02, 1, "%.2f");
+    ui.slider("What stays", section.position, 0.02, 1, "%.2f");
 }
 
-void fill_section(Session& s) {
-    if (s.tool != Tool::fill) return;
-    Ui& ui = s.ui;
+void fill_section(Ui& ui, ToolState& tools) {
+    if (tools.active != Tool::fill) return;
     ui.heading("Fill");
     static constexpr std::pair<stroke::Region, const char*> regions[] = {
         {stroke::Region::all, "All"}, {stroke::Region::part, "Part"}, {stroke::Region::chart, "Chart"}};
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
     for (const auto& [region, name] : regions) {
         if (region != stroke::Region::all) ImGui::SameLine();
-        if (ui.choice(name, s.fill.region == region, "What the ink is laid over where you click", third))
-            s.fill.region = region;
+        if (ui.choice(name, tools.fill.region == region, "What the ink is laid over where you click", third))
+            tools.fill.region = region;
     }
-    if (ui.slider("Thickness", s.fill.film, 0.05, 5, "%.1f \xce\xbcm", "Of the wet coat", 0.1))
-        s.fill.to_film = s.fill.film;
+    if (ui.slider("Thickness", tools.fill.film, 0.05, 5, "%.1f \xce\xbcm", "Of the wet coat", 0.1))
+        tools.fill.to_film = tools.fill.film;
 }
 
-void writing_section(Session& s) {
-    if (s.tool != Tool::writing) return;
-    Ui& ui = s.ui;
+void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
+    if (tools.active != Tool::writing) return;
     ui.heading("Place");
     if (ui.button("Writing or drawing...", "InkML or SVG", 0))
-        s.files.show(FileDialog::Purpose::writing, data_folder() / "samples" / "strokes");
-    if (s.writing.empty()) return;
-    Writing& w = s.writing;
+        files.show(FileDialog::Purpose::writing, data_folder() / "samples" / "strokes");
+    if (tools.writing.empty()) return;
+    Writing& w = tools.writing;
     ImGui::TextUnformatted(w.file.filename().c_str());
     for (const std::string& note : w.notes) ui.note(note.c_str());
     double width = w.width * w.scale;
@@ -282,24 +277,24 @@ void writing_section(Session& s) {
 
 // How the hand goes along lines and curves.
 void curve_section(Session& s) {
-    if (s.tool != Tool::line && s.tool != Tool::curve) return;
+    if (s.tools.active != Tool::line && s.tools.active != Tool::curve) return;
     Ui& ui = s.ui;
     ui.heading("Along the line");
-    CurveSettings& c = s.curve_settings;
+    CurveSettings& c = s.tools.curve_settings;
     bool changed = ui.slider("Press down in", c.taper_in, 0, 0.9, "%.0f %%", "Part of its length", 0.01);
     changed |= ui.slider("Lift in", c.taper_out, 0, 0.9, "%.0f %%", "Part of its length", 0.01);
     changed |= ui.slider("Pace", c.speed, 0.01, 0.4, "%.0f mm/s", "Of the hand", kMillimetre);
-    if (changed) s.curve.changed = true;
+    if (changed) s.tools.curve.changed = true;
 }
 
 }  // namespace
 
-void begin_side_panel(Session& s, const char* name, float left, float top, float width, float bottom, bool scrolls) {
-    const float pad = ImGui::GetStyle().WindowPadding.x, all = s.ui.px(width);
+void begin_side_panel(Ui& ui, const char* name, float left, float top, float width, float bottom, bool scrolls) {
+    const float pad = ImGui::GetStyle().WindowPadding.x, all = ui.px(width);
     ImGui::SetNextWindowPos(ImVec2(left, top));
     ImGui::SetNextWindowSize(ImVec2(all, bottom - top));
     ImGui::SetNextWindowContentSize(
-        ImVec2(all - pad - std::max(pad, scrolls ? ImGui::GetStyle().ScrollbarSize + s.ui.px(6) : 0), 0));
+        ImVec2(all - pad - std::max(pad, scrolls ? ImGui::GetStyle().ScrollbarSize + ui.px(6) : 0), 0));
     // The window is cleared to the panels' colour; to blend it over that again costs a software driver milliseconds.
     ImGui::Begin(name, nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
@@ -310,17 +305,17 @@ void begin_side_panel(Session& s, const char* name, float left, float top, float
 }
 
 void tool_panel(Session& s, float top, float bottom, float left) {
-    begin_side_panel(s, "###tools", left, top, kToolWidth, bottom);
+    begin_side_panel(s.ui, "###tools", left, top, kToolWidth, bottom);
     curve_section(s);
-    writing_section(s);
-    fill_section(s);
+    writing_section(s.ui, s.tools, s.dialogs.file);
+    fill_section(s.ui, s.tools);
     mask_section(s);
-    const bool brushes = s.tool != Tool::fill && s.tool != Tool::pick && s.tool != Tool::mask;
-    if (brushes) brush_rack(s);
-    if (s.tool != Tool::mask && s.tool != Tool::eraser) ink_section(s);
-    if (brushes) hand_section(s);
-    if (brushes) symmetry_section(s);
-    section_section(s);
+    const bool brushes = s.tools.active != Tool::fill && s.tools.active != Tool::pick && s.tools.active != Tool::mask;
+    if (brushes) brush_rack(s.ui, s.brush, s.status);
+    if (s.tools.active != Tool::mask && s.tools.active != Tool::eraser) ink_section(s);
+    if (brushes) pointer_section(s.ui, s.tools, s.panels);
+    if (brushes) symmetry_section(s.ui, s.tools.symmetry);
+    section_section(s.ui, s.view.section);
     ImGui::End();
 }
 
@@ -331,7 +326,7 @@ namespace {
 void handle(Session& s, const char* name, const char* hint, float x, bool to_left, bool& shown) {
     Ui& ui = s.ui;
     const float width = ui.px(11), height = ui.px(46),
-                y = static_cast<float>(s.area.y) + 0.5f * (static_cast<float>(s.area.height) - height);
+                y = static_cast<float>(s.view.area.y) + 0.5f * (static_cast<float>(s.view.area.height) - height);
     ImGui::SetNextWindowPos(ImVec2(x, y));
     ImGui::SetNextWindowSize(ImVec2(width, height));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
@@ -360,16 +355,18 @@ void handle(Session& s, const char* name, const char* hint, float x, bool to_lef
 }  // namespace
 
 void panel_handles(Session& s) {
-    const bool beside = !s.snapshots.compared.empty() && !s.snapshots.swipe && s.snapshots.width > 0;
-    const auto left = static_cast<float>(beside ? s.snapshots.x : s.area.x);
-    const auto right =
-        static_cast<float>(s.view.atlas ? s.atlas_area.x + s.atlas_area.width : s.area.x + s.area.width) - s.ui.px(11);
-    const bool swapped = s.wanted.left_handed;
+    const bool beside =
+        !s.journal.snapshots.compared.empty() && !s.journal.snapshots.swipe && s.journal.snapshots.width > 0;
+    const auto left = static_cast<float>(beside ? s.journal.snapshots.x : s.view.area.x);
+    const auto right = static_cast<float>(s.view.atlas.shown ? s.view.atlas.area.x + s.view.atlas.area.width
+                                                             : s.view.area.x + s.view.area.width) -
+                       s.ui.px(11);
+    const bool swapped = s.preferences.ui.left_handed;
     handle(s, "Fold the tools", "Puts the settings of the tools away, or brings them back (Tab: all panels)",
-           swapped ? right : left, s.tools_shown != swapped, s.tools_shown);
-    if (s.journal_fits)
+           swapped ? right : left, s.panels.show_tools != swapped, s.panels.show_tools);
+    if (s.panels.journal_fits)
         handle(s, "Fold the journal", "Puts the journal away, or brings it back (Tab: all panels)",
-               swapped ? left : right, s.journal_shown == swapped, s.journal_shown);
+               swapped ? left : right, s.panels.show_journal == swapped, s.panels.show_journal);
 }
 
 }  // namespace tuft::app

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtx/quaternion.hpp>
 #include <numbers>
 #include <span>
 
@@ -13,13 +14,13 @@ namespace {
 
 ImVec2 on_screen(const Session& s, const render::GlCamera& c, const Vec3& p) {
     const Vec3 at = render::picture_point(c, p);
-    return {static_cast<float>(at.x + s.area.x), static_cast<float>(at.y + s.area.y)};
+    return {static_cast<float>(at.x + s.view.area.x), static_cast<float>(at.y + s.view.area.y)};
 }
 
 // Outline of the hair that presses on the surface, laid onto it.
 void contact_outline(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
-    const mesh::SurfaceQuery& query = *s.painter->model().query;
-    for (const brush::Branch& branch : s.tuft.branches) {
+    const mesh::SurfaceQuery& query = *s.paint_thread->model().query;
+    for (const brush::Branch& branch : s.view.tuft.state.branches) {
         std::vector<ImVec2> left, right;
         for (const brush::Section& section : branch.sections) {
             if (section.pressure <= 0) continue;
@@ -39,10 +40,10 @@ void contact_outline(const Session& s, const render::GlCamera& c, ImDrawList* dr
 
 // Ring on the surface below a hovering tuft, as wide as its belly.
 void hover_ring(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
-    const brush::Section &tip = s.tuft.branches.front().sections.front(),
-                         &root = s.tuft.branches.front().sections.back();
+    const brush::Section &tip = s.view.tuft.state.branches.front().sections.front(),
+                         &root = s.view.tuft.state.branches.front().sections.back();
     const Vec3 axis = glm::normalize(tip.centre - root.centre);
-    const auto hit = s.painter->model().query->ray(root.centre, axis, 0, 0.2);
+    const auto hit = s.paint_thread->model().query->ray(root.centre, axis, 0, 0.2);
     if (!hit) return;
     const Frame f = make_frame(hit->position, hit->normal);
     const double radius = 0.5 * std::max(root.a, root.b);
@@ -59,11 +60,11 @@ void hover_ring(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
 
 // Where the symmetric copies of the brush would touch: a dot on the surface, faint where it is not seen.
 void copy_dots(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
-    const std::vector<stroke::PoseMap> copies = stroke::symmetry_copies(s.symmetry);
+    const std::vector<stroke::PoseMap> copies = stroke::symmetry_copies(s.tools.symmetry);
     if (copies.empty()) return;
-    const brush::Section &tip = s.tuft.branches.front().sections.front(),
-                         &root = s.tuft.branches.front().sections.back();
-    const mesh::SurfaceQuery& query = *s.painter->model().query;
+    const brush::Section &tip = s.view.tuft.state.branches.front().sections.front(),
+                         &root = s.view.tuft.state.branches.front().sections.back();
+    const mesh::SurfaceQuery& query = *s.paint_thread->model().query;
     for (const stroke::PoseMap& map : copies) {
         const Vec3 from = map.point(root.centre), to = map.point(tip.centre), way = glm::normalize(to - from);
         const auto ahead = query.ray(from, way, 0, 2 * glm::distance(from, to));
@@ -79,8 +80,8 @@ void copy_dots(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
 
 void axis_cross(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     const float size = s.ui.px(26);
-    const ImVec2 origin(static_cast<float>(s.area.x + s.area.width) - s.ui.px(44),
-                        static_cast<float>(s.area.y) + s.ui.px(44));
+    const ImVec2 origin(static_cast<float>(s.view.area.x + s.view.area.width) - s.ui.px(44),
+                        static_cast<float>(s.view.area.y) + s.ui.px(44));
     struct Arm {
         Vec3 direction;
         unsigned colour;
@@ -104,9 +105,9 @@ void axis_cross(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
 }
 
 void lasso_marks(const Session& s, ImDrawList* draw) {
-    if (s.lasso.empty()) return;
+    if (s.masks.lasso.empty()) return;
     std::vector<ImVec2> line;
-    for (const Vec2& p : s.lasso) line.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
+    for (const Vec2& p : s.masks.lasso) line.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
     draw->AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(20, 20, 24, 200), ImDrawFlags_Closed,
                       s.ui.px(3.5f));
     draw->AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(255, 196, 64, 255), ImDrawFlags_Closed,
@@ -120,8 +121,8 @@ void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     const double power = std::pow(10, std::floor(std::log10(want)));
     const double length = want / power >= 5 ? 5 * power : want / power >= 2 ? 2 * power : power;
     const auto width = static_cast<float>(length * 1e-3 / pixel);
-    const float right = static_cast<float>(s.area.x + s.area.width) - s.ui.px(20),
-                y = static_cast<float>(s.area.y + s.area.height) - s.ui.px(20);
+    const float right = static_cast<float>(s.view.area.x + s.view.area.width) - s.ui.px(20),
+                y = static_cast<float>(s.view.area.y + s.view.area.height) - s.ui.px(20);
     // Light with a dark rim: to be read on any ground.
     constexpr unsigned rim = IM_COL32(24, 24, 26, 210), light = IM_COL32(245, 245, 245, 255);
     for (const auto& [colour, more] : {std::pair{rim, 1.0f}, std::pair{light, 0.0f}}) {
@@ -140,9 +141,9 @@ void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
 
 // Control points and the curve through them, as it lies on the model.
 void curve_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
-    const auto& points = s.curve.points;
+    const auto& points = s.tools.curve.points;
     if (points.empty()) return;
-    const std::vector<CurvePlace> places = lay_curve(*s.painter->model().query, points, 32);
+    const std::vector<CurveSample> places = project_curve(*s.paint_thread->model().query, points, 32);
     for (const auto& [colour, width] :
          {std::pair{IM_COL32(20, 20, 24, 170), 4.0f}, std::pair{IM_COL32(255, 196, 64, 255), 1.8f}})
         for (std::size_t i = 1; i < places.size(); ++i)
@@ -150,7 +151,7 @@ void curve_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
                 draw->AddLine(on_screen(s, c, places[i - 1].position), on_screen(s, c, places[i].position), colour,
                               s.ui.px(width));
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const bool held = static_cast<int>(i) == s.curve.grabbed || static_cast<int>(i) == s.curve.over;
+        const bool held = static_cast<int>(i) == s.tools.curve.grabbed || static_cast<int>(i) == s.tools.curve.over;
         const ImVec2 at = on_screen(s, c, points[i].position);
         const float radius = s.ui.px(3.5f + 2.5f * static_cast<float>(points[i].pressure));
         draw->AddCircleFilled(at, radius, held ? IM_COL32(255, 224, 130, 255) : IM_COL32(255, 255, 255, 255), 24);
@@ -159,9 +160,9 @@ void curve_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
 }
 
 // Where the writing would lie, as far as it is seen.
-void ghost_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
-    if (s.tool != Tool::writing) return;
-    for (const auto& line : s.ghost)
+void writing_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+    if (s.tools.active != Tool::writing) return;
+    for (const auto& line : s.tools.writing_preview)
         for (std::size_t i = 1; i < line.size(); ++i)
             if (line[i - 1].seen && line[i].seen)
                 draw->AddLine(on_screen(s, c, line[i - 1].position), on_screen(s, c, line[i].position),
@@ -172,10 +173,10 @@ void ghost_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
 void shift_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     const JournalState& j = s.journal;
     if (!j.from || !j.to) return;
-    const mesh::SurfaceQuery& query = *s.painter->model().query;
+    const mesh::SurfaceQuery& query = *s.paint_thread->model().query;
     const RigidMove m = shift_between(*j.from, *j.to);
-    const Vec4f section = section_plane(s);
-    const double tolerance = 2e-3 * s.painter->model().mesh->bounds.diagonal();
+    const Vec4f section = section_plane(s.view, s.paint_thread->model().mesh->bounds);
+    const double tolerance = 2e-3 * s.paint_thread->model().mesh->bounds.diagonal();
     for (const OutlinePoint& p : j.outline) {
         const auto on = query.closest_point(m.to + m.rotation * (Vec3(p.position) - m.from));
         if (on && is_seen(query, c, section, on->position, tolerance))
@@ -191,12 +192,12 @@ struct Stop {
 // Colours from left to right with a text at each end, in the lower right above the scale.
 void legend(const Session& s, ImDrawList* draw, std::span<const Stop> stops, const char* low, const char* high) {
     const float width = s.ui.px(190), height = s.ui.px(10);
-    // In a narrow view the tuft's inset takes the module below.
-    const bool narrow = static_cast<float>(s.area.width) < s.ui.px(460);
-    const ImVec2 at(narrow ? static_cast<float>(s.area.x) + s.ui.px(20)
-                           : static_cast<float>(s.area.x + s.area.width) - s.ui.px(20) - width,
-                    narrow ? static_cast<float>(s.area.y) + s.ui.px(20)
-                           : static_cast<float>(s.area.y + s.area.height) - s.ui.px(98));
+    // In a narrow view the tuft's inset takes the room below.
+    const bool narrow = static_cast<float>(s.view.area.width) < s.ui.px(460);
+    const ImVec2 at(narrow ? static_cast<float>(s.view.area.x) + s.ui.px(20)
+                           : static_cast<float>(s.view.area.x + s.view.area.width) - s.ui.px(20) - width,
+                    narrow ? static_cast<float>(s.view.area.y) + s.ui.px(20)
+                           : static_cast<float>(s.view.area.y + s.view.area.height) - s.ui.px(98));
     draw->AddRectFilled(ImVec2(at.x - s.ui.px(10), at.y - s.ui.px(10)),
                         ImVec2(at.x + width + s.ui.px(10), at.y + height + s.ui.px(28)), IM_COL32(24, 24, 26, 190),
                         s.ui.px(5));
@@ -210,7 +211,7 @@ void legend(const Session& s, ImDrawList* draw, std::span<const Stop> stops, con
 }
 
 void legends(const Session& s, ImDrawList* draw) {
-    if (s.view.shown == ModelView::height || s.view.shown == ModelView::wetness) {
+    if (s.view.shading == ModelView::height || s.view.shading == ModelView::wetness) {
         // As `ramp` in mesh.frag.
         static constexpr Stop stops[] = {{IM_COL32(33, 31, 77, 255), 0},
                                          {IM_COL32(46, 94, 140, 255), 0.25f},
@@ -218,9 +219,9 @@ void legends(const Session& s, ImDrawList* draw) {
                                          {IM_COL32(140, 201, 82, 255), 0.75f},
                                          {IM_COL32(252, 232, 102, 255), 1}};
         char high[32];
-        std::snprintf(high, sizeof high, "%g \xce\xbcm", height_range(s));
+        std::snprintf(high, sizeof high, "%g \xce\xbcm", height_range(s.view.max_ink_height));
         legend(s, draw, stops, "0", high);
-    } else if (s.view.shown == ModelView::stretch) {
+    } else if (s.view.shading == ModelView::stretch) {
         // As `stretch_colours`.
         static constexpr Stop stops[] = {
             {IM_COL32(36, 87, 214, 255), 0}, {IM_COL32(184, 184, 184, 255), 0.5f}, {IM_COL32(219, 51, 31, 255), 1}};
@@ -230,20 +231,25 @@ void legends(const Session& s, ImDrawList* draw) {
 
 }  // namespace
 
-double height_range(const Session& s) {
-    const double most = std::max(0.5, s.highest), power = std::pow(10, std::floor(std::log10(most)));
+RigidMove shift_between(const mesh::SurfacePoint& from, const mesh::SurfacePoint& to) {
+    return {.from = from.position, .to = to.position, .rotation = glm::rotation(from.normal, to.normal)};
+}
+
+double height_range(double max_height) {
+    const double most = std::max(0.5, max_height), power = std::pow(10, std::floor(std::log10(most)));
     return most <= power ? power : most <= 2 * power ? 2 * power : most <= 5 * power ? 5 * power : 10 * power;
 }
 
 void view_marks(const Session& s, const render::GlCamera& c) {
     ImDrawList* draw = ImGui::GetBackgroundDrawList();
-    draw->PushClipRect(
-        ImVec2(static_cast<float>(s.area.x), static_cast<float>(s.area.y)),
-        ImVec2(static_cast<float>(s.area.x + s.area.width), static_cast<float>(s.area.y + s.area.height)), true);
-    if (!s.tuft.branches.empty()) s.pressed ? contact_outline(s, c, draw) : hover_ring(s, c, draw);
-    if (!s.tuft.branches.empty()) copy_dots(s, c, draw);
+    draw->PushClipRect(ImVec2(static_cast<float>(s.view.area.x), static_cast<float>(s.view.area.y)),
+                       ImVec2(static_cast<float>(s.view.area.x + s.view.area.width),
+                              static_cast<float>(s.view.area.y + s.view.area.height)),
+                       true);
+    if (!s.view.tuft.state.branches.empty()) s.view.tuft.pressed ? contact_outline(s, c, draw) : hover_ring(s, c, draw);
+    if (!s.view.tuft.state.branches.empty()) copy_dots(s, c, draw);
     curve_marks(s, c, draw);
-    ghost_marks(s, c, draw);
+    writing_marks(s, c, draw);
     shift_marks(s, c, draw);
     lasso_marks(s, draw);
     axis_cross(s, c, draw);

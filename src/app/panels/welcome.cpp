@@ -29,7 +29,7 @@ bool card(Session& s, const fs::path& file, const std::string& name, float width
     const float round = s.ui.px(5);
     draw->AddRectFilled(at, ImVec2(at.x + width, at.y + height + text),
                         ImGui::GetColorU32(over ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), round);
-    const unsigned texture = s.pictures.texture(file);
+    const unsigned texture = s.project.start_page.pictures.texture(file);
     if (texture)
         draw->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at,
                               ImVec2(at.x + width, at.y + height), ImVec2(0, 0), ImVec2(1, 1), IM_COL32_WHITE, round,
@@ -60,7 +60,7 @@ fs::path cards(Session& s, const std::vector<fs::path>& files, float width, std:
 
 void welcome(Session& s) {
     Ui& ui = s.ui;
-    if (!s.opening.running() && !s.inspected) s.pictures.go_on();
+    if (!s.project.opening.running() && !s.project.inspected) s.project.start_page.pictures.go_on();
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float top = ImGui::GetFrameHeight() + ui.px(6);
     ImGui::SetNextWindowPos(ImVec2(0, top));
@@ -77,22 +77,22 @@ void welcome(Session& s) {
     ImGui::TextUnformatted("tuft studio");
     ImGui::PopFont();
     ui.note(ui.tr("Drop a model or a project anywhere on this window, or open one."));
-    if (ui.primary_button("Open...", 130)) s.files.show(FileDialog::Purpose::open, {});
-    if (!s.message.empty()) {
+    if (ui.primary_button("Open...", 130)) s.dialogs.file.show(FileDialog::Purpose::open, {});
+    if (!s.status.text.empty()) {
         ImGui::SameLine();
         ImGui::AlignTextToFramePadding();
-        ui.wrapped(ui.tr_sentence(s.message));
+        ui.wrapped(ui.tr_sentence(s.status.text));
     }
     fs::path chosen;
     const float width_all = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
     const auto columns = static_cast<std::size_t>(std::max(2.0f, (width_all + gap) / (ui.px(188) + gap)));
     const float width = (width_all - static_cast<float>(columns - 1) * gap) / static_cast<float>(columns);
-    if (!s.recent.empty()) {
+    if (!s.project.start_page.recent.empty()) {
         ui.heading("Recent projects");
-        chosen = cards(s, s.recent, width, columns, columns);
+        chosen = cards(s, s.project.start_page.recent, width, columns, columns);
     }
     ui.heading("Samples");
-    const fs::path sample = cards(s, s.samples, width, columns, 24);
+    const fs::path sample = cards(s, s.project.start_page.samples, width, columns, 24);
     ImGui::End();
     if (!sample.empty()) open_sample(s, sample);
     if (!chosen.empty()) open_path(s, chosen);

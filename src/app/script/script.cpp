@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "app/panels/panels.h"
-#include "app/studio.h"
+#include "app/studio/studio.h"
 #include "core/text/units.h"
 #include "io/image/image.h"
 #include "render/gl/gl_target.h"
@@ -103,7 +103,7 @@ void Script::hold(const std::string& chord, int line) {
 }
 
 void Script::stroke(Studio& studio, const ScriptCommand& command) {
-    const Area& area = studio.session().area;
+    const Area& area = studio.session().view.area;
     std::vector<Vec3> places;
     for (const ScriptPoint& p : command.points)
         places.emplace_back(p.relative_x ? area.x + p.x * area.width : p.x,
@@ -123,7 +123,7 @@ void Script::stroke(Studio& studio, const ScriptCommand& command) {
 }
 
 void Script::report(Studio& studio, double now) {
-    const double seconds = now - report_start_;
+    const double seconds = now - report_.start;
     std::vector<double> delays = studio.take_delays();
     std::sort(delays.begin(), delays.end());
     const auto at = [&](double q) {
@@ -143,17 +143,17 @@ void Script::report(Studio& studio, double now) {
         "\"peak_mb\": %.0f, "
         "\"quits\": %zu, \"azimuth_deg\": %.3f, \"elevation_deg\": %.3f, \"distance_mm\": %.3f, "
         "\"roll_deg\": %.3f, \"target_mm\": [%.3f, %.3f, %.3f]}\n",
-        report_frames_, seconds, static_cast<double>(report_frames_) / std::max(1e-9, seconds), at(0.5), at(0.95),
-        studio.samples(), studio.session().strokes.size(), 1e3 * studio.session().last.undo_seconds, now,
-        cpu - report_cpu_, static_cast<double>(usage.ru_maxrss) / 1024, quits_,
+        report_.frames, seconds, static_cast<double>(report_.frames) / std::max(1e-9, seconds), at(0.5), at(0.95),
+        studio.samples(), studio.session().journal.lines.size(), 1e3 * studio.session().reported.document.undo_seconds,
+        now, cpu - report_.cpu, static_cast<double>(usage.ru_maxrss) / 1024, quits_,
         studio.session().view.orbit.azimuth / kDegree, studio.session().view.orbit.elevation / kDegree,
         studio.session().view.orbit.distance / kMillimetre, studio.session().view.orbit.roll / kDegree,
         studio.session().view.orbit.target.x / kMillimetre, studio.session().view.orbit.target.y / kMillimetre,
         studio.session().view.orbit.target.z / kMillimetre);
-    report_cpu_ = cpu;
+    report_.cpu = cpu;
     std::fflush(stdout);
-    report_frames_ = 0;
-    report_start_ = now;
+    report_.frames = 0;
+    report_.start = now;
 }
 
 void Script::expect(Studio& studio, const ScriptCommand& c) const {
@@ -161,16 +161,16 @@ void Script::expect(Studio& studio, const ScriptCommand& c) const {
     const std::string& what = c.words[0];
     const std::string value = c.words.size() > 1 ? c.words[1] : "";
     if (what == "strokes") {
-        if (s.strokes.size() != static_cast<std::size_t>(std::atoi(value.c_str())))
-            fail(c, "there are " + std::to_string(s.strokes.size()) + " strokes, not " + value);
+        if (s.journal.lines.size() != static_cast<std::size_t>(std::atoi(value.c_str())))
+            fail(c, "there are " + std::to_string(s.journal.lines.size()) + " strokes, not " + value);
     } else if (what == "model" || what == "no-model") {
-        if ((s.painter != nullptr) != (what == "model"))
-            fail(c, s.painter ? "a model is open" : "no model is open: " + s.message);
+        if ((s.paint_thread != nullptr) != (what == "model"))
+            fail(c, s.paint_thread ? "a model is open" : "no model is open: " + s.status.text);
     } else if (what == "kept") {
-        if (!s.last.trouble.empty()) fail(c, s.last.trouble);
+        if (!s.reported.file.trouble.empty()) fail(c, s.reported.file.trouble);
     } else if (what == "message") {
-        if (s.message.find(value) == std::string::npos && s.last.trouble.find(value) == std::string::npos)
-            fail(c, "the message is '" + s.message + "'");
+        if (s.status.text.find(value) == std::string::npos && s.reported.file.trouble.find(value) == std::string::npos)
+            fail(c, "the message is '" + s.status.text + "'");
     } else if (what == "label") {
         if (!s.ui.find(value)) fail(c, "'" + value + "' is not on the screen");
     } else {
@@ -182,22 +182,22 @@ void Script::expect(Studio& studio, const ScriptCommand& c) const {
 bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     Session& s = studio.session();
     const std::string word = c.words.empty() ? "" : c.words[0];
-    if (waiting_since_ < 0) waiting_since_ = now;
-    const double waited = now - waiting_since_;
+    if (wait_.since < 0) wait_.since = now;
+    const double waited = now - wait_.since;
     if (c.name == "revise")
         revise_with(s, word);
     else if (c.name == "open")
         add({.kind = Event::Kind::drop, .text = word}, 0);
     else if (c.name == "wait-ready") {
         if (waited > (word.empty() ? kLongestWait : std::atof(word.c_str()))) fail(c, "waited too long");
-        return settled(s) && !s.model_is_new && waited > 0 && frames_ > 1;
+        return is_settled(s) && !s.view.model_changed && waited > 0 && frames_ > 1;
     } else if (c.name == "wait")
         return waited >= std::atof(word.c_str());
     else if (c.name == "move") {
         const ScriptPoint& p = c.points[0];
         add({.kind = Event::Kind::move,
-             .x = p.relative_x ? s.area.x + p.x * s.area.width : p.x,
-             .y = p.relative_y ? s.area.y + p.y * s.area.height : p.y,
+             .x = p.relative_x ? s.view.area.x + p.x * s.view.area.width : p.x,
+             .y = p.relative_y ? s.view.area.y + p.y * s.view.area.height : p.y,
              .pressure = p.pressure},
             sample_);
     } else if (c.name == "press" || c.name == "release") {
@@ -227,8 +227,8 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         if (!place && waited < kLabelWait) return false;
         if (!place) fail(c, "'" + word + "' is not on the screen");
         // Panels that are being laid out anew move: a place counts once it has stayed.
-        if (waited == 0 || place->x != last_place_.x || place->y != last_place_.y) {
-            last_place_ = {place->x, place->y};
+        if (waited == 0 || place->x != wait_.place.x || place->y != wait_.place.y) {
+            wait_.place = {place->x, place->y};
             return false;
         }
         click(place->x, place->y, c.name == "right-click" ? 1 : 0);
@@ -241,13 +241,13 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     else if (c.name == "save")
         save_as(s, word);
     else if (c.name == "export") {
-        if (s.painter) s.painter->post(export_command(s, word));
+        if (s.paint_thread) s.paint_thread->post(export_command(s.dialogs.export_settings, s.view.orbit, word));
     } else if (c.name == "close") {
         studio.finish();
-        s.recent = recent_projects();
-        s.lost = find_lost_work();
+        s.project.start_page.recent = recent_projects();
+        s.project.recovery.lost = find_lost_work();
     } else if (c.name == "screenshot")
-        picture_ = word;
+        wanted_.picture = word;
     else if (c.name == "expect") {
         if (word == "label" && !s.ui.find(c.words.back()) && waited < kLabelWait) return false;
         expect(studio, c);
@@ -259,9 +259,9 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
             return false;
         }
     } else if (c.name == "pace") {
-        paced_ = word == "on";
-        pace_start_ = now;
-        pace_from_ = clock_;
+        pace_.on = word == "on";
+        pace_.start = now;
+        pace_.from = clock_;
     } else if (c.name == "random") {
         if (!fuzzer_)
             fuzzer_.emplace(static_cast<std::size_t>(std::max(0, std::atoi(word.c_str()))),
@@ -271,9 +271,10 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         quits_ += fuzzer_->quits();
         fuzzer_.reset();
     } else if (c.name == "resize")
-        size_ = {std::clamp(std::atoi(word.c_str()), 320, 8192), std::clamp(std::atoi(c.words[1].c_str()), 240, 8192)};
+        wanted_.size = {std::clamp(std::atoi(word.c_str()), 320, 8192),
+                        std::clamp(std::atoi(c.words[1].c_str()), 240, 8192)};
     else if (c.name == "lose-graphics")
-        lose_ = true;
+        wanted_.loss = true;
     else if (c.name == "report")
         report(studio, now);
     else if (c.name == "names") {
@@ -282,34 +283,35 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         for (const std::string& name : s.ui.names())
             std::printf("%.1f %.1f %s\n", s.ui.find(name)->x, s.ui.find(name)->y, name.c_str());
     } else if (c.name == "quit")
-        leave(s, {});
+        request_close(s, {});
     return true;
 }
 
 void Script::before_frame(Studio& studio, EventQueue& events, double now) {
     const auto hand_out = [&] {
-        while (!pending_.empty() && !size_ && (!paced_ || pending_.front().time - pace_from_ <= now - pace_start_)) {
+        while (!pending_.empty() && !wanted_.size &&
+               (!pace_.on || pending_.front().time - pace_.from <= now - pace_.start)) {
             Event event = std::move(pending_.front());
             pending_.pop_front();
             if (event.kind == Event::Kind::resize) {
-                size_ = {static_cast<int>(event.x), static_cast<int>(event.y)};
+                wanted_.size = {static_cast<int>(event.x), static_cast<int>(event.y)};
                 continue;
             }
             // Delays are measured on the window's clock.
-            if (paced_) event.time += pace_start_ - pace_from_;
+            if (pace_.on) event.time += pace_.start - pace_.from;
             events.push_back(std::move(event));
         }
     };
     hand_out();
-    while (next_ < commands_.size() && pending_.empty() && events.empty() && picture_.empty()) {
+    while (next_ < commands_.size() && pending_.empty() && events.empty() && wanted_.picture.empty()) {
         const bool done = perform(studio, commands_[next_], now);
-        waiting_ = !done;
+        wait_.on = !done;
         if (!done) break;
         ++next_;
-        waiting_since_ = -1;
-        if (paced_ && !pending_.empty()) {
-            pace_start_ = now;
-            pace_from_ = pending_.front().time;
+        wait_.since = -1;
+        if (pace_.on && !pending_.empty()) {
+            pace_.start = now;
+            pace_.from = pending_.front().time;
         }
         hand_out();
         // What was done is seen before the next command looks.
@@ -318,18 +320,18 @@ void Script::before_frame(Studio& studio, EventQueue& events, double now) {
 }
 
 double Script::patience(const Studio& studio) const {
-    if (!pending_.empty() || !picture_.empty()) return paced_ ? 0.001 : 0;
-    return waiting_ ? std::min(0.02, studio.patience()) : 0;
+    if (!pending_.empty() || !wanted_.picture.empty()) return pace_.on ? 0.001 : 0;
+    return wait_.on ? std::min(0.02, studio.patience()) : 0;
 }
 
 void Script::after_frame(Studio& studio, int width, int height) {
     if (fuzzer_) fuzzer_->hold_back(studio);
     ++frames_;
-    ++report_frames_;
-    if (picture_.empty()) return;
+    ++report_.frames;
+    if (wanted_.picture.empty()) return;
     const std::vector<std::uint8_t> rgb = render::read_pixels(0, 0, width, height);
-    io::write_image(picture_, io::view_of(width, height, 3, rgb.data()));
-    picture_.clear();
+    io::write_image(wanted_.picture, io::view_of(width, height, 3, rgb.data()));
+    wanted_.picture.clear();
 }
 
 }  // namespace tuft::app

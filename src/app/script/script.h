@@ -45,12 +45,35 @@ class Script {
     /// Seconds that the next frame may wait: none while there is something to play.
     double patience(const Studio& studio) const;
     /// Whether the script wants the graphics to be lost now.
-    bool take_loss() { return std::exchange(lose_, false); }
+    bool take_loss() { return std::exchange(wanted_.loss, false); }
     /// The size in pixels that the script wants the window to have now.
-    std::optional<std::pair<int, int>> take_size() { return std::exchange(size_, std::nullopt); }
-    bool finished() const { return next_ >= commands_.size() && pending_.empty() && picture_.empty(); }
+    std::optional<std::pair<int, int>> take_size() { return std::exchange(wanted_.size, std::nullopt); }
+    bool finished() const { return next_ >= commands_.size() && pending_.empty() && wanted_.picture.empty(); }
 
   private:
+    /// Events come when their time has come.
+    struct Pace {
+        bool on = false;
+        double start = 0, from = 0;  ///< seconds, on the window's and on the script's clock
+    };
+    /// For what the last command needs.
+    struct Wait {
+        bool on = false;
+        double since = -1;
+        ScriptPoint place;  ///< of the label that a click needs
+    };
+    /// From who plays the script.
+    struct Wanted {
+        std::string picture;
+        bool loss = false;
+        std::optional<std::pair<int, int>> size;
+    };
+    /// As things were at the last report.
+    struct ReportStart {
+        std::size_t frames = 0;
+        double start = 0, cpu = 0;
+    };
+
     bool perform(Studio& studio, const ScriptCommand& command, double now);
     void expect(Studio& studio, const ScriptCommand& command) const;
     void stroke(Studio& studio, const ScriptCommand& command);
@@ -67,20 +90,15 @@ class Script {
     std::deque<Event> pending_;  ///< to be played, by time on the script's clock
     double sample_ = 0.004;      ///< seconds between two samples of a stroke
     double clock_ = 0;           ///< seconds, of the last event made
-    bool paced_ = false;         ///< events come when their time has come
-    double pace_start_ = 0, pace_from_ = 0;
-    double waiting_since_ = -1;
+    Pace pace_;
+    Wait wait_;
+    Wanted wanted_;
     Event cursor_;
-    unsigned held_ = 0;       ///< modifiers
-    ScriptPoint last_place_;  ///< of the label a click waits for
-    std::string picture_;
-    bool lose_ = false;
-    std::optional<std::pair<int, int>> size_;
+    unsigned held_ = 0;               ///< modifiers
     std::optional<UiFuzzer> fuzzer_;  ///< while `random` plays
     std::size_t quits_ = 0;           ///< times that it would have ended the program
-    bool waiting_ = false;            ///< the last command waits for something
-    std::size_t frames_ = 0, report_frames_ = 0;
-    double report_start_ = 0, report_cpu_ = 0;
+    std::size_t frames_ = 0;
+    ReportStart report_;
 };
 
 }  // namespace tuft::app

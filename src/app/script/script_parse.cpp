@@ -144,6 +144,7 @@ std::vector<ScriptCommand> parse_script(const std::filesystem::path& path) {
         const auto known = kCommands.find(c.name);
         if (known == kCommands.end()) {
             std::vector<std::string> names;
+            names.reserve(kCommands.size());
             for (const auto& [name, counts] : kCommands) names.push_back(name);
             const std::string near = nearest_name(c.name, names);
             throw Error(path.string(), number,

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <string>
 
-#include "app/studio.h"
+#include "app/studio/studio.h"
 
 namespace fs = std::filesystem;
 
@@ -122,7 +122,7 @@ void UiFuzzer::calm(std::vector<Event>& events) {
 
 // A movement of the hand over the middle of the view, with whatever tool is chosen.
 void UiFuzzer::draw(const Studio& studio, std::vector<Event>& events) {
-    const Area& area = studio.session().area;
+    const Area& area = studio.session().view.area;
     const auto place = [&](Event::Kind kind) {
         Event e = at_;
         e.kind = kind;
@@ -184,10 +184,10 @@ std::vector<Event> UiFuzzer::next(const Studio& studio) {
 
 void UiFuzzer::hold_back(Studio& studio) {
     Session& s = studio.session();
-    if (std::exchange(s.quit, false)) ++quits_;
-    if (!s.files.shown() || s.files.reads()) return;
-    const std::string there = fs::weakly_canonical(s.files.folder()).string() + "/";
-    if (!there.starts_with(home_.string() + "/")) s.files.close();
+    if (std::exchange(s.project.closing.quit, false)) ++quits_;
+    if (!s.dialogs.file.shown() || s.dialogs.file.reads()) return;
+    const std::string there = fs::weakly_canonical(s.dialogs.file.folder()).string() + "/";
+    if (!there.starts_with(home_.string() + "/")) s.dialogs.file.close();
 }
 
 }  // namespace tuft::app

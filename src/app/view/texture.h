@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -11,6 +12,12 @@
 #include "stroke/painting/painting.h"
 
 namespace tuft::app {
+
+/// Texels that changed, for the graphics card.
+struct TexelUpdate {
+    std::optional<render::MapPixels> pixels;  ///< the whole texture, older than the tiles
+    std::vector<render::TilePixels> tiles;
+};
 
 /// What the canvas looks like, kept up to date tile by tile: sRGB colour and the
 /// code of the height of its ink (`render::code_of_height`). Gutters are continued over the seams.

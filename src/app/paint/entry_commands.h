@@ -1,0 +1,15 @@
+#pragma once
+
+#include "app/paint/journal_editor.h"
+#include "app/work/commands.h"
+
+/// \file
+/// Commands that are one entry of the journal each.
+namespace tuft::app {
+
+void act_on_brush(PaintContext& context, JournalEditor& journal, const ActOnBrush& command);
+void fill_model(PaintContext& context, JournalEditor& journal, const FillModel& command);
+void change_layers(PaintContext& context, JournalEditor& journal, const ChangeLayers& command);
+void change_masks(PaintContext& context, JournalEditor& journal, const ChangeMasks& command);
+
+}  // namespace tuft::app

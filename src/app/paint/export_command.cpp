@@ -1,0 +1,114 @@
+#include "app/paint/export_command.h"
+
+#include "io/export/export.h"
+#include "io/export/export_maps.h"
+#include "io/image/image.h"
+#include "io/strokes/inkml.h"
+#include "render/picture/picture.h"
+#include "stroke/journal/journal_traces.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::app {
+namespace {
+
+// The base colour as the path says; NAME_normal and so on beside it.
+void export_maps(const ExportModel& command, const stroke::Document& painting, const ink::ComposeOptions& compose) {
+    std::vector<std::string> names{"base-colour"};
+    if (command.orm) names.emplace_back("roughness");
+    if (command.height) names.insert(names.end(), {"normal", "height"});
+    if (command.pigments && command.path.extension() == ".exr" && !painting.canvas().pigments().empty())
+        names.emplace_back("pigments");
+    io::write_together(command.path, [&](const fs::path& folder) {
+        for (const std::string& name : names) {
+            const std::string suffix = name == "base-colour" ? "" : "_" + name;
+            io::write_map(folder / (command.path.stem().string() + suffix + command.path.extension().string()), name,
+                          painting, compose, 16);
+        }
+    });
+}
+
+void export_strokes(PaintContext& context, const std::filesystem::path& path) {
+    const stroke::JournalTraces written = stroke::traces_of(context.work.document->journal().strokes());
+    if (written.traces.empty()) throw Error("There are no strokes to export yet.");
+    io::write_inkml(path, written.traces, path.stem().string());
+    context.outbox.report("Exported " + path.string() +
+                          (written.left_out > 0 ? "; changes of layers and masks are not in a stroke file" : ""));
+    context.publisher.publish();
+}
+
+void draw_pictures(PaintContext& context, const ExportModel& command, const stroke::Document& painting) {
+    const stroke::Model& m = painting.model();
+    const ink::Substrate& ground = painting.substrate();
+    const ink::AtlasMap<float> colour =
+        ink::compose_linear(painting.stack(), m.texels, ground, painting.compose_options());
+    render::Appearance look;
+    look.finish = ground.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
+    look.body_colour = Vec3f(ground.reflectance[0], ground.reflectance[1], ground.reflectance[2]);
+    look.maps.size = colour.size;
+    look.maps.corner_uvs = m.atlas.corner_uvs;
+    look.maps.base_colour =
+        std::span(reinterpret_cast<const Vec3f*>(colour.texels.data()), std::size_t{colour.size} * colour.size);
+    for (int i = 0; i < command.pictures; ++i) {
+        render::PictureOptions options;
+        options.width = command.picture_width;
+        options.height = command.picture_width * 9 / 16;
+        options.view.azimuth = command.azimuth;
+        options.view.elevation = command.elevation;
+        const ProgressFn shown = context.progress("Taking pictures");
+        options.progress = [&](std::string_view phase, double part) {
+            return shown(phase, (i + part) / command.pictures);
+        };
+        if (command.pictures > 1) options = render::turntable_frame(options, i, command.pictures);
+        const render::Image image = render::render_picture(*m.mesh, *m.query, look, options);
+        char number[16] = "";
+        if (command.pictures > 1) std::snprintf(number, sizeof number, "-%03d", i);
+        std::filesystem::path file = command.path;
+        file.replace_filename(command.path.stem().string() + number + ".picture.png");
+        io::write_image(file, io::view_of(image.width, image.height, 3, image.rgb.data()));
+    }
+}
+
+}  // namespace
+
+void export_model(PaintContext& context, const ExportModel& command) {
+    const stroke::Document* painting = context.work.document.get();
+    context.progress("Exporting")("", 0);
+    if (command.path.extension() == ".inkml") return export_strokes(context, command.path);
+    // At another size the strokes are painted anew beside what is there.
+    std::unique_ptr<stroke::Model> model;
+    std::unique_ptr<stroke::Document> resized;
+    if (command.size && command.size != context.work.model->atlas.size) {
+        stroke::ModelOptions options;
+        options.unwrap.size = command.size;
+        options.progress = context.progress("Exporting");
+        model = std::make_unique<stroke::Model>(stroke::rescale_model(
+            stroke::prepare_model(*context.work.model->mesh, context.work.model->atlas, options.progress), options));
+        resized = std::make_unique<stroke::Document>(*model);
+        context.take_presets(*resized, {});
+        resized->replay(context.work.document->journal().strokes(), context.progress("Exporting"));
+        painting = resized.get();
+    }
+    const stroke::Model& m = painting->model();
+    ink::ComposeOptions compose = painting->compose_options();
+    compose.progress = context.progress("Exporting");
+    if (const fs::path e = command.path.extension(); e == ".png" || e == ".exr") {
+        export_maps(command, *painting, compose);
+        if (command.pictures > 0) draw_pictures(context, command, *painting);
+        context.outbox.report("Exported " + command.path.string());
+        return context.publisher.publish();
+    }
+    io::ModelMaps maps = io::make_maps(painting->stack(), m.texels, painting->substrate(), compose);
+    if (!command.height) maps.height = {};
+    if (!command.orm) maps.orm = {};
+    const std::vector<std::string> notes =
+        io::export_model(command.path, *m.mesh, m.atlas, maps,
+                         {.frame = context.work.frame,
+                          .painted = io::painted_parts(painting->stack(), *m.mesh, m.atlas, m.texels),
+                          .progress = context.progress("Exporting")});
+    if (command.pictures > 0) draw_pictures(context, command, *painting);
+    context.outbox.report("Exported " + command.path.string() + (notes.empty() ? "" : "; " + notes.front()));
+    context.publisher.publish();
+}
+
+}  // namespace tuft::app

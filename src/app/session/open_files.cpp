@@ -1,0 +1,76 @@
+#include "app/session/open_files.h"
+
+#include <algorithm>
+
+#include "core/system/files.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::app {
+
+void open_writing(Session& s, const fs::path& path) {
+    if (!s.paint_thread) return show_message(s.status, "Open a model first; then the writing can be placed on it.");
+    try {
+        show_message(s.status, "");
+        s.tools.writing = read_writing(path);
+        std::string lost;
+        for (const std::string& note : s.tools.writing.notes) lost += (lost.empty() ? "" : "; ") + note;
+        if (!lost.empty()) show_message(s.status, path.filename().string() + ": " + lost);
+        s.tools.active = Tool::writing;
+        const double size = s.paint_thread->model().mesh->bounds.diagonal();
+        // A drawing far too large or small for the model comes at a third of it.
+        const double own = std::max(s.tools.writing.width, s.tools.writing.height);
+        if (own > 0 && (own > size || own < 0.02 * size)) s.tools.writing.scale = 0.33 * size / own;
+    } catch (const Error& error) {
+        show_message(s.status, error.what());
+    }
+}
+
+void open_ink(PaintThread* work, StatusMessage& status, const fs::path& path) {
+    if (!work) return show_message(status, "Open a model first.");
+    try {
+        ink::Ink ink = ink::load_ink(path.string());
+        if (ink.name.empty()) ink.name = path.stem().string();
+        work->post(TakeInk{std::move(ink)});
+    } catch (const Error& error) {
+        show_message(status, error.what());
+    }
+}
+
+void save_ink(const ColourState& colours, const std::string& name, StatusMessage& status, const fs::path& path) {
+    const ink::Ink* ink = find_ink(colours, name);
+    if (!ink) return;
+    ink::Ink named = *ink;
+    named.name = path.stem().string();
+    try {
+        const std::string text = ink::ink_toml(named);
+        write_file(path, text.data(), text.size());
+        show_message(status, "Saved as " + path.string());
+    } catch (const Error& error) {
+        show_message(status, error.what());
+    }
+}
+
+void pin_reference(References& all, PaintThread* work, StatusMessage& status, const fs::path& path) {
+    if (!work) return show_message(status, "Open a model first; then images can be pinned beside it.");
+    try {
+        ReferenceImage image = read_reference(path);
+        if (all.images.size() >= io::kMostAttachments)
+            return show_message(status, "There are as many images as a project can hold; take one off first.");
+        const auto same = std::find_if(all.images.begin(), all.images.end(),
+                                       [&](const ReferenceImage& r) { return r.id == image.id; });
+        if (same != all.images.end()) {
+            same->shown = true;
+            return show_message(status, "This image is pinned already.");
+        }
+        const double step = 0.04 * static_cast<double>(all.images.size() % 6);
+        image.at += Vec2(step);
+        all.hidden = false;
+        work->post(AttachToProject{io::kReferences, to_attachment(image)});
+        all.images.push_back(std::move(image));
+    } catch (const Error& error) {
+        show_message(status, error.what());
+    }
+}
+
+}  // namespace tuft::app

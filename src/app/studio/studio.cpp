@@ -1,0 +1,288 @@
+#include "app/studio/studio.h"
+
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/input/imgui_feed.h"
+#include "app/panels/panels.h"
+#include "app/session/top_dialog.h"
+#include "app/studio/set_by_name.h"
+#include "app/studio/uploads.h"
+#include "app/tools/aim.h"
+#include "app/tools/atlas_input.h"
+#include "brush/preset/preset.h"
+#include "core/system/files.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::app {
+namespace {
+
+constexpr double kTurnPause = 0.25;  // seconds without a turn of the wheel after which the view is still
+constexpr double kStill = 0.4;       // seconds without a turn after which the layers' pictures are drawn anew
+constexpr double kStillAfter = 0.4;  // seconds after the last event
+constexpr double kProgressEvery = 0.05, kInkEvery = 0.008, kStillEvery = 0.015;  // seconds between frames
+// Seconds, and part of a frame's time, that the newest ink is waited for.
+constexpr double kInkWait = 0.02, kInkPart = 0.2;
+constexpr float kLeastView = 240;   // pixels at scale 1, of the model's view beside both panels
+constexpr double kPictureWait = 3;  // seconds that leaving waits at most for the newest ink on it
+
+}  // namespace
+
+Studio::Studio() : scene_(session_), input_(session_, scene_.comparison()), picture_(session_) {
+    Session& s = session_;
+    s.brush.presets = brush::list_presets();
+    s.colours.shipped = ink::list_inks();
+    s.colours.substrates = ink::list_substrates();
+    std::error_code ec;
+    for (const auto& entry : fs::directory_iterator(data_folder() / "models", ec))
+        if (entry.path().extension() == ".ply") s.project.start_page.samples.push_back(entry.path());
+    std::sort(s.project.start_page.samples.begin(), s.project.start_page.samples.end());
+    s.project.start_page.recent = recent_projects();
+    s.project.recovery.lost = find_lost_work();
+    load_colours(s.colours.choice);
+    load_settings(s);
+    if (const std::string missing = s.ui.prepare(s.preferences.ui); !missing.empty()) show_message(s.status, missing);
+}
+
+Studio::~Studio() {
+    finish();
+    session_.project.start_page.pictures.release();
+}
+
+void Studio::set(const std::string& name, const std::string& value) {
+    if (name == "draw-every")
+        draw_every_ = static_cast<std::size_t>(std::clamp(number_of(value), 1.0, 1000.0));
+    else
+        set_by_name(session_, name, value);
+}
+
+void Studio::drop_graphics() {
+    scene_.drop_graphics();
+    for (ReferenceImage& image : session_.view.references.images) image.texture = 0;
+    session_.journal.snapshots.texture = 0;
+    session_.project.start_page.pictures.release();
+}
+
+void Studio::make_graphics() {
+    Session& s = session_;
+    s.colours.palette.texture = 0;
+    s.colours.palette.fresh = true;
+    s.layers.list.textures.clear();
+    for (const auto& [layer, picture] : s.layers.list.pictures) s.layers.list.fresh.insert(layer);
+    scene_.make_graphics();
+    show_message(s.status, "The graphics driver was reset; the picture was made anew, and no stroke is lost.");
+}
+
+void Studio::finish() {
+    Session& s = session_;
+    input_.stroke().lift(now_);
+    if (s.paint_thread && picture_.outdated()) {
+        s.paint_thread->wait_idle(kPictureWait);
+        poll_paint_thread(s);
+        take_work();
+        scene_.draw(framebuffer_, height_, false);
+        picture_.store(now_, true);
+    }
+    close_model(s);
+}
+
+double Studio::patience() const {
+    const Session& s = session_;
+    const bool moves = input_.stroke().drawing() || input_.turning();
+    if (s.view.model_changed || !s.view.texels.tiles.empty() || s.preferences.restyle || moves) return 0;
+    if (s.project.opening.running() || !s.reported.progress.busy.empty()) return kProgressEvery;
+    if (!is_settled(s)) return kInkEvery;
+    if (now_ - last_event_ < kStillAfter) return kStillEvery;
+    return s.project.start_page.pictures.busy() ? 0.1 : 0.5;
+}
+
+void Studio::layout(int width, int height) {
+    Session& s = session_;
+    const float top = ImGui::GetFrameHeight() + s.ui.px(4);
+    // Where there is no room for both, the model is worth more than the list.
+    const int strip = static_cast<int>(s.ui.px(kStripWidth));
+    const int beside = static_cast<int>(s.ui.px(kToolWidth)), whole = static_cast<int>(s.ui.px(kJournalWidth));
+    s.panels.journal_fits = static_cast<float>(width - strip - beside - whole) >= s.ui.px(kLeastView);
+    const int tools = strip + (s.panels.show_tools || s.panels.show_appearance ||
+                                       (!s.panels.journal_fits && s.panels.journal_over_tools)
+                                   ? beside
+                                   : 0);
+    const int journal = s.panels.journal_fits && s.panels.show_journal ? whole : 0;
+    const int left = s.preferences.ui.left_handed ? journal : tools;
+    s.view.area = {left, static_cast<int>(top), std::max(16, width - tools - journal),
+                   std::max(16, height - static_cast<int>(top) - static_cast<int>(s.ui.px(kStatusHeight)))};
+    s.view.atlas.area = {};
+    scene_.comparison().layout();
+    if (!s.view.atlas.shown || !s.paint_thread || scene_.comparison().on()) return;
+    s.view.atlas.area = s.view.area;
+    s.view.area.width /= 2;
+    s.view.atlas.area.x += s.view.area.width + 1;
+    s.view.atlas.area.width -= s.view.area.width + 1;
+}
+
+void Studio::draw_panels() {
+    Session& s = session_;
+    menu_bar(s);
+    s.ui.modal = is_dialog_open(s);
+    ImGui::BeginDisabled(s.ui.modal);
+    if (s.paint_thread)
+        draw_side_panels();
+    else
+        welcome(s);
+    ImGui::EndDisabled();
+    draw_dialogs();
+}
+
+void Studio::draw_side_panels() {
+    Session& s = session_;
+    const auto top = static_cast<float>(s.view.area.y), bottom = static_cast<float>(s.view.area.y + s.view.area.height);
+    const auto right = static_cast<float>(s.view.atlas.shown ? s.view.atlas.area.x + s.view.atlas.area.width
+                                                             : s.view.area.x + s.view.area.width);
+    const bool swapped = !s.panels.journal_fits && s.panels.journal_over_tools && !s.panels.show_appearance;
+    const float strip = s.ui.px(kStripWidth), screen = ImGui::GetIO().DisplaySize.x;
+    tool_strip(s, top, bottom, s.preferences.ui.left_handed ? screen - strip : 0);
+    if (s.panels.show_appearance || s.panels.show_tools || swapped)
+        (s.panels.show_appearance ? colours_panel
+         : swapped                ? journal_panel
+                                  : tool_panel)(s, top, bottom, s.preferences.ui.left_handed ? right : strip);
+    if (s.panels.journal_fits && s.panels.show_journal)
+        journal_panel(s, top, bottom, s.preferences.ui.left_handed ? 0 : right);
+    status_bar(s, bottom);
+    panel_handles(s);
+    tuft_inset(s);
+    upload_palette(s.colours.palette);
+    palette_panel(s);
+    const bool still = !input_.stroke().drawing() && !input_.turned_within(kStill, now_);
+    upload_thumbnails(s, still);
+    colour_panel(s);
+    references_over_view(s);
+    swipe_line(s);
+    comparison_bar(s);
+    guide(s);
+    view_marks(s, camera_of(s));
+    atlas_marks(s.ui, s.view.atlas, *s.paint_thread, atlas_cursor(s, input_.cursor()));
+}
+
+void Studio::draw_dialogs() {
+    Session& s = session_;
+    if (s.project.opening.running())
+        opening_progress(s);
+    else if (s.project.closing.request)
+        unsaved_work_dialog(s);
+    else if (s.project.in_use)
+        in_use_dialog(s);
+    else if (s.project.inspected)
+        open_dialog(s);
+    else if (!s.project.recovery.lost.empty() && !s.paint_thread)
+        recovery_dialog(s);
+    export_dialog(s);
+    settings_dialog(s);
+    manual_dialog(s.ui, s.panels.help, s.dialogs, s.preferences.keys);
+    keys_dialog(s);
+    about_dialog(s.ui, s.dialogs);
+    mismatch_dialog(s);
+    if (const auto path = s.dialogs.file.draw(s.ui, s.project.start_page.pictures)) take_file(*path);
+}
+
+// What was chosen in the file dialog.
+void Studio::take_file(const fs::path& path) {
+    Session& s = session_;
+    switch (s.dialogs.file.purpose()) {
+        case FileDialog::Purpose::open:
+            return open_path(s, path);
+        case FileDialog::Purpose::save:
+            return save_as(s, path);
+        case FileDialog::Purpose::revise:
+            return revise_with(s, path);
+        case FileDialog::Purpose::writing:
+            return open_writing(s, path);
+        case FileDialog::Purpose::reference:
+            return pin_reference(s.view.references, s.paint_thread.get(), s.status, path);
+        case FileDialog::Purpose::ink:
+            return open_ink(s.paint_thread.get(), s.status, path);
+        case FileDialog::Purpose::save_ink:
+            return save_ink(s.colours, s.brush.ink, s.status, path);
+        case FileDialog::Purpose::export_model:
+            if (s.paint_thread) s.paint_thread->post(export_command(s.dialogs.export_settings, s.view.orbit, path));
+    }
+}
+
+// What the paint thread has for the picture.
+void Studio::take_work() {
+    Session& s = session_;
+    if (s.view.model_changed) {
+        input_.drop();
+        s.layers.list.seen_from.reset();
+        scene_.take_model();
+        picture_.reset();
+    }
+    scene_.take_texels();
+    picture_.watch(now_);
+}
+
+// While the hand draws, the ink of its newest samples shall be in this frame and not in the next:
+// the paint thread gets a part of the time that a frame takes, if it keeps up at all.
+void Studio::await_ink(double since_last) {
+    Session& s = session_;
+    s.paint_thread->wait_idle(std::min(kInkWait, kInkPart * since_last));
+    poll_paint_thread(s);
+    take_work();
+}
+
+void Studio::restyle(int width, int height) {
+    Session& s = session_;
+    Preferences& p = s.preferences;
+    if (const float scale = scale_for(content_scale_, width, height); !p.ui.own_scale && p.ui.scale != scale) {
+        p.ui.scale = scale;
+        p.restyle = true;
+    }
+    if (std::exchange(s.ui.sections_changed, false)) store_settings(s);
+    if (!std::exchange(p.restyle, false)) return;
+    if (const std::string missing = s.ui.prepare(p.ui); !missing.empty()) show_message(s.status, missing);
+    if (p.ui.language != s.ui.settings().language) {  // there is no font for it
+        p.ui.language = s.ui.settings().language;
+        store_settings(s);
+    }
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffer, double now) {
+    Session& s = session_;
+    const double dt = std::max(1e-3, now - now_);
+    now_ = now;
+    framebuffer_ = framebuffer;
+    height_ = height;
+    restyle(width, height);
+    poll_session(s);
+    if (!queue.empty()) last_event_ = now;
+    const std::vector<Event> events = feed_imgui(queue, width, height, dt);
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui::NewFrame();
+    s.ui.begin_frame();
+    layout(width, height);
+    if (s.paint_thread) take_work();
+    const bool keeps_up = s.paint_thread && s.paint_thread->idle();
+    for (const Event& event : events) input_.handle(event, now);
+    if (s.paint_thread && input_.stroke().drawing() && keeps_up && !events.empty()) await_ink(dt);
+    if (s.paint_thread) {
+        input_.watch();
+        scene_.update_tuft(input_.turning() ? nullptr : input_.cursor(), now);
+    }
+    draw_panels();
+    s.ui.enter = false;
+    if (++frames_ % draw_every_ != 0) return ImGui::EndFrame();
+    scene_.draw(framebuffer, height, input_.turned_within(kTurnPause, now));
+    picture_.store(now);
+    ImGui::Render();
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, width, height);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,322 @@
+#include "app/studio/studio_input.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "app/session/open_close.h"
+#include "app/session/settings_file.h"
+#include "app/session/top_dialog.h"
+#include "app/tools/aim.h"
+#include "app/tools/atlas_input.h"
+#include "app/tools/model_clicks.h"
+#include "app/tools/palette_input.h"
+#include "brush/preset/preset.h"
+
+namespace tuft::app {
+namespace {
+
+constexpr double kTurnPixels = 1.0;
+
+}  // namespace
+
+StudioInput::StudioInput(Session& session, const Comparison& comparison)
+    : session_(session),
+      comparison_(comparison),
+      stroke_(session, tip_lag_),
+      curve_(session, tip_lag_),
+      writing_(session) {
+    cursor_.x = cursor_.y = -1;
+}
+
+void StudioInput::drop() {
+    stroke_.drop();
+    curve_.drop();
+}
+
+void StudioInput::watch() {
+    curve_.watch(cursor());
+    writing_.watch(cursor());
+}
+
+void StudioInput::handle(const Event& e, double now) {
+    Session& s = session_;
+    now_ = now;
+    switch (e.kind) {
+        case Event::Kind::drop:
+            open_path(s, e.text);
+            return;
+        case Event::Kind::key_down:
+            key(e);
+            return;
+        case Event::Kind::press:
+            press(e);
+            break;
+        case Event::Kind::move:
+            move(e);
+            break;
+        case Event::Kind::release:
+            release(e);
+            break;
+        case Event::Kind::fly:
+            fly(e);
+            return;
+        case Event::Kind::cap_button:
+            s.preferences.space_mouse.seen = true;
+            if (s.paint_thread && !is_dialog_open(s)) perform(e.button == 0 ? Act::frame_all : Act::frame_cursor);
+            return;
+        case Event::Kind::hover_end:
+            inside_ = false;
+            return;
+        case Event::Kind::scroll:
+            scroll(e);
+            return;
+        default:
+            return;
+    }
+    if (e.pressure >= 0) s.tools.pen_pressure = e.pressure;
+    cursor_ = e;
+    inside_ = !ImGui::GetIO().WantCaptureMouse && e.x >= s.view.area.x && e.y >= s.view.area.y &&
+              e.x < s.view.area.x + s.view.area.width && e.y < s.view.area.y + s.view.area.height;
+}
+
+void StudioInput::scroll(const Event& e) {
+    Session& s = session_;
+    if (!s.paint_thread || ImGui::GetIO().WantCaptureMouse) return;
+    if (in_atlas(s.view.atlas, e)) return zoom_atlas(s.view.atlas, e);
+    if (s.tools.curve.over >= 0) return curve_.wheel(e, now_);
+    if (s.tools.active == Tool::writing && !s.tools.writing.empty() && !(e.modifiers & (kAlt | kControl)))
+        return writing_.wheel(e);
+    last_turn_ = now_;
+    Orbit& orbit = s.view.orbit;
+    if (e.modifiers & kControl) {
+        orbit.roll += 0.06 * e.steps;
+        return;
+    }
+    const auto hit = aim_at(*s.paint_thread->model().query, aim_of(s, e));
+    orbit.zoom(e.steps, hit ? hit->position : orbit.target);
+}
+
+// The view may turn while the hand paints: the stroke goes on under the cursor, as on a banding wheel.
+void StudioInput::fly(const Event& e) {
+    Session& s = session_;
+    s.preferences.space_mouse.seen = true;
+    if (!s.paint_thread || is_dialog_open(s)) return;
+    const double way =
+        s.preferences.space_mouse.moves_eye ? -s.preferences.space_mouse.speed : s.preferences.space_mouse.speed;
+    s.view.orbit.fly(way * e.push, way * e.twist, s.preferences.space_mouse.level);
+    last_turn_ = now_;
+    Event at = cursor_;
+    at.time = e.time;
+    stroke_.follow_view(at);
+}
+
+void StudioInput::press(const Event& e) {
+    Session& s = session_;
+    const bool over_palette = in_palette(s.colours.palette, e);
+    if (!ImGui::GetIO().WantCaptureMouse || over_palette) {
+        bring_in_colour(s.colours, s.brush.ink, s.paint_thread.get());
+        remember_brush(s.brush, s.paint_thread.get());
+    }
+    if (!s.paint_thread || is_dialog_open(s) || stroke_.drawing()) return;
+    if (over_palette) return stroke_.press_palette(e);
+    if (ImGui::GetIO().WantCaptureMouse || s.tools.curve.grabbed >= 0) return;
+    if (!press_view(e) && e.button == 0 && comparison_.on_work(e)) press_tool(e);
+}
+
+// Begins to turn or move what is seen; false where the press is none for that.
+bool StudioInput::press_view(const Event& e) {
+    Session& s = session_;
+    if (in_atlas(s.view.atlas, e)) {
+        if (e.button == 0)
+            look_at_uv(s, uv_at(s.view.atlas, e.x, e.y));
+        else
+            drag_ = Drag::atlas;
+        return true;
+    }
+    const bool shift = e.modifiers & kShift, control = e.modifiers & kControl, alt = e.modifiers & kAlt;
+    if (s.preferences.keymap == Keymap::maya && alt)
+        drag_ = e.button == 0 ? Drag::turn : e.button == 2 ? Drag::pan : Drag::zoom;
+    else if ((e.button == 0 && alt) || (e.button != 0 && s.preferences.keymap == Keymap::blender))
+        drag_ = shift ? Drag::pan : control ? Drag::zoom : Drag::turn;
+    return drag_ != Drag::none;
+}
+
+void StudioInput::press_tool(const Event& e) {
+    Session& s = session_;
+    if (press_move(s, e)) return;
+    const Tool tool = s.tools.active;
+    // Ink is shown as it is while one paints.
+    if (tool != Tool::mask && tool != Tool::pick) select_entries(s.journal, s.paint_thread.get(), {});
+    if (tool == Tool::writing) return writing_.place(cursor());
+    if (tool == Tool::pick) return press_pick(s, e);
+    if (tool == Tool::mask) return press_mask(s, e);
+    if (tool == Tool::fill) return press_fill(s, e);
+    s.brush.erases = tool == Tool::eraser || e.eraser;
+    if (tool == Tool::line || tool == Tool::curve) return curve_.press(e);
+    stroke_.press(e);
+}
+
+void StudioInput::move(const Event& e) {
+    Session& s = session_;
+    if (stroke_.drawing()) return stroke_.move(e);
+    if (s.tools.curve.grabbed >= 0) return curve_.drag(e);
+    if (!s.masks.lasso.empty()) return move_lasso(s, e);
+    if (s.journal.from) return drag_move(s, e);
+    const double dx = kTurnPixels * (e.x - cursor_.x), dy = kTurnPixels * (e.y - cursor_.y);
+    if (drag_ == Drag::atlas) {
+        const double side = s.view.atlas.zoom * std::min(s.view.atlas.area.width, s.view.atlas.area.height);
+        s.view.atlas.centre += Vec2(-(e.x - cursor_.x), e.y - cursor_.y) / side;
+    }
+    if (drag_ == Drag::turn)
+        s.view.orbit.turn(dx, dy);
+    else if (drag_ == Drag::pan)
+        s.view.orbit.pan(dx, dy, std::min(s.view.area.width, s.view.area.height));
+    else if (drag_ == Drag::zoom)
+        s.view.orbit.zoom(0.03 * (dx - dy), s.view.orbit.target);
+}
+
+void StudioInput::release(const Event& e) {
+    Session& s = session_;
+    if (e.button == 0) {
+        if (stroke_.drawing()) stroke_.release(e);
+        if (!s.masks.lasso.empty()) release_lasso(s);
+        if (s.journal.from) release_move(s, e);
+        if (s.tools.curve.grabbed >= 0) curve_.release(e, now_);
+    }
+    drag_ = Drag::none;
+}
+
+void StudioInput::key(const Event& e) {
+    Session& s = session_;
+    const bool escape = e.key == GLFW_KEY_ESCAPE;
+    if (ImGui::GetIO().WantTextInput && !escape) return;
+    if (escape && stroke_.drawing()) return stroke_.cancel();
+    if (stroke_.drawing()) return;
+    if (escape && !s.masks.lasso.empty()) return s.masks.lasso.clear();
+    if (escape && close_top_dialog(s)) return;
+    if (ImGui::GetIO().WantTextInput) return;
+    if ((e.key == GLFW_KEY_ENTER || e.key == GLFW_KEY_KP_ENTER) && !s.dialogs.key_to_assign && is_dialog_open(s)) {
+        s.ui.enter = true;
+        return;
+    }
+    if (s.dialogs.key_to_assign) return assign_key(e);
+    if (s.paint_thread && !is_dialog_open(s) && curve_.key(e, now_)) return;
+    if (s.paint_thread && !is_dialog_open(s) && e.key == GLFW_KEY_F2) {
+        s.layers.list.renamed = s.layers.active;
+        s.layers.list.focus = true;
+        return;
+    }
+    if (const auto act = s.preferences.keys.find({e.key, e.modifiers & (kShift | kControl | kAlt)})) perform(*act);
+}
+
+void StudioInput::assign_key(const Event& e) {
+    Session& s = session_;
+    const bool modifier = e.key >= GLFW_KEY_LEFT_SHIFT && e.key <= GLFW_KEY_RIGHT_SUPER;
+    if (modifier || name_of(Chord{e.key, e.modifiers}).empty()) return;
+    if (const auto other = s.preferences.keys.assign(*s.dialogs.key_to_assign, {e.key, e.modifiers}))
+        show_message(s.status, std::string(s.ui.tr(title_of(*other))) + s.ui.tr(" has no key now."));
+    s.dialogs.key_to_assign.reset();
+    store_settings(s);
+}
+
+void StudioInput::perform(Act act) {
+    Session& s = session_;
+    if (act == Act::open) return s.dialogs.file.show(FileDialog::Purpose::open, {});
+    if (act == Act::quit) request_close(s, {});
+    if (act == Act::keys) s.dialogs.show_keys = !s.dialogs.show_keys;
+    if (!s.paint_thread || is_dialog_open(s) || perform_view(act) || perform_tool(act)) return;
+    switch (act) {
+        case Act::undo:
+            s.paint_thread->post(UndoStroke{});
+            break;
+        case Act::redo:
+            s.paint_thread->post(RedoStroke{});
+            break;
+        case Act::delete_stroke:
+            if (!s.journal.selected.empty())
+                s.paint_thread->post(
+                    EditStrokes{.ids = {s.journal.selected.begin(), s.journal.selected.end()}, .remove = true});
+            break;
+        case Act::save:
+            s.dialogs.file.show(FileDialog::Purpose::save,
+                                project_name(s.paint_thread.get(), s.reported.file.project) + ".tuft");
+            break;
+        case Act::export_to:
+            s.dialogs.show_export = true;
+            break;
+        case Act::palette:
+            show_palette(s.colours.palette, s.brush, s.status, !s.colours.palette.shown);
+            break;
+        case Act::panels:
+            fold_panels(s);
+            break;
+        default:
+            break;
+    }
+}
+
+// What changes how the model is seen; false for other acts.
+bool StudioInput::perform_view(Act act) {
+    static constexpr std::pair<Act, StandardView> kViews[] = {
+        {Act::front, StandardView::front}, {Act::back, StandardView::back}, {Act::right, StandardView::right},
+        {Act::left, StandardView::left},   {Act::top, StandardView::top},   {Act::bottom, StandardView::bottom}};
+    Session& s = session_;
+    ViewState& view = s.view;
+    for (const auto& [key, standard] : kViews)
+        if (act == key) return view.orbit.look_from(standard), true;
+    if (act == Act::frame_all)
+        view.orbit.frame(s.paint_thread->model().mesh->bounds);
+    else if (act == Act::frame_cursor) {
+        if (const auto hit = aim_at(*s.paint_thread->model().query, aim_of(s, cursor_)))
+            view.orbit.target = hit->position;
+    } else if (act == Act::parallel)
+        view.orbit.set_parallel(!view.orbit.parallel);
+    else if (act == Act::atlas)
+        view.atlas.shown = !view.atlas.shown;
+    else if (act == Act::see_through)
+        view.see_through = !view.see_through;
+    else if (act == Act::next_shading)
+        view.shading = static_cast<ModelView>((static_cast<int>(view.shading) + 1) % kModelViews);
+    else
+        return false;
+    return true;
+}
+
+// What chooses a tool or sets the brush; false for other acts.
+bool StudioInput::perform_tool(Act act) {
+    static constexpr std::pair<Act, Tool> kTools[] = {
+        {Act::brush, Tool::brush},   {Act::line, Tool::line}, {Act::curve, Tool::curve}, {Act::writing, Tool::writing},
+        {Act::eraser, Tool::eraser}, {Act::fill, Tool::fill}, {Act::pick, Tool::pick},   {Act::mask, Tool::mask}};
+    static constexpr std::tuple<Act, double, double> kLeans[] = {
+        {Act::lean_left, -1, 0}, {Act::lean_right, 1, 0}, {Act::lean_away, 0, 1}, {Act::lean_near, 0, -1}};
+    Session& s = session_;
+    PointerSettings& pointer = s.tools.pointer;
+    for (const auto& [key, tool] : kTools)
+        if (act == key) return s.tools.active = tool, true;
+    for (const auto& [key, x, y] : kLeans)
+        if (act == key)
+            return pointer.tilt = glm::clamp(pointer.tilt + Vec2(x, y) * 0.0872664626, -1.0471975512, 1.0471975512),
+                   true;
+    const double factor = brush::sized_name(s.brush.preset).factor;
+    if (act == Act::upright)
+        pointer.tilt = Vec2(0);
+    else if (act == Act::lighter)
+        pointer.pressure = std::max(0.02, pointer.pressure - 0.05);
+    else if (act == Act::heavier)
+        pointer.pressure = std::min(1.0, pointer.pressure + 0.05);
+    else if (act == Act::smaller)
+        size_brush(s.brush, s.status, factor / 1.1);
+    else if (act == Act::larger)
+        size_brush(s.brush, s.status, factor * 1.1);
+    else
+        return false;
+    return true;
+}
+
+}  // namespace tuft::app

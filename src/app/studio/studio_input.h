@@ -1,0 +1,60 @@
+#pragma once
+
+#include "app/input/events.h"
+#include "app/session/session.h"
+#include "app/studio/comparison.h"
+#include "app/tools/curve_tool.h"
+#include "app/tools/stroke_input.h"
+#include "app/tools/writing_tool.h"
+
+namespace tuft::app {
+
+/// What the window does with a person's events: painting, looking round, keys.
+class StudioInput {
+  public:
+    StudioInput(Session& session, const Comparison& comparison);
+
+    /// `now`: of the frame, seconds on the events' clock.
+    void handle(const Event& e, double now);
+    /// Brings what follows the cursor up to date.
+    void watch();
+    /// The model is another one: nothing is in the hand.
+    void drop();
+
+    StrokeInput& stroke() { return stroke_; }
+    const StrokeInput& stroke() const { return stroke_; }
+    /// The cursor over the model's view; null where it is not.
+    const Event* cursor() const { return inside_ ? &cursor_ : nullptr; }
+    bool turning() const { return drag_ != Drag::none; }
+    /// The view was turned less than so many seconds ago, or is.
+    bool turned_within(double seconds, double now) const { return turning() || now - last_turn_ < seconds; }
+
+  private:
+    enum class Drag { none, turn, pan, zoom, atlas };
+
+    void press(const Event& e);
+    bool press_view(const Event& e);
+    void press_tool(const Event& e);
+    void move(const Event& e);
+    void release(const Event& e);
+    void scroll(const Event& e);
+    void fly(const Event& e);
+    void key(const Event& e);
+    void assign_key(const Event& e);
+    void perform(Act act);
+    bool perform_view(Act act);
+    bool perform_tool(Act act);
+
+    Session& session_;
+    const Comparison& comparison_;
+    TipLagCache tip_lag_;
+    StrokeInput stroke_;
+    CurveTool curve_;
+    WritingTool writing_;
+    Event cursor_;
+    bool inside_ = false;  ///< the cursor is over the model's view
+    Drag drag_ = Drag::none;
+    double now_ = 0, last_turn_ = -1;
+};
+
+}  // namespace tuft::app

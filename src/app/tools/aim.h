@@ -1,0 +1,14 @@
+#pragma once
+
+#include "app/input/events.h"
+#include "app/input/pointer_input.h"
+#include "app/session/session.h"
+
+namespace tuft::app {
+
+/// The camera of the model's view; without a model that of a box of two metres.
+render::GlCamera camera_of(const Session& s);
+/// Where an event points over the open model.
+Aim aim_of(const Session& s, const Event& e);
+
+}  // namespace tuft::app

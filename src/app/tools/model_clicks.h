@@ -1,0 +1,20 @@
+#pragma once
+
+#include "app/input/events.h"
+#include "app/session/session.h"
+
+/// \file
+/// Tools that need a click or a drag over the model and do not paint: fill, eyedropper, masks, moving entries.
+namespace tuft::app {
+
+void press_fill(Session& s, const Event& e);
+void press_pick(Session& s, const Event& e);
+void press_mask(Session& s, const Event& e);
+void move_lasso(Session& s, const Event& e);
+void release_lasso(Session& s);
+/// Begins to move the selected entries; false where that was not asked for.
+bool press_move(Session& s, const Event& e);
+void drag_move(Session& s, const Event& e);
+void release_move(Session& s, const Event& e);
+
+}  // namespace tuft::app

@@ -1,0 +1,71 @@
+#include "app/view/tuft_solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "brush/tuft/tuft_surface.h"
+#include "core/ease.h"
+#include "ink/composite/composite.h"
+
+namespace tuft::app {
+namespace {
+
+const Vec3f kHair{0.21f, 0.14f, 0.085f}, kFerrule{0.32f, 0.22f, 0.11f}, kBamboo{0.42f, 0.30f, 0.15f};
+
+// A tube round the holder's axis between two heights above the ferrule's mouth.
+void add_tube(render::GlSolid& solid, const Vec3& mouth, const Vec3& up, double r0, double r1, double from, double to,
+              const Vec3f& colour) {
+    constexpr std::uint32_t sides = 24;
+    const Frame f = make_frame(mouth, up);
+    const auto base = static_cast<std::uint32_t>(solid.positions.size());
+    for (int ring = 0; ring < 2; ++ring)
+        for (std::uint32_t i = 0; i < sides; ++i) {
+            const double a = 2 * std::numbers::pi * i / sides;
+            const Vec3 out = std::cos(a) * f.t + std::sin(a) * f.b;
+            solid.positions.push_back(Vec3f(mouth + (ring ? r1 : r0) * out + (ring ? to : from) * up));
+            solid.normals.push_back(Vec3f(out));
+            solid.colours.push_back(colour);
+        }
+    for (std::uint32_t i = 0; i < sides; ++i) {
+        const std::uint32_t j = (i + 1) % sides;
+        for (const std::uint32_t v : {i, j, sides + j, i, sides + j, sides + i}) solid.triangles.push_back(base + v);
+    }
+}
+
+Vec3f linear_of(unsigned colour) {
+    Vec3f linear;
+    for (int c = 0; c < 3; ++c) linear[c] = ink::srgb_decode(static_cast<float>((colour >> (8 * c)) & 255) / 255);
+    return linear;
+}
+
+}  // namespace
+
+// Wet hair is dark: of the ink's light a part stays in it. The root keeps its own colour.
+Vec3f hair_colour(double from_tip, unsigned ink) {
+    const auto inked = static_cast<float>(1 - std::clamp((from_tip - 0.35) / 0.5, 0.0, 1.0));
+    return glm::mix(kHair, 0.85f * linear_of(ink), smooth_step(inked));
+}
+
+render::GlSolid solid_of(const brush::TuftState& tuft, unsigned ink) {
+    render::GlSolid solid;
+    if (tuft.branches.empty()) return solid;
+    const brush::TuftSurface skin = brush::make_tuft_surface(tuft);
+    const std::vector<brush::Section>& spine = tuft.branches.front().sections;
+    const double length = std::max(1e-6, glm::distance(spine.front().centre, spine.back().centre));
+    for (std::size_t i = 0; i < skin.positions.size(); ++i) {
+        solid.positions.push_back(Vec3f(skin.positions[i]));
+        solid.normals.push_back(Vec3f(skin.normals[i]));
+        const double from_root = glm::distance(skin.positions[i], spine.back().centre);
+        solid.colours.push_back(hair_colour(1 - from_root / length, ink));
+    }
+    solid.triangles = skin.triangles;
+    const brush::Section& root = tuft.branches.front().sections.back();
+    const double r = std::max(root.a, root.b);
+    const Vec3 up = -root.tangent;
+    add_tube(solid, root.centre, up, 1.06 * r, 1.12 * r, 0, 2.2 * r, kFerrule);
+    add_tube(solid, root.centre, up, 0.95 * r, 0.85 * r, 2.2 * r, 16 * r, kBamboo);
+    return solid;
+}
+
+}  // namespace tuft::app

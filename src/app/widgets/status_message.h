@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+namespace tuft::app {
+
+/// The line of text in the status bar.
+struct StatusMessage {
+    std::string text;
+    double seconds = 0;  ///< since it came
+};
+
+inline void show_message(StatusMessage& status, std::string text) {
+    status = {std::move(text), 0};
+}
+
+}  // namespace tuft::app

@@ -1,0 +1,59 @@
+#include "app/work/paint_context.h"
+
+#include <algorithm>
+
+namespace tuft::app {
+
+PaintContext::PaintContext(PaintWork open, Outbox& window)
+    : work(std::move(open)), outbox(window), publisher(work, history, window) {
+    work.document->take_dirty();
+    const std::vector<std::string> shipped = ink::list_inks();
+    for (const std::string& name : work.autosave.inks())
+        if (std::find(shipped.begin(), shipped.end(), name) == shipped.end())
+            own_inks.push_back(work.document->ink(name));
+    outbox.change([&](Update& update) { update.events.own_inks = own_inks; });
+    history.reset(work.document->journal().strokes().size());
+    publisher.publish_appearance();
+    publisher.publish_snapshots();
+    publisher.publish(true);
+}
+
+ProgressFn PaintContext::progress(const std::string& name) {
+    return [this, name](std::string_view, double fraction) {
+        outbox.show_progress(name, fraction);
+        return !stop.load();
+    };
+}
+
+std::uint32_t PaintContext::layer_of(std::uint32_t requested) const {
+    const stroke::LayerTable& table = work.document->layers();
+    if (requested != kNewestLayer) return requested;
+    return table.find(table.next_id - 1) ? table.next_id - 1 : table.layers.back().id;
+}
+
+void PaintContext::take_presets(stroke::Document& document, const std::vector<stroke::Stroke>& entries) {
+    stroke::Document& own = *work.document;
+    document.use_substrate(own.painted_on());
+    if (own.has_preview_substrate()) document.preview_substrate(own.substrate());
+    for (const ink::Ink& ink : own_inks) document.use_ink(ink);  // also those that no entry uses now
+    for (const std::vector<stroke::Stroke>* of : {&own.journal().strokes(), &entries})
+        for (const stroke::Stroke& s : *of) {
+            if (stroke::has_brush(s.action)) document.use_brush(own.brush(s.trace.brush));
+            if (!s.trace.ink.empty()) document.use_ink(own.ink(s.trace.ink));
+            for (const std::string& ink : stroke::inks_of(s)) document.use_ink(own.ink(ink));
+        }
+    for (const auto& [name, wanted] : own.recolours()) {
+        document.use_ink(own.ink(name));
+        document.recolour(name, wanted);
+    }
+}
+
+void PaintContext::replace_document(std::unique_ptr<stroke::Document> document) {
+    for (const stroke::LayerTexels& layer : work.document->canvases())
+        for (const std::uint32_t slot : layer.canvas->touched_slots()) document->canvas().mark_dirty(slot);
+    work.document = std::move(document);
+    publisher.forget_journal();
+    publisher.publish(true);
+}
+
+}  // namespace tuft::app

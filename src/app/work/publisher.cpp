@@ -1,0 +1,164 @@
+#include "app/work/publisher.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <set>
+
+#include "ink/composite/composite.h"
+#include "ink/spectra/kubelka_munk.h"
+#include "io/project/attachments.h"
+
+namespace tuft::app {
+namespace {
+
+constexpr double kPublishEvery = 0.012;  // seconds
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Publisher::Publisher(PaintWork& work, const EditHistory& history, Outbox& outbox)
+    : work_(work), history_(history), outbox_(outbox) {
+    if (!work_.document->palette()) return;
+    refresh(palette_, *work_.document);
+    outbox_.change([&](Update& update) { update.events.palette = palette_; });
+}
+
+void Publisher::publish(bool journal_changed) {
+    stroke::Document& document = *work_.document;
+    const std::vector<std::uint32_t> dirty = document.take_dirty();
+    thumbnails_.touch(dirty);
+    std::vector<render::TilePixels> tiles = work_.texture->refresh(dirty, document);
+    if (journal_changed) update_lines();
+    const std::vector<std::uint32_t> wells = document.take_palette_dirty();
+    if (!wells.empty()) refresh(palette_, document, wells);
+    if (journal_changed) update_brush_colour();
+    send_tiles(std::move(tiles));
+    const brush::TuftState* tuft = document.tuft();
+    const stroke::BrushInHand* held = document.held(brush_);
+    const Autosave& file = work_.autosave;
+    outbox_.change([&](Update& update) {
+        if (journal_changed) update.events.strokes = lines_;
+        if (!wells.empty()) update.events.palette = palette_;
+        PaintStatus& status = update.status;
+        status.document = {
+            .layers = document.layers(),
+            .masks = document.masks(),
+            .can_undo = !history_.done.empty() && !file.viewing(),
+            .can_redo = !history_.undone.empty(),
+            .wet = std::ranges::any_of(document.canvases(), [](const auto& layer) { return layer.canvas->wet(); }),
+            .undo_seconds = undo_seconds_};
+        status.brush = {.tuft = tuft ? *tuft : brush::TuftState{},
+                        .on_palette = tuft && on_palette_,
+                        .fullness = held ? held->reservoir.fullness() : 1,
+                        .colour = brush_colour_};
+        status.progress = {.done = done_};
+        status.file = {.project = file.path(),
+                       .trouble = file.trouble(),
+                       .unsaved = file.waiting(),
+                       .behind = file.behind(),
+                       .viewing = file.viewing()};
+    });
+    last_publish_ = now();
+}
+
+void Publisher::publish_if_due() {
+    if (now() - last_publish_ > kPublishEvery) publish();
+}
+
+// Entries that are still right stay; ids and order tell.
+void Publisher::update_lines() {
+    const auto& strokes = work_.document->journal().strokes();
+    std::size_t same = 0;
+    while (same < lines_.size() && same < strokes.size() && lines_[same].id == strokes[same].id &&
+           lines_[same].brush == strokes[same].trace.brush && lines_[same].ink == strokes[same].trace.ink &&
+           lines_[same].hidden == strokes[same].hidden && lines_[same].group == strokes[same].group)
+        ++same;
+    lines_.resize(same);
+    for (; same < strokes.size(); ++same) lines_.push_back(stroke_line(strokes[same]));
+}
+
+// The mixture in the brush last painted with, for its picture.
+void Publisher::update_brush_colour() {
+    brush_colour_.reset();
+    const stroke::BrushInHand* held = work_.document->held(brush_);
+    if (!held) return;
+    const std::vector<ink::Pigment>& pigments = work_.document->canvas().pigments();
+    const ink::Mix mix = held->reservoir.mix();
+    ink::Ink ink;
+    for (std::size_t p = 0; p < pigments.size(); ++p)
+        if (mix[p] > 0) ink.parts.push_back({pigments[p], static_cast<double>(mix[p])});
+    if (ink.parts.empty()) return;
+    const ink::Rgb linear = ink::colour_of_film(ink, {0.88f, 0.88f, 0.88f});
+    brush_colour_.emplace();
+    for (std::size_t c = 0; c < 3; ++c)
+        (*brush_colour_)[c] = static_cast<std::uint8_t>(std::lround(255 * ink::srgb_encode(linear[c])));
+}
+
+void Publisher::send_tiles(std::vector<render::TilePixels> tiles) {
+    std::set<std::uint32_t> fresh;
+    for (const render::TilePixels& tile : tiles) fresh.insert(tile.tile);
+    outbox_.change([&](Update& update) {
+        std::vector<render::TilePixels>& all = update.events.texels.tiles;
+        std::erase_if(all, [&](const render::TilePixels& t) { return fresh.contains(t.tile); });
+        all.insert(all.end(), std::make_move_iterator(tiles.begin()), std::make_move_iterator(tiles.end()));
+    });
+}
+
+void Publisher::send_texture() {
+    render::MapPixels pixels = work_.texture->pixels();
+    outbox_.change([&](Update& update) {
+        update.events.texels.pixels = std::move(pixels);
+        update.events.texels.tiles.clear();
+    });
+}
+
+void Publisher::publish_appearance() {
+    const stroke::Document& painting = *work_.document;
+    Appearance appearance{.recolours = painting.recolours(),
+                          .substrate = painting.substrate().name,
+                          .painted_on = painting.painted_on().name,
+                          .roughness = painting.substrate().roughness};
+    outbox_.change([&](Update& update) { update.events.appearance = std::move(appearance); });
+}
+
+void Publisher::publish_snapshots() {
+    std::vector<SnapshotLine> lines;
+    for (const io::Attachment& a : work_.autosave.attachments(io::kSnapshots)) lines.push_back(line_of(a));
+    outbox_.change([&](Update& update) { update.events.snapshots = std::move(lines); });
+}
+
+void Publisher::draw_thumbnails() {
+    stroke::Document& document = *work_.document;
+    if (document.in_stroke() || !thumbnails_.waiting(document)) return;
+    std::vector<Thumbnail> changed = thumbnails_.draw(document);
+    outbox_.change([&](Update& update) {
+        for (Thumbnail& picture : changed) {
+            std::vector<Thumbnail>& all = update.events.thumbnails;
+            std::erase_if(all, [&](const Thumbnail& t) { return t.layer == picture.layer; });
+            all.push_back(std::move(picture));
+        }
+    });
+}
+
+void Publisher::look_from(const render::GlCamera& camera) {
+    thumbnails_.look_from(*work_.model, camera);
+}
+
+void Publisher::forget_journal() {
+    lines_.clear();
+    if (palette_.rgb.empty()) return;
+    refresh(palette_, *work_.document);
+    outbox_.change([&](Update& update) { update.events.palette = palette_; });
+}
+
+void Publisher::set_brush(const std::string& name, bool on_palette) {
+    brush_ = name;
+    on_palette_ = on_palette;
+}
+
+}  // namespace tuft::app
