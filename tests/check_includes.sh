@@ -34,7 +34,7 @@ wall() {
 wall 'OpenMesh' 'mesh/*.cpp'
 wall 'CGAL' '*.cpp'
 wall 'embree3' '*.cpp'
-wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|pugixml' 'io/*.cpp'
+wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|pugixml|zlib|assimp' 'io/*.cpp'
 wall 'GL/|epoxy|EGL' 'render/*' 'app/*'
 wall 'GLFW|imgui' 'app/*'
 exit $bad

@@ -16,7 +16,10 @@
 #include "io/image.h"
 #include "io/inkml.h"
 #include "io/project.h"
+#include "io/read_3mf.h"
 #include "io/read_gltf.h"
+#include "io/read_import.h"
+#include "io/read_x3d.h"
 #include "io/svg.h"
 #include "mesh/repair.h"
 #include "promise.h"
@@ -184,6 +187,10 @@ constexpr Target kTargets[] = {
     {"obj", run_mesh<mesh::read_obj>, 3000, true},
     {"off", run_mesh<mesh::read_off>, 3000, true},
     {"gltf", run_mesh<io::read_gltf>, 1500, true},
+    {"fbx", run_mesh<io::read_fbx>, 300, false},  // a process for each
+    {"dae", run_mesh<io::read_dae>, 300, true},
+    {"3mf", run_mesh<io::read_3mf>, 1500, false},
+    {"x3d", run_mesh<io::read_x3d>, 1500, true},
     {"svg", run_svg, 1000, true},
     {"inkml", run_inkml, 2000, true},
     {"brush", run_brush, 3000, true},
