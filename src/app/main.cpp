@@ -14,9 +14,9 @@
 #include "app/script/script.h"
 #include "app/studio.h"
 #include "app/view/display.h"
-#include "core/build_facts.h"
-#include "core/manual.h"
-#include "io/read_model.h"
+#include "core/manual/manual.h"
+#include "core/system/build_facts.h"
+#include "io/model/read_model.h"
 
 namespace {
 

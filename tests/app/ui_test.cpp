@@ -17,7 +17,7 @@
 
 #include "app/panels/manual_text.h"
 #include "app/text/texts.h"
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 #include "ink/colour/pigments.h"
 #include "paths.h"
 
@@ -81,12 +81,13 @@ TEST(UiText, AllChineseTextsAreThereForWhatTheKeysAreCalled) {
 TEST(UiText, EveryTextOfThePanelsHasAChineseOne) {
     const std::regex shown(
         R"re((?:button|choice|toggle|slider|heading|section|menu_item|begin_menu|begin_dialog|fact|row|tr|note)\((?:s, )?"((?:[^"\\]|\\x..)*)")re");
-    const std::regex words("[a-z]{3}");
+    const std::regex words("[a-z]{3}"), joint(R"("\s*\n\s*")");
     std::size_t seen = 0;
     for (const auto& file : std::filesystem::recursive_directory_iterator(source_folder() + "/src/app")) {
         if (!file.is_regular_file()) continue;
         std::ifstream in(file.path());
-        const std::string text{std::istreambuf_iterator<char>(in), {}};
+        // Literals that go on in the next line are one text.
+        const std::string text = std::regex_replace(std::string{std::istreambuf_iterator<char>(in), {}}, joint, "");
         for (std::sregex_iterator it(text.begin(), text.end(), shown), end; it != end; ++it) {
             const std::string label = (*it)[1];
             if (!std::regex_search(label, words) || label.find('\\') != std::string::npos || label == "SpaceMouse" ||

@@ -164,7 +164,7 @@ TEST_F(BadInput, TextsNestedAHundredThousandDeep) {
         expect_refused("brush " + file, 1, "deep.toml:1");
         expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --ink " + file, 1, "deep.toml:1");
         expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --substrate " + file, 1, "deep.toml:1");
-        expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --habit " + file, 1, "deep.toml:1");
+        expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --bias " + file, 1, "deep.toml:1");
     }
     const std::string groups = repeated("<g>", kDeep) + repeated("</g>", kDeep);
     expect_refused("paint " + sheet() + " --strokes " +
@@ -261,7 +261,7 @@ TEST_F(BadInput, NumbersThatAreNoNumbers) {
 
 TEST_F(BadInput, ValuesThatAreEmpty) {
     for (const char* option : {"--ink", "--brush", "--layer", "--mask", "--substrate", "--project", "--export",
-                               "--preview", "--habit", "--film"})
+                               "--preview", "--bias", "--film"})
         expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " " + option + " ''", 2, option);
     expect_refused("inspect ''", 2, "FILE");
     expect_refused("layer " + path("p.tuft") + " add ''", 2, "NAME");

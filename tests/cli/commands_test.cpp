@@ -271,7 +271,7 @@ TEST_F(Commands, AHabitIsLearnedAndTakenBack) {
     write("meant.inkml", plain_pen(0, true, 0.5));
     write("written.inkml", plain_pen(-0.3, true, 0.4));
     const Ran learned =
-        tuft("habit " + path("meant.inkml") + " " + path("written.inkml") + " -o " + path("h.toml") + " --json");
+        tuft("bias " + path("meant.inkml") + " " + path("written.inkml") + " -o " + path("h.toml") + " --json");
     ASSERT_EQ(learned.status, 0) << learned.err;
     const json j = json::parse(learned.out);
     EXPECT_NEAR(j["pressure_ratio"].get<double>(), 1.25, 0.01);
@@ -283,10 +283,10 @@ TEST_F(Commands, AHabitIsLearnedAndTakenBack) {
         return json::parse(ran.out)["ink_mm3"].get<double>();
     };
     const double meant = ink_of("meant.inkml", ""), written = ink_of("written.inkml", "");
-    const double corrected = ink_of("written.inkml", "--habit " + path("h.toml"));
+    const double corrected = ink_of("written.inkml", "--bias " + path("h.toml"));
     EXPECT_LT(std::abs(corrected - meant), 0.2 * std::abs(written - meant));
     write("one.inkml", plain_pen(0, true).substr(0, plain_pen(0, true).find("</trace>")) + "</trace></ink>");
-    const Ran bad = tuft("habit " + path("one.inkml") + " " + path("written.inkml") + " -o " + path("x.toml"));
+    const Ran bad = tuft("bias " + path("one.inkml") + " " + path("written.inkml") + " -o " + path("x.toml"));
     EXPECT_EQ(bad.status, 1);
     EXPECT_EQ(std::count(bad.err.begin(), bad.err.end(), '\n'), 1) << bad.err;
     EXPECT_FALSE(std::filesystem::exists(path("x.toml")));

@@ -11,9 +11,9 @@
 #include "../atlas/analytic_surfaces.h"
 #include "core/random.h"
 #include "exact_geodesics.h"
-#include "mesh/exact_geodesics.h"
-#include "mesh/repair.h"
-#include "mesh/surface_query.h"
+#include "mesh/query/exact_geodesics.h"
+#include "mesh/query/surface_query.h"
+#include "mesh/repair/repair.h"
 #include "paths.h"
 #include "stage.h"
 

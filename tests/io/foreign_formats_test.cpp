@@ -7,11 +7,11 @@
 
 #include "atlas/atlas.h"
 #include "core/error.h"
-#include "core/files.h"
-#include "io/file_scene.h"
-#include "io/image.h"
-#include "io/read_model.h"
-#include "mesh/repair.h"
+#include "core/system/files.h"
+#include "io/image/image.h"
+#include "io/model/file_scene.h"
+#include "io/model/read_model.h"
+#include "mesh/repair/repair.h"
 #include "paths.h"
 
 /// FBX, DAE, 3MF and X3D. The box files of the fuzz corpus are one scene, written by Blender 3.4 (3MF by hand): a box

@@ -1,4 +1,4 @@
-#include "stroke/journal/fit.h"
+#include "stroke/painting/fit.h"
 
 #include <gtest/gtest.h>
 

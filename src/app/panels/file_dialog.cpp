@@ -15,8 +15,8 @@
 #include "app/document/state_folder.h"
 #include "app/document/writing.h"
 #include "core/error.h"
-#include "core/files.h"
-#include "io/read_model.h"
+#include "core/system/files.h"
+#include "io/model/read_model.h"
 
 namespace fs = std::filesystem;
 
