@@ -84,6 +84,65 @@ void bound(FileMaterial& m) {
     m.metallic = unit_or(m.metallic, 0);
 }
 
+/// Parts of one object and one material are one group, however many the file has.
+class Groups {
+  public:
+    Groups(const FileScene& scene, mesh::SoupBuilder& builder)
+        : scene_(scene), builder_(builder), group_of_(scene.parts.size(), kNone) {}
+
+    std::vector<mesh::ScenePart> parts;      ///< by group
+    std::vector<std::uint32_t> material_of;  ///< by group
+
+    std::uint32_t get(std::uint32_t index) {
+        if (group_of_[index] != kNone) return group_of_[index];
+        const FilePart& part = scene_.parts[index];
+        const std::string material = part.material == kNone ? "" : scene_.materials[part.material].name;
+        std::string name = part.object;
+        if (!material.empty() && material != name) name += (name.empty() ? "" : " / ") + material;
+        if (name.empty()) name = "part " + std::to_string(index + 1);
+        const std::uint32_t group = group_of_[index] = builder_.group(name, material);
+        if (group == parts.size()) {
+            parts.push_back({.object = to_utf8(part.object), .material = to_utf8(material)});
+            material_of.push_back(part.material);
+        }
+        return group;
+    }
+
+  private:
+    const FileScene& scene_;
+    mesh::SoupBuilder& builder_;
+    std::vector<std::uint32_t> group_of_;
+};
+
+void add_polygons(const FileScene& scene, mesh::SoupBuilder& builder, Groups& groups) {
+    std::size_t corner = 0;
+    for (std::size_t p = 0; p < scene.counts.size(); corner += scene.counts[p], ++p) {
+        const std::span corners(scene.corners.data() + corner, scene.counts[p]);
+        std::span<const Vec2f> uvs;
+        if (!scene.uvs.empty()) uvs = std::span(scene.uvs).subspan(corner, scene.counts[p]);
+        if (std::any_of(uvs.begin(), uvs.end(), [](const Vec2f& uv) { return std::isnan(uv.x) || std::isnan(uv.y); }))
+            uvs = {};
+        builder.add_polygon(corners, uvs, groups.get(scene.polygon_parts[p]), static_cast<long>(p) + 1);
+    }
+}
+
+void add_materials(mesh::PolygonSoup& soup, Groups& groups, Materials& materials) {
+    soup.material_names.clear();
+    soup.materials.clear();
+    for (const std::uint32_t m : groups.material_of) soup.materials.push_back(materials.colours(m));
+    SceneBuilder document;
+    std::map<std::uint32_t, std::int32_t> made;
+    for (std::size_t i = 0; i < groups.parts.size(); ++i) {
+        const std::uint32_t material = groups.material_of[i];
+        if (material == kNone) continue;
+        const auto [it, is_new] = made.try_emplace(material, -1);
+        if (is_new) it->second = document.add_material(materials.gltf(material, document));
+        groups.parts[i].own_material = it->second;
+    }
+    soup.scene = std::make_shared<mesh::SourceScene>(document.finish(std::move(groups.parts), "model"));
+    drop_plain_materials(soup);
+}
+
 }  // namespace
 
 mesh::PolygonSoup soup_of(FileScene&& scene, const fs::path& model) {
@@ -92,49 +151,11 @@ mesh::PolygonSoup soup_of(FileScene&& scene, const fs::path& model) {
     builder.soup.point_colours = std::move(scene.colours);
     builder.soup.warnings = std::move(scene.warnings);
     for (FileMaterial& m : scene.materials) bound(m);
-
-    // Parts of one object and one material are one group, however many the file has.
-    std::vector<std::uint32_t> group_of(scene.parts.size(), kNone), material_of;
-    std::vector<mesh::ScenePart> parts;
-    const auto group = [&](std::uint32_t index) {
-        if (group_of[index] != kNone) return group_of[index];
-        const FilePart& part = scene.parts[index];
-        const std::string material = part.material == kNone ? "" : scene.materials[part.material].name;
-        std::string name = part.object;
-        if (!material.empty() && material != name) name += (name.empty() ? "" : " / ") + material;
-        if (name.empty()) name = "part " + std::to_string(index + 1);
-        const std::uint32_t g = group_of[index] = builder.group(name, material);
-        if (g == parts.size()) {
-            parts.push_back({.object = to_utf8(part.object), .material = to_utf8(material)});
-            material_of.push_back(part.material);
-        }
-        return g;
-    };
-    std::size_t corner = 0;
-    for (std::size_t p = 0; p < scene.counts.size(); corner += scene.counts[p], ++p) {
-        const std::span corners(scene.corners.data() + corner, scene.counts[p]);
-        std::span<const Vec2f> uvs;
-        if (!scene.uvs.empty()) uvs = std::span(scene.uvs).subspan(corner, scene.counts[p]);
-        if (std::any_of(uvs.begin(), uvs.end(), [](const Vec2f& uv) { return std::isnan(uv.x) || std::isnan(uv.y); }))
-            uvs = {};
-        builder.add_polygon(corners, uvs, group(scene.polygon_parts[p]), static_cast<long>(p) + 1);
-    }
+    Groups groups(scene, builder);
+    add_polygons(scene, builder, groups);
     mesh::PolygonSoup soup = builder.finish();
-    soup.material_names.clear();
-
     Materials materials(scene, model.has_parent_path() ? model.parent_path() : fs::path("."), soup.warnings);
-    soup.materials.clear();
-    for (const std::uint32_t m : material_of) soup.materials.push_back(materials.colours(m));
-    SceneBuilder document;
-    std::map<std::uint32_t, std::int32_t> made;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (material_of[i] == kNone) continue;
-        const auto [it, is_new] = made.try_emplace(material_of[i], -1);
-        if (is_new) it->second = document.add_material(materials.gltf(material_of[i], document));
-        parts[i].own_material = it->second;
-    }
-    soup.scene = std::make_shared<mesh::SourceScene>(document.finish(std::move(parts), "model"));
-    drop_plain_materials(soup);
+    add_materials(soup, groups, materials);
     return soup;
 }
 
