@@ -5,6 +5,7 @@
 
 #include "app/panels/manual_text.h"
 #include "app/panels/panels.h"
+#include "app/text/texts.h"
 
 /// The manual's dialog.
 namespace tuft::app {
