@@ -97,7 +97,13 @@ class Child {
         posix_spawn_file_actions_adddup2(&files, input, 0);
         posix_spawn_file_actions_adddup2(&files, output, 1);
         posix_spawn_file_actions_addopen(&files, 2, "/dev/null", O_WRONLY, 0);
-        const int failed = posix_spawn(&pid_, program.c_str(), &files, nullptr, arguments, environ);
+        // A process group of its own: Ctrl-C reaches this process alone, which then ends the other.
+        posix_spawnattr_t attributes;
+        posix_spawnattr_init(&attributes);
+        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+        posix_spawnattr_setpgroup(&attributes, 0);
+        const int failed = posix_spawn(&pid_, program.c_str(), &files, &attributes, arguments, environ);
+        posix_spawnattr_destroy(&attributes);
         posix_spawn_file_actions_destroy(&files);
         if (failed) throw Error(program, std::string("cannot be started: ") + std::strerror(failed));
     }
