@@ -37,7 +37,7 @@ stroke/painting
 io/image render/brush render/picture render/gl
 io/model
 io/export io/project io/strokes
-cli app/input
+cli app/input app/text
 app/view
 app/document
 app/work
@@ -79,7 +79,7 @@ wall() {
 wall 'OpenMesh' 'mesh/*.cpp'
 wall 'CGAL' '*.cpp'
 wall 'embree3' '*.cpp'
-wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|pugixml' 'io/*.cpp'
+wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|pugixml|zlib|assimp' 'io/*.cpp'
 wall 'GL/|epoxy|EGL' 'render/*' 'app/*'
 wall 'GLFW|imgui' 'app/*'
 exit $bad

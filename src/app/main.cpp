@@ -17,6 +17,7 @@
 #include "app/view/display.h"
 #include "core/manual/manual.h"
 #include "core/system/build_facts.h"
+#include "io/model/read_model.h"
 
 namespace {
 
@@ -29,7 +30,7 @@ const Manual& manual() {
             {.name = "tuft-studio",
              .text = "decorate a 3D model with ink and a bending brush, in a window",
              .options = {{.value = "MODEL|PROJECT",
-                          .text = "mesh (PLY, OBJ, STL, OFF, GLB or glTF) or project to open"},
+                          .text = std::string("mesh (") + io::kModelFormats + ") or project to open"},
                          {.names = {"--script"}, .value = "FILE", .text = "play the commands of a file, then end"},
                          {.names = {"--headless"}, .text = "show no window (for scripts)"},
                          {.names = {"--size"}, .value = "WxH", .text = "size of the window in pixels (1280x720)"},

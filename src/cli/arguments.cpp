@@ -15,6 +15,7 @@
 #include "core/text/units.h"
 #include "ink/composite/match.h"
 #include "io/export/export_maps.h"
+#include "io/model/read_model.h"
 #include "stroke/drawing/free_area.h"
 #include "stroke/journal/trace.h"
 
@@ -226,7 +227,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
 
     Paint paint;
     auto* p = app.add_subcommand("paint", "paint recorded strokes onto a model, or go on with a project");
-    p->add_option("MODEL", paint.model, "mesh (PLY, OBJ, STL, OFF, GLB or glTF) or project")->required();
+    p->add_option("MODEL", paint.model, std::string("mesh (") + io::kModelFormats + ") or project")->required();
     p->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
     p->add_option("--brush", paint.brush,
                   "brush for all strokes ('tuft brush' lists them; goat-small*0.5 is one of half the size; default: "

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -11,8 +12,11 @@
 #include <ostream>
 #include <regex>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "app/panels/manual_text.h"
+#include "app/text/texts.h"
 #include "brush/preset/preset.h"
 #include "ink/colour/pigments.h"
 #include "paths.h"
@@ -94,6 +98,45 @@ TEST(UiText, EveryTextOfThePanelsHasAChineseOne) {
         }
     }
     EXPECT_GT(seen, 150u);
+}
+
+/// What the program puts something else for: directives of printf, fields of fmt, keys of the manual, and # for
+/// numbers.
+std::vector<std::string> placeholders(std::string_view text) {
+    static const std::regex pattern(R"(%[-+0-9.]*[a-z]|\{[a-z-]*\}|#)");
+    std::vector<std::string> found;
+    const std::string whole(text);
+    for (std::sregex_iterator it(whole.begin(), whole.end(), pattern), end; it != end; ++it) found.push_back(it->str());
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+TEST(Catalogues, FindEachOfTheirTextsAndNoOther) {
+    for (const Catalogue* catalogue : {&english_catalogue(), &chinese_catalogue()}) {
+        ASSERT_GT(catalogue->size(), 30u);
+        for (std::size_t i = 1; i < catalogue->size(); ++i) {
+            EXPECT_EQ(catalogue->find(catalogue->text(i)), catalogue->translation(i));
+            EXPECT_LT(catalogue->text(i - 1), catalogue->text(i)) << "they are searched by halves";
+            EXPECT_EQ(catalogue->find(std::string(catalogue->text(i)) + "~"), nullptr);
+        }
+        EXPECT_EQ(catalogue->find(""), nullptr) << "the header is no text";
+    }
+}
+
+TEST(Catalogues, TranslationsHaveThePlaceholdersOfTheirTexts) {
+    const Catalogue& catalogue = chinese_catalogue();
+    for (std::size_t i = 1; i < catalogue.size(); ++i) {
+        EXPECT_EQ(placeholders(catalogue.text(i)), placeholders(catalogue.translation(i))) << catalogue.text(i);
+        EXPECT_STRNE(catalogue.translation(i), "") << catalogue.text(i);
+    }
+    EXPECT_EQ(placeholders("%d of {} by {undo}"), (std::vector<std::string>{"%d", "{undo}", "{}"}));
+}
+
+TEST(Catalogues, HaveEachPageOfTheManual) {
+    for (const ManualPage& page : manual_pages()) {
+        EXPECT_STRNE(chinese_manual_text(page.title), page.title);
+        EXPECT_STRNE(chinese_manual_text(page.text), page.text) << page.title;
+    }
 }
 
 TEST(UiScale, FollowsTheDisplayAndTheSizeOfThePicture) {

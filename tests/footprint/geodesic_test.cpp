@@ -11,6 +11,7 @@
 #include "../atlas/analytic_surfaces.h"
 #include "core/random.h"
 #include "exact_geodesics.h"
+#include "mesh/query/exact_geodesics.h"
 #include "mesh/query/surface_query.h"
 #include "mesh/repair/repair.h"
 #include "paths.h"
@@ -103,6 +104,33 @@ std::vector<double> distance_errors(Model& model, double texels, int stamps, dou
         });
     }
     return errors;
+}
+
+// Both are exact: positions are in single precision, sums along a way in double. Origins lie a nanometre off.
+TEST(Geodesics, WaysOverTheTrianglesAreAsLongAsCgals) {
+    for (const char* name : {"car", "bowl"}) {
+        const auto path = source_folder() + "/models/" + name + ".ply";
+        const mesh::TriangleMesh m = mesh::build_surface(mesh::read_polygon_file(path), {}).mesh;
+        constexpr double kRadius = 0.01;  // metres
+        Random random(1);
+        std::size_t compared = 0;
+        for (int i = 0; i < 10; ++i) {
+            const auto triangle = static_cast<std::uint32_t>(random.uniform(0, 1) * double(m.n_triangles()));
+            const Vec3 origin = mesh::surface_point(m, triangle, 0.3, 0.3).position;
+            mesh::ExactGeodesics ours;
+            ASSERT_TRUE(ours.spread(m, triangle, origin, kRadius, 1'000'000));
+            const testing::ExactGeodesics cgals(m, triangle, origin, 1.2 * kRadius);
+            for (std::size_t k = 0; k < ours.n_faces(); k += 1 + ours.n_faces() / 40) {
+                const std::uint32_t at = ours.triangle(k);
+                const Vec3 p = mesh::surface_point(m, at, random.uniform(0, 0.5), random.uniform(0, 0.5)).position;
+                const double a = ours.to(at, p).length, b = cgals.to(at, p).length;
+                if (!(a < kRadius) || !(b < kRadius)) continue;
+                EXPECT_NEAR(a, b, 1e-7) << name << ", triangle " << at;
+                ++compared;
+            }
+        }
+        EXPECT_GT(compared, 100u) << name;
+    }
 }
 
 TEST(Geodesics, StampsKeepDistancesOnARoughSurface) {

@@ -36,7 +36,9 @@ TEST_P(Fuzz, CorpusAndMutationsAreReadOrRefused) {
     for (const auto& seed : seeds) target.run(seed);
     // A crash ends the program: TUFT_FUZZ_LAST names a file that keeps the input it was given.
     const char* last = std::getenv("TUFT_FUZZ_LAST");
-    for (std::uint64_t number = 0; number < static_cast<std::uint64_t>(target.smoke); ++number) {
+    const char* runs = std::getenv("TUFT_FUZZ_RUNS");
+    const std::uint64_t n = runs ? std::strtoull(runs, nullptr, 10) : static_cast<std::uint64_t>(target.smoke);
+    for (std::uint64_t number = 0; number < n; ++number) {
         const std::vector<std::uint8_t> input = mutated(seeds, number, target.text);
         if (last)
             std::ofstream(last, std::ios::binary | std::ios::trunc)

@@ -14,7 +14,10 @@
 #include "ink/colour/pigments.h"
 #include "ink/colour/presets.h"
 #include "io/image/image.h"
+#include "io/model/read_3mf.h"
 #include "io/model/read_gltf.h"
+#include "io/model/read_import.h"
+#include "io/model/read_x3d.h"
 #include "io/project/project.h"
 #include "io/strokes/inkml.h"
 #include "io/strokes/svg.h"
@@ -184,6 +187,10 @@ constexpr Target kTargets[] = {
     {"obj", run_mesh<mesh::read_obj>, 3000, true},
     {"off", run_mesh<mesh::read_off>, 3000, true},
     {"gltf", run_mesh<io::read_gltf>, 1500, true},
+    {"fbx", run_mesh<io::read_fbx>, 300, false},  // a process for each
+    {"dae", run_mesh<io::read_dae>, 300, true},
+    {"3mf", run_mesh<io::read_3mf>, 1500, false},
+    {"x3d", run_mesh<io::read_x3d>, 1500, true},
     {"svg", run_svg, 1000, true},
     {"inkml", run_inkml, 2000, true},
     {"brush", run_brush, 3000, true},

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "app/panels/panels.h"
+#include "app/text/texts.h"
 #include "app/widgets/manual_text.h"
 
 /// The manual's dialog.
@@ -18,8 +19,8 @@ void manual_dialog(Ui& ui, HelpState& help, DialogState& dialogs, const KeyTable
     const float height = std::min(ui.px(400), ImGui::GetIO().DisplaySize.y - ui.px(130));
     ImGui::BeginChild("pages", ImVec2(ui.px(200), height));
     for (std::size_t i = 0; i < pages.size(); ++i) {
-        const char* title = language == Language::chinese ? pages[i].chinese_title : pages[i].title;
-        if (ImGui::Selectable(title, help.page == i)) help.page = i;
+        const char* title = language == Language::chinese ? chinese_manual_text(pages[i].title) : pages[i].title;
+        if (ImGui::Selectable(title, s.help.page == i)) s.help.page = i;
         ui.mark(std::string("page ") + pages[i].title);
     }
     ImGui::EndChild();

@@ -16,6 +16,7 @@
 #include "app/document/writing.h"
 #include "core/error.h"
 #include "core/system/files.h"
+#include "io/model/read_model.h"
 
 namespace fs = std::filesystem;
 
@@ -71,8 +72,7 @@ bool FileDialog::suits(const fs::path& file) const {
     if (purpose_ == Purpose::ink || purpose_ == Purpose::save_ink) return e == ".toml";
     if (purpose_ == Purpose::writing) return is_one_of(e, {".svg", ".inkml"});
     if (purpose_ == Purpose::reference) return is_one_of(e, {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff"});
-    return (e == ".tuft" && purpose_ != Purpose::revise) ||
-           is_one_of(e, {".ply", ".obj", ".stl", ".off", ".glb", ".gltf"});
+    return (e == ".tuft" && purpose_ != Purpose::revise) || io::is_model_file(file);
 }
 
 void FileDialog::show(Purpose purpose, const fs::path& start) {

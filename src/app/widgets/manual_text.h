@@ -6,14 +6,13 @@
 #include "app/input/keys.h"
 #include "app/widgets/ui.h"
 
-/// The built-in manual: short pages in both languages.
+/// The built-in manual: short pages, in English; those in Chinese are in the catalogue (app/text).
 namespace tuft::app {
 
 /// A page; paragraphs end with a line break, points begin with "* ". {undo} and the like stand for the key of an
 /// action, by its word in the settings.
 struct ManualPage {
     const char *title, *text;
-    const char *chinese_title, *chinese_text;
 };
 std::span<const ManualPage> manual_pages();
 

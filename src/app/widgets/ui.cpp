@@ -9,6 +9,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "app/text/texts.h"
+
 namespace fs = std::filesystem;
 
 namespace tuft::app {

@@ -107,11 +107,4 @@ class Ui {
 /// sRGB of the primary button, at rest and under the cursor; its text is white.
 inline constexpr float kPrimary[3] = {0.16f, 0.40f, 0.78f}, kPrimaryHovered[3] = {0.17f, 0.43f, 0.82f};
 
-/// English for the name of a shipped brush, ink, pigment or material, nullptr when it is none.
-const char* english_name(const char* name);
-/// Chinese for an English text of the interface, nullptr when there is none.
-const char* chinese_text(const char* english);
-/// All Chinese texts in a row, for the font.
-std::string all_chinese_text();
-
 }  // namespace tuft::app

@@ -4,18 +4,14 @@
 #include <span>
 #include <vector>
 
+#include "mesh/half_edge.h"
 #include "mesh/triangle_mesh.h"
 
-/// Half-edge h = 3t + k runs from corner k to corner k + 1 of triangle t. Corners
-/// and the half-edges that leave them share their number.
+/// Half-edges (mesh/half_edge.h) of a mesh and of parts of it.
 namespace tuft::atlas {
 
-constexpr std::uint32_t next_half(std::uint32_t h) {
-    return h % 3 == 2 ? h - 2 : h + 1;
-}
-constexpr std::uint32_t prev_half(std::uint32_t h) {
-    return h % 3 == 0 ? h + 2 : h - 1;
-}
+using mesh::next_half;
+using mesh::prev_half;
 
 /// The opposite half-edge of each, kNone on a border. [3 n_triangles]. Neighbours
 /// that do not share the edge in opposite directions count as borders.

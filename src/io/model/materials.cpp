@@ -178,6 +178,11 @@ std::shared_ptr<const mesh::Picture> decode_picture(std::string name, std::vecto
     return picture;
 }
 
+std::shared_ptr<const mesh::Picture> read_picture_beside(const fs::path& folder, const std::string& name,
+                                                         std::vector<std::string>& warnings) {
+    return Pictures(folder, warnings).get(name);
+}
+
 bool lies_within(const fs::path& folder, const fs::path& file) {
     std::error_code ec;
     const fs::path root = fs::weakly_canonical(folder, ec);

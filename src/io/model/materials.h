@@ -21,6 +21,11 @@ std::shared_ptr<const mesh::Picture> decode_picture(std::string name, std::vecto
 /// Whether `file` lies in `folder` or below it, links followed.
 bool lies_within(const std::filesystem::path& folder, const std::filesystem::path& file);
 
+/// The picture of that name in the folder, looked for as `read_materials` says; null with a warning where it is not
+/// there or cannot be read.
+std::shared_ptr<const mesh::Picture> read_picture_beside(const std::filesystem::path& folder, const std::string& name,
+                                                         std::vector<std::string>& warnings);
+
 /// Fills `soup.materials` from the libraries and pictures its reader has named, which are looked
 /// for in the folder of `model` only: a name that leads elsewhere is looked for there by its last
 /// part, as exporters write paths of their own machine. MTL: `Kd` (taken as sRGB), or `map_Kd` with

@@ -10,12 +10,15 @@
 #include "core/error.h"
 #include "core/system/files.h"
 #include "io/model/materials.h"
+#include "io/model/read_3mf.h"
 #include "io/model/read_gltf.h"
+#include "io/model/read_import.h"
+#include "io/model/read_x3d.h"
 
 namespace tuft::io {
 namespace {
 
-enum class Format { obj, ply, stl, off, glb, gltf };
+enum class Format { obj, ply, stl, off, glb, gltf, fbx, dae, threemf, x3d };
 
 std::string lower_extension(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
@@ -25,12 +28,16 @@ std::string lower_extension(const std::filesystem::path& path) {
 }
 
 std::optional<Format> by_extension(const std::filesystem::path& path) {
-    constexpr std::array<std::pair<std::string_view, Format>, 6> known{{{".obj", Format::obj},
-                                                                        {".ply", Format::ply},
-                                                                        {".stl", Format::stl},
-                                                                        {".off", Format::off},
-                                                                        {".glb", Format::glb},
-                                                                        {".gltf", Format::gltf}}};
+    constexpr std::array<std::pair<std::string_view, Format>, 10> known{{{".obj", Format::obj},
+                                                                         {".ply", Format::ply},
+                                                                         {".stl", Format::stl},
+                                                                         {".off", Format::off},
+                                                                         {".glb", Format::glb},
+                                                                         {".gltf", Format::gltf},
+                                                                         {".fbx", Format::fbx},
+                                                                         {".dae", Format::dae},
+                                                                         {".3mf", Format::threemf},
+                                                                         {".x3d", Format::x3d}}};
     const std::string extension = lower_extension(path);
     for (const auto& [name, format] : known)
         if (extension == name) return format;
@@ -40,6 +47,7 @@ std::optional<Format> by_extension(const std::filesystem::path& path) {
 /// Formats that say what they are in their first bytes.
 std::optional<Format> by_content(std::string_view bytes) {
     if (bytes.starts_with("glTF")) return Format::glb;
+    if (bytes.starts_with("Kaydara FBX")) return Format::fbx;
     if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return Format::ply;
     for (const std::string_view magic : {"OFF", "COFF", "NOFF", "STOFF", "CNOFF", "STNOFF", "STCNOFF"})
         if (bytes.starts_with(magic) && bytes.size() > magic.size() &&
@@ -59,22 +67,35 @@ mesh::PolygonSoup read_polygons(Format format, const std::vector<char>& bytes, c
             return mesh::read_stl(bytes, path);
         case Format::off:
             return mesh::read_off(bytes, path);
-        default:
-            return {};
+        case Format::glb:
+        case Format::gltf:
+            return read_gltf(bytes, path);
+        case Format::fbx:
+            return read_fbx(bytes, path);
+        case Format::dae:
+            return read_dae(bytes, path);
+        case Format::threemf:
+            return read_3mf(bytes, path);
+        case Format::x3d:
+            return read_x3d(bytes, path);
     }
+    return {};
 }
 
 }  // namespace
+
+bool is_model_file(const std::filesystem::path& path) {
+    return by_extension(path).has_value();
+}
 
 mesh::PolygonSoup read_model(const std::filesystem::path& path) {
     const std::vector<char> bytes = read_file(path);
     std::optional<Format> format = by_content({bytes.data(), std::min<std::size_t>(bytes.size(), 16)});
     if (!format) format = by_extension(path);
-    if (!format) throw Error(path.string(), "is no model format tuft knows; it reads OBJ, PLY, STL, OFF, GLB and glTF");
+    if (!format) throw Error(path.string(), "is no model format tuft knows; it reads " + std::string(kModelFormats));
     if (bytes.size() >= 2 &&
         (std::memcmp(bytes.data(), "\xff\xfe", 2) == 0 || std::memcmp(bytes.data(), "\xfe\xff", 2) == 0))
         throw Error(path.string(), "is text in UTF-16; save it as UTF-8 or ASCII");
-    if (*format == Format::glb || *format == Format::gltf) return read_gltf(bytes, path);
     mesh::PolygonSoup soup = read_polygons(*format, bytes, path);
     read_materials(soup, path);
     return soup;
@@ -82,8 +103,8 @@ mesh::PolygonSoup read_model(const std::filesystem::path& path) {
 
 std::optional<double> metres_per_unit_of(const std::filesystem::path& path) {
     const std::string extension = lower_extension(path);
-    if (extension == ".glb" || extension == ".gltf") return 1.0;
-    return std::nullopt;
+    const bool plain = extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
+    return is_model_file(path) && !plain ? std::optional(1.0) : std::nullopt;
 }
 
 }  // namespace tuft::io

@@ -11,7 +11,9 @@
 /// ways are carried from edge to edge in the order of their distance (Mitchell, Mount and
 /// Papadimitriou 1987; one angle, one split: Chen and Han 1990; windows that some vertex outdoes
 /// are dropped: Xin and Wang 2009). Ways that bend go round vertices whose angles exceed 2π, or on
-/// the mesh's border.
+/// the mesh's border. CGAL's Surface_mesh_shortest_path is the truth in tests/footprint/geodesic_test.cpp: 1667 ways of
+/// at most 30 mm on the shipped car and bowl differ by 2.5e-8 m at most. It takes 12 and 23 times as long (one run, by
+/// turns: 0.074 s to 0.006 s, 1.18 s to 0.051 s for 20 origins each).
 namespace tuft::mesh {
 
 class ExactGeodesics {

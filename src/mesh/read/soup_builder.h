@@ -8,7 +8,7 @@
 
 #include "mesh/read/polygon_soup.h"
 
-/// What the four readers share while they fill a soup. Internal to `mesh`.
+/// What the readers share while they fill a soup. Internal to `mesh` and to the readers of `io`.
 namespace tuft::mesh {
 
 /// Says a thing that happened many times in a few lines: the first places, then a total.

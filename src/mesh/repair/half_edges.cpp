@@ -19,7 +19,7 @@ struct Wing {
 
 Wing make_wing(const RawMesh& mesh, std::uint32_t h, std::uint32_t reference_start) {
     const Vec3 a(mesh.positions[mesh.start(h)]), b(mesh.positions[mesh.end(h)]);
-    const Vec3 c(mesh.positions[mesh.end(next_in_face(h))]);
+    const Vec3 c(mesh.positions[mesh.end(next_half(h))]);
     const Vec3 normal = glm::cross(b - a, c - a);
     const Vec3 away = glm::cross(normal, b - a);
     const double ln = glm::length(normal), la = glm::length(away);
@@ -73,7 +73,7 @@ class DuplicateFinder {
   public:
     void look(const RawMesh& mesh, std::span<const std::uint32_t> half_edges) {
         thirds_.clear();
-        for (const std::uint32_t h : half_edges) thirds_.emplace_back(mesh.end(next_in_face(h)), h / 3);
+        for (const std::uint32_t h : half_edges) thirds_.emplace_back(mesh.end(next_half(h)), h / 3);
         std::sort(thirds_.begin(), thirds_.end());
         for (std::size_t i = 1; i < thirds_.size(); ++i) {
             if (thirds_[i].first != thirds_[i - 1].first) continue;
@@ -183,7 +183,7 @@ std::size_t split_vertices(RawMesh& mesh) {
         // Back to the border, if the fan has one; then once through.
         std::uint32_t first = c;
         while (mesh.opposite[first] != kNone) {
-            first = next_in_face(mesh.opposite[first]);
+            first = next_half(mesh.opposite[first]);
             if (first == c) break;
         }
         const std::uint32_t old_vertex = mesh.start(c);
@@ -200,7 +200,7 @@ std::size_t split_vertices(RawMesh& mesh) {
         for (std::uint32_t at = first; at != kNone && !done[at];) {
             done[at] = true;
             mesh.triangles[at / 3][at % 3] = vertex;
-            at = mesh.opposite[previous_in_face(at)];
+            at = mesh.opposite[prev_half(at)];
         }
     }
     return split;

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/geometry/types.h"
+#include "mesh/half_edge.h"
 
 /// From loose triangles to a manifold: which triangle lies over each edge, which way round each
-/// one is, and which corners share a vertex. Half-edge 3 t + k runs from corner k of triangle t
-/// to corner k + 1. Internal to `mesh`.
+/// one is, and which corners share a vertex. Half-edges as in half_edge.h. Internal to `mesh`.
 namespace tuft::mesh {
 
 /// Triangles on their way to a `TriangleMesh`.
@@ -26,14 +26,6 @@ struct RawMesh {
     std::uint32_t start(std::uint32_t h) const { return triangles[h / 3][h % 3]; }
     std::uint32_t end(std::uint32_t h) const { return triangles[h / 3][(h + 1) % 3 ? h % 3 + 1 : 0]; }
 };
-
-/// The half-edge after and before h in its triangle.
-constexpr std::uint32_t next_in_face(std::uint32_t h) {
-    return h % 3 == 2 ? h - 2 : h + 1;
-}
-constexpr std::uint32_t previous_in_face(std::uint32_t h) {
-    return h % 3 == 0 ? h + 2 : h - 1;
-}
 
 /// Height of a triangle over its longest side, metres; that side runs from corner
 /// `longest_side` to the next.

@@ -119,7 +119,7 @@ void SurfaceTopology::State::link_faces(const RawMesh& raw) {
         mesh.set_halfedge_handle(f, handle[3 * t]);
         for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
             mesh.set_face_handle(handle[h], f);
-            mesh.set_next_halfedge_handle(handle[h], handle[next_in_face(h)]);
+            mesh.set_next_halfedge_handle(handle[h], handle[next_half(h)]);
             mesh.set_halfedge_handle(vertex(raw.start(h)), handle[h]);
         }
     }

@@ -9,6 +9,10 @@
 
 /// A small antialiased drawing surface for the brush's own pictures. Coordinates in pixels,
 /// x to the right, y down, pixel (i, j) covers [i, i+1] × [j, j+1]. Colours linear, 0 to 1.
+///
+/// Cairo 1.16 draws 1500 tapered hairs of 40 points in 0.16 s of CPU, this in 0.51 s (one run, by turns), of the 3.0 s
+/// that `tuft brush goat-medium --picture` takes. It is not used all the same: it blends encoded 8-bit colours, where
+/// thin dark hair on white comes out too dark, it has no line of changing width, and it brings 20 libraries.
 namespace tuft::render {
 
 struct BrushCanvas {
