@@ -94,7 +94,7 @@ void choose_brush(Session& s) {
     for (const auto& [brush, model] : memory())
         if (model == s.painter->source() && take(brush)) return;
     for (auto line = s.strokes.rbegin(); line != s.strokes.rend(); ++line)
-        if (line->action == stroke::Action::stroke && !line->on_palette && take(line->brush)) return;
+        if (line->action == stroke::EntryKind::stroke && !line->on_palette && take(line->brush)) return;
     take(first_brush(s.brushes, s.brush, s.hand.pressure, first_line_width(s.painter->model().mesh->bounds)));
 }
 

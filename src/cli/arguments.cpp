@@ -16,7 +16,7 @@
 #include "ink/colour/match.h"
 #include "io/export_maps.h"
 #include "stroke/hand/free_area.h"
-#include "stroke/journal/trace.h"
+#include "stroke/journal/recorded_stroke.h"
 
 // What help and manual call the value of an option that is a path.
 template <>
@@ -270,7 +270,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
                   "width, from the right flank, negative from the left")
         ->check([](const std::string& text) -> std::string {
             try {
-                stroke::action_of_text(text);
+                stroke::preparation_of(text);
                 return {};
             } catch (const Error& e) {
                 return e.what();

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "io/project_db.h"
-#include "stroke/painting/model.h"
+#include "stroke/model/model.h"
 
 namespace tuft::io {
 namespace {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "stroke/painting/surface_stencil.h"
+#include "stroke/model/surface_stencil.h"
 
 namespace tuft::io {
 namespace {

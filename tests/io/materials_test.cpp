@@ -11,7 +11,7 @@
 #include "io/read_model.h"
 #include "mesh/repair.h"
 #include "sample_model.h"
-#include "stroke/painting/model.h"
+#include "stroke/model/model.h"
 
 namespace tuft::io {
 namespace {

@@ -14,7 +14,7 @@
 #include "io/project.h"
 #include "io/read_model.h"
 #include "sample_model.h"
-#include "stroke/painting/model.h"
+#include "stroke/model/model.h"
 
 /// Objects, groups and materials of a file, through painting to the exported model.
 namespace tuft::io {

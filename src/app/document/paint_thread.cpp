@@ -39,7 +39,7 @@ PaintThread::PaintThread(Work work) : work_(std::move(work)) {
     }
     carried_ = work_.autosave.attachments(io::kReferences);
     publish_snapshots();
-    steps_.assign(work_.painting->journal().strokes().size(), Step{.made = 1});
+    steps_.assign(work_.painting->journal().entries().size(), Step{.made = 1});
     publish(true);
     thread_ = std::thread([this] { run(); });
 }
@@ -260,12 +260,13 @@ void PaintThread::publish(bool strokes_changed) {
     thumbnails_.touch(dirty);
     std::vector<render::TilePixels> tiles = work_.texture->refresh(dirty, painting);
     if (strokes_changed) {
-        const auto& strokes = painting.journal().strokes();
+        const auto& strokes = painting.journal().entries();
         // Entries that are still right stay; ids and order tell.
         std::size_t same = 0;
         while (same < lines_.size() && same < strokes.size() && lines_[same].id == strokes[same].id &&
-               lines_[same].brush == strokes[same].trace.brush && lines_[same].ink == strokes[same].trace.ink &&
-               lines_[same].hidden == strokes[same].hidden && lines_[same].group == strokes[same].group)
+               lines_[same].brush == stroke::brush_of(strokes[same]) &&
+               lines_[same].ink == stroke::ink_of(strokes[same]) && lines_[same].hidden == strokes[same].hidden &&
+               lines_[same].group == strokes[same].group)
             ++same;
         lines_.resize(same);
         for (; same < strokes.size(); ++same) lines_.push_back(stroke_line(strokes[same]));
@@ -318,67 +319,56 @@ void PaintThread::begin(const BeginStroke& command) {
     work_.autosave.prepare(*work_.painting, command.brush, command.ink);
     if (!command.tip_ink.empty()) undone_before_ = work_.painting->journal().undone();
     load_tip(command, loads_);
-    stroke::Stroke stroke;
-    stroke.trace.flat = false;
-    stroke.trace.brush = command.brush;
-    stroke.trace.ink = current_.ink;
-    if (command.carry || loads_ > 0) stroke.settings.dip = "carry";
-    if (command.wet) stroke.settings.film = "wet";
+    stroke::PaintStroke stroke{.trace = {.flat = false}, .brush = command.brush, .ink = current_.ink};
+    if (command.carry || loads_ > 0) stroke.settings.dip = stroke::DipMode::carry;
+    if (command.wet) stroke.settings.film = stroke::FilmModel::wet;
     stroke.layer = current_.layer = layer_of(command.layer);
     stroke.mask = command.mask;
-    stroke.trace.erases = command.erases;
+    if (command.erases) stroke.tool = stroke::Tool::eraser;
     work_.painting->begin(std::move(stroke));
 }
 
 void PaintThread::care(const ActOnBrush& command) {
     work_.autosave.prepare(*work_.painting, command.brush, command.ink);
-    stroke::Stroke entry;
-    entry.action = command.action;
-    entry.trace.flat = false;
-    entry.trace.brush = command.brush;
+    if (command.action == stroke::EntryKind::dry) return act(stroke::Dry{.seconds = command.seconds});
+    if (command.action == stroke::EntryKind::wash) return act(stroke::WashPalette{});
+    stroke::BrushAction action{.kind = stroke::brush_action_of(command.action),
+                               .brush = command.brush,
+                               .extent = command.extent,
+                               .dip = stroke::DipMode::carry};
     // A brush that is not held yet begins full of the chosen ink.
-    if (command.action == stroke::Action::dip || !work_.painting->held(command.brush)) entry.trace.ink = command.ink;
-    entry.seconds = command.seconds;
-    entry.extent = command.extent;
-    entry.settings.dip = "carry";
-    act(std::move(entry));
+    if (action.kind == stroke::BrushActionKind::dip || !work_.painting->held(command.brush)) action.ink = command.ink;
+    act(std::move(action));
 }
 
 void PaintThread::change_layers(const ChangeLayers& command) {
-    stroke::Stroke entry;
-    entry.action = stroke::Action::layer;
-    entry.trace.flat = false;
-    entry.trace.label = command.edit.layer.name;
-    if (command.edit.what == stroke::LayerChange::remove)
-        if (const stroke::Layer* layer = work_.painting->layers().find(command.edit.layer.id))
-            entry.trace.label = layer->name;
-    entry.edit = command.edit;
+    const stroke::LayerTable& table = work_.painting->layers();
+    stroke::LayerEdit edit = command.edit;
+    std::string label = edit.layer.name;
+    if (edit.what == stroke::LayerChange::remove)
+        if (const stroke::Layer* layer = table.find(edit.layer.id)) label = layer->name;
     // The button may be pressed twice before the first new layer is shown.
-    if (stroke::Layer& layer = entry.edit.layer; command.edit.what == stroke::LayerChange::add) {
-        const stroke::LayerTable& table = work_.painting->layers();
+    if (stroke::Layer& layer = edit.layer; edit.what == stroke::LayerChange::add) {
         if (layer.id < table.next_id) {
             layer.id = 0;
-            entry.edit.place = static_cast<std::uint32_t>(table.layers.size());
+            edit.place = static_cast<std::uint32_t>(table.layers.size());
         }
         const std::string stem = layer.name.substr(0, layer.name.find_last_not_of("0123456789") + 1);
         for (std::size_t n = table.layers.size() + 1; table.find(std::string_view(layer.name)); ++n)
             layer.name = stem + std::to_string(n);
-        entry.trace.label = layer.name;
+        label = layer.name;
     }
-    act(std::move(entry));
+    act({std::move(edit), std::move(label)});
 }
 
 void PaintThread::fill(const FillModel& command) {
     progress("Filling")("", 0);
     work_.autosave.prepare(*work_.painting, "", command.ink);
-    stroke::Stroke entry;
-    entry.action = stroke::Action::fill;
-    entry.trace.flat = false;
-    entry.trace.ink = command.ink;
-    entry.fill = command.fill;
-    entry.layer = layer_of(command.layer);
-    entry.mask = command.mask;
-    act(std::move(entry));
+    stroke::Fill fill = command.fill;
+    fill.ink = command.ink;
+    fill.layer = layer_of(command.layer);
+    fill.mask = command.mask;
+    act(std::move(fill));
 }
 
 std::uint32_t PaintThread::layer_of(std::uint32_t asked) const {
@@ -388,10 +378,10 @@ std::uint32_t PaintThread::layer_of(std::uint32_t asked) const {
 }
 
 // An entry that is done at once.
-void PaintThread::act(stroke::Stroke entry) {
+void PaintThread::act(stroke::JournalEntry entry) {
     cancel();
     work_.painting->paint(std::move(entry));
-    work_.autosave.add(work_.painting->journal().strokes().back());
+    work_.autosave.add(work_.painting->journal().entries().back());
     steps_.push_back({.made = 1});
     undone_.clear();
     publish(true);
@@ -407,14 +397,16 @@ void PaintThread::paint_drawing(PaintDrawing& command) {
                            drawing.fit, widths_);
     stroke::redip_long_lines(drawing.entries, drawing.fit, widths_);
     stroke::press_to_widths(drawing.entries, widths_);
-    std::vector<stroke::Stroke> all = drawing.entries;
+    std::vector<stroke::JournalEntry> all = drawing.entries;
     const std::size_t in_group = std::max<std::size_t>(1, all.size());
     for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry)) {
         const double reads =
             glm::determinant(map.linear) < 0 ? -1 : 1;  // with its right turned back it reads as the original
-        for (stroke::Stroke entry : drawing.entries) {
-            stroke::Placement& p = entry.trace.placement;
-            p = {map.point(p.origin), reads * (map.linear * p.right), map.linear * p.down, p.mapping};
+        for (stroke::JournalEntry entry : drawing.entries) {
+            if (stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>()) {
+                stroke::Placement& p = stroke->trace.placement;
+                p = {map.point(p.origin), reads * (map.linear * p.right), map.linear * p.down, p.mapping};
+            }
             all.push_back(std::move(entry));
         }
     }
@@ -423,15 +415,17 @@ void PaintThread::paint_drawing(PaintDrawing& command) {
     stroke::EntryGroup group;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!shown("", static_cast<double>(i) / static_cast<double>(all.size()))) break;
-        work_.autosave.prepare(*work_.painting, all[i].trace.brush, all[i].trace.ink);
-        all[i].layer = layer_of(command.layer);
-        all[i].mask = command.mask;
-        if (command.wet) all[i].settings.film = "wet";
+        work_.autosave.prepare(*work_.painting, stroke::brush_of(all[i]), stroke::ink_of(all[i]));
+        if (stroke::PaintStroke* stroke = all[i].as<stroke::PaintStroke>()) {
+            stroke->layer = layer_of(command.layer);
+            stroke->mask = command.mask;
+            if (command.wet) stroke->settings.film = stroke::FilmModel::wet;
+        }
         if (i % in_group == 0 && !command.name.empty())
             group = {work_.painting->journal().next_group_id(), command.name};
         all[i].group = group;
         work_.painting->paint(std::move(all[i]));
-        work_.autosave.add(work_.painting->journal().strokes().back());
+        work_.autosave.add(work_.painting->journal().entries().back());
         ++steps_.back().made;
         publish(true);
     }
@@ -454,23 +448,23 @@ void PaintThread::end() {
     stroke::Document& painting = *work_.painting;
     if (!painting.in_stroke()) return;
     painting.end();
-    work_.autosave.add(painting.journal().strokes().back());
-    const stroke::Stroke original = painting.journal().strokes().back();
+    work_.autosave.add(painting.journal().entries().back());
+    const stroke::JournalEntry original = painting.journal().entries().back();
     steps_.push_back({.made = 1 + std::exchange(loads_, 0), .joined = current_.joined && !steps_.empty()});
     std::size_t& made = steps_.back().made;
     undone_.clear();
     publish(true);
     for (const stroke::PoseMap& map : stroke::symmetry_copies(current_.symmetry)) {
         load_tip(current_, made);
-        stroke::Stroke copy = original;
-        copy.trace.label = "symmetric to " + std::to_string(original.id);
-        for (stroke::TraceSample& sample : copy.trace.samples) {
+        stroke::JournalEntry copy = original;
+        copy.label = "symmetric to " + std::to_string(original.id);
+        for (stroke::StrokeSample& sample : std::get<stroke::PaintStroke>(copy.content).trace.samples) {
             const brush::Pose pose = map.pose({sample.position, sample.rotation, sample.time});
             sample.position = pose.position;
             sample.rotation = pose.rotation;
         }
         painting.paint(std::move(copy));
-        work_.autosave.add(painting.journal().strokes().back());
+        work_.autosave.add(painting.journal().entries().back());
         ++made;
         publish(true);
     }
@@ -487,7 +481,7 @@ void PaintThread::cancel() {
 void PaintThread::drop_loads() {
     if (loads_ == 0) return;
     for (; loads_ > 0; --loads_) {
-        const std::uint64_t id = work_.painting->journal().strokes().back().id;
+        const std::uint64_t id = work_.painting->journal().entries().back().id;
         work_.painting->undo();
         work_.autosave.remove(id);
     }

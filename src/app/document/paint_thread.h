@@ -20,9 +20,9 @@
 #include "app/document/thumbnails.h"
 #include "app/document/writing.h"
 #include "app/view/texture.h"
+#include "stroke/document/document.h"
+#include "stroke/document/fit.h"
 #include "stroke/hand/symmetry.h"
-#include "stroke/journal/fit.h"
-#include "stroke/painting/painting.h"
 
 namespace tuft::app {
 
@@ -45,7 +45,7 @@ struct BeginStroke {
 };
 /// Dips, rinses, wipes or combs a brush, or lets the ink dry.
 struct ActOnBrush {
-    stroke::Action action = stroke::Action::dip;
+    stroke::EntryKind action = stroke::EntryKind::dip;
     std::string brush, ink;
     double seconds = 0;          ///< of drying; 0: until all is dry
     stroke::Extent extent = {};  ///< of a dip or a wipe
@@ -179,7 +179,7 @@ using Command =
 /// A stroke for the list.
 struct StrokeLine {
     std::uint64_t id = 0;
-    stroke::Action action = stroke::Action::stroke;
+    stroke::EntryKind action = stroke::EntryKind::stroke;
     std::string brush, ink, label;
     stroke::EntryGroup group;
     bool hidden = false, erases = false, on_palette = false;
@@ -287,13 +287,13 @@ class PaintThread {
     /// An entry of the journal that was changed, or taken out.
     struct Change {
         std::size_t at = 0;  ///< its place in the journal before
-        stroke::Stroke before;
-        std::optional<stroke::Stroke> after;  ///< none: taken out
-        bool in_rows = false;                 ///< the file's rows can follow it; else it is written anew
+        stroke::JournalEntry before;
+        std::optional<stroke::JournalEntry> after;  ///< none: taken out
+        bool in_rows = false;                       ///< the file's rows can follow it; else it is written anew
     };
     /// The whole journal, before and after.
     struct Journals {
-        std::vector<stroke::Stroke> before, after;
+        std::vector<stroke::JournalEntry> before, after;
     };
     /// What one undo takes back.
     struct Step {
@@ -310,7 +310,7 @@ class PaintThread {
     void cancel();
     void drop_loads();
     void fill(const FillModel& command);
-    void act(stroke::Stroke entry);
+    void act(stroke::JournalEntry entry);
     void change_layers(const ChangeLayers& command);
     void change_masks(const ChangeMasks& command);
     void show_mask(const ShowMask& command);
@@ -331,21 +331,21 @@ class PaintThread {
     void redo();
     void edit(const EditStrokes& command);
     void highlight(const HighlightStrokes& command);
-    void rewrite(std::vector<stroke::Stroke> strokes);
+    void rewrite(std::vector<stroke::JournalEntry> strokes);
     void put(const std::vector<Change>& changes, bool back);
-    void put_journal(const std::vector<stroke::Stroke>& entries);
+    void put_journal(const std::vector<stroke::JournalEntry>& entries);
     void publish_snapshots();
     void take_snapshot(const TakeSnapshot& command);
     void rename_snapshot(const RenameSnapshot& command);
     void show_snapshot(const ShowSnapshot& command);
     void restore_snapshot(const RestoreSnapshot& command);
-    std::vector<stroke::Stroke> snapshot_entries(const std::string& id) const;
-    void take_presets(stroke::Document& painting, const std::vector<stroke::Stroke>& entries);
+    std::vector<stroke::JournalEntry> snapshot_entries(const std::string& id) const;
+    void take_presets(stroke::Document& painting, const std::vector<stroke::JournalEntry>& entries);
     void replace_painting(std::unique_ptr<stroke::Document> painting);
     void look_outside();
     void take_outside();
     void leave_file();
-    bool follow(const io::Project& file, std::span<const stroke::Stroke> theirs);
+    bool follow(const io::Project& file, std::span<const stroke::JournalEntry> theirs);
     void paint_merged(const io::Project& file, const stroke::MergedJournal& merged);
     void export_model(const ExportModel& command);
     void export_maps(const ExportModel& command, const stroke::Document& painting, const ink::ComposeOptions& compose);
@@ -358,8 +358,8 @@ class PaintThread {
     Work work_;
     std::shared_future<atlas::AtlasReport> measured_;
     BeginStroke current_;
-    std::size_t loads_ = 0;                      ///< entries that loaded the brush for the stroke in work
-    std::vector<stroke::Stroke> undone_before_;  ///< them, of the journal
+    std::size_t loads_ = 0;                            ///< entries that loaded the brush for the stroke in work
+    std::vector<stroke::JournalEntry> undone_before_;  ///< them, of the journal
     std::vector<ink::Ink> own_inks_;
     stroke::WidthTables widths_;
     stroke::PalettePicture palette_;
@@ -383,6 +383,6 @@ class PaintThread {
 };
 
 /// The list entry of a stroke.
-StrokeLine stroke_line(const stroke::Stroke& stroke);
+StrokeLine stroke_line(const stroke::JournalEntry& entry);
 
 }  // namespace tuft::app

@@ -4,7 +4,7 @@
 #include "io/image.h"
 #include "io/inkml.h"
 #include "render/picture.h"
-#include "stroke/journal/journal_traces.h"
+#include "stroke/journal/recorded_journal.h"
 
 /// Exports and pictures, on the painter's thread.
 namespace fs = std::filesystem;
@@ -26,7 +26,7 @@ void PaintThread::export_model(const ExportModel& command) {
             stroke::prepare_model(*work_.model->mesh, work_.model->atlas, options.progress), options));
         resized = std::make_unique<stroke::Document>(*model);
         take_presets(*resized, {});
-        resized->replay(work_.painting->journal().strokes(), progress("Exporting"));
+        resized->replay(work_.painting->journal().entries(), progress("Exporting"));
         painting = resized.get();
     }
     const stroke::Model& m = painting->model();
@@ -69,9 +69,9 @@ void PaintThread::export_maps(const ExportModel& command, const stroke::Document
 }
 
 void PaintThread::export_strokes(const std::filesystem::path& path) {
-    const stroke::JournalTraces written = stroke::traces_of(work_.painting->journal().strokes());
-    if (written.traces.empty()) throw Error("There are no strokes to export yet.");
-    io::write_inkml(path, written.traces, path.stem().string());
+    const stroke::RecordedJournal written = stroke::record(work_.painting->journal().entries());
+    if (written.strokes.empty()) throw Error("There are no strokes to export yet.");
+    io::write_inkml(path, written.strokes, path.stem().string());
     say("Exported " + path.string() +
         (written.left_out > 0 ? "; changes of layers and masks are not in a stroke file" : ""));
     publish();

@@ -10,14 +10,14 @@
 namespace tuft::app {
 namespace {
 
-void shift(stroke::Stroke& stroke, const RigidMove& move) {
+void shift(stroke::PaintStroke& stroke, const RigidMove& move) {
     const auto moved = [&](const Vec3& p) { return move.to + move.rotation * (p - move.from); };
     stroke::Placement& place = stroke.trace.placement;
     if (stroke.trace.flat) {
         place = {moved(place.origin), move.rotation * place.right, move.rotation * place.down, place.mapping};
         return;
     }
-    for (stroke::TraceSample& s : stroke.trace.samples) {
+    for (stroke::StrokeSample& s : stroke.trace.samples) {
         s.position = moved(s.position);
         s.rotation = glm::normalize(move.rotation * s.rotation);
     }
@@ -28,9 +28,10 @@ std::string rebrushed(const std::string& before, const std::string& wanted) {
     return brush::name_of({brush::sized_name(wanted).base, brush::sized_name(before).factor});
 }
 
-bool has_ink_of_its_own(const stroke::Stroke& entry) {
-    return !entry.trace.ink.empty() && (entry.action == stroke::Action::stroke || entry.action == stroke::Action::dip ||
-                                        entry.action == stroke::Action::fill);
+bool has_ink_of_its_own(const stroke::JournalEntry& entry) {
+    const stroke::EntryKind kind = stroke::kind_of(entry);
+    return !stroke::ink_of(entry).empty() &&
+           (kind == stroke::EntryKind::stroke || kind == stroke::EntryKind::dip || kind == stroke::EntryKind::fill);
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ void PaintThread::undo() {
         if (!step.changes.empty()) put(step.changes, true);
         if (step.journals) put_journal(step.journals->before);
         for (std::size_t i = 0; i < step.made && work_.painting->journal().can_undo(); ++i) {
-            const std::uint64_t id = work_.painting->journal().strokes().back().id;
+            const std::uint64_t id = work_.painting->journal().entries().back().id;
             work_.painting->undo();
             work_.autosave.remove(id);
         }
@@ -62,7 +63,7 @@ void PaintThread::redo() {
         if (!step.changes.empty()) put(step.changes, false);
         if (step.journals) put_journal(step.journals->after);
         for (std::size_t i = 0; i < step.made; ++i)
-            if (work_.painting->redo()) work_.autosave.add(work_.painting->journal().strokes().back());
+            if (work_.painting->redo()) work_.autosave.add(work_.painting->journal().entries().back());
         steps_.push_back(std::move(undone_.back()));
         undone_.pop_back();
     }
@@ -80,20 +81,22 @@ void PaintThread::edit(const EditStrokes& command) {
     const bool in_rows =
         command.remove || (command.hidden && !command.brush && !command.ink && !command.move && !command.group);
     std::vector<Change> changes;
-    for (std::size_t i = 0; i < journal.strokes().size(); ++i) {
-        const stroke::Stroke& before = journal.strokes()[i];
+    for (std::size_t i = 0; i < journal.entries().size(); ++i) {
+        const stroke::JournalEntry& before = journal.entries()[i];
         if (!wanted.contains(before.id)) continue;
         Change change{.at = i, .before = before, .after = {}, .in_rows = in_rows};
         if (!command.remove) {
-            stroke::Stroke& after = change.after.emplace(before);
+            stroke::JournalEntry& after = change.after.emplace(before);
             if (command.hidden) after.hidden = *command.hidden;
-            if (command.brush && stroke::has_brush(before.action))
-                after.trace.brush = rebrushed(before.trace.brush, *command.brush);
-            if (command.ink && has_ink_of_its_own(before)) after.trace.ink = *command.ink;
-            if (command.move) shift(after, *command.move);
+            if (command.brush && stroke::has_brush(stroke::kind_of(before)))
+                stroke::set_brush(after, rebrushed(stroke::brush_of(before), *command.brush));
+            if (command.ink && has_ink_of_its_own(before)) stroke::set_ink(after, *command.ink);
+            if (stroke::PaintStroke* stroke = after.as<stroke::PaintStroke>(); stroke && command.move)
+                shift(*stroke, *command.move);
             if (command.group) after.group = group;
-            if (after.trace.brush != before.trace.brush || after.trace.ink != before.trace.ink)
-                work_.autosave.prepare(*work_.painting, after.trace.brush, after.trace.ink);
+            const std::string &brush = stroke::brush_of(after), &ink = stroke::ink_of(after);
+            if (brush != stroke::brush_of(before) || ink != stroke::ink_of(before))
+                work_.autosave.prepare(*work_.painting, brush, ink);
         }
         changes.push_back(std::move(change));
     }
@@ -107,7 +110,7 @@ void PaintThread::edit(const EditStrokes& command) {
 
 // Changes entries, or changes them back, and paints all strokes anew.
 void PaintThread::put(const std::vector<Change>& changes, bool back) {
-    std::vector<stroke::Stroke> strokes = work_.painting->journal().strokes();
+    std::vector<stroke::JournalEntry> strokes = work_.painting->journal().entries();
     const auto at = [&](const Change& change) { return strokes.begin() + static_cast<std::ptrdiff_t>(change.at); };
     if (back)
         for (const Change& change : changes)
@@ -129,21 +132,21 @@ void PaintThread::put(const std::vector<Change>& changes, bool back) {
 }
 
 // Puts other entries in the place of the whole journal.
-void PaintThread::put_journal(const std::vector<stroke::Stroke>& entries) {
+void PaintThread::put_journal(const std::vector<stroke::JournalEntry>& entries) {
     rewrite(entries);
     work_.autosave.rewrite(work_.source, work_.frame, *work_.painting);
 }
 
 // BaseColour and looks of the work, and the brushes and inks that its entries and these use.
-void PaintThread::take_presets(stroke::Document& painting, const std::vector<stroke::Stroke>& entries) {
+void PaintThread::take_presets(stroke::Document& painting, const std::vector<stroke::JournalEntry>& entries) {
     stroke::Document& own = *work_.painting;
     painting.use_substrate(own.painted_on());
     if (own.has_preview_substrate()) painting.preview_substrate(own.substrate());
     for (const ink::Ink& ink : own_inks_) painting.use_ink(ink);  // also those that no entry uses now
-    for (const std::vector<stroke::Stroke>* of : {&own.journal().strokes(), &entries})
-        for (const stroke::Stroke& s : *of) {
-            if (stroke::has_brush(s.action)) painting.use_brush(own.brush(s.trace.brush));
-            if (!s.trace.ink.empty()) painting.use_ink(own.ink(s.trace.ink));
+    for (const std::vector<stroke::JournalEntry>* of : {&own.journal().entries(), &entries})
+        for (const stroke::JournalEntry& s : *of) {
+            if (stroke::has_brush(stroke::kind_of(s))) painting.use_brush(own.brush(stroke::brush_of(s)));
+            if (const std::string& ink = stroke::ink_of(s); !ink.empty()) painting.use_ink(own.ink(ink));
             for (const std::string& ink : stroke::inks_of(s)) painting.use_ink(own.ink(ink));
         }
     for (const auto& [name, wanted] : own.recolours()) {
@@ -153,7 +156,7 @@ void PaintThread::take_presets(stroke::Document& painting, const std::vector<str
 }
 
 // Paints all strokes anew beside what is there, then puts it in its place.
-void PaintThread::rewrite(std::vector<stroke::Stroke> strokes) {
+void PaintThread::rewrite(std::vector<stroke::JournalEntry> strokes) {
     stroke::Document& old = *work_.painting;
     auto painting = std::make_unique<stroke::Document>(*work_.model);
     take_presets(*painting, strokes);  // a change may name new ones

@@ -41,10 +41,10 @@ void PaintThread::take_snapshot(const TakeSnapshot& command) {
     const std::vector<io::Attachment> there = work_.autosave.attachments(kSnapshotKind);
     if (there.size() >= io::kMostAttachments)
         return say("There are as many snapshots as a project can hold; delete one first.");
-    const std::vector<stroke::Stroke>& entries = work_.painting->journal().strokes();
+    const std::vector<stroke::JournalEntry>& entries = work_.painting->journal().entries();
     SnapshotLine line{.name = command.name, .made = static_cast<std::int64_t>(std::time(nullptr))};
     line.strokes = static_cast<std::size_t>(std::count_if(
-        entries.begin(), entries.end(), [](const auto& s) { return s.action == stroke::Action::stroke; }));
+        entries.begin(), entries.end(), [](const auto& s) { return s.template as<stroke::PaintStroke>() != nullptr; }));
     // Numbers in names sort as they were made.
     const unsigned long last = there.empty() ? 0 : std::strtoul(there.back().name.c_str(), nullptr, 10);
     char id[24];
@@ -64,14 +64,14 @@ void PaintThread::rename_snapshot(const RenameSnapshot& command) {
     publish_snapshots();
 }
 
-std::vector<stroke::Stroke> PaintThread::snapshot_entries(const std::string& id) const {
+std::vector<stroke::JournalEntry> PaintThread::snapshot_entries(const std::string& id) const {
     const std::optional<io::Attachment> found = work_.autosave.attachment(kSnapshotKind, id);
     if (!found) throw Error("there is no such snapshot any more");
     return io::unpack_entries(found->bytes, "the snapshot '" + line_of(*found).name + "'");
 }
 
 void PaintThread::show_snapshot(const ShowSnapshot& command) {
-    const std::vector<stroke::Stroke> entries = snapshot_entries(command.id);
+    const std::vector<stroke::JournalEntry> entries = snapshot_entries(command.id);
     stroke::Document painting(*work_.model);
     take_presets(painting, entries);
     painting.replay(entries, progress("Document the snapshot"));
@@ -84,7 +84,8 @@ void PaintThread::show_snapshot(const ShowSnapshot& command) {
 // What is there now goes into the step that undo takes back.
 void PaintThread::restore_snapshot(const RestoreSnapshot& command) {
     cancel();
-    std::vector<stroke::Stroke> entries = snapshot_entries(command.id), before = work_.painting->journal().strokes();
+    std::vector<stroke::JournalEntry> entries = snapshot_entries(command.id),
+                                      before = work_.painting->journal().entries();
     put_journal(entries);
     work_.painting->restore_undone({});
     undone_.clear();

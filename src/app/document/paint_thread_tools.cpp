@@ -13,18 +13,15 @@ namespace tuft::app {
 void PaintThread::load_tip(const BeginStroke& command, std::size_t& made) {
     if (command.tip_ink.empty() || command.carry || command.erases) return;
     work_.autosave.prepare(*work_.painting, command.brush, command.tip_ink);
-    const std::pair<stroke::Action, std::string> steps[] = {
-        {stroke::Action::dip, command.ink}, {stroke::Action::wipe, ""}, {stroke::Action::dip, command.tip_ink}};
-    for (std::size_t i = 0; i < std::size(steps); ++i) {
-        stroke::Stroke entry;
-        entry.action = steps[i].first;
-        entry.trace.flat = false;
-        entry.trace.brush = command.brush;
-        entry.trace.ink = steps[i].second;
-        entry.settings.dip = i == 0 ? "each" : "carry";
-        if (i > 0) entry.extent.depth = command.tip_depth;
-        work_.painting->paint(std::move(entry));
-        work_.autosave.add(work_.painting->journal().strokes().back());
+    const stroke::BrushActionKind dip = stroke::BrushActionKind::dip, wipe = stroke::BrushActionKind::wipe;
+    const stroke::Extent tip{.depth = command.tip_depth};
+    const stroke::BrushAction steps[] = {
+        {.kind = dip, .brush = command.brush, .ink = command.ink},
+        {.kind = wipe, .brush = command.brush, .extent = tip, .dip = stroke::DipMode::carry},
+        {.kind = dip, .brush = command.brush, .ink = command.tip_ink, .extent = tip, .dip = stroke::DipMode::carry}};
+    for (const stroke::BrushAction& step : steps) {
+        work_.painting->paint(step);
+        work_.autosave.add(work_.painting->journal().entries().back());
         ++made;
     }
 }
@@ -128,13 +125,8 @@ void PaintThread::send_pixels() {
 
 void PaintThread::change_masks(const ChangeMasks& command) {
     const auto entry_of = [&](const stroke::MaskEdit& edit) {
-        stroke::Stroke entry;
-        entry.action = stroke::Action::mask;
-        entry.trace.flat = false;
         const stroke::Mask* known = work_.painting->masks().find(edit.mask.id);
-        entry.trace.label = known ? known->name : edit.mask.name;
-        entry.mask_edit = edit;
-        return entry;
+        return stroke::JournalEntry(edit, known ? known->name : edit.mask.name);
     };
     if (command.edit.remove) return act(entry_of(command.edit));
     const stroke::MaskTexels texels = stroke::evaluate(command.edit.mask, work_.painting->masks(), *work_.model);

@@ -97,19 +97,19 @@ float part_of_row(Session& s, int n) {
 void care(Session& s) {
     Ui& ui = s.ui;
     const float half = part_of_row(s, 2);
-    const auto act = [&](stroke::Action action, double depth = 1, double side = 0) {
+    const auto act = [&](stroke::EntryKind action, double depth = 1, double side = 0) {
         bring_in_colour(s);
         s.painter->post(
             ActOnBrush{.action = action, .brush = s.brush, .ink = s.ink, .extent = {.depth = depth, .side = side}});
     };
     if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", half))
-        act(stroke::Action::dip, s.dip_depth, s.dip_side);
+        act(stroke::EntryKind::dip, s.dip_depth, s.dip_side);
     ImGui::SameLine();
     if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", half))
-        act(stroke::Action::wipe, s.dip_depth, s.dip_side);
-    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", half)) act(stroke::Action::rinse);
+        act(stroke::EntryKind::wipe, s.dip_depth, s.dip_side);
+    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", half)) act(stroke::EntryKind::rinse);
     ImGui::SameLine();
-    if (ui.button("Comb", "Hair straight and together, the ink stays", half)) act(stroke::Action::reshape);
+    if (ui.button("Comb", "Hair straight and together, the ink stays", half)) act(stroke::EntryKind::reshape);
     ui.slider(
         "How deep", s.dip_depth, 0.05, 1, "%.0f %%",
         "Part of the hair, from the tip. Wipe the tip and dip it into another ink: it is darker than the belly then",
@@ -165,10 +165,10 @@ void ink_section(Session& s) {
               "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
     if (s.wet || s.last.wet) {
         if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0))
-            s.painter->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush, .seconds = 60});
+            s.painter->post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush, .seconds = 60});
         ImGui::SameLine();
         if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(s, 1)))
-            s.painter->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush});
+            s.painter->post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush});
     }
     ui.toggle("Don't reload", s.carry,
               "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");

@@ -8,7 +8,7 @@
 
 #include "ink/colour/composite.h"
 #include "render/gl_scene.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 namespace tuft::app {
 

@@ -6,8 +6,8 @@
 
 #include "ink/canvas.h"
 #include "ink/colour/pigments.h"
-#include "stroke/painting/mask.h"
-#include "stroke/painting/model.h"
+#include "stroke/model/mask_texels.h"
+#include "stroke/model/model.h"
 #include "stroke/session/plan_scratch_pool.h"
 
 namespace tuft::stroke {

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <array>
+
+#include "core/parallel.h"
+#include "stroke/document/document.h"
+
+/// Fills and gradients.
+namespace tuft::stroke {
+namespace {
+
+/// For each chart of the atlas whether it is filled, [n_charts].
+std::vector<std::uint8_t> charts_of(const Fill& fill, const Model& model) {
+    const std::vector<std::uint32_t>& chart = model.atlas.triangle_chart;
+    std::vector<std::uint8_t> filled(model.atlas.n_charts, fill.region == Region::all);
+    if (fill.region == Region::all) return filled;
+    const auto at = model.query->closest_point(fill.at);
+    if (!at) throw Error("there is no surface to fill");
+    filled[chart[at->triangle]] = 1;
+    if (fill.region == Region::chart) return filled;
+    std::vector<std::uint8_t> seen(model.mesh->n_triangles(), 0);
+    std::vector<std::uint32_t> open{at->triangle};
+    seen[at->triangle] = 1;
+    while (!open.empty()) {
+        const std::uint32_t triangle = open.back();
+        open.pop_back();
+        filled[chart[triangle]] = 1;
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t next = model.mesh->neighbours[3 * std::size_t{triangle} + k];
+            if (next == kNone || seen[next]) continue;
+            seen[next] = 1;
+            open.push_back(next);
+        }
+    }
+    return filled;
+}
+
+// The water that comes with a coat.
+void pour(ink::Canvas& canvas, std::uint32_t slot, const ink::Coat& coat) {
+    if (std::none_of(coat.film.begin(), coat.film.end(), [](float f) { return f > 0; })) return;
+    ink::Plane& liquid = canvas.touch_liquid(slot, ink::Liquid::film);
+    for (std::size_t t = 0; t < liquid.size(); ++t) liquid[t] += coat.film[t];
+}
+
+}  // namespace
+
+StrokeReport Document::lay_fill(std::uint64_t id, const Fill& fill) {
+    check_fill(fill);
+    const ink::Mix first = mix_of(fill.ink);
+    const ink::Mix second = fill.to_ink.empty() ? first : mix_of(fill.to_ink);
+    const bool on_palette = fill.layer == kPaletteLayer;
+    const Model& model = target_model(fill.layer);
+    const std::vector<std::uint8_t> charts = charts_of(fill, model);
+    ink::Canvas& canvas = this->canvas(fill.layer);
+    const MaskTexels* mask = fill.mask && !on_palette ? &this->mask(fill.mask) : nullptr;
+    const atlas::TexelMap& map = model.texels;
+
+    std::vector<std::uint32_t> slots;
+    for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
+        for (std::uint32_t k = map.cluster_start[slot]; k < map.cluster_start[slot + 1]; ++k)
+            if (charts[map.cluster_chart[k]] && (slots.empty() || slots.back() != slot)) slots.push_back(slot);
+    if (mask) std::erase_if(slots, [mask](std::uint32_t slot) { return mask->none(slot); });
+    Undo undo{.stroke_id = id};
+    LayerTiles& before = undo.before.emplace_back(LayerTiles{.layer = fill.layer, .tiles = {}});
+    for (const std::uint32_t slot : slots) before.tiles.push_back(canvas.snapshot(slot));
+
+    std::vector<ink::Amounts> laid(slots.size());
+    parallel_for(slots.size(), 16, [&](std::size_t begin, std::size_t end) {
+        ink::Coat coat;
+        coat.first = first;
+        coat.second = second;
+        for (std::size_t i = begin; i < end; ++i) {
+            const atlas::TexelTile& tile = map.tiles[slots[i]];
+            for (int t = 0; t < atlas::kTileTexels; ++t) {
+                const std::uint8_t cluster = tile.cluster[t];
+                const bool in =
+                    cluster != atlas::kNoCluster && charts[map.cluster_chart[map.cluster_start[slots[i]] + cluster]];
+                const double along = in ? along_gradient(fill, Vec3(map.position(slots[i], t))) : 0;
+                const double film =
+                    fill.gradient == Gradient::none ? fill.film : fill.film + along * (fill.to_film - fill.film);
+                coat.film[t] = in ? static_cast<float>(film) : 0.0f;
+                coat.towards[t] = static_cast<float>(along);
+            }
+            if (mask) mask->apply(slots[i], coat.film);
+            laid[i] = ink::lay_coat(canvas, slots[i], tile.area, coat, substrate_of(fill.layer).capacity);
+            if (on_palette) pour(canvas, slots[i], coat);
+        }
+    });
+    keep_undo(std::move(undo));
+    StrokeReport report{.stroke_id = id};
+    for (const ink::Amounts& a : laid) report.ink_given += a.sum();
+    return report;
+}
+
+}  // namespace tuft::stroke
