@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 #include "ink/colour/pigments.h"
 #include "paths.h"
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <numbers>
 
-#include "brush/picture.h"
-#include "brush/tuft_surface.h"
+#include "brush/tuft/tuft_surface.h"
+#include "render/brush/brush_picture.h"
 
 namespace tuft::brush {
 namespace {

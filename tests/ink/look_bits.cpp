@@ -4,7 +4,7 @@
 
 #include "core/hash.h"
 #include "core/random.h"
-#include "ink/colour/composite.h"
+#include "ink/composite/composite.h"
 
 int main() {
     using namespace tuft;

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/parallel.h"
-#include "core/units.h"
+#include "core/system/parallel.h"
+#include "core/text/units.h"
 #include "entry_text.h"
 #include "sheet.h"
 

@@ -1,4 +1,4 @@
-#include "stroke/hand/fit_trajectory.h"
+#include "stroke/drawing/fit_trajectory.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-#include "stroke/hand/plane_ink.h"
+#include "stroke/drawing/plane_ink.h"
 
 namespace tuft::stroke {
 namespace {

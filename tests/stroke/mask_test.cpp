@@ -4,11 +4,11 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "core/parallel.h"
-#include "core/units.h"
+#include "core/system/parallel.h"
+#include "core/text/units.h"
 #include "entry_text.h"
 #include "sheet.h"
-#include "stroke/model/mask_texels.h"
+#include "stroke/surface/mask_texels.h"
 
 namespace tuft::stroke {
 namespace {

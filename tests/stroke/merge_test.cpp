@@ -1,4 +1,4 @@
-#include "stroke/journal/merge.h"
+#include "stroke/document/merge.h"
 
 #include <gtest/gtest.h>
 

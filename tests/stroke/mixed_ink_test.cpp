@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "entry_text.h"
 #include "sheet.h"
 #include "stroke/journal/recorded_stroke.h"

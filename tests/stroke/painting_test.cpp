@@ -6,11 +6,11 @@
 #include <fstream>
 #include <numbers>
 
-#include "core/parallel.h"
-#include "ink/colour/composite.h"
+#include "core/system/parallel.h"
+#include "ink/composite/composite.h"
 #include "sheet.h"
+#include "stroke/deposit/stamp_batch.h"
 #include "stroke/document/document.h"
-#include "stroke/session/stamp_batch.h"
 
 namespace tuft::stroke {
 namespace {

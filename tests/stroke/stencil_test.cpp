@@ -8,7 +8,7 @@
 #include "entry_text.h"
 #include "sheet.h"
 #include "stroke/journal/journal.h"
-#include "stroke/model/surface_stencil.h"
+#include "stroke/surface/surface_stencil.h"
 
 namespace tuft::stroke {
 namespace {

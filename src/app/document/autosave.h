@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "io/project.h"
+#include "io/project/project.h"
 #include "stroke/document/document.h"
-#include "stroke/journal/merge.h"
+#include "stroke/document/merge.h"
 
 namespace tuft::app {
 

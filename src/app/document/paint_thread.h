@@ -22,7 +22,7 @@
 #include "app/view/texture.h"
 #include "stroke/document/document.h"
 #include "stroke/document/fit.h"
-#include "stroke/hand/symmetry.h"
+#include "stroke/gesture/symmetry.h"
 
 namespace tuft::app {
 

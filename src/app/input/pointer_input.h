@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "brush/preset.h"
-#include "mesh/surface_query.h"
-#include "render/gl_camera.h"
-#include "stroke/hand/placement.h"
+#include "brush/preset/preset.h"
+#include "mesh/query/surface_query.h"
+#include "render/gl/gl_camera.h"
+#include "stroke/placement/placement.h"
 
 namespace tuft::app {
 

@@ -12,9 +12,9 @@
 
 #include "app/panels/panels.h"
 #include "app/studio.h"
-#include "core/units.h"
-#include "io/image.h"
-#include "render/gl_target.h"
+#include "core/text/units.h"
+#include "io/image/image.h"
+#include "render/gl/gl_target.h"
 
 namespace tuft::app {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "ink/colour/elementary.h"
+#include "ink/elementary.h"
 #include "ink/film/film_tile.h"
 
 namespace tuft::ink::wet {

@@ -6,8 +6,8 @@
 
 #include "contact/outside.h"
 #include "core/overloaded.h"
-#include "ink/colour/match.h"
-#include "stroke/hand/hand.h"
+#include "ink/composite/match.h"
+#include "stroke/gesture/hand.h"
 #include "stroke/session/session.h"
 
 namespace tuft::stroke {

@@ -8,20 +8,20 @@
 #include <string>
 #include <vector>
 
-#include "brush/preset.h"
-#include "ink/canvas.h"
-#include "ink/colour/composite.h"
+#include "brush/preset/preset.h"
+#include "ink/canvas/canvas.h"
 #include "ink/colour/pigments.h"
+#include "ink/composite/composite.h"
 #include "ink/film/film.h"
+#include "stroke/contact/tuft_in_hand.h"
 #include "stroke/document/palette.h"
-#include "stroke/hand/placement.h"
-#include "stroke/hand/tip_lag.h"
 #include "stroke/journal/journal.h"
 #include "stroke/journal/tables.h"
-#include "stroke/model/mask_texels.h"
-#include "stroke/model/model.h"
+#include "stroke/placement/placement.h"
+#include "stroke/placement/tip_lag.h"
 #include "stroke/session/report.h"
-#include "stroke/session/tuft_in_hand.h"
+#include "stroke/surface/mask_texels.h"
+#include "stroke/surface/model.h"
 
 namespace tuft::stroke {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
-#include "stroke/hand/hand.h"
-#include "stroke/hand/placement.h"
+#include "core/system/parallel.h"
+#include "stroke/gesture/hand.h"
+#include "stroke/placement/placement.h"
 
 namespace tuft::stroke {
 namespace {

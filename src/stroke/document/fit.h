@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "mesh/surface_query.h"
+#include "mesh/query/surface_query.h"
 #include "stroke/document/document.h"
-#include "stroke/document/model_motion.h"
+#include "stroke/journal/model_motion.h"
 
 namespace tuft::stroke {
 

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/overloaded.h"
-#include "core/text.h"
+#include "core/text/text.h"
 #include "ink/exchange/reservoir.h"
 
 namespace tuft::stroke {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/nesting.h"
 #include "core/overloaded.h"
-#include "core/text.h"
+#include "core/text/nesting.h"
+#include "core/text/text.h"
 
 namespace tuft::stroke {
 namespace {

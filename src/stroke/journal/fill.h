@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 #include "stroke/journal/layers.h"
 
 /// Ink laid over a whole part of a model at once.

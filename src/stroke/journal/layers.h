@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/types.h"
-#include "ink/canvas.h"
-#include "ink/colour/blend.h"
+#include "core/geometry/types.h"
+#include "ink/canvas/canvas.h"
+#include "ink/composite/blend.h"
 
 /// User layers: films of their own that are painted, shown and changed apart from each other.
 namespace tuft::stroke {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/bounds.h"
 #include "core/error.h"
+#include "core/geometry/bounds.h"
 #include "stroke/journal/entry_json.h"
 #include "stroke/journal/layers.h"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 /// Masks: which texels strokes and fills may change.
 namespace tuft::stroke {

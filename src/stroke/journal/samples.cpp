@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/bounds.h"
 #include "core/error.h"
+#include "core/geometry/bounds.h"
 
 namespace tuft::stroke {
 namespace {

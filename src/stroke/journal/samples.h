@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 /// \file
 /// What a hand did during one stroke, before it meets a model.

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/nesting.h"
-#include "core/text.h"
+#include "core/text/nesting.h"
+#include "core/text/text.h"
 
 namespace tuft::stroke {
 namespace {

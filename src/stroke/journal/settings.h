@@ -3,9 +3,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 #include "contact/contact.h"
-#include "footprint/stamp.h"
+#include "footprint/stamp/stamp.h"
 
 /// \file
 /// How strokes become texels. Part of the journal, so that a replay is the same.

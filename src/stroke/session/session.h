@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "stroke/hand/hand.h"
-#include "stroke/hand/resample.h"
+#include "stroke/deposit/deposit_model.h"
+#include "stroke/gesture/hand.h"
+#include "stroke/gesture/resample.h"
 #include "stroke/journal/entry.h"
-#include "stroke/model/surface_stencil.h"
-#include "stroke/session/deposit_model.h"
 #include "stroke/session/report.h"
+#include "stroke/surface/surface_stencil.h"
 
 namespace tuft::stroke {
 
