@@ -103,7 +103,7 @@ int run(const Brush& a) {
     check_output(a.sweep_depth);
     const brush::Preset preset = brush::load_preset(a.name);
     if (!a.picture.empty()) {
-        const brush::Picture picture = brush::draw_tuft(preset);
+        const render::BrushPicture picture = render::draw_tuft(preset);
         io::write_image(a.picture, io::view_of(picture.width, picture.height, 3, picture.rgb.data()));
     }
     if (!a.sweep_depth.empty()) {

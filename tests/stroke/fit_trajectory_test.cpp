@@ -68,7 +68,7 @@ Spill spilt(const StrokeSamples& trace, std::initializer_list<Vec2> points, cons
     return s;
 }
 
-TEST(Practise, CornersHaveNoKnobs) {
+TEST(FitTrajectory, CornersHaveNoKnobs) {
     // What of a straight line's soft edge falls on cells farther than half a width is no knob.
     const std::initializer_list<Vec2> straight{{-0.02, 0}, {0, 0}, {0.02, 0}};
     const double edge = spilt(through(straight), straight, {0, 0}, 3 * kWidth).area;
@@ -103,7 +103,7 @@ TEST(Practise, LeavesWhatHasNoCornerAndIsRepeatable) {
     }
 }
 
-TEST(Practise, LooksOnlyAtEdgesThatShow) {
+TEST(FitTrajectory, LooksOnlyAtEdgesThatShow) {
     // A corner in the middle of what other lines cover stays as it was drawn.
     const auto drawn = [](const StrokeSamples& t) { return PaintStroke{.trace = t, .brush = kBrush, .ink = "carbon"}; };
     std::vector<PaintStroke> lines{drawn(through({{-0.005, 0}, {0, 0}, {0, 0.005}}))};

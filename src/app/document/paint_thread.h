@@ -147,7 +147,7 @@ struct EditStrokes {
 struct HighlightStrokes {
     std::vector<std::uint64_t> ids;
 };
-/// Keeps something along with the work (io/attachments.h), or takes it out.
+/// Keeps something along with the work (io/project/attachments.h), or takes it out.
 struct AttachToProject {
     std::string kind;
     io::Attachment attachment;

@@ -231,8 +231,8 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     merge_charts(mesh, cut, chart_options, merge_options, options.progress);
     release_free_memory();
     watch.lap(out.report, "merge");
-    const bool dear = mesh.n_triangles() >= kBlockwiseThreshold;
-    for (int round = 0; round < (dear ? 1 : kImprovements); ++round) {
+    const bool blockwise = mesh.n_triangles() >= kBlockwiseThreshold;
+    for (int round = 0; round < (blockwise ? 1 : kImprovements); ++round) {
         const bool moved = move_seams(mesh, cut, chart_options, options.progress);
         release_free_memory();
         watch.lap(out.report, "move");
@@ -243,7 +243,7 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
     // A few large charts have shorter seams, but may leave more of the page bare.
     std::optional<Layout> smaller;
     const bool can_grow = merge_options.largest_chart < merge_options.largest_at_last;
-    if (!dear && can_grow && StretchBudget(cut, chart_options.l2_all).left() > kWorthMerging) {
+    if (!blockwise && can_grow && StretchBudget(cut, chart_options.l2_all).left() > kWorthMerging) {
         smaller = layout;
         merge_options.largest_chart = merge_options.largest_at_last;
         merge_charts(mesh, cut, chart_options, merge_options, options.progress);

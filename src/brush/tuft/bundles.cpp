@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "brush/tuft/tuft.h"
+#include "core/noise.h"
 #include "core/random.h"
 
 namespace tuft::brush {
@@ -57,10 +58,8 @@ void rank_readiness(Bundles& bundles) {
     const std::size_t n = bundles.bristles.size();
     std::vector<std::pair<double, std::size_t>> order(n);
     const auto clump = [&](double x, double size, std::uint64_t salt) {
-        const double at = (x + 2) / size, cell = std::floor(at), f = at - cell, g = f * f * (3 - 2 * f);
         const std::uint64_t seed = hash_bits(bundles.seed, salt);
-        const auto value = [&](double c) { return uniform(seed, static_cast<std::uint64_t>(c)); };
-        return value(cell) + g * (value(cell + 1) - value(cell));
+        return value_noise((x + 2) / size, [&](std::uint64_t cell) { return uniform(seed, cell); });
     };
     for (std::size_t i = 0; i < n; ++i) {
         const double x = static_cast<double>(bundles.bristles[i].place.x);

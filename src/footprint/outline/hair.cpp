@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/ease.h"
+#include "core/noise.h"
 #include "core/random.h"
 #include "core/simd.h"
 #include "footprint/outline/bands.h"
@@ -59,11 +60,9 @@ struct Placed {
     }
 };
 
-/// Value noise in [-1, 1] along a line, smooth over one unit.
+/// Noise in [-1, 1] along a line, smooth over one unit.
 double roll(std::uint64_t seed, double x) {
-    const double cell = std::floor(x), f = x - cell, g = f * f * (3 - 2 * f);
-    const auto value = [&](double c) { return 2 * uniform(seed, static_cast<std::uint64_t>(c)) - 1; };
-    return value(cell) + g * (value(cell + 1) - value(cell));
+    return value_noise(x, [&](std::uint64_t cell) { return 2 * uniform(seed, cell) - 1; });
 }
 
 /// Whether most of the hair lies rather along the picture's columns.

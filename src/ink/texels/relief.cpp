@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/noise.h"
 #include "core/random.h"
 
 namespace tuft::ink {
@@ -10,7 +11,7 @@ namespace {
 
 /// Noise between values at the corners of unit cubes.
 double lumps(const Vec3& p, std::uint64_t seed) {
-    const Vec3 cell = glm::floor(p), f = p - cell, g = f * f * (3.0 - 2.0 * f);
+    const Vec3 cell = glm::floor(p), f = p - cell, g = fade(f);
     const auto x = static_cast<std::int64_t>(cell.x), y = static_cast<std::int64_t>(cell.y),
                z = static_cast<std::int64_t>(cell.z);
     const auto value = [&](int i, int j, int k) {

@@ -133,7 +133,7 @@ class Project {
     void put_shown_substrate(const std::string& toml);
     std::string shown_substrate() const;
 
-    /// What the project carries of a kind, by name (io/attachments.h). One of the same name is replaced.
+    /// What the project carries of a kind, by name (io/project/attachments.h). One of the same name is replaced.
     void put_attachment(const std::string& kind, const Attachment& attachment);
     void remove_attachment(const std::string& kind, const std::string& name);
     std::vector<Attachment> attachments(const std::string& kind) const;

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tuft::brush {
+namespace tuft::render {
 
-Canvas::Canvas(int w, int h, const Vec3& background) : width(w), height(h) {
+BrushCanvas::BrushCanvas(int w, int h, const Vec3& background) : width(w), height(h) {
     rgb.resize(static_cast<std::size_t>(w) * h * 3);
     for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<float>(background[static_cast<int>(i % 3)]);
 }
 
-Vec3 srgb(int r, int g, int b) {
+Vec3 linear_colour(int r, int g, int b) {
     const auto linear = [](int v) {
         const double s = v / 255.0;
         return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
@@ -20,7 +20,7 @@ Vec3 srgb(int r, int g, int b) {
 
 namespace {
 
-void blend(Canvas& c, int x, int y, const Vec3& colour, double alpha) {
+void blend(BrushCanvas& c, int x, int y, const Vec3& colour, double alpha) {
     if (x < 0 || y < 0 || x >= c.width || y >= c.height || alpha <= 0) return;
     float* p = &c.rgb[(static_cast<std::size_t>(y) * c.width + x) * 3];
     const double a = std::min(alpha, 1.0);
@@ -29,7 +29,7 @@ void blend(Canvas& c, int x, int y, const Vec3& colour, double alpha) {
 
 }  // namespace
 
-void fill_polygon(Canvas& canvas, std::span<const Vec2> points, const Vec3& colour, double alpha) {
+void fill_polygon(BrushCanvas& canvas, std::span<const Vec2> points, const Vec3& colour, double alpha) {
     if (points.size() < 3) return;
     constexpr int kLines = 8;
     double lo = 1e30, hi = -1e30;
@@ -62,7 +62,7 @@ void fill_polygon(Canvas& canvas, std::span<const Vec2> points, const Vec3& colo
     }
 }
 
-void stroke_line(Canvas& canvas, std::span<const Vec2> points, std::span<const double> widths, const Vec3& colour,
+void stroke_line(BrushCanvas& canvas, std::span<const Vec2> points, std::span<const double> widths, const Vec3& colour,
                  double alpha) {
     if (points.size() < 2 || widths.empty()) return;
     // Coverage of the whole line first, so that overlapping pieces do not darken each other.
@@ -224,7 +224,7 @@ double advance(char c) {
 
 }  // namespace
 
-void write_text(Canvas& canvas, std::string_view text, const Vec2& at, double size, const Vec3& colour) {
+void write_text(BrushCanvas& canvas, std::string_view text, const Vec2& at, double size, const Vec3& colour) {
     const double unit = size / 6, line = std::max(1.2, 0.11 * size);
     double x = at.x;
     for (const char c : text) {
@@ -242,7 +242,7 @@ double text_width(std::string_view text, double size) {
     return x;
 }
 
-std::vector<std::uint8_t> to_srgb(const Canvas& canvas) {
+std::vector<std::uint8_t> to_srgb(const BrushCanvas& canvas) {
     std::vector<std::uint8_t> out(canvas.rgb.size());
     for (std::size_t i = 0; i < out.size(); ++i) {
         const double v = std::clamp(static_cast<double>(canvas.rgb[i]), 0.0, 1.0);
@@ -252,4 +252,4 @@ std::vector<std::uint8_t> to_srgb(const Canvas& canvas) {
     return out;
 }
 
-}  // namespace tuft::brush
+}  // namespace tuft::render

@@ -9,30 +9,30 @@
 
 /// A small antialiased drawing surface for the brush's own pictures. Coordinates in pixels,
 /// x to the right, y down, pixel (i, j) covers [i, i+1] × [j, j+1]. Colours linear, 0 to 1.
-namespace tuft::brush {
+namespace tuft::render {
 
-struct Canvas {
+struct BrushCanvas {
     int width = 0, height = 0;
     std::vector<float> rgb;  ///< linear, [height * width * 3], row 0 on top
 
-    Canvas(int w, int h, const Vec3& background);
+    BrushCanvas(int w, int h, const Vec3& background);
 };
 
 /// Linear colour of an sRGB triple 0–255.
-Vec3 srgb(int r, int g, int b);
+Vec3 linear_colour(int r, int g, int b);
 
 /// Fills a polygon (even-odd) with exact horizontal and eightfold vertical coverage.
-void fill_polygon(Canvas& canvas, std::span<const Vec2> points, const Vec3& colour, double alpha = 1);
+void fill_polygon(BrushCanvas& canvas, std::span<const Vec2> points, const Vec3& colour, double alpha = 1);
 
 /// A polyline of round pieces; width in pixels at each point (one value: the same everywhere).
-void stroke_line(Canvas& canvas, std::span<const Vec2> points, std::span<const double> widths, const Vec3& colour,
+void stroke_line(BrushCanvas& canvas, std::span<const Vec2> points, std::span<const double> widths, const Vec3& colour,
                  double alpha = 1);
 
 /// Digits, '.', '-', ',', space, small letters and N in strokes; `at` is the left end of the base line.
-void write_text(Canvas& canvas, std::string_view text, const Vec2& at, double size, const Vec3& colour);
+void write_text(BrushCanvas& canvas, std::string_view text, const Vec2& at, double size, const Vec3& colour);
 double text_width(std::string_view text, double size);
 
 /// To 8-bit sRGB.
-std::vector<std::uint8_t> to_srgb(const Canvas& canvas);
+std::vector<std::uint8_t> to_srgb(const BrushCanvas& canvas);
 
-}  // namespace tuft::brush
+}  // namespace tuft::render

@@ -8,7 +8,9 @@
 #include "core/text/units.h"
 #include "render/brush/tuft_drawing.h"
 
-namespace tuft::brush {
+namespace tuft::render {
+
+using namespace brush;
 
 namespace {
 
@@ -69,10 +71,10 @@ std::string label(const char* format, double value) {
 
 /// Everything in pixels of a picture 2000 wide times `unit`.
 struct Sheet {
-    Canvas& canvas;
+    BrushCanvas& canvas;
     const Preset& preset;
     double unit, width, column, scale;
-    Vec3 ink = srgb(50, 46, 42), faint = srgb(120, 114, 106);
+    Vec3 ink = linear_colour(50, 46, 42), faint = linear_colour(120, 114, 106);
 
     void text(const std::string& words, Vec2 at, double size, const Vec3& colour) const {
         write_text(canvas, words, at, size * unit, colour);
@@ -83,12 +85,12 @@ struct Sheet {
     void rule(double y) const {
         const double thick = 2 * unit;
         const Vec2 line[] = {{0, y}, {width, y}};
-        stroke_line(canvas, line, {&thick, 1}, srgb(70, 66, 60));
+        stroke_line(canvas, line, {&thick, 1}, linear_colour(70, 66, 60));
     }
 };
 
-void draw_scale(const Sheet& sheet, const View& view, double x0, double x1) {
-    const Vec3 ink = srgb(90, 86, 80);
+void draw_scale(const Sheet& sheet, const BrushView& view, double x0, double x1) {
+    const Vec3 ink = linear_colour(90, 86, 80);
     const double thin = 1.1 * sheet.unit, y = view.foot.y;
     const double mm = view.scale * kMillimetre;
     for (int k = static_cast<int>(std::ceil((x0 - view.foot.x) / mm));
@@ -103,10 +105,10 @@ void draw_scale(const Sheet& sheet, const View& view, double x0, double x1) {
 /// Paper and, from `ground` on, the sheet; what the row below drew into this one goes.
 void fill_ground(const Sheet& sheet, double top, double ground, double bottom) {
     const Vec2 over[] = {{0, top}, {sheet.width, top}, {sheet.width, ground}, {0, ground}};
-    fill_polygon(sheet.canvas, over, srgb(246, 243, 236));
+    fill_polygon(sheet.canvas, over, linear_colour(246, 243, 236));
     top = ground;
     const Vec2 under[] = {{0, top}, {sheet.width, top}, {sheet.width, bottom}, {0, bottom}};
-    fill_polygon(sheet.canvas, under, srgb(233, 228, 216));
+    fill_polygon(sheet.canvas, under, linear_colour(233, 228, 216));
 }
 
 /// One row from the side; `top` to `top` + 535 units.
@@ -123,7 +125,7 @@ void draw_row(const Sheet& sheet, double top, double tilt, const char* name) {
         // The scale begins under the tuft's root; where the holder leans, it begins at its axis'
         // foot.
         const double foot = std::tan(tilt) * at.pose.position.z;
-        View view;
+        BrushView view;
         view.scale = sheet.scale;
         view.origin = {at.pose.position.x + foot, 0, 0};
         view.foot = {(k + 0.33) * sheet.column + 0.35 * sheet.scale * foot, ground};
@@ -138,7 +140,7 @@ void draw_row(const Sheet& sheet, double top, double tilt, const char* name) {
     sheet.rule(ground);
     // Over the handles' bands, so that it can be read.
     const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
-    fill_polygon(sheet.canvas, band, srgb(246, 243, 236));
+    fill_polygon(sheet.canvas, band, linear_colour(246, 243, 236));
     sheet.text(name, {24 * u, top + 27 * u}, 14, sheet.ink);
 }
 
@@ -169,7 +171,7 @@ void draw_tips(const Sheet& sheet, double top) {
             name = "reversed tip, pushed on";
         }
         const Posed& at = hand.now;
-        View view;
+        BrushView view;
         view.scale = 1.1 * sheet.scale;
         view.origin = {at.pose.position.x, at.pose.position.y, 0};
         // The hair trails to the right, towards the viewer's side.
@@ -184,7 +186,7 @@ void draw_tips(const Sheet& sheet, double top) {
         const double aside = view.scale * glm::dot(at.pose.axis(), view.right) * length;
         view.foot = {(k + 0.47) * column - 0.5 * aside, ground - 60 * u};
         draw_brush(sheet.canvas, at.tuft, at.state, at.pose, view, 2.5 * length, look);
-        View plan = view;
+        BrushView plan = view;
         plan.foot.x = (k + 0.42) * column;
         const std::vector<Section>& sections = at.state.branches.front().sections;
         plan.origin.y = sections[sections.size() / 3].centre.y;
@@ -192,17 +194,17 @@ void draw_tips(const Sheet& sheet, double top) {
         sheet.centred(name, (k + 0.5) * column, top + 522 * u, 12, sheet.ink);
     }
     const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
-    fill_polygon(sheet.canvas, band, srgb(246, 243, 236));
+    fill_polygon(sheet.canvas, band, linear_colour(246, 243, 236));
     sheet.text("tips", {24 * u, top + 27 * u}, 14, sheet.ink);
 }
 
 }  // namespace
 
-Picture draw_tuft(const Preset& preset, int width) {
+BrushPicture draw_tuft(const Preset& preset, int width) {
     width = std::clamp(width, 320, 8000);
     const double unit = width / 2000.0, row = 535 * unit, head = 54 * unit;
     const int height = static_cast<int>(std::ceil(head + 4 * row));
-    Canvas canvas(width, height, srgb(246, 243, 236));
+    BrushCanvas canvas(width, height, linear_colour(246, 243, 236));
     const double column = static_cast<double>(width) / kColumns;
     const Sheet sheet{canvas, preset, unit, static_cast<double>(width), column, 0.92 * column / (1.3 * preset.length)};
     draw_tips(sheet, head + 3 * row);
@@ -210,11 +212,11 @@ Picture draw_tuft(const Preset& preset, int width) {
     draw_row(sheet, head + row, kLean, "leaning ahead, pulled");
     draw_row(sheet, head, 0, "upright");
     const Vec2 band[] = {{0, 0}, {sheet.width, 0}, {sheet.width, head}, {0, head}};
-    fill_polygon(canvas, band, srgb(246, 243, 236));
+    fill_polygon(canvas, band, linear_colour(246, 243, 236));
     sheet.text(preset.name + label(", hair %.0f mm long", preset.length / kMillimetre) +
                    label(", %.1f mm thick", 2 * preset.radius / kMillimetre),
                {24 * unit, 36 * unit}, 18, sheet.ink);
     return {width, height, to_srgb(canvas)};
 }
 
-}  // namespace tuft::brush
+}  // namespace tuft::render

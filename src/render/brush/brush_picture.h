@@ -5,10 +5,10 @@
 
 #include "brush/preset/preset.h"
 
-namespace tuft::brush {
+namespace tuft::render {
 
 /// 8-bit sRGB picture, row 0 on top, [height * width * 3].
-struct Picture {
+struct BrushPicture {
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgb;
 };
@@ -17,6 +17,6 @@ struct Picture {
 /// the side: held upright, leaning ahead and leaning back, dragged to the left at five depths and
 /// lifted from the last. A fourth row from behind and above: a slanted tip, a tip turned round, a
 /// split one and a dry one. `width` in pixels, 320 to 8000; the height follows.
-Picture draw_tuft(const Preset& preset, int width = 2000);
+BrushPicture draw_tuft(const brush::Preset& preset, int width = 2000);
 
-}  // namespace tuft::brush
+}  // namespace tuft::render

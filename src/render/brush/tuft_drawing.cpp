@@ -10,7 +10,9 @@
 #include "core/ease.h"
 #include "core/random.h"
 
-namespace tuft::brush {
+namespace tuft::render {
+
+using namespace brush;
 
 namespace {
 
@@ -85,7 +87,7 @@ Vec3 point_of(const Section& s, const Vec2& place) {
     return s.centre + 0.97 * (s.a * place.x * s.e + s.b * place.y * s.m);
 }
 
-void fill_silhouette(Canvas& canvas, const Strand& strand, const View& view, const Vec3& colour) {
+void fill_silhouette(BrushCanvas& canvas, const Strand& strand, const BrushView& view, const Vec3& colour) {
     constexpr int kRound = 16;
     constexpr double kUnder = 0.88;  // of the section: no rim where the outermost hair happens to lie further in
     constexpr double kRoot = 0.5;
@@ -119,11 +121,12 @@ void fill_silhouette(Canvas& canvas, const Strand& strand, const View& view, con
     }
 }
 
-void draw_tuft_hair(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view, const TuftLook& look) {
+void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, const BrushView& view,
+                    const TuftLook& look) {
     const std::vector<Strand> strands = strands_of(state, look);
     const int count = static_cast<int>(strands.size());
     if (!look.dry)
-        for (const Strand& strand : strands) fill_silhouette(canvas, strand, view, srgb(78, 55, 40));
+        for (const Strand& strand : strands) fill_silhouette(canvas, strand, view, linear_colour(78, 55, 40));
     const std::vector<Bristle>& bristles = tuft.bundles.bristles;
     std::vector<Placed> placed;
     std::vector<double> near;
@@ -166,7 +169,7 @@ void draw_tuft_hair(Canvas& canvas, const Tuft& tuft, const TuftState& state, co
         if (line.size() < 2) continue;
         lit /= static_cast<double>(line.size());
         const double tone = std::clamp(0.42 + 0.5 * lit + shade[h], 0.0, 1.0);
-        stroke_line(canvas, line, width, glm::mix(srgb(48, 32, 22), srgb(206, 168, 120), tone), 0.8);
+        stroke_line(canvas, line, width, glm::mix(linear_colour(48, 32, 22), linear_colour(206, 168, 120), tone), 0.8);
     }
 }
 
@@ -177,7 +180,7 @@ struct Turned {
 };
 
 /// What of a turned piece faces the viewer, and the end that does.
-void fill_turned(Canvas& canvas, const Turned& piece, const Pose& pose, const View& view) {
+void fill_turned(BrushCanvas& canvas, const Turned& piece, const Pose& pose, const BrushView& view) {
     constexpr int kShades = 48;
     const Vec3 up = -pose.axis(), viewer = view.toward();
     Vec3 side = glm::cross(up, viewer);
@@ -212,12 +215,13 @@ void fill_turned(Canvas& canvas, const Turned& piece, const Pose& pose, const Vi
 
 }  // namespace
 
-void draw_brush(Canvas& canvas, const Tuft& tuft, const TuftState& state, const Pose& pose, const View& view,
+void draw_brush(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, const Pose& pose, const BrushView& view,
                 double length, const TuftLook& look) {
     const Preset& p = tuft.preset;
     const double r = 1.12 * rest_radius(p, 0);
-    const Turned handle{0.2 * p.length, length, 0.92 * r, 0.9 * r, srgb(96, 66, 34), srgb(222, 184, 120)};
-    const Turned ferrule{0, 0.22 * p.length, r, 1.04 * r, srgb(28, 28, 32), srgb(150, 150, 158)};
+    const Turned handle{
+        0.2 * p.length, length, 0.92 * r, 0.9 * r, linear_colour(96, 66, 34), linear_colour(222, 184, 120)};
+    const Turned ferrule{0, 0.22 * p.length, r, 1.04 * r, linear_colour(28, 28, 32), linear_colour(150, 150, 158)};
     const bool into_mouth = glm::dot(pose.axis(), view.toward()) > 0;
     if (into_mouth) {
         fill_turned(canvas, handle, pose, view);
@@ -282,9 +286,9 @@ std::vector<Section> touching(const std::vector<Section>& sections) {
 
 }  // namespace
 
-void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view, double y,
+void draw_patch(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, const BrushView& view, double y,
                 const TuftLook& look) {
-    const Vec3 ink = srgb(24, 22, 24);
+    const Vec3 ink = linear_colour(24, 22, 24);
     const auto plan = [&](const Vec3& p) {
         return Vec2{view.foot.x + view.scale * (p.x - view.origin.x), y + view.scale * (p.y - view.origin.y)};
     };
@@ -328,4 +332,4 @@ void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const 
     }
 }
 
-}  // namespace tuft::brush
+}  // namespace tuft::render

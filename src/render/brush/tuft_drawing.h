@@ -4,10 +4,10 @@
 #include "render/brush/brush_canvas.h"
 
 /// One tuft drawn into a picture.
-namespace tuft::brush {
+namespace tuft::render {
 
 /// From metres to pixels: parallel projection.
-struct View {
+struct BrushView {
     Vec2 foot{0};                      ///< pixel of `origin`
     Vec3 origin{0};                    ///< metres
     double scale = 1;                  ///< pixels per metre
@@ -26,12 +26,12 @@ struct TuftLook {
 
 /// Hair by hair, with the holder of `length` metres: what is nearer hides what is behind it, so
 /// that the ferrule's rim closes over the roots where it is seen from above.
-void draw_brush(Canvas& canvas, const Tuft& tuft, const TuftState& state, const Pose& pose, const View& view,
-                double length, const TuftLook& look = {});
+void draw_brush(BrushCanvas& canvas, const brush::Tuft& tuft, const brush::TuftState& state, const brush::Pose& pose,
+                const BrushView& view, double length, const TuftLook& look = {});
 
 /// What touches the sheet, seen from above with x to the right: its middle line y = `y` of the
 /// picture.
-void draw_patch(Canvas& canvas, const Tuft& tuft, const TuftState& state, const View& view, double y,
-                const TuftLook& look = {});
+void draw_patch(BrushCanvas& canvas, const brush::Tuft& tuft, const brush::TuftState& state, const BrushView& view,
+                double y, const TuftLook& look = {});
 
-}  // namespace tuft::brush
+}  // namespace tuft::render

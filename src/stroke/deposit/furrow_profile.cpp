@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/noise.h"
 #include "core/random.h"
 
 namespace tuft::stroke {
@@ -11,12 +12,9 @@ namespace {
 constexpr double kSettleLength = 1.5e-3;  // metres of travel in which bundles come to lie otherwise
 constexpr double kRollLength = 9e-3;      // metres over which a furrow deepens and fades
 
-/// Value noise in [0, 1] along a line, smooth over one unit.
-double value_noise(std::uint64_t seed, double x) {
-    const double cell = std::floor(x), f = x - cell, g = f * f * (3 - 2 * f);
-    const double a = uniform(seed, static_cast<std::uint64_t>(cell)),
-                 b = uniform(seed, static_cast<std::uint64_t>(cell) + 1);
-    return a + g * (b - a);
+/// Noise in [0, 1] along a line, smooth over one unit.
+double noise(std::uint64_t seed, double x) {
+    return value_noise(x, [&](std::uint64_t cell) { return uniform(seed, cell); });
 }
 
 }  // namespace
@@ -36,7 +34,7 @@ std::vector<ink::BundleFirmness> FurrowProfile::advance(const TuftInHand& tuft, 
     std::vector<ink::BundleFirmness> profile;
     for (std::size_t k = 0; k < n; ++k) {
         firmness_[k] += part * ((firmest > 0 ? lies[k] / firmest : 0) - firmness_[k]);
-        const double roll = value_noise(hash_bits(bundles.seed, 3000 + k), travel / kRollLength);
+        const double roll = noise(hash_bits(bundles.seed, 3000 + k), travel / kRollLength);
         profile.push_back({0.5 + 0.5 * hair.orientation() * bundles.place[k].x, firmness_[k] * (0.4 + 0.6 * roll)});
     }
     return profile;

@@ -8,7 +8,7 @@
 namespace tuft::stroke {
 
 /// After a stroke of thin ink over thick dry paint: the ink runs off the ridges and stands in the furrows
-/// (ink/film/pool.h). Nothing happens, and `seams` is not asked for, where no such paint lies on the tiles that were
+/// (ink/texels/pool.h). Nothing happens, and `seams` is not asked for, where no such paint lies on the tiles that were
 /// written to.
 void pool_on_relief(StampTarget& target, const ink::Ink& ink, const std::function<const atlas::SeamLinks&()>& seams);
 

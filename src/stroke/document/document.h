@@ -70,7 +70,7 @@ class Document {
     void use_brush(const brush::Preset& preset);
     void use_ink(const ink::Ink& ink);
     const brush::Preset& brush(const std::string& name);
-    /// A colour `#rrggbb` is an ink, too: the nearest mix (ink/colour/match.h) on the substrate.
+    /// A colour `#rrggbb` is an ink, too: the nearest mix (ink/composite/match.h) on the substrate.
     const ink::Ink& ink(const std::string& name);
 
     /// Paints a whole stroke, or does an action with its brush, and appends it to the

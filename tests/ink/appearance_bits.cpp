@@ -1,4 +1,4 @@
-// Prints a hash of tiles coloured by src/ink/colour/composite.cpp, which is compiled into this program
+// Prints a hash of tiles coloured by src/ink/composite/composite.cpp, which is compiled into this program
 // for one instruction set (same_bits.sh compares them). Prints "skipped" where it cannot run.
 #include <cstdio>
 
@@ -9,8 +9,8 @@
 int main() {
     using namespace tuft;
     using namespace tuft::ink;
-#ifdef LOOK_BITS_NEEDS
-    if (!__builtin_cpu_supports(LOOK_BITS_NEEDS)) {
+#ifdef APPEARANCE_BITS_NEEDS
+    if (!__builtin_cpu_supports(APPEARANCE_BITS_NEEDS)) {
         std::puts("skipped");
         return 0;
     }

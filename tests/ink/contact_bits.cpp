@@ -48,8 +48,8 @@ struct Tile {
 }  // namespace
 
 int main() {
-#ifdef TOUCH_BITS_NEEDS
-    if (!__builtin_cpu_supports(TOUCH_BITS_NEEDS)) {
+#ifdef CONTACT_BITS_NEEDS
+    if (!__builtin_cpu_supports(CONTACT_BITS_NEEDS)) {
         std::puts("skipped");
         return 0;
     }
