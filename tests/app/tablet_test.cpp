@@ -149,7 +149,7 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
     EXPECT_TRUE(strokes[1].get<stroke::PaintStroke>().erases());
     EXPECT_FALSE(strokes[2].get<stroke::PaintStroke>().erases());
 
-    const brush::Preset brush = brush::load_preset(strokes[0].brush);  // the one in the size of the model
+    const brush::Preset brush = brush::load_preset(stroke::brush_of(strokes[0]));  // the one in the size of the model
     const double working = stroke::working_depth(brush);
     struct HolderPose {
         double pressure;
