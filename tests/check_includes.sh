@@ -33,7 +33,7 @@ stroke/drawing stroke/surface
 stroke/contact
 stroke/deposit
 stroke/session
-stroke/painting
+stroke/document
 io/image render/brush render/picture render/gl
 io/model
 io/export io/project io/strokes

@@ -6,17 +6,17 @@
 
 #include "io/export/export.h"
 #include "io/model/read_model.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 using namespace tuft;
 
 // A wavy line of 40 mm to the right from where the model's front is nearest to its middle.
-static stroke::Stroke wavy_line(const stroke::Model& model) {
+static stroke::PaintStroke wavy_line(const stroke::Model& model) {
     const Box& box = model.mesh->bounds;
     const auto front = model.query->ray(box.centre() - Vec3(0, box.diagonal(), 0), Vec3(0, 1, 0));
-    stroke::Stroke stroke;
-    stroke.trace.brush = "wolf-medium";
-    stroke.trace.ink = "indigo";
+    stroke::PaintStroke stroke;
+    stroke.brush = "wolf-medium";
+    stroke.ink = "indigo";
     stroke.trace.placement = {.origin = front ? front->position : box.centre(), .right = {1, 0, 0}, .down = {0, 0, -1}};
     for (int i = 0; i <= 100; ++i) {
         const double u = i / 100.0;

@@ -17,7 +17,7 @@
 #include "io/model/read_model.h"
 #include "render/picture/picture.h"
 #include "roller.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 namespace tuft::samples {
 namespace {
@@ -115,11 +115,11 @@ void plate(const std::filesystem::path& folder) {
 void bowl(const std::filesystem::path& folder) {
     const stroke::Model model = load("bowl");
     stroke::Document painting(model);
-    stroke::Stroke s;
+    stroke::PaintStroke s;
     s.trace.flat = false;
-    s.trace.brush = "wolf-small";
-    s.trace.ink = "cinnabar";
-    const double length = painting.brush(s.trace.brush).length, step = 0.25 * kMillimetre;
+    s.brush = "wolf-small";
+    s.ink = "cinnabar";
+    const double length = painting.brush(s.brush).length, step = 0.25 * kMillimetre;
     const auto way = straight_way(model, {0.035, -0.01, 0.02}, glm::normalize(Vec3{1, -0.3, 0.6}), step, 400);
     const auto rim = std::max_element(
         way.begin(), way.end(), [](const Contact& a, const Contact& b) { return a.frame.origin.z < b.frame.origin.z; });
@@ -137,7 +137,7 @@ void bowl(const std::filesystem::path& folder) {
             n += way[std::clamp<std::ptrdiff_t>(std::ptrdiff_t(i) + k, 0, std::ptrdiff_t(way.size()) - 1)].frame.n;
         n = glm::normalize(n);
         const Frame f = make_frame(Vec3{0}, n, way[i].frame.t);
-        stroke::TraceSample p;
+        stroke::StrokeSample p;
         p.position = way[i].frame.origin + (length - press) * n;
         p.rotation = glm::quat_cast(Mat3(f.t, f.b, f.n));
         if (i > 0) time += std::max(step, glm::length(p.position - before)) / 0.06;

@@ -11,10 +11,10 @@ namespace {
 
 constexpr const char* kBrush = "mixed-small";
 
-void write_glyph(std::vector<stroke::Trace>& out, const Glyph& g, const WidthTable& table, const WriteOptions& options,
-                 const stroke::Placement& place, const char* ink) {
+void write_glyph(std::vector<stroke::RecordedStroke>& out, const Glyph& g, const WidthTable& table,
+                 const WriteOptions& options, const stroke::Placement& place, const char* ink) {
     for (const Stroke& s : g.strokes) {
-        stroke::Trace t = write(s, table, options);
+        stroke::RecordedStroke t = write(s, table, options);
         t.placement = place;
         t.brush = kBrush;
         t.ink = ink;
@@ -26,10 +26,10 @@ void write_glyph(std::vector<stroke::Trace>& out, const Glyph& g, const WidthTab
 
 }  // namespace
 
-std::vector<stroke::Trace> bowl_inside() {
+std::vector<stroke::RecordedStroke> bowl_inside() {
     const WidthTable table(brush::load_preset(kBrush));
     const double pitch = 43, back = 20;  // mm; on the wall that faces the reader
-    std::vector<stroke::Trace> out;
+    std::vector<stroke::RecordedStroke> out;
     const char* characters[] = {"七", "上", "八", "下"};
     for (int k = 0; k < 4; ++k) {
         // All four share one wrap, so they stay square to each other.
@@ -43,10 +43,10 @@ std::vector<stroke::Trace> bowl_inside() {
     return out;
 }
 
-std::vector<stroke::Trace> bowl_outside() {
+std::vector<stroke::RecordedStroke> bowl_outside() {
     const WidthTable table(brush::load_preset(kBrush));
     const double radius = 68.4 * kMillimetre, height = 44.5 * kMillimetre, step = 31.5 * kDegree;
-    std::vector<stroke::Trace> out;
+    std::vector<stroke::RecordedStroke> out;
     const char* characters[] = {"漫", "步", "人", "生"};
     for (int k = 0; k < 4; ++k) {
         const double a = (k - 1.5) * step;  // from the front (-y) to the right

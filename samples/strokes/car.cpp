@@ -24,7 +24,7 @@ Stroke line(const char* name, const std::vector<Point>& points) {
 
 }  // namespace
 
-std::vector<stroke::Trace> car_pinstripe() {
+std::vector<stroke::RecordedStroke> car_pinstripe() {
     const char* brush = "wolf-medium";  // holds the ink of the whole stripe
     const WidthTable table(brush::load_preset(brush));
     const WriteOptions options{.size = 1.0, .centre = {0, 0}, .speed = 0.16, .tilt = {0, 0}};
@@ -56,9 +56,9 @@ std::vector<stroke::Trace> car_pinstripe() {
                            {-464, 197.5, 0.3, 1.2, 0},
                            {-460, 198.3, 0}}),
     };
-    std::vector<stroke::Trace> out;
+    std::vector<stroke::RecordedStroke> out;
     for (const Stroke& s : strokes) {
-        stroke::Trace t = write(s, table, options);
+        stroke::RecordedStroke t = write(s, table, options);
         t.placement = {{0, -0.24, 0}, {1, 0, 0}, {0, 0, -1}, stroke::SurfaceMapping::project};
         t.brush = brush;
         t.ink = "cinnabar";

@@ -139,7 +139,7 @@ double WidthTable::pressure(double width) const {
     return pressures_[i - 1] + u * (pressures_[i] - pressures_[i - 1]);
 }
 
-stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOptions& o) {
+stroke::RecordedStroke write(const Stroke& stroke, const WidthTable& table, const WriteOptions& o) {
     std::vector<Spot> spots;
     std::vector<double> times;
     std::vector<Spot> keys;
@@ -162,7 +162,7 @@ stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOp
             times.push_back(times.back() + k.rest);
         }
     }
-    stroke::Trace trace;
+    stroke::RecordedStroke trace;
     trace.label = stroke.name;
     std::size_t i = 0;
     const std::size_t n = static_cast<std::size_t>(std::ceil(times.back() * o.sample_rate));
@@ -179,13 +179,13 @@ stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOp
 }
 
 void Series::add(const Stroke& stroke, const char* brush, const char* ink, double speed,
-                 std::vector<stroke::BrushAction> before, const Vec2& tilt) {
+                 std::vector<stroke::Preparation> before, const Vec2& tilt) {
     WriteOptions options;
     options.size = 1;  // keys are in millimetres
     options.centre = {0, 0};
     options.speed = speed;
     options.tilt = tilt;
-    stroke::Trace t = write(stroke, WidthTable(brush::load_preset(brush)), options);
+    stroke::RecordedStroke t = write(stroke, WidthTable(brush::load_preset(brush)), options);
     t.placement = place;
     t.brush = brush;
     t.ink = ink;

@@ -5,7 +5,7 @@
 
 #include "brush/preset/preset.h"
 #include "core/geometry/types.h"
-#include "stroke/journal/trace.h"
+#include "stroke/journal/recorded_stroke.h"
 
 /// A written stroke as a list of key points, and the motion of the hand made from it.
 namespace tuft::samples {
@@ -53,15 +53,15 @@ struct WriteOptions {
 /// The motion: a centripetal Catmull–Rom curve through the keys (from rest to rest, corners
 /// at the rests), widths by monotone cubics (Fritsch and Carlson 1980), speed after pace and
 /// bend with bounded acceleration.
-stroke::Trace write(const Stroke& stroke, const WidthTable& table, const WriteOptions& options);
+stroke::RecordedStroke write(const Stroke& stroke, const WidthTable& table, const WriteOptions& options);
 
 /// Strokes one after the other, their keys in millimetres from a place on a model.
 struct Series {
     stroke::Placement place;
-    std::vector<stroke::Trace> out = {};
+    std::vector<stroke::RecordedStroke> out = {};
 
     void add(const Stroke& stroke, const char* brush, const char* ink, double speed,
-             std::vector<stroke::BrushAction> before = {}, const Vec2& tilt = WriteOptions{}.tilt);
+             std::vector<stroke::Preparation> before = {}, const Vec2& tilt = WriteOptions{}.tilt);
 };
 
 }  // namespace tuft::samples

@@ -9,8 +9,10 @@ namespace tuft::samples {
 
 namespace {
 
-using stroke::Action;
 using stroke::BrushAction;
+using stroke::BrushActionKind;
+using stroke::Dry;
+using stroke::Preparation;
 
 /// Pressed down at its outer end, pulled to the middle and lifted there.
 Stroke petal(double turn, double from, double length, double width) {
@@ -26,7 +28,7 @@ Stroke petal(double turn, double from, double length, double width) {
 
 }  // namespace
 
-std::vector<stroke::Trace> impasto() {
+std::vector<stroke::RecordedStroke> impasto() {
     constexpr const char* kWhite = "titanium-white-paste";
     constexpr const char* kBlue = "samples/inks/blue-paste.toml";
     constexpr const char* kYellow = "samples/inks/yellow-paste.toml";
@@ -47,7 +49,7 @@ std::vector<stroke::Trace> impasto() {
     // A flower on top of it when it is dry.
     for (int p = 0; p < 8; ++p)
         k.add(petal(2 * std::numbers::pi * (p + 0.15) / 8, 5, 20, 10), "mixed-medium", kWhite, 0.04,
-              p ? std::vector<BrushAction>{} : std::vector<BrushAction>{{.action = Action::dry}});
+              p ? std::vector<Preparation>{} : std::vector<Preparation>{Dry{}});
     for (int d = 0; d < 3; ++d) {
         const double a = 2.1 * d;
         const double x = 2.2 * std::cos(a), y = 2.2 * std::sin(a);

@@ -16,9 +16,9 @@ int main(int argc, char** argv) {
     }
     try {
         const std::filesystem::path folder = argv[1];
-        const auto save = [&](const char* name, const char* title, const std::vector<stroke::Trace>& traces) {
+        const auto save = [&](const char* name, const char* title, const std::vector<stroke::RecordedStroke>& traces) {
             double seconds = 0;
-            for (const stroke::Trace& t : traces) seconds += t.samples.back().time;
+            for (const stroke::RecordedStroke& t : traces) seconds += t.samples.back().time;
             io::write_inkml(folder / name, traces, title, io::Digits::rounded);
             fmt::print("{}: {} strokes, {:.0f} s\n", name, traces.size(), seconds);
         };

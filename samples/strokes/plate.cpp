@@ -127,12 +127,12 @@ void half_wave(std::vector<Stroke>& out, double s0, double half, double side, co
 
 }  // namespace
 
-std::vector<stroke::Trace> plate_ornament() {
+std::vector<stroke::RecordedStroke> plate_ornament() {
     const WidthTable table(brush::load_preset(kBrush));
     const WriteOptions options{.size = 1.0, .centre = {0, 0}, .speed = 0.05};  // keys are millimetres
     const Rim rim;
     const double period = 2 * pi * rim.unrolled * std::cos(kSlope) / kPeriods;
-    std::vector<stroke::Trace> out;
+    std::vector<stroke::RecordedStroke> out;
     for (int k = 0; k < kPeriods; ++k) {
         const double a = -2 * pi * k / kPeriods;  // to the right, seen from above with the rim up
         const Vec3 radial{std::sin(-a), std::cos(-a), 0};
@@ -145,7 +145,7 @@ std::vector<stroke::Trace> plate_ornament() {
         half_wave(strokes, -0.5 * period, 0.5 * period, 1, rim, hand);
         half_wave(strokes, 0, 0.5 * period, -1, rim, hand);
         for (const Stroke& s : strokes) {
-            stroke::Trace t = write(s, table, options);
+            stroke::RecordedStroke t = write(s, table, options);
             t.placement = place;
             t.brush = kBrush;
             t.ink = "cobalt";

@@ -11,23 +11,25 @@ namespace tuft::samples {
 
 namespace {
 
-using stroke::Action;
 using stroke::BrushAction;
+using stroke::BrushActionKind;
+using stroke::Dry;
+using stroke::Preparation;
 
 constexpr double kPi = std::numbers::pi;
 
 const BrushAction kTip(const char* ink, double depth) {
-    return {.action = Action::dip, .ink = ink, .extent = {.depth = depth}};
+    return BrushAction{.kind = BrushActionKind::dip, .ink = ink, .extent = {.depth = depth}};
 }
 const BrushAction kWipeTip(double depth) {
-    return {.action = Action::wipe, .extent = {.depth = depth, .amount = 0.95}};
+    return BrushAction{.kind = BrushActionKind::wipe, .extent = {.depth = depth, .amount = 0.95}};
 }
 const BrushAction kFlank(const char* ink, double side) {
-    return {.action = Action::dip, .ink = ink, .extent = {.depth = 1, .side = side}};
+    return BrushAction{.kind = BrushActionKind::dip, .ink = ink, .extent = {.depth = 1, .side = side}};
 }
-const BrushAction kDry{.action = Action::dry};
+const Dry kDry{};
 const BrushAction kWipe(double amount) {
-    return {.action = Action::wipe, .extent = {.amount = amount}};
+    return BrushAction{.kind = BrushActionKind::wipe, .extent = {.amount = amount}};
 }
 
 struct PaintThread : Series {
@@ -49,7 +51,7 @@ struct PaintThread : Series {
             const Vec2 p = heart + f * u;
             return Key{p.x, p.y, w, pace};
         };
-        std::vector<BrushAction> care{kWipeTip(red_tip), kTip("cinnabar", red_tip)};
+        std::vector<Preparation> care{kWipeTip(red_tip), kTip("cinnabar", red_tip)};
         if (wait) care.insert(care.begin(), kDry);
         add({"petal",
              {at(from, 0, 0.5), at(from + 0.35 * (to - from), 0.5 * width, 0.5), at(to, width, 0.5),
@@ -69,7 +71,7 @@ struct PaintThread : Series {
                          r = size * (0.5 + 0.1 * std::cos(3.0 * k));
             const Vec2 end = heart + r * Vec2{std::cos(a), flat * std::sin(a)};
             const Vec2 begin = heart + 0.12 * size * Vec2{std::cos(a), flat * std::sin(a)};
-            const std::vector<BrushAction> care = k ? std::vector<BrushAction>{} : std::vector<BrushAction>{kDry};
+            const std::vector<Preparation> care = k ? std::vector<Preparation>{} : std::vector<Preparation>{kDry};
             add({"filament",
                  {{begin.x, begin.y, 0},
                   {0.5 * (begin.x + end.x), 0.5 * (begin.y + end.y), 0.35},
@@ -91,7 +93,7 @@ struct PaintThread : Series {
 
 }  // namespace
 
-std::vector<stroke::Trace> vase_plum() {
+std::vector<stroke::RecordedStroke> vase_plum() {
     PaintThread p{{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::SurfaceMapping::wrap}}};
     // Two boulders: a thin wash, axe-cut strokes with the side of a half-dry tuft, and their edges.
     const double washes[][4] = {

@@ -14,14 +14,14 @@ constexpr double kSquare = 30;  // mm of the character square
 
 /// Writes a stroke on its place of the sheet, seen from above.
 struct Writer {
-    std::vector<stroke::Trace> out;
+    std::vector<stroke::RecordedStroke> out;
 
     void add(const Stroke& s, const char* brush, double column, double row, const WriteOptions& how = {},
-             std::vector<stroke::BrushAction> before = {}) {
+             std::vector<stroke::Preparation> before = {}) {
         const WidthTable table(brush::load_preset(brush));
         WriteOptions options = how;
         options.size = kSquare * kMillimetre;
-        stroke::Trace t = write(s, table, options);
+        stroke::RecordedStroke t = write(s, table, options);
         t.placement = {{(column - 2.5) * kCell * kMillimetre, (2.5 - row) * kCell * kMillimetre, 0},
                        {1, 0, 0},
                        {0, -1, 0},
@@ -45,7 +45,7 @@ Stroke sweep(const char* name, Vec2 from, Vec2 to, double width, double pace = 1
 
 }  // namespace
 
-std::vector<stroke::Trace> stroke_sheet() {
+std::vector<stroke::RecordedStroke> stroke_sheet() {
     Writer w;
     int row = 0;
     for (const char* brush : {"wolf-medium", "goat-medium", "mixed-medium"}) {
@@ -57,9 +57,10 @@ std::vector<stroke::Trace> stroke_sheet() {
         w.add(na({90, 110}, {690, 800}, {990, 830}, 210), brush, 5, row);
         ++row;
     }
-    using stroke::Action;
+    using stroke::BrushActionKind;
     const auto wiped = [](double amount) {
-        return std::vector<stroke::BrushAction>{{.action = Action::wipe, .extent = {.amount = amount}}};
+        return std::vector<stroke::Preparation>{
+            stroke::BrushAction{.kind = BrushActionKind::wipe, .extent = {.amount = amount}}};
     };
     const char* brush = "mixed-medium";
     // The holder leans across the stroke, so that the tip runs along one side of it.

@@ -10,31 +10,33 @@ namespace tuft::samples {
 
 namespace {
 
-using stroke::Action;
 using stroke::BrushAction;
+using stroke::BrushActionKind;
+using stroke::Dry;
+using stroke::Preparation;
 
 constexpr double kSquare = 1;      // metres: keys are in millimetres
 constexpr double kRedTip = 0.085;  // of the tuft's length
 
-const BrushAction kDry{.action = Action::dry};
+const Dry kDry{};
 
 struct How {
     const char* brush = "goat-medium";
     const char* ink = "carbon";
     WriteOptions options = {};
-    std::vector<BrushAction> before = {};
+    std::vector<Preparation> before = {};
 };
 
 /// Writes strokes on one place of a model, keys in millimetres from it.
 struct Writer {
     stroke::Placement place;
-    std::vector<stroke::Trace> out = {};
+    std::vector<stroke::RecordedStroke> out = {};
 
     void add(const Stroke& s, const How& how) {
         WriteOptions options = how.options;
         options.size = kSquare;
         options.centre = {0, 0};
-        stroke::Trace t = write(s, WidthTable(brush::load_preset(how.brush)), options);
+        stroke::RecordedStroke t = write(s, WidthTable(brush::load_preset(how.brush)), options);
         t.placement = place;
         t.brush = how.brush;
         t.ink = how.ink;
@@ -67,23 +69,24 @@ Stroke petal(double turn, double from, double length, double width) {
              at(0.7, 0.03, 0.7 * width, 0.9), at(1, 0, 0, 1)}};
 }
 
-void append(std::vector<stroke::Trace>& to, Writer&& w) {
-    for (stroke::Trace& t : w.out) to.push_back(std::move(t));
+void append(std::vector<stroke::RecordedStroke>& to, Writer&& w) {
+    for (stroke::RecordedStroke& t : w.out) to.push_back(std::move(t));
 }
 
 }  // namespace
 
-std::vector<stroke::Trace> wet_sheet() {
-    std::vector<stroke::Trace> out;
+std::vector<stroke::RecordedStroke> wet_sheet() {
+    std::vector<stroke::RecordedStroke> out;
     // Petals: yellow in the belly, red in the tip.
     Writer flower = on_sheet(-50, 40);
     for (int k = 0; k < 5; ++k)
-        flower.add(petal(2 * std::numbers::pi * (k + 0.1) / 5, 5, 27, 11),
-                   {.brush = "mixed-large",
-                    .ink = "samples/inks/gamboge-wash.toml",
-                    .options = {.speed = 0.03},
-                    .before = {{.action = Action::wipe, .extent = {.depth = kRedTip, .amount = 0.95}},
-                               {.action = Action::dip, .ink = "cinnabar", .extent = {.depth = kRedTip}}}});
+        flower.add(
+            petal(2 * std::numbers::pi * (k + 0.1) / 5, 5, 27, 11),
+            {.brush = "mixed-large",
+             .ink = "samples/inks/gamboge-wash.toml",
+             .options = {.speed = 0.03},
+             .before = {BrushAction{.kind = BrushActionKind::wipe, .extent = {.depth = kRedTip, .amount = 0.95}},
+                        BrushAction{.kind = BrushActionKind::dip, .ink = "cinnabar", .extent = {.depth = kRedTip}}}});
     append(out, std::move(flower));
     // Three glazes, each over the dry one below.
     Writer glazes = on_sheet(48, 40);
@@ -121,13 +124,13 @@ std::vector<stroke::Trace> wet_sheet() {
                     {40, y - 9, 0, 1}}},
                   {.brush = k ? "goat-medium" : "wolf-large",
                    .options = {.speed = 0.25, .acceleration = 6},
-                   .before = {{.action = Action::wipe, .extent = {.amount = amounts[k]}}}});
+                   .before = {BrushAction{.kind = BrushActionKind::wipe, .extent = {.amount = amounts[k]}}}});
     }
     append(out, std::move(sweep));
     return out;
 }
 
-std::vector<stroke::Trace> wet_bowl() {
+std::vector<stroke::RecordedStroke> wet_bowl() {
     const double radius = 68.4, height = 44.5, turn = -6 * kDegree;  // a seam of the atlas runs up the bowl there
     Writer w{{{radius * std::sin(turn) * kMillimetre, -radius * std::cos(turn) * kMillimetre, height * kMillimetre},
               {std::cos(turn), std::sin(turn), 0},
@@ -144,11 +147,11 @@ std::vector<stroke::Trace> wet_bowl() {
     w.add({"cinnabar", {{6, -10, 0}, {8, -9, 5}, {11, -7, 8}, {13, -5, 0}}},
           {.brush = "mixed-medium", .ink = "cinnabar"});
     w.add({"drop of water", {{-12, -5, 0}, {-11, -4, 4}, {-10, -3, 7}, {-9, -1, 0}}},
-          {.brush = "mixed-medium", .ink = "water", .before = {{.action = Action::dry, .seconds = 5}}});
+          {.brush = "mixed-medium", .ink = "water", .before = {Dry{5}}});
     return std::move(w.out);
 }
 
-std::vector<stroke::Trace> backrun() {
+std::vector<stroke::RecordedStroke> backrun() {
     Writer w = on_sheet(0, 0);
     w.add(band("wash", {-34, 0}, {34, 1}, 28),
           {.brush = "mixed-large*2.6", .ink = "samples/inks/indigo-wash.toml", .options = {.speed = 0.05}});
@@ -160,15 +163,15 @@ std::vector<stroke::Trace> backrun() {
             {.brush = "mixed-large",
              .ink = "water",
              .options = {.speed = 0.02},
-             .before =
-                 x < 0
-                     ? std::vector<BrushAction>{{.action = Action::dry, .seconds = 25},
-                                                {.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}}
-                     : std::vector<BrushAction>{{.action = Action::dip, .ink = "water", .extent = {.amount = 1.02}}}});
+             .before = x < 0 ? std::vector<Preparation>{Dry{25}, BrushAction{.kind = BrushActionKind::dip,
+                                                                             .ink = "water",
+                                                                             .extent = {.amount = 1.02}}}
+                             : std::vector<Preparation>{BrushAction{
+                                   .kind = BrushActionKind::dip, .ink = "water", .extent = {.amount = 1.02}}}});
     return std::move(w.out);
 }
 
-std::vector<stroke::Trace> wet_vase() {
+std::vector<stroke::RecordedStroke> wet_vase() {
     Writer w{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::SurfaceMapping::wrap}};
     // Dripping wet: what the hair does not hold runs down the wall.
     w.add({"dripping stroke",
@@ -182,7 +185,7 @@ std::vector<stroke::Trace> wet_vase() {
           {.brush = "mixed-large",
            .ink = "indigo",
            .options = {.speed = 0.03},
-           .before = {{.action = Action::dip, .ink = "indigo", .extent = {.amount = 1.045}}}});
+           .before = {BrushAction{.kind = BrushActionKind::dip, .ink = "indigo", .extent = {.amount = 1.045}}}});
     return std::move(w.out);
 }
 

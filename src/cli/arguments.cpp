@@ -17,7 +17,7 @@
 #include "io/export/export_maps.h"
 #include "io/model/read_model.h"
 #include "stroke/drawing/free_area.h"
-#include "stroke/journal/trace.h"
+#include "stroke/journal/recorded_stroke.h"
 
 // What help and manual call the value of an option that is a path.
 template <>
@@ -271,7 +271,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
                   "width, from the right flank, negative from the left")
         ->check([](const std::string& text) -> std::string {
             try {
-                stroke::action_of_text(text);
+                stroke::preparation_of(text);
                 return {};
             } catch (const Error& e) {
                 return e.what();

@@ -64,7 +64,7 @@ struct Paint {
     std::string film = "still";          ///< still | wet
     std::vector<double> down{0, 0, -1};  ///< towards the ground, for wet ink
     double dry = -1;  ///< seconds that the ink dries after each stroke file; 0: until dry; < 0: not at all
-    std::vector<std::string> prepare;  ///< what is done with a full brush first; see stroke::action_text
+    std::vector<std::string> prepare;  ///< what is done with a full brush first; see stroke::preparation_of
     std::string pressure = "none";     ///< none | speed | dwell | speed+dwell, for strokes without any
     double smooth = 0;                 ///< strength of the hand's filter; 0: off
     double stabilise_mm = 0;           ///< length of the string; 0: off

@@ -17,7 +17,7 @@
 #include "ink/composite/composite.h"
 #include "ink/exchange/deposit.h"
 #include "io/model/read_model.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// Speed on this machine: one thread, CPU time, medians over repeats.
 namespace tuft::cli {
@@ -174,7 +174,7 @@ double footprint_texels(int texels) {
 
 // The whole path: a brush as thick as makes lines of about `texels` across, dragged along
 // the way; hand samples at 1 kHz and a stamp per texel.
-stroke::Stroke drag(const stroke::Model& model, stroke::Document& painting, int texels) {
+stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting, int texels) {
     brush::Preset preset = brush::load_preset("mixed-medium");
     const double scale = texels * model.atlas.texel_size / (2 * preset.radius);
     preset.name = "bench";
@@ -183,10 +183,10 @@ stroke::Stroke drag(const stroke::Model& model, stroke::Document& painting, int 
     preset.stiffness *= std::pow(scale, 4);
     preset.capacity = 1e-4;
     painting.use_brush(preset);
-    stroke::Stroke s;
+    stroke::PaintStroke s;
     s.trace.flat = false;
-    s.trace.brush = "bench";
-    s.trace.ink = "carbon";
+    s.brush = "bench";
+    s.ink = "carbon";
     const std::vector<Step> way = way_over(model, 401);
     const int reach = texels / 2;
     for (int i = 0; i <= 400; ++i) {
@@ -195,7 +195,7 @@ stroke::Stroke drag(const stroke::Model& model, stroke::Document& painting, int 
         for (int k = std::max(0, i - reach); k <= std::min(400, i + reach); ++k) n += way[k].frame.n;
         n = glm::length(n) > 0 ? glm::normalize(n) : way[i].frame.n;
         const double press = std::min(1.0, i / 60.0) * 0.25 * preset.length;
-        stroke::TraceSample p;
+        stroke::StrokeSample p;
         p.time = i * 1e-3;
         p.position = way[i].frame.origin + (preset.length - press) * n;
         const Frame f = make_frame(Vec3{0}, n, glm::cross(n, way[i].frame.t));
@@ -209,12 +209,10 @@ stroke::Stroke drag(const stroke::Model& model, stroke::Document& painting, int 
 // inked by itself.
 double stamps_per_second(const stroke::Model& model, int texels, double wiped = 0) {
     stroke::Document painting(model);
-    stroke::Stroke s = drag(model, painting, texels);
-    stroke::Stroke wipe{.action = stroke::Action::wipe, .extent = {.amount = wiped}};
-    wipe.trace.flat = false;
-    wipe.trace.brush = s.trace.brush;
-    wipe.trace.ink = s.trace.ink;
-    if (wiped > 0) s.settings.dip = "carry";
+    stroke::PaintStroke s = drag(model, painting, texels);
+    const stroke::BrushAction wipe{
+        .kind = stroke::BrushActionKind::wipe, .brush = s.brush, .ink = s.ink, .extent = {.amount = wiped}};
+    if (wiped > 0) s.settings.dip = stroke::DipMode::carry;
     std::vector<double> runs;
     for (int repeat = 0; repeat < 5; ++repeat) {
         if (wiped > 0) painting.paint(wipe);
@@ -231,7 +229,7 @@ double first_ink_milliseconds(const stroke::Model& model, int texels) {
     std::vector<double> runs;
     for (int repeat = 0; repeat < 5; ++repeat) {
         stroke::Document painting(model);
-        stroke::Stroke s = drag(model, painting, texels);
+        stroke::PaintStroke s = drag(model, painting, texels);
         const std::vector<brush::Pose> poses = stroke::spatial_poses(s.trace);
         s.trace.samples.clear();
         const double start = wall_seconds();

@@ -15,7 +15,8 @@ namespace tuft::cli {
 int run(const BiasCorrection& a) {
     check_extension(a.output, {".toml"});
     check_output(a.output);
-    const std::vector<stroke::Trace> intended = io::read_inkml(a.intended), written = io::read_inkml(a.written);
+    const std::vector<stroke::RecordedStroke> intended = io::read_inkml(a.intended),
+                                              written = io::read_inkml(a.written);
     stroke::BiasCorrection bias;
     try {
         bias = stroke::learn_bias(intended, written);

@@ -14,14 +14,10 @@ Vec3 metres(const std::vector<double>& mm) {
     return kMillimetre * Vec3(mm[0], mm[1], mm[2]);
 }
 
-stroke::Stroke entry_of(const FillWork& a, stroke::Document& painting) {
-    stroke::Stroke entry;
-    entry.action = stroke::Action::fill;
-    entry.trace.flat = false;
-    entry.trace.ink = a.ink;
-    if (a.palette) entry.layer = stroke::kPaletteLayer;
+stroke::Fill fill_of(const FillWork& a, stroke::Document& painting) {
+    stroke::Fill fill{.ink = a.ink};
+    if (a.palette) fill.layer = stroke::kPaletteLayer;
     if (a.palette && !(a.layer.empty() && a.mask.empty())) throw UsageError("the palette has neither layers nor masks");
-    stroke::Fill& fill = entry.fill;
     fill.film = a.film >= 0 ? a.film : painting.ink(a.ink).film;
     fill.to_film = fill.film;
     if (!a.to_ink.empty()) fill.to_film = painting.ink(a.to_ink).film;
@@ -36,7 +32,7 @@ stroke::Stroke entry_of(const FillWork& a, stroke::Document& painting) {
     }
     if (!a.part_mm.empty()) fill.region = stroke::Region::part, fill.at = metres(a.part_mm);
     if (!a.chart_mm.empty()) fill.region = stroke::Region::chart, fill.at = metres(a.chart_mm);
-    return entry;
+    return fill;
 }
 
 }  // namespace
@@ -49,15 +45,15 @@ int run(const FillWork& a) {
             check_on_surface(project->model, metres(*point), point == &a.part_mm ? "--part" : "--chart");
     stroke::Document painting(project->model);
     restore(*project, painting, console);
-    std::vector<stroke::Stroke> entries =
-        stroke::onto_named_layers({entry_of(a, painting)}, painting.layers(), a.layer);
+    std::vector<stroke::JournalEntry> entries =
+        stroke::onto_named_layers({stroke::JournalEntry(fill_of(a, painting))}, painting.layers(), a.layer);
     stroke::keep_to_named_masks(entries, painting.masks(), a.mask);
     find_presets(painting, entries);
     stroke::StrokeReport report;
-    std::vector<stroke::Stroke> done;
-    for (const stroke::Stroke& entry : entries) {
+    std::vector<stroke::JournalEntry> done;
+    for (const stroke::JournalEntry& entry : entries) {
         report = painting.paint(entry);
-        done.push_back(painting.journal().strokes().back());
+        done.push_back(painting.journal().entries().back());
     }
     put_presets(project->file, painting, entries);
     project->file.append(done);

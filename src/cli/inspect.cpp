@@ -78,17 +78,41 @@ struct GroupSum {
     std::string name;
     std::size_t entries = 0, strokes = 0, hidden = 0;
 };
-std::map<std::uint64_t, GroupSum> groups_of(const std::vector<stroke::Stroke>& entries) {
+std::map<std::uint64_t, GroupSum> groups_of(const std::vector<stroke::JournalEntry>& entries) {
     std::map<std::uint64_t, GroupSum> groups;
-    for (const stroke::Stroke& s : entries) {
+    for (const stroke::JournalEntry& s : entries) {
         if (s.group.id == 0) continue;
         GroupSum& sum = groups[s.group.id];
         sum.name = s.group.name;
         ++sum.entries;
-        sum.strokes += s.action == stroke::Action::stroke;
+        sum.strokes += stroke::kind_of(s) == stroke::EntryKind::stroke;
         sum.hidden += s.hidden;
     }
     return groups;
+}
+
+// All entries have all keys; what a kind does not have is as it is by default.
+nlohmann::json entry_to_json(const stroke::JournalEntry& entry) {
+    const stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>();
+    const stroke::BrushAction* action = entry.as<stroke::BrushAction>();
+    const stroke::Extent extent = action ? action->extent : stroke::Extent{};
+    const stroke::DipMode dip = stroke ? stroke->settings.dip : action ? action->dip : stroke::DipMode::each;
+    return {{"id", entry.id},
+            {"group", entry.group.id},
+            {"action", stroke::name_of(stroke::kind_of(entry))},
+            {"dip", stroke::name_of(dip)},
+            {"depth", extent.depth},
+            {"amount", extent.amount},
+            {"side", extent.side},
+            {"label", entry.label},
+            {"layer", stroke::layer_of(entry)},
+            {"on", stroke::on_palette(entry) ? "palette" : "model"},
+            {"mask", stroke::mask_of(entry)},
+            {"tool", stroke && stroke->erases() ? "eraser" : "brush"},
+            {"brush", stroke::brush_of(entry)},
+            {"ink", stroke::ink_of(entry)},
+            {"samples", stroke::samples_of(entry).samples.size()},
+            {"hidden", entry.hidden}};
 }
 
 int inspect_project(const Inspect& a) {
@@ -96,7 +120,7 @@ int inspect_project(const Inspect& a) {
     Console console(a.common.quiet);
     const io::Project project = io::Project::open(a.file, open_options(io::Access::read, console));
     const io::ProjectModel model = project.model();
-    const std::vector<stroke::Stroke> strokes = project.strokes();
+    const std::vector<stroke::JournalEntry> strokes = project.strokes();
     const stroke::LayerTable layers = stroke::layers_after(strokes);
     const std::map<std::uint64_t, GroupSum> groups = groups_of(strokes);
     const atlas::AtlasReport quality = atlas::measure(model.mesh, model.atlas);
@@ -127,23 +151,7 @@ int inspect_project(const Inspect& a) {
                                    {"entries", group.entries},
                                    {"strokes", group.strokes},
                                    {"hidden", group.hidden == group.entries}});
-        for (const stroke::Stroke& s : strokes)
-            j["strokes"].push_back({{"id", s.id},
-                                    {"group", s.group.id},
-                                    {"action", stroke::name_of(s.action)},
-                                    {"dip", s.settings.dip},
-                                    {"depth", s.extent.depth},
-                                    {"amount", s.extent.amount},
-                                    {"side", s.extent.side},
-                                    {"label", s.trace.label},
-                                    {"layer", s.layer},
-                                    {"on", s.layer == stroke::kPaletteLayer ? "palette" : "model"},
-                                    {"mask", s.mask},
-                                    {"tool", s.trace.erases ? "eraser" : "brush"},
-                                    {"brush", s.trace.brush},
-                                    {"ink", s.trace.ink},
-                                    {"samples", s.trace.samples.size()},
-                                    {"hidden", s.hidden}});
+        for (const stroke::JournalEntry& s : strokes) j["strokes"].push_back(entry_to_json(s));
         print_json(j);
         return 0;
     }
@@ -158,16 +166,16 @@ int inspect_project(const Inspect& a) {
                        l->blend == ink::Blend::normal ? "" : std::string(", ") + ink::name_of(l->blend),
                        l->visible ? "" : ", hidden", l->locked ? ", locked" : "");
     std::uint64_t group = 0;
-    for (const stroke::Stroke& s : strokes) {
+    for (const stroke::JournalEntry& s : strokes) {
         if (s.group.id != 0 && s.group.id != group) {
             const GroupSum& sum = groups.at(s.group.id);
             fmt::print("  group   {:>4}  {}: {}{}\n", s.group.id, sum.name, counted(sum.strokes, "stroke"),
                        sum.hidden == sum.entries ? " (hidden)" : "");
         }
         group = s.group.id;
-        fmt::print("  {}{:<7} {:>4}  {:<14} {:<10} {:>6} samples  {}{}\n", group ? "  " : "", stroke::name_of(s.action),
-                   s.id, s.trace.brush, s.trace.ink, s.trace.samples.size(), s.trace.label,
-                   s.hidden ? " (hidden)" : "");
+        fmt::print("  {}{:<7} {:>4}  {:<14} {:<10} {:>6} samples  {}{}\n", group ? "  " : "",
+                   stroke::name_of(stroke::kind_of(s)), s.id, stroke::brush_of(s), stroke::ink_of(s),
+                   stroke::samples_of(s).samples.size(), s.label, s.hidden ? " (hidden)" : "");
     }
     return 0;
 }

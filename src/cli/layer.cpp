@@ -57,12 +57,11 @@ stroke::LayerEdit edit_of(const LayerWork& a, const stroke::LayerTable& table) {
 int run(const LayerWork& a) {
     Console console(a.common.quiet);
     io::Project project = io::Project::open(a.project, open_options(io::Access::write, console));
-    const std::vector<stroke::Stroke> entries = project.strokes();
+    const std::vector<stroke::JournalEntry> entries = project.strokes();
     stroke::LayerTable table = stroke::layers_after(entries);
-    stroke::Stroke entry = stroke::action_after(entries, stroke::Action::layer);
-    entry.edit = edit_of(a, table);
-    stroke::apply(table, entry.edit);
-    project.append(entry);
+    const stroke::LayerEdit edit = edit_of(a, table);
+    stroke::apply(table, edit);
+    project.append(stroke::entry_after(entries, edit));
     if (a.common.json) {
         nlohmann::json j{{"project", a.project.string()}, {"layers", nlohmann::json::array()}};
         for (const stroke::Layer& l : table.layers)

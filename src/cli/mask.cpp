@@ -11,7 +11,6 @@
 #include "core/geometry/bounds.h"
 #include "core/text/text.h"
 #include "core/text/units.h"
-#include "stroke/surface/mask_texels.h"
 
 /// `tuft mask`: masks of a project, made and ended by entries of its journal.
 namespace tuft::cli {
@@ -82,25 +81,25 @@ stroke::Mask mask_of(const MaskWork& a, const stroke::MaskTable& table, const io
 int run(const MaskWork& a) {
     Console console(a.common.quiet);
     io::Project project = io::Project::open(a.project, open_options(io::Access::write, console));
-    const std::vector<stroke::Stroke> entries = project.strokes();
+    const std::vector<stroke::JournalEntry> entries = project.strokes();
     stroke::MaskTable table = stroke::masks_after(entries);
-    stroke::Stroke entry = stroke::action_after(entries, stroke::Action::mask);
-    entry.mask_edit.remove = a.remove;
+    stroke::MaskEdit edit;
+    edit.remove = a.remove;
     if (a.remove) {
         const stroke::Mask* mask = table.find(a.name);
         if (!mask) throw Error(a.project.string(), "has no mask '" + a.name + "'");
-        entry.mask_edit.mask.id = mask->id;
+        edit.mask.id = mask->id;
     } else {
-        entry.mask_edit.mask = mask_of(a, table, project);
-        entry.mask_edit.mask.id = table.next_id;
+        edit.mask = mask_of(a, table, project);
+        edit.mask.id = table.next_id;
     }
-    stroke::apply(table, entry.mask_edit);
+    stroke::apply(table, edit);
     double covered = 0;
     if (!a.remove) {
         // Looked at before it is kept: groups that are not there, a lasso beside the model.
         const auto opened = open_project(a.project, io::Access::read, console);
         if (!a.chart_mm.empty()) check_on_surface(opened->model, kMillimetre * vector_of(a.chart_mm), "--chart");
-        const stroke::MaskTexels texels = stroke::evaluate(entry.mask_edit.mask, table, opened->model);
+        const stroke::MaskTexels texels = stroke::evaluate(edit.mask, table, opened->model);
         for (std::uint32_t slot = 0; slot < opened->model.texels.n_slots(); ++slot)
             for (int t = 0; t < atlas::kTileTexels; ++t)
                 covered +=
@@ -108,10 +107,10 @@ int run(const MaskWork& a) {
         console.clear();
         if (covered == 0) console.note("warning: the mask covers nothing of the model");
     }
-    project.append(entry);
+    project.append(stroke::entry_after(entries, edit));
     if (a.common.json)
-        print_json(nlohmann::json{
-            {"project", a.project.string()}, {"id", entry.mask_edit.mask.id}, {"covered_cm2", covered * 1e4}});
+        print_json(
+            nlohmann::json{{"project", a.project.string()}, {"id", edit.mask.id}, {"covered_cm2", covered * 1e4}});
     else if (a.remove)
         fmt::print("ended mask {}\n", a.name);
     else

@@ -50,10 +50,10 @@ std::string forces_csv(const std::vector<stroke::StrokeReport>& reports) {
 }
 
 // What was painted: the journal from `first` on without actions, one entry per report.
-std::vector<const stroke::Stroke*> painted_strokes(const stroke::Journal& journal, std::size_t first) {
-    std::vector<const stroke::Stroke*> strokes;
-    for (std::size_t i = first; i < journal.strokes().size(); ++i)
-        if (journal.strokes()[i].action == stroke::Action::stroke) strokes.push_back(&journal.strokes()[i]);
+std::vector<const stroke::JournalEntry*> painted_strokes(const stroke::Journal& journal, std::size_t first) {
+    std::vector<const stroke::JournalEntry*> strokes;
+    for (std::size_t i = first; i < journal.entries().size(); ++i)
+        if (journal.entries()[i].as<stroke::PaintStroke>()) strokes.push_back(&journal.entries()[i]);
     return strokes;
 }
 
@@ -69,8 +69,8 @@ void note_dry(const std::vector<stroke::StrokeReport>& reports, Console& console
                     first->path / kMillimetre, dry == 1 ? "" : ", and others"));
 }
 
-std::string stroke_name(const stroke::StrokeReport& report, const stroke::Stroke& stroke) {
-    const std::string& label = stroke.trace.label;
+std::string stroke_name(const stroke::StrokeReport& report, const stroke::JournalEntry& stroke) {
+    const std::string& label = stroke.label;
     return fmt::format("stroke {}{}", report.stroke_id, label.empty() ? "" : " (" + label + ")");
 }
 
@@ -78,7 +78,7 @@ std::string stroke_name(const stroke::StrokeReport& report, const stroke::Stroke
 // on,"; empty: none. `most` becomes the largest value of them.
 template <typename Value>
 std::string strokes_with(const std::vector<stroke::StrokeReport>& reports,
-                         const std::vector<const stroke::Stroke*>& strokes, const Value& value_of, double& most) {
+                         const std::vector<const stroke::JournalEntry*>& strokes, const Value& value_of, double& most) {
     std::size_t n = 0, first = 0;
     for (std::size_t i = 0; i < reports.size(); ++i) {
         const std::optional<double> value = value_of(reports[i]);
@@ -92,8 +92,8 @@ std::string strokes_with(const std::vector<stroke::StrokeReport>& reports,
 }
 
 // Warnings for strokes that go into a closed body, in space or by their place.
-void note_inside(const std::vector<stroke::StrokeReport>& reports, const std::vector<const stroke::Stroke*>& strokes,
-                 const Box& model, Console& console) {
+void note_inside(const std::vector<stroke::StrokeReport>& reports,
+                 const std::vector<const stroke::JournalEntry*>& strokes, const Box& model, Console& console) {
     const auto noted = [](double depth, double from) { return depth > from ? std::optional(depth) : std::nullopt; };
     double deepest = 0;
     if (const std::string which = strokes_with(
@@ -113,8 +113,8 @@ void note_inside(const std::vector<stroke::StrokeReport>& reports, const std::ve
 }
 
 // Warnings for strokes that never met the model.
-void note_misses(const std::vector<stroke::StrokeReport>& reports, const std::vector<const stroke::Stroke*>& strokes,
-                 Console& console) {
+void note_misses(const std::vector<stroke::StrokeReport>& reports,
+                 const std::vector<const stroke::JournalEntry*>& strokes, Console& console) {
     double farthest = 0;
     const std::string which = strokes_with(
         reports, strokes, [](const auto& r) { return r.touched() ? std::nullopt : std::optional(r.nearest); },
@@ -140,7 +140,7 @@ int run(const Paint& a) {
     const auto reserved = in_place ? std::nullopt : reserve(a.project, console);
     const auto before =
         goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console) : nullptr;
-    std::vector<stroke::Stroke> strokes = load_strokes(a, console);
+    std::vector<stroke::JournalEntry> strokes = load_strokes(a, console);
     Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, a.surface, console);
     const stroke::Model model = std::move(loaded.model);
     outputs.frame = loaded.frame;
@@ -154,10 +154,10 @@ int run(const Paint& a) {
     }
     strokes = stroke::onto_named_layers(std::move(strokes), painting.layers(), a.layer);
     stroke::keep_to_named_masks(strokes, painting.masks(), a.mask);
-    const std::size_t n_before = painting.journal().strokes().size();
+    const std::size_t n_before = painting.journal().entries().size();
     // Files are numbered from 1: each is a group of its own in this journal.
     const std::uint64_t first_group = painting.journal().next_group_id();
-    for (stroke::Stroke& s : strokes)
+    for (stroke::JournalEntry& s : strokes)
         if (s.group.id != 0) s.group.id += first_group - 1;
     const double prepared = seconds_since(start);
     find_presets(painting, strokes);
@@ -166,10 +166,10 @@ int run(const Paint& a) {
         project = std::move(before->file);
         put_presets(*project, painting, strokes);
     } else if (!a.project.empty()) {
-        std::vector<stroke::Stroke> all = painting.journal().strokes();
+        std::vector<stroke::JournalEntry> all = painting.journal().entries();
         all.insert(all.end(), strokes.begin(), strokes.end());
         project = start_project(a.project, before ? before->source : a.model.string(), outputs.frame, painting, all);
-        project->append(painting.journal().strokes());
+        project->append(painting.journal().entries());
     }
     const auto painting_start = Clock::now();
     double first_stamp = 0;
@@ -181,8 +181,8 @@ int run(const Paint& a) {
                 if (first_stamp == 0) first_stamp = seconds_since(start);
                 return progress(phase, (static_cast<double>(i) + fraction) / static_cast<double>(strokes.size()));
             });
-            if (strokes[i].action == stroke::Action::stroke) reports.push_back(std::move(report));
-            if (project) project->append(painting.journal().strokes().back());
+            if (strokes[i].as<stroke::PaintStroke>()) reports.push_back(std::move(report));
+            if (project) project->append(painting.journal().entries().back());
         }
     } catch (const Cancelled&) {
         if (project)
@@ -192,10 +192,10 @@ int run(const Paint& a) {
         throw;
     }
     if (project && !strokes.empty())
-        project->save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
+        project->save_canvases(painting.all_canvases(), painting.journal().entries().back().id);
     const double painted = seconds_since(painting_start);
     console.clear();
-    const std::vector<const stroke::Stroke*> done = painted_strokes(painting.journal(), n_before);
+    const std::vector<const stroke::JournalEntry*> done = painted_strokes(painting.journal(), n_before);
     note_misses(reports, done, console);
     note_dry(reports, console);
     note_inside(reports, done, model.mesh->bounds, console);

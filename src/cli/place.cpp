@@ -103,15 +103,17 @@ void note_placed(const PlacedDrawing& p, const Paint& a, const Box& area, double
     console.note(line);
 }
 
-std::optional<PlacedDrawing> lay_drawing(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
+std::optional<PlacedDrawing> lay_drawing(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                          const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths,
                                          Console& console) {
-    for (stroke::Stroke& s : strokes) {
-        if (s.layer == stroke::kPaletteLayer) continue;  // in its own frame
-        if (!s.trace.placed) s.trace.placement.mapping = stroke::SurfaceMapping::drape;
-        if (const auto mapping = stroke::surface_mapping_named(a.mapping)) s.trace.placement.mapping = *mapping;
+    for (stroke::JournalEntry& entry : strokes) {
+        stroke::PaintStroke* s = entry.as<stroke::PaintStroke>();
+        if (!s || s->layer == stroke::kPaletteLayer) continue;  // in its own frame
+        if (!s->trace.placed) s->trace.placement.mapping = stroke::SurfaceMapping::drape;
+        if (const auto mapping = stroke::surface_mapping_named(a.mapping)) s->trace.placement.mapping = *mapping;
     }
-    const std::vector<stroke::Trace*> drawing = stroke::drawing_in(strokes, !a.place_mm.empty() || !a.on.empty());
+    const std::vector<stroke::StrokeSamples*> drawing =
+        stroke::drawing_in(strokes, !a.place_mm.empty() || !a.on.empty());
     if (drawing.empty()) {
         stroke::choose_brushes(strokes, {}, 1, 0, fit, widths);
         return {};
@@ -142,7 +144,7 @@ std::optional<PlacedDrawing> lay_drawing(std::vector<stroke::Stroke>& strokes, c
 
 }  // namespace
 
-std::optional<PlacedDrawing> place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
+std::optional<PlacedDrawing> place_strokes(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                            const Paint& a, Console& console) {
     stroke::WidthTables widths;
     const bool chosen = !a.brush.empty();
@@ -153,15 +155,16 @@ std::optional<PlacedDrawing> place_strokes(std::vector<stroke::Stroke>& strokes,
     return placed;
 }
 
-void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes, const stroke::Model& model) {
+void look_at_strokes(View& view, const std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model) {
     Vec3 sum{0}, up{0};
     double count = 0;
-    for (const stroke::Stroke& s : strokes) {
-        if (s.action != stroke::Action::stroke || s.trace.samples.empty() || s.layer == stroke::kPaletteLayer) continue;
-        const auto weight = static_cast<double>(s.trace.samples.size());
-        const Vec3 at = s.trace.flat ? s.trace.placement.origin : s.trace.samples[s.trace.samples.size() / 2].position;
+    for (const stroke::JournalEntry& s : strokes) {
+        const stroke::StrokeSamples& trace = stroke::samples_of(s);
+        if (trace.samples.empty() || stroke::on_palette(s)) continue;
+        const auto weight = static_cast<double>(trace.samples.size());
+        const Vec3 at = trace.flat ? trace.placement.origin : trace.samples[trace.samples.size() / 2].position;
         if (const auto near = model.query->closest_point(at)) sum += weight * near->face_normal;
-        if (s.trace.flat) up -= weight * glm::normalize(s.trace.placement.down);
+        if (trace.flat) up -= weight * glm::normalize(trace.placement.down);
         count += weight;
     }
     if (!(glm::length(sum) > 0.7 * count)) return;  // they go round the model, or there are none

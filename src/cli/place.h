@@ -37,10 +37,10 @@ struct PlacedDrawing {
 /// hand's speed; the brushes that the files name grow and shrink with the drawing. What had no place is draped;
 /// `--mapping` says how all flat strokes lie. Nothing when no stroke is flat. Throws `Error` when a side that was asked
 /// for has no such area.
-std::optional<PlacedDrawing> place_strokes(std::vector<stroke::Stroke>& strokes, const stroke::Model& model,
+std::optional<PlacedDrawing> place_strokes(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                            const Paint& arguments, Console& console);
 
 /// Turns the view to the side the strokes are on, when they are on one side.
-void look_at_strokes(View& view, const std::vector<stroke::Stroke>& strokes, const stroke::Model& model);
+void look_at_strokes(View& view, const std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model);
 
 }  // namespace tuft::cli

@@ -12,8 +12,8 @@
 #include "io/model/read_model.h"
 #include "io/project/restore.h"
 #include "io/strokes/inkml.h"
-#include "stroke/journal/journal_traces.h"
-#include "stroke/painting/fit.h"
+#include "stroke/document/fit.h"
+#include "stroke/journal/recorded_journal.h"
 
 /// Commands that start from a project: replay, export, render.
 namespace tuft::cli {
@@ -54,7 +54,7 @@ struct Fit {
 };
 
 Fit find_fit(const Replay& a, const OpenProject& project, stroke::Document& painting,
-             const std::vector<stroke::Stroke>& strokes, const std::vector<stroke::StrokeReport>& reports) {
+             const std::vector<stroke::JournalEntry>& strokes, const std::vector<stroke::StrokeReport>& reports) {
     Fit fit;
     if (!a.model.empty()) {
         const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
@@ -124,17 +124,17 @@ std::string map_name(const Export& a) {
 }
 
 int write_strokes(const Export& a, Console& console) {
-    const std::vector<stroke::Stroke> entries =
+    const std::vector<stroke::JournalEntry> entries =
         io::Project::open(a.project, open_options(io::Access::read, console)).strokes();
-    const stroke::JournalTraces written = stroke::traces_of(entries);
-    if (written.traces.empty()) throw Error(a.project.string(), "there are no strokes to write");
-    io::write_inkml(a.output, written.traces, a.project.stem().string());
+    const stroke::RecordedJournal written = stroke::record(entries);
+    if (written.strokes.empty()) throw Error(a.project.string(), "there are no strokes to write");
+    io::write_inkml(a.output, written.strokes, a.project.stem().string());
     if (written.left_out > 0)
         console.note(fmt::format("warning: {} changes of layers and masks are not in a stroke file", written.left_out));
     if (a.common.json)
         print_json(nlohmann::json{{"project", a.project.string()},
                                   {"wrote", a.output.string()},
-                                  {"traces", written.traces.size()},
+                                  {"traces", written.strokes.size()},
                                   {"left_out", written.left_out}});
     else
         fmt::print("wrote {}\n", a.output.string());
@@ -150,15 +150,15 @@ int run(const Replay& a) {
     const auto reserved = reserve(a.out_project, console);
     const auto project = open_project(a.project, io::Access::read, console);
     outputs.frame = a.model.empty() ? project->frame : frame_of(a.surface.unit, a.surface.up, project->frame);
-    std::vector<stroke::Stroke> strokes = project->file.strokes();
+    std::vector<stroke::JournalEntry> strokes = project->file.strokes();
     const stroke::Model model = replay_model(a, *project, console);
 
     stroke::Document painting(model);
     painting.use_substrate(project->substrate);
     io::use_presets(project->file, painting);
-    for (stroke::Stroke& s : strokes) {
-        if (!a.brush.empty()) s.trace.brush = a.brush;
-        if (!a.ink.empty()) s.trace.ink = a.ink;
+    for (stroke::JournalEntry& s : strokes) {
+        if (!a.brush.empty()) stroke::set_brush(s, a.brush);
+        if (!a.ink.empty()) stroke::set_ink(s, a.ink);
     }
     find_presets(painting, strokes);
     const std::vector<stroke::StrokeReport> reports = painting.replay(strokes, console.progress());
@@ -171,7 +171,7 @@ int run(const Replay& a) {
     if (!a.out_project.empty()) {
         io::Project out = start_project(a.out_project, a.model.empty() ? project->source : a.model.string(),
                                         outputs.frame, painting, strokes);
-        out.append(painting.journal().strokes());
+        out.append(painting.journal().entries());
         if (!strokes.empty()) out.save_canvases(painting.all_canvases(), strokes.back().id);
     }
     show_layers(painting, a.view.layers);

@@ -134,28 +134,31 @@ void check_extension(const fs::path& path, const std::vector<std::string>& allow
     throw UsageError(path.string() + ": the name must end in " + fmt::format("{}", fmt::join(allowed, ", ")));
 }
 
-std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
-    stroke::Settings settings;
-    settings.spine = a.spine;
-    settings.footprint = a.footprint;
-    settings.contact = a.contact;
+std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console) {
+    stroke::StrokeSettings settings;
+    settings.spine = stroke::spine_method_of(a.spine);
+    settings.footprint = stroke::footprint_mapping_of(a.footprint);
+    settings.contact = stroke::contact_method_of(a.contact);
     settings.endless = a.dip == "endless";
-    settings.dip = settings.endless ? "each" : a.dip;
+    settings.dip = settings.endless ? stroke::DipMode::each : stroke::dip_mode_of(a.dip);
     settings.smooth = a.smooth;
     settings.stabilise = a.stabilise_mm * kMillimetre;
-    settings.film = a.film;
+    settings.film = stroke::film_model_of(a.film);
     settings.down = {a.down[0], a.down[1], a.down[2]};
-    stroke::EntryOptions options{
-        .settings = settings, .brush = a.brush, .ink = a.ink, .pressure = a.pressure, .erases = a.erases};
-    for (const std::string& text : a.prepare) options.prepare.push_back(stroke::action_of_text(text));
+    stroke::EntryOptions options{.settings = settings,
+                                 .brush = a.brush,
+                                 .ink = a.ink,
+                                 .pressure = stroke::pressure_from(a.pressure),
+                                 .erases = a.erases};
+    for (const std::string& text : a.prepare) options.prepare.push_back(stroke::preparation_of(text));
     std::optional<stroke::BiasCorrection> bias;
     if (!a.bias.empty()) bias = stroke::load_bias(a.bias);
 
-    std::vector<stroke::Stroke> strokes;
+    std::vector<stroke::JournalEntry> strokes;
     std::set<std::string> told;  // a file that is painted twice is told of once
     for (const fs::path& file : a.strokes) {
         const std::size_t first = strokes.size();
-        std::vector<stroke::Trace> traces =
+        std::vector<stroke::RecordedStroke> traces =
             io::read_strokes(file, {.actions = true, .note = [&](const std::string& line) {
                                         if (told.insert(line).second) console.note(line);
                                     }});
@@ -163,13 +166,7 @@ std::vector<stroke::Stroke> load_strokes(const Paint& a, Console& console) {
         stroke::append_entries(strokes, std::move(traces), options);
         for (std::size_t i = first; i < strokes.size(); ++i)
             strokes[i].group = {static_cast<std::uint64_t>(1 + (&file - a.strokes.data())), stroke::group_name(file)};
-        if (a.dry >= 0 && !strokes.empty()) {
-            stroke::Stroke entry{.settings = settings, .action = stroke::Action::dry, .seconds = a.dry};
-            entry.trace.flat = false;
-            entry.trace.brush = strokes.back().trace.brush;
-            entry.trace.ink = strokes.back().trace.ink;
-            strokes.push_back(std::move(entry));
-        }
+        if (a.dry >= 0 && !strokes.empty()) strokes.emplace_back(stroke::Dry{.seconds = a.dry, .down = settings.down});
         report(console.progress(), "strokes", 1);
     }
     return strokes;
@@ -247,7 +244,7 @@ void write_picture(const fs::path& path, const render::Image& image) {
 }
 
 io::Project start_project(const fs::path& path, const std::string& source, const FileFrame& frame,
-                          stroke::Document& painting, const std::vector<stroke::Stroke>& strokes) {
+                          stroke::Document& painting, const std::vector<stroke::JournalEntry>& strokes) {
     const stroke::Model& model = painting.model();
     io::Project project = io::Project::create(path, {.source = source,
                                                      .frame = frame,
@@ -259,19 +256,20 @@ io::Project start_project(const fs::path& path, const std::string& source, const
     return project;
 }
 
-void put_presets(io::Project& project, stroke::Document& painting, const std::vector<stroke::Stroke>& strokes) {
+void put_presets(io::Project& project, stroke::Document& painting, const std::vector<stroke::JournalEntry>& strokes) {
     std::set<std::string> brushes, inks;
-    for (const stroke::Stroke& s : strokes) {
-        if (stroke::has_brush(s.action) && brushes.insert(s.trace.brush).second)
-            project.put_brush({s.trace.brush, brush::preset_toml(painting.brush(s.trace.brush))});
+    for (const stroke::JournalEntry& s : strokes) {
+        const std::string& brush = stroke::brush_of(s);
+        if (stroke::has_brush(stroke::kind_of(s)) && brushes.insert(brush).second)
+            project.put_brush({brush, brush::preset_toml(painting.brush(brush))});
         for (const std::string& ink : stroke::inks_of(s))
             if (inks.insert(ink).second) project.put_ink({ink, ink::ink_toml(painting.ink(ink))});
     }
 }
 
-void find_presets(stroke::Document& painting, const std::vector<stroke::Stroke>& strokes) {
-    for (const stroke::Stroke& s : strokes) {
-        if (stroke::has_brush(s.action)) painting.brush(s.trace.brush);
+void find_presets(stroke::Document& painting, const std::vector<stroke::JournalEntry>& strokes) {
+    for (const stroke::JournalEntry& s : strokes) {
+        if (stroke::has_brush(stroke::kind_of(s))) painting.brush(stroke::brush_of(s));
         for (const std::string& ink : stroke::inks_of(s)) painting.ink(ink);
     }
 }
@@ -316,8 +314,8 @@ std::unique_ptr<OpenProject> open_project(const fs::path& path, io::Access acces
 void show_looks(const io::Project& project, stroke::Document& painting, const Look& look, Console& console) {
     io::show_looks(project, painting);
     std::set<std::string> used;
-    for (const stroke::Stroke& s : painting.journal().strokes())
-        if (!s.trace.ink.empty()) used.insert(s.trace.ink);
+    for (const stroke::JournalEntry& s : painting.journal().entries())
+        if (const std::string& ink = stroke::ink_of(s); !ink.empty()) used.insert(ink);
     for (const std::string& text : look.recolours) {
         const auto equals = text.find('=');
         if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
@@ -396,11 +394,11 @@ nlohmann::json to_json(const atlas::Atlas& a, const atlas::AtlasReport& r) {
     return j;
 }
 
-nlohmann::json to_json(const stroke::StrokeReport& r, const stroke::Stroke& s) {
+nlohmann::json to_json(const stroke::StrokeReport& r, const stroke::JournalEntry& s) {
     return {{"id", r.stroke_id},
-            {"label", s.trace.label},
-            {"brush", s.trace.brush},
-            {"ink", s.trace.ink},
+            {"label", s.label},
+            {"brush", stroke::brush_of(s)},
+            {"ink", stroke::ink_of(s)},
             {"samples", r.samples},
             {"stamps", r.stamps},
             {"unconverged", r.unconverged},

@@ -11,7 +11,7 @@
 #include "cli/console.h"
 #include "io/project/project.h"
 #include "render/picture/picture.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// Steps that several commands share.
 namespace tuft::cli {
@@ -43,7 +43,7 @@ void check_extension(const std::filesystem::path& path, const std::vector<std::s
 
 /// Strokes of InkML and SVG files in order, with brush and ink filled in where the file names none; each file is a
 /// group, numbered from 1.
-std::vector<stroke::Stroke> load_strokes(const Paint& arguments, Console& console);
+std::vector<stroke::JournalEntry> load_strokes(const Paint& arguments, Console& console);
 
 /// Has only the layers of these names seen; throws `UsageError` for a name that is not there.
 void show_layers(stroke::Document& painting, const std::vector<std::string>& names);
@@ -67,11 +67,11 @@ void write_picture(const std::filesystem::path& path, const render::Image& image
 /// A new project with the model and the presets of these strokes; strokes are appended
 /// to it as they are finished.
 /// Throws `Error` for a brush or ink that there is none of, before any paint flows.
-void find_presets(stroke::Document& painting, const std::vector<stroke::Stroke>& strokes);
+void find_presets(stroke::Document& painting, const std::vector<stroke::JournalEntry>& strokes);
 /// Stores the presets that these entries use.
-void put_presets(io::Project& project, stroke::Document& painting, const std::vector<stroke::Stroke>& strokes);
+void put_presets(io::Project& project, stroke::Document& painting, const std::vector<stroke::JournalEntry>& strokes);
 io::Project start_project(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
-                          stroke::Document& painting, const std::vector<stroke::Stroke>& strokes);
+                          stroke::Document& painting, const std::vector<stroke::JournalEntry>& strokes);
 
 /// A project with its model ready to be painted on.
 struct OpenProject {
@@ -102,7 +102,7 @@ void check_on_surface(const stroke::Model& model, const Vec3& at, const char* op
 void print_json(const nlohmann::json& json);
 nlohmann::json to_json(const mesh::RepairReport& report);
 nlohmann::json to_json(const atlas::Atlas& atlas, const atlas::AtlasReport& report);
-nlohmann::json to_json(const stroke::StrokeReport& report, const stroke::Stroke& stroke);
+nlohmann::json to_json(const stroke::StrokeReport& report, const stroke::JournalEntry& stroke);
 
 /// Greatest resident memory of this process so far, MiB.
 double peak_megabytes();

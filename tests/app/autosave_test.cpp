@@ -40,14 +40,14 @@ class KeeperTest : public testing::Test {
 
     void paint(double y) {
         autosave_.prepare(painting_, "wolf-small", "carbon");
-        stroke::Stroke stroke;
+        stroke::PaintStroke stroke;
         stroke.trace.flat = false;
-        stroke.trace.brush = "wolf-small";
-        stroke.trace.ink = "carbon";
+        stroke.brush = "wolf-small";
+        stroke.ink = "carbon";
         painting_.begin(std::move(stroke));
         painting_.extend(test::poses_above(model_, painting_.brush("wolf-small"), 0.02, y));
         painting_.end();
-        autosave_.add(painting_.journal().strokes().back());
+        autosave_.add(painting_.journal().entries().back());
     }
     const stroke::Model model_ = test::shipped_model("sheet.ply", 256);
     stroke::Document painting_{model_};
@@ -69,7 +69,7 @@ TEST_F(KeeperTest, AFullDiskLosesNothingThatRoomCanBring) {
     paint(0.02);
     EXPECT_EQ(autosave_.trouble(), "");
     EXPECT_EQ(autosave_.waiting(), 0u);
-    EXPECT_EQ(io::Project::open(path_).strokes().size(), painting_.journal().strokes().size());
+    EXPECT_EQ(io::Project::open(path_).strokes().size(), painting_.journal().entries().size());
 }
 
 TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
@@ -90,7 +90,7 @@ TEST_F(KeeperTest, WorkThatHasNoFileYetWaitsForOne) {
     autosave.start_later(file, "sheet.ply", {}, fault);
     std::swap(autosave, autosave_);
     for (int i = 0; i < 3; ++i) paint(0.002 * i);
-    const std::uint64_t gone = painting_.journal().strokes().back().id;
+    const std::uint64_t gone = painting_.journal().entries().back().id;
     painting_.undo();
     autosave_.remove(gone);
     EXPECT_EQ(autosave_.trouble(), fault);
@@ -104,13 +104,13 @@ TEST_F(KeeperTest, WorkThatHasNoFileYetWaitsForOne) {
     EXPECT_EQ(autosave_.path(), file);
     const auto kept = io::Project::open(file).strokes();
     ASSERT_EQ(kept.size(), 3u);
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(kept[i].id, painting_.journal().strokes()[i].id);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(kept[i].id, painting_.journal().entries()[i].id);
 }
 
 // Texels are never stored beside a journal that they do not show.
 TEST_F(KeeperTest, AChangeThatCannotBeWrittenKeepsTexelsAway) {
     for (int i = 0; i < 3; ++i) paint(0.002 * i);
-    const std::uint64_t gone = painting_.journal().strokes().back().id;
+    const std::uint64_t gone = painting_.journal().entries().back().id;
     painting_.undo();
     {
         const FullDisk disk(0);

@@ -60,10 +60,10 @@ stroke::Document painted(const stroke::Model& model, const std::string& brush, c
     const auto take = [&](const std::vector<HandStep>& steps) {
         for (const HandStep& step : steps) {
             if (step.kind == HandStep::Kind::begin) {
-                stroke::Stroke s;
+                stroke::PaintStroke s;
                 s.trace.flat = false;
-                s.trace.brush = brush;
-                s.trace.ink = "carbon";
+                s.brush = brush;
+                s.ink = "carbon";
                 painting.begin(std::move(s));
             } else if (step.kind == HandStep::Kind::end) {
                 painting.end();
@@ -227,7 +227,7 @@ TEST(CleanEnds, StrokesReplayToTheBit) {
     const stroke::Document painting =
         painted(sheet(), "wolf-medium", drawn(view, {{-60, 0}, {20, 30}, {60, -20}}, 500, false));
     stroke::Document again(sheet());
-    again.replay(painting.journal().strokes());
+    again.replay(painting.journal().entries());
     EXPECT_EQ(again.hash(), painting.hash());
 }
 

@@ -130,11 +130,7 @@ TEST(FirstBrush, OfASampleInBrushSizeIsNotScaled) {
 TEST(Thumbnails, ShowEachLayerAlone) {
     const stroke::Model model = test::shipped_model("sheet.ply", 256);
     stroke::Document painting(model);
-    stroke::Stroke add;
-    add.action = stroke::Action::layer;
-    add.trace.flat = false;
-    add.edit = stroke::add_on_top(painting.layers(), "gold");
-    painting.paint(std::move(add));
+    painting.paint(stroke::add_on_top(painting.layers(), "gold"));
     const std::uint32_t gold = painting.layers().layers.back().id;
     Orbit orbit;
     orbit.look_from(StandardView::top);
@@ -146,10 +142,10 @@ TEST(Thumbnails, ShowEachLayerAlone) {
     EXPECT_FALSE(thumbnails.waiting(painting));
     painting.take_dirty();
     const brush::Preset preset = brush::load_preset("goat-large");
-    stroke::Stroke s;
+    stroke::PaintStroke s;
     s.trace.flat = false;
-    s.trace.brush = "goat-large";
-    s.trace.ink = "carbon";
+    s.brush = "goat-large";
+    s.ink = "carbon";
     s.layer = gold;
     painting.begin(s);
     painting.extend(test::poses_above(model, preset, 0.1));

@@ -90,10 +90,10 @@ TEST_P(LeaningCurve, ItsInkLiesOnIt) {
     hand.hold.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
     const auto strokes = curve_poses(*model.query, points, hand);
     ASSERT_EQ(strokes.size(), 1u);
-    stroke::Stroke stroke;
+    stroke::PaintStroke stroke;
     stroke.trace.flat = false;
-    stroke.trace.brush = "wolf-medium";
-    stroke.trace.ink = "carbon";
+    stroke.brush = "wolf-medium";
+    stroke.ink = "carbon";
     painting.begin(std::move(stroke));
     painting.extend(strokes[0]);
     painting.end();

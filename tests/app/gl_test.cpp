@@ -140,13 +140,13 @@ void Painted::compare(const stroke::Model& model, std::uint64_t seed) {
         };
         const auto bare = shot(view);
         frame.moving = frame.moving && random.uniform() < 0.5;
-        stroke::Stroke stroke;
+        stroke::PaintStroke stroke;
         stroke.trace.flat = false;
-        stroke.trace.brush = round % 3 == 0 ? "goat-large" : "wolf-medium";
-        stroke.trace.ink = round % 2 ? "carbon" : "cinnabar";
+        stroke.brush = round % 3 == 0 ? "goat-large" : "wolf-medium";
+        stroke.ink = round % 2 ? "carbon" : "cinnabar";
         painting.begin(stroke);
         const std::vector<brush::Pose> poses = test::poses_above(
-            model, painting.brush(stroke.trace.brush), random.uniform(0.04, 0.2), random.uniform(-0.02, 0.02));
+            model, painting.brush(stroke.brush), random.uniform(0.04, 0.2), random.uniform(-0.02, 0.02));
         std::vector<std::uint8_t> pieces;
         for (std::size_t i = 0; i < poses.size(); i += poses.size() / 3 + 1) {
             painting.extend(std::span(poses).subspan(i, std::min(poses.size() / 3 + 1, poses.size() - i)));

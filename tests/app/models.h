@@ -2,7 +2,7 @@
 
 #include "io/model/read_model.h"
 #include "paths.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 namespace tuft::test {
 

@@ -67,12 +67,12 @@ class PainterTest : public testing::Test {
     }
     void compare(const std::filesystem::path& file) {
         const io::Project project = io::Project::open(file);
-        const std::vector<stroke::Stroke> kept = project.strokes();
+        const std::vector<stroke::JournalEntry> kept = project.strokes();
         ASSERT_EQ(kept.size(), lines_.size());
         for (std::size_t i = 0; i < kept.size(); ++i) {
             EXPECT_EQ(kept[i].id, lines_[i].id) << i;
             EXPECT_EQ(kept[i].hidden, lines_[i].hidden) << i;
-            EXPECT_EQ(kept[i].trace.ink, lines_[i].ink) << i;
+            EXPECT_EQ(stroke::ink_of(kept[i]), lines_[i].ink) << i;
         }
         stroke::Document opened(painter_ ? painter_->model() : *model_), replayed(opened.model());
         io::use_presets(project, opened);
@@ -150,7 +150,7 @@ TEST_F(PainterTest, AStrokeThatIsCalledOffLeavesWhatCanBeRedone) {
     painter_->post(RedoStroke{});
     expect_file_like_journal("the stroke again");
     EXPECT_EQ(lines_.size(), 3u);
-    EXPECT_EQ(lines_.back().action, stroke::Action::stroke);
+    EXPECT_EQ(lines_.back().action, stroke::EntryKind::stroke);
     painter_->post(RedoStroke{});
     expect_file_like_journal("removed again");
     EXPECT_EQ(lines_.size(), 2u);
@@ -206,7 +206,7 @@ TEST_F(PainterTest, ALayerThatIsAskedForTwiceComesTwiceUnderTwoNames) {
     ASSERT_EQ(table.layers.size(), 3u);
     EXPECT_EQ(table.layers[1].name, "Layer 2");
     EXPECT_EQ(table.layers[2].name, "Layer 3");
-    EXPECT_EQ(entries[2].layer, table.layers[2].id);
+    EXPECT_EQ(stroke::layer_of(entries[2]), table.layers[2].id);
     end();
 }
 

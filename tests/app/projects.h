@@ -14,7 +14,7 @@
 #include "core/hash.h"
 #include "io/project/project.h"
 #include "paths.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// What the studio kept, asked of the file and of the command line.
 namespace tuft::test {

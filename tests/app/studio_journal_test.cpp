@@ -65,14 +65,18 @@ TEST_F(Journal, APlacedDrawingIsOneGroupThatIsHiddenMovedInkedAndDeletedAsOne) {
         const bool in = i < 10;
         EXPECT_EQ(placed_strokes[i].group, in ? (stroke::EntryGroup{group, "leaves.svg"}) : stroke::EntryGroup{}) << i;
         EXPECT_EQ(hidden[i].hidden, in) << i;
-        EXPECT_EQ(inked[i].trace.ink, in ? "indigo" : "carbon") << i;
-        EXPECT_EQ(inked[i].trace.brush, placed_strokes[i].trace.brush) << i;
+        EXPECT_EQ(stroke::ink_of(inked[i]), in ? "indigo" : "carbon") << i;
+        EXPECT_EQ(stroke::brush_of(inked[i]), stroke::brush_of(placed_strokes[i])) << i;
         if (in) {
-            EXPECT_GT(glm::distance(moved[i].trace.placement.origin, placed_strokes[i].trace.placement.origin), 1e-3)
+            EXPECT_GT(glm::distance(stroke::samples_of(moved[i]).placement.origin,
+                                    stroke::samples_of(placed_strokes[i]).placement.origin),
+                      1e-3)
                 << i;
         }
-        EXPECT_EQ(undone[i].trace.ink, "carbon") << i;
-        EXPECT_EQ(undone[i].trace.placement.origin, placed_strokes[i].trace.placement.origin) << i;
+        EXPECT_EQ(stroke::ink_of(undone[i]), "carbon") << i;
+        EXPECT_EQ(stroke::samples_of(undone[i]).placement.origin,
+                  stroke::samples_of(placed_strokes[i]).placement.origin)
+            << i;
     }
     EXPECT_EQ(project("deleted").size(), 1u);
     EXPECT_EQ(test::stored_hash(path("undone.tuft")), test::stored_hash(path("placed.tuft")));
@@ -119,8 +123,8 @@ TEST_F(Journal, SeveralStrokesAreChosenAndChangedAtOnce) {
     const char* inks[] = {"indigo", "cinnabar", "indigo"};
     ASSERT_EQ(some.size(), 3u);
     ASSERT_EQ(back.size(), 3u);
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(some[i].trace.ink, inks[i]) << i;
-    EXPECT_EQ(back[0].trace.ink, "carbon");
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(stroke::ink_of(some[i]), inks[i]) << i;
+    EXPECT_EQ(stroke::ink_of(back[0]), "carbon");
 }
 
 // Black ink on white glaze: what is blue in the view is the highlight.

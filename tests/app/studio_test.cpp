@@ -18,6 +18,7 @@
 #include "io/model/read_model.h"
 #include "io/project/project.h"
 #include "mesh/query/surface_query.h"
+#include "stroke/journal/entry_json.h"
 #include "studio_program.h"
 
 /// The real program, played by scripts without a display.
@@ -174,7 +175,7 @@ TEST_F(StudioProgram, ALineFollowsItsControlPointsAndIsUndoneAsOne) {
     // Drawn level; its right end was pulled down then.
     const auto strokes = io::Project::open(path("after.tuft")).strokes();
     ASSERT_EQ(strokes.size(), 1u);
-    const auto& samples = strokes[0].trace.samples;
+    const auto& samples = stroke::samples_of(strokes[0]).samples;
     EXPECT_LT(samples.back().position.z, samples.front().position.z - 3e-3);
     EXPECT_EQ(tuft("replay '" + path("after.tuft") + "'")["canvas_hash"], test::stored_hash(path("after.tuft")));
 }
@@ -194,16 +195,14 @@ TEST_F(StudioProgram, LinesAndCurvesArePaintedWithAllThatIsChosenForTheHand) {
     // The mask, then the brush dipped, wiped and dipped before each of the three.
     ASSERT_EQ(strokes.size(), 13u);
     for (std::size_t i = 5; i < strokes.size(); ++i) {
-        const stroke::Stroke &by_hand = strokes[1 + (i - 1) % 4], &other = strokes[i];
-        EXPECT_EQ(other.action, by_hand.action) << i;
-        EXPECT_EQ(other.trace.ink, by_hand.trace.ink) << i;
-        EXPECT_EQ(other.trace.brush, by_hand.trace.brush) << i;
-        EXPECT_EQ(other.mask, by_hand.mask) << i;
-        EXPECT_EQ(other.layer, by_hand.layer) << i;
-        EXPECT_EQ(stroke::to_json(other.settings), stroke::to_json(by_hand.settings)) << i;
+        const stroke::JournalEntry &by_hand = strokes[1 + (i - 1) % 4], &other = strokes[i];
+        EXPECT_EQ(stroke::kind_of(other), stroke::kind_of(by_hand)) << i;
+        EXPECT_EQ(stroke::ink_of(other), stroke::ink_of(by_hand)) << i;
+        EXPECT_EQ(stroke::brush_of(other), stroke::brush_of(by_hand)) << i;
+        EXPECT_EQ(stroke::entry_json(other), stroke::entry_json(by_hand)) << i;
     }
-    EXPECT_EQ(strokes.back().mask, strokes.front().mask_edit.mask.id);
-    EXPECT_EQ(strokes.back().settings.film, "wet");
+    EXPECT_EQ(stroke::mask_of(strokes.back()), strokes.front().get<stroke::MaskEdit>().mask.id);
+    EXPECT_EQ(strokes.back().get<stroke::PaintStroke>().settings.film, stroke::FilmModel::wet);
 }
 
 // What is held on the keyboard turns the wheel and the buttons to other uses, in either keymap.
@@ -344,8 +343,8 @@ TEST_F(StudioProgram, LayersArePaintedHiddenAndUndoneLikeStrokes) {
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = io::Project::open(path("work.tuft")).strokes();
     ASSERT_EQ(strokes.size(), 3u);
-    EXPECT_EQ(strokes[0].layer, stroke::kFirstLayer);
-    EXPECT_NE(strokes[2].layer, stroke::kFirstLayer);
+    EXPECT_EQ(stroke::layer_of(strokes[0]), stroke::kFirstLayer);
+    EXPECT_NE(stroke::layer_of(strokes[2]), stroke::kFirstLayer);
     // The exported strokes paint the same, on both layers, with what was done with the brush between them.
     const nlohmann::json painted =
         tuft("paint " + source_folder() + "/models/bowl.ply --strokes '" + path("more.inkml") + "' --atlas-size 512");
@@ -367,10 +366,10 @@ TEST_F(StudioProgram, AMixturePickedUpIsAnInkOfTheProject) {
     const io::Project project = io::Project::open(path("work.tuft"));
     const auto strokes = project.strokes();
     ASSERT_EQ(strokes.size(), 5u);
-    EXPECT_EQ(strokes[1].action, stroke::Action::wipe);
-    EXPECT_EQ(strokes[2].trace.ink, "cinnabar");
-    EXPECT_EQ(strokes[4].trace.ink, "mixture");
-    EXPECT_EQ(strokes[4].settings.film, "wet");
+    EXPECT_EQ(stroke::kind_of(strokes[1]), stroke::EntryKind::wipe);
+    EXPECT_EQ(stroke::ink_of(strokes[2]), "cinnabar");
+    EXPECT_EQ(stroke::ink_of(strokes[4]), "mixture");
+    EXPECT_EQ(strokes[4].get<stroke::PaintStroke>().settings.film, stroke::FilmModel::wet);
     for (const auto& [name, toml] : project.inks())
         if (name == "mixture") {
             EXPECT_EQ(ink::parse_ink(toml, name).parts.size(), 2u);
@@ -388,9 +387,9 @@ TEST_F(StudioProgram, ABrushDippedOnOneSideReplays) {
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = io::Project::open(path("work.tuft")).strokes();
     ASSERT_GE(strokes.size(), 3u);  // a path that leaves the bowl makes two strokes
-    EXPECT_EQ(strokes[0].action, stroke::Action::wipe);
-    EXPECT_EQ(strokes[1].action, stroke::Action::dip);
-    for (int k = 0; k < 2; ++k) EXPECT_EQ(strokes[k].extent.side, 0.5);
+    EXPECT_EQ(stroke::kind_of(strokes[0]), stroke::EntryKind::wipe);
+    EXPECT_EQ(stroke::kind_of(strokes[1]), stroke::EntryKind::dip);
+    for (int k = 0; k < 2; ++k) EXPECT_EQ(strokes[k].get<stroke::BrushAction>().extent.side, 0.5);
     EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
 }
 
@@ -407,11 +406,11 @@ TEST_F(StudioProgram, InksMixOnThePaletteAndTheMixtureReplays) {
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = io::Project::open(path("work.tuft")).strokes();
     ASSERT_EQ(strokes.size(), 5u);
-    EXPECT_EQ(strokes[0].layer, stroke::kPaletteLayer);
-    EXPECT_EQ(strokes[2].action, stroke::Action::rinse);
-    EXPECT_EQ(strokes[3].layer, stroke::kPaletteLayer);
-    EXPECT_EQ(strokes[4].layer, stroke::kFirstLayer);
-    EXPECT_EQ(strokes[4].trace.ink, strokes[3].trace.ink) << "the brush was not dipped anew";
+    EXPECT_EQ(stroke::layer_of(strokes[0]), stroke::kPaletteLayer);
+    EXPECT_EQ(stroke::kind_of(strokes[2]), stroke::EntryKind::rinse);
+    EXPECT_EQ(stroke::layer_of(strokes[3]), stroke::kPaletteLayer);
+    EXPECT_EQ(stroke::layer_of(strokes[4]), stroke::kFirstLayer);
+    EXPECT_EQ(stroke::ink_of(strokes[4]), stroke::ink_of(strokes[3])) << "the brush was not dipped anew";
     EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
 }
 
@@ -425,13 +424,13 @@ TEST_F(StudioProgram, StrokesKeepToAMaskDrawnOnTheModel) {
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = io::Project::open(path("masked.tuft")).strokes();
     ASSERT_EQ(strokes.size(), 2u);
-    EXPECT_EQ(strokes[0].mask_edit.mask.kind, stroke::MaskKind::lasso);
-    EXPECT_EQ(strokes[1].mask, strokes[0].mask_edit.mask.id);
+    EXPECT_EQ(strokes[0].get<stroke::MaskEdit>().mask.kind, stroke::MaskKind::lasso);
+    EXPECT_EQ(stroke::mask_of(strokes[1]), strokes[0].get<stroke::MaskEdit>().mask.id);
     // Ink lies where the lasso is, and none at the stroke's start outside it.
-    const auto& samples = strokes[1].trace.samples;
+    const auto& samples = stroke::samples_of(strokes[1]).samples;
     const mesh::TriangleMesh mesh = io::Project::open(path("masked.tuft")).model().mesh;
     const mesh::SurfaceQuery surface(mesh);
-    const auto pigments_at = [&](const stroke::TraceSample& s) {
+    const auto pigments_at = [&](const stroke::StrokeSample& s) {
         const Vec3 p = 1e3 * surface.closest_point(s.position)->position;  // below the ferrule
         char text[120];
         std::snprintf(text, sizeof text, "inspect '%s' --at %.4f,%.4f,%.4f", path("masked.tuft").c_str(), p.x, p.y,
@@ -480,7 +479,7 @@ TEST_F(StudioProgram, NoSampleOfTheHandIsLostUnderLoad) {
     stop = true;
     for (std::thread& thread : load) thread.join();
     ASSERT_EQ(ran.status, 0) << ran.err;
-    const auto samples = io::Project::open(path("work.tuft")).strokes().at(0).trace.samples;
+    const auto samples = io::Project::open(path("work.tuft")).strokes().at(0).get<stroke::PaintStroke>().trace.samples;
     EXPECT_GT(samples.size(),
               1000u);  // three ways of some 100 pixels at 260 pixels a second, a sample each millisecond
     // Each sample went to the painter as a pose; the last one is the lift, which is drawn in twelve.
@@ -567,8 +566,8 @@ TEST_F(StudioProgram, ALayerJustAddedIsPaintedOnAndAfterItsEndTheOneBefore) {
     const auto entries = io::Project::open(path("work.tuft")).strokes();
     const stroke::LayerTable table = stroke::layers_after(entries);
     std::string layers;
-    for (const stroke::Stroke& s : entries)
-        if (s.action == stroke::Action::stroke) layers += table.find(s.layer)->name.substr(6);
+    for (const stroke::JournalEntry& s : entries)
+        if (s.as<stroke::PaintStroke>()) layers += table.find(stroke::layer_of(s))->name.substr(6);
     EXPECT_EQ(layers, "12112" + std::to_string(table.layers.size()));
     EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
 }

@@ -136,7 +136,7 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
     ASSERT_EQ(strokes.size(), 3u);
     // The driver stamps reports when it reads them. Where it could not run, a hand's way comes in no time at all.
     for (int k : {0, 1}) {
-        const auto& samples = strokes[static_cast<std::size_t>(k)].trace.samples;
+        const auto& samples = stroke::samples_of(strokes[static_cast<std::size_t>(k)]).samples;
         std::size_t clump = 0;
         for (std::size_t i = 1; i < samples.size(); ++i) {
             clump = samples[i].time - samples[i - 1].time < 5e-4 ? clump + 1 : 0;
@@ -145,24 +145,24 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
                              << " reports came at once";
         }
     }
-    EXPECT_FALSE(strokes[0].trace.erases);
-    EXPECT_TRUE(strokes[1].trace.erases);
-    EXPECT_FALSE(strokes[2].trace.erases);
+    EXPECT_FALSE(strokes[0].get<stroke::PaintStroke>().erases());
+    EXPECT_TRUE(strokes[1].get<stroke::PaintStroke>().erases());
+    EXPECT_FALSE(strokes[2].get<stroke::PaintStroke>().erases());
 
-    const brush::Preset brush = brush::load_preset(strokes[0].trace.brush);  // the one in the size of the model
+    const brush::Preset brush = brush::load_preset(stroke::brush_of(strokes[0]));  // the one in the size of the model
     const double working = stroke::working_depth(brush);
     struct HolderPose {
         double pressure;
         Vec2 lean;  // tangents, to the right and away from the hand
         Vec3 foot;  // of the holder's axis on the sheet, metres
     };
-    const auto held = [&](const stroke::TraceSample& s) {
+    const auto held = [&](const stroke::StrokeSample& s) {
         const Vec3 up = s.rotation * Vec3(0, 0, 1);
         const double height = s.position.z / up.z;
         return HolderPose{(brush.length - height) / working, {up.x / up.z, up.y / up.z}, s.position - height * up};
     };
     for (int k : {0, 1}) {
-        const auto& samples = strokes[static_cast<std::size_t>(k)].trace.samples;
+        const auto& samples = stroke::samples_of(strokes[static_cast<std::size_t>(k)]).samples;
         ASSERT_GT(samples.size(), static_cast<std::size_t>(kSteps)) << "each report of the tablet is a pose";
         // Twenty reports are written in 40 ms. A server that gets no turn for so long stamps them when it reads them,
         // and the hand's filter sees a jump: a few do no harm.
@@ -175,7 +175,7 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
         if (hurried > samples.size() / 8 || late > 0)
             GTEST_SKIP() << "the machine is too busy for a tablet: reports are read many at once";
         std::size_t light = 0, firm = 0;
-        for (const stroke::TraceSample& s : samples) {
+        for (const stroke::StrokeSample& s : samples) {
             const HolderPose h = held(s);
             // The device has 2047 steps of pressure and whole degrees; on the steps between two of the driver's
             // averages (4 reports) and of the hand (4 ms) there is neither.
@@ -190,11 +190,11 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
         EXPECT_NEAR(held(samples[samples.size() - 20]).pressure, 0.7, 1e-3) << k;
     }
     // It ends where a mouse on the same pixels ends: within a pixel for each's rounding.
-    const auto& mouse = strokes[2].trace.samples;
+    const auto& mouse = stroke::samples_of(strokes[2]).samples;
     const Vec3 from = held(mouse[1]).foot, to = held(mouse[mouse.size() - 13]).foot;
     const double pixel = glm::distance(from, to) / glm::distance(kFrom, kTo);
     for (int k : {0, 1}) {
-        const auto& samples = strokes[static_cast<std::size_t>(k)].trace.samples;
+        const auto& samples = stroke::samples_of(strokes[static_cast<std::size_t>(k)]).samples;
         EXPECT_LT(glm::distance(held(samples[samples.size() - 13]).foot, to), 2 * pixel) << k;
     }
 }

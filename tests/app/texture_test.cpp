@@ -17,10 +17,10 @@ TEST(Texture, RefreshedTilesAreWhatTheWholeWouldBe) {
     render::MapPixels map = texture.pixels();
     const std::size_t per_side = map.size / 16;
     for (int i = 0; i < 3; ++i) {
-        stroke::Stroke stroke;
+        stroke::PaintStroke stroke;
         stroke.trace.flat = false;
-        stroke.trace.brush = "wolf-medium";
-        stroke.trace.ink = i == 1 ? "cinnabar" : "carbon";
+        stroke.brush = "wolf-medium";
+        stroke.ink = i == 1 ? "cinnabar" : "carbon";
         painting.begin(std::move(stroke));
         painting.extend(test::poses_above(model, painting.brush("wolf-medium"), 0.1, 0.01 * i));
         painting.end();

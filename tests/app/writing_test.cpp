@@ -9,6 +9,8 @@
 #include "models.h"
 #include "paths.h"
 #include "projects.h"
+#include "stroke/journal/entry_json.h"
+#include "stroke/journal/recorded_journal.h"
 
 namespace tuft::app {
 namespace {
@@ -51,7 +53,7 @@ TEST(Writing, CharactersWithPlacesOfTheirOwnStandSideBySide) {
 /// What the painter makes of a drawing: the hash of all texels, the project, and its journal.
 struct Painted {
     std::string hash, words;
-    std::vector<stroke::Stroke> journal;
+    std::vector<stroke::JournalEntry> journal;
 };
 
 /// A shipped model with a drawing placed on it at the point that a ray from the outside meets.
@@ -95,8 +97,10 @@ class WritingOnModel : public ::testing::Test {
         ASSERT_EQ(a.journal.size(), b.journal.size());
         for (std::size_t i = 0; i < a.journal.size(); ++i) {
             EXPECT_EQ(stroke::entry_json(a.journal[i]), stroke::entry_json(b.journal[i])) << i;
-            std::vector<stroke::Trace> traces{a.journal[i].trace, b.journal[i].trace};
-            EXPECT_EQ(io::inkml_text(std::span(traces).first(1)), io::inkml_text(std::span(traces).last(1))) << i;
+            const auto text = [i](const Painted& p) {
+                return io::inkml_text(stroke::record(std::span(p.journal).subspan(i, 1)).strokes);
+            };
+            EXPECT_EQ(text(a), text(b)) << i;
         }
     }
 

@@ -6,6 +6,9 @@
 #include <map>
 #include <numbers>
 
+#include "brush/tuft/tuft_surface.h"
+#include "render/brush/brush_picture.h"
+
 namespace tuft::brush {
 namespace {
 

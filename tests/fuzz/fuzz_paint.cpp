@@ -6,7 +6,7 @@
 
 #include "mesh/read/polygon_soup.h"
 #include "promise.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 namespace tuft::fuzz {
 namespace {
@@ -37,32 +37,32 @@ mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
     return soup;
 }
 
-stroke::Stroke stroke_of(Bytes& bytes) {
+stroke::PaintStroke stroke_of(Bytes& bytes) {
     static constexpr const char* kBrushes[] = {"wolf-small", "goat-small*0.3", "mixed-small*0.5", "wolf-medium*0.2"};
     static constexpr const char* kInks[] = {"carbon", "cinnabar", "water", "titanium-white-paste"};
-    stroke::Stroke s;
+    stroke::PaintStroke s;
     const int flags = bytes.byte(), more = bytes.byte();
-    s.settings.spine = flags & 1 ? "table" : "rod";
-    s.settings.footprint = flags & 2 ? "plane" : "surface";
-    s.settings.contact = flags & 4 ? "vertices" : "exact";
-    s.settings.dip = flags & 8 ? "carry" : "each";
-    s.settings.film = flags & 16 ? "wet" : "still";
+    s.settings.spine = flags & 1 ? brush::SpineMethod::table : brush::SpineMethod::rod;
+    s.settings.footprint = flags & 2 ? footprint::Mapping::plane : footprint::Mapping::log;
+    s.settings.contact = flags & 4 ? contact::Method::vertices : contact::Method::exact;
+    s.settings.dip = flags & 8 ? stroke::DipMode::carry : stroke::DipMode::each;
+    s.settings.film = flags & 16 ? stroke::FilmModel::wet : stroke::FilmModel::still;
     s.settings.compensate_tip_lag = !(flags & 32);
     s.settings.smooth = flags & 64 ? 1 : 0;
-    s.settings.pressure = flags & 128 ? "speed+dwell" : "none";
+    s.settings.pressure = flags & 128 ? stroke::PressureFrom::speed_dwell : stroke::PressureFrom::none;
     s.settings.down = Vec3(bytes.real(), bytes.real(), bytes.real());
-    s.trace.brush = kBrushes[more & 3];
-    s.trace.ink = kInks[more >> 2 & 3];
+    s.brush = kBrushes[more & 3];
+    s.ink = kInks[more >> 2 & 3];
     s.trace.flat = !(more & 16);
-    s.trace.erases = (more & 0xe0) == 0xe0;
-    s.trace.seed = bytes.byte();
+    if ((more & 0xe0) == 0xe0) s.tool = stroke::Tool::eraser;
+    s.seed = bytes.byte();
     s.trace.placement.mapping = static_cast<stroke::SurfaceMapping>(bytes.below(3));
     s.trace.placement.origin = 0.02 * Vec3(bytes.real(), bytes.real(), bytes.real());
     if (more & 32) s.trace.placement.right = glm::normalize(Vec3(1, bytes.real(), bytes.real()));
     const int n = 1 + bytes.below(20);
     double time = 0;
     for (int i = 0; i < n; ++i) {
-        stroke::TraceSample sample;
+        stroke::StrokeSample sample;
         sample.time = time += 0.01 * (1 + bytes.real());
         sample.position = 0.015 * Vec3(bytes.real(), bytes.real(), 0);
         sample.pressure = 0.5 + 0.5 * bytes.real();
@@ -76,21 +76,23 @@ stroke::Stroke stroke_of(Bytes& bytes) {
     return s;
 }
 
-stroke::Stroke entry_of(Bytes& bytes) {
-    using stroke::Action;
-    static constexpr Action kActions[] = {Action::rinse, Action::reshape, Action::dip,
-                                          Action::wipe,  Action::dry,     Action::fill};
+stroke::JournalEntry entry_of(Bytes& bytes) {
+    using Kind = stroke::BrushActionKind;
+    static constexpr Kind kActions[] = {Kind::rinse, Kind::reshape, Kind::dip, Kind::wipe};
     const int what = bytes.below(16);
-    stroke::Stroke s = stroke_of(bytes);
-    if (what >= static_cast<int>(std::size(kActions))) return s;
-    s.action = kActions[what];
-    s.trace.flat = s.trace.erases = false;
-    s.trace.samples.clear();
-    if (s.action == Action::dip || s.action == Action::wipe)
-        s.extent = {.depth = std::abs(bytes.real()), .amount = std::abs(bytes.real()), .side = bytes.real()};
-    if (s.action == Action::dry) s.seconds = 0.5 + std::abs(bytes.real());
-    if (s.action == Action::fill) s.fill.film = 2 * std::abs(bytes.real());
-    return s;
+    const stroke::PaintStroke s = stroke_of(bytes);
+    if (what == 4) return stroke::Dry{.seconds = 0.5 + std::abs(bytes.real()), .down = s.settings.down};
+    if (what == 5) return stroke::Fill{.ink = s.ink, .film = 2 * std::abs(bytes.real())};
+    if (what > 5) return s;
+    stroke::BrushAction action{.kind = kActions[what],
+                               .brush = s.brush,
+                               .ink = s.ink,
+                               .seed = s.seed,
+                               .dip = s.settings.dip,
+                               .spine = s.settings.spine};
+    if (action.kind == Kind::dip || action.kind == Kind::wipe)
+        action.extent = {.depth = std::abs(bytes.real()), .amount = std::abs(bytes.real()), .side = bytes.real()};
+    return action;
 }
 
 void check_ink(const ink::Canvas& canvas) {
@@ -113,7 +115,7 @@ void run_paint(std::span<const std::uint8_t> input) {
         for (int i = 0; i < 3 && !bytes.empty(); ++i) refusing([&] { painting.paint(entry_of(bytes)); });
         check_ink(painting.canvas());
         stroke::Document again(model);
-        again.replay(painting.journal().strokes());
+        again.replay(painting.journal().entries());
         promise(again.hash() == painting.hash(), "a replay gives the same bits");
     });
 }

@@ -24,7 +24,7 @@
 #include "mesh/repair/repair.h"
 #include "promise.h"
 #include "stroke/gesture/bias_correction.h"
-#include "stroke/journal/journal.h"
+#include "stroke/journal/entry_json.h"
 
 namespace tuft::fuzz {
 namespace {
@@ -79,11 +79,11 @@ void run_mesh(Input input) {
     refusing([&] { check_surface(mesh::build_surface(Read(chars_of(input), empty_folder() / "input"))); });
 }
 
-void check_traces(const std::vector<stroke::Trace>& traces) {
-    for (const stroke::Trace& trace : traces) {
-        stroke::check_trace(trace);
+void check_traces(const std::vector<stroke::RecordedStroke>& traces) {
+    for (const stroke::RecordedStroke& trace : traces) {
+        stroke::check_samples(trace);
         double last = -HUGE_VAL;
-        for (const stroke::TraceSample& s : trace.samples) {
+        for (const stroke::StrokeSample& s : trace.samples) {
             promise(s.time >= last, "time never falls");
             promise(s.pressure >= 0 && s.pressure <= 1, "pressures are parts");
             last = s.time;
@@ -95,17 +95,17 @@ constexpr std::size_t kMostSamples = 20'000;
 
 void run_inkml(Input input) {
     const io::InkmlOptions options{.max_samples = kMostSamples, .actions = true};
-    std::vector<stroke::Trace> traces;
+    std::vector<stroke::RecordedStroke> traces;
     refusing([&] { traces = io::parse_inkml(text_of(input), "input.inkml", options); });
     check_traces(traces);  // what a reader lets through, a project takes
     if (traces.empty()) return;
     const std::string written = io::inkml_text(traces);
-    const std::vector<stroke::Trace> again = io::parse_inkml(written, "again.inkml", options);
+    const std::vector<stroke::RecordedStroke> again = io::parse_inkml(written, "again.inkml", options);
     promise(again.size() == traces.size(), "what is written is read again");
 }
 
 void run_svg(Input input) {
-    std::vector<stroke::Trace> traces;
+    std::vector<stroke::RecordedStroke> traces;
     refusing([&] { traces = io::parse_svg(text_of(input), "input.svg", {.ink = {.max_samples = kMostSamples}}); });
     check_traces(traces);
 }
@@ -144,12 +144,8 @@ void run_habit(Input input) {
 
 void run_entry(Input input) {
     refusing([&] {
-        stroke::Stroke entry;
-        stroke::read_entry_json(text_of(input), entry);
-        const std::string text = stroke::entry_json(entry);
-        stroke::Stroke again;
-        stroke::read_entry_json(text, again);
-        promise(stroke::entry_json(again) == text, "an entry that is written is read again");
+        const std::string text = stroke::entry_json(stroke::entry_of({}, text_of(input)));
+        promise(stroke::entry_json(stroke::entry_of({}, text)) == text, "an entry that is written is read again");
     });
 }
 
@@ -175,8 +171,8 @@ void run_project(Input input) {
         project.inks();
         project.recolours();
         const io::ProjectModel model = project.model();
-        const std::vector<stroke::Stroke> strokes = project.strokes();
-        for (const stroke::Stroke& s : strokes) stroke::check_trace(s.trace);
+        const std::vector<stroke::JournalEntry> strokes = project.strokes();
+        for (const stroke::JournalEntry& s : strokes) stroke::check_samples(stroke::samples_of(s));
         for (const std::size_t slots : {std::size_t{1}, std::size_t{4}, std::size_t{16}}) project.load_canvases(slots);
     });
 }

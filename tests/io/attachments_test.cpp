@@ -10,23 +10,20 @@
 #include "core/random.h"
 #include "io/project/project.h"
 #include "sample_model.h"
+#include "stroke/journal/entry_json.h"
 
 /// What a project carries besides its model and journal.
 namespace tuft::io {
 namespace {
 
-std::vector<stroke::Stroke> journal() {
-    std::vector<stroke::Stroke> entries;
+std::vector<stroke::JournalEntry> journal() {
+    std::vector<stroke::JournalEntry> entries;
     for (std::uint64_t k = 1; k <= 3; ++k) {
-        stroke::Stroke s;
-        s.id = 10 * k;
+        stroke::PaintStroke s;
         s.trace.flat = k == 2;
-        s.trace.brush = "wolf-medium*1.5";
-        s.trace.ink = "cinnabar";
-        s.trace.seed = ~std::uint64_t{0} - k;
-        s.trace.label = "横 " + std::to_string(k);
-        s.hidden = k == 3;
-        s.group = {4, "leaves.svg"};
+        s.brush = "wolf-medium*1.5";
+        s.ink = "cinnabar";
+        s.seed = ~std::uint64_t{0} - k;
         s.trace.placement = {.origin = {0.1, 1.0 / 3, -1e-9},
                              .right = {0, 1, 0},
                              .down = {0, 0, -1},
@@ -37,36 +34,35 @@ std::vector<stroke::Stroke> journal() {
                                        .pressure = 0.1,
                                        .tilt = {0.2, -0.3},
                                        .rotation = Quat(0.6, 0, 0.8, 0)});
-        entries.push_back(std::move(s));
+        stroke::JournalEntry& entry = entries.emplace_back(std::move(s), "横 " + std::to_string(k));
+        entry.id = 10 * k;
+        entry.hidden = k == 3;
+        entry.group = {4, "leaves.svg"};
     }
-    stroke::Stroke dip;
-    dip.id = 40;
-    dip.action = stroke::Action::dip;
-    dip.trace.flat = false;
-    dip.trace.brush = "goat";
-    dip.extent.depth = 0.4;
-    entries.push_back(dip);
+    entries.emplace_back(stroke::BrushAction{.brush = "goat", .extent = {.depth = 0.4}}).id = 40;
     return entries;
 }
 
 TEST(PackedEntries, ComeBackToTheBit) {
-    const std::vector<stroke::Stroke> before = journal(), after = unpack_entries(pack_entries(before), "it");
+    const std::vector<stroke::JournalEntry> before = journal(), after = unpack_entries(pack_entries(before), "it");
     ASSERT_EQ(after.size(), before.size());
     for (std::size_t i = 0; i < before.size(); ++i) {
-        const stroke::Stroke &a = before[i], &b = after[i];
+        const stroke::JournalEntry &a = before[i], &b = after[i];
         EXPECT_EQ(a.id, b.id);
         EXPECT_EQ(a.hidden, b.hidden);
         EXPECT_EQ(stroke::entry_json(a), stroke::entry_json(b));
-        EXPECT_EQ(a.trace.seed, b.trace.seed);
-        EXPECT_EQ(a.trace.label, b.trace.label);
-        EXPECT_EQ(a.trace.flat, b.trace.flat);
-        EXPECT_EQ(a.trace.placement.origin, b.trace.placement.origin);
-        EXPECT_EQ(a.trace.placement.mapping, b.trace.placement.mapping);
-        ASSERT_EQ(a.trace.samples.size(), b.trace.samples.size());
-        for (std::size_t k = 0; k < a.trace.samples.size(); ++k) {
-            EXPECT_EQ(a.trace.samples[k].position, b.trace.samples[k].position);
-            EXPECT_EQ(a.trace.samples[k].rotation, b.trace.samples[k].rotation);
-            EXPECT_EQ(a.trace.samples[k].tilt, b.trace.samples[k].tilt);
+        EXPECT_EQ(stroke::seed_of(a), stroke::seed_of(b));
+        EXPECT_EQ(stroke::brush_of(a), stroke::brush_of(b));
+        const stroke::StrokeSamples &s = stroke::samples_of(a), &t = stroke::samples_of(b);
+        EXPECT_EQ(a.label, b.label);
+        EXPECT_EQ(s.flat, t.flat);
+        EXPECT_EQ(s.placement.origin, t.placement.origin);
+        EXPECT_EQ(s.placement.mapping, t.placement.mapping);
+        ASSERT_EQ(s.samples.size(), t.samples.size());
+        for (std::size_t k = 0; k < s.samples.size(); ++k) {
+            EXPECT_EQ(s.samples[k].position, t.samples[k].position);
+            EXPECT_EQ(s.samples[k].rotation, t.samples[k].rotation);
+            EXPECT_EQ(s.samples[k].tilt, t.samples[k].tilt);
         }
     }
     EXPECT_TRUE(unpack_entries(pack_entries({}), "it").empty());

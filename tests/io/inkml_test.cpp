@@ -13,18 +13,21 @@
 #include "core/random.h"
 #include "core/system/files.h"
 #include "core/text/units.h"
+#include "stroke/journal/entries.h"
+#include "stroke/journal/entry_json.h"
+#include "stroke/journal/recorded_journal.h"
 
 namespace tuft::io {
 namespace {
 
-using stroke::Trace;
+using stroke::RecordedStroke;
 using ::testing::HasSubstr;
 
 std::string ink(const std::string& body) {
     return "<ink xmlns=\"http://www.w3.org/2003/InkML\">\n" + body + "\n</ink>\n";
 }
 
-std::vector<Trace> parse(const std::string& body, const InkmlOptions& options = {}) {
+std::vector<RecordedStroke> parse(const std::string& body, const InkmlOptions& options = {}) {
     return parse_inkml(ink(body), "test.inkml", options);
 }
 
@@ -37,7 +40,7 @@ std::string message(const std::string& text, const InkmlOptions& options = {}) {
     return "no error";
 }
 
-std::vector<std::pair<double, double>> millimetres(const Trace& trace) {
+std::vector<std::pair<double, double>> millimetres(const RecordedStroke& trace) {
     std::vector<std::pair<double, double>> out;
     for (const auto& s : trace.samples)
         out.emplace_back(std::round(s.position.x * 1e9) / 1e6, std::round(s.position.y * 1e9) / 1e6);
@@ -225,19 +228,22 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
     const auto traces = parse_inkml(text, "care.inkml");
     ASSERT_EQ(traces.size(), 3u);
     ASSERT_EQ(traces[0].before.size(), 5u);
-    EXPECT_EQ(traces[0].before[0].action, stroke::Action::rinse);
-    EXPECT_EQ(traces[0].before[1].action, stroke::Action::dip);
-    EXPECT_EQ(traces[0].before[1].ink, "cinnabar");
-    EXPECT_EQ(traces[0].before[2].action, stroke::Action::reshape);
-    EXPECT_EQ(traces[0].before[3].action, stroke::Action::dry);
-    EXPECT_EQ(traces[0].before[3].seconds, 0);
-    EXPECT_EQ(traces[0].before[4].seconds, 2.5);
-    EXPECT_EQ(traces[0].before[1].extent, stroke::Extent{});
+    const auto kind = [&](std::size_t i, std::size_t k) { return stroke::kind_of(traces[i].before[k]); };
+    const auto action = [&](std::size_t i, std::size_t k) {
+        return std::get<stroke::BrushAction>(traces[i].before[k]);
+    };
+    EXPECT_EQ(kind(0, 0), stroke::EntryKind::rinse);
+    EXPECT_EQ(kind(0, 1), stroke::EntryKind::dip);
+    EXPECT_EQ(action(0, 1).ink, "cinnabar");
+    EXPECT_EQ(kind(0, 2), stroke::EntryKind::reshape);
+    EXPECT_EQ(std::get<stroke::Dry>(traces[0].before[3]).seconds, 0);
+    EXPECT_EQ(std::get<stroke::Dry>(traces[0].before[4]).seconds, 2.5);
+    EXPECT_EQ(action(0, 1).extent, stroke::Extent{});
     ASSERT_EQ(traces[1].before.size(), 2u);
-    EXPECT_EQ(traces[1].before[0].ink, "");
-    EXPECT_EQ(traces[1].before[0].extent, (stroke::Extent{.depth = 0.2}));
-    EXPECT_EQ(traces[1].before[1].action, stroke::Action::wipe);
-    EXPECT_EQ(traces[1].before[1].extent, (stroke::Extent{.amount = 0.3}));
+    EXPECT_EQ(action(1, 0).ink, "");
+    EXPECT_EQ(action(1, 0).extent, (stroke::Extent{.depth = 0.2}));
+    EXPECT_EQ(kind(1, 1), stroke::EntryKind::wipe);
+    EXPECT_EQ(action(1, 1).extent, (stroke::Extent{.amount = 0.3}));
     EXPECT_TRUE(traces[2].before.empty());
     EXPECT_FALSE(traces[0].pressed) << "no P and no F";
 
@@ -245,10 +251,15 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
     for (std::size_t i = 0; i < traces.size(); ++i) {
         ASSERT_EQ(back[i].before.size(), traces[i].before.size());
         for (std::size_t k = 0; k < traces[i].before.size(); ++k) {
-            EXPECT_EQ(back[i].before[k].action, traces[i].before[k].action);
-            EXPECT_EQ(back[i].before[k].ink, traces[i].before[k].ink);
-            EXPECT_EQ(back[i].before[k].extent, traces[i].before[k].extent);
-            EXPECT_EQ(back[i].before[k].seconds, traces[i].before[k].seconds);
+            const stroke::Preparation &was = traces[i].before[k], &now = back[i].before[k];
+            ASSERT_EQ(stroke::kind_of(now), stroke::kind_of(was));
+            if (const auto* dry = std::get_if<stroke::Dry>(&was)) {
+                EXPECT_EQ(std::get<stroke::Dry>(now).seconds, dry->seconds);
+            }
+            if (const auto* done = std::get_if<stroke::BrushAction>(&was)) {
+                EXPECT_EQ(std::get<stroke::BrushAction>(now).ink, done->ink);
+                EXPECT_EQ(std::get<stroke::BrushAction>(now).extent, done->extent);
+            }
         }
     }
     for (const char* bad : {"-1", "soon", "1e9", "nan"})
@@ -274,9 +285,9 @@ TEST(Inkml, PenUpTracesAreSkippedAndContinuationsJoined) {
 }
 
 TEST(Inkml, WritesForPeopleWhatItReads) {
-    std::vector<Trace> traces(5);
+    std::vector<RecordedStroke> traces(5);
     for (std::size_t k = 0; k < traces.size(); ++k) {
-        Trace& t = traces[k];
+        RecordedStroke& t = traces[k];
         auto random = [&, n = std::uint64_t{0}](double lo, double hi) mutable {
             return lo + (hi - lo) * uniform(k + 1, n++);
         };
@@ -293,7 +304,7 @@ TEST(Inkml, WritesForPeopleWhatItReads) {
                            : k == 2 ? stroke::SurfaceMapping::drape
                                     : stroke::SurfaceMapping::wrap};
         for (int i = 0; i < 50; ++i) {
-            stroke::TraceSample s;
+            stroke::StrokeSample s;
             s.time = 0.005 * i + (i ? 1e-3 * random(0, 1) : 0);
             s.position = {random(-0.2, 0.2), random(-0.2, 0.2), t.flat ? 0 : random(-1, 1)};
             s.pressure = random(0, 1);
@@ -308,7 +319,7 @@ TEST(Inkml, WritesForPeopleWhatItReads) {
     std::filesystem::remove(path);
     ASSERT_EQ(back.size(), traces.size());
     for (std::size_t k = 0; k < traces.size(); ++k) {
-        const Trace &a = traces[k], &b = back[k];
+        const RecordedStroke &a = traces[k], &b = back[k];
         EXPECT_EQ(a.flat, b.flat);
         EXPECT_EQ(a.brush, b.brush);
         EXPECT_EQ(a.ink, b.ink);
@@ -345,13 +356,13 @@ std::uint64_t bits(double x) {
 }
 
 TEST(Inkml, AnyNumberComesBackToTheBit) {
-    std::vector<Trace> traces(200);
+    std::vector<RecordedStroke> traces(200);
     for (std::size_t k = 0; k < traces.size(); ++k) {
-        Trace& t = traces[k];
+        RecordedStroke& t = traces[k];
         auto number = [&, n = std::uint64_t{0}](double most) mutable { return any_double(k, n++, most); };
         t.flat = k % 3 != 0;
         t.brush = "wolf-small";
-        t.settings = R"({"dip":"carry","down":[0.1,0.0,-1.0],"film":"wet"})";
+        t.settings = stroke::settings_from_json(R"({"dip":"carry","down":[0.1,0.0,-1.0],"film":"wet"})");
         if (t.flat)
             t.placement = {{number(1000), number(1000), number(1000)},
                            glm::normalize(Vec3(1, number(3), 3)),
@@ -360,7 +371,7 @@ TEST(Inkml, AnyNumberComesBackToTheBit) {
         // A clock that began before the stroke, at it, and at minus nothing.
         double time = k % 4 == 0 ? 0 : k % 4 == 1 ? -0.0 : k % 4 == 2 ? 1e5 + number(1) : -std::abs(number(1e6));
         for (int i = 0; i < 20; ++i) {
-            stroke::TraceSample s;
+            stroke::StrokeSample s;
             s.time = time;
             time += std::abs(number(1));
             s.position = {number(1000), number(1000), t.flat ? 0 : number(1000)};
@@ -372,15 +383,12 @@ TEST(Inkml, AnyNumberComesBackToTheBit) {
     }
     traces[0].samples[3].position = {-0.0, std::numeric_limits<double>::denorm_min(),
                                      std::numeric_limits<double>::min()};
-    traces[0].before.push_back({.action = stroke::Action::fill,
-                                .fill = {.film = 1.0 / 3,
-                                         .to_film = 1.0 / 3,
-                                         .region = stroke::Region::part,
-                                         .at = {1.0 / 3, -2e-9 / 7, 123.456}}});
+    traces[0].before.push_back(stroke::Fill{
+        .film = 1.0 / 3, .to_film = 1.0 / 3, .region = stroke::Region::part, .at = {1.0 / 3, -2e-9 / 7, 123.456}});
     const auto back = parse_inkml(inkml_text(traces), "exact.inkml");
     ASSERT_EQ(back.size(), traces.size());
     for (std::size_t k = 0; k < traces.size(); ++k) {
-        const Trace &a = traces[k], &b = back[k];
+        const RecordedStroke &a = traces[k], &b = back[k];
         EXPECT_EQ(a.settings, b.settings);
         ASSERT_EQ(a.samples.size(), b.samples.size());
         for (int i = 0; i < 3; ++i) {
@@ -398,7 +406,41 @@ TEST(Inkml, AnyNumberComesBackToTheBit) {
         }
     }
     ASSERT_EQ(back[0].before.size(), 1u);
-    EXPECT_EQ(back[0].before[0].fill, traces[0].before[0].fill);
+    EXPECT_EQ(std::get<stroke::Fill>(back[0].before[0]), std::get<stroke::Fill>(traces[0].before[0]));
+}
+
+// A stroke file cannot say changes of layers and masks; everything else comes back as the entry it was.
+TEST(Inkml, EntriesOfEveryKindThatAFileCanSayComeBack) {
+    std::vector<stroke::JournalEntry> entries;
+    stroke::PaintStroke s{.trace = {.placed = true, .samples = {{}, {.time = 1, .position = {0.01, 0, 0}}}},
+                          .brush = "wolf-small",
+                          .ink = "carbon",
+                          .seed = 7};
+    s.settings.film = stroke::FilmModel::wet;
+    s.settings.pressure = stroke::PressureFrom::speed_dwell;
+    entries.emplace_back(s, "stroke");
+    s.tool = stroke::Tool::eraser;
+    entries.emplace_back(s, "eraser");
+    for (const auto kind : {stroke::BrushActionKind::dip, stroke::BrushActionKind::wipe, stroke::BrushActionKind::rinse,
+                            stroke::BrushActionKind::reshape})
+        entries.emplace_back(stroke::BrushAction{.kind = kind, .brush = "goat-small", .ink = "indigo", .seed = 3});
+    entries[2].get<stroke::BrushAction>().extent = {.depth = 0.25, .amount = 1.25, .side = -0.5};
+    entries.emplace_back(stroke::Dry{.seconds = 2.5, .down = {0, -1, 0}});
+    entries.emplace_back(stroke::WashPalette{});
+    entries.emplace_back(stroke::Fill{.ink = "indigo", .layer = stroke::kPaletteLayer, .film = 0.5});
+    std::vector<stroke::JournalEntry> back;
+    stroke::append_entries(
+        back, parse_inkml(inkml_text(stroke::record(entries).strokes), "kinds.inkml", {.actions = true}), {});
+    ASSERT_EQ(back.size(), entries.size());
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        EXPECT_EQ(stroke::entry_json(back[i]), stroke::entry_json(entries[i])) << i;
+        EXPECT_EQ(stroke::brush_of(back[i]), stroke::brush_of(entries[i])) << i;
+        EXPECT_EQ(stroke::seed_of(back[i]), stroke::seed_of(entries[i])) << i;
+        EXPECT_EQ(stroke::samples_of(back[i]).samples.size(), stroke::samples_of(entries[i]).samples.size()) << i;
+    }
+    entries.emplace_back(stroke::add_on_top({}, "gold"));
+    entries.emplace_back(stroke::MaskEdit{.mask = {.id = 1, .name = "cap"}});
+    EXPECT_EQ(stroke::record(entries).left_out, 1u) << "a layer is added again where it is painted on";
 }
 
 TEST(Inkml, TracesThatOnlyCareForTheBrushAreReadWhereTheyAreWanted) {
@@ -408,7 +450,7 @@ TEST(Inkml, TracesThatOnlyCareForTheBrushAreReadWhereTheyAreWanted) {
     ASSERT_EQ(all.size(), 2u);
     EXPECT_TRUE(all[0].samples.empty());
     ASSERT_EQ(all[0].before.size(), 1u);
-    EXPECT_EQ(all[0].before[0].action, stroke::Action::rinse);
+    EXPECT_EQ(stroke::kind_of(all[0].before[0]), stroke::EntryKind::rinse);
 }
 
 TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
@@ -466,13 +508,13 @@ TEST(Inkml, BadFilesAreRefusedWithFileAndLine) {
 }
 
 TEST(Inkml, AnyTruncationOrGarbledByteIsAnErrorOrAFile) {
-    Trace t;
+    RecordedStroke t;
     for (int i = 0; i < 20; ++i)
         t.samples.push_back({.time = 0.005 * i, .position = {0.001 * i, 0, 0}, .pressure = 0.5});
     const std::string whole = inkml_text(std::vector{t, t});
     const auto survives = [](const std::string& text) {
         try {
-            for (const Trace& trace : parse_inkml(text, "garbled"))
+            for (const RecordedStroke& trace : parse_inkml(text, "garbled"))
                 for (const auto& s : trace.samples)
                     ASSERT_TRUE(std::isfinite(s.position.x) && std::isfinite(s.time) && s.pressure >= 0 &&
                                 s.pressure <= 1);
@@ -489,7 +531,7 @@ TEST(Inkml, AnyTruncationOrGarbledByteIsAnErrorOrAFile) {
 }
 
 TEST(Inkml, TapeIsReadAsItIsWritten) {
-    stroke::Trace trace;
+    stroke::RecordedStroke trace;
     for (int i = 0; i < 3; ++i)
         trace.samples.push_back({.time = 0.1 * i, .position = {0.01 * i, 0, 0}, .pressure = 0.5});
     trace.stencil = {{{1.0 / 3, -0.1}, {2e-7, 0.5}}, {{0, 0}, {0.1, 0.2}}};

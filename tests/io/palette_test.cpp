@@ -11,26 +11,25 @@ namespace tuft::io {
 namespace {
 
 // A pool of each ink, and a stroke through both of them.
-std::vector<stroke::Stroke> mixing() {
-    std::vector<stroke::Stroke> entries;
+std::vector<stroke::JournalEntry> mixing() {
+    std::vector<stroke::JournalEntry> entries;
     for (const auto& [ink, x] : {std::pair{"cinnabar", -0.006}, std::pair{"gamboge", 0.006}}) {
-        stroke::Stroke pool;
-        pool.action = stroke::Action::fill;
-        pool.trace.flat = false;
-        pool.trace.ink = ink;
-        pool.layer = stroke::kPaletteLayer;
-        pool.fill = {
-            .film = 50, .gradient = stroke::Gradient::round, .to_film = 0, .from = {x, 0, 0}, .to = {x + 0.006, 0, 0}};
-        entries.push_back(pool);
+        entries.emplace_back(stroke::Fill{.ink = ink,
+                                          .layer = stroke::kPaletteLayer,
+                                          .film = 50,
+                                          .gradient = stroke::Gradient::round,
+                                          .to_film = 0,
+                                          .from = {x, 0, 0},
+                                          .to = {x + 0.006, 0, 0}});
     }
-    stroke::Stroke s;
-    s.trace.brush = "wolf-small";
-    s.trace.ink = "cinnabar";
+    stroke::PaintStroke s;
+    s.brush = "wolf-small";
+    s.ink = "cinnabar";
     s.layer = stroke::kPaletteLayer;
     s.settings.spacing = 4;
     for (int i = 0; i <= 20; ++i)
         s.trace.samples.push_back({.time = 0.02 * i, .position = {-0.01 + 0.001 * i, 0, 0}, .pressure = 0.6});
-    entries.push_back(s);
+    entries.emplace_back(s);
     return entries;
 }
 
@@ -38,20 +37,20 @@ TEST(Palette, ComesBackFromAProjectWithoutAReplay) {
     const stroke::Model model = stroke::make_palette();  // any model will do
     const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "tuft_palette.tuft";
     stroke::Document painting(model);
-    for (const stroke::Stroke& s : mixing()) painting.paint(s);
-    const std::uint64_t last = painting.journal().strokes().back().id;
+    for (const stroke::JournalEntry& s : mixing()) painting.paint(s);
+    const std::uint64_t last = painting.journal().entries().back().id;
     {
         ProjectModel stored;
         stored.mesh = *model.mesh;
         stored.atlas = model.atlas;
         stored.substrate = ink::substrate_toml(painting.painted_on());
         Project project = Project::create(file, stored);
-        project.append(painting.journal().strokes());
+        project.append(painting.journal().entries());
         EXPECT_EQ(project.format(), 4) << "programs without a palette would paint on the model";
         project.save_canvases(painting.all_canvases(), last);
     }
     const Project project = Project::open(file);
-    EXPECT_EQ(project.strokes()[0].layer, stroke::kPaletteLayer);
+    EXPECT_EQ(stroke::layer_of(project.strokes()[0]), stroke::kPaletteLayer);
     stroke::Document back(model);
     restore_strokes(project, back, [](std::string_view phase, double) {
         ADD_FAILURE() << "a replay: " << phase;
@@ -84,8 +83,8 @@ TEST(Palette, IsOneMoreThanTheMostLayers) {
         kept.atlas = model.atlas;
         kept.substrate = ink::substrate_toml(painting.painted_on());
         Project project = Project::create(file, kept);
-        project.append(painting.journal().strokes());
-        project.save_canvases(canvases, painting.journal().strokes().back().id);
+        project.append(painting.journal().entries());
+        project.save_canvases(canvases, painting.journal().entries().back().id);
         return project.load_canvases(model.texels.n_slots())->layers.size();
     };
     all.push_back(palette);
@@ -96,12 +95,12 @@ TEST(Palette, IsOneMoreThanTheMostLayers) {
 }
 
 TEST(Palette, StrokeFilesSayWhatBelongsOnIt) {
-    std::vector<stroke::Trace> traces(2);
-    for (stroke::Trace& t : traces)
+    std::vector<stroke::RecordedStroke> traces(2);
+    for (stroke::RecordedStroke& t : traces)
         t.samples = {{.position = {0, 0, 0}, .pressure = 0.5},
                      {.time = 0.5, .position = {0.01, 0, 0}, .pressure = 0.5}};
     traces[1].on_palette = true;
-    const std::vector<stroke::Trace> read = parse_inkml(inkml_text(traces), "test");
+    const std::vector<stroke::RecordedStroke> read = parse_inkml(inkml_text(traces), "test");
     ASSERT_EQ(read.size(), 2u);
     EXPECT_FALSE(read[0].on_palette);
     EXPECT_TRUE(read[1].on_palette);

@@ -31,12 +31,13 @@ class HostileProject : public ::testing::Test {
         Project project = Project::create(good_, model);
         project.put_brush({"wolf", "name"});
         for (std::uint64_t id = 1; id < 4; ++id) {
-            stroke::Stroke s;
-            s.id = id;
-            s.trace.brush = "wolf";
-            s.trace.ink = "carbon";
+            stroke::PaintStroke s;
+            s.brush = "wolf";
+            s.ink = "carbon";
             s.trace.samples.resize(200);
-            project.append(s);
+            stroke::JournalEntry entry(std::move(s));
+            entry.id = id;
+            project.append(entry);
         }
         ink::Canvas canvas(500);
         canvas.add_pigment(ink::load_ink("carbon").parts[0].pigment);
@@ -66,7 +67,7 @@ class HostileProject : public ::testing::Test {
                 project.brushes();
                 project.inks();
                 project.load_canvases(500);
-                if (access == Access::write) project.append(std::span<const stroke::Stroke>{});
+                if (access == Access::write) project.append(std::span<const stroke::JournalEntry>{});
             }
         } catch (const Error& error) {
             return error.what();

@@ -44,13 +44,14 @@ ProjectModel small_model() {
     return model;
 }
 
-stroke::Stroke stroke_of(std::uint64_t id) {
-    stroke::Stroke s;
-    s.id = id;
-    s.trace.brush = "goat-medium";
-    s.trace.ink = "carbon";
+stroke::JournalEntry stroke_of(std::uint64_t id) {
+    stroke::PaintStroke s;
+    s.brush = "goat-medium";
+    s.ink = "carbon";
     s.trace.samples = {{}, {.time = 1, .position = {1, 0, 0}}};
-    return s;
+    stroke::JournalEntry entry(std::move(s));
+    entry.id = id;
+    return entry;
 }
 
 std::string said(const std::function<void()>& act) {

@@ -7,12 +7,14 @@
 #include <csignal>
 #include <cstring>
 #include <functional>
+#include <set>
 
 #include "core/error.h"
 #include "core/random.h"
 #include "core/system/files.h"
 #include "io/project/packing.h"
 #include "sample_model.h"
+#include "stroke/journal/entry_json.h"
 
 namespace tuft::io {
 namespace {
@@ -32,19 +34,16 @@ ProjectModel sample_model() {
     return model;
 }
 
-stroke::Stroke sample_stroke(std::uint64_t id, int samples = 50) {
-    stroke::Stroke s;
-    s.id = id;
+stroke::JournalEntry sample_stroke(std::uint64_t id, int samples = 50) {
+    stroke::PaintStroke s;
     s.trace.flat = id % 2 == 0;
-    s.trace.brush = "goat-medium";
-    s.trace.ink = "carbon";
-    s.trace.seed = 0xfedcba9876543210ULL + id;
-    s.trace.label = "七 \"1\"\n";
+    s.brush = "goat-medium";
+    s.ink = "carbon";
+    s.seed = 0xfedcba9876543210ULL + id;
     s.trace.placement.origin = {0.1, -0.0, 1e-300};
     s.trace.placement.mapping = id % 3 == 0 ? stroke::SurfaceMapping::project : stroke::SurfaceMapping::wrap;
     s.settings.spacing = 0.1 + 1.0 / 3;
     s.settings.compensate_tip_lag = false;
-    s.hidden = id % 5 == 0;
     for (int i = 0; i < samples; ++i) {
         const auto r = [&](int k) { return uniform(id, 100 * i + k) - 0.5; };
         s.trace.samples.push_back({.time = 0.01 * i,
@@ -53,24 +52,28 @@ stroke::Stroke sample_stroke(std::uint64_t id, int samples = 50) {
                                    .tilt = {r(4), r(5)},
                                    .rotation = Quat(r(6), r(7), r(8), r(9))});
     }
-    return s;
+    stroke::JournalEntry entry(s, "七 \"1\"\n");
+    entry.id = id;
+    entry.hidden = id % 5 == 0;
+    return entry;
 }
 
 /// Equal to the bit, also the sign of zero.
-void expect_equal(const stroke::Stroke& a, const stroke::Stroke& b) {
+void expect_equal(const stroke::JournalEntry& a, const stroke::JournalEntry& b) {
     EXPECT_EQ(a.id, b.id);
     EXPECT_EQ(a.hidden, b.hidden);
-    EXPECT_EQ(a.settings, b.settings);
-    EXPECT_EQ(a.trace.flat, b.trace.flat);
-    EXPECT_EQ(a.trace.brush, b.trace.brush);
-    EXPECT_EQ(a.trace.ink, b.trace.ink);
-    EXPECT_EQ(a.trace.seed, b.trace.seed);
-    EXPECT_EQ(a.trace.label, b.trace.label);
-    EXPECT_EQ(a.trace.placement.mapping, b.trace.placement.mapping);
-    EXPECT_EQ(std::memcmp(&a.trace.placement.origin, &b.trace.placement.origin, 9 * sizeof(double)), 0);
-    ASSERT_EQ(a.trace.samples.size(), b.trace.samples.size());
-    for (std::size_t i = 0; i < a.trace.samples.size(); ++i) {
-        const stroke::TraceSample &p = a.trace.samples[i], &q = b.trace.samples[i];
+    EXPECT_EQ(a.label, b.label);
+    EXPECT_EQ(stroke::brush_of(a), stroke::brush_of(b));
+    EXPECT_EQ(stroke::ink_of(a), stroke::ink_of(b));
+    EXPECT_EQ(stroke::seed_of(a), stroke::seed_of(b));
+    EXPECT_EQ(stroke::entry_json(a), stroke::entry_json(b));
+    const stroke::StrokeSamples &s = stroke::samples_of(a), &t = stroke::samples_of(b);
+    EXPECT_EQ(s.flat, t.flat);
+    EXPECT_EQ(s.placement.mapping, t.placement.mapping);
+    EXPECT_EQ(std::memcmp(&s.placement.origin, &t.placement.origin, 9 * sizeof(double)), 0);
+    ASSERT_EQ(s.samples.size(), t.samples.size());
+    for (std::size_t i = 0; i < s.samples.size(); ++i) {
+        const stroke::StrokeSample &p = s.samples[i], &q = t.samples[i];
         EXPECT_EQ(p.time, q.time);
         EXPECT_EQ(p.position, q.position);
         EXPECT_EQ(p.pressure, q.pressure);
@@ -189,11 +192,11 @@ TEST(Project, AnAtlasThatCannotBePaintedOnIsRefusedInOneLine) {
 
 TEST(Project, StrokesComeBackToTheBitInOrder) {
     const Folder folder("project_strokes");
-    std::vector<stroke::Stroke> strokes;
+    std::vector<stroke::JournalEntry> strokes;
     for (const std::uint64_t id : {3, 1, 2, 10, 5}) strokes.push_back(sample_stroke(id));
     strokes.push_back(sample_stroke(11, 0));
-    ASSERT_TRUE(strokes[3].trace.flat);
-    strokes[3].trace.placement.mapping = stroke::SurfaceMapping::drape;
+    ASSERT_TRUE(strokes[3].get<stroke::PaintStroke>().trace.flat);
+    strokes[3].get<stroke::PaintStroke>().trace.placement.mapping = stroke::SurfaceMapping::drape;
     {
         Project project = Project::create(folder / "a.tuft", sample_model());
         project.append(std::span(strokes).first(4));
@@ -213,8 +216,8 @@ TEST(Project, StrokesComeBackToTheBitInOrder) {
     const auto changed = project.strokes();
     ASSERT_EQ(changed.size(), strokes.size() - 1);
     EXPECT_TRUE(changed[1].hidden);
-    stroke::Stroke bad = sample_stroke(50);
-    bad.trace.samples[3].position.y = NAN;
+    stroke::JournalEntry bad = sample_stroke(50);
+    bad.get<stroke::PaintStroke>().trace.samples[3].position.y = NAN;
     EXPECT_THROW(project.append(bad), Error);
     EXPECT_EQ(project.n_strokes(), changed.size());
 }
@@ -306,51 +309,64 @@ TEST(Project, LayersComeBackWithTheirTiles) {
     EXPECT_EQ(saved->layers.size(), 1u);
     EXPECT_TRUE(saved->layers[0].canvas.same_contents(first));
 
-    stroke::Stroke entry{.id = 10};
-    entry.action = stroke::Action::layer;
-    entry.edit = stroke::add_on_top({}, "gold & 金");
-    stroke::Stroke on_it{.id = 11};
-    on_it.layer = 2;
-    on_it.trace.samples.resize(1);
+    const stroke::LayerEdit edit = stroke::add_on_top({}, "gold & 金");
+    stroke::JournalEntry entry(edit);
+    entry.id = 10;
+    stroke::JournalEntry on_it(stroke::PaintStroke{.trace = {.samples = {{}}}, .layer = 2});
+    on_it.id = 11;
     project.append(std::vector{entry, on_it});
-    const std::vector<stroke::Stroke> back = project.strokes();
+    const std::vector<stroke::JournalEntry> back = project.strokes();
     ASSERT_EQ(back.size(), 2u);
-    EXPECT_EQ(back[0].edit, entry.edit);
-    EXPECT_EQ(back[1].layer, 2u);
+    EXPECT_EQ(back[0].get<stroke::LayerEdit>(), edit);
+    EXPECT_EQ(stroke::layer_of(back[1]), 2u);
 }
 
-TEST(Project, ActionsOfTheBrushComeBackAmongTheStrokes) {
-    const Folder folder("project_actions");
-    std::vector<stroke::Stroke> entries{sample_stroke(1)};
-    entries[0].settings.dip = "carry";
-    entries[0].settings.stabilise = 1.0 / 3;
-    entries[0].settings.pressure = "speed";
-    for (const auto action :
-         {stroke::Action::rinse, stroke::Action::dip, stroke::Action::reshape, stroke::Action::wipe}) {
-        stroke::Stroke entry;
-        entry.id = entries.size() + 1;
-        entry.action = action;
-        entry.trace.brush = "wolf-small";
-        entry.trace.ink = "cinnabar";
-        entry.settings.dip = "carry";
-        if (action == stroke::Action::wipe) entry.extent = {.depth = 1.0 / 3, .amount = 0.1};
-        entries.push_back(entry);
+TEST(Project, EntriesOfEveryKindComeBack) {
+    const Folder folder("project_kinds");
+    std::vector<stroke::JournalEntry> entries{sample_stroke(1)};
+    stroke::PaintStroke& stroke = entries[0].get<stroke::PaintStroke>();
+    stroke.settings.dip = stroke::DipMode::carry;
+    stroke.settings.stabilise = 1.0 / 3;
+    stroke.settings.pressure = stroke::PressureFrom::speed;
+    for (const auto kind : {stroke::BrushActionKind::rinse, stroke::BrushActionKind::dip,
+                            stroke::BrushActionKind::reshape, stroke::BrushActionKind::wipe}) {
+        stroke::BrushAction action{.kind = kind,
+                                   .brush = "wolf-small",
+                                   .ink = "cinnabar",
+                                   .seed = 5,
+                                   .dip = stroke::DipMode::carry,
+                                   .spine = brush::SpineMethod::table};
+        if (kind == stroke::BrushActionKind::wipe) action.extent = {.depth = 1.0 / 3, .amount = 0.1, .side = -0.25};
+        entries.emplace_back(action);
     }
-    entries[2].action = stroke::Action::dry;
-    entries[2].seconds = 1.0 / 3;
+    entries.emplace_back(stroke::Dry{.seconds = 1.0 / 3, .down = {0, 1.0 / 3, 0}});
+    entries.emplace_back(stroke::WashPalette{});
+    entries.emplace_back(stroke::Fill{.ink = "indigo", .layer = 2, .mask = 3, .film = 1.0 / 3});
+    entries.emplace_back(stroke::add_on_top({}, "gold"), "gold");
+    entries.emplace_back(stroke::MaskEdit{.mask = {.id = 1, .name = "cap", .kind = stroke::MaskKind::angle}});
+    stroke::PaintStroke eraser{.tool = stroke::Tool::eraser, .layer = stroke::kPaletteLayer, .mask = 1};
+    entries.emplace_back(eraser);
+    for (std::size_t i = 0; i < entries.size(); ++i) entries[i].id = i + 1;
     {
         Project project = Project::create(folder / "a.tuft", sample_model());
         project.append(entries);
     }
     const auto back = Project::open(folder / "a.tuft").strokes();
     ASSERT_EQ(back.size(), entries.size());
+    std::set<std::size_t> kinds;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         expect_equal(back[i], entries[i]);
-        EXPECT_EQ(back[i].action, entries[i].action);
-        EXPECT_EQ(back[i].seconds, entries[i].seconds);
-        EXPECT_EQ(back[i].extent, entries[i].extent);
-        EXPECT_EQ(back[i].settings, entries[i].settings);
+        EXPECT_EQ(stroke::kind_of(back[i]), stroke::kind_of(entries[i]));
+        kinds.insert(back[i].content.index());
     }
+    EXPECT_EQ(kinds.size(), std::variant_size_v<stroke::EntryContent>) << "a kind without an entry here";
+    EXPECT_EQ(back[0].get<stroke::PaintStroke>().settings, stroke.settings);
+    EXPECT_EQ(back[4].get<stroke::BrushAction>().extent, entries[4].get<stroke::BrushAction>().extent);
+    EXPECT_EQ(back[5].get<stroke::Dry>().down, entries[5].get<stroke::Dry>().down);
+    EXPECT_EQ(back[7].get<stroke::Fill>(), entries[7].get<stroke::Fill>());
+    EXPECT_EQ(back[8].get<stroke::LayerEdit>(), entries[8].get<stroke::LayerEdit>());
+    EXPECT_EQ(back[9].get<stroke::MaskEdit>(), entries[9].get<stroke::MaskEdit>());
+    EXPECT_TRUE(back[10].get<stroke::PaintStroke>().erases());
 }
 
 TEST(Project, PresetsAreReplacedByName) {
@@ -390,7 +406,7 @@ TEST(Project, PaintedTilesComeBackToTheBit) {
 
 TEST(Project, AKillLosesAtMostTheStrokeInHand) {
     const Folder folder("project_kill");
-    const std::vector<stroke::Stroke> strokes{sample_stroke(1, 400), sample_stroke(2, 400)};
+    const std::vector<stroke::JournalEntry> strokes{sample_stroke(1, 400), sample_stroke(2, 400)};
     for (int round = 0; round < 5; ++round) {
         Project::create(folder / "a.tuft", sample_model());
         int pipe_ends[2];
@@ -401,7 +417,7 @@ TEST(Project, AKillLosesAtMostTheStrokeInHand) {
             // Only what has been committed is reported; no clean-up ever runs here.
             Project project = Project::open(folder / "a.tuft");
             for (std::uint64_t id = 1;; ++id) {
-                stroke::Stroke stroke = strokes[id % 2];
+                stroke::JournalEntry stroke = strokes[id % 2];
                 stroke.id = id;
                 project.append(stroke);
                 if (::write(pipe_ends[1], &id, sizeof id) != sizeof id) _exit(1);
@@ -421,7 +437,7 @@ TEST(Project, AKillLosesAtMostTheStrokeInHand) {
             ASSERT_GE(back.size(), finished);
             ASSERT_LE(back.size(), finished + 1);
             for (std::size_t i = 0; i < back.size(); ++i) {
-                stroke::Stroke wanted = strokes[(i + 1) % 2];
+                stroke::JournalEntry wanted = strokes[(i + 1) % 2];
                 wanted.id = i + 1;
                 expect_equal(back[i], wanted);
             }

@@ -25,7 +25,7 @@ void expect_fits(const std::string& strokes, const std::string& model, std::size
     const auto path = source / "models" / (model + ".ply");
     const mesh::Surface surface = mesh::build_surface(mesh::read_ply(read_file(path), path));
     const mesh::SurfaceQuery query(surface.mesh);
-    for (const stroke::Trace& t : traces) {
+    for (const stroke::RecordedStroke& t : traces) {
         EXPECT_NO_THROW(brush::load_preset(t.brush)) << t.brush;
         const bool own = t.ink.ends_with(".toml");  // named from the project's folder
         EXPECT_NO_THROW(ink::load_ink(own ? (source / t.ink).string() : t.ink)) << t.ink;
@@ -60,7 +60,7 @@ TEST(Samples, AHengClosesWithASlantedShoulderNotWithABall) {
     constexpr int n = 640;
     stroke::WidthTables tables;
     int found = 0;
-    for (const stroke::Trace& t :
+    for (const stroke::RecordedStroke& t :
          read_inkml(std::filesystem::path(source_folder()) / "samples/strokes/stroke-sheet.inkml")) {
         if (!t.label.ends_with(" heng") || !t.before.empty()) continue;
         SCOPED_TRACE(t.label);

@@ -10,18 +10,18 @@
 namespace tuft::io {
 namespace {
 
-std::vector<stroke::Trace> drawn(const std::string& inside,
-                                 const std::string& size = "width='100mm' viewBox='0 0 100 100'") {
+std::vector<stroke::RecordedStroke> drawn(const std::string& inside,
+                                          const std::string& size = "width='100mm' viewBox='0 0 100 100'") {
     return parse_svg("<svg xmlns='http://www.w3.org/2000/svg' fill='none' " + size + ">" + inside + "</svg>",
                      "test.svg");
 }
-Vec2 first(const stroke::Trace& t) {
+Vec2 first(const stroke::RecordedStroke& t) {
     return Vec2(t.samples.front().position) * 1e3;
 }
-Vec2 last(const stroke::Trace& t) {
+Vec2 last(const stroke::RecordedStroke& t) {
     return Vec2(t.samples.back().position) * 1e3;
 }
-double length(const stroke::Trace& t) {
+double length(const stroke::RecordedStroke& t) {
     double sum = 0;
     for (std::size_t i = 1; i < t.samples.size(); ++i)
         sum += glm::distance(t.samples[i - 1].position, t.samples[i].position);

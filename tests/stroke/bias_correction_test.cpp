@@ -11,12 +11,12 @@ namespace tuft::stroke {
 namespace {
 
 // A smooth stroke of some 10–30 mm: a random cubic, pressed and lifted, leaned a little.
-Trace random_stroke(std::uint64_t seed) {
+RecordedStroke random_stroke(std::uint64_t seed) {
     Random random(seed);
     Vec2 p[4];
     for (Vec2& x : p) x = 0.02 * Vec2(random.uniform(-1, 1), random.uniform(-1, 1));
     const double press = random.uniform(0.4, 0.9);
-    Trace t;
+    RecordedStroke t;
     for (int i = 0; i <= 120; ++i) {
         const double u = i / 120.0, v = 1 - u;
         const Vec2 x = v * v * v * p[0] + 3 * v * v * u * p[1] + 3 * v * u * u * p[2] + u * u * u * p[3];
@@ -28,16 +28,16 @@ Trace random_stroke(std::uint64_t seed) {
     return t;
 }
 
-std::vector<Trace> random_strokes(std::uint64_t seed, int n) {
-    std::vector<Trace> out;
+std::vector<RecordedStroke> random_strokes(std::uint64_t seed, int n) {
+    std::vector<RecordedStroke> out;
     for (int i = 0; i < n; ++i) out.push_back(random_stroke(100 * seed + static_cast<std::uint64_t>(i)));
     return out;
 }
 
 // Presses four fifths, slants by 0.2, narrows to nine tenths, leans the holder to the right.
-std::vector<Trace> slanted(std::vector<Trace> traces) {
-    for (Trace& t : traces)
-        for (TraceSample& s : t.samples) {
+std::vector<RecordedStroke> slanted(std::vector<RecordedStroke> traces) {
+    for (RecordedStroke& t : traces)
+        for (StrokeSample& s : t.samples) {
             s.position = {0.9 * s.position.x - 0.2 * s.position.y + 0.004, s.position.y - 0.002, 0};
             s.pressure *= 0.8;
             s.tilt += Vec2(0.15, -0.05);
@@ -45,16 +45,16 @@ std::vector<Trace> slanted(std::vector<Trace> traces) {
     return traces;
 }
 
-Vec3 mean_position(const std::vector<Trace>& traces) {
+Vec3 mean_position(const std::vector<RecordedStroke>& traces) {
     Vec3 sum(0);
     double n = 0;
-    for (const Trace& t : traces)
-        for (const TraceSample& s : t.samples) sum += s.position, ++n;
+    for (const RecordedStroke& t : traces)
+        for (const StrokeSample& s : t.samples) sum += s.position, ++n;
     return sum / n;
 }
 
 // Root mean square distance of positions once the whole is moved into place, metres.
-double misplaced(const std::vector<Trace>& a, const std::vector<Trace>& b) {
+double misplaced(const std::vector<RecordedStroke>& a, const std::vector<RecordedStroke>& b) {
     const Vec3 offset = mean_position(a) - mean_position(b);
     double sum = 0, n = 0;
     for (std::size_t t = 0; t < a.size(); ++t)
@@ -75,7 +75,7 @@ TEST(BiasCorrection, IsUndoneOnStrokesNotTrainedOn) {
     EXPECT_LT(misplaced(corrected, meant), 0.05 * misplaced(written, meant));
     for (std::size_t t = 0; t < meant.size(); ++t)
         for (std::size_t i = 10; i + 10 < meant[t].samples.size(); ++i) {
-            const TraceSample &c = corrected[t].samples[i], &m = meant[t].samples[i];
+            const StrokeSample &c = corrected[t].samples[i], &m = meant[t].samples[i];
             EXPECT_NEAR(c.pressure / m.pressure, 1, 0.02) << t << ' ' << i;
             // The hand's own wobble of 0.1 rad differs between sample and sample.
             EXPECT_LT(glm::length(c.tilt - m.tilt), 0.01);
@@ -97,8 +97,8 @@ TEST(BiasCorrection, OfNoneChangesNothing) {
 }
 
 // A straight stroke in the direction of an angle, from a place.
-Trace straight(double angle, const Vec2& from, double length, double pressure) {
-    Trace t;
+RecordedStroke straight(double angle, const Vec2& from, double length, double pressure) {
+    RecordedStroke t;
     for (int i = 0; i <= 60; ++i) {
         const double u = i / 60.0;
         const Vec2 x = from + u * length * Vec2(std::cos(angle), std::sin(angle));
@@ -109,7 +109,7 @@ Trace straight(double angle, const Vec2& from, double length, double pressure) {
 
 TEST(BiasCorrection, DependsOnTheKindOfStroke) {
     // Verticals come out light, horizontals heavy.
-    std::vector<Trace> intended, written;
+    std::vector<RecordedStroke> intended, written;
     for (int i = 0; i < 6; ++i) {
         const Vec2 from(0.01 * i, 0.003 * i);
         intended.push_back(straight(0.02 * i, from, 0.01 + 0.001 * i, 0.5));
@@ -120,13 +120,13 @@ TEST(BiasCorrection, DependsOnTheKindOfStroke) {
     const BiasCorrection bias = learn_bias(intended, written);
     const auto out = correct_bias(bias, {straight(0.05, Vec2(0.02, 0.02), 0.0125, 0.5 * 1.25),
                                          straight(1.55, Vec2(0.05, 0.01), 0.0125, 0.6 * 0.7)});
-    for (const TraceSample& s : out[0].samples) EXPECT_NEAR(s.pressure, 0.5, 0.01);
-    for (const TraceSample& s : out[1].samples) EXPECT_NEAR(s.pressure, 0.6, 0.01);
+    for (const StrokeSample& s : out[0].samples) EXPECT_NEAR(s.pressure, 0.5, 0.01);
+    for (const StrokeSample& s : out[1].samples) EXPECT_NEAR(s.pressure, 0.6, 0.01);
 }
 
 TEST(BiasCorrection, StaysWithinItsBounds) {
     // Ten times too light, and three times too small: taken back as far as by two.
-    std::vector<Trace> intended, written;
+    std::vector<RecordedStroke> intended, written;
     for (int i = 0; i < 6; ++i) {
         intended.push_back(straight(i, Vec2(0.01 * i, 0), 0.02, 0.9));
         written.push_back(straight(i, Vec2(0.01 * i, 0) / 3.0, 0.02 / 3, 0.09));
@@ -136,8 +136,8 @@ TEST(BiasCorrection, StaysWithinItsBounds) {
         for (const double r : p.pressure_ratio) EXPECT_NEAR(r, 2, 1e-12);
     for (const double angle : {0.0, 1.0, 2.0, 3.0})
         EXPECT_LE(glm::length(bias.linear * Vec2(std::cos(angle), std::sin(angle))), 2 + 1e-12);
-    for (const Trace& t : correct_bias(bias, written))
-        for (const TraceSample& s : t.samples) EXPECT_LE(s.pressure, 0.18 + 1e-12);
+    for (const RecordedStroke& t : correct_bias(bias, written))
+        for (const StrokeSample& s : t.samples) EXPECT_LE(s.pressure, 0.18 + 1e-12);
 }
 
 TEST(BiasCorrection, ComesBackFromItsFile) {
@@ -169,17 +169,17 @@ TEST(BiasCorrection, BadInputIsRefused) {
 }
 
 TEST(BiasCorrection, DotsAndSingleSamplesAreTaken) {
-    std::vector<Trace> dots(3);
+    std::vector<RecordedStroke> dots(3);
     for (int i = 0; i < 20; ++i) dots[0].samples.push_back({.time = 0.01 * i, .pressure = 0.5});
     dots[1].samples.push_back({.pressure = 0.5});
     dots[2].samples.resize(5, {.position = {0.001, 0, 0}, .pressure = 0.2});
     auto heavier = dots;
-    for (Trace& t : heavier)
-        for (TraceSample& s : t.samples) s.pressure *= 1.5;
+    for (RecordedStroke& t : heavier)
+        for (StrokeSample& s : t.samples) s.pressure *= 1.5;
     const BiasCorrection bias = learn_bias(heavier, dots);
     const auto out = correct_bias(bias, dots);
-    for (const Trace& t : out)
-        for (const TraceSample& s : t.samples) {
+    for (const RecordedStroke& t : out)
+        for (const StrokeSample& s : t.samples) {
             EXPECT_TRUE(std::isfinite(s.position.x) && std::isfinite(s.pressure));
             EXPECT_GE(s.pressure, 0.2);
         }

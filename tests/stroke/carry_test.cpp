@@ -12,22 +12,17 @@ namespace {
 const std::string kBrush = "wolf-small";
 
 // A stroke on its own place of the sheet, row by row.
-Stroke carried(int row, const std::string& ink = "carbon", const std::string& brush = kBrush, double depth = 4e-3) {
-    Stroke s = line(brush, depth, make_frame({0, 0.004 * row - 0.012, 0}, {0, 0, 1}, {1, 0, 0}));
-    s.trace.ink = ink;
-    s.settings.dip = "carry";
+PaintStroke carried(int row, const std::string& ink = "carbon", const std::string& brush = kBrush,
+                    double depth = 4e-3) {
+    PaintStroke s = line(brush, depth, make_frame({0, 0.004 * row - 0.012, 0}, {0, 0, 1}, {1, 0, 0}));
+    s.ink = ink;
+    s.settings.dip = DipMode::carry;
     s.settings.spacing = 3;  // coarse is enough here, and quick
     return s;
 }
 
-Stroke action(Action what, const std::string& ink = {}, const std::string& brush = kBrush) {
-    Stroke s;
-    s.action = what;
-    s.trace.flat = false;
-    s.trace.brush = brush;
-    s.trace.ink = ink;
-    s.settings.dip = "carry";
-    return s;
+BrushAction action(BrushActionKind what, const std::string& ink = {}, const std::string& brush = kBrush) {
+    return {.kind = what, .brush = brush, .ink = ink, .dip = DipMode::carry};
 }
 
 // How far the hair has yielded, radians.
@@ -52,9 +47,9 @@ TEST(Carry, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
         left = r.ink_left;
         EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), left);
     }
-    painting.paint(action(Action::dip, "carbon"));
+    painting.paint(action(BrushActionKind::dip, "carbon"));
     EXPECT_NEAR(painting.held(kBrush)->reservoir.remaining() / capacity, 1, 1e-12);
-    painting.paint(action(Action::rinse));
+    painting.paint(action(BrushActionKind::rinse));
     EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), 0);
     const StrokeReport dry = painting.paint(carried(3));
     EXPECT_TRUE(dry.touched());
@@ -67,10 +62,10 @@ TEST(Carry, HairKeepsItsSetUntilItIsCombed) {
     painting.paint(carried(0, "carbon", kBrush, 0.6 * painting.brush(kBrush).length));
     const double set = set_of(*painting.held(kBrush));
     ASSERT_GT(set, 0);
-    painting.paint(action(Action::dip, "carbon"));
+    painting.paint(action(BrushActionKind::dip, "carbon"));
     EXPECT_EQ(set_of(*painting.held(kBrush)), set);
     const double ink = painting.held(kBrush)->reservoir.remaining();
-    painting.paint(action(Action::reshape));
+    painting.paint(action(BrushActionKind::reshape));
     EXPECT_EQ(set_of(*painting.held(kBrush)), 0);
     EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), ink);
 }
@@ -79,16 +74,16 @@ TEST(Carry, WetnessFollowsTheInkAlsoInAReplay) {
     const Model model = sheet();
     const auto wetness = [](const Document& painting) { return painting.held(kBrush)->tuft.wetness; };
     Document painting(model);
-    painting.paint(action(Action::dip, "carbon"));
+    painting.paint(action(BrushActionKind::dip, "carbon"));
     EXPECT_EQ(wetness(painting), 1);
     painting.paint(carried(0));
     EXPECT_LE(wetness(painting), 1);
-    painting.paint(action(Action::rinse));
+    painting.paint(action(BrushActionKind::rinse));
     EXPECT_EQ(wetness(painting), 0) << "rinsed and wiped";
     Document again(model);
-    again.replay(painting.journal().strokes());
+    again.replay(painting.journal().entries());
     EXPECT_EQ(wetness(again), 0);
-    painting.paint(action(Action::dip, "carbon"));
+    painting.paint(action(BrushActionKind::dip, "carbon"));
     EXPECT_EQ(wetness(painting), 1);
 }
 
@@ -96,11 +91,11 @@ TEST(Carry, ACombedFullBrushIsAFreshOne) {
     const Model model = sheet();
     Document carry(model), each(model);
     carry.paint(carried(0));
-    carry.paint(action(Action::reshape));
-    carry.paint(action(Action::dip, "carbon"));
+    carry.paint(action(BrushActionKind::reshape));
+    carry.paint(action(BrushActionKind::dip, "carbon"));
     carry.paint(carried(1));
-    Stroke a = carried(0), b = carried(1);
-    a.settings.dip = b.settings.dip = "each";
+    PaintStroke a = carried(0), b = carried(1);
+    a.settings.dip = b.settings.dip = DipMode::each;
     each.paint(a);
     each.paint(b);
     // The same up to the rounding of a refilled reservoir and a hair brought from elsewhere.
@@ -115,7 +110,7 @@ TEST(Carry, AnotherInkIsDippedIntoUnlessItWasToldBefore) {
     EXPECT_EQ(painting.held(kBrush)->dipped, "cinnabar");
     EXPECT_EQ(painting.held(kBrush)->reservoir.pigment(0), 0) << "washed before";
     // Told: a dip on top of what is left, which the next stroke keeps whichever of the two it names.
-    painting.paint(action(Action::dip, "carbon"));
+    painting.paint(action(BrushActionKind::dip, "carbon"));
     const double mixed = painting.held(kBrush)->reservoir.pigment(0);
     EXPECT_GT(mixed, 0);
     painting.paint(carried(2, "cinnabar"));
@@ -125,16 +120,16 @@ TEST(Carry, AnotherInkIsDippedIntoUnlessItWasToldBefore) {
 }
 
 // Strokes and actions of two brushes.
-std::vector<Stroke> session() {
+std::vector<JournalEntry> session() {
     return {carried(0),
             carried(1),
             carried(1, "cinnabar", "goat-small"),
-            action(Action::reshape),
+            action(BrushActionKind::reshape),
             carried(2),
-            action(Action::dip, "cinnabar"),
+            action(BrushActionKind::dip, "cinnabar"),
             carried(3),
-            action(Action::rinse, {}, "goat-small"),
-            action(Action::dip, "carbon", "goat-small"),
+            action(BrushActionKind::rinse, {}, "goat-small"),
+            action(BrushActionKind::dip, "carbon", "goat-small"),
             carried(4, "cinnabar", "goat-small")};
 }
 
@@ -144,11 +139,11 @@ TEST(Carry, ReplayIsTheSameToTheBitForAnyThreadCount) {
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
         Document painting(model);
-        for (const Stroke& s : session()) painting.paint(s);
+        for (const JournalEntry& s : session()) painting.paint(s);
         if (threads == 1) hash = painting.canvas().hash();
         EXPECT_EQ(painting.canvas().hash(), hash);
         Document again(model);
-        const auto reports = again.replay(painting.journal().strokes());
+        const auto reports = again.replay(painting.journal().entries());
         EXPECT_EQ(reports.size(), 6u) << "one for each stroke, none for the actions";
         EXPECT_EQ(again.canvas().hash(), hash);
         EXPECT_EQ(again.held(kBrush)->reservoir.remaining(), painting.held(kBrush)->reservoir.remaining());
@@ -162,7 +157,7 @@ TEST(Carry, UndoBringsTheBrushBackToo) {
         Document painting(model, {.undo_bytes = undo_bytes});
         for (const char* name : {"carbon", "cinnabar"})  // a canvas never forgets a pigment it has met
             ink::mix_of(painting.canvas(), painting.ink(name));
-        const std::vector<Stroke> entries = session();
+        const std::vector<JournalEntry> entries = session();
         struct Moment {
             std::uint64_t canvas;
             double ink, set;
@@ -172,7 +167,7 @@ TEST(Carry, UndoBringsTheBrushBackToo) {
             const BrushInHand* brush = painting.held(kBrush);
             return {painting.canvas().hash(), brush ? brush->reservoir.remaining() : -1, brush ? set_of(*brush) : -1};
         };
-        for (const Stroke& s : entries) {
+        for (const JournalEntry& s : entries) {
             moments.push_back(now());
             painting.paint(s);
         }
@@ -194,17 +189,18 @@ TEST(Carry, AReopenedPaintingTakesAFreshBrushAndSaysSo) {
     const Model model = sheet();
     Document first(model);
     first.paint(carried(0));
-    EXPECT_EQ(first.journal().strokes()[0].settings.dip, "each") << "nothing to carry on from";
+    EXPECT_EQ(first.journal().entries()[0].get<PaintStroke>().settings.dip, DipMode::each)
+        << "nothing to carry on from";
     first.paint(carried(1));
-    EXPECT_EQ(first.journal().strokes()[1].settings.dip, "carry");
+    EXPECT_EQ(first.journal().entries()[1].get<PaintStroke>().settings.dip, DipMode::carry);
     Document second(model);
-    second.adopt(first.journal().strokes(), first.canvas());
+    second.adopt(first.journal().entries(), first.canvas());
     EXPECT_EQ(second.held(kBrush), nullptr);
     second.paint(carried(2));
-    EXPECT_EQ(second.journal().strokes()[2].settings.dip, "each");
+    EXPECT_EQ(second.journal().entries()[2].get<PaintStroke>().settings.dip, DipMode::each);
     second.paint(carried(3));
     Document replayed(model);
-    replayed.replay(second.journal().strokes());
+    replayed.replay(second.journal().entries());
     EXPECT_EQ(replayed.canvas().hash(), second.canvas().hash());
 }
 
@@ -219,28 +215,29 @@ TEST(Carry, ACancelledStrokeLeavesTheBrushAsItWas) {
     painting.cancel();
     EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), ink);
     EXPECT_EQ(set_of(*painting.held(kBrush)), set);
-    EXPECT_THROW(painting.paint(action(Action::dip, "no-such-ink")), Error);
-    EXPECT_EQ(painting.journal().strokes().size(), 1u);
+    EXPECT_THROW(painting.paint(action(BrushActionKind::dip, "no-such-ink")), Error);
+    EXPECT_EQ(painting.journal().entries().size(), 1u);
 }
 
 TEST(Steady, AStrokeInPiecesIsTheWholeStrokeAndReplays) {
     const Model model = sheet();
-    Stroke whole = line(kBrush, 4e-3);
+    PaintStroke whole = line(kBrush, 4e-3);
     for (std::size_t i = 0; i < whole.trace.samples.size(); ++i)  // a shaky hand
         whole.trace.samples[i].position.y += 3e-4 * std::sin(1.9 * static_cast<double>(i));
     whole.settings.smooth = 1;
     whole.settings.stabilise = 1e-3;
     Document at_once(model), in_pieces(model), again(model);
     at_once.paint(whole);
-    Stroke header = whole;
+    PaintStroke header = whole;
     header.trace.samples.clear();
     in_pieces.begin(header);
     for (const brush::Pose& pose : spatial_poses(whole.trace)) in_pieces.extend(std::span(&pose, 1));
     in_pieces.end();
     EXPECT_EQ(in_pieces.canvas().hash(), at_once.canvas().hash());
     // The journal keeps the hand as it was, so that the settings can still be changed.
-    EXPECT_EQ(in_pieces.journal().strokes()[0].trace.samples[20].position, whole.trace.samples[20].position);
-    again.replay(in_pieces.journal().strokes());
+    EXPECT_EQ(in_pieces.journal().entries()[0].get<PaintStroke>().trace.samples[20].position,
+              whole.trace.samples[20].position);
+    again.replay(in_pieces.journal().entries());
     EXPECT_EQ(again.canvas().hash(), at_once.canvas().hash());
 }
 

@@ -14,22 +14,22 @@ const char* const kInks[] = {"indigo", "gamboge", "cinnabar"};
 constexpr int kPigments = 3;
 
 /// A short stroke somewhere on 12 × 12 mm, in any direction.
-Stroke dab(int i, const std::string& ink) {
+PaintStroke dab(int i, const std::string& ink) {
     const auto u = [&](std::uint64_t what) { return uniform(hash_bits(11, what), static_cast<std::uint64_t>(i)); };
     const double turn = 2 * std::numbers::pi * u(0);
-    Stroke s;
+    PaintStroke s;
     s.trace.flat = false;
-    s.trace.brush = kBrush;
-    s.trace.ink = ink;
-    s.settings.dip = "carry";
-    s.settings.film = i % 4 ? "still" : "wet";
+    s.brush = kBrush;
+    s.ink = ink;
+    s.settings.dip = DipMode::carry;
+    s.settings.film = i % 4 ? FilmModel::still : FilmModel::wet;
     s.settings.spacing = 6;
     const Vec3 way{2e-3 * std::cos(turn), 2e-3 * std::sin(turn), 0};
     const Vec3 start{12e-3 * (u(1) - 0.5), 12e-3 * (u(2) - 0.5), brush::load_preset(kBrush).length};
     constexpr int kSamples = 8;
     for (int k = 0; k <= kSamples; ++k) {
         const double f = static_cast<double>(k) / kSamples;
-        TraceSample p;
+        StrokeSample p;
         p.time = 0.06 * f;
         p.position = start + f * way;
         p.position.z += 0.5e-3 - 3e-3 * std::sin(std::numbers::pi * f);
@@ -38,13 +38,8 @@ Stroke dab(int i, const std::string& ink) {
     return s;
 }
 
-Stroke care(Action action, const std::string& ink, const Extent& extent = {}, double seconds = 0) {
-    Stroke s{.action = action, .seconds = seconds, .extent = extent};
-    s.trace.flat = false;
-    s.trace.brush = kBrush;
-    s.trace.ink = ink;
-    s.settings.dip = "carry";
-    return s;
+BrushAction care(BrushActionKind kind, const std::string& ink, const Extent& extent) {
+    return {.kind = kind, .brush = kBrush, .ink = ink, .extent = extent, .dip = DipMode::carry};
 }
 
 TEST(Conservation, AThousandStrokesKeepEachPigment) {
@@ -56,7 +51,7 @@ TEST(Conservation, AThousandStrokesKeepEachPigment) {
         return held ? held->reservoir.pigment(p) : 0;
     };
     // What a dip brings and a rag takes is counted where it happens: in the hair.
-    const auto tend = [&](const Stroke& entry) {
+    const auto tend = [&](const JournalEntry& entry) {
         std::array<double, kPigments> before;
         for (int p = 0; p < kPigments; ++p) before[p] = in_hair(p);
         painting.paint(entry);
@@ -67,10 +62,10 @@ TEST(Conservation, AThousandStrokesKeepEachPigment) {
     for (int i = 0; i < 1000; ++i) {
         if (i % 20 == 0) {
             ink = kInks[i / 20 % kPigments];
-            tend(care(Action::wipe, ink, {.depth = 0.6, .amount = 0.5}));
-            tend(care(Action::dip, ink, {.depth = 0.5, .side = i % 40 ? 0.5 : 0.0}));
+            tend(care(BrushActionKind::wipe, ink, {.depth = 0.6, .amount = 0.5}));
+            tend(care(BrushActionKind::dip, ink, {.depth = 0.5, .side = i % 40 ? 0.5 : 0.0}));
         }
-        if (i % 100 == 99) painting.paint(care(Action::dry, ink, {}, i == 999 ? 0 : 0.3));
+        if (i % 100 == 99) painting.paint(Dry{i == 999 ? 0 : 0.3});
         touched += painting.paint(dab(i, ink)).touched();
     }
     EXPECT_EQ(touched, 1000u);

@@ -53,7 +53,7 @@ TriangleMesh rough_sphere() {
 TEST(Drape, OnAPlaneIsTheIdentity) {
     const TriangleMesh sheet = make_sheet();
     const SurfaceQuery query(sheet);
-    const Trace trace =
+    const StrokeSamples trace =
         make_trace({{0.012, -0.007, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, scattered(200, 0.05));
     const SurfaceTrace mapped = map_to_surface(query, trace);
     EXPECT_EQ(mapped.missed, 0u);
@@ -70,7 +70,7 @@ TEST(Drape, UnrollsACylinder) {
     const TriangleMesh cylinder = make_cylinder();
     const SurfaceQuery query(cylinder);
     const Placement place{{kCylinderRadius, 0, 0.01}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::drape};
-    const Trace trace = make_trace(place, scattered(300, 0.035));
+    const StrokeSamples trace = make_trace(place, scattered(300, 0.035));
     const SurfaceTrace mapped = map_to_surface(query, trace);
     EXPECT_EQ(mapped.missed, 0u);
     for (std::size_t i = 0; i < mapped.samples.size(); ++i) {

@@ -11,12 +11,12 @@ namespace {
 
 /// A goat tuft drawn 36 mm at 0.3 m/s, which comes up 9 mm within `lift` seconds; meanwhile the hand goes on for `on`
 /// metres and turns back.
-Stroke drawn_and_lifted(std::uint64_t seed, double lift, double on) {
-    Stroke s = drag(seed);
-    s.trace.brush = "goat-medium";
+PaintStroke drawn_and_lifted(std::uint64_t seed, double lift, double on) {
+    PaintStroke s = drag(seed);
+    s.brush = "goat-medium";
     s.settings.spacing = 1;
     s.trace.samples.clear();
-    const double length = brush::load_preset(s.trace.brush).length;
+    const double length = brush::load_preset(s.brush).length;
     for (double t = 0; t <= 0.12 + 1.5 * lift; t += 1e-3) {
         const double down = std::min(1.0, t / 0.02), left = std::max(0.0, t - 0.12) / lift;
         const double x = 0.3 * std::min(t, 0.12) + 4 * on * left * (1 - left);
@@ -62,9 +62,10 @@ TEST(DryBrush, ALiftedTuftLeavesWithItsTip) {
     const struct { double lift, on; } hands[] = {{0.035, 1.3e-3}, {0.3, 0}};
     for (const auto& hand : hands)
         for (std::uint64_t seed = 1; seed < 4; ++seed) {
-            Stroke wiped = wipe(0.6, seed), s = drawn_and_lifted(seed, hand.lift, hand.on);
-            wiped.trace.brush = s.trace.brush;
-            s.settings.dip = "carry";
+            BrushAction wiped = wipe(0.6, seed);
+            PaintStroke s = drawn_and_lifted(seed, hand.lift, hand.on);
+            wiped.brush = s.brush;
+            s.settings.dip = DipMode::carry;
             Document painting(model);
             painting.paint(wiped);
             painting.paint(s);
@@ -91,20 +92,20 @@ TEST(DryBrush, AStrokeThatIsLiftedOnceEndsOnce) {
     // broke off and its tip left a dash of its own.
     const Model model = sheet();
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-        Stroke s = drag(seed, 0.25, 1000);
-        s.trace.brush = "goat-medium";
-        const double length = brush::load_preset(s.trace.brush).length;
+        PaintStroke s = drag(seed, 0.25, 1000);
+        s.brush = "goat-medium";
+        const double length = brush::load_preset(s.brush).length;
         const double end = static_cast<double>(s.trace.samples.size() - 1);
         for (std::size_t i = 0; i < s.trace.samples.size(); ++i) {
-            TraceSample& p = s.trace.samples[i];
+            StrokeSample& p = s.trace.samples[i];
             const double u = static_cast<double>(i) / end, turned = 1.7 * (u - 0.5);
             p.time = 0.2 * u;
             p.position = {28e-3 * std::sin(turned), 28e-3 * (1 - std::cos(turned)),
                           length - 6.5e-3 * std::min({1.0, u / 0.15, (1.02 - u) / 0.14})};
         }
-        Stroke wiped = wipe(0.84, seed);
-        wiped.trace.brush = s.trace.brush;
-        s.settings.dip = "carry";
+        BrushAction wiped = wipe(0.84, seed);
+        wiped.brush = s.brush;
+        s.settings.dip = DipMode::carry;
         s.settings.spacing = 1;
         Document painting(model);
         painting.paint(wiped);
@@ -146,7 +147,7 @@ TEST(DryBrush, ASplitTipBeginsAndEndsAlongTheStroke) {
     const Model model = sheet();
     double begin = 0, end = 0;
     for (const std::uint64_t seed : {11, 12, 13}) {
-        Stroke s = drag(seed);
+        PaintStroke s = drag(seed);
         const double top = s.trace.samples.front().position.z,
                      low = s.trace.samples[s.trace.samples.size() / 2].position.z;
         const double n = static_cast<double>(s.trace.samples.size() - 1);
@@ -163,13 +164,13 @@ TEST(DryBrush, ASplitTipBeginsAndEndsAlongTheStroke) {
 }
 
 /// Lands across the stroke, swings behind the hand within some millimetres, and back as it is lifted.
-Stroke leaning(std::uint64_t seed) {
-    Stroke s = drag(seed);
+PaintStroke leaning(std::uint64_t seed) {
+    PaintStroke s = drag(seed);
     const double length = brush::load_preset(kBrush).length;
     const auto turn = glm::angleAxis(0.7, Vec3{1, 0, 0});
     const double n = static_cast<double>(s.trace.samples.size() - 1);
     for (std::size_t i = 0; i < s.trace.samples.size(); ++i) {
-        TraceSample& p = s.trace.samples[i];
+        StrokeSample& p = s.trace.samples[i];
         const double u = static_cast<double>(i) / n, depth = 4e-3 * std::min(1.0, std::min(u, 1 - u) * 16) - 1e-3;
         p.rotation = turn;
         p.position = Vec3{p.position.x, 0, 0} + length * (turn * Vec3{0, 0, 1}) - Vec3{0, 0, depth};
@@ -182,7 +183,7 @@ TEST(DryBrush, ALeaningTuftThatSwingsRoundLeavesNoFan) {
     const Model model = sheet();
     double begin = 0, end = 0;
     for (const std::uint64_t seed : {21, 22, 23}) {
-        const Stroke s = leaning(seed);
+        const PaintStroke s = leaning(seed);
         const Document p = dry_stroke(model, 0.28, seed, {}, s);
         begin += off_the_stroke(p, -0.020, -0.010) / 3;
         end += off_the_stroke(p, 0.009, 0.020) / 3;
@@ -238,10 +239,10 @@ TEST(DryBrush, ALeaningTipThatComesToTouchPrintsNoSpeck) {
     const Model model = sheet();
     // At any rate of the hand's samples: they lie differently about the place where it touches.
     for (const auto& [seed, samples] : {std::pair{20, 60}, {21, 60}, {22, 60}, {20, 120}, {21, 600}}) {
-        Stroke s;
-        s.trace.brush = "mixed-medium";
-        s.trace.ink = "carbon";
-        s.trace.seed = static_cast<std::uint64_t>(seed);
+        PaintStroke s;
+        s.brush = "mixed-medium";
+        s.ink = "carbon";
+        s.seed = static_cast<std::uint64_t>(seed);
         for (int i = 0; i <= samples; ++i) {
             const double u = static_cast<double>(i) / samples,
                          press = 0.5 * std::min(1.0, std::min(4 * u, 8 * (1 - u)));
@@ -250,10 +251,10 @@ TEST(DryBrush, ALeaningTipThatComesToTouchPrintsNoSpeck) {
                                        .pressure = press,
                                        .tilt = {0, 0.7}});
         }
-        s.settings.dip = "carry";
+        s.settings.dip = DipMode::carry;
         Document painting(model);
-        Stroke care = wipe(0.72, s.trace.seed);
-        care.trace.brush = s.trace.brush;
+        BrushAction care = wipe(0.72, s.seed);
+        care.brush = s.brush;
         painting.paint(care);
         painting.paint(s);
         EXPECT_EQ(loose_ink(painting, 12), 0) << seed << ", " << samples << " samples";

@@ -204,8 +204,8 @@ TEST(DryBrush, TuftAndTexelsKeepTheInk) {
     Document painting(model);
     painting.paint(wipe(0.8, 6));
     const double start = painting.held(kBrush)->reservoir.remaining();
-    Stroke s = drag(6);
-    s.settings.dip = "carry";
+    PaintStroke s = drag(6);
+    s.settings.dip = DipMode::carry;
     const StrokeReport r = painting.paint(s);
     EXPECT_NEAR(r.ink_given + painting.held(kBrush)->reservoir.remaining(), start, 1e-12 * start);
     // Texels are floats: 1e-6 of the sum, for each pigment by itself.
@@ -232,10 +232,10 @@ TEST(DryBrush, AStrokeRunsDryByItself) {
 
 /// A wiped brush that leans across its way, lying on its side: rows of texels along the stroke's even part.
 std::vector<std::vector<bool>> rows_of_slanted_stroke(const Model& model, std::uint64_t seed) {
-    Stroke s = drag(seed);
+    PaintStroke s = drag(seed);
     const double lean = 0.7, length = brush::load_preset(kBrush).length;
     const auto turn = glm::angleAxis(lean, Vec3{1, 0, 0});
-    for (TraceSample& p : s.trace.samples) {
+    for (StrokeSample& p : s.trace.samples) {
         const double press = length + 1e-3 - p.position.z;
         p.rotation = turn;
         p.position = Vec3{p.position.x, 0, 0} + length * (turn * Vec3{0, 0, 1}) + Vec3{0, 0, 1e-3 - press};
@@ -302,15 +302,16 @@ TEST(DryBrush, EdgesOfAHalfDryStrokeHaveNoTeeth) {
     constexpr int seeds = 6;
     double sum = 0;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-        Stroke wiped = wipe(0.6, seed), s = line("mixed-medium", 6e-3, {}, 0.1, 1000);
-        for (TraceSample& p : s.trace.samples) {
+        BrushAction wiped = wipe(0.6, seed);
+        PaintStroke s = line("mixed-medium", 6e-3, {}, 0.1, 1000);
+        for (StrokeSample& p : s.trace.samples) {
             p.position.x *= 1.75;
             p.time *= 1.75;
         }
-        wiped.trace.brush = s.trace.brush;
-        s.trace.seed = seed;
+        wiped.brush = s.brush;
+        s.seed = seed;
         s.settings.spacing = 1;
-        s.settings.dip = "carry";
+        s.settings.dip = DipMode::carry;
         Document painting(model);
         painting.paint(wiped);
         painting.paint(s);
@@ -345,9 +346,9 @@ TEST(DryBrush, PaintingDriesTheTuft) {
     painting.paint(wipe(0.6, 7));
     double wet = 1, left = 1e9;
     for (int i = 0; i < 12; ++i) {
-        Stroke s = drag(7 + i);
-        for (TraceSample& sample : s.trace.samples) sample.position.y += 5e-3 * (i - 5.5);  // each on bare ground
-        s.settings.dip = "carry";
+        PaintStroke s = drag(7 + i);
+        for (StrokeSample& sample : s.trace.samples) sample.position.y += 5e-3 * (i - 5.5);  // each on bare ground
+        s.settings.dip = DipMode::carry;
         const StrokeReport r = painting.paint(s);
         const BrushInHand* held = painting.held(kBrush);
         ASSERT_NE(held, nullptr);
@@ -378,28 +379,28 @@ TEST(DryBrush, FastHairIsDrierAndRoughGroundShowsItsGrain) {
 TEST(DryBrush, AShallowDipIsDarkAtTheTipAndReplays) {
     const Model model = sheet();
     Document painting(model);
-    Stroke rinse = wipe(1, 9);
+    const BrushAction rinse = wipe(1, 9);
     painting.paint(rinse);
-    Stroke dip = wipe(1, 9);
-    dip.action = Action::dip;
-    dip.settings.dip = "carry";
-    dip.trace.ink = "cinnabar";
+    BrushAction dip = wipe(1, 9);
+    dip.kind = BrushActionKind::dip;
+    dip.dip = DipMode::carry;
+    dip.ink = "cinnabar";
     dip.extent = {.depth = 1, .amount = 0.7};
     painting.paint(dip);
     EXPECT_NEAR(painting.held(kBrush)->reservoir.fullness(), 0.7, 1e-12);
-    dip.trace.ink = "carbon";
+    dip.ink = "carbon";
     dip.extent = {.depth = 0.15, .amount = 1};
     painting.paint(dip);
     const ink::Reservoir& tuft = painting.held(kBrush)->reservoir;
     const std::size_t cells = tuft.n_cells();
     EXPECT_GT(tuft.saturation(cells - 1), 0.99) << "the tip is filled up";
     EXPECT_NEAR(tuft.saturation(0), 0.7, 1e-12) << "the belly is as it was";
-    Stroke s = drag(9);
-    s.trace.ink = "cinnabar";
-    s.settings.dip = "carry";
+    PaintStroke s = drag(9);
+    s.ink = "cinnabar";
+    s.settings.dip = DipMode::carry;
     painting.paint(s);
     Document again(model);
-    again.replay(painting.journal().strokes());
+    again.replay(painting.journal().entries());
     EXPECT_EQ(again.canvas().hash(), painting.canvas().hash());
     EXPECT_EQ(again.held(kBrush)->reservoir.remaining(), painting.held(kBrush)->reservoir.remaining());
 }
@@ -409,8 +410,8 @@ TEST(DryBrush, LeavesFlyingWhiteWithWetInkAsWithInkThatStays) {
     const Model model = sheet();
     double ink[2];
     for (const bool wet : {false, true}) {
-        Stroke s = drag(5, 0.2);
-        if (wet) s.settings.film = "wet";
+        PaintStroke s = drag(5, 0.2);
+        if (wet) s.settings.film = FilmModel::wet;
         const Document painting = dry_stroke(model, 0.18, 5, {}, s);
         ink[wet] = painting.canvas().total(model.texels, 0);
     }

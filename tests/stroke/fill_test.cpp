@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/system/parallel.h"
 #include "core/text/units.h"
+#include "entry_text.h"
 #include "sheet.h"
 
 namespace tuft::stroke {
@@ -24,25 +25,21 @@ double area() {
     return sum;
 }
 
-Stroke fill(const std::string& ink, const Fill& how) {
-    Stroke s;
-    s.action = Action::fill;
-    s.trace.flat = false;
-    s.trace.ink = ink;
-    s.fill = how;
-    return s;
+Fill fill(const std::string& ink, Fill how) {
+    how.ink = ink;
+    return how;
 }
 
-Stroke quick(double depth = 3e-3) {
-    Stroke s = line("wolf-small", depth);
+PaintStroke quick(double depth = 3e-3) {
+    PaintStroke s = line("wolf-small", depth);
     s.settings.spacing = 3;  // coarse is enough here, and quick
     return s;
 }
 
-Stroke eraser(double depth = 3e-3) {
-    Stroke s = quick(depth);
-    s.trace.erases = true;
-    s.trace.ink.clear();
+PaintStroke eraser(double depth = 3e-3) {
+    PaintStroke s = quick(depth);
+    s.tool = Tool::eraser;
+    s.ink.clear();
     return s;
 }
 
@@ -133,9 +130,7 @@ TEST(Fill, APartAndAChartEndWhereTheyEnd) {
 TEST(Eraser, TakesWhatItsContactCoversAndTheBooksBalance) {
     Document p(model());
     p.paint(fill("carbon", {.film = 2}));
-    Stroke wait;
-    wait.action = Action::dry;
-    p.paint(wait);  // a dry film below
+    p.paint(Dry{});  // a dry film below
     p.paint(fill("cinnabar", {.film = 1}));
     const double before = total(p);
     const std::uint64_t hash = p.hash();
@@ -201,12 +196,9 @@ TEST(Eraser, TheSameStrokeLeavesNothingOfIt) {
 TEST(Eraser, WorksOnItsLayerAlone) {
     Document p(model());
     p.paint(fill("carbon", {.film = 2}));
-    Stroke add;
-    add.action = Action::layer;
-    add.edit = add_on_top(p.layers(), "top");
-    p.paint(add);
+    p.paint(add_on_top(p.layers(), "top"));
     const std::uint64_t below = p.canvas().hash();
-    Stroke s = eraser();
+    PaintStroke s = eraser();
     s.layer = 2;
     EXPECT_EQ(p.paint(s).removed.sum(), 0) << "nothing is there";
     EXPECT_EQ(p.canvas().hash(), below);
@@ -224,13 +216,12 @@ TEST(Eraser, ReplaysToTheBitForAnyThreadCount) {
         if (threads == 1) hash = p.hash();
         EXPECT_EQ(p.hash(), hash);
         Document again(model());
-        std::vector<Stroke> strokes = p.journal().strokes();
-        for (Stroke& s : strokes) {  // as a file has them
-            Stroke back = s;
-            back.fill = {};
-            back.trace.erases = false;
-            read_entry_json(entry_json(s), back);
-            EXPECT_EQ(back.fill, s.fill);
+        std::vector<JournalEntry> strokes = p.journal().entries();
+        for (JournalEntry& s : strokes) {  // as a file has them
+            const JournalEntry back = written_and_read(s);
+            if (const Fill* filled = s.as<Fill>()) {
+                EXPECT_EQ(back.get<Fill>(), *filled);
+            }
             s = back;
         }
         again.replay(strokes);
@@ -246,12 +237,11 @@ TEST(Fill, NonsenseIsRefused) {
     EXPECT_THROW(p.paint(fill("carbon", {.gradient = Gradient::along})), Error) << "no length";
     EXPECT_THROW(p.paint(fill("no-such-ink", {})), Error);
     EXPECT_TRUE(p.journal().empty());
-    Stroke s;
     for (const char* text : {R"({"action":"fill"})", R"({"action":"fill","fill":{"film":"much","region":"all"}})",
                              R"({"tool":"knife"})", R"({"action":"fill","fill":{"film":1,"region":"moon"}})",
                              R"({"action":"fill","fill":{"film":1e9,"region":"all"}})",
                              R"({"action":"fill","fill":{"film":1,"region":"part","at":[1,2]}})"})
-        EXPECT_THROW(read_entry_json(text, s), Error) << text;
+        EXPECT_THROW(entry_of({}, text), Error) << text;
 }
 
 }  // namespace

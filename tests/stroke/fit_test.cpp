@@ -1,4 +1,4 @@
-#include "stroke/painting/fit.h"
+#include "stroke/document/fit.h"
 
 #include <gtest/gtest.h>
 
@@ -14,20 +14,19 @@ namespace {
 
 constexpr double kDepth = 2e-3;
 
-std::string reason_on(const Model& revised, const Stroke& stroke) {
+std::string reason_on(const Model& revised, const PaintStroke& stroke) {
     const Model former = sheet();
     Document painting(revised);
     const auto reports = painting.replay({stroke});
     const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
-    const auto mismatches =
-        find_mismatches(reports, compare_fit(painting.journal().strokes(), length_of, *former.query, *revised.query));
-    EXPECT_LE(mismatches.size(), 1u);
-    return mismatches.empty() ? "" : mismatches.front().reason;
+    const auto misfits =
+        find_mismatches(reports, compare_fit(painting.journal().entries(), length_of, *former.query, *revised.query));
+    EXPECT_LE(misfits.size(), 1u);
+    return misfits.empty() ? "" : misfits.front().reason;
 }
 
-Stroke pressed() {
-    Stroke s = line("wolf-small", kDepth);
-    s.id = 1;
+PaintStroke pressed() {
+    PaintStroke s = line("wolf-small", kDepth);
     return s;
 }
 
@@ -58,19 +57,18 @@ TEST(Fit, APartThatIsGoneIsToldByItsShare) {
 }
 
 TEST(Fit, AStrokeInTheAirIsNoMisfit) {
-    Stroke above = pressed();
-    for (TraceSample& s : above.trace.samples) s.position.z += 0.2;
+    PaintStroke above = pressed();
+    for (StrokeSample& s : above.trace.samples) s.position.z += 0.2;
     EXPECT_EQ(reason_on(lifted(-5e-3), above), "");
 }
 
 constexpr std::uint32_t kSmall = 128;  // texels: only the mesh matters here
 
 /// A flat stroke of 30 mm along x, mapped on whatever lies at the origin.
-Stroke written(SurfaceMapping mapping) {
-    Stroke s;
-    s.id = 1;
-    s.trace.brush = "wolf-small";
-    s.trace.ink = "carbon";
+PaintStroke written(SurfaceMapping mapping) {
+    PaintStroke s;
+    s.brush = "wolf-small";
+    s.ink = "carbon";
     s.trace.placement = {.origin = {0, 0, 0}, .right = {1, 0, 0}, .down = {0, -1, 0}, .mapping = mapping};
     for (int i = 0; i <= 100; ++i)
         s.trace.samples.push_back(
@@ -78,13 +76,13 @@ Stroke written(SurfaceMapping mapping) {
     return s;
 }
 
-StrokeFit fit_on(const mesh::TriangleMesh& revised, const Stroke& stroke, bool with_motion = false) {
+StrokeFit fit_on(const mesh::TriangleMesh& revised, const PaintStroke& stroke, bool with_motion = false) {
     const Model former = sheet({}, kSmall);
     const mesh::SurfaceQuery query(revised);
     const auto motion = with_motion ? find_motion(*former.query, query) : std::nullopt;
     return compare_fit(
-               {stroke}, [](const std::string& brush) { return brush::load_preset(brush).length; }, *former.query,
-               query, motion)
+               {JournalEntry(stroke)}, [](const std::string& brush) { return brush::load_preset(brush).length; },
+               *former.query, query, motion)
         .at(0);
 }
 

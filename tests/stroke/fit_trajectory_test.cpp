@@ -19,8 +19,10 @@ WidthTables& tables() {
 }
 
 /// A line through the points, sampled every half millimetre as drawings are, pressed for its width.
-Trace through(std::initializer_list<Vec2> points) {
-    Trace trace{.brush = "wolf-medium", .ink = "carbon", .pressed = false, .line_width = kWidth};
+const std::string kBrush = "wolf-medium";
+
+StrokeSamples through(std::initializer_list<Vec2> points) {
+    StrokeSamples trace{.pressed = false, .line_width = kWidth};
     const Vec2* before = nullptr;
     for (const Vec2& p : points) {
         const int n = before ? static_cast<int>(std::ceil(glm::distance(*before, p) / 5e-4)) : 1;
@@ -32,12 +34,12 @@ Trace through(std::initializer_list<Vec2> points) {
     for (std::size_t i = 1; i < trace.samples.size(); ++i)
         trace.samples[i].time =
             trace.samples[i - 1].time + glm::distance(trace.samples[i].position, trace.samples[i - 1].position) / 0.06;
-    draw_to_width(trace, tables().of(trace.brush));
+    draw_to_width(trace, tables().of(kBrush));
     return trace;
 }
 
-Trace fitted(const Trace& trace) {
-    return fit_trajectory(trace, brush::load_preset(trace.brush), tables().of(trace.brush), tables().hold(trace.brush));
+StrokeSamples fitted(const StrokeSamples& trace) {
+    return fit_trajectory(trace, brush::load_preset(kBrush), tables().of(kBrush), tables().hold(kBrush));
 }
 
 /// How far round the ink goes from the line through the points, within `about` of `corner`: the
@@ -45,9 +47,9 @@ Trace fitted(const Trace& trace) {
 struct Spill {
     double farthest = 0, area = 0;
 };
-Spill spilt(const Trace& trace, std::initializer_list<Vec2> points, const Vec2& corner, double about) {
+Spill spilt(const StrokeSamples& trace, std::initializer_list<Vec2> points, const Vec2& corner, double about) {
     const double cell = 5e-5;
-    const PlaneInk ink = plane_ink(trace, brush::load_preset(trace.brush), tables().hold(trace.brush), 1e-4, cell);
+    const PlaneInk ink = plane_ink(trace, brush::load_preset(kBrush), tables().hold(kBrush), 1e-4, cell);
     Spill s;
     for (double y = corner.y - about; y < corner.y + about; y += cell)
         for (double x = corner.x - about; x < corner.x + about; x += cell) {
@@ -74,7 +76,7 @@ TEST(FitTrajectory, CornersHaveNoKnobs) {
         SCOPED_TRACE(turn);
         const double a = turn * std::numbers::pi / 180;
         const std::initializer_list<Vec2> points{{-0.02, 0}, {0, 0}, 0.02 * Vec2(std::cos(a), std::sin(a))};
-        const Trace plain = through(points), tried = fitted(plain);
+        const StrokeSamples plain = through(points), tried = fitted(plain);
         const Spill before = spilt(plain, points, {0, 0}, 3 * kWidth), after = spilt(tried, points, {0, 0}, 3 * kWidth);
         // A tenth of the width is what a straight line may be wide or narrow (LineWidth.*), the
         // rest a cell of the picture and what is left of the tuft's turning over; unpractised it is
@@ -86,14 +88,14 @@ TEST(FitTrajectory, CornersHaveNoKnobs) {
     }
 }
 
-TEST(FitTrajectory, LeavesWhatHasNoCornerAndIsRepeatable) {
-    const Trace straight = through({{-0.02, 0}, {0.02, 0.003}});
-    const Trace same = fitted(straight);
+TEST(Practise, LeavesWhatHasNoCornerAndIsRepeatable) {
+    const StrokeSamples straight = through({{-0.02, 0}, {0.02, 0.003}});
+    const StrokeSamples same = fitted(straight);
     ASSERT_EQ(same.samples.size(), straight.samples.size());
     for (std::size_t i = 0; i < same.samples.size(); ++i)
         EXPECT_EQ(same.samples[i].position, straight.samples[i].position);
-    const Trace corner = through({{-0.01, 0}, {0, 0}, {0, 0.01}});
-    const Trace a = fitted(corner), b = fitted(corner);
+    const StrokeSamples corner = through({{-0.01, 0}, {0, 0}, {0, 0.01}});
+    const StrokeSamples a = fitted(corner), b = fitted(corner);
     ASSERT_EQ(a.samples.size(), b.samples.size());
     for (std::size_t i = 0; i < a.samples.size(); ++i) {
         EXPECT_EQ(a.samples[i].position, b.samples[i].position);
@@ -103,21 +105,22 @@ TEST(FitTrajectory, LeavesWhatHasNoCornerAndIsRepeatable) {
 
 TEST(FitTrajectory, LooksOnlyAtEdgesThatShow) {
     // A corner in the middle of what other lines cover stays as it was drawn.
-    std::vector<Trace> lines{through({{-0.005, 0}, {0, 0}, {0, 0.005}})};
-    const Trace before = lines[0];
-    for (int i = -5; i <= 5; ++i) lines.push_back(through({{-0.02, 2e-3 * i}, {0.02, 2e-3 * i}}));
-    std::vector<Trace*> all;
-    for (Trace& t : lines) all.push_back(&t);
+    const auto drawn = [](const StrokeSamples& t) { return PaintStroke{.trace = t, .brush = kBrush, .ink = "carbon"}; };
+    std::vector<PaintStroke> lines{drawn(through({{-0.005, 0}, {0, 0}, {0, 0.005}}))};
+    const StrokeSamples before = lines[0].trace;
+    for (int i = -5; i <= 5; ++i) lines.push_back(drawn(through({{-0.02, 2e-3 * i}, {0.02, 2e-3 * i}})));
+    std::vector<PaintStroke*> all;
+    for (PaintStroke& t : lines) all.push_back(&t);
     fit_trajectory(all, tables());
-    ASSERT_EQ(lines[0].samples.size(), before.samples.size());
-    for (Trace& t : lines) t.placement.origin.x = &t == &lines[0] ? 1 : 0;  // now it lies elsewhere
+    ASSERT_EQ(lines[0].trace.samples.size(), before.samples.size());
+    for (PaintStroke& t : lines) t.trace.placement.origin.x = &t == &lines[0] ? 1 : 0;  // now it lies elsewhere
     fit_trajectory(all, tables());
-    EXPECT_NE(lines[0].samples.size(), before.samples.size());
+    EXPECT_NE(lines[0].trace.samples.size(), before.samples.size());
 }
 
 TEST(PlaneInk, AStraightLineIsAsWideAsItsPressure) {
-    const Trace line = through({{-0.025, 0}, {0.025, 0}});
-    const PlaneInk ink = plane_ink(line, brush::load_preset(line.brush), tables().hold(line.brush), 1e-4, 5e-5);
+    const StrokeSamples line = through({{-0.025, 0}, {0.025, 0}});
+    const PlaneInk ink = plane_ink(line, brush::load_preset(kBrush), tables().hold(kBrush), 1e-4, 5e-5);
     double area = 0;
     for (double y = -0.005; y < 0.005; y += 5e-5)
         for (double x = -0.01; x < 0.01; x += 5e-5) area += ink.at({x + 2.5e-5, y + 2.5e-5}) * 2.5e-9;

@@ -12,16 +12,16 @@ constexpr double kProximity = 0.1;   // newtons
 
 // Comes down, drags and lifts, each in smooth motion, sampled at 1 kHz; the pose moves at most
 // 40 mm/s down and 60 mm/s along.
-Stroke press_drag_lift(const std::string& brush, double depth) {
+PaintStroke press_drag_lift(const std::string& brush, double depth) {
     const double length = brush::load_preset(brush).length;
     const auto ease = [](double x) {
         x = std::clamp(x, 0.0, 1.0);
         return x * x * (3 - 2 * x);
     };
-    Stroke s;
+    PaintStroke s;
     s.trace.flat = false;
-    s.trace.brush = brush;
-    s.trace.ink = "carbon";
+    s.brush = brush;
+    s.ink = "carbon";
     for (int i = 0; i <= 1000; ++i) {
         const double t = i * 1e-3;
         const double press = ease(t / 0.3) * ease((1 - t) / 0.3);
@@ -85,8 +85,8 @@ TEST(Forces, TellWhenTheSurfaceIsNear) {
     Document painting(model, {.record_forces = true});
     const double length = painting.brush("wolf-small").length;
     const auto resting = [&](double height) {
-        Stroke s = line("wolf-small", 4e-3);
-        for (TraceSample& p : s.trace.samples) p.position.z = length + height;
+        PaintStroke s = line("wolf-small", 4e-3);
+        for (StrokeSample& p : s.trace.samples) p.position.z = length + height;
         return painting.paint(s).forces.back().device_force;
     };
     EXPECT_EQ(glm::length(resting(1.5 * kTolerance)), 0);
@@ -97,9 +97,9 @@ TEST(Forces, TellWhenTheSurfaceIsNear) {
 
 TEST(Forces, AreRecordedAtTheHandsSamplesWhateverTheTexels) {
     // A press, a drag and a lift at 1 kHz, and each sample twice as a device repeats itself.
-    Stroke s = press_drag_lift("wolf-small", 4e-3);
-    std::vector<TraceSample> twice;
-    for (const TraceSample& p : s.trace.samples) twice.insert(twice.end(), 2, p);
+    PaintStroke s = press_drag_lift("wolf-small", 4e-3);
+    std::vector<StrokeSample> twice;
+    for (const StrokeSample& p : s.trace.samples) twice.insert(twice.end(), 2, p);
     s.trace.samples = twice;
     std::vector<std::vector<ForceRecord>> logs;
     for (const std::uint32_t texels : {1024u, 512u, 256u}) {
@@ -126,9 +126,9 @@ TEST(Forces, AreRecordedAtTheHandsSamplesWhateverTheTexels) {
 
 TEST(Forces, OfAFlatStrokeAreThoseOfItsOwnSamples) {
     const Model model = sheet();
-    Stroke s;
-    s.trace.brush = "goat-small";
-    s.trace.ink = "carbon";
+    PaintStroke s;
+    s.brush = "goat-small";
+    s.ink = "carbon";
     s.trace.placement = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::wrap};
     for (int i = 0; i <= 100; ++i)
         s.trace.samples.push_back(

@@ -85,8 +85,8 @@ inline TriangleMesh make_sphere(int n = 96) {
         [](const Vec3& p) { return glm::normalize(p); });
 }
 
-inline Trace make_trace(const Placement& placement, const std::vector<Vec2>& points) {
-    Trace t;
+inline StrokeSamples make_trace(const Placement& placement, const std::vector<Vec2>& points) {
+    StrokeSamples t;
     t.placement = placement;
     for (std::size_t i = 0; i < points.size(); ++i)
         t.samples.push_back({.time = 0.005 * double(i), .position = Vec3(points[i], 0), .pressure = 0.5});

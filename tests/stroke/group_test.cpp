@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "entry_text.h"
 #include "stroke/journal/journal.h"
 
 /// Groups of journal entries.
@@ -8,32 +9,24 @@ namespace tuft::stroke {
 namespace {
 
 TEST(EntryGroups, GoThroughAnEntrysTextAndBack) {
-    for (const Action action : {Action::stroke, Action::dip, Action::fill}) {
-        Stroke s;
-        s.action = action;
+    for (JournalEntry s : {JournalEntry(PaintStroke{}), JournalEntry(BrushAction{}), JournalEntry(Fill{})}) {
         s.group = {7, "飞燕 \"roundel\".svg"};
-        Stroke back;
-        read_entry_json(entry_json(s), back);
-        EXPECT_EQ(back.group, s.group);
+        EXPECT_EQ(written_and_read(s).group, s.group);
     }
 }
 
 TEST(EntryGroups, EntriesWrittenBeforeThereWereGroupsHaveNone) {
-    Stroke s;
-    EXPECT_EQ(entry_json(s).find("group"), std::string::npos);
-    s.group = {3, "left from another entry"};
-    read_entry_json(R"({"spacing":1.0,"layer":2})", s);
-    EXPECT_EQ(s.group, EntryGroup{});
+    EXPECT_EQ(entry_json(PaintStroke{}).find("group"), std::string::npos);
+    EXPECT_EQ(entry_of({}, R"({"spacing":1.0,"layer":2})").group, EntryGroup{});
 }
 
 TEST(EntryGroups, NonsenseIsRefused) {
-    Stroke s;
     for (const char* text :
          {R"({"group":1})", R"({"group":0,"group_name":"a"})", R"({"group":-2,"group_name":"a"})",
           R"({"group":1.5,"group_name":"a"})", R"({"group":"one","group_name":"a"})", R"({"group":1,"group_name":7})",
           R"({"group":1,"group_name":""})", R"({"group":9223372036854775807,"group_name":"a"})"})
-        EXPECT_THROW(read_entry_json(text, s), Error) << text;
-    EXPECT_THROW(read_entry_json(R"({"group":1,"group_name":")" + std::string(300, 'a') + "\"}", s), Error);
+        EXPECT_THROW(entry_of({}, text), Error) << text;
+    EXPECT_THROW(entry_of({}, R"({"group":1,"group_name":")" + std::string(300, 'a') + "\"}"), Error);
 }
 
 TEST(EntryGroups, AFilesNameIsReadableWhateverItIs) {
@@ -51,14 +44,14 @@ TEST(EntryGroups, AFilesNameIsReadableWhateverItIs) {
 
 TEST(EntryGroups, AFreshIdIsOfNoGroupThereIsOrCanBeRedone) {
     Journal j;
-    Stroke s;
+    JournalEntry s;
     s.group = {j.next_group_id(), "a"};
     j.append(s);
     s.group = {j.next_group_id() + 1, "b"};  // ahead of the entries, as two files painted at once are
     j.append(s);
-    EXPECT_NE(j.next_group_id(), j.strokes()[0].group.id);
-    EXPECT_NE(j.next_group_id(), j.strokes()[1].group.id);
-    const std::uint64_t undone = j.strokes()[1].group.id;
+    EXPECT_NE(j.next_group_id(), j.entries()[0].group.id);
+    EXPECT_NE(j.next_group_id(), j.entries()[1].group.id);
+    const std::uint64_t undone = j.entries()[1].group.id;
     j.undo();
     EXPECT_NE(j.next_group_id(), undone);
 }

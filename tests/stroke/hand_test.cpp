@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "entry_text.h"
 
 namespace tuft::stroke {
 namespace {
@@ -23,11 +24,11 @@ Vec3 jitter(Random& random) {
 
 TEST(HandFilter, AHandAtRestStaysWhereItIs) {
     HandFilter f;
-    const TraceSample still{.position = {0.01, 0.02, 0.03}, .pressure = 0.4, .tilt = {0.1, -0.2}};
+    const StrokeSample still{.position = {0.01, 0.02, 0.03}, .pressure = 0.4, .tilt = {0.1, -0.2}};
     for (int i = 0; i < 500; ++i) {
-        TraceSample s = still;
+        StrokeSample s = still;
         s.time = i * 0.008;
-        const TraceSample out = smooth(f, s);
+        const StrokeSample out = smooth(f, s);
         // x̂ += α (x − x̂) with x = x̂ is exact.
         EXPECT_EQ(out.position, still.position);
         EXPECT_EQ(out.pressure, still.pressure);
@@ -60,7 +61,7 @@ TEST(HandFilter, LagAtConstantSpeedStaysUnderItsBoundAtAnyRate) {
     for (const double rate : {60.0, 125.0, 1000.0})
         for (const double v : {0.002, 0.02, 0.1, 0.5, 2.0}) {
             HandFilter f;
-            TraceSample s, out;
+            StrokeSample s, out;
             for (int i = 0; i <= static_cast<int>(2 * rate); ++i) {
                 s.time = i / rate;
                 s.position = {v * s.time, 0, 0};
@@ -80,7 +81,7 @@ double power_left(double speed, double rate) {
     Random random(7);
     double in = 0, out = 0;
     for (int i = 0; i < 8000; ++i) {
-        TraceSample s;
+        StrokeSample s;
         s.time = i / rate;
         const Vec3 noise = jitter(random);
         s.position = Vec3(speed * s.time, 0, 0) + noise;
@@ -100,15 +101,15 @@ TEST(HandFilter, JitterLosesItsPower) {
 }
 
 TEST(HandFilter, AWholeTraceDoesNotLagAndKeepsItsEnds) {
-    Settings settings;
+    StrokeSettings settings;
     settings.smooth = 1;
-    Trace t;
+    StrokeSamples t;
     Random random(9);
     double in = 0, out = 0;
     for (int i = 0; i <= 500; ++i)
         t.samples.push_back(
             {.time = 0.008 * i, .position = Vec3(0.03 * 0.008 * i, 0, 0) + jitter(random), .pressure = 0.5});
-    const Trace steadied = steady(t, settings);
+    const StrokeSamples steadied = steady(t, settings);
     ASSERT_EQ(steadied.samples.size(), t.samples.size());
     double behind = 0;
     for (std::size_t i = 50; i <= 450; ++i) {
@@ -142,7 +143,7 @@ TEST(HandFilter, TurningTheHandTurnsWhatComesOut) {
 
 TEST(HandFilter, TimesThatStandStillAreTaken) {
     HandFilter f;
-    TraceSample s, out;
+    StrokeSample s, out;
     for (int i = 0; i < 3000; ++i) {
         s.position.x = 1;
         out = smooth(f, s);
@@ -164,7 +165,7 @@ TEST(String, IsNeverLongerThanItsLengthAndTheTipNeverGoesFartherThanTheHand) {
             last = hand;
         else
             hand_way += glm::length(step);
-        const TraceSample out = pull(s, TraceSample{.time = 0.01 * i, .position = hand, .pressure = 0.5}, length);
+        const StrokeSample out = pull(s, StrokeSample{.time = 0.01 * i, .position = hand, .pressure = 0.5}, length);
         EXPECT_LE(glm::distance(out.position, hand), length * (1 + 1e-12));
         tip_way += glm::distance(out.position, last);
         last = out.position;
@@ -180,7 +181,7 @@ TEST(String, AWobbleNarrowerThanTheStringMovesNothing) {
     for (int i = 0; i < 1000; ++i) {
         const double a = 0.1 * i;
         const Vec3 hand = i == 0 ? Vec3(0) : 0.9e-3 * Vec3(std::cos(a), std::sin(a), 0);
-        EXPECT_EQ(pull(s, TraceSample{.time = 0.01 * i, .position = hand}, 1e-3).position, Vec3(0));
+        EXPECT_EQ(pull(s, StrokeSample{.time = 0.01 * i, .position = hand}, 1e-3).position, Vec3(0));
     }
 }
 
@@ -189,11 +190,11 @@ TEST(String, AStraightPullIsATractrix) {
     // w the distance from the hand's line over L (Huygens 1692).
     constexpr double length = 1e-2;
     String s;
-    pull(s, TraceSample{.position = {0, 0, 0}}, length);
-    pull(s, TraceSample{.position = {0, length, 0}}, length);
-    TraceSample tip;
+    pull(s, StrokeSample{.position = {0, 0, 0}}, length);
+    pull(s, StrokeSample{.position = {0, length, 0}}, length);
+    StrokeSample tip;
     for (int i = 1; i <= 20000; ++i)
-        tip = pull(s, TraceSample{.time = 1e-4 * i, .position = {1e-6 * i, length, 0}}, length);
+        tip = pull(s, StrokeSample{.time = 1e-4 * i, .position = {1e-6 * i, length, 0}}, length);
     const double w = (length - tip.position.y) / length, c = std::sqrt(1 - w * w);
     EXPECT_NEAR(tip.position.x, length * (std::atanh(c) - c), 2e-6);  // first order in steps of 1 µm
 }
@@ -202,11 +203,11 @@ TEST(String, ZeroLengthPassesEverythingThrough) {
     String s;
     Random random(5);
     for (int i = 0; i < 100; ++i) {
-        const TraceSample in{.time = 0.01 * i,
-                             .position = {random.uniform(), random.uniform(), 0},
-                             .pressure = random.uniform(),
-                             .tilt = {random.uniform(), 0}};
-        const TraceSample out = pull(s, in, 0);
+        const StrokeSample in{.time = 0.01 * i,
+                              .position = {random.uniform(), random.uniform(), 0},
+                              .pressure = random.uniform(),
+                              .tilt = {random.uniform(), 0}};
+        const StrokeSample out = pull(s, in, 0);
         EXPECT_LT(glm::distance(out.position, in.position), 1e-15);
         EXPECT_EQ(out.pressure, in.pressure);
         EXPECT_EQ(out.tilt, in.tilt);
@@ -216,13 +217,13 @@ TEST(String, ZeroLengthPassesEverythingThrough) {
 TEST(String, PressureStaysAtItsPlaceOnTheWay) {
     // A straight drag whose pressure grows along the way; once taut the tip must have, wherever
     // it is, the pressure the hand had there.
-    Settings settings;
+    StrokeSettings settings;
     settings.stabilise = 4e-3;
-    Trace t;
+    StrokeSamples t;
     for (int i = 0; i <= 300; ++i)
         t.samples.push_back({.time = 0.01 * i, .position = {1e-4 * i, 0, 0}, .pressure = i / 300.0});
-    const Trace out = steady(t, settings);
-    for (const TraceSample& s : out.samples) EXPECT_NEAR(s.pressure, s.position.x / 3e-2, 1e-9);
+    const StrokeSamples out = steady(t, settings);
+    for (const StrokeSample& s : out.samples) EXPECT_NEAR(s.pressure, s.position.x / 3e-2, 1e-9);
     EXPECT_LT(glm::distance(out.samples.back().position, t.samples.back().position), 1e-12);
     EXPECT_EQ(out.samples.back().pressure, 1);
     for (std::size_t i = 1; i < out.samples.size(); ++i) EXPECT_GE(out.samples[i].time, out.samples[i - 1].time);
@@ -283,15 +284,15 @@ TEST(Pressure, IsTheSameAtAnyRateAndLandsSoftly) {
 }
 
 TEST(Pressure, ATraceBecomesLightWhereItIsFastAndEndsLifted) {
-    Trace t;
+    StrokeSamples t;
     double x = 0;
     for (int i = 0; i <= 200; ++i) {
         t.samples.push_back({.time = 0.005 * i, .position = {x, 0, 0}, .pressure = 1});
         x += 0.005 * (i < 100 ? 0.01 : 0.2);
     }
-    const Trace none = press(t, {.from = PressureFrom::none});
-    for (const TraceSample& s : none.samples) EXPECT_EQ(s.pressure, 1);
-    const Trace out = press(t, {.from = PressureFrom::speed});
+    const StrokeSamples none = press(t, {.from = PressureFrom::none});
+    for (const StrokeSample& s : none.samples) EXPECT_EQ(s.pressure, 1);
+    const StrokeSamples out = press(t, {.from = PressureFrom::speed});
     EXPECT_GT(out.samples[90].pressure, 1.5 * out.samples[180].pressure);
     EXPECT_EQ(out.samples.back().pressure, 0);
     for (std::size_t i = 1; i + 1 < out.samples.size(); ++i) {
@@ -300,29 +301,25 @@ TEST(Pressure, ATraceBecomesLightWhereItIsFastAndEndsLifted) {
         EXPECT_LT(std::abs(out.samples[i].pressure - out.samples[i - 1].pressure), 0.15);
     }
     // A tap is a dot, not nothing.
-    Trace tap;
+    StrokeSamples tap;
     for (int i = 0; i <= 50; ++i) tap.samples.push_back({.time = 0.01 * i});
     EXPECT_GT(press(tap, {}).samples[49].pressure, 0.5);
 }
 
-TEST(Settings, OfAHandComeBackAndNonsenseIsRefused) {
-    Stroke entry;
-    entry.settings.dip = "carry";
-    entry.settings.pressure = "speed+dwell";
+TEST(StrokeSettings, OfAHandComeBackAndNonsenseIsRefused) {
+    PaintStroke entry;
+    entry.settings.dip = DipMode::carry;
+    entry.settings.pressure = PressureFrom::speed_dwell;
     entry.settings.smooth = 1.5;
     entry.settings.stabilise = 2.5e-3;
-    entry.action = Action::reshape;
-    Stroke back;
-    read_entry_json(entry_json(entry), back);
-    EXPECT_EQ(back.settings, entry.settings);
-    EXPECT_EQ(back.action, entry.action);
+    EXPECT_EQ(written_and_read(entry).get<PaintStroke>().settings, entry.settings);
     // What earlier versions wrote.
-    read_entry_json(R"({"spine":"rod","footprint":"surface","contact":"exact","spacing":1.0,"lead":true})", back);
-    EXPECT_EQ(back.settings, Settings{});
-    EXPECT_EQ(back.action, Action::stroke);
-    for (const char* bad : {R"({"dip":"often"})", R"({"pressure":"guess"})", R"({"smooth":-1})", R"({"stabilise":1e9})",
-                            R"({"action":"sneeze"})", R"({"action":3})", "{"})
-        EXPECT_THROW(read_entry_json(bad, back), Error) << bad;
+    const JournalEntry old =
+        entry_of({}, R"({"spine":"rod","footprint":"surface","contact":"exact","spacing":1.0,"lead":true})");
+    EXPECT_EQ(old.get<PaintStroke>().settings, StrokeSettings{});
+    for (const char* bad : {R"({"dip":"often"})", R"({"spine":"bone"})", R"({"pressure":"guess"})", R"({"smooth":-1})",
+                            R"({"stabilise":1e9})", R"({"action":"sneeze"})", R"({"action":3})", "{"})
+        EXPECT_THROW(entry_of({}, bad), Error) << bad;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/system/parallel.h"
+#include "entry_text.h"
 #include "sheet.h"
 
 namespace tuft::stroke {
@@ -17,31 +18,23 @@ const Model& model() {
     return m;
 }
 
-Stroke on(std::uint32_t layer, int row = 0, const std::string& ink = "carbon") {
-    Stroke s = line("wolf-small", 3e-3, make_frame({0, 0.004 * row, 0}, {0, 0, 1}, {1, 0, 0}));
-    s.trace.ink = ink;
+PaintStroke on(std::uint32_t layer, int row = 0, const std::string& ink = "carbon") {
+    PaintStroke s = line("wolf-small", 3e-3, make_frame({0, 0.004 * row, 0}, {0, 0, 1}, {1, 0, 0}));
+    s.ink = ink;
     s.layer = layer;
     s.settings.spacing = 3;  // coarse is enough here, and quick
     return s;
 }
 
-Stroke edit(const LayerEdit& e) {
-    Stroke s;
-    s.action = Action::layer;
-    s.trace.flat = false;
-    s.edit = e;
-    return s;
-}
-
 std::uint32_t add(Document& p, const std::string& name) {
-    p.paint(edit(add_on_top(p.layers(), name)));
+    p.paint(add_on_top(p.layers(), name));
     return p.layers().layers.back().id;
 }
 
 void set(Document& p, std::uint32_t id, const std::function<void(Layer&)>& how) {
     Layer layer = *p.layers().find(id);
     how(layer);
-    p.paint(edit(changed(p.layers(), layer)));
+    p.paint(changed(p.layers(), layer));
 }
 
 std::vector<std::uint8_t> picture(const Document& p) {
@@ -97,7 +90,7 @@ TEST(Layers, AChangeOfTheLookIsDirtyWhereTheLayerHasInk) {
     set(p, gold, [](Layer& l) { l.visible = false; });
     EXPECT_EQ(p.take_dirty(), touched);
     EXPECT_TRUE(p.take_dirty().empty());
-    p.paint(edit(removed(gold)));
+    p.paint(removed(gold));
     EXPECT_EQ(p.take_dirty(), touched);
     p.undo();
     EXPECT_EQ(p.take_dirty(), touched);
@@ -112,17 +105,17 @@ TEST(Layers, ALockedOneRefusesTheHandAndNothingChanges) {
     EXPECT_THROW(p.begin(on(gold)), Error);
     EXPECT_THROW(p.paint(on(7)), Error) << "no such layer";
     EXPECT_EQ(p.hash(), before);
-    EXPECT_EQ(p.journal().strokes().size(), 2u);
+    EXPECT_EQ(p.journal().entries().size(), 2u);
     EXPECT_TRUE(p.paint(on(kFirstLayer)).touched());
 }
 
 // A session with every kind of change.
-std::vector<Stroke> session() {
+std::vector<JournalEntry> session() {
     LayerTable t;
-    std::vector<Stroke> entries;
+    std::vector<JournalEntry> entries;
     const auto then = [&](const LayerEdit& e) {
         apply(t, e);
-        entries.push_back(edit(e));
+        entries.emplace_back(e);
     };
     entries.push_back(on(1, 0));
     then(add_on_top(t, "gold"));
@@ -146,8 +139,8 @@ TEST(Layers, UndoAndRedoGoOverEveryChange) {
             ink::mix_of(p.canvas(), p.ink(name));
         std::vector<LayerTable> tables;
         std::vector<std::vector<std::uint8_t>> pictures;
-        const std::vector<Stroke> entries = session();
-        for (const Stroke& s : entries) {
+        const std::vector<JournalEntry> entries = session();
+        for (const JournalEntry& s : entries) {
             tables.push_back(p.layers());
             pictures.push_back(picture(p));
             p.paint(s);
@@ -171,11 +164,11 @@ TEST(Layers, AReplayIsTheSameToTheBitForAnyThreadCount) {
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
         Document p(model());
-        for (const Stroke& s : session()) p.paint(s);
+        for (const JournalEntry& s : session()) p.paint(s);
         if (threads == 1) hash = p.hash();
         EXPECT_EQ(p.hash(), hash);
         Document again(model());
-        again.replay(p.journal().strokes());
+        again.replay(p.journal().entries());
         EXPECT_EQ(again.hash(), hash);
         EXPECT_EQ(again.layers(), p.layers());
     }
@@ -185,9 +178,9 @@ TEST(Layers, AReplayIsTheSameToTheBitForAnyThreadCount) {
 // Stored texels serve also when the layers were changed after them.
 TEST(Layers, ChangesAfterTheStoredTexelsNeedNoReplay) {
     Document p(model());
-    for (const Stroke& s : session()) p.paint(s);
+    for (const JournalEntry& s : session()) p.paint(s);
     Document at(model());
-    std::vector<Stroke> strokes = p.journal().strokes();
+    std::vector<JournalEntry> strokes = p.journal().entries();
     const std::uint64_t stored = strokes[6].id;
     at.replay({strokes.begin(), strokes.begin() + 7});
     const auto stored_texels = [&] {
@@ -211,12 +204,12 @@ TEST(Layers, ChangesAfterTheStoredTexelsNeedNoReplay) {
 }
 
 // Copies, blends and a merge, with strokes between them.
-std::vector<Stroke> merging_session() {
+std::vector<JournalEntry> merging_session() {
     LayerTable t;
-    std::vector<Stroke> entries;
+    std::vector<JournalEntry> entries;
     const auto then = [&](const LayerEdit& e) {
         apply(t, e);
-        entries.push_back(edit(e));
+        entries.emplace_back(e);
     };
     entries.push_back(on(1, 0));
     then(duplicated(t, 1, "copy"));
@@ -239,8 +232,8 @@ TEST(Layers, MergingAndCopyingUndoRedoAndReplayToTheBit) {
         for (const char* name : {"carbon", "cinnabar", "indigo"}) ink::mix_of(p.canvas(), p.ink(name));
         std::vector<LayerTable> tables;
         std::vector<std::vector<std::uint8_t>> pictures;
-        const std::vector<Stroke> entries = merging_session();
-        for (const Stroke& s : entries) {
+        const std::vector<JournalEntry> entries = merging_session();
+        for (const JournalEntry& s : entries) {
             tables.push_back(p.layers());
             pictures.push_back(picture(p));
             p.paint(s);
@@ -257,7 +250,7 @@ TEST(Layers, MergingAndCopyingUndoRedoAndReplayToTheBit) {
         }
         EXPECT_EQ(picture(p), end);
         Document again(model());
-        again.replay(p.journal().strokes());
+        again.replay(p.journal().entries());
         EXPECT_EQ(picture(again), end);
     }
 }
@@ -266,7 +259,7 @@ TEST(Layers, MergingAndCopyingUndoRedoAndReplayToTheBit) {
 TEST(Layers, ACopyHasTheSameTexelsAndIsItsOwn) {
     Document p(model());
     p.paint(on(kFirstLayer));
-    p.paint(edit(duplicated(p.layers(), kFirstLayer, "copy")));
+    p.paint(duplicated(p.layers(), kFirstLayer, "copy"));
     const std::uint32_t copy = p.layers().layers.back().id;
     EXPECT_TRUE(p.canvas(copy).same_contents(p.canvas()));
     const std::uint64_t original = p.canvas().hash();
@@ -285,7 +278,7 @@ TEST(Layers, MergedOnesLookAsBeforeAndLoseNoPigment) {
         for (const std::uint32_t id : {kFirstLayer, gold}) set(p, id, [blend](Layer& l) { l.blend = blend; });
         const auto look = ink::compose_linear(p.stack(), model().texels, p.substrate()).texels;
         const auto amounts = ink::compose_amounts(p.stack(), model().texels).texels;
-        p.paint(edit(merged_down(p.layers(), gold)));
+        p.paint(merged_down(p.layers(), gold));
         ASSERT_EQ(p.layers().layers.size(), 1u);
         const auto merged = ink::compose_linear(p.stack(), model().texels, p.substrate()).texels;
         float most = 0;
@@ -328,13 +321,13 @@ TEST(Layers, CopiesAndMergesAfterTheStoredTexelsNeedNoReplay) {
     p.paint(on(gold, 0, "cinnabar"));
     std::vector<LayerCanvas> stored;
     for (const LayerTexels& l : p.canvases()) stored.push_back({l.layer, *l.canvas});
-    const std::uint64_t last = p.journal().strokes().back().id;
-    p.paint(edit(duplicated(p.layers(), gold, "copy")));
-    p.paint(edit(merged_down(p.layers(), gold)));
+    const std::uint64_t last = p.journal().entries().back().id;
+    p.paint(duplicated(p.layers(), gold, "copy"));
+    p.paint(merged_down(p.layers(), gold));
     Document adopted(model());
-    ASSERT_TRUE(fits(p.journal().strokes(), last));
-    adopted.adopt(p.journal().strokes(), std::move(stored), last);
-    replayed.replay(p.journal().strokes());
+    ASSERT_TRUE(fits(p.journal().entries(), last));
+    adopted.adopt(p.journal().entries(), std::move(stored), last);
+    replayed.replay(p.journal().entries());
     EXPECT_EQ(adopted.layers(), replayed.layers());
     EXPECT_EQ(picture(adopted), picture(replayed));
     EXPECT_EQ(picture(adopted), picture(p));
@@ -348,28 +341,24 @@ TEST(Layers, FreeNamesAreFree) {
 }
 
 TEST(Layers, EntriesComeBackFromTheirText) {
-    for (const Stroke& s : merging_session()) {
-        Stroke back;
-        read_entry_json(entry_json(s), back);
-        EXPECT_EQ(back.edit.what, s.edit.what);
-        EXPECT_EQ(back.edit.other, s.edit.other);
-        EXPECT_EQ(back.edit.layer.blend, s.edit.layer.blend);
-    }
-    Stroke old;  // of a program that knew no blends
-    read_entry_json(
-        R"({"action":"layer","edit":{"what":"add","id":2,"name":"gold","visible":true,"opacity":1,"locked":false,"place":1}})",
-        old);
-    EXPECT_EQ(old.edit.layer.blend, ink::Blend::normal);
-    for (const Stroke& s : session()) {
-        Stroke back;
-        read_entry_json(entry_json(s), back);
-        EXPECT_EQ(back.layer, s.layer);
-        EXPECT_EQ(back.action, s.action);
-        EXPECT_EQ(back.edit.what, s.edit.what);
-        if (s.edit.what != LayerChange::remove && s.action == Action::layer) {
-            EXPECT_EQ(back.edit, s.edit);
+    for (const std::vector<JournalEntry>& entries : {session(), merging_session()})
+        for (const JournalEntry& s : entries) {
+            const JournalEntry back = written_and_read(s);
+            EXPECT_EQ(kind_of(back), kind_of(s));
+            EXPECT_EQ(layer_of(back), layer_of(s));
+            const LayerEdit* edit = s.as<LayerEdit>();
+            if (!edit) continue;
+            const LayerEdit& read = back.get<LayerEdit>();
+            EXPECT_EQ(read.what, edit->what);
+            EXPECT_EQ(read.other, edit->other);
+            if (edit->what != LayerChange::remove && edit->what != LayerChange::merge) {
+                EXPECT_EQ(read, *edit);
+            }
         }
-    }
+    const JournalEntry old = entry_of(  // of a program that knew no blends
+        {},
+        R"({"action":"layer","edit":{"what":"add","id":2,"name":"gold","visible":true,"opacity":1,"locked":false,"place":1}})");
+    EXPECT_EQ(old.get<LayerEdit>().layer.blend, ink::Blend::normal);
     EXPECT_EQ(entry_json(on(kFirstLayer)).find("layer"), std::string::npos) << "as without layers";
 }
 
@@ -389,7 +378,6 @@ TEST(Layers, NonsenseIsRefused) {
     EXPECT_THROW(apply(t, {LayerChange::change, {.opacity = 1.5}, 0}), Error);
     EXPECT_THROW(apply(t, {LayerChange::change, {.opacity = std::nan("")}, 0}), Error);
     EXPECT_EQ(t, before);
-    Stroke s;
     for (
         const char* text :
         {R"({"action":"layer"})", R"({"action":"layer","edit":{"what":"melt","id":1}})",
@@ -398,7 +386,7 @@ TEST(Layers, NonsenseIsRefused) {
          R"({"action":"layer","edit":{"what":"add","id":2,"name":"a","visible":true,"opacity":1,"locked":false,"place":0,"blend":"screen"}})",
          R"({"action":"layer","edit":{"what":"remove","id":-1}})", R"({"layer":"one"})", R"({"layer":-3})",
          R"({"action":"layer","edit":{"what":"add","id":2,"name":7,"visible":true,"opacity":1,"locked":false,"place":0}})"})
-        EXPECT_THROW(read_entry_json(text, s), Error) << text;
+        EXPECT_THROW(entry_of({}, text), Error) << text;
     for (std::size_t i = 1; i < kMaxLayers; ++i) apply(t, add_on_top(t, std::to_string(i)));
     EXPECT_THROW(apply(t, add_on_top(t, "one more")), Error);
 }

@@ -13,10 +13,10 @@ namespace tuft::stroke {
 namespace {
 
 /// A line 50 mm long through the middle of the sheet, turned by `angle`, with made-up pressure.
-Stroke straight(const std::string& brush, double width, double angle) {
-    Stroke s;
-    s.trace.brush = brush;
-    s.trace.ink = "carbon";
+PaintStroke straight(const std::string& brush, double width, double angle) {
+    PaintStroke s;
+    s.brush = brush;
+    s.ink = "carbon";
     s.trace.pressed = false;
     s.trace.line_width = width;
     s.trace.placement = {{0, 0, 0},
@@ -33,7 +33,7 @@ struct Band {
     double farthest = 0;  ///< metres of ink from the line, anywhere
 };
 
-Band drawn(const Stroke& stroke) {
+Band drawn(const PaintStroke& stroke) {
     const Model model = sheet();
     Document painting(model);
     painting.paint(stroke);
@@ -56,7 +56,7 @@ TEST(LineWidth, ALineIsAsWideAsTheDrawingHasIt) {
     for (const char* brush : {"wolf-small", "goat-medium", "robot-2020"})
         for (const double width : {0.001, 0.0025, 0.004}) {
             const LineWidths widths(brush::load_preset(brush));
-            Stroke stroke = straight(brush, width, 0.3);
+            PaintStroke stroke = straight(brush, width, 0.3);
             draw_to_width(stroke.trace, widths);
             // A texel of 60 µm to both sides, and 5 % for the table's chords and the friction that sampled motion has.
             EXPECT_NEAR(drawn(stroke).width, width, 6e-5 + 0.05 * width) << brush << ' ' << width;
@@ -67,15 +67,15 @@ TEST(LineWidth, ATraceThatBeginsPressedStaysOnItsLine) {
     // Round-off decides to which side a tuft bends that is set down upright; it must not be the front.
     for (const char* brush : {"wolf-medium", "goat-medium", "mixed-small"})
         for (const double angle : {0.0, 1e-7, 1e-3, 0.7}) {
-            Stroke stroke = straight(brush, 0.002, angle);
+            PaintStroke stroke = straight(brush, 0.002, angle);
             draw_to_width(stroke.trace, LineWidths(brush::load_preset(brush)));
             // The head of the line, where the tuft still stands, is up to half as wide again.
             EXPECT_LT(drawn(stroke).farthest, 0.0015) << brush << ' ' << angle;
         }
 }
 
-Stroke circle(const std::string& brush, double width, double radius) {
-    Stroke stroke = straight(brush, width, 0);
+PaintStroke circle(const std::string& brush, double width, double radius) {
+    PaintStroke stroke = straight(brush, width, 0);
     stroke.trace.samples.clear();
     for (int i = 0; i <= 200; ++i) {
         const double a = 2 * std::numbers::pi * (i % 200) / 200;
@@ -91,8 +91,8 @@ TEST(LineWidth, ALeanAgainstTheWayDoesNotTurnTheTuftOver) {
     for (const char* brush : {"wolf-medium*0.168", "goat-medium", "mixed-small"})
         for (const Vec2& lean : {Vec2{-0.05, 0}, Vec2{-0.1, 0}, Vec2{-0.05, 0.05}, Vec2{0, -0.05}}) {
             const double width = brush == std::string("goat-medium") ? 0.002 : 0.0012;
-            Stroke stroke = straight(brush, width, 0.3);
-            for (TraceSample& s : stroke.trace.samples) s.tilt = lean;
+            PaintStroke stroke = straight(brush, width, 0.3);
+            for (StrokeSample& s : stroke.trace.samples) s.tilt = lean;
             draw_to_width(stroke.trace, LineWidths(brush::load_preset(brush)));
             EXPECT_LT(drawn(stroke).farthest, 0.75 * width + 6e-5)
                 << brush << ' ' << lean.x << ' ' << lean.y;  // as above, and a texel
@@ -117,7 +117,7 @@ TEST(LineWidth, AFineBrushSetsDownOnItsLineToo) {
 
 TEST(LineWidth, AClosedLineHasNoGapWhereItsEndsMeet) {
     const double width = 0.002, radius = 0.008;
-    const Stroke stroke = circle("wolf-small", width, radius);
+    const PaintStroke stroke = circle("wolf-small", width, radius);
     EXPECT_TRUE(std::is_sorted(stroke.trace.samples.begin(), stroke.trace.samples.end(),
                                [](auto& a, auto& b) { return a.time < b.time; }));
     const Model model = sheet();
@@ -169,12 +169,12 @@ TEST(LineWidth, LinesOnCurvedWallsLieWhereTheyAreLaidBothWays) {
         const mesh::SurfacePoint at = *model.query->closest_point({0.05, 0, 0});
         std::array<double, 2> aside{};
         for (const std::size_t way : {0, 1}) {
-            Stroke stroke = straight("wolf-medium", 0.0036, 0);
+            PaintStroke stroke = straight("wolf-medium", 0.0036, 0);
             Placement& place = stroke.trace.placement;
             place.origin = at.position;
             place.right = glm::normalize(glm::cross(Vec3(0, 0, 1), at.normal));
             place.down = glm::cross(place.right, at.normal);
-            for (TraceSample& s : stroke.trace.samples)
+            for (StrokeSample& s : stroke.trace.samples)
                 s.position = s.position.x * (way ? 1.0 : -1.0) * Vec3(std::sqrt(0.5), std::sqrt(0.5), 0);
             draw_to_width(stroke.trace, LineWidths(brush::load_preset("wolf-medium")));
             Document painting(model);

@@ -14,12 +14,9 @@ namespace {
 constexpr double kWidth = 0.001;  // metres of the lines that are painted
 
 /// Flat samples every 0.25 mm along corners.
-Trace along(const std::vector<Vec2>& corners) {
-    Trace t{.placement = {.mapping = SurfaceMapping::drape},
-            .placed = true,
-            .ink = "carbon",
-            .pressed = false,
-            .line_width = kWidth};
+StrokeSamples along(const std::vector<Vec2>& corners) {
+    StrokeSamples t{
+        .placement = {.mapping = SurfaceMapping::drape}, .placed = true, .pressed = false, .line_width = kWidth};
     double time = 0;
     for (std::size_t k = 1; k < corners.size(); ++k) {
         const double length = glm::distance(corners[k - 1], corners[k]);
@@ -34,7 +31,7 @@ Trace along(const std::vector<Vec2>& corners) {
 }
 
 /// Half circles and straights over the sheet, `rows` of 44 mm, 8 mm apart.
-Trace serpentine(int rows) {
+StrokeSamples serpentine(int rows) {
     std::vector<Vec2> corners;
     for (int row = 0; row < rows; ++row) {
         const double y = 0.008 * (row - 0.5 * (rows - 1)), side = row % 2 ? -1 : 1;
@@ -52,26 +49,25 @@ struct Drawn {
     std::vector<double> width;  ///< metres, mean over each 5 mm of the line, of texels with 0.6 of
                                 ///< a full film and more
     std::vector<StrokeReport> reports;
-    std::vector<Stroke> entries;
+    std::vector<JournalEntry> entries;
 };
 
 /// The line by the brush that is chosen for it, or by `brush`; with `redips` as drawings are
 /// painted.
-Drawn drawn(const Trace& line, bool redips, const std::string& brush = "", const std::string& ink = "titanium-white",
-            bool endless = false) {
+Drawn drawn(const StrokeSamples& line, bool redips, const std::string& brush = "",
+            const std::string& ink = "titanium-white", bool endless = false) {
     const Model model = sheet({}, 512);
     WidthTables widths;
-    std::vector<Stroke> entries{{.trace = line}};
-    entries[0].trace.ink = ink;
-    entries[0].trace.brush = brush;
-    entries[0].settings.endless = endless;
-    const std::vector<Trace*> drawing = drawing_in(entries, true);
+    PaintStroke stroke{.trace = line, .brush = brush, .ink = ink};
+    stroke.settings.endless = endless;
+    std::vector<JournalEntry> entries{stroke};
+    const std::vector<StrokeSamples*> drawing = drawing_in(entries, true);
     choose_brushes(entries, drawing, 1, 0.05, {.grow = false, .fit = brush.empty()}, widths);
     if (redips) redip_long_lines(entries, {}, widths);
     press_to_widths(entries, widths);
     Document painting(model);
     Drawn out;
-    for (const Stroke& s : entries) out.reports.push_back(painting.paint(s));
+    for (const JournalEntry& s : entries) out.reports.push_back(painting.paint(s));
     out.entries = entries;
     const atlas::TexelMap& map = model.texels;
     std::vector<double> at(line.samples.size(), 0);
@@ -117,7 +113,8 @@ TEST(LongLines, ABrushThatNeverRunsDryNeedsNoSecondDip) {
     EXPECT_FALSE(line.reports[0].ran_dry());
     for (std::size_t i = 1; i + 2 < line.width.size(); ++i)
         EXPECT_NEAR(line.width[i], kWidth, kSides + kHeads * kWidth) << "at " << 5 * i << " mm";
-    EXPECT_EQ(settings_from_json(to_json(line.entries[0].settings)), line.entries[0].settings);
+    const StrokeSettings& settings = line.entries[0].get<PaintStroke>().settings;
+    EXPECT_EQ(settings_from_json(to_json(settings)), settings);
 }
 
 TEST(LongLines, ARingIsClosedAndFullAllRound) {
@@ -132,12 +129,12 @@ TEST(LongLines, ARingIsClosedAndFullAllRound) {
 }
 
 TEST(LongLines, PiecesCoverTheLineOverlapAndAreCutWhereItIsStraight) {
-    const Trace line = serpentine(6);
+    const StrokeSamples line = serpentine(6);
     const double whole = length_of(line), overlap = 0.004;
-    const std::vector<Trace> clusters = cut_line(line, 0.1, overlap);
+    const std::vector<StrokeSamples> clusters = cut_line(line, 0.1, overlap);
     ASSERT_EQ(clusters.size(), static_cast<std::size_t>(std::ceil(whole / 0.1)));
     double sum = 0;
-    for (const Trace& p : clusters) {
+    for (const StrokeSamples& p : clusters) {
         sum += length_of(p);
         EXPECT_EQ(p.samples.front().time, 0);
         EXPECT_LT(length_of(p), 0.1 * 1.2 + overlap) << "a tenth of a cluster at both ends";

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/system/parallel.h"
 #include "core/text/units.h"
+#include "entry_text.h"
 #include "sheet.h"
 #include "stroke/surface/mask_texels.h"
 
@@ -67,16 +68,8 @@ Mask lasso(std::vector<Vec2> polygon, bool through = false) {
             .polygon = std::move(polygon)};
 }
 
-Stroke entry(const MaskEdit& edit) {
-    Stroke s;
-    s.action = Action::mask;
-    s.trace.flat = false;
-    s.mask_edit = edit;
-    return s;
-}
-
-Stroke quick() {
-    Stroke s = line("wolf-small", 3e-3);
+PaintStroke quick() {
+    PaintStroke s = line("wolf-small", 3e-3);
     s.settings.spacing = 3;
     return s;
 }
@@ -141,8 +134,8 @@ TEST(Mask, NothingOutsideAndTheSameInside) {
     free.use_brush(deep);
     kept.use_brush(deep);
     free.paint(quick());
-    kept.paint(entry({.mask = lasso({{-0.005, -1}, {0.004, -1}, {0.004, 1}, {-0.005, 1}})}));
-    Stroke s = quick();
+    kept.paint(MaskEdit({.mask = lasso({{-0.005, -1}, {0.004, -1}, {0.004, 1}, {-0.005, 1}})}));
+    PaintStroke s = quick();
     s.mask = 1;
     EXPECT_GT(kept.paint(s).ink_given, 0);
     const MaskTexels& mask = kept.mask(1);
@@ -165,7 +158,7 @@ TEST(Mask, NothingOutsideAndTheSameInside) {
     // A mask of everything is none, to the bit.
     Document all(model());
     all.use_brush(deep);
-    all.paint(entry({.mask = {.name = "all", .kind = MaskKind::angle, .within = 3.14159}}));
+    all.paint(MaskEdit({.mask = {.name = "all", .kind = MaskKind::angle, .within = 3.14159}}));
     s.mask = 1;
     all.paint(s);
     EXPECT_TRUE(all.canvas().same_contents(free.canvas()));
@@ -177,13 +170,10 @@ TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
                     .kind = MaskKind::lasso,
                     .view = {.right = {1, 0, 0}, .up = {0, 1, 0}},
                     .polygon = {{0, -1}, {1, -1}, {1, 1}, {0, 1}}};
-    Stroke wet = quick();
-    wet.trace.ink = "carbon";
-    wet.settings.film = "wet";
-    Stroke wait;
-    wait.action = Action::dry;
-    wait.trace.flat = false;
-    wait.seconds = 5;
+    PaintStroke wet = quick();
+    wet.ink = "carbon";
+    wet.settings.film = FilmModel::wet;
+    const Dry wait{.seconds = 5};
     const auto outside = [](Document& painting) {
         const MaskTexels& mask = painting.mask(1);
         double sum = 0;
@@ -197,7 +187,7 @@ TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
         return sum;
     };
     Document painting(model(), {.substrate = "rice-paper"});
-    painting.paint(entry({.mask = half}));
+    painting.paint(MaskEdit({.mask = half}));
     wet.mask = 1;
     painting.paint(wet);
     painting.paint(wait);
@@ -210,12 +200,12 @@ TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
     painting.redo();
     EXPECT_EQ(painting.hash(), hash);
     Document again(model(), {.substrate = "rice-paper"});
-    again.replay(painting.journal().strokes());
+    again.replay(painting.journal().entries());
     EXPECT_EQ(again.hash(), hash);
     // The stencil edge comes off with the next stroke, which lies elsewhere.
-    Stroke beside = wet;
+    PaintStroke beside = wet;
     beside.mask = 0;
-    for (TraceSample& s : beside.trace.samples) s.position += Vec3{0.012, 0, 0};
+    for (StrokeSample& s : beside.trace.samples) s.position += Vec3{0.012, 0, 0};
     painting.paint(beside);
     painting.paint(wait);
     EXPECT_GT(outside(painting), 0.1);
@@ -226,26 +216,21 @@ TEST(Mask, UndoReplayAndTextKeepIt) {
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
         Document p(model());
-        p.paint(entry({.mask = lasso({{-0.005, -1}, {0.004, -1}, {0.004, 1}})}));
-        p.paint(entry({.mask = {.name = "金", .kind = MaskKind::invert, .of = {1}}}));
-        Stroke fill;
-        fill.action = Action::fill;
-        fill.trace.ink = "cinnabar";
-        fill.mask = 2;
-        p.paint(fill);
-        Stroke s = quick();
+        p.paint(MaskEdit({.mask = lasso({{-0.005, -1}, {0.004, -1}, {0.004, 1}})}));
+        p.paint(MaskEdit({.mask = {.name = "金", .kind = MaskKind::invert, .of = {1}}}));
+        p.paint(Fill{.ink = "cinnabar", .mask = 2});
+        PaintStroke s = quick();
         s.mask = 1;
         p.paint(s);
         const MaskTable table = p.masks();
         if (threads == 1) hash = p.hash();
         EXPECT_EQ(p.hash(), hash);
-        std::vector<Stroke> strokes = p.journal().strokes();
-        for (Stroke& e : strokes) {
-            Stroke back = e;
-            back.mask_edit = {};
-            back.mask = 0;
-            read_entry_json(entry_json(e), back);
-            EXPECT_EQ(back.mask_edit, e.mask_edit);
+        std::vector<JournalEntry> strokes = p.journal().entries();
+        for (JournalEntry& e : strokes) {
+            const JournalEntry back = written_and_read(e);
+            if (const MaskEdit* edit = e.as<MaskEdit>()) {
+                EXPECT_EQ(back.get<MaskEdit>(), *edit);
+            }
             e = back;
         }
         Document again(model());
@@ -283,34 +268,25 @@ TEST(Mask, NonsenseIsRefused) {
     for (std::uint32_t i = 2; i < 40; ++i)
         apply(t, {.mask = {.name = std::to_string(i), .kind = MaskKind::unite, .of = {i - 1, i}}});
     EXPECT_EQ(share(t.masks.back(), t, ball()), 1);
-    Stroke s;
     for (const char* text :
          {R"({"action":"mask"})", R"({"mask":-1})", R"({"mask":"all"})",
           R"({"action":"mask","mask_edit":{"what":"add","id":1,"name":"a","kind":"moon"}})",
           R"({"action":"mask","mask_edit":{"what":"add","id":1,"name":"a","kind":"lasso","polygon":[[1]]}})"})
-        EXPECT_THROW(read_entry_json(text, s), Error) << text;
+        EXPECT_THROW(entry_of({}, text), Error) << text;
     Document p(model());
-    Stroke masked = quick();
+    PaintStroke masked = quick();
     masked.mask = 3;
     EXPECT_THROW(p.paint(masked), Error);
 }
 
 TEST(Eyedropper, ReturnsWhatWasDepositedAndMakesAnInkOfIt) {
     Document p(model());
-    const auto fill = [&](const std::string& ink, double film) {
-        Stroke s;
-        s.action = Action::fill;
-        s.trace.ink = ink;
-        s.fill.film = film;
-        p.paint(s);
-    };
+    const auto fill = [&](const std::string& ink, double film) { p.paint(Fill{.ink = ink, .film = film}); };
     const Vec3 at{0.0123, -0.007, 0.001};
     EXPECT_TRUE(p.pick(at).films.empty());
     EXPECT_FALSE(p.ink_of(p.pick(at), "none"));
     fill("cinnabar", 1.5);
-    Stroke dry;
-    dry.action = Action::dry;
-    p.paint(dry);
+    p.paint(Dry{});
     fill("indigo", 0.5);
     const Pick pick = p.pick(at);
     EXPECT_NEAR(pick.at.distance, 1e-3, 1e-9);
@@ -330,11 +306,7 @@ TEST(Eyedropper, ReturnsWhatWasDepositedAndMakesAnInkOfIt) {
     picked.name = "picked";
     Document other(model());
     other.use_ink(picked);
-    Stroke s;
-    s.action = Action::fill;
-    s.trace.ink = "picked";
-    s.fill.film = picked.film;
-    other.paint(s);
+    other.paint(Fill{.ink = "picked", .film = picked.film});
     EXPECT_NEAR(other.pick(at).amounts[0], red, 1e-5);
     EXPECT_NEAR(other.pick(at).amounts[1], blue, 1e-5);
 }

@@ -1,64 +1,57 @@
-#include "stroke/painting/merge.h"
+#include "stroke/document/merge.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
 
-#include "stroke/painting/painting.h"
+#include "stroke/journal/tables.h"
 
 /// Entries are told apart by their labels.
 namespace tuft::stroke {
 namespace {
 
-Stroke painted(std::uint64_t id, const std::string& label, std::uint32_t layer = kFirstLayer, std::uint32_t mask = 0) {
-    Stroke s;
-    s.id = id;
-    s.layer = layer;
-    s.mask = mask;
-    s.trace.flat = false;
-    s.trace.label = label;
-    s.trace.brush = "wolf-small";
-    s.trace.ink = "carbon";
-    s.trace.samples = {{.position = {1, 2, 3}}};
-    return s;
+JournalEntry with_id(std::uint64_t id, JournalEntry entry) {
+    entry.id = id;
+    return entry;
 }
 
-Stroke added(std::uint64_t id, std::uint32_t layer, const std::string& name) {
-    Stroke s;
-    s.id = id;
-    s.trace.flat = false;
-    s.action = Action::layer;
-    s.edit = {LayerChange::add, Layer{.id = layer, .name = name}, 1};
-    return s;
+JournalEntry painted(std::uint64_t id, const std::string& label, std::uint32_t layer = kFirstLayer,
+                     std::uint32_t mask = 0) {
+    const PaintStroke s{.trace = {.flat = false, .samples = {{.position = {1, 2, 3}}}},
+                        .brush = "wolf-small",
+                        .ink = "carbon",
+                        .layer = layer,
+                        .mask = mask};
+    return with_id(id, {s, label});
 }
 
-Stroke masked(std::uint64_t id, std::uint32_t mask, const std::string& name, std::vector<std::uint32_t> of = {}) {
-    Stroke s;
-    s.id = id;
-    s.trace.flat = false;
-    s.action = Action::mask;
-    s.mask_edit.mask = {.id = mask, .name = name, .kind = of.empty() ? MaskKind::angle : MaskKind::invert, .of = of};
-    return s;
+JournalEntry added(std::uint64_t id, std::uint32_t layer, const std::string& name) {
+    return with_id(id, LayerEdit{LayerChange::add, Layer{.id = layer, .name = name}, 1});
+}
+
+JournalEntry masked(std::uint64_t id, std::uint32_t mask, const std::string& name, std::vector<std::uint32_t> of = {}) {
+    return with_id(
+        id, MaskEdit{
+                .mask = {.id = mask, .name = name, .kind = of.empty() ? MaskKind::angle : MaskKind::invert, .of = of}});
 }
 
 std::string labels(const MergedJournal& m) {
     std::string out;
-    for (const Stroke& s : m.entries)
-        out += (out.empty() ? "" : " ") +
-               (s.action == Action::stroke ? s.trace.label + (s.hidden ? "-" : "") : name_of(s.action));
+    for (const JournalEntry& s : m.entries)
+        out += (out.empty() ? "" : " ") + (s.as<PaintStroke>() ? s.label + (s.hidden ? "-" : "") : name_of(kind_of(s)));
     return out;
 }
 
 std::set<std::uint64_t> ids(const MergedJournal& m) {
     std::set<std::uint64_t> out;
-    for (const Stroke& s : m.entries) out.insert(s.id);
+    for (const JournalEntry& s : m.entries) out.insert(s.id);
     return out;
 }
 
-const std::vector<Stroke> kBase{painted(1, "a"), painted(2, "b")};
+const std::vector<JournalEntry> kBase{painted(1, "a"), painted(2, "b")};
 
-std::vector<Stroke> with(std::vector<Stroke> entries, std::vector<Stroke> more) {
+std::vector<JournalEntry> with(std::vector<JournalEntry> entries, std::vector<JournalEntry> more) {
     entries.insert(entries.end(), more.begin(), more.end());
     return entries;
 }
@@ -83,10 +76,10 @@ TEST(Merge, WithoutAChangeOnOneSideTheOtherOneIsTaken) {
 }
 
 TEST(Merge, WhatOneSideTookOutOrChangedIsSoAndNothingChangedIsLost) {
-    const std::vector<Stroke> without_a{kBase[1]};
-    std::vector<Stroke> hidden_a = kBase, other_ink = kBase;
+    const std::vector<JournalEntry> without_a{kBase[1]};
+    std::vector<JournalEntry> hidden_a = kBase, other_ink = kBase;
     hidden_a[0].hidden = true;
-    other_ink[0].trace.label = "A";
+    other_ink[0].label = "A";
     const auto marks = marks_of(kBase);
     EXPECT_EQ(labels(merge_journals(marks, without_a, kBase)), "b");
     EXPECT_EQ(labels(merge_journals(marks, kBase, without_a)), "b");
@@ -108,24 +101,24 @@ TEST(Merge, LayersOfBothSidesAreTwoLayers) {
     EXPECT_EQ(labels(n), "a b layer theirs layer mine");
     const LayerTable table = layers_after(n.entries);
     ASSERT_EQ(table.layers.size(), 3u);
-    EXPECT_EQ(table.find(n.entries[3].layer)->name, "gold");
-    EXPECT_EQ(table.find(n.entries[5].layer)->name, "ground");
+    EXPECT_EQ(table.find(layer_of(n.entries[3]))->name, "gold");
+    EXPECT_EQ(table.find(layer_of(n.entries[5]))->name, "ground");
     // The very same edit with the very same id is one edit.
     EXPECT_EQ(labels(m), "a b layer theirs layer mine");
-    EXPECT_EQ(layers_after(m.entries).find(m.entries[5].layer)->name, "gold");
+    EXPECT_EQ(layers_after(m.entries).find(layer_of(m.entries[5]))->name, "gold");
 }
 
 TEST(Merge, ALayerOrMaskThatIsGoneIsAddedAgainForWhatNeedsIt) {
-    const std::vector<Stroke> base = with(kBase, {added(3, 2, "gold"), masked(4, 1, "rim"), masked(5, 2, "rest", {1})});
-    std::vector<Stroke> theirs = base;
-    Stroke gone = added(6, 2, "");
-    gone.edit = removed(2);
-    Stroke no_rest = masked(7, 2, ""), no_rim = masked(8, 1, "");
-    no_rest.mask_edit.remove = no_rim.mask_edit.remove = true;
+    const std::vector<JournalEntry> base =
+        with(kBase, {added(3, 2, "gold"), masked(4, 1, "rim"), masked(5, 2, "rest", {1})});
+    std::vector<JournalEntry> theirs = base;
+    const JournalEntry gone = with_id(6, removed(2));
+    JournalEntry no_rest = masked(7, 2, ""), no_rim = masked(8, 1, "");
+    no_rest.get<MaskEdit>().remove = no_rim.get<MaskEdit>().remove = true;
     theirs = with(theirs, {gone, no_rest, no_rim});
     const MergedJournal m = merge_journals(marks_of(base), with(base, {painted(6, "mine", 2, 2)}), theirs);
     EXPECT_EQ(labels(m), "a b layer mask mask layer mask mask layer mask mask mine");
-    const Stroke& mine = m.entries.back();
+    const PaintStroke& mine = m.entries.back().get<PaintStroke>();
     EXPECT_EQ(layers_after(m.entries).find(mine.layer)->name, "gold");
     const MaskTable masks = masks_after(m.entries);
     ASSERT_TRUE(masks.find(mine.mask));
@@ -135,7 +128,7 @@ TEST(Merge, ALayerOrMaskThatIsGoneIsAddedAgainForWhatNeedsIt) {
 
 // Taking a layer's entry out would leave what they painted on it without one.
 TEST(Merge, NothingIsTakenOutThatTheOtherSideStandsOn) {
-    const std::vector<Stroke> base = with(kBase, {added(3, 2, "gold")});
+    const std::vector<JournalEntry> base = with(kBase, {added(3, 2, "gold")});
     const MergedJournal m =
         merge_journals(marks_of(base), with(kBase, {painted(4, "mine")}), with(base, {painted(4, "theirs", 2)}));
     EXPECT_EQ(labels(m), "a b layer theirs mine");
@@ -144,20 +137,20 @@ TEST(Merge, NothingIsTakenOutThatTheOtherSideStandsOn) {
 
 // A copy of a layer of mine that has another id now, merged down into it.
 TEST(Merge, CopiedAndMergedLayersFollowTheirNewIds) {
-    Stroke copy = added(5, 3, "gold copy"), down = added(6, 3, "");
-    copy.edit.what = LayerChange::duplicate;
-    copy.edit.other = 2;
-    down.edit.what = LayerChange::merge;
-    down.edit.other = 2;
+    JournalEntry copy = added(5, 3, "gold copy"), down = added(6, 3, "");
+    copy.get<LayerEdit>().what = LayerChange::duplicate;
+    copy.get<LayerEdit>().other = 2;
+    down.get<LayerEdit>().what = LayerChange::merge;
+    down.get<LayerEdit>().other = 2;
     const MergedJournal m = merge_journals(
         marks_of(kBase), with(kBase, {added(3, 2, "gold"), painted(4, "mine", 2), copy, down, painted(7, "after", 2)}),
         with(kBase, {added(3, 2, "red")}));
     EXPECT_EQ(labels(m), "a b layer layer mine layer layer after");
-    const Stroke& copied = m.entries[5];
-    EXPECT_EQ(copied.edit.other, m.entries[4].layer);
-    EXPECT_EQ(m.entries[6].edit.layer.id, copied.edit.layer.id);
-    EXPECT_EQ(m.entries[6].edit.other, m.entries[4].layer);
-    EXPECT_EQ(layers_after(m.entries).find(m.entries[7].layer)->name, "gold");
+    const LayerEdit& copied = m.entries[5].get<LayerEdit>();
+    EXPECT_EQ(copied.other, layer_of(m.entries[4]));
+    EXPECT_EQ(m.entries[6].get<LayerEdit>().layer.id, copied.layer.id);
+    EXPECT_EQ(m.entries[6].get<LayerEdit>().other, layer_of(m.entries[4]));
+    EXPECT_EQ(layers_after(m.entries).find(layer_of(m.entries[7]))->name, "gold");
 }
 
 }  // namespace

@@ -3,37 +3,34 @@
 #include <cmath>
 
 #include "core/system/parallel.h"
+#include "entry_text.h"
 #include "sheet.h"
+#include "stroke/journal/recorded_stroke.h"
 
 namespace tuft::stroke {
 namespace {
 
 const std::string kBrush = "wolf-medium";
 
-Stroke care(Action action, const std::string& ink, const Extent& extent) {
-    Stroke s{.action = action, .extent = extent};
-    s.trace.flat = false;
-    s.trace.brush = kBrush;
-    s.trace.ink = ink;
-    s.settings.dip = "carry";
-    return s;
+BrushAction care(BrushActionKind kind, const std::string& ink, const Extent& extent) {
+    return {.kind = kind, .brush = kBrush, .ink = ink, .extent = extent, .dip = DipMode::carry};
 }
 
 /// A brush with cinnabar in its right flank and gamboge in the left.
 void load_sides(Document& painting) {
-    painting.paint(care(Action::dip, "gamboge", {}));
-    painting.paint(care(Action::wipe, "gamboge", {.amount = 1, .side = 0.5}));
-    painting.paint(care(Action::dip, "cinnabar", {.side = 0.5}));
+    painting.paint(care(BrushActionKind::dip, "gamboge", {}));
+    painting.paint(care(BrushActionKind::wipe, "gamboge", {.amount = 1, .side = 0.5}));
+    painting.paint(care(BrushActionKind::dip, "cinnabar", {.side = 0.5}));
 }
 
 /// Drawn over the sheet with the holder at right angles to it; `turn` about the holder: where the
 /// right flank, the ferrule's +x, points to.
-Stroke drawn(const std::string& film, double y = 0, bool along_y = true) {
+PaintStroke drawn(FilmModel film, double y = 0, bool along_y = true) {
     const Vec3 along = along_y ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
-    Stroke s = line(kBrush, 6e-3, make_frame({y, 0, 0}, {0, 0, 1}, along));
-    for (TraceSample& p : s.trace.samples) p.rotation = Quat{1, 0, 0, 0};
-    s.trace.ink = "cinnabar";
-    s.settings.dip = "carry";
+    PaintStroke s = line(kBrush, 6e-3, make_frame({y, 0, 0}, {0, 0, 1}, along));
+    for (StrokeSample& p : s.trace.samples) p.rotation = Quat{1, 0, 0, 0};
+    s.ink = "cinnabar";
+    s.settings.dip = DipMode::carry;
     s.settings.film = film;
     s.settings.spacing = 3;
     return s;
@@ -60,21 +57,21 @@ Spread spread(const Document& painting, const Model& model, int plane) {
 
 TEST(MixedInk, TwoInksSideBySideLieSideBySideInTheStroke) {
     const Model model = sheet();
-    for (const char* film : {"still", "wet"}) {
+    for (const FilmModel film : {FilmModel::still, FilmModel::wet}) {
         Document painting(model);
         load_sides(painting);
         painting.paint(drawn(film));
         const Spread yellow = spread(painting, model, 0), red = spread(painting, model, 1);
-        EXPECT_GT(yellow.amount, 1e-6) << film;
-        EXPECT_GT(red.amount, 1e-6) << film;
+        EXPECT_GT(yellow.amount, 1e-6) << name_of(film);
+        EXPECT_GT(red.amount, 1e-6) << name_of(film);
         // The stroke is about 5 mm wide: halves of it lie 2.5 mm apart when nothing mixes.
-        EXPECT_GT(std::abs(red.mean - yellow.mean), 1e-3) << film;
+        EXPECT_GT(std::abs(red.mean - yellow.mean), 1e-3) << name_of(film);
     }
 }
 
 TEST(MixedInk, EachPigmentIsKeptStillAndWet) {
     const Model model = sheet();
-    for (const char* film : {"still", "wet"}) {
+    for (const FilmModel film : {FilmModel::still, FilmModel::wet}) {
         Document painting(model);
         load_sides(painting);
         std::array<double, 2> whole;
@@ -82,7 +79,7 @@ TEST(MixedInk, EachPigmentIsKeptStillAndWet) {
         for (int i = 0; i < 3; ++i) painting.paint(drawn(film, 4e-3 * i - 4e-3, i != 1));
         for (int p = 0; p < 2; ++p) {
             const double now = painting.canvas().total(model.texels, p) + painting.held(kBrush)->reservoir.pigment(p);
-            EXPECT_NEAR(now / whole[p], 1, 1e-6) << film << ' ' << p;
+            EXPECT_NEAR(now / whole[p], 1, 1e-6) << name_of(film) << ' ' << p;
         }
         for (const auto& cell : painting.held(kBrush)->reservoir.content)
             for (const double v : cell) EXPECT_GE(v, -1e-9 * (whole[0] + whole[1])) << "the rounding of the texels";
@@ -91,36 +88,34 @@ TEST(MixedInk, EachPigmentIsKeptStillAndWet) {
 
 TEST(MixedInk, ReplaysToTheBitOnAnyNumberOfThreads) {
     const Model model = sheet();
-    for (const char* film : {"still", "wet"}) {
+    for (const FilmModel film : {FilmModel::still, FilmModel::wet}) {
         std::uint64_t hashes[2];
-        std::vector<Stroke> journal;
+        std::vector<JournalEntry> journal;
         for (int i = 0; i < 2; ++i) {
             set_thread_count(i ? 3 : 1);
             Document painting(model);
             if (i == 0) {
                 load_sides(painting);
                 painting.paint(drawn(film));
-                journal = painting.journal().strokes();
+                journal = painting.journal().entries();
             } else {
                 painting.replay(journal);
             }
             hashes[i] = painting.canvas().hash();
         }
-        EXPECT_EQ(hashes[0], hashes[1]) << film;
+        EXPECT_EQ(hashes[0], hashes[1]) << name_of(film);
     }
     set_thread_count(0);
 }
 
 TEST(MixedInk, CaresWithASideComeBackFromTheirText) {
-    BrushAction c = action_of_text("dip:cinnabar,depth=0.25,side=-0.5");
-    EXPECT_EQ(c.extent, (Extent{.depth = 0.25, .side = -0.5}));
-    EXPECT_EQ(action_text(c), "dip:cinnabar,depth=0.25,side=-0.5");
-    EXPECT_ANY_THROW(action_of_text("wipe,side=1.5"));
-    EXPECT_ANY_THROW(action_of_text("rinse,side=0.5"));
-    Stroke entry = care(Action::wipe, "carbon", {.depth = 0.5, .amount = 0.25, .side = 0.125});
-    Stroke back;
-    read_entry_json(entry_json(entry), back);
-    EXPECT_EQ(back.extent, entry.extent);
+    const Preparation c = preparation_of("dip:cinnabar,depth=0.25,side=-0.5");
+    EXPECT_EQ(std::get<BrushAction>(c).extent, (Extent{.depth = 0.25, .side = -0.5}));
+    EXPECT_EQ(preparation_text(c), "dip:cinnabar,depth=0.25,side=-0.5");
+    EXPECT_ANY_THROW(preparation_of("wipe,side=1.5"));
+    EXPECT_ANY_THROW(preparation_of("rinse,side=0.5"));
+    const BrushAction entry = care(BrushActionKind::wipe, "carbon", {.depth = 0.5, .amount = 0.25, .side = 0.125});
+    EXPECT_EQ(written_and_read(entry).get<BrushAction>().extent, entry.extent);
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "stroke/painting/painting.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "ink/composite/composite.h"
 #include "sheet.h"
 #include "stroke/deposit/stamp_batch.h"
+#include "stroke/document/document.h"
 
 namespace tuft::stroke {
 namespace {
@@ -67,7 +66,7 @@ TEST(Document, AFlickLeavesALineNotDots) {
     const double pressure[] = {0.018, 0.075, 0.145, 0.220, 0.266, 0.306, 0.326, 0.339, 0.344,
                                0.330, 0.314, 0.284, 0.253, 0.207, 0.158, 0.102, 0};
     for (const double pace : {0.008, 0.012, 0.016}) {
-        Stroke s = line("wolf-medium", 4e-3);
+        PaintStroke s = line("wolf-medium", 4e-3);
         s.trace.flat = true;
         s.trace.samples.clear();
         for (int i = 0; i < 17; ++i)
@@ -100,7 +99,7 @@ TEST(Document, ReplayIsTheSameToTheBitForAnyThreadCount) {
         if (threads == 1) hash = painting.canvas().hash();
         EXPECT_EQ(painting.canvas().hash(), hash) << threads << " threads";
         Document again(model);
-        again.replay(painting.journal().strokes());
+        again.replay(painting.journal().entries());
         EXPECT_EQ(again.canvas().hash(), hash);
     }
     set_thread_count(0);
@@ -111,14 +110,14 @@ TEST(Document, ReplayIsTheSameToTheBitForAnyThreadCount) {
 TEST(Document, InksThatWereTakenBackLeaveNoTraceInThoseThatFollow) {
     const Model model = sheet();
     const auto stroke_of = [](const std::string& ink, double y) {
-        Stroke s = line("wolf-small", 2e-3, make_frame({0, y, 0}, {0, 0, 1}));
-        s.trace.ink = ink;
+        PaintStroke s = line("wolf-small", 2e-3, make_frame({0, y, 0}, {0, 0, 1}));
+        s.ink = ink;
         return s;
     };
     Document painting(model);
     const auto as_replayed = [&](const char* when) {
         Document again(model);
-        again.replay(painting.journal().strokes());
+        again.replay(painting.journal().entries());
         EXPECT_EQ(painting.hash(), again.hash()) << when;
     };
     painting.paint(stroke_of("carbon", 0));
@@ -130,10 +129,10 @@ TEST(Document, InksThatWereTakenBackLeaveNoTraceInThoseThatFollow) {
     as_replayed("the same ink later");
     EXPECT_EQ(painting.canvas().pigments().size(), 3u);
 
-    Stroke cancelled = stroke_of("gamboge", 0);
-    const std::vector<TraceSample> samples = std::move(cancelled.trace.samples);
+    PaintStroke cancelled = stroke_of("gamboge", 0);
+    const std::vector<StrokeSample> samples = std::move(cancelled.trace.samples);
     std::vector<brush::Pose> poses;
-    for (const TraceSample& s : samples) poses.push_back({s.position, s.rotation, s.time});
+    for (const StrokeSample& s : samples) poses.push_back({s.position, s.rotation, s.time});
     cancelled.trace.samples.clear();
     painting.begin(cancelled);
     painting.extend(poses);
@@ -149,7 +148,7 @@ TEST(Document, InksThatWereTakenBackLeaveNoTraceInThoseThatFollow) {
     for (int i = 0; i < 2; ++i) other.undo();
     for (const char* ink : {"indigo", "cinnabar"}) other.paint(stroke_of(ink, 0));
     Document again(model);
-    again.replay(other.journal().strokes());
+    again.replay(other.journal().entries());
     EXPECT_EQ(other.hash(), again.hash());
 }
 
@@ -179,23 +178,23 @@ TEST(Document, UndoTakesTheTexelsBackAndRedoMakesThemAgain) {
 
 TEST(Document, AStrokeInPiecesIsTheWholeStroke) {
     const Model model = sheet();
-    const Stroke whole = line("mixed-small", 4e-3);
+    const PaintStroke whole = line("mixed-small", 4e-3);
     Document at_once(model), in_pieces(model);
     at_once.paint(whole);
-    Stroke header = whole;
+    PaintStroke header = whole;
     header.trace.samples.clear();
     in_pieces.begin(header);
     for (const brush::Pose& pose : spatial_poses(whole.trace)) in_pieces.extend(std::span(&pose, 1));
     in_pieces.end();
     EXPECT_EQ(in_pieces.canvas().hash(), at_once.canvas().hash());
-    ASSERT_EQ(in_pieces.journal().strokes().size(), 1u);
-    EXPECT_EQ(in_pieces.journal().strokes()[0].trace.samples.size(), whole.trace.samples.size());
+    ASSERT_EQ(in_pieces.journal().entries().size(), 1u);
+    EXPECT_EQ(in_pieces.journal().entries()[0].get<PaintStroke>().trace.samples.size(), whole.trace.samples.size());
 }
 
 TEST(Document, CancelLeavesNothingBehind) {
     const Model model = sheet();
     Document painting(model);
-    const Stroke s = line("wolf-small", 4e-3);
+    const PaintStroke s = line("wolf-small", 4e-3);
     painting.paint(s);
     const std::uint64_t before = painting.canvas().hash();
     painting.begin(line("goat-small", 5e-3));
@@ -203,13 +202,13 @@ TEST(Document, CancelLeavesNothingBehind) {
     painting.extend(std::span(poses).subspan(0, poses.size() / 2));
     painting.cancel();
     EXPECT_EQ(painting.canvas().hash(), before);
-    EXPECT_EQ(painting.journal().strokes().size(), 1u);
+    EXPECT_EQ(painting.journal().entries().size(), 1u);
 }
 
 TEST(Document, AStopWithinABatchOfStampsLeavesEverythingAsItWas) {
     const Model model = sheet();
     Document painting(model);
-    Stroke wide = line("goat-large*2", 12e-3, make_frame({0, 0, 0}, {0, 0, 1}, {1, 0, 0}));
+    PaintStroke wide = line("goat-large*2", 12e-3, make_frame({0, 0, 0}, {0, 0, 1}, {1, 0, 0}));
     wide.settings.spacing = 3;  // coarse is enough here, and quick
     const std::uint64_t before = painting.canvas().hash();
     int asked = 0;
@@ -226,8 +225,8 @@ TEST(Document, AStopWithinABatchOfStampsLeavesEverythingAsItWas) {
 TEST(Document, AStrokeInTheAirTouchesNothingAndSaysHowFar) {
     const Model model = sheet();
     Document painting(model);
-    Stroke s = line("wolf-small", 4e-3);
-    for (TraceSample& p : s.trace.samples) p.position.z += 0.05;
+    PaintStroke s = line("wolf-small", 4e-3);
+    for (StrokeSample& p : s.trace.samples) p.position.z += 0.05;
     const StrokeReport r = painting.paint(s);
     EXPECT_FALSE(r.touched());
     EXPECT_NEAR(r.nearest, 0.046,
@@ -312,14 +311,14 @@ TEST(Document, TheStrokeIsTheSameAtAnySamplingRate) {
 }
 
 // Comes down, sways, tilts, turns in the fingers and lifts within a second, without a corner.
-Stroke sway(double rate) {
+PaintStroke sway(double rate) {
     using std::numbers::pi;
-    Stroke s = line("wolf-small", 4e-3);
+    PaintStroke s = line("wolf-small", 4e-3);
     const double length = brush::load_preset("wolf-small").length;
     s.trace.samples.clear();
     for (int i = 0; i <= static_cast<int>(rate); ++i) {
         const double u = i / rate, press = std::sin(pi * u);
-        TraceSample p;
+        StrokeSample p;
         p.time = u;
         p.rotation = glm::angleAxis(0.25 * std::sin(4 * pi * u), Vec3{0, 1, 0}) *
                      glm::angleAxis(0.6 * std::sin(2 * pi * u), Vec3{0, 0, 1});

@@ -1,10 +1,11 @@
-#include "stroke/painting/palette.h"
+#include "stroke/document/palette.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/error.h"
+#include "entry_text.h"
 #include "sheet.h"
 
 namespace tuft::stroke {
@@ -13,37 +14,32 @@ namespace {
 const std::string kBrush = "wolf-medium";
 
 // A pool of ink on the palette, 16 mm wide and half a millimetre deep in its middle.
-Stroke pool(const std::string& ink, const Vec3& at) {
-    Stroke s;
-    s.action = Action::fill;
-    s.trace.flat = false;
-    s.trace.ink = ink;
-    s.layer = kPaletteLayer;
-    s.fill = {.film = 50, .gradient = Gradient::round, .to_film = 0, .from = at, .to = at + Vec3{0.008, 0, 0}};
-    return s;
+Fill pool(const std::string& ink, const Vec3& at) {
+    return {.ink = ink,
+            .layer = kPaletteLayer,
+            .film = 50,
+            .gradient = Gradient::round,
+            .to_film = 0,
+            .from = at,
+            .to = at + Vec3{0.008, 0, 0}};
 }
 
 // A stroke through a place, on the palette or the model, with what is in the brush.
-Stroke through(const Vec3& at, std::uint32_t layer, const std::string& ink, const Vec3& way = {1, 0, 0}) {
-    Stroke s = line(kBrush, 8e-3, make_frame(at, {0, 0, 1}, way));
-    s.trace.ink = ink;
+PaintStroke through(const Vec3& at, std::uint32_t layer, const std::string& ink, const Vec3& way = {1, 0, 0}) {
+    PaintStroke s = line(kBrush, 8e-3, make_frame(at, {0, 0, 1}, way));
+    s.ink = ink;
     s.layer = layer;
-    s.settings.dip = "carry";
-    s.settings.film = "wet";
+    s.settings.dip = DipMode::carry;
+    s.settings.film = FilmModel::wet;
     s.settings.spacing = 3;  // coarse is enough here, and quick
     return s;
 }
 
-Stroke rinse(const std::string& ink) {
-    Stroke s;
-    s.action = Action::rinse;
-    s.trace.flat = false;
-    s.trace.brush = kBrush;
-    s.trace.ink = ink;
-    return s;
+BrushAction rinse(const std::string& ink) {
+    return {.kind = BrushActionKind::rinse, .brush = kBrush, .ink = ink};
 }
 
-std::vector<Stroke> mixing() {
+std::vector<JournalEntry> mixing() {
     return {pool("cinnabar", {-0.012, 0, 0}),
             pool("gamboge", {0.012, 0, 0}),
             rinse("cinnabar"),
@@ -82,17 +78,16 @@ TEST(Palette, ItsTexelsLieWhereTheyAreSaidTo) {
 
 TEST(Palette, NoMaskOfTheModelHoldsOnIt) {
     const Model model = sheet();
-    Stroke mask;
-    mask.action = Action::mask;
-    mask.trace.flat = false;
-    mask.mask_edit.mask = {.id = 1, .name = "under", .kind = MaskKind::angle, .direction = {0, 0, -1}, .within = 0.5};
+    const MaskEdit mask{
+        .mask = {.id = 1, .name = "under", .kind = MaskKind::angle, .direction = {0, 0, -1}, .within = 0.5}};
     const auto painted = [&](std::uint32_t with) {
         Document painting(model);
         painting.paint(mask);
-        std::vector<Stroke> strokes = mixing();
+        std::vector<JournalEntry> strokes = mixing();
         strokes.resize(4);
-        for (Stroke& s : strokes) {
-            if (s.layer == kPaletteLayer) s.mask = with;
+        for (JournalEntry& s : strokes) {
+            if (PaintStroke* stroke = s.as<PaintStroke>(); stroke && on_palette(s)) stroke->mask = with;
+            if (Fill* fill = s.as<Fill>(); fill && on_palette(s)) fill->mask = with;
             painting.paint(s);
         }
         return std::pair{painting.palette()->hash(), painting.hash()};
@@ -104,7 +99,7 @@ TEST(Palette, NoMaskOfTheModelHoldsOnIt) {
 TEST(Palette, ABrushMixesOnItAndPaintsTheMixture) {
     const Model model = sheet();
     Document painting(model);
-    const std::vector<Stroke> strokes = mixing();
+    const std::vector<JournalEntry> strokes = mixing();
     for (std::size_t i = 0; i < 3; ++i) painting.paint(strokes[i]);
     const int red = 0, yellow = 1;
     ASSERT_EQ(painting.canvas().pigments().size(), 2u);
@@ -165,14 +160,14 @@ TEST(Palette, FiveCirclesThroughTwoPoolsMixThem) {
     painting.paint(pool("indigo", {0.007, 0, 0}));
     painting.paint(rinse("gamboge"));
     EXPECT_LT(mixedness(painting), 0.02);
-    Stroke circles = through({0, 0, 0}, kPaletteLayer, "gamboge");
-    const TraceSample upright = circles.trace.samples.front();
+    PaintStroke circles = through({0, 0, 0}, kPaletteLayer, "gamboge");
+    const StrokeSample upright = circles.trace.samples.front();
     circles.trace.samples.clear();
     const double length = brush::load_preset(kBrush).length, turn = 0.8, seconds = 5 * turn;
     for (int i = 0; i <= 800; ++i) {
         const double t = seconds * i / 800, angle = 2 * 3.14159265 * t / turn,
                      press = std::min({1.0, t / 0.15, (seconds - t) / 0.15});
-        TraceSample s = upright;
+        StrokeSample s = upright;
         s.time = t;
         s.position = {0.014 * std::cos(angle), 0.014 * std::sin(angle), length + 1e-3 - 0.013 * press};
         circles.trace.samples.push_back(s);
@@ -190,14 +185,11 @@ TEST(Palette, ReplaysAndIsTakenBackToTheBit) {
         palette.push_back(painting.palette() ? painting.palette()->hash() : 0);
         texels.push_back(painting.hash());
     };
-    for (const Stroke& s : mixing()) {
+    for (const JournalEntry& s : mixing()) {
         painting.paint(s);
         note();
     }
-    Stroke wash;
-    wash.action = Action::wash;
-    wash.trace.flat = false;
-    painting.paint(wash);
+    painting.paint(WashPalette{});
     EXPECT_TRUE(painting.palette()->touched_slots().empty());
     EXPECT_EQ(painting.hash(), texels.back());
 
@@ -212,7 +204,7 @@ TEST(Palette, ReplaysAndIsTakenBackToTheBit) {
     EXPECT_EQ(painting.hash(), texels.back());
 
     Document again(model);
-    again.replay(painting.journal().strokes());
+    again.replay(painting.journal().entries());
     EXPECT_EQ(again.palette()->hash(), palette.back());
     EXPECT_EQ(again.hash(), texels.back());
     EXPECT_NE(texels.back(), texels.front());
@@ -244,14 +236,11 @@ TEST(Palette, IsNoLayerThatCouldBeMade) {
     LayerTable table;
     table.next_id = kPaletteLayer;
     EXPECT_THROW(apply(table, add_on_top(table, "mine")), Error);
-    Stroke entry;
-    EXPECT_THROW(read_entry_json(R"({"layer": 4294967294})", entry), Error);
-    read_entry_json(R"({"on": "palette"})", entry);
-    EXPECT_EQ(entry.layer, kPaletteLayer);
-    EXPECT_THROW(read_entry_json(R"({"on": "table"})", entry), Error);
-    Stroke again;
-    read_entry_json(entry_json(entry), again);
-    EXPECT_EQ(again.layer, kPaletteLayer);
+    EXPECT_THROW(entry_of({}, R"({"layer": 4294967294})"), Error);
+    EXPECT_THROW(entry_of({}, R"({"on": "table"})"), Error);
+    const JournalEntry entry = entry_of({}, R"({"on": "palette"})");
+    EXPECT_EQ(layer_of(entry), kPaletteLayer);
+    EXPECT_EQ(layer_of(written_and_read(entry)), kPaletteLayer);
 }
 
 }  // namespace

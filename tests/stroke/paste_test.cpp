@@ -21,9 +21,9 @@ ink::Ink red_paste() {
     return ink;
 }
 
-Stroke stroke_of(const std::string& ink, const Frame& frame) {
-    Stroke s = line(kBrush, 8e-3, frame);
-    s.trace.ink = ink;
+PaintStroke stroke_of(const std::string& ink, const Frame& frame) {
+    PaintStroke s = line(kBrush, 8e-3, frame);
+    s.ink = ink;
     return s;
 }
 
@@ -98,14 +98,10 @@ TEST(PasteStroke, ThinInkOverDryPasteStandsInItsFurrows) {
     const Model model = sheet();
     Document painting(model);
     painting.paint(stroke_of(kWhite, {}));
-    Stroke wait;
-    wait.action = Action::dry;
-    wait.trace.brush = kBrush;
-    wait.trace.ink = kWhite;
-    painting.paint(wait);
+    painting.paint(Dry{});
     const std::uint64_t before = painting.hash();
     const std::vector<double> relief = heights_across(painting, 0);
-    Stroke glaze = stroke_of("carbon", make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0}));
+    PaintStroke glaze = stroke_of("carbon", make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0}));
     painting.paint(glaze);
     EXPECT_NEAR((painting.canvas().total(model.texels, 1) + painting.held(kBrush)->reservoir.pigment(1)) / capacity(),
                 1, 1e-6);
@@ -132,17 +128,17 @@ TEST(PasteStroke, ThinInkOverDryPasteStandsInItsFurrows) {
     EXPECT_EQ(painting.hash(), after);
 }
 
-Stroke wash_over(double depth) {
-    Stroke s = line(kBrush, depth, make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0}));
-    s.settings.film = "wet";
+PaintStroke wash_over(double depth) {
+    PaintStroke s = line(kBrush, depth, make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0}));
+    s.settings.film = FilmModel::wet;
     return s;
 }
 
 TEST(PasteStroke, AWashTakesOfItsSurfaceAndLeavesItsBodyStanding) {
     const Model model = sheet();
     Document painting(model);
-    Stroke paste = stroke_of(kWhite, {});
-    paste.settings.film = "wet";
+    PaintStroke paste = stroke_of(kWhite, {});
+    paste.settings.film = FilmModel::wet;
     painting.paint(paste);
     const std::vector<double> before = heights_across(painting, 0);
     const auto white = [&] { return painting.canvas().total(model.texels, 0); };

@@ -17,7 +17,7 @@ TEST(Placement, WrapAndProjectOnTheSheetAreTheIdentity) {
     const SurfaceQuery query(sheet);
     for (SurfaceMapping mapping : {SurfaceMapping::wrap, SurfaceMapping::project}) {
         const Placement place{{0.012, -0.007, 0.003}, {1, 0, 0}, {0, -1, 0}, mapping};
-        const Trace trace = make_trace(place, scattered(200, 0.06));
+        const StrokeSamples trace = make_trace(place, scattered(200, 0.06));
         const SurfaceTrace mapped = map_to_surface(query, trace);
         ASSERT_EQ(mapped.samples.size(), trace.samples.size());
         EXPECT_EQ(mapped.missed, 0u);
@@ -42,7 +42,7 @@ TEST(Placement, WrapOnACylinderUnrollsIt) {
                           {-std::sin(a0), std::cos(a0), 0},
                           {0, 0, -1},
                           SurfaceMapping::wrap};
-    const Trace trace = make_trace(place, scattered(300, 0.045));
+    const StrokeSamples trace = make_trace(place, scattered(300, 0.045));
     const SurfaceTrace mapped = map_to_surface(query, trace);
     EXPECT_EQ(mapped.missed, 0u);
     const double sagitta = kCylinderRadius * (1 - std::cos(pi / 180));
@@ -156,7 +156,7 @@ TEST(Placement, ProjectTakesTheFirstSurfaceFromOutside) {
 TEST(Placement, HeldTuftReachesThePressedDepth) {
     const TriangleMesh sphere = make_sphere();
     const SurfaceQuery query(sphere);
-    Trace trace = make_trace({{0, -1, 0}, {1, 0, 0}, {0, 0, -1}, SurfaceMapping::wrap}, scattered(40, 0.02));
+    StrokeSamples trace = make_trace({{0, -1, 0}, {1, 0, 0}, {0, 0, -1}, SurfaceMapping::wrap}, scattered(40, 0.02));
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         trace.samples[i].pressure = double(i % 5) / 4;
         trace.samples[i].tilt = {0.3 * uniform(3, i), -0.4 * uniform(4, i)};
@@ -233,7 +233,7 @@ TEST(Placement, SteadyHandDoesNotTrembleOnNoise) {
     const SurfaceQuery query(m);
     std::vector<Vec2> points;
     for (int i = -200; i <= 200; ++i) points.push_back(Vec2(1e-4 * i, 1.3e-5 * i));
-    const Trace trace = make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, points);
+    const StrokeSamples trace = make_trace({{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape}, points);
     const auto unsteadiness = [&](double steady) {
         const HolderOptions options{.steady = steady, .tip_lag = {}};
         double sum = 0, squares = 0;
@@ -259,7 +259,7 @@ TEST(Placement, SteadyHandKeepsItsHeightOnCurvedSurfaces) {
     const SurfaceQuery query(cylinder);
     std::vector<Vec2> points;
     for (int i = 0; i <= 400; ++i) points.push_back({1e-4 * i, 0});
-    Trace trace = make_trace({{kCylinderRadius, 0, 0}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::wrap}, points);
+    StrokeSamples trace = make_trace({{kCylinderRadius, 0, 0}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::wrap}, points);
     const HolderOptions options{.tip_lag = {}};
     const double shift = options.steady * options.steady / (200 * kCylinderRadius);
     for (const brush::Pose& pose : hand_path(query, trace, options).poses) {
@@ -273,10 +273,10 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     // Straight: ahead by the length for the depth, once the tip has touched.
     std::vector<Vec2> points;
     for (int i = 0; i <= 100; ++i) points.push_back({1e-4 * i, 0});
-    Trace trace = make_trace({}, points);
+    StrokeSamples trace = make_trace({}, points);
     const HolderOptions options{
         .working_depth = 0.008, .tip_lag = {{0.002, 0.001}, {0.006, 0.005}}, .tip_lag_turn = 1e-3};
-    Trace led = lead_hand(trace, options);
+    StrokeSamples led = lead_hand(trace, options);
     ASSERT_GT(led.samples.size(), trace.samples.size());
     std::size_t touch = led.samples.size() - trace.samples.size();
     EXPECT_NEAR(led.samples[touch].position.x, 0.003, 1e-12);
@@ -317,7 +317,7 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
 TEST(Placement, RefusesWhatCannotBeLaid) {
     const TriangleMesh sheet = make_sheet(0.2, 3);
     const SurfaceQuery query(sheet);
-    Trace trace = make_trace({}, {{0, 0}});
+    StrokeSamples trace = make_trace({}, {{0, 0}});
     trace.placement.down = {2, 0, 0};
     EXPECT_THROW(map_to_surface(query, trace), Error);
     trace = make_trace({}, {{0, std::nan("")}});

@@ -6,9 +6,9 @@
 #include "brush/preset/preset.h"
 #include "core/ease.h"
 #include "grids.h"
+#include "stroke/document/document.h"
 #include "stroke/gesture/hand.h"
 #include "stroke/gesture/tractrix.h"
-#include "stroke/painting/painting.h"
 #include "stroke/placement/tip_lag.h"
 
 /// \file
@@ -32,16 +32,16 @@ struct Motion {
         const double radius = 0.03;
         return {radius * std::sin(s / radius), radius * (1 - std::cos(s / radius))};
     }
-    TraceSample sample(double t) const {
-        TraceSample p{.time = t, .position = Vec3(at(along(t)), 0), .pressure = 0.5, .tilt = {0.1, 0.05}};
+    StrokeSample sample(double t) const {
+        StrokeSample p{.time = t, .position = Vec3(at(along(t)), 0), .pressure = 0.5, .tilt = {0.1, 0.05}};
         const double stop = 0.012 / speed;
         if (t > stop && t < stop + rest) p.position += tremble * Vec3(std::sin(900 * t), std::cos(1130 * t), 0);
         return p;
     }
 };
 
-Trace sampled(const Motion& motion, double rate, const Placement& place) {
-    Trace trace;
+StrokeSamples sampled(const Motion& motion, double rate, const Placement& place) {
+    StrokeSamples trace;
     trace.placement = place;
     const auto n = static_cast<int>(std::lround(motion.time() * rate));
     for (int i = 0; i <= n; ++i) trace.samples.push_back(motion.sample(i / rate));
@@ -75,7 +75,7 @@ HolderOptions options_on(const TriangleMesh& mesh) {
 }
 
 /// The poses of a trace's own samples.
-std::span<const brush::Pose> own_poses(const HandPath& path, const Trace& trace) {
+std::span<const brush::Pose> own_poses(const HandPath& path, const StrokeSamples& trace) {
     return std::span(path.poses).subspan(path.set_down, trace.samples.size());
 }
 
@@ -89,7 +89,7 @@ TEST(Sampling, AHolderGoesOnAfterARestAsWithoutOne) {
                 SCOPED_TRACE(std::string(surface_mapping_name(mapping)) + ", " + std::to_string(rate) +
                              " Hz, trembling by " + std::to_string(tremble));
                 const Motion rests{.rest = 0.5, .tremble = tremble};
-                const Trace with = sampled(rests, rate, w.place), without = sampled({}, rate, w.place);
+                const StrokeSamples with = sampled(rests, rate, w.place), without = sampled({}, rate, w.place);
                 const HandPath a = hand_path(query, with, options), b = hand_path(query, without, options);
                 const auto rested = own_poses(a, with), straight = own_poses(b, without);
                 const std::size_t before = std::size_t(std::lround(0.3 * rate)), more = rested.size() - straight.size();
@@ -109,10 +109,10 @@ TEST(Sampling, AHolderDoesTheSameAtEveryRate) {
         const Wall w = wall(mapping);
         const SurfaceQuery query(w.mesh);
         const HolderOptions options = options_on(w.mesh);
-        const Trace fine = sampled({}, 1000, w.place);
+        const StrokeSamples fine = sampled({}, 1000, w.place);
         const HandPath finest = hand_path(query, fine, options);
         for (const double rate : {100.0, 250.0}) {
-            const Trace trace = sampled({}, rate, w.place);
+            const StrokeSamples trace = sampled({}, rate, w.place);
             const HandPath path = hand_path(query, trace, options);
             Difference d;
             for (std::size_t i = 0; i < trace.samples.size(); ++i)
@@ -176,13 +176,13 @@ double difference(const std::vector<float>& a, const std::vector<float>& b) {
 TEST(Sampling, InkIsTheSameAtEveryRateAndPastARest) {
     const Model model = bent_sheet();
     const auto paint = [&](const Motion& motion, double rate, double from) {
-        Stroke s;
+        PaintStroke s;
         s.trace = sampled(
             motion, rate,
             {{0.04 * std::sin(-0.4), 0.005, 0.04 * std::cos(-0.4)}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::drape});
-        for (TraceSample& sample : s.trace.samples) sample.pressure = 0.4;
-        s.trace.brush = "mixed-medium";
-        s.trace.ink = "carbon";
+        for (StrokeSample& sample : s.trace.samples) sample.pressure = 0.4;
+        s.brush = "mixed-medium";
+        s.ink = "carbon";
         Document painting(model);
         painting.paint(s);
         return films(painting, from);
@@ -200,7 +200,8 @@ TEST(Sampling, InkIsTheSameAtEveryRateAndPastARest) {
 }
 
 /// Speeds of holder and hand over a trace, m/s, and what bounds the holder's; see `lead_hand`.
-void expect_bounded(const SurfaceQuery& query, const Trace& trace, const HolderOptions& options, double curvature) {
+void expect_bounded(const SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options,
+                    double curvature) {
     const HandPath path = hand_path(query, trace, options);
     const auto& samples = path.mapped.samples;
     double pace = kSlowestSetDown, fastest = 0;
@@ -238,7 +239,7 @@ TEST(Sampling, AHolderIsNoFasterThanItsHandMakesIt) {
                 for (const Vec2 tilt : {Vec2{0.02, 0.01}, Vec2{0, 0.5}}) {
                     SCOPED_TRACE(std::string(name) + " at " + std::to_string(speed) + " m/s, pressed " + press +
                                  ", leaning " + std::to_string(tilt.y));
-                    Trace trace;
+                    StrokeSamples trace;
                     for (int i = 0; 1e-3 * i * speed < 0.03; ++i) {
                         const double s = 1e-3 * i * speed, up = smooth_step(s / 5e-3) * smooth_step((0.03 - s) / 5e-3);
                         const double gap = smooth_step(std::abs(s - 0.015) / 3e-3 - 0.5);
@@ -261,7 +262,7 @@ TEST(Sampling, AHolderIsNoFasterThanItsHandMakesIt) {
 }
 
 /// Fast and slow, turning, pressing and leaning.
-TraceSample busy(double t) {
+StrokeSample busy(double t) {
     return {.time = t,
             .position = {0.05 * (t - 0.7 * std::sin(2 * pi * t) / (2 * pi)), 0.008 * std::sin(9 * t), 0},
             .pressure = 0.5 + 0.2 * std::sin(7 * t),
@@ -271,7 +272,7 @@ TraceSample busy(double t) {
 TEST(Sampling, EveryStageOfTheHandDoesTheSameAtEveryRate) {
     struct Stage {
         const char* name;
-        Settings settings;
+        StrokeSettings settings;
         double metres, pressure, tilt;  // that 100 Hz may differ from 2000 Hz by
     };
     std::vector<Stage> stages(3);
@@ -282,20 +283,20 @@ TEST(Sampling, EveryStageOfTheHandDoesTheSameAtEveryRate) {
     stages[1] = {"stabilise", {}, 1e-5, 0.001, 0.001};
     stages[1].settings.stabilise = 3e-3;
     stages[2] = {"pressure", {}, 1e-12, 0.006, 1e-12};
-    stages[2].settings.pressure = "speed+dwell";
+    stages[2].settings.pressure = PressureFrom::speed_dwell;
     for (const Stage& stage : stages) {
         const auto at = [&](int rate) {
-            Trace t;
+            StrokeSamples t;
             for (int i = 0; i <= rate; ++i) t.samples.push_back(busy(double(i) / rate));
             return steady(t, stage.settings).samples;
         };
-        const std::vector<TraceSample> finest = at(2000);
+        const std::vector<StrokeSample> finest = at(2000);
         for (const int rate : {100, 250, 1000}) {
             SCOPED_TRACE(std::string(stage.name) + ", " + std::to_string(rate) + " Hz");
-            const std::vector<TraceSample> samples = at(rate);
+            const std::vector<StrokeSample> samples = at(rate);
             const double part = 100.0 / rate;  // first order or better
             for (int i = 0; i <= rate; ++i) {
-                const TraceSample &a = samples[std::size_t(i)], &b = finest[std::size_t(i * (2000 / rate))];
+                const StrokeSample &a = samples[std::size_t(i)], &b = finest[std::size_t(i * (2000 / rate))];
                 EXPECT_LT(glm::distance(a.position, b.position), part * stage.metres + 1e-12);
                 EXPECT_LT(std::abs(a.pressure - b.pressure), part * stage.pressure + 1e-12);
                 EXPECT_LT(glm::length(a.tilt - b.tilt), part * stage.tilt + 1e-12);
@@ -306,13 +307,13 @@ TEST(Sampling, EveryStageOfTheHandDoesTheSameAtEveryRate) {
 
 TEST(Sampling, PosesThatArriveOneByOneDoTheSameAtEveryRate) {
     for (const bool string : {false, true}) {
-        Settings settings;
+        StrokeSettings settings;
         (string ? settings.stabilise : settings.smooth) = string ? 3e-3 : 1;
         const auto at = [&](int rate) {
             GestureFilter hand;
             std::vector<brush::Pose> poses;
             for (int i = 0; i <= rate; ++i) {
-                const TraceSample s = busy(double(i) / rate);
+                const StrokeSample s = busy(double(i) / rate);
                 poses.push_back(
                     steady(hand, brush::Pose{s.position, glm::angleAxis(s.tilt.x, Vec3(0, 1, 0)), s.time}, settings));
             }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// A sheet and strokes over it, shared by the tests of this module.
 namespace tuft::stroke {
@@ -51,20 +51,20 @@ inline Model sheet(const Frame& frame = {}, std::uint32_t size = kSize) {
 }
 
 // The holder upright over the sheet, pressed `depth` and moved along x with an entry and a lift.
-inline Stroke line(const std::string& brush, double depth, const Frame& frame = {}, double speed = 0.03,
-                   int rate = 200) {
+inline PaintStroke line(const std::string& brush, double depth, const Frame& frame = {}, double speed = 0.03,
+                        int rate = 200) {
     const double length = brush::load_preset(brush).length;
-    Stroke s;
+    PaintStroke s;
     s.trace.flat = false;
-    s.trace.brush = brush;
-    s.trace.ink = "carbon";
+    s.brush = brush;
+    s.ink = "carbon";
     const double time = 0.03 / speed;
     const int n = static_cast<int>(time * rate);
     const Mat3 turn(frame.t, frame.b, frame.n);
     for (int i = 0; i <= n; ++i) {
         const double u = static_cast<double>(i) / n;
         const double press = std::min(1.0, std::min(u, 1 - u) * 6);
-        TraceSample p;
+        StrokeSample p;
         p.time = u * time;
         p.position = frame.to_world({-0.015 + 0.03 * u, 0, length + 1e-3 - (depth + 1e-3) * press});
         p.rotation = glm::quat_cast(turn);

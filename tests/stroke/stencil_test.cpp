@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/error.h"
+#include "entry_text.h"
 #include "sheet.h"
 #include "stroke/journal/journal.h"
 #include "stroke/surface/surface_stencil.h"
@@ -50,10 +51,10 @@ TEST(Tape, SidesAreThePolygons) {
 }
 
 // A flat line over the sheet's middle, whatever way the sheet lies, with a star's stencil edge on it.
-Stroke over_a_star(const Frame& frame, double r) {
-    Stroke s;
-    s.trace.brush = "mixed-small";
-    s.trace.ink = "carbon";
+PaintStroke over_a_star(const Frame& frame, double r) {
+    PaintStroke s;
+    s.brush = "mixed-small";
+    s.ink = "carbon";
     s.trace.placement = {frame.origin, frame.t, -frame.b};
     for (int i = 0; i <= 200; ++i)
         s.trace.samples.push_back({.time = 0.005 * i, .position = {1e-4 * i - 0.01, 0, 0}, .pressure = 0.6});
@@ -64,7 +65,7 @@ Stroke over_a_star(const Frame& frame, double r) {
 TEST(Tape, InkStaysWithinAndFillsWhatItFilled) {
     for (const Frame& frame : {Frame{}, make_frame({0.1, -0.2, 0.05}, glm::normalize(Vec3{1, 2, -0.5}))}) {
         const Model model = sheet(frame);
-        Stroke taped = over_a_star(frame, 5e-3), free = taped;
+        PaintStroke taped = over_a_star(frame, 5e-3), free = taped;
         free.trace.stencil.clear();
         Document a(model), b(model);
         a.paint(taped);
@@ -100,7 +101,7 @@ TEST(Tape, EachCellIsCutByThePieceNearestToIt) {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> place(-8e-3, 8e-3), radius(2e-3, 6e-3);
     for (int i = 0; i < 40; ++i) {
-        Trace trace{.placement = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}};
+        StrokeSamples trace{.placement = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}};
         std::vector<Vec2> ring = star(radius(random));
         if (i % 2)  // a jagged disk of 2000 clusters
             for (ring.clear(); ring.size() < 2000;) {
@@ -130,21 +131,19 @@ TEST(Tape, EachCellIsCutByThePieceNearestToIt) {
 }
 
 TEST(Tape, IsKeptInTheJournal) {
-    Stroke s = over_a_star({}, 1.0 / 3), back;
-    read_entry_json(entry_json(s), back);
-    EXPECT_EQ(back.trace.stencil, s.trace.stencil) << "to the bit";
+    PaintStroke s = over_a_star({}, 1.0 / 3);
+    EXPECT_EQ(written_and_read(s).get<PaintStroke>().trace.stencil, s.trace.stencil) << "to the bit";
     s.trace.stencil.clear();
-    read_entry_json(entry_json(s), back);
-    EXPECT_TRUE(back.trace.stencil.empty());
+    EXPECT_TRUE(written_and_read(s).get<PaintStroke>().trace.stencil.empty());
     for (const char* bad :
          {R"({"tape":7})", R"({"tape":[1,2,3]})", R"({"tape":[1,2,3,"4"]})", R"({"tape":[1,2,3,1e999]})"})
-        EXPECT_THROW(read_entry_json(bad, back), Error) << bad;
+        EXPECT_THROW(entry_of({}, bad), Error) << bad;
 }
 
 // As a hostile file may have it: clusters go by the whole, not by each edge.
 TEST(Tape, TapeOfAnyLengthIsLaidInFewPieces) {
     const Model model = sheet();
-    Trace trace{.placement = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    StrokeSamples trace{.placement = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
     for (const double length : {0.02, 1e5, 1e150, 1e308}) {
         trace.stencil.assign(500, {{-0.01, 0}, {length - 0.01, 0}});
         EXPECT_LE(SurfaceStencil(*model.query, trace).clusters().size(), 100'000u + 500u) << length;

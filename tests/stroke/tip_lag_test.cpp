@@ -18,13 +18,13 @@ namespace {
 
 /// A straight line from x = -16 mm to 8 mm of the sheet, pressed within its first 1.5 mm, drawn under a
 /// holder that leans by `tilt` (radians, to the right and down).
-Stroke leaning(const std::string& brush, double pressure, const Vec2& tilt) {
-    Stroke s;
-    s.trace.brush = brush;
-    s.trace.ink = "carbon";
+PaintStroke leaning(const std::string& brush, double pressure, const Vec2& tilt) {
+    PaintStroke s;
+    s.brush = brush;
+    s.ink = "carbon";
     s.trace.placement = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::wrap};
     for (int i = 0; i <= 240; ++i) {
-        TraceSample p;
+        StrokeSample p;
         p.time = 0.0025 * i;
         p.position = {-0.016 + 1e-4 * i, 0, 0};
         p.pressure = pressure * std::min(1.0, i / 15.0);
@@ -93,10 +93,10 @@ TEST(TipLag, AnUprightHolderLeadsAsBeforeAndSidesMirror) {
 
 /// What a trace under a holder that is upright but for a little to the right and to the writer leaves on a plane: where
 /// cells of a tenth of a millimetre are inked, trace's axes.
-std::vector<Vec2> inked_cells(Trace trace) {
+std::vector<Vec2> inked_cells(StrokeSamples trace, const std::string& brush) {
     static WidthTables tables;
-    for (TraceSample& s : trace.samples) s.tilt = {0.015, 0.025};
-    const PlaneInk ink = plane_ink(trace, brush::load_preset(trace.brush), tables.hold(trace.brush), 5e-5, 1e-4);
+    for (StrokeSample& s : trace.samples) s.tilt = {0.015, 0.025};
+    const PlaneInk ink = plane_ink(trace, brush::load_preset(brush), tables.hold(brush), 5e-5, 1e-4);
     std::vector<Vec2> cells;
     for (double y = -0.025; y < 0.025; y += 1e-4)
         for (double x = -0.025; x < 0.025; x += 1e-4)
@@ -112,14 +112,14 @@ TEST(TipLag, AStrokeSetDownFineStaysOnItsWayInEveryDirection) {
             SCOPED_TRACE(std::string(brush) + " " + std::to_string(45 * k));
             const double a = k * std::numbers::pi / 4;
             const Vec2 way(std::cos(a), std::sin(a));
-            Trace trace{.brush = brush};
+            StrokeSamples trace;
             for (int i = 0; i <= 90; ++i) {
                 const double x = 2e-4 * i;
                 trace.samples.push_back(
                     {.time = x / 0.045, .position = Vec3(x * way, 0), .pressure = 0.35 * smooth_step(x / 4e-3)});
             }
             double body = 0, head = 0;  // how far to the side the ink reaches, within the first 8 mm and beyond
-            for (const Vec2& p : inked_cells(trace)) {
+            for (const Vec2& p : inked_cells(trace, brush)) {
                 const double along = glm::dot(p, way), aside = std::abs(p.x * way.y - p.y * way.x);
                 if (along < 8e-3)
                     head = std::max(head, aside);
@@ -137,12 +137,12 @@ TEST(TipLag, ATapIsADropWhereverTheHandDrifts) {
     for (const char* brush : {"wolf-medium", "goat-medium", "mixed-medium"})
         for (const Vec2& drift : drifts) {
             SCOPED_TRACE(std::string(brush) + " " + std::to_string(drift.x) + " " + std::to_string(drift.y));
-            Trace trace{.brush = brush};
+            StrokeSamples trace;
             for (int i = 0; i <= 100; ++i)
                 trace.samples.push_back({.time = 2.5e-3 * i,
                                          .position = Vec3(0.01 * i * drift, 0),
                                          .pressure = 0.3 * std::sin(std::numbers::pi * i / 100)});
-            const std::vector<Vec2> cells = inked_cells(trace);
+            const std::vector<Vec2> cells = inked_cells(trace, brush);
             ASSERT_GT(cells.size(), 100u);
             // Its hull by directions: a drop is convex but for its point, a V or a row of dots leaves a third of it
             // bare.

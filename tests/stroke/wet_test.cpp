@@ -9,25 +9,19 @@ namespace {
 const std::string kBrush = "wolf-small";
 
 // A stroke along x, or along y, with ink that stays wet.
-Stroke wet_line(const std::string& ink, bool along_y = false, double offset = 0) {
+PaintStroke wet_line(const std::string& ink, bool along_y = false, double offset = 0) {
     const Vec3 along = along_y ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
     const Vec3 centre = along_y ? Vec3{offset, 0, 0} : Vec3{0, offset, 0};
-    Stroke s = line(kBrush, 4e-3, make_frame(centre, {0, 0, 1}, along));
-    s.trace.ink = ink;
-    s.settings.film = "wet";
-    s.settings.dip = "carry";
+    PaintStroke s = line(kBrush, 4e-3, make_frame(centre, {0, 0, 1}, along));
+    s.ink = ink;
+    s.settings.film = FilmModel::wet;
+    s.settings.dip = DipMode::carry;
     s.settings.spacing = 3;  // coarse is enough here, and quick
     return s;
 }
 
-Stroke dry(double seconds) {
-    Stroke s;
-    s.action = Action::dry;
-    s.seconds = seconds;
-    s.trace.flat = false;
-    s.trace.brush = kBrush;
-    s.trace.ink = "carbon";
-    return s;
+Dry dry(double seconds) {
+    return {.seconds = seconds};
 }
 
 double in_hair(const Document& painting, int plane) {
@@ -38,9 +32,9 @@ double in_hair(const Document& painting, int plane) {
 TEST(WetInk, AStopAtAnyMomentLeavesEverythingAsItWas) {
     const Model model = sheet();
     Document painting(model, {.substrate = "bisque"}), undisturbed(model, {.substrate = "bisque"});
-    Stroke slow = wet_line("carbon", true);
+    PaintStroke slow = wet_line("carbon", true);
     slow.trace.samples.back().time += 1;  // the hand rests, the film flows meanwhile
-    for (const Stroke& entry : {wet_line("carbon"), slow, dry(1)}) {
+    for (const JournalEntry& entry : {JournalEntry(wet_line("carbon")), JournalEntry(slow), JournalEntry(dry(1))}) {
         const std::uint64_t before = painting.canvas().hash();
         const double hair = in_hair(painting, 0);
         int asked = 0;
@@ -58,7 +52,7 @@ TEST(WetInk, AStopAtAnyMomentLeavesEverythingAsItWas) {
         painting.paint(entry);
         EXPECT_EQ(painting.canvas().hash(), undisturbed.canvas().hash()) << "what comes after does not know of it";
     }
-    EXPECT_EQ(painting.journal().strokes().size(), 3u);
+    EXPECT_EQ(painting.journal().entries().size(), 3u);
 }
 
 TEST(WetInk, KeepsEachPigmentThroughStrokePickUpFlowDryAndUndo) {
@@ -91,7 +85,7 @@ TEST(WetInk, KeepsEachPigmentThroughStrokePickUpFlowDryAndUndo) {
 TEST(WetInk, ReplaysToTheBitOnAnyNumberOfThreads) {
     const Model model = sheet();
     std::uint64_t hashes[2];
-    std::vector<Stroke> journal;
+    std::vector<JournalEntry> journal;
     for (int i = 0; i < 2; ++i) {
         set_thread_count(i ? 3 : 1);
         Document painting(model, {.substrate = "bisque"});
@@ -100,7 +94,7 @@ TEST(WetInk, ReplaysToTheBitOnAnyNumberOfThreads) {
             painting.paint(dry(1));
             painting.paint(wet_line("gamboge", true));
             painting.paint(dry(2));
-            journal = painting.journal().strokes();
+            journal = painting.journal().entries();
         } else {
             painting.replay(journal);
         }
@@ -110,17 +104,17 @@ TEST(WetInk, ReplaysToTheBitOnAnyNumberOfThreads) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-Stroke erasing(Stroke s) {
-    s.trace.erases = true;
+PaintStroke erasing(PaintStroke s) {
+    s.tool = Tool::eraser;
     return s;
 }
 
 TEST(WetInk, NothingStaysOfAStrokeThatTheSameStrokeErases) {
     const Model model = sheet();
     Document painting(model, {.substrate = "porcelain"});
-    Stroke s = wet_line("carbon");
+    PaintStroke s = wet_line("carbon");
     s.settings.spacing = 1;
-    s.settings.dip = "each";  // with the same hair
+    s.settings.dip = DipMode::each;  // with the same hair
     painting.paint(s);
     const double painted = painting.canvas().total(model.texels, 0);
     const std::uint64_t before = painting.canvas().hash();
@@ -142,11 +136,11 @@ TEST(WetInk, AnEraserThroughAWashLeavesItsEdgesAsDryOnesAre) {
     std::vector<double> ink;
     for (const bool wet : {false, true}) {
         Document painting(model, {.substrate = "porcelain"});
-        Stroke s = wet_line("carbon");
-        if (!wet) s.settings.film = "still";
+        PaintStroke s = wet_line("carbon");
+        if (!wet) s.settings.film = FilmModel::still;
         painting.paint(s);
         const double painted = painting.canvas().total(model.texels, 0);
-        Stroke across = erasing(wet_line("carbon", true));
+        PaintStroke across = erasing(wet_line("carbon", true));
         across.settings.film = s.settings.film;
         painting.paint(across);
         ink.push_back(painting.canvas().total(model.texels, 0) / painted);
@@ -180,18 +174,15 @@ TEST(WetInk, ADrippingTuftLeavesDripsOnAWallAndAFullOneDoesNot) {
     double lowest[2];
     for (int i = 0; i < 2; ++i) {
         Document painting(model, {.substrate = "porcelain"});
-        Stroke line = wet_line("carbon"), dip = line;
-        dip.action = Action::dip;
-        dip.extent.amount = i ? 1.5 : 1;
-        dip.trace.samples.clear();
+        PaintStroke line = wet_line("carbon");
+        const BrushAction dip{.brush = kBrush, .ink = "carbon", .extent = {.amount = i ? 1.5 : 1}};
         line.settings.down = {0, -1, 0};  // the sheet as a wall
         painting.paint(dip);
         const double held = in_hair(painting, 0);
         const double capacity = painting.brush(kBrush).capacity * ink::kFilmPerVolume;
         EXPECT_NEAR(held / capacity, dip.extent.amount, 1e-9);
         painting.paint(line);
-        Stroke wait = dry(2);
-        wait.settings.down = line.settings.down;
+        const Dry wait{.seconds = 2, .down = line.settings.down};
         painting.paint(wait);
         EXPECT_NEAR((painting.canvas().total(model.texels, 0) + in_hair(painting, 0)) / held, 1, 1e-5);
         lowest[i] = 1;
@@ -208,8 +199,8 @@ TEST(WetInk, StillInkIsAsItAlwaysWas) {
     // With all that is wet left out of the settings, nothing flows and no time passes.
     const Model model = sheet();
     Document painting(model);
-    Stroke s = wet_line("carbon");
-    s.settings.film = "still";
+    PaintStroke s = wet_line("carbon");
+    s.settings.film = FilmModel::still;
     painting.paint(s);
     EXPECT_FALSE(painting.canvas().wet());
     const std::uint64_t hash = painting.canvas().hash();
@@ -220,11 +211,11 @@ TEST(WetInk, StillInkIsAsItAlwaysWas) {
 }
 
 TEST(WetInk, SettingsComeBackFromTheirText) {
-    Settings s;
-    s.film = "wet";
+    StrokeSettings s;
+    s.film = FilmModel::wet;
     s.down = {0.5, 0, -0.25};
     EXPECT_EQ(settings_from_json(to_json(s)), s);
-    EXPECT_EQ(settings_from_json("{}").film, "still") << "journals of old";
+    EXPECT_EQ(settings_from_json("{}").film, FilmModel::still) << "journals of old";
     EXPECT_ANY_THROW(settings_from_json(R"({"film": "damp"})"));
     EXPECT_ANY_THROW(settings_from_json(R"({"down": [1, 2]})"));
 }

@@ -104,13 +104,13 @@ std::string Autosave::start(const std::filesystem::path& path, const std::string
                                                       for (const auto& preset : inks_) fresh.put_ink(preset);
                                                       for (const auto& [key, attachment] : attached_)
                                                           fresh.put_attachment(key.first, attachment);
-                                                      fresh.append(painting.journal().strokes());
+                                                      fresh.append(painting.journal().entries());
                                                       if (!painting.journal().empty())
                                                           fresh.save_canvases(painting.all_canvases(),
-                                                                              painting.journal().strokes().back().id);
+                                                                              painting.journal().entries().back().id);
                                                   });
         project_ = std::move(project);
-        on_disk_ = stroke::marks_of(painting.journal().strokes());
+        on_disk_ = stroke::marks_of(painting.journal().entries());
         wanted_.reset();
         pending_.clear();
         trouble_.clear();
@@ -169,9 +169,9 @@ void Autosave::flush() {
     pending_.clear();
 }
 
-void Autosave::append(std::span<const stroke::Stroke> strokes) {
+void Autosave::append(std::span<const stroke::JournalEntry> strokes) {
     project_->append(strokes);
-    for (const stroke::Stroke& s : strokes) on_disk_.push_back(stroke::mark_of(s));
+    for (const stroke::JournalEntry& s : strokes) on_disk_.push_back(stroke::mark_of(s));
 }
 
 void Autosave::retry(const std::string& source, const FileFrame& frame, stroke::Document& painting) {
@@ -180,7 +180,7 @@ void Autosave::retry(const std::string& source, const FileFrame& frame, stroke::
     if (!pending_.empty()) attempt([&] { flush(); });
 }
 
-void Autosave::add(const stroke::Stroke& stroke) {
+void Autosave::add(const stroke::JournalEntry& stroke) {
     if (viewing_) return;
     attempt([&] {
         if (pending_.empty() && trouble_.empty() && project_) {
@@ -197,7 +197,7 @@ void Autosave::add(const stroke::Stroke& stroke) {
     });
 }
 
-void Autosave::catch_up(std::span<const stroke::Stroke> entries) {
+void Autosave::catch_up(std::span<const stroke::JournalEntry> entries) {
     pending_.assign(entries.begin(), entries.end());
     attempt([&] { flush(); });
 }
@@ -243,7 +243,7 @@ void Autosave::remove(std::uint64_t id) {
 }
 
 void Autosave::set_hidden(std::uint64_t id, bool hidden) {
-    for (stroke::Stroke& stroke : pending_)
+    for (stroke::JournalEntry& stroke : pending_)
         if (stroke.id == id) {
             stroke.hidden = hidden;
             return;
@@ -259,7 +259,7 @@ void Autosave::store_canvas(const stroke::Document& painting) {
     if (painting.journal().empty()) return;
     attempt([&] {
         if (project_ && !viewing_ && pending_.empty() && !behind_)
-            project_->save_canvases(painting.all_canvases(), painting.journal().strokes().back().id);
+            project_->save_canvases(painting.all_canvases(), painting.journal().entries().back().id);
     });
 }
 

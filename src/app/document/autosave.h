@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "io/project/project.h"
-#include "stroke/painting/merge.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
+#include "stroke/document/merge.h"
 
 namespace tuft::app {
 
@@ -41,9 +41,9 @@ class Autosave {
 
     /// The presets as a replay of the file will read them; call before a stroke uses them. Empty: none.
     void prepare(stroke::Document& painting, const std::string& brush, const std::string& ink);
-    void add(const stroke::Stroke& stroke);
+    void add(const stroke::JournalEntry& stroke);
     /// Adds what an adopted file does not have yet: these entries, and presets.
-    void catch_up(std::span<const stroke::Stroke> entries);
+    void catch_up(std::span<const stroke::JournalEntry> entries);
     /// Stores what the painting is shown as.
     void store_appearance(const stroke::Document& painting);
     /// Stores what goes along with the work (io/project/attachments.h), in the place of one of that kind and name; and
@@ -84,7 +84,7 @@ class Autosave {
     template <class Action>
     void change(const Action& action);
     void flush();
-    void append(std::span<const stroke::Stroke> strokes);
+    void append(std::span<const stroke::JournalEntry> strokes);
 
     struct Wanted {
         std::filesystem::path path;
@@ -94,7 +94,7 @@ class Autosave {
     };
     std::optional<io::Project> project_;
     std::optional<Wanted> wanted_;
-    std::vector<stroke::Stroke> pending_;
+    std::vector<stroke::JournalEntry> pending_;
     std::vector<stroke::EntryMark> on_disk_;
     std::map<std::string, std::string> brushes_, inks_;                       ///< TOML by name
     std::map<std::pair<std::string, std::string>, io::Attachment> attached_;  ///< by kind and name

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "render/gl/gl_camera.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// \file
 /// Small pictures of the layers of a painting, each alone on the bare model, for the list of layers.

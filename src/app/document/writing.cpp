@@ -29,16 +29,16 @@ double width_mm(const Writing& w) {
     return rounded(w.scale * w.width / kMillimetre, kPlaceStep);
 }
 
-std::vector<stroke::Trace*> pointers(std::vector<stroke::Trace>& traces) {
-    std::vector<stroke::Trace*> all;
+std::vector<stroke::StrokeSamples*> pointers(std::vector<stroke::RecordedStroke>& traces) {
+    std::vector<stroke::StrokeSamples*> all;
     all.reserve(traces.size());
-    for (stroke::Trace& trace : traces) all.push_back(&trace);
+    for (stroke::RecordedStroke& trace : traces) all.push_back(&trace);
     return all;
 }
 
 // Fills and washes are of the model and the palette, not of a drawing that is placed by hand.
-bool belongs_to_brush(const stroke::BrushAction& care) {
-    return stroke::has_brush(care.action) || care.action == stroke::Action::dry;
+bool belongs_to_brush(const stroke::Preparation& preparation) {
+    return std::holds_alternative<stroke::BrushAction>(preparation) || std::holds_alternative<stroke::Dry>(preparation);
 }
 
 }  // namespace
@@ -50,10 +50,11 @@ Writing read_writing(const std::filesystem::path& file) {
         out.notes.push_back(line.starts_with(prefix) ? line.substr(prefix.size()) : line);
     };
     out.traces = io::read_strokes(file, {.note = note});
-    std::erase_if(out.traces, [](const stroke::Trace& t) { return !t.flat || t.on_palette || t.samples.empty(); });
+    std::erase_if(out.traces,
+                  [](const stroke::RecordedStroke& t) { return !t.flat || t.on_palette || t.samples.empty(); });
     if (out.traces.empty())
         throw Error(file.string(), "its strokes lie in space already; only flat writing can be placed");
-    const std::vector<stroke::Trace*> all = pointers(out.traces);
+    const std::vector<stroke::StrokeSamples*> all = pointers(out.traces);
     if (out.traces.front().placed) out.mapping = out.traces.front().placement.mapping;
     stroke::arrange_parts(all);
     const Box box = stroke::extent_of(all);
@@ -110,15 +111,14 @@ bool has_widths(const Writing& w) {
 }
 
 PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placement, const WritingHand& hand) {
-    std::vector<stroke::Trace> traces = w.traces;
-    for (stroke::Trace& trace : traces) {
-        std::erase_if(trace.before, [](const stroke::BrushAction& care) { return !belongs_to_brush(care); });
+    std::vector<stroke::RecordedStroke> traces = w.traces;
+    for (stroke::RecordedStroke& trace : traces) {
+        std::erase_if(trace.before, [](const stroke::Preparation& p) { return !belongs_to_brush(p); });
         trace.placement.mapping = w.mapping;
-        trace.layer.clear();
-        trace.mask.clear();
+        trace.names = {};
         if (!w.own_width) trace.line_width = 0;
         if (!trace.pressed && !(trace.line_width > 0))
-            for (stroke::TraceSample& s : trace.samples) s.pressure = std::min(1.0, s.pressure * hand.pressure);
+            for (stroke::StrokeSample& s : trace.samples) s.pressure = std::min(1.0, s.pressure * hand.pressure);
     }
     PlacedWriting out{.entries = {},
                       .scale = painted_scale(w),
@@ -129,7 +129,7 @@ PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placemen
     options.ink = w.own_ink ? "" : hand.ink;
     options.other_ink = hand.ink;
     stroke::append_entries(out.entries, std::move(traces), options);
-    const std::vector<stroke::Trace*> drawing = stroke::drawing_in(out.entries, true);
+    const std::vector<stroke::StrokeSamples*> drawing = stroke::drawing_in(out.entries, true);
     stroke::place_drawing(drawing, {placement, w.centre, out.scale, w.mirrored});
     const Box box = stroke::extent_of(drawing);
     out.extent = std::max(box.size().x, box.size().y);
@@ -139,18 +139,18 @@ PlacedWriting placed_writing(const Writing& w, const stroke::Placement& placemen
 std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query, const Writing& w,
                                                      const stroke::Placement& placement, std::size_t most) {
     std::size_t all = 0;
-    for (const stroke::Trace& trace : w.traces) all += trace.samples.size();
+    for (const stroke::RecordedStroke& trace : w.traces) all += trace.samples.size();
     const std::size_t step = std::max<std::size_t>(1, all / most);
     // All in one trace: what is found out about the ground is found once.
-    stroke::Trace thin{.placement = placement};
+    stroke::StrokeSamples thin{.placement = placement};
     std::vector<std::size_t> starts;
-    for (const stroke::Trace& trace : w.traces) {
+    for (const stroke::RecordedStroke& trace : w.traces) {
         starts.push_back(thin.samples.size());
         const std::size_t n = trace.samples.size();
         for (std::size_t i = 0; i < n; i += step) thin.samples.push_back(trace.samples[i]);
         if ((n - 1) % step != 0) thin.samples.push_back(trace.samples.back());
     }
-    stroke::transform_trace(thin, w.centre, painted_scale(w), w.mirrored);
+    stroke::transform_samples(thin, w.centre, painted_scale(w), w.mirrored);
     const std::vector<stroke::SurfaceSample> laid = stroke::map_to_surface(query, thin).samples;
     std::vector<std::vector<PreviewPoint>> lines;
     for (std::size_t i = 0, next = 0; i < laid.size(); ++i) {

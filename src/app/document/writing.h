@@ -7,16 +7,17 @@
 
 #include "mesh/query/surface_query.h"
 #include "stroke/drawing/drawing.h"
+#include "stroke/journal/recorded_stroke.h"
 
 /// A drawing or handwriting that waits to be placed on the model.
 namespace tuft::app {
 
 struct Writing {
     std::filesystem::path file;
-    std::vector<stroke::Trace> traces;  ///< flat, metres, in the frame of the file
-    std::vector<std::string> notes;     ///< what of the file is left out, one line each
-    Vec2 centre{0};                     ///< metres, of the ink of all traces
-    double width = 0, height = 0;       ///< metres, likewise, as in the file
+    std::vector<stroke::RecordedStroke> traces;  ///< flat, metres, in the frame of the file
+    std::vector<std::string> notes;              ///< what of the file is left out, one line each
+    Vec2 centre{0};                              ///< metres, of the ink of all traces
+    double width = 0, height = 0;                ///< metres, likewise, as in the file
     double scale = 1;
     double turn = 0;        ///< radians, clockwise as seen
     bool mirrored = false;  ///< flipped from left to right
@@ -56,7 +57,7 @@ struct WritingHand {
 /// Its traces as journal entries at the placement, without the brushes' sizes and their pressures,
 /// which `stroke::choose_brushes` and `stroke::press_to_widths` find.
 struct PlacedWriting {
-    std::vector<stroke::Stroke> entries;
+    std::vector<stroke::JournalEntry> entries;
     double scale = 1;
     double extent = 0;  ///< metres, the larger side as painted
     stroke::BrushFit fit;

@@ -5,7 +5,7 @@
 #include "io/image/image.h"
 #include "io/strokes/inkml.h"
 #include "render/picture/picture.h"
-#include "stroke/journal/journal_traces.h"
+#include "stroke/journal/recorded_journal.h"
 
 namespace fs = std::filesystem;
 
@@ -29,9 +29,9 @@ void export_maps(const ExportModel& command, const stroke::Document& painting, c
 }
 
 void export_strokes(PaintContext& context, const std::filesystem::path& path) {
-    const stroke::JournalTraces written = stroke::traces_of(context.work.document->journal().strokes());
-    if (written.traces.empty()) throw Error("There are no strokes to export yet.");
-    io::write_inkml(path, written.traces, path.stem().string());
+    const stroke::RecordedJournal written = stroke::record(context.work.document->journal().entries());
+    if (written.strokes.empty()) throw Error("There are no strokes to export yet.");
+    io::write_inkml(path, written.strokes, path.stem().string());
     context.outbox.report("Exported " + path.string() +
                           (written.left_out > 0 ? "; changes of layers and masks are not in a stroke file" : ""));
     context.publisher.publish();
@@ -86,7 +86,7 @@ void export_model(PaintContext& context, const ExportModel& command) {
             stroke::prepare_model(*context.work.model->mesh, context.work.model->atlas, options.progress), options));
         resized = std::make_unique<stroke::Document>(*model);
         context.take_presets(*resized, {});
-        resized->replay(context.work.document->journal().strokes(), context.progress("Exporting"));
+        resized->replay(context.work.document->journal().entries(), context.progress("Exporting"));
         painting = resized.get();
     }
     const stroke::Model& m = painting->model();

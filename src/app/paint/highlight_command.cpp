@@ -12,12 +12,15 @@ constexpr double kShowEvery = 0.4;  // seconds between two looks at what was fou
 constexpr std::size_t kOutlinePoints = 1500;
 
 // The entry as it would paint on its own: with a full brush, still, on the first layer, an eraser as if it painted.
-stroke::Stroke alone(stroke::Stroke entry) {
+stroke::JournalEntry alone(stroke::JournalEntry entry) {
     entry.hidden = false;
-    entry.layer = stroke::kFirstLayer;
-    entry.trace.erases = false;
-    entry.settings.dip = "each";
-    entry.settings.film = "still";
+    if (stroke::Fill* fill = entry.as<stroke::Fill>()) fill->layer = stroke::kFirstLayer;
+    stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>();
+    if (!stroke) return entry;
+    stroke->layer = stroke::kFirstLayer;
+    stroke->tool = stroke::Tool::brush;
+    stroke->settings.dip = stroke::DipMode::each;
+    stroke->settings.film = stroke::FilmModel::still;
     return entry;
 }
 
@@ -58,11 +61,11 @@ void highlight_strokes(PaintContext& context, const HighlightStrokes& command, c
     try {
         stroke::Document blank(*context.work.model);
         context.take_presets(blank, {});
-        for (const stroke::Stroke& s : context.work.document->journal().strokes()) {
-            const bool paints = s.action == stroke::Action::stroke || s.action == stroke::Action::fill;
-            if (s.action == stroke::Action::mask)
+        for (const stroke::JournalEntry& s : context.work.document->journal().entries()) {
+            const bool paints = s.as<stroke::PaintStroke>() || s.as<stroke::Fill>();
+            if (s.as<stroke::MaskEdit>())
                 blank.paint(s);
-            else if (paints && wanted.contains(s.id) && s.layer != stroke::kPaletteLayer) {
+            else if (paints && wanted.contains(s.id) && !stroke::on_palette(s)) {
                 blank.paint(alone(s), go_on);
                 add_inked(marks, blank.canvas());
                 blank.canvas().clear();

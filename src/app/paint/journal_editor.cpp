@@ -10,14 +10,14 @@
 namespace tuft::app {
 namespace {
 
-void shift(stroke::Stroke& stroke, const RigidMove& move) {
+void shift(stroke::PaintStroke& stroke, const RigidMove& move) {
     const auto moved = [&](const Vec3& p) { return move.to + move.rotation * (p - move.from); };
     stroke::Placement& place = stroke.trace.placement;
     if (stroke.trace.flat) {
         place = {moved(place.origin), move.rotation * place.right, move.rotation * place.down, place.mapping};
         return;
     }
-    for (stroke::TraceSample& s : stroke.trace.samples) {
+    for (stroke::StrokeSample& s : stroke.trace.samples) {
         s.position = moved(s.position);
         s.rotation = glm::normalize(move.rotation * s.rotation);
     }
@@ -28,17 +28,18 @@ std::string rebrushed(const std::string& before, const std::string& wanted) {
     return brush::name_of({brush::sized_name(wanted).base, brush::sized_name(before).factor});
 }
 
-bool has_ink_of_its_own(const stroke::Stroke& entry) {
-    return !entry.trace.ink.empty() && (entry.action == stroke::Action::stroke || entry.action == stroke::Action::dip ||
-                                        entry.action == stroke::Action::fill);
+bool has_ink_of_its_own(const stroke::JournalEntry& entry) {
+    const stroke::EntryKind kind = stroke::kind_of(entry);
+    return !stroke::ink_of(entry).empty() &&
+           (kind == stroke::EntryKind::stroke || kind == stroke::EntryKind::dip || kind == stroke::EntryKind::fill);
 }
 
 }  // namespace
 
-void JournalEditor::add(stroke::Stroke entry) {
+void JournalEditor::add(stroke::JournalEntry entry) {
     strokes_.cancel();
     context_.work.document->paint(std::move(entry));
-    context_.work.autosave.add(context_.work.document->journal().strokes().back());
+    context_.work.autosave.add(context_.work.document->journal().entries().back());
     context_.history.add({.made = 1});
     context_.publisher.publish(true);
 }
@@ -52,7 +53,7 @@ void JournalEditor::undo() {
         if (!step.changes.empty()) put(step.changes, true);
         if (step.journal) put_journal(step.journal->before);
         for (std::size_t i = 0; i < step.made && context_.work.document->journal().can_undo(); ++i) {
-            const std::uint64_t id = context_.work.document->journal().strokes().back().id;
+            const std::uint64_t id = context_.work.document->journal().entries().back().id;
             context_.work.document->undo();
             context_.work.autosave.remove(id);
         }
@@ -73,7 +74,7 @@ void JournalEditor::redo() {
         if (step.journal) put_journal(step.journal->after);
         for (std::size_t i = 0; i < step.made; ++i)
             if (context_.work.document->redo())
-                context_.work.autosave.add(context_.work.document->journal().strokes().back());
+                context_.work.autosave.add(context_.work.document->journal().entries().back());
         context_.history.done.push_back(std::move(context_.history.undone.back()));
         context_.history.undone.pop_back();
     }
@@ -91,20 +92,22 @@ void JournalEditor::edit(const EditStrokes& command) {
     const bool in_rows =
         command.remove || (command.hidden && !command.brush && !command.ink && !command.move && !command.group);
     std::vector<EntryChange> changes;
-    for (std::size_t i = 0; i < journal.strokes().size(); ++i) {
-        const stroke::Stroke& before = journal.strokes()[i];
+    for (std::size_t i = 0; i < journal.entries().size(); ++i) {
+        const stroke::JournalEntry& before = journal.entries()[i];
         if (!wanted.contains(before.id)) continue;
         EntryChange change{.at = i, .before = before, .after = {}, .in_rows = in_rows};
         if (!command.remove) {
-            stroke::Stroke& after = change.after.emplace(before);
+            stroke::JournalEntry& after = change.after.emplace(before);
             if (command.hidden) after.hidden = *command.hidden;
-            if (command.brush && stroke::has_brush(before.action))
-                after.trace.brush = rebrushed(before.trace.brush, *command.brush);
-            if (command.ink && has_ink_of_its_own(before)) after.trace.ink = *command.ink;
-            if (command.move) shift(after, *command.move);
+            if (command.brush && stroke::has_brush(stroke::kind_of(before)))
+                stroke::set_brush(after, rebrushed(stroke::brush_of(before), *command.brush));
+            if (command.ink && has_ink_of_its_own(before)) stroke::set_ink(after, *command.ink);
+            if (stroke::PaintStroke* stroke = after.as<stroke::PaintStroke>(); stroke && command.move)
+                shift(*stroke, *command.move);
             if (command.group) after.group = group;
-            if (after.trace.brush != before.trace.brush || after.trace.ink != before.trace.ink)
-                context_.work.autosave.prepare(*context_.work.document, after.trace.brush, after.trace.ink);
+            const std::string &brush = stroke::brush_of(after), &ink = stroke::ink_of(after);
+            if (brush != stroke::brush_of(before) || ink != stroke::ink_of(before))
+                context_.work.autosave.prepare(*context_.work.document, brush, ink);
         }
         changes.push_back(std::move(change));
     }
@@ -116,9 +119,9 @@ void JournalEditor::edit(const EditStrokes& command) {
 }
 
 // What is there now goes into the step that undo takes back.
-void JournalEditor::restore(std::vector<stroke::Stroke> entries) {
+void JournalEditor::restore(std::vector<stroke::JournalEntry> entries) {
     strokes_.cancel();
-    std::vector<stroke::Stroke> before = context_.work.document->journal().strokes();
+    std::vector<stroke::JournalEntry> before = context_.work.document->journal().entries();
     put_journal(entries);
     context_.work.document->restore_undone({});
     context_.history.add({.journal = JournalChange{std::move(before), std::move(entries)}});
@@ -126,7 +129,7 @@ void JournalEditor::restore(std::vector<stroke::Stroke> entries) {
 
 // Changes entries, or changes them back, and paints all strokes anew.
 void JournalEditor::put(const std::vector<EntryChange>& changes, bool back) {
-    std::vector<stroke::Stroke> strokes = context_.work.document->journal().strokes();
+    std::vector<stroke::JournalEntry> strokes = context_.work.document->journal().entries();
     const auto at = [&](const EntryChange& change) { return strokes.begin() + static_cast<std::ptrdiff_t>(change.at); };
     if (back)
         for (const EntryChange& change : changes)
@@ -147,13 +150,13 @@ void JournalEditor::put(const std::vector<EntryChange>& changes, bool back) {
         context_.work.autosave.rewrite(context_.work.source, context_.work.frame, *context_.work.document);
 }
 
-void JournalEditor::put_journal(const std::vector<stroke::Stroke>& entries) {
+void JournalEditor::put_journal(const std::vector<stroke::JournalEntry>& entries) {
     repaint(entries);
     context_.work.autosave.rewrite(context_.work.source, context_.work.frame, *context_.work.document);
 }
 
 // Paints all strokes anew beside what is there, then puts it in its place.
-void JournalEditor::repaint(std::vector<stroke::Stroke> strokes) {
+void JournalEditor::repaint(std::vector<stroke::JournalEntry> strokes) {
     stroke::Document& old = *context_.work.document;
     auto painting = std::make_unique<stroke::Document>(*context_.work.model);
     context_.take_presets(*painting, strokes);  // a change may name new ones

@@ -14,19 +14,19 @@ class JournalEditor {
     JournalEditor(PaintContext& context, StrokePainter& strokes) : context_(context), strokes_(strokes) {}
 
     /// An entry that is done at once.
-    void add(stroke::Stroke entry);
+    void add(stroke::JournalEntry entry);
     /// The step before is undone together with the last one.
     void join_last() { context_.history.done.back().joined = true; }
     void undo();
     void redo();
     void edit(const EditStrokes& command);
     /// Puts other entries in the place of the whole journal.
-    void restore(std::vector<stroke::Stroke> entries);
+    void restore(std::vector<stroke::JournalEntry> entries);
 
   private:
     void put(const std::vector<EntryChange>& changes, bool back);
-    void put_journal(const std::vector<stroke::Stroke>& entries);
-    void repaint(std::vector<stroke::Stroke> strokes);
+    void put_journal(const std::vector<stroke::JournalEntry>& entries);
+    void repaint(std::vector<stroke::JournalEntry> strokes);
 
     PaintContext& context_;
     StrokePainter& strokes_;

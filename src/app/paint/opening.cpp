@@ -100,7 +100,7 @@ void carry_strokes(const fs::path& former, PaintWork& work, const ProgressFn& pr
     io::use_presets(project, *work.document);
     work.autosave.take_presets(project);
     work.autosave.take_attachments(project);
-    const std::vector<stroke::Stroke> strokes = project.strokes();
+    const std::vector<stroke::JournalEntry> strokes = project.strokes();
     const std::vector<stroke::StrokeReport> reports = work.document->replay(strokes, progress);
     const mesh::TriangleMesh mesh = project.model().mesh;
     const auto length_of = [&](const std::string& brush) { return work.document->brush(brush).length; };
@@ -175,7 +175,7 @@ PaintWork load_project(const fs::path& path, const fs::path& session, OpenAs as,
     work.texture = std::make_unique<Texture>(*work.document, progress);
     work.pixels = work.texture->pixels();
     project.listen({});
-    std::vector<stroke::EntryMark> marks = stroke::marks_of(work.document->journal().strokes());
+    std::vector<stroke::EntryMark> marks = stroke::marks_of(work.document->journal().entries());
     if (as == OpenAs::view) {
         work.autosave.view(std::move(project), std::move(marks));
     } else if (as == OpenAs::work && why.empty()) {

@@ -22,6 +22,14 @@ Preset named(Preset preset, const std::string& name) {
     return preset;
 }
 
+// Whether its brush is as the entry before left it.
+bool goes_on(const stroke::JournalEntry& entry) {
+    const stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>();
+    const stroke::BrushAction* action = entry.as<stroke::BrushAction>();
+    return (stroke && stroke->settings.dip == stroke::DipMode::carry) ||
+           (action && action->dip == stroke::DipMode::carry);
+}
+
 }  // namespace
 
 void OutsideChanges::look() {
@@ -41,11 +49,11 @@ void OutsideChanges::take() {
     std::optional<io::Project> file = autosave.read_again();
     if (!file) return context_.publisher.publish();
     if (!has_model(*file, *context_.work.model)) return leave_file();
-    const std::vector<stroke::Stroke> theirs = file->strokes();
+    const std::vector<stroke::JournalEntry> theirs = file->strokes();
     std::vector<stroke::EntryMark> marks = stroke::marks_of(theirs);
     const bool same_strokes = marks == autosave.on_disk() && !autosave.behind();
     stroke::MergedJournal merged =
-        stroke::merge_journals(autosave.on_disk(), context_.work.document->journal().strokes(), theirs);
+        stroke::merge_journals(autosave.on_disk(), context_.work.document->journal().entries(), theirs);
     if (!same_strokes) {
         context_.outbox.change([](Update& update) { update.events.from_outside = true; });
     }
@@ -58,7 +66,7 @@ void OutsideChanges::take() {
         autosave.view(std::move(*file), std::move(marks));
     else
         autosave.adopt(std::move(*file), std::move(marks));
-    const std::vector<stroke::Stroke>& now = context_.work.document->journal().strokes();
+    const std::vector<stroke::JournalEntry>& now = context_.work.document->journal().entries();
     if (altered)
         autosave.rewrite(context_.work.source, context_.work.frame, *context_.work.document);
     else if (!viewing)
@@ -86,11 +94,11 @@ void OutsideChanges::paint_merged(const io::Project& file, const stroke::MergedJ
     if (follow(file, merged.entries)) return context_.publisher.publish(true);
     auto painting = fresh();
     const auto own = std::span(merged.entries).subspan(merged.from_theirs);
-    bool whole = merged.altered || std::ranges::any_of(own, &stroke::Stroke::hidden);
+    bool whole = merged.altered || std::ranges::any_of(own, &stroke::JournalEntry::hidden);
     if (!whole) {
         try {
             io::restore_strokes(file, *painting, shown);
-            for (const stroke::Stroke& entry : own) painting->paint(entry, shown);
+            for (const stroke::JournalEntry& entry : own) painting->paint(entry, shown);
         } catch (const Error&) {  // such as on a layer that is locked now
             whole = true;
             painting = fresh();
@@ -98,7 +106,7 @@ void OutsideChanges::paint_merged(const io::Project& file, const stroke::MergedJ
     }
     if (whole) painting->replay(merged.entries, shown);
     io::show_looks(file, *painting);
-    context_.history.reset(painting->journal().strokes().size());
+    context_.history.reset(painting->journal().entries().size());
     for (const stroke::LayerTexels& layer : painting->canvases())
         for (const std::uint32_t slot : layer.canvas->touched_slots()) painting->canvas().mark_dirty(slot);
     context_.replace_document(std::move(painting));
@@ -107,26 +115,26 @@ void OutsideChanges::paint_merged(const io::Project& file, const stroke::MergedJ
 }
 
 // Where they only went on, what they did is done here too.
-bool OutsideChanges::follow(const io::Project& file, std::span<const stroke::Stroke> theirs) {
+bool OutsideChanges::follow(const io::Project& file, std::span<const stroke::JournalEntry> theirs) {
     stroke::Document& painting = *context_.work.document;
-    const std::vector<stroke::Stroke>& mine = painting.journal().strokes();
+    const std::vector<stroke::JournalEntry>& mine = painting.journal().entries();
     const std::size_t n = mine.size();
     if (theirs.size() < n || !std::equal(mine.begin(), mine.end(), theirs.begin(), [](const auto& a, const auto& b) {
             return stroke::mark_of(a) == stroke::mark_of(b);
         }))
         return false;
-    const std::span<const stroke::Stroke> rest = theirs.subspan(n);
+    const std::span<const stroke::JournalEntry> rest = theirs.subspan(n);
     std::set<std::string> brushes, inks;
-    for (const stroke::Stroke& s : rest) {
-        if (!stroke::has_brush(s.action)) continue;
-        if (s.settings.dip == "carry" && !brushes.contains(s.trace.brush) && !painting.held(s.trace.brush))
-            return false;
-        brushes.insert(s.trace.brush);
+    for (const stroke::JournalEntry& s : rest) {
+        if (!stroke::has_brush(stroke::kind_of(s))) continue;
+        const std::string& brush = stroke::brush_of(s);
+        if (goes_on(s) && !brushes.contains(brush) && !painting.held(brush)) return false;
+        brushes.insert(brush);
     }
-    for (const stroke::Stroke& s : rest)
+    for (const stroke::JournalEntry& s : rest)
         for (const std::string& ink : stroke::inks_of(s)) inks.insert(ink);
-    for (const stroke::Stroke& s : mine) {
-        brushes.erase(s.trace.brush);
+    for (const stroke::JournalEntry& s : mine) {
+        brushes.erase(stroke::brush_of(s));
         for (const std::string& ink : stroke::inks_of(s)) inks.erase(ink);
     }
     for (const auto& [name, toml] : file.brushes())

@@ -4,7 +4,7 @@
 
 #include "app/work/paint_context.h"
 #include "io/project/project.h"
-#include "stroke/painting/merge.h"
+#include "stroke/document/merge.h"
 
 namespace tuft::app {
 
@@ -19,7 +19,7 @@ class OutsideChanges {
   private:
     void take();
     void paint_merged(const io::Project& file, const stroke::MergedJournal& merged);
-    bool follow(const io::Project& file, std::span<const stroke::Stroke> theirs);
+    bool follow(const io::Project& file, std::span<const stroke::JournalEntry> theirs);
     void leave_file();
 
     PaintContext& context_;

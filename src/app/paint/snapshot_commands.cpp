@@ -8,7 +8,7 @@
 namespace tuft::app {
 namespace {
 
-std::vector<stroke::Stroke> snapshot_entries(const PaintContext& context, const std::string& id) {
+std::vector<stroke::JournalEntry> snapshot_entries(const PaintContext& context, const std::string& id) {
     const std::optional<io::Attachment> found = context.work.autosave.attachment(io::kSnapshots, id);
     if (!found) throw Error("there is no such snapshot any more");
     return io::unpack_entries(found->bytes, "the snapshot '" + line_of(*found).name + "'");
@@ -21,10 +21,10 @@ void take_snapshot(PaintContext& context, const TakeSnapshot& command) {
     const std::vector<io::Attachment> there = context.work.autosave.attachments(io::kSnapshots);
     if (there.size() >= io::kMostAttachments)
         return context.outbox.report("There are as many snapshots as a project can hold; delete one first.");
-    const std::vector<stroke::Stroke>& entries = context.work.document->journal().strokes();
+    const std::vector<stroke::JournalEntry>& entries = context.work.document->journal().entries();
     SnapshotLine line{.name = command.name, .made = static_cast<std::int64_t>(std::time(nullptr))};
     line.strokes = static_cast<std::size_t>(std::count_if(
-        entries.begin(), entries.end(), [](const auto& s) { return s.action == stroke::Action::stroke; }));
+        entries.begin(), entries.end(), [](const auto& s) { return s.template as<stroke::PaintStroke>() != nullptr; }));
     // Numbers in names sort as they were made.
     const unsigned long last = there.empty() ? 0 : std::strtoul(there.back().name.c_str(), nullptr, 10);
     char id[24];
@@ -45,7 +45,7 @@ void rename_snapshot(PaintContext& context, const RenameSnapshot& command) {
 }
 
 void show_snapshot(PaintContext& context, const ShowSnapshot& command) {
-    const std::vector<stroke::Stroke> entries = snapshot_entries(context, command.id);
+    const std::vector<stroke::JournalEntry> entries = snapshot_entries(context, command.id);
     stroke::Document painting(*context.work.model);
     context.take_presets(painting, entries);
     painting.replay(entries, context.progress("Painting the snapshot"));

@@ -24,13 +24,13 @@ class StrokePainter {
 
   private:
     void load_tip(const BeginStroke& command, std::size_t& made);
-    void add_copies(const stroke::Stroke& original, std::size_t& made);
-    std::vector<stroke::Stroke> entries_of(PaintDrawing& command);
+    void add_copies(const stroke::JournalEntry& original, std::size_t& made);
+    std::vector<stroke::JournalEntry> entries_of(PaintDrawing& command);
 
     PaintContext& context_;
     BeginStroke current_;
-    std::size_t loads_ = 0;                      ///< entries that loaded the brush for the stroke in work
-    std::vector<stroke::Stroke> undone_before_;  ///< what could be redone before them
+    std::size_t loads_ = 0;                            ///< entries that loaded the brush for the stroke in work
+    std::vector<stroke::JournalEntry> undone_before_;  ///< what could be redone before them
     stroke::WidthTables widths_;
 };
 

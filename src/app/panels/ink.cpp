@@ -100,19 +100,19 @@ float part_of_row(Session& s, int n) {
 void care(Session& s) {
     Ui& ui = s.ui;
     const float half = part_of_row(s, 2);
-    const auto act = [&](stroke::Action action, double depth = 1, double side = 0) {
+    const auto act = [&](stroke::EntryKind action, double depth = 1, double side = 0) {
         bring_in_colour(s.colours, s.brush.ink, s.paint_thread.get());
         s.paint_thread->post(ActOnBrush{
             .action = action, .brush = s.brush.preset, .ink = s.brush.ink, .extent = {.depth = depth, .side = side}});
     };
     if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", half))
-        act(stroke::Action::dip, s.brush.dip_depth, s.brush.dip_side);
+        act(stroke::EntryKind::dip, s.brush.dip_depth, s.brush.dip_side);
     ImGui::SameLine();
     if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", half))
-        act(stroke::Action::wipe, s.brush.dip_depth, s.brush.dip_side);
-    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", half)) act(stroke::Action::rinse);
+        act(stroke::EntryKind::wipe, s.brush.dip_depth, s.brush.dip_side);
+    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", half)) act(stroke::EntryKind::rinse);
     ImGui::SameLine();
-    if (ui.button("Comb", "Hair straight and together, the ink stays", half)) act(stroke::Action::reshape);
+    if (ui.button("Comb", "Hair straight and together, the ink stays", half)) act(stroke::EntryKind::reshape);
     ui.slider(
         "How deep", s.brush.dip_depth, 0.05, 1, "%.0f %%",
         "Part of the hair, from the tip. Wipe the tip and dip it into another ink: it is darker than the belly then",
@@ -168,10 +168,10 @@ void ink_section(Session& s) {
               "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
     if (s.brush.wet || s.reported.document.wet) {
         if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0))
-            s.paint_thread->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush.preset, .seconds = 60});
+            s.paint_thread->post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush.preset, .seconds = 60});
         ImGui::SameLine();
         if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(s, 1)))
-            s.paint_thread->post(ActOnBrush{.action = stroke::Action::dry, .brush = s.brush.preset});
+            s.paint_thread->post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush.preset});
     }
     ui.toggle("Don't reload", s.brush.persistent,
               "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");

@@ -15,7 +15,7 @@ constexpr std::size_t kThumbnailStrokes = 300;  // of a group, that its picture 
 using Lines = std::vector<const StrokeLine*>;
 
 bool is_stroke(const StrokeLine& line) {
-    return line.action == stroke::Action::stroke;
+    return line.action == stroke::EntryKind::stroke;
 }
 
 unsigned colour_of(const Session& s, const StrokeLine& line) {
@@ -46,7 +46,7 @@ void draw_entry(const Session& s, const StrokeLine& line, ImVec2 at, float size)
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 middle(at.x + 0.5f * size, at.y + 0.5f * size);
     if (!is_stroke(line)) {
-        const bool inked = line.action == stroke::Action::dip || line.action == stroke::Action::fill;
+        const bool inked = line.action == stroke::EntryKind::dip || line.action == stroke::EntryKind::fill;
         if (inked) draw->AddCircleFilled(middle, 0.24f * size, ink_colour(s.colours, line.ink), 32);
         draw->AddCircle(middle, 0.24f * size, s.ui.faint, 32);
         return;

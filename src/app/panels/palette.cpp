@@ -65,7 +65,7 @@ void palette_panel(Session& s) {
     tool(PaletteTool::pour, "Pour", "Click: a pool of the chosen ink");
     tool(PaletteTool::pick, "Take", "Click: the mixture there becomes an ink of its own");
     if (ui.button("Wash", "Cleans the palette; Undo brings it back", third))
-        s.paint_thread->post(ActOnBrush{.action = stroke::Action::wash});
+        s.paint_thread->post(ActOnBrush{.action = stroke::EntryKind::wash});
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float picture = ImGui::GetContentRegionAvail().x;
     p.x = static_cast<double>(at.x);
@@ -85,7 +85,8 @@ void palette_panel(Session& s) {
     if (p.tool == PaletteTool::pour)
         ui.slider("Pool", p.radius, 0.003, 0.02, "%.0f mm", "How wide, to each side", kMillimetre);
     else if (ui.button("Rinse the brush", "No ink left in it, hair straight and together", 0))
-        s.paint_thread->post(ActOnBrush{.action = stroke::Action::rinse, .brush = s.brush.preset, .ink = s.brush.ink});
+        s.paint_thread->post(
+            ActOnBrush{.action = stroke::EntryKind::rinse, .brush = s.brush.preset, .ink = s.brush.ink});
     ImGui::End();
 }
 

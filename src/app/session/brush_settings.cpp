@@ -97,7 +97,7 @@ void choose_brush(BrushSettings& brush, const PaintThread& work, std::span<const
     for (const auto& [name, model] : memory())
         if (model == work.source() && take(name)) return;
     for (auto line = lines.rbegin(); line != lines.rend(); ++line)
-        if (line->action == stroke::Action::stroke && !line->on_palette && take(line->brush)) return;
+        if (line->action == stroke::EntryKind::stroke && !line->on_palette && take(line->brush)) return;
     take(first_brush(brush.presets, brush.preset, pressure, first_line_width(work.model().mesh->bounds)));
 }
 

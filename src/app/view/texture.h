@@ -9,7 +9,7 @@
 
 #include "ink/composite/composite.h"
 #include "render/gl/gl_scene.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 namespace tuft::app {
 

@@ -279,9 +279,9 @@ void FileDialog::load_sketch() {
     try {
         const Writing drawing = read_writing(file);
         const double span = std::max({drawing.width, drawing.height, 1e-9});
-        for (const stroke::Trace& trace : drawing.traces) {
+        for (const stroke::RecordedStroke& trace : drawing.traces) {
             std::vector<Vec2>& line = sketch_.lines.emplace_back();
-            for (const stroke::TraceSample& s : trace.samples)
+            for (const stroke::StrokeSample& s : trace.samples)
                 line.push_back((Vec2(s.position) - drawing.centre) / span + 0.5);
         }
     } catch (const std::exception&) {

@@ -11,8 +11,8 @@
 #include "brush/tuft/tuft.h"
 #include "io/project/attachments.h"
 #include "render/gl/gl_camera.h"
+#include "stroke/document/document.h"
 #include "stroke/gesture/symmetry.h"
-#include "stroke/painting/painting.h"
 
 /// \file
 /// What the window asks the paint thread to do: a struct for each command. They are done in order.
@@ -36,7 +36,7 @@ struct BeginStroke {
 };
 /// Dips, rinses, wipes or combs a brush, or lets the ink dry.
 struct ActOnBrush {
-    stroke::Action action = stroke::Action::dip;
+    stroke::EntryKind action = stroke::EntryKind::dip;
     std::string brush, ink;
     double seconds = 0;          ///< of drying; 0: until all is dry
     stroke::Extent extent = {};  ///< of a dip or a wipe

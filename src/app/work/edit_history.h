@@ -4,21 +4,21 @@
 #include <optional>
 #include <vector>
 
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 namespace tuft::app {
 
 /// An entry of the journal that was changed, or taken out.
 struct EntryChange {
     std::size_t at = 0;  ///< its place in the journal before
-    stroke::Stroke before;
-    std::optional<stroke::Stroke> after;  ///< none: taken out
-    bool in_rows = false;                 ///< the file's rows can follow it; else it is written anew
+    stroke::JournalEntry before;
+    std::optional<stroke::JournalEntry> after;  ///< none: taken out
+    bool in_rows = false;                       ///< the file's rows can follow it; else it is written anew
 };
 
 /// The whole journal, before and after.
 struct JournalChange {
-    std::vector<stroke::Stroke> before, after;
+    std::vector<stroke::JournalEntry> before, after;
 };
 
 /// What one undo takes back.

@@ -12,7 +12,7 @@ PaintContext::PaintContext(PaintWork open, Outbox& window)
         if (std::find(shipped.begin(), shipped.end(), name) == shipped.end())
             own_inks.push_back(work.document->ink(name));
     outbox.change([&](Update& update) { update.events.own_inks = own_inks; });
-    history.reset(work.document->journal().strokes().size());
+    history.reset(work.document->journal().entries().size());
     publisher.publish_appearance();
     publisher.publish_snapshots();
     publisher.publish(true);
@@ -31,15 +31,15 @@ std::uint32_t PaintContext::layer_of(std::uint32_t requested) const {
     return table.find(table.next_id - 1) ? table.next_id - 1 : table.layers.back().id;
 }
 
-void PaintContext::take_presets(stroke::Document& document, const std::vector<stroke::Stroke>& entries) {
+void PaintContext::take_presets(stroke::Document& document, const std::vector<stroke::JournalEntry>& entries) {
     stroke::Document& own = *work.document;
     document.use_substrate(own.painted_on());
     if (own.has_preview_substrate()) document.preview_substrate(own.substrate());
     for (const ink::Ink& ink : own_inks) document.use_ink(ink);  // also those that no entry uses now
-    for (const std::vector<stroke::Stroke>* of : {&own.journal().strokes(), &entries})
-        for (const stroke::Stroke& s : *of) {
-            if (stroke::has_brush(s.action)) document.use_brush(own.brush(s.trace.brush));
-            if (!s.trace.ink.empty()) document.use_ink(own.ink(s.trace.ink));
+    for (const std::vector<stroke::JournalEntry>* of : {&own.journal().entries(), &entries})
+        for (const stroke::JournalEntry& s : *of) {
+            if (stroke::has_brush(stroke::kind_of(s))) document.use_brush(own.brush(stroke::brush_of(s)));
+            if (const std::string& ink = stroke::ink_of(s); !ink.empty()) document.use_ink(own.ink(ink));
             for (const std::string& ink : stroke::inks_of(s)) document.use_ink(own.ink(ink));
         }
     for (const auto& [name, wanted] : own.recolours()) {

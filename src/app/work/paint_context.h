@@ -28,7 +28,7 @@ struct PaintContext {
     /// The layer itself where `kNewestLayer` stands for it.
     std::uint32_t layer_of(std::uint32_t requested) const;
     /// Gives a document the material and appearance of the work, and the presets that its entries and these use.
-    void take_presets(stroke::Document& document, const std::vector<stroke::Stroke>& entries);
+    void take_presets(stroke::Document& document, const std::vector<stroke::JournalEntry>& entries);
     /// The same model with other strokes on it takes the place of the document.
     void replace_document(std::unique_ptr<stroke::Document> document);
 };

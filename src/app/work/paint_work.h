@@ -7,8 +7,8 @@
 
 #include "app/document/autosave.h"
 #include "app/view/texture.h"
-#include "stroke/painting/fit.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
+#include "stroke/document/fit.h"
 
 namespace tuft::app {
 

@@ -72,10 +72,10 @@ void Publisher::publish_if_due() {
 
 // Entries that are still right stay; ids and order tell.
 void Publisher::update_lines() {
-    const auto& strokes = work_.document->journal().strokes();
+    const auto& strokes = work_.document->journal().entries();
     std::size_t same = 0;
     while (same < lines_.size() && same < strokes.size() && lines_[same].id == strokes[same].id &&
-           lines_[same].brush == strokes[same].trace.brush && lines_[same].ink == strokes[same].trace.ink &&
+           lines_[same].brush == stroke::brush_of(strokes[same]) && lines_[same].ink == stroke::ink_of(strokes[same]) &&
            lines_[same].hidden == strokes[same].hidden && lines_[same].group == strokes[same].group)
         ++same;
     lines_.resize(same);

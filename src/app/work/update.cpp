@@ -4,22 +4,24 @@
 
 namespace tuft::app {
 
-StrokeLine stroke_line(const stroke::Stroke& stroke) {
-    StrokeLine line{.id = stroke.id,
-                    .action = stroke.action,
-                    .brush = stroke.trace.brush,
-                    .ink = stroke.trace.ink,
-                    .label = stroke.trace.label,
-                    .group = stroke.group,
-                    .hidden = stroke.hidden,
-                    .erases = stroke.trace.erases,
-                    .on_palette = stroke.layer == stroke::kPaletteLayer};
-    const auto& samples = stroke.trace.samples;
+StrokeLine stroke_line(const stroke::JournalEntry& entry) {
+    const stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>();
+    StrokeLine line{.id = entry.id,
+                    .action = stroke::kind_of(entry),
+                    .brush = stroke::brush_of(entry),
+                    .ink = stroke::ink_of(entry),
+                    .label = entry.label,
+                    .group = entry.group,
+                    .hidden = entry.hidden,
+                    .erases = stroke && stroke->erases(),
+                    .on_palette = stroke::on_palette(entry)};
+    const bool flat = stroke::samples_of(entry).flat;
+    const std::vector<stroke::StrokeSample>& samples = stroke::samples_of(entry).samples;
     if (samples.empty()) return line;
     Vec3 normal(0);
     Vec3 mean(0);
-    for (const stroke::TraceSample& s : samples) {
-        normal += stroke.trace.flat ? Vec3(0, 0, 1) : glm::normalize(s.rotation) * Vec3(0, 0, 1);
+    for (const stroke::StrokeSample& s : samples) {
+        normal += flat ? Vec3(0, 0, 1) : glm::normalize(s.rotation) * Vec3(0, 0, 1);
         mean += s.position / static_cast<double>(samples.size());
     }
     if (glm::length(normal) < 1e-9) normal = {0, 0, 1};
@@ -28,21 +30,20 @@ StrokeLine stroke_line(const stroke::Stroke& stroke) {
     const Vec3 above = std::abs(normal.z) < 0.95 ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
     Vec3 right = glm::normalize(glm::cross(above, normal));
     Vec3 down = -glm::cross(normal, right);
-    if (stroke.trace.flat) right = {1, 0, 0}, down = {0, 1, 0};
+    if (flat) right = {1, 0, 0}, down = {0, 1, 0};
     double lo_x = 0, hi_x = 0, lo_y = 0, hi_y = 0, lo_z = 1e9, hi_z = -1e9;
     const std::size_t n = std::min<std::size_t>(40, samples.size());
     std::vector<Vec3> points;
     for (std::size_t i = 0; i < n; ++i) {
-        const stroke::TraceSample& s = samples[i * (samples.size() - 1) / std::max<std::size_t>(1, n - 1)];
+        const stroke::StrokeSample& s = samples[i * (samples.size() - 1) / std::max<std::size_t>(1, n - 1)];
         const Vec3 d = s.position - mean;
-        points.emplace_back(glm::dot(d, right), glm::dot(d, down),
-                            stroke.trace.flat ? -s.pressure : glm::dot(d, normal));
+        points.emplace_back(glm::dot(d, right), glm::dot(d, down), flat ? -s.pressure : glm::dot(d, normal));
         lo_x = std::min(lo_x, points.back().x), hi_x = std::max(hi_x, points.back().x);
         lo_y = std::min(lo_y, points.back().y), hi_y = std::max(hi_y, points.back().y);
         lo_z = std::min(lo_z, points.back().z), hi_z = std::max(hi_z, points.back().z);
     }
     const double span = std::max({hi_x - lo_x, hi_y - lo_y, 1e-4});
-    line.flat = stroke.trace.flat;
+    line.flat = flat;
     line.path_centre = Vec2(mean) + Vec2(0.5 * (lo_x + hi_x), 0.5 * (lo_y + hi_y));
     line.path_span = span;
     for (const Vec3& p : points)

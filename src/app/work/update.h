@@ -12,7 +12,7 @@
 #include "app/document/snapshots.h"
 #include "app/document/thumbnails.h"
 #include "app/view/texture.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// \file
 /// What the paint thread reports to the window.
@@ -21,7 +21,7 @@ namespace tuft::app {
 /// A stroke for the list.
 struct StrokeLine {
     std::uint64_t id = 0;
-    stroke::Action action = stroke::Action::stroke;
+    stroke::EntryKind action = stroke::EntryKind::stroke;
     std::string brush, ink, label;
     stroke::EntryGroup group;
     bool hidden = false, erases = false, on_palette = false;
@@ -114,6 +114,6 @@ struct Update {
 };
 
 /// The list entry of a stroke.
-StrokeLine stroke_line(const stroke::Stroke& stroke);
+StrokeLine stroke_line(const stroke::JournalEntry& stroke);
 
 }  // namespace tuft::app

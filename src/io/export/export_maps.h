@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ink/composite/composite.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// Single maps of a decoration as picture files.
 namespace tuft::io {

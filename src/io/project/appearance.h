@@ -1,7 +1,7 @@
 #pragma once
 
 #include "io/project/project.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// How a project's work is shown: kept beside how it was painted.
 namespace tuft::io {

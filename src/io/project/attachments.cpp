@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/project/project_db.h"
+#include "stroke/journal/entry_json.h"
 
 namespace tuft::io {
 namespace {
@@ -25,40 +26,38 @@ struct SnapshotHead {
     std::uint64_t numbers = 0;      ///< of all samples; packed, they fill the rest
 };
 
-nlohmann::json snapshot_json(const stroke::Stroke& s) {
-    const stroke::Trace& t = s.trace;
+nlohmann::json snapshot_json(const stroke::JournalEntry& entry) {
+    const stroke::StrokeSamples& t = stroke::samples_of(entry);
     const stroke::Placement& p = t.placement;
-    return {{"id", s.id},
-            {"brush", t.brush},
-            {"ink", t.ink},
-            {"seed", t.seed},
-            {"label", t.label},
-            {"hidden", s.hidden},
+    return {{"id", entry.id},
+            {"brush", stroke::brush_of(entry)},
+            {"ink", stroke::ink_of(entry)},
+            {"seed", stroke::seed_of(entry)},
+            {"label", entry.label},
+            {"hidden", entry.hidden},
             {"flat", t.flat},
             {"laying", std::string(stroke::surface_mapping_name(p.mapping))},
             {"placement",
              {p.origin.x, p.origin.y, p.origin.z, p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z}},
             {"samples", t.samples.size()},
-            {"entry", stroke::entry_json(s)}};
+            {"entry", stroke::entry_json(entry)}};
 }
 
-stroke::Stroke entry_of(const nlohmann::json& j) {
-    stroke::Stroke s;
-    s.id = j.at("id").get<std::uint64_t>();
-    s.trace.brush = j.at("brush").get<std::string>();
-    s.trace.ink = j.at("ink").get<std::string>();
-    s.trace.seed = j.at("seed").get<std::uint64_t>();
-    s.trace.label = j.at("label").get<std::string>();
-    s.trace.flat = j.at("flat").get<bool>();
+stroke::EntryColumns columns_of(const nlohmann::json& j) {
+    stroke::EntryColumns columns{.id = j.at("id").get<std::uint64_t>(),
+                                 .hidden = j.at("hidden").get<bool>(),
+                                 .brush = j.at("brush").get<std::string>(),
+                                 .ink = j.at("ink").get<std::string>(),
+                                 .label = j.at("label").get<std::string>(),
+                                 .seed = j.at("seed").get<std::uint64_t>(),
+                                 .trace = {.flat = j.at("flat").get<bool>()}};
     const auto mapping = stroke::surface_mapping_named(j.at("laying").get<std::string>());
     const auto p = j.at("placement").get<std::array<double, 9>>();
     if (!mapping || !std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); }))
         throw Error("its place on the model cannot be read");
-    s.trace.placement = {
+    columns.trace.placement = {
         .origin = {p[0], p[1], p[2]}, .right = {p[3], p[4], p[5]}, .down = {p[6], p[7], p[8]}, .mapping = *mapping};
-    stroke::read_entry_json(j.at("entry").get<std::string>(), s);
-    s.hidden = j.at("hidden").get<bool>();
-    return s;
+    return columns;
 }
 
 void append(std::vector<char>& out, const void* data, std::size_t bytes) {
@@ -68,19 +67,19 @@ void append(std::vector<char>& out, const void* data, std::size_t bytes) {
 
 }  // namespace
 
-std::vector<char> pack_entries(std::span<const stroke::Stroke> entries) {
+std::vector<char> pack_entries(std::span<const stroke::JournalEntry> entries) {
     nlohmann::json all = nlohmann::json::array();
     std::vector<double> numbers;
     std::size_t n = 0;
-    for (const stroke::Stroke& s : entries) {
+    for (const stroke::JournalEntry& s : entries) {
         all.push_back(snapshot_json(s));
-        n += s.trace.samples.size();
+        n += stroke::samples_of(s).samples.size();
     }
     // All times, then all x, ...: columns of like numbers compress well.
     numbers.resize(kSampleNumbers * n);
     std::size_t i = 0;
-    for (const stroke::Stroke& s : entries)
-        for (const stroke::TraceSample& t : s.trace.samples) {
+    for (const stroke::JournalEntry& s : entries)
+        for (const stroke::StrokeSample& t : stroke::samples_of(s).samples) {
             const double fields[kSampleNumbers] = {t.time,       t.position.x, t.position.y, t.position.z,
                                                    t.pressure,   t.tilt.x,     t.tilt.y,     t.rotation.w,
                                                    t.rotation.x, t.rotation.y, t.rotation.z};
@@ -102,7 +101,7 @@ std::vector<char> pack_entries(std::span<const stroke::Stroke> entries) {
     return out;
 }
 
-std::vector<stroke::Stroke> unpack_entries(std::span<const char> bytes, const std::string& what) {
+std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, const std::string& what) {
     SnapshotHead head, expected;
     if (bytes.size() < sizeof head) throw Error(what + " is damaged: it ends too soon");
     std::memcpy(&head, bytes.data(), sizeof head);
@@ -120,21 +119,22 @@ std::vector<stroke::Stroke> unpack_entries(std::span<const char> bytes, const st
     if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }))
         throw Error(what + " has numbers that are not finite");
     const std::size_t n = numbers.size() / kSampleNumbers;
-    std::vector<stroke::Stroke> entries;
+    std::vector<stroke::JournalEntry> entries;
     std::size_t at = 0;
     try {
         for (const nlohmann::json& j : nlohmann::json::parse(text)) {
-            stroke::Stroke& s = entries.emplace_back(entry_of(j));
+            stroke::EntryColumns columns = columns_of(j);
             const auto count = j.at("samples").get<std::size_t>();
             if (count > n - at) throw Error("it has more samples than are stored");
             for (std::size_t k = 0; k < count; ++k, ++at) {
                 const auto field = [&](std::size_t f) { return numbers[f * n + at]; };
-                s.trace.samples.push_back({.time = field(0),
-                                           .position = {field(1), field(2), field(3)},
-                                           .pressure = field(4),
-                                           .tilt = {field(5), field(6)},
-                                           .rotation = Quat(field(7), field(8), field(9), field(10))});
+                columns.trace.samples.push_back({.time = field(0),
+                                                 .position = {field(1), field(2), field(3)},
+                                                 .pressure = field(4),
+                                                 .tilt = {field(5), field(6)},
+                                                 .rotation = Quat(field(7), field(8), field(9), field(10))});
             }
+            entries.push_back(stroke::entry_of(std::move(columns), j.at("entry").get<std::string>()));
         }
     } catch (const nlohmann::json::exception&) {
         throw Error(what + " is damaged: an entry cannot be read");

@@ -25,7 +25,7 @@ struct Attachment {
 
 /// Entries of a journal as compressed bytes, and back, every number to the bit. `unpack_entries` throws `Error` naming
 /// `what` for bytes that are damaged, before it takes memory for them.
-std::vector<char> pack_entries(std::span<const stroke::Stroke> entries);
-std::vector<stroke::Stroke> unpack_entries(std::span<const char> bytes, const std::string& what);
+std::vector<char> pack_entries(std::span<const stroke::JournalEntry> entries);
+std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, const std::string& what);
 
 }  // namespace tuft::io

@@ -464,7 +464,7 @@ std::vector<Attachment> Project::attachments(const std::string& kind) const {
     return state_->run([&](SQLite::Database& db) { return load_attachments(db, state_->path, kind); });
 }
 
-void Project::append(std::span<const stroke::Stroke> strokes) {
+void Project::append(std::span<const stroke::JournalEntry> strokes) {
     state_->change([&](SQLite::Database& db) { store_strokes(db, state_->path, strokes); });
 }
 
@@ -501,7 +501,7 @@ void Project::remove(std::uint64_t stroke_id) {
     });
 }
 
-std::vector<stroke::Stroke> Project::strokes() const {
+std::vector<stroke::JournalEntry> Project::strokes() const {
     return state_->run(
         [&](SQLite::Database& db) { return load_strokes(db, state_->path, state_->overseer.progress()); }, true);
 }

@@ -139,12 +139,12 @@ class Project {
     std::vector<Attachment> attachments(const std::string& kind) const;
 
     /// Adds finished strokes after the last one, in one transaction. Their ids must be new.
-    void append(std::span<const stroke::Stroke> strokes);
-    void append(const stroke::Stroke& stroke) { append(std::span(&stroke, 1)); }
+    void append(std::span<const stroke::JournalEntry> strokes);
+    void append(const stroke::JournalEntry& stroke) { append(std::span(&stroke, 1)); }
     void set_hidden(std::uint64_t stroke_id, bool hidden);  ///< forgets texels stored after it or a later one
     void remove(std::uint64_t stroke_id);                   ///< likewise
     /// All strokes in order, every number as it was put in, to the bit.
-    std::vector<stroke::Stroke> strokes() const;
+    std::vector<stroke::JournalEntry> strokes() const;
     std::size_t n_strokes() const;
 
     /// Stores all painted tiles in place of those stored before.

@@ -67,9 +67,10 @@ std::vector<char> get_bytes(SQLite::Database& db, const std::filesystem::path& p
                             std::size_t most);
 
 /// Strokes (project_strokes.cpp). The caller opens the transaction. `load_strokes` throws `Cancelled`.
-void store_strokes(SQLite::Database& db, const std::filesystem::path& path, std::span<const stroke::Stroke> strokes);
-std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path,
-                                         const ProgressFn& progress);
+void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
+                   std::span<const stroke::JournalEntry> strokes);
+std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::filesystem::path& path,
+                                               const ProgressFn& progress);
 
 /// Texels (project_tiles.cpp). The caller opens the transaction.
 struct StoredTexels {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/project/project_db.h"
+#include "stroke/journal/entry_json.h"
 
 namespace tuft::io {
 namespace {
@@ -16,11 +17,11 @@ constexpr std::uintmax_t kLookEvery = std::uintmax_t{64} << 20;  // bytes of sam
 constexpr Packing kSamples{.element = 8, .lag = 1, .level = 6};
 
 /// All times, then all x, ...: columns of like numbers compress well.
-std::vector<double> columns_of(const std::vector<stroke::TraceSample>& samples) {
+std::vector<double> columns_of(const std::vector<stroke::StrokeSample>& samples) {
     const std::size_t n = samples.size();
     std::vector<double> out(kFields * n);
     for (std::size_t i = 0; i < n; ++i) {
-        const stroke::TraceSample& s = samples[i];
+        const stroke::StrokeSample& s = samples[i];
         const std::array<double, kFields> fields{s.time,       s.position.x, s.position.y, s.position.z,
                                                  s.pressure,   s.tilt.x,     s.tilt.y,     s.rotation.w,
                                                  s.rotation.x, s.rotation.y, s.rotation.z};
@@ -29,9 +30,9 @@ std::vector<double> columns_of(const std::vector<stroke::TraceSample>& samples) 
     return out;
 }
 
-std::vector<stroke::TraceSample> samples_of(const std::vector<double>& columns) {
+std::vector<stroke::StrokeSample> samples_of(const std::vector<double>& columns) {
     const std::size_t n = columns.size() / kFields;
-    std::vector<stroke::TraceSample> samples(n);
+    std::vector<stroke::StrokeSample> samples(n);
     for (std::size_t i = 0; i < n; ++i) {
         const auto field = [&](std::size_t f) { return columns[f * n + i]; };
         samples[i] = {.time = field(0),
@@ -47,29 +48,42 @@ std::array<double, 9> numbers_of(const stroke::Placement& p) {
     return {p.origin.x, p.origin.y, p.origin.z, p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z};
 }
 
+// Versions that do not know what the entry says must not read it as something else.
+void raise_format_for(SQLite::Database& db, const stroke::JournalEntry& entry) {
+    const stroke::StrokeSamples& t = stroke::samples_of(entry);
+    const stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>();
+    if (stroke::keeps_texels(stroke::kind_of(entry)) || entry.as<stroke::Fill>() || stroke::mask_of(entry) != 0 ||
+        stroke::layer_of(entry) != stroke::kFirstLayer || (stroke && stroke->erases()))
+        raise_format(db, kLayersFormat);
+    if (stroke::on_palette(entry) || entry.as<stroke::WashPalette>()) raise_format(db, kPaletteFormat);
+    if (t.flat && t.placement.mapping == stroke::SurfaceMapping::drape) raise_format(db, kDrapedFormat);
+    if (!t.stencil.empty()) raise_format(db, kTapedFormat);
+}
+
 }  // namespace
 
-void store_strokes(SQLite::Database& db, const std::filesystem::path& path, std::span<const stroke::Stroke> strokes) {
+void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
+                   std::span<const stroke::JournalEntry> entries) {
     SQLite::Statement insert(db,
                              "INSERT INTO strokes(id, brush, ink, seed, label, settings, hidden, flat, "
                              "laying, placement, sample_count, samples) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-    for (const stroke::Stroke& stroke : strokes) {
-        const stroke::Trace& t = stroke.trace;
+    for (const stroke::JournalEntry& entry : entries) {
+        const stroke::StrokeSamples& t = stroke::samples_of(entry);
         const std::vector<double> columns = columns_of(t.samples);
         const std::array<double, 9> placement = numbers_of(t.placement);
         try {
-            stroke::check_trace(t);
+            stroke::check_samples(t);
         } catch (const Error& error) {
-            throw Error(path.string(), "stroke " + std::to_string(stroke.id) + " is not stored: " + error.what());
+            throw Error(path.string(), "stroke " + std::to_string(entry.id) + " is not stored: " + error.what());
         }
         const std::vector<char> blob = pack(columns.data(), columns.size(), kSamples);
-        insert.bind(1, static_cast<std::int64_t>(stroke.id));
-        insert.bind(2, t.brush);
-        insert.bind(3, t.ink);
-        insert.bind(4, static_cast<std::int64_t>(t.seed));
-        insert.bind(5, t.label);
-        insert.bind(6, stroke::entry_json(stroke));
-        insert.bind(7, stroke.hidden ? 1 : 0);
+        insert.bind(1, static_cast<std::int64_t>(entry.id));
+        insert.bind(2, stroke::brush_of(entry));
+        insert.bind(3, stroke::ink_of(entry));
+        insert.bind(4, static_cast<std::int64_t>(stroke::seed_of(entry)));
+        insert.bind(5, entry.label);
+        insert.bind(6, stroke::entry_json(entry));
+        insert.bind(7, entry.hidden ? 1 : 0);
         insert.bind(8, t.flat ? 1 : 0);
         insert.bind(9, std::string(stroke::surface_mapping_name(t.placement.mapping)));
         insert.bind(10, placement.data(), static_cast<int>(sizeof placement));
@@ -77,43 +91,37 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path, std:
         insert.bind(12, blob.data(), static_cast<int>(blob.size()));
         insert.exec();
         insert.reset();
-        if (stroke::keeps_texels(stroke.action) || stroke.action == stroke::Action::fill || stroke.mask != 0 ||
-            stroke.layer != stroke::kFirstLayer || stroke.trace.erases)
-            raise_format(db, kLayersFormat);
-        if (stroke.layer == stroke::kPaletteLayer || stroke.action == stroke::Action::wash)
-            raise_format(db, kPaletteFormat);
-        if (t.flat && t.placement.mapping == stroke::SurfaceMapping::drape) raise_format(db, kDrapedFormat);
-        if (!t.stencil.empty()) raise_format(db, kTapedFormat);
+        raise_format_for(db, entry);
     }
 }
 
-std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path,
-                                         const ProgressFn& progress) {
+std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::filesystem::path& path,
+                                               const ProgressFn& progress) {
     const std::int64_t n = db.execAndGet("SELECT count(*) FROM strokes").getInt64();
     if (n > kMaxEntries)
         damaged(path, "it has " + std::to_string(n) + " strokes, more than the " + std::to_string(kMaxEntries) +
                           " that are read");
-    check_memory(path, static_cast<std::uintmax_t>(n) * sizeof(stroke::Stroke));
+    check_memory(path, static_cast<std::uintmax_t>(n) * sizeof(stroke::JournalEntry));
     SQLite::Statement select(db,
                              "SELECT id, brush, ink, seed, label, settings, hidden, flat, laying, placement, "
                              "sample_count, samples FROM strokes ORDER BY ordinal");
-    std::vector<stroke::Stroke> strokes;
+    std::vector<stroke::JournalEntry> entries;
     std::uintmax_t bytes = 0, checked = 0;
     while (select.executeStep()) {
         report(progress, "reading", 0);
-        stroke::Stroke stroke;
-        stroke::Trace& t = stroke.trace;
-        stroke.id = static_cast<std::uint64_t>(select.getColumn(0).getInt64());
-        const std::string what = path.string() + ": the project is damaged: stroke " + std::to_string(stroke.id);
+        stroke::EntryColumns columns;
+        stroke::StrokeSamples& t = columns.trace;
+        columns.id = static_cast<std::uint64_t>(select.getColumn(0).getInt64());
+        const std::string what = path.string() + ": the project is damaged: stroke " + std::to_string(columns.id);
         const auto text = [&](int column, std::size_t most, const char* of_what) {
             return text_of(select.getColumn(column), most, path, of_what);
         };
-        t.brush = text(1, kMostWord, "the brush of a stroke");
-        t.ink = text(2, kMostWord, "the ink of a stroke");
-        t.seed = static_cast<std::uint64_t>(select.getColumn(3).getInt64());
-        t.label = text(4, kMostLabel, "the label of a stroke");
-        stroke::read_entry_json(text(5, kMostSettings, "the settings of a stroke"), stroke);
-        stroke.hidden = select.getColumn(6).getInt() != 0;
+        columns.brush = text(1, kMostWord, "the brush of a stroke");
+        columns.ink = text(2, kMostWord, "the ink of a stroke");
+        columns.seed = static_cast<std::uint64_t>(select.getColumn(3).getInt64());
+        columns.label = text(4, kMostLabel, "the label of a stroke");
+        const std::string json = text(5, kMostSettings, "the settings of a stroke");
+        columns.hidden = select.getColumn(6).getInt() != 0;
         t.flat = select.getColumn(7).getInt() != 0;
         const auto mapping = stroke::surface_mapping_named(text(8, kMostWord, "how a stroke is laid"));
         if (!mapping) throw Error(what + " is laid onto the model in a way that is not known");
@@ -132,20 +140,21 @@ std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesy
         const std::size_t numbers = kFields * static_cast<std::size_t>(count);
         check_packed(blob.getBlob(), size, numbers * sizeof(double), what);
         // Its columns, and them as they are unpacked, go again.
-        bytes += sizeof(stroke::TraceSample) * static_cast<std::uintmax_t>(count);
+        bytes += sizeof(stroke::StrokeSample) * static_cast<std::uintmax_t>(count);
         if (const auto now = 3 * numbers * sizeof(double); bytes - checked + now > kLookEvery)
             check_memory(path, bytes - std::exchange(checked, bytes) + now);
-        std::vector<double> columns(numbers);
-        unpack(blob.getBlob(), size, columns.data(), numbers, kSamples, what);
-        t.samples = samples_of(columns);
+        std::vector<double> fields(numbers);
+        unpack(blob.getBlob(), size, fields.data(), numbers, kSamples, what);
+        t.samples = samples_of(fields);
+        stroke::JournalEntry entry = stroke::entry_of(std::move(columns), json);
         try {
-            stroke::check_trace(t);
+            stroke::check_samples(stroke::samples_of(entry));
         } catch (const Error& error) {
             throw Error(what + ": " + error.what());
         }
-        strokes.push_back(std::move(stroke));
+        entries.push_back(std::move(entry));
     }
-    return strokes;
+    return entries;
 }
 
 }  // namespace tuft::io

@@ -6,7 +6,7 @@
 
 #include "core/hash.h"
 #include "io/project/project_db.h"
-#include "stroke/painting/palette.h"
+#include "stroke/document/palette.h"
 
 namespace tuft::io {
 namespace {

@@ -17,7 +17,7 @@ void use_presets(const Project& project, stroke::Document& painting) {
 }
 
 void restore_strokes(const Project& project, stroke::Document& painting, const ProgressFn& progress) {
-    std::vector<stroke::Stroke> strokes;
+    std::vector<stroke::JournalEntry> strokes;
     std::optional<SavedCanvases> saved;
     project.read_together([&] {
         strokes = project.strokes();

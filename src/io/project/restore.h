@@ -2,7 +2,7 @@
 
 #include "core/system/progress.h"
 #include "io/project/project.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// From a project back to the painting it holds.
 namespace tuft::io {

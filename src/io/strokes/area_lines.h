@@ -5,7 +5,7 @@
 
 #include "core/geometry/types.h"
 #include "io/strokes/shape.h"
-#include "stroke/journal/trace.h"
+#include "stroke/journal/recorded_stroke.h"
 
 /// Areas of a drawing as lines of a brush, the way a painter fills a shape: along its outline,
 /// inside it.

@@ -21,8 +21,8 @@ namespace tuft::io {
 namespace {
 
 using pugi::xml_node;
-using stroke::Trace;
-using stroke::TraceSample;
+using stroke::RecordedStroke;
+using stroke::StrokeSample;
 
 constexpr int kMaxNesting = 64;  // groups in groups, references to references
 
@@ -34,7 +34,7 @@ struct State {
 
 /// A trace with what is settled only once the whole file is read.
 struct Draft {
-    Trace trace;
+    RecordedStroke trace;
     bool has_time = false, has_pressure = false, pressure_ranged = true, keeps_clock = false;
     double sample_rate = 0;
     double duration = 0;  ///< seconds, 0 unknown
@@ -59,7 +59,7 @@ class Reader : InkmlText {
     Reader(std::string_view text, const std::string& source, const InkmlOptions& options)
         : InkmlText{text, source}, options_(options) {}
 
-    std::vector<Trace> run() {
+    std::vector<RecordedStroke> run() {
         const auto parsed = document_.load_buffer(content.data(), content.size());
         if (!parsed)
             throw Error(path, line_at(parsed.offset), std::string("not well-formed XML: ") + parsed.description());
@@ -71,7 +71,7 @@ class Reader : InkmlText {
         walk(ink, state, 0);
         if (drafts_.empty()) throw Error(path, "no pen-down traces in the file");
         finish();
-        std::vector<Trace> traces;
+        std::vector<RecordedStroke> traces;
         for (Draft& d : drafts_) traces.push_back(std::move(d.trace));
         return traces;
     }
@@ -255,7 +255,7 @@ class Reader : InkmlText {
         const xml_node first = node.first_child();
         const long line = line_at((first ? first : node).offset_debug());
         const InkmlRows rows = decode_inkml(text_of(node), state.format, options_.max_samples - n_samples_, path, line);
-        std::vector<stroke::BrushAction> before = actions_of(*this, node);
+        std::vector<stroke::Preparation> before = preparations_of(*this, node);
         if (rows.n_rows() == 0 && (before.empty() || !options_.actions)) return;
         n_samples_ += rows.n_rows();
 
@@ -298,8 +298,7 @@ class Reader : InkmlText {
         d.trace.placed = state.marks.placed;
         d.trace.brush = state.marks.brush;
         d.trace.ink = state.marks.ink;
-        d.trace.layer = state.marks.layer;
-        d.trace.mask = state.marks.mask;
+        d.trace.names = {state.marks.layer, state.marks.mask};
         d.trace.stencil = state.marks.stencil;
         d.trace.erases = state.marks.erases;
         d.trace.on_palette = state.marks.on_palette;
@@ -311,7 +310,7 @@ class Reader : InkmlText {
         d.trace.samples.reserve(rows.n_rows());
         for (std::size_t i = 0; i < rows.n_rows(); ++i) {
             const auto get = [&](int k) { return k >= 0 ? rows.at(i, k) : 0.0; };
-            TraceSample s;
+            StrokeSample s;
             s.position = {get(x), get(y), get(z)};
             for (int k = 0; k < 3; ++k)
                 if (std::abs(s.position[k]) > options_.max_extent)
@@ -348,16 +347,16 @@ class Reader : InkmlText {
         double largest = 1;  // of pressures without a range
         for (const Draft& d : drafts_)
             if (!d.pressure_ranged)
-                for (const TraceSample& s : d.trace.samples) largest = std::max(largest, s.pressure);
+                for (const StrokeSample& s : d.trace.samples) largest = std::max(largest, s.pressure);
         for (Draft& d : drafts_) {
             auto& samples = d.trace.samples;
-            for (TraceSample& s : samples)
+            for (StrokeSample& s : samples)
                 s.pressure = std::clamp(s.pressure / (d.pressure_ranged ? 1 : largest), 0.0, 1.0);
             if (samples.empty()) continue;
             set_times(d);
             if (d.trace.flat && !d.has_pressure) default_pressure(d.trace);
             try {
-                stroke::check_trace(d.trace);
+                stroke::check_samples(d.trace);
             } catch (const Error& error) {
                 throw Error(path, d.line, error.what());
             }
@@ -368,13 +367,13 @@ class Reader : InkmlText {
         Box box;
         for (const Draft& d : drafts_)
             if (d.trace.flat)
-                for (const TraceSample& s : d.trace.samples) box.add(s.position);
+                for (const StrokeSample& s : d.trace.samples) box.add(s.position);
         const double width = std::max(box.size().x, 0.05 * box.size().y);
         if (box.empty() || !(width > 0)) return;
         const Vec3 middle = box.centre();
         for (Draft& d : drafts_)
             if (d.trace.flat)
-                for (TraceSample& s : d.trace.samples)
+                for (StrokeSample& s : d.trace.samples)
                     s.position = (options_.flat_width / width) * (s.position - middle);
     }
 
@@ -399,7 +398,7 @@ class Reader : InkmlText {
     }
 
     /// Swells in, tapers out, and is lighter where the pen is fast.
-    void default_pressure(Trace& trace) const {
+    void default_pressure(RecordedStroke& trace) const {
         auto& s = trace.samples;
         const std::size_t n = s.size();
         std::vector<double> along(n, 0);
@@ -432,11 +431,11 @@ class Reader : InkmlText {
 
 }  // namespace
 
-std::vector<Trace> parse_inkml(std::string_view text, const std::string& source, const InkmlOptions& options) {
+std::vector<RecordedStroke> parse_inkml(std::string_view text, const std::string& source, const InkmlOptions& options) {
     return Reader(text, source, options).run();
 }
 
-std::vector<Trace> read_inkml(const std::filesystem::path& path, const InkmlOptions& options) {
+std::vector<RecordedStroke> read_inkml(const std::filesystem::path& path, const InkmlOptions& options) {
     const std::vector<char> bytes = read_file(path, options.max_bytes);
     return parse_inkml({bytes.data(), bytes.size()}, path.string(), options);
 }

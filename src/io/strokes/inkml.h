@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stroke/journal/trace.h"
+#include "stroke/journal/recorded_stroke.h"
 
 /// Stroke files: InkML 1.0 (W3C Recommendation, 20 September 2011).
 namespace tuft::io {
@@ -64,11 +64,11 @@ struct InkmlOptions {
 ///
 /// Throws `Error` with file and line: not well formed, not InkML, no traces, a value that is
 /// no finite number, too few values in a point, a reference to nothing, absurd sizes.
-std::vector<stroke::Trace> read_inkml(const std::filesystem::path& path, const InkmlOptions& options = {});
+std::vector<stroke::RecordedStroke> read_inkml(const std::filesystem::path& path, const InkmlOptions& options = {});
 
 /// The same from text; `source` names it in errors.
-std::vector<stroke::Trace> parse_inkml(std::string_view text, const std::string& source,
-                                       const InkmlOptions& options = {});
+std::vector<stroke::RecordedStroke> parse_inkml(std::string_view text, const std::string& source,
+                                                const InkmlOptions& options = {});
 
 /// How many digits are written.
 enum class Digits {
@@ -81,11 +81,11 @@ enum class Digits {
 
 /// InkML text with explicit values: traces that share a placement, brush, ink and settings form
 /// a `traceGroup`.
-std::string inkml_text(std::span<const stroke::Trace> traces, const std::string& title = {},
+std::string inkml_text(std::span<const stroke::RecordedStroke> traces, const std::string& title = {},
                        Digits digits = Digits::exact);
 
 /// Writes the text atomically.
-void write_inkml(const std::filesystem::path& path, std::span<const stroke::Trace> traces,
+void write_inkml(const std::filesystem::path& path, std::span<const stroke::RecordedStroke> traces,
                  const std::string& title = {}, Digits digits = Digits::exact);
 
 }  // namespace tuft::io

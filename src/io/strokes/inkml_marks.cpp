@@ -56,13 +56,12 @@ std::string name_of(const InkmlText& file, const xml_node& node, std::string_vie
     return std::string(text);
 }
 
-std::string settings_of(const InkmlText& file, const xml_node& node, std::string_view text) {
+stroke::StrokeSettings settings_of(const InkmlText& file, const xml_node& node, std::string_view text) {
     try {
-        stroke::settings_from_json(std::string(text));
+        return stroke::settings_from_json(std::string(text));
     } catch (const Error& e) {
         file.fail(node, e.what());
     }
-    return std::string(text);
 }
 
 bool is_care(std::string_view type) {
@@ -112,7 +111,7 @@ double seconds_of(const InkmlText& file, const xml_node& node, std::string_view 
     return x;
 }
 
-stroke::Extent extent_of(const InkmlText& file, const xml_node& node, stroke::Action action) {
+stroke::Extent extent_of(const InkmlText& file, const xml_node& node, stroke::BrushActionKind kind) {
     stroke::Extent extent;
     const auto read = [&](const char* name, double& value) {
         const std::string_view text = node.attribute(name).value();
@@ -125,7 +124,7 @@ stroke::Extent extent_of(const InkmlText& file, const xml_node& node, stroke::Ac
     read("amount", extent.amount);
     read("side", extent.side);
     try {
-        stroke::check_extent(extent, action);
+        stroke::check_extent(extent, kind);
     } catch (const Error& e) {
         file.fail(node, e.what());
     }
@@ -151,6 +150,21 @@ std::vector<stroke::StencilEdge> stencil_of(const InkmlText& file, const xml_nod
     for (std::size_t i = 0; i < numbers.size(); i += 4)
         stencil.push_back({{numbers[i], numbers[i + 1]}, {numbers[i + 2], numbers[i + 3]}});
     return stencil;
+}
+
+stroke::Preparation preparation_of(const InkmlText& file, const xml_node& node, stroke::EntryKind kind,
+                                   std::string_view text) {
+    if (kind == stroke::EntryKind::dry) return stroke::Dry{.seconds = seconds_of(file, node, text)};
+    if (kind == stroke::EntryKind::wash) return stroke::WashPalette{};
+    if (kind == stroke::EntryKind::fill) {
+        stroke::Fill fill = fill_of(file, node);
+        fill.ink = text;
+        return fill;
+    }
+    stroke::BrushAction action{.kind = stroke::brush_action_of(kind)};
+    if (kind == stroke::EntryKind::dip) action.ink = text;
+    action.extent = extent_of(file, node, action.kind);
+    return action;
 }
 
 }  // namespace
@@ -255,23 +269,16 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
     }
 }
 
-std::vector<stroke::BrushAction> actions_of(const InkmlText& file, const xml_node& trace) {
-    std::vector<stroke::BrushAction> care;
+std::vector<stroke::Preparation> preparations_of(const InkmlText& file, const xml_node& trace) {
+    std::vector<stroke::Preparation> before;
     for (const xml_node& node : trace.children()) {
         if (local_name(node) != "annotation") continue;
         std::string_view type = node.attribute("type").value();
         if (type.rfind("tuft:", 0) != 0 || !is_care(type.substr(5))) continue;
-        type.remove_prefix(5);
         const std::string text = text_of(node);
-        const stroke::Action action = stroke::action_of(std::string(type));
-        stroke::BrushAction& one = care.emplace_back();
-        one.action = action;
-        if (action == stroke::Action::dip || action == stroke::Action::fill) one.ink = trimmed(text);
-        if (action == stroke::Action::fill) one.fill = fill_of(file, node);
-        if (action == stroke::Action::dry) one.seconds = seconds_of(file, node, trimmed(text));
-        one.extent = extent_of(file, node, action);
+        before.push_back(preparation_of(file, node, stroke::entry_kind_of(std::string(type.substr(5))), trimmed(text)));
     }
-    return care;
+    return before;
 }
 
 }  // namespace tuft::io

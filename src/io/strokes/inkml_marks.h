@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stroke/journal/trace.h"
+#include "stroke/journal/recorded_stroke.h"
 
 namespace pugi {
 class xml_node;
@@ -49,14 +49,14 @@ struct InkmlMarks {
     std::string brush, ink, label, layer, mask;
     std::vector<stroke::StencilEdge> stencil;
     std::uint64_t seed = 0;
-    std::string settings;
+    std::optional<stroke::StrokeSettings> settings;
     bool erases = false, on_palette = false, keeps_clock = false;
 };
 
 /// Takes over what the annotations of `parent` say; throws `Error` for what means nothing.
 void apply_marks(const InkmlText& file, InkmlMarks& marks, const pugi::xml_node& parent);
 
-/// What is to be done with the brush before this trace, in the order written.
-std::vector<stroke::BrushAction> actions_of(const InkmlText& file, const pugi::xml_node& trace);
+/// What is to be done before this trace, in the order written.
+std::vector<stroke::Preparation> preparations_of(const InkmlText& file, const pugi::xml_node& trace);
 
 }  // namespace tuft::io

@@ -5,20 +5,20 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/overloaded.h"
 #include "core/system/files.h"
 #include "core/text/units.h"
 #include "io/strokes/inkml.h"
-#include "stroke/journal/journal.h"
 
 namespace tuft::io {
 
 namespace {
 
-using stroke::Trace;
+using stroke::RecordedStroke;
 
 enum class Kind { flat, leaned, space };
 
-Kind kind_of(const Trace& trace) {
+Kind kind_of(const RecordedStroke& trace) {
     if (!trace.flat) return Kind::space;
     const bool leans =
         std::any_of(trace.samples.begin(), trace.samples.end(), [](const auto& s) { return s.tilt != Vec2{0}; });
@@ -108,11 +108,11 @@ std::string fill_attributes(const stroke::Fill& fill, const Style& style) {
     return out;
 }
 
-bool same_place(const Trace& a, const Trace& b) {
-    return a.flat == b.flat && a.brush == b.brush && a.ink == b.ink && a.layer == b.layer && a.mask == b.mask &&
-           a.erases == b.erases && a.on_palette == b.on_palette && a.settings == b.settings &&
-           a.placement.origin == b.placement.origin && a.placement.right == b.placement.right &&
-           a.placement.down == b.placement.down && a.placement.mapping == b.placement.mapping;
+bool same_place(const RecordedStroke& a, const RecordedStroke& b) {
+    return a.flat == b.flat && a.brush == b.brush && a.ink == b.ink && a.names == b.names && a.erases == b.erases &&
+           a.on_palette == b.on_palette && a.settings == b.settings && a.placement.origin == b.placement.origin &&
+           a.placement.right == b.placement.right && a.placement.down == b.placement.down &&
+           a.placement.mapping == b.placement.mapping;
 }
 
 void add_format(std::string& out, Kind kind, const Style& style) {
@@ -136,7 +136,7 @@ void add_format(std::string& out, Kind kind, const Style& style) {
                        name_of(kind));
 }
 
-void add_sample(std::string& out, const stroke::TraceSample& s, Kind kind, const Style& style) {
+void add_sample(std::string& out, const stroke::StrokeSample& s, Kind kind, const Style& style) {
     const int decimals = kind == Kind::space ? 7 : 3;
     const auto add = [&](double x, int places) {
         out += ' ';
@@ -153,19 +153,32 @@ void add_sample(std::string& out, const stroke::TraceSample& s, Kind kind, const
         for (const double q : {s.rotation.w, s.rotation.x, s.rotation.y, s.rotation.z}) add(q, 10);
 }
 
-void add_trace(std::string& out, const Trace& trace, Kind kind, const Style& style) {
+std::string preparation_text(const stroke::Preparation& preparation, const Style& style) {
+    const auto part = [](const char* name, double value, double usual = 1) {
+        return value == usual ? std::string() : fmt::format(" {}=\"{}\"", name, value);
+    };
+    std::string attributes, text;
+    std::visit(Overloaded{[&](const stroke::BrushAction& action) {
+                              const stroke::Extent& extent = action.extent;
+                              attributes = part("depth", extent.depth) + part("amount", extent.amount) +
+                                           part("side", extent.side, 0);
+                              text = escaped(action.ink);
+                          },
+                          [&](const stroke::Dry& dry) { text = dry.seconds > 0 ? fmt::format("{}", dry.seconds) : ""; },
+                          [](const stroke::WashPalette&) {},
+                          [&](const stroke::Fill& fill) {
+                              attributes = fill_attributes(fill, style);
+                              text = escaped(fill.ink);
+                          }},
+               preparation);
+    return fmt::format("      <annotation type=\"tuft:{}\"{}>{}</annotation>\n",
+                       stroke::name_of(stroke::kind_of(preparation)), attributes, text);
+}
+
+void add_trace(std::string& out, const RecordedStroke& trace, Kind kind, const Style& style) {
     out += fmt::format("    <trace contextRef=\"#{}\">\n", name_of(kind));
     add_annotation(out, "      ", "label", trace.label);
-    for (const stroke::BrushAction& care : trace.before) {
-        const auto part = [](const char* name, double value, double usual = 1) {
-            return value == usual ? std::string() : fmt::format(" {}=\"{}\"", name, value);
-        };
-        out += fmt::format("      <annotation type=\"tuft:{}\"{}{}{}{}>{}</annotation>\n", stroke::name_of(care.action),
-                           care.action == stroke::Action::fill ? fill_attributes(care.fill, style) : "",
-                           part("depth", care.extent.depth), part("amount", care.extent.amount),
-                           part("side", care.extent.side, 0),
-                           care.seconds > 0 ? fmt::format("{}", care.seconds) : escaped(care.ink));
-    }
+    for (const stroke::Preparation& preparation : trace.before) out += preparation_text(preparation, style);
     if (!trace.stencil.empty()) {
         std::string stencil;
         for (const stroke::StencilEdge& e : trace.stencil)
@@ -182,12 +195,12 @@ void add_trace(std::string& out, const Trace& trace, Kind kind, const Style& sty
     out += "\n    </trace>\n";
 }
 
-void add_group_marks(std::string& out, const Trace& first, const Style& style) {
+void add_group_marks(std::string& out, const RecordedStroke& first, const Style& style) {
     add_annotation(out, "    ", "brush", first.brush);
     add_annotation(out, "    ", "ink", first.ink);
-    add_annotation(out, "    ", "layer", first.layer);
-    add_annotation(out, "    ", "mask", first.mask);
-    add_annotation(out, "    ", "settings", first.settings);
+    add_annotation(out, "    ", "layer", first.names.layer);
+    add_annotation(out, "    ", "mask", first.names.mask);
+    if (first.settings) add_annotation(out, "    ", "settings", stroke::to_json(*first.settings));
     if (first.erases) add_annotation(out, "    ", "tool", "eraser");
     if (first.on_palette) add_annotation(out, "    ", "on", "palette");
     if (!first.flat) return;
@@ -199,7 +212,7 @@ void add_group_marks(std::string& out, const Trace& first, const Style& style) {
 
 }  // namespace
 
-std::string inkml_text(std::span<const Trace> traces, const std::string& title, Digits digits) {
+std::string inkml_text(std::span<const RecordedStroke> traces, const std::string& title, Digits digits) {
     const Style style = style_of(digits);
     std::string out =
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -207,11 +220,11 @@ std::string inkml_text(std::span<const Trace> traces, const std::string& title, 
     if (!title.empty()) out += fmt::format("  <annotation type=\"title\">{}</annotation>\n", escaped(title));
     out += "  <definitions>\n";
     for (const Kind kind : {Kind::flat, Kind::leaned, Kind::space})
-        if (std::any_of(traces.begin(), traces.end(), [&](const Trace& t) { return kind_of(t) == kind; }))
+        if (std::any_of(traces.begin(), traces.end(), [&](const RecordedStroke& t) { return kind_of(t) == kind; }))
             add_format(out, kind, style);
     out += "  </definitions>\n";
     for (std::size_t i = 0; i < traces.size();) {
-        const Trace& first = traces[i];
+        const RecordedStroke& first = traces[i];
         out += "  <traceGroup>\n";
         add_group_marks(out, first, style);
         for (; i < traces.size() && same_place(first, traces[i]); ++i)
@@ -222,7 +235,7 @@ std::string inkml_text(std::span<const Trace> traces, const std::string& title, 
     return out;
 }
 
-void write_inkml(const std::filesystem::path& path, std::span<const Trace> traces, const std::string& title,
+void write_inkml(const std::filesystem::path& path, std::span<const RecordedStroke> traces, const std::string& title,
                  Digits digits) {
     const std::string text = inkml_text(traces, title, digits);
     write_file(path, text.data(), text.size());

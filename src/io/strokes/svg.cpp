@@ -572,7 +572,7 @@ class Drawing {
 constexpr double kFuller = 1.3;  // than a corner is wide: a tuft that runs into one, on stencil edge
 
 // Where a line has a width, pressures say which part of it is drawn.
-void give_width(stroke::Trace& trace, const Drawn& drawn, double full) {
+void give_width(stroke::RecordedStroke& trace, const Drawn& drawn, double full) {
     trace.line_width = drawn.width;
     if (drawn.width <= 0) return;
     double whole = 0, along = 0;
@@ -587,7 +587,8 @@ void give_width(stroke::Trace& trace, const Drawn& drawn, double full) {
 
 }  // namespace
 
-std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& source, const SvgOptions& options) {
+std::vector<stroke::RecordedStroke> parse_svg(std::string_view text, const std::string& source,
+                                              const SvgOptions& options) {
     pugi::xml_document document;
     const auto parsed = document.load_buffer(text.data(), text.size());
     if (!parsed) throw Error(source, std::string("not well formed: ") + parsed.description());
@@ -614,7 +615,7 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
         ink << "</trace>";
     }
     ink << "</ink>";
-    std::vector<stroke::Trace> traces = parse_inkml(ink.str(), source, options.ink);
+    std::vector<stroke::RecordedStroke> traces = parse_inkml(ink.str(), source, options.ink);
     for (std::size_t i = 0; i < traces.size(); ++i) {
         give_width(traces[i], drawing.lines().at(i), options.ink.flat_pressure);
         traces[i].stencil = drawing.lines().at(i).stencil;
@@ -622,12 +623,12 @@ std::vector<stroke::Trace> parse_svg(std::string_view text, const std::string& s
     return traces;
 }
 
-std::vector<stroke::Trace> read_svg(const std::filesystem::path& path, const SvgOptions& options) {
+std::vector<stroke::RecordedStroke> read_svg(const std::filesystem::path& path, const SvgOptions& options) {
     const std::vector<char> bytes = read_file(path, options.ink.max_bytes);
     return parse_svg({bytes.data(), bytes.size()}, path.string(), options);
 }
 
-std::vector<stroke::Trace> read_strokes(const std::filesystem::path& path, const InkmlOptions& options) {
+std::vector<stroke::RecordedStroke> read_strokes(const std::filesystem::path& path, const InkmlOptions& options) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

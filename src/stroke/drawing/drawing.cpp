@@ -22,9 +22,8 @@ bool same_place(const Placement& a, const Placement& b) {
 }
 
 /// Whether the hand presses as the drawing's line widths say.
-bool has_width(const Stroke& s) {
-    return s.action == Action::stroke && s.trace.flat && !s.trace.pressed && s.trace.line_width > 0 &&
-           s.settings.pressure == "none";
+bool has_width(const PaintStroke& s) {
+    return s.trace.flat && !s.trace.pressed && s.trace.line_width > 0 && s.settings.pressure == PressureFrom::none;
 }
 
 double film_of(const BrushFit& fit, const std::string& ink) {
@@ -50,8 +49,8 @@ Vec3 upright_right(const Vec3& n) {
     return std::abs(n.z) < kLies ? glm::normalize(glm::cross(Vec3{0, 0, 1}, n)) : make_frame(Vec3{0}, n).t;
 }
 
-void transform_trace(Trace& trace, const Vec2& centre, double scale, bool mirrored) {
-    for (TraceSample& sample : trace.samples) {
+void transform_samples(StrokeSamples& trace, const Vec2& centre, double scale, bool mirrored) {
+    for (StrokeSample& sample : trace.samples) {
         sample.position = scale * (sample.position - Vec3(centre, 0));
         sample.time *= scale;
     }
@@ -59,13 +58,13 @@ void transform_trace(Trace& trace, const Vec2& centre, double scale, bool mirror
         for (Vec2* end : {&edge.from, &edge.to}) *end = scale * (*end - centre);
     trace.line_width *= scale;
     if (!mirrored) return;
-    for (TraceSample& sample : trace.samples) sample.position.x *= -1, sample.tilt.x *= -1;
+    for (StrokeSample& sample : trace.samples) sample.position.x *= -1, sample.tilt.x *= -1;
     for (StencilEdge& edge : trace.stencil) edge = {Vec2(-edge.to.x, edge.to.y), Vec2(-edge.from.x, edge.from.y)};
 }
 
-Box extent_of(std::span<Trace* const> drawing) {
+Box extent_of(std::span<StrokeSamples* const> drawing) {
     Box box;
-    for (const Trace* trace : drawing) add_extent(box, *trace);
+    for (const StrokeSamples* trace : drawing) add_extent(box, *trace);
     return box;
 }
 
@@ -73,16 +72,16 @@ double width_of(const Box& extent) {
     return std::max(extent.size().x, 0.05 * extent.size().y);
 }
 
-void arrange_parts(std::span<Trace* const> drawing) {
+void arrange_parts(std::span<StrokeSamples* const> drawing) {
     double edge = 0;
     for (std::size_t i = 0; i < drawing.size();) {
         std::size_t end = i;
         while (end < drawing.size() && same_place(drawing[end]->placement, drawing[i]->placement)) ++end;
-        const std::span<Trace* const> part = drawing.subspan(i, end - i);
+        const std::span<StrokeSamples* const> part = drawing.subspan(i, end - i);
         const Box box = extent_of(part);
         const double shift = i == 0 ? 0 : edge - box.lo.x + kPartGap * std::max(box.size().x, box.size().y);
         if (shift != 0)
-            for (Trace* trace : part) transform_trace(*trace, {-shift, 0}, 1);
+            for (StrokeSamples* trace : part) transform_samples(*trace, {-shift, 0}, 1);
         edge = box.hi.x + shift;
         i = end;
     }
@@ -108,16 +107,18 @@ double turn_of(const Vec3& normal, const Vec3& upright, const Vec3& right) {
     return std::atan2(-glm::dot(right, down), glm::dot(right, upright));
 }
 
-std::vector<Trace*> drawing_in(std::vector<Stroke>& entries, bool all) {
-    std::vector<Trace*> drawing;
-    for (Stroke& s : entries)
-        if (s.layer != kPaletteLayer && s.trace.flat && (all || !s.trace.placed)) drawing.push_back(&s.trace);
+std::vector<StrokeSamples*> drawing_in(std::vector<JournalEntry>& entries, bool all) {
+    std::vector<StrokeSamples*> drawing;
+    for (JournalEntry& entry : entries) {
+        PaintStroke* s = entry.as<PaintStroke>();
+        if (s && s->layer != kPaletteLayer && s->trace.flat && (all || !s->trace.placed)) drawing.push_back(&s->trace);
+    }
     return drawing;
 }
 
-void place_drawing(std::span<Trace* const> drawing, const DrawingPlace& place) {
-    for (Trace* trace : drawing) {
-        transform_trace(*trace, place.centre, place.scale, place.mirrored);
+void place_drawing(std::span<StrokeSamples* const> drawing, const DrawingPlace& place) {
+    for (StrokeSamples* trace : drawing) {
+        transform_samples(*trace, place.centre, place.scale, place.mirrored);
         trace->placement.origin = place.placement.origin;
         trace->placement.right = place.placement.right;
         trace->placement.down = place.placement.down;
@@ -125,80 +126,91 @@ void place_drawing(std::span<Trace* const> drawing, const DrawingPlace& place) {
     }
 }
 
-void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawing, double scale, double extent,
-                    const BrushFit& fit, WidthTables& widths) {
-    // What is done with a brush before a stroke is done with the brush of that stroke.
-    const std::unordered_set<const Trace*> among(drawing.begin(), drawing.end());
-    std::string own, sized;
-    for (auto s = entries.rbegin(); s != entries.rend(); ++s) {
-        Trace& trace = s->trace;
-        if (s->action == Action::stroke && s->layer != kPaletteLayer) {
-            own = sized = trace.brush;
-            const bool placed = among.contains(&trace);
-            if (own.empty() && !fit.otherwise.empty())
-                sized = fit.otherwise;
-            else if (own.empty() && placed)
-                sized = brush::name_of({kDefaultBrush, std::min(1.0, extent / kWriting)});
-            else if (own.empty())
-                sized = kDefaultBrush;
-            else if (fit.grow && placed) {
-                const brush::SizedName name = brush::sized_name(own);
-                sized = brush::name_of({name.base, name.factor * scale});
-            }
-            if (fit.fit && has_width(*s)) {
-                // The line says how large the brush is, not the size that the brush was in.
-                const std::string base = brush::sized_name(sized).base;
-                const double length = length_of(trace),
-                             speed = length / std::max(trace.samples.back().time - trace.samples.front().time, 1e-9);
-                sized = brush_for_line(base, widths, trace.line_width, s->settings.endless ? 0 : length,
-                                       film_of(fit, trace.ink), speed);
-            }
-            trace.brush = sized;
-        } else if (trace.brush == own) {
-            trace.brush = sized;
-        }
+namespace {
+
+/// The brush that a stroke is painted with, in the size that fits it. `placed`: it is part of a drawing that has been
+/// placed with `scale` and is `extent` metres large now.
+std::string sized_brush(const PaintStroke& s, bool placed, double scale, double extent, const BrushFit& fit,
+                        WidthTables& widths) {
+    std::string sized = s.brush;
+    if (sized.empty() && !fit.otherwise.empty())
+        sized = fit.otherwise;
+    else if (sized.empty() && placed)
+        sized = brush::name_of({kDefaultBrush, std::min(1.0, extent / kWriting)});
+    else if (sized.empty())
+        sized = kDefaultBrush;
+    else if (fit.grow && placed) {
+        const brush::SizedName name = brush::sized_name(sized);
+        sized = brush::name_of({name.base, name.factor * scale});
     }
-    for (Stroke& s : entries)
-        if (s.trace.brush.empty() && has_brush(s.action))
-            s.trace.brush = fit.otherwise.empty() ? kDefaultBrush : fit.otherwise;
+    if (!fit.fit || !has_width(s)) return sized;
+    // The line says how large the brush is, not the size that the brush was in.
+    const std::vector<StrokeSample>& samples = s.trace.samples;
+    const double length = length_of(s.trace),
+                 speed = length / std::max(samples.back().time - samples.front().time, 1e-9);
+    return brush_for_line(brush::sized_name(sized).base, widths, s.trace.line_width, s.settings.endless ? 0 : length,
+                          film_of(fit, s.ink), speed);
 }
 
-void redip_long_lines(std::vector<Stroke>& entries, const BrushFit& fit, WidthTables& widths) {
+}  // namespace
+
+void choose_brushes(std::vector<JournalEntry>& entries, std::span<StrokeSamples* const> drawing, double scale,
+                    double extent, const BrushFit& fit, WidthTables& widths) {
+    // What is done with a brush before a stroke is done with the brush of that stroke.
+    const std::unordered_set<const StrokeSamples*> among(drawing.begin(), drawing.end());
+    std::string own, sized;
+    for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
+        PaintStroke* s = entry->as<PaintStroke>();
+        if (s && s->layer != kPaletteLayer) {
+            own = s->brush;
+            s->brush = sized = sized_brush(*s, among.contains(&s->trace), scale, extent, fit, widths);
+        } else if (brush_of(*entry) == own) {
+            set_brush(*entry, sized);
+        }
+    }
+    for (JournalEntry& entry : entries)
+        if (has_brush(kind_of(entry)) && brush_of(entry).empty())
+            set_brush(entry, fit.otherwise.empty() ? kDefaultBrush : fit.otherwise);
+}
+
+void redip_long_lines(std::vector<JournalEntry>& entries, const BrushFit& fit, WidthTables& widths) {
     constexpr double kMargin = 1.1;  // of both ends that lie over each other
-    std::vector<Stroke> out;
+    std::vector<JournalEntry> out;
     out.reserve(entries.size());
-    for (Stroke& s : entries) {
-        if (!has_width(s) || s.settings.dip != "each" || s.settings.endless || s.trace.erases) {
-            out.push_back(std::move(s));
+    for (JournalEntry& entry : entries) {
+        PaintStroke* s = entry.as<PaintStroke>();
+        if (!s || !has_width(*s) || s->settings.dip != DipMode::each || s->settings.endless || s->erases()) {
+            out.push_back(std::move(entry));
             continue;
         }
-        const double width = s.trace.line_width, film = film_of(fit, s.trace.ink);
-        pace_line(s.trace, widths.preset(s.trace.brush), film);
-        const double longest = whole_length(widths.preset(s.trace.brush), width, film);
-        Stroke piece = s;
-        for (Trace& trace : cut_line(s.trace, longest, kMargin * 2 * line_end(width))) {
-            piece.trace = std::move(trace);
-            out.push_back(piece);
+        const double width = s->trace.line_width, film = film_of(fit, s->ink);
+        pace_line(s->trace, widths.preset(s->brush), film);
+        const double longest = whole_length(widths.preset(s->brush), width, film);
+        for (StrokeSamples& piece : cut_line(s->trace, longest, kMargin * 2 * line_end(width))) {
+            out.push_back(entry);
+            out.back().as<PaintStroke>()->trace = std::move(piece);
         }
     }
     entries = std::move(out);
 }
 
-WidthMismatch press_to_widths(std::vector<Stroke>& entries, WidthTables& tables) {
+WidthMismatch press_to_widths(std::vector<JournalEntry>& entries, WidthTables& tables) {
     WidthMismatch mismatch{.least = 1e30};
-    std::vector<Trace*> drawn;
-    for (Stroke& s : entries) {
-        if (!has_width(s)) continue;
-        const double width = s.trace.line_width;
-        const LineWidths& widths = tables.of(s.trace.brush);
-        draw_to_width(s.trace, widths);
-        drawn.push_back(&s.trace);
+    std::vector<PaintStroke*> drawn;
+    for (JournalEntry& entry : entries) {
+        PaintStroke* s = entry.as<PaintStroke>();
+        if (!s || !has_width(*s)) continue;
+        const double width = s->trace.line_width;
+        const LineWidths& widths = tables.of(s->brush);
+        draw_to_width(s->trace, widths);
+        drawn.push_back(s);
         if (width >= widths.least() && width <= widths.most()) continue;
-        mismatch = {s.trace.brush, std::min(mismatch.least, width), std::max(mismatch.most, width), widths.least(),
+        mismatch = {s->brush, std::min(mismatch.least, width), std::max(mismatch.most, width), widths.least(),
                     widths.most()};
     }
     fit_trajectory(drawn, tables);
-    for (Stroke& s : entries) s.trace.line_width = 0;
+    for (JournalEntry& entry : entries)
+        if (PaintStroke* s = entry.as<PaintStroke>()) s->trace.line_width = 0;
     return mismatch;
 }
 

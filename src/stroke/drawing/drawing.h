@@ -20,10 +20,10 @@ inline constexpr const char* kDefaultBrush = "wolf-medium";
 /// samples and stencil edges. The line width grows by `scale`; so do the times, which keeps the
 /// hand's speed. `mirrored` then flips x: what was painted still lies on the inner side of its
 /// stencil. Precondition: scale > 0.
-void transform_trace(Trace& trace, const Vec2& centre, double scale, bool mirrored = false);
+void transform_samples(StrokeSamples& trace, const Vec2& centre, double scale, bool mirrored = false);
 
 /// Bounds of the ink of several traces, metres, their own frames taken as one (`add_extent`).
-Box extent_of(std::span<Trace* const> drawing);
+Box extent_of(std::span<StrokeSamples* const> drawing);
 
 /// Width in metres by which the scale of a drawing is said: of its bounds; of what is next to no
 /// width, a twentieth of its height.
@@ -32,7 +32,7 @@ double width_of(const Box& extent);
 /// Moves parts that their file puts at different places, such as characters round a bowl, beside
 /// each other from left to right: at one place they would cover each other. The gap is 0.15 of a
 /// part's larger side. Traces that follow each other with the same placement are one part.
-void arrange_parts(std::span<Trace* const> drawing);
+void arrange_parts(std::span<StrokeSamples* const> drawing);
 
 /// The placement of a drawing at a point of the surface with the unit normal `normal`: upright as
 /// seen by a person who stands before the surface, and with +x to the right where it lies flat;
@@ -74,23 +74,23 @@ struct DrawingPlace {
 
 /// Pointers to the traces of these entries that are flat strokes of the model and have no place of
 /// their own; with `all` also those that have one.
-std::vector<Trace*> drawing_in(std::vector<Stroke>& entries, bool all);
+std::vector<StrokeSamples*> drawing_in(std::vector<JournalEntry>& entries, bool all);
 
-/// Places a drawing: transforms its traces (`transform_trace`) and gives them origin, right and
+/// Places a drawing: transforms its traces (`transform_samples`) and gives them origin, right and
 /// down of the placement. Each trace keeps its mapping.
-void place_drawing(std::span<Trace* const> drawing, const DrawingPlace& place);
+void place_drawing(std::span<StrokeSamples* const> drawing, const DrawingPlace& place);
 
 /// Replaces lines with a width that need more ink than their brush holds by pieces of them, each
 /// with a fresh brush
 /// (`cut_line`); pieces overlap by what setting down and lifting take, so that no joint shows. Only
 /// strokes that begin with a fresh brush and may run dry. Where ink comes to the tip too slowly,
 /// the hand goes slower (`pace_line`). Invalidates pointers to traces.
-void redip_long_lines(std::vector<Stroke>& entries, const BrushFit& fit, WidthTables& widths);
+void redip_long_lines(std::vector<JournalEntry>& entries, const BrushFit& fit, WidthTables& widths);
 
 /// Names the brush of every entry that has none, in the sizes that `fit` asks for. `drawing`
 /// (traces of `entries`) has been placed with `scale` and is `extent` metres large now.
-void choose_brushes(std::vector<Stroke>& entries, std::span<Trace* const> drawing, double scale, double extent,
-                    const BrushFit& fit, WidthTables& widths);
+void choose_brushes(std::vector<JournalEntry>& entries, std::span<StrokeSamples* const> drawing, double scale,
+                    double extent, const BrushFit& fit, WidthTables& widths);
 
 /// Line widths that a brush could not draw.
 struct WidthMismatch {
@@ -101,6 +101,6 @@ struct WidthMismatch {
 
 /// Sets the pressures of lines with a width so that they come out as wide (`draw_to_width`,
 /// `fit_trajectory`). The entries then hold the hand's motion alone: their line widths are 0.
-WidthMismatch press_to_widths(std::vector<Stroke>& entries, WidthTables& widths);
+WidthMismatch press_to_widths(std::vector<JournalEntry>& entries, WidthTables& widths);
 
 }  // namespace tuft::stroke

@@ -53,14 +53,14 @@ struct Look {
 };
 
 /// Samples that lie about kApart apart, corners among them.
-std::vector<TraceSample> evenly(const std::vector<TraceSample>& s, double apart) {
-    std::vector<TraceSample> out{s.front()};
+std::vector<StrokeSample> evenly(const std::vector<StrokeSample>& s, double apart) {
+    std::vector<StrokeSample> out{s.front()};
     for (std::size_t i = 1; i < s.size(); ++i) {
         const double length = glm::distance(s[i].position, s[i - 1].position);
         const auto n = static_cast<int>(std::clamp(std::round(length / apart), 1.0, 1e4));
         for (int k = 1; k <= n; ++k) {
             const double f = static_cast<double>(k) / n;
-            TraceSample next = s[i];
+            StrokeSample next = s[i];
             next.position = glm::mix(s[i - 1].position, s[i].position, f);
             next.time = std::lerp(s[i - 1].time, s[i].time, f);
             next.pressure = std::lerp(s[i - 1].pressure, s[i].pressure, f);
@@ -228,17 +228,17 @@ std::vector<T> smoothed(const std::vector<T>& v, const std::vector<double>& alon
 
 }  // namespace
 
-Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths& widths, const HolderOptions& options,
-                     const DrawnArea* area) {
+StrokeSamples fit_trajectory(StrokeSamples trace, const brush::Preset& preset, const LineWidths& widths,
+                             const HolderOptions& options, const DrawnArea* area) {
     if (!trace.flat || trace.samples.size() < 3 || !(trace.line_width > 0)) return trace;
     const double width = std::max(trace.line_width, widths.least());
-    if (travelled<TraceSample>(trace.samples).back() > kLongest * width) return trace;
-    Trace tried = trace;
+    if (travelled<StrokeSample>(trace.samples).back() > kLongest * width) return trace;
+    StrokeSamples tried = trace;
     tried.samples = evenly(trace.samples, kApart * width);
     const std::size_t n = tried.samples.size();
-    const std::vector<double> along = travelled<TraceSample>(tried.samples);
+    const std::vector<double> along = travelled<StrokeSample>(tried.samples);
     std::vector<Station> wanted;
-    for (const TraceSample& s : tried.samples) wanted.push_back({Vec2(s.position), 0.5 * widths.at(s.pressure)});
+    for (const StrokeSample& s : tried.samples) wanted.push_back({Vec2(s.position), 0.5 * widths.at(s.pressure)});
     const std::vector<double> turns = turns_of(wanted, along, width);
     if (*std::max_element(turns.begin(), turns.end()) < kTurn) return trace;
     std::vector<double> weight = far_from_turns(turns, along, kTurn), wider = far_from_turns(turns, along, kSharp);
@@ -249,11 +249,11 @@ Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths&
     if (looks.empty()) return trace;
     std::vector<Vec2> moved(n, Vec2{0});
     double least = 1e300;
-    Trace best = trace;
+    StrokeSamples best = trace;
     for (int t = 0, idle = 0; t < kTries && idle < 2; ++t) {
         check_interrupt();
         for (std::size_t i = 0; i < n; ++i) {
-            TraceSample& s = tried.samples[i];
+            StrokeSample& s = tried.samples[i];
             s.position = Vec3(wanted[i].centre + moved[i], s.position.z);
             s.pressure =
                 wider[i] == 0 && moved[i] == Vec2(0) ? s.pressure : widths.pressure(2 * wanted[i].half + wider[i]);
@@ -271,7 +271,7 @@ Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths&
                 const Vec2 p = look.at + 0.7 * e * look.out;
                 const double when = ink.when({p.x, -p.y});
                 const auto at = std::lower_bound(tried.samples.begin(), tried.samples.end(), when,
-                                                 [](const TraceSample& s, double time) { return s.time < time; });
+                                                 [](const StrokeSample& s, double time) { return s.time < time; });
                 by = std::min<std::size_t>(static_cast<std::size_t>(at - tried.samples.begin()), n - 1);
             }
             if (std::abs(along[by] - along[look.station]) < kOwn * width) {
@@ -305,9 +305,9 @@ Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths&
     return best;
 }
 
-void fit_trajectory(std::span<Trace* const> drawing, WidthTables& tables) {
-    const auto together = [](const Trace& a, const Trace& b) {
-        const Placement &p = a.placement, &q = b.placement;
+void fit_trajectory(std::span<PaintStroke* const> drawing, WidthTables& tables) {
+    const auto together = [](const PaintStroke& a, const PaintStroke& b) {
+        const Placement &p = a.trace.placement, &q = b.trace.placement;
         return a.ink == b.ink && p.origin == q.origin && p.right == q.right && p.down == q.down &&
                p.mapping == q.mapping;
     };
@@ -316,20 +316,20 @@ void fit_trajectory(std::span<Trace* const> drawing, WidthTables& tables) {
         if (done[first]) continue;
         DrawnArea area;
         for (std::size_t i = first; i < drawing.size(); ++i) {
-            const Trace& t = *drawing[i];
-            if (done[i] || !together(t, *drawing[first])) continue;
-            const LineWidths& widths = tables.of(t.brush);
+            if (done[i] || !together(*drawing[i], *drawing[first])) continue;
+            const StrokeSamples& t = drawing[i]->trace;
+            const LineWidths& widths = tables.of(drawing[i]->brush);
             if (t.samples.empty() ||
-                travelled<TraceSample>(t.samples).back() > kLongest * std::max(t.line_width, widths.least()))
+                travelled<StrokeSample>(t.samples).back() > kLongest * std::max(t.line_width, widths.least()))
                 continue;
-            for (const TraceSample& s : evenly(t.samples, kApart * std::max(t.line_width, widths.least())))
+            for (const StrokeSample& s : evenly(t.samples, kApart * std::max(t.line_width, widths.least())))
                 area.add(i, Vec2(s.position), 0.5 * widths.at(s.pressure));
         }
         for (std::size_t i = first; i < drawing.size(); ++i) {
-            Trace& t = *drawing[i];
-            if (done[i] || !together(t, *drawing[first])) continue;
+            if (done[i] || !together(*drawing[i], *drawing[first])) continue;
             area.line = i;
-            const std::string brush = t.brush;  // `t` may be moved from before the other arguments are made
+            const std::string& brush = drawing[i]->brush;
+            StrokeSamples& t = drawing[i]->trace;
             t = fit_trajectory(std::move(t), brush::load_preset(brush), tables.of(brush), tables.hold(brush), &area);
             done[i] = true;
         }

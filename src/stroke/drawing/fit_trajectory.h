@@ -1,6 +1,7 @@
 #pragma once
 
 #include "stroke/drawing/line_width.h"
+#include "stroke/journal/entry.h"
 #include "stroke/placement/placement.h"
 
 /// Lines of a drawing, fitted until their ink lies where it is wanted.
@@ -16,11 +17,11 @@ namespace tuft::stroke {
 /// width and try; a trace without turns is not tried at all. What lies under `area` is not looked
 /// at, nor is a trace of which that is all.
 class DrawnArea;
-Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths& widths, const HolderOptions& options,
-                     const DrawnArea* area = nullptr);
+StrokeSamples fit_trajectory(StrokeSamples trace, const brush::Preset& preset, const LineWidths& widths,
+                             const HolderOptions& options, const DrawnArea* area = nullptr);
 
 /// All lines of a drawing by the brushes that they name, with their `line_width`s: each looks at
 /// what of its edge does not lie under others of its ink and place.
-void fit_trajectory(std::span<Trace* const> drawing, WidthTables& tables);
+void fit_trajectory(std::span<PaintStroke* const> drawing, WidthTables& tables);
 
 }  // namespace tuft::stroke

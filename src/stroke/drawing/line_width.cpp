@@ -77,14 +77,14 @@ constexpr double kMostOfLine = 0.25;  // of the line at most
 constexpr double kPoint = 0.4;        // part of the width that the line has at its very ends
 
 /// A line that ends where it began goes on along itself for `more` metres, at the same pace.
-void overlap(Trace& trace, double more) {
-    std::vector<TraceSample>& s = trace.samples;
-    const std::vector<double> along = travelled<TraceSample>(s);
+void overlap(StrokeSamples& trace, double more) {
+    std::vector<StrokeSample>& s = trace.samples;
+    const std::vector<double> along = travelled<StrokeSample>(s);
     const std::size_t n = s.size();
     if (n < 4 || glm::length(s.back().position - s.front().position) > 1e-6 * along.back()) return;
     const double ends = s.back().time, begins = s.front().time;
     for (std::size_t i = 1; i < n; ++i) {
-        TraceSample next = s[i];
+        StrokeSample next = s[i];
         const double part = std::min(1.0, (more - along[i - 1]) / std::max(along[i] - along[i - 1], 1e-12));
         next.position = glm::mix(s[i - 1].position, s[i].position, part);
         next.time = ends + std::lerp(s[i - 1].time, s[i].time, part) - begins;
@@ -99,21 +99,21 @@ double line_end(double width) {
     return kEnd * width;
 }
 
-void add_extent(Box& box, const Trace& trace) {
+void add_extent(Box& box, const StrokeSamples& trace) {
     for (const StencilEdge& edge : trace.stencil) box.add(Vec3(edge.from, 0)), box.add(Vec3(edge.to, 0));
     if (!trace.stencil.empty()) return;
     const Vec3 beside = 0.5 * trace.line_width * Vec3(1, 1, 0);
-    for (const TraceSample& sample : trace.samples)
+    for (const StrokeSample& sample : trace.samples)
         box.add(sample.position - beside), box.add(sample.position + beside);
 }
 
-void draw_to_width(Trace& trace, const LineWidths& widths) {
+void draw_to_width(StrokeSamples& trace, const LineWidths& widths) {
     if (trace.samples.empty()) return;
-    const double whole = travelled<TraceSample>(trace.samples).back();
+    const double whole = travelled<StrokeSample>(trace.samples).back();
     const double end = std::min(line_end(trace.line_width), kMostOfLine * whole);
     overlap(trace, 2 * end);
-    const std::vector<double> along = travelled<TraceSample>(trace.samples);
-    const auto part = [&](const TraceSample& s) { return s.pressure / kMidPressure; };
+    const std::vector<double> along = travelled<StrokeSample>(trace.samples);
+    const auto part = [&](const StrokeSample& s) { return s.pressure / kMidPressure; };
     const bool head = part(trace.samples.front()) > kPoint,
                tail = part(trace.samples.back()) > kPoint;  // else it runs out by itself
     for (std::size_t i = 0; i < along.size(); ++i) {

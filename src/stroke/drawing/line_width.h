@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "brush/preset/preset.h"
-#include "stroke/journal/trace.h"
+#include "stroke/journal/samples.h"
 #include "stroke/placement/placement.h"
 
 /// Lines as wide as a drawing has them: how hard, and with which size of a brush, to press.
@@ -57,7 +57,7 @@ std::string brush_for_width(const std::string& name, const LineWidths& widths, d
 
 /// Adds what the ink of a line takes up to a box: its stencil edge, or its samples, with half of its width beside them
 /// where it has one; metres, in its own frame.
-void add_extent(Box& box, const Trace& trace);
+void add_extent(Box& box, const StrokeSamples& trace);
 
 /// Metres of a line with this width over which a hand that set down or lifts comes to its pressure.
 double line_end(double width);
@@ -66,6 +66,6 @@ double line_end(double width);
 /// are below 0.5: the hand sets down and
 /// lifts within one and a half widths each, or a quarter of the line if that is less. A line that ends where it began
 /// goes on along itself for as long as both take, so that no gap shows where its ends meet.
-void draw_to_width(Trace& trace, const LineWidths& widths);
+void draw_to_width(StrokeSamples& trace, const LineWidths& widths);
 
 }  // namespace tuft::stroke

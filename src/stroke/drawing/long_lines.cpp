@@ -15,8 +15,8 @@ constexpr double kTipSupply = 30;       // seconds, of a brush that is taken lar
 constexpr double kCutSlack = 0.1;       // of a piece, to both sides, within which a cut is looked for
 constexpr double kShortestPiece = 4;    // overlaps
 
-TraceSample mix(const TraceSample& a, const TraceSample& b, double part) {
-    TraceSample out = b;
+StrokeSample mix(const StrokeSample& a, const StrokeSample& b, double part) {
+    StrokeSample out = b;
     out.position = glm::mix(a.position, b.position, part);
     out.time = std::lerp(a.time, b.time, part);
     out.pressure = std::lerp(a.pressure, b.pressure, part);
@@ -27,7 +27,8 @@ TraceSample mix(const TraceSample& a, const TraceSample& b, double part) {
 /// A line as a function of the metres along it; of a closed one, round and round.
 class Path {
   public:
-    explicit Path(const Trace& trace) : samples_(trace.samples), along_(travelled<TraceSample>(trace.samples)) {
+    explicit Path(const StrokeSamples& trace)
+        : samples_(trace.samples), along_(travelled<StrokeSample>(trace.samples)) {
         turned_.assign(samples_.size(), 0);
         Vec2 before{0};
         for (std::size_t i = 1; i < samples_.size(); ++i) {
@@ -50,12 +51,12 @@ class Path {
     double turn(double at, double reach) const { return turned_at(at + reach) - turned_at(at - reach); }
 
     /// The samples from one place to another; what lies past the end goes on from the beginning.
-    std::vector<TraceSample> part(double from, double to) const {
-        std::vector<TraceSample> out;
+    std::vector<StrokeSample> part(double from, double to) const {
+        std::vector<StrokeSample> out;
         add(out, from, std::min(to, length()), 0);
         if (to > length()) add(out, 0, to - length(), samples_.back().time - samples_.front().time);
         const double start = out.front().time;
-        for (TraceSample& s : out) s.time -= start;
+        for (StrokeSample& s : out) s.time -= start;
         return out;
     }
 
@@ -73,9 +74,9 @@ class Path {
         const std::size_t i = segment(at);
         return std::lerp(turned_[i - 1], turned_[i], within(i, at));
     }
-    void add(std::vector<TraceSample>& out, double from, double to, double later) const {
+    void add(std::vector<StrokeSample>& out, double from, double to, double later) const {
         const std::size_t first = segment(from), last = segment(to);
-        const auto put = [&](TraceSample s) {
+        const auto put = [&](StrokeSample s) {
             s.time += later;
             if (out.empty() || out.back().position != s.position) out.push_back(s);
         };
@@ -84,7 +85,7 @@ class Path {
         put(mix(samples_[last - 1], samples_[last], within(last, to)));
     }
 
-    std::span<const TraceSample> samples_;
+    std::span<const StrokeSample> samples_;
     std::vector<double> along_, turned_;
 };
 
@@ -111,12 +112,12 @@ double supply_time(const brush::Preset& preset, double width, double film, doubl
     return preset.capacity / std::max(film * width * speed, 1e-30);
 }
 
-void pace_line(Trace& trace, const brush::Preset& preset, double film) {
+void pace_line(StrokeSamples& trace, const brush::Preset& preset, double film) {
     const double seconds = trace.samples.empty() ? 0 : trace.samples.back().time - trace.samples.front().time;
     if (!(seconds > 0)) return;
     const double slower = kSteadySupply / supply_time(preset, trace.line_width, film, length_of(trace) / seconds);
     if (slower > 1)
-        for (TraceSample& s : trace.samples) s.time *= slower;
+        for (StrokeSample& s : trace.samples) s.time *= slower;
 }
 
 std::string brush_for_line(const std::string& name, WidthTables& tables, double width, double length, double film,
@@ -141,11 +142,11 @@ std::string brush_for_line(const std::string& name, WidthTables& tables, double 
     return larger;
 }
 
-double length_of(const Trace& trace) {
-    return trace.samples.empty() ? 0 : travelled<TraceSample>(trace.samples).back();
+double length_of(const StrokeSamples& trace) {
+    return trace.samples.empty() ? 0 : travelled<StrokeSample>(trace.samples).back();
 }
 
-std::vector<Trace> cut_line(const Trace& trace, double longest, double overlap) {
+std::vector<StrokeSamples> cut_line(const StrokeSamples& trace, double longest, double overlap) {
     if (trace.samples.size() < 2 || !(overlap > 0) || !(longest > 0)) return {trace};
     const Path path(trace);
     const double whole = path.length();
@@ -158,12 +159,11 @@ std::vector<Trace> cut_line(const Trace& trace, double longest, double overlap) 
         cuts.push_back(
             best_cut(path, even * static_cast<double>(k), std::min(kCutSlack * even, 0.5 * even - overlap), overlap));
     cuts.push_back(whole);
-    std::vector<Trace> pieces;
+    std::vector<StrokeSamples> pieces;
     for (std::size_t k = 0; k < n; ++k) {
-        Trace piece = trace;
+        StrokeSamples piece = trace;
         const double over = k + 1 < n ? 0.5 * overlap : path.closed() ? overlap : 0;
         piece.samples = path.part(k > 0 ? cuts[k] - 0.5 * overlap : 0, cuts[k + 1] + over);
-        if (k > 0) piece.before.clear();
         pieces.push_back(std::move(piece));
     }
     return pieces;

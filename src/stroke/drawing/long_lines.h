@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "stroke/drawing/line_width.h"
-#include "stroke/journal/trace.h"
+#include "stroke/journal/samples.h"
 
 /// \file
 /// Lines that need more ink than a brush holds: larger brushes for them, and where the hand
@@ -35,16 +35,16 @@ inline constexpr double kSteadySupply = 22;
 
 /// Slows a trace with a made-up pace down, all of it alike, until its supply time is kSteadySupply
 /// or more.
-void pace_line(Trace& trace, const brush::Preset& preset, double film);
+void pace_line(StrokeSamples& trace, const brush::Preset& preset, double film);
 
 /// Metres of a flat trace along its samples.
-double length_of(const Trace& trace);
+double length_of(const StrokeSamples& trace);
 
 /// Cuts a flat trace into pieces of about the same length, `longest` metres at most where that
 /// leaves no piece shorter than four overlaps. A piece begins `overlap` metres before the end of
 /// the one before it; each cut is made where the line is bent least within a tenth of a piece of
 /// its even place. Of a line that ends where it began the last piece goes on over the beginning by
 /// as much. Times begin at 0 in each piece. A line that need not be cut comes back as it is.
-std::vector<Trace> cut_line(const Trace& trace, double longest, double overlap);
+std::vector<StrokeSamples> cut_line(const StrokeSamples& trace, double longest, double overlap);
 
 }  // namespace tuft::stroke

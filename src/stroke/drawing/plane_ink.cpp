@@ -74,14 +74,14 @@ double PlaneInk::at(const Vec2& p) const {
                      f.y);
 }
 
-PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const HolderOptions& options, double step,
+PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, const HolderOptions& options, double step,
                    double cell) {
     const Frame plane_frame;
     std::vector<brush::Pose> poses;
-    const Trace led = lift_off(lead_hand(trace, options), options);
-    const std::vector<double> depths = tip_depths<TraceSample>(led.samples, options);
+    const StrokeSamples led = lift_off(lead_hand(trace, options), options);
+    const std::vector<double> depths = tip_depths<StrokeSample>(led.samples, options);
     for (std::size_t i = 0; i < led.samples.size(); ++i) {
-        const TraceSample& s = led.samples[i];
+        const StrokeSample& s = led.samples[i];
         poses.push_back(pose_holder({s.position.x, -s.position.y, 0}, 0,
                                     {.depth = depths[i], .tilt = s.tilt, .time = s.time}, options));
     }

@@ -43,7 +43,7 @@ class PlaneInk {
 /// The area that a brush full of ink touches that is led along a flat trace over a plane; metres, x
 /// right and y up, which is the trace's -y. The same hand (`lead_hand`, `pose_holder`), resampling,
 /// tuft and outlines as those of a stroke on a model, in steps of `step`; some 0.1 ms each.
-PlaneInk plane_ink(const Trace& trace, const brush::Preset& preset, const HolderOptions& options, double step,
+PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, const HolderOptions& options, double step,
                    double cell);
 
 }  // namespace tuft::stroke

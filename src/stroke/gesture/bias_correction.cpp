@@ -33,10 +33,10 @@ struct Path {
     double length = 0;
 };
 
-Path path_of(const Trace& trace, const glm::dmat2& linear, const Vec2& middle) {
+Path path_of(const RecordedStroke& trace, const glm::dmat2& linear, const Vec2& middle) {
     Path p;
     p.part.push_back(0);
-    for (const TraceSample& s : trace.samples) {
+    for (const StrokeSample& s : trace.samples) {
         p.points.push_back({linear * (Vec2(s.position) - middle), s.pressure, s.tilt});
         if (p.points.size() > 1) {
             const Point &a = p.points[p.points.size() - 2], &b = p.points.back();
@@ -177,13 +177,13 @@ void correct(BiasPiece& piece, const BiasCorrection& bias) {
     }
 }
 
-bool together(const Trace& a, const Trace& b) {
+bool together(const RecordedStroke& a, const RecordedStroke& b) {
     return a.placement.origin == b.placement.origin && a.placement.right == b.placement.right &&
            a.placement.down == b.placement.down;
 }
 
 // First stroke of every group, and the number of strokes at the end.
-std::vector<std::size_t> groups_of(std::span<const Trace> traces) {
+std::vector<std::size_t> groups_of(std::span<const RecordedStroke> traces) {
     std::vector<std::size_t> starts;
     for (std::size_t i = 0; i < traces.size(); ++i)
         if (i == 0 || !together(traces[i - 1], traces[i])) starts.push_back(i);
@@ -192,10 +192,10 @@ std::vector<std::size_t> groups_of(std::span<const Trace> traces) {
 }
 
 // Middle of the strokes [first, last), weighted by length (dots a little), of flat ones.
-Vec2 middle_of(std::span<const Trace> traces) {
+Vec2 middle_of(std::span<const RecordedStroke> traces) {
     Vec2 sum(0);
     double weight = 0;
-    for (const Trace& t : traces) {
+    for (const RecordedStroke& t : traces) {
         if (!t.flat || t.samples.empty()) continue;
         const Path p = path_of(t, glm::dmat2(1), Vec2(0));
         const double w = std::max(p.length, kDot) / kPoints;
@@ -219,7 +219,7 @@ glm::dmat2 within_range(const glm::dmat2& m) {
 }
 
 struct Pair {
-    const Trace *written, *intended;
+    const RecordedStroke *written, *intended;
     Vec2 written_middle, intended_middle;
 };
 
@@ -250,13 +250,13 @@ glm::dmat2 fit_linear(std::span<const Pair> pairs) {
 
 }  // namespace
 
-BiasCorrection learn_bias(std::span<const Trace> intended, std::span<const Trace> written) {
+BiasCorrection learn_bias(std::span<const RecordedStroke> intended, std::span<const RecordedStroke> written) {
     if (intended.size() != written.size())
         throw Error("a bias correction is learned from pairs, but " + std::to_string(intended.size()) +
                     " strokes are intended and " + std::to_string(written.size()) + " written");
     if (written.empty()) throw Error("there are no strokes to learn a bias from");
     for (const auto& traces : {intended, written})
-        for (const Trace& t : traces)
+        for (const RecordedStroke& t : traces)
             if (!t.flat || t.samples.empty())
                 throw Error("a bias correction is learned from flat strokes with samples only");
 
@@ -282,12 +282,12 @@ BiasCorrection learn_bias(std::span<const Trace> intended, std::span<const Trace
     return bias;
 }
 
-std::vector<Trace> correct_bias(const BiasCorrection& bias, std::vector<Trace> traces) {
+std::vector<RecordedStroke> correct_bias(const BiasCorrection& bias, std::vector<RecordedStroke> traces) {
     const std::vector<std::size_t> groups = groups_of(traces);
     for (std::size_t g = 0; g + 1 < groups.size(); ++g) {
         const Vec2 middle = middle_of(std::span(traces).subspan(groups[g], groups[g + 1] - groups[g]));
         for (std::size_t t = groups[g]; t < groups[g + 1]; ++t) {
-            Trace& trace = traces[t];
+            RecordedStroke& trace = traces[t];
             if (!trace.flat || trace.samples.empty()) continue;
             const Path path = path_of(trace, bias.linear, middle);
             const int n = n_clusters(path.length);
@@ -313,7 +313,7 @@ std::vector<Trace> correct_bias(const BiasCorrection& bias, std::vector<Trace> t
                         tilt += w * b[k] * piece.tilt_change[k];
                     }
                 }
-                TraceSample& s = trace.samples[i];
+                StrokeSample& s = trace.samples[i];
                 s.pressure = std::clamp(s.pressure * ratio / sum, 0.0, 1.0);
                 s.position = Vec3(middle + path.points[i].position + shift / sum, s.position.z);
                 s.tilt += tilt / sum;

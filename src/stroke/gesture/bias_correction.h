@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stroke/journal/trace.h"
+#include "stroke/journal/recorded_stroke.h"
 
 /// A writer's bias: how the strokes they make differ from those they mean, learned from
 /// pairs and taken back on strokes to come. After Xu's user manipulability component (Xu et
@@ -41,12 +41,12 @@ struct BiasCorrection {
 /// and drawn to the identity where the strokes say nothing; its stretches lie in [1/2, 2].
 /// What it leaves is kept piece by piece, pieces of about 6 mm that overlap by half.
 /// Throws `Error` when the counts differ, there are none, or a stroke is not flat.
-BiasCorrection learn_bias(std::span<const Trace> intended, std::span<const Trace> written);
+BiasCorrection learn_bias(std::span<const RecordedStroke> intended, std::span<const RecordedStroke> written);
 
 /// What was meant by these strokes: linear map, then for every piece the corrections of the
 /// four pieces most like it, weighted by likeness (shape and heading, length, place in the stroke,
 /// pressure, tilt). Strokes in space stay as they are. Times stay.
-std::vector<Trace> correct_bias(const BiasCorrection& bias, std::vector<Trace> traces);
+std::vector<RecordedStroke> correct_bias(const BiasCorrection& bias, std::vector<RecordedStroke> traces);
 
 /// As a TOML file and back; `source` names it in errors. Throws `Error` with the line for
 /// unknown keys, wrong types and values out of range.

@@ -8,7 +8,7 @@ namespace {
 constexpr double kCatchUpSpacing = 2.5e-4;  // metres between samples while the tip catches up
 constexpr double kSlowestCatchUp = 0.02;    // m/s
 
-double mean_speed(const std::vector<TraceSample>& samples) {
+double mean_speed(const std::vector<StrokeSample>& samples) {
     double way = 0;
     for (std::size_t i = 1; i < samples.size(); ++i) way += glm::length(samples[i].position - samples[i - 1].position);
     const double time = samples.back().time - samples.front().time;
@@ -17,7 +17,7 @@ double mean_speed(const std::vector<TraceSample>& samples) {
 
 }  // namespace
 
-Trace steady(Trace trace, const Settings& settings) {
+StrokeSamples steady(StrokeSamples trace, const StrokeSettings& settings) {
     auto& samples = trace.samples;
     if (samples.empty() || !trace.flat) return trace;
     if (settings.smooth > 0) {
@@ -25,8 +25,8 @@ Trace steady(Trace trace, const Settings& settings) {
         const double end = samples.back().time;
         for (int way = 0; way < 2; ++way) {
             HandFilter filter;
-            for (TraceSample& s : samples) {
-                TraceSample now = s;
+            for (StrokeSample& s : samples) {
+                StrokeSample now = s;
                 if (way == 1) now.time = end - s.time;
                 now = smooth(filter, now, options);
                 now.time = s.time;
@@ -38,13 +38,13 @@ Trace steady(Trace trace, const Settings& settings) {
     if (settings.stabilise > 0) {
         const double speed = mean_speed(samples);
         String string;
-        for (TraceSample& s : samples) s = pull(string, s, settings.stabilise);
+        for (StrokeSample& s : samples) s = pull(string, s, settings.stabilise);
         let_go(string, samples.back().time, speed, kCatchUpSpacing, samples);
     }
-    return press(std::move(trace), {.from = pressure_from(settings.pressure)});
+    return press(std::move(trace), {.from = settings.pressure});
 }
 
-brush::Pose steady(GestureFilter& state, const brush::Pose& pose, const Settings& settings) {
+brush::Pose steady(GestureFilter& state, const brush::Pose& pose, const StrokeSettings& settings) {
     brush::Pose out = pose;
     if (settings.smooth > 0) out = smooth(state.filter, out, hand_filter_options(settings.smooth));
     if (settings.stabilise > 0) out = pull(state.string, out, settings.stabilise);

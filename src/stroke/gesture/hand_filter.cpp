@@ -114,8 +114,8 @@ HandFilterOptions hand_filter_options(double strength) {
     return o;
 }
 
-TraceSample smooth(HandFilter& s, const TraceSample& sample, const HandFilterOptions& o) {
-    TraceSample out = sample;
+StrokeSample smooth(HandFilter& s, const StrokeSample& sample, const HandFilterOptions& o) {
+    StrokeSample out = sample;
     out.position = filter(s.position, sample.position, sample.time, o.position);
     out.tilt = filter(s.tilt, sample.tilt, sample.time, o.tilt);
     out.rotation = filter(s.rotation, sample.rotation, sample.time, o.tilt);
@@ -130,7 +130,7 @@ brush::Pose smooth(HandFilter& s, const brush::Pose& pose, const HandFilterOptio
             .time = pose.time};
 }
 
-TraceSample pull(String& s, const TraceSample& hand, double length) {
+StrokeSample pull(String& s, const StrokeSample& hand, double length) {
     if (!s.started) {
         s = {};
         s.started = true;
@@ -141,14 +141,14 @@ TraceSample pull(String& s, const TraceSample& hand, double length) {
     s.hand = hand.position;
     s.past.push_back({s.travel, hand.pressure, hand.tilt});
     const String::Grip grip = grip_at(s, s.travel - glm::distance(s.tip, s.hand));
-    TraceSample out = hand;
+    StrokeSample out = hand;
     out.position = s.tip;
     out.pressure = grip.pressure;
     out.tilt = grip.tilt;
     return out;
 }
 
-void let_go(String& s, double time, double speed, double spacing, std::vector<TraceSample>& out) {
+void let_go(String& s, double time, double speed, double spacing, std::vector<StrokeSample>& out) {
     if (!s.started || s.past.empty()) return;
     const Vec3 start = s.tip;
     const double way = glm::length(s.hand - start);

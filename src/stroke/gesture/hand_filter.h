@@ -3,7 +3,7 @@
 #include <deque>
 
 #include "brush/tuft/tuft_state.h"
-#include "stroke/journal/trace.h"
+#include "stroke/journal/samples.h"
 
 /// Steadies a hand as its samples arrive: a low-pass that follows fast motion, and a string
 /// that pulls the tip. A state is a plain struct; the same samples give the same bits.
@@ -67,7 +67,7 @@ struct HandFilter {
 
 /// The next sample, steadied in position, pressure, tilt and rotation; its time stays.
 /// Pressure 0 stays 0: the hand is off.
-TraceSample smooth(HandFilter& state, const TraceSample& sample, const HandFilterOptions& options = {});
+StrokeSample smooth(HandFilter& state, const StrokeSample& sample, const HandFilterOptions& options = {});
 brush::Pose smooth(HandFilter& state, const brush::Pose& pose, const HandFilterOptions& options = {});
 
 /// A tip pulled on a string: it stays where it is until the string is taut, then follows
@@ -88,12 +88,12 @@ struct String {
 /// Moves the tip; `length` in metres. The answer has the tip's place, and the pressure and tilt
 /// that the hand had |hand − tip| of travel before, so that they stay at their place on the
 /// path. A string of length 0 passes everything through as it is.
-TraceSample pull(String& state, const TraceSample& hand, double length);
+StrokeSample pull(String& state, const StrokeSample& hand, double length);
 
 /// The hand lets go: the tip runs straight to the hand's last place at `speed` (m/s), in
 /// samples of at most `spacing` metres, through what is left of the pressures.
 /// Appends them to `out`, times after `time`.
-void let_go(String& state, double time, double speed, double spacing, std::vector<TraceSample>& out);
+void let_go(String& state, double time, double speed, double spacing, std::vector<StrokeSample>& out);
 
 /// The same for a ferrule in space: the string lies across the holder's axis; press, lift and
 /// rotation pass through at once.

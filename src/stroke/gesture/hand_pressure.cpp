@@ -8,7 +8,6 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr const char* kNames[] = {"none", "speed", "dwell", "speed+dwell"};
 constexpr double kTaper = 3e-3;       // metres over which the hand lifts
 constexpr double kTaperShare = 0.25;  // of the way, at most
 constexpr double kTaperEnd = 0.08;    // of the pressure, where the way ends
@@ -29,7 +28,7 @@ double goal_of(const PressureState& s, const PressureOptions& o) {
     return std::clamp(goal, 0.0, 1.0);
 }
 
-double first_speed(const std::vector<TraceSample>& samples) {
+double first_speed(const std::vector<StrokeSample>& samples) {
     double way = 0;
     for (std::size_t i = 1; i < samples.size(); ++i) {
         way += glm::length(samples[i].position - samples[i - 1].position);
@@ -41,15 +40,15 @@ double first_speed(const std::vector<TraceSample>& samples) {
 
 // The tip is taken back over the end of the stroke while it lifts, so that the hair springs
 // onto ink and draws no drop beyond the end. `left`: metres from each sample to the end.
-void lift_back(std::vector<TraceSample>& samples, const std::vector<double>& left, double way) {
-    const TraceSample end = samples.back();
+void lift_back(std::vector<StrokeSample>& samples, const std::vector<double>& left, double way) {
+    const StrokeSample end = samples.back();
     std::size_t i = samples.size() - 1;
     for (int k = 1; k <= kLiftSamples; ++k) {
         const double part = static_cast<double>(k) / kLiftSamples;
         while (i > 0 && (i + 1 == left.size() || left[i] < part * way)) --i;
         const double span = left[i] - left[i + 1];
         const double w = span > 0 ? (part * way - left[i + 1]) / span : 0;
-        TraceSample s = end;
+        StrokeSample s = end;
         s.position = samples[i + 1].position + w * (samples[i].position - samples[i + 1].position);
         s.time = end.time + part * kLift;
         s.pressure = end.pressure * (1 - part);
@@ -58,16 +57,6 @@ void lift_back(std::vector<TraceSample>& samples, const std::vector<double>& lef
 }
 
 }  // namespace
-
-std::string name_of(PressureFrom from) {
-    return kNames[static_cast<int>(from)];
-}
-
-PressureFrom pressure_from(const std::string& name) {
-    for (const auto from : {PressureFrom::none, PressureFrom::speed, PressureFrom::dwell, PressureFrom::speed_dwell})
-        if (name == name_of(from)) return from;
-    throw Error("pressure comes from none, speed, dwell or speed+dwell, not from '" + name + "'");
-}
 
 double press(PressureState& s, const Vec3& position, double time, const PressureOptions& o) {
     if (!s.started) {
@@ -88,7 +77,7 @@ double press(PressureState& s, const Vec3& position, double time, const Pressure
     return s.pressure;
 }
 
-Trace press(Trace trace, const PressureOptions& o) {
+StrokeSamples press(StrokeSamples trace, const PressureOptions& o) {
     auto& samples = trace.samples;
     if (o.from == PressureFrom::none || samples.empty()) return trace;
     PressureState state;

@@ -3,16 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "stroke/journal/trace.h"
+#include "stroke/journal/samples.h"
+#include "stroke/journal/settings.h"
 
 /// Pressure for hands whose device has none, from how they move.
 namespace tuft::stroke {
-
-enum class PressureFrom { none, speed, dwell, speed_dwell };
-
-/// "none", "speed", "dwell", "speed+dwell", and back; throws `Error` for another word.
-std::string name_of(PressureFrom from);
-PressureFrom pressure_from(const std::string& name);
 
 /// The hand presses `level` where it goes slowly without resting. With speed v and rest q,
 ///
@@ -51,6 +46,6 @@ double press(PressureState& state, const Vec3& position, double time, const Pres
 /// touches (its first speed is that of its first samples), and lifts while it still moves:
 /// over the last 3 mm, at most a quarter of the way, the pressure runs out, and in 60 ms more
 /// (samples are added) the tip is taken back over ink as it leaves. `none` changes nothing.
-Trace press(Trace trace, const PressureOptions& options);
+StrokeSamples press(StrokeSamples trace, const PressureOptions& options);
 
 }  // namespace tuft::stroke

@@ -3,59 +3,77 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/overloaded.h"
+
 namespace tuft::stroke {
 namespace {
 
-std::vector<BrushAction> actions_before(const Trace& trace, const std::vector<Stroke>& entries,
-                                        const EntryOptions& options) {
+std::vector<Preparation> preparations_of(const RecordedStroke& stroke, const std::vector<JournalEntry>& entries,
+                                         const EntryOptions& options) {
     const auto is_first = [&] {
-        return std::none_of(entries.begin(), entries.end(),
-                            [&](const Stroke& s) { return s.trace.brush == trace.brush; });
+        return std::none_of(entries.begin(), entries.end(), [&](const JournalEntry& e) {
+            return has_brush(kind_of(e)) && brush_of(e) == stroke.brush;
+        });
     };
-    std::vector<BrushAction> actions;
-    if (!options.prepare.empty() && !trace.samples.empty() && (options.settings.dip == "each" || is_first()))
-        actions = options.prepare;
-    actions.insert(actions.end(), trace.before.begin(), trace.before.end());
-    return actions;
+    std::vector<Preparation> all;
+    if (!options.prepare.empty() && !stroke.samples.empty() && (options.settings.dip == DipMode::each || is_first()))
+        all = options.prepare;
+    all.insert(all.end(), stroke.before.begin(), stroke.before.end());
+    return all;
 }
 
-Stroke action_entry(const BrushAction& care, const Trace& trace, const Settings& settings) {
-    Stroke entry{.settings = settings, .action = care.action, .seconds = care.seconds, .extent = care.extent};
-    entry.trace.flat = false;
-    entry.trace.brush = trace.brush;
-    entry.trace.seed = trace.seed;  // lays the hair of a fresh one
-    entry.trace.ink = care.ink.empty() ? trace.ink : care.ink;
-    entry.trace.layer = trace.layer;
-    entry.trace.mask = trace.mask;
-    entry.fill = care.fill;
-    if (trace.on_palette && care.action == Action::fill) entry.layer = kPaletteLayer;
-    return entry;
+EntryContent prepared(const Preparation& preparation, const RecordedStroke& stroke, const StrokeSettings& settings) {
+    return std::visit(Overloaded{[&](BrushAction action) -> EntryContent {
+                                     action.brush = stroke.brush;
+                                     if (action.ink.empty()) action.ink = stroke.ink;
+                                     action.seed = stroke.seed;
+                                     action.dip = settings.dip;
+                                     action.spine = settings.spine;
+                                     return action;
+                                 },
+                                 [&](Dry dry) -> EntryContent {
+                                     dry.down = settings.down;
+                                     return dry;
+                                 },
+                                 [](const WashPalette& wash) -> EntryContent { return wash; },
+                                 [&](Fill fill) -> EntryContent {
+                                     if (fill.ink.empty()) fill.ink = stroke.ink;
+                                     if (stroke.on_palette) fill.layer = kPaletteLayer;
+                                     fill.names = stroke.names;
+                                     return fill;
+                                 }},
+                      preparation);
 }
 
 }  // namespace
 
-void append_entries(std::vector<Stroke>& entries, std::vector<Trace> traces, const EntryOptions& options) {
-    for (Trace& trace : traces) {
-        if (!options.brush.empty()) trace.brush = options.brush;
-        if (!options.ink.empty()) trace.ink = options.ink;
-        if (trace.ink.empty()) trace.ink = options.other_ink;
+void append_entries(std::vector<JournalEntry>& entries, std::vector<RecordedStroke> strokes,
+                    const EntryOptions& options) {
+    for (RecordedStroke& recorded : strokes) {
+        if (!options.brush.empty()) recorded.brush = options.brush;
+        if (!options.ink.empty()) recorded.ink = options.ink;
+        if (recorded.ink.empty()) recorded.ink = options.other_ink;
         // What is done with a brush shows in the stroke after it: that goes on with this brush.
-        const bool own = !trace.settings.empty();
-        Settings settings = own ? settings_from_json(trace.settings) : options.settings;
-        const std::string dip = settings.dip;
-        for (const BrushAction& care : actions_before(trace, entries, options)) {
-            entries.push_back(action_entry(care, trace, settings));
-            if (has_brush(care.action)) settings.dip = "carry";
+        StrokeSettings settings = recorded.settings.value_or(options.settings);
+        const DipMode dip = settings.dip;
+        for (const Preparation& preparation : preparations_of(recorded, entries, options)) {
+            entries.emplace_back().content = prepared(preparation, recorded, settings);
+            if (std::holds_alternative<BrushAction>(preparation)) settings.dip = DipMode::carry;
         }
-        trace.before.clear();
-        if (trace.samples.empty()) continue;
-        if (own) settings.dip = dip;
-        Stroke stroke{.settings = settings};
-        if (trace.flat && !trace.pressed) stroke.settings.pressure = options.pressure;
-        trace.erases = trace.erases || options.erases;
-        if (trace.on_palette) stroke.layer = kPaletteLayer;
-        stroke.trace = std::move(trace);
-        entries.push_back(std::move(stroke));
+        if (recorded.samples.empty()) continue;
+        if (recorded.settings) settings.dip = dip;
+        if (recorded.flat && !recorded.pressed) settings.pressure = options.pressure;
+        JournalEntry& entry = entries.emplace_back();
+        entry.label = std::move(recorded.label);
+        StrokeSamples& samples = recorded;
+        entry.content = PaintStroke{.trace = std::move(samples),
+                                    .brush = std::move(recorded.brush),
+                                    .ink = std::move(recorded.ink),
+                                    .seed = recorded.seed,
+                                    .tool = recorded.erases || options.erases ? Tool::eraser : Tool::brush,
+                                    .layer = recorded.on_palette ? kPaletteLayer : kFirstLayer,
+                                    .settings = settings,
+                                    .names = std::move(recorded.names)};
     }
 }
 

@@ -25,15 +25,6 @@ Word word_of(const std::string& name, const char* const (&words)[N], const char*
     throw Error("'" + name + "' is no " + what + "; there are " + all);
 }
 
-nlohmann::json json_of(const Vec3& v) {
-    return {v.x, v.y, v.z};
-}
-
-Vec3 vector_of(const nlohmann::json& j) {
-    const auto v = j.get<std::array<double, 3>>();
-    return {v[0], v[1], v[2]};
-}
-
 }  // namespace
 
 std::string name_of(Region region) {
@@ -65,6 +56,15 @@ double along_gradient(const Fill& f, const Vec3& p) {
     if (f.gradient == Gradient::along) t = glm::dot(p - f.from, way) / (length * length);
     if (f.gradient == Gradient::round) t = glm::length(p - f.from) / length;
     return std::clamp(t, 0.0, 1.0);
+}
+
+nlohmann::json json_of(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+Vec3 vector_of(const nlohmann::json& j) {
+    const auto v = j.get<std::array<double, 3>>();
+    return {v[0], v[1], v[2]};
 }
 
 nlohmann::json json_of(const Fill& f) {

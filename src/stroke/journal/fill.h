@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/geometry/types.h"
+#include "stroke/journal/layers.h"
 
 /// Ink laid over a whole part of a model at once.
 namespace tuft::stroke {
@@ -25,6 +26,10 @@ enum class Gradient {
 /// A fill: at the point p the film is film + t (to_film − film), of which the part t is the
 /// second ink; t is kept to [0, 1]. Metres, model frame; film units of wet ink.
 struct Fill {
+    std::string ink;                    ///< the first one
+    std::uint32_t layer = kFirstLayer;  ///< that is filled, or `kPaletteLayer`
+    std::uint32_t mask = 0;             ///< that it keeps to; 0: none
+    PlaceNames names;                   ///< as its file says, until it has a layer and a mask
     double film = 1.8;
     Gradient gradient = Gradient::none;
     double to_film = 1.8;

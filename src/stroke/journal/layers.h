@@ -77,6 +77,13 @@ std::string free_name(const LayerTable& table, const std::string& base);
 /// Throws `Error` for a name that is empty, too long or no readable text.
 void check_name(std::string_view name, const char* of_what);
 
+/// Layer and mask by their names, as a stroke file has them; empty: none named.
+struct PlaceNames {
+    std::string layer, mask;
+
+    bool operator==(const PlaceNames&) const = default;
+};
+
 /// The texels of a layer.
 struct LayerCanvas {
     std::uint32_t layer = kFirstLayer;

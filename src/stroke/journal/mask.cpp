@@ -12,7 +12,7 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr const char* kKinds[] = {"group", "angle", "chart", "lasso", "invert", "intersect", "unite"};
+constexpr const char* kMaskKinds[] = {"group", "angle", "chart", "lasso", "invert", "intersect", "unite"};
 constexpr std::size_t kMaxMasks = 1000, kMaxPoints = 10000;
 
 void check_view(const LassoView& v) {
@@ -52,12 +52,12 @@ void check_mask(const MaskTable& table, const Mask& m) {
 }  // namespace
 
 std::string name_of(MaskKind kind) {
-    return kKinds[static_cast<int>(kind)];
+    return kMaskKinds[static_cast<int>(kind)];
 }
 
 MaskKind mask_kind_of(const std::string& name) {
     for (int i = 0; i <= static_cast<int>(MaskKind::unite); ++i)
-        if (name == kKinds[i]) return static_cast<MaskKind>(i);
+        if (name == kMaskKinds[i]) return static_cast<MaskKind>(i);
     throw Error("'" + name + "' is no kind of mask; there are group, angle, chart, lasso, invert, intersect and unite");
 }
 
@@ -90,19 +90,6 @@ void apply(MaskTable& table, const MaskEdit& edit) {
     table.next_id = mask.id + 1;
     table.masks.push_back(std::move(mask));
 }
-
-namespace {
-
-nlohmann::json json_of(const Vec3& v) {
-    return {v.x, v.y, v.z};
-}
-
-Vec3 vector_of(const nlohmann::json& j) {
-    const auto v = j.get<std::array<double, 3>>();
-    return {v[0], v[1], v[2]};
-}
-
-}  // namespace
 
 nlohmann::json json_of(const MaskEdit& edit) {
     const Mask& m = edit.mask;

@@ -118,12 +118,12 @@ double drape_radius(const mesh::TriangleMesh& mesh) {
     return std::min(0.008, 0.04 * mesh.bounds.diagonal());
 }
 
-SurfaceTrace lay_draped(const SurfaceQuery& query, const Trace& trace) {
+SurfaceTrace lay_draped(const SurfaceQuery& query, const StrokeSamples& trace) {
     Drape drape(query, trace.placement);
     SurfaceTrace mapped;
     mapped.origin_gap = drape.origin_gap();
     mapped.samples.reserve(trace.samples.size());
-    for (const TraceSample& s : trace.samples) {
+    for (const StrokeSample& s : trace.samples) {
         check_interrupt();
         SurfaceSample out = drape.at(Vec2(s.position));
         const SurfaceSample hand = hand_data(s);

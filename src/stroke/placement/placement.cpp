@@ -80,21 +80,21 @@ std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const S
     return poses;
 }
 
-std::vector<brush::Pose> spatial_poses(const Trace& trace) {
+std::vector<brush::Pose> spatial_poses(const StrokeSamples& trace) {
     std::vector<brush::Pose> poses;
     poses.reserve(trace.samples.size());
-    for (const TraceSample& s : trace.samples) poses.push_back({s.position, glm::normalize(s.rotation), s.time});
+    for (const StrokeSample& s : trace.samples) poses.push_back({s.position, glm::normalize(s.rotation), s.time});
     return poses;
 }
 
-HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace, const HolderOptions& options) {
+HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options) {
     if (!trace.flat) return {{}, spatial_poses(trace), 0};
     // Laid is where the ink is to be: over a hollow, the surface ahead leans otherwise.
-    const Trace led = lead_hand(trace, options);
+    const StrokeSamples led = lead_hand(trace, options);
     HandPath path;
     path.set_down = led.samples.size() - trace.samples.size();
-    const Trace lifted = lift_off(led, options);
-    Trace ink = lifted;
+    const StrokeSamples lifted = lift_off(led, options);
+    StrokeSamples ink = lifted;
     for (std::size_t i = 0; i < ink.samples.size(); ++i) {
         const std::size_t own = std::clamp(i, path.set_down, led.samples.size() - 1) - path.set_down;
         ink.samples[i].position = trace.samples[own].position;

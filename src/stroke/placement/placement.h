@@ -7,7 +7,7 @@
 #include "brush/preset/preset.h"
 #include "brush/tuft/tuft_state.h"
 #include "mesh/query/surface_query.h"
-#include "stroke/journal/trace.h"
+#include "stroke/journal/samples.h"
 
 /// From flat pen data to the hand that holds a brush over a model: lay the samples
 /// onto the surface, then hold the brush over them.
@@ -57,7 +57,7 @@ struct SurfaceTrace {
 /// misses takes the height and frame of the nearest sample in time that hit.
 /// Throws `Error` when the trace is not flat, a number is not finite, or the placement's
 /// directions are zero or parallel. Cost: about 0.1 µs per triangle crossed.
-SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const Trace& trace);
+SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const StrokeSamples& trace);
 
 /// Radius in metres of the ground that `SurfaceMapping::drape` levels: 8 mm, or 4 % of the box diagonal
 /// of a smaller model.
@@ -112,7 +112,7 @@ std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const S
                               const HolderOptions& options);
 
 /// Poses of a trace in space: its samples as they are, rotations of unit length.
-std::vector<brush::Pose> spatial_poses(const Trace& trace);
+std::vector<brush::Pose> spatial_poses(const StrokeSamples& trace);
 
 /// The whole way for any trace: tip_lag, lay, hold, lift off; or the poses as they are for one in space
 /// (then `mapped` is empty).
@@ -121,6 +121,6 @@ struct HandPath {
     std::vector<brush::Pose> poses;
     std::size_t set_down = 0;  ///< of the poses, before that of the trace's first sample; those of the others follow
 };
-HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace, const HolderOptions& options);
+HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options);
 
 }  // namespace tuft::stroke

@@ -55,7 +55,7 @@ SurfacePoint refine_hit(const TriangleMesh& mesh, const SurfacePoint& hit, const
                                std::clamp(w[2], 0.0, 1.0 - std::clamp(w[1], 0.0, 1.0)));
 }
 
-void check(const Trace& trace) {
+void check(const StrokeSamples& trace) {
     if (!trace.flat) throw Error("a trace in space cannot be mapped onto the model");
     const auto finite = [](const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
     const Placement& p = trace.placement;
@@ -64,13 +64,13 @@ void check(const Trace& trace) {
     const double area = glm::length(glm::cross(p.right, p.down));
     if (!(area > 1e-6 * glm::length(p.right) * glm::length(p.down)) || !(area > 0))
         throw Error("the placement of a stroke has directions that are zero or parallel");
-    for (const TraceSample& s : trace.samples)
+    for (const StrokeSample& s : trace.samples)
         if (!finite(s.position) || !std::isfinite(s.time) || !std::isfinite(s.pressure) || !std::isfinite(s.tilt.x) ||
             !std::isfinite(s.tilt.y))
             throw Error("a stroke has a sample that is not finite");
 }
 
-SurfaceTrace lay_wrapped(const mesh::SurfaceQuery& query, const Trace& trace) {
+SurfaceTrace lay_wrapped(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
     const auto start = query.closest_point(trace.placement.origin);
     if (!start) throw Error("there is no surface to lay a stroke on");
     SurfaceTrace mapped;
@@ -80,7 +80,7 @@ SurfaceTrace lay_wrapped(const mesh::SurfaceQuery& query, const Trace& trace) {
     const Vec3 down0 = parallel_transport(axes.down, start->normal, start->face_normal);
 
     mapped.samples.reserve(trace.samples.size());
-    for (const TraceSample& s : trace.samples) {
+    for (const StrokeSample& s : trace.samples) {
         check_interrupt();
         SurfaceSample out = hand_data(s);
         const double length = std::hypot(s.position.x, s.position.y);
@@ -134,7 +134,7 @@ void fill_misses(SurfaceTrace& mapped, const std::vector<Vec3>& on_plane, const 
     }
 }
 
-SurfaceTrace lay_projected(const mesh::SurfaceQuery& query, const Trace& trace) {
+SurfaceTrace lay_projected(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
     const Placement& place = trace.placement;
     const Vec3 outward = glm::normalize(glm::cross(place.down, place.right));
     const Axes axes = axes_across(outward, place.right, place.down);
@@ -145,7 +145,7 @@ SurfaceTrace lay_projected(const mesh::SurfaceQuery& query, const Trace& trace) 
     std::vector<Vec3> on_plane;
     on_plane.reserve(trace.samples.size());
     mapped.samples.reserve(trace.samples.size());
-    for (const TraceSample& s : trace.samples) {
+    for (const StrokeSample& s : trace.samples) {
         check_interrupt();
         SurfaceSample out = hand_data(s);
         const Vec3 p = place.origin + s.position.x * axes.right + s.position.y * axes.down;
@@ -203,7 +203,7 @@ Vec3 into_plane(const Vec3& direction, const Vec3& normal) {
     return glm::normalize(d);
 }
 
-SurfaceSample hand_data(const TraceSample& s) {
+SurfaceSample hand_data(const StrokeSample& s) {
     SurfaceSample mapped;
     mapped.time = s.time;
     mapped.pressure = std::clamp(s.pressure, 0.0, 1.0);
@@ -275,7 +275,7 @@ StraightestGeodesic trace_geodesic(const TriangleMesh& mesh, const SurfacePoint&
     return out;
 }
 
-SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const Trace& trace) {
+SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
     check(trace);
     switch (trace.placement.mapping) {
         case SurfaceMapping::project:

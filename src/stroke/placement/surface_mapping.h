@@ -25,9 +25,9 @@ std::optional<mesh::SurfacePoint> exact_ray(const mesh::SurfaceQuery& query, con
                                             double t_max);
 
 /// What a sample brings with it from the hand.
-SurfaceSample hand_data(const TraceSample& sample);
+SurfaceSample hand_data(const StrokeSample& sample);
 
 /// `SurfaceMapping::drape`; see `lay`.
-SurfaceTrace lay_draped(const mesh::SurfaceQuery& query, const Trace& trace);
+SurfaceTrace lay_draped(const mesh::SurfaceQuery& query, const StrokeSamples& trace);
 
 }  // namespace tuft::stroke

@@ -112,7 +112,7 @@ constexpr double kAiming = 0.5;   // of `tip_lag_turn`: distance from the first 
 
 /// Direction in which a trace sets out: that of the place where it first is `away` metres from its
 /// first sample. Zero where it never is.
-Vec2 first_direction(std::span<const TraceSample> samples, double away) {
+Vec2 first_direction(std::span<const StrokeSample> samples, double away) {
     const Vec2 first(samples[0].position);
     for (std::size_t i = 1; i < samples.size(); ++i) {
         const Vec2 a = Vec2(samples[i - 1].position) - first, b = Vec2(samples[i].position) - first, way = b - a;
@@ -126,7 +126,7 @@ Vec2 first_direction(std::span<const TraceSample> samples, double away) {
 }
 
 /// Speed over the first `way` metres of path; 0 where it does not move.
-double first_pace(std::span<const TraceSample> samples, double way) {
+double first_pace(std::span<const StrokeSample> samples, double way) {
     double gone = 0, taken = 0;
     for (std::size_t i = 1; i < samples.size() && gone < way; ++i) {
         const double piece = glm::distance(samples[i].position, samples[i - 1].position);
@@ -140,13 +140,13 @@ double first_pace(std::span<const TraceSample> samples, double way) {
 // The hand of a trace that begins pressed goes the tip_lag while it presses: the tip touches where the trace
 // begins and trails from there. Set down from above it would bend to any side, and a tuft that is
 // pushed before the hand turns over only after centimetres.
-bool set_down(Trace& trace, const HolderOptions& options, const Vec2& ahead) {
+bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
     constexpr double kStep = 2.5e-4;  // metres between samples, less where they would be few
     constexpr double kFewest = 8, kMost = 100;
     constexpr double kWay = 3e-3;    // metres over which the pace is taken
     constexpr int kPieces = 64;      // of the press, whose length is measured
     constexpr double kTouch = 1e-6;  // of the pressure: the tip is down from the first sample
-    const TraceSample first = trace.samples.front();
+    const StrokeSample first = trace.samples.front();
     if (!(tip_lag_length(options.tip_lag, depth_of(options, first.pressure)) > 0)) return false;
     const double pace = first_pace(trace.samples, kWay);
     if (!(pace > 0)) return false;
@@ -161,13 +161,13 @@ bool set_down(Trace& trace, const HolderOptions& options, const Vec2& ahead) {
     }
     const double duration = gone.back() / (kSetDownPace * std::max(pace, kSlowestSetDown));
     const int n = static_cast<int>(std::clamp(std::ceil(gone.back() / kStep), kFewest, kMost));
-    std::vector<TraceSample> touch(static_cast<std::size_t>(n), first);
+    std::vector<StrokeSample> touch(static_cast<std::size_t>(n), first);
     std::size_t k = 1;
     for (int i = 0; i < n; ++i) {
         const double part = static_cast<double>(i) / n, at = part * gone.back();
         while (k < kPieces && gone[k] < at) ++k;
         const double span = gone[k] - gone[k - 1];
-        TraceSample& s = touch[static_cast<std::size_t>(i)];
+        StrokeSample& s = touch[static_cast<std::size_t>(i)];
         const double pressed = (static_cast<double>(k - 1) + (span > 0 ? (at - gone[k - 1]) / span : 0)) / kPieces;
         s.pressure = first.pressure * std::max(pressed, kTouch);
         s.time = first.time - (1 - part) * duration;
@@ -178,11 +178,11 @@ bool set_down(Trace& trace, const HolderOptions& options, const Vec2& ahead) {
 
 // BaseColour that is not quite as the hand takes it leans the tuft, and one that leans tip ahead is pushed. The holder
 // is tipped ahead by more than that until the tuft trails.
-void lean_ahead(Trace& trace, const HolderOptions& options, const Vec2& ahead) {
+void lean_ahead(StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
     const double until = kLeanTurns * options.tip_lag_turn;
     double gone = 0;
     for (std::size_t i = 0; i < trace.samples.size() && gone < until; ++i) {
-        TraceSample& s = trace.samples[i];
+        StrokeSample& s = trace.samples[i];
         s.tilt += kLean * (1 - smooth_step(gone / until)) * ahead;
         if (i + 1 < trace.samples.size()) gone += glm::length(trace.samples[i + 1].position - s.position);
     }
@@ -190,11 +190,11 @@ void lean_ahead(Trace& trace, const HolderOptions& options, const Vec2& ahead) {
 
 // A hand that holds the brush upright, give or take a little, sets it down plumb: hair that touches ahead of the hand
 // by a lean that nobody meant would be pushed, and turn over late. The lean comes as the hair is drawn to one side.
-void set_down_plumb(Trace& trace, const HolderOptions& options) {
+void set_down_plumb(StrokeSamples& trace, const HolderOptions& options) {
     const double whole = kPlumb * options.tuft_length;
     double along = 0;
     for (std::size_t i = 0; i < trace.samples.size() && along < whole; ++i) {
-        TraceSample& s = trace.samples[i];
+        StrokeSample& s = trace.samples[i];
         if (i > 0) along += glm::length(s.position - trace.samples[i - 1].position);
         const double meant = smooth_step((glm::length(s.tilt) - kUpright) / (kLeans - kUpright));
         s.tilt *= std::lerp(smooth_step(along / whole), 1.0, meant);
@@ -203,7 +203,7 @@ void set_down_plumb(Trace& trace, const HolderOptions& options) {
 
 }  // namespace
 
-Trace lead_hand(Trace trace, const HolderOptions& options) {
+StrokeSamples lead_hand(StrokeSamples trace, const HolderOptions& options) {
     if (options.tip_lag.empty() || trace.samples.empty() || !trace.flat) return trace;
     // The hand knows where it is going to start: the string is taut from the first touch.
     const Vec2 first(trace.samples.front().position);
@@ -212,7 +212,7 @@ Trace lead_hand(Trace trace, const HolderOptions& options) {
     set_down_plumb(trace, options);
     if (pressed && sets_out != Vec2(0)) lean_ahead(trace, options, sets_out);
     Vec2 dragged = first - options.tip_lag_turn * sets_out, before = first;
-    for (TraceSample& s : trace.samples) {
+    for (StrokeSample& s : trace.samples) {
         const Vec2 p(s.position);
         dragged = drag_string(dragged, before, p, options.tip_lag_turn);
         before = p;
@@ -221,13 +221,13 @@ Trace lead_hand(Trace trace, const HolderOptions& options) {
     return trace;
 }
 
-Trace lift_off(Trace trace, const HolderOptions& options) {
+StrokeSamples lift_off(StrokeSamples trace, const HolderOptions& options) {
     constexpr int kSamples = 8;
     if (trace.samples.empty() || !trace.flat || trace.samples.back().pressure > 0) return trace;
-    const double from = -tip_depths<TraceSample>(trace.samples, options).back();
+    const double from = -tip_depths<StrokeSample>(trace.samples, options).back();
     const double left = options.hover - from;
     if (!(left > 1e-3 * options.hover)) return trace;
-    TraceSample s = trace.samples.back();
+    StrokeSample s = trace.samples.back();
     const double begins = s.time, duration = kHoverTime * left / options.hover;
     for (int i = 1; i <= kSamples; ++i) {
         s.time = begins + duration * i / kSamples;

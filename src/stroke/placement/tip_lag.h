@@ -69,11 +69,11 @@ inline constexpr double kHoverTime = 0.05;  ///< seconds in which the tip goes b
 ///     |v_holder| ≤ (1 + tip_lag / tip_lag_turn + 2 κ L + 1.5) |v_path| + 4 (|depth'| + L |tilt'|),
 ///
 /// L the tuft's length; and at most `hover / kHoverTime` faster than the hand while it is not.
-Trace lead_hand(Trace trace, const HolderOptions& options);
+StrokeSamples lead_hand(StrokeSamples trace, const HolderOptions& options);
 
 /// A trace that ends with the pressure 0 gets samples after its last, in which the hand takes the tip
 /// up to `hover`; others stay.
-Trace lift_off(Trace trace, const HolderOptions& options);
+StrokeSamples lift_off(StrokeSamples trace, const HolderOptions& options);
 
 /// Metres of the unbent tip below the surface at each of the samples, which have `position`, `pressure`
 /// and `time`: pressure · working depth; where the pressure is 0, minus the height to which the hand has lifted

@@ -37,7 +37,7 @@ HairContactOptions hair_options(const SessionInput& in, bool mixed) {
 
 StrokeSession::StrokeSession(SessionInput input)
     : input_(std::move(input)),
-      mixed_(!input_.stroke.trace.erases && ink::is_mixed(input_.brush.reservoir)),
+      mixed_(!input_.stroke.erases() && ink::is_mixed(input_.brush.reservoir)),
       spacing_(spacing_of(input_)),
       tuft_{.brush = std::move(input_.brush), .ink = input_.ink, .state = {}},
       path_{.steady = {}, .resampler = Resampler({.step = spacing_, .lever = tuft_.preset().length}), .poses = {}},
@@ -45,27 +45,27 @@ StrokeSession::StrokeSession(SessionInput input)
       stencil_(*input_.model.query, input_.stroke.trace),
       target_(input_.model, input_.canvas, input_.substrate, input_.mask, input_.scratch),
       deposit_(make_deposit()) {
-    if (input_.stroke.settings.contact == "vertices") contact_.options.method = contact::Method::vertices;
+    contact_.options.method = input_.stroke.settings.contact;
     report_.nearest = std::numeric_limits<double>::infinity();
     report_.full_at_start = tuft_.brush.reservoir.fullness();
-    if (input_.stroke.settings.endless && !input_.stroke.trace.erases) refill_ = tuft_.brush.reservoir;
+    if (input_.stroke.settings.endless && !input_.stroke.erases()) refill_ = tuft_.brush.reservoir;
 }
 
 std::unique_ptr<DepositModel> StrokeSession::make_deposit() {
     DepositOptions options{.wet = input_.wet};
-    if (input_.stroke.settings.footprint == "plane") options.stamp.mapping = footprint::Mapping::plane;
+    options.stamp.mapping = input_.stroke.settings.footprint;
     options.progress = [this](std::string_view, double) { return !progress_ || progress_("painting", done_); };
-    if (input_.stroke.trace.erases) return make_eraser(target_, options);
+    if (input_.stroke.erases()) return make_eraser(target_, options);
     if (is_paste(input_)) return make_paste_deposit(target_, options);
     if (input_.wet.film) return make_wet_deposit(target_, options, mixed_);
     return mixed_ ? make_mixed_deposit(target_, options) : make_still_deposit(target_, options);
 }
 
 void StrokeSession::extend(std::span<const brush::Pose> poses) {
-    Trace cluster{.flat = false};
+    StrokeSamples cluster{.flat = false};
     for (const brush::Pose& pose : poses)
         cluster.samples.push_back({.time = pose.time, .position = pose.position, .rotation = pose.rotation});
-    std::vector<TraceSample>& samples = input_.stroke.trace.samples;
+    std::vector<StrokeSample>& samples = input_.stroke.trace.samples;
     samples.insert(samples.end(), cluster.samples.begin(), cluster.samples.end());
     advance(spatial_poses(cluster));  // as a replay will see them, to the bit
 }
@@ -206,7 +206,7 @@ SessionResult StrokeSession::finish() {
     report_.removed = deposit_->removed();
     if (report_.touched()) report_.nearest = 0;
     if (input_.record_forces) report_.forces = forces_at_samples();
-    tuft_.brush.named = input_.stroke.trace.ink;
+    tuft_.brush.named = input_.stroke.ink;
     return {std::move(report_), std::move(tuft_.brush), target_.take_snapshots()};
 }
 

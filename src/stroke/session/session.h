@@ -8,6 +8,7 @@
 #include "stroke/deposit/deposit_model.h"
 #include "stroke/gesture/hand.h"
 #include "stroke/gesture/resample.h"
+#include "stroke/journal/entry.h"
 #include "stroke/session/report.h"
 #include "stroke/surface/surface_stencil.h"
 
@@ -15,9 +16,9 @@ namespace tuft::stroke {
 
 /// What a stroke is painted with and onto. What is referred to must outlive the session.
 struct SessionInput {
-    Stroke stroke;      ///< settings and stencil; its samples may still be empty
-    BrushInHand brush;  ///< as the stroke begins
-    ink::Ink ink;       ///< that the brush was dipped into
+    PaintStroke stroke;  ///< settings and stencil; its samples may still be empty
+    BrushInHand brush;   ///< as the stroke begins
+    ink::Ink ink;        ///< that the brush was dipped into
     const Model& model;
     const ink::Substrate& substrate;
     ink::Canvas& canvas;               ///< of the stroke's layer
@@ -61,7 +62,7 @@ class StrokeSession {
     /// The tiles that were written to so far as they were, by slot: to take the stroke back.
     std::vector<ink::TileSnapshot> take_snapshots() { return target_.take_snapshots(); }
 
-    const Stroke& stroke() const { return input_.stroke; }
+    const PaintStroke& stroke() const { return input_.stroke; }
     /// The bent tuft at the last pose.
     const brush::TuftState& tuft() const { return tuft_.state; }
     /// What a haptic device shall give at the last pose, newtons.

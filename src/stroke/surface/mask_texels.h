@@ -8,7 +8,8 @@
 #include "stroke/journal/mask.h"
 #include "stroke/surface/model.h"
 
-/// A mask evaluated on the texels of a model.
+/// \file
+/// Masks on the texels of a model.
 namespace tuft::stroke {
 
 /// Coverage of texels, 0–255; tiles that are covered all or not at all take no room.

@@ -106,9 +106,9 @@ class Cut {
 
 }  // namespace
 
-SurfaceStencil::SurfaceStencil(const mesh::SurfaceQuery& query, const Trace& trace) {
+SurfaceStencil::SurfaceStencil(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
     if (!trace.flat || trace.stencil.empty()) return;
-    Trace ends{.placement = trace.placement};
+    StrokeSamples ends{.placement = trace.placement};
     std::vector<Vec2> ways;
     double whole = 0;
     for (const StencilEdge& e : trace.stencil) whole += glm::distance(e.from, e.to);

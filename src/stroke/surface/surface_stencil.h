@@ -5,7 +5,7 @@
 
 #include "footprint/outline/footprint.h"
 #include "mesh/query/surface_query.h"
-#include "stroke/journal/trace.h"
+#include "stroke/journal/samples.h"
 
 /// Tape on the surface: a stroke goes over its edges, ink does not.
 namespace tuft::stroke {
@@ -23,7 +23,7 @@ class SurfaceStencil {
     /// Lays the stencil edge of a flat trace as its samples are laid (`lay`), in clusters of 1 mm, of more
     /// where that would be over 100,000. Pieces past the surface's edge are left out. Empty for
     /// traces in space.
-    SurfaceStencil(const mesh::SurfaceQuery& query, const Trace& trace);
+    SurfaceStencil(const mesh::SurfaceQuery& query, const StrokeSamples& trace);
 
     bool empty() const { return pieces_.empty(); }
     std::span<const StencilSegment> clusters() const { return pieces_; }

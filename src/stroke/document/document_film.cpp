@@ -1,5 +1,7 @@
+#include <algorithm>
+
 #include "ink/film/film.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// What a painting does with wet ink between strokes.
 namespace tuft::stroke {
@@ -27,19 +29,12 @@ ink::WetFilm& Document::film(std::uint32_t mask) {
     return *film_;
 }
 
-/// The mask that was last painted through on a layer, of entries before this one.
-std::uint32_t Document::tape_on(std::uint32_t layer, std::uint64_t before_id) const {
-    std::map<std::uint32_t, std::uint32_t> masks;  // by layer
-    for (const Stroke& s : journal_.strokes()) {
-        if (before_id && s.id == before_id) break;
-        if (s.hidden) continue;
-        if (s.action == Action::stroke || s.action == Action::fill) masks[s.layer] = s.mask;
-        if (s.action != Action::layer) continue;
-        // A copy is wet as far as the original; of two merged layers the mask of the upper one goes on.
-        if (s.edit.what == LayerChange::duplicate) masks[s.edit.layer.id] = masks[s.edit.other];
-        if (s.edit.what == LayerChange::merge && masks[s.edit.layer.id]) masks[s.edit.other] = masks[s.edit.layer.id];
-    }
-    const std::uint32_t mask = masks[layer];
+/// The mask that was last painted through on a layer, by entries before this one.
+std::uint32_t Document::stencil_mask_on(std::uint32_t layer, std::uint64_t before_id) const {
+    const std::vector<JournalEntry>& all = journal_.entries();
+    auto end = all.end();
+    if (before_id) end = std::ranges::find(all, before_id, &JournalEntry::id);
+    const std::uint32_t mask = last_mask_on({all.begin(), end}, layer);
     return masks_.find(mask) ? mask : 0;
 }
 
@@ -49,9 +44,9 @@ void Document::take_back(const std::vector<LayerTiles>& before) {
 }
 
 // Undo takes back the tiles; no brush has a part in it. All layers dry.
-void Document::dry(const Stroke& entry, const ProgressFn& progress) {
-    const ink::FilmParams params = ink::film_params(substrate_, entry.settings.down);
-    Undo undo{.stroke_id = entry.id};
+void Document::dry(std::uint64_t id, const Dry& wait, const ProgressFn& progress) {
+    const ink::FilmParams params = ink::film_params(substrate_, wait.down);
+    Undo undo{.stroke_id = id};
     for (const Layer& layer : layers_.layers) {
         ink::Canvas& canvas = this->canvas(layer.id);
         LayerTiles& before = undo.before.emplace_back(LayerTiles{.layer = layer.id, .tiles = {}});
@@ -62,9 +57,9 @@ void Document::dry(const Stroke& entry, const ProgressFn& progress) {
             before.tiles.push_back(canvas.snapshot(slot));
         };
         try {
-            ink::WetFilm& film = this->film(tape_on(layer.id, entry.id));
-            if (entry.seconds > 0)
-                film.advance(canvas, entry.seconds, params, keep, progress);
+            ink::WetFilm& film = this->film(stencil_mask_on(layer.id, id));
+            if (wait.seconds > 0)
+                film.advance(canvas, wait.seconds, params, keep, progress);
             else
                 film.dry(canvas, params, keep, kDryLimit, progress);
         } catch (...) {

@@ -1,4 +1,4 @@
-#include "stroke/painting/palette.h"
+#include "stroke/document/palette.h"
 
 #include "atlas/texels/seam_links.h"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "mesh/query/surface_query.h"
+#include "stroke/document/document.h"
 #include "stroke/journal/model_motion.h"
-#include "stroke/painting/painting.h"
 
 namespace tuft::stroke {
 
@@ -40,7 +40,7 @@ struct StrokeFit {
 /// ferrule's mouth along its axis, one tuft's length to both sides; flat strokes are laid on both
 /// models. `length_of` gives a brush's tuft length, `motion` how the model moved as a whole. Hidden
 /// strokes and the palette's are left out. Cost: two rays a sample, or twice what laying takes.
-std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes,
+std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
                                    const std::function<double(const std::string& brush)>& length_of,
                                    const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
                                    const std::optional<ModelMotion>& motion = {});

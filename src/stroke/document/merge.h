@@ -19,12 +19,12 @@ struct EntryMark {
 
     bool operator==(const EntryMark&) const = default;
 };
-EntryMark mark_of(const Stroke& entry);
+EntryMark mark_of(const JournalEntry& entry);
 void set_hidden(EntryMark& mark, bool hidden);
-std::vector<EntryMark> marks_of(std::span<const Stroke> entries);
+std::vector<EntryMark> marks_of(std::span<const JournalEntry> entries);
 
 struct MergedJournal {
-    std::vector<Stroke> entries;
+    std::vector<JournalEntry> entries;
     std::size_t from_theirs = 0;  ///< the first so many are all of theirs, as they are; the rest is painted after them
     bool altered = false;         ///< else: mine took out or changed some of theirs, and `from_theirs` is 0
     std::size_t news = 0;         ///< entries of theirs that mine did not have, or not so
@@ -36,6 +36,7 @@ struct MergedJournal {
 /// it was; of an entry that both changed mine stays. What comes after gets ids that are free,
 /// layers and masks too, under names that are free; a layer or mask that it needs and theirs has no
 /// more is added again. Of changes of layers, those that theirs makes impossible are left out.
-MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<Stroke> mine, std::vector<Stroke> theirs);
+MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<JournalEntry> mine,
+                             std::vector<JournalEntry> theirs);
 
 }  // namespace tuft::stroke

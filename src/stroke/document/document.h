@@ -14,8 +14,9 @@
 #include "ink/composite/composite.h"
 #include "ink/film/film.h"
 #include "stroke/contact/tuft_in_hand.h"
+#include "stroke/document/palette.h"
 #include "stroke/journal/journal.h"
-#include "stroke/painting/palette.h"
+#include "stroke/journal/tables.h"
 #include "stroke/placement/placement.h"
 #include "stroke/placement/tip_lag.h"
 #include "stroke/session/report.h"
@@ -45,24 +46,6 @@ struct Pick {
     std::array<double, ink::kMaxPigments> amounts{};  ///< of them all, by plane of `Document::canvas`
     double liquid = 0;                                ///< film units, on the surface and in it
 };
-
-/// The layers that these entries of a journal make. Throws `Error` where one cannot be.
-LayerTable layers_after(std::span<const Stroke> entries);
-
-/// The masks that they make.
-MaskTable masks_after(std::span<const Stroke> entries);
-
-/// Whether texels stored after entry `stroke_id` show all these entries, but for changes of
-/// layers and masks since, so that `Document::adopt` takes them.
-bool fits(std::span<const Stroke> entries, std::uint64_t stroke_id);
-
-/// Gives each stroke the layer that its trace names (or `name` where it names none; empty: the
-/// one it has), before it an entry that adds the layer on top where it is not there yet.
-std::vector<Stroke> onto_named_layers(std::vector<Stroke> strokes, LayerTable table, const std::string& name = {});
-
-/// Gives each stroke and fill the mask that its trace names, or `name` where it names none. Throws
-/// `Error` for a mask that is not there.
-void keep_to_named_masks(std::vector<Stroke>& strokes, const MaskTable& table, const std::string& name = {});
 
 class PlanScratchPool;
 class StrokeSession;
@@ -99,11 +82,11 @@ class Document {
     /// washed and dipped anew where a stroke names another ink than the stroke before and the
     /// brush was not dipped into that one. A brush that this painting does not hold yet is
     /// fresh: its entry is kept in the journal as "each", so that a replay is the same.
-    StrokeReport paint(Stroke stroke, const ProgressFn& progress = {});
+    StrokeReport paint(JournalEntry entry, const ProgressFn& progress = {});
 
-    /// The same in clusters for poses in space: `begin`, any number of `extend`, `end`.
-    /// `stroke` brings the header; its samples may be empty. `cancel` takes it back instead.
-    void begin(Stroke stroke);
+    /// The same in pieces for poses in space: `begin`, any number of `extend`, `end`.
+    /// `entry` holds a `PaintStroke`, whose samples may be empty. `cancel` takes it back instead.
+    void begin(JournalEntry entry);
     void extend(std::span<const brush::Pose> poses);
     StrokeReport end();
     void cancel();
@@ -118,15 +101,15 @@ class Document {
 
     /// Takes over a stored journal, ids kept, and paints what is not hidden. One report per
     /// stroke painted, none for actions.
-    std::vector<StrokeReport> replay(std::vector<Stroke> strokes, const ProgressFn& progress = {});
+    std::vector<StrokeReport> replay(std::vector<JournalEntry> strokes, const ProgressFn& progress = {});
 
     /// Takes over a stored journal together with the texels it once made. Throws `Error`
     /// when they were made for another texel map. The brushes are not held then.
-    void adopt(std::vector<Stroke> strokes, ink::Canvas canvas);
+    void adopt(std::vector<JournalEntry> strokes, ink::Canvas canvas);
     /// The same with the texels of every layer as they were after entry `stroke_id`. Throws
     /// `Error` also when something else than changes of layers came after it, or when layers are
     /// missing: then it must be replayed.
-    void adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canvases, std::uint64_t stroke_id);
+    void adopt(std::vector<JournalEntry> strokes, std::vector<LayerCanvas> canvases, std::uint64_t stroke_id);
 
     /// Takes the last stroke back, or paints the last one taken back again; false when
     /// there is none. Costs a copy of the tiles it touched, or a replay of everything
@@ -134,7 +117,7 @@ class Document {
     bool undo();
     bool redo();
     /// See `Journal::restore_undone`.
-    void restore_undone(std::vector<Stroke> undone) { journal_.restore_undone(std::move(undone)); }
+    void restore_undone(std::vector<JournalEntry> undone) { journal_.restore_undone(std::move(undone)); }
 
     const Journal& journal() const { return journal_; }
     const Model& model() const { return *model_; }
@@ -146,7 +129,7 @@ class Document {
     ink::Canvas& canvas(std::uint32_t layer);
     /// Of all layers, the lowest first.
     std::vector<LayerTexels> canvases() const;
-    /// The layers now. They are changed by entries with `Action::layer` (see `LayerEdit`), which
+    /// The layers now. They are changed by entries with a `LayerEdit`, which
     /// costs no texel; undo and redo go over them as over strokes.
     const LayerTable& layers() const { return layers_; }
     /// The same and the palette, where there is something on it: what a project stores.
@@ -155,8 +138,8 @@ class Document {
     ink::Stack stack() const;
     /// Shows these layers alone, whatever the table says; empty: as it says. Not kept.
     void show_only(std::vector<std::uint32_t> layers);
-    /// The masks now; entries with `Action::mask` change them. A stroke or fill that names one in
-    /// `Stroke::mask` leaves everything outside it as it is. What it leaves wet does not flow over the
+    /// The masks now; entries with a `MaskEdit` change them. A stroke or fill that names one in
+    /// `mask` leaves everything outside it as it is. What it leaves wet does not flow over the
     /// mask's edge either: the mask stays on the layer, as stencil edge does, until something is painted there
     /// with another one or none.
     const MaskTable& masks() const { return masks_; }
@@ -170,7 +153,7 @@ class Document {
     Pick pick_palette(const Vec3& point);
 
     /// The texels of the palette; null while nothing was put on it. Strokes and fills with the
-    /// layer `kPaletteLayer` go onto it, always with wet ink; `Action::wash` cleans it. It is
+    /// layer `kPaletteLayer` go onto it, always with wet ink; `WashPalette` cleans it. It is
     /// no part of `hash`, `canvases` and `stack`.
     const ink::Canvas* palette() const { return palette_ ? &palette_->canvas : nullptr; }
     /// The plate; made at the first call.
@@ -214,40 +197,52 @@ class Document {
         std::size_t pigments = 0;                 ///< known before the entry
         std::size_t bytes = 0;
     };
+    /// How an entry takes its brush up.
+    struct BrushStart {
+        const std::string &brush, &ink;
+        std::uint64_t seed = 0;
+        DipMode dip = DipMode::each;
+        brush::SpineMethod spine = brush::SpineMethod::rod;
+    };
 
-    StrokeReport draw(const Stroke& stroke, const ProgressFn& progress);
-    StrokeReport finish_session();
-    void act(const Stroke& entry, const ProgressFn& progress);
-    void dry(const Stroke& entry, const ProgressFn& progress);
+    StrokeReport perform(const JournalEntry& entry, const ProgressFn& progress);
+    StrokeReport draw(std::uint64_t id, const PaintStroke& stroke, const ProgressFn& progress);
+    StrokeReport finish_session(std::uint64_t id);
+    void act(std::uint64_t id, const BrushAction& action);
+    void dry(std::uint64_t id, const Dry& wait, const ProgressFn& progress);
     void take_back(const std::vector<LayerTiles>& before);
     ink::WetFilm& film(std::uint32_t mask);
-    std::uint32_t tape_on(std::uint32_t layer, std::uint64_t before_id) const;
+    std::uint32_t stencil_mask_on(std::uint32_t layer, std::uint64_t before_id) const;
     const atlas::SeamLinks& seams();
     Palette& plate();
-    void wash(const Stroke& entry);
-    const Model& target_model(const Stroke& entry);
-    const ink::Substrate& substrate_of(const Stroke& entry) const;
+    void wash(std::uint64_t id);
+    const Model& target_model(std::uint32_t layer);
+    const ink::Substrate& substrate_of(std::uint32_t layer) const;
     Pick pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels> layers) const;
-    void edit_layers(const Stroke& entry);
+    void edit_layers(std::uint64_t entry_id, const LayerEdit& edit);
     LayerCanvas take_texels(std::uint32_t id);
     LayerTiles merge_texels(std::uint32_t into, const ink::Canvas& from);
-    StrokeReport lay_fill(const Stroke& entry);
-    void edit_masks(const Stroke& entry);
+    StrokeReport lay_fill(std::uint64_t id, const Fill& fill);
+    void edit_masks(std::uint64_t entry_id, const MaskEdit& edit);
     std::vector<LayerTexels> shown_layers() const;
     void take_back_layers(Undo& undo);
     void set_layers(LayerTable table);
-    void check_layer(const Stroke& entry) const;
+    void check_layer(const JournalEntry& entry) const;
     void touch_look(std::uint32_t layer);
-    void begin_session(Stroke stroke);
-    void settle(Stroke& entry) const;
-    BrushInHand take_up(const Stroke& entry);
+    void begin_session(PaintStroke stroke);
+    void settle(PaintStroke& stroke) const;
+    void settle(EntryContent& content) const;
+    BrushInHand take_up(const BrushStart& start);
+    BrushInHand take_up(const PaintStroke& stroke);
+    BrushInHand clean_brush(const brush::Preset& preset) const;
+    brush::Preset preset_of(const std::string& name, brush::SpineMethod spine);
     void put_down(std::uint64_t id, const std::string& brush, BrushInHand after, LayerTiles before);
     void keep_undo(Undo undo);
     void forget_pigments(std::size_t n);
     ink::Mix mix_of(const std::string& ink);
     void apply_recolours();
     void repaint_all();
-    HandPath path_of(const Stroke& stroke);
+    HandPath path_of(const PaintStroke& stroke);
 
     const Model* model_;
     DocumentOptions options_;
@@ -273,6 +268,7 @@ class Document {
     std::size_t known_pigments_ = 0;  ///< by the entries of the journal
     std::unique_ptr<PlanScratchPool> plan_scratch_;
     std::unique_ptr<StrokeSession> session_;   ///< the stroke in work
+    JournalEntry open_;                        ///< its header, from `begin` to `end`
     std::unique_ptr<ink::WetFilm> film_;       ///< made when something is wet
     std::uint32_t film_mask_ = 0;              ///< the mask that it keeps within
     std::unique_ptr<atlas::SeamLinks> seams_;  ///< made for it, or for paste

@@ -1,4 +1,4 @@
-#include "stroke/painting/fit.h"
+#include "stroke/document/fit.h"
 
 #include <fmt/format.h>
 
@@ -73,12 +73,12 @@ void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::opt
     if (!slid.empty()) fit.slid = median(std::move(slid));
 }
 
-StrokeFit fit_in_space(const Stroke& stroke, double length, const mesh::SurfaceQuery& former,
+StrokeFit fit_in_space(const JournalEntry& entry, double length, const mesh::SurfaceQuery& former,
                        const mesh::SurfaceQuery& revised, const std::optional<ModelMotion>& motion) {
-    StrokeFit fit{.stroke = stroke.id};
+    StrokeFit fit{.stroke = entry.id};
     std::vector<double> depths, changes;
     std::vector<Place> places;
-    for (const brush::Pose& pose : spatial_poses(stroke.trace)) {
+    for (const brush::Pose& pose : spatial_poses(samples_of(entry))) {
         const Vec3 mouth = pose.position, axis = pose.axis();
         Place& place = places.emplace_back();
         place.hand = mouth;
@@ -100,10 +100,11 @@ StrokeFit fit_in_space(const Stroke& stroke, double length, const mesh::SurfaceQ
     return fit;
 }
 
-StrokeFit fit_flat(const Stroke& stroke, const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
+StrokeFit fit_flat(const JournalEntry& entry, const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
                    const std::optional<ModelMotion>& motion) {
-    StrokeFit fit{.stroke = stroke.id, .flat = true};
-    const Trace trace = steady(stroke.trace, stroke.settings);
+    const PaintStroke& stroke = *entry.as<PaintStroke>();
+    StrokeFit fit{.stroke = entry.id, .flat = true};
+    const StrokeSamples trace = steady(stroke.trace, stroke.settings);
     const SurfaceTrace was = map_to_surface(former, trace), now = map_to_surface(revised, trace);
     std::vector<Place> places(trace.samples.size());
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -121,22 +122,22 @@ StrokeFit fit_flat(const Stroke& stroke, const mesh::SurfaceQuery& former, const
 
 }  // namespace
 
-std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes,
+std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
                                    const std::function<double(const std::string&)>& length_of,
                                    const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
                                    const std::optional<ModelMotion>& motion) {
-    std::vector<const Stroke*> compared;
+    std::vector<const JournalEntry*> compared;
     std::vector<double> lengths;  // asked for here: presets are loaded one at a time
-    for (const Stroke& stroke : strokes)
-        if (stroke.action == Action::stroke && !stroke.hidden && stroke.layer != kPaletteLayer) {
-            compared.push_back(&stroke);
-            lengths.push_back(length_of(stroke.trace.brush));
+    for (const JournalEntry& entry : entries)
+        if (entry.as<PaintStroke>() && !entry.hidden && !on_palette(entry)) {
+            compared.push_back(&entry);
+            lengths.push_back(length_of(brush_of(entry)));
         }
     std::vector<StrokeFit> fits(compared.size());
     parallel_for(compared.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            fits[i] = compared[i]->trace.flat ? fit_flat(*compared[i], former, revised, motion)
-                                              : fit_in_space(*compared[i], lengths[i], former, revised, motion);
+            fits[i] = samples_of(*compared[i]).flat ? fit_flat(*compared[i], former, revised, motion)
+                                                    : fit_in_space(*compared[i], lengths[i], former, revised, motion);
     });
     return fits;
 }

@@ -2,7 +2,7 @@
 
 #include "ink/composite/composite.h"
 #include "ink/spectra/kubelka_munk.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// What a painting does with its palette.
 namespace tuft::stroke {
@@ -12,12 +12,12 @@ Palette& Document::plate() {
     return *palette_;
 }
 
-const Model& Document::target_model(const Stroke& entry) {
-    return entry.layer == kPaletteLayer ? plate().model : *model_;
+const Model& Document::target_model(std::uint32_t layer) {
+    return layer == kPaletteLayer ? plate().model : *model_;
 }
 
-const ink::Substrate& Document::substrate_of(const Stroke& entry) const {
-    return entry.layer == kPaletteLayer ? palette_->substrate : substrate_;
+const ink::Substrate& Document::substrate_of(std::uint32_t layer) const {
+    return layer == kPaletteLayer ? palette_->substrate : substrate_;
 }
 
 Pick Document::pick_palette(const Vec3& point) {
@@ -68,8 +68,8 @@ void refresh(PalettePicture& picture, const Document& painting, std::span<const 
     }
 }
 
-void Document::wash(const Stroke& entry) {
-    Undo undo{.stroke_id = entry.id};
+void Document::wash(std::uint64_t id) {
+    Undo undo{.stroke_id = id};
     ink::Canvas& canvas = this->canvas(kPaletteLayer);
     LayerTiles& before = undo.before.emplace_back(LayerTiles{.layer = kPaletteLayer, .tiles = {}});
     for (const std::uint32_t slot : canvas.touched_slots()) before.tiles.push_back(canvas.snapshot(slot));

@@ -1,4 +1,4 @@
-#include "stroke/painting/merge.h"
+#include "stroke/document/merge.h"
 
 #include <algorithm>
 #include <map>
@@ -8,7 +8,9 @@
 
 #include "core/error.h"
 #include "core/hash.h"
-#include "stroke/painting/painting.h"
+#include "core/overloaded.h"
+#include "stroke/journal/entry_json.h"
+#include "stroke/journal/tables.h"
 
 namespace tuft::stroke {
 namespace {
@@ -37,38 +39,41 @@ std::string free_name(const Table& table, const std::string& name) {
 /// Puts entries of one journal behind another one, whose layers and masks may differ.
 class Follower {
   public:
-    explicit Follower(std::vector<Stroke>& entries, std::uint64_t first_free)
+    explicit Follower(std::vector<JournalEntry>& entries, std::uint64_t first_free)
         : entries_(entries), next_id_(first_free), layers_(layers_after(entries)), masks_(masks_after(entries)) {
-        for (const Stroke& s : entries) ids_.insert(s.id);
+        for (const JournalEntry& s : entries) ids_.insert(s.id);
     }
 
     /// Something that is there already; only its names are learnt.
-    void pass(const Stroke& mine) { learn(mine); }
+    void pass(const JournalEntry& mine) { learn(mine); }
 
-    void append(Stroke entry) {
-        const Stroke was = entry;
-        if (entry.action == Action::layer  ? map_layer_edit(entry.edit)
-            : entry.action == Action::mask ? map_mask_edit(entry.mask_edit)
-                                           : map_place(entry))
-            put(std::move(entry));
+    void append(JournalEntry entry) {
+        const JournalEntry was = entry;
+        const bool is_possible =
+            std::visit(Overloaded{[&](PaintStroke& stroke) { return map_target(stroke); },
+                                  [](const BrushAction&) { return true; }, [](const Dry&) { return true; },
+                                  [](const WashPalette&) { return true; }, [&](Fill& fill) { return map_target(fill); },
+                                  [&](LayerEdit& edit) { return map_layer_edit(edit); },
+                                  [&](MaskEdit& edit) { return map_mask_edit(edit); }},
+                       entry.content);
+        if (is_possible) put(std::move(entry));
         learn(was);
     }
 
   private:
-    void put(Stroke entry) {
+    void put(JournalEntry entry) {
         if (!ids_.insert(entry.id).second) entry.id = next_id_++, ids_.insert(entry.id);
-        if (entry.action == Action::layer && !entry.hidden) apply(layers_, entry.edit);
-        if (entry.action == Action::mask && !entry.hidden) apply(masks_, entry.mask_edit);
+        if (const LayerEdit* edit = entry.as<LayerEdit>(); edit && !entry.hidden) apply(layers_, *edit);
+        if (const MaskEdit* edit = entry.as<MaskEdit>(); edit && !entry.hidden) apply(masks_, *edit);
         entries_.push_back(std::move(entry));
     }
 
     // The names that layers and masks had in their own journal, for the time when they are gone.
-    void learn(const Stroke& mine) {
-        if (mine.action == Action::layer && mine.edit.what != LayerChange::remove &&
-            mine.edit.what != LayerChange::merge)
-            layer_names_[mine.edit.layer.id] = mine.edit.layer.name;
-        if (mine.action == Action::mask && !mine.mask_edit.remove)
-            own_masks_[mine.mask_edit.mask.id] = mine.mask_edit.mask;
+    void learn(const JournalEntry& mine) {
+        if (const LayerEdit* edit = mine.as<LayerEdit>();
+            edit && edit->what != LayerChange::remove && edit->what != LayerChange::merge)
+            layer_names_[edit->layer.id] = edit->layer.name;
+        if (const MaskEdit* edit = mine.as<MaskEdit>(); edit && !edit->remove) own_masks_[edit->mask.id] = edit->mask;
     }
 
     static std::uint32_t mapped(const std::map<std::uint32_t, std::uint32_t>& map, std::uint32_t id) {
@@ -113,29 +118,21 @@ class Follower {
         return possible(masks_, edit);
     }
 
-    bool map_place(Stroke& entry) {
-        const bool on_layer = entry.action == Action::stroke || entry.action == Action::fill;
-        if (on_layer && entry.layer != kPaletteLayer) entry.layer = layer_for(entry.layer);
-        if (on_layer && entry.mask != 0) entry.mask = mask_for(entry.mask, 0);
+    bool map_target(auto& content) {
+        if (content.layer != kPaletteLayer) content.layer = layer_for(content.layer);
+        if (content.mask != 0) content.mask = mask_for(content.mask, 0);
         return true;
-    }
-
-    Stroke action() const {
-        Stroke entry;
-        entry.trace.flat = false;
-        return entry;
     }
 
     std::uint32_t layer_for(std::uint32_t id) {
         const std::uint32_t now = mapped(new_layer_, id);
         if (layers_.find(now)) return now;
         if (layers_.layers.size() >= kMaxLayers) return layers_.layers.back().id;
-        Stroke entry = action();
-        entry.action = Action::layer;
         const auto name = layer_names_.find(id);
-        entry.edit = add_on_top(layers_, free_name(layers_, name == layer_names_.end() ? Layer{}.name : name->second));
-        const std::uint32_t added = new_layer_[id] = entry.edit.layer.id;
-        put(std::move(entry));
+        const LayerEdit edit =
+            add_on_top(layers_, free_name(layers_, name == layer_names_.end() ? Layer{}.name : name->second));
+        const std::uint32_t added = new_layer_[id] = edit.layer.id;
+        put(edit);
         return added;
     }
 
@@ -144,20 +141,18 @@ class Follower {
         const std::uint32_t now = mapped(new_mask_, id);
         const auto known = own_masks_.find(id);
         if (masks_.find(now) || known == own_masks_.end() || depth > kDeepest) return now;
-        Stroke entry = action();
-        entry.action = Action::mask;
-        entry.mask_edit.mask = known->second;
-        Mask& mask = entry.mask_edit.mask;
+        MaskEdit edit{.mask = known->second};
+        Mask& mask = edit.mask;
         for (std::uint32_t& part : mask.of) part = mask_for(part, depth + 1);
         mask.id = masks_.next_id;
         mask.name = free_name(masks_, mask.name);
-        if (!possible(masks_, entry.mask_edit)) return now;
+        if (!possible(masks_, edit)) return now;
         const std::uint32_t added = new_mask_[id] = mask.id;
-        put(std::move(entry));
+        put(std::move(edit));
         return added;
     }
 
-    std::vector<Stroke>& entries_;
+    std::vector<JournalEntry>& entries_;
     std::uint64_t next_id_;
     std::unordered_set<std::uint64_t> ids_;
     LayerTable layers_;
@@ -167,17 +162,17 @@ class Follower {
     std::map<std::uint32_t, Mask> own_masks_;
 };
 
-bool holds_together(std::span<const Stroke> entries) {
+bool holds_together(std::span<const JournalEntry> entries) {
     LayerTable layers;
     MaskTable masks;
     try {
-        for (const Stroke& s : entries) {
+        for (const JournalEntry& s : entries) {
             if (s.hidden) continue;
-            if (s.action == Action::layer) apply(layers, s.edit);
-            if (s.action == Action::mask) apply(masks, s.mask_edit);
-            if (s.action != Action::stroke && s.action != Action::fill) continue;
-            if (s.layer != kPaletteLayer && !layers.find(s.layer)) return false;
-            if (s.mask != 0 && !masks.find(s.mask)) return false;
+            if (const LayerEdit* edit = s.as<LayerEdit>()) apply(layers, *edit);
+            if (const MaskEdit* edit = s.as<MaskEdit>()) apply(masks, *edit);
+            if (!s.as<PaintStroke>() && !s.as<Fill>()) continue;
+            if (!on_palette(s) && !layers.find(layer_of(s))) return false;
+            if (mask_of(s) != 0 && !masks.find(mask_of(s))) return false;
         }
     } catch (const Error&) {
         return false;
@@ -185,23 +180,23 @@ bool holds_together(std::span<const Stroke> entries) {
     return true;
 }
 
-std::uint64_t greatest_id(std::uint64_t most, std::span<const Stroke> entries) {
-    for (const Stroke& s : entries) most = std::max(most, s.id);
+std::uint64_t greatest_id(std::uint64_t most, std::span<const JournalEntry> entries) {
+    for (const JournalEntry& s : entries) most = std::max(most, s.id);
     return most;
 }
 
 }  // namespace
 
-EntryMark mark_of(const Stroke& entry) {
-    const Trace& t = entry.trace;
-    std::uint64_t h = hash_span(std::span<const TraceSample>(t.samples));
+EntryMark mark_of(const JournalEntry& entry) {
+    const StrokeSamples& t = samples_of(entry);
+    std::uint64_t h = hash_span(std::span<const StrokeSample>(t.samples));
     const double place[] = {t.placement.origin.x, t.placement.origin.y, t.placement.origin.z,
                             t.placement.right.x,  t.placement.right.y,  t.placement.right.z,
                             t.placement.down.x,   t.placement.down.y,   t.placement.down.z};
     h = hash_bytes(place, sizeof place, h);
-    const std::uint64_t rest[] = {t.seed, t.flat, static_cast<std::uint64_t>(t.placement.mapping)};
+    const std::uint64_t rest[] = {seed_of(entry), t.flat, static_cast<std::uint64_t>(t.placement.mapping)};
     h = hash_bytes(rest, sizeof rest, h);
-    for (const std::string& text : {t.brush, t.ink, t.label, entry_json(entry)}) {
+    for (const std::string& text : {brush_of(entry), ink_of(entry), entry.label, entry_json(entry)}) {
         const std::size_t size = text.size();
         h = hash_bytes(text.data(), size, hash_bytes(&size, sizeof size, h));
     }
@@ -215,22 +210,23 @@ void set_hidden(EntryMark& mark, bool hidden) {
     mark.hidden = hidden;
 }
 
-std::vector<EntryMark> marks_of(std::span<const Stroke> entries) {
+std::vector<EntryMark> marks_of(std::span<const JournalEntry> entries) {
     std::vector<EntryMark> marks;
     marks.reserve(entries.size());
-    for (const Stroke& s : entries) marks.push_back(mark_of(s));
+    for (const JournalEntry& s : entries) marks.push_back(mark_of(s));
     return marks;
 }
 
-MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<Stroke> mine, std::vector<Stroke> theirs) {
+MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<JournalEntry> mine,
+                             std::vector<JournalEntry> theirs) {
     const Marks was = by_id(base), own = by_id(marks_of(mine)), other = by_id(marks_of(theirs));
-    std::unordered_map<std::uint64_t, const Stroke*> mine_by_id;
-    for (const Stroke& s : mine) mine_by_id[s.id] = &s;
+    std::unordered_map<std::uint64_t, const JournalEntry*> mine_by_id;
+    for (const JournalEntry& s : mine) mine_by_id[s.id] = &s;
     std::uint64_t most = greatest_id(greatest_id(0, mine), theirs);
     for (const EntryMark& m : base) most = std::max(most, m.id);
 
     MergedJournal merged;
-    for (const Stroke& s : theirs) {
+    for (const JournalEntry& s : theirs) {
         const EntryMark mark = mark_of(s);
         const auto ours = mine_by_id.find(s.id);
         const bool before = was.contains(s.id);
@@ -252,7 +248,7 @@ MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<Stroke
     }
     merged.from_theirs = merged.altered ? 0 : merged.entries.size();
     Follower follower(merged.entries, most + 1);
-    for (const Stroke& s : mine) {
+    for (const JournalEntry& s : mine) {
         const EntryMark mark{s.id, own.at(s.id)};
         const bool changed = !is_in(was, mark);
         // In theirs already: where it was, or written there by this side without its knowing.

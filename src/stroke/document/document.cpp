@@ -1,10 +1,11 @@
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "contact/outside.h"
+#include "core/overloaded.h"
 #include "ink/composite/match.h"
 #include "stroke/gesture/hand.h"
 #include "stroke/session/session.h"
@@ -47,49 +48,70 @@ const BrushInHand* Document::held(const std::string& brush) const {
 }
 
 // A brush that is not held is fresh; the entry says so, for replays that hold it.
-void Document::settle(Stroke& entry) const {
-    if (entry.action == Action::layer &&
-        (entry.edit.what == LayerChange::add || entry.edit.what == LayerChange::duplicate) && entry.edit.layer.id == 0)
-        entry.edit.layer.id = layers_.next_id;
-    if (entry.action == Action::mask && !entry.mask_edit.remove && entry.mask_edit.mask.id == 0)
-        entry.mask_edit.mask.id = masks_.next_id;
-    if (entry.layer == kPaletteLayer) entry.settings.film = "wet";
-    if (!has_brush(entry.action) || entry.trace.erases) return;
-    const BrushInHand* last = held(entry.trace.brush);
-    if (!last) entry.settings.dip = "each";
-    if (last && entry.action != Action::stroke && entry.trace.ink.empty()) entry.trace.ink = last->dipped;
+void Document::settle(PaintStroke& stroke) const {
+    if (stroke.layer == kPaletteLayer) stroke.settings.film = FilmModel::wet;
+    if (!stroke.erases() && !held(stroke.brush)) stroke.settings.dip = DipMode::each;
 }
 
-// The brush an entry begins with.
-BrushInHand Document::take_up(const Stroke& entry) {
-    brush::Preset preset = brush(entry.trace.brush);
-    if (entry.settings.spine == "table") preset.spine = brush::SpineMethod::table;
-    if (entry.trace.erases) {
-        // A clean brush of its own, full of water: its hair lies together, it leaves nothing.
-        BrushInHand clean{brush::make_tuft(preset), {}, {}, {}};
-        clean.reservoir = empty_reservoir(clean.tuft);
-        ink::dip(clean.reservoir, ink::Mix{});
-        return clean;
+// The same of any entry; new layers and masks get their ids.
+void Document::settle(EntryContent& content) const {
+    std::visit(Overloaded{[&](PaintStroke& stroke) { settle(stroke); },
+                          [&](BrushAction& action) {
+                              const BrushInHand* last = held(action.brush);
+                              if (!last) action.dip = DipMode::each;
+                              if (last && action.ink.empty()) action.ink = last->dipped;
+                          },
+                          [](const Dry&) {}, [](const WashPalette&) {}, [](const Fill&) {},
+                          [&](LayerEdit& edit) {
+                              const bool is_new = edit.what == LayerChange::add || edit.what == LayerChange::duplicate;
+                              if (is_new && edit.layer.id == 0) edit.layer.id = layers_.next_id;
+                          },
+                          [&](MaskEdit& edit) {
+                              if (!edit.remove && edit.mask.id == 0) edit.mask.id = masks_.next_id;
+                          }},
+               content);
+}
+
+// A clean brush of its own, full of water: its hair lies together, it leaves nothing.
+BrushInHand Document::clean_brush(const brush::Preset& preset) const {
+    BrushInHand clean{brush::make_tuft(preset), {}, {}, {}};
+    clean.reservoir = empty_reservoir(clean.tuft);
+    ink::dip(clean.reservoir, ink::Mix{});
+    return clean;
+}
+
+brush::Preset Document::preset_of(const std::string& name, brush::SpineMethod spine) {
+    brush::Preset preset = brush(name);
+    if (spine == brush::SpineMethod::table) preset.spine = spine;
+    return preset;
+}
+
+// The brush an entry begins with: as it is held, or fresh.
+BrushInHand Document::take_up(const BrushStart& start) {
+    const brush::Preset preset = preset_of(start.brush, start.spine);
+    const ink::Mix mix = mix_of(start.ink);
+    const BrushInHand* last = start.dip == DipMode::carry ? held(start.brush) : nullptr;
+    if (last && last->tuft.preset.spine == preset.spine) return *last;
+    BrushInHand fresh{brush::make_tuft(preset, start.seed), {}, start.ink, start.ink};
+    fresh.reservoir = empty_reservoir(fresh.tuft);
+    ink::dip(fresh.reservoir, mix);
+    return fresh;
+}
+
+BrushInHand Document::take_up(const PaintStroke& stroke) {
+    if (stroke.erases()) return clean_brush(preset_of(stroke.brush, stroke.settings.spine));
+    BrushInHand brush = take_up(BrushStart{.brush = stroke.brush,
+                                           .ink = stroke.ink,
+                                           .seed = stroke.seed,
+                                           .dip = stroke.settings.dip,
+                                           .spine = stroke.settings.spine});
+    if (stroke.ink != brush.named && stroke.ink != brush.dipped) {
+        ink::rinse(brush.reservoir);
+        brush::reset(brush.tuft);
+        ink::dip(brush.reservoir, mix_of(stroke.ink));
+        brush.dipped = stroke.ink;
     }
-    const std::string& named = entry.trace.ink;
-    const ink::Mix mix = mix_of(named);
-    const BrushInHand* last = entry.settings.dip == "carry" ? held(entry.trace.brush) : nullptr;
-    if (!last || last->tuft.preset.spine != preset.spine) {
-        BrushInHand fresh{brush::make_tuft(preset, entry.trace.seed), {}, named, named};
-        fresh.reservoir = empty_reservoir(fresh.tuft);
-        ink::dip(fresh.reservoir, mix);
-        return fresh;
-    }
-    BrushInHand brush = *last;
-    if (entry.action == Action::stroke) {
-        if (named != brush.named && named != brush.dipped) {
-            ink::rinse(brush.reservoir);
-            brush::reset(brush.tuft);
-            ink::dip(brush.reservoir, mix);
-            brush.dipped = named;
-        }
-        brush.named = named;
-    }
+    brush.named = stroke.ink;
     return brush;
 }
 
@@ -128,39 +150,30 @@ void Document::forget_pigments(std::size_t n) {
     if (palette_) palette_->canvas.forget_pigments(n);
 }
 
-void Document::act(const Stroke& entry, const ProgressFn& progress) {
-    if (entry.action == Action::dry) return dry(entry, progress);
-    if (entry.action == Action::layer) return edit_layers(entry);
-    if (entry.action == Action::mask) return edit_masks(entry);
-    if (entry.action == Action::wash) return wash(entry);
-    BrushInHand brush = take_up(entry);
-    switch (entry.action) {
-        case Action::dip:
-            ink::dip(brush.reservoir, mix_of(entry.trace.ink),
-                     {.depth = entry.extent.depth, .level = entry.extent.amount, .side = entry.extent.side});
-            brush.dipped = entry.trace.ink;
+void Document::act(std::uint64_t id, const BrushAction& action) {
+    BrushInHand brush = take_up(BrushStart{
+        .brush = action.brush, .ink = action.ink, .seed = action.seed, .dip = action.dip, .spine = action.spine});
+    const Extent& extent = action.extent;
+    switch (action.kind) {
+        case BrushActionKind::dip:
+            ink::dip(brush.reservoir, mix_of(action.ink),
+                     {.depth = extent.depth, .level = extent.amount, .side = extent.side});
+            brush.dipped = action.ink;
             break;
-        case Action::wipe:
-            ink::wipe(brush.reservoir, entry.extent.amount, {entry.extent.depth, entry.extent.side});
+        case BrushActionKind::wipe:
+            ink::wipe(brush.reservoir, extent.amount, {extent.depth, extent.side});
             break;
-        case Action::rinse:
+        case BrushActionKind::rinse:
             ink::rinse(brush.reservoir);
             brush::reset(brush.tuft);
             break;
-        case Action::reshape:
+        case BrushActionKind::reshape:
             brush::reshape(brush.tuft);
-            break;
-        case Action::dry:
-        case Action::layer:
-        case Action::mask:
-        case Action::fill:
-        case Action::wash:
-        case Action::stroke:
             break;
     }
     brush.tuft.ink_left = brush.reservoir.fullness();
     brush.tuft.wetness = wetness_of(brush.reservoir);
-    put_down(entry.id, entry.trace.brush, std::move(brush), {});
+    put_down(id, action.brush, std::move(brush), {});
 }
 
 namespace {
@@ -177,23 +190,24 @@ void check_width(const brush::Preset& preset, double texel) {
 
 }  // namespace
 
-void Document::begin(Stroke stroke) {
-    check_layer(stroke);
-    begin_session(std::move(stroke));
+void Document::begin(JournalEntry entry) {
+    check_layer(entry);
+    begin_session(std::get<PaintStroke>(entry.content));
+    open_ = std::move(entry);
 }
 
-void Document::begin_session(Stroke stroke) {
+void Document::begin_session(PaintStroke stroke) {
     cancel();
     settle(stroke);
     BrushInHand brush = take_up(stroke);
-    const ink::Ink& ink = stroke.trace.erases ? ink::Ink{} : this->ink(brush.dipped);
-    const Model& model = target_model(stroke);
-    const ink::Substrate& substrate = substrate_of(stroke);
+    const ink::Ink& ink = stroke.erases() ? ink::Ink{} : this->ink(brush.dipped);
+    const Model& model = target_model(stroke.layer);
+    const ink::Substrate& substrate = substrate_of(stroke.layer);
     const double texel = model.texels.texel_size;
     check_width(brush.tuft.preset, texel);
-    const bool erases = stroke.trace.erases, on_model = &model == model_;
+    const bool erases = stroke.erases(), on_model = &model == model_;
     WetFilmInUse wet;
-    if (stroke.settings.film == "wet" && !erases) {
+    if (stroke.settings.film == FilmModel::wet && !erases) {
         if (on_model)
             wet = {&film(stroke.mask), ink::film_params(substrate, stroke.settings.down)};
         else
@@ -223,25 +237,25 @@ void Document::extend(std::span<const brush::Pose> poses) {
 }
 
 // Ends the stroke in work without a word to the journal.
-StrokeReport Document::finish_session() {
+StrokeReport Document::finish_session(std::uint64_t id) {
     SessionResult result = session_->finish();
-    const Stroke& stroke = session_->stroke();
+    const PaintStroke& stroke = session_->stroke();
     LayerTiles before{stroke.layer, std::move(result.before)};
-    if (stroke.trace.erases) {
-        Undo undo{.stroke_id = stroke.id};
+    if (stroke.erases()) {
+        Undo undo{.stroke_id = id};
         undo.before.push_back(std::move(before));
         keep_undo(std::move(undo));
     } else {
-        put_down(stroke.id, stroke.trace.brush, std::move(result.brush), std::move(before));
+        put_down(id, stroke.brush, std::move(result.brush), std::move(before));
     }
     session_.reset();
     return std::move(result.report);
 }
 
 StrokeReport Document::end() {
-    Stroke stroke = session_->stroke();
-    StrokeReport report = finish_session();
-    report.stroke_id = journal_.append(std::move(stroke)).id;
+    open_.content = session_->stroke();
+    StrokeReport report = finish_session(0);
+    report.stroke_id = journal_.append(std::move(open_)).id;
     undo_.back().stroke_id = report.stroke_id;
     return report;
 }
@@ -254,10 +268,10 @@ void Document::cancel() {
     forget_pigments(known_pigments_);
 }
 
-HandPath Document::path_of(const Stroke& stroke) {
+HandPath Document::path_of(const PaintStroke& stroke) {
     if (!stroke.trace.flat) return {{}, spatial_poses(stroke.trace), 0};
-    const brush::Preset& preset = brush(stroke.trace.brush);
-    const mesh::SurfaceQuery& query = *target_model(stroke).query;
+    const brush::Preset& preset = brush(stroke.brush);
+    const mesh::SurfaceQuery& query = *target_model(stroke.layer).query;
     HolderOptions options = holder_options(preset, query.mesh());
     if (stroke.settings.compensate_tip_lag) {
         auto [tip_lag, is_new] = tip_lags_.try_emplace(preset.name);
@@ -269,13 +283,7 @@ HandPath Document::path_of(const Stroke& stroke) {
     return hand_path(query, steady(stroke.trace, stroke.settings), options);
 }
 
-StrokeReport Document::draw(const Stroke& stroke, const ProgressFn& progress) {
-    if (stroke.action != Action::stroke) {
-        cancel();
-        if (stroke.action == Action::fill) return lay_fill(stroke);
-        act(stroke, progress);
-        return {.stroke_id = stroke.id};
-    }
+StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const ProgressFn& progress) {
     if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
     const HandPath path = path_of(stroke);
     const std::vector<brush::Pose>& poses = path.poses;
@@ -286,9 +294,10 @@ StrokeReport Document::draw(const Stroke& stroke, const ProgressFn& progress) {
         for (std::size_t i = 0; i < poses.size(); ++i)
             session_->advance(std::span(poses).subspan(i, 1),
                               static_cast<double>(i + 1) / static_cast<double>(poses.size()));
-        StrokeReport report = finish_session();
+        StrokeReport report = finish_session(id);
         if (stroke.trace.flat)
-            report.origin_inside = contact::depth_inside(*target_model(stroke).query, stroke.trace.placement.origin);
+            report.origin_inside =
+                contact::depth_inside(*target_model(stroke.layer).query, stroke.trace.placement.origin);
         return report;
     } catch (...) {
         cancel();
@@ -296,18 +305,32 @@ StrokeReport Document::draw(const Stroke& stroke, const ProgressFn& progress) {
     }
 }
 
-StrokeReport Document::paint(Stroke stroke, const ProgressFn& progress) {
-    stroke.id = 0;  // none yet, whatever journal it comes from
-    check_layer(stroke);
-    settle(stroke);
+StrokeReport Document::perform(const JournalEntry& entry, const ProgressFn& progress) {
+    if (!entry.as<PaintStroke>()) cancel();
+    const std::uint64_t id = entry.id;
+    const auto done = [id] { return StrokeReport{.stroke_id = id}; };
+    return std::visit(Overloaded{[&](const PaintStroke& stroke) { return draw(id, stroke, progress); },
+                                 [&](const BrushAction& action) { return act(id, action), done(); },
+                                 [&](const Dry& wait) { return dry(id, wait, progress), done(); },
+                                 [&](const WashPalette&) { return wash(id), done(); },
+                                 [&](const Fill& fill) { return lay_fill(id, fill); },
+                                 [&](const LayerEdit& edit) { return edit_layers(id, edit), done(); },
+                                 [&](const MaskEdit& edit) { return edit_masks(id, edit), done(); }},
+                      entry.content);
+}
+
+StrokeReport Document::paint(JournalEntry entry, const ProgressFn& progress) {
+    entry.id = 0;  // none yet, whatever journal it comes from
+    check_layer(entry);
+    settle(entry.content);
     StrokeReport report;
     try {
-        report = draw(stroke, progress);
+        report = perform(entry, progress);
     } catch (...) {
         forget_pigments(known_pigments_);
         throw;
     }
-    report.stroke_id = journal_.append(std::move(stroke)).id;
+    report.stroke_id = journal_.append(std::move(entry)).id;
     undo_.back().stroke_id = report.stroke_id;
     return report;
 }
@@ -325,44 +348,51 @@ const brush::TuftState* Document::tuft() const {
     return session_ ? &session_->tuft() : nullptr;
 }
 
-std::vector<StrokeReport> Document::replay(std::vector<Stroke> strokes, const ProgressFn& progress) {
+std::vector<StrokeReport> Document::replay(std::vector<JournalEntry> entries, const ProgressFn& progress) {
     std::vector<StrokeReport> reports;
-    const double all = std::max<double>(1.0, static_cast<double>(strokes.size()));
-    for (std::size_t i = 0; i < strokes.size(); ++i) {
-        if (!strokes[i].hidden) {
-            StrokeReport report = draw(strokes[i], [&](std::string_view phase, double fraction) {
+    const double all = std::max<double>(1.0, static_cast<double>(entries.size()));
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        if (!entries[i].hidden) {
+            StrokeReport report = perform(entries[i], [&](std::string_view phase, double fraction) {
                 return !progress || progress(phase, (static_cast<double>(i) + fraction) / all);
             });
-            report.stroke_id = strokes[i].id;
-            if (strokes[i].action == Action::stroke) reports.push_back(std::move(report));
+            report.stroke_id = entries[i].id;
+            if (entries[i].as<PaintStroke>()) reports.push_back(std::move(report));
         }
-        journal_.restore(std::move(strokes[i]));
+        journal_.restore(std::move(entries[i]));
     }
     return reports;
 }
 
-void Document::adopt(std::vector<Stroke> strokes, ink::Canvas canvas) {
-    const std::uint64_t last = strokes.empty() ? 0 : strokes.back().id;
+void Document::adopt(std::vector<JournalEntry> entries, ink::Canvas canvas) {
+    const std::uint64_t last = entries.empty() ? 0 : entries.back().id;
     std::vector<LayerCanvas> canvases;
     canvases.push_back({kFirstLayer, std::move(canvas)});
-    adopt(std::move(strokes), std::move(canvases), last);
+    adopt(std::move(entries), std::move(canvases), last);
 }
+
+namespace {
+
+/// Whether the tables of layers and masks are all that the entry changes: no texel was taken away.
+bool changes_tables_only(const JournalEntry& entry) {
+    const LayerEdit* edit = entry.as<LayerEdit>();
+    return entry.as<MaskEdit>() || (edit && edit->what != LayerChange::remove && edit->what != LayerChange::merge);
+}
+
+}  // namespace
 
 bool Document::undo() {
     cancel();
     if (!journal_.can_undo()) return false;
-    const std::uint64_t id = journal_.strokes().back().id;
-    const bool hidden = journal_.strokes().back().hidden;
-    const bool table_only = keeps_texels(journal_.strokes().back().action) &&
-                            (journal_.strokes().back().action == Action::mask ||
-                             (journal_.strokes().back().edit.what != LayerChange::remove &&
-                              journal_.strokes().back().edit.what != LayerChange::merge));
+    const JournalEntry& entry = journal_.entries().back();
+    const std::uint64_t id = entry.id;
+    const bool hidden = entry.hidden, table_only = changes_tables_only(entry);
     journal_.undo();
     if (hidden) return true;
     if (undo_.empty() || undo_.back().stroke_id != id) {
         if (table_only) {
-            set_layers(layers_after(journal_.strokes()));
-            masks_ = masks_after(journal_.strokes());
+            set_layers(layers_after(journal_.entries()));
+            masks_ = masks_after(journal_.entries());
         } else {
             repaint_all();
         }
@@ -383,7 +413,7 @@ bool Document::undo() {
 bool Document::redo() {
     cancel();
     if (!journal_.redo()) return false;
-    if (const Stroke& stroke = journal_.strokes().back(); !stroke.hidden) draw(stroke, {});
+    if (const JournalEntry& entry = journal_.entries().back(); !entry.hidden) perform(entry, {});
     return true;
 }
 
@@ -398,8 +428,8 @@ void Document::repaint_all() {
     undo_.clear();
     undo_bytes_ = 0;
     forget_pigments(0);
-    for (const Stroke& stroke : journal_.strokes())
-        if (!stroke.hidden) draw(stroke, {});
+    for (const JournalEntry& entry : journal_.entries())
+        if (!entry.hidden) perform(entry, {});
 }
 
 }  // namespace tuft::stroke

@@ -1,5 +1,5 @@
 #include "ink/composite/recolour.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// How a painting is shown, apart from what was painted.
 namespace tuft::stroke {

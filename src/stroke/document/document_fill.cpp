@@ -2,7 +2,7 @@
 #include <array>
 
 #include "core/system/parallel.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 #include "stroke/surface/fill_region.h"
 
 /// Fills and gradients.
@@ -18,16 +18,15 @@ void pour(ink::Canvas& canvas, std::uint32_t slot, const ink::Coat& coat) {
 
 }  // namespace
 
-StrokeReport Document::lay_fill(const Stroke& entry) {
-    check_fill(entry.fill);
-    const Fill& fill = entry.fill;
-    const ink::Mix first = mix_of(entry.trace.ink);
+StrokeReport Document::lay_fill(std::uint64_t id, const Fill& fill) {
+    check_fill(fill);
+    const ink::Mix first = mix_of(fill.ink);
     const ink::Mix second = fill.to_ink.empty() ? first : mix_of(fill.to_ink);
-    const bool on_palette = entry.layer == kPaletteLayer;
-    const Model& model = target_model(entry);
+    const bool on_palette = fill.layer == kPaletteLayer;
+    const Model& model = target_model(fill.layer);
     const std::vector<std::uint8_t> charts = charts_of(fill, model);
-    ink::Canvas& canvas = this->canvas(entry.layer);
-    const MaskTexels* mask = entry.mask && !on_palette ? &this->mask(entry.mask) : nullptr;
+    ink::Canvas& canvas = this->canvas(fill.layer);
+    const MaskTexels* mask = fill.mask && !on_palette ? &this->mask(fill.mask) : nullptr;
     const atlas::TexelMap& map = model.texels;
 
     std::vector<std::uint32_t> slots;
@@ -35,8 +34,8 @@ StrokeReport Document::lay_fill(const Stroke& entry) {
         for (std::uint32_t k = map.cluster_start[slot]; k < map.cluster_start[slot + 1]; ++k)
             if (charts[map.cluster_chart[k]] && (slots.empty() || slots.back() != slot)) slots.push_back(slot);
     if (mask) std::erase_if(slots, [mask](std::uint32_t slot) { return mask->none(slot); });
-    Undo undo{.stroke_id = entry.id};
-    LayerTiles& before = undo.before.emplace_back(LayerTiles{.layer = entry.layer, .tiles = {}});
+    Undo undo{.stroke_id = id};
+    LayerTiles& before = undo.before.emplace_back(LayerTiles{.layer = fill.layer, .tiles = {}});
     for (const std::uint32_t slot : slots) before.tiles.push_back(canvas.snapshot(slot));
 
     std::vector<ink::Amounts> laid(slots.size());
@@ -57,12 +56,12 @@ StrokeReport Document::lay_fill(const Stroke& entry) {
                 coat.towards[t] = static_cast<float>(along);
             }
             if (mask) mask->apply(slots[i], coat.film);
-            laid[i] = ink::lay_coat(canvas, slots[i], tile.area, coat, substrate_of(entry).capacity);
+            laid[i] = ink::lay_coat(canvas, slots[i], tile.area, coat, substrate_of(fill.layer).capacity);
             if (on_palette) pour(canvas, slots[i], coat);
         }
     });
     keep_undo(std::move(undo));
-    StrokeReport report{.stroke_id = entry.id};
+    StrokeReport report{.stroke_id = id};
     for (const ink::Amounts& a : laid) report.ink_given += a.sum();
     return report;
 }

@@ -2,47 +2,10 @@
 
 #include "core/hash.h"
 #include "ink/texels/merge.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// What a painting does with its layers.
 namespace tuft::stroke {
-
-LayerTable layers_after(std::span<const Stroke> entries) {
-    LayerTable table;
-    for (const Stroke& entry : entries)
-        if (entry.action == Action::layer && !entry.hidden) apply(table, entry.edit);
-    return table;
-}
-
-bool fits(std::span<const Stroke> entries, std::uint64_t stroke_id) {
-    for (auto s = entries.rbegin(); s != entries.rend(); ++s) {
-        if (s->id == stroke_id) return true;
-        if (!keeps_texels(s->action)) return false;
-    }
-    return entries.empty() && stroke_id == 0;
-}
-
-std::vector<Stroke> onto_named_layers(std::vector<Stroke> strokes, LayerTable table, const std::string& name) {
-    std::vector<Stroke> out;
-    for (Stroke& s : strokes) {
-        if (s.layer == kPaletteLayer) {
-            out.push_back(std::move(s));
-            continue;
-        }
-        const std::string& wanted = s.trace.layer.empty() ? name : s.trace.layer;
-        if (!wanted.empty() && !table.find(wanted)) {
-            Stroke entry;
-            entry.action = Action::layer;
-            entry.trace.flat = false;
-            entry.edit = add_on_top(table, wanted);
-            apply(table, entry.edit);
-            out.push_back(std::move(entry));
-        }
-        if (!wanted.empty()) s.layer = table.find(wanted)->id;
-        out.push_back(std::move(s));
-    }
-    return out;
-}
 
 ink::Canvas& Document::canvas(std::uint32_t layer) {
     if (layer == kPaletteLayer) {
@@ -126,21 +89,22 @@ std::vector<std::uint32_t> Document::take_dirty() {
 }
 
 // Before the hand begins: what it may not do. A replay may, since the lock came after it.
-void Document::check_layer(const Stroke& entry) const {
-    if (entry.action != Action::stroke && entry.action != Action::fill) return;
-    if (entry.layer == kPaletteLayer) return;
-    const Layer* layer = layers_.find(entry.layer);
-    if (!layer) throw Error("there is no layer " + std::to_string(entry.layer) + " to paint on");
-    if (entry.mask && !masks_.find(entry.mask)) throw Error("there is no mask " + std::to_string(entry.mask));
+void Document::check_layer(const JournalEntry& entry) const {
+    if (!entry.as<PaintStroke>() && !entry.as<Fill>()) return;
+    if (on_palette(entry)) return;
+    const std::uint32_t id = layer_of(entry), mask = mask_of(entry);
+    const Layer* layer = layers_.find(id);
+    if (!layer) throw Error("there is no layer " + std::to_string(id) + " to paint on");
+    if (mask && !masks_.find(mask)) throw Error("there is no mask " + std::to_string(mask));
     if (layer->locked) throw Error("layer '" + layer->name + "' is locked; unlock it or paint on another one");
 }
 
-void Document::edit_layers(const Stroke& entry) {
-    Undo undo{.stroke_id = entry.id, .layers = layers_};
-    const std::uint32_t id = entry.edit.layer.id;
-    if (entry.edit.what == LayerChange::merge) canvas(id);  // knows all pigments now
-    apply(layers_, entry.edit);
-    switch (entry.edit.what) {
+void Document::edit_layers(std::uint64_t entry_id, const LayerEdit& edit) {
+    Undo undo{.stroke_id = entry_id, .layers = layers_};
+    const std::uint32_t id = edit.layer.id;
+    if (edit.what == LayerChange::merge) canvas(id);  // knows all pigments now
+    apply(layers_, edit);
+    switch (edit.what) {
         case LayerChange::add:
             upper_.emplace(id, ink::Canvas(model_->texels.n_slots()));
             break;
@@ -148,14 +112,14 @@ void Document::edit_layers(const Stroke& entry) {
             touch_look(id);
             break;
         case LayerChange::duplicate: {
-            const ink::Canvas copy = canvas(entry.edit.other);
+            const ink::Canvas copy = canvas(edit.other);
             upper_.emplace(id, copy);
             touch_look(id);
             break;
         }
         case LayerChange::merge:
             undo.canvas.emplace(take_texels(id));
-            undo.before.push_back(merge_texels(entry.edit.other, undo.canvas->canvas));
+            undo.before.push_back(merge_texels(edit.other, undo.canvas->canvas));
             break;
         case LayerChange::remove:
             undo.canvas.emplace(take_texels(id));
@@ -223,14 +187,14 @@ void Document::take_back_layers(Undo& undo) {
     touch_look(id);
 }
 
-void Document::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canvases, std::uint64_t stroke_id) {
+void Document::adopt(std::vector<JournalEntry> strokes, std::vector<LayerCanvas> canvases, std::uint64_t stroke_id) {
     for (const LayerCanvas& layer : canvases) {
         const Model& model = layer.layer == kPaletteLayer ? plate().model : *model_;
         if (layer.canvas.n_slots() != model.texels.n_slots()) throw Error("the stored texels belong to another atlas");
     }
     if (!fits(strokes, stroke_id)) throw Error("the stored texels belong to other strokes");
     const auto last =
-        std::find_if(strokes.begin(), strokes.end(), [stroke_id](const Stroke& s) { return s.id == stroke_id; });
+        std::find_if(strokes.begin(), strokes.end(), [stroke_id](const JournalEntry& s) { return s.id == stroke_id; });
     const auto rest = last == strokes.end() ? last : last + 1;
     LayerTable table = layers_after({strokes.begin(), rest});
     MaskTable masks = masks_after({strokes.begin(), rest});
@@ -261,8 +225,8 @@ void Document::adopt(std::vector<Stroke> strokes, std::vector<LayerCanvas> canva
     undo_bytes_ = 0;
     known_pigments_ = canvas_.pigments().size();
     for (auto s = rest; s != strokes.end(); ++s)
-        if (!s->hidden) act(*s, {});
-    for (Stroke& stroke : strokes) journal_.restore(std::move(stroke));
+        if (!s->hidden) perform(*s, {});
+    for (JournalEntry& entry : strokes) journal_.restore(std::move(entry));
     apply_recolours();
 }
 

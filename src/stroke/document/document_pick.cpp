@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "atlas/texels/cluster_graph.h"
-#include "stroke/painting/painting.h"
+#include "stroke/document/document.h"
 
 /// The eyedropper.
 namespace tuft::stroke {

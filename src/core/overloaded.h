@@ -1,0 +1,11 @@
+#pragma once
+
+namespace tuft {
+
+/// Functions for `std::visit`, one for each alternative of a variant. One that is missing does not compile.
+template <class... Functions>
+struct Overloaded : Functions... {
+    using Functions::operator()...;
+};
+
+}  // namespace tuft
