@@ -15,8 +15,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/panels/manual_text.h"
 #include "app/text/texts.h"
+#include "app/widgets/manual_text.h"
 #include "brush/preset/preset.h"
 #include "ink/colour/pigments.h"
 #include "paths.h"

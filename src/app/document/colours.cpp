@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 namespace tuft::app {
 namespace {
 
-constexpr std::size_t kRecent = 16;
+constexpr std::size_t kRecentColours = 16;
 constexpr std::size_t kMostSaved = 200;
 
 fs::path recent_path() {
@@ -69,7 +69,7 @@ std::optional<ink::ColourMatch> MixFinder::poll() {
 
 void load_colours(ColourChoice& choice) {
     std::ifstream in(recent_path());
-    for (std::string hex; choice.recent.size() < kRecent && in >> hex;)
+    for (std::string hex; choice.recent.size() < kRecentColours && in >> hex;)
         if (ink::colour_of_hex(hex)) choice.recent.push_back(hex);
     std::error_code ec;
     std::vector<fs::path> files;
@@ -89,7 +89,7 @@ void load_colours(ColourChoice& choice) {
 void remember_colour(ColourChoice& choice, const std::string& hex) {
     std::erase(choice.recent, hex);
     choice.recent.insert(choice.recent.begin(), hex);
-    if (choice.recent.size() > kRecent) choice.recent.resize(kRecent);
+    if (choice.recent.size() > kRecentColours) choice.recent.resize(kRecentColours);
     std::string text;
     for (const std::string& one : choice.recent) text += one + "\n";
     try {

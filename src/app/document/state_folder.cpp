@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace tuft::app {
 namespace {
 
-constexpr std::size_t kRecent = 12;
+constexpr std::size_t kRecentFiles = 12;
 
 fs::path made(fs::path folder) {
     std::error_code ec;
@@ -133,7 +133,7 @@ void remember_project(const fs::path& project) {
     const fs::path path = fs::absolute(project);
     std::vector<std::string> lines{path.string()};
     for (const fs::path& other : recent_projects())
-        if (other != path && lines.size() < kRecent) lines.push_back(other.string());
+        if (other != path && lines.size() < kRecentFiles) lines.push_back(other.string());
     try {
         write_lines(state_folder() / "recent", lines);
     } catch (const Error&) {

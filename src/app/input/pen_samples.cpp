@@ -9,9 +9,9 @@
 namespace tuft::app {
 namespace {
 
-constexpr double kEcho = 0.25;     // seconds after a sample in which the window's movements are still the pen's
-constexpr double kNear = 8;        // pixels
-constexpr double kPatience = 0.1;  // seconds that the window's copy of a button is waited for
+constexpr double kEcho = 0.25;       // seconds after a sample in which the window's movements are still the pen's
+constexpr double kNear = 8;          // pixels
+constexpr double kButtonWait = 0.1;  // seconds that the window's copy of a button is waited for
 
 // Axes count degrees; wacom's go from -64 to 63.
 double tilt_of(const PenAxis& axis) {
@@ -111,7 +111,7 @@ void PenSamples::merge(EventQueue& events, double now) {
                                        [&](const Event& e) { return e.kind == s.kind && e.button == s.button; });
         if (copy == own.end()) {
             if (held_since_ < 0) held_since_ = now;
-            if (now - held_since_ < kPatience) break;
+            if (now - held_since_ < kButtonWait) break;
             held_since_ = -1;
             continue;  // it went to another window
         }

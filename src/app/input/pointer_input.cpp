@@ -26,7 +26,7 @@ constexpr double kBent = 0.5;          // of it: how far two sides of a gap may 
 constexpr int kPairs = 12;             // of rays round the aim
 constexpr std::size_t kAgreeing = 3;   // of them that must lie on ground
 constexpr double kKnown = 3;           // pixels after which the direction of a clean stroke is known
-constexpr double kPatience = 0.15;     // seconds after which a hand that rests presses straight down
+constexpr double kRestTime = 0.15;     // seconds after which a hand that rests presses straight down
 constexpr double kSetDown = 0.05;      // seconds in which a clean stroke is pressed down
 constexpr double kTouch = 0.7;         // of the pressure, that it is pressed down with; the rest comes along the way
 // Pressed down in place, the tip is pushed back behind the first place by this part of the tuft's length, at pressure
@@ -191,7 +191,7 @@ void PointerInput::wait(const Aim& aim, const AimedSurface& hit, std::vector<Han
     goal_ = hit.position;
     goal_normal_ = hit.normal;
     const bool known = glm::distance(hit.position, waiting_.front().surface.position) >= kKnown * aim.metres_per_pixel;
-    if (known || aim.time - waiting_.front().aim.time > kPatience) set_down(steps);
+    if (known || aim.time - waiting_.front().aim.time > kRestTime) set_down(steps);
 }
 
 // Presses the tuft down at the first place, then goes on to where the cursor is by now.

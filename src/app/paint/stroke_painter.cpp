@@ -74,8 +74,8 @@ void StrokePainter::add_copies(const stroke::JournalEntry& original, std::size_t
     for (const stroke::PoseMap& map : stroke::symmetry_copies(current_.symmetry)) {
         load_tip(current_, made);
         stroke::JournalEntry copy = original;
-        copy.trace.label = "symmetric to " + std::to_string(original.id);
-        for (stroke::StrokeSample& sample : copy.trace.samples) {
+        copy.label = "symmetric to " + std::to_string(original.id);
+        for (stroke::StrokeSample& sample : std::get<stroke::PaintStroke>(copy.content).trace.samples) {
             const brush::Pose pose = map.pose({sample.position, sample.rotation, sample.time});
             sample.position = pose.position;
             sample.rotation = pose.rotation;

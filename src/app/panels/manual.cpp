@@ -20,7 +20,7 @@ void manual_dialog(Ui& ui, HelpState& help, DialogState& dialogs, const KeyTable
     ImGui::BeginChild("pages", ImVec2(ui.px(200), height));
     for (std::size_t i = 0; i < pages.size(); ++i) {
         const char* title = language == Language::chinese ? chinese_manual_text(pages[i].title) : pages[i].title;
-        if (ImGui::Selectable(title, s.help.page == i)) s.help.page = i;
+        if (ImGui::Selectable(title, help.page == i)) help.page = i;
         ui.mark(std::string("page ") + pages[i].title);
     }
     ImGui::EndChild();

@@ -5,7 +5,7 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kCell = 0.01;  // metres, of its mesh
+constexpr double kPaletteCell = 0.01;  // metres, of its mesh
 constexpr int kColumns = 12, kRows = 9;
 constexpr double kPoolEdge = 25;  // film units that stand at the rim of a pool on glaze
 constexpr Vec2 kCorner{kPaletteTexels / 2 * kPaletteTexel, 0.049};  // uv (0, 0) lies at − this
@@ -16,7 +16,8 @@ Model make_palette() {
     mesh::PolygonSoup soup;
     for (int y = 0; y <= kRows; ++y)
         for (int x = 0; x <= kColumns; ++x)
-            soup.points.emplace_back(kCell * x - 0.5 * kPaletteWidth, kCell * y - 0.5 * kPaletteHeight, 0.0);
+            soup.points.emplace_back(kPaletteCell * x - 0.5 * kPaletteWidth, kPaletteCell * y - 0.5 * kPaletteHeight,
+                                     0.0);
     soup.polygon_start.push_back(0);
     const auto add = [&](std::initializer_list<int> corners) {
         for (const int c : corners) {

@@ -8,7 +8,7 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr int kPoints = BiasPiece::kPoints;
+constexpr int kPiecePoints = BiasPiece::kPoints;
 constexpr double kPieceLength = 6e-3;  // metres, of a piece; neighbours overlap by half
 constexpr int kMostPieces = 64;        // of one stroke
 constexpr double kDot = 2e-4;          // metres: a shorter stroke goes by time
@@ -83,12 +83,12 @@ BiasPiece cut(const Path& path, int j, int n) {
     piece.end = n == 1 ? 1 : (j + 2) * h;
     piece.length = path.length * (piece.end - piece.begin);
     Vec2 middle(0);
-    for (int k = 0; k < kPoints; ++k) {
-        const Point p = at(path, piece.begin + (piece.end - piece.begin) * k / (kPoints - 1.0));
+    for (int k = 0; k < kPiecePoints; ++k) {
+        const Point p = at(path, piece.begin + (piece.end - piece.begin) * k / (kPiecePoints - 1.0));
         piece.shape[k] = p.position;
         piece.pressure[k] = p.pressure;
         piece.tilt[k] = p.tilt;
-        middle += p.position / static_cast<double>(kPoints);
+        middle += p.position / static_cast<double>(kPiecePoints);
     }
     for (Vec2& x : piece.shape) x = piece.length >= kDot ? (x - middle) / piece.length : Vec2(0);
     return piece;
@@ -96,15 +96,15 @@ BiasPiece cut(const Path& path, int j, int n) {
 
 // Control values c of the curve that minimises Σ (goal − curve · factor)² + weak pull to `rest`.
 template <class V>
-std::array<V, 4> fit_curve(const std::array<V, kPoints>& goal, const std::array<double, kPoints>& factor,
+std::array<V, 4> fit_curve(const std::array<V, kPiecePoints>& goal, const std::array<double, kPiecePoints>& factor,
                            const V& rest) {
     constexpr double kPull = 1e-4;
     glm::dmat4 normal(0);
     std::array<V, 4> right{};
     double all = 1e-12;
     for (const double f : factor) all += f * f;
-    for (int k = 0; k < kPoints; ++k) {
-        const auto b = bernstein(k / (kPoints - 1.0));
+    for (int k = 0; k < kPiecePoints; ++k) {
+        const auto b = bernstein(k / (kPiecePoints - 1.0));
         for (int r = 0; r < 4; ++r) {
             right[r] += (b[r] * factor[k]) * (goal[k] - rest * factor[k]);
             for (int c = 0; c < 4; ++c) normal[c][r] += b[r] * b[c] * factor[k] * factor[k];
@@ -120,11 +120,11 @@ std::array<V, 4> fit_curve(const std::array<V, kPoints>& goal, const std::array<
 }
 
 void learn_piece(BiasPiece& piece, const Path& written, const Path& intended) {
-    std::array<double, kPoints> goal_pressure{}, ones{};
-    std::array<Vec2, kPoints> shift{}, tilt{};
+    std::array<double, kPiecePoints> goal_pressure{}, ones{};
+    std::array<Vec2, kPiecePoints> shift{}, tilt{};
     ones.fill(1);
-    for (int k = 0; k < kPoints; ++k) {
-        const double part = piece.begin + (piece.end - piece.begin) * k / (kPoints - 1.0);
+    for (int k = 0; k < kPiecePoints; ++k) {
+        const double part = piece.begin + (piece.end - piece.begin) * k / (kPiecePoints - 1.0);
         const Point w = at(written, part), i = at(intended, part);
         goal_pressure[k] = i.pressure;
         shift[k] = i.position - w.position;
@@ -139,13 +139,13 @@ void learn_piece(BiasPiece& piece, const Path& written, const Path& intended) {
 // Square of how unlike two pieces are; 1 is a clear difference.
 double unlike(const BiasPiece& a, const BiasPiece& b) {
     double shape = 0, pressure = 0, tilt = 0;
-    for (int k = 0; k < kPoints; ++k) {
+    for (int k = 0; k < kPiecePoints; ++k) {
         const Vec2 s = a.shape[k] - b.shape[k], t = a.tilt[k] - b.tilt[k];
         const double p = a.pressure[k] - b.pressure[k];
         shape += glm::dot(s, s), tilt += glm::dot(t, t), pressure += p * p;
     }
     const auto square = [](double x) { return x * x; };
-    return (shape / square(kShape) + pressure / square(kPressure) + tilt / square(kTilt)) / kPoints +
+    return (shape / square(kShape) + pressure / square(kPressure) + tilt / square(kTilt)) / kPiecePoints +
            square(std::log(std::max(a.length, kDot) / std::max(b.length, kDot)) / kLength) +
            (square(a.begin - b.begin) + square(a.end - b.end)) / square(kPlace);
 }
@@ -198,9 +198,9 @@ Vec2 middle_of(std::span<const RecordedStroke> traces) {
     for (const RecordedStroke& t : traces) {
         if (!t.flat || t.samples.empty()) continue;
         const Path p = path_of(t, glm::dmat2(1), Vec2(0));
-        const double w = std::max(p.length, kDot) / kPoints;
-        for (int k = 0; k < kPoints; ++k) {
-            sum += w * at(p, k / (kPoints - 1.0)).position;
+        const double w = std::max(p.length, kDot) / kPiecePoints;
+        for (int k = 0; k < kPiecePoints; ++k) {
+            sum += w * at(p, k / (kPiecePoints - 1.0)).position;
             weight += w;
         }
     }

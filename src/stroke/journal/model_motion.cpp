@@ -13,13 +13,13 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr std::size_t kPoints = 600;  // of each model
-constexpr double kCountsAs = 0.02;    // of the diagonal: farther is as far as it gets
-constexpr double kSameShape = 0.002;  // of the diagonal, mean distance of models of one shape
-constexpr double kBetter = 0.5;       // of the distance that a smaller motion leaves
-constexpr double kSamePlace = 1e-4;   // of the diagonal, mean distance of models of which neither moved
-constexpr double kSameBox = 0.02;     // of a box's side
-constexpr double kSameSize = 0.002;   // of a size: not another one
+constexpr std::size_t kModelPoints = 600;  // of each model
+constexpr double kCountsAs = 0.02;         // of the diagonal: farther is as far as it gets
+constexpr double kSameShape = 0.002;       // of the diagonal, mean distance of models of one shape
+constexpr double kBetter = 0.5;            // of the distance that a smaller motion leaves
+constexpr double kSamePlace = 1e-4;        // of the diagonal, mean distance of models of which neither moved
+constexpr double kSameBox = 0.02;          // of a box's side
+constexpr double kSameSize = 0.002;        // of a size: not another one
 
 // Points even over the area, the same at each call.
 std::vector<Vec3> points_of(const mesh::TriangleMesh& mesh) {
@@ -31,8 +31,8 @@ std::vector<Vec3> points_of(const mesh::TriangleMesh& mesh) {
         until[t] = area;
     }
     std::vector<Vec3> points;
-    for (std::size_t i = 0; i < kPoints && area > 0; ++i) {
-        const double at = area * (static_cast<double>(i) + uniform(1, i)) / kPoints;
+    for (std::size_t i = 0; i < kModelPoints && area > 0; ++i) {
+        const double at = area * (static_cast<double>(i) + uniform(1, i)) / kModelPoints;
         const auto t = static_cast<std::uint32_t>(
             std::min<std::ptrdiff_t>(std::upper_bound(until.begin(), until.end(), at) - until.begin(),
                                      static_cast<std::ptrdiff_t>(until.size()) - 1));
