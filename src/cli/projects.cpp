@@ -92,7 +92,7 @@ nlohmann::json to_json(const Fit& fit) {
     nlohmann::json strokes = nlohmann::json::array();
     for (const stroke::StrokeFit& f : fit.fits) strokes.push_back(to_json(f));
     nlohmann::json j{{"strokes", std::move(strokes)},
-                     {"misfits", fit.total.mismatches},
+                     {"mismatches", fit.total.mismatches},
                      {"moved_mm", fit.total.moved / kMillimetre},
                      {"moved_most_mm", fit.total.moved_most / kMillimetre},
                      {"missing", fit.total.missing},
@@ -184,7 +184,7 @@ int run(const Replay& a) {
         nlohmann::json j{{"project", a.project.string()},
                          {"strokes", reports.size()},
                          {"missed", missed},
-                         {"misfits", std::move(list)},
+                         {"mismatches", std::move(list)},
                          {"atlas", to_json(model.atlas, model.atlas_report)},
                          {"canvas_hash", fmt::format("{:016x}", painting.hash())}};
         if (!a.model.empty()) j["fit"] = to_json(fit);

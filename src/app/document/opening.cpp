@@ -38,7 +38,7 @@ constexpr Stage kStages[] = {
     {"pack", "SurfaceMapping the charts out", {{1, 1}, {0.55, 0.75}, {0.1, 0.1}}},
     {"check", "SurfaceMapping the charts out", {{1, 1}, {0.75, 0.76}, {0.1, 0.1}}},
     {"texel map", "Placing the texels", {{1, 1}, {0.76, 0.85}, {0.1, 0.3}}},
-    {"piece graph", "Placing the texels", {{1, 1}, {0.85, 0.9}, {0.3, 0.4}}},
+    {"cluster graph", "Placing the texels", {{1, 1}, {0.85, 0.9}, {0.3, 0.4}}},
     {"search tree", "Placing the texels", {{1, 1}, {0.9, 0.92}, {0.4, 0.45}}},
     {"painting", "Document the strokes", {{1, 1}, {0.92, 0.97}, {0.45, 0.95}}},
     {"picture of the ink", "Placing the texels", {{1, 1}, {0.97, 1}, {0.95, 1}}},

@@ -78,14 +78,14 @@ constexpr ManualPage kPages[] = {
      "one away.\n"
      "* {place}: writing and drawings (InkML, SVG) follow the cursor. The wheel sizes them, Shift and wheel turns "
      "them, a click places them.\n"
-     "\"Drape\" bridges small grooves, panel gaps and scan noise; \"Wrap\" goes into each groove; \"Straight\" goes "
-     "through the picture plane. Strokes scale with the drawing.\n"
+     "\"Drape\" bridges small grooves, panel gaps and scan noise; \"Wrap\" goes into each groove; \"Project\" goes "
+     "straight, as seen from before the place. Strokes scale with the drawing.\n"
      "A placed drawing is one group in the journal: hidden, moved, inked and deleted as one.\n",
      "直线、曲线与图稿",
      "* {line}：按下起，松开止的直线。两端之后可拖动。\n"
      "* {curve}：单击加点，Enter 绘制。在点上转滚轮改变该处笔压；Backspace 去掉一点。\n"
      "* {place}：字与图（InkML、SVG）随光标而动。滚轮改大小，Shift 加滚轮转角，单击摆放。\n"
-     "“铺覆”跨过小沟槽、板缝与扫描噪声；“包裹”深入每道沟槽；“平投”穿过画面。笔画随图缩放。\n"
+     "“铺覆”跨过小沟槽、板缝与扫描噪声；“包裹”深入每道沟槽；“投影”从正前方直投。笔画随图缩放。\n"
      "摆好的图在笔迹中是一组：整组隐藏、移动、换墨、删除。\n"},
     {"Layers, masks and filling",
      "* Strokes go onto the chosen layer. Layers are shown, faded, ordered and locked apart from each other.\n"

@@ -85,7 +85,7 @@ std::vector<StencilEdge> tape_of(const nlohmann::json& j) {
     const auto is_number = [](const nlohmann::json& x) { return x.is_number() && std::isfinite(x.get<double>()); };
     if (!j.is_array() || j.size() % 4 != 0 || j.size() > 4 * kMaxStencilEdges ||
         !std::all_of(j.begin(), j.end(), is_number))
-        throw Error("the tape of a journal's entry cannot be read");
+        throw Error("the stencil of a journal's entry cannot be read");
     std::vector<StencilEdge> tape;
     for (std::size_t i = 0; i < j.size(); i += 4)
         tape.push_back(
@@ -135,7 +135,7 @@ void check_trace(const Trace& trace) {
         if (!(square > 1e-6 && square < 1e6)) refuse("a sample's rotation");
     }
     for (const StencilEdge& e : trace.stencil)
-        if (!within(e.from) || !within(e.to)) refuse("an edge of tape");
+        if (!within(e.from) || !within(e.to)) refuse("an edge of a stencil");
 }
 
 void check_seconds(double seconds) {
