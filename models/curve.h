@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 namespace tuft::models {
 

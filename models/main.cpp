@@ -3,8 +3,8 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/files.h"
-#include "mesh/polygon_soup.h"
+#include "core/system/files.h"
+#include "mesh/read/polygon_soup.h"
 #include "shape.h"
 
 namespace {

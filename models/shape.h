@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 /// The models that tuft ships, made from a few numbers each. Millimetres, z up,
 /// resting on z = 0, centred on the z axis, faces counter-clockwise from outside.

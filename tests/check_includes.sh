@@ -1,27 +1,65 @@
 #!/usr/bin/env bash
-# Fails when a file in src/ includes a module, or a part of the studio, that does not lie below its own, or a
-# third-party header outside the module that may use it.
+# Fails when a file in src/ includes a folder that does not lie below its own, lies in a folder without a place in the
+# order, or includes a third-party header outside the module that may use it.
 set -u
 src=$1
-declare -A level=([core]=0 [mesh]=1 [brush]=1 [atlas]=2 [contact]=2 [footprint]=3 [ink]=4 [stroke]=5 [io]=6 [render]=6 [cli]=7 [app]=7)
+# The order of all folders, lowest first. Folders of one line do not include each other.
+order='
+core
+core/geometry core/text
+core/system
+core/manual
+mesh brush/rod
+mesh/read brush/preset
+mesh/repair mesh/query brush/tuft
+atlas brush/calibration
+atlas/seams
+atlas/flatten
+atlas/pack
+atlas/charts
+atlas/unwrap atlas/texels contact
+footprint/outline
+footprint/stamp
+ink
+ink/spectra
+ink/colour
+ink/canvas
+ink/composite ink/exchange ink/texels
+ink/film
+stroke/journal
+stroke/gesture
+stroke/placement
+stroke/drawing stroke/surface
+stroke/contact
+stroke/deposit
+stroke/session
+stroke/painting
+io/image render/brush render/picture render/gl
+io/model
+io/export io/project io/strokes
+cli app/input
+app/view
+app/document
+app/panels app/script app
+'
+declare -A level
+n=0
+while read -r line; do
+  n=$((n + 1))
+  for folder in $line; do level[$folder]=$n; done
+done <<<"$order"
 bad=0
 complain() { echo "$1"; bad=1; }
+while read -r folder; do
+  [ -n "${level[$folder]:-}" ] || complain "src/$folder has no place in the order of folders"
+done < <(cd "$src" && find . -name '*.h' -o -name '*.cpp' | sed -E 's#^\./##; s#/[^/]*$##' | sort -u)
 while IFS=: read -r file line; do
-  module=${file#"$src"/}; module=${module%%/*}
-  target=$(sed -E 's/.*"([a-z_]+)\/.*/\1/' <<<"$line")
-  [ -n "${level[$module]:-}" ] || { complain "$file: lies in no known module"; continue; }
-  if [ "$target" != "$module" ] && [ -n "${level[$target]:-}" ] && [ "${level[$target]}" -ge "${level[$module]}" ]; then
-    complain "$file: $line: $module (level ${level[$module]}) must not include $target (level ${level[$target]})"
-  fi
+  own=${file#"$src"/}; own=${own%/*}
+  target=$(sed -E 's/.*"([a-z_\/]+)\/[^\/"]+".*/\1/' <<<"$line")
+  [ "$target" = "$own" ] || [ -z "${level[$target]:-}" ] || [ "${level[$target]}" -lt "${level[$own]:-99}" ] ||
+    [[ $own == app* && "${level[$target]}" == "${level[$own]}" ]] ||
+    complain "$file: $line: $own must not include $target"
 done < <(grep -rE --include='*.h' --include='*.cpp' '^#include "[a-z_]+/' "$src")
-# Within the studio: hand and keys, what is seen, what is kept, and over them the panels.
-declare -A storey=([input]=0 [view]=1 [document]=2)
-while IFS=: read -r file line; do
-  own=$(sed -E 's#.*/app/([a-z]+)/.*#\1#' <<<"$file")
-  target=$(sed -E 's#.*"app/([a-z_]+)[/.].*#\1#' <<<"$line")
-  [ -n "${storey[$own]:-}" ] || continue
-  [ "${storey[$target]:-9}" -le "${storey[$own]}" ] || complain "$file: $line: app/$own must not include app/$target"
-done < <(grep -rE --include='*.h' --include='*.cpp' '^#include "app/' "$src/app")
 # wall PATTERN ALLOWED...: headers that match may only be included by files that match one of ALLOWED.
 wall() {
   local pattern=$1; shift

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "ink/colour/composite.h"
-#include "io/image.h"
+#include "ink/composite/composite.h"
+#include "io/image/image.h"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "io/export.h"
-#include "io/read_model.h"
+#include "io/export/export.h"
+#include "io/model/read_model.h"
 #include "stroke/painting/painting.h"
 
 using namespace tuft;

@@ -11,11 +11,11 @@
 
 #include "atlas/texels/seams.h"
 #include "core/error.h"
-#include "core/files.h"
-#include "core/units.h"
-#include "io/image.h"
-#include "io/read_model.h"
-#include "render/picture.h"
+#include "core/system/files.h"
+#include "core/text/units.h"
+#include "io/image/image.h"
+#include "io/model/read_model.h"
+#include "render/picture/picture.h"
 #include "roller.h"
 #include "stroke/painting/painting.h"
 

@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "ink/canvas.h"
-#include "stroke/painting/model.h"
+#include "ink/canvas/canvas.h"
+#include "stroke/surface/model.h"
 
 /// A pattern rolled over a model, as an engraved wheel prints it: row by row, each laid out along
 /// the surface by the log map, so that nothing in it knows of charts.

@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 #include "compositions.h"
-#include "core/units.h"
+#include "core/text/units.h"
 #include "kaishu.h"
 
 namespace tuft::samples {

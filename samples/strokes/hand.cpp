@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "brush/preset.h"
-#include "brush/sweep.h"
-#include "stroke/hand/placement.h"
+#include "brush/calibration/sweep.h"
+#include "brush/preset/preset.h"
+#include "stroke/placement/placement.h"
 
 namespace tuft::samples {
 

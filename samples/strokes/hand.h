@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "brush/preset.h"
-#include "core/types.h"
+#include "brush/preset/preset.h"
+#include "core/geometry/types.h"
 #include "stroke/journal/trace.h"
 
 /// A written stroke as a list of key points, and the motion of the hand made from it.

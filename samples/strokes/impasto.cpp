@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "compositions.h"
-#include "core/units.h"
+#include "core/text/units.h"
 #include "hand.h"
 
 namespace tuft::samples {

@@ -4,7 +4,7 @@
 
 #include "compositions.h"
 #include "core/error.h"
-#include "io/inkml.h"
+#include "io/strokes/inkml.h"
 
 using namespace tuft;
 

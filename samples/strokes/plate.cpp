@@ -1,10 +1,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 #include "compositions.h"
 #include "core/random.h"
-#include "core/units.h"
+#include "core/text/units.h"
 #include "hand.h"
 
 namespace tuft::samples {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "compositions.h"
-#include "core/units.h"
+#include "core/text/units.h"
 #include "hand.h"
 
 // A plum branch in blossom beside a rock, and bamboo, on the vase's belly: eight pigments.

@@ -1,9 +1,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 #include "compositions.h"
-#include "core/units.h"
+#include "core/text/units.h"
 #include "hand.h"
 
 namespace tuft::samples {

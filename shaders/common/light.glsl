@@ -1,4 +1,4 @@
-// Studio light shared by all passes that draw solid things. CPU twin: render/gl_light.h.
+// Studio light shared by all passes that draw solid things. CPU twin: render/gl/gl_light.h.
 // Inputs in world space, unit vectors; output linear radiance.
 uniform vec3 u_eye;            // metres, world
 uniform vec3 u_to_eye;         // unit, towards the eye of an orthographic camera; zero for a pinhole

@@ -14,8 +14,8 @@
 #include "app/script/script.h"
 #include "app/studio.h"
 #include "app/view/display.h"
-#include "core/build_facts.h"
-#include "core/manual.h"
+#include "core/manual/manual.h"
+#include "core/system/build_facts.h"
 
 namespace {
 

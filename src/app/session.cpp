@@ -8,10 +8,10 @@
 #include <optional>
 #include <sstream>
 
-#include "brush/preset.h"
-#include "core/files.h"
-#include "core/units.h"
-#include "io/read_model.h"
+#include "brush/preset/preset.h"
+#include "core/system/files.h"
+#include "core/text/units.h"
+#include "io/model/read_model.h"
 
 namespace fs = std::filesystem;
 

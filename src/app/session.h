@@ -23,7 +23,7 @@
 #include "app/panels/file_dialog.h"
 #include "app/panels/ui.h"
 #include "app/view/viewport.h"
-#include "render/gl_scene.h"
+#include "render/gl/gl_scene.h"
 
 namespace tuft::app {
 

@@ -4,10 +4,10 @@
 #include <map>
 
 #include "app/session.h"
-#include "brush/preset.h"
-#include "brush/sweep.h"
-#include "core/files.h"
-#include "stroke/hand/placement.h"
+#include "brush/calibration/sweep.h"
+#include "brush/preset/preset.h"
+#include "core/system/files.h"
+#include "stroke/placement/placement.h"
 
 /// \file
 /// The brush that a model is opened with: the one that a person last had in hand for it, the one of its last stroke,

@@ -11,7 +11,7 @@
 #include "app/input/imgui_feed.h"
 #include "app/panels/panels.h"
 #include "app/view/model_colours.h"
-#include "core/files.h"
+#include "core/system/files.h"
 
 namespace fs = std::filesystem;
 

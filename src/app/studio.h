@@ -9,9 +9,9 @@
 
 #include "app/input/events.h"
 #include "app/session.h"
-#include "brush/tuft.h"
-#include "render/gl_scene.h"
-#include "render/gl_view.h"
+#include "brush/tuft/tuft.h"
+#include "render/gl/gl_scene.h"
+#include "render/gl/gl_view.h"
 
 namespace tuft::app {
 

@@ -1,7 +1,7 @@
 #include <epoxy/gl.h>
 
 #include "app/studio.h"
-#include "ink/colour/kubelka_munk.h"
+#include "ink/spectra/kubelka_munk.h"
 
 /// The palette: a hand over the plate, and its picture on the graphics card.
 namespace tuft::app {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "app/studio.h"
-#include "core/units.h"
+#include "core/text/units.h"
 
 /// Settings by name, for scripts.
 namespace tuft::app {

@@ -3,7 +3,7 @@
 
 #include "app/studio.h"
 #include "app/view/visibility.h"
-#include "core/units.h"
+#include "core/text/units.h"
 
 /// Placing writing and drawings with the mouse.
 namespace tuft::app {

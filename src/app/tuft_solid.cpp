@@ -6,9 +6,9 @@
 
 #include "app/panels/panels.h"
 #include "app/studio.h"
-#include "brush/tuft_surface.h"
+#include "brush/tuft/tuft_surface.h"
 #include "core/ease.h"
-#include "ink/colour/composite.h"
+#include "ink/composite/composite.h"
 
 namespace tuft::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/progress.h"
+#include "core/system/progress.h"
 #include "mesh/triangle_mesh.h"
 
 /// Charts: where each triangle lies in the texture.

@@ -9,13 +9,13 @@
 #include <optional>
 
 #include "cli/reference.h"
-#include "core/bounds.h"
 #include "core/error.h"
-#include "core/text.h"
-#include "core/units.h"
-#include "ink/colour/match.h"
-#include "io/export_maps.h"
-#include "stroke/hand/free_area.h"
+#include "core/geometry/bounds.h"
+#include "core/text/text.h"
+#include "core/text/units.h"
+#include "ink/composite/match.h"
+#include "io/export/export_maps.h"
+#include "stroke/drawing/free_area.h"
 #include "stroke/journal/trace.h"
 
 // What help and manual call the value of an option that is a path.

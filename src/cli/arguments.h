@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 /// What the command line asks for, as plain data. Lengths are in millimetres and
 /// angles in degrees here; the commands convert.

@@ -9,14 +9,14 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "brush/tuft.h"
+#include "brush/tuft/tuft.h"
 #include "cli/bench_film.h"
 #include "cli/commands.h"
 #include "cli/steps.h"
-#include "core/parallel.h"
-#include "ink/colour/composite.h"
+#include "core/system/parallel.h"
+#include "ink/composite/composite.h"
 #include "ink/exchange/deposit.h"
-#include "io/read_model.h"
+#include "io/model/read_model.h"
 #include "stroke/painting/painting.h"
 
 /// Speed on this machine: one thread, CPU time, medians over repeats.

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "ink/exchange/transfer.h"
 #include "ink/film/film.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "stroke/painting/model.h"
+#include "stroke/surface/model.h"
 
 /// Speed of wet ink, for `tuft bench`.
 namespace tuft::cli {

@@ -5,10 +5,10 @@
 
 #include "cli/commands.h"
 #include "cli/steps.h"
-#include "core/counted.h"
-#include "core/files.h"
-#include "io/inkml.h"
-#include "stroke/hand/bias_correction.h"
+#include "core/system/files.h"
+#include "core/text/counted.h"
+#include "io/strokes/inkml.h"
+#include "stroke/gesture/bias_correction.h"
 
 namespace tuft::cli {
 

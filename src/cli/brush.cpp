@@ -3,17 +3,17 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "brush/picture.h"
-#include "brush/preset.h"
-#include "brush/sweep.h"
-#include "brush/table.h"
+#include "brush/calibration/sweep.h"
+#include "brush/preset/preset.h"
+#include "brush/tuft/table.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/steps.h"
-#include "core/files.h"
-#include "core/units.h"
-#include "io/image.h"
-#include "stroke/hand/placement.h"
+#include "core/system/files.h"
+#include "core/text/units.h"
+#include "io/image/image.h"
+#include "render/brush/brush_picture.h"
+#include "stroke/placement/placement.h"
 
 namespace tuft::cli {
 namespace {
@@ -103,7 +103,7 @@ int run(const Brush& a) {
     check_output(a.sweep_depth);
     const brush::Preset preset = brush::load_preset(a.name);
     if (!a.picture.empty()) {
-        const brush::Picture picture = brush::draw_tuft(preset);
+        const render::BrushPicture picture = render::draw_tuft(preset);
         io::write_image(a.picture, io::view_of(picture.width, picture.height, 3, picture.rgb.data()));
     }
     if (!a.sweep_depth.empty()) {

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <thread>
 
-#include "core/interrupt.h"
-#include "core/text.h"
+#include "core/system/interrupt.h"
+#include "core/text/text.h"
 
 namespace tuft::cli {
 namespace {

@@ -3,12 +3,12 @@
 #include <memory>
 #include <string>
 
-#include "core/progress.h"
+#include "core/system/progress.h"
 
 namespace tuft::cli {
 
 /// From here on, interrupt, termination and hang-up signals ask all work to stop
-/// (core/interrupt.h). Work that has not unwound 0.7 s later, and a second signal, end the program
+/// (core/system/interrupt.h). Work that has not unwound 0.7 s later, and a second signal, end the program
 /// at once; half-written files are removed. To be called once, before any other thread starts.
 void listen_for_signals();
 

@@ -5,7 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/steps.h"
-#include "core/units.h"
+#include "core/text/units.h"
 
 namespace tuft::cli {
 namespace {

@@ -8,9 +8,9 @@
 #include "cli/commands.h"
 #include "cli/steps.h"
 #include "core/error.h"
-#include "core/files.h"
-#include "ink/colour/composite.h"
-#include "ink/colour/match.h"
+#include "core/system/files.h"
+#include "ink/composite/composite.h"
+#include "ink/composite/match.h"
 
 /// \file
 /// `tuft ink`: lists the shipped inks. `tuft ink match`: finds the mix nearest to a colour.

@@ -1,4 +1,4 @@
-#include "mesh/inspect.h"
+#include "mesh/repair/inspect.h"
 
 #include <fmt/format.h>
 
@@ -10,10 +10,10 @@
 
 #include "cli/commands.h"
 #include "cli/steps.h"
-#include "core/counted.h"
-#include "core/files.h"
-#include "core/units.h"
-#include "io/read_model.h"
+#include "core/system/files.h"
+#include "core/text/counted.h"
+#include "core/text/units.h"
+#include "io/model/read_model.h"
 
 namespace tuft::cli {
 namespace {

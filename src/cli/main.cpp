@@ -7,8 +7,8 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "core/error.h"
-#include "core/parallel.h"
-#include "core/text.h"
+#include "core/system/parallel.h"
+#include "core/text/text.h"
 
 namespace {
 

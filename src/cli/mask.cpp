@@ -8,9 +8,10 @@
 
 #include "cli/commands.h"
 #include "cli/steps.h"
-#include "core/bounds.h"
-#include "core/text.h"
-#include "core/units.h"
+#include "core/geometry/bounds.h"
+#include "core/text/text.h"
+#include "core/text/units.h"
+#include "stroke/surface/mask_texels.h"
 
 /// `tuft mask`: masks of a project, made and ended by entries of its journal.
 namespace tuft::cli {

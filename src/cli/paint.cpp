@@ -9,9 +9,9 @@
 #include "cli/commands.h"
 #include "cli/place.h"
 #include "cli/steps.h"
-#include "core/counted.h"
-#include "core/files.h"
-#include "core/units.h"
+#include "core/system/files.h"
+#include "core/text/counted.h"
+#include "core/text/units.h"
 
 namespace tuft::cli {
 namespace {

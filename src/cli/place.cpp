@@ -9,9 +9,9 @@
 
 #include "contact/outside.h"
 #include "core/error.h"
-#include "core/units.h"
-#include "stroke/hand/drawing.h"
-#include "stroke/hand/free_area.h"
+#include "core/text/units.h"
+#include "stroke/drawing/drawing.h"
+#include "stroke/drawing/free_area.h"
 
 namespace tuft::cli {
 

@@ -8,7 +8,7 @@
 #include "cli/arguments.h"
 #include "cli/console.h"
 #include "stroke/journal/journal.h"
-#include "stroke/painting/model.h"
+#include "stroke/surface/model.h"
 
 /// Where drawings and handwriting without a place of their own go.
 namespace tuft::cli {

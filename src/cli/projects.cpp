@@ -5,15 +5,15 @@
 
 #include "cli/commands.h"
 #include "cli/steps.h"
-#include "core/counted.h"
-#include "core/units.h"
-#include "io/export_maps.h"
-#include "io/image.h"
-#include "io/inkml.h"
-#include "io/read_model.h"
-#include "io/restore.h"
-#include "stroke/journal/fit.h"
+#include "core/text/counted.h"
+#include "core/text/units.h"
+#include "io/export/export_maps.h"
+#include "io/image/image.h"
+#include "io/model/read_model.h"
+#include "io/project/restore.h"
+#include "io/strokes/inkml.h"
 #include "stroke/journal/journal_traces.h"
+#include "stroke/painting/fit.h"
 
 /// Commands that start from a project: replay, export, render.
 namespace tuft::cli {

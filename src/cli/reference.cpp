@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/build_facts.h"
-#include "core/files.h"
+#include "core/system/build_facts.h"
+#include "core/system/files.h"
 
 namespace tuft::cli {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/manual.h"
+#include "core/manual/manual.h"
 
 namespace CLI {
 class App;

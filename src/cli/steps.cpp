@@ -9,18 +9,18 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/units.h"
-#include "ink/colour/composite.h"
-#include "ink/colour/match.h"
-#include "ink/colour/recolour.h"
-#include "io/appearance.h"
-#include "io/export.h"
-#include "io/image.h"
-#include "io/read_model.h"
-#include "io/restore.h"
-#include "io/svg.h"
-#include "mesh/inspect.h"
-#include "stroke/hand/bias_correction.h"
+#include "core/text/units.h"
+#include "ink/composite/composite.h"
+#include "ink/composite/match.h"
+#include "ink/composite/recolour.h"
+#include "io/export/export.h"
+#include "io/image/image.h"
+#include "io/model/read_model.h"
+#include "io/project/appearance.h"
+#include "io/project/restore.h"
+#include "io/strokes/svg.h"
+#include "mesh/repair/inspect.h"
+#include "stroke/gesture/bias_correction.h"
 #include "stroke/journal/entries.h"
 
 namespace fs = std::filesystem;

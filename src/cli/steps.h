@@ -9,8 +9,8 @@
 
 #include "cli/arguments.h"
 #include "cli/console.h"
-#include "io/project.h"
-#include "render/picture.h"
+#include "io/project/project.h"
+#include "render/picture/picture.h"
 #include "stroke/painting/painting.h"
 
 /// Steps that several commands share.

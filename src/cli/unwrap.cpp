@@ -3,13 +3,13 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "atlas/atlas_picture.h"
+#include "atlas/unwrap/atlas_picture.h"
 #include "cli/commands.h"
 #include "cli/steps.h"
-#include "core/counted.h"
-#include "core/units.h"
-#include "io/export.h"
-#include "io/image.h"
+#include "core/text/counted.h"
+#include "core/text/units.h"
+#include "io/export/export.h"
+#include "io/image/image.h"
 
 namespace tuft::cli {
 

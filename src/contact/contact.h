@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "brush/tuft.h"
+#include "brush/tuft/tuft.h"
 #include "contact/near_vertices.h"
-#include "mesh/surface_query.h"
+#include "mesh/query/surface_query.h"
 
 /// The tuft against the model.
 namespace tuft::contact {

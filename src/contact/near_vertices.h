@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "brush/tuft_state.h"
+#include "brush/tuft/tuft_state.h"
 #include "contact/sphere.h"
-#include "mesh/surface_query.h"
+#include "mesh/query/surface_query.h"
 
 /// The source paper's way to a contact: distance over the nearest vertices, tip snapped to
 /// the surface, effective vertices in the tuft's bounding sphere, projection plane.

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 /// Oriented boxes for the broad phase.
 namespace tuft::contact {

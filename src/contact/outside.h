@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "brush/tuft_state.h"
-#include "mesh/surface_query.h"
+#include "brush/tuft/tuft_state.h"
+#include "mesh/query/surface_query.h"
 
 /// Which surface a point of the tuft meets, seen from the side the ferrule is on.
 namespace tuft::contact {

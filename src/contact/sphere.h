@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 /// Enclosing sphere of a point set by ball expansion.
 namespace tuft::contact {

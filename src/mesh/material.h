@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 /// What a model's file says of the colour of its faces, before any ink.
 namespace tuft::mesh {

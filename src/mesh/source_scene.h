@@ -6,7 +6,7 @@
 #include <vector>
 
 /// The scene graph that a model's file holds round its triangles. Readers fill it, the mesh and the
-/// project carry it unread, and exports write it again (io/scene_document.h).
+/// project carry it unread, and exports write it again (io/model/scene_document.h).
 namespace tuft::mesh {
 
 /// Faces of one object, one group and one material of the file.

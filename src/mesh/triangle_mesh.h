@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 #include "mesh/material.h"
 #include "mesh/source_scene.h"
 

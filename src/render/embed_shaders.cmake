@@ -1,7 +1,7 @@
 # cmake -DSHADERS=folder -DOUT=file.cpp -P embed_shaders.cmake: all shader files as strings, includes resolved.
 file(GLOB_RECURSE files RELATIVE ${SHADERS} ${SHADERS}/*.vert ${SHADERS}/*.frag)
 list(SORT files)
-set(text "#include \"render/gl_shaders.h\"\n\nnamespace tuft::render {\n\nstd::string_view shader_text(std::string_view name) {\n")
+set(text "#include \"render/gl/gl_shaders.h\"\n\nnamespace tuft::render {\n\nstd::string_view shader_text(std::string_view name) {\n")
 foreach(file IN LISTS files)
   file(READ ${SHADERS}/${file} source)
   string(REGEX MATCHALL "#include \"[^\"]+\"" includes "${source}")

@@ -7,8 +7,8 @@
 #include "app/input/pointer_input.h"
 #include "models.h"
 #include "paths.h"
-#include "stroke/hand/surface_mapping.h"
-#include "stroke/hand/tip_lag.h"
+#include "stroke/placement/surface_mapping.h"
+#include "stroke/placement/tip_lag.h"
 
 namespace tuft::app {
 namespace {

@@ -12,10 +12,10 @@
 #include "app/document/thumbnails.h"
 #include "app/session.h"
 #include "app/view/viewport.h"
-#include "brush/preset.h"
-#include "brush/sweep.h"
+#include "brush/calibration/sweep.h"
+#include "brush/preset/preset.h"
 #include "models.h"
-#include "stroke/hand/placement.h"
+#include "stroke/placement/placement.h"
 
 namespace tuft::app {
 namespace {

@@ -9,7 +9,7 @@
 #include "app/view/texture.h"
 #include "models.h"
 #include "paths.h"
-#include "stroke/hand/tip_lag.h"
+#include "stroke/placement/tip_lag.h"
 
 namespace tuft::app {
 namespace {

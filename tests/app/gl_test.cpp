@@ -6,7 +6,7 @@
 #include "app/view/viewport.h"
 #include "core/random.h"
 #include "models.h"
-#include "render/gl_view.h"
+#include "render/gl/gl_view.h"
 
 namespace tuft::app {
 namespace {

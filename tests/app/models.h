@@ -1,6 +1,6 @@
 #pragma once
 
-#include "io/read_model.h"
+#include "io/model/read_model.h"
 #include "paths.h"
 #include "stroke/painting/painting.h"
 

@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "app/document/paint_thread.h"
-#include "io/project.h"
-#include "io/restore.h"
+#include "io/project/project.h"
+#include "io/project/restore.h"
 #include "models.h"
 #include "paths.h"
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "io/project.h"
-#include "io/restore.h"
+#include "io/project/project.h"
+#include "io/project/restore.h"
 #include "models.h"
 
 /// Whatever is asked for, stopped or called off in whatever order: the file's texels are those of a replay of its

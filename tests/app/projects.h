@@ -12,7 +12,7 @@
 
 #include "atlas/texels/texel_map.h"
 #include "core/hash.h"
-#include "io/project.h"
+#include "io/project/project.h"
 #include "paths.h"
 #include "stroke/painting/painting.h"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "io/image.h"
-#include "io/project.h"
+#include "io/image/image.h"
+#include "io/project/project.h"
 #include "studio_program.h"
 
 /// The journal's list: groups, choosing, its menu, and how what is chosen is shown.

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "io/project.h"
+#include "io/project/project.h"
 #include "studio_program.h"
 
 /// Panels, dialogs and the menu bar as a person finds them.

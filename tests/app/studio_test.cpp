@@ -12,12 +12,12 @@
 #include <sstream>
 #include <thread>
 
-#include "ink/colour/composite.h"
 #include "ink/colour/pigments.h"
-#include "io/image.h"
-#include "io/project.h"
-#include "io/read_model.h"
-#include "mesh/surface_query.h"
+#include "ink/composite/composite.h"
+#include "io/image/image.h"
+#include "io/model/read_model.h"
+#include "io/project/project.h"
+#include "mesh/query/surface_query.h"
 #include "studio_program.h"
 
 /// The real program, played by scripts without a display.

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/panels/manual_text.h"
-#include "io/image.h"
-#include "io/project.h"
+#include "io/image/image.h"
+#include "io/project/project.h"
 #include "studio_program.h"
 
 /// Reference images, snapshots, the guide and the manual.

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "brush/preset.h"
-#include "core/units.h"
+#include "brush/preset/preset.h"
+#include "core/text/units.h"
 #include "paths.h"
-#include "stroke/hand/placement.h"
+#include "stroke/placement/placement.h"
 #include "window.h"
 
 /// A Wacom tablet from its kernel events on: the real X server with the real driver reads an event device

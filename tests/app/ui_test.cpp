@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 #include "ink/colour/pigments.h"
 #include "paths.h"
 #include "stroke/journal/model_motion.h"

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/project.h"
+#include "io/project/project.h"
 #include "paths.h"
 #include "projects.h"
 

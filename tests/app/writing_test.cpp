@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "app/document/paint_thread.h"
-#include "io/inkml.h"
+#include "io/strokes/inkml.h"
 #include "models.h"
 #include "paths.h"
 #include "projects.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "atlas/charts/charts.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "shapes.h"
 
 namespace tuft::atlas {

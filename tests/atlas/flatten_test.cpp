@@ -9,12 +9,12 @@
 #include <numeric>
 #include <span>
 
+#include "atlas/charts/carry_uvs.h"
 #include "atlas/charts/charts.h"
 #include "atlas/charts/merge.h"
-#include "atlas/charts/seam_graph.h"
-#include "atlas/charts/snap.h"
-#include "atlas/charts/straighten.h"
-#include "atlas/flatten/carry_uvs.h"
+#include "atlas/pack/snap.h"
+#include "atlas/seams/seam_graph.h"
+#include "atlas/seams/straighten.h"
 #include "nasty_meshes.h"
 
 namespace tuft::atlas {

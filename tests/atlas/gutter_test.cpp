@@ -9,7 +9,7 @@
 #include "analytic_surfaces.h"
 #include "atlas/texels/seams.h"
 #include "core/hash.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 namespace tuft::atlas {
 namespace {

@@ -1,4 +1,4 @@
-#include "atlas/charts/seam_paths.h"
+#include "atlas/seams/seam_paths.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "atlas/charts/charts.h"
 #include "atlas/charts/merge.h"
 #include "atlas/charts/move_seams.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "shapes.h"
 #include "test_mesh.h"
 

@@ -18,8 +18,8 @@
 #include "atlas/texels/seam_links.h"
 #include "core/error.h"
 #include "core/hash.h"
-#include "core/parallel.h"
 #include "core/random.h"
+#include "core/system/parallel.h"
 #include "paths.h"
 
 namespace tuft::atlas {

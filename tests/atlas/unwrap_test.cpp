@@ -7,13 +7,13 @@
 #include <numbers>
 
 #include "atlas/atlas.h"
-#include "atlas/atlas_picture.h"
-#include "atlas/charts/half_edges.h"
 #include "atlas/pack/coverage.h"
+#include "atlas/seams/half_edges.h"
+#include "atlas/unwrap/atlas_picture.h"
 #include "core/error.h"
-#include "core/files.h"
-#include "core/parallel.h"
-#include "mesh/repair.h"
+#include "core/system/files.h"
+#include "core/system/parallel.h"
+#include "mesh/repair/repair.h"
 #include "paths.h"
 #include "shapes.h"
 #include "test_mesh.h"

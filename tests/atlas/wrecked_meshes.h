@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/random.h"
-#include "mesh/repair.h"
+#include "mesh/repair/repair.h"
 
 /// Meshes that are broken as files are: what reading and repair make of them is what the
 /// atlas has to take.

@@ -1,10 +1,10 @@
-#include "brush/bundles.h"
+#include "brush/tuft/bundles.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "brush/tuft.h"
+#include "brush/tuft/tuft.h"
 
 namespace tuft::brush {
 namespace {

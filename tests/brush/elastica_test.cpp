@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "brush/rod.h"
-#include "core/units.h"
+#include "brush/rod/rod.h"
+#include "core/text/units.h"
 #include "reference.h"
 
 namespace tuft::brush::rod {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "brush/tuft.h"
+#include "brush/tuft/tuft.h"
 
 /// The whole tuft with its side nodes: where the hand's work goes.
 namespace tuft::brush {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "brush/tuft.h"
+#include "brush/tuft/tuft.h"
 
 /// Walls beside a tuft that is drawn over a floor.
 namespace tuft::brush {

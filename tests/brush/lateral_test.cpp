@@ -1,4 +1,4 @@
-#include "brush/lateral.h"
+#include "brush/tuft/lateral.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "brush/rod.h"
+#include "brush/rod/rod.h"
 #include "reference.h"
 
 namespace tuft::brush::rod {

@@ -1,4 +1,4 @@
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "brush/tuft.h"
+#include "brush/tuft/tuft.h"
 #include "core/error.h"
 
 namespace tuft::brush {

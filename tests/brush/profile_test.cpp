@@ -1,4 +1,4 @@
-#include "brush/profile.h"
+#include "brush/rod/profile.h"
 
 #include <gtest/gtest.h>
 

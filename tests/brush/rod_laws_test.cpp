@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "brush/rod.h"
+#include "brush/rod/rod.h"
 #include "core/random.h"
 
 namespace tuft::brush::rod {

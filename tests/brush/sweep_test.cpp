@@ -1,4 +1,4 @@
-#include "brush/sweep.h"
+#include "brush/calibration/sweep.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

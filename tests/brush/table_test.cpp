@@ -1,12 +1,12 @@
-#include "brush/table.h"
+#include "brush/tuft/table.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "brush/rod.h"
-#include "brush/tuft.h"
+#include "brush/rod/rod.h"
+#include "brush/tuft/tuft.h"
 #include "reference.h"
 
 namespace tuft::brush {

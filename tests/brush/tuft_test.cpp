@@ -1,4 +1,4 @@
-#include "brush/tuft.h"
+#include "brush/tuft/tuft.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "core/units.h"
+#include "core/text/units.h"
 
 namespace tuft::brush {
 namespace {

@@ -1,4 +1,4 @@
-#include "brush/wedge.h"
+#include "brush/rod/wedge.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "io/image.h"
+#include "io/image/image.h"
 #include "program.h"
 
 /// \file

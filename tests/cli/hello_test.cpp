@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "io/read_model.h"
+#include "io/model/read_model.h"
 #include "program.h"
 
 /// \file

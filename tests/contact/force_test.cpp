@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "contact/contact.h"
-#include "io/read_model.h"
-#include "mesh/repair.h"
+#include "io/model/read_model.h"
+#include "mesh/repair/repair.h"
 #include "paths.h"
 #include "shapes.h"
 

@@ -9,13 +9,13 @@
 #include <unordered_map>
 
 #include "core/error.h"
-#include "core/files.h"
+#include "core/geometry/sparse_numbering.h"
+#include "core/geometry/types.h"
 #include "core/hash.h"
-#include "core/parallel.h"
 #include "core/random.h"
-#include "core/sparse_numbering.h"
-#include "core/types.h"
-#include "core/units.h"
+#include "core/system/files.h"
+#include "core/system/parallel.h"
+#include "core/text/units.h"
 
 namespace tuft {
 namespace {

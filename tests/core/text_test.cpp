@@ -1,11 +1,11 @@
-#include "core/text.h"
+#include "core/text/text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/bounds.h"
 #include "core/error.h"
-#include "core/nesting.h"
+#include "core/geometry/bounds.h"
+#include "core/text/nesting.h"
 
 namespace tuft {
 namespace {

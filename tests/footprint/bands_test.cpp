@@ -1,11 +1,11 @@
-#include "footprint/bands.h"
+#include "footprint/outline/bands.h"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 #include <vector>
 
-#include "footprint/picture.h"
+#include "footprint/outline/picture.h"
 
 namespace tuft::footprint {
 namespace {

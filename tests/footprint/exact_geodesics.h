@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 #include "mesh/triangle_mesh.h"
 
 /// Exact shortest ways over the triangles near a point (Xin and Wang 2009, by CGAL): what the

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "brush/tuft.h"
-#include "brush/upright_hair.h"
-#include "footprint/cuts.h"
+#include "brush/tuft/tuft.h"
+#include "brush/tuft/upright_hair.h"
+#include "footprint/outline/cuts.h"
 
 /// Hair round the foot of the axis: what an upright press leaves.
 namespace tuft::footprint {

@@ -11,8 +11,8 @@
 #include "../atlas/analytic_surfaces.h"
 #include "core/random.h"
 #include "exact_geodesics.h"
-#include "mesh/repair.h"
-#include "mesh/surface_query.h"
+#include "mesh/query/surface_query.h"
+#include "mesh/repair/repair.h"
 #include "paths.h"
 #include "stage.h"
 

@@ -1,4 +1,4 @@
-#include "footprint/hair.h"
+#include "footprint/outline/hair.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 
-#include "brush/tuft.h"
-#include "footprint/slip.h"
+#include "brush/tuft/tuft.h"
+#include "footprint/outline/slip.h"
 
 namespace tuft::footprint {
 namespace {

@@ -1,4 +1,4 @@
-#include "footprint/outline.h"
+#include "footprint/outline/outline.h"
 
 #include <gtest/gtest.h>
 

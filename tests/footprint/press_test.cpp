@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "brush/tuft.h"
-#include "core/units.h"
-#include "footprint/outline.h"
+#include "brush/tuft/tuft.h"
+#include "core/text/units.h"
+#include "footprint/outline/outline.h"
 
 namespace tuft::footprint {
 namespace {

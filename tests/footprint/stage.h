@@ -6,7 +6,7 @@
 
 #include "../atlas/analytic_surfaces.h"
 #include "atlas/texels/log_map.h"
-#include "footprint/stamp.h"
+#include "footprint/stamp/stamp.h"
 
 /// A surface with its maps, and what stamps do on it.
 namespace tuft::footprint {

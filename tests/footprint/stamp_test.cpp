@@ -1,4 +1,4 @@
-#include "footprint/stamp.h"
+#include "footprint/stamp/stamp.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/hash.h"
-#include "core/parallel.h"
 #include "core/random.h"
+#include "core/system/parallel.h"
 #include "stage.h"
 
 namespace tuft::footprint {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/polygon_soup.h"
+#include "mesh/read/polygon_soup.h"
 #include "promise.h"
 #include "stroke/painting/painting.h"
 

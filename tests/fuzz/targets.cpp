@@ -9,18 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 #include "fuzz_paint.h"
 #include "ink/colour/pigments.h"
 #include "ink/colour/presets.h"
-#include "io/image.h"
-#include "io/inkml.h"
-#include "io/project.h"
-#include "io/read_gltf.h"
-#include "io/svg.h"
-#include "mesh/repair.h"
+#include "io/image/image.h"
+#include "io/model/read_gltf.h"
+#include "io/project/project.h"
+#include "io/strokes/inkml.h"
+#include "io/strokes/svg.h"
+#include "mesh/repair/repair.h"
 #include "promise.h"
-#include "stroke/hand/bias_correction.h"
+#include "stroke/gesture/bias_correction.h"
 #include "stroke/journal/journal.h"
 
 namespace tuft::fuzz {

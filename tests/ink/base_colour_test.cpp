@@ -6,11 +6,11 @@
 #include <memory>
 
 #include "core/hash.h"
-#include "core/parallel.h"
 #include "core/random.h"
-#include "ink/canvas.h"
-#include "ink/colour/composite.h"
+#include "core/system/parallel.h"
+#include "ink/canvas/canvas.h"
 #include "ink/colour/presets.h"
+#include "ink/composite/composite.h"
 
 namespace tuft::ink {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "ink/colour/composite.h"
-#include "ink/colour/kubelka_munk.h"
+#include "ink/composite/composite.h"
+#include "ink/spectra/kubelka_munk.h"
 
 namespace tuft::ink {
 namespace {

@@ -1,10 +1,10 @@
-#include "ink/canvas.h"
+#include "ink/canvas/canvas.h"
 
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/parallel.h"
 #include "core/random.h"
+#include "core/system/parallel.h"
 
 namespace tuft::ink {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "ink/colour/composite.h"
+#include "ink/composite/composite.h"
 #include "mixtures.h"
 #include "paths.h"
 

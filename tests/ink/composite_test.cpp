@@ -1,4 +1,4 @@
-#include "ink/colour/composite.h"
+#include "ink/composite/composite.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "core/parallel.h"
 #include "core/random.h"
-#include "ink/colour/kubelka_munk.h"
-#include "mesh/repair.h"
+#include "core/system/parallel.h"
+#include "ink/spectra/kubelka_munk.h"
+#include "mesh/repair/repair.h"
 
 namespace tuft::ink {
 namespace {

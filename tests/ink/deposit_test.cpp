@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "core/random.h"
-#include "ink/colour/composite.h"
+#include "ink/composite/composite.h"
 #include "texels.h"
 
 namespace tuft::ink {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "../atlas/analytic_surfaces.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "ink/film/film.h"
 
 // Ink that runs down a wall.

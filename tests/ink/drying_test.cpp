@@ -1,10 +1,10 @@
-#include "ink/film/drying.h"
+#include "ink/texels/drying.h"
 
 #include <gtest/gtest.h>
 
-#include "core/parallel.h"
 #include "core/random.h"
-#include "ink/colour/composite.h"
+#include "core/system/parallel.h"
+#include "ink/composite/composite.h"
 
 namespace tuft::ink {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "atlas/texels/seam_links.h"
 #include "ink/film/film.h"
-#include "mesh/repair.h"
+#include "mesh/repair/repair.h"
 #include "paths.h"
 
 // The wet film on the shipped models, whose charts meet in every way that charts do.

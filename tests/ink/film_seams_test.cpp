@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/parallel.h"
 #include "core/random.h"
+#include "core/system/parallel.h"
 #include "wet_stage.h"
 
 namespace tuft::ink {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/parallel.h"
-#include "ink/film/drying.h"
+#include "core/system/parallel.h"
+#include "ink/texels/drying.h"
 #include "wet_stage.h"
 
 namespace tuft::ink {

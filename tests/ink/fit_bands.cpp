@@ -1,7 +1,7 @@
 // Chooses which wavelengths are the spectral bands and how much of red, green and blue each gives,
 // and prints the colour error against the sum over all 41:
 //
-//     ink_fit_bands [N]      the table for 12 to 32 bands, or the numbers for src/ink/colour/spectrum.cpp
+//     ink_fit_bands [N]      the table for 12 to 32 bands, or the numbers for src/ink/spectra/spectrum.cpp
 //
 // Beginning with all wavelengths, the one is left out whose loss costs least, then the next. Weights
 // are least squares in about ΔE2000 with a ridge towards linear interpolation between the bands that

@@ -1,4 +1,4 @@
-#include "ink/colour/kubelka_munk.h"
+#include "ink/spectra/kubelka_munk.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ink/colour/match.h"
+#include "ink/composite/match.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "ink/canvas.h"
-#include "ink/colour/composite.h"
-#include "ink/colour/srgb.h"
+#include "ink/canvas/canvas.h"
+#include "ink/composite/composite.h"
+#include "ink/spectra/srgb.h"
 
 namespace tuft::ink {
 namespace {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/random.h"
-#include "ink/colour/colorimetry.h"
-#include "ink/colour/kubelka_munk.h"
-#include "ink/colour/upsample.h"
+#include "ink/spectra/colorimetry.h"
+#include "ink/spectra/kubelka_munk.h"
+#include "ink/spectra/upsample.h"
 #include "paths.h"
 
 /// Random mixes, thicknesses and stacks of pigments, with their colours computed in full.

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "ink/film/paste.h"
 #include "wet_stage.h"
 

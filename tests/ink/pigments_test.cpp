@@ -8,8 +8,8 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "ink/colour/colorimetry.h"
-#include "ink/colour/composite.h"
+#include "ink/composite/composite.h"
+#include "ink/spectra/colorimetry.h"
 
 namespace tuft::ink {
 namespace {

@@ -1,4 +1,4 @@
-#include "ink/film/pool.h"
+#include "ink/texels/pool.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <map>
 
 #include "../atlas/analytic_surfaces.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "ink/film/film.h"
 
 // Thin ink over thick dry paint.

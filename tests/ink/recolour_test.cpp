@@ -1,11 +1,11 @@
-#include "ink/colour/recolour.h"
+#include "ink/composite/recolour.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
-#include "ink/colour/composite.h"
+#include "ink/composite/composite.h"
 #include "ink/exchange/deposit.h"
 
 namespace tuft::ink {

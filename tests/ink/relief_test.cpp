@@ -1,4 +1,4 @@
-#include "ink/film/relief.h"
+#include "ink/texels/relief.h"
 
 #include <gtest/gtest.h>
 

@@ -115,7 +115,7 @@ TEST(Transfer, ACleanWetTuftLiftsAndADampOneDries) {
     damp.deposit.target = 0.2f;
     damp.wash(4, damp.purple);
     for (int i = 0; i < 200; ++i) damp.move(0.1e-3, 2e-3);
-    EXPECT_LT((*damp.canvas.liquid(0, Liquid::film))[0], 1.5) << "thirsty hair";
+    EXPECT_LT((*damp.canvas.liquid(0, Liquid::film))[0], 1.5) << "hair that takes ink up";
 }
 
 /// Areas of the nodes under a patch whose width falls from 1 to `end` over its length.

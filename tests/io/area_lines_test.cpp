@@ -1,4 +1,4 @@
-#include "io/area_lines.h"
+#include "io/strokes/area_lines.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "stroke/painting/surface_stencil.h"
+#include "stroke/surface/surface_stencil.h"
 
 namespace tuft::io {
 namespace {

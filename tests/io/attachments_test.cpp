@@ -1,4 +1,4 @@
-#include "io/attachments.h"
+#include "io/project/attachments.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "io/project.h"
+#include "io/project/project.h"
 #include "sample_model.h"
 
 /// What a project carries besides its model and journal.

@@ -1,4 +1,4 @@
-#include "io/export.h"
+#include "io/export/export.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "core/files.h"
-#include "io/image.h"
-#include "io/read_gltf.h"
-#include "mesh/polygon_soup.h"
+#include "core/system/files.h"
+#include "io/image/image.h"
+#include "io/model/read_gltf.h"
+#include "mesh/read/polygon_soup.h"
 #include "sample_model.h"
 
 namespace tuft::io {

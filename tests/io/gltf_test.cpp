@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "core/files.h"
 #include "core/random.h"
-#include "io/export.h"
-#include "io/image.h"
-#include "io/read_gltf.h"
+#include "core/system/files.h"
+#include "io/export/export.h"
+#include "io/image/image.h"
+#include "io/model/read_gltf.h"
 #include "sample_model.h"
 
 namespace tuft::io {

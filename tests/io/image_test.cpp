@@ -1,4 +1,4 @@
-#include "io/image.h"
+#include "io/image/image.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "core/error.h"
-#include "core/files.h"
 #include "core/random.h"
+#include "core/system/files.h"
 #include "sample_model.h"
 
 namespace tuft::io {

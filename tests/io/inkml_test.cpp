@@ -1,4 +1,4 @@
-#include "io/inkml.h"
+#include "io/strokes/inkml.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "core/files.h"
 #include "core/random.h"
-#include "core/units.h"
+#include "core/system/files.h"
+#include "core/text/units.h"
 
 namespace tuft::io {
 namespace {

@@ -1,17 +1,17 @@
-#include "io/materials.h"
+#include "io/model/materials.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "core/files.h"
-#include "io/image.h"
-#include "io/project.h"
-#include "io/read_model.h"
-#include "mesh/repair.h"
+#include "core/system/files.h"
+#include "io/image/image.h"
+#include "io/model/read_model.h"
+#include "io/project/project.h"
+#include "mesh/repair/repair.h"
 #include "sample_model.h"
-#include "stroke/painting/model.h"
+#include "stroke/surface/model.h"
 
 namespace tuft::io {
 namespace {

@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "core/error.h"
-#include "io/inkml.h"
-#include "io/project.h"
-#include "io/restore.h"
+#include "io/project/project.h"
+#include "io/project/restore.h"
+#include "io/strokes/inkml.h"
 
 namespace tuft::io {
 namespace {

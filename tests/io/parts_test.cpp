@@ -8,13 +8,13 @@
 
 #include "atlas/texels/texel_map.h"
 #include "core/error.h"
-#include "core/files.h"
-#include "io/export.h"
-#include "io/image.h"
-#include "io/project.h"
-#include "io/read_model.h"
+#include "core/system/files.h"
+#include "io/export/export.h"
+#include "io/image/image.h"
+#include "io/model/read_model.h"
+#include "io/project/project.h"
 #include "sample_model.h"
-#include "stroke/painting/model.h"
+#include "stroke/surface/model.h"
 
 /// Objects, groups and materials of a file, through painting to the exported model.
 namespace tuft::io {

@@ -7,9 +7,9 @@
 #include <functional>
 #include <limits>
 
-#include "core/files.h"
-#include "io/packing.h"
-#include "io/project.h"
+#include "core/system/files.h"
+#include "io/project/packing.h"
+#include "io/project/project.h"
 #include "sample_model.h"
 
 /// Projects that somebody made to do harm: each is refused in one line, before it costs time or

@@ -1,4 +1,4 @@
-#include "io/project_lock.h"
+#include "io/project/project_lock.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 #include <functional>
 #include <thread>
 
-#include "core/files.h"
-#include "io/project.h"
+#include "core/system/files.h"
+#include "io/project/project.h"
 #include "sample_model.h"
 
 namespace {

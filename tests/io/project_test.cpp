@@ -1,4 +1,4 @@
-#include "io/project.h"
+#include "io/project/project.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -9,9 +9,9 @@
 #include <functional>
 
 #include "core/error.h"
-#include "core/files.h"
 #include "core/random.h"
-#include "io/packing.h"
+#include "core/system/files.h"
+#include "io/project/packing.h"
 #include "sample_model.h"
 
 namespace tuft::io {

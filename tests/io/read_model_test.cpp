@@ -1,10 +1,10 @@
-#include "io/read_model.h"
+#include "io/model/read_model.h"
 
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/files.h"
-#include "io/export.h"
+#include "core/system/files.h"
+#include "io/export/export.h"
 #include "sample_model.h"
 
 namespace tuft::io {

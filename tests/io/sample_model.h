@@ -11,8 +11,8 @@
 
 #include "atlas/atlas.h"
 #include "core/random.h"
-#include "io/export.h"
-#include "mesh/polygon_soup.h"
+#include "io/export/export.h"
+#include "mesh/read/polygon_soup.h"
 #include "mesh/triangle_mesh.h"
 
 /// Models made by formula for the tests of `io`.

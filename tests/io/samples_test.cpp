@@ -4,15 +4,15 @@
 #include <cmath>
 #include <filesystem>
 
-#include "brush/preset.h"
-#include "core/files.h"
+#include "brush/preset/preset.h"
+#include "core/system/files.h"
 #include "ink/colour/pigments.h"
-#include "io/inkml.h"
-#include "mesh/repair.h"
+#include "io/strokes/inkml.h"
+#include "mesh/repair/repair.h"
 #include "paths.h"
-#include "stroke/hand/line_width.h"
-#include "stroke/hand/placement.h"
-#include "stroke/hand/plane_ink.h"
+#include "stroke/drawing/line_width.h"
+#include "stroke/drawing/plane_ink.h"
+#include "stroke/placement/placement.h"
 
 namespace tuft::io {
 namespace {

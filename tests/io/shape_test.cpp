@@ -1,4 +1,4 @@
-#include "io/shape.h"
+#include "io/strokes/shape.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/segment.h"
+#include "core/geometry/segment.h"
 
 namespace tuft::io {
 namespace {

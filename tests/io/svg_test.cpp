@@ -1,4 +1,4 @@
-#include "io/svg.h"
+#include "io/strokes/svg.h"
 
 #include <gtest/gtest.h>
 

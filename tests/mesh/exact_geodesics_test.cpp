@@ -1,4 +1,4 @@
-#include "mesh/exact_geodesics.h"
+#include "mesh/query/exact_geodesics.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "core/random.h"
-#include "mesh/repair.h"
-#include "mesh/surface_query.h"
+#include "mesh/query/surface_query.h"
+#include "mesh/repair/repair.h"
 
 namespace tuft::mesh {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "mesh/polygon_soup.h"
-#include "mesh/repair.h"
+#include "mesh/read/polygon_soup.h"
+#include "mesh/repair/repair.h"
 #include "mesh_checks.h"
 
 // What no well-meaning program writes: every file ends in one clear line, none in a crash.

@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "mesh/repair.h"
+#include "mesh/repair/repair.h"
 #include "mesh_checks.h"
 
 // A hundred meshes that are wrong in every way at once: whatever went in, the promises of

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh/polygon_soup.h"
-#include "mesh/repair.h"
+#include "mesh/read/polygon_soup.h"
+#include "mesh/repair/repair.h"
 
 /// Small meshes and the laws every repaired surface obeys, for the tests of this module.
 namespace tuft::mesh {

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/files.h"
-#include "mesh/inspect.h"
-#include "mesh/polygon_soup.h"
-#include "mesh/repair.h"
+#include "core/system/files.h"
+#include "mesh/read/polygon_soup.h"
+#include "mesh/repair/inspect.h"
+#include "mesh/repair/repair.h"
 #include "mesh_checks.h"
 #include "paths.h"
 

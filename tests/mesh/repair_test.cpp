@@ -1,12 +1,12 @@
-#include "mesh/repair.h"
+#include "mesh/repair/repair.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/hash.h"
-#include "core/parallel.h"
-#include "mesh/inspect.h"
+#include "core/system/parallel.h"
+#include "mesh/repair/inspect.h"
 #include "mesh_checks.h"
 
 namespace tuft::mesh {

@@ -1,4 +1,4 @@
-#include "mesh/surface_query.h"
+#include "mesh/query/surface_query.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <set>
 #include <thread>
 
-#include "core/parallel.h"
 #include "core/random.h"
+#include "core/system/parallel.h"
 
 namespace tuft::mesh {
 namespace {

@@ -1,4 +1,4 @@
-#include "mesh/triangulate.h"
+#include "mesh/repair/triangulate.h"
 
 #include <gtest/gtest.h>
 

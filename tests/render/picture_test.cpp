@@ -1,4 +1,4 @@
-#include "render/picture.h"
+#include "render/picture/picture.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 
 #include "core/error.h"
 #include "core/hash.h"
-#include "core/parallel.h"
-#include "render/light_buffer.h"
-#include "render/sampling.h"
+#include "core/system/parallel.h"
+#include "render/picture/light_buffer.h"
+#include "render/picture/sampling.h"
 
 namespace tuft::render {
 namespace {

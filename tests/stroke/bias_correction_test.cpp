@@ -1,4 +1,4 @@
-#include "stroke/hand/bias_correction.h"
+#include "stroke/gesture/bias_correction.h"
 
 #include <gtest/gtest.h>
 

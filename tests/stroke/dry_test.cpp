@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 /// Bundles with ink of their own on the whole path: flying white.
 namespace tuft::stroke {

@@ -1,12 +1,12 @@
-#include "stroke/painting/fill.h"
+#include "stroke/journal/fill.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/error.h"
-#include "core/parallel.h"
-#include "core/units.h"
+#include "core/system/parallel.h"
+#include "core/text/units.h"
 #include "sheet.h"
 
 namespace tuft::stroke {

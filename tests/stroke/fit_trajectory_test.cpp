@@ -1,4 +1,4 @@
-#include "stroke/hand/fit_trajectory.h"
+#include "stroke/drawing/fit_trajectory.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-#include "stroke/hand/plane_ink.h"
+#include "stroke/drawing/plane_ink.h"
 
 namespace tuft::stroke {
 namespace {
@@ -66,7 +66,7 @@ Spill spilt(const Trace& trace, std::initializer_list<Vec2> points, const Vec2& 
     return s;
 }
 
-TEST(Practise, CornersHaveNoKnobs) {
+TEST(FitTrajectory, CornersHaveNoKnobs) {
     // What of a straight line's soft edge falls on cells farther than half a width is no knob.
     const std::initializer_list<Vec2> straight{{-0.02, 0}, {0, 0}, {0.02, 0}};
     const double edge = spilt(through(straight), straight, {0, 0}, 3 * kWidth).area;
@@ -86,7 +86,7 @@ TEST(Practise, CornersHaveNoKnobs) {
     }
 }
 
-TEST(Practise, LeavesWhatHasNoCornerAndIsRepeatable) {
+TEST(FitTrajectory, LeavesWhatHasNoCornerAndIsRepeatable) {
     const Trace straight = through({{-0.02, 0}, {0.02, 0.003}});
     const Trace same = fitted(straight);
     ASSERT_EQ(same.samples.size(), straight.samples.size());
@@ -101,7 +101,7 @@ TEST(Practise, LeavesWhatHasNoCornerAndIsRepeatable) {
     }
 }
 
-TEST(Practise, LooksOnlyAtEdgesThatShow) {
+TEST(FitTrajectory, LooksOnlyAtEdgesThatShow) {
     // A corner in the middle of what other lines cover stays as it was drawn.
     std::vector<Trace> lines{through({{-0.005, 0}, {0, 0}, {0, 0.005}})};
     const Trace before = lines[0];

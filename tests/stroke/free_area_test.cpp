@@ -1,4 +1,4 @@
-#include "stroke/hand/free_area.h"
+#include "stroke/drawing/free_area.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "stroke/hand/placement.h"
+#include "stroke/placement/placement.h"
 
 /// Surfaces with known straightest lines, and flat points to lay on them.
 namespace tuft::stroke {

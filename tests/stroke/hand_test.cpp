@@ -1,4 +1,4 @@
-#include "stroke/hand/hand.h"
+#include "stroke/gesture/hand.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "sheet.h"
 
 namespace tuft::stroke {

@@ -1,4 +1,4 @@
-#include "stroke/hand/line_width.h"
+#include "stroke/drawing/line_width.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stroke/hand/long_lines.h"
+#include "stroke/drawing/long_lines.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "sheet.h"
-#include "stroke/hand/drawing.h"
+#include "stroke/drawing/drawing.h"
 
 namespace tuft::stroke {
 namespace {

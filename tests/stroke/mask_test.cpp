@@ -1,14 +1,13 @@
-#include "stroke/painting/mask.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "core/error.h"
-#include "core/parallel.h"
-#include "core/units.h"
+#include "core/system/parallel.h"
+#include "core/text/units.h"
 #include "sheet.h"
+#include "stroke/surface/mask_texels.h"
 
 namespace tuft::stroke {
 namespace {

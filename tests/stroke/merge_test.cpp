@@ -1,4 +1,4 @@
-#include "stroke/journal/merge.h"
+#include "stroke/painting/merge.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "sheet.h"
 
 namespace tuft::stroke {

@@ -8,10 +8,10 @@
 #include <fstream>
 #include <numbers>
 
-#include "core/parallel.h"
-#include "ink/colour/composite.h"
+#include "core/system/parallel.h"
+#include "ink/composite/composite.h"
 #include "sheet.h"
-#include "stroke/session/stamp_batch.h"
+#include "stroke/deposit/stamp_batch.h"
 
 namespace tuft::stroke {
 namespace {

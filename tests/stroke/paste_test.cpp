@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
-#include "ink/colour/composite.h"
+#include "core/system/parallel.h"
+#include "ink/composite/composite.h"
 #include "sheet.h"
 
 namespace tuft::stroke {

@@ -1,4 +1,4 @@
-#include "stroke/hand/placement.h"
+#include "stroke/placement/placement.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "grids.h"
-#include "stroke/hand/tip_lag.h"
+#include "stroke/placement/tip_lag.h"
 
 namespace tuft::stroke {
 namespace {

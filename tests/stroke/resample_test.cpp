@@ -1,4 +1,4 @@
-#include "stroke/hand/resample.h"
+#include "stroke/gesture/resample.h"
 
 #include <gtest/gtest.h>
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 #include "core/ease.h"
 #include "grids.h"
-#include "stroke/hand/hand.h"
-#include "stroke/hand/tip_lag.h"
-#include "stroke/hand/tractrix.h"
+#include "stroke/gesture/hand.h"
+#include "stroke/gesture/tractrix.h"
 #include "stroke/painting/painting.h"
+#include "stroke/placement/tip_lag.h"
 
 /// \file
 /// A hand does the same however often its device reports it, and however long it rests on its path.

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "sheet.h"
 #include "stroke/journal/journal.h"
-#include "stroke/painting/surface_stencil.h"
+#include "stroke/surface/surface_stencil.h"
 
 namespace tuft::stroke {
 namespace {

@@ -1,4 +1,4 @@
-#include "stroke/hand/symmetry.h"
+#include "stroke/gesture/symmetry.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stroke/hand/tip_lag.h"
+#include "stroke/placement/tip_lag.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 
 #include "core/ease.h"
 #include "sheet.h"
-#include "stroke/hand/line_width.h"
-#include "stroke/hand/plane_ink.h"
+#include "stroke/drawing/line_width.h"
+#include "stroke/drawing/plane_ink.h"
 
 namespace tuft::stroke {
 namespace {

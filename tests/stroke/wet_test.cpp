@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "sheet.h"
 
 namespace tuft::stroke {

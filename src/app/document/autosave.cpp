@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "io/appearance.h"
+#include "io/project/appearance.h"
 
 namespace tuft::app {
 

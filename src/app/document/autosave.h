@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "io/project.h"
-#include "stroke/journal/merge.h"
+#include "io/project/project.h"
+#include "stroke/painting/merge.h"
 #include "stroke/painting/painting.h"
 
 namespace tuft::app {
@@ -46,8 +46,8 @@ class Autosave {
     void catch_up(std::span<const stroke::Stroke> entries);
     /// Stores what the painting is shown as.
     void store_looks(const stroke::Document& painting);
-    /// Stores what goes along with the work (io/attachments.h), in the place of one of that kind and name; and takes it
-    /// out.
+    /// Stores what goes along with the work (io/project/attachments.h), in the place of one of that kind and name; and
+    /// takes it out.
     void attach(const std::string& kind, const io::Attachment& attachment);
     void detach(const std::string& kind, const std::string& name);
     std::vector<io::Attachment> attachments(const std::string& kind) const;  ///< by name

@@ -6,7 +6,7 @@
 
 #include "app/document/state_folder.h"
 #include "core/error.h"
-#include "core/files.h"
+#include "core/system/files.h"
 
 namespace fs = std::filesystem;
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ink/colour/match.h"
+#include "ink/composite/match.h"
 
 /// \file
 /// Colours that a person chooses, and the mixes of pigments found for them. The session holds one

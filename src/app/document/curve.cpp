@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/ease.h"
-#include "stroke/hand/surface_mapping.h"
-#include "stroke/hand/tip_lag.h"
+#include "stroke/placement/surface_mapping.h"
+#include "stroke/placement/tip_lag.h"
 
 namespace tuft::app {
 namespace {

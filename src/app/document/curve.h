@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "mesh/surface_query.h"
-#include "stroke/hand/placement.h"
+#include "mesh/query/surface_query.h"
+#include "stroke/placement/placement.h"
 
 /// Lines and curves through control points on a model, painted by a hand of even pace.
 namespace tuft::app {

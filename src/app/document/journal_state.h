@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/document/paint_thread.h"
-#include "mesh/surface_query.h"
+#include "mesh/query/surface_query.h"
 
 namespace tuft::app {
 

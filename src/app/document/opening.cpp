@@ -8,10 +8,10 @@
 #include <mutex>
 #include <thread>
 
-#include "core/units.h"
-#include "io/appearance.h"
-#include "io/read_model.h"
-#include "io/restore.h"
+#include "core/text/units.h"
+#include "io/model/read_model.h"
+#include "io/project/appearance.h"
+#include "io/project/restore.h"
 
 namespace fs = std::filesystem;
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/document/paint_thread.h"
-#include "mesh/inspect.h"
-#include "mesh/polygon_soup.h"
+#include "mesh/read/polygon_soup.h"
+#include "mesh/repair/inspect.h"
 
 namespace tuft::app {
 

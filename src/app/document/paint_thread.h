@@ -20,8 +20,8 @@
 #include "app/document/thumbnails.h"
 #include "app/document/writing.h"
 #include "app/view/texture.h"
-#include "stroke/hand/symmetry.h"
-#include "stroke/journal/fit.h"
+#include "stroke/gesture/symmetry.h"
+#include "stroke/painting/fit.h"
 #include "stroke/painting/painting.h"
 
 namespace tuft::app {
@@ -147,7 +147,7 @@ struct EditStrokes {
 struct HighlightStrokes {
     std::vector<std::uint64_t> ids;
 };
-/// Keeps something along with the work (io/attachments.h), or takes it out.
+/// Keeps something along with the work (io/project/attachments.h), or takes it out.
 struct AttachToProject {
     std::string kind;
     io::Attachment attachment;

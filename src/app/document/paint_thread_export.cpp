@@ -1,9 +1,9 @@
 #include "app/document/paint_thread.h"
-#include "io/export.h"
-#include "io/export_maps.h"
-#include "io/image.h"
-#include "io/inkml.h"
-#include "render/picture.h"
+#include "io/export/export.h"
+#include "io/export/export_maps.h"
+#include "io/image/image.h"
+#include "io/strokes/inkml.h"
+#include "render/picture/picture.h"
 #include "stroke/journal/journal_traces.h"
 
 /// Exports and pictures, on the painter's thread.

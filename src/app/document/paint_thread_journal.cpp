@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "app/document/paint_thread.h"
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 
 /// Going back over the journal, and changing what is in it: on the painter's thread.
 namespace tuft::app {

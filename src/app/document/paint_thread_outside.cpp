@@ -2,8 +2,8 @@
 #include <set>
 
 #include "app/document/paint_thread.h"
-#include "io/appearance.h"
-#include "io/restore.h"
+#include "io/project/appearance.h"
+#include "io/project/restore.h"
 
 /// What other programs do to the project meanwhile: on the painter's thread.
 namespace tuft::app {

@@ -2,8 +2,9 @@
 #include <cmath>
 
 #include "app/document/paint_thread.h"
-#include "ink/colour/composite.h"
-#include "ink/colour/kubelka_munk.h"
+#include "ink/composite/composite.h"
+#include "ink/spectra/kubelka_munk.h"
+#include "stroke/surface/mask_texels.h"
 
 /// Inks of the work's own, how it is shown, and masks: on the painter's thread.
 namespace tuft::app {

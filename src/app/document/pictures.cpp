@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "app/document/state_folder.h"
-#include "io/image.h"
-#include "io/project.h"
-#include "io/read_model.h"
-#include "mesh/inspect.h"
-#include "mesh/repair.h"
-#include "render/picture.h"
+#include "io/image/image.h"
+#include "io/model/read_model.h"
+#include "io/project/project.h"
+#include "mesh/repair/inspect.h"
+#include "mesh/repair/repair.h"
+#include "render/picture/picture.h"
 
 namespace fs = std::filesystem;
 

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/hash.h"
-#include "io/image.h"
+#include "io/image/image.h"
 #include "stroke/journal/journal.h"
 
 namespace fs = std::filesystem;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/attachments.h"
+#include "io/project/attachments.h"
 
 /// Images that are pinned over the view to paint after; kept with the project.
 namespace tuft::app {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/gl_scene.h"
+#include "render/gl/gl_scene.h"
 
 /// Named states of the journal, to go back to and to compare with.
 namespace tuft::app {

@@ -9,8 +9,8 @@
 #include <fstream>
 
 #include "core/error.h"
-#include "core/files.h"
 #include "core/hash.h"
+#include "core/system/files.h"
 
 namespace fs = std::filesystem;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "atlas/texels/cluster_graph.h"
-#include "ink/colour/srgb.h"
+#include "ink/spectra/srgb.h"
 
 namespace tuft::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "render/gl_camera.h"
+#include "render/gl/gl_camera.h"
 #include "stroke/painting/painting.h"
 
 /// \file

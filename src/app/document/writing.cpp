@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/units.h"
-#include "io/svg.h"
+#include "core/text/units.h"
+#include "io/strokes/svg.h"
 #include "stroke/journal/entries.h"
 
 namespace tuft::app {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/surface_query.h"
-#include "stroke/hand/drawing.h"
+#include "mesh/query/surface_query.h"
+#include "stroke/drawing/drawing.h"
 
 /// A drawing or handwriting that waits to be placed on the model.
 namespace tuft::app {

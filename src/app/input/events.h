@@ -3,7 +3,7 @@
 #include <deque>
 #include <string>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 namespace tuft::app {
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "brush/preset.h"
-#include "mesh/surface_query.h"
-#include "render/gl_camera.h"
-#include "stroke/hand/placement.h"
+#include "brush/preset/preset.h"
+#include "mesh/query/surface_query.h"
+#include "render/gl/gl_camera.h"
+#include "stroke/placement/placement.h"
 
 namespace tuft::app {
 
@@ -73,7 +73,7 @@ struct HandStep {
 /// the button is up: then the direction of the stroke is known, and the tuft is pressed at the first place
 /// while the holder tips and goes ahead, so that the hair trails from the first touch. Along the stroke
 /// the holder is ahead of the cursor by the tip lag of its depth (`stroke::lead_of`), in the direction of
-/// a point dragged behind it (stroke/hand/tip_lag.h). At the end the hand slows down evenly to the last
+/// a point dragged behind it (stroke/placement/tip_lag.h). At the end the hand slows down evenly to the last
 /// place of the cursor, from which the smoothing kept it, and lifts there; from a fast stroke it lifts on
 /// the way. Pens have ends of their own: their pressure.
 class PointerInput {

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "app/panels/panels.h"
-#include "core/build_facts.h"
-#include "core/files.h"
+#include "core/system/build_facts.h"
+#include "core/system/files.h"
 
 /// \file
 /// The About dialog: what the program is, under which licence, and what it is made of.

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "app/panels/panels.h"
-#include "ink/colour/srgb.h"
+#include "ink/spectra/srgb.h"
 
 /// \file
 /// The window in which a person chooses a colour and sees the nearest mix of pigments.

@@ -15,7 +15,7 @@
 #include "app/document/state_folder.h"
 #include "app/document/writing.h"
 #include "core/error.h"
-#include "core/files.h"
+#include "core/system/files.h"
 
 namespace fs = std::filesystem;
 

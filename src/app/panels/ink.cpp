@@ -5,9 +5,9 @@
 #include <set>
 
 #include "app/panels/panels.h"
-#include "ink/colour/composite.h"
-#include "ink/colour/kubelka_munk.h"
-#include "ink/colour/recolour.h"
+#include "ink/composite/composite.h"
+#include "ink/composite/recolour.h"
+#include "ink/spectra/kubelka_munk.h"
 
 /// Inks: choosing, loading the brush, and what the work is shown with afterwards.
 namespace tuft::app {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/panels/panels.h"
-#include "brush/preset.h"
+#include "brush/preset/preset.h"
 
 /// The list of what was painted, and what can be done with its entries.
 namespace tuft::app {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/panels/panels.h"
-#include "core/units.h"
+#include "core/text/units.h"
 
 namespace tuft::app {
 namespace {

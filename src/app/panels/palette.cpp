@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/panels/panels.h"
-#include "core/units.h"
+#include "core/text/units.h"
 
 namespace tuft::app {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "app/panels/icons.h"
 #include "app/panels/panels.h"
-#include "io/image.h"
+#include "io/image/image.h"
 
 /// Reference images over the view, and their list.
 namespace tuft::app {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/panels/panels.h"
-#include "ink/colour/composite.h"
+#include "ink/composite/composite.h"
 
 namespace tuft::app {
 

@@ -6,9 +6,9 @@
 #include <tuple>
 
 #include "app/panels/panels.h"
-#include "brush/tuft.h"
-#include "core/files.h"
-#include "core/units.h"
+#include "brush/tuft/tuft.h"
+#include "core/system/files.h"
+#include "core/text/units.h"
 
 namespace tuft::app {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "app/panels/panels.h"
 #include "app/studio.h"
-#include "core/units.h"
-#include "io/image.h"
-#include "render/gl_target.h"
+#include "core/text/units.h"
+#include "io/image/image.h"
+#include "render/gl/gl_target.h"
 
 namespace tuft::app {
 namespace {
@@ -263,13 +263,13 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         pace_start_ = now;
         pace_from_ = clock_;
     } else if (c.name == "random") {
-        if (!monkey_)
-            monkey_.emplace(static_cast<std::size_t>(std::max(0, std::atoi(word.c_str()))),
+        if (!fuzzer_)
+            fuzzer_.emplace(static_cast<std::size_t>(std::max(0, std::atoi(word.c_str()))),
                             static_cast<std::uint64_t>(std::atoll(c.words[1].c_str())));
-        for (Event& event : monkey_->next(studio)) add(std::move(event), monkey_->pause());
+        for (Event& event : fuzzer_->next(studio)) add(std::move(event), fuzzer_->pause());
         if (!pending_.empty()) return false;
-        quits_ += monkey_->quits();
-        monkey_.reset();
+        quits_ += fuzzer_->quits();
+        fuzzer_.reset();
     } else if (c.name == "resize")
         size_ = {std::clamp(std::atoi(word.c_str()), 320, 8192), std::clamp(std::atoi(c.words[1].c_str()), 240, 8192)};
     else if (c.name == "lose-graphics")
@@ -323,7 +323,7 @@ double Script::patience(const Studio& studio) const {
 }
 
 void Script::after_frame(Studio& studio, int width, int height) {
-    if (monkey_) monkey_->hold_back(studio);
+    if (fuzzer_) fuzzer_->hold_back(studio);
     ++frames_;
     ++report_frames_;
     if (picture_.empty()) return;

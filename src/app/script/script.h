@@ -76,7 +76,7 @@ class Script {
     std::string picture_;
     bool lose_ = false;
     std::optional<std::pair<int, int>> size_;
-    std::optional<UiFuzzer> monkey_;  ///< while `random` plays
+    std::optional<UiFuzzer> fuzzer_;  ///< while `random` plays
     std::size_t quits_ = 0;           ///< times that it would have ended the program
     bool waiting_ = false;            ///< the last command waits for something
     std::size_t frames_ = 0, report_frames_ = 0;

@@ -6,7 +6,7 @@
 
 #include "app/view/display.h"
 #include "core/error.h"
-#include "render/gl_target.h"
+#include "render/gl/gl_target.h"
 
 namespace tuft::app {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 namespace tuft::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "ink/colour/composite.h"
-#include "render/gl_scene.h"
+#include "ink/composite/composite.h"
+#include "render/gl/gl_scene.h"
 #include "stroke/painting/painting.h"
 
 namespace tuft::app {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/types.h"
-#include "render/gl_camera.h"
+#include "core/geometry/types.h"
+#include "render/gl/gl_camera.h"
 
 namespace tuft::app {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mesh/surface_query.h"
-#include "render/gl_camera.h"
+#include "mesh/query/surface_query.h"
+#include "render/gl/gl_camera.h"
 
 namespace tuft::app {
 

@@ -7,10 +7,10 @@
 
 #include "atlas/charts/developable.h"
 #include "atlas/charts/phase_progress.h"
-#include "atlas/charts/requested_seams.h"
-#include "atlas/charts/straighten.h"
 #include "atlas/charts/tasks.h"
 #include "atlas/flatten/hull.h"
+#include "atlas/seams/requested_seams.h"
+#include "atlas/seams/straighten.h"
 
 namespace tuft::atlas {
 namespace {

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "atlas/atlas.h"
-#include "atlas/charts/chart_mesh.h"
-#include "atlas/charts/half_edges.h"
-#include "atlas/charts/rejected_changes.h"
 #include "atlas/flatten/flatten.h"
-#include "core/progress.h"
+#include "atlas/seams/chart_mesh.h"
+#include "atlas/seams/half_edges.h"
+#include "atlas/seams/rejected_changes.h"
+#include "core/system/progress.h"
 
 /// The mesh cut into charts that lie flat.
 namespace tuft::atlas {

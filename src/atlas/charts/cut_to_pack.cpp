@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "atlas/charts/straighten.h"
 #include "atlas/charts/tasks.h"
 #include "atlas/flatten/hull.h"
+#include "atlas/seams/straighten.h"
 
 namespace tuft::atlas {
 namespace {

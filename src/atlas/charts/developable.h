@@ -1,6 +1,6 @@
 #pragma once
 
-#include "atlas/charts/seam_graph.h"
+#include "atlas/seams/seam_graph.h"
 
 /// Seams between developable charts.
 namespace tuft::atlas {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "atlas/charts/carry_uvs.h"
 #include "atlas/charts/phase_progress.h"
-#include "atlas/charts/seam_graph.h"
 #include "atlas/charts/tasks.h"
-#include "atlas/flatten/carry_uvs.h"
 #include "atlas/flatten/hull.h"
 #include "atlas/flatten/rigid_motion.h"
+#include "atlas/seams/seam_graph.h"
 
 namespace tuft::atlas {
 namespace {

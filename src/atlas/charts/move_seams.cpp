@@ -6,11 +6,11 @@
 #include <set>
 #include <utility>
 
+#include "atlas/charts/carry_uvs.h"
 #include "atlas/charts/phase_progress.h"
-#include "atlas/charts/seam_paths.h"
 #include "atlas/charts/tasks.h"
-#include "atlas/flatten/carry_uvs.h"
 #include "atlas/flatten/hull.h"
+#include "atlas/seams/seam_paths.h"
 
 namespace tuft::atlas {
 namespace {

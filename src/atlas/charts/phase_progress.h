@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "core/progress.h"
+#include "core/system/progress.h"
 
 namespace tuft::atlas {
 

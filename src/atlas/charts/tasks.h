@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 namespace tuft::atlas {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "atlas/charts/chart_mesh.h"
+#include "atlas/seams/chart_mesh.h"
 
 /// SurfaceMapping a disk flat with as little stretch as possible.
 namespace tuft::atlas {

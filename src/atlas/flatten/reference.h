@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "atlas/charts/chart_mesh.h"
+#include "atlas/seams/chart_mesh.h"
 
 /// Triangles of a chart in their own planes, as they should lie in the atlas.
 namespace tuft::atlas {

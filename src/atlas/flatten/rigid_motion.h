@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 namespace tuft::atlas {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "atlas/charts/half_edges.h"
 #include "atlas/pack/raster.h"
-#include "core/segment.h"
+#include "atlas/seams/half_edges.h"
+#include "core/geometry/segment.h"
 
 namespace tuft::atlas {
 namespace {

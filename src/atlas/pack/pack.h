@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/progress.h"
-#include "core/types.h"
+#include "core/geometry/types.h"
+#include "core/system/progress.h"
 
 /// Lays chart shapes side by side in a square page, as large as they fit.
 namespace tuft::atlas {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 /// What the packer moves about: charts as runs of cells.
 namespace tuft::atlas {

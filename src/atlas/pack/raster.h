@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 /// Exact rasterisation of UV triangles. UVs are taken on a grid of 2⁻²⁴, where floats
 /// in [0, 1] lie, so that triangles that share an edge never both own a texel centre.

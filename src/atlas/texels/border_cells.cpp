@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "atlas/texels/seams.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 namespace tuft::atlas {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "atlas/texels/log_map.h"
 #include "atlas/texels/seams.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 namespace tuft::atlas {
 namespace {

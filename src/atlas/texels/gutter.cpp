@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "atlas/texels/seams.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 namespace tuft::atlas {
 namespace {

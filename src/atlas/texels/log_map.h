@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 /// The closed-form logarithmic map between two points of a smooth surface whose
 /// positions and unit normals are known: no path, no iteration, about 35 flops.

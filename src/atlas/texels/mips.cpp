@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "atlas/texels/gutter.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 namespace tuft::atlas {
 namespace {

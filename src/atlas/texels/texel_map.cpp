@@ -5,8 +5,8 @@
 
 #include "atlas/texels/border_cells.h"
 #include "core/error.h"
-#include "core/memory.h"
-#include "core/parallel.h"
+#include "core/system/memory.h"
+#include "core/system/parallel.h"
 
 namespace tuft::atlas {
 namespace {

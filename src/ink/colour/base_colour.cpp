@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "core/parallel.h"
-#include "ink/colour/srgb.h"
+#include "core/system/parallel.h"
+#include "ink/spectra/srgb.h"
 
 namespace tuft::ink {
 namespace {

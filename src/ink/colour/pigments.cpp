@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "ink/colour/presets.h"
-#include "ink/colour/upsample.h"
+#include "ink/spectra/upsample.h"
 
 namespace tuft::ink {
 

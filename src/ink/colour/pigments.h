@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "ink/colour/kubelka_munk.h"
-#include "ink/colour/spectrum.h"
+#include "ink/spectra/kubelka_munk.h"
+#include "ink/spectra/spectrum.h"
 
 /// What inks are made of and what they are put on. Colour is computed from amounts,
 /// so presets hold optical coefficients, never colours.

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/files.h"
-#include "core/nesting.h"
+#include "core/system/files.h"
+#include "core/text/nesting.h"
 
 namespace fs = std::filesystem;
 

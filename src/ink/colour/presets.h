@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ink/colour/spectrum.h"
+#include "ink/spectra/spectrum.h"
 
 /// Reading and writing preset files; only the module's own sources see this.
 namespace tuft::ink::preset {

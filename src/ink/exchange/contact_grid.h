@@ -5,7 +5,7 @@
 #include <span>
 
 #include "atlas/texels/texel_map.h"
-#include "core/types.h"
+#include "core/geometry/types.h"
 
 /// Where on the contact patch a texel lies: what its ink depends on.
 namespace tuft::ink {

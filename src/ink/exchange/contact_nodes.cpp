@@ -200,19 +200,19 @@ void deal(NodeContents& to, int plane, double amount, const std::array<double, k
 }
 
 void MixtureGiven::pigment(int plane, double amount, const std::array<double, kNodes>& shares) {
-    for (int k = 0; k < tents_.count; ++k) {
-        strength_[k] += static_cast<double>(mixes_[plane][tents_.node[k]]);
+    for (int k = 0; k < hats_.count; ++k) {
+        strength_[k] += static_cast<double>(mixes_[plane][hats_.node[k]]);
         came_[k] += shares[k];
     }
-    deal(given_, plane, amount, shares, tents_);
+    deal(given_, plane, amount, shares, hats_);
 }
 
 void MixtureGiven::water() {
     constexpr int kWater = kMaxPigments;
-    for (int k = 0; k < tents_.count; ++k)
+    for (int k = 0; k < hats_.count; ++k)
         if (strength_[k] > 0)
-            given_[tents_.node[k]][kWater] +=
-                came_[k] * static_cast<double>(mixes_[kWater][tents_.node[k]]) / strength_[k];
+            given_[hats_.node[k]][kWater] +=
+                came_[k] * static_cast<double>(mixes_[kWater][hats_.node[k]]) / strength_[k];
 }
 
 }  // namespace tuft::ink

@@ -60,7 +60,7 @@ void deal(NodeContents& to, int plane, double amount, const std::array<double, k
 class MixtureGiven {
   public:
     MixtureGiven(NodeContents& given, const NodeMixes& mixes, const HatBasis& hats)
-        : given_(given), mixes_(mixes), tents_(hats) {}
+        : given_(given), mixes_(mixes), hats_(hats) {}
 
     /// `amount` in film·m² of a pigment, and what of it came from each node of the hats.
     void pigment(int plane, double amount, const std::array<double, kNodes>& shares);
@@ -69,7 +69,7 @@ class MixtureGiven {
   private:
     NodeContents& given_;
     const NodeMixes& mixes_;
-    const HatBasis& tents_;
+    const HatBasis& hats_;
     std::array<double, kNodes> strength_{}, came_{};  ///< of the mixture; film·m² of all pigments
 };
 

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <cstring>
 
-#include "ink/colour/colorimetry.h"
-#include "ink/colour/elementary.h"
+#include "ink/canvas/tile_store.h"
+#include "ink/elementary.h"
 #include "ink/simd.h"
-#include "ink/tile_store.h"
+#include "ink/spectra/colorimetry.h"
 
 namespace tuft::ink {
 namespace {

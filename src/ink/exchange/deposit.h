@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "ink/canvas.h"
+#include "ink/canvas/canvas.h"
 
 /// Ink from the tuft onto texels.
 namespace tuft::ink {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ink/colour/elementary.h"
+#include "ink/canvas/tile_store.h"
+#include "ink/elementary.h"
 #include "ink/exchange/deposit.h"
 #include "ink/simd.h"
-#include "ink/tile_store.h"
 
 namespace tuft::ink {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "ink/canvas.h"
+#include "ink/canvas/canvas.h"
 
 /// Ink off the texels, and ink laid over whole parts of a surface.
 namespace tuft::ink {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/types.h"
+#include "core/geometry/types.h"
 #include "ink/exchange/deposit.h"
 
 /// The ink in a tuft and how much of it a touch may take.

@@ -6,14 +6,14 @@
 #include <cstddef>
 #include <mutex>
 
-#include "core/parallel.h"
 #include "core/random.h"
-#include "ink/film/drying.h"
+#include "core/system/parallel.h"
 #include "ink/film/film_list.h"
 #include "ink/film/film_step.h"
 #include "ink/film/film_worker.h"
 #include "ink/film/paste.h"
-#include "ink/film/pool.h"
+#include "ink/texels/drying.h"
+#include "ink/texels/pool.h"
 
 namespace tuft::ink {
 namespace {

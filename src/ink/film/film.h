@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "atlas/texels/seam_links.h"
-#include "core/progress.h"
-#include "ink/canvas.h"
+#include "core/system/progress.h"
+#include "ink/canvas/canvas.h"
 
 /// The wet film: water and pigment that flow on the surface, soak in and dry.
 namespace tuft::ink {

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/noise.h"
 #include "core/random.h"
-#include "ink/colour/elementary.h"
+#include "ink/elementary.h"
 #include "ink/film/film_tile.h"
 
 namespace tuft::ink::wet {
@@ -89,7 +90,7 @@ double lattice(std::int64_t x, std::int64_t y, std::int64_t z) {
 /// Smooth noise of the place, −1 to 1, over `length`.
 double noise(const Vec3& position, double length) {
     const Vec3 p = position / length, floor = glm::floor(p), f = p - floor;
-    const Vec3 s = f * f * (3.0 - 2.0 * f);
+    const Vec3 s = fade(f);
     double sum = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 namespace tuft::ink::wet {
 namespace {

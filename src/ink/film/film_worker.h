@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ink/canvas.h"
+#include "ink/canvas/canvas.h"
 #include "ink/film/film_tile.h"
 
 /// What a thread has at hand while it steps the wet film tile by tile; inside `ink` only.

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
-#include "ink/film/halo.h"
+#include "core/system/parallel.h"
 #include "ink/film/paste.h"
 #include "ink/simd.h"
+#include "ink/texels/halo.h"
 
 namespace tuft::ink {
 namespace {

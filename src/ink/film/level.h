@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "atlas/texels/seam_links.h"
-#include "ink/canvas.h"
+#include "ink/canvas/canvas.h"
 
 namespace tuft::ink {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ink/film/drying.h"
 #include "ink/film/film_tile.h"
-#include "ink/film/pool.h"
 #include "ink/simd.h"
+#include "ink/texels/drying.h"
+#include "ink/texels/pool.h"
 
 namespace tuft::ink {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "stroke/journal/fill.h"
 #include "stroke/journal/layers.h"
-#include "stroke/painting/fill.h"
-#include "stroke/painting/mask.h"
+#include "stroke/journal/mask.h"
 
 /// The parts of a journal's entry as JSON; included by sources of this module only. Readers
 /// throw `Error` for wrong types and values.

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/bounds.h"
 #include "core/error.h"
-#include "core/nesting.h"
-#include "core/text.h"
+#include "core/geometry/bounds.h"
+#include "core/text/nesting.h"
+#include "core/text/text.h"
 #include "ink/exchange/reservoir.h"
 #include "stroke/journal/entry_json.h"
 

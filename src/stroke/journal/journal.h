@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "stroke/journal/layers.h"
+#include "stroke/journal/mask.h"
 #include "stroke/journal/trace.h"
-#include "stroke/painting/mask.h"
 
 /// The document: what the hand did, in order. Texels are made from it.
 namespace tuft::stroke {

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/types.h"
-#include "ink/canvas.h"
-#include "ink/colour/blend.h"
+#include "core/geometry/types.h"
+#include "ink/canvas/canvas.h"
+#include "ink/composite/blend.h"
 
 /// User layers: films of their own that are painted, shown and changed apart from each other.
 namespace tuft::stroke {
@@ -43,7 +43,7 @@ struct LayerTable {
 };
 
 /// `duplicate`: a new layer with a copy of another's texels as they are then. `merge`: the texels of
-/// a layer are laid on those of another (ink/film/merge.h), and the layer ends.
+/// a layer are laid on those of another (ink/texels/merge.h), and the layer ends.
 enum class LayerChange { add, change, remove, duplicate, merge };
 
 /// One change of the table: a new layer, another state or place of one, or its end.

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "core/types.h"
-#include "mesh/surface_query.h"
+#include "core/geometry/types.h"
+#include "mesh/query/surface_query.h"
 
 /// Whether a revised model is the former one, moved as a whole.
 namespace tuft::stroke {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stroke/painting/fill.h"
+#include "stroke/journal/fill.h"
 
 /// Strokes as a device or a file gives them, before they meet a model.
 namespace tuft::stroke {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "contact/outside.h"
-#include "ink/colour/match.h"
-#include "stroke/hand/hand.h"
+#include "ink/composite/match.h"
+#include "stroke/gesture/hand.h"
 #include "stroke/session/session.h"
 
 namespace tuft::stroke {

@@ -8,18 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "brush/preset.h"
-#include "ink/canvas.h"
-#include "ink/colour/composite.h"
+#include "brush/preset/preset.h"
+#include "ink/canvas/canvas.h"
 #include "ink/colour/pigments.h"
+#include "ink/composite/composite.h"
 #include "ink/film/film.h"
-#include "stroke/hand/placement.h"
-#include "stroke/hand/tip_lag.h"
+#include "stroke/contact/tuft_in_hand.h"
 #include "stroke/journal/journal.h"
-#include "stroke/painting/model.h"
 #include "stroke/painting/palette.h"
+#include "stroke/placement/placement.h"
+#include "stroke/placement/tip_lag.h"
 #include "stroke/session/report.h"
-#include "stroke/session/tuft_in_hand.h"
+#include "stroke/surface/mask_texels.h"
+#include "stroke/surface/model.h"
 
 namespace tuft::stroke {
 
@@ -86,7 +87,7 @@ class Document {
     void use_brush(const brush::Preset& preset);
     void use_ink(const ink::Ink& ink);
     const brush::Preset& brush(const std::string& name);
-    /// A colour `#rrggbb` is an ink, too: the nearest mix (ink/colour/match.h) on the substrate.
+    /// A colour `#rrggbb` is an ink, too: the nearest mix (ink/composite/match.h) on the substrate.
     const ink::Ink& ink(const std::string& name);
 
     /// Paints a whole stroke, or does an action with its brush, and appends it to the

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <array>
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "stroke/painting/painting.h"
+#include "stroke/surface/fill_region.h"
 
 /// Fills and gradients.
 namespace tuft::stroke {

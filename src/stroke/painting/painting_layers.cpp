@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/hash.h"
-#include "ink/film/merge.h"
+#include "ink/texels/merge.h"
 #include "stroke/painting/painting.h"
 
 /// What a painting does with its layers.

@@ -1,4 +1,4 @@
-#include "ink/colour/recolour.h"
+#include "ink/composite/recolour.h"
 #include "stroke/painting/painting.h"
 
 /// How a painting is shown, apart from what was painted.

@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "ink/colour/composite.h"
-#include "ink/colour/kubelka_munk.h"
+#include "ink/composite/composite.h"
+#include "ink/spectra/kubelka_munk.h"
 #include "stroke/painting/painting.h"
 
 /// What a painting does with its palette.

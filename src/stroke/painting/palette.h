@@ -2,7 +2,7 @@
 
 #include "ink/film/film.h"
 #include "stroke/journal/layers.h"
-#include "stroke/painting/model.h"
+#include "stroke/surface/model.h"
 
 /// The palette: a plate of glazed porcelain beside the model, on which brushes mix. It is painted
 /// on like the model, with wet ink, by entries of the same journal whose layer is `kPaletteLayer`.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "brush/tuft_state.h"
+#include "brush/tuft/tuft_state.h"
 #include "ink/exchange/erase.h"
 
 namespace tuft::stroke {
@@ -14,7 +14,7 @@ struct ForceRecord {
     Vec3 force{0};         ///< newtons, of the surface on the tuft: normal and friction
     Vec3 device_force{0};  ///< newtons, for a haptic device: contact::Result::device_force (gain,
                            ///< proximity, clamp), which has come through the mass of the wet
-                           ///< hair (brush/tuft.h), so that a tip that slips does not knock
+                           ///< hair (brush/tuft/tuft.h), so that a tip that slips does not knock
     Vec3 torque{0};        ///< N·m, of `force` about the ferrule's mouth
     double moment = 0;     ///< N·m, bending moment at the ferrule
 };

@@ -6,7 +6,7 @@
 
 #include "core/ease.h"
 #include "ink/film/paste.h"
-#include "stroke/hand/placement.h"
+#include "stroke/placement/placement.h"
 
 namespace tuft::stroke {
 namespace {

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "stroke/hand/hand.h"
-#include "stroke/hand/resample.h"
-#include "stroke/painting/surface_stencil.h"
-#include "stroke/session/deposit_model.h"
+#include "stroke/deposit/deposit_model.h"
+#include "stroke/gesture/hand.h"
+#include "stroke/gesture/resample.h"
 #include "stroke/session/report.h"
+#include "stroke/surface/surface_stencil.h"
 
 namespace tuft::stroke {
 

@@ -1,0 +1,95 @@
+#include "atlas/pack/snap.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atlas/pack/raster.h"
+
+namespace tuft::atlas {
+namespace {
+
+using GridPoint = std::array<std::int64_t, 2>;
+
+class Snapper {
+  public:
+    Snapper(const std::vector<std::array<std::uint32_t, 3>>& faces, std::vector<GridPoint>& p)
+        : faces_(faces), p_(p), start_(p.size() + 1, 0), around_(3 * faces.size()) {
+        for (const auto& f : faces)
+            for (const std::uint32_t v : f) ++start_[v + 1];
+        for (std::size_t v = 0; v < p.size(); ++v) start_[v + 1] += start_[v];
+        std::vector<std::uint32_t> fill(start_.begin(), start_.end() - 1);
+        for (std::uint32_t t = 0; t < faces.size(); ++t)
+            for (const std::uint32_t v : faces[t]) around_[fill[v]++] = t;
+    }
+
+    std::int64_t area(std::uint32_t t) const {
+        const auto& f = faces_[t];
+        return twice_area(p_[f[0]], p_[f[1]], p_[f[2]]);
+    }
+
+    std::int64_t worst(std::uint32_t v) const {
+        std::int64_t least = area(around_[start_[v]]);
+        for (std::uint32_t i = start_[v] + 1; i < start_[v + 1]; ++i) least = std::min(least, area(around_[i]));
+        return least;
+    }
+
+    /// Moves v to the nearest ring of grid points where its triangles are all positive,
+    /// or else where the worst of them is best; true when it moved.
+    bool move(std::uint32_t v, std::int64_t reach) {
+        const GridPoint here = p_[v];
+        std::int64_t best = worst(v);
+        GridPoint better = here;
+        for (std::int64_t r = 1; r <= reach && best <= 0; r *= 2)
+            for (int k = 0; k < 16; ++k) {
+                constexpr std::int64_t kDx[] = {4, 4, 4, 2, 0, -2, -4, -4, -4, -4, -4, -2, 0, 2, 4, 4};
+                constexpr std::int64_t kDy[] = {0, 2, 4, 4, 4, 4, 4, 2, 0, -2, -4, -4, -4, -4, -4, -2};
+                const auto step = [r](std::int64_t d) { return d >= 0 ? (d * r + 3) / 4 : -((-d * r + 3) / 4); };
+                p_[v] = {here[0] + step(kDx[k]), here[1] + step(kDy[k])};
+                if (p_[v][0] < 0 || p_[v][1] < 0 || p_[v][0] > std::int64_t(kUvGrid) ||
+                    p_[v][1] > std::int64_t(kUvGrid))
+                    continue;
+                const std::int64_t w = worst(v);
+                if (w > best) {
+                    best = w;
+                    better = p_[v];
+                }
+            }
+        p_[v] = better;
+        return better != here;
+    }
+
+  private:
+    const std::vector<std::array<std::uint32_t, 3>>& faces_;
+    std::vector<GridPoint>& p_;
+    std::vector<std::uint32_t> start_, around_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> snap_to_floats(const std::vector<std::array<std::uint32_t, 3>>& faces, std::vector<Vec2>& uv,
+                                          std::uint32_t size) {
+    std::vector<GridPoint> p(uv.size());
+    for (std::size_t v = 0; v < uv.size(); ++v)
+        for (int k = 0; k < 2; ++k) p[v][k] = std::llround(std::clamp(uv[v][k], 0.0, 1.0) * kUvGrid);
+    std::vector<std::uint32_t> bad;
+    for (std::uint32_t t = 0; t < faces.size(); ++t)
+        if (twice_area(p[faces[t][0]], p[faces[t][1]], p[faces[t][2]]) <= 0) bad.push_back(t);
+    if (!bad.empty()) {
+        const auto reach = static_cast<std::int64_t>(kUvGrid / (16.0 * std::max(size, 1u)));
+        Snapper snapper(faces, p);
+        for (int sweep = 0; sweep < 16; ++sweep) {
+            bool moved = false;
+            for (const std::uint32_t t : bad)
+                for (int k = 0; k < 3 && snapper.area(t) <= 0; ++k) moved |= snapper.move(faces[t][k], reach);
+            if (!moved) break;
+        }
+        bad.clear();
+        for (std::uint32_t t = 0; t < faces.size(); ++t)
+            if (snapper.area(t) <= 0) bad.push_back(t);
+    }
+    for (std::size_t v = 0; v < uv.size(); ++v)
+        uv[v] = {static_cast<double>(p[v][0]) / kUvGrid, static_cast<double>(p[v][1]) / kUvGrid};
+    return bad;
+}
+
+}  // namespace tuft::atlas

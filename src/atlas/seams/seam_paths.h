@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <queue>
+#include <span>
+#include <vector>
+
+#include "atlas/seams/half_edges.h"
+
+/// Seams that run along other edges of the mesh while the charts they part stay disks.
+namespace tuft::atlas {
+
+/// A chain of seam edges between two corners, and the path that shall take its place. On the
+/// left of both lies the same chart.
+struct SeamMove {
+    std::vector<std::uint32_t> chain, path;  ///< half-edges
+    float saved = 0;                         ///< weight of the chain less that of the path
+};
+
+/// Whether a new path may leave from places other than the ends of the chain.
+enum class Corners { stay, move };
+
+/// What the search for a path needs, as it is between two of them: one for each thread that
+/// searches.
+class PathSearch {
+  public:
+    explicit PathSearch(const Patch& patch)
+        : band_(patch.n_vertices, kFar),
+          distance_(patch.n_vertices, kFar),
+          weight_from_(patch.n_vertices, kNone),
+          start_(patch.n_vertices, 0),
+          goal_(patch.twin.size(), 0) {}
+
+  private:
+    friend class SeamPaths;
+    static constexpr float kFar = std::numeric_limits<float>::infinity();
+    std::vector<float> band_, distance_;         // by vertex
+    std::vector<std::uint32_t> weight_from_;     // by vertex
+    std::vector<std::uint8_t> start_, goal_;     // by vertex, by half-edge
+    std::vector<std::uint32_t> starts_, goals_;  // half-edges that leave them
+    std::vector<std::uint32_t> marked_, touched_;
+};
+
+/// Where the seams of a patch run, chain by chain. Corners are places where three or more
+/// seams meet, where one ends, at borders, and at vertices that want a slit.
+///
+/// Two disks that are glued along one chain are a disk, and any path between two places of its
+/// border cuts it into two. A path leaves from the chain's corner or from a place nearby on
+/// the borders that the two charts have there with others, so that corners move along.
+class SeamPaths {
+  public:
+    /// `seam` [3n], borders included; `chart` [n] of each triangle, found from the seams when
+    /// it is empty.
+    SeamPaths(const Patch& patch, std::vector<std::uint8_t> seam, std::vector<std::uint32_t> chart = {});
+
+    const std::vector<std::uint8_t>& seams() const { return seam_; }
+    const std::vector<std::uint32_t>& charts() const { return chart_; }
+
+    /// Whether a chain starts with this half-edge.
+    bool starts_chain(std::uint32_t h) const {
+        return seam_[h] && patch_.twin[h] != kNone && is_corner(patch_.vertex[h]);
+    }
+    std::vector<std::uint32_t> chain_from(std::uint32_t h) const;
+
+    /// The shortest path that stays within `reach` of the chain, over its length. Bent edges
+    /// count less, so that seams keep to creases. `path` is empty where none is shorter.
+    SeamMove shorten(std::vector<std::uint32_t> chain, float reach, Corners corners, PathSearch& search) const;
+
+    /// Moves a seam; the triangles that change from the chart on its left to the other one and
+    /// back are added to `swept`, for each of the two.
+    void move(const SeamMove& move, std::vector<std::uint32_t>* swept = nullptr);
+
+  private:
+    static constexpr float kFar = PathSearch::kFar;
+    struct Entry {
+        float distance;
+        std::uint32_t vertex, half;  // a half-edge that leaves (band) or reaches (path) the vertex
+        bool operator<(const Entry& o) const { return distance != o.distance ? distance > o.distance : half > o.half; }
+    };
+    using Queue = std::priority_queue<Entry>;
+
+    std::uint32_t origin(std::uint32_t h) const { return patch_.vertex[h]; }
+    std::uint32_t end(std::uint32_t h) const { return patch_.vertex[next_half(h)]; }
+    bool is_corner(std::uint32_t v) const { return corner_[v] || degree_[v] != 2; }
+    std::uint32_t onward(std::uint32_t h) const;
+    std::vector<std::uint32_t> wedge(std::uint32_t h) const;
+    void slide(std::uint32_t h, float reach, std::vector<std::uint32_t>& starts) const;
+    void mark_band(const std::vector<std::uint32_t>& chain, float reach, PathSearch& search) const;
+    void set_seam(std::uint32_t h, bool on);
+    void sweep(std::uint32_t start, std::uint32_t chart, std::vector<std::uint32_t>* swept);
+
+    const Patch& patch_;
+    std::vector<std::uint8_t> seam_;
+    std::vector<std::uint32_t> chart_;
+    std::vector<float> weight_;                  // of edges, by half-edge
+    std::vector<std::uint32_t> degree_;          // of vertices, borders included
+    std::vector<std::uint8_t> border_, corner_;  // of vertices
+    std::vector<std::uint32_t> queue_;
+};
+
+}  // namespace tuft::atlas

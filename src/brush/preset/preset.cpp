@@ -1,0 +1,336 @@
+#include "brush/preset/preset.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/system/files.h"
+#include "core/text/nesting.h"
+#include "core/text/units.h"
+
+namespace tuft::brush {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A number in a preset file: its table and key, the unit it is written in, its range there.
+struct Field {
+    const char* table;
+    const char* key;
+    double Preset::*member;
+    double unit;
+    double lo, hi;
+};
+
+constexpr double kMillilitre = 1e-6;
+
+constexpr std::array kFields = {
+    Field{"shape", "length_mm", &Preset::length, kMillimetre, 2, 300},
+    Field{"shape", "radius_mm", &Preset::radius, kMillimetre, 0.1, 100},
+    Field{"shape", "tip_power", &Preset::tip_power, 1, 0.5, 4},
+    Field{"shape", "tip_radius_mm", &Preset::tip_radius, kMillimetre, 0, 10},
+    Field{"shape", "hardness", &Preset::hardness, 1, 0, 1},
+    Field{"bending", "stiffness_n_m2", &Preset::stiffness, 1, 1e-10, 1},
+    Field{"bending", "alpha", &Preset::alpha, 1, -6, 3},
+    Field{"bending", "beta", &Preset::beta, 1, -0.995, 1},
+    Field{"bending", "tip_stiffness", &Preset::tip_stiffness, 1, 0, 1},
+    Field{"bending", "yield", &Preset::yield, 1, 0, 100},
+    Field{"bending", "gamma", &Preset::gamma, 1, -6, 3},
+    Field{"bending", "plastic_share", &Preset::plastic_share, 1, 0, 1},
+    Field{"bending", "recovery_s", &Preset::recovery, 1, 0, 1e6},
+    Field{"bending", "damping_ms", &Preset::damping, 1e-3, 0, 1000},
+    Field{"contact", "transverse_stiffness_n_m2", &Preset::transverse_stiffness, 1, 10, 1e7},
+    Field{"contact", "core_stiffness", &Preset::core_stiffness, 1, 0, 1000},
+    Field{"contact", "core_start", &Preset::core_start, 1, 0, 1},
+    Field{"contact", "end_compliance_mm", &Preset::end_compliance, kMillimetre, 0, 20},
+    Field{"contact", "adhesion_n_m", &Preset::adhesion, 1, 0, 10},
+    Field{"contact", "adhesion_range_mm", &Preset::adhesion_range, kMillimetre, 0.01, 20},
+    Field{"contact", "friction_wet", &Preset::friction_wet, 1, 0, 2},
+    Field{"contact", "friction_dry", &Preset::friction_dry, 1, 0, 2},
+    Field{"contact", "grain", &Preset::grain, 1, 0.1, 0.9},
+    Field{"contact", "with_hair", &Preset::with_hair, 1, 0, 1},
+    Field{"contact", "pore_grip", &Preset::pore_grip, 1, 0, 10},
+    Field{"contact", "stick", &Preset::stick, 1, 0.1, 1000},
+    Field{"section", "flatten_moment", &Preset::flatten_moment, 1, 0, 10},
+    Field{"section", "flatten_force", &Preset::flatten_force, 1, 0, 10},
+    Field{"section", "flatten_contact", &Preset::flatten_contact, 1, 0, 10},
+    Field{"section", "flatten_max", &Preset::flatten_max, 1, 1, 10},
+    Field{"ink", "capacity_ml", &Preset::capacity, kMillilitre, 0, 100},
+    Field{"split", "factor", &Preset::split_factor, 1, 0, 100},
+    Field{"split", "at", &Preset::split_at, 1, 0, 100},
+    Field{"split", "merge_at", &Preset::merge_at, 1, 0, 100},
+    Field{"split", "yaw_rad", &Preset::split_yaw, 1, 0, 0.7},
+    Field{"force", "gain", &Preset::force_gain, 1, 0, 1e5},
+    Field{"force", "limit_n", &Preset::force_limit, 1, 0, 100},
+};
+
+/// Values that are whole numbers.
+struct WholeField {
+    const char* table;
+    const char* key;
+    int Preset::*member;
+    int lo, hi;
+};
+
+constexpr std::array kWholeFields = {
+    WholeField{"shape", "segments", &Preset::segments, 4, 64},
+    WholeField{"split", "into", &Preset::split_into, 2, 5},
+    WholeField{"hair", "bundles", &Preset::bundles, 1, 200},
+    WholeField{"hair", "bristles", &Preset::bristles, 1, 4000},
+};
+
+std::string whole_note(const WholeField& f) {
+    return std::string(f.key) + " must be a whole number from " + std::to_string(f.lo) + " to " + std::to_string(f.hi);
+}
+
+long line_of(const toml::node& node) {
+    return static_cast<long>(node.source().begin.line);
+}
+
+[[noreturn]] void fail(const std::string& source, long line, const std::string& what) {
+    if (line > 0) throw Error(source, line, what);
+    throw Error(source, what);
+}
+
+std::string number(double v) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.12g", v);
+    return text;
+}
+
+/// Every known key as "table.key", for hints.
+std::vector<std::string> known_keys() {
+    std::vector<std::string> keys{"name", "note", "bending.spine"};
+    for (const WholeField& f : kWholeFields) keys.push_back(std::string(f.table) + "." + f.key);
+    for (const Field& f : kFields) keys.push_back(std::string(f.table) + "." + f.key);
+    return keys;
+}
+
+[[noreturn]] void unknown_key(const std::string& source, const toml::node& node, const std::string& key) {
+    const std::string near = nearest_name(key, known_keys());
+    fail(source, line_of(node), "unknown key '" + key + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
+}
+
+std::string text_of(const toml::node& node, const std::string& source, const std::string& key) {
+    const std::optional<std::string> v = node.value<std::string>();
+    if (!v || !node.is_string()) fail(source, line_of(node), "'" + key + "' must be a text in quotes");
+    return *v;
+}
+
+double number_of(const toml::node& node, const std::string& source, const std::string& key) {
+    const std::optional<double> v = node.value<double>();
+    if (!v || !node.is_number()) fail(source, line_of(node), "'" + key + "' must be a number");
+    return *v;
+}
+
+/// Key that took the place of one in earlier files.
+std::string current_key(const std::string& table, const std::string& key) {
+    return table == "contact" && key == "end_give_mm" ? "end_compliance_mm" : key;
+}
+
+void read_value(Preset& p, const std::string& table, const std::string& written, const toml::node& node,
+                const std::string& source) {
+    const std::string key = current_key(table, written);
+    const std::string full = table + "." + key;
+    if (full == "bending.spine") {
+        const std::string v = text_of(node, source, full);
+        if (v != "rod" && v != "table") {
+            fail(source, line_of(node), "'bending.spine' must be \"rod\" or \"table\", not \"" + v + "\"");
+        }
+        p.spine = v == "rod" ? SpineMethod::rod : SpineMethod::table;
+        return;
+    }
+    for (const WholeField& f : kWholeFields) {
+        if (table != f.table || key != f.key) continue;
+        const double v = number_of(node, source, full);
+        if (!(v >= f.lo && v <= f.hi) || v != std::floor(v)) fail(source, line_of(node), whole_note(f));
+        p.*f.member = static_cast<int>(v);
+        return;
+    }
+    for (const Field& f : kFields) {
+        if (table != f.table || key != f.key) continue;
+        const double v = number_of(node, source, full);
+        if (!(v >= f.lo && v <= f.hi)) {
+            fail(source, line_of(node),
+                 "'" + full + "' is " + number(v) + ", outside " + number(f.lo) + " to " + number(f.hi));
+        }
+        p.*f.member = v * f.unit + 0.0;  // no negative zero, whose text has no sign in TOML
+        return;
+    }
+    unknown_key(source, node, full);
+}
+
+fs::path preset_folder() {
+    return data_folder() / "models" / "brushes";
+}
+
+}  // namespace
+
+void check_preset(const Preset& p, const std::string& source) {
+    for (const Field& f : kFields) {
+        const double v = p.*f.member / f.unit;
+        const double slack = 1e-9 * (std::abs(f.lo) + std::abs(f.hi));
+        if (!(v >= f.lo - slack && v <= f.hi + slack)) {
+            throw Error(source, "'" + std::string(f.table) + "." + f.key + "' is " + number(v) + ", outside " +
+                                    number(f.lo) + " to " + number(f.hi));
+        }
+    }
+    for (const WholeField& f : kWholeFields)
+        if (p.*f.member < f.lo || p.*f.member > f.hi) throw Error(source, whole_note(f));
+    if (p.radius > 0.5 * p.length) {
+        throw Error(source, "'shape.radius_mm' must not exceed half of 'shape.length_mm'");
+    }
+    if (p.merge_at > p.split_at) {
+        throw Error(source, "'split.merge_at' must not exceed 'split.at'");
+    }
+}
+
+Preset parse_preset(std::string_view text, const std::string& source) {
+    check_toml_nesting(text, source);
+    toml::table root;
+    try {
+        root = toml::parse(text);
+    } catch (const toml::parse_error& e) {
+        fail(source, static_cast<long>(e.source().begin.line), std::string(e.description()));
+    }
+    Preset p;
+    for (const auto& [key, node] : root) {
+        const std::string name(key.str());
+        if (name == "name") {
+            p.name = text_of(node, source, name);
+        } else if (name == "note") {
+            p.note = text_of(node, source, name);
+        } else if (const toml::table* table = node.as_table()) {
+            for (const auto& [sub, value] : *table) {
+                read_value(p, name, std::string(sub.str()), value, source);
+            }
+        } else {
+            unknown_key(source, node, name);
+        }
+    }
+    if (p.name.empty()) p.name = fs::path(source).stem().string();
+    check_preset(p, source);
+    return p;
+}
+
+std::vector<std::string> list_presets() {
+    std::vector<std::string> names;
+    std::error_code ec;
+    for (const fs::directory_entry& entry : fs::directory_iterator(preset_folder(), ec)) {
+        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Preset scaled(const Preset& preset, double factor) {
+    Preset p = preset;
+    for (double Preset::*length : {&Preset::length, &Preset::radius, &Preset::tip_radius, &Preset::end_compliance,
+                                   &Preset::adhesion_range, &Preset::adhesion})
+        p.*length *= factor;
+    p.stiffness *= std::pow(factor, 4);
+    p.force_gain /= factor * factor;
+    p.capacity *= factor * factor;
+    p.name = name_of({preset.name, factor});
+    check_preset(p, p.name);
+    return p;
+}
+
+SizedName sized_name(const std::string& name) {
+    const std::size_t star = name.rfind('*');
+    if (star == std::string::npos) return {name, 1};
+    SizedName out{name.substr(0, star), 0};
+    if (out.base.empty() || out.base.find('*') != std::string::npos) throw Error("unknown brush '" + name + "'");
+    const char* end = name.data() + name.size();
+    const auto [at, error] = std::from_chars(name.data() + star + 1, end, out.factor);
+    if (error != std::errc{} || at != end || !(out.factor >= kLeastSize && out.factor <= kMostSize))
+        throw Error("brush '" + name + "': a size from " + number(kLeastSize) + " to " + number(kMostSize) +
+                    " must follow the *");
+    return out;
+}
+
+std::string name_of(const SizedName& sized) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", std::clamp(sized.factor, kLeastSize, kMostSize));
+    return std::string_view(text) == "1" ? sized.base : sized.base + "*" + text;
+}
+
+namespace {
+
+/// A preset as a project stores it and a replay reads it, which rounds numbers to 12 digits: both paint the same.
+Preset as_stored(const Preset& preset, const std::string& source) {
+    return parse_preset(preset_toml(preset), source);
+}
+
+}  // namespace
+
+Preset load_preset(const std::string& name_or_path) {
+    if (name_or_path.find('*') != std::string::npos) {
+        const SizedName sized = sized_name(name_or_path);
+        return as_stored(scaled(load_preset(sized.base), sized.factor), name_or_path);
+    }
+    fs::path path = name_or_path;
+    if (name_or_path.find('/') == std::string::npos && path.extension() != ".toml") {
+        const std::vector<std::string> names = list_presets();
+        const auto known = [&](const std::string& n) {
+            return std::find(names.begin(), names.end(), n) != names.end();
+        };
+        std::string name = name_or_path;
+        if (!known(name) && known(name + "-medium")) name += "-medium";
+        if (!known(name)) {
+            std::vector<std::string> candidates = names;
+            for (const std::string& n : names) {
+                const std::size_t dash = n.rfind("-medium");
+                if (dash != std::string::npos) candidates.push_back(n.substr(0, dash));
+            }
+            const std::string near = nearest_name(name, candidates);
+            if (names.empty()) {
+                throw Error("unknown brush '" + name + "': no presets in " + preset_folder().string());
+            }
+            throw Error("unknown brush '" + name + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
+        }
+        path = preset_folder() / (name + ".toml");
+    }
+    const std::vector<char> bytes = read_file(path, 1 << 20);
+    return as_stored(parse_preset({bytes.data(), bytes.size()}, path.string()), path.string());
+}
+
+std::string preset_toml(const Preset& p) {
+    std::ostringstream out;
+    const auto quoted = [](const std::string& text) {
+        std::string q = "\"";
+        for (const char c : text) {
+            if (c == '"' || c == '\\') q += '\\';
+            q += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+        }
+        return q + "\"";
+    };
+    out << "name = " << quoted(p.name) << "\nnote = " << quoted(p.note) << "\n";
+    std::string table;
+    for (const Field& f : kFields) {
+        if (table != f.table) {
+            table = f.table;
+            out << "\n[" << table << "]\n";
+            if (table == "bending") {
+                out << "spine = \"" << (p.spine == SpineMethod::rod ? "rod" : "table") << "\"\n";
+            }
+            for (const WholeField& w : kWholeFields)
+                if (table == w.table) out << w.key << " = " << p.*w.member << "\n";
+        }
+        out << f.key << " = " << number(p.*f.member / f.unit) << "\n";
+    }
+    out << "\n[hair]\n";
+    for (const WholeField& w : kWholeFields)
+        if (std::string_view(w.table) == "hair") out << w.key << " = " << p.*w.member << "\n";
+    return out.str();
+}
+
+}  // namespace tuft::brush

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "brush/rod/rod.h"
+
+/// Inside of the rod solver: contact law of one point.
+namespace tuft::brush::rod {
+
+/// Normal force of an indentation with its potential.
+struct NormalForce {
+    double energy = 0, force = 0, stiffness = 0;
+};
+
+/// Spring of stiffness k on x > 0 whose stiffness grows in over `onset`.
+inline NormalForce ramp(double k, double x, double onset) {
+    if (x < onset) return {k * x * x * x / (6 * onset), 0.5 * k * x * x / onset, k * x / onset};
+    const double y = x - 0.5 * onset;
+    return {0.5 * k * y * y + k * onset * onset / 24, k * y, k};
+}
+
+inline NormalForce normal_force(const Law& law, double weight, double radius, double depth, double multiplier) {
+    if (law.hard) {
+        const double k = law.stiffness * weight, force = multiplier + k * depth;
+        if (force <= 0) return {-multiplier * multiplier / (2 * k), 0, 0};
+        return {(force * force - multiplier * multiplier) / (2 * k), force, k};
+    }
+    if (depth <= 0) return {};
+    NormalForce out = ramp(law.stiffness * weight, depth, law.onset);
+    const double packed = depth - law.core_start * radius;
+    if (packed > 0) {
+        const NormalForce core = ramp(law.core_stiffness * weight, packed, law.onset);
+        out.energy += core.energy;
+        out.force += core.force;
+        out.stiffness += core.stiffness;
+    }
+    return out;
+}
+
+/// Potential of the wet film's pull at a gap (negative: indented), zero where it ends.
+inline NormalForce adhesion(const Law& law, double weight, double gap) {
+    if (law.adhesion <= 0 || gap >= law.adhesion_range) return {};
+    const double pull = law.adhesion * weight, range = law.adhesion_range;
+    if (gap <= 0) return {pull * (gap - range / 3), pull, 0};
+    const double u = 1 - gap / range;
+    return {-pull * range / 3 * u * u * u, pull * u * u, -2 * pull * u / range};
+}
+
+}  // namespace tuft::brush::rod

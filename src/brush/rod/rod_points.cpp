@@ -1,0 +1,247 @@
+#include "brush/rod/rod_points.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "core/ease.h"
+
+namespace tuft::brush::rod {
+
+namespace {
+
+struct Layer {
+    const Rod& rod;
+    const Law& law;
+    std::span<const Obstacle> obstacles;
+    const std::vector<Vec3>& node;
+    Frozen& frozen;
+    std::vector<Obstacle>& fine;
+
+    int n() const { return rod.segments(); }
+
+    /// Without the edge where x lies so far from it over one face that it feels only that one.
+    Obstacle within_reach(const Obstacle& o, const Vec3& x) const {
+        if (!o.at_edge()) return o;
+        const double own = glm::dot(x - o.origin, o.normal), beyond = glm::dot(x - o.beyond_origin, o.beyond_normal);
+        constexpr double kRoundings = 3;  // more than hair goes in one solve beside the edge's own rounding
+        if (std::min(own, beyond) > -kRoundings * law.edge) return o;
+        return own >= beyond ? Obstacle{o.origin, o.normal, o.radius}
+                             : Obstacle{o.beyond_origin, o.beyond_normal, o.radius};
+    }
+
+    /// The two planes of a point over a crease: those of an edge near the nodes beside it, or of
+    /// the nodes themselves.
+    void lay_crease(std::size_t p, const PointPlace& at, const Obstacle& from, const Obstacle& to) {
+        const bool inner = at.s > 0 && at.s < 1;
+        const bool near_first = at.s < 1 && from.at_edge(), near_last = at.s > 0 && to.at_edge();
+        if (near_first || near_last) {
+            const bool both = near_first && near_last;
+            const Obstacle &edge = near_first ? from : to, &other = near_first ? to : from;
+            const double part = !inner ? 0 : near_first ? at.s : 1 - at.s;
+            if (lay_edge(p, edge, other, both, part)) return;
+            // The other node is nearer, and on a third face.
+            if (both)
+                lay_edge(p, other, edge, false, 0);
+            else
+                std::tie(fine[p].origin, fine[p].normal) = std::tie(other.origin, other.normal);
+            return;
+        }
+        lay_parted(p, at, from, to);
+    }
+
+    /// The planes of the edge near node `a`, those that node `b` has too interpolated towards
+    /// it by `part`; false when b's plane is neither of them and b nearer.
+    bool lay_edge(std::size_t p, const Obstacle& a, const Obstacle& b, bool both, double part) {
+        Wedge w{{a.origin, a.beyond_origin}, {a.normal, a.beyond_normal}};
+        const double straight = glm::dot(b.normal, w.normal[0]), turned = glm::dot(b.normal, w.normal[1]);
+        constexpr double kSame = 0.9;  // cos 26°
+        if (std::max(straight, turned) < kSame) {
+            if (part > 0.5) return false;
+            part = 0;
+        }
+        const auto towards = [&](int i, const Vec3& other_origin, const Vec3& other_normal) {
+            if (part == 0 || glm::dot(w.normal[i], other_normal) < kSame) return;
+            w.origin[i] += part * (other_origin - w.origin[i]);
+            w.normal[i] = glm::normalize(w.normal[i] + part * (other_normal - w.normal[i]));
+        };
+        const int first = straight >= turned ? 0 : 1;
+        towards(first, b.origin, b.normal);
+        if (both) towards(1 - first, b.beyond_origin, b.beyond_normal);
+        frozen.crease[p] = {1, true, w};
+        return true;
+    }
+
+    /// A node's plane, or the one beyond the edge near it where that is more like n: which of the
+    /// two is its own may change from step to step where it hangs over the edge.
+    static Obstacle facing(const Obstacle& o, const Vec3& n) {
+        if (!o.at_edge() || glm::dot(o.beyond_normal, n) <= glm::dot(o.normal, n)) return o;
+        return {o.beyond_origin, o.beyond_normal, o.radius, o.origin, o.normal};
+    }
+
+    /// The planes of the nodes beside a point, or a node's own and the one next to it that
+    /// differs most, where they part.
+    void lay_parted(std::size_t p, const PointPlace& at, const Obstacle& from, const Obstacle& to) {
+        if (at.s > 0 && at.s < 1) {
+            lay_parted(p, from, to);
+            return;
+        }
+        const int i = at.s == 0 ? at.node : at.node + 1;
+        const Obstacle& own = at.s == 1 ? to : from;
+        Obstacle other = facing(obstacles[i + 1 <= n() ? i + 1 : i - 1], own.normal);
+        if (i > 1 && i < n()) {
+            const Obstacle before = facing(obstacles[i - 1], own.normal);
+            if (glm::dot(own.normal, before.normal) < glm::dot(own.normal, other.normal)) other = before;
+        }
+        lay_parted(p, own, other);
+    }
+
+    void lay_parted(std::size_t p, const Obstacle& a, const Obstacle& b) {
+        const double alike = glm::dot(a.normal, b.normal);
+        constexpr double kAlike = 0.985, kApart = 0.90;  // 10° and 26°, as over smooth surfaces
+        const double share = smooth_step((kAlike - alike) / (kAlike - kApart));
+        if (share <= 0) return;
+        Crease& c = frozen.crease[p];
+        c.share = share;
+        // Closest points that coincide are of an edge.
+        c.convex = glm::dot(b.origin - a.origin, a.normal - b.normal) < 1e-9;
+        c.wedge = {{a.origin, b.origin}, {a.normal, b.normal}};
+    }
+
+    /// Places, planes, radii and tributary lengths of the contact points.
+    void lay_points() {
+        const int per = law.points_per_segment;
+        lay_places(per);
+        if (obstacles.empty()) return;
+        fine.resize(frozen.place.size());
+        frozen.crease.resize(fine.size());
+        for (Crease& c : frozen.crease) c.share = 0;
+        frozen.weight.assign(fine.size(), 0);
+        bool alike_before = true;  // inboard of the point
+        for (std::size_t p = 0; p < fine.size(); ++p) {
+            const PointPlace& at = frozen.place[p];
+            const Obstacle &from = obstacles[at.node], &to = obstacles[at.node + 1];
+            const bool edge = from.at_edge() || to.at_edge(), alike = !edge && from.normal == to.normal;
+            if (alike && (at.s > 0 || alike_before)) {
+                lay_plane(p, at, from, to, from.normal);
+            } else if (edge) {
+                const Vec3 x = frozen.stencil[p].at(node);
+                lay_point(p, at, within_reach(from, x), within_reach(to, x));
+            } else {
+                lay_point(p, at, from, to);
+            }
+            alike_before = alike;
+            if (p + 1 < fine.size()) {
+                const double half = 0.5 * rod.length[at.node] / per;
+                frozen.weight[p] += half;
+                frozen.weight[p + 1] += half;
+            }
+        }
+    }
+
+    void lay_places(int per) {
+        if (frozen.laid_length == rod.length && frozen.laid_per == per && frozen.laid_round == rounded(law)) {
+            frozen.place.resize(frozen.walls_from);
+            frozen.stencil.resize(frozen.walls_from);
+            return;
+        }
+        frozen.laid_length = rod.length;
+        frozen.laid_per = per;
+        frozen.laid_round = rounded(law);
+        frozen.place.clear();
+        frozen.walls_from = static_cast<std::size_t>(n()) * per + 1;
+        for (int j = 0; j < n(); ++j) {
+            for (int t = 0; t < per; ++t) frozen.place.push_back({j, static_cast<double>(t) / per});
+        }
+        frozen.place.push_back({n() - 1, 1.0});
+        frozen.stencil.clear();
+        for (const PointPlace& at : frozen.place)
+            frozen.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
+    }
+
+    void lay_point(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b) {
+        const Vec3 normal_sum = (1 - at.s) * a.normal + at.s * b.normal;
+        const double size = glm::length(normal_sum);
+        lay_plane(p, at, a, b, size > 1e-6 ? normal_sum / size : a.normal);
+        if (law.edge > 0) lay_crease(p, at, a, b);
+    }
+
+    void lay_plane(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b, const Vec3& normal) {
+        fine[p].origin = (1 - at.s) * a.origin + at.s * b.origin;
+        fine[p].normal = normal;
+        fine[p].radius = (1 - at.s) * a.radius + at.s * b.radius;
+    }
+
+    /// How much the hair's ends give at each contact point: 1/k_e, k_e = 2 P s_e^-2 per length
+    /// so that a straight end takes the buckling load P at s_e.
+    void lay_give() {
+        frozen.give.assign(fine.size(), 0);
+        if (law.end_compliance <= 0 || law.hard || rod.buckling <= 0) return;
+        const double soft = law.end_compliance * law.end_compliance / (2 * rod.buckling);
+        double from_tip = 0;
+        for (std::size_t p = fine.size(); p-- > 1;) {
+            const double window = 1 - from_tip / (4 * law.end_compliance);
+            if (window <= 0) break;
+            frozen.give[p] = soft * window * window / frozen.weight[p];
+            from_tip += rod.length[frozen.place[p - 1].node] / law.points_per_segment;
+        }
+    }
+
+    /// Points of their own on the nodes.
+    void lay_walls(std::span<const Wall> walls) {
+        if (fine.empty() || law.hard) return;
+        for (const Wall& w : walls) {
+            const PointPlace at = w.node < n() ? PointPlace{w.node, 0} : PointPlace{n() - 1, 1};
+            frozen.place.push_back(at);
+            frozen.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
+            frozen.crease.push_back({});
+            frozen.give.push_back(0);
+            frozen.weight.push_back(w.share * rod.weight[w.node]);
+            constexpr double kNowhere = -1e6;  // lengths
+            fine.push_back({w.origin, w.normal, w.share > 0 ? w.radius : kNowhere});
+        }
+    }
+};
+
+}  // namespace
+
+Stencil stencil_at(const Rod& rod, bool round, int j, double s) {
+    const int n = rod.segments(), k = s < 0.5 ? j : j + 1;  // the node that it belongs to
+    Stencil out;
+    out.first = std::clamp(k - 1, 0, std::max(0, n - 2));
+    out.count = std::min(3, n + 1);
+    if (!round || k == 0 || k == n) {
+        const int inner = j - out.first;
+        out.w[inner] = 1 - s;
+        out.w[inner + 1] = s;
+        out.d[inner] = 1 / rod.length[j];
+        out.d[inner + 1] = -1 / rod.length[j];
+        return out;
+    }
+    const double before = rod.length[k - 1], after = rod.length[k], half = 0.5 * (before + after);
+    const double t = (j < k ? (s - 0.5) * before : 0.5 * before + s * after) / half, u = 1 - t;
+    out.w[0] = 0.5 * u * u;
+    out.w[2] = 0.5 * t * t;
+    out.w[1] = 1 - out.w[0] - out.w[2];
+    out.d[0] = u / before;
+    out.d[1] = t / after - u / before;
+    out.d[2] = -t / after;
+    return out;
+}
+
+std::vector<Vec3> curve_nodes(const Rod& rod, const std::vector<Vec3>& node) {
+    std::vector<Vec3> x = node;
+    for (int j = 1; j < rod.segments(); ++j) x[j] = stencil_at(rod, true, j, 0).at(node);
+    return x;
+}
+
+void lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
+                std::vector<Obstacle>& fine, std::span<const Wall> walls) {
+    fine.clear();
+    Layer layer{*frozen.rod, *frozen.law, obstacles, node, frozen, fine};
+    layer.lay_points();
+    layer.lay_give();
+    layer.lay_walls(walls);
+}
+
+}  // namespace tuft::brush::rod

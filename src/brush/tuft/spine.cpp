@@ -1,0 +1,286 @@
+#include "brush/tuft/spine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brush/rod/rod_points.h"
+#include "brush/rod/wedge.h"
+#include "brush/tuft/flanks.h"
+#include "brush/tuft/tuft_sections.h"
+#include "brush/tuft/upright_hair.h"
+
+namespace tuft::brush {
+
+namespace {
+
+constexpr double kOnset = 5e-5;       ///< m, fuzz of the tuft's side
+constexpr double kStraight = 1e-4;    ///< 1 - cos of a bend that is none yet, 0.8°
+constexpr double kSeed = 0.05;        ///< radians, bend that grows if the load is beyond buckling
+constexpr double kEndFriction = 0.2;  ///< of the fold of hair ends that carries the tip along
+constexpr int kContactPoints = 6;     ///< per segment: a patch then grows smoothly with depth
+
+void set_time(const Preset& p, double dt, rod::Law& law) {
+    law.damping = dt > 0 ? p.damping / dt : 0;
+    law.recovery = p.recovery > 0 ? dt / p.recovery : 0;
+}
+
+/// The preset's law in units of L and B0, for one of `share` spines and a solve over `dt`.
+rod::Law law_of(const Preset& p, double wetness, double share, double dt) {
+    const double unit = p.stiffness / std::pow(p.length, 4);
+    rod::Law law;
+    law.points_per_segment = kContactPoints;
+    law.stiffness = p.transverse_stiffness / unit / share;
+    law.core_stiffness = p.core_stiffness * law.stiffness;
+    law.core_start = p.core_start;
+    law.onset = kOnset / p.length;
+    law.end_friction = kEndFriction;
+    law.edge = kEdgeRounding / p.length;
+    law.end_compliance = p.end_compliance / p.length;
+    set_time(p, dt, law);
+    law.adhesion = wetness * p.adhesion / (unit * p.length) / share;
+    law.adhesion_range = p.adhesion_range / p.length;
+    law.friction = p.friction_dry + (p.friction_wet - p.friction_dry) * wetness;
+    law.grain = p.grain;
+    law.with_hair = p.with_hair;
+    law.pore_grip = p.pore_grip;
+    law.stick_stiffness = p.stick * law.stiffness;
+    law.tolerance = 1e-6;
+    law.max_iterations = 60;
+    law.max_passes = 8;
+    return law;
+}
+
+/// Energy of the bend s² of a straight rod, B0/L.
+double unit_bend(const rod::Rod& rod) {
+    double s = 0, before = 0, sum = 0;
+    for (std::size_t j = 0; j < rod.length.size(); ++j) {
+        s += rod.length[j];
+        sum += 0.5 * rod.stiffness[j] * (s * s - before) * (s * s - before);
+        before = s * s;
+    }
+    return sum;
+}
+
+/// Nearly straight hair pressed along its axis could fall to any side: it falls behind the
+/// hand's motion, or to the ferrule's x-axis when the hand only presses.
+void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
+                    std::span<const ContactPlane> planes) {
+    if (planes.empty()) return;
+    const Vec3 axis = spine.memory.clamp.tangent;
+    for (const Vec3& t : spine.memory.tangent) {
+        if (glm::dot(t, axis) < 1 - kStraight) return;
+    }
+    const ContactPlane& at_tip = planes.front();
+    const Vec3 tip = to.position + p.length * to.axis();
+    const double along = glm::dot(to.axis(), at_tip.normal);
+    const double under = spine.rest_radius.back() - glm::dot(tip - at_tip.origin, at_tip.normal);
+    if (along > -0.9999 || under < 0) return;
+    Vec3 aside = from.position - to.position;
+    aside -= glm::dot(aside, to.axis()) * to.axis();
+    const Quat back = from.rotation * glm::conjugate(to.rotation);
+    aside = glm::length(aside) > 1e-3 * glm::length(to.position - from.position) + 1e-9 ? glm::normalize(back * aside)
+                                                                                        : from.rotation * Vec3{1, 0, 0};
+    // Bend angle ε s² that takes the tip back up to the surface: the tip rises by L ε²/10. But buckling
+    // makes no energy: it holds what the contact held and what the hand does in the step.
+    double angle = std::clamp(std::sqrt(10 * under / p.length), kSeed, 0.6);
+    const double needed = angle * angle * unit_bend(spine.rod);
+    const double there = 2 * std::max(0.0, spine.pressed);
+    if (needed > there) angle = std::max(kSeed, angle * std::sqrt(there / needed));
+    double s = 0;
+    for (std::size_t j = 0; j < spine.memory.tangent.size(); ++j) {
+        s += spine.rod.length[j];
+        spine.memory.tangent[j] = glm::normalize(axis + std::tan(angle * s * s) * aside);
+    }
+}
+
+/// Planes of a spine's nodes (tip first) as obstacles of its rod (root first).
+std::vector<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine, std::span<const ContactPlane> planes) {
+    const std::size_t count = spine.rest_radius.size();
+    std::vector<rod::Obstacle> out;
+    if (planes.empty()) return out;
+    out.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const ContactPlane& plane = planes.size() == 1 ? planes[0] : planes[count - 1 - i];
+        out[i] = {plane.origin / p.length, plane.normal, spine.rest_radius[i] / p.length,
+                  plane.beyond_origin / p.length, plane.beyond_normal};
+    }
+    return out;
+}
+
+}  // namespace
+
+double height_over(const ContactPlane& plane, const Vec3& p) {
+    if (plane.beyond_normal == Vec3{0}) return glm::dot(p - plane.origin, plane.normal);
+    const Wedge wedge{{plane.origin, plane.beyond_origin}, {plane.normal, plane.beyond_normal}};
+    return edge_distance(wedge, kEdgeRounding, p).z;
+}
+
+rod::Clamp clamp_of(const Preset& p, const Pose& pose) {
+    return {pose.position / p.length, pose.axis(), pose.rotation * Vec3{1, 0, 0}};
+}
+
+Spine make_spine(const Preset& p, const rod::Rod& rod, const rod::Clamp& clamp, double xi0, double share) {
+    Spine spine;
+    spine.rod = rod;
+    spine.memory = rod::make_memory(rod, clamp);
+    double s = xi0;
+    for (int i = 0; i <= rod.segments(); ++i) {
+        spine.rest_radius.push_back(rest_radius(p, s) / std::sqrt(share));
+        if (i < rod.segments()) s += rod.length[i];
+    }
+    return spine;
+}
+
+namespace {
+
+Solved with_sections(const Preset& p, Spine& spine, rod::Result result, std::span<const Vec3> node, const Quat& turn,
+                     std::span<const rod::Obstacle> obstacles, double wetness, double share,
+                     std::span<const ContactPlane> walls = {}) {
+    Solved out{std::move(result), {}};
+    const std::span<const rod::Obstacle> met = out.result.met.empty() ? obstacles : out.result.met;
+    SectionOutput sections = make_sections({p, spine, out.result, met, node, turn, wetness, share, walls});
+    spine.side = std::move(sections.sides);
+    spine.flank = std::move(sections.flank);
+    spine.wide = sections.wide;
+    spine.aside = std::move(sections.aside);
+    spine.slips = std::move(sections.slips);
+    out.spread_energy = sections.spread_energy;
+    out.aside_gain = sections.aside_energy - spine.aside_energy;
+    spine.aside_energy = sections.aside_energy;
+    out.branch.sections = std::move(sections.sections);
+    return out;
+}
+
+}  // namespace
+
+Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
+                   std::span<const ContactPlane> planes, double wetness, double share, double dt,
+                   std::span<const ContactPlane> walls, const Passed& passed) {
+    const rod::Law law = law_of(p, wetness, share, dt);
+    const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
+    rod::Result result =
+        rod::solve(spine.rod, spine.memory, clamp, obstacles, law, {}, flank_walls(p, spine, turn, walls, wetness));
+    spine.pressed = result.contact_energy;
+    result.dissipation += passed.dissipation;
+    for (std::size_t i = 0; i < passed.slip.size(); ++i) result.slip[i] += passed.slip[i];
+    const std::vector<Vec3> node = rod::curve_nodes(spine.rod, spine.memory.node);
+    return with_sections(p, spine, std::move(result), node, turn, obstacles, wetness, share, walls);
+}
+
+namespace {
+
+/// Largest move of the ferrule in one solve, in lengths, turns counted at one length: hair
+/// that stands nearly straight must be followed closely, or it falls to the wrong side.
+constexpr double kCareful = 0.006, kOrdinary = 0.03;
+constexpr double kLaid = 0.8;      ///< bend from which the hair lies as it will, radians
+constexpr double kTeleport = 0.5;  ///< lengths; a further jump is no motion to follow
+constexpr int kMaxParts = 8;
+
+Pose between(const Pose& a, const Pose& b, double t) {
+    return {glm::mix(a.position, b.position, t), glm::slerp(a.rotation, b.rotation, t), a.time + t * (b.time - a.time)};
+}
+
+}  // namespace
+
+Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to, std::span<const ContactPlane> planes,
+                std::span<const ContactPlane> walls, double wetness, double& dt) {
+    rod::Law law = law_of(p, wetness, 1, 0);
+    Passed passed;
+    if (planes.empty()) return passed;
+    const double turned = 2 * std::acos(std::min(1.0, std::abs(glm::dot(from.rotation, to.rotation))));
+    const double moved = glm::length(to.position - from.position) / p.length + turned;
+    const double bend =
+        std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
+    int parts = 1;
+    if (moved < kTeleport) {
+        const double largest = bend < kLaid ? kCareful : kOrdinary;
+        parts = std::clamp(static_cast<int>(std::ceil(moved / largest)), 1, kMaxParts);
+    }
+    law.max_iterations = std::max(30, law.max_iterations / parts);
+    dt /= parts;
+    set_time(p, dt, law);
+    Pose last = from;
+    for (int k = 1; k < parts; ++k) {
+        const Pose pose = between(from, to, static_cast<double>(k) / parts);
+        turn_with_spread(p, spine, last, pose, planes);
+        break_symmetry(p, spine, last, pose, planes);
+        const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes),
+                                         law, {}, flank_walls(p, spine, pose.rotation, walls, wetness));
+        spine.pressed = r.contact_energy;
+        passed.dissipation += r.dissipation;
+        passed.slip.resize(r.slip.size(), Vec3{0});
+        for (std::size_t i = 0; i < r.slip.size(); ++i) passed.slip[i] += r.slip[i];
+        last = pose;
+    }
+    turn_with_spread(p, spine, last, to, planes);
+    break_symmetry(p, spine, last, to, planes);
+    return passed;
+}
+
+Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
+                   std::span<const ContactPlane> planes, double wetness) {
+    const rod::Law law = law_of(p, wetness, 1, 0);
+    const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
+    rod::Memory& m = spine.memory;
+    const Vec3 root_before = m.clamp.position;
+    const Vec3 tip_before = rod::nodes(spine.rod, m).back();
+    rod::carry_with_clamp(m, clamp);
+    const std::size_t n = m.tangent.size();
+    rod::Result r;
+    r.converged = true;
+    r.moment.assign(n, 0);
+    r.normal_force.assign(n + 1, 0);
+    r.contact_force.assign(n + 1, Vec3{0});
+    const auto lay = [&](const TableRow& row, const Vec3& side) {
+        for (std::size_t i = 0; i <= n; ++i) {
+            const Vec2 b = row.nodes[n - i] / p.length;
+            m.node[i] = clamp.position + b.x * clamp.tangent + b.y * side;
+        }
+        for (std::size_t j = 0; j < n; ++j) m.tangent[j] = glm::normalize(m.node[j + 1] - m.node[j]);
+    };
+    Vec3 side = tip_before - clamp.position;
+    side -= glm::dot(side, clamp.tangent) * clamp.tangent;
+    side = glm::length(side) > 1e-9 ? glm::normalize(side) : clamp.side;
+    const Vec3 moved_by = clamp.position - root_before;
+    if (glm::dot(side, moved_by) > 0.999 * glm::length(moved_by) && glm::length(moved_by) > 1e-9) {
+        // Pushed straight ahead of the hand a tractrix balances; the hair gives way to one side.
+        side = glm::normalize(side + 0.03 * glm::cross(clamp.tangent, side));
+    }
+    if (obstacles.empty()) {
+        lay(table.rows.front(), side);
+        return with_sections(p, spine, std::move(r), m.node, turn, obstacles, wetness, 1);
+    }
+    const rod::Obstacle& o = obstacles.back();
+    const double root = glm::dot(clamp.position - o.origin, o.normal);
+    const double moment = standing_moment(table, [&](const TableRow& row) {
+        const Vec2 tip = row.nodes.front() / p.length;
+        return root + tip.x * glm::dot(clamp.tangent, o.normal) + tip.y * glm::dot(side, o.normal);
+    });
+    const TableRow row = look_up(table, moment);
+    lay(row, side);
+    if (moment > 0) {
+        const double unit = p.stiffness / p.length;
+        for (std::size_t j = 0; j < n; ++j) r.moment[j] = row.moments[n - j] / unit;
+        Vec3 lever = m.node.back() - clamp.position;
+        lever -= glm::dot(lever, o.normal) * o.normal;
+        const double reaction = moment / unit / std::max(glm::length(lever), 0.1);
+        Vec3 slip = m.node.back() - tip_before;
+        slip -= glm::dot(slip, o.normal) * o.normal;
+        const double moved = glm::length(slip);
+        r.force = reaction * o.normal;
+        if (moved > 1e-9) r.force -= law.friction * reaction / moved * slip;
+        r.root_moment = glm::cross(m.node.back() - clamp.position, r.force);
+        // Where the side of the tuft lies on the surface it shares the load.
+        double sum = 0;
+        for (std::size_t i = 1; i <= n; ++i) {
+            const rod::Obstacle& at = obstacles[i];
+            const double depth = at.radius - glm::dot(m.node[i] - at.origin, at.normal);
+            r.normal_force[i] = spine.rod.weight[i] * std::max(0.0, depth);
+            sum += r.normal_force[i];
+        }
+        for (double& f : r.normal_force) f *= sum > 0 ? reaction / sum : 0;
+    }
+    return with_sections(p, spine, std::move(r), m.node, turn, obstacles, wetness, 1);
+}
+
+}  // namespace tuft::brush

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "brush/preset/preset.h"
+#include "core/geometry/types.h"
+
+/// Query table over the root bending moment and the Fixed Shape Method: the tuft's shape
+/// for a moment M, turned in the bending plane until the tip touches the ground. Made from
+/// large-deflection elastica under a transverse tip load, for any stiffness profile.
+/// Source: variable stiffness brush (Huang and Hou 2018); the shapes are exact here.
+namespace tuft::brush {
+
+/// One entry, holder frame: x along the axis from the root, y to the bend side; metres.
+/// Nodes go from tip (0) to root (n).
+struct TableRow {
+    double moment = 0;            ///< M at the root, N·m
+    double load = 0;              ///< P, N
+    std::vector<Vec2> nodes;      ///< P_ib
+    std::vector<double> angles;   ///< θ_ib, radians from the axis
+    std::vector<double> moments;  ///< m_i, N·m
+};
+
+struct QueryTable {
+    double length = 0;           ///< m
+    double stiffness = 0;        ///< B0, N·m²
+    std::vector<TableRow> rows;  ///< rising moment, first row straight
+};
+
+QueryTable make_table(const Preset& preset, int rows = 64);
+
+/// Shape at a moment within the table's range (clamped), cubic between rows.
+TableRow look_up(const QueryTable& table, double moment);
+
+/// Smallest moment whose shape has `tip_height` >= 0; the table's largest when none has.
+double standing_moment(const QueryTable& table, const std::function<double(const TableRow&)>& tip_height);
+
+/// The tuft standing on a plane. Lengths metres, angles radians.
+struct FixedShape {
+    double moment = 0;        ///< M, N·m
+    double holder_angle = 0;  ///< φ between the holder and the plane
+    double tip_angle = 0;     ///< θ of the tip from the plane's normal
+    std::vector<Vec2> nodes;  ///< (along the plane, height), tip first at height 0, root at x = 0
+    double reaction = 0;      ///< F_re = λ M / max(|x_m - x_0|, 0.1 L), N
+    double friction = 0;      ///< μ F_re, N
+};
+
+/// Moment and root height given: the holder's angle follows.
+FixedShape fixed_shape(const QueryTable& table, double moment, double root_height, double mu, double lambda = 1);
+
+/// Root height and holder angle given (a six-degree device): the moment follows.
+/// Where even the largest moment leaves the tip below the plane, the last row is used.
+FixedShape fixed_shape_at_angle(const QueryTable& table, double root_height, double holder_angle, double mu,
+                                double lambda = 1);
+
+}  // namespace tuft::brush

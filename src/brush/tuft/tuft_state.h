@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/types.h"
+
+namespace tuft::brush {
+
+/// Where the hand holds the brush: position of the ferrule's mouth (the root of
+/// the tuft, P_m) and its rotation. The tuft's rest axis, from root to tip, is
+/// rotation * (0, 0, -1).
+struct Pose {
+    Vec3 position{0};  ///< metres, world
+    Quat rotation{1, 0, 0, 0};
+    double time = 0;  ///< seconds
+
+    Vec3 axis() const { return rotation * Vec3{0, 0, -1}; }
+};
+
+/// A cross-section of the tuft: an ellipse round a spine node P_i.
+/// Outline: centre + a cos ω e + b sin ω m, m = e × tangent.
+struct Section {
+    Vec3 centre{0};          ///< metres, world
+    Vec3 tangent{0, 0, -1};  ///< unit, towards the tip, bisecting the two segments
+    Vec3 e{1, 0, 0};         ///< unit, normal of the bending plane
+    Vec3 m{0, 1, 0};         ///< unit, in the bending plane
+    double a = 0;            ///< semi-axis along e, metres
+    double b = 0;            ///< semi-axis along m, metres; a b = r² (area is kept)
+    double moment = 0;       ///< bending moment, N·m
+    double pressure = 0;     ///< contact force per length on the node, N/m
+};
+
+/// One spine with its sections, tip first (index 0) and root last.
+struct Branch {
+    std::vector<Section> sections;
+    double ink_share = 1;  ///< of the tuft's ink; shares sum to one
+};
+
+/// Where the hand's work is, joules, of the whole spine (sub-spines follow it). The work that the
+/// hand does against `TuftState::force` and `moment` is the change of stored() and `lost`.
+struct TuftEnergy {
+    double bend = 0;     ///< stored in the bent hair
+    double contact = 0;  ///< in what the surface presses flat, in hair that sticks, and in the wet film
+    double aside = 0;    ///< in side nodes that friction has drawn to one side
+    double spread = 0;   ///< of bend and contact: what the springs of the spread side nodes hold
+    double lost = 0;     ///< since the step before, by yielding, slip, damping; never negative
+
+    double stored() const { return bend + contact + aside; }
+};
+
+/// The tuft at one moment: one branch, or the sub-spines after bifurcation.
+struct TuftState {
+    std::vector<Branch> branches;
+    Vec3 force{0};            ///< of the surface on the tuft, newtons, world
+    Vec3 device_force{0};     ///< what of that force has come through to the ferrule, newtons, world
+    Vec3 moment{0};           ///< of `force` about the root, N·m, world
+    double root_moment = 0;   ///< bending moment at the ferrule, N·m
+    double normal_force = 0;  ///< newtons
+    TuftEnergy energy;
+    bool touching = false;
+    bool converged = true;  ///< false: the solver stopped at its limit with its best state
+    int iterations = 0;
+};
+
+/// Plane the tuft meets, or a local one for each node: points p with
+/// dot(p - origin, normal) < 0 are inside the object. Next to a sharp convex edge with the plane
+/// beyond it: inside is what both call inside.
+struct ContactPlane {
+    Vec3 origin{0};         ///< metres, world
+    Vec3 normal{0, 0, 1};   ///< unit, out of the object
+    Vec3 beyond_origin{0};  ///< of the plane beyond the edge
+    Vec3 beyond_normal{0};  ///< unit; zero: no edge near
+};
+
+inline constexpr double kEdgeRounding = 2e-4;  ///< m, radius by which the tuft feels edges rounded
+
+/// Distance of p from the plane, or from both with their edge rounded (see wedge.h), metres.
+double height_over(const ContactPlane& plane, const Vec3& p);
+
+}  // namespace tuft::brush

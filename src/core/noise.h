@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "core/ease.h"
+
+/// \file
+/// Value noise (Perlin 1985 with values in place of gradients): values at whole numbers, joined by 3f² − 2f³.
+namespace tuft {
+
+/// Noise along a line, smooth over one unit. `value(cell)` returns the value at a whole number ≥ 0.
+template <class Value>
+double value_noise(double x, Value&& value) {
+    const double floor = std::floor(x), g = fade(x - floor);
+    const auto cell = static_cast<std::uint64_t>(floor);
+    const double a = value(cell), b = value(cell + 1);
+    return a + g * (b - a);
+}
+
+}  // namespace tuft

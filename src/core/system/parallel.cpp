@@ -1,0 +1,70 @@
+#include "core/system/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+
+#include "core/system/interrupt.h"
+
+namespace tuft {
+namespace {
+
+std::atomic<int> g_threads{0};
+
+tbb::task_arena& arena() {
+    // One arena, rebuilt when the count changes; TBB sizes it once.
+    static std::mutex mutex;
+    static std::unique_ptr<tbb::task_arena> current;
+    static int current_threads = -1;
+    const std::lock_guard lock(mutex);
+    const int threads = thread_count();
+    if (threads != current_threads) {
+        static std::unique_ptr<tbb::global_control> limit;
+        limit = std::make_unique<tbb::global_control>(
+            tbb::global_control::max_allowed_parallelism,
+            static_cast<std::size_t>(std::max(threads, tbb::info::default_concurrency())));
+        current = std::make_unique<tbb::task_arena>(threads);
+        current_threads = threads;
+    }
+    return *current;
+}
+
+}  // namespace
+
+void set_thread_count(int n) {
+    g_threads = std::max(0, n);
+}
+
+int thread_count() {
+    const int n = g_threads;
+    return n > 0 ? n : tbb::info::default_concurrency();
+}
+
+void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+    check_interrupt();
+    if (n == 0) return;
+    grain = std::max<std::size_t>(grain, 1);
+    if (thread_count() == 1 || n <= grain) {
+        body(0, n);
+        return;
+    }
+    arena().execute([&] {
+        // A thread that waits for a loop within a loop takes nothing of the outer one meanwhile, which may wait for it.
+        tbb::this_task_arena::isolate([&] {
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
+                              [&](const tbb::blocked_range<std::size_t>& r) {
+                                  check_interrupt();
+                                  body(r.begin(), r.end());
+                              });
+        });
+    });
+}
+
+}  // namespace tuft

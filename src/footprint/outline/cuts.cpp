@@ -1,0 +1,324 @@
+#include "footprint/outline/cuts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "atlas/texels/log_map.h"
+
+namespace tuft::footprint {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kSearchSteps = 4;  // per segment, to find where the skin meets the surface
+constexpr int kSamples = 48;     // sections taken from a stretch that touches
+
+Cut cut_of(const brush::Section& s, const Frame& frame, const brush::ContactPlane* plane, double film) {
+    const Vec3 normal = plane ? plane->normal : frame.n;
+    const Vec3 origin = plane ? plane->origin : frame.origin;
+    Cut cut;
+    cut.z = glm::dot(s.centre - origin, normal);
+    cut.a = s.a + film;
+    cut.b = s.b + film;
+    const Vec3 foot = s.centre - cut.z * normal;
+    Frame local = frame;
+    if (plane && glm::dot(normal, frame.n) > atlas::kLogMapMinCos) {
+        cut.centre = atlas::log_map(frame, foot, normal);
+        local.n = normal;
+        local.t = parallel_transport(frame.t, frame.n, normal);
+        local.b = glm::cross(local.n, local.t);
+    } else {
+        cut.centre = Vec2(frame.to_local(foot));
+    }
+    const auto components = [&](const Vec3& v) {
+        return Vec3{glm::dot(v, local.t), glm::dot(v, local.b), glm::dot(v, local.n)};
+    };
+    cut.e = components(s.e);
+    cut.m = components(s.m);
+    return cut;
+}
+
+/// Slope at a node of the parabola through it and its neighbours, from the slopes on both sides.
+double parabola_slope(double before, double after, double h_before, double h_after) {
+    return (h_after * before + h_before * after) / (h_before + h_after);
+}
+
+/// The same, limited so that the cubic is monotone where the nodes are (Fritsch and Carlson 1980).
+double monotone_slope(double before, double after, double h_before, double h_after) {
+    if (!(before * after > 0)) return 0;
+    const double most = 3 * std::min(std::abs(before), std::abs(after));
+    return std::clamp(parabola_slope(before, after, h_before, h_after), -most, most);
+}
+
+/// Slope of a monotone cubic at a node that keeps to the flatter side (Fritsch and Butland 1984).
+double cautious_slope(double before, double after, double h_before, double h_after) {
+    if (!(before * after > 0)) return 0;
+    const double w1 = 2 * h_after + h_before, w2 = h_after + 2 * h_before;
+    return (w1 + w2) / (w1 / before + w2 / after);
+}
+
+double hermite(double p0, double p1, double m0, double m1, double h, double f) {
+    const double f2 = f * f, f3 = f2 * f;
+    return p0 + (p1 - p0) * (3 * f2 - 2 * f3) + h * (m0 * (f3 - 2 * f2 + f) + m1 * (f3 - f2));
+}
+
+/// The skin of a branch between its nodes: node parameter 0 (tip) … n − 1 (root).
+class TuftSurface {
+  public:
+    TuftSurface(const brush::Branch& branch, const Frame& frame, const NodePlanes* planes, double film) {
+        const auto& sections = branch.sections;
+        const auto plane = [&](std::size_t i) { return planes && i < planes->size() ? &(*planes)[i] : nullptr; };
+        add_cap(sections.front(), frame, plane(0), film);
+        cap_ = nodes_.size();
+        for (std::size_t i = 0; i < sections.size(); ++i) {
+            if (i > 0) steps_.push_back(glm::length(sections[i].centre - sections[i - 1].centre));
+            nodes_.push_back(cut_of(sections[i], frame, plane(i), film));
+        }
+        for (double& h : steps_) h = std::max(h, 1e-9);
+        from_tip_.assign(nodes_.size(), 0);
+        for (std::size_t i = 1; i < nodes_.size(); ++i)
+            from_tip_[i] = from_tip_[i - 1] + (i > cap_ ? steps_[i - 1] : 0);
+        set_slopes();
+    }
+
+    /// Parameter of section i of the branch.
+    double at_section(std::size_t i) const { return double(cap_ + i); }
+
+    /// Metres of hair between the tip and a place.
+    double from_tip(double s) const {
+        const std::size_t i = std::min(static_cast<std::size_t>(std::max(s, 0.0)), from_tip_.size() - 1);
+        if (i + 1 >= from_tip_.size()) return from_tip_.back();
+        return from_tip_[i] + (s - double(i)) * (from_tip_[i + 1] - from_tip_[i]);
+    }
+
+    double end() const { return nodes_.empty() ? 0 : double(nodes_.size() - 1); }
+
+    Cut at(double s) const {
+        if (nodes_.size() == 1) return nodes_[0];
+        const auto last = static_cast<int>(nodes_.size()) - 2;
+        const int i = std::clamp(static_cast<int>(s), 0, last);
+        const double f = std::clamp(s - i, 0.0, 1.0), h = steps_[i];
+        const Cut &p = nodes_[i], &q = nodes_[i + 1];
+        const Slope &g = slopes_[i], &k = slopes_[i + 1];
+        Cut cut;
+        cut.centre = {hermite(p.centre.x, q.centre.x, g.centre.x, k.centre.x, h, f),
+                      hermite(p.centre.y, q.centre.y, g.centre.y, k.centre.y, h, f)};
+        cut.z = hermite(p.z, q.z, g.z, k.z, h, f);
+        cut.a = hermite(p.a, q.a, g.a, k.a, h, f);
+        cut.b = hermite(p.b, q.b, g.b, k.b, h, f);
+        cut.e = between(p.e, q.e, f);
+        cut.m = between(p.m, q.m, f);
+        return cut;
+    }
+
+  private:
+    struct Slope {
+        Vec2 centre{0};
+        double z = 0, a = 0, b = 0;
+    };
+
+    /// Closes a blunt tip by half an ellipsoid.
+    void add_cap(const brush::Section& tip, const Frame& frame, const brush::ContactPlane* plane, double film) {
+        const double r = std::sqrt((tip.a + film) * (tip.b + film));
+        if (!(r > 1e-7)) return;
+        static constexpr std::array<double, 5> kAhead{1, 0.98, 0.9, 0.7, 0.4};
+        for (std::size_t k = 0; k < kAhead.size(); ++k) {
+            brush::Section ring = tip;
+            const double shrink = std::sqrt(1 - kAhead[k] * kAhead[k]);
+            ring.centre += kAhead[k] * r * tip.tangent;
+            nodes_.push_back(cut_of(ring, frame, plane, film));
+            nodes_.back().a *= shrink;
+            nodes_.back().b *= shrink;
+            steps_.push_back((kAhead[k] - (k + 1 < kAhead.size() ? kAhead[k + 1] : 0)) * r);
+        }
+    }
+
+    static Vec3 between(const Vec3& p, const Vec3& q, double f) {
+        const Vec3 v = (1 - f) * p + f * q;
+        const double length = glm::length(v);
+        return length > 1e-9 ? v / length : p;
+    }
+
+    void set_slopes() {
+        const std::size_t n = nodes_.size();
+        slopes_.resize(n);
+        const auto rate = [&](std::size_t i, auto get) { return (get(nodes_[i + 1]) - get(nodes_[i])) / steps_[i]; };
+        const auto z = [](const Cut& c) { return c.z; };
+        const auto a = [](const Cut& c) { return c.a; };
+        const auto b = [](const Cut& c) { return c.b; };
+        const auto centre = [](const Cut& c) { return c.centre; };
+        for (std::size_t i = 0; i < n && n > 1; ++i) {
+            if (i == 0 || i == n - 1) {
+                const std::size_t j = i == 0 ? 0 : n - 2;
+                slopes_[i] = {rate(j, centre), rate(j, z), rate(j, a), rate(j, b)};
+                continue;
+            }
+            const double h0 = steps_[i - 1], h1 = steps_[i];
+            const auto slope = [&](auto get, auto law) { return law(rate(i - 1, get), rate(i, get), h0, h1); };
+            slopes_[i].centre = (h1 * rate(i - 1, centre) + h0 * rate(i, centre)) / (h0 + h1);
+            if (i <= cap_) {
+                // The point's round end goes over into long stretches.
+                slopes_[i].z = slope(z, cautious_slope);
+                slopes_[i].a = slope(a, cautious_slope);
+                slopes_[i].b = slope(b, cautious_slope);
+            } else {
+                slopes_[i].z = slope(z, monotone_slope);
+                slopes_[i].a = slope(a, monotone_slope);
+                slopes_[i].b = slope(b, monotone_slope);
+            }
+        }
+    }
+
+    std::vector<Cut> nodes_;
+    std::vector<double> steps_;
+    std::vector<Slope> slopes_;
+    std::vector<double> from_tip_;
+    std::size_t cap_ = 0;  // nodes that close the tip
+};
+
+/// Part [begin, end] of the skin that touches the surface.
+struct Stretch {
+    double begin = 0, end = 0;
+};
+
+/// Parameter between `out` (not touching) and `in` (touching) where the skin meets the surface.
+double meeting(const TuftSurface& skin, double out, double in) {
+    for (int i = 0; i < 26; ++i) {
+        const double middle = 0.5 * (out + in);
+        (skin.at(middle).overlap() >= 0 ? in : out) = middle;
+    }
+    return in;
+}
+
+std::vector<Stretch> touching_stretches(const TuftSurface& skin) {
+    std::vector<Stretch> found;
+    const int n = static_cast<int>(skin.end()) * kSearchSteps;
+    bool before = false;
+    for (int i = 0; i <= n; ++i) {
+        const double s = double(i) / kSearchSteps;
+        const bool now = skin.at(s).overlap() >= 0;
+        if (now && !before) found.push_back({i == 0 ? 0 : meeting(skin, double(i - 1) / kSearchSteps, s), s});
+        if (now) found.back().end = s;
+        if (!now && before) found.back().end = meeting(skin, s, double(i - 1) / kSearchSteps);
+        before = now;
+    }
+    return found;
+}
+
+}  // namespace
+
+std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
+                          double length, double film) {
+    std::vector<Trail> found;
+    const std::size_t count = tuft.branches.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto& sections = tuft.branches[k].sections;
+        if (sections.size() < 2) continue;
+        const TuftSurface skin(tuft.branches[k], frame, k < planes.size() ? &planes[k] : nullptr, std::max(film, 0.0));
+        // The middle one of several branches goes on as the trunk.
+        const bool carries = count > 1 && k == count / 2;
+        const double trunk = carries ? skin.at_section(tuft.branches[0].sections.size() - 1) : 1e9;
+        for (const Stretch& stretch : touching_stretches(skin)) {
+            Trail trail{.branch = static_cast<int>(k), .cuts = {}, .along = {}};
+            for (int i = 0; i < kSamples; ++i) {
+                const double f = 0.5 - 0.5 * std::cos(kPi * i / (kSamples - 1));
+                const double s = stretch.begin + f * (stretch.end - stretch.begin);
+                trail.cuts.push_back(skin.at(s));
+                trail.along.push_back(length > 0 ? 1 - skin.from_tip(s) / length : 0);
+                if (s < trunk) trail.trunk = trail.cuts.size();
+            }
+            found.push_back(std::move(trail));
+        }
+    }
+    return found;
+}
+
+namespace {
+
+constexpr double kTrackStep = 2.5e-5;  // metres between places of a track
+constexpr double kAboutAsWide = 0.1;   // of the widest section's half width
+constexpr double kFan =
+    0.35;  // slope at which lying hair leaves a lifted tuft: sideways it is held by friction, about that
+constexpr double kNarrowest = 0.2;  // of its width to which a section is drawn together
+
+/// The place's own value, between two of those that are there.
+double width_at(const HairTracks::Track& track, double place, double otherwise) {
+    const double at = place / kTrackStep - static_cast<double>(track.first), cell = std::floor(at);
+    const auto value = [&](double i) {
+        if (i < 0 || i >= static_cast<double>(track.width.size())) return otherwise;
+        const float v = track.width[static_cast<std::size_t>(i)];
+        return v < 0 ? otherwise : static_cast<double>(v);
+    };
+    return std::lerp(value(cell), value(cell + 1), at - cell);
+}
+
+/// Makes room for places from number lo to hi.
+void reach_over(HairTracks::Track& track, long long lo, long long hi) {
+    if (track.width.empty()) track.first = lo;
+    if (lo < track.first) {
+        track.width.insert(track.width.begin(), static_cast<std::size_t>(track.first - lo), -1.0f);
+        track.first = lo;
+    }
+    const auto size = static_cast<std::size_t>(hi - track.first + 1);
+    if (size > track.width.size()) track.width.resize(size, -1.0f);
+}
+
+/// Cuts [begin, end) of a trail: those up to the widest are where the tuft is, and so is what never touched.
+void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::Track& track, double slid,
+                  double length, double amount) {
+    const auto place = [&](std::size_t i) { return slid - trail.along[i] * length; };
+    std::size_t widest = end - 1;
+    for (std::size_t i = end - 1; i-- > begin;)
+        if (trail.cuts[i].a > trail.cuts[widest].a) widest = i;
+    // Where it is about as wide: the widest section of all steps from node to node as the tuft is lifted.
+    double weight = 0, front = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        const double run = place(std::min(i + 1, end - 1)) - place(i > begin ? i - 1 : begin);
+        const double w = run * std::exp((trail.cuts[i].a / trail.cuts[widest].a - 1) / kAboutAsWide);
+        weight += w;
+        front += w * place(i);
+    }
+    front = weight > 0 ? front / weight : place(widest);
+    const auto number = [](double p) { return static_cast<long long>(std::floor(p / kTrackStep)); };
+    reach_over(track, number(place(begin)), number(place(end - 1)) + 1);
+    std::size_t i = begin;
+    for (long long k = number(place(begin)); k <= number(place(end - 1)) + 1; ++k) {
+        const double at = static_cast<double>(k) * kTrackStep;
+        while (i + 2 < end && place(i + 1) < at) ++i;
+        const double run = place(i + 1) - place(i), f = run > 0 ? std::clamp((at - place(i)) / run, 0.0, 1.0) : 0;
+        float& width = track.width[static_cast<std::size_t>(k - track.first)];
+        if (track.passing >= 0 && at >= track.passed && at < front) {
+            const double g = (at - track.passed) / (front - track.passed);
+            width = static_cast<float>(std::lerp(track.passing, trail.cuts[widest].a, g));
+        } else if (width < 0 || at >= front)
+            width = static_cast<float>(std::lerp(trail.cuts[i].a, trail.cuts[i + 1].a, f));
+    }
+    track.passed = front;
+    track.passing = trail.cuts[widest].a;
+    for (std::size_t k = begin; k < end && place(k) < front; ++k) {
+        Cut& cut = trail.cuts[k];
+        const double laid =
+            std::min(width_at(track, place(k), cut.a), trail.cuts[widest].a + kFan * (front - place(k)));
+        const double grow = std::max(1 + amount * (laid / std::max(cut.a, 1e-9) - 1), kNarrowest);
+        cut.a *= grow;
+        cut.b /= grow;
+        // It lies as it lay: by the same part of its height.
+        cut.z *= cut.z > 0 ? 1 / grow : 1;
+    }
+}
+
+}  // namespace
+
+void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount) {
+    for (Trail& trail : trails) {
+        const auto own = 2 * static_cast<std::size_t>(trail.branch);
+        if (tracks.tracks.size() < own + 2) tracks.tracks.resize(own + 2);
+        const std::size_t trunk = std::min(trail.trunk, trail.cuts.size());
+        if (trunk > 1) lay_on_track(trail, 0, trunk, tracks.tracks[own], slid, length, amount);
+        if (trail.cuts.size() > trunk + 1)
+            lay_on_track(trail, trunk, trail.cuts.size(), tracks.tracks[own + 1], slid, length, amount);
+    }
+}
+
+}  // namespace tuft::footprint

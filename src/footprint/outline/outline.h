@@ -1,0 +1,56 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "brush/tuft/tuft_state.h"
+#include "footprint/outline/footprint.h"
+
+/// From the bent tuft to the shape of its contact patch.
+namespace tuft::footprint {
+
+/// Closed curve in the tangent plane of the stamp, metres along frame.t and frame.b,
+/// counter-clockwise: a uniform cubic B-spline through the tip point, the cut points of
+/// one side, the tail point and the cut points of the other side (variable-stiffness
+/// brush paper, section 4.1).
+struct Outline {
+    Vec2 tip{0};                ///< T: front end
+    Vec2 tail{0};               ///< H: rear end
+    std::vector<Vec2> left;     ///< cut points from tip to tail
+    std::vector<Vec2> right;    ///< their mirror images where the tuft is symmetric
+    std::vector<Vec2> control;  ///< of the spline, cyclic: point k of the curve at knot k is
+                                ///< (control[k-1] + 4 control[k] + control[k+1]) / 6
+};
+
+struct OutlineOptions {
+    double film = 0.1e-3;  ///< metres of wet hair's ink film: every section is that much thicker
+    int points = 20;       ///< cut points on each side
+};
+
+/// Local contact planes of the nodes of one branch, tip first; see brush::ContactPlane.
+using NodePlanes = std::vector<brush::ContactPlane>;
+
+/// Deals the planes of `brush::predicted_nodes` (whole spine, then sub-spines) out to the
+/// branches of the tuft. Empty when their number fits no such tuft.
+std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes);
+
+/// One outline for each stretch of each branch that touches. Section i at height z with
+/// semi-axes a along e, b along m is cut where |z| ≤ A = √(a² (e·n)² + b² (m·n)²), at
+/// ω± = atan2(b m·n, a e·n) ± acos(−z/A); upright, the half-width is a √(1 − z²/(b m·n)²).
+/// The skin between the nodes is interpolated by cubics, so the outline changes
+/// continuously while sections enter and leave the surface. What is pressed below the
+/// surface counts with the shadow it casts on it. With `planes` (one entry per branch)
+/// each node is cut by the surface it meets and its cut points are laid out along the
+/// surface by the log map; without, the plane is that of `frame`.
+std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes = {},
+                             const OutlineOptions& options = {});
+
+/// Points of the curve, `per_span` for each cut point.
+std::vector<Vec2> curve_points(const Outline& outline, int per_span = 4);
+
+/// Picture of the outlines' union with exact area coverage. `cell` in metres: about a texel
+/// or finer; doubled until the picture has at most 4096 cells a side, when a texel is small
+/// against the tuft. Empty when there is nothing.
+Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle, double cell);
+
+}  // namespace tuft::footprint

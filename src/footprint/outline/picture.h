@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "footprint/outline/footprint.h"
+
+/// The footprint's picture made ready for the kernel, and what is known of its parts.
+namespace tuft::footprint {
+
+/// Instruction sets of the kernels; all give the same bits.
+enum class Isa : std::uint8_t { baseline, avx2, avx512 };
+Isa best_isa();  ///< of this machine
+
+/// Packs every two cells one above the other into a word, the lower one in its low byte:
+/// [(height - 1) width]. Two neighbouring words hold the four corners of a square.
+void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs);
+
+/// The picture [width * height] with its columns as rows, [height * width]. Cost: 0.1 ns a cell.
+void turn_over(std::span<const std::uint8_t> cells, int width, int height, std::vector<std::uint8_t>& turned);
+
+enum class Cover : std::uint8_t { mixed, empty, full };
+
+/// Discs in a picture, to be looked at all at once.
+class Discs {
+  public:
+    void clear() { n_ = 0; }
+    /// In cells; cell (0, 0) has its centre at 0.
+    void add(const Vec2f& centre, float radius) {
+        if (n_ == x_.size()) make_room();
+        // Further ones lie in the outside anyway.
+        const bool sound = std::abs(centre.x) < kFar && std::abs(centre.y) < kFar && radius < kFar;
+        x_[n_] = sound ? centre.x : 0;
+        y_[n_] = sound ? centre.y : 0;
+        r_[n_++] = sound ? radius : kFar;
+    }
+    std::size_t size() const { return n_; }
+    /// Coverage of the cells in disc i, after `BlockTally::look`. May say mixed where it is not.
+    Cover cover(std::size_t i) const;
+
+  private:
+    friend class BlockTally;
+    static constexpr float kFar = 1e5f;  // cells
+    void make_room();
+
+    std::size_t n_ = 0;
+    std::vector<float> x_, y_, r_;      // [n and more, a multiple of 16]
+    std::vector<std::uint32_t> found_;  // blocks not full and, in the upper half, not empty
+};
+
+/// Which blocks of a picture are fully covered and which are empty, counted along the rows
+/// of blocks.
+class BlockTally {
+  public:
+    static constexpr int kBlock = 4;  ///< cells along the side of a block
+
+    /// Takes the picture over; the memory of an earlier one is used again.
+    void count(const Footprint& footprint);
+
+    /// Finds the coverage in each disc. Outside the picture there is none. Cost: 10 ns a disc.
+    void look(Discs& discs, Isa isa) const;
+
+  private:
+    int width_ = 0, height_ = 0;            // blocks
+    int cells_x_ = 0, cells_y_ = 0;         // whole cells
+    std::vector<std::uint32_t> to_left_;    // [height (width + 1)] blocks to the left that are not
+                                            // full, and in the upper half: not empty
+    std::vector<std::uint32_t> all_, any_;  // [width] bits of the cells of a block
+};
+
+}  // namespace tuft::footprint

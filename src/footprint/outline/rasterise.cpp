@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+#include "footprint/outline/outline.h"
+
+namespace tuft::footprint {
+namespace {
+
+constexpr int kMaxCells = 4096;  // along a side
+
+/// What edges add to the covered part along a row: to their own cell the area to their
+/// right, from the next cell on all of the height they cross.
+struct BorderCell {
+    int row, column;
+    float area, height;
+};
+
+/// Collects the border cells of outlines; costs grow with the border, not with the area.
+struct Border {
+    int height;                     ///< rows
+    std::vector<BorderCell> cells;  ///< as drawn
+
+    /// Part of an edge inside one cell.
+    void add_in_cell(int i, int j, double x0, double x1, double dy) {
+        const auto area = static_cast<float>(dy * (1 - (0.5 * (x0 + x1) - i)));
+        const auto whole = static_cast<float>(dy);
+        if (!cells.empty() && cells.back().row == j && cells.back().column == i) {
+            cells.back().area += area;
+            cells.back().height += whole;
+        } else {
+            cells.push_back({j, i, area, whole});
+        }
+    }
+
+    /// Part of an edge inside one row of cells.
+    void add_in_row(int j, double x0, double x1, double dy) {
+        const int first = static_cast<int>(x0), last = static_cast<int>(x1);  // not negative
+        if (first == last) {
+            add_in_cell(first, j, x0, x1, dy);
+            return;
+        }
+        const double per_x = dy / (x1 - x0);
+        const int step = last > first ? 1 : -1;
+        double x = x0;
+        for (int i = first; i != last; i += step) {
+            const double border = step > 0 ? i + 1 : i;
+            add_in_cell(i, j, x, border, per_x * (border - x));
+            x = border;
+        }
+        add_in_cell(last, j, x, x1, per_x * (x1 - x));
+    }
+
+    void add(const Vec2& p, const Vec2& q) {
+        if (p.y == q.y) return;
+        const bool up = q.y > p.y;
+        const Vec2 &lo = up ? p : q, &hi = up ? q : p;
+        const double slope = (hi.x - lo.x) / (hi.y - lo.y);
+        double y = lo.y, x = lo.x;
+        for (int j = static_cast<int>(lo.y); y < hi.y; ++j) {
+            const double next = std::min(hi.y, double(j) + 1);
+            const double x_next = next == hi.y ? hi.x : lo.x + slope * (next - lo.y);
+            add_in_row(j, x, x_next, up ? next - y : y - next);
+            y = next;
+            x = x_next;
+        }
+    }
+
+    /// Coverage of all cells; outlines of one sense cover positively, all together at most once.
+    void resolve(int width, std::uint8_t* out) const {
+        std::vector<std::uint32_t> start(static_cast<std::size_t>(height) + 1, 0);
+        for (const BorderCell& c : cells) ++start[c.row + 1];
+        for (int j = 0; j < height; ++j) start[j + 1] += start[j];
+        std::vector<BorderCell> sorted(cells.size());
+        std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+        for (const BorderCell& c : cells) sorted[next[c.row]++] = c;
+        for (int j = 0; j < height; ++j) {
+            BorderCell *first = sorted.data() + start[j], *last = sorted.data() + start[j + 1];
+            sort_by_column(first, last);
+            std::uint8_t* line = out + static_cast<std::size_t>(j) * width;
+            float height_before = 0;
+            int column = 0;
+            while (first < last) {
+                const int at = first->column;
+                std::fill(line + column, line + at, level(height_before));
+                float area = height_before;
+                for (; first < last && first->column == at; ++first) {
+                    area += first->area;
+                    height_before += first->height;
+                }
+                line[at] = level(area);
+                column = at + 1;
+            }
+            // What is left of the sum beyond the last border is rounding.
+            std::fill(line + column, line + width, std::uint8_t{0});
+        }
+    }
+
+    /// By insertion: a row has few, and most lie in order.
+    static void sort_by_column(BorderCell* first, BorderCell* last) {
+        for (BorderCell* k = first; k < last; ++k) {
+            const BorderCell cell = *k;
+            BorderCell* to = k;
+            for (; to > first && to[-1].column > cell.column; --to) *to = to[-1];
+            *to = cell;
+        }
+    }
+
+    static std::uint8_t level(float covered) {
+        return static_cast<std::uint8_t>(std::min(std::abs(covered), 1.0f) * 255.0f + 0.5f);
+    }
+};
+
+}  // namespace
+
+Footprint disc(const Frame& frame, std::uint32_t triangle, double radius, double cell) {
+    Footprint result;
+    result.frame = frame;
+    result.triangle = triangle;
+    result.cell = cell;
+    const double half = std::ceil(radius / cell) + 2;
+    if (!(half >= 2 && 2 * half <= kMaxCells))
+        throw Error("a disc of " + std::to_string(1e3 * radius) + " mm does not fit into " + std::to_string(kMaxCells) +
+                    " texels: use a larger texel size");
+    result.width = result.height = static_cast<int>(2 * half);
+    result.lo = Vec2{-half * cell};
+    result.radius = radius + cell;
+    result.coverage.reserve(static_cast<std::size_t>(result.width) * result.height);
+    for (int j = 0; j < result.height; ++j) {
+        for (int i = 0; i < result.width; ++i) {
+            const double out = glm::length(Vec2(i, j) + 0.5 - half) - radius / cell;
+            result.coverage.push_back(static_cast<std::uint8_t>(std::clamp(0.5 - out, 0.0, 1.0) * 255 + 0.5));
+        }
+    }
+    return result;
+}
+
+Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle, double cell) {
+    Footprint result;
+    result.frame = frame;
+    result.triangle = triangle;
+    result.cell = cell;
+    std::vector<std::vector<Vec2>> curves;
+    Vec2 lo{1e9}, hi{-1e9};
+    for (const Outline& o : outlines) {
+        curves.push_back(curve_points(o));
+        for (const Vec2& p : curves.back()) {
+            lo = glm::min(lo, p);
+            hi = glm::max(hi, p);
+            result.radius = std::max(result.radius, glm::length(p));
+        }
+    }
+    if (!(lo.x <= hi.x && lo.y <= hi.y)) return result;
+    const double side = std::max(hi.x - lo.x, hi.y - lo.y);
+    if (!std::isfinite(side / cell))
+        throw Error("a footprint " + std::to_string(1e3 * side) + " mm wide has no picture with cells of " +
+                    std::to_string(1e3 * cell) + " mm");
+    while (side > (kMaxCells - 4) * cell) cell *= 2;  // two cells of border on each side
+    const Vec2 first = glm::floor(lo / cell) - 1.0, last = glm::floor(hi / cell) + 2.0;
+    const Vec2 size = last - first;
+    result.cell = cell;
+    result.lo = first * cell;
+    result.width = static_cast<int>(size.x);
+    result.height = static_cast<int>(size.y);
+    result.radius += 2 * cell;
+    Border border{.height = result.height, .cells = {}};
+    border.cells.reserve(4 * static_cast<std::size_t>(result.width + result.height));
+    for (auto& curve : curves) {
+        for (Vec2& p : curve) p = p / cell - first;
+        for (std::size_t k = 0; k < curve.size(); ++k) border.add(curve[k], curve[(k + 1) % curve.size()]);
+    }
+    result.coverage.resize(static_cast<std::size_t>(result.width) * result.height);
+    border.resolve(result.width, result.coverage.data());
+    return result;
+}
+
+}  // namespace tuft::footprint

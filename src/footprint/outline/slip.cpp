@@ -1,0 +1,100 @@
+#include "footprint/outline/slip.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tuft::footprint {
+namespace {
+
+constexpr double kStill = 1e-7;  // metres from stamp to stamp: less is no motion but round-off of hair that sticks
+
+/// Middle and half width of a trail between its cuts.
+struct Place {
+    Vec2 centre{0}, half{0};
+};
+
+Place place_at(const Trail& trail, double along) {
+    const std::vector<double>& a = trail.along;  // falls
+    const auto after = std::lower_bound(a.begin(), a.end(), along, std::greater<>());
+    const std::size_t j = std::clamp<std::size_t>(static_cast<std::size_t>(after - a.begin()), 1, a.size() - 1),
+                      i = j - 1;
+    const double run = a[i] - a[j], f = run > 1e-12 ? std::clamp((a[i] - along) / run, 0.0, 1.0) : 0;
+    const Cut &p = trail.cuts[i], &q = trail.cuts[j];
+    return {glm::mix(p.centre, q.centre, f), glm::mix(p.a * Vec2(p.e), q.a * Vec2(q.e), f)};
+}
+
+/// The trail of the same branch that has most of its hair.
+const Trail* same_hair(const Trail& trail, std::span<const Trail> before) {
+    const Trail* best = nullptr;
+    double most = 0;
+    for (const Trail& b : before) {
+        if (b.branch != trail.branch || b.cuts.size() < 2) continue;
+        const double common =
+            std::min(b.along.front(), trail.along.front()) - std::max(b.along.back(), trail.along.back());
+        if (common > most) most = common, best = &b;
+    }
+    return best;
+}
+
+}  // namespace
+
+void change_frame(std::vector<Trail>& trails, const Frame& from, const Frame& to) {
+    const auto turned = [&](const Vec3& v) {
+        const Vec3 world = v.x * from.t + v.y * from.b + v.z * from.n;
+        return Vec3{glm::dot(world, to.t), glm::dot(world, to.b), glm::dot(world, to.n)};
+    };
+    for (Trail& trail : trails)
+        for (Cut& cut : trail.cuts) {
+            cut.centre = Vec2(to.to_local(from.to_world(Vec3(cut.centre, 0))));
+            cut.e = turned(cut.e);
+            cut.m = turned(cut.m);
+        }
+}
+
+Across::Across(const Trail& trail, std::size_t begin, std::size_t end, std::span<const Trail> before, const Vec2& way) {
+    const Trail* was = same_hair(trail, before);
+    for (std::size_t i = begin; i + 1 < end; ++i) {
+        const Vec2 run = trail.cuts[i + 1].centre - trail.cuts[i].centre;
+        length_ += glm::length(run);
+        if (!was) {
+            const double across = std::abs(run.x * way.y - run.y * way.x);
+            for (double& m : measure_) m += across;
+            continue;
+        }
+        // Hair that only now touches goes as its neighbour does.
+        const double along =
+            std::clamp(0.5 * (trail.along[i] + trail.along[i + 1]), std::max(trail.along.back(), was->along.back()),
+                       std::min(trail.along.front(), was->along.front()));
+        const Place p = place_at(*was, along), q = place_at(trail, along);
+        const Vec2 middle = q.centre - p.centre, spread = q.half - p.half;
+        for (std::size_t k = 0; k < kPlaces; ++k) {
+            const Vec2 went = middle + (2 * static_cast<double>(k) / (kPlaces - 1) - 1) * spread;
+            measure_[k] += std::abs(run.x * went.y - run.y * went.x) / (glm::length(went) + kStill);
+            went_[k] += glm::length(run) * went;
+        }
+    }
+}
+
+namespace {
+
+/// Value at x in [-1, 1] of a row of evenly spaced ones.
+template <class T, std::size_t N>
+T between(const std::array<T, N>& row, double x) {
+    const double u = 0.5 * (std::clamp(x, -1.0, 1.0) + 1) * (N - 1);
+    const auto k = std::min(static_cast<std::size_t>(u), N - 2);
+    return row[k] + (u - static_cast<double>(k)) * (row[k + 1] - row[k]);
+}
+
+}  // namespace
+
+double Across::at(double x) const {
+    return between(measure_, x);
+}
+
+double Across::off_way(double x, const Vec2& way) const {
+    const Vec2 went = between(went_, x);
+    const double lengths = glm::length(went) * glm::length(way);
+    return lengths > 0 ? std::abs(went.x * way.y - went.y * way.x) / lengths : 0;
+}
+
+}  // namespace tuft::footprint

@@ -1,0 +1,146 @@
+#include "footprint/stamp/occluded.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atlas/texels/log_map.h"
+#include "atlas/texels/seams.h"
+#include "mesh/query/exact_geodesics.h"
+
+namespace tuft::footprint {
+namespace {
+
+constexpr double kFewFolds = 0.01;             // of the clusters: fewer are left where the walk placed them
+constexpr double kBeyond = 1.1;                // of the reach: clusters that begin there
+constexpr std::size_t kMostWindows = 120'000;  // some 20 ms
+constexpr double kBeside = 1e-3;               // of a triangle: what places in the atlas are rounded by
+
+Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    const Vec3 a = mesh.position(triangle, 0);
+    return glm::normalize(glm::cross(mesh.position(triangle, 1) - a, mesh.position(triangle, 2) - a));
+}
+
+/// Appearance for centres of clusters in a triangle: of those whose place in the atlas has a centre
+/// inside, or nearly, the one that puts it nearest to where it is counts.
+class Seating {
+  public:
+    Seating(const Surface& surface, TriangleCache& triangle_cache) : surface_(surface), entries_(triangle_cache) {
+        triangle_cache.clear();
+    }
+
+    void look(std::uint32_t t) {
+        const Vec2 a = atlas::corner_texels(surface_.atlas, t, 0);
+        const Vec2 b = atlas::corner_texels(surface_.atlas, t, 1) - a;
+        const Vec2 c = atlas::corner_texels(surface_.atlas, t, 2) - a;
+        const double det = b.x * c.y - b.y * c.x;
+        if (!std::isfinite(a.x + a.y) || !(std::abs(det) > 0) || !std::isfinite(1 / det)) return;
+        const Vec2 lo = a + glm::min(Vec2{0}, glm::min(b, c));
+        const Vec2 hi = a + glm::max(Vec2{0}, glm::max(b, c));
+        const std::int64_t x1 = tile(hi.x), y1 = tile(hi.y);
+        for (std::int64_t y = tile(lo.y); y <= y1; ++y)
+            for (std::int64_t x = tile(lo.x); x <= x1; ++x) {
+                const std::uint32_t slot =
+                    surface_.texels.slot_of_tile[static_cast<std::size_t>(y * surface_.texels.tiles_per_side + x)];
+                if (slot == kNone) continue;
+                const auto& first = surface_.texels.cluster_start;
+                for (std::uint32_t i = first[slot]; i < first[slot + 1]; ++i) {
+                    const atlas::TexelCluster& cluster = surface_.clusters.clusters[i];
+                    if (cluster.chart != surface_.atlas.triangle_chart[t]) continue;
+                    const Vec2 d = Vec2(double(x) * atlas::kTile + cluster.centre_texel % atlas::kTile + 0.5,
+                                        double(y) * atlas::kTile + cluster.centre_texel / atlas::kTile + 0.5) -
+                                   a;
+                    sit(i, t, (d.x * c.y - d.y * c.x) / det, (b.x * d.y - b.y * d.x) / det);
+                }
+            }
+    }
+
+  private:
+    std::int64_t tile(double texels) const {
+        const auto last = static_cast<std::int64_t>(surface_.texels.tiles_per_side) - 1;
+        return std::clamp(static_cast<std::int64_t>(std::floor(texels / atlas::kTile)), std::int64_t{0}, last);
+    }
+
+    void sit(std::uint32_t cluster, std::uint32_t t, double w1, double w2) {
+        const double w0 = 1 - w1 - w2;
+        if (std::min({w0, w1, w2}) < -kBeside) return;
+        const Vec3 off = w0 * surface_.mesh.position(t, 0) + w1 * surface_.mesh.position(t, 1) +
+                         w2 * surface_.mesh.position(t, 2) - Vec3(surface_.clusters.clusters[cluster].centre);
+        entries_.insert(cluster, t, glm::dot(off, off));
+    }
+
+    const Surface& surface_;
+    TriangleCache& entries_;
+};
+
+struct OccludedClusters {
+    const mesh::TriangleMesh& mesh;
+    const mesh::ExactGeodesics& ways;
+    const Frame& from;
+    Vec3 normal;  ///< of the triangle at its origin
+
+    bool place(const atlas::TexelCluster& cluster, std::uint32_t triangle, PlanScratch::Node& n) const {
+        if (triangle == kNone) return false;
+        const mesh::ExactGeodesics::Geodesic way = ways.to(triangle, Vec3(cluster.centre));
+        if (!std::isfinite(way.length)) return false;
+        const Vec2 leaves = atlas::carried_direction(from, way.leaves, normal);
+        const Vec2 arrives =
+            atlas::carried_direction(atlas::frame_of(cluster), way.arrives, face_normal(mesh, triangle));
+        n.u = static_cast<float>(way.length * leaves.x);
+        n.v = static_cast<float>(way.length * leaves.y);
+        n.c = static_cast<float>(glm::dot(leaves, arrives));
+        n.s = static_cast<float>(arrives.x * leaves.y - arrives.y * leaves.x);
+        return true;
+    }
+};
+
+}  // namespace
+
+void TriangleCache::clear() {
+    numbers_.clear();
+    entries_.clear();
+}
+
+void TriangleCache::insert(std::uint32_t cluster, std::uint32_t triangle, double off2) {
+    const auto [entry, is_new] = numbers_.number(cluster);
+    if (is_new)
+        entries_.push_back({triangle, off2});
+    else if (off2 < entries_[entry].off2)
+        entries_[entry] = {triangle, off2};
+}
+
+void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Frame& from, const Reach& reach,
+                      const Start& start, std::size_t occluded, PlanScratch& scratch) {
+    const auto n_clusters = static_cast<double>(scratch.reached.size());
+    if (occluded == 0 || static_cast<double>(occluded) < kFewFolds * n_clusters) return;
+    mesh::ExactGeodesics& ways = scratch.ways;
+    const double radius = kBeyond * static_cast<double>(reach.radius);
+    if (!ways.spread(surface.mesh, triangle, from.origin, radius, kMostWindows)) return;
+    Seating seating(surface, scratch.triangle_cache);
+    for (std::size_t i = 0; i < ways.n_faces(); ++i) seating.look(ways.triangle(i));
+    const OccludedClusters occluded_clusters{surface.mesh, ways, from, face_normal(surface.mesh, triangle)};
+    const atlas::ClusterGraph& graph = surface.clusters;
+    begin_walk(scratch, graph.n_clusters());
+    std::vector<std::uint32_t> open{start.cluster};
+    place_start(scratch, start).state = kFinal;
+    scratch.reached.clear();
+    for (std::size_t i = 0; i < open.size(); ++i) {
+        const std::uint32_t index = open[i];
+        const atlas::TexelCluster& cluster = graph.clusters[index];
+        PlanScratch::Node& n = node_of(scratch, index);
+        const bool placed = occluded_clusters.place(cluster, scratch.triangle_cache.of(index), n);
+        const float distance = std::sqrt(n.u * n.u + n.v * n.v);
+        if (index != start.cluster &&
+            (!placed || distance - kPieceSlack * cluster.radius > reach.radius || faces_away(reach, cluster)))
+            continue;
+        if (in_picture(reach, cluster, n)) scratch.reached.push_back(index);
+        for (std::uint32_t k = graph.edge_start[index]; k < graph.edge_start[index + 1]; ++k) {
+            PlanScratch::Node& other = node_of(scratch, graph.edges[k].to);
+            if (other.state != kOpen) continue;
+            other.state = kFinal;
+            open.push_back(graph.edges[k].to);
+        }
+    }
+    std::sort(scratch.reached.begin(), scratch.reached.end());
+}
+
+}  // namespace tuft::footprint

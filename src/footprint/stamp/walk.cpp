@@ -1,0 +1,355 @@
+#include "footprint/stamp/walk.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <span>
+
+#include "atlas/texels/log_map.h"
+
+namespace tuft::footprint {
+namespace {
+
+constexpr double kFacingAway = atlas::kLogMapMinCos;  // normals beyond this are never touched
+constexpr float kAgree = 0.25f;                       // of a hop: neighbours that differ by more went other ways
+constexpr float kUpwind = 0.2f;                       // cosine to the source of neighbours that lead on
+constexpr float kNearSource = 0.5f;                   // squared distance over hop below which hops are added up
+constexpr float kLeastStretch = 0.6f;                 // and its inverse: beyond, the ways to both differ
+constexpr float kOverBorder = 0.3f;                   // cosine of an open border's outward direction to the source
+constexpr float kDetour = 2;     // cluster radii round the picture in which ways to it are looked for
+constexpr float kFold = 0.99f;   // of the straight line in space: places nearer than that are occluded over themselves
+constexpr float kLater = 1.05f;  // of the squared distance expected: the cluster's turn comes later
+// Ways that bend round a corner (see bent_way).
+constexpr float kShortest = 0.95f;                 // of the straight line in space: a shorter way is none
+constexpr float kBackward = 0.03f, kRound = 0.1f;  // of a hop: ends nearer than it began by so much
+constexpr float kCorner = 0.8f;                    // of a hop, what it adds to a way that bends
+constexpr float kBeside = 1.6f;                    // cluster radii: the source may lie beside the cluster itself
+constexpr float kBetween = 0.8f;                   // of the distance it began at: may lead between two neighbours
+
+constexpr std::uint32_t kMostEdges = 64;  // of a cluster that are looked at
+
+/// Signed angle from p to q, |p||q| = `lengths`, within 5e-5 of itself below 62°; beyond, not a
+/// number. By the tangent of its half and a Padé approximant: the same bits in every library.
+float angle(const Vec2f& p, const Vec2f& q, float lengths) {
+    const float t = (p.x * q.y - p.y * q.x) / (p.x * q.x + p.y * q.y + lengths), t2 = t * t;
+    if (!(t2 < 0.36f)) return std::numeric_limits<float>::quiet_NaN();
+    return 2 * t * (105 + 55 * t2) / (105 + t2 * (90 + 9 * t2));
+}
+
+struct Walk {
+    const atlas::ClusterGraph& graph;
+    PlanScratch& scratch;
+    const Reach& reach;
+    std::uint32_t start;       ///< the cluster touched
+    std::size_t occluded = 0;  ///< clusters that no straight way leads to
+
+    PlanScratch::Node& node(std::uint32_t cluster) { return node_of(scratch, cluster); }
+
+    /// `key`: squared distance from the stamp's origin.
+    void push(PlanScratch::Node& n, std::uint32_t cluster, float key) {
+        n.key = key;
+        scratch.heap.emplace_back(key, cluster);
+        std::push_heap(scratch.heap.begin(), scratch.heap.end(), std::greater<>());
+    }
+
+    /// What one settled neighbour says of a cluster's place.
+    struct Hint {
+        float weight, hop2, u, v, c, s;
+        float bent;  ///< length of the way where it is not straight, else 0
+        const atlas::ClusterEdge* edge;
+    };
+
+    /// Place of a cluster: mean of what its settled neighbours say, those in radial direction and
+    /// near by first. Behind an obstacle the ways round it on both sides lead to different
+    /// places; there the neighbour with most weight and those who agree with it decide. Ways that
+    /// bend round a corner count where no straight one leads. No place is nearer than the straight
+    /// line in space.
+    void place(const atlas::TexelCluster& cluster, std::uint32_t index, PlanScratch::Node& n) {
+        const float least = least_place2(cluster);
+        std::array<Hint, 24> hints;
+        std::size_t count = 0, best = 0, n_straight = 0, n_settled = 0;
+        const std::uint32_t first = graph.edge_start[index];
+        const std::uint32_t end = std::min(graph.edge_start[index + 1], first + kMostEdges);
+        // Listed first: which ones are settled no processor guesses.
+        std::array<std::uint32_t, kMostEdges> settled;
+        for (std::uint32_t k = first; k < end; ++k) {
+            const PlanScratch::Node& from = scratch.nodes[graph.edges[k].to];
+            settled[n_settled] = k;
+            n_settled += (from.epoch == scratch.epoch) & (from.state == kFinal);
+        }
+        for (std::size_t i = 0; i < n_settled && count < hints.size(); ++i) {
+            const atlas::ClusterEdge& e = graph.edges[settled[i]];
+            const PlanScratch::Node& from = scratch.nodes[e.to];
+            const float ci = from.c * e.c + from.s * e.s, si = from.s * e.c - from.c * e.s;
+            const float hu = ci * e.hop_u - si * e.hop_v, hv = si * e.hop_u + ci * e.hop_v;
+            const float pu = from.u - hu, pv = from.v - hv;
+            const float hh = hu * hu + hv * hv, pp = pu * pu + pv * pv, hp = hu * pu + hv * pv;
+            const float way = bent_way(e.to, cluster, pp, hh, least);
+            if (way > 0 && n_straight > 0) continue;
+            if (way == 0 && n_straight++ == 0) count = best = 0;
+            const float cos2 = hh * pp > 0 ? hp * hp / (hh * pp) : 1.0f;
+            const float weight = ((hp < 0 ? cos2 * cos2 : 0.0f) + 1e-4f) / std::sqrt(hh + 1e-20f);
+            hints[count] = {weight, hh, pu, pv, ci, si, way, &e};
+            if (weight > hints[best].weight) best = count;
+            ++count;
+        }
+        if (count == 0) return;
+        const float bent = n_straight > 0 ? 0 : round_corner(std::span(hints.data(), count), best);
+        float total = 0, u = 0, v = 0, c = 0, s = 0;
+        const float agree = kAgree * kAgree * hints[best].hop2;
+        for (std::size_t k = 0; k < count; ++k) {
+            const Hint& h = hints[k];
+            const float du = h.u - hints[best].u, dv = h.v - hints[best].v;
+            if (du * du + dv * dv > agree) continue;
+            total += h.weight;
+            u += h.weight * h.u;
+            v += h.weight * h.v;
+            c += h.weight * h.c;
+            s += h.weight * h.s;
+        }
+        const float turn = std::sqrt(c * c + s * s), away = std::sqrt(u * u + v * v);
+        const float straight = total * std::max(glm::length(cluster.centre - reach.origin), bent);
+        const float longer = away > 0 && away < 0.999f * straight ? straight / away : 1.0f;
+        occluded += bent > 0 || away < kFold * straight;
+        n.u = longer * u / total;
+        n.v = longer * v / total;
+        if (!(turn > 0)) return;
+        n.c = c / turn;
+        n.s = s / turn;
+        if (longer == 1) swing_in(std::span(hints.data(), count), cluster, n);
+        n.lit = is_lit(std::span(hints.data(), count), cluster, n);
+    }
+
+    /// Squared distance below which a place is no way over the surface but a fold laid over itself:
+    /// no way is shorter than the straight line in space.
+    float least_place2(const atlas::TexelCluster& cluster) const {
+        const Vec3f d = cluster.centre - reach.origin;
+        return kShortest * kShortest * glm::dot(d, d);
+    }
+
+    /// Where all ways bend: the shortest of them and its length; 0 where neighbours on both sides of the
+    /// straight way agree, so that it leads between them.
+    float round_corner(std::span<const Hint> hints, std::size_t& best) const {
+        for (std::size_t k = 0; k < hints.size(); ++k)
+            if (hints[k].bent < hints[best].bent) best = k;
+        const PlanScratch::Node& from = scratch.nodes[hints[best].edge->to];
+        const float place2 = hints[best].u * hints[best].u + hints[best].v * hints[best].v;
+        if (place2 < kBetween * kBetween * (from.u * from.u + from.v * from.v)) return hints[best].bent;
+        const float agree = kAgree * kAgree * hints[best].hop2, x = beside(hints[best]);
+        for (const Hint& h : hints) {
+            const float du = h.u - hints[best].u, dv = h.v - hints[best].v;
+            if (du * du + dv * dv <= agree && beside(h) * x < 0) return 0;
+        }
+        return hints[best].bent;
+    }
+
+    /// On which side of the straight way to its place the neighbour lies that gives the hint.
+    float beside(const Hint& h) const {
+        const PlanScratch::Node& from = scratch.nodes[h.edge->to];
+        return h.u * from.v - h.v * from.u;
+    }
+
+    /// A straight way from the source over a settled cluster to the next ends further away than the cluster
+    /// lies, and no nearer than the straight line in space. Where folds unrolled over each other say
+    /// otherwise, the true way bends round a corner; its length is taken to be the cluster's distance and
+    /// `kCorner` of the hop. 0: the way is straight.
+    float bent_way(std::uint32_t last, const atlas::TexelCluster& next, float place2, float hop2, float least2) const {
+        const PlanScratch::Node& from = scratch.nodes[last];
+        const float from2 = from.u * from.u + from.v * from.v;
+        if (place2 >= from2 && place2 >= least2) return 0;
+        // Over an opening the surface goes on as if there were none.
+        if (last == start || !from.lit || next.outward != Vec3f{0}) return 0;
+        const float beside = kBeside * graph.clusters[last].radius;
+        if (from2 < beside * beside) return 0;
+        const float place = std::sqrt(place2), far = std::sqrt(from2), hop = std::sqrt(hop2);
+        const float back = place2 < least2 ? 1.0f : std::min((far - place) / hop - kBackward, kRound) / kRound;
+        return back > 0 ? place + back * (far + kCorner * hop - place) : 0;
+    }
+
+    /// Whether straight ways lead from the source to the cluster, and no opening of the mesh lies
+    /// between: its own open border does not face the source, and the neighbour next to the way is lit.
+    bool is_lit(std::span<const Hint> hints, const atlas::TexelCluster& cluster, const PlanScratch::Node& n) const {
+        bool lit = true;
+        for (const Hint& h : hints) lit = lit && scratch.nodes[h.edge->to].lit;
+        if (lit && cluster.outward == Vec3f{0}) return true;
+        const float d = std::sqrt(n.u * n.u + n.v * n.v);
+        const float sx = -(n.c * n.u + n.s * n.v), sy = -(n.c * n.v - n.s * n.u);
+        const Vec3f b = glm::cross(cluster.normal, cluster.tangent);
+        const Vec3f to_source = sx * cluster.tangent + sy * b;
+        if (glm::dot(cluster.outward, to_source) > kOverBorder * d * glm::length(cluster.outward)) return false;
+        const Hint* nearest = nullptr;
+        float most = -2;
+        for (const Hint& h : hints) {
+            const float cos = (h.edge->hop_u * sx + h.edge->hop_v * sy) / (d * std::sqrt(h.hop2));
+            if (!(cos > most)) continue;
+            most = cos;
+            nearest = &h;
+        }
+        return !nearest || scratch.nodes[nearest->edge->to].lit;
+    }
+
+    /// Carries distance and angle on from two settled neighbours with the source between them
+    /// (geodesic polar coordinates, Melvær and Reimers 2012): the circles of their distances meet
+    /// in the unfolded source, and angles at it are in proportion to angles at the origin. Where the
+    /// surface curves, adding up hops would turn the cluster by the curvature that they enclose.
+    void swing_in(std::span<const Hint> hints, const atlas::TexelCluster& cluster, PlanScratch::Node& n) {
+        const float d = std::sqrt(n.u * n.u + n.v * n.v);
+        if (!(d > 0)) return;
+        // Towards the source, in the cluster's frame.
+        const float sx = -(n.c * n.u + n.s * n.v) / d, sy = -(n.c * n.v - n.s * n.u) / d;
+        const Hint *left = nullptr, *right = nullptr;
+        float left_cos = kUpwind, right_cos = kUpwind;
+        for (const Hint& h : hints) {
+            const float du = h.u - n.u, dv = h.v - n.v;
+            if (du * du + dv * dv > kAgree * kAgree * h.hop2) continue;
+            const float x = h.edge->hop_u, y = h.edge->hop_v, length = std::sqrt(h.hop2);
+            const float cos = (x * sx + y * sy) / length;
+            const bool is_left = sx * y - sy * x > 0;
+            const bool more_left = is_left & (cos > left_cos), more_right = !is_left & (cos > right_cos);
+            left = more_left ? &h : left;
+            left_cos = more_left ? cos : left_cos;
+            right = more_right ? &h : right;
+            right_cos = more_right ? cos : right_cos;
+        }
+        if (!left || !right) return;
+        const PlanScratch::Node &a = scratch.nodes[left->edge->to], &b = scratch.nodes[right->edge->to];
+        const Vec2f pa{left->edge->hop_u, left->edge->hop_v}, pb{right->edge->hop_u, right->edge->hop_v};
+        const Vec2f ab = pb - pa;
+        const float da2 = a.u * a.u + a.v * a.v, db2 = b.u * b.u + b.v * b.v, l2 = glm::dot(ab, ab);
+        if (!(l2 > 0) || std::min(da2, db2) < kNearSource * l2) return;
+        const float x = (da2 - db2 + l2) / (2 * l2);
+        const float y2 = da2 / l2 - x * x;
+        if (!(y2 > 0)) return;
+        // The source lies beyond the line a–b from here.
+        const Vec2f across{-ab.y, ab.x};
+        const float side = glm::dot(across, pa) > 0 ? 1.0f : -1.0f;
+        const Vec2f source = pa + x * ab + side * std::sqrt(y2) * across;
+        const Vec2f ra = pa - source, rb = pb - source;
+        const float da = std::sqrt(da2), db = std::sqrt(db2), far = glm::length(source);
+        const float here = angle(ra, rb, da * db);
+        const float stretch = angle({a.u, a.v}, {b.u, b.v}, da * db) / here;
+        if (!(stretch > kLeastStretch && stretch < 1 / kLeastStretch)) return;
+        const float turned = stretch * angle(ra, -source, da * far);
+        if (!(std::abs(turned) < 1)) return;
+        const float x2 = turned * turned;
+        const float sin = turned * (1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42)));
+        const float cos = 1 - x2 / 2 * (1 - x2 / 12 * (1 - x2 / 30 * (1 - x2 / 56)));
+        const float eu = (cos * a.u - sin * a.v) / da, ev = (sin * a.u + cos * a.v) / da;
+        if (far < 0.999f * glm::length(cluster.centre - reach.origin)) return;
+        n.u = far * eu;
+        n.v = far * ev;
+        const float ex = -source.x / far, ey = -source.y / far;
+        n.c = eu * ex + ev * ey;
+        n.s = ev * ex - eu * ey;
+        n.stretch = stretch;
+    }
+
+    /// Worth a visit where one neighbour sees it: in the picture or on a way into it. Its final
+    /// place may be a little nearer.
+    bool near_picture(const atlas::TexelCluster& cluster, float u, float v) const {
+        const float r = kDetour * cluster.radius;
+        const float du = std::max({std::min(reach.lo.x, 0.0f) - u, u - std::max(reach.hi.x, 0.0f), 0.0f});
+        const float dv = std::max({std::min(reach.lo.y, 0.0f) - v, v - std::max(reach.hi.y, 0.0f), 0.0f});
+        const float far = reach.radius + (kPieceSlack + kAgree) * cluster.radius;
+        return du * du + dv * dv <= r * r && u * u + v * v <= far * far;
+    }
+
+    /// Dijkstra over the clusters by distance from the stamp's origin; leaves those that the
+    /// picture reaches in scratch.reached, in order of their numbers.
+    void run() {
+        scratch.reached.clear();
+        while (!scratch.heap.empty()) {
+            std::pop_heap(scratch.heap.begin(), scratch.heap.end(), std::greater<>());
+            const auto [key, i] = scratch.heap.back();
+            scratch.heap.pop_back();
+            PlanScratch::Node& n = scratch.nodes[i];
+            if (n.state != kOpen || key > n.key) continue;
+            const atlas::TexelCluster& cluster = graph.clusters[i];
+            if (i != start) place(cluster, i, n);
+            const float distance = std::sqrt(n.u * n.u + n.v * n.v);
+            // Its turn comes later where the neighbours see it further away than the first of them did.
+            if (distance * distance > kLater * key && i != start) {
+                if (distance - kPieceSlack * cluster.radius > reach.radius)
+                    n.state = kOutside;
+                else
+                    push(n, i, distance * distance);
+                continue;
+            }
+            n.state = kOutside;
+            if (distance - kPieceSlack * cluster.radius > reach.radius || faces_away(reach, cluster)) continue;
+            n.state = kFinal;
+            if (in_picture(reach, cluster, n)) scratch.reached.push_back(i);
+            for (std::uint32_t k = graph.edge_start[i]; k < graph.edge_start[i + 1]; ++k) {
+                const atlas::ClusterEdge& e = graph.edges[k];
+                PlanScratch::Node& other = node(e.to);
+                if (other.state != kOpen) continue;
+                const float u = n.u + n.c * e.hop_u - n.s * e.hop_v;
+                const float v = n.v + n.s * e.hop_u + n.c * e.hop_v;
+                const float distance2 = u * u + v * v;
+                const atlas::TexelCluster& next = graph.clusters[e.to];
+                const float hop2 = e.hop_u * e.hop_u + e.hop_v * e.hop_v;
+                const float bent = bent_way(i, next, distance2, hop2, least_place2(next));
+                const float key2 = bent > 0 ? bent * bent : distance2;
+                if (key2 < other.key && near_picture(next, u, v)) push(other, e.to, key2);
+            }
+        }
+        std::sort(scratch.reached.begin(), scratch.reached.end());
+    }
+};
+
+}  // namespace
+
+PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t cluster) {
+    PlanScratch::Node& n = scratch.nodes[cluster];
+    if (n.epoch != scratch.epoch) {
+        n = {};
+        n.epoch = scratch.epoch;
+        n.key = std::numeric_limits<float>::infinity();
+    }
+    return n;
+}
+
+bool faces_away(const Reach& reach, const atlas::TexelCluster& cluster) {
+    const float c = glm::dot(cluster.normal, reach.normal);
+    if (c > kFacingAway) return false;
+    return std::acos(std::max(c, -1.0f)) - std::acos(std::min(cluster.cone_cos, 1.0f)) >
+           std::acos(static_cast<float>(kFacingAway));
+}
+
+bool in_picture(const Reach& reach, const atlas::TexelCluster& cluster, const PlanScratch::Node& n) {
+    const float r = kPieceSlack * cluster.radius;
+    const float du = std::max({reach.lo.x - n.u, n.u - reach.hi.x, 0.0f});
+    const float dv = std::max({reach.lo.y - n.v, n.v - reach.hi.y, 0.0f});
+    return du * du + dv * dv <= r * r;
+}
+
+void begin_walk(PlanScratch& scratch, std::size_t n_clusters) {
+    if (scratch.epoch == kNone) {
+        scratch.nodes.clear();
+        scratch.epoch = 0;
+    }
+    if (scratch.nodes.size() < n_clusters) scratch.nodes.resize(n_clusters);
+    ++scratch.epoch;
+    scratch.heap.clear();
+}
+
+PlanScratch::Node& place_start(PlanScratch& scratch, const Start& start) {
+    PlanScratch::Node& n = node_of(scratch, start.cluster);
+    n.u = start.place.x;
+    n.v = start.place.y;
+    n.c = start.turn.x;
+    n.s = start.turn.y;
+    return n;
+}
+
+std::size_t walk_clusters(const atlas::ClusterGraph& graph, const Reach& reach, const Start& start,
+                          PlanScratch& scratch) {
+    begin_walk(scratch, graph.n_clusters());
+    Walk walk{graph, scratch, reach, start.cluster};
+    walk.push(place_start(scratch, start), start.cluster, 0);
+    walk.run();
+    return walk.occluded;
+}
+
+}  // namespace tuft::footprint

@@ -1,0 +1,127 @@
+#include "io/image/image.h"
+
+#include <dlfcn.h>
+
+#include <cassert>
+#include <cstring>
+
+#include "core/error.h"
+#include "core/system/files.h"
+#include "io/image/image_codec.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::io {
+namespace {
+
+constexpr const char* kModule = "libtuft_images.so";
+
+const ImageCodec& load_codec() {
+    std::vector<fs::path> places;
+    std::error_code ec;
+    const fs::path program = fs::read_symlink("/proc/self/exe", ec).parent_path();
+    if (!ec) {
+        places.push_back(program / kModule);
+        places.push_back(program.parent_path() / "lib" / "tuft" / kModule);
+        places.push_back(program.parent_path() / TUFT_LIBDIR / "tuft" / kModule);
+    }
+    const fs::path prefix = data_folder().parent_path().parent_path();  // of an installed share/tuft
+    places.push_back(prefix / TUFT_LIBDIR / "tuft" / kModule);
+    places.emplace_back(TUFT_IMAGES_BUILT);
+    std::string tried, fault;
+    for (const fs::path& place : places) {
+        tried += (tried.empty() ? "" : ", ") + place.string();
+        if (!fs::exists(place, ec)) continue;
+        void* module = dlopen(place.c_str(), RTLD_LAZY | RTLD_LOCAL);
+        if (!module) {
+            fault = dlerror();
+            continue;
+        }
+        using Entry = const ImageCodec* (*)();
+        if (void* entry = dlsym(module, kImageCodecSymbol)) return *reinterpret_cast<Entry>(entry)();
+        fault = "it has no " + std::string(kImageCodecSymbol);
+    }
+    throw Error("the picture library cannot be loaded" + (fault.empty() ? "" : ": " + fault) + " (looked for " + tried +
+                ")");
+}
+
+const ImageCodec& codec() {
+    static const ImageCodec& loaded = load_codec();
+    return loaded;
+}
+
+std::vector<unsigned char> encode(ImageFormat format, const PixelView& pixels, const ImageOptions& options,
+                                  const std::string& name) {
+    if (pixels.width <= 0 || pixels.height <= 0 || pixels.channels <= 0 || !pixels.first)
+        throw Error(name, "the picture is empty");
+    if (format == ImageFormat::png && pixels.channels > 4)
+        throw Error(name,
+                    "a PNG file has 1 to 4 channels, not " + std::to_string(pixels.channels) + "; write an EXR file");
+    assert(options.channel_names.empty() || options.channel_names.size() == static_cast<std::size_t>(pixels.channels));
+    std::vector<unsigned char> bytes;
+    const std::string fault = codec().encode({.format = format, .pixels = pixels, .options = &options}, bytes);
+    if (!fault.empty()) throw Error(name, fault);
+    return bytes;
+}
+
+ImageFormat format_of(const std::vector<char>& bytes, const fs::path& path) {
+    const auto starts = [&](std::string_view magic) {
+        return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+    };
+    if (starts("\x89PNG\r\n\x1a\n")) return ImageFormat::png;
+    if (starts("\x76\x2f\x31\x01")) return ImageFormat::exr;
+    if (starts("\xff\xd8\xff")) return ImageFormat::jpeg;
+    if (starts("II*") || starts(std::string_view("MM\0*", 4))) return ImageFormat::tiff;
+    throw Error(path.string(), "is not a PNG, EXR, JPEG or TIFF picture");
+}
+
+template <class T>
+Image<T> decode(const std::vector<char>& bytes, const fs::path& path, std::size_t max_pixels) {
+    DecodedImage decoded;
+    const std::string fault = codec().decode({.format = format_of(bytes, path),
+                                              .bytes = bytes.data(),
+                                              .size = bytes.size(),
+                                              .type = view_of<T>(1, 1, 1, nullptr).type,
+                                              .max_pixels = max_pixels},
+                                             decoded);
+    if (!fault.empty()) throw Error(path.string(), "the picture cannot be read: " + fault);
+    Image<T> image{.width = decoded.width,
+                   .height = decoded.height,
+                   .channels = decoded.channels,
+                   .pixels = {},
+                   .channel_names = std::move(decoded.channel_names)};
+    image.pixels.resize(decoded.bytes.size() / sizeof(T));
+    std::memcpy(image.pixels.data(), decoded.bytes.data(), image.pixels.size() * sizeof(T));
+    return image;
+}
+
+}  // namespace
+
+void write_image(const fs::path& path, const PixelView& pixels, const ImageOptions& options) {
+    const std::string extension = path.extension().string();
+    if (extension != ".png" && extension != ".exr")
+        throw Error(path.string(), "pictures are written as .png or .exr, not as '" + extension + "'");
+    const std::vector<unsigned char> bytes =
+        encode(extension == ".png" ? ImageFormat::png : ImageFormat::exr, pixels, options, path.string());
+    write_file(path, bytes.data(), bytes.size());
+}
+
+std::vector<unsigned char> png_bytes(const PixelView& pixels, const ImageOptions& options) {
+    return encode(ImageFormat::png, pixels, options, "PNG");
+}
+
+Image8 decode_image8(const std::vector<char>& bytes, const std::string& name, std::size_t max_pixels) {
+    return decode<std::uint8_t>(bytes, name, max_pixels);
+}
+
+Image8 read_image8(const fs::path& path, std::size_t max_pixels) {
+    return decode<std::uint8_t>(read_file(path), path, max_pixels);
+}
+Image16 read_image16(const fs::path& path, std::size_t max_pixels) {
+    return decode<std::uint16_t>(read_file(path), path, max_pixels);
+}
+ImageF read_image_float(const fs::path& path, std::size_t max_pixels) {
+    return decode<float>(read_file(path), path, max_pixels);
+}
+
+}  // namespace tuft::io

@@ -1,0 +1,130 @@
+// The module `tuft_images`: the only code that sees OpenImageIO.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "io/image/image_codec.h"
+
+namespace tuft::io {
+namespace {
+
+const char* extension_of(ImageFormat format) {
+    switch (format) {
+        case ImageFormat::png:
+            return "picture.png";
+        case ImageFormat::exr:
+            return "picture.exr";
+        case ImageFormat::jpeg:
+            return "picture.jpg";
+        case ImageFormat::tiff:
+            return "picture.tif";
+    }
+    return "";
+}
+
+OIIO::TypeDesc type_of(PixelView::Type type) {
+    switch (type) {
+        case PixelView::Type::u8:
+            return OIIO::TypeDesc::UINT8;
+        case PixelView::Type::u16:
+            return OIIO::TypeDesc::UINT16;
+        case PixelView::Type::f32:
+            return OIIO::TypeDesc::FLOAT;
+    }
+    return OIIO::TypeDesc::UNKNOWN;
+}
+
+std::string encode_checked(const EncodeRequest& request, std::vector<unsigned char>& out) {
+    const PixelView& px = request.pixels;
+    const bool exr = request.format == ImageFormat::exr;
+    OIIO::TypeDesc stored = type_of(px.type);
+    if (exr) stored = request.options->half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
+    if (!exr && px.type == PixelView::Type::f32) stored = OIIO::TypeDesc::UINT16;
+
+    OIIO::ImageSpec spec(px.width, px.height, px.channels, stored);
+    static const std::vector<std::string> names[5] = {{}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+    if (!request.options->channel_names.empty())
+        spec.channelnames = request.options->channel_names;
+    else if (px.channels <= 4)
+        spec.channelnames = names[px.channels];
+    spec.alpha_channel = !exr && px.channels % 2 == 0 ? px.channels - 1 : -1;
+    // Pixels count as premultiplied otherwise, and colour is lost where alpha is 0.
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    if (!exr && request.options->srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+    if (exr) {
+        spec.attribute("compression", "zip");
+        // Otherwise the time of day goes into the file, and no two are the same.
+        spec.attribute("DateTime", "1970:01:01 00:00:00");
+    } else
+        spec.attribute("png:compressionLevel", request.options->compression);
+
+    const char* name = extension_of(request.format);
+    OIIO::Filesystem::IOVecOutput memory;
+    std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name, &memory);
+    if (!output) return OIIO::geterror();
+    if (!output->open(name, spec)) return output->geterror();
+    if (!output->write_image(type_of(px.type), px.first, OIIO::AutoStride, px.row_bytes)) return output->geterror();
+    if (!output->close()) return output->geterror();
+    out = memory.buffer();
+    return out.empty() ? "the encoder wrote nothing" : "";
+}
+
+std::string decode_checked(const DecodeRequest& request, DecodedImage& out) {
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    OIIO::Filesystem::IOMemReader memory(const_cast<void*>(request.bytes), request.size);
+    const char* name = extension_of(request.format);
+    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(name, false, &config, &memory);
+    if (!input) return OIIO::geterror();
+    OIIO::ImageSpec spec;
+    if (!input->set_ioproxy(&memory) || !input->open(name, spec, config)) return input->geterror();
+    if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1) return "it has no pixels";
+    if (static_cast<std::size_t>(spec.width) > request.max_pixels / static_cast<std::size_t>(spec.height) ||
+        spec.nchannels > 64)
+        return "it has " + std::to_string(spec.width) + " × " + std::to_string(spec.height) + " pixels with " +
+               std::to_string(spec.nchannels) + " channels, which is too many";
+    out.width = spec.width;
+    out.height = spec.height;
+    out.channels = spec.nchannels;
+    out.channel_names = spec.channelnames;
+    const OIIO::TypeDesc type = type_of(request.type);
+    out.bytes.resize(std::size_t(spec.width) * spec.height * spec.nchannels * type.size());
+    if (!input->read_image(0, 0, 0, spec.nchannels, type, out.bytes.data())) return input->geterror();
+    return "";
+}
+
+/// One line, whatever the library says.
+std::string one_line(std::string text, const char* fallback) {
+    if (text.empty()) return fallback;
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
+
+std::string encode(const EncodeRequest& request, std::vector<unsigned char>& out) {
+    try {
+        const std::string fault = encode_checked(request, out);
+        return out.empty() ? one_line(fault, "the picture cannot be encoded") : "";
+    } catch (const std::exception& e) {
+        return one_line(e.what(), "the picture cannot be encoded");
+    }
+}
+
+std::string decode(const DecodeRequest& request, DecodedImage& out) {
+    try {
+        const std::string fault = decode_checked(request, out);
+        return fault.empty() && !out.bytes.empty() ? "" : one_line(fault, "it is damaged");
+    } catch (const std::exception& e) {
+        return one_line(e.what(), "it is damaged");
+    }
+}
+
+const ImageCodec kCodec{.encode = encode, .decode = decode};
+
+}  // namespace
+}  // namespace tuft::io
+
+extern "C" __attribute__((visibility("default"))) const tuft::io::ImageCodec* tuft_image_codec() {
+    return &tuft::io::kCodec;
+}

@@ -1,0 +1,89 @@
+#include "io/model/read_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+#include "core/system/files.h"
+#include "io/model/materials.h"
+#include "io/model/read_gltf.h"
+
+namespace tuft::io {
+namespace {
+
+enum class Format { obj, ply, stl, off, glb, gltf };
+
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+std::optional<Format> by_extension(const std::filesystem::path& path) {
+    constexpr std::array<std::pair<std::string_view, Format>, 6> known{{{".obj", Format::obj},
+                                                                        {".ply", Format::ply},
+                                                                        {".stl", Format::stl},
+                                                                        {".off", Format::off},
+                                                                        {".glb", Format::glb},
+                                                                        {".gltf", Format::gltf}}};
+    const std::string extension = lower_extension(path);
+    for (const auto& [name, format] : known)
+        if (extension == name) return format;
+    return std::nullopt;
+}
+
+/// Formats that say what they are in their first bytes.
+std::optional<Format> by_content(std::string_view bytes) {
+    if (bytes.starts_with("glTF")) return Format::glb;
+    if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return Format::ply;
+    for (const std::string_view magic : {"OFF", "COFF", "NOFF", "STOFF", "CNOFF", "STNOFF", "STCNOFF"})
+        if (bytes.starts_with(magic) && bytes.size() > magic.size() &&
+            (std::isspace(static_cast<unsigned char>(bytes[magic.size()])) ||
+             std::isdigit(static_cast<unsigned char>(bytes[magic.size()]))))
+            return Format::off;
+    return std::nullopt;
+}
+
+mesh::PolygonSoup read_polygons(Format format, const std::vector<char>& bytes, const std::filesystem::path& path) {
+    switch (format) {
+        case Format::obj:
+            return mesh::read_obj(bytes, path);
+        case Format::ply:
+            return mesh::read_ply(bytes, path);
+        case Format::stl:
+            return mesh::read_stl(bytes, path);
+        case Format::off:
+            return mesh::read_off(bytes, path);
+        default:
+            return {};
+    }
+}
+
+}  // namespace
+
+mesh::PolygonSoup read_model(const std::filesystem::path& path) {
+    const std::vector<char> bytes = read_file(path);
+    std::optional<Format> format = by_content({bytes.data(), std::min<std::size_t>(bytes.size(), 16)});
+    if (!format) format = by_extension(path);
+    if (!format) throw Error(path.string(), "is no model format tuft knows; it reads OBJ, PLY, STL, OFF, GLB and glTF");
+    if (bytes.size() >= 2 &&
+        (std::memcmp(bytes.data(), "\xff\xfe", 2) == 0 || std::memcmp(bytes.data(), "\xfe\xff", 2) == 0))
+        throw Error(path.string(), "is text in UTF-16; save it as UTF-8 or ASCII");
+    if (*format == Format::glb || *format == Format::gltf) return read_gltf(bytes, path);
+    mesh::PolygonSoup soup = read_polygons(*format, bytes, path);
+    read_materials(soup, path);
+    return soup;
+}
+
+std::optional<double> metres_per_unit_of(const std::filesystem::path& path) {
+    const std::string extension = lower_extension(path);
+    if (extension == ".glb" || extension == ".gltf") return 1.0;
+    return std::nullopt;
+}
+
+}  // namespace tuft::io

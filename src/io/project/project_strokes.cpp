@@ -1,0 +1,151 @@
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "io/project/project_db.h"
+
+namespace tuft::io {
+namespace {
+
+constexpr std::size_t kFields = 11;  // per sample
+constexpr std::size_t kMostWord = 4096, kMostLabel = std::size_t{1} << 20,
+                      kMostSettings = std::size_t{1} << 25;      // bytes
+constexpr std::uintmax_t kLookEvery = std::uintmax_t{64} << 20;  // bytes of samples between two looks at what is free
+constexpr Packing kSamples{.element = 8, .lag = 1, .level = 6};
+
+/// All times, then all x, ...: columns of like numbers compress well.
+std::vector<double> columns_of(const std::vector<stroke::TraceSample>& samples) {
+    const std::size_t n = samples.size();
+    std::vector<double> out(kFields * n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const stroke::TraceSample& s = samples[i];
+        const std::array<double, kFields> fields{s.time,       s.position.x, s.position.y, s.position.z,
+                                                 s.pressure,   s.tilt.x,     s.tilt.y,     s.rotation.w,
+                                                 s.rotation.x, s.rotation.y, s.rotation.z};
+        for (std::size_t f = 0; f < kFields; ++f) out[f * n + i] = fields[f];
+    }
+    return out;
+}
+
+std::vector<stroke::TraceSample> samples_of(const std::vector<double>& columns) {
+    const std::size_t n = columns.size() / kFields;
+    std::vector<stroke::TraceSample> samples(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto field = [&](std::size_t f) { return columns[f * n + i]; };
+        samples[i] = {.time = field(0),
+                      .position = {field(1), field(2), field(3)},
+                      .pressure = field(4),
+                      .tilt = {field(5), field(6)},
+                      .rotation = Quat(field(7), field(8), field(9), field(10))};
+    }
+    return samples;
+}
+
+std::array<double, 9> numbers_of(const stroke::Placement& p) {
+    return {p.origin.x, p.origin.y, p.origin.z, p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z};
+}
+
+}  // namespace
+
+void store_strokes(SQLite::Database& db, const std::filesystem::path& path, std::span<const stroke::Stroke> strokes) {
+    SQLite::Statement insert(db,
+                             "INSERT INTO strokes(id, brush, ink, seed, label, settings, hidden, flat, "
+                             "laying, placement, sample_count, samples) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    for (const stroke::Stroke& stroke : strokes) {
+        const stroke::Trace& t = stroke.trace;
+        const std::vector<double> columns = columns_of(t.samples);
+        const std::array<double, 9> placement = numbers_of(t.placement);
+        try {
+            stroke::check_trace(t);
+        } catch (const Error& error) {
+            throw Error(path.string(), "stroke " + std::to_string(stroke.id) + " is not stored: " + error.what());
+        }
+        const std::vector<char> blob = pack(columns.data(), columns.size(), kSamples);
+        insert.bind(1, static_cast<std::int64_t>(stroke.id));
+        insert.bind(2, t.brush);
+        insert.bind(3, t.ink);
+        insert.bind(4, static_cast<std::int64_t>(t.seed));
+        insert.bind(5, t.label);
+        insert.bind(6, stroke::entry_json(stroke));
+        insert.bind(7, stroke.hidden ? 1 : 0);
+        insert.bind(8, t.flat ? 1 : 0);
+        insert.bind(9, std::string(stroke::surface_mapping_name(t.placement.mapping)));
+        insert.bind(10, placement.data(), static_cast<int>(sizeof placement));
+        insert.bind(11, static_cast<std::int64_t>(t.samples.size()));
+        insert.bind(12, blob.data(), static_cast<int>(blob.size()));
+        insert.exec();
+        insert.reset();
+        if (stroke::keeps_texels(stroke.action) || stroke.action == stroke::Action::fill || stroke.mask != 0 ||
+            stroke.layer != stroke::kFirstLayer || stroke.trace.erases)
+            raise_format(db, kLayersFormat);
+        if (stroke.layer == stroke::kPaletteLayer || stroke.action == stroke::Action::wash)
+            raise_format(db, kPaletteFormat);
+        if (t.flat && t.placement.mapping == stroke::SurfaceMapping::drape) raise_format(db, kDrapedFormat);
+        if (!t.stencil.empty()) raise_format(db, kTapedFormat);
+    }
+}
+
+std::vector<stroke::Stroke> load_strokes(SQLite::Database& db, const std::filesystem::path& path,
+                                         const ProgressFn& progress) {
+    const std::int64_t n = db.execAndGet("SELECT count(*) FROM strokes").getInt64();
+    if (n > kMaxEntries)
+        damaged(path, "it has " + std::to_string(n) + " strokes, more than the " + std::to_string(kMaxEntries) +
+                          " that are read");
+    check_memory(path, static_cast<std::uintmax_t>(n) * sizeof(stroke::Stroke));
+    SQLite::Statement select(db,
+                             "SELECT id, brush, ink, seed, label, settings, hidden, flat, laying, placement, "
+                             "sample_count, samples FROM strokes ORDER BY ordinal");
+    std::vector<stroke::Stroke> strokes;
+    std::uintmax_t bytes = 0, checked = 0;
+    while (select.executeStep()) {
+        report(progress, "reading", 0);
+        stroke::Stroke stroke;
+        stroke::Trace& t = stroke.trace;
+        stroke.id = static_cast<std::uint64_t>(select.getColumn(0).getInt64());
+        const std::string what = path.string() + ": the project is damaged: stroke " + std::to_string(stroke.id);
+        const auto text = [&](int column, std::size_t most, const char* of_what) {
+            return text_of(select.getColumn(column), most, path, of_what);
+        };
+        t.brush = text(1, kMostWord, "the brush of a stroke");
+        t.ink = text(2, kMostWord, "the ink of a stroke");
+        t.seed = static_cast<std::uint64_t>(select.getColumn(3).getInt64());
+        t.label = text(4, kMostLabel, "the label of a stroke");
+        stroke::read_entry_json(text(5, kMostSettings, "the settings of a stroke"), stroke);
+        stroke.hidden = select.getColumn(6).getInt() != 0;
+        t.flat = select.getColumn(7).getInt() != 0;
+        const auto mapping = stroke::surface_mapping_named(text(8, kMostWord, "the mapping of a stroke"));
+        if (!mapping) throw Error(what + " is mapped onto the model in a way that is not known");
+        t.placement.mapping = *mapping;
+        const SQLite::Column placement = select.getColumn(9);
+        std::array<double, 9> p{};
+        if (placement.getBytes() != static_cast<int>(sizeof p)) throw Error(what + " has no valid placement");
+        std::memcpy(p.data(), placement.getBlob(), sizeof p);
+        t.placement.origin = {p[0], p[1], p[2]};
+        t.placement.right = {p[3], p[4], p[5]};
+        t.placement.down = {p[6], p[7], p[8]};
+        const std::int64_t count = select.getColumn(10).getInt64();
+        if (count < 0 || count > kMaxSamples) throw Error(what + " has an impossible number of samples");
+        const SQLite::Column blob = select.getColumn(11);
+        const auto size = static_cast<std::size_t>(blob.getBytes());
+        const std::size_t numbers = kFields * static_cast<std::size_t>(count);
+        check_packed(blob.getBlob(), size, numbers * sizeof(double), what);
+        // Its columns, and them as they are unpacked, go again.
+        bytes += sizeof(stroke::TraceSample) * static_cast<std::uintmax_t>(count);
+        if (const auto now = 3 * numbers * sizeof(double); bytes - checked + now > kLookEvery)
+            check_memory(path, bytes - std::exchange(checked, bytes) + now);
+        std::vector<double> columns(numbers);
+        unpack(blob.getBlob(), size, columns.data(), numbers, kSamples, what);
+        t.samples = samples_of(columns);
+        try {
+            stroke::check_trace(t);
+        } catch (const Error& error) {
+            throw Error(what + ": " + error.what());
+        }
+        strokes.push_back(std::move(stroke));
+    }
+    return strokes;
+}
+
+}  // namespace tuft::io

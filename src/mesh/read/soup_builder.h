@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "mesh/read/polygon_soup.h"
+
+/// What the four readers share while they fill a soup. Internal to `mesh`.
+namespace tuft::mesh {
+
+/// Says a thing that happened many times in a few lines: the first places, then a total.
+struct Tally {
+    std::size_t count = 0;
+    std::vector<long> places;  ///< the first five: lines or rows
+
+    void add(long place) {
+        if (places.size() < 5) places.push_back(place);
+        ++count;
+    }
+    /// "N WHAT (line 3, 8, ...)" with `unit` = "line" or "row".
+    std::string text(const std::string& what, const char* unit) const;
+};
+
+class SoupBuilder {
+  public:
+    SoupBuilder(std::string file, const char* place_unit) : file_(std::move(file)), unit_(place_unit) {}
+
+    PolygonSoup soup;
+
+    /// Adds a point; one that is not finite or lies beyond `kFarthestNumber` is dropped at the end, with its polygons.
+    void add_point(const Vec3& p, long place);
+    /// Adds a polygon over point indices already in range; fewer than three corners are dropped.
+    /// `uvs` is empty or has one entry per corner.
+    void add_polygon(std::span<const std::uint32_t> corners, std::span<const Vec2f> uvs, std::uint32_t group,
+                     long place);
+    /// Index of the group with this name (as UTF-8, see `to_utf8`), new if need be; `material` is what its
+    /// faces are made of, as the file spells it.
+    std::uint32_t group(const std::string& name, const std::string& material = "");
+    /// Group of the faces of this colour, named "#rrggbb". Where a file has faces of one colour only, or
+    /// more than 256 colours, none of them is a group. The faces get materials of these colours.
+    std::uint32_t colour_group(const std::array<std::uint8_t, 4>& colour);
+    /// Warns in `soup` and hands it out; throws `Error` when there is no polygon.
+    PolygonSoup finish();
+
+  private:
+    void drop_bad_points();
+    void finish_groups();
+
+    std::string file_;
+    const char* unit_;
+    std::unordered_map<std::string, std::uint32_t> group_of_;
+    std::vector<std::uint32_t> bad_points_;
+    Tally bad_rows_, bad_uvs_, short_polygons_, no_uv_;
+    bool groups_used_ = false;
+    std::unordered_map<std::uint32_t, std::uint32_t> group_of_colour_;
+    bool too_many_colours_ = false;
+    std::vector<Vec3f> group_colours_;  ///< by group; white for those that are not of a colour
+};
+
+/// A colour from four channels: bytes as they are, reals from [0, 1].
+std::array<std::uint8_t, 4> colour_from(const std::array<double, 4>& channels, bool is_real);
+
+}  // namespace tuft::mesh

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/system/progress.h"
+#include "mesh/read/polygon_soup.h"
+#include "mesh/triangle_mesh.h"
+
+namespace tuft::mesh {
+
+struct RepairOptions {
+    double metres_per_unit = 1e-3;                      ///< the file's unit; millimetres by default
+    bool y_up = false;                                  ///< in the file y is up: points are turned to (x, −z, y)
+    double crease_angle = 40.0 * 0.017453292519943295;  ///< radians; normals split above it
+    ProgressFn progress = nullptr;
+};
+
+/// What was found in the file and done about it. Counts are of the file's elements.
+struct RepairReport {
+    std::size_t points_in_file = 0;
+    std::size_t polygons_in_file = 0;
+    std::size_t polygons_triangulated = 0;  ///< with more than three corners
+    bool loose_triangles = false;           ///< every corner came with its own point, as in STL
+    std::size_t vertices_welded = 0;        ///< removed because they coincide with another
+    std::size_t crack_vertices_welded = 0;  ///< ... because they all but coincide: of loose
+                                            ///< triangles, on borders, within 1e-6 of the size
+    std::size_t unused_vertices_dropped = 0;
+    std::size_t degenerate_faces_dropped = 0;   ///< repeated corner or zero area
+    std::size_t degenerate_faces_repaired = 0;  ///< a corner on the opposite side: that side flipped
+    std::size_t duplicate_faces_dropped = 0;
+    std::size_t non_manifold_edges_split = 0;
+    std::size_t non_manifold_vertices_split = 0;
+    std::size_t faces_flipped = 0;  ///< to orient a component consistently
+    std::size_t components = 0;
+    std::size_t holes = 0;  ///< border loops
+    std::size_t border_edges = 0;
+    bool closed = false;
+    std::vector<std::string> warnings;  ///< from the reader and from the repair, one line each
+};
+
+struct Surface {
+    TriangleMesh mesh;
+    RepairReport report;
+};
+
+/// Welds, triangulates, drops, splits and orients until the soup is a clean
+/// triangle mesh held by OpenMesh, and hands out the plain arrays. Component
+/// orientation is outward where a component is closed. Deterministic. Throws
+/// `Error` only when nothing is left (no triangle with an area).
+/// Cost: about 2 s and 0.5 GB per million triangles.
+Surface build_surface(PolygonSoup soup, const RepairOptions& options = {});
+
+}  // namespace tuft::mesh

@@ -1,0 +1,222 @@
+#include "render/brush/brush_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "core/text/units.h"
+#include "render/brush/tuft_drawing.h"
+
+namespace tuft::render {
+
+using namespace brush;
+
+namespace {
+
+constexpr double kPressings[] = {0.02, 0.1, 0.2, 0.32, 0.45};  ///< depths over length
+constexpr int kColumns = 6;
+constexpr double kLean = 0.45;    ///< radians
+constexpr double kStride = 0.02;  ///< lengths between two samples
+constexpr double kSample = 0.01;  ///< s
+
+struct Posed {
+    Tuft tuft;
+    Pose pose;
+    TuftState state;
+    double depth = 0;
+};
+
+/// A hand over the sheet z = 0. `tilt` about y leans the holder ahead of a motion to the left,
+/// `slant` about x leans it across.
+struct Hand {
+    Posed now;
+    double lowest = 0;  ///< of the root, where the straight tip touches
+
+    Hand(const Preset& p, double tilt, double slant) {
+        now.tuft = make_tuft(p, 3);
+        now.pose.rotation = glm::angleAxis(-tilt, Vec3{0, 1, 0}) * glm::angleAxis(slant, Vec3{1, 0, 0});
+        lowest = p.length * -now.pose.axis().z;
+        now.pose.position = {0, 0, lowest};
+    }
+
+    void move(double dx, double height) {
+        const ContactPlane sheet;
+        now.pose.position += Vec3{dx, 0, 0};
+        now.pose.position.z = height;
+        now.state = step(now.tuft, now.pose, {&sheet, 1}, kSample);
+    }
+
+    /// Pressed to `depth` while the hand moves to the left, then dragged until steady.
+    void press(double depth) {
+        now.depth = depth;
+        const double stride = kStride * now.tuft.preset.length;
+        const int pressing = 20 + static_cast<int>(std::ceil(depth / stride));
+        for (int i = 0; i <= pressing + 150; ++i)
+            move(-stride, lowest - depth * std::min(1.0, static_cast<double>(i) / pressing));
+    }
+
+    void lift(double height) {
+        const double from = now.pose.position.z;
+        for (int i = 1; i <= 60; ++i)
+            move(-0.2 * kStride * now.tuft.preset.length, from + (lowest + height - from) * i / 60);
+    }
+};
+
+std::string label(const char* format, double value) {
+    char text[48];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+/// Everything in pixels of a picture 2000 wide times `unit`.
+struct Sheet {
+    BrushCanvas& canvas;
+    const Preset& preset;
+    double unit, width, column, scale;
+    Vec3 ink = linear_colour(50, 46, 42), faint = linear_colour(120, 114, 106);
+
+    void text(const std::string& words, Vec2 at, double size, const Vec3& colour) const {
+        write_text(canvas, words, at, size * unit, colour);
+    }
+    void centred(const std::string& words, double x, double y, double size, const Vec3& colour) const {
+        text(words, {x - 0.5 * text_width(words, size * unit), y}, size, colour);
+    }
+    void rule(double y) const {
+        const double thick = 2 * unit;
+        const Vec2 line[] = {{0, y}, {width, y}};
+        stroke_line(canvas, line, {&thick, 1}, linear_colour(70, 66, 60));
+    }
+};
+
+void draw_scale(const Sheet& sheet, const BrushView& view, double x0, double x1) {
+    const Vec3 ink = linear_colour(90, 86, 80);
+    const double thin = 1.1 * sheet.unit, y = view.foot.y;
+    const double mm = view.scale * kMillimetre;
+    for (int k = static_cast<int>(std::ceil((x0 - view.foot.x) / mm));
+         k <= static_cast<int>(std::floor((x1 - view.foot.x) / mm)); ++k) {
+        const double x = view.foot.x + k * mm, tall = (k % 10 == 0 ? 11 : k % 5 == 0 ? 8 : 4) * sheet.unit;
+        const Vec2 tick[] = {{x, y}, {x, y + tall}};
+        stroke_line(sheet.canvas, tick, {&thin, 1}, ink);
+        if (k % 10 == 0) sheet.centred(std::to_string(std::abs(k)), x + sheet.unit, y + 24 * sheet.unit, 8.5, ink);
+    }
+}
+
+/// Paper and, from `ground` on, the sheet; what the row below drew into this one goes.
+void fill_ground(const Sheet& sheet, double top, double ground, double bottom) {
+    const Vec2 over[] = {{0, top}, {sheet.width, top}, {sheet.width, ground}, {0, ground}};
+    fill_polygon(sheet.canvas, over, linear_colour(246, 243, 236));
+    top = ground;
+    const Vec2 under[] = {{0, top}, {sheet.width, top}, {sheet.width, bottom}, {0, bottom}};
+    fill_polygon(sheet.canvas, under, linear_colour(233, 228, 216));
+}
+
+/// One row from the side; `top` to `top` + 535 units.
+void draw_row(const Sheet& sheet, double top, double tilt, const char* name) {
+    const double u = sheet.unit, ground = top + 370 * u, plan = ground + 84 * u;
+    fill_ground(sheet, top, ground, top + 535 * u);
+    const double length = sheet.preset.length;
+    for (int k = 0; k < kColumns; ++k) {
+        const bool lifted = k + 1 == kColumns;
+        Hand hand(sheet.preset, tilt, 0);
+        hand.press(kPressings[std::min(k, kColumns - 2)] * length);
+        if (lifted) hand.lift(0.12 * length);
+        const Posed& at = hand.now;
+        // The scale begins under the tuft's root; where the holder leans, it begins at its axis'
+        // foot.
+        const double foot = std::tan(tilt) * at.pose.position.z;
+        BrushView view;
+        view.scale = sheet.scale;
+        view.origin = {at.pose.position.x + foot, 0, 0};
+        view.foot = {(k + 0.33) * sheet.column + 0.35 * sheet.scale * foot, ground};
+        draw_brush(sheet.canvas, at.tuft, at.state, at.pose, view, 2.5 * length);
+        draw_scale(sheet, view, (k + 0.02) * sheet.column, (k + 0.98) * sheet.column);
+        if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, view, plan);
+        const double x = (k + 0.5) * sheet.column, y = ground + 152 * u;
+        sheet.centred(
+            lifted ? "lifted" : label("%.1f mm", at.depth / kMillimetre) + label("   %.2f N", at.state.normal_force), x,
+            y, 12, sheet.ink);
+    }
+    sheet.rule(ground);
+    // Over the handles' bands, so that it can be read.
+    const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
+    fill_polygon(sheet.canvas, band, linear_colour(246, 243, 236));
+    sheet.text(name, {24 * u, top + 27 * u}, 14, sheet.ink);
+}
+
+/// The tips of a writer's craft, seen from behind and above.
+void draw_tips(const Sheet& sheet, double top) {
+    constexpr double kDown = 0.5;  // radians the viewer looks down
+    const double u = sheet.unit, length = sheet.preset.length, column = sheet.width / 4;
+    const double ground = top + 330 * u;
+    fill_ground(sheet, top, top + 200 * u, top + 540 * u);
+    for (int k = 0; k < 4; ++k) {
+        TuftLook look;
+        Hand hand(sheet.preset, k == 1 ? 0.2 : 0, k == 0 ? 0.7 : 0);
+        std::string name = "slanted tip, along one side";
+        if (k == 2) {
+            hand.now.tuft.ink_left = 0.05;
+            hand.now.tuft.wetness = 0.4;
+            hand.now.tuft.preset.split_factor = 3;  // the paper's: shipped hair parts later, in bundles
+            name = "split tip, short of ink";
+        } else if (k == 3) {
+            look.dry = true;
+            hand.now.tuft.wetness = 0;
+            for (double& apart : hand.now.tuft.bundles.separation) apart = 1;
+            name = "dry tip, in bundles";
+        }
+        hand.press((k == 0 ? 0.25 : k == 1 ? 0.25 : k == 2 ? 0.42 : 0.34) * length);
+        if (k == 1) {
+            for (int i = 0; i < 12; ++i) hand.move(kStride * length, hand.now.pose.position.z);
+            name = "reversed tip, pushed on";
+        }
+        const Posed& at = hand.now;
+        BrushView view;
+        view.scale = 1.1 * sheet.scale;
+        view.origin = {at.pose.position.x, at.pose.position.y, 0};
+        // The hair trails to the right, towards the viewer's side.
+        view.right = glm::normalize(Vec3{0.55, 0.83, 0});
+        const Vec3 back = glm::cross(view.right, Vec3{0, 0, 1});
+        view.up = std::cos(kDown) * Vec3{0, 0, 1} - std::sin(kDown) * back;
+        if (k == 1) {
+            view.right = {1, 0, 0};
+            view.up = {0, std::sin(0.25), std::cos(0.25)};
+        }
+        // A slanted holder stands aside from where its tip is.
+        const double aside = view.scale * glm::dot(at.pose.axis(), view.right) * length;
+        view.foot = {(k + 0.47) * column - 0.5 * aside, ground - 60 * u};
+        draw_brush(sheet.canvas, at.tuft, at.state, at.pose, view, 2.5 * length, look);
+        BrushView plan = view;
+        plan.foot.x = (k + 0.42) * column;
+        const std::vector<Section>& sections = at.state.branches.front().sections;
+        plan.origin.y = sections[sections.size() / 3].centre.y;
+        draw_patch(sheet.canvas, at.tuft, at.state, plan, top + 440 * u, look);
+        sheet.centred(name, (k + 0.5) * column, top + 522 * u, 12, sheet.ink);
+    }
+    const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
+    fill_polygon(sheet.canvas, band, linear_colour(246, 243, 236));
+    sheet.text("tips", {24 * u, top + 27 * u}, 14, sheet.ink);
+}
+
+}  // namespace
+
+BrushPicture draw_tuft(const Preset& preset, int width) {
+    width = std::clamp(width, 320, 8000);
+    const double unit = width / 2000.0, row = 535 * unit, head = 54 * unit;
+    const int height = static_cast<int>(std::ceil(head + 4 * row));
+    BrushCanvas canvas(width, height, linear_colour(246, 243, 236));
+    const double column = static_cast<double>(width) / kColumns;
+    const Sheet sheet{canvas, preset, unit, static_cast<double>(width), column, 0.92 * column / (1.3 * preset.length)};
+    draw_tips(sheet, head + 3 * row);
+    draw_row(sheet, head + 2 * row, -kLean, "leaning back, pushed");
+    draw_row(sheet, head + row, kLean, "leaning ahead, pulled");
+    draw_row(sheet, head, 0, "upright");
+    const Vec2 band[] = {{0, 0}, {sheet.width, 0}, {sheet.width, head}, {0, head}};
+    fill_polygon(canvas, band, linear_colour(246, 243, 236));
+    sheet.text(preset.name + label(", hair %.0f mm long", preset.length / kMillimetre) +
+                   label(", %.1f mm thick", 2 * preset.radius / kMillimetre),
+               {24 * unit, 36 * unit}, 18, sheet.ink);
+    return {width, height, to_srgb(canvas)};
+}
+
+}  // namespace tuft::render

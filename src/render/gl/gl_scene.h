@@ -1,0 +1,113 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/geometry/types.h"
+#include "mesh/triangle_mesh.h"
+#include "render/gl/gl_camera.h"
+#include "render/gl/gl_light.h"
+#include "render/gl/gl_target.h"
+
+/// The window's picture by OpenGL 3.3 core. Every call needs the current context that the
+/// object was made in.
+namespace tuft::render {
+
+enum class Shading { glaze = 0, clay = 1, flat = 2, height = 3, texels = 4, triangles = 5 };
+
+/// Colour mesh for things that change every frame, such as the tuft.
+struct GlSolid {
+    std::vector<Vec3f> positions;  ///< metres, world
+    std::vector<Vec3f> normals;    ///< unit
+    std::vector<Vec3f> colours;    ///< linear
+    std::vector<std::uint32_t> triangles;
+};
+
+inline constexpr int kTextureLevels = 5;  ///< 16 × 16 down to 1 × 1 texels of a tile
+
+/// Metres, world; its sides along the axes.
+struct GlBox {
+    Vec3f lo{0}, hi{0};
+};
+
+/// The texture's fourth channel, of thin ink and thick paint alike: code 0–255 for a height in micrometres,
+/// a step of 0.1 µm on bare ground and of 1/48 of the height where it is high; 255 is 969 µm.
+inline constexpr double kCodeHeight = 4.8, kCodeSteps = 48;
+inline double height_of_code(double code) {
+    return kCodeHeight * std::expm1(code / kCodeSteps);
+}
+inline double code_of_height(double micrometres) {
+    return kCodeSteps * std::log1p(micrometres / kCodeHeight);
+}
+
+/// One tile of the atlas at all levels, RGBA: sRGB colour and the code of the height.
+struct TilePixels {
+    static constexpr std::array<int, kTextureLevels + 1> kStart{0, 256, 320, 336, 340, 341};
+    std::uint32_t tile = 0;  ///< row · per side + column
+    std::array<std::array<std::uint8_t, 4>, 341> rgba;
+    std::vector<GlBox> boxes;  ///< round all of the surface that takes colour from it, at whatever level
+};
+
+/// The whole atlas at all levels, row 0 at v = 0.
+struct MapPixels {
+    std::uint32_t size = 0;  ///< texels per side, a multiple of 16
+    std::array<std::vector<std::array<std::uint8_t, 4>>, kTextureLevels> levels;
+};
+
+struct DrawOptions {
+    Shading shading = Shading::glaze;
+    float roughness = 0.1f;   ///< of the coat
+    float height_range = 10;  ///< micrometres of ink that get the last colour of the ramp
+    Vec4f section{0};         ///< plane, metres; cuts away dot((p, 1), section) > 0; zero: none
+
+    bool operator==(const DrawOptions&) const = default;
+};
+
+/// GPU twin of one model with its texture.
+class GlScene {
+  public:
+    GlScene();
+    ~GlScene();
+    GlScene(const GlScene&) = delete;
+    GlScene& operator=(const GlScene&) = delete;
+
+    /// Uploads the mesh; `corner_uvs` [3 n_triangles], v up. Corners that agree in place,
+    /// normal and uv become one vertex.
+    void set_mesh(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corner_uvs);
+    /// sRGB-encoded colours for `Shading::triangles` [n_triangles].
+    void set_triangle_colours(std::span<const std::array<std::uint8_t, 4>> colours);
+    void set_texture(const MapPixels& map);
+    void update_tiles(std::span<const TilePixels> tiles);
+
+    /// Clears the picture to the backdrop, from sRGB colour `low` at the bottom to `high`.
+    void draw_backdrop(const GlCamera& camera, const Vec3f& low, const Vec3f& high);
+    /// Draws the model. `still`: notes what is hidden, so that `redraw_model` costs less.
+    void draw_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options, bool still = false);
+    /// Gives the surface inside the boxes its colours anew in a part of the picture, after the texture
+    /// changed there. Camera, section and depth must be those of the last `draw_model`; the result is what that
+    /// would draw now.
+    void redraw_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options, const PixelRect& part,
+                      std::span<const GlBox> changed);
+    /// Draws the atlas flat into a part of the picture: `centre` in uv lies in its middle,
+    /// `pixels_per_side` is the whole atlas. What needs light is shown as flat colour.
+    struct AtlasWindow {
+        PixelRect part;
+        Vec2 centre{0.5};
+        double pixels_per_side = 512;
+        Vec3f backdrop{0.1f};  ///< sRGB-encoded
+    };
+    void draw_atlas(const AtlasWindow& window, const DrawOptions& options);
+    void draw_solid(const GlCamera& camera, const GlLight& light, const GlSolid& solid, float opacity);
+
+  private:
+    void begin_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options);
+
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace tuft::render

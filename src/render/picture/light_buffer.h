@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/system/progress.h"
+#include "render/picture/camera.h"
+#include "render/picture/light_cache.h"
+
+/// The light that falls on what each pixel's centre shows, sampled sparsely and then
+/// smoothed over the picture; edges of objects and of shadows stay.
+namespace tuft::render {
+
+enum class Seen : std::uint8_t { backdrop, floor, object };
+
+/// A surface seen through a picture position.
+struct Sight {
+    Seen seen = Seen::backdrop;
+    std::uint32_t triangle = kNone;
+    float b1 = 0, b2 = 0;
+    Vec3f position{0};
+    Vec3f normal{0, 0, 1};  ///< unit, smooth, towards the eye
+    Vec3f face{0, 0, 1};    ///< unit, of the flat triangle, towards the eye
+};
+Sight look(const Scene& scene, const Camera& camera, const Vec3f& direction);
+
+/// Light at a point: from the boxes, and from everything else. On the floor both are
+/// differences to the empty studio, so that they vanish where the object does nothing.
+struct Light {
+    Vec3f direct{0}, around{0};
+};
+
+struct LightSamples {
+    std::array<int, 3> boxes{8, 3, 3};
+    int around = 12;
+};
+LightSamples share_samples(int total);
+
+/// Monte Carlo estimate of the light at a sight in pixel (x, y).
+Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at, const LightSamples& samples, int x,
+                   int y, std::uint64_t seed);
+
+/// Per pixel, row-major from the top.
+struct LightBuffer {
+    int width = 0, height = 0;
+    std::vector<Sight> sights;
+    std::vector<Light> light;
+
+    /// Light for any sight seen through (x, y), from the pixels round it that show the same
+    /// surface. False when none does.
+    bool find(float x, float y, const Sight& at, float pixel_size, Light& light) const;
+};
+
+struct LightBufferOptions {
+    LightSamples samples;
+    std::uint64_t seed = 1;
+    ProgressFn progress;
+};
+
+LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const Camera& camera,
+                              const LightBufferOptions& options);
+
+/// Edge-stopping à-trous smoothing (Dammertz et al. 2010; variance-guided as in Schied et
+/// al. 2017) of both parts of the light. `variance`: of the mean of each part, per pixel.
+void smooth_light(LightBuffer& buffer, std::vector<Vec2f>& variance, const Camera& camera);
+
+}  // namespace tuft::render

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/query/surface_query.h"
+#include "render/picture/material.h"
+#include "render/picture/studio.h"
+
+/// Light that has bounced between the surfaces: a radiosity solution on small patches,
+/// one per voxel and facing direction. Pictures use it only for what a surface reflects.
+namespace tuft::render {
+
+/// What rays are traced against; references must outlive it.
+struct Scene {
+    const mesh::TriangleMesh& mesh;
+    const mesh::SurfaceQuery& query;
+    const MaterialReader& material;
+    Studio studio;
+    float offset = 1e-6f;  ///< metres that secondary rays start above the surface
+};
+
+/// Unit normal of the flat triangle.
+Vec3f face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle);
+
+/// Light of the boxes on a face at p (irradiance over π). `samples`: per box.
+Vec3f direct_light(const Scene& scene, const Vec3f& p, const Vec3f& n, const std::array<int, 3>& samples,
+                   const Vec2f& shift);
+
+class LightCache {
+  public:
+    /// Solves it; deterministic for any thread count. Cost: about 1 s of one core.
+    explicit LightCache(const Scene& scene);
+
+    /// Light on the object at p with normal n, interpolated between patches.
+    Vec3f object_light(const Vec3f& p, const Vec3f& n) const;
+    /// The same from the nearest patch; move p by up to half a `voxel` to interpolate by chance.
+    Vec3f nearest_light(const Vec3f& p, const Vec3f& n) const;
+    /// Light on the floor at (x, y), object in place.
+    Vec3f floor_light(float x, float y) const;
+    /// The same without the object.
+    Vec3f open_floor_light(float x, float y) const;
+
+    float voxel() const { return voxel_; }
+
+  private:
+    struct Patch {
+        Vec3f p{0}, n{0};
+        Vec3f light{0};
+    };
+    struct Link {
+        std::uint32_t patch;  ///< or kFloorLink + grid cell
+        Vec3f albedo;
+    };
+    static constexpr std::uint32_t kFloorLink = 1u << 31;
+
+    std::uint64_t key(const Vec3f& p, int side) const;
+    std::uint32_t find(std::uint64_t key) const;
+    void insert(const Vec3f& p, const Vec3f& n);
+    void seed_patches(const Scene& scene);
+    void seed_floor(const Scene& scene);
+    void gather(const Scene& scene, const Patch& at, std::size_t index, Vec3f& own, std::vector<Link>& links) const;
+    void solve(const Scene& scene);
+    Vec3f read_floor(const std::vector<Vec3f>& grid, float x, float y) const;
+
+    float voxel_ = 1;
+    Vec3f origin_{0};
+    std::vector<Patch> patches_;
+    std::vector<std::uint32_t> table_;  ///< open addressing: patch index or kNone
+    std::vector<std::uint64_t> keys_;
+    Vec3f mean_{0};
+    float floor_half_ = 1;
+    Vec2f floor_centre_{0};
+    std::vector<Vec3f> floor_, open_floor_;  ///< light at the points of a square grid
+};
+
+}  // namespace tuft::render

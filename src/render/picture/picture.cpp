@@ -1,0 +1,237 @@
+#include "render/picture/picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "core/error.h"
+#include "core/system/parallel.h"
+#include "render/picture/light_buffer.h"
+#include "render/picture/sampling.h"
+
+namespace tuft::render {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNormalReflectance = 0.04f;  // of a coat with refractive index 1.5
+
+float fresnel(float cosine) {
+    const float m = 1 - std::clamp(cosine, 0.0f, 1.0f), m2 = m * m;
+    return kNormalReflectance + (1 - kNormalReflectance) * m2 * m2 * m;
+}
+
+/// Keeps values to 0.8 and takes the rest smoothly to below 1.
+float shoulder(float v) {
+    return v <= 0.8f ? std::max(v, 0.0f) : 1 - 0.2f * std::exp(-(v - 0.8f) / 0.2f);
+}
+
+struct Shading {
+    const Scene& scene;
+    const LightCache& cache;
+    const Camera& camera;
+    const LightBuffer& buffer;
+    const PictureOptions& options;
+    float pixel_angle;
+};
+
+/// What a smooth coat mirrors from direction d.
+Vec3f mirrored(const Shading& f, const Vec3f& p, const Vec3f& d, float roughness) {
+    const mesh::RayHit hit = f.scene.query.trace(p, d, 0, kInfinity);
+    if (hit.triangle != kNone) {
+        Vec3f n = face_normal(f.scene.mesh, hit.triangle);
+        if (glm::dot(n, d) > 0) n = -n;
+        return f.scene.material.albedo(hit.triangle, hit.b1, hit.b2) * f.cache.object_light(p + hit.distance * d, n);
+    }
+    const Studio& studio = f.scene.studio;
+    if (d.z < -1e-4f && studio.floor && p.z > studio.floor_z) {
+        const Vec3f at = p + (studio.floor_z - p.z) / d.z * d;
+        const Vec3f floor = studio.floor_albedo * f.cache.floor_light(at.x, at.y);
+        // Far floor runs into the wall, as a seamless backdrop does.
+        const float far = glm::length(at - studio.centre) / (6 * studio.radius);
+        const float blend = std::clamp(far - 0.5f, 0.0f, 1.0f);
+        return glm::mix(floor, dome_radiance(studio, d), blend);
+    }
+    return dome_radiance(studio, d) + box_radiance(studio, p, d, roughness);
+}
+
+Vec3f shade_object(const Shading& f, const Sight& s, Light light, const Vec3f& view) {
+    const Material m = f.scene.material.read(s.triangle, s.b1, s.b2);
+    Vec3f n = s.normal;
+    if (m.slope != Vec3f{0}) {
+        n = glm::normalize(n - m.slope);
+        const Vec3f key = glm::normalize(f.scene.studio.boxes[0].centre - s.position);
+        const float before = std::max(glm::dot(s.normal, key), 0.05f);
+        light.direct *= std::clamp(glm::dot(n, key) / before, 0.0f, f.scene.studio.raking ? 1 / before : 2.0f);
+    }
+    if (f.scene.studio.raking) {
+        const SoftBox& lamp = f.scene.studio.boxes[0];
+        const Vec3f key = lamp.centre - s.position;
+        const float away = glm::length(key);
+        light.direct *=
+            f.scene.material.unshaded(s.triangle, s.b1, s.b2, s.normal, key / away, glm::length(lamp.u) / away);
+    }
+    const Vec3f body = m.albedo * (light.direct + light.around);
+    const float cosine = glm::dot(n, view);
+    if (!f.scene.material.coated()) return body;
+    float reflectance = fresnel(cosine);
+    // A rough coat mirrors less at grazing angles and, when matt, nothing to speak of.
+    reflectance = glm::mix(reflectance, std::min(reflectance, 0.1f), m.roughness) *
+                  (1 - std::clamp((m.roughness - 0.5f) * 2, 0.0f, 1.0f));
+    if (reflectance < 1e-3f) return body;
+    Vec3f d = 2 * cosine * n - view;
+    const float above = glm::dot(d, s.face);
+    if (above < 0.02f) d = glm::normalize(d + (0.02f - above) * s.face);
+    const Vec3f seen = mirrored(f, s.position + f.scene.offset * s.face, d, m.roughness);
+    return (1 - reflectance) * body + reflectance * seen;
+}
+
+Vec3f shade(const Shading& f, float x, float y, std::uint64_t seed) {
+    const Vec3f direction(ray_direction(f.camera, x, y));
+    const Sight s = look(f.scene, f.camera, direction);
+    const Vec3f back = backdrop(x / static_cast<float>(f.camera.width), y / static_cast<float>(f.camera.height));
+    if (s.seen == Seen::backdrop) return back;
+    Light light;
+    const float pixel = f.pixel_angle * glm::length(s.position - Vec3f(f.camera.eye));
+    if (!f.buffer.find(x, y, s, pixel, light))
+        light = sample_light(f.scene, f.cache, s, share_samples(2 * f.options.light_samples), static_cast<int>(x),
+                             static_cast<int>(y), seed);
+    if (s.seen == Seen::object) return shade_object(f, s, light, -direction);
+    const Vec3f open = f.cache.open_floor_light(s.position.x, s.position.y);
+    return back * glm::max(1.0f + (light.direct + light.around) / open, 0.02f);
+}
+
+/// sRGB code values of linear light that is kept below 1.
+Vec3f shown_codes(const Vec3f& light) {
+    return {encode_srgb(light.x), encode_srgb(light.y), encode_srgb(light.z)};
+}
+
+/// The sum of rays [from, to) of a pixel under a tent filter of radius one pixel; clipped light, so that
+/// bright edges come out smooth. Widens `lo` and `hi` by what the rays show.
+Vec3f draw_rays(const Shading& f, int x, int y, std::uint64_t seed, int from, int to, Vec3f& lo, Vec3f& hi) {
+    const Vec2f shift = hash_point(seed, 0);
+    const auto tent = [](float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); };
+    Vec3f sum{0};
+    for (int n = from; n < to; ++n) {
+        const Vec2f s = wrap(sobol_point(static_cast<std::uint32_t>(n)) + shift);
+        const float sx = static_cast<float>(x) + 0.5f + tent(s.x), sy = static_cast<float>(y) + 0.5f + tent(s.y);
+        const Vec3f c = shade(f, sx, sy, hash_bits(seed, static_cast<std::uint64_t>(n) + 1));
+        const Vec3f shown{shoulder(c.x), shoulder(c.y), shoulder(c.z)};
+        sum += shown;
+        lo = glm::min(lo, shown);
+        hi = glm::max(hi, shown);
+    }
+    return sum;
+}
+
+/// Mean colour of a pixel as sRGB code values. A quarter of `edge_samples` rays do where neither they nor
+/// the pixels round it (`on_edge`) show contrast. Elsewhere rays are doubled until both halves of them, each
+/// of which covers the pixel evenly, agree: a highlight thinner than the pixel is met by few.
+Vec3f pixel_colour(const Shading& f, bool on_edge, int x, int y) {
+    constexpr float kContrast = 8.0f / 255, kAgreement = 5.0f / 255;  // codes: the eye sees most where it is dark
+    constexpr int kMostRays = 8;                                      // times edge_samples
+    const std::uint64_t seed = hash_bits(f.options.seed + 1, static_cast<std::uint64_t>(y) * f.camera.width + x);
+    Vec3f lo{kInfinity}, hi{-kInfinity};
+    int n = std::max(1, f.options.edge_samples / 4);
+    Vec3f sum = draw_rays(f, x, y, seed, 0, n, lo, hi);
+    if (!on_edge && glm::length(shown_codes(hi) - shown_codes(lo)) < kContrast)
+        return shown_codes(sum / static_cast<float>(n));
+    while (n < kMostRays * f.options.edge_samples) {
+        const Vec3f more = draw_rays(f, x, y, seed, n, 2 * n, lo, hi);
+        const Vec3f gap =
+            glm::abs(shown_codes(sum / static_cast<float>(n)) - shown_codes(more / static_cast<float>(n)));
+        sum += more;
+        n *= 2;
+        if (n >= f.options.edge_samples && std::max({gap.x, gap.y, gap.z}) < kAgreement) break;
+    }
+    return shown_codes(sum / static_cast<float>(n));
+}
+
+/// Per pixel, whether its middle differs from that of one of the pixels round it by some six codes.
+std::vector<std::uint8_t> find_edges(const Shading& f) {
+    constexpr int kContrast = 6;
+    const std::size_t width = static_cast<std::size_t>(f.camera.width), n = width * f.camera.height;
+    std::vector<std::array<std::uint8_t, 3>> middles(n);
+    parallel_for(n, 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const Vec3f c = shade(f, static_cast<float>(k % width) + 0.5f, static_cast<float>(k / width) + 0.5f,
+                                  hash_bits(f.options.seed + 3, k));
+            const Vec3f code = shown_codes({shoulder(c.x), shoulder(c.y), shoulder(c.z)});
+            for (int channel = 0; channel < 3; ++channel)
+                middles[k][static_cast<std::size_t>(channel)] = static_cast<std::uint8_t>(255 * code[channel]);
+        }
+    });
+    std::vector<std::uint8_t> edges(n, 0);
+    parallel_for(n, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const int x = static_cast<int>(k % width), y = static_cast<int>(k / width);
+            for (int j = std::max(0, y - 1); j <= std::min(f.camera.height - 1, y + 1); ++j)
+                for (int i = std::max(0, x - 1); i <= std::min(f.camera.width - 1, x + 1); ++i)
+                    for (std::size_t c = 0; c < 3; ++c)
+                        if (std::abs(middles[static_cast<std::size_t>(j) * width + static_cast<std::size_t>(i)][c] -
+                                     middles[k][c]) > kContrast)
+                            edges[k] = 1;
+        }
+    });
+    return edges;
+}
+
+std::uint8_t quantise(float code, float dither) {
+    return static_cast<std::uint8_t>(std::clamp(code * 255 + dither, 0.0f, 255.0f));
+}
+
+}  // namespace
+
+Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& query, const Appearance& appearance,
+                     const PictureOptions& options) {
+    constexpr std::int64_t kMostPixels = std::int64_t{40} << 20;  // about 5 GB of buffers
+    const Camera camera = make_camera(options.view, options.width, options.height, mesh.positions);
+    if (std::int64_t{options.width} * options.height > kMostPixels)
+        throw Error("a picture of " + std::to_string(options.width) + "x" + std::to_string(options.height) +
+                    " is too large; at most 40 million pixels");
+    const MaterialReader material(mesh, appearance);
+    Scene scene{
+        mesh, query, material,
+        options.lights == Lights::raking
+            ? make_raking_studio(mesh.bounds, Vec3f(camera.right), Vec3f(camera.up), Vec3f(camera.forward),
+                                 options.light_azimuth, options.floor, options.exposure)
+            : make_studio(mesh.bounds, options.view.azimuth, options.light_azimuth, options.floor, options.exposure),
+        0};
+    scene.offset = 2e-5f * scene.studio.radius + 2e-7f * glm::length(scene.studio.centre);
+    report(options.progress, "bounces", 0);
+    const LightCache cache(scene);
+    const LightBuffer buffer =
+        fill_light_buffer(scene, cache, camera, {share_samples(options.light_samples), options.seed, options.progress});
+
+    Image image;
+    image.width = options.width;
+    image.height = options.height;
+    image.rgb.resize(3 * static_cast<std::size_t>(options.width) * options.height);
+    const Shading shading{scene,  cache,   camera,
+                          buffer, options, static_cast<float>(2 * camera.tan_half_height / camera.height)};
+    const std::vector<std::uint8_t> edges = find_edges(shading);
+    constexpr int kBand = 32;
+    for (int top = 0; top < image.height; top += kBand) {
+        report(options.progress, "picture", static_cast<double>(top) / image.height);
+        const int rows = std::min(kBand, image.height - top);
+        parallel_for(static_cast<std::size_t>(rows) * image.width, 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::size_t k = static_cast<std::size_t>(top) * image.width + i;
+                const Vec3f c = pixel_colour(shading, edges[k] != 0, static_cast<int>(k % image.width),
+                                             static_cast<int>(k / image.width));
+                const float dither = static_cast<float>(uniform(options.seed + 2, k));
+                for (int channel = 0; channel < 3; ++channel) image.rgb[3 * k + channel] = quantise(c[channel], dither);
+            }
+        });
+    }
+    report(options.progress, "picture", 1);
+    return image;
+}
+
+PictureOptions turntable_frame(PictureOptions options, int index, int count) {
+    options.view.azimuth -= 2 * std::numbers::pi * index / std::max(count, 1);
+    return options;
+}
+
+}  // namespace tuft::render

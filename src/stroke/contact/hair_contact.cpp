@@ -1,0 +1,147 @@
+#include "stroke/contact/hair_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/ease.h"
+#include "footprint/outline/hair.h"
+#include "footprint/outline/slip.h"
+#include "stroke/drawing/line_width.h"
+
+namespace tuft::stroke {
+namespace {
+
+// Metres of ink under hair that holds half of what closes its gaps, over twice that; what holds more fills the grain
+// of bisque, then that of paper.
+constexpr double kGrainFilm = 7.5e-6;
+constexpr double kHeldUp = 1;           // rms heights over the mean of the grain that dry hair is held up by its hills
+constexpr double kSoakLength = 0.2e-3;  // metres of travel over which ink comes to the parts of the hair that touch
+constexpr double kAxisLength = 1e-3;    // metres of hair on the surface that turn the grid of its ink
+constexpr double kSeparateLack =
+    0.05;  // mean lack of wetness of the bundles at which all of a tuft touches by single hairs
+constexpr double kSpreadLack = 0.4;  // lack of wetness at which no water holds the tip together
+
+std::vector<footprint::Outline> outlines_of(std::span<const footprint::Trail> trails) {
+    std::vector<footprint::Outline> outlines;
+    for (const footprint::Trail& trail : trails) {
+        footprint::Outline outline = footprint::outline_of(trail, footprint::OutlineOptions{}.points);
+        if (outline.left.size() >= 3) outlines.push_back(std::move(outline));
+    }
+    return outlines;
+}
+
+}  // namespace
+
+ink::ContactCells HairContact::take_cells_since() {
+    float sum = 0;
+    for (const float t : cells_since_) sum += t;
+    for (float& t : cells_since_) t /= sum;
+    return std::exchange(cells_since_, {});
+}
+
+HairContact::Wetness HairContact::bundle_wetness(TuftInHand& tuft, const MotionTracker& motion, double stress,
+                                                 double dt) {
+    const ink::Reservoir& reservoir = tuft.brush.reservoir;
+    brush::Bundles& bundles = tuft.brush.tuft.bundles;
+    const std::size_t n = reservoir.n_bundles(), n_cells = reservoir.n_cells();
+    std::vector<double> saturation(n, 0), depth(n_cells, 0);
+    for (std::size_t i = 0; i < cells_.size(); ++i) depth[i % n_cells] += static_cast<double>(cells_[i]);
+    Wetness wetness{.of_bundle = std::vector<double>(n)};
+    // Which hair touches with which part of it flickers from stamp to stamp: threads of ink would break in dashes.
+    const double soaks = -std::expm1(-(motion.travel - updated_at_) / kSoakLength);
+    for (std::size_t k = 0; k < n; ++k) {
+        for (std::size_t c = 0; c < n_cells; ++c) saturation[k] += depth[c] * reservoir.saturation(k * n_cells + c);
+        double& wet = wetness.of_bundle[k];
+        wet = footprint::wetness_of_bundle(saturation[k], bundles.holds[k], motion.speed);
+        if (soaked_.size() == n) wet = std::lerp(soaked_[k], wet, soaks);
+        wetness.mean += wet / static_cast<double>(n);
+        wetness.lack += std::max(0.0, 1 - wet) / static_cast<double>(n);
+    }
+    soaked_ = wetness.of_bundle;
+    brush::split_bundles(bundles, tuft.preset(), stress, saturation, motion.travel - updated_at_, dt);
+    updated_at_ = motion.travel;
+    return wetness;
+}
+
+void HairContact::draw_hairs(Stamp& stamp, const TuftInHand& tuft, const contact::Result& contact,
+                             const MotionTracker& motion, const Wetness& wetness,
+                             std::span<const footprint::Trail> trails, std::span<const footprint::Outline> outlines) {
+    const Frame& frame = contact.frame;
+    const Vec2 hand(frame.to_local(frame.origin + motion.hand_course)),
+        hair(frame.to_local(frame.origin + motion.hair_course));
+    const double lengths = glm::length(hand) * glm::length(hair);
+    const double swings = lengths > 0 ? std::abs(hand.x * hair.y - hand.y * hair.x) / lengths : 0;
+    footprint::HairMarks marks = footprint::hair_marks(
+        trails, outlines, tuft.brush.tuft.bundles, static_cast<int>(contact.tuft.branches.size()),
+        {wetness.of_bundle, motion.travel, motion.hair_direction, previous_, motion.press_share, hand, swings}, frame,
+        contact.triangle, options_.cell);
+    stamp.footprint = std::move(marks.footprint);
+    stamp.by_hair = true;
+    stamp.separation = static_cast<float>(smooth_step(wetness.lack / kSeparateLack));
+    const double dry = std::max(1e-3, 1 - wetness.mean);
+    stamp.grain_film = kGrainFilm * 2 * wetness.mean / (dry * dry) - kHeldUp * options_.relief * dry;
+    closed_area_ = marks.closed_area;
+}
+
+void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, std::span<const footprint::Trail> trails,
+                              std::span<const footprint::Outline> outlines) {
+    // A tip that stands on the surface has no direction: then it keeps the one it had.
+    Vec2 lie = kAxisLength * axis_;
+    for (const footprint::Trail& trail : trails) lie += trail.cuts.front().centre - trail.cuts.back().centre;
+    if (glm::length(lie) > 1e-9) axis_ = glm::normalize(lie);
+    std::vector<Vec2> places;
+    for (const footprint::Outline& outline : outlines) {
+        places.insert(places.end(), outline.left.begin(), outline.left.end());
+        places.insert(places.end(), outline.right.begin(), outline.right.end());
+        places.push_back(outline.tip);
+        places.push_back(outline.tail);
+    }
+    stamp.grid = ink::make_contact_grid(places, axis_);
+    std::vector<ink::HairSample> samples;
+    for (const footprint::HairContactPoint& t :
+         footprint::hair_contact_points(trails, tuft.brush.tuft.bundles, static_cast<int>(tuft.state.branches.size())))
+        samples.push_back({t.bundle, t.at, t.along, t.length});
+    nodes_ = ink::node_contact(tuft.brush.reservoir, stamp.grid, samples, cells_);
+    if (trails.empty()) return;
+    const Vec2 e(trails.front().cuts[trails.front().cuts.size() / 2].e);
+    orientation_ = axis_.x * e.y - axis_.y * e.x < 0 ? -1 : 1;
+}
+
+Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion,
+                              double dt) {
+    const double length = tuft.preset().length;
+    if (!motion.touching) tracks_ = {};
+    std::vector<footprint::Trail> trails =
+        footprint::trails(contact.tuft, contact.frame, contact.branch_planes, length, kSkinFilm);
+    cells_ = footprint::contact_cells(trails, tuft.brush.tuft.bundles, static_cast<int>(contact.tuft.branches.size()),
+                                      tuft.brush.reservoir.layout.cell_ends);
+    cells_since_.resize(cells_.size(), 0);
+    for (std::size_t i = 0; i < cells_since_.size(); ++i) cells_since_[i] += cells_[i];
+    const Wetness wetness = bundle_wetness(tuft, motion, tuft.stress(), dt);
+
+    by_hair_ = wetness.lack > 0 && !options_.always_closed;
+    closed_area_ = 0;
+    const double spread = by_hair_ ? std::clamp((1 - wetness.mean) / kSpreadLack, 0.0, 1.0) : 0;
+    footprint::spread_trails(trails, tracks_, motion.hair_travel, length, spread);
+    std::vector<footprint::Trail> lying;
+    if (by_hair_) {
+        if (!motion.touching) previous_.clear();
+        footprint::change_frame(previous_, previous_frame_, contact.frame);
+        lying = trails;
+    }
+    if (!contact.planes.empty())
+        footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft.brush.tuft, contact.planes.front()),
+                                      contact.frame, kSkinFilm);
+    const std::vector<footprint::Outline> outlines = outlines_of(trails);
+    Stamp stamp;
+    if (by_hair_)
+        draw_hairs(stamp, tuft, contact, motion, wetness, trails, outlines);
+    else
+        stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, options_.cell);
+    previous_ = std::move(lying);
+    previous_frame_ = contact.frame;
+    if (options_.places_nodes) place_nodes(stamp, tuft, trails, outlines);
+    return stamp;
+}
+
+}  // namespace tuft::stroke

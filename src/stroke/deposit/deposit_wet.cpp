@@ -1,0 +1,85 @@
+#include <cmath>
+#include <numeric>
+
+#include "stroke/deposit/deposit_model.h"
+#include "stroke/deposit/furrow_profile.h"
+#include "stroke/deposit/stamp_batch.h"
+#include "stroke/deposit/stamp_exposure.h"
+
+/// \file
+/// Wet ink: the liquid on the touching hair is exchanged with what is wet on the surface, what the hair does not hold
+/// runs down, and the film flows meanwhile.
+namespace tuft::stroke {
+namespace {
+
+/// Metres of the patch that pass over a place as it moves.
+double length_along_motion(const Stamp& stamp) {
+    const Vec2 size = stamp.grid.step * Vec2{ink::kAlong - 1, ink::kAcross - 1};
+    const double distance = glm::length(stamp.motion.shift);
+    const double along = distance > 0 ? std::abs(glm::dot(stamp.motion.shift, stamp.grid.axis)) / distance : 1;
+    return along * size.x + std::sqrt(1 - std::min(along * along, 1.0)) * size.y;
+}
+
+class WetDeposit : public DepositModel {
+  public:
+    WetDeposit(StampTarget& target, const DepositOptions& options, bool mixed)
+        : exposure_(target, options.stamp), film_(target, options.wet, options.progress), mixed_(mixed) {}
+
+    void pass_time(double seconds) override {
+        if (!(seconds > 0)) return;
+        since_stamp_ += seconds;
+        last_step_ = seconds;
+        film_.pass(seconds);
+    }
+
+    std::size_t stamps_per_batch() const override { return mixed_ ? 1 : StampBatch::kStamps; }
+
+    double deposit(Stamp stamp, TuftInHand& tuft, const DepositContact& contact) override {
+        ink::Reservoir& reservoir = tuft.brush.reservoir;
+        const ink::ContactCells& cells = contact.hair.cells();
+        const std::vector<ink::BundleFirmness> bundles = furrows_.advance(tuft, contact.hair, contact.motion.travel);
+        const ink::NodeAreas areas = exposure_.expose(stamp);
+        const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
+        const double pour = area > 0 ? ink::shed(reservoir, contact.drain, last_step_) / area : 0;
+        ink::refresh(liquid_, reservoir, cells, contact.hair.nodes(), areas, since_stamp_, pour);
+        ink::TransferParams params =
+            ink::transfer_params(liquid_, reservoir, cells, areas, stamp.ink, stamp.ds, since_stamp_, contact.stress);
+        params.rub = ink::rub_of(bundles);
+        params.pour = static_cast<float>(pour);
+        since_stamp_ = 0;
+        const double loose =
+            area > 0 ? ink::loosened({.pressure = contact.normal_force / area, .length = length_along_motion(stamp)})
+                     : 0;
+        const ink::NodeContents given = exposure_.exchange(params, stamp.ds, loose);
+        double sum = 0;
+        for (int node = 0; node < ink::kNodes; ++node)
+            for (int p = 0; p < ink::Reservoir::kPlanes; ++p) {
+                liquid_.content[node][p] -= given[node][p];
+                sum += given[node][p];
+            }
+        return sum;
+    }
+
+    double finish(TuftInHand& tuft, HairContact& hair, const SeamLinksFn&) override {
+        film_.catch_up();
+        ink::withdraw(liquid_, tuft.brush.reservoir, hair.cells(), hair.nodes());
+        return 0;
+    }
+
+  private:
+    StampExposure exposure_;
+    FilmClock film_;
+    bool mixed_;
+    FurrowProfile furrows_;
+    ink::SurfaceLiquid liquid_;  // on the hair where it touches
+    double since_stamp_ = 0;     // seconds since the last stamp
+    double last_step_ = 0;       // seconds since the last pose, touching or not
+};
+
+}  // namespace
+
+std::unique_ptr<DepositModel> make_wet_deposit(StampTarget& target, const DepositOptions& options, bool mixed) {
+    return std::make_unique<WetDeposit>(target, options, mixed);
+}
+
+}  // namespace tuft::stroke

@@ -1,0 +1,35 @@
+#include "stroke/deposit/pool_on_relief.h"
+
+#include <algorithm>
+
+#include "ink/texels/pool.h"
+#include "ink/texels/relief.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr double kHeldByRidges = 0.35;  // of the film that is deposited
+
+bool on_relief(StampTarget& target) {
+    const auto& tiles = target.snapshots();
+    return std::any_of(tiles.begin(), tiles.end(), [&](const auto& tile) {
+        if (!target.canvas().has_film(tile.first, ink::kFirstDryFilm)) return false;
+        const ink::Plane height = ink::dry_relief(target.canvas(), tile.first);
+        return *std::max_element(height.begin(), height.end()) > static_cast<float>(ink::kPlain);
+    });
+}
+
+}  // namespace
+
+void pool_on_relief(StampTarget& target, const ink::Ink& ink, const std::function<const atlas::SeamLinks&()>& seams) {
+    if (!on_relief(target)) return;
+    std::vector<const ink::TileSnapshot*> before;
+    for (const auto& [slot, tile] : target.snapshots()) before.push_back(&tile);
+    std::sort(before.begin(), before.end(), [](const auto* a, const auto* b) { return a->slot < b->slot; });
+    ink::PoolOptions options{.hold = kHeldByRidges * ink.film, .strength = ink.strength()};
+    if (const MaskTexels* mask = target.mask())
+        options.free = [mask](std::uint32_t slot, int texel) { return mask->coverage(slot, texel) > 0; };
+    ink::pool(target.canvas(), target.texels(), seams(), before, options);
+}
+
+}  // namespace tuft::stroke

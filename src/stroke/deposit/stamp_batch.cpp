@@ -1,0 +1,123 @@
+#include "stroke/deposit/stamp_batch.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/system/parallel.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr std::size_t kTilesPerReport = 512;
+
+}  // namespace
+
+StampBatch::StampBatch(StampTarget& target, const footprint::StampOptions& options)
+    : target_(target), options_(options), plans_(kStamps) {
+    batch_.reserve(kStamps);
+}
+
+bool StampBatch::add(Stamp stamp) {
+    batch_.push_back(std::move(stamp));
+    return batch_.size() >= kStamps;
+}
+
+void StampBatch::plan() {
+    const footprint::Surface surface = target_.model().surface();
+    const double texel = target_.texels().texel_size;
+    parallel_for(batch_.size(), 2, [&](std::size_t begin, std::size_t end) {
+        PlanScratchPool::Lease scratch(target_.scratch());
+        for (std::size_t i = begin; i < end; ++i)
+            plans_[i] = footprint::plan_stamp(surface, batch_[i].footprint, joined_motion(batch_[i], texel),
+                                              stamp_options(options_, batch_[i]), scratch, std::move(plans_[i]));
+    });
+}
+
+std::vector<StampBatch::TileStamp> StampBatch::sort_by_tile() {
+    std::vector<TileStamp> order;
+    for (std::uint32_t i = 0; i < batch_.size(); ++i) {
+        if (plans_[i].empty()) continue;
+        piecewise_ = footprint::choose_mode(plans_[i], piecewise_, options_);
+        for (std::uint32_t k = 0; k < plans_[i].tiles.size(); ++k) order.push_back({plans_[i].tiles[k].slot, i, k});
+    }
+    std::sort(order.begin(), order.end(), [](const TileStamp& a, const TileStamp& b) {
+        return a.slot != b.slot ? a.slot < b.slot : a.stamp < b.stamp;
+    });
+    return order;
+}
+
+// All stamps of one tile, by one thread. `erased`: one for each stamp, or none.
+void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const ink::DepositLaw> laws,
+                            std::span<ink::Amounts> erased, std::span<double> given, footprint::Unpacked& unpacked) {
+    alignas(64) std::array<float, atlas::kTileTexels> exposure;
+    const std::uint32_t slot = stamps.front().slot;
+    const atlas::TexelTile& tile = target_.texels().tiles[slot];
+    const MaskTexels* mask = target_.mask();
+    if (mask && mask->none(slot)) return;
+    for (std::size_t k = 0; k < stamps.size(); ++k) {
+        const footprint::StampJobs& plan = plans_[stamps[k].stamp];
+        if (!footprint::evaluate_tile(target_.texels(), plan, plan.tiles[stamps[k].tile], unpacked, exposure)) continue;
+        const Stamp& stamp = batch_[stamps[k].stamp];
+        if (mask) mask->apply(slot, exposure);
+        if (!erased.empty()) {
+            erased[k] = ink::erase(target_.canvas(), slot, exposure, tile.area, stamp.ds, erase_starts_.at(slot),
+                                   {.strength = stamp.erases});
+            continue;
+        }
+        if (stamp.by_hair) target_.expose_grain(slot, exposure, stamp.grain_film);
+        given[k] = ink::deposit(target_.canvas(), slot, exposure, tile.area, stamp.ink, laws[stamps[k].stamp]);
+    }
+}
+
+double StampBatch::flush(const ProgressFn& going_on) {
+    if (batch_.empty()) return 0;
+    plan();
+    const std::vector<TileStamp> order = sort_by_tile();
+    std::vector<std::size_t> first;  // of each tile's stamps
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        if (k > 0 && order[k].slot == order[k - 1].slot) continue;
+        first.push_back(k);
+        target_.snapshot(order[k].slot);
+    }
+    first.push_back(order.size());
+
+    const bool erases = batch_.front().erases > 0;
+    for (std::size_t t = 0; erases && t + 1 < first.size(); ++t) {
+        const std::uint32_t slot = order[first[t]].slot;
+        if (!erase_starts_.contains(slot)) erase_starts_.emplace(slot, ink::erase_start(target_.canvas(), slot));
+    }
+    if (std::any_of(batch_.begin(), batch_.end(), [](const Stamp& s) { return s.by_hair; })) target_.prepare_grain();
+    std::array<ink::DepositLaw, kStamps> laws;
+    for (std::size_t i = 0; i < batch_.size(); ++i) laws[i] = ink::deposit_law(batch_[i].ink, batch_[i].ds);
+
+    std::vector<double> given(order.size(), 0.0);
+    std::vector<ink::Amounts> erased(erases ? order.size() : 0);
+    for (std::size_t from = 0; from + 1 < first.size(); from += kTilesPerReport) {
+        report(going_on, "painting", 0);
+        const std::size_t n = std::min(kTilesPerReport, first.size() - 1 - from);
+        parallel_for(n, 4, [&](std::size_t begin, std::size_t end) {
+            footprint::Unpacked unpacked;
+            for (std::size_t t = from + begin; t < from + end; ++t) {
+                const std::size_t at = first[t], n_stamps = first[t + 1] - at;
+                write_tile(std::span(order).subspan(at, n_stamps), laws,
+                           erases ? std::span(erased).subspan(at, n_stamps) : std::span<ink::Amounts>(),
+                           std::span(given).subspan(at, n_stamps), unpacked);
+            }
+        });
+    }
+    batch_.clear();
+    for (const ink::Amounts& e : erased) erased_ += e;
+    double sum = 0;
+    for (const double g : given) sum += g;
+    return sum;
+}
+
+void StampBatch::blot(const atlas::SeamLinks& seams) {
+    std::function<bool(std::uint32_t, int)> free;
+    if (const MaskTexels* mask = target_.mask())
+        free = [mask](std::uint32_t slot, int texel) { return mask->coverage(slot, texel) == 255; };
+    erased_ += ink::blot(target_.canvas(), target_.texels(), seams, erase_starts_, free,
+                         [this](std::uint32_t slot) { target_.snapshot(slot); });
+}
+
+}  // namespace tuft::stroke

@@ -1,0 +1,339 @@
+#include "stroke/drawing/fit_trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <unordered_map>
+
+#include "core/ease.h"
+#include "core/system/interrupt.h"
+#include "stroke/drawing/plane_ink.h"
+#include "stroke/gesture/tractrix.h"
+
+namespace tuft::stroke {
+namespace {
+
+using std::numbers::pi;
+
+// Widths of the line.
+constexpr double kApart = 0.1;      // stations of the way
+constexpr double kStep = 1.0 / 10;  // of the hand
+constexpr double kCell = 1.0 / 24;  // of the picture
+constexpr double kFarthest = 0.8;   // that ink is looked for beyond the wanted edge
+constexpr double kSoft = 0.4;       // of the way to both sides over which corrections are smoothed
+constexpr double kAbout = 2.5;      // of the way about a turn that is corrected
+constexpr double kMostMoved = 1.5;  // that the way moves
+constexpr double kOwn = 0.8;        // of the way from a place within which the tuft lays its ink there
+constexpr double kEdge = 0.08;      // of the half width within which a place still belongs to the edge
+constexpr double kUnder = 0.1;      // of another line's half width from its edge: less may be bare
+constexpr double kSharpLift = 1;    // of the way about a sharp turn in which the hand lifts at first
+
+constexpr double kTurn = 0.35,
+                 kSharp = 1.7;    // radians within a width: less is no corner; more, and the tuft turns over
+constexpr double kFan = pi / 12;  // radians between looks round a corner
+constexpr double kLifted = 0.65;  // part of the width that a first try leaves out at a sharp turn
+constexpr double kShift = 0.6, kPress = 0.3, kKick = 2;  // parts of an error taken back at once
+constexpr int kTries = 8;
+constexpr double kLongest = 2000;  // widths: longer lines are not fitted
+constexpr double kEnough = 0.008,
+                 kGain = 0.97;  // rms in widths that nobody sees; of the one before, less is a gain
+
+/// A place of the way and the half width that the ink is to have there.
+struct Station {
+    Vec2 centre{0};
+    double half = 0;
+};
+
+/// A place of the wanted edge.
+struct Look {
+    Vec2 at{0}, out{0};  ///< metres; unit
+    std::size_t station = 0;
+    double farthest = 0;  ///< metres outwards before the wanted area begins again
+};
+
+/// Samples that lie about kApart apart, corners among them.
+std::vector<TraceSample> evenly(const std::vector<TraceSample>& s, double apart) {
+    std::vector<TraceSample> out{s.front()};
+    for (std::size_t i = 1; i < s.size(); ++i) {
+        const double length = glm::distance(s[i].position, s[i - 1].position);
+        const auto n = static_cast<int>(std::clamp(std::round(length / apart), 1.0, 1e4));
+        for (int k = 1; k <= n; ++k) {
+            const double f = static_cast<double>(k) / n;
+            TraceSample next = s[i];
+            next.position = glm::mix(s[i - 1].position, s[i].position, f);
+            next.time = std::lerp(s[i - 1].time, s[i].time, f);
+            next.pressure = std::lerp(s[i - 1].pressure, s[i].pressure, f);
+            next.tilt = glm::mix(s[i - 1].tilt, s[i].tilt, f);
+            out.push_back(next);
+        }
+    }
+    return out;
+}
+
+/// Direction of the way before and behind a station.
+Vec2 heading(const std::vector<Station>& s, std::size_t i, int step) {
+    for (std::size_t k = i; step < 0 ? k > 0 : k + 1 < s.size();) {
+        k = step < 0 ? k - 1 : k + 1;
+        const Vec2 d = static_cast<double>(step) * (s[k].centre - s[i].centre);
+        if (glm::length(d) > 1e-9) return glm::normalize(d);
+    }
+    return Vec2{0};
+}
+
+double angle_between(const Vec2& a, const Vec2& b) {
+    return std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
+}
+
+Vec2 turned(const Vec2& v, double angle) {
+    return {std::cos(angle) * v.x - std::sin(angle) * v.y, std::sin(angle) * v.x + std::cos(angle) * v.y};
+}
+
+}  // namespace
+
+/// Discs of many lines, found by the squares of a grid.
+class DrawnArea {
+  public:
+    void add(std::size_t of_line, const Vec2& centre, double half) {
+        if (!(half > 0)) return;
+        const Vec2 lo = glm::floor((centre - half) / kSquare), hi = glm::floor((centre + half) / kSquare);
+        for (auto j = static_cast<std::int64_t>(lo.y); j <= static_cast<std::int64_t>(hi.y); ++j)
+            for (auto i = static_cast<std::int64_t>(lo.x); i <= static_cast<std::int64_t>(hi.x); ++i)
+                squares_[key(i, j)].push_back({of_line, centre, half});
+    }
+    /// Whether a point lies by more than `slack` of their half widths within a disc of a line other
+    /// than `but`.
+    bool covers(const Vec2& p, std::size_t but, double slack) const {
+        const auto at = squares_.find(key(static_cast<std::int64_t>(std::floor(p.x / kSquare)),
+                                          static_cast<std::int64_t>(std::floor(p.y / kSquare))));
+        return at != squares_.end() && std::any_of(at->second.begin(), at->second.end(), [&](const Disc& d) {
+                   return d.line != but && glm::distance(p, d.centre) < (1 - slack) * d.half;
+               });
+    }
+    std::size_t line = 0;  ///< that is fitted
+
+  private:
+    static constexpr double kSquare = 4e-3;  // metres
+    struct Disc {
+        std::size_t line = 0;
+        Vec2 centre{0};
+        double half = 0;
+    };
+    static std::uint64_t key(std::int64_t i, std::int64_t j) {
+        return (static_cast<std::uint64_t>(i) << 32) ^ (static_cast<std::uint64_t>(j) & 0xFFFFFFFFu);
+    }
+    std::unordered_map<std::uint64_t, std::vector<Disc>> squares_;
+};
+
+namespace {
+
+/// The edge of the discs round the stations.
+std::vector<Look> looks_of(const std::vector<Station>& stations, const std::vector<double>& weight, double width,
+                           const DrawnArea* area) {
+    std::vector<Look> looks;
+    DrawnArea own;
+    for (const Station& s : stations) own.add(0, s.centre, s.half);
+    const auto look = [&](std::size_t i, const Vec2& out) {
+        const Vec2 at = stations[i].centre + stations[i].half * out;
+        if (own.covers(at, 1, kEdge) || (area && area->covers(at, area->line, kUnder))) return;
+        double far = 0;
+        while (far < kFarthest * width && !own.covers(at + (far + 0.1 * width) * out, 1, 0)) far += 0.1 * width;
+        looks.push_back({at, out, i, far});
+    };
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+        check_interrupt();
+        if (weight[i] <= 0) continue;
+        Vec2 in = heading(stations, i, -1), on = heading(stations, i, 1);
+        const bool head = in == Vec2(0), tail = on == Vec2(0);
+        if (head && tail) continue;
+        if (head || tail) {
+            const Vec2 away = head ? -on : in;
+            for (double a = -pi / 2; a <= pi / 2 + 1e-9; a += kFan) look(i, turned(away, a));
+            continue;
+        }
+        const Vec2 left_in = turned(in, pi / 2);
+        const double turn = angle_between(in, on);
+        const int n = static_cast<int>(std::abs(turn) / kFan);
+        for (int k = 0; k <= n + 1; ++k) {
+            // On the outer side of a turn one after the other, on the inner one the mean.
+            const double part = n == 0 ? 0.5 : static_cast<double>(k) / (n + 1);
+            if (n == 0 && k > 0) break;
+            const Vec2 side = turned(left_in, part * turn);
+            look(i, turn > 0 ? -side : side);
+        }
+        look(i, (turn > 0 ? 1.0 : -1.0) * turned(left_in, 0.5 * turn));
+    }
+    return looks;
+}
+
+/// How far the ink reaches over the wanted edge, metres; negative: it stays behind.
+double reach_over(const PlaneInk& ink, const Look& look, double half) {
+    const double step = 0.5 * ink.cell(), from = -std::min(half, 16 * ink.cell());
+    double before = ink.at({look.at.x + from * look.out.x, -(look.at.y + from * look.out.y)});
+    if (before < 0.5) return from;
+    for (double t = from + step; t <= look.farthest; t += step) {
+        const Vec2 p = look.at + t * look.out;
+        const double now = ink.at({p.x, -p.y});
+        if (now < 0.5) return t - step * (0.5 - now) / std::max(before - now, 1e-9);
+        before = now;
+    }
+    return look.farthest;
+}
+
+/// By how much the way turns within half a width to both sides of each station, radians.
+std::vector<double> turns_of(const std::vector<Station>& stations, const std::vector<double>& along, double width) {
+    const std::size_t n = stations.size();
+    std::vector<double> turns(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+        std::size_t a = i, b = i;
+        while (a > 0 && along[i] - along[a] < 0.5 * width) --a;
+        while (b + 1 < n && along[b] - along[i] < 0.5 * width) ++b;
+        if (a < i && b > i)
+            turns[i] = std::abs(
+                angle_between(stations[i].centre - stations[a].centre, stations[b].centre - stations[i].centre));
+    }
+    return turns;
+}
+
+/// Metres along the way from each station to the nearest with a turn of more than `least`.
+std::vector<double> far_from_turns(const std::vector<double>& turns, const std::vector<double>& along, double least) {
+    const std::size_t n = turns.size();
+    std::vector<double> far(n, 1e30);
+    for (std::size_t i = 0; i < n; ++i)
+        if (turns[i] > least && turns[i] >= turns[i > 0 ? i - 1 : i] && turns[i] >= turns[std::min(i + 1, n - 1)])
+            far[i] = 0;
+    for (std::size_t i = 1; i < n; ++i) far[i] = std::min(far[i], far[i - 1] + along[i] - along[i - 1]);
+    for (std::size_t i = n - 1; i-- > 0;) far[i] = std::min(far[i], far[i + 1] + along[i + 1] - along[i]);
+    return far;
+}
+
+/// Means over kSoft to both sides, nearer ones counting more.
+template <class T>
+std::vector<T> smoothed(const std::vector<T>& v, const std::vector<double>& along, double soft) {
+    std::vector<T> out(v.size());
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        while (along[i] - along[first] > soft) ++first;
+        T sum{};
+        double all = 0;
+        for (std::size_t k = first; k < v.size() && along[k] - along[i] <= soft; ++k) {
+            const double w = 1 - std::abs(along[k] - along[i]) / (1.001 * soft);
+            sum += w * v[k];
+            all += w;
+        }
+        out[i] = sum / all;
+    }
+    return out;
+}
+
+}  // namespace
+
+Trace fit_trajectory(Trace trace, const brush::Preset& preset, const LineWidths& widths, const HolderOptions& options,
+                     const DrawnArea* area) {
+    if (!trace.flat || trace.samples.size() < 3 || !(trace.line_width > 0)) return trace;
+    const double width = std::max(trace.line_width, widths.least());
+    if (travelled<TraceSample>(trace.samples).back() > kLongest * width) return trace;
+    Trace tried = trace;
+    tried.samples = evenly(trace.samples, kApart * width);
+    const std::size_t n = tried.samples.size();
+    const std::vector<double> along = travelled<TraceSample>(tried.samples);
+    std::vector<Station> wanted;
+    for (const TraceSample& s : tried.samples) wanted.push_back({Vec2(s.position), 0.5 * widths.at(s.pressure)});
+    const std::vector<double> turns = turns_of(wanted, along, width);
+    if (*std::max_element(turns.begin(), turns.end()) < kTurn) return trace;
+    std::vector<double> weight = far_from_turns(turns, along, kTurn), wider = far_from_turns(turns, along, kSharp);
+    for (double& w : weight) w = 1 - smooth_step(w / width - kAbout + 1);
+    for (std::size_t i = 0; i < n; ++i)
+        wider[i] = -2 * kLifted * wanted[i].half * (1 - smooth_step(wider[i] / (kSharpLift * width)));
+    const std::vector<Look> looks = looks_of(wanted, weight, width, area);
+    if (looks.empty()) return trace;
+    std::vector<Vec2> moved(n, Vec2{0});
+    double least = 1e300;
+    Trace best = trace;
+    for (int t = 0, idle = 0; t < kTries && idle < 2; ++t) {
+        check_interrupt();
+        for (std::size_t i = 0; i < n; ++i) {
+            TraceSample& s = tried.samples[i];
+            s.position = Vec3(wanted[i].centre + moved[i], s.position.z);
+            s.pressure =
+                wider[i] == 0 && moved[i] == Vec2(0) ? s.pressure : widths.pressure(2 * wanted[i].half + wider[i]);
+        }
+        const PlaneInk ink = plane_ink(tried, preset, options, kStep * width, kCell * width);
+        std::vector<Vec2> shift(n, Vec2{0});
+        std::vector<double> press(n, 0), count(n, 0), kicks(n, 0);
+        double sum = 0, all = 0;
+        for (const Look& look : looks) {
+            const double e = reach_over(ink, look, wanted[look.station].half);
+            sum += weight[look.station] * e * e;
+            all += weight[look.station];
+            std::size_t by = look.station;
+            if (e > 0) {
+                const Vec2 p = look.at + 0.7 * e * look.out;
+                const double when = ink.when({p.x, -p.y});
+                const auto at = std::lower_bound(tried.samples.begin(), tried.samples.end(), when,
+                                                 [](const TraceSample& s, double time) { return s.time < time; });
+                by = std::min<std::size_t>(static_cast<std::size_t>(at - tried.samples.begin()), n - 1);
+            }
+            if (std::abs(along[by] - along[look.station]) < kOwn * width) {
+                shift[look.station] -= e * look.out;
+                press[look.station] -= e;
+                ++count[look.station];
+            } else
+                kicks[by] = std::max(kicks[by], e);
+        }
+        const double rms = std::sqrt(sum / std::max(all, 1e-9)) / width;
+        idle = rms < kGain * least ? 0 : idle + 1;
+        if (rms < least) {
+            least = rms;
+            best = tried;
+        }
+        if (rms < kEnough) break;
+        for (std::size_t i = 0; i < n; ++i) {
+            const double m = std::max(count[i], 1.0);
+            shift[i] *= weight[i] / m;
+            press[i] = weight[i] * (2 * press[i] / m - kKick * kicks[i]);
+        }
+        shift = smoothed(shift, along, kSoft * width);
+        press = smoothed(press, along, kSoft * width);
+        for (std::size_t i = 0; i < n; ++i) {
+            moved[i] += kShift * shift[i];
+            if (const double far = glm::length(moved[i]); far > kMostMoved * width)
+                moved[i] *= kMostMoved * width / far;
+            wider[i] = std::clamp(wider[i] + kPress * press[i], -1.6 * wanted[i].half, 0.8 * wanted[i].half);
+        }
+    }
+    return best;
+}
+
+void fit_trajectory(std::span<Trace* const> drawing, WidthTables& tables) {
+    const auto together = [](const Trace& a, const Trace& b) {
+        const Placement &p = a.placement, &q = b.placement;
+        return a.ink == b.ink && p.origin == q.origin && p.right == q.right && p.down == q.down &&
+               p.mapping == q.mapping;
+    };
+    std::vector<bool> done(drawing.size(), false);
+    for (std::size_t first = 0; first < drawing.size(); ++first) {
+        if (done[first]) continue;
+        DrawnArea area;
+        for (std::size_t i = first; i < drawing.size(); ++i) {
+            const Trace& t = *drawing[i];
+            if (done[i] || !together(t, *drawing[first])) continue;
+            const LineWidths& widths = tables.of(t.brush);
+            if (t.samples.empty() ||
+                travelled<TraceSample>(t.samples).back() > kLongest * std::max(t.line_width, widths.least()))
+                continue;
+            for (const TraceSample& s : evenly(t.samples, kApart * std::max(t.line_width, widths.least())))
+                area.add(i, Vec2(s.position), 0.5 * widths.at(s.pressure));
+        }
+        for (std::size_t i = first; i < drawing.size(); ++i) {
+            Trace& t = *drawing[i];
+            if (done[i] || !together(t, *drawing[first])) continue;
+            area.line = i;
+            const std::string brush = t.brush;  // `t` may be moved from before the other arguments are made
+            t = fit_trajectory(std::move(t), brush::load_preset(brush), tables.of(brush), tables.hold(brush), &area);
+            done[i] = true;
+        }
+    }
+}
+
+}  // namespace tuft::stroke

@@ -1,0 +1,128 @@
+#include "stroke/drawing/line_width.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "brush/calibration/sweep.h"
+#include "core/ease.h"
+#include "stroke/gesture/tractrix.h"
+#include "stroke/placement/holder.h"
+#include "stroke/placement/placement.h"
+#include "stroke/placement/tip_lag.h"
+
+namespace tuft::stroke {
+
+namespace {
+
+constexpr int kSteps = 12;
+constexpr double kMiddle = 0.5;               // made-up pressure of a line's whole width
+constexpr double kEase = 0.36;                // in that of a brush chosen for a width: corners come out best
+constexpr double kLight = 0.3, kHeavy = 0.7;  // a pressure between them draws lines with the brush that is there
+
+}  // namespace
+
+LineWidths::LineWidths(const brush::Preset& preset) : widths_(kSteps + 1, 0.0) {
+    std::vector<double> depths;
+    for (int i = 1; i <= kSteps; ++i) depths.push_back(working_depth(preset) * i / kSteps);
+    const std::vector<brush::SweepRow> rows = brush::sweep_depth(preset, depths);
+    for (std::size_t i = 0; i < rows.size(); ++i) widths_[i + 1] = std::max(widths_[i], rows[i].width + 2 * kSkinFilm);
+}
+
+double LineWidths::at(double pressure) const {
+    const double x = std::clamp(pressure, 0.0, 1.0) * kSteps;
+    const auto i = std::min(static_cast<std::size_t>(x), widths_.size() - 2);
+    return std::lerp(widths_[i], widths_[i + 1], x - static_cast<double>(i));
+}
+
+double LineWidths::pressure(double width) const {
+    const auto above = std::find_if(widths_.begin() + 1, widths_.end(), [&](double w) { return w >= width; });
+    if (above == widths_.end()) return 1;
+    const double below = *(above - 1), rise = *above - below;
+    const double part = rise > 0 ? std::max(0.0, width - below) / rise : 0;
+    return std::max(kLightest, (static_cast<double>(above - 1 - widths_.begin()) + part) / kSteps);
+}
+
+const LineWidths& WidthTables::of(const std::string& brush) {
+    const auto at = known_.find(brush);
+    return at != known_.end() ? at->second : known_.emplace(brush, preset(brush)).first->second;
+}
+
+const brush::Preset& WidthTables::preset(const std::string& brush) {
+    const auto at = presets_.find(brush);
+    return at != presets_.end() ? at->second : presets_.emplace(brush, brush::load_preset(brush)).first->second;
+}
+
+const HolderOptions& WidthTables::hold(const std::string& brush) {
+    const auto at = holds_.find(brush);
+    if (at != holds_.end()) return at->second;
+    HolderOptions options = holder_options(preset(brush));
+    options.tip_lag = measure_tip_lag(preset(brush));
+    return holds_.emplace(brush, std::move(options)).first->second;
+}
+
+std::string brush_for_width(const std::string& name, const LineWidths& widths, double width) {
+    if (width >= widths.at(kLight) && width <= widths.at(kHeavy)) return name;
+    const brush::SizedName sized = brush::sized_name(name);
+    const double hair = widths.at(kEase) - 2 * kSkinFilm;  // the ink round it is the same for all sizes
+    const double factor =
+        std::clamp(sized.factor * (width - 2 * kSkinFilm) / hair, brush::kLeastSize, brush::kMostSize);
+    return brush::name_of({sized.base, std::pow(kBrushSizes, std::round(std::log(factor) / std::log(kBrushSizes)))});
+}
+
+namespace {
+
+constexpr double kEnd = 1.5;          // line widths over which a hand sets down and lifts
+constexpr double kMostOfLine = 0.25;  // of the line at most
+constexpr double kPoint = 0.4;        // part of the width that the line has at its very ends
+
+/// A line that ends where it began goes on along itself for `more` metres, at the same pace.
+void overlap(Trace& trace, double more) {
+    std::vector<TraceSample>& s = trace.samples;
+    const std::vector<double> along = travelled<TraceSample>(s);
+    const std::size_t n = s.size();
+    if (n < 4 || glm::length(s.back().position - s.front().position) > 1e-6 * along.back()) return;
+    const double ends = s.back().time, begins = s.front().time;
+    for (std::size_t i = 1; i < n; ++i) {
+        TraceSample next = s[i];
+        const double part = std::min(1.0, (more - along[i - 1]) / std::max(along[i] - along[i - 1], 1e-12));
+        next.position = glm::mix(s[i - 1].position, s[i].position, part);
+        next.time = ends + std::lerp(s[i - 1].time, s[i].time, part) - begins;
+        s.push_back(next);
+        if (part < 1 || along[i] >= more) break;
+    }
+}
+
+}  // namespace
+
+double line_end(double width) {
+    return kEnd * width;
+}
+
+void add_extent(Box& box, const Trace& trace) {
+    for (const StencilEdge& edge : trace.stencil) box.add(Vec3(edge.from, 0)), box.add(Vec3(edge.to, 0));
+    if (!trace.stencil.empty()) return;
+    const Vec3 beside = 0.5 * trace.line_width * Vec3(1, 1, 0);
+    for (const TraceSample& sample : trace.samples)
+        box.add(sample.position - beside), box.add(sample.position + beside);
+}
+
+void draw_to_width(Trace& trace, const LineWidths& widths) {
+    if (trace.samples.empty()) return;
+    const double whole = travelled<TraceSample>(trace.samples).back();
+    const double end = std::min(line_end(trace.line_width), kMostOfLine * whole);
+    overlap(trace, 2 * end);
+    const std::vector<double> along = travelled<TraceSample>(trace.samples);
+    const auto part = [&](const TraceSample& s) { return s.pressure / kMiddle; };
+    const bool head = part(trace.samples.front()) > kPoint,
+               tail = part(trace.samples.back()) > kPoint;  // else it runs out by itself
+    for (std::size_t i = 0; i < along.size(); ++i) {
+        double near = 1e30;
+        if (head) near = along[i];
+        if (tail) near = std::min(near, along.back() - along[i]);
+        const double ends = end > 0 ? std::lerp(kPoint, 1.0, smooth_step(near / end)) : 1;
+        trace.samples[i].pressure = widths.pressure(trace.line_width * std::min(1.0, part(trace.samples[i])) * ends);
+    }
+}
+
+}  // namespace tuft::stroke

@@ -1,0 +1,54 @@
+#include "stroke/gesture/hand.h"
+
+#include <algorithm>
+
+namespace tuft::stroke {
+namespace {
+
+constexpr double kCatchUpSpacing = 2.5e-4;  // metres between samples while the tip catches up
+constexpr double kSlowestCatchUp = 0.02;    // m/s
+
+double mean_speed(const std::vector<TraceSample>& samples) {
+    double way = 0;
+    for (std::size_t i = 1; i < samples.size(); ++i) way += glm::length(samples[i].position - samples[i - 1].position);
+    const double time = samples.back().time - samples.front().time;
+    return time > 0 ? std::max(way / time, kSlowestCatchUp) : kSlowestCatchUp;
+}
+
+}  // namespace
+
+Trace steady(Trace trace, const Settings& settings) {
+    auto& samples = trace.samples;
+    if (samples.empty() || !trace.flat) return trace;
+    if (settings.smooth > 0) {
+        const HandFilterOptions options = hand_filter_options(settings.smooth);
+        const double end = samples.back().time;
+        for (int way = 0; way < 2; ++way) {
+            HandFilter filter;
+            for (TraceSample& s : samples) {
+                TraceSample now = s;
+                if (way == 1) now.time = end - s.time;
+                now = smooth(filter, now, options);
+                now.time = s.time;
+                s = now;
+            }
+            std::reverse(samples.begin(), samples.end());
+        }
+    }
+    if (settings.stabilise > 0) {
+        const double speed = mean_speed(samples);
+        String string;
+        for (TraceSample& s : samples) s = pull(string, s, settings.stabilise);
+        let_go(string, samples.back().time, speed, kCatchUpSpacing, samples);
+    }
+    return press(std::move(trace), {.from = pressure_from(settings.pressure)});
+}
+
+brush::Pose steady(GestureFilter& state, const brush::Pose& pose, const Settings& settings) {
+    brush::Pose out = pose;
+    if (settings.smooth > 0) out = smooth(state.filter, out, hand_filter_options(settings.smooth));
+    if (settings.stabilise > 0) out = pull(state.string, out, settings.stabilise);
+    return out;
+}
+
+}  // namespace tuft::stroke

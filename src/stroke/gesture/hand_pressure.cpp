@@ -1,0 +1,110 @@
+#include "stroke/gesture/hand_pressure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr const char* kNames[] = {"none", "speed", "dwell", "speed+dwell"};
+constexpr double kTaper = 3e-3;       // metres over which the hand lifts
+constexpr double kTaperShare = 0.25;  // of the way, at most
+constexpr double kTaperEnd = 0.08;    // of the pressure, where the way ends
+constexpr double kBackShare = 0.6;    // of the taper that the lifting hand goes back
+constexpr double kLift = 0.06;        // seconds of it
+constexpr int kLiftSamples = 8;
+constexpr double kLook = 0.03;  // seconds of the trace that tell its first speed
+
+// Part of the way to its goal that a first-order lag goes in dt.
+double settled_part(double dt, double constant) {
+    return -std::expm1(-dt / std::max(constant, 1e-6));
+}
+
+double goal_of(const PressureState& s, const PressureOptions& o) {
+    double goal = o.level;
+    if (o.from != PressureFrom::dwell) goal *= 1 + o.speed_effect * std::expm1(-s.speed / o.fast);
+    if (o.from != PressureFrom::speed) goal *= 1 + o.dwell_effect * s.rest;
+    return std::clamp(goal, 0.0, 1.0);
+}
+
+double first_speed(const std::vector<TraceSample>& samples) {
+    double way = 0;
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+        way += glm::length(samples[i].position - samples[i - 1].position);
+        const double dt = samples[i].time - samples[0].time;
+        if (dt > 0 && (dt >= kLook || i + 1 == samples.size())) return way / dt;
+    }
+    return 0;
+}
+
+// The tip is taken back over the end of the stroke while it lifts, so that the hair springs
+// onto ink and draws no drop beyond the end. `left`: metres from each sample to the end.
+void lift_back(std::vector<TraceSample>& samples, const std::vector<double>& left, double way) {
+    const TraceSample end = samples.back();
+    std::size_t i = samples.size() - 1;
+    for (int k = 1; k <= kLiftSamples; ++k) {
+        const double part = static_cast<double>(k) / kLiftSamples;
+        while (i > 0 && (i + 1 == left.size() || left[i] < part * way)) --i;
+        const double span = left[i] - left[i + 1];
+        const double w = span > 0 ? (part * way - left[i + 1]) / span : 0;
+        TraceSample s = end;
+        s.position = samples[i + 1].position + w * (samples[i].position - samples[i + 1].position);
+        s.time = end.time + part * kLift;
+        s.pressure = end.pressure * (1 - part);
+        samples.push_back(s);
+    }
+}
+
+}  // namespace
+
+std::string name_of(PressureFrom from) {
+    return kNames[static_cast<int>(from)];
+}
+
+PressureFrom pressure_from(const std::string& name) {
+    for (const auto from : {PressureFrom::none, PressureFrom::speed, PressureFrom::dwell, PressureFrom::speed_dwell})
+        if (name == name_of(from)) return from;
+    throw Error("pressure comes from none, speed, dwell or speed+dwell, not from '" + name + "'");
+}
+
+double press(PressureState& s, const Vec3& position, double time, const PressureOptions& o) {
+    if (!s.started) {
+        s.started = true;
+        s.time = time;
+        s.position = position;
+        return s.pressure;
+    }
+    const double dt = time - s.time;
+    if (!(dt > 0)) return s.pressure;  // the way is counted with the next sample
+    const double speed = glm::length(position - s.position) / dt;
+    s.speed += settled_part(dt, o.speed_time) * (speed - s.speed);
+    const double slow = s.speed / o.still;
+    s.rest += settled_part(dt, o.dwell_time) * (1 / (1 + slow * slow) - s.rest);
+    s.pressure += settled_part(dt, o.follow) * (goal_of(s, o) - s.pressure);
+    s.time = time;
+    s.position = position;
+    return s.pressure;
+}
+
+Trace press(Trace trace, const PressureOptions& o) {
+    auto& samples = trace.samples;
+    if (o.from == PressureFrom::none || samples.empty()) return trace;
+    PressureState state;
+    state.speed = first_speed(samples);
+    std::vector<double> left(samples.size(), 0);  // metres to the end
+    for (std::size_t i = samples.size() - 1; i > 0; --i)
+        left[i - 1] = left[i] + glm::length(samples[i].position - samples[i - 1].position);
+    const double taper = std::min(kTaper, kTaperShare * left[0]);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double p = press(state, samples[i].position, samples[i].time, o);
+        const double x = taper > 0 ? std::clamp(left[i] / taper, 0.0, 1.0) : 1.0;
+        samples[i].pressure = p * (kTaperEnd + (1 - kTaperEnd) * x * (2 - x));
+    }
+    if (taper > 0) lift_back(samples, left, kBackShare * taper);
+    samples.back().pressure = 0;
+    return trace;
+}
+
+}  // namespace tuft::stroke

@@ -1,0 +1,215 @@
+#include "stroke/painting/fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/system/parallel.h"
+#include "stroke/gesture/hand.h"
+#include "stroke/placement/placement.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr double kPart = 0.1;          // of the way, that may be lost, buried or stretched
+constexpr double kMost = 0.5;          // of the way: then no depth is worth telling
+constexpr double kDepthPart = 0.5;     // of the depth, that it may change by
+constexpr double kLeastChange = 2e-4;  // metres of depth that nobody sees
+constexpr double kLeastMove = 1e-3,
+                 kMovePart = 0.01;  // metres, and part of the way, that a place may move by
+constexpr double kStretch = 1.25;   // times as long, or short
+constexpr double kPiece = 5e-3;     // metres of path that are measured together
+constexpr double kTouch = 1e-4;     // metres that a single touch counts as
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Where the ink of a sample lies on a model; nothing where it leaves none.
+struct Place {
+    std::optional<Vec3> was, is;
+    bool buried = false;
+    Vec3 hand{0};  ///< metres, of the sample: its steps are the path
+    Vec3 gone{0};  ///< where it would lie now, on the surface or not
+};
+
+void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::optional<ModelMotion>& motion) {
+    std::vector<double> moved, slid;
+    double piece = 0, now = 0;
+    const auto end_piece = [&] {
+        fit.kept += piece;
+        fit.kept_now += now;
+        if (now > kStretch * piece || kStretch * now < piece) fit.stretched += piece;
+        piece = now = 0;
+    };
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Place& p = places[i];
+        if (!p.was) continue;
+        const double step = std::max(kTouch / static_cast<double>(places.size()),
+                                     i > 0 ? glm::distance(p.hand, places[i - 1].hand) : 0.0);
+        fit.way += step;
+        if (p.buried)
+            fit.buried += step;
+        else if (!p.is)
+            fit.lost += step;
+        if (p.is || fit.flat) {
+            moved.push_back(glm::distance(p.gone, *p.was));
+            if (motion) slid.push_back(glm::distance(p.gone, (*motion)(*p.was)));
+        }
+        if (i == 0 || !p.is || !places[i - 1].was || !places[i - 1].is) continue;
+        piece += glm::distance(*p.was, *places[i - 1].was);
+        now += glm::distance(*p.is, *places[i - 1].is);
+        if (piece > kPiece) end_piece();
+    }
+    // What is left over is short: it says nothing of its own, but for a stroke that is all as
+    // short.
+    if (fit.kept == 0 && piece > kTouch) end_piece();
+    if (!moved.empty()) fit.moved_most = *std::ranges::max_element(moved);
+    fit.moved = median(std::move(moved));
+    if (!slid.empty()) fit.slid = median(std::move(slid));
+}
+
+StrokeFit fit_in_space(const Stroke& stroke, double length, const mesh::SurfaceQuery& former,
+                       const mesh::SurfaceQuery& revised, const std::optional<ModelMotion>& motion) {
+    StrokeFit fit{.stroke = stroke.id};
+    std::vector<double> depths, changes;
+    std::vector<Place> places;
+    for (const brush::Pose& pose : spatial_poses(stroke.trace)) {
+        const Vec3 mouth = pose.position, axis = pose.axis();
+        Place& place = places.emplace_back();
+        place.hand = mouth;
+        const auto was = former.ray(mouth, axis, 0, length);
+        fit.reached = fit.reached || was || former.closest_point(mouth, length);
+        if (!was) continue;
+        place.was = was->position;
+        const auto now = revised.ray(mouth - length * axis, axis, 0, 2 * length);
+        if (!now) continue;
+        place.buried = now->distance < length;
+        if (place.buried) continue;
+        place.is = place.gone = now->position;
+        depths.push_back(length - was->distance);
+        changes.push_back(was->distance - (now->distance - length));
+    }
+    add_places(fit, places, motion);
+    fit.depth = median(std::move(depths));
+    fit.deeper = median(std::move(changes));
+    return fit;
+}
+
+StrokeFit fit_flat(const Stroke& stroke, const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
+                   const std::optional<ModelMotion>& motion) {
+    StrokeFit fit{.stroke = stroke.id, .flat = true};
+    const Trace trace = steady(stroke.trace, stroke.settings);
+    const SurfaceTrace was = map_to_surface(former, trace), now = map_to_surface(revised, trace);
+    std::vector<Place> places(trace.samples.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        Place& place = places[i];
+        place.hand = Vec3(trace.samples[i].position.x, trace.samples[i].position.y, 0);
+        place.gone = now.samples[i].position;
+        if (!(trace.samples[i].pressure > 0) || !was.samples[i].on_surface) continue;
+        fit.reached = true;
+        place.was = was.samples[i].position;
+        if (now.samples[i].on_surface) place.is = place.gone;
+    }
+    add_places(fit, places, motion);
+    return fit;
+}
+
+}  // namespace
+
+std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes,
+                                   const std::function<double(const std::string&)>& length_of,
+                                   const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
+                                   const std::optional<ModelMotion>& motion) {
+    std::vector<const Stroke*> compared;
+    std::vector<double> lengths;  // asked for here: presets are loaded one at a time
+    for (const Stroke& stroke : strokes)
+        if (stroke.action == Action::stroke && !stroke.hidden && stroke.layer != kPaletteLayer) {
+            compared.push_back(&stroke);
+            lengths.push_back(length_of(stroke.trace.brush));
+        }
+    std::vector<StrokeFit> fits(compared.size());
+    parallel_for(compared.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            fits[i] = compared[i]->trace.flat ? fit_flat(*compared[i], former, revised, motion)
+                                              : fit_in_space(*compared[i], lengths[i], former, revised, motion);
+    });
+    return fits;
+}
+
+std::string mismatch_reason(const StrokeFit& fit) {
+    if (fit.way <= 0) return "";
+    const auto percent = [&](double part) { return static_cast<int>(std::lround(100 * part / fit.way)); };
+    const double far = std::max(kLeastMove, kMovePart * fit.way);
+    std::vector<std::string> reasons;
+    // A place in space is the hand's: it moves along the hair only, which the depth tells.
+    if (fit.flat && fit.moved > far)
+        reasons.push_back(fmt::format("lies {:.1f} mm from where it lay", 1e3 * fit.moved));
+    if (fit.slid && *fit.slid > far)
+        reasons.push_back(fmt::format("lies {:.1f} mm from its place on the model", 1e3 * *fit.slid));
+    const bool sank = std::abs(fit.deeper) > std::max(kLeastChange, kDepthPart * fit.depth);
+    // A surface that sank loses the light ends of a stroke too: that it sank says more.
+    const double least = (sank ? kMost : kPart) * fit.way;
+    if (fit.lost > least && fit.lost >= fit.buried)
+        reasons.push_back(fmt::format("{} % of it touches nothing", percent(fit.lost)));
+    else if (fit.buried > least)
+        reasons.push_back(fmt::format("{} % of it lies inside the model", percent(fit.buried)));
+    else if (sank)
+        reasons.push_back(
+            fmt::format("pressed {:.1f} mm {}", 1e3 * std::abs(fit.deeper), fit.deeper > 0 ? "deeper" : "less deep"));
+    if (fit.stretched > kPart * fit.way)
+        reasons.push_back(
+            fmt::format("{} % of it is stretched or squeezed by more than a quarter", percent(fit.stretched)));
+    return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& reports,
+                                            const std::vector<StrokeFit>& fits) {
+    std::vector<StrokeMismatch> found;
+    for (const StrokeReport& report : reports) {
+        const auto fit =
+            std::find_if(fits.begin(), fits.end(), [&](const StrokeFit& f) { return f.stroke == report.stroke_id; });
+        std::string reason;
+        if (fit != fits.end() && (report.touched() || !fit->reached))
+            reason = mismatch_reason(*fit);
+        else if (!report.touched())
+            reason = fmt::format("touches nothing, {:.1f} mm away", 1e3 * report.nearest);
+        if (!reason.empty()) found.push_back({report.stroke_id, std::move(reason)});
+    }
+    return found;
+}
+
+FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMismatch>& mismatches) {
+    FitTotal total{.strokes = fits.size(), .mismatches = mismatches.size()};
+    std::vector<double> moved, slid;
+    double way = 0, missing = 0, stretched = 0;
+    for (const StrokeFit& fit : fits) {
+        if (!(fit.way > 0)) continue;
+        moved.push_back(fit.moved);
+        if (fit.slid) slid.push_back(*fit.slid);
+        total.moved_most = std::max(total.moved_most, fit.moved_most);
+        way += fit.way;
+        missing += fit.lost + fit.buried;
+        stretched += fit.stretched;
+    }
+    total.moved = median(std::move(moved));
+    if (!slid.empty()) total.slid = median(std::move(slid));
+    if (way > 0) total.missing = missing / way, total.stretched = stretched / way;
+    return total;
+}
+
+std::string describe(const FitTotal& t) {
+    const std::string on_model =
+        t.slid ? fmt::format(" and {:.1f} mm from their places on the model", 1e3 * *t.slid) : "";
+    return fmt::format(
+        "{} of {} strokes no longer fit: they lie {:.1f} mm from where they lay ({:.1f} mm at "
+        "most){}, {:.0f} % of their ink is missing, {:.0f} % of it is "
+        "stretched or squeezed by more than a quarter",
+        t.mismatches, t.strokes, 1e3 * t.moved, 1e3 * t.moved_most, on_model, 100 * t.missing, 100 * t.stretched);
+}
+
+}  // namespace tuft::stroke

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/error.h"
+#include "core/system/interrupt.h"
+#include "stroke/placement/smoothed_surface.h"
+#include "stroke/placement/surface_mapping.h"
+
+namespace tuft::stroke {
+
+namespace {
+
+using mesh::SurfaceQuery;
+
+constexpr int kRays = 180;  // headings in which lines are walked; between them linear
+constexpr std::size_t kMostSteps = 20'000;
+
+/// One step of a straightest line: ahead on the osculating paraboloid, then onto the ground.
+BaseColour step(const SurfaceQuery& query, const BaseColour& from, double length, double radius) {
+    const double k = from.found ? from.curvature[0] : 0, mixed = from.found ? from.curvature[1] : 0;
+    const Vec3 side = glm::cross(from.normal, from.heading);
+    BaseColour guess = from;
+    guess.found = false;
+    const double turn = k * length;
+    guess.position += length * (1 - turn * turn / 6) * from.heading + 0.5 * turn * length * from.normal;
+    guess.normal = glm::normalize(from.normal - length * (k * from.heading + mixed * side));
+    guess.heading = into_plane(parallel_transport(from.heading, from.normal, guess.normal), guess.normal);
+    BaseColour next = feel(query, guess, radius);
+    if (!next.found) {  // past an edge: straight on
+        next = from;
+        next.found = false;
+        next.position += length * from.heading;
+    }
+    return next;
+}
+
+/// The straightest lines from the placement's origin, walked as far as they are asked for.
+class Drape {
+  public:
+    Drape(const SurfaceQuery& query, const Placement& place)
+        : query_(query), radius_(drape_radius(query.mesh())), stride_(0.5 * radius_) {
+        const auto start = query.closest_point(place.origin);
+        if (!start) throw Error("there is no surface to lay a stroke on");
+        gap_ = start->distance;
+        BaseColour ground{
+            start->position, start->normal, axes_across(start->normal, place.right, place.down).right, {0, 0, 0}, true};
+        for (int pass = 0; pass < 4; ++pass) ground = feel(query, ground, radius_);
+        origin_ = ground;
+        axes_ = axes_across(ground.normal, place.right, place.down);
+        hand_ = glm::dot(glm::cross(axes_.right, ground.normal), axes_.down) < 0 ? -1 : 1;
+    }
+
+    double origin_gap() const { return gap_; }
+    double radius() const { return radius_; }
+
+    /// Place, normal and axes of a flat point on the ground; `on_surface` as felt there.
+    SurfaceSample at(const Vec2& flat) {
+        const double length = glm::length(flat);
+        const double angle = std::atan2(flat.y, flat.x) / (2 * std::numbers::pi) * kRays;
+        const double left = std::floor(angle), u = angle - left;
+        const double along = length / stride_;
+        const auto ring = static_cast<std::size_t>(std::min(along, double(kMostSteps - 1)));
+        const double v = along - double(ring);
+        SurfaceSample out;
+        out.position = out.normal = out.right = out.down = Vec3(0);
+        for (int r = 0; r < 2; ++r) {
+            const int ray = ((static_cast<int>(left) + r) % kRays + kRays) % kRays;
+            for (std::size_t s = 0; s < 2; ++s) {
+                const double weight = (r ? u : 1 - u) * (s ? v : 1 - v);
+                const BaseColour& g = node(ray, ring + s);
+                const double phi = 2 * std::numbers::pi * ray / kRays;
+                const Vec3 side = hand_ * glm::cross(g.heading, g.normal);
+                out.position += weight * g.position;
+                out.normal += weight * g.normal;
+                out.right += weight * (std::cos(phi) * g.heading - std::sin(phi) * side);
+                out.down += weight * (std::sin(phi) * g.heading + std::cos(phi) * side);
+                if (!g.found && weight > 0.25) out.on_surface = false;
+            }
+        }
+        out.normal = glm::normalize(out.normal);
+        const Axes axes = axes_across(out.normal, out.right, out.down);
+        out.right = axes.right;
+        out.down = axes.down;
+        return out;
+    }
+
+  private:
+    const BaseColour& node(int ray, std::size_t ring) {
+        std::vector<BaseColour>& line = lines_[static_cast<std::size_t>(ray)];
+        if (line.empty()) {
+            const double phi = 2 * std::numbers::pi * ray / kRays;
+            BaseColour start = origin_;
+            start.heading = std::cos(phi) * axes_.right + std::sin(phi) * axes_.down;
+            BaseColour turned = start;
+            turned.curvature = feel(query_, start, radius_).curvature;
+            line.push_back(turned);
+        }
+        while (line.size() <= ring) {
+            check_interrupt();
+            line.push_back(step(query_, line.back(), stride_, radius_));
+        }
+        return line[ring];
+    }
+
+    const SurfaceQuery& query_;
+    double radius_, stride_, gap_ = 0, hand_ = 1;
+    BaseColour origin_;
+    Axes axes_;
+    std::array<std::vector<BaseColour>, kRays> lines_;
+};
+
+}  // namespace
+
+double drape_radius(const mesh::TriangleMesh& mesh) {
+    return std::min(0.008, 0.04 * mesh.bounds.diagonal());
+}
+
+SurfaceTrace lay_draped(const SurfaceQuery& query, const Trace& trace) {
+    Drape drape(query, trace.placement);
+    SurfaceTrace mapped;
+    mapped.origin_gap = drape.origin_gap();
+    mapped.samples.reserve(trace.samples.size());
+    for (const TraceSample& s : trace.samples) {
+        check_interrupt();
+        SurfaceSample out = drape.at(Vec2(s.position));
+        const SurfaceSample hand = hand_data(s);
+        out.time = hand.time;
+        out.pressure = hand.pressure;
+        out.tilt = hand.tilt;
+        const double up = clearance(query, out.position, out.normal, drape.radius());
+        if (const auto hit = exact_ray(query, out.position + up * out.normal, -out.normal, up + drape.radius())) {
+            out.on = *hit;
+            out.position = hit->position;
+        } else {
+            out.on = *query.closest_point(out.position);
+            out.on_surface = false;
+        }
+        mapped.missed += !out.on_surface;
+        mapped.samples.push_back(out);
+    }
+    return mapped;
+}
+
+}  // namespace tuft::stroke

@@ -1,0 +1,109 @@
+#include "stroke/placement/placement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stroke/gesture/tractrix.h"
+#include "stroke/placement/holder.h"
+#include "stroke/placement/levelling.h"
+#include "stroke/placement/smoothed_surface.h"
+#include "stroke/placement/surface_mapping.h"
+#include "stroke/placement/tip_lag.h"
+
+namespace tuft::stroke {
+
+namespace {
+
+constexpr double kTremble = 1.0 / 32;  // of the levelled path: a hand that trembles within it rests
+
+/// Height of the ground ahead over the plane at a place; 0 where there is none within as much.
+double rise(const mesh::SurfaceQuery& query, const Vec3& place, const Vec3& ahead, const Vec3& normal, double steady) {
+    const double most = glm::length(ahead);
+    const auto hit = exact_ray(query, place + ahead + most * normal, -normal, 2 * most);
+    if (!hit || glm::dot(hit->face_normal, normal) <= 0) return 0;
+    const double up = glm::dot(hit->position - place, normal);
+    return steady > 0 ? up + level_at(query, hit->position, normal, steady) : up;
+}
+
+}  // namespace
+
+double working_depth(const brush::Preset& preset) {
+    return 0.5 * preset.length;
+}
+
+HolderOptions holder_options(const brush::Preset& preset) {
+    return {.tuft_length = preset.length,
+            .working_depth = working_depth(preset),
+            .hover = 0.1 * preset.length,
+            .steady = 0,
+            .tip_lag = {},
+            .tip_lag_turn = std::min(HolderOptions{}.tip_lag_turn, 0.075 * preset.length)};  // a fine tuft turns sooner
+}
+
+HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh) {
+    HolderOptions options = holder_options(preset);
+    options.steady = std::min(drape_radius(mesh), 0.4 * preset.length);  // a fine tuft feels finer ground
+    return options;
+}
+
+brush::Pose pose_holder(const Vec3& place, double height, const HolderPose& held, const HolderOptions& options) {
+    const double lean = std::min(glm::length(held.tilt), options.max_tilt);
+    const Vec2 tilt = lean > 0 ? held.tilt * (lean / glm::length(held.tilt)) : Vec2{0};
+    const Vec3 up = glm::normalize(held.normal + std::tan(tilt.x) * held.right + std::tan(tilt.y) * held.down);
+    const Vec3 x = into_plane(held.right, up);
+    brush::Pose pose;
+    pose.position = place + (height - held.depth) * held.normal + options.tuft_length * up;
+    pose.rotation = glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up)));
+    pose.time = held.time;
+    return pose;
+}
+
+std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
+                              const HolderOptions& options) {
+    std::vector<brush::Pose> poses;
+    poses.reserve(samples.size());
+    const std::vector<double> along = travelled(samples, kTremble * options.steady);
+    const std::vector<LevelledSurface> levelled = level_surface(query, samples, along, options.steady);
+    const std::vector<double> depths = tip_depths(samples, options);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const SurfaceSample& s = samples[i];
+        const LevelledSurface& ground = levelled[i];
+        const Axes axes = axes_across(ground.normal, s.right, s.down);
+        const Vec3 ahead = s.tip_lag.x * axes.right + s.tip_lag.y * axes.down;
+        double height = ground.height;
+        // A tuft that has not trailed yet touches where the hand is.
+        if (const double tip_lag = glm::length(s.tip_lag); along[i] < tip_lag)
+            height += (1 - along[i] / tip_lag) * rise(query, s.position, ahead, ground.normal, options.steady);
+        poses.push_back(pose_holder(s.position + ahead, height,
+                                    {ground.normal, axes.right, axes.down, depths[i], s.tilt, s.time}, options));
+    }
+    return poses;
+}
+
+std::vector<brush::Pose> spatial_poses(const Trace& trace) {
+    std::vector<brush::Pose> poses;
+    poses.reserve(trace.samples.size());
+    for (const TraceSample& s : trace.samples) poses.push_back({s.position, glm::normalize(s.rotation), s.time});
+    return poses;
+}
+
+HandPath hand_path(const mesh::SurfaceQuery& query, const Trace& trace, const HolderOptions& options) {
+    if (!trace.flat) return {{}, spatial_poses(trace), 0};
+    // Laid is where the ink is to be: over a hollow, the surface ahead leans otherwise.
+    const Trace led = lead_hand(trace, options);
+    HandPath path;
+    path.set_down = led.samples.size() - trace.samples.size();
+    const Trace lifted = lift_off(led, options);
+    Trace ink = lifted;
+    for (std::size_t i = 0; i < ink.samples.size(); ++i) {
+        const std::size_t own = std::clamp(i, path.set_down, led.samples.size() - 1) - path.set_down;
+        ink.samples[i].position = trace.samples[own].position;
+    }
+    path.mapped = map_to_surface(query, ink);
+    for (std::size_t i = 0; i < ink.samples.size(); ++i)
+        path.mapped.samples[i].tip_lag = Vec2(lifted.samples[i].position - ink.samples[i].position);
+    path.poses = hold(query, path.mapped.samples, options);
+    return path;
+}
+
+}  // namespace tuft::stroke

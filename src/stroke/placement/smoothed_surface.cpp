@@ -1,0 +1,194 @@
+#include "stroke/placement/smoothed_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/ease.h"
+#include "stroke/placement/surface_mapping.h"
+
+namespace tuft::stroke {
+
+namespace {
+
+using mesh::SurfaceQuery;
+
+constexpr int kRings = 3;        // of the hexagonal pattern of samples
+constexpr double kFit = 0.7;     // part of the pattern that must lie on ground for its curvature
+constexpr double kLeast = 0.35;  // and for its slope
+// `level_at`: mismatch in parts of its radius, and of a disk half as wide in parts of the wider one's
+constexpr double kTrusted = 0.005, kDoubted = 0.02, kSame = 0.75, kBetter = 0.25;
+constexpr double kBelow = 0.3;  // there; a hand rests on what is high
+
+const std::vector<Vec2>& pattern() {
+    static const std::vector<Vec2> points = [] {
+        std::vector<Vec2> p;
+        for (int j = -kRings; j <= kRings; ++j)
+            for (int i = std::max(-kRings, -kRings - j); i <= std::min(kRings, kRings - j); ++i)
+                p.push_back(Vec2(i + 0.5 * j, 0.5 * std::sqrt(3.0) * j) / double(kRings));
+        return p;
+    }();
+    return points;
+}
+
+/// Solves A x = b for symmetric positive A in place; false when A has no such inverse.
+template <int N>
+bool solve(std::array<std::array<double, N>, N>& a, std::array<double, N>& b) {
+    for (int k = 0; k < N; ++k) {
+        if (!(a[k][k] > 1e-12)) return false;
+        for (int i = k + 1; i < N; ++i) {
+            const double f = a[i][k] / a[k][k];
+            for (int j = k; j < N; ++j) a[i][j] -= f * a[k][j];
+            b[i] -= f * b[k];
+        }
+    }
+    for (int k = N - 1; k >= 0; --k) {
+        for (int j = k + 1; j < N; ++j) b[k] -= a[k][j] * b[j];
+        b[k] /= a[k][k];
+    }
+    return true;
+}
+
+struct Height {
+    double a, b, z;  ///< over the disk, in radii
+};
+
+std::array<double, 6> terms(const Height& h) {
+    return {1, h.a, h.b, 0.5 * h.a * h.a, h.a * h.b, 0.5 * h.b * h.b};
+}
+
+template <int N>
+double rest_of(const Height& h, const std::array<double, N>& c) {
+    const std::array<double, 6> all = terms(h);
+    double rest = h.z;
+    for (int k = 0; k < N; ++k) rest -= c[k] * all[k];
+    return rest;
+}
+
+/// Least sum of pseudo-Huber distances, which narrow grooves hardly bend; convex, so that the
+/// fit changes as little as the ground does. N = 6: with curvature; 3: without.
+template <int N>
+bool fit(const std::vector<Height>& heights, double below, std::array<double, N>& c) {
+    constexpr double kNarrow = 0.01;  // radii: differences of height that count fully
+    constexpr int kPasses = 8;
+    c.fill(0);
+    for (int pass = 0; pass < kPasses; ++pass) {
+        std::array<std::array<double, N>, N> lhs{};
+        std::array<double, N> rhs{};
+        for (const Height& h : heights) {
+            const std::array<double, 6> all = terms(h);
+            const double rest = rest_of<N>(h, c);
+            const double weight =
+                pass == 0 ? 1 : (rest < 0 ? below : 1) / std::sqrt(1 + rest * rest / (kNarrow * kNarrow));
+            for (int i = 0; i < N; ++i) {
+                rhs[i] += weight * all[i] * h.z;
+                for (int j = 0; j < N; ++j) lhs[i][j] += weight * all[i] * all[j];
+            }
+        }
+        if (!solve<N>(lhs, rhs)) return false;
+        c = rhs;
+    }
+    return true;
+}
+
+/// Median distance of the samples from the fit, in radii.
+template <int N>
+double fit_error_of(const std::vector<Height>& heights, const std::array<double, N>& c) {
+    std::vector<double> rests;
+    rests.reserve(heights.size());
+    for (const Height& h : heights) rests.push_back(std::abs(rest_of<N>(h, c)));
+    const auto middle = rests.begin() + std::ptrdiff_t(rests.size() / 2);
+    std::nth_element(rests.begin(), middle, rests.end());
+    return *middle;
+}
+
+Vec3 any_across(const Vec3& normal) {
+    return into_plane(std::abs(normal.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0), normal);
+}
+
+/// The triangle's unit normal as its corners go round.
+Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t t) {
+    const Vec3 a = mesh.position(t, 0);
+    return glm::normalize(glm::cross(mesh.position(t, 1) - a, mesh.position(t, 2) - a));
+}
+
+}  // namespace
+
+double clearance(const SurfaceQuery& query, const Vec3& p, const Vec3& normal, double most) {
+    double from = 0;
+    for (int hop = 0; hop < 4; ++hop) {  // a point within a bump first meets the bump's outside
+        const mesh::RayHit hit =
+            query.trace(Vec3f(p + from * normal), Vec3f(normal), float(1e-3 * most), float(most - from));
+        if (hit.triangle == kNone) return most;
+        const double at = from + hit.distance;
+        if (glm::dot(face_normal(query.mesh(), hit.triangle), normal) < 0) return 0.5 * at;
+        from = at;
+        if (from >= most) break;
+    }
+    return most;
+}
+
+BaseColour feel(const SurfaceQuery& query, const BaseColour& guess, double radius, double below) {
+    const Vec3 side = glm::cross(guess.normal, guess.heading);
+    const double up = clearance(query, guess.position, guess.normal, radius);
+    const Vec3f down(-guess.normal);
+    std::vector<Height> heights;
+    heights.reserve(pattern().size());
+    for (const Vec2& p : pattern()) {
+        const double bulge =
+            0.5 * radius *
+            (guess.curvature[0] * p.x * p.x + 2 * guess.curvature[1] * p.x * p.y + guess.curvature[2] * p.y * p.y);
+        const Vec3 eye = guess.position + radius * (p.x * guess.heading + p.y * side) +
+                         (up + std::clamp(radius * bulge, -radius, radius)) * guess.normal;
+        const mesh::RayHit hit = query.trace(Vec3f(eye), down, 0, float(up + radius));
+        if (hit.triangle == kNone || glm::dot(face_normal(query.mesh(), hit.triangle), guess.normal) < 0.1) continue;
+        heights.push_back({p.x, p.y, (glm::dot(eye - guess.position, guess.normal) - double(hit.distance)) / radius});
+    }
+    BaseColour ground = guess;
+    const auto part = double(heights.size()) / double(pattern().size());
+    double height = 0, fit_error = 0;
+    Vec2 slope{0};
+    if (std::array<double, 6> c; part >= kFit && fit<6>(heights, below, c)) {
+        fit_error = fit_error_of<6>(heights, c);
+        height = c[0];
+        slope = {c[1], c[2]};
+        const double most = 1.0;  // sharper ground than the disk cannot be told from noise
+        for (int k = 0; k < 3; ++k) ground.curvature[k] = std::clamp(c[3 + k], -most, most) / radius;
+    } else if (std::array<double, 3> d; part >= kLeast) {
+        for (Height& h : heights)
+            h.z -=
+                0.5 * radius *
+                (guess.curvature[0] * h.a * h.a + 2 * guess.curvature[1] * h.a * h.b + guess.curvature[2] * h.b * h.b);
+        if (!fit<3>(heights, below, d)) return ground;
+        fit_error = fit_error_of<3>(heights, d);
+        height = d[0];
+        slope = {d[1], d[2]};
+    } else {
+        return ground;
+    }
+    ground.found = true;
+    ground.fit_error = radius * fit_error;
+    ground.position += radius * height * guess.normal;
+    ground.normal = glm::normalize(guess.normal - slope.x * guess.heading - slope.y * side);
+    ground.heading = into_plane(parallel_transport(guess.heading, guess.normal, ground.normal), ground.normal);
+    return ground;
+}
+
+double level_at(const SurfaceQuery& query, const Vec3& position, const Vec3& normal, double radius) {
+    constexpr int kScales = 3;
+    double height = 0, left = 1, before = 0;
+    for (int scale = 0; scale < kScales; ++scale) {
+        const BaseColour ground = feel(query, {.position = position, .normal = normal, .heading = any_across(normal)},
+                                       radius / double(1 << scale), kBelow);
+        if (!ground.found) continue;
+        const double up = glm::dot(ground.position - position, normal);
+        if (before > 0) left *= smooth_step((kSame - ground.fit_error / before) / (kSame - kBetter));
+        height += left * (up - height);
+        left *= smooth_step((ground.fit_error / radius - kTrusted) / (kDoubted - kTrusted));
+        before = ground.fit_error;
+        if (left <= 0) break;
+    }
+    return height;
+}
+
+}  // namespace tuft::stroke

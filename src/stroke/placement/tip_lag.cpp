@@ -1,0 +1,239 @@
+#include "stroke/placement/tip_lag.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brush/calibration/sweep.h"
+#include "core/ease.h"
+#include "stroke/gesture/tractrix.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr double kUpright = 0.05, kLeans = 0.15;  // radians
+constexpr double kPlumb = 0.3;  // of the tuft's length, of travel over which an upright holder comes to its lean
+
+/// Where x lies between the grid's values, held to its ends.
+template <std::size_t N>
+std::pair<std::size_t, double> cell_of(const std::array<double, N>& grid, double x) {
+    std::size_t i = 0;
+    while (i + 2 < N && x >= grid[i + 1]) ++i;
+    return {i, std::clamp((x - grid[i]) / (grid[i + 1] - grid[i]), 0.0, 1.0)};
+}
+
+}  // namespace
+
+const std::vector<Vec2>& TiltedTipLag::node(std::size_t i, std::size_t j) {
+    std::vector<Vec2>& tip_lags = nodes_[i * kAcross.size() + j];
+    if (tip_lags.empty()) {
+        for (const double part : kDepths) {
+            const brush::LinePlace place =
+                brush::line_place(preset_, part * working_depth(preset_), {kAlong[i], kAcross[j]});
+            tip_lags.push_back({place.behind, -place.aside});
+        }
+    }
+    return tip_lags;
+}
+
+Vec2 TiltedTipLag::of_node(std::size_t i, std::size_t j, double depth) {
+    const double part = depth / working_depth(preset_);
+    if (part < kDepths[0]) return part / kDepths[0] * node(i, j)[0];
+    const auto [k, f] = cell_of(kDepths, part);
+    return glm::mix(node(i, j)[k], node(i, j)[k + 1], f);
+}
+
+Vec2 TiltedTipLag::at(double depth, const Vec2& lean) {
+    const double part = smooth_step((glm::length(lean) - kUpright) / (kLeans - kUpright));
+    if (part <= 0 || depth <= 0) return Vec2{0};
+    const auto [i, f] = cell_of(kAlong, lean.x);
+    const auto [j, g] = cell_of(kAcross, std::abs(lean.y));
+    Vec2 leaned{0};
+    for (const auto& [a, wa] : {std::pair{i, 1 - f}, std::pair{i + 1, f}})
+        for (const auto& [b, wb] : {std::pair{j, 1 - g}, std::pair{j + 1, g}})
+            if (wa * wb > 0) leaned += wa * wb * of_node(a, b, depth);
+    // Leaning to the other side is the mirror image.
+    if (lean.y < 0) leaned.y = -leaned.y;
+    constexpr std::size_t kUprightNode = 3;
+    static_assert(kAlong[kUprightNode] == 0 && kAcross[0] == 0);
+    return part * (leaned - of_node(kUprightNode, 0, depth));
+}
+
+std::vector<TipLag> measure_tip_lag(const brush::Preset& preset) {
+    std::vector<double> depths;
+    for (const double part : {0.05, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0})
+        depths.push_back(part * working_depth(preset));
+    std::vector<TipLag> tip_lag{{0, 0}};
+    for (const brush::SweepRow& row : brush::sweep_depth(preset, depths))
+        tip_lag.push_back({row.depth, std::max(0.0, row.offset + 0.5 * row.width)});
+    return tip_lag;
+}
+
+namespace {
+
+double tip_lag_length(std::span<const TipLag> table, double depth) {
+    if (table.empty()) return 0;
+    if (depth <= table.front().depth)
+        return table.front().depth > 0 ? table.front().length * depth / table.front().depth : table.front().length;
+    for (std::size_t i = 1; i < table.size(); ++i) {
+        const TipLag &a = table[i - 1], &b = table[i];
+        if (depth <= b.depth) return a.length + (b.length - a.length) * (depth - a.depth) / (b.depth - a.depth);
+    }
+    return table.back().length;
+}
+
+double depth_of(const HolderOptions& options, double pressure) {
+    return std::clamp(pressure, 0.0, 1.0) * options.working_depth;
+}
+
+/// What a lean adds to the tip_lag, `along` the path; that is 1 long where the string is taut.
+Vec2 tilted_tip_lag(const HolderOptions& options, const Vec2& tilt, double depth, const Vec2& along) {
+    const double taut = glm::length(along), lean = glm::length(tilt);
+    if (taut < 1e-9 || lean <= 0) return Vec2{0};
+    const Vec2 ahead = along / taut, left{ahead.y, -ahead.x};  // y of a trace is down
+    const Vec2 held = tilt * (std::min(lean, options.max_tilt) / lean);
+    const Vec2 up{std::tan(held.x), std::tan(held.y)};
+    const Vec2 more = options.leaned(depth, {std::atan(glm::dot(up, ahead)), std::atan(glm::dot(up, left))});
+    return taut * (more.x * ahead + more.y * left);
+}
+
+}  // namespace
+
+Vec2 lead_of(const HolderOptions& options, double pressure, const Vec2& tilt, const Vec2& ahead) {
+    const double depth = depth_of(options, pressure);
+    const Vec2 tip_lag = tip_lag_length(options.tip_lag, depth) * ahead;
+    return options.leaned ? tip_lag + tilted_tip_lag(options, tilt, depth, ahead) : tip_lag;
+}
+
+namespace {
+
+constexpr double kLean = 0.12;    // radians by which the holder tips ahead where it sets down pressed
+constexpr double kLeanTurns = 4;  // over so many `tip_lag_turn` of travel it comes upright
+constexpr double kAiming = 0.5;   // of `tip_lag_turn`: distance from the first sample at which its direction is taken
+
+/// Direction in which a trace sets out: that of the place where it first is `away` metres from its
+/// first sample. Zero where it never is.
+Vec2 first_direction(std::span<const TraceSample> samples, double away) {
+    const Vec2 first(samples[0].position);
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+        const Vec2 a = Vec2(samples[i - 1].position) - first, b = Vec2(samples[i].position) - first, way = b - a;
+        if (glm::length(b) < away) continue;
+        // |a + t way| = away
+        const double aa = glm::dot(way, way), ab = glm::dot(a, way), c = glm::dot(a, a) - away * away;
+        const double t = aa > 0 ? (-ab + std::sqrt(std::max(0.0, ab * ab - aa * c))) / aa : 1;
+        return glm::normalize(a + std::clamp(t, 0.0, 1.0) * way);
+    }
+    return Vec2{0};
+}
+
+/// Speed over the first `way` metres of path; 0 where it does not move.
+double first_pace(std::span<const TraceSample> samples, double way) {
+    double gone = 0, taken = 0;
+    for (std::size_t i = 1; i < samples.size() && gone < way; ++i) {
+        const double piece = glm::distance(samples[i].position, samples[i - 1].position);
+        const double part = piece > 0 ? std::min(1.0, (way - gone) / piece) : 1;
+        gone += part * piece;
+        taken += part * (samples[i].time - samples[i - 1].time);
+    }
+    return gone > 0 && taken > 0 ? gone / taken : 0;
+}
+
+// The hand of a trace that begins pressed goes the tip_lag while it presses: the tip touches where the trace
+// begins and trails from there. Set down from above it would bend to any side, and a tuft that is
+// pushed before the hand turns over only after centimetres.
+bool set_down(Trace& trace, const HolderOptions& options, const Vec2& ahead) {
+    constexpr double kStep = 2.5e-4;  // metres between samples, less where they would be few
+    constexpr double kFewest = 8, kMost = 100;
+    constexpr double kWay = 3e-3;    // metres over which the pace is taken
+    constexpr int kPieces = 64;      // of the press, whose length is measured
+    constexpr double kTouch = 1e-6;  // of the pressure: the tip is down from the first sample
+    const TraceSample first = trace.samples.front();
+    if (!(tip_lag_length(options.tip_lag, depth_of(options, first.pressure)) > 0)) return false;
+    const double pace = first_pace(trace.samples, kWay);
+    if (!(pace > 0)) return false;
+    // Metres that the foot of the holder goes, ahead and down, up to each pressure.
+    std::vector<double> gone{0};
+    Vec3 foot{0};
+    for (int i = 1; i <= kPieces; ++i) {
+        const double pressure = first.pressure * i / kPieces;
+        const Vec3 next(lead_of(options, pressure, first.tilt, ahead), -depth_of(options, pressure));
+        gone.push_back(gone.back() + glm::distance(next, foot));
+        foot = next;
+    }
+    const double duration = gone.back() / (kSetDownPace * std::max(pace, kSlowestSetDown));
+    const int n = static_cast<int>(std::clamp(std::ceil(gone.back() / kStep), kFewest, kMost));
+    std::vector<TraceSample> touch(static_cast<std::size_t>(n), first);
+    std::size_t k = 1;
+    for (int i = 0; i < n; ++i) {
+        const double part = static_cast<double>(i) / n, at = part * gone.back();
+        while (k < kPieces && gone[k] < at) ++k;
+        const double span = gone[k] - gone[k - 1];
+        TraceSample& s = touch[static_cast<std::size_t>(i)];
+        const double pressed = (static_cast<double>(k - 1) + (span > 0 ? (at - gone[k - 1]) / span : 0)) / kPieces;
+        s.pressure = first.pressure * std::max(pressed, kTouch);
+        s.time = first.time - (1 - part) * duration;
+    }
+    trace.samples.insert(trace.samples.begin(), touch.begin(), touch.end());
+    return true;
+}
+
+// BaseColour that is not quite as the hand takes it leans the tuft, and one that leans tip ahead is pushed. The holder
+// is tipped ahead by more than that until the tuft trails.
+void lean_ahead(Trace& trace, const HolderOptions& options, const Vec2& ahead) {
+    const double until = kLeanTurns * options.tip_lag_turn;
+    double gone = 0;
+    for (std::size_t i = 0; i < trace.samples.size() && gone < until; ++i) {
+        TraceSample& s = trace.samples[i];
+        s.tilt += kLean * (1 - smooth_step(gone / until)) * ahead;
+        if (i + 1 < trace.samples.size()) gone += glm::length(trace.samples[i + 1].position - s.position);
+    }
+}
+
+// A hand that holds the brush upright, give or take a little, sets it down plumb: hair that touches ahead of the hand
+// by a lean that nobody meant would be pushed, and turn over late. The lean comes as the hair is drawn to one side.
+void set_down_plumb(Trace& trace, const HolderOptions& options) {
+    const double whole = kPlumb * options.tuft_length;
+    double along = 0;
+    for (std::size_t i = 0; i < trace.samples.size() && along < whole; ++i) {
+        TraceSample& s = trace.samples[i];
+        if (i > 0) along += glm::length(s.position - trace.samples[i - 1].position);
+        const double meant = smooth_step((glm::length(s.tilt) - kUpright) / (kLeans - kUpright));
+        s.tilt *= std::lerp(smooth_step(along / whole), 1.0, meant);
+    }
+}
+
+}  // namespace
+
+Trace lead_hand(Trace trace, const HolderOptions& options) {
+    if (options.tip_lag.empty() || trace.samples.empty() || !trace.flat) return trace;
+    // The hand knows where it is going to start: the string is taut from the first touch.
+    const Vec2 first(trace.samples.front().position);
+    const Vec2 sets_out = first_direction(trace.samples, kAiming * options.tip_lag_turn);
+    const bool pressed = set_down(trace, options, sets_out);
+    set_down_plumb(trace, options);
+    if (pressed && sets_out != Vec2(0)) lean_ahead(trace, options, sets_out);
+    Vec2 dragged = first - options.tip_lag_turn * sets_out, before = first;
+    for (TraceSample& s : trace.samples) {
+        const Vec2 p(s.position);
+        dragged = drag_string(dragged, before, p, options.tip_lag_turn);
+        before = p;
+        s.position = Vec3(p + lead_of(options, s.pressure, s.tilt, (p - dragged) / options.tip_lag_turn), s.position.z);
+    }
+    return trace;
+}
+
+Trace lift_off(Trace trace, const HolderOptions& options) {
+    constexpr int kSamples = 8;
+    if (trace.samples.empty() || !trace.flat || trace.samples.back().pressure > 0) return trace;
+    const double from = -tip_depths<TraceSample>(trace.samples, options).back();
+    const double left = options.hover - from;
+    if (!(left > 1e-3 * options.hover)) return trace;
+    TraceSample s = trace.samples.back();
+    const double begins = s.time, duration = kHoverTime * left / options.hover;
+    for (int i = 1; i <= kSamples; ++i) {
+        s.time = begins + duration * i / kSamples;
+        trace.samples.push_back(s);
+    }
+    return trace;
+}
+
+}  // namespace tuft::stroke
