@@ -161,6 +161,11 @@ int run(const Replay& a) {
         if (!a.ink.empty()) s.trace.ink = a.ink;
     }
     find_presets(painting, strokes);
+    if (!a.model.empty()) {
+        const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
+        const std::string fault = stroke::size_fault(strokes, length_of, *project->model.query, *model.query);
+        if (!fault.empty()) throw Error(a.model.string(), fault + " (see --unit)");
+    }
     const std::vector<stroke::StrokeReport> reports = painting.replay(strokes, console.progress());
     console.clear();
     const Fit fit = find_fit(a, *project, painting, strokes, reports);

@@ -101,10 +101,12 @@ void carry_strokes(const fs::path& former, PaintThread::Work& work, const Progre
     work.autosave.take_presets(project);
     work.autosave.take_attachments(project);
     const std::vector<stroke::Stroke> strokes = project.strokes();
-    const std::vector<stroke::StrokeReport> reports = work.painting->replay(strokes, progress);
     const mesh::TriangleMesh mesh = project.model().mesh;
     const auto length_of = [&](const std::string& brush) { return work.painting->brush(brush).length; };
     const mesh::SurfaceQuery before(mesh);
+    const std::string fault = stroke::size_fault(strokes, length_of, before, *work.model->query);
+    if (!fault.empty()) throw Error(fault);
+    const std::vector<stroke::StrokeReport> reports = work.painting->replay(strokes, progress);
     const std::optional<stroke::ModelMotion> motion = stroke::find_motion(before, *work.model->query);
     const std::vector<stroke::StrokeFit> fits =
         stroke::compare_fit(strokes, length_of, before, *work.model->query, motion);

@@ -20,7 +20,12 @@ constexpr double kLeastMove = 1e-3,
                  kMovePart = 0.01;  // metres, and part of the way, that a place may move by
 constexpr double kStretch = 1.25;   // times as long, or short
 constexpr double kPiece = 5e-3;     // metres of path that are measured together
+constexpr double kTooSmall = 0.25;  // times as large as the former model: a unit that was mistaken is less
 constexpr double kTouch = 1e-4;     // metres that a single touch counts as
+
+bool is_compared(const Stroke& s) {
+    return s.action == Action::stroke && !s.hidden && s.layer != kPaletteLayer;
+}
 
 double median(std::vector<double> values) {
     if (values.empty()) return 0;
@@ -121,6 +126,22 @@ StrokeFit fit_flat(const Stroke& stroke, const mesh::SurfaceQuery& former, const
 
 }  // namespace
 
+std::string size_fault(const std::vector<Stroke>& strokes, const std::function<double(const std::string&)>& length_of,
+                       const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised) {
+    const double before = former.mesh().bounds.diagonal(), now = revised.mesh().bounds.diagonal();
+    if (now >= kTooSmall * before) return "";
+    for (const Stroke& stroke : strokes) {
+        if (!is_compared(stroke)) continue;
+        if (const double length = length_of(stroke.trace.brush); now < length)
+            return fmt::format(
+                "it is {:.3g} mm across, the former model {:.3g} mm; the tuft of {} is {:.3g} mm long, and no stroke "
+                "fits; "
+                "is its unit another one?",
+                1e3 * now, 1e3 * before, stroke.trace.brush, 1e3 * length);
+    }
+    return "";
+}
+
 std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes,
                                    const std::function<double(const std::string&)>& length_of,
                                    const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
@@ -128,7 +149,7 @@ std::vector<StrokeFit> compare_fit(const std::vector<Stroke>& strokes,
     std::vector<const Stroke*> compared;
     std::vector<double> lengths;  // asked for here: presets are loaded one at a time
     for (const Stroke& stroke : strokes)
-        if (stroke.action == Action::stroke && !stroke.hidden && stroke.layer != kPaletteLayer) {
+        if (is_compared(stroke)) {
             compared.push_back(&stroke);
             lengths.push_back(length_of(stroke.trace.brush));
         }
