@@ -241,6 +241,11 @@ TEST(Svg, WhatIsNotToBeSeenIsNotPainted) {
                   .size(),
               1u);
     EXPECT_EQ(drawn(line + ink + "/><rect width='9' height='9' fill='red' fill-opacity='0'/>").size(), 1u);
+    EXPECT_EQ(drawn(line + ink + "/>" + line + "fill='black' stroke='url(#not-there)'/>" + line +
+                    "fill='black' stroke='white'/>")
+                  .size(),
+              1u)
+        << "no area, and a stroke that paints nothing";
 }
 
 TEST(Svg, RulesForNamesAndIdsCountAsTheirSpecificity) {

@@ -220,9 +220,11 @@ TEST(ModelMotion, ShiftsTurnsAndSizesOfAWholeModelAreFound) {
 // Centimetres read as inches are 2.54 times as large, inches read as millimetres 1 / 25.4: the first is painted and
 // reported, the second would be painted by tufts longer than the model.
 TEST(SizeFault, AModelSmallerThanATuftIsRefusedOnlyWhereTheFormerOneWasLarger) {
-    const mesh::SurfaceQuery former(crooked([](const Vec3& p) { return p; }));
+    const mesh::TriangleMesh mesh = crooked([](const Vec3& p) { return p; });
+    const mesh::SurfaceQuery former(mesh);
     const auto fault = [&](double scale, const std::vector<Stroke>& strokes) {
-        const mesh::SurfaceQuery revised(crooked([&](const Vec3& p) { return scale * p; }));
+        const mesh::TriangleMesh scaled = crooked([&](const Vec3& p) { return scale * p; });
+        const mesh::SurfaceQuery revised(scaled);
         return size_fault(
             strokes, [](const std::string& name) { return brush::load_preset(name).length; }, former, revised);
     };
