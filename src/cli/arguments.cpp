@@ -243,12 +243,12 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     p->add_option("--substrate", paint.surface.substrate, "what the model is made of: porcelain, bisque, clay, ...");
     p->add_option("--spine", paint.spine, "how the tuft bends: rod (live solve) or table (query table)")
         ->check(CLI::IsMember({"rod", "table"}));
-    p->add_option("--footprint", paint.footprint, "footprint laid along the surface, or on one plane")
+    p->add_option("--footprint", paint.footprint, "footprint along the surface, or on one plane")
         ->check(CLI::IsMember({"surface", "plane"}));
     p->add_option("--contact", paint.contact, "exact closest points, or weighted distance to vertices")
         ->check(CLI::IsMember({"exact", "vertices"}));
     p->add_option("--dip", paint.dip,
-                  "dip a fresh brush for each stroke, carry hair and ink on until told, or paint "
+                  "dip a fresh brush for each stroke, carry hair and ink on until the next dip, or paint "
                   "with a brush that never runs dry (endless)")
         ->check(CLI::IsMember({"each", "carry", "endless"}));
     p->add_option("--film", paint.film,
@@ -415,7 +415,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     add_common(l, layer.common);
 
     FillWork fill;
-    auto* f = app.add_subcommand("fill", "lay ink over a whole project, a part or a chart of it, even or graded");
+    auto* f = app.add_subcommand("fill", "cover a whole project, a part or a chart of it with ink, even or graded");
     f->add_option("PROJECT", fill.project, "project file (.tuft)")->required();
     f->add_option("--ink", fill.ink, "ink to fill with: a name, a .toml file or a colour such as '#c03020'");
     f->add_option("--film", fill.film, "film units of 10 um of wet ink (default: what a full brush leaves)")

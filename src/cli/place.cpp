@@ -31,7 +31,8 @@ void note_widths(const stroke::WidthMismatch& m, Console& console) {
                     asked, m.brush, m.thinnest / kMillimetre, m.widest / kMillimetre));
 }
 
-constexpr double kTooLarge = 3;  // diagonals of the model
+constexpr double kTooLarge = 3;      // diagonals of the model
+constexpr double kFarBeside = 0.05;  // of the model's diagonal: more than a place read off a drawing is out by
 
 /// A point for the middle of a drawing, and the normal that it is laid out across.
 struct Spot {
@@ -49,6 +50,13 @@ Spot named_spot(const stroke::Model& model, const Paint& a, Console& console) {
             fmt::format("warning: --place {:.4g},{:.4g},{:.4g} lies {:.2f} mm inside the model; the drawing goes to "
                         "the nearest place of its surface, {:.1f},{:.1f},{:.1f} mm",
                         a.place_mm[0], a.place_mm[1], a.place_mm[2], inside / kMillimetre, at->position.x / kMillimetre,
+                        at->position.y / kMillimetre, at->position.z / kMillimetre));
+    else if (const double beside = glm::distance(place, Vec3(at->position));
+             beside > kFarBeside * model.mesh->bounds.diagonal())
+        console.note(
+            fmt::format("warning: --place {:.4g},{:.4g},{:.4g} lies {:.1f} mm beside the model; the drawing goes to "
+                        "the nearest place of its surface, {:.1f},{:.1f},{:.1f} mm",
+                        a.place_mm[0], a.place_mm[1], a.place_mm[2], beside / kMillimetre, at->position.x / kMillimetre,
                         at->position.y / kMillimetre, at->position.z / kMillimetre));
     return {*at, at->normal};
 }

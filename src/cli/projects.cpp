@@ -92,7 +92,7 @@ nlohmann::json to_json(const Fit& fit) {
     nlohmann::json strokes = nlohmann::json::array();
     for (const stroke::StrokeFit& f : fit.fits) strokes.push_back(to_json(f));
     nlohmann::json j{{"strokes", std::move(strokes)},
-                     {"misfits", fit.total.mismatches},
+                     {"mismatches", fit.total.mismatches},
                      {"moved_mm", fit.total.moved / kMillimetre},
                      {"moved_most_mm", fit.total.moved_most / kMillimetre},
                      {"missing", fit.total.missing},
@@ -161,6 +161,11 @@ int run(const Replay& a) {
         if (!a.ink.empty()) stroke::set_ink(s, a.ink);
     }
     find_presets(painting, strokes);
+    if (!a.model.empty()) {
+        const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
+        const std::string fault = stroke::size_fault(strokes, length_of, *project->model.query, *model.query);
+        if (!fault.empty()) throw Error(a.model.string(), fault + " (see --unit)");
+    }
     const std::vector<stroke::StrokeReport> reports = painting.replay(strokes, console.progress());
     console.clear();
     const Fit fit = find_fit(a, *project, painting, strokes, reports);
@@ -184,7 +189,7 @@ int run(const Replay& a) {
         nlohmann::json j{{"project", a.project.string()},
                          {"strokes", reports.size()},
                          {"missed", missed},
-                         {"misfits", std::move(list)},
+                         {"mismatches", std::move(list)},
                          {"atlas", to_json(model.atlas, model.atlas_report)},
                          {"canvas_hash", fmt::format("{:016x}", painting.hash())}};
         if (!a.model.empty()) j["fit"] = to_json(fit);

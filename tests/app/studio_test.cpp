@@ -255,7 +255,7 @@ TEST_F(StudioProgram, ARevisedModelCarriesTheStrokesAndNamesThoseThatDoNotFit) {
     // The dialog is there exactly when a replay on that model finds a stroke that does not fit it.
     const nlohmann::json revised =
         tuft("replay '" + path("work.tuft") + "' --model " + source_folder() + "/models/torus.ply --atlas-size 512");
-    EXPECT_EQ(ran.out.find("Keep them") != std::string::npos, !revised["misfits"].empty()) << revised.dump();
+    EXPECT_EQ(ran.out.find("Keep them") != std::string::npos, !revised["mismatches"].empty()) << revised.dump();
     EXPECT_EQ(io::Project::open(path("work.tuft")).strokes().size(), 2u);
 }
 

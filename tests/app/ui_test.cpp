@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <ostream>
 #include <regex>
 #include <string>
@@ -20,6 +21,7 @@
 #include "brush/preset/preset.h"
 #include "ink/colour/pigments.h"
 #include "paths.h"
+#include "stroke/journal/model_motion.h"
 
 namespace tuft::app {
 
@@ -157,6 +159,48 @@ TEST(ChineseFont, IsFoundByItsNameTheBestOneFirst) {
     EXPECT_EQ(find_chinese_font({{"DejaVuSans.ttf", "a"}, {"SarasaGothicCJK-Light.ttc", "s"}}), "s")
         << "one that is not known";
     EXPECT_EQ(find_chinese_font({{"README-CJK.txt", "t"}}), "");
+}
+
+// However the model moved: a size may be 0.04, 25 or 1e-05, and a shift negative.
+TEST(UiText, ARevisedModelThatMovedIsSaidInChinese) {
+    const auto chinese = [](const stroke::ModelMotion& motion) {
+        return chinese_sentence("The revised model is the former one " + stroke::describe(motion) + ".");
+    };
+    const Quat turn = glm::angleAxis(std::numbers::pi / 2, Vec3(1, 0, 0));
+    const std::string is = "\xe4\xbf\xae\xe8\xae\xa2\xe5\x90\x8e";  // "revised"
+    for (const double scale : {1.0, 0.04, 25.4, 1e-5, 1000.0})
+        for (const Quat& rotation : {Quat(1, 0, 0, 0), turn})
+            for (const Vec3& to : {Vec3(0), Vec3(-0.0203, 0, 1.5)}) {
+                const std::string text = chinese({.from = Vec3(0), .to = to, .rotation = rotation, .scale = scale});
+                EXPECT_TRUE(text.starts_with(is)) << text;
+                EXPECT_EQ(text.find('#'), std::string::npos) << text;
+            }
+    EXPECT_NE(chinese({.to = Vec3(-0.0203, 0, 1.5)}).find("(-20.3, 0.0, 1500.0)"), std::string::npos);
+    EXPECT_NE(chinese({.scale = 0.04}).find(" 0.04 "), std::string::npos);
+}
+
+TEST(UiText, ASentenceAboutAFileKeepsItsName) {
+    EXPECT_NE(chinese_sentence("Saved as /tmp/a * b 7.tuft").find("/tmp/a * b 7.tuft"), std::string::npos);
+    const std::string other =
+        chinese_sentence("Another program put another model into a.tuft; this is a copy of what was in it.");
+    EXPECT_NE(other.find("a.tuft"), std::string::npos);
+    EXPECT_EQ(other.find("copy"), std::string::npos) << other;
+    EXPECT_EQ(chinese_sentence("a.ply: line 3 is cut off"), "a.ply: line 3 is cut off") << "what is not known";
+}
+
+// A phase that no module reports any more would leave the line of progress at the phase before.
+TEST(Opening, ThePhasesWithATitleAreThoseThatTheModulesReport) {
+    std::string table, others;
+    for (const auto& file : std::filesystem::recursive_directory_iterator(source_folder() + "/src")) {
+        if (file.path().extension() != ".cpp") continue;
+        std::ifstream in(file.path());
+        (file.path().filename() == "opening.cpp" ? table : others) += {std::istreambuf_iterator<char>(in), {}};
+    }
+    const std::regex stage("\\n    \\{\"([a-z ]+)\", \"[A-Z]");
+    int seen = 0;
+    for (std::sregex_iterator it(table.begin(), table.end(), stage), end; it != end; ++it, ++seen)
+        EXPECT_NE(others.find('"' + (*it)[1].str() + '"'), std::string::npos) << (*it)[1];
+    EXPECT_GE(seen, 15);
 }
 
 // Names in files, such as "iron-red", are not what a person reads.

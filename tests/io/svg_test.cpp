@@ -220,9 +220,9 @@ TEST(Svg, ColoursThatBecomeOneInkAreNamed) {
     EXPECT_EQ(told(square("black") + square("#000") + square("rgb(0, 0, 0)")), Notes{});
     EXPECT_EQ(told(square("#E30613") + square("#e30613") + "<path d='M0 0H9' fill='none' stroke='navy'/>"),
               Notes{"a.svg: 3 colours are painted in one ink: black, #e30613, navy"});
-    EXPECT_EQ(
-        told(square("white") + square("#FFF") + square("none")),
-        Notes{"a.svg: 2 white areas and lines are left bare: white is the ground, and what they cover stays painted"});
+    EXPECT_EQ(told(square("white") + square("#FFF") + square("none")),
+              Notes{"a.svg: 2 white areas and lines are left bare: white is the background, and what they cover stays "
+                    "painted"});
     std::string many;
     for (int i = 0; i < 9; ++i) many += square("#00000" + std::to_string(i + 1));
     EXPECT_EQ(
@@ -241,6 +241,11 @@ TEST(Svg, WhatIsNotToBeSeenIsNotPainted) {
                   .size(),
               1u);
     EXPECT_EQ(drawn(line + ink + "/><rect width='9' height='9' fill='red' fill-opacity='0'/>").size(), 1u);
+    EXPECT_EQ(drawn(line + ink + "/>" + line + "fill='black' stroke='url(#not-there)'/>" + line +
+                    "fill='black' stroke='white'/>")
+                  .size(),
+              1u)
+        << "no area, and a stroke that paints nothing";
 }
 
 TEST(Svg, RulesForNamesAndIdsCountAsTheirSpecificity) {

@@ -215,6 +215,27 @@ TEST(ModelMotion, ShiftsTurnsAndSizesOfAWholeModelAreFound) {
               "turned by 180 degrees and shifted by (0.0, 0.0, 5.0) mm");
 }
 
+// Centimetres read as inches are 2.54 times as large, inches read as millimetres 1 / 25.4: the first is painted and
+// reported, the second would be painted by tufts longer than the model.
+TEST(SizeFault, AModelSmallerThanATuftIsRefusedOnlyWhereTheFormerOneWasLarger) {
+    const mesh::TriangleMesh mesh = crooked([](const Vec3& p) { return p; });
+    const mesh::SurfaceQuery former(mesh);
+    const auto fault = [&](double scale, const std::vector<JournalEntry>& entries) {
+        const mesh::TriangleMesh scaled = crooked([&](const Vec3& p) { return scale * p; });
+        const mesh::SurfaceQuery revised(scaled);
+        return size_fault(
+            entries, [](const std::string& name) { return brush::load_preset(name).length; }, former, revised);
+    };
+    EXPECT_EQ(fault(1 / 2.54, {pressed()}), "");
+    EXPECT_EQ(fault(25.4, {pressed()}), "");
+    const std::string text = fault(1 / 25.4, {pressed()});
+    EXPECT_NE(text.find("the tuft of wolf-small is"), std::string::npos) << text;
+    JournalEntry hidden = pressed();
+    hidden.hidden = true;
+    EXPECT_EQ(fault(1 / 25.4, {hidden}), "");
+    EXPECT_EQ(fault(1 / 25.4, {}), "");
+}
+
 TEST(ModelMotion, AnotherMeshAHoleOrAnotherShapeIsNoMotion) {
     const mesh::TriangleMesh former = crooked([](const Vec3& p) { return p; });
     const auto none = [&](const mesh::TriangleMesh& revised) {

@@ -9,8 +9,11 @@ SnapshotLine line_of(const io::Attachment& a) {
     try {
         const nlohmann::json j = nlohmann::json::parse(a.about);
         line.name = j.value("name", line.name);
-        line.made = j.value("made", std::int64_t{0});
-        line.strokes = j.value("strokes", std::size_t{0});
+        // Nothing but whole numbers: the conversion from 1e300 is undefined.
+        if (const auto at = j.find("made"); at != j.end() && at->is_number_integer())
+            line.made = at->get<std::int64_t>();
+        if (const auto at = j.find("strokes"); at != j.end() && at->is_number_unsigned())
+            line.strokes = at->get<std::size_t>();
     } catch (const nlohmann::json::exception&) {
         // It is listed by its number.
     }

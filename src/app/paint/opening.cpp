@@ -38,7 +38,7 @@ constexpr Stage kStages[] = {
     {"pack", "Laying the charts out", {{1, 1}, {0.55, 0.75}, {0.1, 0.1}}},
     {"check", "Laying the charts out", {{1, 1}, {0.75, 0.76}, {0.1, 0.1}}},
     {"texel map", "Placing the texels", {{1, 1}, {0.76, 0.85}, {0.1, 0.3}}},
-    {"piece graph", "Placing the texels", {{1, 1}, {0.85, 0.9}, {0.3, 0.4}}},
+    {"cluster graph", "Placing the texels", {{1, 1}, {0.85, 0.9}, {0.3, 0.4}}},
     {"search tree", "Placing the texels", {{1, 1}, {0.9, 0.92}, {0.4, 0.45}}},
     {"painting", "Painting the strokes", {{1, 1}, {0.92, 0.97}, {0.45, 0.95}}},
     {"picture of the ink", "Placing the texels", {{1, 1}, {0.97, 1}, {0.95, 1}}},
@@ -101,10 +101,12 @@ void carry_strokes(const fs::path& former, PaintWork& work, const ProgressFn& pr
     work.autosave.take_presets(project);
     work.autosave.take_attachments(project);
     const std::vector<stroke::JournalEntry> strokes = project.strokes();
-    const std::vector<stroke::StrokeReport> reports = work.document->replay(strokes, progress);
     const mesh::TriangleMesh mesh = project.model().mesh;
     const auto length_of = [&](const std::string& brush) { return work.document->brush(brush).length; };
     const mesh::SurfaceQuery before(mesh);
+    const std::string fault = stroke::size_fault(strokes, length_of, before, *work.model->query);
+    if (!fault.empty()) throw Error(fault);
+    const std::vector<stroke::StrokeReport> reports = work.document->replay(strokes, progress);
     const std::optional<stroke::ModelMotion> motion = stroke::find_motion(before, *work.model->query);
     const std::vector<stroke::StrokeFit> fits =
         stroke::compare_fit(strokes, length_of, before, *work.model->query, motion);

@@ -260,7 +260,7 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
         {stroke::SurfaceMapping::drape, "Drape",
          "Bent round the surface; bridges small grooves, panel gaps and scan noise"},
         {stroke::SurfaceMapping::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
-        {stroke::SurfaceMapping::project, "Straight", "Straight through the picture plane"}};
+        {stroke::SurfaceMapping::project, "Project##mapping", "Straight, as seen from before the place"}};
     const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons

@@ -10,11 +10,13 @@ namespace fs = std::filesystem;
 namespace tuft::app {
 namespace {
 
-std::string title_of(const fs::path& file) {
+// What a sample is called; a project is called as its file is.
+std::string title_of(const fs::path& file, const Ui& ui) {
     std::string name = file.stem().string();
+    if (file.extension() == ".tuft") return name;
     std::replace(name.begin(), name.end(), '_', ' ');
     if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-    return name;
+    return ui.tr(name.c_str());
 }
 
 // A card with a picture and a name below; true when it was pressed.
@@ -51,7 +53,7 @@ fs::path cards(Session& s, const std::vector<fs::path>& files, float width, std:
     fs::path chosen;
     for (std::size_t i = 0; i < std::min(most, files.size()); ++i) {
         if (i % columns) ImGui::SameLine();
-        if (card(s, files[i], s.ui.tr(title_of(files[i]).c_str()), width)) chosen = files[i];
+        if (card(s, files[i], title_of(files[i], s.ui), width)) chosen = files[i];
     }
     return chosen;
 }

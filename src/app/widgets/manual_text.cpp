@@ -51,8 +51,8 @@ constexpr ManualPage kPages[] = {
      "one away.\n"
      "* {place}: writing and drawings (InkML, SVG) follow the cursor. The wheel sizes them, Shift and wheel turns "
      "them, a click places them.\n"
-     "\"Drape\" bridges small grooves, panel gaps and scan noise; \"Wrap\" goes into each groove; \"Straight\" goes "
-     "through the picture plane. Strokes scale with the drawing.\n"
+     "\"Drape\" bridges small grooves, panel gaps and scan noise; \"Wrap\" goes into each groove; \"Project\" goes "
+     "straight, as seen from before the place. Strokes scale with the drawing.\n"
      "A placed drawing is one group in the journal: hidden, moved, inked and deleted as one.\n"},
     {"Layers, masks and filling",
      "* Strokes go onto the chosen layer. Layers are shown, faded, ordered and locked apart from each other.\n"

@@ -8,6 +8,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
+#include <regex>
+#include <utility>
 
 #include "app/text/texts.h"
 
@@ -189,29 +192,59 @@ std::string Ui::fitted(const std::string& text, float width) const {
     return shorter();
 }
 
-std::string Ui::tr_sentence(const std::string& english) const {
-    if (settings_.language == Language::english) return english;
-    if (const char* text = chinese_text(english.c_str())) return text;
-    for (const char* beginning : {"Saved as ", "Exported "})
-        if (english.starts_with(beginning)) return tr(beginning) + english.substr(std::strlen(beginning));
-    std::string pattern;
+namespace {
+
+// Sentences about a file, which stands in the place of the star.
+constexpr const char* kFrames[] = {
+    "Saved as *",
+    "Exported *; changes of layers and masks are not in a stroke file",
+    "Exported *",
+    "Another program put another model into *; this is a copy of what was in it.",
+    "Another program put another model into *; your work goes on in a copy that has no name yet.",
+    "* could not be written, and nothing else either: the last strokes are lost",
+};
+
+// What stands in the place of the star.
+std::optional<std::string> name_in(const std::string& frame, const std::string& text) {
+    const std::size_t star = frame.find('*'), after = frame.size() - star - 1;
+    if (text.size() < frame.size() || !text.starts_with(frame.substr(0, star)) ||
+        !text.ends_with(frame.substr(star + 1)))
+        return std::nullopt;
+    return text.substr(star, text.size() - star - after);
+}
+
+// The text with # in the place of each row of digits, or of each number with sign, point and exponent (`whole`).
+std::pair<std::string, std::vector<std::string>> without_numbers(const std::string& text, bool whole) {
+    static const std::regex kDigits("[0-9]+"), kNumber("-?[0-9]+(\\.[0-9]+)?(e[-+][0-9]+)?");
+    const std::regex& number = whole ? kNumber : kDigits;
     std::vector<std::string> numbers;
-    for (std::size_t i = 0; i < english.size();) {
-        const std::size_t end = std::min(english.find_first_not_of("0123456789", i), english.size());
-        if (end == i) {
-            pattern += english[i++];
-            continue;
+    for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it) numbers.push_back(it->str());
+    return {std::regex_replace(text, number, "#"), numbers};
+}
+
+}  // namespace
+
+std::string chinese_sentence(const std::string& english) {
+    if (const char* text = chinese_text(english.c_str())) return text;
+    for (const char* frame : kFrames)
+        if (const std::optional<std::string> name = name_in(frame, english)) {
+            std::string text = chinese_text(frame);
+            return text.replace(text.find('*'), 1, *name);
         }
-        numbers.push_back(english.substr(i, end - i));
-        pattern += '#';
-        i = end;
+    for (const bool whole : {false, true}) {
+        const auto [pattern, numbers] = without_numbers(english, whole);
+        const char* text = chinese_text(pattern.c_str());
+        if (!text) continue;
+        std::string out;
+        std::size_t n = 0;
+        for (const char* c = text; *c; ++c) *c == '#' && n < numbers.size() ? out += numbers[n++] : out += *c;
+        return out;
     }
-    const char* text = chinese_text(pattern.c_str());
-    if (!text) return english;
-    std::string out;
-    std::size_t n = 0;
-    for (const char* c = text; *c; ++c) *c == '#' && n < numbers.size() ? out += numbers[n++] : out += *c;
-    return out;
+    return english;
+}
+
+std::string Ui::tr_sentence(const std::string& english) const {
+    return settings_.language == Language::english ? english : chinese_sentence(english);
 }
 
 std::string Ui::id(const char* label) const {
@@ -338,7 +371,8 @@ bool Ui::slider(const char* label, double& value, double lo, double hi, const ch
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(tr(label));
     hint(text);
-    ImGui::SameLine(px(112));
+    const ImGuiStyle& style = ImGui::GetStyle();
+    ImGui::SameLine(std::max(px(112), style.WindowPadding.x + ImGui::CalcTextSize(tr(label)).x + style.ItemSpacing.x));
     auto v = static_cast<float>(value / unit);
     ImGui::SetNextItemWidth(-1);
     const std::string name = std::string("##") + label;

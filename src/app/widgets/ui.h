@@ -45,7 +45,7 @@ class Ui {
     std::string title(const std::string& name) const;
     /// The text, with "..." for its end where it is wider than so many pixels.
     std::string fitted(const std::string& text, float width) const;
-    /// A sentence with numbers or a name in it: its table has # for each number, or only its beginning.
+    /// A sentence with numbers or a name in it, in the language of the interface.
     std::string tr_sentence(const std::string& english) const;
     /// Pixels of a length given for a scale of 1.
     float px(float length) const { return length * settings_.scale; }
@@ -103,6 +103,10 @@ class Ui {
     UiSettings settings_;
     std::map<std::string, Place> places_;
 };
+
+/// Chinese for a sentence with numbers or a file name in it, as the catalogue has it with # for each number and * for
+/// the name; the English one when there is none.
+std::string chinese_sentence(const std::string& english);
 
 /// sRGB of the primary button, at rest and under the cursor; its text is white.
 inline constexpr float kPrimary[3] = {0.16f, 0.40f, 0.78f}, kPrimaryHovered[3] = {0.17f, 0.43f, 0.82f};

@@ -29,7 +29,7 @@ std::uint32_t u32(const char* bytes) {
 
 /// Checks the chunks of a GLB (tinygltf trusts the length of the second one) and the JSON.
 void check_container(const std::vector<char>& bytes, const std::string& name) {
-    if (std::memcmp(bytes.data(), "glTF", std::min<std::size_t>(4, bytes.size())) != 0) {
+    if (!bytes.empty() && std::memcmp(bytes.data(), "glTF", std::min<std::size_t>(4, bytes.size())) != 0) {
         check_json_nesting({bytes.data(), bytes.size()}, name);
         return;
     }

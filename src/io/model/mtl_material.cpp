@@ -138,7 +138,7 @@ MtlAsGltf gltf_of_mtl(const std::string& name, const std::vector<MtlStatement>& 
     std::string base_file, alpha_file;
     json statements = json::array();
     for (const auto& [key, line] : entry) {
-        const auto is = [&](const char* word) { return mesh::same_word(key, word); };
+        const auto is = [&key = key](const char* word) { return mesh::same_word(key, word); };
         const bool pictured = key.size() > 4 && mesh::same_word(key.substr(0, 4), "map_");
         int texture = -1;
         if (pictured || is("bump") || is("norm") || is("disp") || is("decal") || is("refl")) {

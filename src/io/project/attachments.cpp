@@ -177,7 +177,7 @@ std::vector<Attachment> load_attachments(SQLite::Database& db, const std::filesy
         const std::uint64_t bytes = std::strtoull(about.c_str(), nullptr, 10);
         if (line == std::string::npos || about.size() > kMostAbout || bytes > kMostAttachmentBytes)
             damaged(path, "what is said of a " + kind + " cannot be read");
-        Attachment& a = found.emplace_back(select.getColumn(0).getString(), about.substr(line + 1));
+        Attachment& a = found.emplace_back(Attachment{select.getColumn(0).getString(), about.substr(line + 1)});
         a.bytes = get_array<char>(db, path, kind.c_str(), a.name.c_str(), {.element = 1, .lag = 1, .level = 1}, bytes);
         if (a.bytes.size() != bytes) damaged(path, "a " + kind + " is not there");
     }

@@ -123,8 +123,8 @@ std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::
         const std::string json = text(5, kMostSettings, "the settings of a stroke");
         columns.hidden = select.getColumn(6).getInt() != 0;
         t.flat = select.getColumn(7).getInt() != 0;
-        const auto mapping = stroke::surface_mapping_named(text(8, kMostWord, "how a stroke is laid"));
-        if (!mapping) throw Error(what + " is laid onto the model in a way that is not known");
+        const auto mapping = stroke::surface_mapping_named(text(8, kMostWord, "the mapping of a stroke"));
+        if (!mapping) throw Error(what + " is mapped onto the model in a way that is not known");
         t.placement.mapping = *mapping;
         const SQLite::Column placement = select.getColumn(9);
         std::array<double, 9> p{};

@@ -157,7 +157,10 @@ class Drawing {
             area.push_back({std::move(line.line), line.width, line.head, line.tail, std::move(line.stencil)});
         }
         if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
-        if (area.empty()) return;
+        if (area.empty()) {  // a line, drawn as such unless it says that it has a stroke, which paints nothing
+            if (!style.stroked() && style.stroke.kind != SvgPaint::Kind::none) lines_.resize(before);
+            return;
+        }
         if (style.fill.kind == SvgPaint::Kind::flat) losses_.add_colour(style.fill.colour);
         if (!style.stroked()) lines_.resize(before);
         lines_.insert(lines_.begin() + static_cast<std::ptrdiff_t>(before), std::make_move_iterator(area.begin()),

@@ -18,10 +18,10 @@ namespace tuft::io {
 /// is not displayed, and what lies in `defs`, is left out. `stroke-width` (as an attribute, in a style, by a class
 /// of a style sheet, inherited, grown by transforms) becomes `StrokeSamples::line_width` where there is a `stroke`.
 /// What has a `fill` is filled by lines within stencil edge (`area_lines`, with `fill-rule`), under its stroke if it
-/// has one, whatever its colour; white is the ground and fills nothing. What has neither is drawn along its outlines;
-/// other styles are not looked at. Where a trace has a width, pressures say which part of it is drawn, 0.5 the whole.
-/// One user unit is what `width` and `viewBox` say, else 1/96 inch. Pace and pressure are those of
-/// `parse_inkml` for traces that have none.
+/// has one, whatever its colour; white is the background and fills nothing. What has neither is drawn along its
+/// outlines, and so is what has no area and no `stroke`; other styles are not looked at. Where a trace has a width,
+/// pressures say which part of it is drawn, 0.5 the whole. One user unit is what `width` and `viewBox` say, else 1/96
+/// inch. Pace and pressure are those of `parse_inkml` for traces that have none.
 ///
 /// Throws `Error` with the file's name: not SVG, nothing to draw in it, a number that is none,
 /// absurd sizes.

@@ -39,8 +39,8 @@ constexpr LossText kTexts[] = {
     {SvgLoss::blend, "1 blend mode is not applied", "{} blend modes are not applied"},
     {SvgLoss::scaled_width, "1 line that shall keep its width (vector-effect) grows with its transform",
      "{} lines that shall keep their width (vector-effect) grow with their transforms"},
-    {SvgLoss::white, "1 white area or line is left bare: white is the ground, and what it covers stays painted",
-     "{} white areas and lines are left bare: white is the ground, and what they cover stays "
+    {SvgLoss::white, "1 white area or line is left bare: white is the background, and what it covers stays painted",
+     "{} white areas and lines are left bare: white is the background, and what they cover stays "
      "painted"},
     {SvgLoss::frame, "1 svg element within the drawing is drawn without a frame of its own",
      "{} svg elements within the drawing are drawn without frames of their own"},

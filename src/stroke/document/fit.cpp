@@ -20,7 +20,12 @@ constexpr double kLeastMove = 1e-3,
                  kMovePart = 0.01;  // metres, and part of the way, that a place may move by
 constexpr double kStretch = 1.25;   // times as long, or short
 constexpr double kPiece = 5e-3;     // metres of path that are measured together
+constexpr double kTooSmall = 0.25;  // times as large as the former model: a unit that was mistaken is less
 constexpr double kTouch = 1e-4;     // metres that a single touch counts as
+
+bool is_compared(const JournalEntry& entry) {
+    return entry.as<PaintStroke>() && !entry.hidden && !on_palette(entry);
+}
 
 double median(std::vector<double> values) {
     if (values.empty()) return 0;
@@ -122,6 +127,22 @@ StrokeFit fit_flat(const JournalEntry& entry, const mesh::SurfaceQuery& former, 
 
 }  // namespace
 
+std::string size_fault(const std::vector<JournalEntry>& entries,
+                       const std::function<double(const std::string&)>& length_of, const mesh::SurfaceQuery& former,
+                       const mesh::SurfaceQuery& revised) {
+    const double before = former.mesh().bounds.diagonal(), now = revised.mesh().bounds.diagonal();
+    if (now >= kTooSmall * before) return "";
+    for (const JournalEntry& entry : entries) {
+        if (!is_compared(entry)) continue;
+        if (const double length = length_of(brush_of(entry)); now < length)
+            return fmt::format(
+                "it is {:.3g} mm across, the former model {:.3g} mm; the tuft of {} is {:.3g} mm long, and no stroke "
+                "fits; is its unit another one?",
+                1e3 * now, 1e3 * before, brush_of(entry), 1e3 * length);
+    }
+    return "";
+}
+
 std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
                                    const std::function<double(const std::string&)>& length_of,
                                    const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
@@ -129,7 +150,7 @@ std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
     std::vector<const JournalEntry*> compared;
     std::vector<double> lengths;  // asked for here: presets are loaded one at a time
     for (const JournalEntry& entry : entries)
-        if (entry.as<PaintStroke>() && !entry.hidden && !on_palette(entry)) {
+        if (is_compared(entry)) {
             compared.push_back(&entry);
             lengths.push_back(length_of(brush_of(entry)));
         }

@@ -36,6 +36,14 @@ struct StrokeFit {
     double missing() const { return way > 0 ? (lost + buried) / way : 0; }  ///< part of the ink's path, 0–1
 };
 
+/// Why a revised model is too small to be painted on, in a sentence for people; "" where it is not. It is too small
+/// where its bounding box has a diagonal less than a quarter of the former one's and less than the length of a tuft
+/// that painted: each stamp would reach the whole model, a thousand times the work of the former one, and nothing would
+/// fit. Hidden strokes and the palette's are left out.
+std::string size_fault(const std::vector<JournalEntry>& entries,
+                       const std::function<double(const std::string& brush)>& length_of,
+                       const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised);
+
 /// Compares the surfaces along the hair: at each sample of a stroke in space rays leave the
 /// ferrule's mouth along its axis, one tuft's length to both sides; flat strokes are laid on both
 /// models. `length_of` gives a brush's tuft length, `motion` how the model moved as a whole. Hidden

@@ -30,7 +30,7 @@ std::vector<StencilEdge> stencil_of(const json& j) {
     const auto is_number = [](const json& x) { return x.is_number() && std::isfinite(x.get<double>()); };
     if (!j.is_array() || j.size() % 4 != 0 || j.size() > 4 * kMaxStencilEdges ||
         !std::all_of(j.begin(), j.end(), is_number))
-        throw Error("the tape of a journal's entry cannot be read");
+        throw Error("the stencil of a journal's entry cannot be read");
     std::vector<StencilEdge> stencil;
     for (std::size_t i = 0; i < j.size(); i += 4)
         stencil.push_back(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -26,6 +27,10 @@ JournalEntry entry_of(EntryColumns columns, const std::string& json);
 /// Three numbers.
 nlohmann::json json_of(const Vec3& v);
 Vec3 vector_of(const nlohmann::json& json);
+
+/// A whole number from 0 to `kNone` - 1, the number `name` of a thing. nlohmann's own conversion from 1e300 is
+/// undefined.
+std::uint32_t number_of(const nlohmann::json& json, const char* name);
 
 nlohmann::json json_of(const LayerEdit& edit);
 LayerEdit layer_edit_of(const nlohmann::json& json);

@@ -156,6 +156,12 @@ nlohmann::json json_of(const LayerEdit& edit) {
     return j;
 }
 
+std::uint32_t number_of(const nlohmann::json& json, const char* name) {
+    if (!json.is_number_unsigned() || json.get<std::uint64_t>() >= kNone)
+        throw Error(std::string(name) + " is no whole number in range");
+    return static_cast<std::uint32_t>(json.get<std::uint64_t>());
+}
+
 LayerEdit layer_edit_of(const nlohmann::json& j) {
     LayerEdit edit;
     try {
@@ -164,10 +170,7 @@ LayerEdit layer_edit_of(const nlohmann::json& j) {
         if (at == std::end(kChanges)) throw Error("'" + what + "' is no change of a layer");
         edit.what = static_cast<LayerChange>(at - std::begin(kChanges));
         const auto whole = [&j](const char* key) {
-            const auto value = j.at(key).get<std::int64_t>();
-            if (value < 0 || value >= std::int64_t{kNone})
-                throw Error(std::string("the ") + key + " of a layer is out of range");
-            return static_cast<std::uint32_t>(value);
+            return number_of(j.at(key), (std::string("the ") + key + " of a layer").c_str());
         };
         edit.layer.id = whole("id");
         if (edit.what == LayerChange::duplicate || edit.what == LayerChange::merge) edit.other = whole("other");

@@ -121,7 +121,7 @@ MaskEdit mask_edit_of(const nlohmann::json& j) {
         const std::string what = j.at("what").get<std::string>();
         if (what != "add" && what != "remove") throw Error("'" + what + "' is no change of a mask");
         edit.remove = what == "remove";
-        m.id = j.at("id").get<std::uint32_t>();
+        m.id = number_of(j.at("id"), "the id of a mask");
         if (edit.remove) return edit;
         m.name = j.at("name").get<std::string>();
         m.kind = mask_kind_of(j.at("kind").get<std::string>());
@@ -142,7 +142,8 @@ MaskEdit mask_edit_of(const nlohmann::json& j) {
                 m.polygon.push_back({xy[0], xy[1]});
             }
         }
-        m.of = j.value("of", std::vector<std::uint32_t>{});
+        for (const nlohmann::json& id : j.value("of", nlohmann::json::array()))
+            m.of.push_back(number_of(id, "the id of a mask"));
     } catch (const nlohmann::json::exception&) {
         throw Error("a mask cannot be read: " +
                     j.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace).substr(0, 80));
