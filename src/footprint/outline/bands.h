@@ -10,9 +10,8 @@
 namespace tuft::footprint {
 
 /// Adds the area coverage of bands to a picture, 255 for a full cell, clamped to 255. Coverage is computed by
-/// columns of the picture, or by rows for `steep` bands, which run mostly along the rows' normal. The picture is
-/// stored by columns when most bands are steep, otherwise by rows, so that many columns of a band are drawn at
-/// once.
+/// columns of the picture, or by rows for `steep` bands, which run mostly along the columns. The picture is stored
+/// by columns when most bands are steep, otherwise by rows, so that many columns of a band are drawn at once.
 class Bands {
   public:
     Bands(int width, int height, bool steep);

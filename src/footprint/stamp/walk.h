@@ -39,7 +39,7 @@ void begin_walk(PlanScratch& scratch, std::size_t n_clusters);
 /// Returns the node of a cluster; `place_start` also sets its position.
 PlanScratch::Node& node_of(PlanScratch& scratch, std::uint32_t cluster);
 PlanScratch::Node& place_start(PlanScratch& scratch, const Start& start);
-/// Returns true when the cluster faces away (never inked), or when its disc intersects the picture (`in_picture`).
+/// `faces_away`: the cluster is never inked. `in_picture`: the cluster's disc intersects the picture.
 bool faces_away(const Reach& reach, const atlas::TexelCluster& cluster);
 bool in_picture(const Reach& reach, const atlas::TexelCluster& cluster, const PlanScratch::Node& n);
 
