@@ -6,8 +6,9 @@
 
 #include "mesh/triangle_mesh.h"
 
-/// Half-edge h = 3t + k runs from corner k to corner k + 1 of triangle t. Corners
-/// and the half-edges that leave them share their number.
+/// \file
+/// Half-edges of a mesh and of a patch. Half-edge h = 3t + k runs from corner k to corner k + 1 of triangle t; a
+/// corner and the half-edge that leaves it share their number. Used by all of `atlas`.
 namespace tuft::atlas {
 
 constexpr std::uint32_t next_half(std::uint32_t h) {
@@ -21,7 +22,7 @@ constexpr std::uint32_t prev_half(std::uint32_t h) {
 /// that do not share the edge in opposite directions count as borders.
 std::vector<std::uint32_t> twin_half_edges(const mesh::TriangleMesh& mesh);
 
-/// Where half-edge `h` of the mesh lies among `triangles` (ascending): kNone if it does not.
+/// Returns the local number of half-edge `h` in `triangles` (ascending), or kNone.
 std::uint32_t local_half(std::span<const std::uint32_t> triangles, std::uint32_t h);
 
 /// A part of a mesh with its own numbering; whatever lies outside is border.
@@ -43,8 +44,7 @@ Patch make_patch(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> 
 /// Sum of the corner angles at each vertex, radians. [n_vertices]
 std::vector<float> vertex_angles(const Patch& patch);
 
-/// A vertex whose angles miss (or exceed) a full turn by more than this is laid flat
-/// only with a seam that ends there, radians.
+/// Angle defect, radians, in absolute value, above which a vertex is flattened only with a seam that ends there.
 inline constexpr double kSlitDefect = 1.0;
 
 }  // namespace tuft::atlas
