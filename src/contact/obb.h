@@ -4,7 +4,8 @@
 
 #include "core/geometry/types.h"
 
-/// Oriented boxes for the broad phase.
+/// \file
+/// Oriented bounding boxes for the broad phase of contact.h.
 namespace tuft::contact {
 
 struct Obb {
@@ -13,16 +14,16 @@ struct Obb {
     Vec3 half{0};    ///< metres along the columns
 };
 
-/// Box along the principal axes of the points, grown by `margin` on every side.
-/// Source: Gottschalk, Lin and Manocha 1996.
+/// Returns the box along the principal axes of the points, enlarged by `margin` on every side. Source: Gottschalk,
+/// Lin and Manocha 1996.
 Obb obb_of(std::span<const Vec3> points, double margin = 0);
 
 Obb obb_of(const Box& box);
 
-/// Whether two boxes meet: the test of the 15 separating axes. Boxes that only touch meet.
+/// Returns true when two boxes overlap or touch: test of the 15 separating axes.
 bool overlap(const Obb& a, const Obb& b);
 
-/// Eigenvectors of a symmetric matrix as columns, largest eigenvalue first, right-handed.
+/// Returns the eigenvectors of a symmetric matrix as columns, largest eigenvalue first, right-handed.
 Mat3 principal_axes(const Mat3& symmetric);
 
 }  // namespace tuft::contact

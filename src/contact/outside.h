@@ -7,47 +7,47 @@
 #include "brush/tuft/tuft_state.h"
 #include "mesh/query/surface_query.h"
 
-/// Which surface a point of the tuft meets, seen from the side the ferrule is on.
+/// \file
+/// Contact plane of a point, on the side of the surface where the ferrule is. Called by contact.h for every node,
+/// and by `stroke` and `cli` to test poses.
 namespace tuft::contact {
 
-/// How a point stands to the surface.
+/// Position of a point relative to the surface.
 struct Stand {
     brush::ContactPlane plane;       ///< touches the surface at `plane.origin`
-    brush::ContactPlane met;         ///< the same; next to a sharp convex edge the planes of both
-                                     ///< its faces instead
+    brush::ContactPlane met;         ///< the same, but with both faces' planes next to a sharp convex edge
     std::uint32_t triangle = kNone;  ///< under plane.origin; kNone: nothing within reach
     double height = 0;               ///< metres of the point over the plane, negative behind it
-    Vec3 outside{0};                 ///< the point itself, or where it comes out in front
+    Vec3 outside{0};                 ///< the point, or its projection in front of the surface
     double side = 1;                 ///< -1 where an open sheet is met from its back
 };
 
 struct StandOptions {
     double reach = 0.05;  ///< metres within which surfaces are looked for
-    double lift = 2e-5;   ///< metres that `outside` keeps off the surface
+    double lift = 2e-5;   ///< metres, distance of `outside` from the surface
 };
 
-/// The surface that `p` meets, coming from `from`, a point known to be outside. If a wall lies
-/// between them `p` is behind it, however thin it is, and the plane is that of the wall's
-/// front next to p; otherwise it is that of the closest point. Over a convex edge the normal
-/// turns smoothly from one face's to the other's. `known`, where given, is any point of the
-/// surface: nothing farther is looked at, which makes it faster.
+/// Returns the surface that `p` meets when it comes from `from`, a point outside. If a wall of any thickness lies
+/// between them, `p` is behind it, and the plane is that of the wall's front closest to p. Otherwise it is that of
+/// the closest point. Over a convex edge the normal turns smoothly from one face to the other. `known`, if given,
+/// is any point of the surface; it bounds the search and makes it faster.
 Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double side, const Vec3& p,
                  const StandOptions& options, const Vec3* known = nullptr);
 
-/// Follows a chain of points (tip first, root last, as the tuft's nodes) from the root
-/// outwards, each from the one before. Points farther than `near` from any surface share the plane
-/// of the last one looked up, which then is no closer to them than the surface. `before`, where
-/// not empty, holds the stands of the same points a moment ago and only makes it faster.
+/// Returns the stands of a chain of points (tip first, root last, like the tuft's nodes). Each is found from the
+/// previous one, from the root outwards. Points farther than `near` from any surface share the last plane found;
+/// their height over it is at most their distance from the surface. `before`, if not empty, holds the previous
+/// stands of the same points and only makes the search faster.
 std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& root, std::span<const Vec3> points,
                                double near, const StandOptions& options, std::span<const Stand> before = {});
 
-/// A start outside the object for a tuft at `root` whose handle points along `up`: the root
-/// itself, or, when it is inside a closed object, where the handle comes out.
+/// Returns a point outside the object for a tuft at `root` whose handle points along `up`. It is the root, or,
+/// inside a closed object, the exit point of the handle.
 Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up, const StandOptions& options);
 
-/// Metres from a point within a closed body to its surface; 0 outside, and before or behind an open
-/// sheet. Within: the surface is met from its back in all six directions of the axes. Cost: six
-/// rays.
+/// Returns the distance, metres, from a point inside a closed body to its surface. Returns 0 outside, and on both
+/// sides of an open sheet. A point is inside when the first hits in all six axis directions are back faces. Cost:
+/// six rays.
 double depth_inside(const mesh::SurfaceQuery& surface, const Vec3& p);
 
 }  // namespace tuft::contact

@@ -4,16 +4,17 @@
 
 #include "core/geometry/types.h"
 
-/// Enclosing sphere of a point set by ball expansion.
+/// \file
+/// Enclosing sphere of a point set by ball expansion. Called by near_vertices.h.
 namespace tuft::contact {
 
-/// Result of `expand_ball`, metres. r_expanded <= r* <= radius <= (1 + ε) r* for the radius
-/// r* of the smallest enclosing sphere.
+/// Result of `expand_ball`, metres. r_expanded <= r* <= radius <= (1 + ε) r*, with r* the radius of the smallest
+/// enclosing sphere.
 struct Sphere {
     Vec3 centre{0};
     double radius = 0;      ///< holds every point
-    double r_start = 0;     ///< of the first ball, over the pair B, C
-    double r_expanded = 0;  ///< of the last ball grown, a lower bound
+    double r_start = 0;     ///< of the first ball, with diameter BC
+    double r_expanded = 0;  ///< of the last ball, a lower bound of r*
     int iterations = 0;
     bool converged = true;  ///< false: stopped at `max_iterations`; radius still holds all points
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+/// \file
+/// Smooth step polynomials. `stroke` uses them for fades along a stroke, `core/noise.h` for interpolation.
 namespace tuft {
 
 /// 3x² − 2x³ of x in [0, 1], a number or each component of a vector.

@@ -5,12 +5,12 @@
 #include <string>
 #include <string_view>
 
-/// Errors a user can cause. They are thrown where the bad value enters, carry
-/// one line that says what is wrong and what to do, and are caught in `cli` and
-/// `app` only. A broken invariant is an `assert`, never one of these.
+/// \file
+/// Errors that a user can cause. A function throws one where the bad value enters. The text is one line: what is
+/// wrong and what to do. Only `cli` and `app` catch them. A broken invariant is an `assert`.
 namespace tuft {
 
-/// The input or the machine made it impossible: the program exits with 1.
+/// The input or the machine does not allow the work: the program exits with 1.
 class Error : public std::runtime_error {
   public:
     explicit Error(const std::string& what) : std::runtime_error(what) {}
@@ -27,14 +27,14 @@ class UsageError : public Error {
     using Error::Error;
 };
 
-/// Work was stopped by the user through a `Progress` callback.
+/// The user stopped the work through a `Progress` callback.
 class Cancelled : public std::exception {
   public:
     const char* what() const noexcept override { return "cancelled"; }
 };
 
-/// The candidate with the smallest edit distance to `name`, or "" when none is
-/// within half of the name's length. For "unknown brush 'wolff', did you mean 'wolf'?".
+/// Returns the candidate with the smallest edit distance to `name`. Returns "" when no candidate is within half of
+/// the name's length. Used for "unknown brush 'wolff', did you mean 'wolf'?".
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace tuft

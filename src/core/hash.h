@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <span>
 
+/// \file
+/// Hashes of raw bytes: fingerprints of canvases, files and meshes, and keys of hash tables.
 namespace tuft {
 
 /// XXH3 64-bit hash of raw bytes; chain calls by passing the last result as seed.

@@ -6,10 +6,11 @@
 #include "core/ease.h"
 
 /// \file
-/// Value noise (Perlin 1985 with values in place of gradients): values at whole numbers, joined by 3f² − 2f³.
+/// Value noise: values at whole numbers, interpolated by 3f² − 2f³ (Perlin 1985 with values in place of gradients).
+/// Used by the hair, the furrows, the substrate's grain and the wet film.
 namespace tuft {
 
-/// Noise along a line, smooth over one unit. `value(cell)` returns the value at a whole number ≥ 0.
+/// Returns the noise at x ≥ 0, smooth over one unit. `value(cell)` returns the value at a whole number ≥ 0.
 template <class Value>
 double value_noise(double x, Value&& value) {
     const double floor = std::floor(x), g = fade(x - floor);

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 
+/// \file
+/// Seeded random numbers. The same seed gives the same bits on every machine, for every module.
 namespace tuft {
 
-/// 64-bit mix of a seed and a counter: the same pair gives the same bits
-/// everywhere, in any order of calls (SplitMix64 finaliser, Steele et al. 2014).
+/// Returns a 64-bit mix of a seed and a counter (SplitMix64 finaliser, Steele et al. 2014). The same pair gives the
+/// same bits everywhere, whatever the order of calls.
 constexpr std::uint64_t hash_bits(std::uint64_t seed, std::uint64_t counter = 0) {
     std::uint64_t z = seed + 0x9e3779b97f4a7c15ULL * (counter + 1);
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -13,7 +15,7 @@ constexpr std::uint64_t hash_bits(std::uint64_t seed, std::uint64_t counter = 0)
     return z ^ (z >> 31);
 }
 
-/// Uniform in [0, 1), from a seed and a counter.
+/// Returns a number uniform in [0, 1) from a seed and a counter.
 constexpr double uniform(std::uint64_t seed, std::uint64_t counter = 0) {
     return static_cast<double>(hash_bits(seed, counter) >> 11) * 0x1.0p-53;
 }

@@ -3,8 +3,9 @@
 #include <bit>
 #include <cstdint>
 
-/// Elementary functions written out so that they vectorise and give the same bits on every
-/// instruction set, which those of the C library do not promise.
+/// \file
+/// Elementary functions that vectorise and give the same bits on every instruction set, unlike those of the C
+/// library. Used by the kernels of `ink`.
 namespace tuft::ink {
 
 /// exp(-x) for x ≥ 0, 1.5e-7 relative: 2^-n by exponent bits, Taylor polynomial on the rest.

@@ -1,5 +1,6 @@
 #pragma once
 
+/// \file
 /// Kernels marked TUFT_CLONES are compiled for several instruction sets and the best
 /// one is chosen when the program starts. Rounding is the same in all of them: no
 /// contraction (see the top CMakeLists.txt), no sums in an order of the compiler's.

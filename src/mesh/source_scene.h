@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
-/// The scene graph that a model's file holds round its triangles. Readers fill it, the mesh and the
-/// project carry it unread, and exports write it again (io/model/scene_document.h).
+/// \file
+/// Scene graph of a model's file: objects, groups and materials. Readers fill it; the mesh and the project carry it
+/// unread; exports write it again (io/model/scene_document.h).
 namespace tuft::mesh {
 
 /// Faces of one object, one group and one material of the file.
 struct ScenePart {
-    std::string object, group, material;  ///< names in the file; empty: it has none
+    std::string object, group, material;  ///< names in the file; empty: none
     std::int32_t node = -1;               ///< index in the document's nodes
     std::int32_t primitive = -1;          ///< of the node's mesh; -1: the document has no triangles
     std::int32_t own_material = -1;       ///< index in the document's materials; -1: none

@@ -10,10 +10,10 @@
 #include "mesh/material.h"
 #include "mesh/source_scene.h"
 
-/// The mesh as every module above sees it: plain arrays, metres, model frame,
-/// faces counter-clockwise from outside. Made by `mesh::build_surface` (repair.h),
-/// so it is clean: manifold, consistently oriented within a component, no
-/// degenerate or duplicate triangles, every index in range, every number finite.
+/// \file
+/// The mesh that all other modules use: plain arrays, metres, model frame, faces counter-clockwise from outside.
+/// `mesh::build_surface` (repair.h) makes it, so it is clean: manifold, consistently oriented within a component,
+/// no degenerate or duplicate triangles, every index in range, every number finite.
 namespace tuft::mesh {
 
 struct TriangleMesh {
@@ -36,18 +36,18 @@ struct TriangleMesh {
     Vec3 position(std::size_t triangle, int corner) const { return Vec3(positions[triangles[triangle][corner]]); }
 };
 
-/// Index of a triangle's part: object, group and material of the file together.
+/// Returns the index of a triangle's part: object, group and material of the file together.
 inline std::uint32_t part_of(const TriangleMesh& mesh, std::size_t triangle) {
     if (!mesh.triangle_parts.empty()) return mesh.triangle_parts[triangle];
     return mesh.triangle_groups.empty() ? 0 : mesh.triangle_groups[triangle];
 }
 
-/// Whether the file gave the faces colours of their own.
+/// Returns true when the file has face or vertex colours.
 inline bool has_colours(const TriangleMesh& mesh) {
     return !mesh.materials.empty() || !mesh.vertex_colours.empty();
 }
 
-/// A point on the mesh: triangle and the barycentric weights of its corners 1 and 2.
+/// A point on the mesh: a triangle and the barycentric weights of its corners 1 and 2.
 struct SurfacePoint {
     std::uint32_t triangle = kNone;
     double b1 = 0, b2 = 0;
@@ -57,10 +57,10 @@ struct SurfacePoint {
     double distance = 0;        ///< metres: from the query point, or along the ray
 };
 
-/// The point of `triangle` with the given weights; `distance` is left 0.
+/// Returns the point of `triangle` with the given weights; `distance` is 0.
 SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t triangle, double b1, double b2);
 
-/// Sum of triangle areas, m².
+/// Returns the sum of triangle areas, m².
 double surface_area(const TriangleMesh& mesh);
 
 }  // namespace tuft::mesh

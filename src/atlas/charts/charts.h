@@ -11,78 +11,79 @@
 #include "atlas/seams/rejected_changes.h"
 #include "core/system/progress.h"
 
-/// The mesh cut into charts that lie flat.
+/// \file
+/// Cuts a mesh into charts that can be flattened with little stretch. Called by `unwrap`.
 namespace tuft::atlas {
 
 struct ChartOptions {
-    double l2 = 1.0045;                ///< stretch that a chart may have on average
-    double largest = 1.35;             ///< and at 99.9 % of its area
-    double l2_all = 1.0028;            ///< and that all may have together, once they are merged
-    double worst = 3;                  ///< and anywhere, where that can be helped
-    double longest = 1.35;             ///< long side of a chart's smallest rectangle, over the unit: no longer
-                                       ///< than a page that charts cover to a half is wide
-    double grown = 0.3;                ///< part of the surface that a chart may grow to as seams move
-    std::uint32_t triangles = 200000;  ///< of a chart, at most: what laying it flat costs grows
-                                       ///< faster than they do
+    double l2 = 1.0045;      ///< largest mean stretch of a chart
+    double largest = 1.35;   ///< largest stretch at 99.9 % of a chart's area
+    double l2_all = 1.0028;  ///< largest mean stretch of all charts together, after merging
+    double worst = 3;        ///< largest stretch of a triangle, where possible
+    double longest =
+        1.35;  ///< long side of a chart's smallest rectangle, over the unit: the width of a page that is half covered
+    double grown = 0.3;                ///< largest fraction of the surface of a chart while seams move
+    std::uint32_t triangles = 200000;  ///< most triangles of a chart: the cost of flattening grows faster than linearly
     RequestedSeams seams;              ///< no chart crosses these
-    double gap = 0;                    ///< that parts of a chart's border keep from each other, over the unit
+    double gap = 0;                    ///< smallest distance between parts of a chart's border, over the unit
 };
 
-/// How well charts are laid out to see whether they can be: stops early where that is clear.
+/// Returns the options of trial flattenings: these stop early when the result is clear.
 ArapOptions trial_arap(const ChartOptions& options);
 
-/// Triangles of a mesh that is glued in blocks and whose seams are moved in one round, where it gains much.
+/// Number of triangles from which a mesh is glued in blocks and its seams are moved in one round, only where the
+/// gain is large.
 inline constexpr std::size_t kBlockwiseThreshold = 500000;
 
-/// A chart and its UVs, over the same unit; every triangle has positive area and the
-/// border does not cross itself.
+/// A chart and its UVs, in the same unit. Every triangle has positive area, and the border does not cross itself.
 struct FlatChart {
     ChartMesh mesh;
     std::vector<Vec2> uv;
     double l2 = 1;              ///< stretch
     double worst = 1;           ///< largest stretch of a triangle
-    std::uint32_t version = 0;  ///< another one for every chart and change; 0: none yet
+    std::uint32_t version = 0;  ///< unique for every chart and change; 0: not assigned
 };
 
 struct CutMesh {
     double unit = 1;                   ///< metres: square root of the surface's area
-    std::vector<std::uint32_t> twin;   ///< [3n] opposite half-edges, kNone where a seam was asked for
+    std::vector<std::uint32_t> twin;   ///< [3n] opposite half-edges, kNone at requested seams
     std::vector<std::uint32_t> glued;  ///< the same, kNone at seams
     std::vector<FlatChart> charts;
-    std::uint32_t versions = 0;  ///< that charts had so far
+    std::uint32_t versions = 0;  ///< last assigned version
     RejectedChanges rejected;
-    std::vector<std::uint32_t> place;  ///< [n_triangles] room for `make_chart`
+    std::vector<std::uint32_t> place;  ///< [n_triangles] scratch buffer of `make_chart`
 };
 
 /// Cuts and flattens the whole mesh. Every triangle lies in one chart.
 CutMesh cut_into_charts(const mesh::TriangleMesh& mesh, const ChartOptions& options, const ProgressFn& progress);
 
-/// The stretch of all charts together, L2² times area, as charts change.
+/// Budget of the stretch of all charts together: Σ L2² · area, updated as charts change.
 class StretchBudget {
   public:
     StretchBudget(const CutMesh& cut, double l2);
-    /// Whether `now` may take the place of `before`: stretches less or within the budget.
+    /// Returns true when `now` may replace `before`: it stretches less, or stays within the budget.
     bool allows(std::span<const FlatChart* const> before, std::span<const FlatChart* const> now) const;
     void spend(std::span<const FlatChart* const> before, std::span<const FlatChart* const> now);
-    /// Part that is left of what charts may stretch.
+    /// Remaining fraction of the budget.
     double left() const { return all_ > area_ ? (all_ - used_) / (all_ - area_) : 0; }
 
   private:
     double used_ = 0, all_ = 0, area_ = 0;
 };
 
-/// Gives charts that have none their version.
+/// Assigns a version to charts without one.
 void number_charts(CutMesh& cut);
 
-/// All triangles as one patch, and a flag at each of its half-edges that is a seam now.
+/// `whole_patch` returns all triangles as one patch. `seam_flags` returns a flag for each of its half-edges: it is
+/// a seam.
 Patch whole_patch(const mesh::TriangleMesh& mesh, const CutMesh& cut);
 std::vector<std::uint8_t> seam_flags(const CutMesh& cut);
 
-/// Hull of a chart's border in the plane.
+/// Returns the convex hull of a chart's border in the plane.
 std::vector<Vec2> chart_hull(const FlatChart& chart);
 
-/// Cuts each of `charts` (ascending indices) into two or more and flattens those. `singles`
-/// cuts along every edge of the named triangles of the mesh instead.
+/// `cut_again` cuts each of `charts` (ascending indices) into two or more and flattens those. `cut_out` cuts along
+/// every edge of the given triangles of the mesh.
 void cut_again(const mesh::TriangleMesh& mesh, CutMesh& cut, std::span<const std::uint32_t> charts,
                const ChartOptions& options, const ProgressFn& progress);
 void cut_out(const mesh::TriangleMesh& mesh, CutMesh& cut, std::span<const std::uint32_t> triangles,

@@ -3,24 +3,25 @@
 #include "atlas/charts/charts.h"
 #include "atlas/pack/pack.h"
 
+/// \file
+/// Halves charts that waste space on the page. Called by `unwrap` before the final packing.
 namespace tuft::atlas {
 
 struct CutToPack {
     int cuts = 0;
-    Packing packing;  ///< of the charts as they are, the best that was found
+    Packing packing;  ///< best packing of the resulting charts
 };
 
-/// Halves large charts across their length where the page is then covered better: rings, long
-/// bows, a few large squares. Only while less than `goal` of the page is covered, and only if
-/// the cuts gain a part of `kCutGain` each, or reach the goal. The halves lie flat as the whole
-/// did. `gap` as in `ChartOptions`.
+/// Halves large charts across their length where this covers the page better: rings, long bows, a few large
+/// squares. Continues only while less than `goal` of the page is covered. Cuts are retained if each gains the
+/// factor `kCutGain` or they reach the goal. The halves retain the UVs of the whole. `gap` as in `ChartOptions`.
 CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, PackOptions options, double goal);
 
-inline constexpr double kGoodUse = 0.65;   ///< covered part of a page that is good enough
-inline constexpr double kTightUse = 0.85;  ///< where it shall be as large as it can
-inline constexpr double kCutGain = 1.015;  ///< over before
+inline constexpr double kGoodUse = 0.65;   ///< sufficient covered fraction of a page
+inline constexpr double kTightUse = 0.85;  ///< goal of `Cutting::tight`
+inline constexpr double kCutGain = 1.015;  ///< smallest ratio of coverage after a cut to that before
 
-/// Borders of the charts in the plane, as `pack` wants them.
+/// Returns the borders of the charts in the plane, for `pack`.
 std::vector<std::vector<Vec2>> chart_borders(const CutMesh& cut);
 
 }  // namespace tuft::atlas

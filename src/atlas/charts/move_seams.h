@@ -2,12 +2,13 @@
 
 #include "atlas/charts/charts.h"
 
+/// \file
+/// Shortening of seams between charts. Called by `unwrap`.
 namespace tuft::atlas {
 
-/// Shortens the seams between finished charts, each as far as the two charts it parts lie flat
-/// within `options` afterwards, tried by flattening them: seams that gain most first. Each
-/// round moves seams of disjoint pairs, in parallel; the result does not depend on the number
-/// of threads. True when a seam was moved.
+/// Shortens the seams between finished charts while both charts can be flattened within `options`, by trial: the
+/// largest gain first. Each round moves seams of disjoint pairs in parallel. The result does not depend on the
+/// number of threads. Returns true when a seam moved.
 bool move_seams(const mesh::TriangleMesh& mesh, CutMesh& cut, const ChartOptions& options, const ProgressFn& progress);
 
 }  // namespace tuft::atlas

@@ -7,10 +7,11 @@
 
 #include "core/system/progress.h"
 
+/// \file
+/// Progress of a phase of the unwrapping that several threads advance.
 namespace tuft::atlas {
 
-/// Progress of one phase that several threads advance. Once the listener asks to stop,
-/// every call throws `Cancelled`.
+/// Progress of one phase that several threads advance. When the callback cancels, every call throws `Cancelled`.
 class PhaseProgress {
   public:
     PhaseProgress(ProgressFn progress, std::string phase, double all)
@@ -32,7 +33,7 @@ class PhaseProgress {
     std::mutex mutex_;
 };
 
-/// One task's part of a phase, reported bit by bit and never more than it is.
+/// One task's share of a phase, reported in steps and never exceeded.
 class TaskProgress {
   public:
     TaskProgress(PhaseProgress& phase, double work) : phase_progress_(phase), left_(work) {}

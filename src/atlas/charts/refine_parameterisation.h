@@ -2,10 +2,12 @@
 
 #include "atlas/charts/charts.h"
 
+/// \file
+/// Final parameterisation of the charts. Called by `unwrap`.
 namespace tuft::atlas {
 
-/// Lays finished charts flat from where they lie until they stretch no less; charts had been
-/// tried in haste. Those that do not come out sound stay as they are.
+/// Minimises the stretch of finished charts from their current UVs until it no longer falls; trial flattenings stop
+/// early. Charts with an unsound result are unchanged.
 void refine_parameterisation(CutMesh& cut, const ChartOptions& options, const ProgressFn& progress);
 
 }  // namespace tuft::atlas

@@ -9,11 +9,12 @@
 
 #include "core/system/parallel.h"
 
+/// \file
+/// Parallel execution of tasks of very different size. Used by all steps of atlas/charts.
 namespace tuft::atlas {
 
-/// Calls task(i, worker) for i in [0, n), each thread taking the next one when it is free: for tasks
-/// of very different size, the largest first. Workers are numbered from 0 to `thread_count()` - 1,
-/// each does one task at a time. Exceptions reach the caller.
+/// Calls task(i, worker) for i in [0, n). A free thread takes the next task; put the largest first. Workers are
+/// numbered from 0 to `thread_count()` − 1, and each runs one task at a time. Exceptions reach the caller.
 template <class Task>
 void run_tasks_by_worker(std::size_t n, Task&& task) {
     std::atomic<std::size_t> next{0};
@@ -24,14 +25,14 @@ void run_tasks_by_worker(std::size_t n, Task&& task) {
     });
 }
 
-/// The same where it does not matter who does it: task(i).
+/// The same without the worker's number: task(i).
 template <class Task>
 void run_tasks(std::size_t n, Task&& task) {
     run_tasks_by_worker(n, [&](std::size_t i, std::size_t) { task(i); });
 }
 
-/// The same, but tasks that run at once have a weight of `most` together, unless it is one alone: each thread takes the
-/// first one that fits, or waits. Bounds the memory that tasks take by their size. weight(i) never changes.
+/// The same with a memory bound: concurrent tasks have a total weight of at most `most`, unless one task alone
+/// exceeds it. Each thread takes the first task that fits, or waits. weight(i) is constant.
 template <class Weight, class Task>
 void run_tasks_within(std::size_t n, double most, Weight&& weight, Task&& task) {
     std::mutex mutex;
@@ -75,8 +76,8 @@ void run_tasks_within(std::size_t n, double most, Weight&& weight, Task&& task) 
     });
 }
 
-/// Triangles of a mesh that are laid flat at once: a quarter of it, and 300,000 at least. Each takes some 0.7 kB
-/// meanwhile.
+/// Returns the number of triangles that are flattened concurrently: a quarter of the mesh, at least 300,000. Each
+/// takes about 0.7 kB meanwhile.
 inline double flattened_at_once(std::size_t n_triangles) {
     return std::max(3e5, 0.25 * static_cast<double>(n_triangles));
 }

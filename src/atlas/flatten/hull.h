@@ -4,6 +4,8 @@
 
 #include "core/geometry/types.h"
 
+/// \file
+/// Convex hull and smallest rectangle, for chart shapes in packing and merging.
 namespace tuft::atlas {
 
 /// Corners of the convex hull, counter-clockwise.

@@ -6,7 +6,8 @@
 
 #include "atlas/seams/chart_mesh.h"
 
-/// Triangles of a chart in their own planes, as they should lie in the atlas.
+/// \file
+/// Triangles of a chart in their own planes: the isometric reference of the flattening.
 namespace tuft::atlas {
 
 // A triangle flatter than this part of its longest edge is laid out as if it were this high.

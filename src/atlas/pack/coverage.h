@@ -6,10 +6,12 @@
 
 #include "atlas/atlas.h"
 
-/// What a set of UVs covers: texels, and the module between charts.
+/// \file
+/// Coverage of a page by UVs: covered texels, overlaps, and the gap between charts. Called by `unwrap` and
+/// `measure`.
 namespace tuft::atlas {
 
-/// Half-edges across which the UVs do not agree at both ends, and borders. [3n]
+/// Marks half-edges across which the UVs differ at an end, and borders. [3n]
 std::vector<std::uint8_t> uv_seams(std::span<const std::uint32_t> twin, std::span<const Vec2f> corner_uvs);
 
 struct Coverage {
@@ -22,9 +24,8 @@ struct Coverage {
 /// `charts_twice` is filled when `triangle_chart` is given.
 Coverage cover(std::span<const Vec2f> corner_uvs, std::span<const std::uint32_t> triangle_chart, std::uint32_t size);
 
-/// Texels between the two nearest charts, rounded down, 64 at most; from the exact
-/// distance of their borders, the half-edges marked in `seam`. UVs that are not finite are
-/// and edges outside the page are left out.
+/// Returns the texels between the two nearest charts, rounded down, at most 64, from the exact distance of their
+/// borders, the half-edges marked in `seam`. UVs that are not finite and edges outside the page are ignored.
 int smallest_gap(std::span<const std::uint8_t> seam, std::span<const Vec2f> corner_uvs,
                  std::span<const std::uint32_t> triangle_chart, std::uint32_t size);
 

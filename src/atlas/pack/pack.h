@@ -6,12 +6,13 @@
 #include "core/geometry/types.h"
 #include "core/system/progress.h"
 
-/// Lays chart shapes side by side in a square page, as large as they fit.
+/// \file
+/// Packing of chart shapes into square pages at the largest scale that fits. Called by `unwrap`.
 namespace tuft::atlas {
 
-/// How long to look for a good layout of one page: take the first that fits, look a little and
-/// on coarse masks (to compare sets of charts), look well, or look with charts turned by 22.5°
-/// too, again while less than 65 % of the page are covered: twice the time, 2 % more of the page.
+/// Effort of the search for a layout of one page. quick: the first that fits. coarse: a short search on coarse
+/// masks, to compare sets of charts. full: a long search. patient: also rotations by 22.5°, and a repeat while less
+/// than 65 % of the page is covered: twice the time, 2 % more of the page.
 enum class Search { quick, coarse, full, patient };
 
 struct PackOptions {
@@ -31,21 +32,20 @@ struct Placement {
 
 struct Packing {
     bool fits = false;                     ///< with at least 0.1 % of the page covered
-    std::uint32_t size = 0;                ///< of the page; when it does not fit, one that would
-    std::uint32_t pages = 1;               ///< that are used, or would be
+    std::uint32_t size = 0;                ///< of the page; when it does not fit, a sufficient one
+    std::uint32_t pages = 1;               ///< used pages, or a sufficient number
     std::vector<std::uint32_t> page;       ///< [n_charts] with more than one page allowed
     std::vector<std::uint32_t> too_large;  ///< charts that no page can hold, ascending
     double texels_per_unit = 0;
     std::vector<Placement> placements;  ///< [n_charts]
 };
 
-/// `borders`: one closed simple polygon per chart. Charts smaller than a quarter of
-/// a texel are enlarged to that. Bit masks of all cells a chart touches, largest
-/// chart first, in four directions each, where its middle comes to lie lowest in a strip as
-/// wide as the page; scale, order and turns are searched until the strip is a square. Distances
-/// between charts are at least `gutter` texels, exactly. With several pages allowed, each chart
-/// comes to the first that has room for it; without a scale, the scale is searched at which all
-/// pages are filled. Offsets count from the corner of the chart's own page.
+/// Packs charts; `borders` has one closed simple polygon per chart. Charts smaller than a quarter of a texel are
+/// enlarged to that. Masks are bit sets of all cells that a chart touches. Charts are placed largest first, in the
+/// best of four directions: that of the lowest centre in a strip as wide as the page. Scale, order and rotations
+/// are searched until the strip is a square. Distances between charts are at least `gutter` texels, exactly. With
+/// several pages each chart goes to the first with free space. Without a scale, the scale is searched that fills
+/// all pages. Offsets are relative to the corner of the chart's page.
 Packing pack(const std::vector<std::vector<Vec2>>& borders, const PackOptions& options);
 
 }  // namespace tuft::atlas

@@ -5,7 +5,8 @@
 
 #include "core/geometry/types.h"
 
-/// What the packer moves about: charts as runs of cells.
+/// \file
+/// Masks of charts for the packer: runs of cells. Internal to atlas/pack.
 namespace tuft::atlas {
 
 /// Cells `first` to `last` of a row, both included.
@@ -24,7 +25,7 @@ struct Mask {
     std::uint64_t hash = 0;  // of the runs
 };
 
-/// A chart's hull and how it lies in its smallest rectangle.
+/// A chart's border and its orientation in its smallest rectangle.
 struct Shape {
     const std::vector<Vec2>* border = nullptr;
     double angle = 0;   // turns the longer side of the smallest rectangle onto x

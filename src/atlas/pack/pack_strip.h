@@ -6,11 +6,12 @@
 
 #include "atlas/pack/pack_mask.h"
 
+/// \file
+/// Strip of occupied cells into which the packer places masks. Internal to atlas/pack.
 namespace tuft::atlas {
 
-/// A strip of cells that masks are laid into, open upwards. For every row it keeps in
-/// level k whether any of the 2^k cells from x on is taken: a run of any length is then
-/// tested against 64 places at a time with two words. Levels are built when they are asked for.
+/// A strip of cells, open upwards. Level k of a row stores whether any of the 2^k cells from x on is occupied: a
+/// run of any length is tested at 64 positions with two words. Levels are built on demand.
 class Strip {
   public:
     /// `reach`: cells to keep free on both sides of a taken one, by distance in rows.

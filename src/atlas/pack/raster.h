@@ -7,8 +7,9 @@
 
 #include "core/geometry/types.h"
 
-/// Exact rasterisation of UV triangles. UVs are taken on a grid of 2⁻²⁴, where floats
-/// in [0, 1] lie, so that triangles that share an edge never both own a texel centre.
+/// \file
+/// Exact rasterisation of UV triangles. UVs are rounded to a grid of 2⁻²⁴, on which floats in [0, 1] lie, so
+/// triangles that share an edge never both own a texel centre.
 namespace tuft::atlas {
 
 inline constexpr double kUvGrid = 16777216;  ///< grid steps per unit of UV, 2²⁴

@@ -6,12 +6,13 @@
 
 #include "core/geometry/types.h"
 
-/// From UVs in double to floats without losing a triangle.
+/// \file
+/// Conversion of UVs from double to float without degenerate triangles. Called by `unwrap`.
 namespace tuft::atlas {
 
-/// Rounds UVs in [0, 1] to the grid on which floats lie (2⁻²⁴) and moves vertices by as
-/// few steps as it takes until every triangle of `faces` has a positive area there,
-/// exactly. Returns the triangles for which no place within 1/16 texel was found.
+/// Rounds UVs in [0, 1] to the grid of floats (2⁻²⁴) and moves vertices by as few steps as needed until every
+/// triangle of `faces` has an exactly positive area. Returns the triangles for which no position within 1/16 texel
+/// was found.
 std::vector<std::uint32_t> snap_to_floats(const std::vector<std::array<std::uint32_t, 3>>& faces, std::vector<Vec2>& uv,
                                           std::uint32_t size);
 

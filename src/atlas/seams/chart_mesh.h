@@ -7,7 +7,8 @@
 
 #include "atlas/seams/half_edges.h"
 
-/// One chart on its own: triangles glued over every edge that is no seam.
+/// \file
+/// Mesh of one chart: triangles glued over every edge that is no seam. Used by atlas/flatten and atlas/charts.
 namespace tuft::atlas {
 
 struct ChartMesh {
@@ -22,16 +23,16 @@ struct ChartMesh {
     std::size_t n_vertices() const { return position.size(); }
 };
 
-/// `glued` [3 n_triangles of the mesh] is the opposite half-edge, kNone on borders and
-/// seams; none may lead out of `triangles` (ascending). `place` [n_triangles of the mesh] is
-/// room to work in, of which only the chart's own triangles are touched; without it, slower.
+/// Returns the chart of `triangles` (ascending). `glued` [3 n_triangles of the mesh] is the opposite half-edge,
+/// kNone on borders and seams; none may lead out of `triangles`. `place` [n_triangles of the mesh] is a scratch
+/// buffer, of which only the chart's triangles are written; without it the call is slower.
 ChartMesh make_chart(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> glued,
                      std::vector<std::uint32_t> triangles, double unit, std::span<std::uint32_t> place = {});
 
 /// Triangles of each chart (ascending), charts in the order of their first triangle.
 std::vector<std::vector<std::uint32_t>> connected_charts(std::span<const std::uint32_t> glued);
 
-/// What a flattening does to a chart; UVs over the same unit as the positions.
+/// Measures of a flattened chart; UVs in the same unit as the positions.
 struct FlatCheck {
     bool finite = true;
     std::size_t flips = 0;    ///< triangles without positive area
@@ -46,10 +47,9 @@ struct FlatCheck {
 /// `gap`: see `crosses_itself`.
 FlatCheck check_flat(const ChartMesh& chart, std::span<const Vec2> uv, double gap = 0);
 
-/// Whether the chart's border crosses itself, or comes nearer than `gap` to a part of
-/// itself that is more than 16 gaps away along it and twice as far on the surface. (What
-/// is nearer may be the two sides of a slit.) Touching alone is no crossing. Parts less than
-/// `near` of the border's length apart along it are not looked at.
+/// Returns true when the chart's border crosses itself, or comes nearer than `gap` to a part of itself that is more
+/// than 16 gaps away along the border and twice as far on the surface. (A nearer part may be the other side of a
+/// slit.) Contact is no crossing. Parts less than `near` of the border's length apart along it are ignored.
 bool crosses_itself(const ChartMesh& chart, std::span<const Vec2> uv, double gap, double near = 0);
 
 }  // namespace tuft::atlas

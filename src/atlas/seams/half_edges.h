@@ -7,7 +7,8 @@
 #include "mesh/half_edge.h"
 #include "mesh/triangle_mesh.h"
 
-/// Half-edges (mesh/half_edge.h) of a mesh and of parts of it.
+/// \file
+/// Half-edges (mesh/half_edge.h) of a mesh and of a patch. Used by all of `atlas`.
 namespace tuft::atlas {
 
 using mesh::next_half;
@@ -17,7 +18,7 @@ using mesh::prev_half;
 /// that do not share the edge in opposite directions count as borders.
 std::vector<std::uint32_t> twin_half_edges(const mesh::TriangleMesh& mesh);
 
-/// Where half-edge `h` of the mesh lies among `triangles` (ascending): kNone if it does not.
+/// Returns the local number of half-edge `h` in `triangles` (ascending), or kNone.
 std::uint32_t local_half(std::span<const std::uint32_t> triangles, std::uint32_t h);
 
 /// A part of a mesh with its own numbering; whatever lies outside is border.
@@ -39,8 +40,7 @@ Patch make_patch(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> 
 /// Sum of the corner angles at each vertex, radians. [n_vertices]
 std::vector<float> vertex_angles(const Patch& patch);
 
-/// A vertex whose angles miss (or exceed) a full turn by more than this is laid flat
-/// only with a seam that ends there, radians.
+/// Angle defect, radians, in absolute value, above which a vertex is flattened only with a seam that ends there.
 inline constexpr double kSlitDefect = 1.0;
 
 }  // namespace tuft::atlas

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <map>
 
+/// \file
+/// Cache of rejected merges and seam moves. Used by atlas/charts.
 namespace tuft::atlas {
 
-/// Changes to pairs of charts that were tried in vain, so that none is tried again while both
-/// charts are as they were: `FlatChart::version` tells.
+/// Rejected changes of pairs of charts. A change is not tried again while both charts have the same
+/// `FlatChart::version`.
 struct RejectedChanges {
     /// The seam that is changed, by a half-edge, and the versions of the charts beside it.
     using Change = std::array<std::uint32_t, 3>;

@@ -9,14 +9,15 @@
 #include "atlas/seams/half_edges.h"
 #include "core/system/progress.h"
 
-/// Charts by taking seams away: at first every triangle is a chart and every edge a
-/// seam; gluing two charts along one chain of seam edges keeps every chart a disk.
+/// \file
+/// Graph of charts and seam chains. At first every triangle is a chart and every edge a seam; gluing two charts
+/// along one chain keeps every chart a disk. Used by atlas/charts.
 namespace tuft::atlas {
 
 struct GluingLimits {
     double error = 0.02;              ///< developability error over area of a chart
-    double mean_normal = 0.55;        ///< length of the mean unit normal: no chart wraps round
-    double crease = 0.87;             ///< radians; chains bent more (on average) stay
+    double mean_normal = 0.55;        ///< smallest length of the mean unit normal: prevents charts that wrap round
+    double crease = 0.87;             ///< radians; chains with a larger mean dihedral angle are not glued
     double small = 1e-3;              ///< weight of the smaller chart's area in the cost
     double area = 1e300;              ///< largest area of a chart, over unit²
     std::uint32_t triangles = kNone;  ///< most triangles of a chart
@@ -50,15 +51,15 @@ class SeamGraph {
     /// triangle, 37 for each edge that is a seam and 100 for each chart.
     SeamGraph(const Patch& patch, std::span<const std::uint8_t> seam);
 
-    /// Glues in the order of least (error growth + small area) / length while the limits hold.
+    /// Glues chains in the order of least (error growth + small area) / length while the limits hold.
     void glue_developable(const GluingLimits& limits, const ProgressFn& progress = {});
 
     /// All chains, in the order of their ids.
     std::vector<Chain> chains() const;
     /// Half-edges of a chain, one per edge, in no order.
     std::vector<std::uint32_t> half_edges(std::uint32_t chain) const;
-    /// The slit that gluing this chain would leave hanging and that is glued with it: a
-    /// chain that reached it from outside. Its half-edges; mostly none.
+    /// Returns the half-edges of the slit that is glued together with this chain: a chain that ended at it from
+    /// outside. Usually empty.
     std::vector<std::uint32_t> glued_with(std::uint32_t chain) const;
     void glue(std::uint32_t chain);
 

@@ -8,21 +8,20 @@
 
 #include "atlas/seams/half_edges.h"
 
-/// Seams that run along other edges of the mesh while the charts they part stay disks.
+/// \file
+/// Seam moves along shortest paths, with both charts remaining disks. Used by move_seams.h and straighten.h.
 namespace tuft::atlas {
 
-/// A chain of seam edges between two corners, and the path that shall take its place. On the
-/// left of both lies the same chart.
+/// A chain of seam edges between two corners, and its replacement path. The same chart lies on the left of both.
 struct SeamMove {
     std::vector<std::uint32_t> chain, path;  ///< half-edges
     float saved = 0;                         ///< weight of the chain less that of the path
 };
 
-/// Whether a new path may leave from places other than the ends of the chain.
+/// Allowed ends of a new path: the ends of the chain, or other positions too.
 enum class Corners { stay, move };
 
-/// What the search for a path needs, as it is between two of them: one for each thread that
-/// searches.
+/// Scratch buffers of a path search; one for each thread.
 class PathSearch {
   public:
     explicit PathSearch(const Patch& patch)
@@ -63,12 +62,12 @@ class SeamPaths {
     }
     std::vector<std::uint32_t> chain_from(std::uint32_t h) const;
 
-    /// The shortest path that stays within `reach` of the chain, over its length. Bent edges
-    /// count less, so that seams keep to creases. `path` is empty where none is shorter.
+    /// Returns the shortest path within `reach` times the chain's length of the chain. Edges with a large dihedral
+    /// angle have less weight, so seams follow creases. `path` is empty where none is shorter.
     SeamMove shorten(std::vector<std::uint32_t> chain, float reach, Corners corners, PathSearch& search) const;
 
-    /// Moves a seam; the triangles that change from the chart on its left to the other one and
-    /// back are added to `swept`, for each of the two.
+    /// Moves a seam. Adds to `swept` [2] the triangles that change from the chart on its left to the other one, and
+    /// back.
     void move(const SeamMove& move, std::vector<std::uint32_t>* swept = nullptr);
 
   private:

@@ -5,8 +5,9 @@
 
 #include "atlas/texels/texel_map.h"
 
-/// Which parts of the atlas hang together on the surface, across charts and seams,
-/// and how their tangent frames relate: what a stamp walks over.
+/// \file
+/// Graph of texel clusters: their adjacency on the surface, across charts and seams, and the relation of their
+/// tangent frames. `footprint` searches it for every stamp.
 namespace tuft::atlas {
 
 /// A cluster: connected texels of one chart in one tile (a quarter of it where it bends), with
@@ -29,9 +30,8 @@ struct TexelCluster {
 /// Centre, tangent, b and normal of a cluster.
 Frame frame_of(const TexelCluster& cluster);
 
-/// From cluster i to cluster `to` (j). A point known in j's frame as x_j is in i's frame
-/// hop + R x_j with R = [[c, −s], [s, c]]: both unfolded over their common border.
-/// The edge j → i holds the inverse motion.
+/// Edge from cluster i to cluster `to` (j). A point x_j in j's frame is hop + R x_j in i's frame with R = [[c, −s],
+/// [s, c]]: both are unfolded over their common border. The edge j → i holds the inverse motion.
 struct ClusterEdge {
     std::uint32_t to = kNone;
     float hop_u = 0, hop_v = 0;  ///< metres, in i's frame
@@ -47,16 +47,15 @@ struct ClusterGraph {
     std::size_t n_clusters() const { return clusters.size(); }
 };
 
-/// Pieces of a texel map and the edges between them: 8-neighbour texels inside a
-/// chart that hang together, and texels on both sides of every mesh edge along
-/// which charts meet. About 0.5 s and 10 MB at 4096²; the same bits for any
-/// number of threads.
+/// Returns the clusters of a texel map and their edges: 8-neighbour texels inside a chart that are connected on the
+/// surface, and texels on both sides of every mesh edge along which charts meet. Cost: about 0.5 s and 10 MB at
+/// 4096². The same bits for any number of threads.
 ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
                                  const ProgressFn& progress = {});
 
-/// The texel that stands for a point of the mesh: the covered one that is nearest in
-/// space, among those near the point's place in the atlas; where the triangle and its
-/// surroundings are too thin to hold any, among those near its neighbours' places.
+/// Returns the texel of a point of the mesh: the covered texel nearest in space among those near the point's
+/// position in the atlas. Where the triangle and its surroundings are too thin to contain any, it is taken among
+/// those near its neighbours' positions.
 TexelRef texel_at(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, std::uint32_t triangle,
                   const Vec3& position);
 

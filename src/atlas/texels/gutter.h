@@ -6,8 +6,9 @@
 
 #include "atlas/texels/texel_map.h"
 
-/// Values for the texels between charts, so that a viewer that filters the texture shows
-/// no line where charts meet.
+/// \file
+/// Values of the texels between charts, so that a filtered texture shows no line at seams. Used by composite.h and
+/// for mip levels.
 namespace tuft::atlas {
 
 struct GutterTap {

@@ -4,8 +4,9 @@
 
 #include "core/geometry/types.h"
 
-/// The closed-form logarithmic map between two points of a smooth surface whose
-/// positions and unit normals are known: no path, no iteration, about 35 flops.
+/// \file
+/// Closed-form logarithmic map between two points of a smooth surface with known positions and unit normals: no
+/// path, no iteration, about 35 flops. Used by `footprint`.
 namespace tuft::atlas {
 
 /// Coefficients of x = 1 − c, lowest power first, of (1 + c) K(c) with
@@ -26,8 +27,8 @@ inline constexpr double kLogMapMinCos = -0.35;
 /// any smooth surface; wrong across creases. Precondition: c > kLogMapMinCos.
 Vec2 log_map(const Frame& frame, const Vec3& p, const Vec3& m);
 
-/// Direction of tangent vector `t` at normal `from`, carried by the smallest
-/// rotation to frame.n, as cosine and sine of its angle to frame.t.
+/// Returns the direction of tangent vector `t` at normal `from`, rotated by the smallest rotation to frame.n, as
+/// cosine and sine of its angle to frame.t.
 Vec2 carried_direction(const Frame& frame, const Vec3& t, const Vec3& from);
 
 }  // namespace tuft::atlas

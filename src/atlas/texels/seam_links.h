@@ -5,7 +5,8 @@
 
 #include "atlas/texels/texel_map.h"
 
-/// Neighbour texels over chart seams, for whatever flows along the surface.
+/// \file
+/// Adjacent texels over chart seams, for fluxes along the surface. Used by the wet film and the paste.
 namespace tuft::atlas {
 
 /// Texel `texel` of the slot that holds the link and `other_texel` of `other_slot`

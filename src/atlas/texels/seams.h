@@ -6,7 +6,8 @@
 
 #include "atlas/texels/texel_map.h"
 
-/// Mesh edges along which the atlas is cut, and the texels on both sides of them.
+/// \file
+/// Mesh edges along which the atlas is cut, and the texels on both sides. Used by the other files of atlas/texels.
 namespace tuft::atlas {
 
 /// One side of a seam at one point: where it lies in the atlas and on the surface.
@@ -40,8 +41,8 @@ std::vector<SeamEdge> find_seams(const mesh::TriangleMesh& mesh, const Atlas& at
 void sample_seam(const mesh::TriangleMesh& mesh, const Atlas& atlas, const SeamEdge& edge, double spacing,
                  std::vector<SeamSample>& samples);
 
-/// The covered texel of `chart` whose centre is nearest to `uv` (texels), at most
-/// `max_distance` texels away and hanging together with the surface at `position`.
+/// Returns the covered texel of `chart` whose centre is nearest to `uv` (texels), at most `max_distance` texels
+/// away and connected to the surface at `position`.
 TexelRef nearest_texel(const TexelMap& map, std::uint32_t chart, const Vec2& uv, const Vec3& position,
                        double max_distance);
 

@@ -8,16 +8,17 @@
 
 #include "atlas/atlas.h"
 
-/// From texels to surface points: for each 16 × 16 tile of the atlas that a chart
-/// touches, the position and normal of every texel centre.
+/// \file
+/// Map from texels to surface points: for each 16 × 16 tile of the atlas that a chart touches, position and normal
+/// of every texel centre. All modules above store texel data by its slots.
 namespace tuft::atlas {
 
 inline constexpr int kTile = 16;  ///< texels along the side of a tile
 inline constexpr int kTileTexels = kTile * kTile;
 inline constexpr std::uint8_t kNoCluster = 255;
 
-/// What ink asks of the texels of one occupied tile, texel t = row * 16 + column.
-/// Texels outside every chart have cluster == kNoCluster and zero area.
+/// Area and cluster of the texels of one occupied tile, texel t = row * 16 + column. Texels outside every chart
+/// have cluster == kNoCluster and zero area.
 struct TexelTile {
     /// m² of surface the texel stands for; beside seams those of both charts share it (border_cells.h)
     alignas(64) std::array<float, kTileTexels> area;
@@ -101,12 +102,12 @@ inline TexelRef texel_ref(const TexelMap& map, std::int64_t x, std::int64_t y) {
     return {slot, texel};
 }
 
-/// Builds the map: a texel is covered when its centre lies in a triangle of the atlas (corners snapped to 1/4096
-/// texel; a centre on a shared edge belongs to one side, and where triangles overlap to the one with the lowest index).
-/// Its cluster is the set of texels of the same chart and tile that hang together with it and whose normals are within
-/// 35° of the first; where normals of the tile stray further than 30° from their mean, of the same quarter of it. The
-/// same bits for any number of threads; about 1 s at 4096² on two threads, memory for occupied tiles only. Tiles and
-/// clusters do not depend on `store`, nor do areas, but for a thousandth beside seams.
+/// Builds the map. A texel is covered when its centre lies in a triangle of the atlas (corners snapped to 1/4096
+/// texel). A centre on a shared edge belongs to one side; where triangles overlap, to the lowest index. A cluster
+/// is the set of connected texels of the same chart and tile with normals within 35° of the first. Where normals of
+/// the tile deviate more than 30° from their mean, clusters are limited to quadrants of it. Tiles and clusters do
+/// not depend on `store`, nor do areas, except by a thousandth beside seams. The same bits for any number of
+/// threads. Cost: about 1 s at 4096² on two threads, memory for occupied tiles only.
 TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, const ProgressFn& progress = {},
                          TexelStore store = TexelStore::automatic);
 

@@ -5,7 +5,8 @@
 
 #include "atlas/atlas.h"
 
-/// An atlas to look at.
+/// \file
+/// Picture of an atlas for `tuft unwrap`.
 namespace tuft::atlas {
 
 struct AtlasPicture {

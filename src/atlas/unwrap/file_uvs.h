@@ -4,7 +4,8 @@
 
 #include "atlas/atlas.h"
 
-/// The UVs a model came with, judged.
+/// \file
+/// UVs of a model's file as an atlas. Called by `unwrap`.
 namespace tuft::atlas {
 
 struct FileUvs {
@@ -12,12 +13,12 @@ struct FileUvs {
     std::string fault;  ///< why they cannot serve as an atlas; empty when they can
 };
 
-/// Sound UVs are finite, lie in [0, 1] (with `UvPolicy::keep`: on pages 1001 to 2000 of the
-/// UDIM convention, each chart on one, 100 pages at most), leave every triangle room, do not
-/// overlap and keep charts of a page a texel apart (two for `UvPolicy::automatic`). Mirrored
-/// charts are turned over in their own box. Pages have `options.size` texels, or as many as
-/// `options.texel_size` needs. On several pages UVs move by roundings, at most 1/16 texel where
-/// a sliver would lose its room in them.
+/// Returns the UVs of the file as an atlas, or the fault that prevents it. Sound UVs are finite and lie in [0, 1]
+/// (with `UvPolicy::keep`: on pages 1001 to 2000 of the UDIM convention, each chart on one, at most 100 pages).
+/// They give every triangle area, do not overlap, and leave a texel between charts of a page (two for
+/// `UvPolicy::automatic`). Mirrored charts are reflected in their own box. Pages have `options.size` texels, or as
+/// many as `options.texel_size` needs. On several pages UVs move by rounding, at most 1/16 texel where a sliver
+/// would lose its area.
 FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& options);
 
 }  // namespace tuft::atlas

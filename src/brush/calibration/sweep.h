@@ -9,40 +9,41 @@
 #include "core/geometry/types.h"
 #include "core/system/progress.h"
 
-/// What one brush leaves on a flat sheet at each depth, and the fit of a preset to
-/// measurements of it.
+/// \file
+/// Sweep of one brush over a flat sheet: line width and contact length at each depth, and the fit of a preset to a
+/// measured sweep. Called by `tuft brush`, by the tip lag compensation of `stroke` and by the studio.
 namespace tuft::brush {
 
-/// Steady straight stroke, holder upright. Lengths in metres.
+/// One row of a sweep: a steady straight stroke with an upright holder. Lengths in metres.
 struct SweepRow {
     double depth = 0;   ///< of the ferrule below the height where the tip first touches
-    double width = 0;   ///< of the line left behind
+    double width = 0;   ///< of the painted line
     double drag = 0;    ///< length of the contact patch along the stroke
-    double offset = 0;  ///< end of the patch nearer to the root, behind the foot of the holder's axis
+    double offset = 0;  ///< distance of the patch's root-side end behind the foot of the holder's axis
 };
 
-/// Drags each depth until steady (at most three hair lengths). Depths in metres.
+/// Computes one row per depth (metres). Each drag lasts until it is steady, at most three hair lengths.
 std::vector<SweepRow> sweep_depth(const Preset& preset, std::span<const double> depths);
 
-/// Where the line of a steady straight stroke along +x over the sheet z = 0 lies, seen from the foot
-/// of the unbent tip, metres.
+/// Position of the line of a steady straight stroke along +x over the sheet z = 0, relative to the foot of the
+/// unbent tip, metres.
 struct LinePlace {
-    double behind = 0;  ///< mean of the two places where the patch is widest
+    double behind = 0;  ///< distance behind: mean of the two widest places of the patch
     double aside = 0;   ///< middle of the line, to the left (+y)
 };
 
-/// The same for a holder that leans: up ∝ (tan lean.x, tan lean.y, 1), radians. A holder that leans
-/// ahead pulls its hair behind it, one that leans back pushes it ahead. About 4 ms.
+/// Computes the line's position for a tilted holder: up ∝ (tan lean.x, tan lean.y, 1), radians. A holder tilted
+/// forward drags its hair; a holder tilted back pushes it ahead. Cost: about 4 ms.
 LinePlace line_place(const Preset& preset, double depth, const Vec2& lean);
 
-/// CSV text with the columns z_mm,width_mm,drag_mm,offset_mm.
+/// Returns CSV text with the columns z_mm,width_mm,drag_mm,offset_mm.
 std::string sweep_csv(std::span<const SweepRow> rows);
 
-/// Reads a measured table: columns by name as in `sweep_csv`, lines with # ignored, rows whose
-/// column `excluded_by_authors` is not 0 skipped. Throws `Error` with file and line.
+/// Reads a measured table with the columns of `sweep_csv`, found by name. Skips lines with # and rows whose column
+/// `excluded_by_authors` is not 0. Throws `Error` with file and line.
 std::vector<SweepRow> read_sweep(const std::string& path);
 
-/// Hair length in metres that a comment of the table states as "length NUMBER mm"; nothing else.
+/// Returns the hair length, metres, from a comment "length NUMBER mm" of the table. Empty without such a comment.
 std::optional<double> stated_length(const std::string& path);
 
 struct CalibrateOptions {
@@ -58,9 +59,9 @@ struct Calibration {
     int evaluations = 0;
 };
 
-/// Fits radius, taper, stiffness along the hair, side stiffness, flattening, friction and wet film
-/// of `start`, whose hair length must be the measured brush's: least squares from several
-/// beginnings, then a simplex search on the worst column. Deterministic. About 20 ms per evaluation.
+/// Fits radius, taper, stiffness along the hair, side stiffness, flattening, friction and wet film of `start`.
+/// Precondition: the hair length of `start` is that of the measured brush. Method: least squares from several
+/// starts, then a simplex search on the worst column. Deterministic. Cost: about 20 ms per evaluation.
 Calibration calibrate(const Preset& start, std::span<const SweepRow> measured, const CalibrateOptions& options = {});
 
 }  // namespace tuft::brush

@@ -2,28 +2,30 @@
 
 #include <vector>
 
-/// Profiles of the variable stiffness beam along ξ = x/L, root 0 to tip 1, in units of
-/// the length L and the root stiffness B0: forces in B0/L², moments in B0/L.
+/// \file
+/// Stiffness and yield profiles of the variable stiffness beam along ξ = x/L, root 0 to tip 1, and its closed-form
+/// solutions. Units: length L and root stiffness B0 are 1; forces are in B0/L², moments in B0/L. Used by the rod
+/// solver and by the tests of it.
 namespace tuft::brush {
 
-/// B(ξ) = e^{αξ} (1+βξ)³ from modulus E0 e^{αξ} and height h0 (1+βξ);
-/// yield stress σ0 e^{γξ} gives M_e(ξ) = e · e^{γξ} (1+βξ)².
+/// B(ξ) = e^{αξ} (1+βξ)³, from the modulus E0 e^{αξ} and the height h0 (1+βξ). M_e(ξ) = e · e^{γξ} (1+βξ)², from
+/// the yield stress σ0 e^{γξ}.
 struct Profile {
     double alpha = -1;
     double beta = -0.8;  ///< > -1
-    double yield = 0;    ///< e = M_e0 L / B0; 0 means elastic for ever
+    double yield = 0;    ///< e = M_e0 L / B0; 0: purely elastic
     double gamma = -1;
-    double floor = 0;  ///< added to B/B0: the hairs that reach the tip; M_e grows in proportion
+    double floor = 0;  ///< added to B/B0: the hairs that reach the tip; M_e scales in proportion
 };
 
 double bending_stiffness(const Profile& p, double xi);  ///< B/B0
 double yield_moment(const Profile& p, double xi);       ///< M_e L/B0; infinite when p.yield is 0
 
-/// ∫ ds/B from xi0 to xi1, the compliance of a piece of the beam; 8-point Gauss.
+/// Returns the compliance ∫ ds/B from xi0 to xi1, by 8-point Gauss quadrature.
 double compliance(const Profile& p, double xi0, double xi1);
 
-/// Lengths of n segments in arithmetic progression, root to tip, sum 1: the tip segment
-/// is `tip_ratio` / n, 0 < tip_ratio <= 1. Softer brushes take 0.25 + 0.75 hardness.
+/// Returns the lengths of n segments in arithmetic progression, root to tip, with sum 1. The tip segment is
+/// `tip_ratio` / n, 0 < tip_ratio <= 1. Brush presets use 0.25 + 0.75 hardness.
 std::vector<double> spine_segments(int n, double tip_ratio);
 
 struct SmallDeflection {
@@ -32,16 +34,16 @@ struct SmallDeflection {
     double moment = 0;  ///< in P L
 };
 
-/// Cantilever with transverse tip load P by linear theory, B w'' = P (L - x), in closed
-/// form by exponential integrals; Gauss quadrature where the closed form cancels
-/// (|β| < 0.05), without `floor`. Overshoots for |w| > 0.1 L: not for shapes, see rod.h.
-/// Source: variable stiffness brush (Huang and Hou 2018), integrated anew.
+/// Returns the deflection of a cantilever with transverse tip load P by linear theory, B w'' = P (L − x), without
+/// `floor`. Closed form by exponential integrals; Gauss quadrature where the closed form cancels (|β| < 0.05).
+/// Valid for |w| < 0.1 L: beyond it overshoots, see rod.h. Source: variable stiffness brush (Huang and Hou 2018),
+/// integrated anew.
 SmallDeflection small_deflection(const Profile& p, double xi);
 
-/// Smallest tip load that starts to yield, min over ξ of M_e(ξ)/(1-ξ), in B0/L².
+/// Returns the smallest tip load that starts to yield, min over ξ of M_e(ξ)/(1−ξ), in B0/L².
 double elastic_limit_load(const Profile& p);
 
-/// Ideally plastic rectangular section along a path of curvature k = κ/κ_e: 0 → k1 → k2.
+/// Moment of an ideally plastic rectangular section along a path of curvature k = κ/κ_e: 0 → k1 → k2.
 struct SectionMoment {
     double moment = 0;    ///< M/M_e at the end of the path
     double residual = 0;  ///< curvature left after elastic unloading from there

@@ -7,24 +7,29 @@
 #include "brush/rod/profile.h"
 #include "core/geometry/types.h"
 
-/// Inextensible discrete rod of n rigid segments with bending joints, clamped at the root,
-/// in frictional contact with one plane per node. Minimises
+/// \file
+/// Discrete elastic rod in frictional contact: the solver of the spine of a tuft. `brush/tuft` calls `solve` for
+/// every spine at every sample.
 ///
-///   Π = Σ ψ_j(w_j) + Σ contact(r*-z_i, c_i) + Σ μ N̂_i h(|x_i - a_i|) - F·x_tip
-///       + Σ η_j/(2Δt) |w_j - w_j(t0)|²
+/// The rod has n rigid, inextensible segments with bending joints. It is clamped at the root and meets one plane
+/// per node. `solve` minimises over the unit tangents t_j
 ///
-/// with c_i = -t_i·n how much the hair meets the surface end-on: the ends of the hairs are not
-/// of one length, so that a point gives a way s along itself, by the potential
-/// min_s ½ k_e s² + contact(r*-z_i - s c_i).
+///     Π = Σ ψ_j(w_j) + Σ contact(r*−z_i, c_i) + Σ μ N̂_i h(|x_i − a_i|) − F·x_tip
+///         + Σ η_j/(2Δt) |w_j − w_j(t0)|²
 ///
-/// over unit tangents t_j by Newton, whose steps are found by elimination along the rod; N̂ is the normal
-/// force of the pass before (outer fixed point), a_i the sticking anchor. Twist is carried
-/// by the clamp. Valid for any deflection; second order in the segment length.
+/// with w_j the bend of joint j, z_i the height and x_i the position of contact point i, a_i its sticking anchor,
+/// and N̂_i its normal force of the previous pass (outer fixed point). c_i = −t_i·n is the cosine of the angle
+/// between hair and inward normal. Hairs end at different lengths, so a point shortens by s along itself: contact =
+/// min_s ½ k_e s² + contact(r*−z_i − s c_i).
 ///
-/// Units: length L and root stiffness B0 are 1; forces B0/L², moments B0/L, energy B0/L.
-/// Arrays go from root to tip. Cost: 15–50 µs for n = 16, warm.
-/// Source: Bergou et al. 2008 (discrete rods), Chu and Tai 2002 and Van Laerhoven 2007
-/// (friction as energy with lagged normal force); see README.
+/// Method: Newton; each step is found by elimination along the rod. The clamp carries the twist. Valid for any
+/// deflection; second order in the segment length. Cost: 15–50 µs for n = 16, warm start.
+///
+/// Units: length L and root stiffness B0 are 1; forces are in B0/L², moments and energies in B0/L. Arrays go from
+/// root to tip.
+///
+/// Sources: Bergou et al. 2008 (discrete rods), Chu and Tai 2002 and Van Laerhoven 2007 (friction as energy with
+/// lagged normal force); see README.
 namespace tuft::brush::rod {
 
 inline constexpr int kFibres = 16;
@@ -40,29 +45,30 @@ struct Rod {
     int segments() const { return static_cast<int>(length.size()); }
 };
 
-/// The beam cut into segments (see `spine_segments`): k_j = 1 / ∫ ds/B over the joint's
-/// share, half a segment to each side.
+/// Returns a rod of n segments (see `spine_segments`) with joint stiffness k_j = 1 / ∫ ds/B over half a segment to
+/// each side of the joint.
 Rod make_rod(const Profile& profile, int n, double tip_ratio);
-/// The same for any segment lengths, root to tip, of sum 1.
+/// The same for given segment lengths, root to tip, with sum 1.
 Rod make_rod(const Profile& profile, std::span<const double> lengths);
 
-/// Segments from `first` to the tip as a rod of their own, with 1/share of the stiffness;
-/// still in units of the whole. Its clamp is the segment inboard of `first`.
+/// Returns the segments from `first` to the tip as a rod with 1/share of the stiffness, in units of the whole. Its
+/// clamp is the segment before `first`.
 Rod outer_part(const Rod& rod, int first, double share);
 
-/// Least eigenvalue P of Σ k_j (θ_j - θ_{j-1})² - P Σ l_j θ_j² on Σ l_j θ_j = 0: the load at
-/// which a straight rod pressed end-on by a point that holds its tip bows out. B0/L².
+/// Returns the buckling load of a straight rod whose tip is held and pressed end-on, in B0/L². It is the least
+/// eigenvalue P of Σ k_j (θ_j − θ_{j-1})² − P Σ l_j θ_j² on Σ l_j θ_j = 0.
 double buckling_load(const Rod& rod);
 
-/// Root of the rod. `side` is a unit vector normal to `tangent` that marks the ferrule's turn.
+/// Root of the rod. `side` is a unit vector normal to `tangent`: the reference for the ferrule's rotation about its
+/// axis.
 struct Clamp {
     Vec3 position{0};
     Vec3 tangent{0, 0, -1};
     Vec3 side{1, 0, 0};
 };
 
-/// Plane that a node meets: it is pushed out when closer than `radius`. Near a convex edge
-/// also the plane beyond it.
+/// Contact plane of a node. A node closer than `radius` is pushed out. Near a convex edge `beyond` is the plane of
+/// the second face.
 struct Obstacle {
     Vec3 origin{0};
     Vec3 normal{0, 0, 1};
@@ -73,7 +79,8 @@ struct Obstacle {
     bool at_edge() const { return beyond_normal != Vec3{0}; }
 };
 
-/// What a node meets beside its own plane, one-sided too: with `share` of the law's stiffness, closer than `radius`.
+/// A second, one-sided contact plane of a node, with `share` of the law's stiffness. It acts when the node is
+/// closer than `radius`.
 struct Wall {
     int node = 0;
     Vec3 origin{0}, normal{0, 0, 1};
@@ -81,52 +88,49 @@ struct Wall {
     double share = 0;  ///< 0: nothing
 };
 
-/// Contact law of all nodes.
+/// Contact law of all nodes, in units of L and B0.
 struct Law {
-    int points_per_segment = 1;  ///< contact points: the nodes, and this less one between them,
-                                 ///< whose planes and radii are interpolated
-    bool hard = false;           ///< exact non-penetration by an augmented Lagrangian
-    double stiffness = 1e4;      ///< k_c, force per length per indentation; penalty when hard
-    double core_stiffness = 0;   ///< further k beyond core_start · radius
+    int points_per_segment =
+        1;  ///< contact points per segment: one node and the points between, whose planes and radii are interpolated
+    bool hard = false;          ///< exact non-penetration by an augmented Lagrangian
+    double stiffness = 1e4;     ///< k_c, force per length per indentation; penalty when hard
+    double core_stiffness = 0;  ///< further k beyond core_start · radius
     double core_start = 0.65;
-    double onset = 0;              ///< indentation over which a stiffness comes in, smoothing its kink
-    double end_friction = 1;       ///< share of μ that is left where hair meets the surface end-on; the
-                                   ///< rest comes with lying down, as sin² of its angle to the normal
-    double recovery = 0;           ///< Δt/T of the set: stops that push the hair back towards straight
-                                   ///< creep; see `recover_joint`
-    double end_compliance = 0;     ///< length by which the hair's ends give at the buckling load
-                                   ///< when they meet a surface end-on, less the more they lie;
-                                   ///< 0: none. Fades to nothing 4 end_compliance behind the tip
-    double damping = 0;            ///< viscous stiffness over elastic stiffness of the joints:
-                                   ///< η/(k Δt) of backward Euler
-    double edge = 0;               ///< over a crease, where a node has two planes or the planes of
-                                   ///< neighbouring nodes part, a point keeps off both (in a corner) or
-                                   ///< either (over an edge), rounded by this length as in wedge.h;
-                                   ///< 0: one plane each
-    double adhesion = 0;           ///< pull per length of a wet node that all but touches, fading
-    double adhesion_range = 0;     ///< as (1 - gap/range)² to nothing at this gap
-    double friction = 0;           ///< μ
-    double grain = 0.5;            ///< κ_f: 2κ_f μ along the tangent, 2(1-κ_f) μ across
-    double with_hair = 0;          ///< C_η: μ (1 - C_η cos⁴) when dragged tip last
-    double pore_grip = 0;          ///< extra μ of the tip against being pushed tip first
+    double onset = 0;         ///< indentation over which a stiffness rises from 0, which smooths its kink
+    double end_friction = 1;  ///< fraction of μ of hair normal to the surface; the rest grows with sin² of the angle
+                              ///< between hair and normal
+    double recovery = 0;      ///< Δt/T of the recovery of the set; see `recover_joint`
+    double end_compliance = 0;  ///< shortening of the hair ends at the buckling load when normal to the surface; less
+                                ///< with tilt; 0: none. Fades to 0 at 4 end_compliance behind the tip
+    double damping = 0;         ///< viscous stiffness over elastic stiffness of the joints:
+                                ///< η/(k Δt) of backward Euler
+    double edge =
+        0;  ///< rounding length of creases (wedge.h). At a crease a node has two planes, or neighbouring nodes have
+            ///< different ones. A point stays outside both planes (corner) or either (edge). 0: one plane each
+    double adhesion = 0;        ///< adhesion per length of a wet node at gap 0; it falls
+    double adhesion_range = 0;  ///< as (1 − gap/range)² to 0 at this gap
+    double friction = 0;        ///< μ
+    double grain = 0.5;         ///< κ_f: 2κ_f μ along the tangent, 2(1-κ_f) μ across
+    double with_hair = 0;  ///< C_η: μ (1 − C_η cos⁴) when dragged tip last, cos of the angle between slip and hair
+    double pore_grip = 0;          ///< extra μ of the tip when pushed tip first
     double stick_stiffness = 4e4;  ///< k_t, tangential force per length per displacement
-    int max_passes = 20;           ///< of lagged normal forces
-    int max_iterations = 80;       ///< of Newton, all passes together
+    int max_passes = 20;           ///< passes of the outer fixed point over the normal forces
+    int max_iterations = 80;       ///< Newton iterations, all passes together
     double tolerance = 1e-7;       ///< largest residual moment
     double pass_tolerance = 1e-2;  ///< change of normal forces between passes, relative
 };
 
 struct Load {
     Vec3 tip_force{0};
-    double end_moment = 0;  ///< about e = tangent × toward of the clamp: bends towards `toward`
+    double end_moment = 0;  ///< about e = tangent × toward of the clamp; positive bends towards `toward`
     Vec3 toward{1, 0, 0};
 };
 
-/// What a joint remembers: parallel elastic-plastic stops in the frame of its inner segment.
+/// Plastic state of a joint: parallel elastic-plastic elements in the frame of its inner segment.
 struct JointMemory {
-    std::array<Vec2, kFibres> stop{};  ///< s_f
+    std::array<Vec2, kFibres> stop{};  ///< s_f, elastic strain of element f
     Vec2 bend{0};                      ///< w of the last solve
-    bool yielded = false;              ///< false: every stop equals the bend
+    bool yielded = false;              ///< false: every strain equals the bend
 };
 
 struct ContactMemory {
@@ -134,66 +138,65 @@ struct ContactMemory {
     Vec3 anchor{0};
     Vec3 normal{0};         ///< of the surface at the last solve; x - anchor is normal to it
     double force = 0;       ///< normal force of the last solve
-    double growth = 0;      ///< of it over that of the solve before
+    double growth = 0;      ///< ratio to the force of the previous solve
     double multiplier = 0;  ///< hard contact
 };
 
 struct Memory {
     Clamp clamp;
-    std::vector<Vec3> tangent;           ///< [n] unit
-    std::vector<Vec3> turn;              ///< [n] change of each tangent in the last solve, in the
-                                         ///< clamp's frame, for a better first guess; or none
-    double moved = 0;                    ///< of the clamp in the last solve
+    std::vector<Vec3> tangent;  ///< [n] unit
+    std::vector<Vec3>
+        turn;          ///< [n] change of each tangent in the last solve, clamp's frame, for the first guess; or empty
+    double moved = 0;  ///< displacement of the clamp in the last solve
     std::vector<Vec3> node;              ///< [n+1]
     std::vector<JointMemory> joint;      ///< [n]
-    std::vector<ContactMemory> contact;  ///< [points_per_segment n + 1], and one for each wall
+    std::vector<ContactMemory> contact;  ///< [points_per_segment n + 1], then one per wall
 };
 
 struct Result {
     bool converged = false;
     int iterations = 0, passes = 0;
-    double bend_energy = 0;            ///< stored in the joints
-    double contact_energy = 0;         ///< stored in indented and sticking contacts and the wet film
-                                       ///< (which holds less than none while it draws)
-    double dissipation = 0;            ///< by yielding, slip and damping, this solve
+    double bend_energy = 0;  ///< stored in the joints
+    double contact_energy =
+        0;  ///< stored in indented and sticking contacts and in the wet film (negative while it attracts)
+    double dissipation = 0;            ///< by yielding, slip and damping in this solve
     std::vector<double> moment;        ///< [n] |m| at the joints
-    std::vector<double> normal_force;  ///< [n+1], shares of the points beside each node
-    std::vector<Vec3> contact_force;   ///< [n+1] on the rod, with friction, of walls too
-    std::vector<Vec3> wall_force;      ///< [n+1] of it, what walls push; none without walls
-    std::vector<Vec3> slip;            ///< [n+1] way of the slipping hair over the surface, mean by friction
-    std::vector<Obstacle> met;         ///< [n+1] the one plane that each node meets where it came to
-                                       ///< lie, or none
-    Vec3 force{0};                     ///< sum of contact forces
-    Vec3 root_moment{0};               ///< of all outer forces about the root
+    std::vector<double> normal_force;  ///< [n+1], of the contact points, distributed to the nodes
+    std::vector<Vec3> contact_force;   ///< [n+1] on the rod, friction and walls included
+    std::vector<Vec3> wall_force;      ///< [n+1] part of it from walls; empty without walls
+    std::vector<Vec3> slip;     ///< [n+1] displacement of the slipping hair over the surface, weighted by friction
+    std::vector<Obstacle> met;  ///< [n+1] the plane that each node meets at its final position, or empty
+    Vec3 force{0};              ///< sum of contact forces
+    Vec3 root_moment{0};        ///< of all external forces about the root
 };
 
-/// A straight rod along the clamp's tangent.
+/// Returns a straight rod along the clamp's tangent.
 Memory make_memory(const Rod& rod, const Clamp& clamp);
 
-/// The rod as it would be if carried rigidly with the clamp to a new place.
+/// Moves the rod rigidly with the clamp to a new pose.
 void carry_with_clamp(Memory& memory, const Clamp& clamp);
 
-/// The rod turned about its clamp's axis by `angle`, with its sets and the places where it sticks;
-/// the clamp stays.
+/// Rotates the rod about its clamp's axis by `angle` radians, with its set and its friction anchors. The clamp does
+/// not move.
 void turn_about_clamp(Memory& memory, double angle);
 
-/// Nodes of the rod: root + Σ l_j t_j. [n+1]
+/// Returns the nodes root + Σ l_j t_j. [n+1]
 std::vector<Vec3> nodes(const Rod& rod, const Memory& memory);
 
-/// Carries the rod to `clamp`, then solves. `obstacles`: [n+1], or empty for none. `walls` come in the same
-/// order from solve to solve, and only where there are obstacles; out of reach they change no bit.
-/// Bounded work; when it stops early the best state is kept and `converged` is false.
+/// Moves the rod rigidly to `clamp`, then minimises Π. `obstacles`: [n+1], or empty for none. `walls` need
+/// obstacles and have the same order in every solve; a wall out of reach changes no bit. Never throws. The work is
+/// bounded: when it stops early, the best state is retained and `converged` is false.
 Result solve(const Rod& rod, Memory& memory, const Clamp& clamp, std::span<const Obstacle> obstacles, const Law& law,
              const Load& load = {}, std::span<const Wall> walls = {});
 
-/// Value and derivatives of Π for frozen friction, for tests: x holds 2n steps along each
-/// segment's two normals from the state in `memory`.
+/// Value and derivatives of Π for frozen friction, for tests. x holds 2n steps along the two normals of each
+/// segment, from the state in `memory`.
 struct Probe {
     double value = 0;
     std::vector<double> gradient;
-    std::vector<double> hessian;  ///< [2n × 2n] its lower half, column major
-    std::vector<double> step;     ///< Newton's, each segment's pivot raised by `damping` times the
-                                  ///< stiffness of its joints; none where it is not positive definite
+    std::vector<double> hessian;  ///< [2n × 2n] lower half, column major
+    std::vector<double> step;  ///< Newton step, with `damping` times the joint stiffness added to each segment's pivot;
+                               ///< empty where that is not positive definite
 };
 Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles, const Law& law,
                    const Load& load, std::span<const double> x, double damping = 0);

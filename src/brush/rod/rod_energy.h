@@ -7,21 +7,22 @@
 #include "brush/rod/sym3.h"
 #include "brush/rod/wedge.h"
 
-/// Inside of the rod solver: Π and its derivatives for frozen friction and multipliers.
+/// \file
+/// Energy Π of the rod and its derivatives, for frozen friction and multipliers. Internal to the rod solver.
 namespace tuft::brush::rod {
 
 inline Mat3 clamp_frame(const Clamp& c) {
     return {c.tangent, c.side, glm::cross(c.tangent, c.side)};
 }
 
-/// Where contact point p lies: x = (1 - s) x_j + s x_{j+1}.
+/// Position of contact point p: x = (1 − s) x_j + s x_{j+1}.
 struct PointPlace {
     int node = 0;
     double s = 0;
 };
 
-/// A place of the hair among the nodes, x = Σ w_k x_{first+k}, and the hair's direction there towards the
-/// root, Σ d_k x_{first+k}.
+/// Position on the hair as a linear combination of nodes, x = Σ w_k x_{first+k}, and the hair's direction there
+/// towards the root, Σ d_k x_{first+k}.
 struct Stencil {
     int first = 0, count = 0;
     double w[3] = {0, 0, 0}, d[3] = {0, 0, 0};
@@ -37,7 +38,7 @@ struct Stencil {
     }
 };
 
-/// Contact points [begin, end) nearest to node k, all of whose stencils lie among the same nodes.
+/// Contact points [begin, end) nearest to node k. All their stencils use the same nodes.
 struct PointRange {
     int begin = 0, end = 0;
 };
@@ -49,35 +50,36 @@ inline PointRange points_of(int k, int per_segment, int segments) {
 
 /// Crease beside a contact point: the planes of an edge near it, or of two neighbouring nodes.
 struct Crease {
-    double share = 0;  ///< 0: none, the point has one plane; 1: a sharp one
+    double share = 0;  ///< 0: no crease, one plane; 1: a sharp crease
     bool convex = true;
     Wedge wedge;
 };
 
-/// From the plane of `o`, and over a crease from both its planes, rounded by `edge`.
+/// Returns the distance of x from the plane of `o`, or from both planes of a crease, rounded by `edge`.
 Distance distance_of(const Obstacle& o, const Crease& crease, double edge, const Vec3& x);
 
 struct Frozen;
 
-/// The one plane that contact point p meets; over an edge that of the mean force on its hair.
+/// Returns the plane that contact point p meets. At an edge it is the plane of the mean force on the point.
 Obstacle met_by(const Frozen& frozen, int p, const std::vector<Vec3>& node);
 
 struct Evaluation;
 
-/// True where the points of node k are all out of reach of one plane.
+/// Returns true when all points of node k are out of reach of one plane.
 bool all_clear(const Frozen& frozen, int k, const Evaluation& at);
 
-/// Finds the patches round the nodes; and sets their frames by their points' friction.
+/// `lay_patches` finds the patches of the nodes. `turn_patches` sets their axes from the friction of their points.
 void lay_patches(Frozen& frozen);
 void turn_patches(Frozen& frozen);
 
-/// Adds the points of the patch round node k; returns their potential. Without `derivatives` nothing else.
+/// Adds the points of the patch of node k to `out` and returns their potential. Without `derivatives` it changes
+/// nothing else.
 double add_patch(const Frozen& frozen, int k, bool derivatives, Evaluation& out);
 
-/// Adds contact point p to the slopes and curvatures of its nodes; returns its potential.
+/// Adds contact point p to the slopes and curvatures of its nodes and returns its potential.
 double add_contact(const Frozen& frozen, int p, Evaluation& out);
 
-/// Friction of one contact point, frozen during one Newton solve.
+/// Friction of one contact point, constant during one Newton solve.
 struct Friction {
     double cap = 0;    ///< μ N̂, force at slip
     double stick = 0;  ///< force per displacement while sticking
@@ -85,34 +87,34 @@ struct Friction {
     Vec3 normal{0, 0, 1};          ///< unit, of the surface
     Vec3 grain{0};                 ///< unit, in the plane, along the hair towards the tip; zero: isotropic
     double along = 1, across = 1;  ///< factors on displacement along the grain and across
-    double pore_cap = 0;           ///< force against being pushed along the grain
+    double pore_cap = 0;           ///< resistance to motion along the grain
 };
 
-/// The contact points of a node where they all meet planes of one normal, away
-/// from creases, with ends that do not give: their potential goes by heights along the normal and
-/// by places along the hair and across it, which are linear in the nodes.
+/// Contact points of a node that all meet planes of one normal, away from creases and without end compliance. Their
+/// potential depends on heights along the normal and positions along and across the hair, which are linear in the
+/// nodes.
 struct Patch {
     bool flat = false;
     Vec3 normal{0, 0, 1}, along{1, 0, 0}, across{0, 1, 0};
     double along2 = 1, across2 = 1;  ///< factors of friction, squared
-    double reach = 0;                ///< greatest height from which a point is felt
+    double reach = 0;                ///< greatest height at which a point has a force
 };
 struct PatchPoint {
     double height = 0;  ///< of the plane along the patch's normal, from the clamp
     Vec2 anchor{0};     ///< along the hair and across, from the clamp
 };
 
-/// Everything that stays fixed during one Newton solve.
+/// Constants of one Newton solve.
 struct Frozen {
     const Rod* rod = nullptr;
     const std::vector<JointMemory>* joint = nullptr;
-    std::span<const Obstacle> obstacles;  ///< of the contact points, or none
+    std::span<const Obstacle> obstacles;  ///< of the contact points, or empty
     std::vector<PointPlace> place;        ///< of the contact points
     std::vector<Stencil> stencil;         ///< of the contact points
-    std::vector<double> laid_length;      ///< segments for which place and stencil were laid,
+    std::vector<double> laid_length;      ///< segment lengths for which place and stencil were computed,
     int laid_per = 0;                     ///< points per segment,
     bool laid_round = false;              ///< and whether rounded
-    std::size_t walls_from = 0;           ///< contact points of walls are those from here on
+    std::size_t walls_from = 0;           ///< index of the first contact point of a wall
     std::vector<Crease> crease;           ///< of the contact points
     std::vector<double> weight;           ///< of the contact points, tributary lengths
     const Law* law = nullptr;
@@ -120,12 +122,12 @@ struct Frozen {
     Clamp clamp;
     std::vector<Friction> friction;  ///< of the contact points
     std::vector<double> multiplier;  ///< of the contact points
-    std::vector<double> give;        ///< of the contact points, end-on displacement per force
+    std::vector<double> give;        ///< of the contact points, end compliance: displacement per force
     std::vector<Patch> patch;        ///< of the nodes, or none
     std::vector<PatchPoint> spot;    ///< of the contact points on patches
 };
 
-/// Unit tangent t and unit normal s of every segment; the pair (s, t × s) moves without spin.
+/// Unit tangent t and unit normal s of every segment. The pair (s, t × s) is parallel-transported along the rod.
 struct Shape {
     std::vector<Vec3> tangent, side;
 };
@@ -143,10 +145,10 @@ struct JointForce {
     double energy = 0;
 };
 
-/// Value of Π and what its derivatives are made of. Reused between calls.
+/// Value of Π and the terms of its derivatives. Reused between calls.
 struct Evaluation {
     double value = 0;
-    double contact = 0;             ///< of it: indentation, ends that give, the film; no friction
+    double contact = 0;             ///< part of it: indentation, end compliance, adhesion; no friction
     std::vector<Vec3> node;         ///< [n+1]
     std::vector<Vec3> slope;        ///< [n+1] ∂V/∂x_i of contact, friction and load
     std::vector<Sym3> curvature;    ///< [n+1] ∂²V/∂x_i²
@@ -156,44 +158,45 @@ struct Evaluation {
     std::vector<JointForce> joint;  ///< [n]
 };
 
-/// Sides by parallel transport from the clamp along the rod.
+/// Computes the sides by parallel transport from the clamp along the rod.
 void transport_sides(const Clamp& clamp, const std::vector<Vec3>& tangents, std::vector<Vec3>& sides);
 
-/// The load's end moment in the frame of any inner segment (plane bending).
+/// Returns the load's end moment in the frame of any inner segment (plane bending).
 Vec2 end_moment(const Frozen& frozen);
 
-/// Joint moments in `out` are less the end moment, whose work is part of Π.
+/// Evaluates Π and its terms. Joint moments in `out` exclude the end moment, whose work is part of Π.
 void evaluate(const Frozen& frozen, const Shape& shape, Evaluation& out);
 
-/// Π alone; leaves `out` of use for nothing else.
+/// Returns Π alone. The rest of `out` is undefined afterwards.
 double value_of(const Frozen& frozen, const Shape& shape, Evaluation& out);
 
 struct Mat2 {
     double m[2][2] = {{0, 0}, {0, 0}};
 };
 
-/// First and second derivatives of Π over steps along (side, tangent × side) of every segment; the
-/// second ones but for what the nodes' curvatures add through the lever arms.
+/// First and second derivatives of Π with respect to steps along (side, tangent × side) of every segment. The
+/// second derivatives exclude the nodes' curvatures through the lever arms.
 struct Derivatives {
     struct Joint {
-        double p[2], q[2];          ///< outer tangent over the inner segment's sides; and the other way round
-        double r[2][2];             ///< sides of the inner over those of the outer segment
-        double ja[2][2], jb[2][2];  ///< ∂w over steps of the inner and of the outer segment
+        double p[2], q[2];          ///< outer tangent in the inner segment's sides; inner tangent in the outer's
+        double r[2][2];             ///< sides of the inner segment in those of the outer
+        double ja[2][2], jb[2][2];  ///< ∂w with respect to steps of the inner and the outer segment
     };
     struct Segment {
-        Mat2 own;      ///< over its own steps
-        Mat2 inboard;  ///< [i][k] over step i of the segment inboard and its own step k
+        Mat2 own;      ///< with respect to its own steps
+        Mat2 inboard;  ///< [i][k] with respect to step i of the inner neighbour and its own step k
     };
     std::vector<Joint> joint;      ///< [n]
     std::vector<double> gradient;  ///< [2n]
     std::vector<Vec3> second;      ///< [n] tangent × side
     std::vector<Segment> segment;  ///< [n]
 };
-/// The first ones, and then the second ones of the same shape.
+/// `differentiate` computes the first derivatives; `differentiate_twice` adds the second for the same shape.
 void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& at, Derivatives& out);
 void differentiate_twice(const Frozen& frozen, const Shape& shape, const Evaluation& at, Derivatives& out);
 
-/// Buffer of `descend`: steps of each segment by the move of its inner node and the steps inboard.
+/// Buffer of `descend`: steps of each segment as functions of its inner node's displacement and of the inner
+/// neighbour's steps.
 struct Elimination {
     struct Gain {
         double rest[2] = {0, 0};
@@ -203,36 +206,35 @@ struct Elimination {
     std::vector<Gain> gain;
 };
 
-/// Solves (H + damping · (stiffness of the joints beside each segment)) u = -gradient for the steps
-/// u [2n], by elimination from the tip to the root: with the moves of the nodes as further unknowns,
-/// x_{j+1} = x_j + l_j T_j u_j, each segment only meets its neighbours. O(n). False where the matrix
-/// is not positive definite.
+/// Solves (H + damping · (stiffness of the joints beside each segment)) u = −gradient for the steps u [2n]. With
+/// the node displacements as further unknowns, x_{j+1} = x_j + l_j T_j u_j, each segment couples to its neighbours
+/// only, and elimination from tip to root costs O(n). Returns false where the matrix is not positive definite.
 bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Derivatives& derivatives, double damping,
              Elimination& work, std::vector<double>& step);
 
-/// Lower half of H [2n × 2n, column major].
+/// Computes the lower half of H [2n × 2n, column major].
 void fill_hessian(const Rod& rod, const Shape& shape, const Evaluation& at, const Derivatives& derivatives,
                   std::vector<double>& hessian);
 
-/// The shape after steps u [2n] scaled by `scale`.
+/// Computes the shape after steps u [2n] scaled by `scale`.
 void advance(const Shape& from, std::span<const double> u, double scale, Shape& to);
 
-/// Moment, stiffness and energy of joint j at bend w; what the stops do is in `memory`.
+/// Returns moment, stiffness and energy of joint j at bend w. `memory` holds its plastic state.
 JointForce joint_force(const Rod& rod, int j, const JointMemory& memory, const Vec2& w);
 
-/// Moves the stops of joint j to bend w; returns the energy lost by yielding.
+/// Updates the plastic elements of joint j to bend w. Returns the energy dissipated by yielding.
 double commit_joint(const Rod& rod, int j, JointMemory& memory, const Vec2& w);
 
-/// Lets the set of joint j go back for Δt/T = `time`: a stop whose strain s is opposed to its set
-/// p = w - s creeps, s ← s e^{-x time}, with x = clamp((t_rig - |p|/α_f)/(t_rig - t_ela)): all of a
-/// small set returns, nothing of one that is t_rig times the elastic range. Returns the energy
-/// lost, never negative: nothing is gained from a held bend. After Xu et al. 2004, eq. 5.10.
+/// Recovers the set of joint j over Δt/T = `time`. An element whose strain s opposes its set p = w − s creeps, s ←
+/// s e^{−x time}, with x = clamp((t_rig − |p|/α_f)/(t_rig − t_ela)). A small set recovers fully; a set of t_rig
+/// times the elastic range does not recover. Returns the dissipated energy, ≥ 0: a held bend gains no energy.
+/// Source: after Xu et al. 2004, eq. 5.10.
 double recover_joint(const Rod& rod, int j, JointMemory& memory, double time);
 
-/// Energy stored in the stops of joint j.
+/// Returns the energy stored in the plastic elements of joint j.
 double stored_energy(const Rod& rod, int j, const JointMemory& memory, const Vec2& w);
 
-/// Log map w of `outer` at the inner segment (a, side): θ along the direction of bending.
+/// Returns the log map w of `outer` at the inner segment (a, side): length θ in the direction of bending.
 Vec2 bend_of(const Vec3& a, const Vec3& side, const Vec3& outer);
 
 }  // namespace tuft::brush::rod

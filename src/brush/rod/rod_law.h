@@ -2,15 +2,16 @@
 
 #include "brush/rod/rod.h"
 
-/// Inside of the rod solver: contact law of one point.
+/// \file
+/// Contact law of one point: normal force, adhesion and their potentials. Internal to the rod solver.
 namespace tuft::brush::rod {
 
-/// Normal force of an indentation with its potential.
+/// Normal force at an indentation: potential, force and stiffness.
 struct NormalForce {
     double energy = 0, force = 0, stiffness = 0;
 };
 
-/// Spring of stiffness k on x > 0 whose stiffness grows in over `onset`.
+/// Returns a spring of stiffness k on x > 0. Its stiffness rises linearly from 0 over `onset`.
 inline NormalForce ramp(double k, double x, double onset) {
     if (x < onset) return {k * x * x * x / (6 * onset), 0.5 * k * x * x / onset, k * x / onset};
     const double y = x - 0.5 * onset;
@@ -35,7 +36,7 @@ inline NormalForce normal_force(const Law& law, double weight, double radius, do
     return out;
 }
 
-/// Potential of the wet film's pull at a gap (negative: indented), zero where it ends.
+/// Returns the adhesion of the wet film at `gap` (negative: indented). Its potential is 0 at the end of its range.
 inline NormalForce adhesion(const Law& law, double weight, double gap) {
     if (law.adhesion <= 0 || gap >= law.adhesion_range) return {};
     const double pull = law.adhesion * weight, range = law.adhesion_range;

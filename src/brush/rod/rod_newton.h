@@ -5,7 +5,8 @@
 
 #include "brush/rod/rod_energy.h"
 
-/// Inside of the rod solver: minimisation of Π for frozen friction.
+/// \file
+/// Newton minimisation of Π for frozen friction. Internal to the rod solver.
 namespace tuft::brush::rod {
 
 using DenseMatrix = Eigen::MatrixXd;
@@ -27,8 +28,8 @@ struct NewtonResult {
     int iterations = 0;
 };
 
-/// Descends Π from `shape`, of which ws.at is the evaluation, for at most `limit` iterations; Π never
-/// rises. ws.at holds the end.
+/// Minimises Π from `shape` in at most `limit` iterations; ws.at holds the evaluation of `shape`. Π never
+/// increases. On return ws.at holds the evaluation of the result.
 NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit);
 
 }  // namespace tuft::brush::rod

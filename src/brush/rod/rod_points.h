@@ -5,26 +5,28 @@
 
 #include "brush/rod/rod_energy.h"
 
-/// Inside of the rod solver: where contact points lie and what each of them meets.
+/// \file
+/// Contact points of the rod: their positions and planes. Internal to the rod solver; `brush/tuft` uses the rounded
+/// nodes.
 namespace tuft::brush::rod {
 
-/// Where hair is a curve for its contact: where points lie between the nodes.
+/// Returns true when contact treats the hair as a curve: with points between the nodes and the soft law.
 inline bool rounded(const Law& law) {
     return law.points_per_segment > 2 && !law.hard;
 }
 
-/// The place at share s of segment j. Rounded: on the curve that runs from middle to middle of the segments along
-/// parabolas with the nodes as their control points, so that the bend of a joint is spread evenly over the length of
-/// hair that the joint stands for; straight outside the first and the last middle (quadratic B-spline).
+/// Returns the position at parameter s of segment j. With `round` it lies on the quadratic B-spline with the nodes
+/// as control points: parabolas from segment middle to segment middle, straight outside the first and the last
+/// middle. A joint's bend is then spread evenly over the length of hair that the joint represents.
 Stencil stencil_at(const Rod& rod, bool round, int j, double s);
 
-/// The nodes' own places on the rounded hair. [n+1]
+/// Returns the nodes' positions on the rounded hair. [n+1]
 std::vector<Vec3> curve_nodes(const Rod& rod, const std::vector<Vec3>& node);
 
-/// Planes and radii of the contact points, interpolated between those of the nodes; over creases,
-/// where a node has two planes or neighbours' planes part, both. `obstacles`: [n+1], or none;
-/// `node`: [n+1], where the nodes are. Fills place, stencil, crease, weight and give of `frozen`, whose rod and law
-/// are set. `fine`: [points], or none; those of walls come last, one for each.
+/// Computes the contact points: planes and radii interpolated between those of the nodes. At a crease a node has
+/// two planes, or neighbouring nodes have different ones; its points get both. `obstacles`: [n+1], or empty;
+/// `node`: [n+1], node positions. Fills place, stencil, crease, weight and give of `frozen`, whose rod and law are
+/// set. `fine`: [points], or empty; the last points are those of the walls, one each.
 void lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
                 std::vector<Obstacle>& fine, std::span<const Wall> walls = {});
 

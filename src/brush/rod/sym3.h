@@ -2,6 +2,8 @@
 
 #include "core/geometry/types.h"
 
+/// \file
+/// Symmetric 3 × 3 matrices for the second derivatives of contact potentials.
 namespace tuft::brush {
 
 /// Symmetric 3 × 3 matrix.

@@ -2,10 +2,12 @@
 
 #include "core/geometry/types.h"
 
-/// Distance from a surface that two planes make.
+/// \file
+/// Distance from a surface of two planes with its edge or corner rounded. Used by the rod's contact and by
+/// `height_over`.
 namespace tuft::brush {
 
-/// Distance of a point from the surface, negative inside, with derivatives. Any unit of length.
+/// Distance of a point from the surface, negative inside, and its derivatives. Any unit of length.
 struct Distance {
     double z = 0;
     Vec3 slope{0};    ///< ∂z/∂x
@@ -18,15 +20,14 @@ struct Wedge {
     Vec3 origin[2]{Vec3{0}, Vec3{0}}, normal[2]{Vec3{0}, Vec3{0}};
 };
 
-/// Over a convex edge: the distance from both planes moved in by ρ, less ρ, so that the edge is
-/// rounded by ρ. Over a face it is the face's plane; where the point is in front of the edge itself,
-/// the distance from a line, whose slope turns with the point from one normal to the other. ρ is
-/// `rounding`, or less where the edge is so sharp that more than 0.41 ρ would be taken off it, as
-/// off an edge of 90°.
+/// Returns the distance from a convex edge rounded by ρ: the distance from both planes moved in by ρ, less ρ. Over
+/// a face this is the distance from its plane. In front of the edge it is the distance from a line, and its
+/// gradient turns from one normal to the other. ρ is `rounding`. It is smaller at sharp edges, so that the rounding
+/// removes at most 0.41 ρ, as at an edge of 90°.
 Distance edge_distance(const Wedge& wedge, double rounding, const Vec3& x);
 
-/// In a concave corner: the smaller distance, rounded where they differ by less than `rounding`,
-/// by a quarter of it.
+/// Returns the distance from a concave corner: the smaller of both distances. Where they differ by less than
+/// `rounding` it is rounded, by at most a quarter of `rounding`.
 Distance corner_distance(const Wedge& wedge, double rounding, const Vec3& x);
 
 }  // namespace tuft::brush

@@ -5,18 +5,20 @@
 
 #include "brush/tuft/tuft.h"
 
+/// \file
+/// Contact of the tuft's flanks with walls beside the spine. Called by the spine solver (spine.h).
 namespace tuft::brush {
 
-/// What the flanks of a spine feel of the walls beside it (tip first, two to a node, as in `step`;
-/// a normal of zero: none), in units of L and B0, one for each: the hair that has spread gives way
-/// with the stiffness of the springs that hold it together (`side_stiffness`) from the free
-/// half-width of its section on,
+/// Returns the walls that act on a spine through its spread hair, in units of L and B0, one per input wall; empty
+/// before the first step. `walls` come tip first, two to a node, as in `step`; a normal of zero means none. The
+/// hair yields with the stiffness of its cohesion springs (`side_stiffness`), from the free half-width of its
+/// section on,
 ///
-///     h = √(a² (e·n)² + r⁴/a² (1 - (e·n)² - (t·n)²)),
+///     h = √(a² (e·n)² + r⁴/a² (1 − (e·n)² − (t·n)²)),
 ///
-/// the ellipse's towards the wall's normal n; a is `Spine::flank`, of the step before. A wall that
-/// leans away from e is ground: its share fades from 53° to 26° between e and the wall, where the
-/// section lies on it. None before the first step.
+/// the support of the ellipse in the direction of the wall's normal n; a is `Spine::flank` of the previous step. A
+/// wall tilted away from e acts as floor: its share falls from 1 to 0 as the angle between e and the wall goes from
+/// 53° to 26°, where the section lies on it.
 std::vector<rod::Wall> flank_walls(const Preset& preset, const Spine& spine, const Quat& turn,
                                    std::span<const ContactPlane> walls, double wetness);
 

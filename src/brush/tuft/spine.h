@@ -4,17 +4,18 @@
 
 #include "brush/tuft/tuft.h"
 
-/// Inside of the tuft: one spine between the ferrule and its contact planes.
+/// \file
+/// One spine of the tuft between the ferrule and its contact planes. Internal to `brush/tuft`.
 namespace tuft::brush {
 
 struct Solved {
     rod::Result result;  ///< in units of L and B0
     Branch branch;
-    double spread_energy = 0;  ///< J, in the springs of the side nodes, part of the rod's
-    double aside_gain = 0;     ///< J, that friction has brought to them since the last step
+    double spread_energy = 0;  ///< J, in the springs of the side nodes; part of the rod's energy
+    double aside_gain = 0;     ///< J, work of friction on them since the last step
 };
 
-/// What happened on the way to a pose, in units of L and B0.
+/// Dissipation and slip on the path to a pose, in units of L and B0.
 struct Passed {
     double dissipation = 0;
     std::vector<Vec3> slip;  ///< [n+1] as in rod::Result; or none
@@ -22,36 +23,34 @@ struct Passed {
 
 rod::Clamp clamp_of(const Preset& preset, const Pose& pose);
 
-/// A straight spine whose root lies at ξ0 of the hair, one of `share`.
+/// Returns a straight spine with its root at ξ0 of the hair and `share` of the hair.
 Spine make_spine(const Preset& preset, const rod::Rod& rod, const rod::Clamp& clamp, double xi0, double share);
 
-/// Follows the ferrule from `from` to just before `to` in parts small enough, and lets
-/// hair that stands upright fall behind the motion. `dt`: in, seconds of the whole way; out,
-/// of the part that is left.
+/// Moves the spine from pose `from` to just before `to` in small steps, and turns upright hair behind the motion.
+/// `dt`: on entry seconds of the whole motion, on return seconds of the remaining part.
 Passed approach(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
                 std::span<const ContactPlane> planes, std::span<const ContactPlane> walls, double wetness, double& dt);
 
-/// The spine bent by the rod solver over `dt` seconds; `turn` is the ferrule's rotation, `planes` and `walls` tip
-/// first. What `passed` before in this step is added to the result's.
+/// Solves the spine with the rod solver over `dt` seconds. `turn` is the ferrule's rotation; `planes` and `walls`
+/// come tip first. Adds `passed`, the earlier part of this step, to the result.
 Solved solve_spine(const Preset& preset, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
                    std::span<const ContactPlane> planes, double wetness, double share, double dt,
                    std::span<const ContactPlane> walls = {}, const Passed& passed = {});
 
-/// The spine from the query table: bent in the plane of the holder and the tip's last place,
-/// so that the tip follows the hand as a tractrix, by the moment that puts the tip on the plane.
+/// Solves the spine with the query table. It is bent in the plane of the holder and the tip's last position, so
+/// that the tip follows the hand as a tractrix, by the moment that places the tip on the plane.
 Solved stand_spine(const Preset& preset, const QueryTable& table, Spine& spine, const rod::Clamp& clamp,
                    const Quat& turn, std::span<const ContactPlane> planes, double wetness);
 
-/// SP = ξ k (1 - Z_i/Z) of the bifurcation rule, k the root moment over that of a tuft that
-/// lies flat.
+/// Returns SP = ξ k (1 − Z_i/Z) of the bifurcation rule. k is the root moment over that of a tuft lying flat.
 double split_measure(const Preset& preset, double ink_left, double root_moment);
 
-/// Parts the last third of the spine into `split_into` sub-spines n with as much hair each:
-/// radius r/√n, stiffness B/n, ink Z/n, yaw Δ (j − (n − 1)/2).
-/// They begin side by side over the width of the trunk and meet in the tip; `Tuft::spread` parts them.
+/// Splits the last third of the spine into n = `split_into` sub-spines of equal hair: radius r/√n, stiffness B/n,
+/// ink Z/n, yaw Δ (j − (n − 1)/2). They start side by side over the width of the trunk and meet in the tip;
+/// `Tuft::spread` separates them.
 void split(Tuft& tuft, const Branch& whole);
 
-/// Solves the sub-spines on the bent trunk and puts them in place of the last third.
+/// Solves the sub-spines on the bent trunk. They replace the last third of it.
 void solve_sub_spines(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state, double dt);
 
 }  // namespace tuft::brush

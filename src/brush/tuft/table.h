@@ -6,10 +6,11 @@
 #include "brush/preset/preset.h"
 #include "core/geometry/types.h"
 
-/// Query table over the root bending moment and the Fixed Shape Method: the tuft's shape
-/// for a moment M, turned in the bending plane until the tip touches the ground. Made from
-/// large-deflection elastica under a transverse tip load, for any stiffness profile.
-/// Source: variable stiffness brush (Huang and Hou 2018); the shapes are exact here.
+/// \file
+/// Query table over the root bending moment and the Fixed Shape Method: the tuft's shape for a moment M, rotated in
+/// the bending plane until the tip touches the surface. Shapes are large-deflection elastica under a transverse tip
+/// load, for any stiffness profile. Source: variable stiffness brush (Huang and Hou 2018); the shapes are exact
+/// here.
 namespace tuft::brush {
 
 /// One entry, holder frame: x along the axis from the root, y to the bend side; metres.
@@ -30,13 +31,13 @@ struct QueryTable {
 
 QueryTable make_table(const Preset& preset, int rows = 64);
 
-/// Shape at a moment within the table's range (clamped), cubic between rows.
+/// Returns the shape at a moment, clamped to the table's range; cubic between rows.
 TableRow look_up(const QueryTable& table, double moment);
 
-/// Smallest moment whose shape has `tip_height` >= 0; the table's largest when none has.
+/// Returns the smallest moment whose shape has `tip_height` >= 0. Returns the table's largest moment when none has.
 double standing_moment(const QueryTable& table, const std::function<double(const TableRow&)>& tip_height);
 
-/// The tuft standing on a plane. Lengths metres, angles radians.
+/// Shape of the tuft on a plane. Lengths in metres, angles in radians.
 struct FixedShape {
     double moment = 0;        ///< M, N·m
     double holder_angle = 0;  ///< φ between the holder and the plane
@@ -46,11 +47,11 @@ struct FixedShape {
     double friction = 0;      ///< μ F_re, N
 };
 
-/// Moment and root height given: the holder's angle follows.
+/// Returns the shape for a given moment and root height; the holder's angle follows.
 FixedShape fixed_shape(const QueryTable& table, double moment, double root_height, double mu, double lambda = 1);
 
-/// Root height and holder angle given (a six-degree device): the moment follows.
-/// Where even the largest moment leaves the tip below the plane, the last row is used.
+/// Returns the shape for a given root height and holder angle (a six-degree device); the moment follows. Where the
+/// largest moment leaves the tip below the plane, the last row is used.
 FixedShape fixed_shape_at_angle(const QueryTable& table, double root_height, double holder_angle, double mu,
                                 double lambda = 1);
 

@@ -5,11 +5,12 @@
 
 #include "core/geometry/types.h"
 
+/// \file
+/// Poses, sections and forces of a tuft: the data that `brush` gives to all modules above it.
 namespace tuft::brush {
 
-/// Where the hand holds the brush: position of the ferrule's mouth (the root of
-/// the tuft, P_m) and its rotation. The tuft's rest axis, from root to tip, is
-/// rotation * (0, 0, -1).
+/// Pose of the holder: position of the ferrule's mouth (the root of the tuft, P_m) and its rotation. The tuft's
+/// rest axis, from root to tip, is rotation * (0, 0, −1).
 struct Pose {
     Vec3 position{0};  ///< metres, world
     Quat rotation{1, 0, 0, 0};
@@ -37,23 +38,23 @@ struct Branch {
     double ink_share = 1;  ///< of the tuft's ink; shares sum to one
 };
 
-/// Where the hand's work is, joules, of the whole spine (sub-spines follow it). The work that the
-/// hand does against `TuftState::force` and `moment` is the change of stored() and `lost`.
+/// Energy of the whole spine, joules; sub-spines follow it. The hand's work against `TuftState::force` and `moment`
+/// is the change of stored() plus `lost`.
 struct TuftEnergy {
     double bend = 0;     ///< stored in the bent hair
-    double contact = 0;  ///< in what the surface presses flat, in hair that sticks, and in the wet film
-    double aside = 0;    ///< in side nodes that friction has drawn to one side
-    double spread = 0;   ///< of bend and contact: what the springs of the spread side nodes hold
-    double lost = 0;     ///< since the step before, by yielding, slip, damping; never negative
+    double contact = 0;  ///< in indented hair, in sticking hair, and in the wet film
+    double aside = 0;    ///< in side nodes shifted to one side by friction
+    double spread = 0;   ///< part of bend and contact: in the springs of the spread side nodes
+    double lost = 0;     ///< dissipated since the previous step by yielding, slip, damping; never negative
 
     double stored() const { return bend + contact + aside; }
 };
 
-/// The tuft at one moment: one branch, or the sub-spines after bifurcation.
+/// State of the tuft at one time: one branch, or the sub-spines after bifurcation.
 struct TuftState {
     std::vector<Branch> branches;
     Vec3 force{0};            ///< of the surface on the tuft, newtons, world
-    Vec3 device_force{0};     ///< what of that force has come through to the ferrule, newtons, world
+    Vec3 device_force{0};     ///< that force filtered by the hair's mass, newtons, world
     Vec3 moment{0};           ///< of `force` about the root, N·m, world
     double root_moment = 0;   ///< bending moment at the ferrule, N·m
     double normal_force = 0;  ///< newtons
@@ -63,9 +64,8 @@ struct TuftState {
     int iterations = 0;
 };
 
-/// Plane the tuft meets, or a local one for each node: points p with
-/// dot(p - origin, normal) < 0 are inside the object. Next to a sharp convex edge with the plane
-/// beyond it: inside is what both call inside.
+/// Contact plane of the tuft, or of one node: points p with dot(p − origin, normal) < 0 are inside the object. Next
+/// to a sharp convex edge it also has the plane beyond the edge: a point is inside when it is inside both.
 struct ContactPlane {
     Vec3 origin{0};         ///< metres, world
     Vec3 normal{0, 0, 1};   ///< unit, out of the object
@@ -73,9 +73,9 @@ struct ContactPlane {
     Vec3 beyond_normal{0};  ///< unit; zero: no edge near
 };
 
-inline constexpr double kEdgeRounding = 2e-4;  ///< m, radius by which the tuft feels edges rounded
+inline constexpr double kEdgeRounding = 2e-4;  ///< m, rounding radius of edges in contact with the tuft
 
-/// Distance of p from the plane, or from both with their edge rounded (see wedge.h), metres.
+/// Returns the distance of p from the plane, or from both planes with their edge rounded (see wedge.h), metres.
 double height_over(const ContactPlane& plane, const Vec3& p);
 
 }  // namespace tuft::brush

@@ -5,7 +5,8 @@
 
 #include "brush/tuft/tuft.h"
 
-/// The tuft's surface as plain triangles, to draw it and to bound it.
+/// \file
+/// The tuft's surface as triangles. `render`, `app` and the calibration draw it or bound it.
 namespace tuft::brush {
 
 struct TuftSurfaceOptions {
@@ -21,11 +22,11 @@ struct TuftSurface {
     int rings = 0;                         ///< of all branches; the tip of each closes with one point
 };
 
-/// Rings of ellipses along Catmull–Rom splines through the sections of every branch.
+/// Returns rings of ellipses along Catmull–Rom splines through the sections of every branch.
 TuftSurface make_tuft_surface(const TuftState& state, const TuftSurfaceOptions& options = {});
 
-/// Sections of one branch, resampled with `between` more sections in every gap by a
-/// cubic spline (centres, axes, semi-axes, moment, pressure), tip first.
+/// Returns the sections of one branch with `between` more in every gap, tip first. Centres, axes, semi-axes, moment
+/// and pressure are interpolated by a cubic spline.
 std::vector<Section> refine_sections(const std::vector<Section>& sections, int between);
 
 }  // namespace tuft::brush

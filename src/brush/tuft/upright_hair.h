@@ -4,36 +4,36 @@
 
 #include "brush/tuft/tuft.h"
 
-/// Hair that was pressed straight down has no side of its own.
+/// \file
+/// Hair pressed straight down: its ends splay round the foot of the axis until motion draws them to one side.
+/// Called by the spine solver and by `footprint`.
 ///
-/// Its ends splay round the foot of the axis. Dragged by ds along -u, each end at azimuth φ from u
-/// trails on its string of length ρ (a tractrix), dφ = -sin φ ds/ρ, which maps the circle to itself by
-/// Möbius maps; the mean w of all e^{iφ} is the image of its beginning,
+/// Dragged by ds along −u, each end at azimuth φ from u trails on a string of length ρ (a tractrix), dφ = −sin φ
+/// ds/ρ. This maps the circle to itself by Möbius maps. The mean w of all e^{iφ} is the image of its start,
 ///
-///   dw/ds = (u - w² ū) / (2ρ),   so that from rest |w| = tanh(s/2ρ).
+///     dw/ds = (u − w² ū) / (2ρ),   so that from rest |w| = tanh(s/2ρ).
 ///
-/// u and w are complex numbers across the axis. One spine stands for all of the hair: it lies where
-/// most of it does. Once the mean has gone to another side by 0.15 (after 0.3 ρ), the spine is laid there, turned
-/// about the axis, which costs nothing; no hair slides on the way. From |w| = 0.5 on all hair has been
-/// drawn to one side, and only friction turns it.
+/// u and w are complex numbers in the plane across the axis. One spine represents all of the hair and lies where
+/// most of it lies. When the mean has moved to another side by 0.15 (after 0.3 ρ), the spine is rotated there about
+/// the axis; this costs no energy, since no hair slides. From |w| = 0.5 on, all hair lies on one side, and only
+/// friction turns it.
 namespace tuft::brush {
 
-/// Follows the ferrule's motion over one solve and turns the spine about the axis with its hair.
-/// Hair in the air is splayed if it is straight and stands upright; it is on one side if it is bent or
-/// leans by more than the tuft's own taper (radius over length).
+/// Updates the mean direction over one solve and rotates the spine with its hair about the axis. Hair in the air is
+/// splayed if it is straight and upright; it lies on one side if it is bent or tilted by more than the tuft's own
+/// taper (radius over length).
 void turn_with_spread(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
                       std::span<const ContactPlane> planes);
 
-/// Where the axis of a tuft that touches meets the surface, and the hair that stands round it there
-/// while not all of it has been drawn to the side where the spine lies.
+/// Foot of the axis of a touching tuft on the surface, and the fraction of hair splayed round it.
 struct UprightHair {
     Vec3 centre{0};     ///< metres, world
     double radius = 0;  ///< metres, of the straight tuft at the height of the surface
-    double share = 0;   ///< 1: hair lies on all sides alike … 0: all of it has been drawn to one side
+    double share = 0;   ///< 1: hair lies on all sides … 0: all hair lies on one side
 };
 
-/// `tip`: the plane that the tip meets. No share for hair in the air, split, from the query table, or
-/// under a ferrule that lies level.
+/// Returns the upright hair; `tip` is the contact plane of the tip. `share` is 0 for hair in the air, for a split
+/// tuft, for the query table, and under a horizontal ferrule.
 UprightHair upright_hair_of(const Tuft& tuft, const ContactPlane& tip);
 
 }  // namespace tuft::brush

@@ -5,23 +5,23 @@
 #include "core/geometry/types.h"
 
 /// \file
-/// What is too large or too small to be a thing somebody paints on. Every entrance checks its
-/// numbers against these: model files, stroke files, projects, command line, scripts. Inside,
-/// squares and fourth powers of lengths then stay far within the range of single precision.
+/// Largest and smallest lengths that the program accepts. Every reader of user data checks its numbers against
+/// them: model files, stroke files, projects, command line, scripts. Squares and fourth powers of such lengths stay
+/// within the range of single precision.
 namespace tuft {
 
-/// Metres from the origin: no point of a model, of a placement or of a hand lies further away.
-/// Single precision resolves a millimetre there.
+/// Largest distance from the origin, metres, of a point of a model, a placement or a hand. Single precision
+/// resolves a millimetre there.
 inline constexpr double kFarthest = 1e4;
 
-/// Metres across: no model is smaller.
+/// Smallest extent of a model, metres.
 inline constexpr double kSmallestModel = 1e-6;
 
-/// The same bound for points of a file whose unit is not known yet, as numbers: `kFarthest` in the
-/// smallest unit, micrometres.
+/// `kFarthest` as a bare number, for a file whose unit is not known yet. It is counted in the smallest unit,
+/// micrometres.
 inline constexpr double kFarthestNumber = kFarthest * 1e6;
 
-/// Whether all coordinates are numbers within ±`most`; NaN and infinity are not.
+/// Returns true when every coordinate is a number in [−`most`, `most`]. NaN and infinity give false.
 inline bool within(const Vec3& p, double most = kFarthest) {
     return std::abs(p.x) <= most && std::abs(p.y) <= most && std::abs(p.z) <= most;
 }

@@ -4,18 +4,21 @@
 
 #include "core/geometry/types.h"
 
+/// \file
+/// Closest point on a line segment, in two or three dimensions. Used by `atlas`, `stroke` and `io` for distances
+/// from borders and stencil edges.
 namespace tuft {
 
-/// Part of the way from a to b, in [0, 1], at which the segment comes nearest to p; 0 where a = b.
+/// Returns the parameter λ in [0, 1] of the point a + λ (b − a) that is closest to p. Returns 0 where a = b.
 template <class Vec>
 auto nearest_part(const Vec& a, const Vec& b, const Vec& p) {
     using Real = typename Vec::value_type;
-    const Vec way = b - a;
-    const Real length2 = glm::dot(way, way);
-    return length2 > 0 ? std::clamp(glm::dot(p - a, way) / length2, Real(0), Real(1)) : Real(0);
+    const Vec edge = b - a;
+    const Real length2 = glm::dot(edge, edge);
+    return length2 > 0 ? std::clamp(glm::dot(p - a, edge) / length2, Real(0), Real(1)) : Real(0);
 }
 
-/// Distance of p from the segment a–b.
+/// Returns the distance from p to the segment a–b.
 template <class Vec>
 auto segment_distance(const Vec& a, const Vec& b, const Vec& p) {
     return glm::length((p - a) - nearest_part(a, b, p) * (b - a));

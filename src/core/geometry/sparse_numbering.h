@@ -6,13 +6,16 @@
 
 #include "core/geometry/types.h"
 
+/// \file
+/// Consecutive numbers for a sparse set of 32-bit keys. Used by searches over a small part of a mesh
+/// (`mesh/query/exact_geodesics.h`, `footprint/stamp`).
 namespace tuft {
 
-/// Numbers 0, 1, 2, ... for some keys out of many, in the order in which they come. Memory goes
-/// with the number of keys, not with their range; open addressing, at most half full.
+/// Maps keys to the numbers 0, 1, 2, ... in the order of their first use. Memory is proportional to the number of
+/// keys, not to their range. The hash table uses open addressing and is at most half full.
 class SparseNumbering {
   public:
-    /// Forgets all keys, keeps the memory. Cost: none.
+    /// Removes all keys and retains the memory. Cost: O(1).
     void clear() {
         n_ = 0;
         if (++epoch_ == 0) {
@@ -21,7 +24,7 @@ class SparseNumbering {
         }
     }
 
-    /// The key's number, and whether it is new. The key may be any number.
+    /// Returns the number of `key`, and true when the key is new. Any 32-bit key is valid.
     std::pair<std::uint32_t, bool> number(std::uint32_t key) {
         if (2 * (n_ + 1) > slots_.size()) grow();
         Slot& slot = slots_[place(key)];
@@ -30,7 +33,7 @@ class SparseNumbering {
         return {n_++, true};
     }
 
-    /// kNone: it has none.
+    /// Returns the number of `key`, or kNone when the key has none.
     std::uint32_t find(std::uint32_t key) const {
         if (n_ == 0) return kNone;
         const Slot& slot = slots_[place(key)];
@@ -44,7 +47,7 @@ class SparseNumbering {
         std::uint32_t epoch = 0, key = 0, number = 0;
     };
 
-    /// Where the key is, or an empty slot for it.
+    /// Returns the slot of `key`, or the empty slot where it would go.
     std::size_t place(std::uint32_t key) const {
         // Neighbours in a mesh have neighbouring numbers: Fibonacci hashing keeps them apart
         // (Knuth, The Art of Computer Programming 3, 6.4).

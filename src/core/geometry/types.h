@@ -5,9 +5,9 @@
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 
-/// Short names for the vector types used everywhere. Physics is `double`,
-/// texels and GPU data are `float`. SI units: metres, kilograms, seconds,
-/// newtons, radians; frames are right-handed.
+/// \file
+/// Short names for the vector types of all modules. Physics uses `double`; texels and GPU data use `float`. Units
+/// are SI: metres, kilograms, seconds, newtons, radians. Frames are right-handed.
 namespace tuft {
 
 using Vec2 = glm::dvec2;
@@ -36,12 +36,12 @@ struct Frame {
     Vec3 to_world(const Vec3& p_local) const { return origin + p_local.x * t + p_local.y * b + p_local.z * n; }
 };
 
-/// Any frame whose n is `normal` (unit length); `hint` gives the direction t
-/// is turned to, where it is not parallel to the normal.
+/// Returns a frame at `origin` whose n is `normal` (unit length). t is the projection of `hint` onto the plane of t
+/// and b. Where `hint` is parallel to the normal, t is any direction of that plane.
 Frame make_frame(const Vec3& origin, const Vec3& normal, const Vec3& hint = Vec3{1, 0, 0});
 
-/// The smallest rotation that takes unit vector `from` to unit vector `to`,
-/// applied to `v`. For opposite vectors a half turn about any normal axis.
+/// Rotates `v` by the smallest rotation that takes unit vector `from` to unit vector `to`. For opposite vectors
+/// this is a half turn about any axis normal to them.
 Vec3 parallel_transport(const Vec3& v, const Vec3& from, const Vec3& to);
 
 /// Axis-aligned box, metres. Empty until the first `add`.

@@ -5,15 +5,15 @@
 #include <vector>
 
 /// \file
-/// The options of a program as data, and the manual pages and shell completions that are made from
-/// them when the program is built. The programs fill it from the tables that they parse by.
+/// A program's options as data. The build makes manual pages and shell completions from them. The programs fill the
+/// data from the same tables that they parse with.
 namespace tuft {
 
-/// An option, or an argument that has a place instead of a name.
+/// An option, or a positional argument.
 struct ManualOption {
-    std::vector<std::string> names;    ///< "-o", "--output"; empty: an argument with a place
+    std::vector<std::string> names;    ///< "-o", "--output"; empty: a positional argument
     std::string value;                 ///< placeholder of what follows: "FILE", "X,Y,Z"; empty: a flag
-    std::vector<std::string> choices;  ///< all that the value may be; empty: no list
+    std::vector<std::string> choices;  ///< allowed values; empty: any value
     std::string text;                  ///< what it does, one phrase
     bool required = false;
     bool repeats = false;  ///< takes any number of values
@@ -26,8 +26,8 @@ struct ManualCommand {
     std::vector<ManualCommand> commands;
 };
 
-/// A section of a manual page that is written by hand; paragraphs are parted by empty lines, lines
-/// that begin with two spaces stay as they are.
+/// A section of a manual page, written by hand. Empty lines separate paragraphs. Lines that begin with two spaces
+/// are copied verbatim.
 struct ManualSection {
     std::string title, text;
 };
@@ -38,22 +38,22 @@ struct Manual {
     std::vector<ManualSection> sections;  ///< of the program's own page
 };
 
-/// A page in the roff language of man(7): of the program, or of one of its commands.
+/// Returns a page in the roff language of man(7), for the program or for one of its commands.
 std::string man_page(const Manual& manual);
 std::string man_page(const Manual& manual, const ManualCommand& command);
 
-/// Extensions ("ply", "toml") of the files that an option takes, by the formats that its text
-/// names; empty: any.
+/// Returns the file extensions ("ply", "toml") that an option accepts. They follow from the formats that the
+/// option's text names. Empty: any extension.
 std::vector<std::string> file_extensions(const ManualOption& option);
 
-/// Completion of the program's words for bash, to be sourced, and for zsh, as a file `_PROGRAM` of
-/// its `fpath`. Values named BRUSH, INK and SUBSTRATE are completed by the presets of `TUFT_DATA`,
-/// or of the installed program.
+/// Returns the completion script of a program. The bash script is to be sourced; the zsh script is a file
+/// `_PROGRAM` on `fpath`. Values named BRUSH, INK and SUBSTRATE complete to the presets of `TUFT_DATA`, or to those
+/// of the installed program.
 std::string bash_completion(const ManualCommand& program);
 std::string zsh_completion(const ManualCommand& program);
 
-/// Writes `man1/PROGRAM.1` and `man1/PROGRAM-COMMAND.1`, `bash/PROGRAM` and `zsh/_PROGRAM` into a
-/// folder that is there. Throws `Error` where it cannot.
+/// Writes `man1/PROGRAM.1`, `man1/PROGRAM-COMMAND.1`, `bash/PROGRAM` and `zsh/_PROGRAM` into an existing folder.
+/// Throws `Error` when a file cannot be written.
 void write_manual(const Manual& manual, const std::filesystem::path& folder);
 
 }  // namespace tuft

@@ -3,21 +3,22 @@
 #include <filesystem>
 
 /// \file
-/// Stopping the whole program. A signal concerns the process, so its mark is one for the process;
-/// `cli` sets it, and long loops look at it, below any `Progress` callback and without one.
+/// Interrupting the whole process. A signal concerns the process, so one flag serves all threads. `cli` sets it.
+/// Long loops check it, with or without a `Progress` callback.
 namespace tuft {
 
-/// Asks all work of the process to stop. May be called from any thread.
+/// Sets the flag: all work of the process shall stop. Safe from any thread.
 void request_interrupt() noexcept;
 
-/// Whether that was asked for. One relaxed load.
+/// Returns the flag. Cost: one relaxed load.
 bool interrupted() noexcept;
 
-/// Throws `Cancelled` once it was. Loops whose pass may take a tenth of a second call it in each.
+/// Throws `Cancelled` when the flag is set. Loops whose iteration may take a tenth of a second call it once per
+/// iteration.
 void check_interrupt();
 
-/// Files and folders that are half-written, to be removed where the program is ended without
-/// unwinding. The path is in the list as long as the object lives.
+/// Registers a half-written file or folder for removal when the program ends without unwinding. The path is
+/// registered while the object lives.
 class Unfinished {
   public:
     explicit Unfinished(std::filesystem::path path);
@@ -29,8 +30,8 @@ class Unfinished {
     std::filesystem::path path_;
 };
 
-/// Removes all that are listed; the program must end after that. Waits for none of the threads that
-/// write them.
+/// Removes all registered paths. The program must end afterwards. Does not wait for threads that still write to
+/// them.
 void remove_unfinished() noexcept;
 
 }  // namespace tuft

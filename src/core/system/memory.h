@@ -2,15 +2,16 @@
 
 #include <cstddef>
 
-/// What the process holds of the machine's memory.
+/// \file
+/// Returning free heap memory to the system. `atlas`, `io` and `stroke` call it after work on a large mesh.
 namespace tuft {
 
-/// Hands back to the system what the heap holds and nobody uses: after the charts of a million triangles 100 to 250 MB.
+/// Returns unused heap memory to the system: 100 to 250 MB after the charts of a million triangles.
 void release_free_memory();
 
-/// From now on heaps give back what lies free at their ends once it is more than this, and blocks of four times the
-/// size go back as soon as they are free; glibc would keep up to 64 MiB for each thread. What is taken anew the system
-/// clears anew, which costs little where large blocks are rare.
+/// Sets the free bytes at the end of a heap above which the heap shrinks. Blocks of four times that size return to
+/// the system as soon as they are freed. glibc would retain up to 64 MiB for each thread. The system clears memory
+/// that is allocated again, which costs little where large blocks are rare.
 void keep_free_memory_below(std::size_t bytes);
 
 }  // namespace tuft

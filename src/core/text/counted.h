@@ -4,9 +4,11 @@
 #include <string>
 #include <string_view>
 
+/// \file
+/// Counts with their noun, for messages of `cli`.
 namespace tuft {
 
-/// "1 chart", "3 charts": a number with its noun, which takes an s.
+/// Returns a number with its noun: "1 chart", "3 charts". The plural takes an s.
 inline std::string counted(std::size_t n, std::string_view noun) {
     return std::to_string(n) + " " + std::string(noun) + (n == 1 ? "" : "s");
 }

@@ -5,18 +5,18 @@
 #include <string_view>
 
 /// \file
-/// Texts from files: their encoding, and how they are shown in messages.
+/// Texts from files: their encoding, and their form in messages. Used by readers and by `cli`.
 namespace tuft {
 
-/// Whether `text` is well-formed UTF-8 (no overlong forms, no surrogates, nothing above U+10FFFF).
+/// Returns true when `text` is well-formed UTF-8: no overlong forms, no surrogates, nothing above U+10FFFF.
 bool is_utf8(std::string_view text);
 
-/// `text` itself where it is UTF-8; else each of its bytes is taken for a character of ISO 8859-1,
-/// as older programs write names.
+/// Returns `text` where it is UTF-8. Otherwise decodes each byte as ISO 8859-1, in which older programs write
+/// names.
 std::string to_utf8(std::string_view text);
 
-/// `text` as part of a message: UTF-8, control characters as '?', and what exceeds `most` bytes as
-/// "...".
+/// Returns `text` for use in a message: UTF-8, with control characters as '?'. A text longer than `most` bytes is
+/// cut and ends in "...".
 std::string excerpt(std::string_view text, std::size_t most = 60);
 
 }  // namespace tuft

@@ -5,18 +5,19 @@
 
 #include "core/geometry/types.h"
 
+/// \file
+/// Antialiased bands in a coverage picture. hair.h draws the marks of bristles with it.
 namespace tuft::footprint {
 
-/// Adds bands to a picture of cells with the area of each that they cover, 255 for all of it, up to
-/// 255: by the columns of the picture, or its rows for `steep` bands, which run rather along those.
-/// The picture is kept by columns where most are steep, else by rows, so that many columns of a
-/// band are drawn at once.
+/// Adds the area coverage of bands to a picture, 255 for a full cell, clamped to 255. Coverage is computed by
+/// columns of the picture, or by rows for `steep` bands, which run mostly along the columns. The picture is stored
+/// by columns when most bands are steep, otherwise by rows, so that many columns of a band are drawn at once.
 class Bands {
   public:
     Bands(int width, int height, bool steep);
 
-    /// From p to q (cells), of half width r at p and s at q, measured along `across` (unit); steep
-    /// where that lies rather along the rows.
+    /// Draws a band from p to q (cells) of half-width r at p and s at q. The width is measured along `across`
+    /// (unit). The band is steep where `across` lies mostly along the rows.
     void draw(Vec2 p, Vec2 q, double r, double s, const Vec2& across);
 
     /// The picture, [width * height] by rows.

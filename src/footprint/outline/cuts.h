@@ -7,12 +7,14 @@
 #include "brush/tuft/upright_hair.h"
 #include "footprint/outline/outline.h"
 
-/// The tuft's sections seen from the surface they touch: what outlines and hair are made of.
+/// \file
+/// Sections of the tuft projected onto the touched surface: input of the outlines and of the single hairs. Called
+/// by `stroke` for every stamp.
 namespace tuft::footprint {
 
-/// A section seen from the surface: everything in the stamp's (u, v) and height over it.
+/// A section in the stamp's coordinates (u, v) and its height over the surface.
 struct Cut {
-    Vec2 centre{0};       ///< metres, foot of the section's centre
+    Vec2 centre{0};       ///< metres, projection of the section's centre
     double z = 0;         ///< metres, height of the centre
     double a = 0, b = 0;  ///< metres, semi-axes with the film
     Vec3 e{1, 0, 0};      ///< unit axes: (u, v, height)
@@ -24,47 +26,45 @@ struct Cut {
     Vec2 at(double cos_w, double sin_w) const { return centre + a * cos_w * Vec2(e) + b * sin_w * Vec2(m); }
 };
 
-/// A stretch of one branch that touches the surface, from its tip side to its root side.
+/// A part of one branch that touches the surface, from tip side to root side.
 struct Trail {
     int branch = 0;             ///< of the tuft
     std::vector<Cut> cuts;      ///< close together at both ends
-    std::vector<double> along;  ///< place of each cut along the hair, part of the length from the root
-    std::size_t trunk = 0;      ///< from this cut on it is the whole tuft, not the sub-spine
+    std::vector<double> along;  ///< position of each cut along the hair, fraction of the length from the root
+    std::size_t trunk = 0;      ///< index of the first cut of the whole tuft, after those of the sub-spine
 };
 
-/// The stretches that touch, each cut into sections; see `outline` for the arguments.
-/// `length` is the tuft's, metres.
+/// Returns the touching parts of all branches, cut into sections; see `outline` for the arguments. `length` is the
+/// tuft's, metres.
 std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                           double length, double film);
 
-/// Where the hair of a dry tuft lies on the surface: half widths of the tuft by place on the track that its hair
-/// is drawn along, place = slid − along · length, metres. Friction holds what lies there, so hair follows in the track
-/// of the hair before it, towards the root, and is neither swept aside nor drawn together while the tuft is pressed and
-/// lifted. The way is the hair's, not the hand's: lifted, it straightens and goes on to its point where the hand
-/// stands.
+/// Half-widths of a dry tuft along the track of its hair, at position = slid − along · length, metres. Friction
+/// holds hair on the surface. Hair therefore follows the track of the hair before it, towards the root; pressing
+/// and lifting neither spreads nor closes it. The track is the hair's, not the hand's: lifted hair straightens and
+/// advances to its point below the hand.
 struct HairTracks {
     struct Track {
-        long long first = 0;       ///< number of the place of width[0]
-        std::vector<float> width;  ///< metres; negative: no hair has lain there yet
-        double passed = 0;         ///< the place up to which the widest sections have come, on the mean, metres
-        double passing = -1;       ///< its half width there; negative: nowhere yet
+        long long first = 0;       ///< index of the position of width[0]
+        std::vector<float> width;  ///< metres; negative: no hair yet
+        double passed = 0;         ///< mean position that the widest sections have reached, metres
+        double passing = -1;       ///< half-width there; negative: none yet
     };
-    std::vector<Track> tracks;  ///< of each branch two: its sub-spine, the trunk
+    std::vector<Track> tracks;  ///< two per branch: sub-spine, trunk
 };
 
-/// Spreads a tuft that no water holds to a point: hair that lies on the surface has the width that the tuft had
-/// where it is widest as that passed the place, as far as `amount` (0–1) goes, and lies as much flatter. `slid`:
-/// metres that hair went over the surface since the touch that `tracks` began with. A steady drag is as wide up to its
-/// tip; a tuft pressed straight down lies as it came; one that is lifted takes its stiff hair with it, which leaves it
-/// by a slope of 0.35 at most. `length` is the tuft's, metres.
+/// Widens the trails of a dry tuft by `amount` (0–1). Hair on the surface takes the width of the widest part of the
+/// tuft at the time it passed that position, and is flattened accordingly. `slid`: metres of hair displacement
+/// since the first touch of `tracks`. `length` is the tuft's, metres. A steady drag has the same width up to its
+/// tip. A tuft pressed straight down does not change. A lifted tuft narrows with a slope of at most 0.35.
 void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount);
 
-/// Hair round the foot of the axis: goes on from the widest section by a straight taper to where the axis meets
-/// the surface, and ends round there, as far as `foot.share` goes. Without it the point, which touches first and
-/// then slides aside to where the tuft lies, would leave a spur. For a tuft in one cluster.
+/// Adds the upright hair round the foot of the axis, by `foot.share`: a straight taper from the widest section to
+/// the axis' foot, with a round end. Without it the point, which touches first and then slides aside, leaves a
+/// spur. For an unsplit tuft.
 void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& foot, const Frame& frame, double film);
 
-/// The outline of a trail; without points when it is too small for one.
+/// Returns the outline of a trail; without points when the trail is too small.
 Outline outline_of(const Trail& trail, int points);
 
 }  // namespace tuft::footprint

@@ -8,13 +8,13 @@
 #include "core/geometry/types.h"
 #include "mesh/triangle_mesh.h"
 
-/// The contact patch of a tuft as a small picture in the tangent plane of the
-/// contact point: coordinates (u, v) along frame.t and frame.b, metres.
+/// \file
+/// Contact patch of a tuft as a small picture in the tangent plane of the contact point: coordinates (u, v) along
+/// frame.t and frame.b, metres. `footprint/stamp` maps it to texels.
 namespace tuft::footprint {
 
-/// Grey picture of the contact patch. Cell (i, j) has its centre at
-/// lo + ((i + 0.5) cell, (j + 0.5) cell); coverage is the part of the cell
-/// that the tuft touches, in [0, 1], zero along the border cells.
+/// Grey picture of the contact patch. Cell (i, j) has its centre at lo + ((i + 0.5) cell, (j + 0.5) cell). Coverage
+/// is the touched fraction of the cell, in [0, 1], and 0 along the border cells.
 struct Footprint {
     Frame frame;                         ///< world; n out of the surface, origin on it
     std::uint32_t triangle = kNone;      ///< of the mesh under the origin
@@ -27,8 +27,8 @@ struct Footprint {
     bool empty() const { return coverage.empty(); }
 };
 
-/// A disc of `radius` metres about the origin, antialiased by distance: for benchmarks,
-/// tests and round stamps.
+/// Returns a disc of `radius` metres about the origin, antialiased by distance: for benchmarks, tests and round
+/// stamps.
 Footprint disc(const Frame& frame, std::uint32_t triangle, double radius, double cell);
 
 }  // namespace tuft::footprint

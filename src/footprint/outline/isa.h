@@ -1,5 +1,6 @@
 #pragma once
 
+/// \file
 /// Targets of functions that are compiled once for each instruction set from the same source and
 /// chosen by `Isa`. They read tables in vectors where the processor can.
 #if defined(__x86_64__) || defined(__i386__)

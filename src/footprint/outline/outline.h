@@ -6,7 +6,8 @@
 #include "brush/tuft/tuft_state.h"
 #include "footprint/outline/footprint.h"
 
-/// From the bent tuft to the shape of its contact patch.
+/// \file
+/// Outline of the contact patch of a bent tuft, and its coverage picture. Called by `stroke` for every stamp.
 namespace tuft::footprint {
 
 /// Closed curve in the tangent plane of the stamp, metres along frame.t and frame.b,
@@ -23,34 +24,32 @@ struct Outline {
 };
 
 struct OutlineOptions {
-    double film = 0.1e-3;  ///< metres of wet hair's ink film: every section is that much thicker
+    double film = 0.1e-3;  ///< metres, thickness of the ink film on wet hair; added to every section
     int points = 20;       ///< cut points on each side
 };
 
 /// Local contact planes of the nodes of one branch, tip first; see brush::ContactPlane.
 using NodePlanes = std::vector<brush::ContactPlane>;
 
-/// Deals the planes of `brush::predicted_nodes` (whole spine, then sub-spines) out to the
-/// branches of the tuft. Empty when their number fits no such tuft.
+/// Assigns the planes of `brush::predicted_nodes` (whole spine, then sub-spines) to the branches of the tuft. Empty
+/// when their number fits no such tuft.
 std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes);
 
-/// One outline for each stretch of each branch that touches. Section i at height z with
-/// semi-axes a along e, b along m is cut where |z| ≤ A = √(a² (e·n)² + b² (m·n)²), at
-/// ω± = atan2(b m·n, a e·n) ± acos(−z/A); upright, the half-width is a √(1 − z²/(b m·n)²).
-/// The skin between the nodes is interpolated by cubics, so the outline changes
-/// continuously while sections enter and leave the surface. What is pressed below the
-/// surface counts with the shadow it casts on it. With `planes` (one entry per branch)
-/// each node is cut by the surface it meets and its cut points are laid out along the
-/// surface by the log map; without, the plane is that of `frame`.
+/// Returns one outline for each touching part of each branch. Section i at height z with semi-axes a along e, b
+/// along m is cut where |z| ≤ A = √(a² (e·n)² + b² (m·n)²), at ω± = atan2(b m·n, a e·n) ± acos(−z/A). Upright, the
+/// half-width is a √(1 − z²/(b m·n)²). Between nodes the skin is interpolated by cubics, so the outline is
+/// continuous while sections enter and leave the surface. Parts below the surface count with their projection onto
+/// it. With `planes` (one entry per branch) each node is cut by its own plane and its cut points are placed on the
+/// surface by the log map. Without, the plane is that of `frame`.
 std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes = {},
                              const OutlineOptions& options = {});
 
-/// Points of the curve, `per_span` for each cut point.
+/// Returns points of the curve, `per_span` for each cut point.
 std::vector<Vec2> curve_points(const Outline& outline, int per_span = 4);
 
-/// Picture of the outlines' union with exact area coverage. `cell` in metres: about a texel
-/// or finer; doubled until the picture has at most 4096 cells a side, when a texel is small
-/// against the tuft. Empty when there is nothing.
+/// Returns the union of the outlines as a picture with exact area coverage; empty when there is none. `cell` is in
+/// metres, about a texel or finer. It is doubled until the picture has at most 4096 cells a side, when a texel is
+/// small against the tuft.
 Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle, double cell);
 
 }  // namespace tuft::footprint

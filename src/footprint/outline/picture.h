@@ -7,23 +7,24 @@
 
 #include "footprint/outline/footprint.h"
 
-/// The footprint's picture made ready for the kernel, and what is known of its parts.
+/// \file
+/// The footprint's picture packed for the stamp kernel, and the coverage of its blocks. Used by `footprint/stamp`.
 namespace tuft::footprint {
 
 /// Instruction sets of the kernels; all give the same bits.
 enum class Isa : std::uint8_t { baseline, avx2, avx512 };
 Isa best_isa();  ///< of this machine
 
-/// Packs every two cells one above the other into a word, the lower one in its low byte:
-/// [(height - 1) width]. Two neighbouring words hold the four corners of a square.
+/// Packs each two vertically adjacent cells into a word, the lower one in the low byte: [(height − 1) width]. Two
+/// adjacent words hold the four corners of a square.
 void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs);
 
-/// The picture [width * height] with its columns as rows, [height * width]. Cost: 0.1 ns a cell.
+/// Transposes the picture [width * height] to [height * width]. Cost: 0.1 ns a cell.
 void turn_over(std::span<const std::uint8_t> cells, int width, int height, std::vector<std::uint8_t>& turned);
 
 enum class Cover : std::uint8_t { mixed, empty, full };
 
-/// Discs in a picture, to be looked at all at once.
+/// Discs in a picture, for a batch of coverage queries.
 class Discs {
   public:
     void clear() { n_ = 0; }
@@ -37,7 +38,8 @@ class Discs {
         r_[n_++] = sound ? radius : kFar;
     }
     std::size_t size() const { return n_; }
-    /// Coverage of the cells in disc i, after `BlockTally::look`. May say mixed where it is not.
+    /// Returns the coverage of the cells in disc i, after `BlockTally::look`. May return mixed for a disc that is
+    /// full or empty.
     Cover cover(std::size_t i) const;
 
   private:
@@ -50,16 +52,15 @@ class Discs {
     std::vector<std::uint32_t> found_;  // blocks not full and, in the upper half, not empty
 };
 
-/// Which blocks of a picture are fully covered and which are empty, counted along the rows
-/// of blocks.
+/// Counts of full and of empty blocks along the rows of blocks of a picture.
 class BlockTally {
   public:
     static constexpr int kBlock = 4;  ///< cells along the side of a block
 
-    /// Takes the picture over; the memory of an earlier one is used again.
+    /// Counts the blocks of a picture. Reuses the memory of the previous one.
     void count(const Footprint& footprint);
 
-    /// Finds the coverage in each disc. Outside the picture there is none. Cost: 10 ns a disc.
+    /// Finds the coverage in each disc; outside the picture it is 0. Cost: 10 ns a disc.
     void look(Discs& discs, Isa isa) const;
 
   private:

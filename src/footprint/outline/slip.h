@@ -5,31 +5,30 @@
 
 #include "footprint/outline/cuts.h"
 
-/// How hair goes over the surface from one stamp to the next.
+/// \file
+/// Motion of the hair over the surface from one stamp to the next. Used by hair.h and by `stroke`.
 namespace tuft::footprint {
 
-/// Trails in another frame near their own, as if they lay on one plane.
+/// Transforms trails to a nearby frame, as if both frames were in one plane.
 void change_frame(std::vector<Trail>& trails, const Frame& from, const Frame& to);
 
-/// What lies down of the hair of a trail's cuts, seen across its own motion: ∫ |sin ψ| ds in
-/// metres, ψ the angle between the hair and the way that it went, by its place in the section.
+/// Length of touching hair projected across its own motion: ∫ |sin ψ| ds in metres, by position in the section. ψ
+/// is the angle between the hair and its displacement.
 ///
-/// Each cluster of hair goes its own way: that of the trail's middle, and of the section that widens,
-/// narrows or turns under it. Sub-spines that part, hair that a press spreads and a tuft that rolls
-/// over draw hair sideways, whatever the hand does. Hair that stays where it was has no way and
-/// measures nothing.
+/// Each part of the hair has its own displacement: that of the trail's middle plus that of a section that widens,
+/// narrows or rotates. Separating sub-spines, spreading hair and a rolling tuft draw hair sideways, whatever the
+/// hand does. Hair at rest measures 0.
 class Across {
   public:
-    /// For cuts [begin, end) of a trail. `before`: the trails of the stamp before in the same
-    /// frame; where none goes with this one, all hair goes along `way` (unit, or zero).
+    /// For cuts [begin, end) of a trail. `before`: the previous stamp's trails in the same frame. Where none
+    /// matches this trail, all hair moves along `way` (unit, or zero).
     Across(const Trail& trail, std::size_t begin, std::size_t end, std::span<const Trail> before, const Vec2& way);
 
-    /// Of hair at x in [-1, 1] along the sections' e, metres.
+    /// Returns the length across the motion, metres, of hair at x in [−1, 1] along the sections' e.
     double at(double x) const;
-    /// Sine of the angle between the way of that hair, on the mean of what lies down of it, and
-    /// `way`; 0 without either.
+    /// Returns the sine of the angle between the mean displacement of that hair and `way`; 0 without either.
     double off_way(double x, const Vec2& way) const;
-    /// Mean sine of the angle between that hair and its own way, 0 along itself to 1 across.
+    /// Returns the mean sine of the angle between that hair and its displacement: 0 along itself, 1 across.
     double off_itself(double x) const { return length_ > 0 ? at(x) / length_ : 0; }
 
   private:

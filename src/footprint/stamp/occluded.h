@@ -2,17 +2,20 @@
 
 #include "footprint/stamp/walk.h"
 
-/// Where the surface folds within a stamp, its clusters by exact shortest ways over the triangles.
+/// \file
+/// Exact positions of texel clusters where the surface folds within a stamp. Called by `plan_stamp`.
 namespace tuft::footprint {
 
-/// Between the spokes of a wheel ways bend round corners narrower than a cluster, and lead round an
-/// opening on either side: the walk over the clusters finds places there that are nearer than the
-/// straight line in space. With more than a hundredth of such clusters (`occluded` of them), all are
-/// placed anew: (u, v) is the exact way's length in the direction in which it leaves `from`, a
-/// frame whose origin lies in `triangle` and in the cluster that `start` names; each cluster lies
-/// turned as the way arrives. Behind a corner, where all ways leave in one direction, lengths hold
-/// and pictures are drawn out. Cost: nothing where nothing folds, else 1.5 µs a triangle within
-/// reach; where that would be more than 20 ms, the places of the walk stay.
+/// Replaces the positions of the clusters by exact geodesics when more than a hundredth of them are occluded
+/// (`occluded` is their number). The cluster search is inexact there: geodesics bend round corners narrower than a
+/// cluster or pass an opening on either side, as between the spokes of a wheel, and positions come out closer than
+/// the straight line in space.
+///
+/// (u, v) is the geodesic's length in the direction in which it leaves `from`, a frame with its origin in
+/// `triangle` and in the cluster of `start`. Each cluster is rotated by the direction in which the geodesic
+/// arrives. Behind a corner, where all geodesics leave in one direction, lengths are correct and pictures are
+/// stretched. Cost: none without folds; else 1.5 µs per triangle within reach. Where that exceeds 20 ms, the
+/// positions of the search are retained.
 void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Frame& from, const Reach& reach,
                       const Start& start, std::size_t occluded, PlanScratch& scratch);
 

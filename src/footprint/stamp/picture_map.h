@@ -3,18 +3,18 @@
 #include "atlas/texels/log_map.h"
 #include "footprint/stamp/stamp.h"
 
-/// From a texel to its place in a footprint's picture, as the kernel and those who plan for it
-/// compute it.
+/// \file
+/// Map from a texel to its position in a footprint's picture. Shared by the stamp kernel and the planner.
 namespace tuft::footprint {
 
-/// A place in the picture, cells, and the dot product of the texel's normal with the frame's.
+/// A position in the picture, cells, and the dot product of the texel's normal with the frame's.
 struct MappedTexel {
     float u, v, cos;
 };
 
-/// The log map of `atlas::log_map` in single precision, or the paper's projection, for a texel at
-/// (px, py, pz) with unit normal (mx, my, mz). Where `cos` is kLogMapMinCos or less the place means
-/// nothing. Inlined into code for any instruction set, the same bits in all.
+/// Computes the log map of `atlas::log_map` in single precision, or the paper's projection, for a texel at (px, py,
+/// pz) with unit normal (mx, my, mz). Where `cos` ≤ kLogMapMinCos the position is undefined. Inlined for any
+/// instruction set, with the same bits in all.
 template <bool plane>
 [[gnu::always_inline]] inline MappedTexel map_texel(const ClusterFrame& f, float px, float py, float pz, float mx,
                                                     float my, float mz) {

@@ -11,13 +11,15 @@
 #include "footprint/outline/picture.h"
 #include "mesh/query/exact_geodesics.h"
 
-/// From a footprint to the texels it exposes. A caller plans a batch of stamps (each on
-/// its own, in any thread), picks the mode of each in stroke order, sorts the tile jobs
-/// by slot, and then, one thread per slot, evaluates them in stamp order and lets the ink
-/// act. Every function is pure; scratch memory is the caller's.
+/// \file
+/// From a footprint to the texels it exposes. `stroke` calls it for each batch of stamps.
+///
+/// A caller plans a batch of stamps (`plan_stamp`, any thread). It chooses the mode of each in stroke order
+/// (`choose_mode`) and sorts the tile jobs by slot. Then one thread per slot evaluates the jobs in stamp order
+/// (`evaluate_tile`) and deposits the ink. All functions are pure; the caller owns the scratch memory.
 namespace tuft::footprint {
 
-/// How footprint and surface are matched.
+/// Mapping between footprint and surface.
 enum class Mapping : std::uint8_t {
     log,    ///< along the surface (log map)
     plane,  ///< paper: from the projection plane along the surface's normals
@@ -30,8 +32,8 @@ struct Surface {
     const atlas::ClusterGraph& clusters;
 };
 
-/// How the footprint came to its present place since the stamp before, in its frame:
-/// it was turned by `turn` about the origin and then moved by `shift`.
+/// Motion of the footprint since the previous stamp, in its frame: a rotation by `turn` about the origin, then a
+/// translation by `shift`.
 struct Motion {
     Vec2 shift{0};    ///< metres
     double turn = 0;  ///< radians, counter-clockwise
@@ -39,21 +41,21 @@ struct Motion {
 
 struct StampOptions {
     Mapping mapping = Mapping::log;
-    double enter = 0.015;   ///< discrepancy over radius above which clusters get own frames
-    double leave = 0.010;   ///< and below which one frame serves all again
-    double sub_pose = 1.0;  ///< longest way of any point between sub-poses, texels
+    double enter = 0.015;   ///< discrepancy over radius above which each cluster gets a frame
+    double leave = 0.010;   ///< discrepancy over radius below which one frame serves all again
+    double sub_pose = 1.0;  ///< largest displacement of any point between sub-poses, texels
     int max_sub_poses = 64;
-    int prefix_sums = 12;   ///< straight ways of so many sub-poses and more are integrated at once
-    float passes_over = 0;  ///< 0–1: the motion, not turned, leaves so much of what the picture passes over at
-                            ///< all, the rest of the mean over it: for hairs finer than a texel
+    int prefix_sums = 12;  ///< number of sub-poses from which a straight motion is integrated by prefix sums
+    float passes_over =
+        0;  ///< 0–1: weight of the maximum over a straight motion, against the mean; for hairs finer than a texel
     Isa isa = best_isa();
 };
 
-/// Quarters of a tile, a bit each: rows 0–7 with columns 0–7, then 8–15; rows 8–15 likewise.
+/// Quadrants of a tile, one bit each: rows 0–7 with columns 0–7, then 8–15; rows 8–15 likewise.
 inline constexpr std::uint8_t kAllQuadrants = 0xf;
 
-/// Where the log map puts the texels of one cluster in the footprint's picture:
-/// d = p − origin, (fu, fv) = (u0, v0) + (tu, tv)·d + ½ (a − g) (tu, tv)·m, in cells.
+/// Log map of the texels of one cluster into the footprint's picture: d = p − origin, (fu, fv) = (u0, v0) + (tu,
+/// tv)·d + ½ (a − g) (tu, tv)·m, in cells.
 struct ClusterFrame {
     Vec3f origin{0}, normal{0}, tu{0}, tv{0};
     float u0 = 0, v0 = 0;
@@ -68,34 +70,34 @@ struct TileJob {
     std::uint32_t first = 0, count = 0;  ///< in `StampJobs::frames`
 };
 
-/// A pose of the picture within the stamp: the cell coordinates (fu, fv) of a texel lead to the
-/// place (xu fu + xv fv + du, yu fu + yv fv + dv) of the packed picture.
+/// A pose of the picture within the stamp: cell coordinates (fu, fv) of a texel map to (xu fu + xv fv + du, yu fu +
+/// yv fv + dv) of the packed picture.
 struct SubPose {
     float xu = 1, xv = 0, yu = 0, yv = 1, du = 0, dv = 0;
 };
 
 /// A planned stamp: its picture packed for the kernel and the tiles it may touch.
 struct StampJobs {
-    int width = 0, height = 0;         ///< of the picture less one: squares between four cells
+    int width = 0, height = 0;         ///< squares between four cells: the picture's size less one
     std::vector<std::uint16_t> pairs;  ///< see `pack_picture`
-    float gain = 1;                    ///< what full cells of it stand for
-    std::vector<SubPose> sub_poses;    ///< evenly spread over the motion
-    Vec2f reach_lo{0}, reach_hi{0};    ///< cells: the picture in all its sub-poses
+    float gain = 1;                    ///< exposure of a full cell
+    std::vector<SubPose> sub_poses;    ///< evenly spaced over the motion
+    Vec2f reach_lo{0}, reach_hi{0};    ///< cells: bounds of the picture in all sub-poses
     ClusterFrame stamp_frame;          ///< serves all clusters when not piecewise
-    std::vector<ClusterFrame> frames;  ///< one for each cluster reached, by slot; without
-                                       ///< a place where discrepancy is below `leave`
-    std::vector<TileJob> tiles;        ///< by slot
-    double discrepancy = 0;            ///< between the two ways of mapping, over the radius
-    bool piecewise = false;            ///< set by `choose_mode`
+    std::vector<ClusterFrame>
+        frames;  ///< one for each cluster reached, by slot; without a position where discrepancy is below `leave`
+    std::vector<TileJob> tiles;  ///< by slot
+    double discrepancy = 0;      ///< between one frame and one per cluster, over the radius
+    bool piecewise = false;      ///< set by `choose_mode`
     Mapping mapping = Mapping::log;
     Isa isa = Isa::baseline;
 
     bool empty() const { return tiles.empty(); }
 };
 
-/// Memory of `sweep`.
+/// Scratch memory of `sweep`.
 struct SweepScratch {
-    /// Lines of the picture, by where they begin, between which and over which the motion leads to a place.
+    /// Lines of the picture, by their start, from which the motion over one position is computed.
     struct SweptLines {
         std::size_t back = 0, on = 0, first = 0, last = 0;
         float after_back = 0, after_on = 0;
@@ -107,16 +109,17 @@ struct SweepScratch {
     Footprint swept;
 };
 
-/// The triangles in which centres of clusters lie, of those looked at since the last clearing.
+/// Cache of the triangles that contain cluster centres, since the last `clear`.
 class TriangleCache {
   public:
     void clear();
-    /// kNone: in none that was looked at.
+    /// Returns the triangle of `cluster`; kNone: not in the cache.
     std::uint32_t of(std::uint32_t cluster) const {
         const std::uint32_t entry = numbers_.find(cluster);
         return entry == kNone ? kNone : entries_[entry].triangle;
     }
-    /// The centre of `cluster` lies in `triangle`, or nearly: so far off, squared. The nearest one counts.
+    /// Records that the centre of `cluster` lies in `triangle`, at squared distance `off2`. The nearest triangle is
+    /// retained.
     void insert(std::uint32_t cluster, std::uint32_t triangle, double off2);
 
   private:
@@ -128,14 +131,14 @@ class TriangleCache {
     std::vector<Entry> entries_;
 };
 
-/// Memory of the walk over the clusters; one per thread, any stamp after any other.
+/// Scratch memory of the cluster search; one per thread, reusable for any stamp.
 struct PlanScratch {
     struct Node {
         std::uint32_t epoch = 0;
         std::uint8_t state = 0;
         float u = 0, v = 0, c = 1, s = 0, key = 0;
         float stretch = 1;  ///< of the map across the radial direction
-        bool lit = true;    ///< straight ways lead here from the origin
+        bool lit = true;    ///< reached by a straight path from the origin
     };
     std::uint32_t epoch = 0;
     std::vector<Node> nodes;
@@ -144,32 +147,31 @@ struct PlanScratch {
     BlockTally tally;
     Discs discs;
     std::vector<double> apart;         ///< metres, by reached cluster
-    std::vector<std::uint32_t> asked;  ///< frames whose quadrants are looked at
+    std::vector<std::uint32_t> asked;  ///< frames whose quadrants are queried
     SweepScratch sweep;
     mesh::ExactGeodesics ways;
     TriangleCache triangle_cache;
 };
 
-/// Room to unpack a tile into; one per thread.
+/// Buffer for an unpacked tile; one per thread.
 struct Unpacked {
     std::uint32_t slot = kNone;
     atlas::TexelShape shape;
 };
 
-/// Finds the clusters that hang together with the contact point within the footprint and
-/// do not face away from it, and their places in its picture. Cost grows with the
-/// footprint's area in texels, not with the mesh. `recycled` lends the memory of an earlier
-/// stamp; its contents do not matter.
+/// Plans a stamp: finds the clusters within the footprint that are connected to the contact point and do not face
+/// away from it, and their positions in the picture. Cost is proportional to the footprint's area in texels and
+/// does not depend on the mesh. `recycled` lends the memory of an earlier stamp; its contents are ignored.
 StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const Motion& motion,
                      const StampOptions& options, PlanScratch& scratch, StampJobs recycled = {});
 
-/// One frame for all clusters or one for each, with hysteresis: `piecewise_before` is the
-/// mode of the stamp before in the stroke (false for the first). Returns the mode.
+/// Chooses one frame for all clusters or one for each, with hysteresis. `piecewise_before` is the mode of the
+/// previous stamp of the stroke (false for the first). Returns the mode.
 bool choose_mode(StampJobs& jobs, bool piecewise_before, const StampOptions& options);
 
-/// Part of the stamp's motion during which the tuft covers each texel, in [0, 1]; zero
-/// for texels outside. Returns false when all are zero. `unpacked` keeps the tile that was
-/// unpacked last: stamps on one tile come best one after the other.
+/// Computes the fraction of the stamp's motion during which the tuft covers each texel, in [0, 1]; 0 for texels
+/// outside. Returns false when all are 0. `unpacked` caches the tile unpacked last: evaluate stamps of one tile
+/// consecutively.
 bool evaluate_tile(const atlas::TexelMap& texels, const StampJobs& jobs, const TileJob& job, Unpacked& unpacked,
                    std::span<float, atlas::kTileTexels> exposure);
 

@@ -12,24 +12,26 @@
 #include "atlas/texels/texel_map.h"
 #include "ink/colour/pigments.h"
 
-/// Pigment amounts on the texels of an atlas.
+/// \file
+/// Pigment and liquid on the texels of an atlas: the sparse store that strokes paint into. `stroke` owns it; all of
+/// `ink` reads and writes it.
 namespace tuft::ink {
 
 inline constexpr int kMaxPigments = 8;
 
-/// The films of a texel from the substrate upwards: pigment soaked into the substrate, dry
-/// films, and on top the open film that strokes paint into. An open film that is wet flows;
-/// when its water is gone it is closed: it becomes the texel's next dry film (drying.h).
+/// The films of a texel from the substrate upwards: pigment soaked into the substrate, dry films, and the open film
+/// on top, which strokes paint into. An open film flows while it is wet. When its water is gone it is closed: it
+/// becomes the texel's next dry film (drying.h).
 inline constexpr int kDryFilms = 8;
 inline constexpr int kFilms = kDryFilms + 2;
 inline constexpr int kSoakedFilm = 0, kFirstDryFilm = 1, kOpenFilm = kFilms - 1;
 
-/// Where liquid is: in the open film, or in the pores of the substrate.
+/// Location of liquid: in the open film, or in the pores of the substrate.
 enum class Liquid : std::uint8_t { film, pores };
 
 /// Amounts of one pigment (or of liquid) on one tile, film units, texel t = row * 16 + column.
 struct alignas(64) Plane : std::array<float, atlas::kTileTexels> {
-    /// From a pool of large pages (plane_pool.cpp); any thread.
+    /// Allocates from a pool of large pages (plane_pool.cpp); safe in any thread.
     static void* operator new(std::size_t bytes);
     static void operator delete(void* plane, std::size_t bytes);
 };
@@ -43,8 +45,8 @@ struct FilmPlanes {
     bool operator==(const FilmPlanes&) const = default;
 };
 
-/// What one tile held: for undo and for files. Planes follow each other in the order of the
-/// set bits of `planes`, then of those of `under`, film by film.
+/// Contents of one tile, for undo and for files. Planes are stored in the order of the set bits of `planes`, then
+/// of those of `under`, film by film.
 struct TileSnapshot {
     std::uint32_t slot = 0;
     std::uint8_t planes = 0;             ///< of the open film; bit p: pigment p has a plane here
@@ -54,11 +56,10 @@ struct TileSnapshot {
     bool operator==(const TileSnapshot&) const = default;
 };
 
-/// Sparse store: for each slot of an `atlas::TexelMap` films of up to eight pigment planes
-/// each, and up to two planes of liquid, made when first touched, so memory follows the
-/// painted area (1 KiB per tile, film and pigment). Different slots may be read and written
-/// by different threads at once; adding pigments, copying and the functions over all slots
-/// may not run beside them.
+/// Sparse store of films. Each slot of an `atlas::TexelMap` has films of up to eight pigment planes and up to two
+/// planes of liquid. Planes are allocated on first use, so memory is proportional to the painted area (1 KiB per
+/// tile, film and pigment). Different threads may read and write different slots. Adding pigments, copying, and
+/// functions over all slots must not run concurrently with them.
 class Canvas {
   public:
     explicit Canvas(std::size_t n_slots = 0);
@@ -70,21 +71,21 @@ class Canvas {
 
     std::size_t n_slots() const { return slots_.size(); }
 
-    /// Index of the pigment with this name; it is added when it is new (the first
-    /// definition of a name stays). Throws `Error` for a ninth pigment.
+    /// Returns the index of the pigment with this name, and adds the pigment when it is new (the first definition
+    /// of a name is retained). Throws `Error` for a ninth pigment.
     int add_pigment(const Pigment& pigment);
     const std::vector<Pigment>& pigments() const { return pigments_; }
-    /// Forgets pigments from the last one on until `n` are left, as far as nothing lies of them: an
-    /// undone or cancelled stroke leaves no trace in the order of those that come after.
+    /// Removes pigments from the last one until `n` are left, as far as they have no amounts. An undone or
+    /// cancelled stroke so does not change the order of later pigments.
     void forget_pigments(std::size_t n);
-    /// Gives plane `index` other optical properties: recolours without repainting.
+    /// Replaces the optical properties of plane `index`: recolours without repainting.
     void set_pigment(int index, const Pigment& pigment);
 
-    /// The plane of the open film, or nullptr where nothing was ever put.
+    /// Returns the plane of the open film, or nullptr where it was never written.
     const Plane* plane(std::uint32_t slot, int pigment) const { return film_plane(slot, kOpenFilm, pigment); }
-    /// All planes of the open film; whoever changes them marks the slot dirty.
+    /// Returns all planes of the open film. A caller that changes them marks the slot dirty.
     std::array<Plane*, kMaxPigments> open_planes(std::uint32_t slot);
-    /// The plane of the open film, made and zeroed when needed; the slot becomes dirty.
+    /// Returns the plane of the open film, allocated and zeroed when needed. The slot becomes dirty.
     Plane& touch(std::uint32_t slot, int pigment) { return touch_film(slot, kOpenFilm, pigment); }
 
     /// The same for any film.
@@ -96,11 +97,10 @@ class Canvas {
     /// The plane of liquid, film units, or nullptr where it is dry.
     const Plane* liquid(std::uint32_t slot, Liquid where) const;
     Plane& touch_liquid(std::uint32_t slot, Liquid where);
-    /// Puts another plane in place of a plane of liquid or of the open film, handing back the
-    /// old one; either may be null.
+    /// Swaps `plane` with a plane of liquid or of the open film; either may be null.
     void swap_liquid(std::uint32_t slot, Liquid where, std::unique_ptr<Plane>& plane);
     void swap_open(std::uint32_t slot, int pigment, std::unique_ptr<Plane>& plane);
-    /// Says that planes of a slot are about to be put in place: its table is asked for from memory.
+    /// Prefetches the table of a slot whose planes are swapped next.
     void expect(std::uint32_t slot) const {
         if (const char* tile = reinterpret_cast<const char*>(slots_[slot].get()))
             __builtin_prefetch(tile, 1), __builtin_prefetch(tile + 64, 1);
@@ -120,18 +120,18 @@ class Canvas {
     void mark_dirty(std::uint32_t slot) { dirty_[slot] = 1; }
 
     TileSnapshot snapshot(std::uint32_t slot) const;
-    /// Puts a tile back as it was; the slot becomes dirty. Throws `Error` when the
-    /// snapshot's size does not fit its planes, its slot or the pigments.
+    /// Restores a tile; the slot becomes dirty. Throws `Error` when the snapshot's size does not match its planes,
+    /// its slot or the pigments.
     void restore(const TileSnapshot& snapshot);
     /// Removes all ink and liquid; pigments stay.
     void clear();
 
     /// Bytes held by planes and slot tables.
     std::size_t memory_bytes() const;
-    /// Hash of pigment names and all amounts. A plane of zeros counts like no plane, and pigments after
-    /// the last one that lies somewhere do not count.
+    /// Returns a hash of pigment names and all amounts. A plane of zeros counts as no plane. Pigments after the
+    /// last one with amounts do not count.
     std::uint64_t hash() const;
-    /// Same pigment names and same amounts to the bit, absent planes being zeros.
+    /// Returns true for the same pigment names and bit-equal amounts; absent planes are zeros.
     bool same_contents(const Canvas& other) const;
 
     /// Σ amount · area of one pigment in all films, film·m², in double, in slot order.

@@ -2,12 +2,13 @@
 
 #include "atlas/texels/texel_map.h"
 
-/// The one place where a kernel's amounts go into a tile.
+/// \file
+/// Addition of a kernel's change to a tile, with the ink balance. Called by deposit.h and erase.h.
 namespace tuft::ink {
 
-/// w += part · dw over a tile's texels; returns Σ (stored change) · area, so that what is booked
-/// is what float texels took, summed in lanes of fixed order. All [n], whole rows; rows left out because
-/// nothing changes there do not change the sum's bits.
+/// Adds w += part · dw over a tile's texels. Returns Σ (stored change) · area: the balance counts what the float
+/// texels took. The sum has a fixed order of lanes. All arrays [n], whole rows. Rows without changes may be left
+/// out without changing the sum's bits.
 double store_change(float* __restrict w, const float* __restrict dw, float part, const float* __restrict area,
                     int n = atlas::kTileTexels);
 

@@ -6,7 +6,9 @@
 
 #include "atlas/texels/texel_map.h"
 
-/// The colours a model brings along, as the ground that ink lies on.
+/// \file
+/// Base colour of a model: the colours of its file, under the ink. `stroke` makes it once per model; composite.h
+/// reads it.
 namespace tuft::ink {
 
 /// Colour of the bare surface per texel, sRGB-encoded, in slots of the texel map.
@@ -19,11 +21,11 @@ struct BaseColour {
     bool empty() const { return tiles.empty(); }
 };
 
-/// The colours of the mesh's materials and vertices at the texels' centres, products and means
-/// in linear light. A picture is read bilinearly, from the level of its mip-map (means of 2 × 2)
-/// whose pixels are as large as texels, round its ends or up to them: where all UVs of a triangle
-/// lie in [0, 1], colours of the opposite end stay out. Empty for a mesh without colours. The same
-/// bits for any number of threads; about 0.5 s at 4096² on two.
+/// Bakes the colours of the mesh's materials and vertices at the texels' centres; products and means are in linear
+/// light. A picture is read bilinearly from the mip-map level (means of 2 × 2) with pixels as large as texels. It
+/// wraps, or clamps where all UVs of a triangle lie in [0, 1], so that colours of the opposite edge do not bleed
+/// in. Empty for a mesh without colours. The same bits for any number of threads. Cost: about 0.5 s at 4096² on two
+/// threads.
 BaseColour base_colour_of(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, const atlas::TexelMap& map);
 
 }  // namespace tuft::ink

@@ -9,11 +9,12 @@
 #include "ink/spectra/kubelka_munk.h"
 #include "ink/spectra/spectrum.h"
 
-/// What inks are made of and what they are put on. Colour is computed from amounts,
-/// so presets hold optical coefficients, never colours.
+/// \file
+/// Pigments, inks and substrates, and their preset files. Presets hold optical coefficients, never colours: colour
+/// is computed from amounts.
 ///
-/// Film unit: 10 µm of wet ink on the surface, about 5 g/m² when dry. Amounts of ink
-/// in bulk are film·m²; one millilitre is 0.1 film·m².
+/// Film unit: 10 µm of wet ink on the surface, about 5 g/m² when dry. Bulk amounts of ink are in film·m²; one
+/// millilitre is 0.1 film·m².
 namespace tuft::ink {
 
 inline constexpr double kFilmUnit = 1e-5;  ///< metres of wet ink
@@ -25,15 +26,15 @@ constexpr double film_of_millilitres(double ml) {
     return ml * 1e-6 * kFilmPerVolume;
 }
 
-/// K and S as a file gives them.
+/// K and S as a file states them.
 struct PigmentCurve {
     std::vector<float> nm;    ///< wavelengths, ascending; empty: k and s are red, green, blue
     std::vector<float> k, s;  ///< one number per wavelength, times `scale` per film unit
     float scale = 1;
 };
 
-/// K and S per film unit at a wavelength, of a curve that has some: linear between its samples,
-/// level beyond the first and the last.
+/// Returns K and S per film unit at a wavelength, of a curve that is not empty: linear between its samples,
+/// constant beyond the first and the last.
 Coefficients coefficients_at(const PigmentCurve& curve, float nm);
 
 struct Pigment {
@@ -43,15 +44,15 @@ struct Pigment {
     float height = 2.5e-6f;    ///< metres left by one film unit when dry
     float roughness = 0.5f;    ///< glTF perceptual roughness of the dry film
     float density = 2000;      ///< kg/m³ of the solid
-    float granulation = 0.2f;  ///< 0–1: how much settles in the hollows of the grain
-    float staining = 0.5f;     ///< 0–1: how firmly the dry film resists being lifted
-    std::string source = {};   ///< where K and S come from
-    PigmentCurve curve = {};   ///< what `k` and `s` were made from; empty: they came as they are
+    float granulation = 0.2f;  ///< 0–1: fraction that settles in the hollows of the grain
+    float staining = 0.5f;     ///< 0–1: resistance of the dry film to lifting
+    std::string source = {};   ///< source of K and S
+    PigmentCurve curve = {};   ///< curve of `k` and `s`; empty: bands given directly
 };
 
-/// Bands of a pigment from its curve: linear between the samples, level beyond them. Red, green
-/// and blue alone are made into smooth spectra first (`upsample_pigment`), so that films keep
-/// the colours they have in three bands.
+/// Computes the bands of a pigment from its curve: linear between the samples, constant beyond them. A curve of
+/// red, green and blue only is first made into smooth spectra (`upsample_pigment`), so that films have the same
+/// colours as in three bands.
 void use_curve(Pigment& pigment);
 
 struct InkPart {
@@ -59,25 +60,25 @@ struct InkPart {
     double fraction = 1;  ///< of the wet ink; the rest of the ink is water
 };
 
-/// An ink as it is in the dish.
+/// An ink before it is loaded.
 struct Ink {
     std::string name;                  ///< preset name: file stem
     std::string title;                 ///< for people
     std::vector<InkPart> parts;        ///< fractions sum to at most 1
-    double film = 1.8;                 ///< film units a full brush leaves
-    double supply = 0.004;             ///< η: part of the tuft's ink offered per supply length
+    double film = 1.8;                 ///< film units that a full brush deposits
+    double supply = 0.004;             ///< η: fraction of the tuft's ink offered per supply length
     double supply_length = 0.5e-3;     ///< metres of travel
-    double transfer_length = 0.08e-3;  ///< s0, metres of travel in which a texel takes up its film:
-                                       ///< short beside the thinnest hairline, which must be black too
+    double transfer_length = 0.08e-3;  ///< s0, metres of travel in which a texel takes up its film; short against the
+                                       ///< thinnest hairline, so that this is black too
 
-    double yield = 0;  ///< Pa: stress below which the wet ink stands as it was put, as a paste does
-                       ///< (heavy oil colour some 100 to 1000); 0: it flows
+    double yield = 0;  ///< Pa: yield stress of the wet ink; below it the ink keeps its shape, like a paste (heavy oil
+                       ///< colour 100 to 1000). 0: it flows
 
     /// Sum of the fractions: 1 for undiluted ink.
     double strength() const;
 };
 
-/// What is painted on.
+/// A substrate.
 struct Substrate {
     std::string name, title;
     Rgb reflectance{0.8f, 0.8f, 0.8f};  ///< linear, diffuse, of the bare surface as it is seen
@@ -90,19 +91,17 @@ struct Substrate {
     float interface = 0;
     float relief = 8e-6f;           ///< ζ: rms height of the surface's grain, metres
     float relief_length = 60e-6f;   ///< correlation length of the grain, metres
-    float absorbency = 0.2f;        ///< part of the water standing on it that it draws in, 1/s
-    float pores = 2;                ///< film units of water that it can hold inside
-    float retention = 0;            ///< 0–1: part of the pigments that its pores sieve out of what seeps
+    float absorbency = 0.2f;        ///< rate of absorption of the water on it, 1/s
+    float pores = 2;                ///< capacity of its pores, film units of water
+    float retention = 0;            ///< 0–1: fraction of the pigments that its pores retain from seeping liquid
     float diffusion = 1e-8f;        ///< D of the wet film, m²/s per film unit of water
-    float threshold = 0.1f;         ///< w_c: film units of water that do not move
-    float edge = 0.5f;              ///< 0–1: how firmly the rim of a wet spot stays where it is,
-                                    ///< which makes its edge darken as it dries
-    float evaporation = 1.0f / 60;  ///< film units of water a second at full wetness
+    float threshold = 0.1f;         ///< w_c: film units of water that do not flow
+    float edge = 0.5f;              ///< 0–1: pinning of the rim of a wet spot, which darkens its edge as it dries
+    float evaporation = 1.0f / 60;  ///< film units of water per second at full wetness
 };
 
-/// The preset `name` from data_folder()/models/inks, or the file when `name` ends in
-/// ".toml". Throws `Error` for an unknown name (with the nearest one suggested) and for
-/// a file that is malformed or out of range (with its line).
+/// Loads the preset `name` from data_folder()/models/inks, or the file when `name` ends in ".toml". Throws `Error`
+/// for an unknown name (with the nearest one) and for a file that is malformed or out of range (with its line).
 Ink load_ink(std::string_view name);
 Pigment load_pigment(std::string_view name);  ///< from models/pigments
 Substrate load_substrate(std::string_view name);
@@ -112,8 +111,8 @@ std::vector<std::string> list_inks();
 std::vector<std::string> list_pigments();
 std::vector<std::string> list_substrates();
 
-/// From and to TOML text; `source` is used in messages. parse_ink(ink_toml(i)) == i.
-/// A part of an ink has its pigment written out, or `preset = "NAME"` of models/pigments.
+/// Conversions from and to TOML text; `source` names the text in messages. parse_ink(ink_toml(i)) == i. A part of
+/// an ink has its pigment written out, or `preset = "NAME"` of models/pigments.
 Ink parse_ink(std::string_view toml, const std::string& source);
 std::string ink_toml(const Ink& ink);
 Pigment parse_pigment(std::string_view toml, const std::string& source);

@@ -10,7 +10,8 @@
 
 #include "ink/spectra/spectrum.h"
 
-/// Reading and writing preset files; only the module's own sources see this.
+/// \file
+/// Reading and writing of preset files. Internal to `ink/colour`.
 namespace tuft::ink::preset {
 
 /// A table of a preset file, with errors that name file and line.
@@ -18,7 +19,7 @@ class Reader {
   public:
     Reader(const toml::table& table, const std::string& source) : table_(table), source_(source) {}
 
-    /// Refuses every other key.
+    /// Throws `Error` for any other key.
     void only(std::initializer_list<std::string_view> keys) const;
     bool has(std::string_view key) const { return table_.contains(key); }
     double number(std::string_view key, double lo, double hi, std::optional<double> fallback) const;
@@ -47,14 +48,15 @@ std::vector<std::string> list(const char* folder);
 struct Text {
     std::string text, source, name;
 };
-/// The preset of that name in models/`folder`, or the file when it ends in ".toml"; `kind` is
-/// what to call it in messages.
+/// Loads the preset of that name in models/`folder`, or the file when the name ends in ".toml". `kind` is its noun
+/// in messages.
 Text load(std::string_view name, const char* folder, const char* kind);
 
 std::string quoted(const std::string& text);  ///< TOML basic string
 std::string shortest(double v);               ///< TOML number
 std::string shortest_float(float v);          ///< fewest digits that read back as the same float
-/// The number of units that is read back, times `unit`, as the same value: a project's replay gives the same bits.
+/// Returns the shortest number of units that, read back and multiplied by `unit`, gives the same value: a replayed
+/// project has the same bits.
 std::string shortest_in(float v, double unit);
 std::string shortest_in(double v, double unit);
 std::string list_text(std::span<const float> values);

@@ -4,18 +4,17 @@
 #include <string_view>
 
 /// \file
-/// How user layers are shown over each other; composite.h computes it, the journal keeps it.
+/// Blend modes of user layers. composite.h computes them; the journal of `stroke` stores them.
 namespace tuft::ink {
 
-/// How the films of a user layer meet the reflectance R of what lies below them, in each band.
-/// Their height and roughness are the same in all three.
+/// Blend of the films of a user layer with the reflectance R below, in each band. Height and roughness are the same
+/// in all three.
 enum class Blend {
-    normal,    ///< films that absorb and scatter, by Kubelka–Munk: R0 + T² R / (1 − R0 R), film by
-               ///< film
-    glaze,     ///< films that only absorb, as colour in clear varnish: their S is taken as 0, which
-               ///< leaves R · exp(−2 Σ w K). Whites and other pigments that absorb nothing do not show
-    multiply,  ///< a filter of the films' colour: R · R_white, R_white their reflectance over ideal
-               ///< white. Nothing becomes lighter
+    normal,  ///< films absorb and scatter (Kubelka–Munk): R0 + T² R / (1 − R0 R), film by film
+    glaze,  ///< films only absorb, like colour in clear varnish: S = 0, R · exp(−2 Σ w K). Pigments without absorption,
+            ///< such as whites, are invisible
+    multiply,  ///< filter of the films' colour: R · R_white, with R_white their reflectance over ideal white; never
+               ///< lightens
 };
 /// "normal", "glaze", "multiply"; and back, nothing for any other word.
 const char* name_of(Blend blend);

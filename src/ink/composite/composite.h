@@ -12,7 +12,9 @@
 #include "ink/composite/blend.h"
 #include "ink/spectra/srgb.h"
 
-/// From pigment amounts to what is seen.
+/// \file
+/// Appearance from pigment amounts: colour, height and roughness of tiles, and maps of the whole atlas. Called by
+/// `stroke` for export, by `app` for every changed tile.
 namespace tuft::ink {
 
 /// Colour and surface of one tile, planar, texel t = row * 16 + column.
@@ -22,56 +24,54 @@ struct alignas(64) TileAppearance {
     std::array<float, atlas::kTileTexels> roughness;              ///< glTF perceptual roughness
 };
 
-/// One film on a tile: what was laid down before it dried, or one user layer.
+/// One film on a tile: one dried film, or one user layer.
 struct TileFilm {
     std::array<const Plane*, kMaxPigments> pigments{};  ///< amounts, film units; null: none
     const Plane* mask = nullptr;                        ///< 0–1 per texel; null: 1 everywhere
     float opacity = 1;                                  ///< of the whole film, 0–1
-    bool inside = false;                                ///< soaked into the substrate: its surface stays as it is
+    bool inside = false;                                ///< soaked into the substrate: the surface is unchanged
 };
 
-/// Colour, height and roughness of a stack of films, the lowest first. In each band
+/// Computes colour, height and roughness of a stack of films, the lowest first. In each band, beginning with the
+/// substrate,
 ///
 ///     R ← R + o (R0 + T² R / (1 − R0 R) − R)      for each film, o = opacity · mask,
 ///
-/// with R0 and T of the mixed film, K = Σ w_p K_p and S = Σ w_p S_p (`layer`, `over` of
-/// kubelka_munk.h), beginning with the substrate. Where the top is glossy, the air boundary
-/// sends light back into the films (Saunderson):
+/// with R0 and T of the mixed film, K = Σ w_p K_p and S = Σ w_p S_p (`layer`, `over` of kubelka_munk.h). Where the
+/// top is glossy, the air boundary reflects light back into the films (Saunderson):
 ///
 ///     R' = (1 − k) R / (1 − k R),   k = 0.6 g,   g = i + (1 − i)(1 − exp(−w h / 2ζ)),
 ///
-/// i the substrate's `interface`, w its `water` on top in film units h, ζ the relief. The
-/// reflection at the outside of the boundary (k1) is left to who lights the picture: glTF
-/// reflects those 4 % itself. The substrate's reflectance is taken to lie below the boundary
-/// such that the bare dry surface has the colour it was given.
+/// with i the substrate's `interface`, w its `water` on top in film units h, ζ the relief. The reflection at the
+/// outside of the boundary (k1) is left to the renderer: glTF reflects those 4 % itself. The substrate's
+/// reflectance lies below the boundary and is chosen so that the bare dry surface has its given colour.
 ///
-/// `water` may be null: dry. Without `with_colour` only height and roughness are computed. The
-/// roughness goes from the substrate's to the films' own, back to the substrate's under its
-/// glaze, and to that of a wet surface. Agrees with the scalar
-/// formulas to 2e-6; same bits on every instruction set. About 0.3 µs per film and band.
+/// `water` may be null: dry. Without `with_colour` only height and roughness are computed. Roughness goes from the
+/// substrate's to the films', back to the substrate's under its glaze, and to that of a wet surface. Agrees with
+/// the scalar formulas to 2e-6; same bits on every instruction set. Cost: about 0.3 µs per film and band.
 TileAppearance shade_films(std::span<const TileFilm> films, const Plane* water, std::span<const Pigment> pigments,
                            const Substrate& substrate, bool with_colour = true);
 
-/// The look of what the canvas holds in a slot: its films from the soaked one to the open one,
-/// and the liquid on top.
+/// Returns the appearance of a slot of the canvas: its films from the soaked one to the open one, and the liquid on
+/// top.
 TileAppearance shade_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate,
                           bool with_colour = true);
 
-/// Colour of one film of an ink, `film` units thick (0: as a full brush leaves it), over a
-/// matte ground: for palettes and charts.
+/// Returns the colour of one film of an ink, `film` units thick (0: the film of a full brush), over a matte ground:
+/// for palettes and charts.
 Rgb colour_of_film(const Ink& ink, const Rgb& ground, double film = 0);
 
-/// One user layer to be seen.
+/// One visible user layer.
 struct LayerView {
     const Canvas* canvas = nullptr;  ///< of the same texel map as all others
     float opacity = 1;               ///< 0–1
     Blend blend = Blend::normal;
 };
 
-/// User layers, the lowest first; those that are not to be seen are left out.
+/// The visible user layers, the lowest first.
 struct Stack {
     std::vector<LayerView> layers;
-    /// Colours of the surface below them in place of the substrate's reflectance; null or empty: that.
+    /// Base colours below the layers in place of the substrate's reflectance; null or empty: the substrate.
     const BaseColour* ground = nullptr;
 
     Stack(const Canvas& canvas) : layers{{&canvas}} {}
@@ -82,20 +82,18 @@ struct Stack {
     std::vector<std::uint32_t> touched_slots() const;  ///< of any layer, ascending
 };
 
-/// The look of a slot with its layers over each other, each of opacity o: in each band
+/// Returns the appearance of a slot with its layers, each of opacity o: in each band
 ///
 ///     R ← R + o (R_with − R),
 ///
-/// R_with as above with all films of the layer over R, or as its `Blend` says; height and roughness
-/// likewise. Colours
-/// are mixed, not film amounts scaled: a film hides exponentially, so half the amount of a
-/// black ink is still black, while half the opacity is to look half covered. Opacity 1 gives
-/// the same bits as the films of all layers in one canvas would. The water on top is the sum
-/// over the layers, o times each.
+/// with R_with as above, all films of the layer over R, or as its `Blend` defines; height and roughness likewise.
+/// Opacity mixes colours and does not scale amounts: a film hides exponentially, so half the amount of a black ink
+/// is still black, while half the opacity shall look half covered. Opacity 1 gives the same bits as all films in
+/// one canvas. The water on top is the sum over the layers, weighted by o.
 ///
-/// Over a ground the substrate's reflectance is, texel by texel, the smooth one of the ground's
-/// colour. What its bands lack of a deep colour (`bands_of_rgb`) is added in the proportion in
-/// which the ground is seen, so that bare texels have the ground's colour exactly.
+/// Over a base colour the substrate's reflectance is, per texel, the smooth spectrum of that colour. What its bands
+/// lack of a saturated colour (`bands_of_rgb`) is added in proportion to the visibility of the base, so bare texels
+/// have the base colour exactly.
 TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate, bool with_colour = true);
 
 /// A map over the whole atlas, rows from v = 0 upwards, channels interleaved.
@@ -106,7 +104,7 @@ struct AtlasMap {
     std::vector<T> texels;  ///< [size * size * channels]
 };
 
-/// Gutter taps with, for each slot, the gutter texels that take something from it.
+/// Gutter taps, and for each slot the gutter texels that depend on it.
 struct GutterPlan {
     atlas::Gutter gutter;
     std::vector<std::uint32_t> first_of_slot;  ///< [n_slots + 1] into `entries`
@@ -118,8 +116,8 @@ GutterPlan plan_gutter(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas
 
 struct ComposeOptions {
     std::uint32_t gutter = 4;  ///< texels round the charts that are filled with the nearest texel's value
-    /// When given, the gutter is continued over the seams instead, so that bilinear lookups on
-    /// both sides of a seam agree. Must live as long as the call.
+    /// If given, the gutter continues over the seams, so that bilinear lookups on both sides of a seam agree. Must
+    /// outlive the call.
     const GutterPlan* seams = nullptr;
     ProgressFn progress = {};
 };
@@ -131,9 +129,9 @@ AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& 
 /// Base colour, linear RGB.
 AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                                const ComposeOptions& options = {});
-/// Film units of each pigment in all films of a texel together, layers times their opacity (one
-/// channel per pigment, in the order of the canvas that knows most). Takes 4 bytes per texel and pigment, and once more
-/// for one pigment.
+/// Film units of each pigment in all films of a texel, layers weighted by opacity. One channel per pigment, in the
+/// order of the canvas with the most pigments. Memory: 4 bytes per texel and pigment, and once more for one
+/// pigment.
 AtlasMap<float> compose_amounts(const Stack& stack, const atlas::TexelMap& map, const ComposeOptions& options = {});
 /// glTF perceptual roughness (1 channel).
 AtlasMap<float> compose_roughness(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
@@ -144,8 +142,8 @@ AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map, c
 AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                                     const ComposeOptions& options = {});
 
-/// Brings the tiles of `slots` and the gutter texels that depend on them up to date in a map
-/// made by `compose_srgb8` with the same arguments.
+/// Updates the tiles of `slots`, and the gutter texels that depend on them, in a map made by `compose_srgb8` with
+/// the same arguments.
 void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t> slots, const Stack& stack,
                    const atlas::TexelMap& map, const Substrate& substrate, const ComposeOptions& options = {});
 

@@ -21,10 +21,9 @@ namespace tuft::ink {
 inline constexpr double kMixFilm = 2;
 /// Most film units of a mix that may be as thick as its colour needs.
 inline constexpr double kThickestMix = 8;
-/// ΔE2000 that nobody sees: among mixes that differ by less, the one with the fewest pigments is
-/// taken.
+/// ΔE2000 below the visible threshold: among mixes that differ by less, the one with the fewest pigments is taken.
 inline constexpr double kSameColour = 0.2;
-/// ΔE2000 for which a mix is not laid twice as thick.
+/// Smallest gain in ΔE2000 for which a mix is made twice as thick.
 inline constexpr double kWorthThickness = 0.5;
 
 /// Linear sRGB of one dry film of `ink` on `substrate`, `film` units thick (0: as a full brush
@@ -123,7 +122,7 @@ ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::
 /// a `#` without a colour after it.
 Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> held = {});
 
-/// What a ΔE2000 means to the eye, for people: "the same to the eye" below 1, and so on.
+/// Returns a ΔE2000 in words: "the same to the eye" below 1, and so on.
 const char* difference_in_words(double delta_e);
 
 }  // namespace tuft::ink

@@ -8,18 +8,20 @@
 #include "ink/exchange/contact_grid.h"
 #include "ink/exchange/reservoir.h"
 
-/// Which hair gives its ink where: cells of the tuft and nodes of the contact patch.
+/// \file
+/// Coupling of the tuft's cells to the nodes of the contact patch: the ink that each place of the patch receives.
+/// Called by `stroke` for every stamp.
 namespace tuft::ink {
 
-/// A cluster of a bundle that lies on the surface.
+/// A part of a bundle on the surface.
 struct HairSample {
     std::uint32_t bundle = 0;
     Vec2 at{0};         ///< metres, in the stamp's (u, v)
-    double along = 0;   ///< part of the tuft's length from the root
+    double along = 0;   ///< fraction of the tuft's length from the root
     double length = 0;  ///< metres, or any other measure common to all
 };
 
-/// The cells over each node, as parts that sum to one.
+/// Cells over each node, as fractions that sum to one.
 struct NodeContact {
     struct Share {
         std::uint32_t cell = 0;
@@ -36,33 +38,33 @@ struct NodeContact {
 /// Amounts by node and plane, water last; film·m² unless said otherwise.
 using NodeContents = std::array<Reservoir::Content, kNodes>;
 
-/// Parts of wet ink by plane and node, water last.
+/// Fractions of wet ink by plane and node, water last.
 using NodeMixes = std::array<std::array<float, kNodes>, Reservoir::kPlanes>;
 
-/// Each sample counts for the four nodes round it by their hats, and for the two cells of its
-/// bundle whose middles it lies between. A node without hair has what the nearest one has; without
-/// any sample all have the cells of `touch`.
+/// Computes the cells over each node. Each sample contributes to the four nodes round it by their hats, and to the
+/// two cells of its bundle whose centres it lies between. A node without hair takes the cells of the nearest node
+/// with hair. Without any sample all nodes have the cells of `touch`.
 NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::span<const HairSample> samples,
                          const ContactCells& touch);
 
-/// Whether what would leave differs from cell to cell, by more than rounding makes.
+/// Returns true when the mixture differs between cells by more than rounding.
 bool is_mixed(const Reservoir& tuft);
 
-/// What would leave at each node; its parts sum to one. Where nothing is left over a node, the
-/// mixture of the whole tuft.
+/// Returns the mixture at each node; its fractions sum to one. A node with empty cells has the mixture of the whole
+/// tuft.
 NodeMixes mixes_at(const Reservoir& tuft, const NodeContact& nodes);
 
-/// Deals an amount of a plane out to a tile's nodes by their shares, evenly where none has any.
+/// Distributes an amount of a plane to a tile's nodes by their shares; evenly where all shares are 0.
 void deal(NodeContents& to, int plane, double amount, const std::array<double, kNodes>& shares, const HatBasis& hats);
 
-/// Books what a stamp's mixture leaves on a tile: each pigment to the nodes that it came from, and
-/// then the water that was mixed with it there.
+/// Records the ink that a stamp's mixture leaves on a tile: each pigment at the nodes of its origin, then the water
+/// mixed with it there.
 class MixtureGiven {
   public:
     MixtureGiven(NodeContents& given, const NodeMixes& mixes, const HatBasis& hats)
         : given_(given), mixes_(mixes), hats_(hats) {}
 
-    /// `amount` in film·m² of a pigment, and what of it came from each node of the hats.
+    /// `amount` of a pigment in film·m², and its shares by node.
     void pigment(int plane, double amount, const std::array<double, kNodes>& shares);
     void water();
 
@@ -73,18 +75,18 @@ class MixtureGiven {
     std::array<double, kNodes> strength_{}, came_{};  ///< of the mixture; film·m² of all pigments
 };
 
-/// Takes what was given at the nodes, each plane from the cells over its node in proportion to what
-/// they have of it, and what they lack from all cells that have it. As long as the tuft has so much
-/// of a plane, its total falls by just the sum.
+/// Withdraws the given amounts: each plane from the cells over its node in proportion to their contents, the
+/// shortfall from all cells that have it. While the tuft has enough of a plane, its total decreases by exactly the
+/// sum.
 void spend(Reservoir& tuft, const NodeContents& given, const NodeContact& nodes);
 
-/// Takes ink for each node, `amounts` in film·m², from its cells, of each its own mixture; what they
-/// lack comes as from `take` if it may come `from_afar`, from hair that is not over the node.
+/// Withdraws ink for each node, `amounts` in film·m², from its cells, each with its own mixture. With `from_afar`
+/// the shortfall comes from all other cells, as in `take`. Returns the withdrawn amounts.
 NodeContents draw(Reservoir& tuft, const std::array<double, kNodes>& amounts, const NodeContact& nodes,
                   const ContactCells& touch, bool from_afar = true);
 
-/// Takes up what was lifted at each node into its cells; what they have no room for goes as in the
-/// `absorb` for the whole touch.
+/// Absorbs the ink lifted at each node into its cells. The excess is distributed as in `absorb` for the whole
+/// contact.
 void absorb(Reservoir& tuft, const NodeContents& lifted, const NodeContact& nodes, const ContactCells& touch);
 
 }  // namespace tuft::ink

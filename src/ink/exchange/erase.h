@@ -6,10 +6,11 @@
 
 #include "ink/canvas/canvas.h"
 
-/// Ink off the texels, and ink laid over whole parts of a surface.
+/// \file
+/// Removal of ink from texels, and uniform coats over parts of a surface. Called by `stroke` for erasers and fills.
 namespace tuft::ink {
 
-/// What left a tile, or came onto it: film·m² by pigment plane, and liquid.
+/// Amounts removed from a tile or added to it: film·m² by pigment plane, and liquid.
 struct Amounts {
     std::array<double, kMaxPigments> pigment{};
     double liquid = 0;
@@ -18,8 +19,8 @@ struct Amounts {
     Amounts& operator+=(const Amounts& other);
 };
 
-/// A tile as the eraser found it: pigment and liquid in all films together, film units, and ε W,
-/// how much of what is below they hide.
+/// State of a tile at the start of an eraser stroke: pigment and liquid in all films together, film units, and
+/// their opacity ε W.
 struct EraseStart {
     Plane film, hides;
 };
@@ -30,31 +31,29 @@ struct EraseParams {
     double strength = 1;               ///< 0–1, by the pressure
 };
 
-/// Takes one stamp's share of ink off a tile. With ρ = W / W₀ what is left of the start W₀,
+/// Erases one stamp from a tile. With ρ = W / W₀ the remaining fraction of the start W₀,
 ///
 ///     dρ = −max(0, ρ − q(f)) (1 − exp(−strength ds / s0))
 ///     q(f) = −ln(min(1, f + exp(−ε W₀))) / ε W₀
 ///
-/// at once where there is liquid, which hair draws up without rubbing;
-/// f the texel's coverage: under full coverage all goes, in whatever steps the eraser passes. A texel that looks
-/// covered by c = 1 − exp(−ε W₀) (see `deposit`) looks covered by c − f in the end: edges through ink are smooth,
-/// and at the rim of what is erased by its own stroke, where c = f, nothing is left.
-/// Pigments of all films, dry, open and soaked, and liquid go in proportion. Film never grows;
-/// less than 1e-6 film units, which nobody can see, go at once. Slots may be done by different
-/// threads; the bits do not depend on the instruction set. Returns what was taken away.
+/// with f the texel's coverage. Liquid is absorbed by the hair without rubbing: there the change is immediate.
+/// Under full coverage all ink is removed, for any step size. A texel of apparent coverage c = 1 − exp(−ε W₀) (see
+/// `deposit`) ends with c − f: edges through ink are smooth, and nothing is left at the rim where c = f. Pigments
+/// of all films, dry, open and soaked, and liquid are removed in proportion. Film never grows. Less than 1e-6 film
+/// units, which is invisible, is removed at once. Different threads may process different slots. The bits do not
+/// depend on the instruction set. Returns the removed amounts.
 Amounts erase(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
               std::span<const float, atlas::kTileTexels> area, double ds, const EraseStart& start,
               const EraseParams& params);
 
-/// A coat for one tile: on texel t the film `film` [256], film units of wet ink, made of
-/// (1 − towards) · first + towards · second, parts of the wet ink by plane.
+/// A coat for one tile: texel t gets `film` [256] film units of wet ink with the mixture (1 − towards) · first +
+/// towards · second, fractions of the wet ink by plane.
 struct Coat {
     std::array<float, kMaxPigments> first{}, second{};
     alignas(64) std::array<float, atlas::kTileTexels> film, towards;
 };
 
-/// Lays a coat into the open film, on top of what is there or into it where it is still open; no
-/// more than `capacity` film units lie on a texel then. Returns the pigments laid, film·m².
+/// Adds a coat to the open film, up to `capacity` film units in all per texel. Returns the added pigments, film·m².
 Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> area, const Coat& coat,
                  float capacity);
 

@@ -8,30 +8,34 @@
 #include "core/geometry/types.h"
 #include "ink/exchange/deposit.h"
 
-/// The ink in a tuft and how much of it a touch may take.
+/// \file
+/// Ink reservoir of a tuft: cells of ink along the hair, their loading, flow and supply. `stroke` loads it,
+/// advances `flow`, and withdraws what each stamp deposits.
+///
+/// Amounts are in film·m² of wet ink (pigments.h), saturations and fractions in [0, 1].
 namespace tuft::ink {
 
-/// How the hair is divided for its ink: bundles side by side, each of cells from root to tip.
+/// Division of the hair into cells: bundles side by side, each with cells from root to tip.
 struct ReservoirLayout {
-    std::vector<Vec2> bundles{Vec2{0}};      ///< places in the section, unit disc
-    std::vector<double> cell_ends{1};        ///< where each cell ends, part of the length from the root;
-                                             ///< rising, the last one is 1
-    std::vector<double> cell_capacities{1};  ///< part of a bundle's capacity in each cell; sums to one
-    double refill_time = 0.04;               ///< s in which a dry cell draws from a wet one above or below it
-    double side_time = 0.25;                 ///< s the same between neighbouring bundles
-    double mix_time = 30;                    ///< s in which cells one above the other become one mixture
+    std::vector<Vec2> bundles{Vec2{0}};  ///< [n_bundles] positions in the section, unit disc
+    std::vector<double> cell_ends{
+        1};  ///< [n_cells] end of each cell, fraction of the length from the root; increasing, the last is 1
+    std::vector<double> cell_capacities{1};  ///< [n_cells] fraction of a bundle's capacity; sum 1
+    double refill_time = 0.04;               ///< s, time constant of flow between adjacent cells of a bundle
+    double side_time = 0.25;                 ///< s, time constant of flow between neighbouring bundles
+    double mix_time = 30;                    ///< s, time constant of mixing between adjacent cells of a bundle
 };
 
-/// What two cells exchange.
+/// Exchange coefficients of two cells.
 struct CellLink {
     std::uint32_t a = 0, b = 0;
-    double flow = 0;    ///< film·m² per second and difference of saturation
-    double mixing = 0;  ///< per second, of the smaller content
+    double flow = 0;    ///< g, film·m² per second per unit difference of saturation
+    double mixing = 0;  ///< 1/s, fraction of the smaller content
 };
 
-/// Ink held by the tuft, film·m² of wet ink, in cells. Plane p of a cell is the canvas' pigment
-/// plane p; the last one is water. All amounts are ≥ 0 and no cell holds more than its capacity,
-/// unless it was dipped dripping wet or `absorb` was given more than fits.
+/// Ink of the tuft in its cells, film·m² of wet ink. Plane p of a cell is the canvas' pigment plane p; the last
+/// plane is water. Invariants: all amounts are ≥ 0. No cell exceeds its capacity, except after `dip` with level > 1
+/// or an `absorb` beyond `room_left`.
 struct Reservoir {
     static constexpr int kPlanes = kMaxPigments + 1;
     using Content = std::array<double, kPlanes>;
@@ -41,7 +45,7 @@ struct Reservoir {
     std::vector<double> cell_capacity;  ///< [bundles * cells], cell c of bundle k at k * cells + c, root first
     std::vector<Content> content;       ///< likewise
     std::vector<CellLink> links;
-    double unspent = 0;  ///< s of `flow` that did not fill a step yet
+    double unspent = 0;  ///< s of `flow` not yet applied, less than one step
 
     std::size_t n_bundles() const { return layout.bundles.size(); }
     std::size_t n_cells() const { return layout.cell_ends.size(); }  ///< of each bundle
@@ -49,122 +53,122 @@ struct Reservoir {
     double remaining() const;
     double pigment(int plane) const;
     double water() const { return pigment(kMaxPigments); }
-    /// Part of the capacity that is left, 0–1; of the tuft, of a cell.
+    /// Content over capacity, 0–1: of the tuft; of a cell.
     double fullness() const;
     double saturation(std::size_t cell) const;
-    /// What would leave now: parts of the wet ink; all zero when empty.
+    /// Returns the mixture of the whole tuft: fractions of the wet ink; all 0 when empty.
     Mix mix() const;
 };
 
-/// Which cells touch the surface: parts that sum to one, [bundles * cells]; empty: all alike.
+/// Contact fractions of the cells, [bundles * cells], sum 1; empty: all alike.
 using ContactCells = std::vector<float>;
 
-/// An empty tuft that holds `millilitres`. Throws `Error` for a layout that is none.
+/// Returns an empty reservoir of `millilitres`. Throws `Error` for an invalid layout.
 Reservoir make_reservoir(double millilitres, ReservoirLayout layout = {});
 
-/// Part of the tuft that is dipped, or wiped.
+/// Part of the tuft that is dipped or wiped.
 struct Reach {
-    double depth = 1;  ///< of its length, from the tip, 0–1
-    double side = 0;   ///< of its width, from the side of the sections' +x (> 0) or −x (< 0), −1–1; 0: all
+    double depth = 1;  ///< fraction of the length, from the tip, 0–1
+    double side = 0;   ///< fraction of the width, from the sections' +x side (> 0) or −x side (< 0), −1–1; 0: all
 };
 
-inline constexpr double kMostLevel = 1.5;  ///< more drips off before the tuft comes anywhere
+inline constexpr double kMostLevel =
+    1.5;  ///< largest level of a dip; more drips off before the tuft reaches the surface
 
-/// How far a tuft is dipped.
+/// Depth and level of a dip.
 struct Dip {
     double depth = 1;  ///< as `Reach`
-    double level = 1;  ///< part of their capacity up to which cells are filled; what is above 1 hangs on the
-                       ///< hair and runs off it (`shed`), kMostLevel at most
-    double side = 0;   ///< as `Reach`
+    double level =
+        1;  ///< saturation of the filled cells, at most kMostLevel; the excess over 1 runs off the hair (`shed`)
+    double side = 0;  ///< as `Reach`
 };
 
-/// Fills the tuft up with ink of the given mix; what is in it stays and mixes. Cells that are
-/// dipped in part are filled in part; bundles at the edge of the side that is dipped have a soft
-/// one, a tenth of the width, as hair draws ink. Returns the amount taken from the dish, film·m².
+/// Fills the cells in reach with ink of the given mix; their contents remain and mix with it. Partly dipped cells
+/// are filled in part. The edge of a dipped side is soft over a tenth of the width, by capillarity. Returns the ink
+/// taken from the dish, film·m².
 double dip(Reservoir& tuft, const Mix& mix, const Dip& how = {});
 
-/// Draws the tuft over a rag: of what is in its cells within reach, `part` goes. Returns the
-/// amount, film·m².
+/// Removes the fraction `part` of the ink of the cells in reach, as a rag does. Returns the removed amount,
+/// film·m².
 double wipe(Reservoir& tuft, double part, const Reach& reach = {});
 
-/// Empties the tuft; returns what was in it, film·m².
+/// Empties the tuft. Returns the former content, film·m².
 double rinse(Reservoir& tuft);
 
-/// Takes `amount` (film·m², at most what is left) from the cells that touch, of each its own
-/// mixture; what they lack comes from all others in proportion. Returns what was taken, by plane.
+/// Withdraws `amount` (film·m², at most `remaining`) from the touching cells, each with its own mixture. The
+/// shortfall comes from all others in proportion. Returns the withdrawn amounts by plane.
 Reservoir::Content take(Reservoir& tuft, double amount, const ContactCells& touch = {});
 
-/// Room left in the cells that touch, film·m²: what they may take up from the surface.
+/// Returns the free capacity of the touching cells, film·m²: the limit of absorption from the surface.
 double room_left(const Reservoir& tuft, const ContactCells& touch = {});
 
-/// Takes up `lifted` (film·m² by plane) from the surface into the cells that touch; what they
-/// have no room for goes on to the others, in proportion to theirs. Nothing is lost: beyond the capacity the touching
-/// cells hold it all the same, so ask `room_left` before.
+/// Adds `lifted` (film·m² by plane) to the touching cells. The excess is distributed over the other cells in
+/// proportion to their free capacity. Nothing is lost: beyond the total capacity the touching cells hold it, so
+/// call `room_left` first.
 void absorb(Reservoir& tuft, const Reservoir::Content& lifted, const ContactCells& touch = {});
 
-/// Mixture and saturation (0–1) that the surface meets: means over the touching cells.
+/// Returns the mixture and the saturation (0–1) at the surface: means over the touching cells.
 Mix mix_at(const Reservoir& tuft, const ContactCells& touch);
 double saturation_at(const Reservoir& tuft, const ContactCells& touch);
 
-/// How far `flow` goes.
+/// End time of `flow`: the last whole step, or the exact time.
 enum class FlowTo { whole_step, now };
 
-/// Lets the ink move in the hair for `dt` seconds: between linked cells i and j
+/// Advances the flow in the hair by `dt` seconds. Between linked cells i and j flows
 ///
 ///     F = g (s_i − s_j),   s = content over capacity,
 ///
-/// of the giver's mixture, and a slow exchange of equal parts that makes mixtures alike. In
-/// steps of 5 ms on the tuft's own clock, so any division of a time gives the same within a
-/// step; to `now` also what is left of a step, so that nothing jumps. What one cell loses another gains: the sum of
-/// each plane is kept to rounding. About 1 µs a step for 40 bundles of 4 cells.
+/// with the giver's mixture. A slow exchange of equal amounts equalises mixtures. Steps of 5 ms on the reservoir's
+/// own clock: any division of the time gives the same result within a step. With `now` the rest of a step is
+/// applied too, so that nothing jumps. The sum of each plane is conserved to rounding. Cost: about 1 µs a step for
+/// 40 bundles of 4 cells.
 void flow(Reservoir& tuft, double dt, FlowTo to = FlowTo::whole_step);
 
-/// How liquid that hangs on a tuft runs down it.
+/// Geometry of the liquid that runs down a tuft.
 struct Drain {
     double length = 0.03, radius = 3e-3;  ///< metres, of the tuft
-    double slope = 1;                     ///< part of its weight that drives it to where it touches, 0–1
+    double slope = 1;                     ///< fraction of its weight along the tuft towards the contact, 0–1
 };
 
-/// What of the liquid that its hair does not hold by capillarity (beyond the capacity) leaves a tuft
-/// that touches something in `dt` seconds, film·m². It hangs on the tuft as a film of thickness
-/// δ = V / (π R L), and runs down by its weight, dV/dt = −2 π R slope ρ g δ³ / 3 μ (Jeffreys 1930), so
+/// Returns the liquid, film·m², that runs off a touching tuft in `dt` seconds: part of the content beyond the
+/// capacity, which capillarity does not hold. It is a film of thickness δ = V / (π R L) that drains by its weight,
+/// dV/dt = −2 π R slope ρ g δ³ / 3 μ (Jeffreys 1930), so
 ///
 ///     V(t) = V / √(1 + 2 c V² t),   c = 2 π R slope ρ g / (3 μ (π R L)³).
 ///
-/// Ink of 2 mPa s. Takes nothing from the tuft.
+/// Viscosity of the ink: 2 mPa s. Does not change the tuft.
 double shed(const Reservoir& tuft, const Drain& drain, double dt);
 
-/// The source paper's recurrence (variable stiffness brush): what leaves at one stamp,
-/// Q_i = η k_i (Z − Σ_{j<i} Q_j), with `remaining` = Z − ΣQ and k_i = |M_i| / M_max.
+/// Returns the ink of one stamp by the source paper's recurrence (variable stiffness brush), Q_i = η k_i (Z −
+/// Σ_{j<i} Q_j), with `remaining` = Z − ΣQ and k_i = |M_i| / M_max.
 double paper_quantity(double eta, double moment_factor, double remaining);
 
-/// The same independent of how densely the path is sampled:
-/// Q = Z (1 − exp(−η k Δs / l)); equals the recurrence for Δs = l and η k → 0.
+/// Returns the ink of one stamp independent of the sampling of the path: Q = Z (1 − exp(−η k Δs / l)). Equals the
+/// recurrence for Δs = l and η k → 0.
 double supply_quantity(double eta, double moment_factor, double remaining, double ds, double supply_length);
 
-/// How a stamp touches.
+/// Contact of a stamp.
 struct StampContact {
     double moment_factor = 1;  ///< k = |M| / M_max of the tuft, 0–1
     double width = 0;          ///< metres across the motion, gaps between hairs left out
     double area = 0;           ///< m² of the contact patch
-    double pending = 0;        ///< film·m² of what the tuft still holds that is laid down already
-    double by_hair = 0;  ///< 0–1: how much single hairs touch, which leave a film of their own thickness or none
+    double pending = 0;        ///< film·m² already deposited but not yet withdrawn from the tuft
+    double by_hair =
+        0;  ///< 0–1: fraction of contact by single hairs, which leave a film of their own thickness or none
     std::span<const float> touch = {};  ///< as `ContactCells`; empty: the whole tuft alike
 };
 
-/// Film the stamp tends to. The tuft offers η k' Z / l ink per metre of travel (l =
-/// `ink.supply_length`, Z the capacity times the saturation of the hair that touches), with
-/// k' = 0.25 + 0.75 k: a quarter comes by capillarity, also where the bending moment passes
-/// through zero, the rest is squeezed out as in the paper. The stroke asks for `ink.film`
-/// times the contact's width; with x = offered / asked
+/// Returns the deposit parameters of a stamp: its target film c. The tuft offers η k' Z / l ink per metre of
+/// travel, with l = `ink.supply_length`, Z the capacity times the saturation of the touching hair, and k' = 0.25 +
+/// 0.75 k. A quarter comes by capillarity, also where the bending moment is 0; the rest is squeezed out as in the
+/// paper. The stroke demands `ink.film` times the contact's width. With x = offered / demanded,
 ///
 ///     c = film (1 − exp(−x)) min(1, 0.85 + 0.3 k)
 ///
-/// so a loaded tuft (x ≈ 5–100) paints full strength at any speed and in any width,
-/// and one that has given most of its ink pales, wide strokes first. Single hairs, of which
-/// the fewer touch the less ink there is, do not pale below 0.6 of the film: a thinner thread
-/// of ink breaks instead of spreading; and theirs is there at once, s0 being a tenth. c · area
-/// never exceeds what is left.
+/// A loaded tuft (x ≈ 5–100) paints full strength at any speed and width. A nearly empty one pales, wide strokes
+/// first. Single hairs do not pale below 0.6 of the film: a thinner thread of ink breaks instead of spreading, and
+/// less ink means fewer hairs. Their film is complete at once: s0 is a tenth. c · area never exceeds the remaining
+/// ink.
 DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampContact& contact,
                             const Substrate& substrate);
 

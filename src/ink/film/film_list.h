@@ -11,28 +11,29 @@
 #include "ink/film/drips.h"
 #include "ink/film/film_tile.h"
 
-/// The tiles that a step of the wet film goes through; inside `ink` only.
+/// \file
+/// List of the tiles that a step of the wet film processes. Internal to the wet film (film.h).
 namespace tuft::ink::wet {
 
-/// Conductances over seams together, over the texel's area: as much as a step allows. Less, and texels that nearly lie
-/// on each other lag behind at a front (of 300 random layouts of two charts 14 were more than 1 % of the peak off with
-/// 5; now 5).
+/// Largest sum of the conductances over seams, over the texel's area, in one step. With a smaller limit, texels
+/// that nearly coincide lag behind at a front (of 300 random layouts of two charts, 14 were off by more than 1 % of
+/// the peak with 5; now 5).
 inline constexpr double kSeamPart = 7;
 
 using PlanePtr = std::unique_ptr<Plane>;
 
-/// A tile's planes as a step finds them; a line of memory and a bit, since neighbours ask too.
+/// Planes of a tile at the start of a step, in about one cache line, since neighbours read it too.
 struct alignas(64) Sources {
     std::array<const Plane*, 2> liquid{};
     std::array<const Plane*, kMaxPigments> open{};
     const Plane* relief = nullptr;  ///< of what is dry, film units; null: plain
 };
 
-/// A tile over a seam from another one.
+/// A tile on the other side of a seam.
 struct Beyond {
     std::uint32_t slot = kNone;
     std::uint32_t place = kNone;  ///< in the list
-    bool linked = false;          ///< liquid goes there; else only slopes are taken from it
+    bool linked = false;          ///< liquid flows there; otherwise only slopes are read
     std::uint16_t lines = 0;      ///< bits: rows of texels there that this tile looks at
 };
 
@@ -50,11 +51,11 @@ struct Active {
     Outcome outcome;
     float stiffness = 0;
     const Geometry* geometry = nullptr;              ///< null: not looked up yet
-    const Geometry::Diagonals* diagonals = nullptr;  ///< its own; to be asked for before it is there
+    const Geometry::Diagonals* diagonals = nullptr;  ///< its own; for prefetching
     bool seam_wet = false;
-    bool spreads = true;  ///< wet in other places than when `changed` looked
-    bool idle = false;    ///< nothing wet in sight
-    PlanePtr w, s;        ///< of the step's end, until they are in the canvas
+    bool spreads = true;  ///< wet at other texels than at the last `changed`
+    bool idle = false;    ///< no wet texel in this tile or its neighbours
+    PlanePtr w, s;        ///< end of the step, before they are swapped into the canvas
     std::array<PlanePtr, kMaxPigments> p;
     std::unique_ptr<std::array<std::uint8_t, kTexels>> closing;  ///< where outcome.closing
 
@@ -65,12 +66,11 @@ struct TileList {
     const atlas::TexelMap& map;
     atlas::SeamLinks seams;                           ///< scaled: what goes over seams stays within what a step allows
     std::vector<std::unique_ptr<Geometry>> geometry;  ///< [n_slots] null: never wet
-    /// [n_slots] of tiles beside seams: what flows among them may go in shorter steps. Null: not
-    /// looked up yet.
+    /// [n_slots] geometry of tiles beside seams, whose flow may use shorter steps. Null: not computed yet.
     std::vector<std::unique_ptr<SplitGeometry>> split_geometry;
     std::vector<Active> list;  ///< ascending slots
-    /// Places in the list as a step goes through them: strip by strip of the atlas, so that what a tile and the one
-    /// below it read, and the planes that get free, are still in the second cache.
+    /// Order in which a step visits the list: strip by strip of the atlas, so that the planes read by a tile and
+    /// the one below it, and the freed planes, are still in the second-level cache.
     std::vector<std::uint32_t> order;
     std::unique_ptr<std::atomic<std::uint32_t>[]> readers;  ///< of the list: tiles that still need this one's planes
 
@@ -78,9 +78,9 @@ struct TileList {
 
     TileList(const atlas::TexelMap& m, atlas::SeamLinks s);
 
-    /// For surfaces that let liquid flow more easily here than there (`ease_of_flow`). Costs when it changes.
+    /// Sets the unevenness of the surface (`ease_of_flow`). Costly when it changes.
     void set_unevenness(double unevenness);
-    /// The same for what is free of stencil edge.
+    /// Sets the stencil. Costly when it changes.
     void set_free(WetFilm::FreeFn free);
     const BaseColour& ground() const { return ground_; }
     /// Whether a tile has texels at a seam, or blocks of 4 × 4 texels beside some of the next
@@ -88,17 +88,16 @@ struct TileList {
     bool beside_seam(std::uint32_t slot) const { return beside_[slot]; }
     /// Makes `split_geometry` of a tile beside a seam.
     void split_faces(std::uint32_t slot);
-    /// The list becomes the canvas' wet tiles and those round them.
+    /// Sets the list to the canvas' wet tiles and their neighbours.
     void begin(const Canvas& canvas);
-    /// The list becomes the wet tiles and those that liquid may reach in the next step.
+    /// Sets the list to the wet tiles and those that liquid may reach in the next step.
     void spread();
-    /// Whether other tiles may be reached than when it was last asked: whether `spread` would
-    /// change the list.
+    /// Returns true when `spread` would change the list since the last call.
     bool changed();
-    /// Appearance at slots that something else wrote to, and takes them into the list.
+    /// Updates slots that were written from outside, and adds them to the list.
     void look_at(const Canvas& canvas, std::span<const std::uint32_t> slots);
-    /// Where beads may start: of each cube of a grain's length the place that gives way first, the
-    /// lowest first, so that it does not matter how the surface lies in the atlas.
+    /// Returns the possible starts of beads: in each cube of a grain's length the weakest place, the lowest first,
+    /// so that the layout of the atlas does not matter.
     std::vector<Drips::Seed> seeds_of_beads(const Canvas& canvas, const FilmParams& params) const;
 
     /// Calls fn with every place in the list whose planes a tile reads, its own among them.

@@ -8,10 +8,11 @@
 #include "atlas/texels/seam_links.h"
 #include "ink/film/film.h"
 
-/// One tile of the wet film with a border of one texel, as its kernels see it; inside `ink`
-/// only. Field k = (row + 1) * 18 + 1 + column, row after row without gaps: what is reckoned for all
-/// of it goes through it from end to end. Faces: between k and k + 1, k and k + 18, and the diagonals
-/// of the square k, k + 1, k + 18, k + 19.
+/// \file
+/// One tile of the wet film with a border of one texel, and its kernels. Internal to the wet film (film.h).
+///
+/// Field k = (row + 1) * 18 + 1 + column, row after row without gaps; kernels run over it from end to end. Faces:
+/// between k and k + 1, k and k + 18, and the diagonals of the square k, k + 1, k + 18, k + 19.
 namespace tuft::ink::wet {
 
 inline constexpr int kTexels = atlas::kTileTexels;
@@ -24,7 +25,7 @@ static_assert(kSquares > (kSide + 1) * kRow - 2 && kField >= kSquares + kRow + 1
 
 struct alignas(64) Field : std::array<float, kField> {};
 
-/// Conductances in 16 bits: half the memory, which is what steps wait for. 1 is exact.
+/// Unit of 16-bit conductances: half the memory, and memory bounds the speed of a step. 1 is exact.
 inline constexpr float kConductanceUnit = 0x1p-14f, kDiagonalUnit = 0x1p-13f;
 
 /// Room at faces, as `Geometry` holds it.
@@ -39,7 +40,7 @@ inline constexpr int field_of(int texel) {
     return field_at(texel % kSide, texel / kSide);
 }
 
-/// What the metric says of a tile: made once, never changed.
+/// Metric of a tile; constant after it is made.
 struct alignas(64) Geometry {
     static void* operator new(std::size_t bytes);  ///< as planes (plane_pool.cpp)
     static void operator delete(void* geometry, std::size_t bytes);
@@ -68,17 +69,18 @@ struct alignas(64) Geometry {
     static constexpr int right_of(int column, int row) { return field_at(column, row) - kRow; }
     static constexpr int corner_of(int column, int row) { return field_at(column, row); }
 };
-/// What lets liquid flow less or more easily, from place to place.
+/// Mobility of the liquid relative to its mean, over the surface.
 struct BaseColour {
     double unevenness = 0;
     WetFilm::FreeFn free;  ///< empty: all
 };
-/// Of what flows between two texels that are all free: so much; 0 over the edge of a stencil edge.
+/// Returns the fraction of the flow that passes between two texels of the given free fractions; 0 over a stencil
+/// edge.
 double passing(std::uint8_t free_a, std::uint8_t free_b);
 Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot,
                        const BaseColour& ground);
-/// How easily liquid flows at a place, over the mean: exp(unevenness n), n noise of mean 0 and rms 1 over 0.6 to
-/// 2.4 mm, −2 to 1.5. On a plane the flow in the large is that of the geometric mean, 1 (Dykhne 1971).
+/// Returns the relative mobility at a position: exp(unevenness n), n noise of mean 0 and rms 1 over 0.6 to 2.4 mm,
+/// −2 to 1.5. On a plane the effective large-scale mobility is the geometric mean, 1 (Dykhne 1971).
 double ease_of_flow(const Vec3& position, double unevenness);
 
 /// A tile's faces in two parts.

@@ -8,10 +8,11 @@
 #include "ink/canvas/canvas.h"
 #include "ink/film/film_tile.h"
 
-/// What a thread has at hand while it steps the wet film tile by tile; inside `ink` only.
+/// \file
+/// Per-thread buffers of the wet film. Internal to the wet film (film.h).
 namespace tuft::ink::wet {
 
-/// What goes over a tile's links.
+/// Flow over a tile's links.
 struct Crossing {
     std::vector<SeamLanes> lanes;
     std::vector<std::uint8_t> texels;  ///< [size] where links start
@@ -39,9 +40,8 @@ struct Crossing {
     }
 };
 
-/// Memory that will be needed soon. Planes lie here and there, and the processor waits long for each line
-/// that it does not expect, but it can wait for a dozen at once: some between one loop and the next. Into the second
-/// cache: the first is full of the tile in work.
+/// Prefetch queue. Planes are scattered in memory, and a cache miss is slow, but a dozen may be in flight: some are
+/// issued between one loop and the next. They go to the second-level cache, since the first holds the current tile.
 struct Ahead {
     static constexpr int kSecondCache = 2;
 
@@ -66,8 +66,8 @@ struct Ahead {
     }
 };
 
-/// Planes that nobody reads any more, the last ones still in the cache; of each kind by itself, so that those of a tile
-/// stay side by side in memory, on few pages.
+/// Free planes for reuse, the most recent still in cache; one stack per kind, so that the planes of a tile stay on
+/// few memory pages.
 using Spare = std::array<std::vector<PlanePtr>, 2 + kMaxPigments>;
 
 /// What a thread works with.

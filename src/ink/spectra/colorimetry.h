@@ -4,7 +4,8 @@
 
 #include "ink/spectra/spectrum.h"
 
-/// Colour from spectra, and how different two colours look.
+/// \file
+/// Colours from spectra, and colour differences. Used by match.h, deposit.h and the fit of the bands.
 namespace tuft::ink {
 
 inline constexpr int kWavelengths = 41;

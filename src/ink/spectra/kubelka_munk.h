@@ -2,17 +2,17 @@
 
 #include <span>
 
-/// Kubelka–Munk optics of one wavelength band: how a film that absorbs and scatters
-/// looks over what lies under it. Diffuse light, no fluorescence.
-/// Source: Kubelka & Munk 1931; Kubelka 1948 (layers), 1954 (stacks); Saunderson 1942.
+/// \file
+/// Kubelka–Munk optics of one wavelength band: the appearance of an absorbing and scattering film over a substrate.
+/// Diffuse light, no fluorescence. Used by composite.h and match.h. Source: Kubelka & Munk 1931; Kubelka 1948
+/// (layers), 1954 (stacks); Saunderson 1942.
 ///
-/// K and S are absorption and scattering per film unit, X is the thickness in film
-/// units (one unit is 10 µm of wet ink, about 5 g/m² when dry). All reflectances
-/// and transmittances are linear, in [0, 1]. Every function is finite for K, S, X
-/// from 0 to 1e100 and needs no special case by the caller.
+/// K and S are absorption and scattering per film unit. X is the thickness in film units (one unit is 10 µm of wet
+/// ink, about 5 g/m² when dry). Reflectances and transmittances are linear, in [0, 1]. Every function is finite for
+/// K, S, X from 0 to 1e100 and needs no special case by the caller.
 namespace tuft::ink {
 
-/// What a layer, or a stack of layers, does to light.
+/// Reflectance and transmittance of a layer or of a stack of layers.
 struct Layer {
     double r = 0;       ///< reflectance from above, over black
     double t = 1;       ///< transmittance, the same both ways

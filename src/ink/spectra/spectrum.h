@@ -2,6 +2,7 @@
 
 #include <array>
 
+/// \file
 /// Colour as the ink module computes it: a few spectral bands inside, linear sRGB outside.
 namespace tuft::ink {
 

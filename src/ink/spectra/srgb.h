@@ -4,7 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The transfer curve of sRGB (IEC 61966-2-1).
+/// \file
+/// Transfer curve of sRGB (IEC 61966-2-1). Used for textures, pictures and the colour panel.
 namespace tuft::ink {
 
 /// Linear [0, 1] to encoded [0, 1] and back.

@@ -2,7 +2,8 @@
 
 #include "ink/spectra/colorimetry.h"
 
-/// Spectra for pigments of which only red, green and blue are known.
+/// \file
+/// Spectra of pigments that are known in red, green and blue only. Called by pigments.h.
 namespace tuft::ink {
 
 struct Curves {

@@ -9,7 +9,9 @@
 
 #include "atlas/texels/seam_links.h"
 
-/// Tiles with the texels round them, for what spreads over a few tiles at the end of a stroke; inside `ink` only.
+/// \file
+/// Tiles with a border of texels, for operations that cross tiles at the end of a stroke (level.h, pool.h).
+/// Internal to `ink`.
 namespace tuft::ink {
 
 inline constexpr int kHaloRow = atlas::kTile + 2;

@@ -6,15 +6,13 @@
 /// One canvas laid on another: what merging two layers does to their texels.
 namespace tuft::ink {
 
-/// Lays all films of `upper` over those of `lower`, texel by texel, in their order: the open film
-/// of `lower` is closed where `upper` has ink (drying.h), the dry films of `upper` follow, and its
-/// open film is the open one of both. What is soaked in joins what is soaked in, liquid joins
-/// liquid. The look stays the same, but for texels with more than `kDryFilms` films, whose lowest
-/// are mixed
-/// (`close_films`), and for ink of `upper` that had soaked in.
+/// Adds all films of `upper` over those of `lower`, texel by texel, in their order. The open film of `lower` is
+/// closed where `upper` has ink (drying.h), the dry films of `upper` follow, and the open films join. Soaked ink
+/// joins soaked ink, and liquid joins liquid. The appearance does not change, with two exceptions: texels with more
+/// than `kDryFilms` films, whose lowest are mixed (`close_films`), and soaked ink of `upper`.
 ///
-/// Both canvases need the same pigments in the same planes and as many slots; throws `Error`
-/// otherwise. `upper` is left as it is.
+/// Throws `Error` unless both canvases have the same pigments in the same planes and the same number of slots.
+/// `upper` does not change.
 void lay_films(Canvas& lower, const Canvas& upper);
 
 }  // namespace tuft::ink

@@ -7,82 +7,81 @@
 #include "core/geometry/sparse_numbering.h"
 #include "mesh/triangle_mesh.h"
 
-/// Exact shortest ways over the triangles from one point, as far as a radius: windows of straight
-/// ways are carried from edge to edge in the order of their distance (Mitchell, Mount and
-/// Papadimitriou 1987; one angle, one split: Chen and Han 1990; windows that some vertex outdoes
-/// are dropped: Xin and Wang 2009). Ways that bend go round vertices whose angles exceed 2π, or on
-/// the mesh's border. CGAL's Surface_mesh_shortest_path is the truth in tests/footprint/geodesic_test.cpp: 1667 ways of
-/// at most 30 mm on the shipped car and bowl differ by 2.5e-8 m at most. It takes 12 and 23 times as long (one run, by
-/// turns: 0.074 s to 0.006 s, 1.18 s to 0.051 s for 20 origins each).
+/// \file
+/// Exact geodesics on a triangle mesh from one point, within a radius. Windows of straight paths propagate from
+/// edge to edge in the order of their distance (Mitchell, Mount and Papadimitriou 1987; one angle, one split: Chen
+/// and Han 1990; windows dominated by a vertex are dropped: Xin and Wang 2009). Bent paths pass vertices whose
+/// angles exceed 2π, or border vertices. Called by `footprint` where the surface is occluded.
+/// CGAL's Surface_mesh_shortest_path is the truth in tests/footprint/geodesic_test.cpp: 1667 paths of at most 30 mm on
+/// the shipped car and bowl differ by 2.5e-8 m at most. It takes 12 and 23 times as long (one run, by turns: 0.074 s to
+/// 0.006 s, 1.18 s to 0.051 s for 20 origins each).
 namespace tuft::mesh {
 
 class ExactGeodesics {
   public:
-    /// From `origin`, a point of `triangle`, to all points within `radius` metres. Cost: about 1.5
-    /// µs a triangle within reach. False when that takes, or is going to take, more than `most`
-    /// windows: nothing is known then.
+    /// Computes the geodesics from `origin`, a point of `triangle`, to all points within `radius` metres. Returns
+    /// false when more than `most` windows are needed, or are predicted to be; then no result is defined. Cost:
+    /// about 1.5 µs per triangle within the radius.
     bool spread(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin, double radius, std::size_t most);
 
     struct Geodesic {
         double length = std::numeric_limits<double>::infinity();  ///< metres; infinite: none within the radius
         Vec3 leaves{0};                                           ///< unit, in the plane of the origin's triangle
         Vec3 arrives{0};    ///< unit, in the plane of the point's triangle, away from the origin
-        bool bent = false;  ///< it goes round a vertex
+        bool bent = false;  ///< the path passes a vertex
     };
-    /// The shortest way to the point p of a triangle; p may lie beside it by rounding.
+    /// Returns the geodesic to the point p of a triangle; p may lie outside it by rounding.
     Geodesic to(std::uint32_t triangle, const Vec3& p) const;
 
     std::size_t n_windows() const { return windows_.size(); }
     std::size_t n_faces() const { return faces_.size(); }
-    /// The mesh's number of the i-th triangle within reach.
+    /// Index in the mesh of the i-th triangle within the radius.
     std::uint32_t triangle(std::size_t i) const { return faces_[i].triangle; }
 
   private:
     static constexpr std::size_t kRings = 512;
 
-    /// A triangle within reach. Edge k goes from corner k to k + 1; in its frame corner k is the
-    /// origin, corner k + 1 lies on x, the triangle above.
+    /// A triangle within the radius. Edge k goes from corner k to k + 1. In its frame corner k is the origin,
+    /// corner k + 1 lies on x, and the triangle lies above.
     struct Face {
         std::uint32_t triangle;
         std::array<std::uint32_t, 3> vertex;
         std::array<double, 3> length;
-        std::array<Vec2, 3> third;                ///< corner k + 2 in the frame of edge k
-        std::array<std::uint32_t, 3> windows;     ///< that enter over edge k, a list; kNone: its end
-        std::array<double, 3> nearest, crossing;  ///< of ways over edge k to the third corner: the
-                                                  ///< shortest, and where on the edge it enters
+        std::array<Vec2, 3> third;             ///< corner k + 2 in the frame of edge k
+        std::array<std::uint32_t, 3> windows;  ///< first window entering over edge k; kNone: none
+        std::array<double, 3> nearest,
+            crossing;  ///< shortest path over edge k to the third corner: length, crossing point on the edge
     };
     struct Vertex {
         double distance = std::numeric_limits<double>::infinity();
         Vec2 leaves{0};  ///< unit, in the frame of edge 0 of the origin's triangle
     };
-    /// Straight ways from `source` through the part [from, to] of an edge into a face, in that
-    /// edge's frame.
+    /// Straight paths from `source` through the interval [from, to] of an edge into a face, in that edge's frame.
     struct Window {
         std::uint32_t face;
         std::uint8_t edge;
         double from, to;
         Vec2 source;    ///< below the edge
-        double before;  ///< metres to the source itself: 0, or a vertex' distance
-        Vec2 turn;      ///< takes directions to the frame of edge 0 of the origin's triangle
+        double before;  ///< metres from the origin to the source: 0, or the distance of a vertex
+        Vec2 turn;      ///< rotates directions into the frame of edge 0 of the origin's triangle
         std::uint32_t root,
-            next;  ///< the vertex that the source is, or kNone; next in the face's list
+            next;  ///< vertex at the source, or kNone; next window of the face
     };
-    /// A vertex that a way reaches in `onward` direction (frame of edge `corner`).
+    /// A vertex that a path reaches in direction `onward` (frame of edge `corner`).
     struct Arrival {
         std::uint32_t face;
         int corner;
         double distance;
         Vec2 onward;
     };
-    /// What is looked at next: a window or an arrival, in a list of those about as far from the
-    /// origin.
+    /// A queue entry: a window or an arrival, in a list of entries of about the same distance from the origin.
     struct Next {
         std::uint32_t index;
         bool vertex;
         std::uint32_t next;
     };
     struct Source {
-        Vec2 at;  ///< in the frame of the edge that is left, above it
+        Vec2 at;  ///< in the frame of the edge crossed, above it
         double before;
         Vec2 turn;
         std::uint32_t root;
@@ -109,14 +108,14 @@ class ExactGeodesics {
     double radius_ = 0;
     std::uint32_t start_ = kNone;                    ///< the origin's face
     Vec2 origin_{0};                                 ///< in the frame of its edge 0
-    SparseNumbering face_numbers_, vertex_numbers_;  ///< of what is within reach, by the mesh's
+    SparseNumbering face_numbers_, vertex_numbers_;  ///< local numbers by index in the mesh
     std::vector<Face> faces_;
     std::vector<Vertex> vertices_;
     std::vector<Window> windows_;
     std::vector<Arrival> arrivals_;
     std::vector<Next> queue_;
     std::array<std::uint32_t, kRings> rings_;  ///< by distance: lists of `queue_`
-    std::size_t ring_ = 0;                     ///< that is being emptied
+    std::size_t ring_ = 0;                     ///< being processed
     std::vector<Corner> left_, right_;
 };
 

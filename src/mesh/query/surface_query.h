@@ -6,10 +6,12 @@
 
 #include "mesh/triangle_mesh.h"
 
+/// \file
+/// Ray and closest-point queries on a mesh. `contact`, `stroke`, `render` and `app` use them.
 namespace tuft::mesh {
 
-/// The hit of a `SurfaceQuery::trace`: triangle (kNone: a miss), weights of its
-/// corners 1 and 2, distance along the ray in metres.
+/// Hit of `SurfaceQuery::trace`: the triangle (kNone: a miss), the barycentric weights of its corners 1 and 2, and
+/// the distance along the ray in metres.
 struct RayHit {
     std::uint32_t triangle = kNone;
     float b1 = 0, b2 = 0;
@@ -24,9 +26,8 @@ struct NearVertex {
     Vec3 normal{0, 0, 1};  ///< unit
 };
 
-/// Ray and closest-point queries against a mesh by an Embree BVH. Keeps a
-/// reference to the mesh: the mesh must outlive it and not change. Building
-/// takes about 0.25 s per million triangles; queries are thread-safe.
+/// Ray and closest-point queries by an Embree BVH. Stores a reference to the mesh: the mesh must outlive the object
+/// and must not change. Construction takes about 0.25 s per million triangles. Queries are thread-safe.
 class SurfaceQuery {
   public:
     explicit SurfaceQuery(const TriangleMesh& mesh);
@@ -34,22 +35,22 @@ class SurfaceQuery {
     SurfaceQuery(SurfaceQuery&&) noexcept;
     SurfaceQuery& operator=(SurfaceQuery&&) noexcept;
 
-    /// Exact closest point within `max_distance` metres of `p`, or nothing.
-    /// A small `max_distance` makes it faster: 1–3 µs near the surface.
+    /// Returns the exact closest point within `max_distance` metres of `p`, or nothing. A small `max_distance` is
+    /// faster: 1–3 µs near the surface.
     std::optional<SurfacePoint> closest_point(const Vec3& p,
                                               double max_distance = std::numeric_limits<double>::infinity()) const;
 
-    /// The `k` vertices nearest to `p` among those that triangles use, nearest first, fewer
-    /// where `max_distance` metres does not hold so many.
+    /// Returns the `k` vertices nearest to `p` among those that triangles use, nearest first. Returns fewer where
+    /// there are fewer within `max_distance` metres.
     std::vector<NearVertex> nearest_vertices(const Vec3& p, int k,
                                              double max_distance = std::numeric_limits<double>::infinity()) const;
 
-    /// First hit of the ray at a distance in [t_min, t_max]; `direction` is unit length.
-    /// Both sides of a triangle are hit.
+    /// Returns the first hit at a distance in [t_min, t_max]; `direction` has unit length. Both sides of a triangle
+    /// count.
     std::optional<SurfacePoint> ray(const Vec3& origin, const Vec3& direction, double t_min = 0,
                                     double t_max = std::numeric_limits<double>::infinity()) const;
 
-    /// Whether anything lies on the ray within [t_min, t_max].
+    /// Returns true when a triangle intersects the ray within [t_min, t_max].
     bool occluded(const Vec3& origin, const Vec3& direction, double t_min, double t_max) const;
 
     /// `ray` and `occluded` in single precision and without the surface point, for pictures

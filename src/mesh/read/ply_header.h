@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-/// The head of a PLY file (Turk 1994): which elements follow, and of what their rows are made.
-/// Internal to `mesh`.
+/// \file
+/// Header of a PLY file (Turk 1994): its elements and the layout of their rows. Used by the PLY reader only.
 namespace tuft::mesh {
 
 enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
@@ -27,9 +27,9 @@ struct PlyElement {
     std::string name;  ///< in lower case
     std::uint64_t count = 0;
     std::vector<PlyProperty> properties;
-    long line = 0;  ///< where the head declares it
+    long line = 0;  ///< of its declaration
 
-    /// Fewest bytes one row can take.
+    /// Returns the smallest number of bytes of one row.
     std::size_t least_row_size(PlyFormat format) const;
     bool has_list() const;
     /// Index of the first property with one of the names, or -1.
@@ -40,11 +40,11 @@ struct PlyHeader {
     PlyFormat format = PlyFormat::kAscii;
     std::vector<PlyElement> elements;
     std::vector<std::string> textures;  ///< names from "comment TextureFile"
-    std::size_t body = 0;               ///< offset of the first byte after the head
+    std::size_t body = 0;               ///< offset of the first byte after the header
     long body_line = 1;                 ///< its line
 };
 
-/// Throws `Error` with file and line for a head that is not whole or not PLY.
+/// Parses the header. Throws `Error` with file and line when it is incomplete or not PLY.
 PlyHeader read_ply_header(const std::vector<char>& bytes, const std::string& file);
 
 }  // namespace tuft::mesh

@@ -8,10 +8,11 @@
 
 #include "mesh/read/polygon_soup.h"
 
-/// What the readers share while they fill a soup. Internal to `mesh` and to the readers of `io`.
+/// \file
+/// Builder of a polygon soup, shared by the readers of `mesh` and of `io`.
 namespace tuft::mesh {
 
-/// Says a thing that happened many times in a few lines: the first places, then a total.
+/// Reports a repeated event in one line: the first places and the total.
 struct Tally {
     std::size_t count = 0;
     std::vector<long> places;  ///< the first five: lines or rows
@@ -30,19 +31,20 @@ class SoupBuilder {
 
     PolygonSoup soup;
 
-    /// Adds a point; one that is not finite or lies beyond `kFarthestNumber` is dropped at the end, with its polygons.
+    /// Adds a point. `finish` drops points that are not finite or lie beyond `kFarthestNumber`, and the polygons
+    /// that use them.
     void add_point(const Vec3& p, long place);
-    /// Adds a polygon over point indices already in range; fewer than three corners are dropped.
-    /// `uvs` is empty or has one entry per corner.
+    /// Adds a polygon over valid point indices. Polygons of fewer than three corners are dropped. `uvs` is empty or
+    /// has one entry per corner.
     void add_polygon(std::span<const std::uint32_t> corners, std::span<const Vec2f> uvs, std::uint32_t group,
                      long place);
-    /// Index of the group with this name (as UTF-8, see `to_utf8`), new if need be; `material` is what its
-    /// faces are made of, as the file spells it.
+    /// Returns the index of the group with this name (as UTF-8, see `to_utf8`), and adds the group when it is new.
+    /// `material` is the material name of its faces, as the file spells it.
     std::uint32_t group(const std::string& name, const std::string& material = "");
-    /// Group of the faces of this colour, named "#rrggbb". Where a file has faces of one colour only, or
-    /// more than 256 colours, none of them is a group. The faces get materials of these colours.
+    /// Returns the group of faces of this colour, named "#rrggbb". A file with one colour, or with more than 256,
+    /// gets no colour groups. The faces get materials of these colours.
     std::uint32_t colour_group(const std::array<std::uint8_t, 4>& colour);
-    /// Warns in `soup` and hands it out; throws `Error` when there is no polygon.
+    /// Adds the warnings to `soup` and returns it. Throws `Error` when there is no polygon.
     PolygonSoup finish();
 
   private:
@@ -57,10 +59,10 @@ class SoupBuilder {
     bool groups_used_ = false;
     std::unordered_map<std::uint32_t, std::uint32_t> group_of_colour_;
     bool too_many_colours_ = false;
-    std::vector<Vec3f> group_colours_;  ///< by group; white for those that are not of a colour
+    std::vector<Vec3f> group_colours_;  ///< by group; white for groups without a colour
 };
 
-/// A colour from four channels: bytes as they are, reals from [0, 1].
+/// Returns a colour from four channels: bytes unchanged, reals scaled from [0, 1].
 std::array<std::uint8_t, 4> colour_from(const std::array<double, 4>& channels, bool is_real);
 
 }  // namespace tuft::mesh

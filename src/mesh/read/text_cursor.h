@@ -5,12 +5,13 @@
 #include <string>
 #include <string_view>
 
-/// Reading model files that are text: token by token, line by line, with the line
-/// number at hand for messages. Internal to `mesh`.
+/// \file
+/// Tokeniser for text model files. It reads token by token and line by line, and knows the line number for
+/// messages. Used by the readers of `mesh`.
 namespace tuft::mesh {
 
-/// Lines end at LF, CR or CR LF. Never reads past the text; every call moves on or
-/// reports the end, so loops over it end.
+/// Lines end at LF, CR or CR LF. The cursor never reads past the text. Every call advances or reports the end, so
+/// loops over it terminate.
 class TextCursor {
   public:
     struct Syntax {
@@ -19,32 +20,32 @@ class TextCursor {
     };
     TextCursor(std::span<const char> text, std::string file, Syntax syntax);
 
-    /// The line of the next token, from 1.
+    /// Line number of the next token, from 1.
     long line() const { return line_; }
-    /// Whether the text is used up.
+    /// Returns true at the end of the text.
     bool at_end() const { return at_ == end_; }
-    /// Whether another token stands on this line.
+    /// Returns true when this line has another token.
     bool more();
-    /// Goes to the start of the next line.
+    /// Advances to the start of the next line.
     void next_line();
-    /// Goes on until a token is next; false at the end of the text.
+    /// Advances to the next token. Returns false at the end of the text.
     bool skip_to_token();
 
-    /// Next token of this line, or "" when the line has no more.
+    /// Returns the next token of this line, or "" when the line has no more.
     std::string_view word();
-    /// Goes on by `n` characters of the next token, of which the rest is a token then.
+    /// Skips `n` characters of the next token. The rest of it becomes the next token.
     void skip(std::size_t n) { skip_blanks(), at_ += n; }
-    /// The rest of this line without blanks at its ends.
+    /// Returns the rest of this line without blanks at its ends.
     std::string_view rest();
-    /// Next token as a number; NaN and infinities in any spelling pass through.
-    /// `what` names the value in the message when there is no number.
+    /// Returns the next token as a number; NaN and infinities in any spelling are accepted. Throws `Error` when it
+    /// is no number; `what` names the value in the message.
     double number(const char* what);
-    /// Next token as a whole number.
+    /// Returns the next token as a whole number.
     std::int64_t integer(const char* what);
-    /// Whether the token last read by `number` was spelled as a real number (has . or e).
+    /// Returns true when the token last read by `number` was spelled as a real number (has . or e).
     bool last_was_real() const { return last_was_real_; }
 
-    /// Bytes that are left.
+    /// Number of unread bytes.
     std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
     const char* position() const { return at_; }
     /// Throws `Error` with file and line.
@@ -63,10 +64,10 @@ class TextCursor {
     bool last_was_real_ = false;
 };
 
-/// Whether two ASCII words are the same but for case.
+/// Returns true when two ASCII words are equal but for case.
 bool same_word(std::string_view a, std::string_view b);
 
-/// `token` shortened and made printable, in quotes, for messages.
+/// Returns `token` shortened, printable and in quotes, for messages.
 std::string in_quotes(std::string_view token);
 
 }  // namespace tuft::mesh

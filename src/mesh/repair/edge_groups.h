@@ -7,11 +7,12 @@
 
 #include "mesh/repair/half_edges.h"
 
-/// All half-edges between the same two vertices, edge by edge. Internal to `mesh`.
+/// \file
+/// Visits the half-edges of a mesh edge by edge. Used while half-edges are paired (half_edges.h).
 namespace tuft::mesh {
 
-/// Calls visit(half_edges) for each pair of vertices that is joined, half-edges ascending.
-/// Buckets by the lower vertex: linear time and 12 bytes per half-edge.
+/// Calls visit(half_edges) for each pair of joined vertices; half-edges ascend. Half-edges are bucketed by their
+/// lower vertex. Cost: linear time, 12 bytes per half-edge.
 template <class Visit>
 void for_each_edge(const RawMesh& mesh, Visit&& visit) {
     struct Entry {

@@ -9,11 +9,12 @@
 #include "core/geometry/types.h"
 #include "mesh/half_edge.h"
 
-/// From loose triangles to a manifold: which triangle lies over each edge, which way round each
-/// one is, and which corners share a vertex. Half-edges as in half_edge.h. Internal to `mesh`.
+/// \file
+/// From loose triangles to a manifold: pairs half-edges (mesh/half_edge.h), orients triangles and splits vertices. Used
+/// by `build_surface` only.
 namespace tuft::mesh {
 
-/// Triangles on their way to a `TriangleMesh`.
+/// A mesh under repair; `build_surface` makes a `TriangleMesh` of it.
 struct RawMesh {
     std::vector<Vec3f> positions;  ///< metres
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -21,14 +22,13 @@ struct RawMesh {
     std::vector<std::uint32_t> groups;                 ///< [n_triangles] or empty
     std::vector<std::array<std::uint8_t, 4>> colours;  ///< [n_vertices] or empty
     std::vector<std::uint32_t> opposite;               ///< [3 n_triangles] half-edge over the edge, or kNone
-    std::vector<bool> at_split_edge;                   ///< [n_vertices] lies on an edge that was opened, or empty
+    std::vector<bool> at_split_edge;                   ///< [n_vertices] the vertex lies on a split edge, or empty
 
     std::uint32_t start(std::uint32_t h) const { return triangles[h / 3][h % 3]; }
     std::uint32_t end(std::uint32_t h) const { return triangles[h / 3][(h + 1) % 3 ? h % 3 + 1 : 0]; }
 };
 
-/// Height of a triangle over its longest side, metres; that side runs from corner
-/// `longest_side` to the next.
+/// Height of a triangle over its longest side, metres. That side runs from corner `longest_side` to the next.
 struct Shape {
     double height = 0, longest = 0;
     int longest_side = 0;
@@ -36,44 +36,44 @@ struct Shape {
 Shape shape_of(const std::array<Vec3, 3>& p);
 std::array<Vec3, 3> points_of(const RawMesh& mesh, std::size_t triangle);
 
-/// A height below this part of the longest side is no area that could carry a normal.
+/// A triangle is flat when its height is below this fraction of its longest side: its normal is undefined.
 inline constexpr double kFlat = 1e-9;
 bool is_flat(const RawMesh& mesh, std::size_t triangle);
 
-/// Keeps the triangles where keep[t] is set, in order, with all that belongs to them.
+/// Retains the triangles with keep[t] set, in order, and their attributes.
 void keep_triangles(RawMesh& mesh, const std::vector<bool>& keep);
 
-/// Notes in `at_split_edge` that the edge of half-edge h was opened.
+/// Marks in `at_split_edge` the vertices of half-edge h: its edge was split.
 void mark_opened(RawMesh& mesh, std::uint32_t h);
 
 struct PairingReport {
     std::size_t duplicates_dropped = 0;
-    std::size_t edges_split = 0;  ///< shared by three or more triangles with an area
-    bool needs_settling = false;  ///< some edge lost a triangle, with or without an area
+    std::size_t edges_split = 0;  ///< shared by three or more triangles of positive area
+    bool needs_settling = false;  ///< some edge lost a triangle, of positive area or not
 };
 
-/// Drops every triangle that has the same three vertices as an earlier one, whichever way round,
-/// then fills `opposite`. Where more than two triangles meet at an edge, those go together that
-/// continue each other best: flattest dihedral first, and, where most of the file's edges agree
-/// in direction, only triangles that agree. What is left over becomes border.
+/// Drops every triangle with the same three vertices as an earlier one, whatever its orientation, then fills
+/// `opposite`. Where more than two triangles meet at an edge, the pair of flattest dihedral angle is joined first.
+/// Where most of the file's edges agree in direction, only triangles that agree are joined. Unpaired half-edges
+/// become border.
 PairingReport pair_half_edges(RawMesh& mesh);
 
 struct OrientationReport {
     std::size_t faces_flipped = 0;
-    std::size_t edges_cut = 0;  ///< of one-sided pieces (Möbius), which no orientation fits
+    std::size_t edges_cut = 0;  ///< of one-sided components (Möbius), which cannot be oriented
 };
 
-/// Turns triangles until neighbours agree. In each component the majority keeps its side;
-/// a closed component has its normals outward (positive signed volume), but a cavity that the
-/// file shows inside another closed component, and consistently inward, keeps its side.
+/// Flips triangles until neighbours agree. In each component the majority retains its orientation. A closed
+/// component gets outward normals (positive signed volume). Exception: a cavity retains its orientation if the file
+/// has it inside another closed component and oriented consistently inward.
 OrientationReport orient(RawMesh& mesh);
 
-/// Gives every fan of triangles around a vertex a vertex of its own. Returns how many
-/// vertices, beyond those on opened edges, had more than one fan. Needs orientation.
+/// Gives every fan of triangles round a vertex a vertex of its own. Returns the number of vertices with more than
+/// one fan, not counting those on split edges. Precondition: oriented.
 std::size_t split_vertices(RawMesh& mesh);
 
-/// After splitting and cutting: makes `opposite` and the vertex numbers say the same, so that
-/// no two vertices are joined by more than one edge of two triangles. Needs orientation.
+/// Makes `opposite` and the vertex numbers consistent after splitting and cutting: no two vertices are joined by
+/// more than one edge of two triangles. Precondition: oriented.
 void settle(RawMesh& mesh);
 
 }  // namespace tuft::mesh

@@ -5,19 +5,20 @@
 
 #include "mesh/repair/repair.h"
 
-/// What `tuft inspect` says about a model: sizes, the unit its numbers probably are in, defects.
+/// \file
+/// Figures about a model for `tuft inspect` and the window's model dialog: sizes, likely unit, defects.
 namespace tuft::mesh {
 
 struct UnitGuess {
     std::string unit;  ///< "mm", "cm", "m" or "in"
     double metres_per_unit = 1e-3;
     std::string second;    ///< another unit that is nearly as likely, or ""
-    std::string sentence;  ///< one line for people: the size in that unit, and the doubt
+    std::string sentence;  ///< one line for people: the size in that unit, and how certain it is
 };
 
-/// The unit in which `bounds` (the file's numbers) is most likely a product: things between
-/// 6 cm and 6 m across are all as likely, smaller and larger ones ever less (a log-normal
-/// tail), and millimetres are commoner than metres, centimetres and inches. Weights chosen by us.
+/// Guesses the unit of `bounds` (the file's numbers) from the likely size of a product. Sizes between 6 cm and 6 m
+/// are equally likely; smaller and larger ones are less likely (a log-normal tail). Millimetres are likelier than
+/// metres, centimetres and inches. The weights are our choice.
 UnitGuess guess_unit(const Box& bounds);
 
 /// Figures of a repaired surface.
@@ -39,14 +40,14 @@ struct MeshSummary {
     RepairReport report;
 };
 
-/// `metres_per_unit` is what the surface was built with.
+/// Returns the figures of a surface. `metres_per_unit` is the unit that the surface was built with.
 MeshSummary summarise(const Surface& surface, double metres_per_unit);
 
-/// What was wrong with the file and what was done, one line each; empty for a sound mesh.
-/// Holes and several parts are told by `describe`: they are no defects.
+/// Returns the defects of the file and their repairs, one line each; empty for a sound mesh. Holes and several
+/// components are no defects: `describe` reports them.
 std::vector<std::string> describe_defects(const RepairReport& report);
 
-/// The whole summary for people, one line each, lengths in millimetres.
+/// Returns the whole summary for people, one line each, lengths in millimetres.
 std::vector<std::string> describe(const MeshSummary& summary);
 
 }  // namespace tuft::mesh

@@ -8,24 +8,27 @@
 #include "mesh/read/polygon_soup.h"
 #include "mesh/triangle_mesh.h"
 
+/// \file
+/// Repair: from a polygon soup to a clean triangle mesh. `io`, `stroke` and `cli` call it for every model they
+/// load.
 namespace tuft::mesh {
 
 struct RepairOptions {
     double metres_per_unit = 1e-3;                      ///< the file's unit; millimetres by default
-    bool y_up = false;                                  ///< in the file y is up: points are turned to (x, −z, y)
+    bool y_up = false;                                  ///< y is up in the file: points are rotated to (x, −z, y)
     double crease_angle = 40.0 * 0.017453292519943295;  ///< radians; normals split above it
     ProgressFn progress = nullptr;
 };
 
-/// What was found in the file and done about it. Counts are of the file's elements.
+/// Defects that were found and repaired. Counts are of the file's elements.
 struct RepairReport {
     std::size_t points_in_file = 0;
     std::size_t polygons_in_file = 0;
     std::size_t polygons_triangulated = 0;  ///< with more than three corners
-    bool loose_triangles = false;           ///< every corner came with its own point, as in STL
+    bool loose_triangles = false;           ///< every corner has its own point, as in STL
     std::size_t vertices_welded = 0;        ///< removed because they coincide with another
-    std::size_t crack_vertices_welded = 0;  ///< ... because they all but coincide: of loose
-                                            ///< triangles, on borders, within 1e-6 of the size
+    std::size_t crack_vertices_welded =
+        0;  ///< removed because they lie within 1e-6 of the size: border vertices of loose triangles
     std::size_t unused_vertices_dropped = 0;
     std::size_t degenerate_faces_dropped = 0;   ///< repeated corner or zero area
     std::size_t degenerate_faces_repaired = 0;  ///< a corner on the opposite side: that side flipped
@@ -45,11 +48,9 @@ struct Surface {
     RepairReport report;
 };
 
-/// Welds, triangulates, drops, splits and orients until the soup is a clean
-/// triangle mesh held by OpenMesh, and hands out the plain arrays. Component
-/// orientation is outward where a component is closed. Deterministic. Throws
-/// `Error` only when nothing is left (no triangle with an area).
-/// Cost: about 2 s and 0.5 GB per million triangles.
+/// Welds, triangulates, drops, splits and orients the polygons of a soup. The result is a clean mesh as plain
+/// arrays; OpenMesh stays inside. Closed components are oriented outward. Deterministic. Throws `Error` only when
+/// no triangle with an area is left. Cost: about 2 s and 0.5 GB per million triangles.
 Surface build_surface(PolygonSoup soup, const RepairOptions& options = {});
 
 }  // namespace tuft::mesh

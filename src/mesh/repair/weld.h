@@ -6,16 +6,17 @@
 
 #include "core/geometry/types.h"
 
-/// Finding points that are the same place. Internal to `mesh`.
+/// \file
+/// Welding of coincident points. Used by `build_surface` only.
 namespace tuft::mesh {
 
-/// [n] for each point the lowest index of a point with exactly its coordinates (-0 equals 0).
-/// Linear time by hashing.
+/// Returns, for each point, the lowest index of a point with exactly equal coordinates (−0 equals 0). [n]. Cost:
+/// linear time by hashing.
 std::vector<std::uint32_t> weld_exact(std::span<const Vec3f> points);
 
-/// Among the points named in `candidates` (ascending), each goes to the first earlier candidate
-/// that stands for itself and lies within `tolerance` metres, the nearest if there are several.
-/// Changes only those entries of `target`. Linear time by a grid of cells of that size.
+/// Welds each point of `candidates` (ascending) to an earlier candidate within `tolerance` metres. The target must
+/// be its own target; the nearest is taken. Changes only those entries of `target`. Cost: linear time by a grid of
+/// cells of that size.
 void weld_near(std::span<const Vec3f> points, std::span<const std::uint32_t> candidates, double tolerance,
                std::vector<std::uint32_t>& target);
 

@@ -7,12 +7,13 @@
 
 #include "core/geometry/types.h"
 
-/// A small antialiased drawing surface for the brush's own pictures. Coordinates in pixels,
-/// x to the right, y down, pixel (i, j) covers [i, i+1] × [j, j+1]. Colours linear, 0 to 1.
+/// \file
+/// Small antialiased drawing surface for pictures of brushes. Coordinates are in pixels, x right, y down; pixel (i,
+/// j) covers [i, i+1] × [j, j+1]. Colours are linear, 0 to 1.
 ///
 /// Cairo 1.16 draws 1500 tapered hairs of 40 points in 0.16 s of CPU, this in 0.51 s (one run, by turns), of the 3.0 s
-/// that `tuft brush goat-medium --picture` takes. It is not used all the same: it blends encoded 8-bit colours, where
-/// thin dark hair on white comes out too dark, it has no line of changing width, and it brings 20 libraries.
+/// that `tuft brush goat-medium --picture` takes. Cairo blends encoded 8-bit colours, in which thin dark hair on white
+/// comes out too dark. It has no line of changing width. It brings 20 libraries.
 namespace tuft::render {
 
 struct BrushCanvas {
@@ -28,7 +29,7 @@ Vec3 linear_colour(int r, int g, int b);
 /// Fills a polygon (even-odd) with exact horizontal and eightfold vertical coverage.
 void fill_polygon(BrushCanvas& canvas, std::span<const Vec2> points, const Vec3& colour, double alpha = 1);
 
-/// A polyline of round pieces; width in pixels at each point (one value: the same everywhere).
+/// Draws a polyline with round joints. Widths are in pixels at each point; one value serves all points.
 void stroke_line(BrushCanvas& canvas, std::span<const Vec2> points, std::span<const double> widths, const Vec3& colour,
                  double alpha = 1);
 

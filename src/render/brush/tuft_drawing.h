@@ -3,7 +3,8 @@
 #include "brush/tuft/tuft.h"
 #include "render/brush/brush_canvas.h"
 
-/// One tuft drawn into a picture.
+/// \file
+/// Drawing of one tuft into a picture. Called by brush_picture.h.
 namespace tuft::render {
 
 /// From metres to pixels: parallel projection.
@@ -20,17 +21,16 @@ struct BrushView {
 };
 
 struct TuftLook {
-    bool dry = false;   ///< no water holds the hair to a point or closes its marks
-    double ground = 0;  ///< metres, height of the sheet: what was pressed into it rests on it
+    bool dry = false;   ///< dry hair: no point, open marks
+    double ground = 0;  ///< metres, height of the sheet; hair pressed below it is drawn on it
 };
 
-/// Hair by hair, with the holder of `length` metres: what is nearer hides what is behind it, so
-/// that the ferrule's rim closes over the roots where it is seen from above.
+/// Draws the tuft hair by hair, with the holder of `length` metres. Nearer parts hide farther ones, so the
+/// ferrule's rim covers the roots seen from above.
 void draw_brush(BrushCanvas& canvas, const brush::Tuft& tuft, const brush::TuftState& state, const brush::Pose& pose,
                 const BrushView& view, double length, const TuftLook& look = {});
 
-/// What touches the sheet, seen from above with x to the right: its middle line y = `y` of the
-/// picture.
+/// Draws the contact patch seen from above with x to the right; its middle line is y = `y` of the picture.
 void draw_patch(BrushCanvas& canvas, const brush::Tuft& tuft, const brush::TuftState& state, const BrushView& view,
                 double y, const TuftLook& look = {});
 

@@ -2,6 +2,8 @@
 
 #include "core/geometry/types.h"
 
+/// \file
+/// Camera of the window and its rays. `app` uses it for view, picking and pointer input.
 namespace tuft::render {
 
 /// Camera of the window: a pinhole, or a parallel projection.

@@ -4,23 +4,23 @@
 
 #include "render/gl/gl_camera.h"
 
-/// The window's light, and the CPU twin of shaders/common/light.glsl: the same functions
-/// under the same names, compared with the GPU by a test.
+/// \file
+/// Light of the window, and the CPU twin of shaders/common/light.glsl: the same functions under the same names. A
+/// test compares both.
 namespace tuft::render {
 
 struct GlLight {
     Vec3f key{0, 0, 1}, fill{0, 0, 1};                                       ///< unit, world, towards the lamps
     Vec3f key_light{0.52f, 0.51f, 0.49f}, fill_light{0.10f, 0.11f, 0.125f};  ///< linear radiance
     Vec3f ground{0.24f, 0.235f, 0.23f}, sky{0.54f, 0.555f, 0.58f};           ///< of the dome
-    float relief =
-        0;  ///< times that thin ink is shown as high as it is; thick paint is not exaggerated; 0: none is shown
+    float relief = 0;  ///< exaggeration of the height of thin ink; thick paint is not exaggerated; 0: no relief
 
     bool operator==(const GlLight&) const = default;
 };
 
 enum class LightRig { studio, window, raking };
 
-/// The rig for a camera: lamps stand still beside whoever looks.
+/// Returns the light of a rig; the lamps are fixed relative to the camera.
 GlLight make_light(LightRig rig, const GlCamera& camera);
 
 inline float soft_box(const Vec3f& dir, const Vec3f& to_light, float sharpness) {
@@ -43,7 +43,7 @@ inline float coat_fresnel(float cos_view) {
     return 0.04f + 0.96f * std::pow(1.0f - glm::clamp(cos_view, 0.0f, 1.0f), 5.0f);
 }
 
-/// What mesh.frag shows at a point seen from direction `to_eye`, linear, before encoding.
+/// Returns the colour of mesh.frag at a point seen from direction `to_eye`, linear, before encoding.
 inline Vec3f glazed(const GlLight& l, const Vec3f& base, Vec3f n, const Vec3f& to_eye, float roughness) {
     if (glm::dot(n, to_eye) < 0) n = -n;
     const float fresnel = glm::mix(coat_fresnel(glm::dot(n, to_eye)), 0.02f, glm::smoothstep(0.4f, 0.8f, roughness));

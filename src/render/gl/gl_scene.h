@@ -13,8 +13,9 @@
 #include "render/gl/gl_light.h"
 #include "render/gl/gl_target.h"
 
-/// The window's picture by OpenGL 3.3 core. Every call needs the current context that the
-/// object was made in.
+/// \file
+/// The window's picture by OpenGL 3.3 core. `app` draws through it. Every call needs the current context in which
+/// the object was made.
 namespace tuft::render {
 
 enum class Shading { glaze = 0, clay = 1, flat = 2, height = 3, texels = 4, triangles = 5 };
@@ -29,13 +30,13 @@ struct GlSolid {
 
 inline constexpr int kTextureLevels = 5;  ///< 16 × 16 down to 1 × 1 texels of a tile
 
-/// Metres, world; its sides along the axes.
+/// Axis-aligned box, metres, world.
 struct GlBox {
     Vec3f lo{0}, hi{0};
 };
 
-/// The texture's fourth channel, of thin ink and thick paint alike: code 0–255 for a height in micrometres,
-/// a step of 0.1 µm on bare ground and of 1/48 of the height where it is high; 255 is 969 µm.
+/// Height code of the texture's fourth channel, 0–255, for thin ink and thick paint. A step is 0.1 µm near 0 and
+/// 1/48 of the height at large heights; 255 is 969 µm.
 inline constexpr double kCodeHeight = 4.8, kCodeSteps = 48;
 inline double height_of_code(double code) {
     return kCodeHeight * std::expm1(code / kCodeSteps);
@@ -49,7 +50,7 @@ struct TilePixels {
     static constexpr std::array<int, kTextureLevels + 1> kStart{0, 256, 320, 336, 340, 341};
     std::uint32_t tile = 0;  ///< row · per side + column
     std::array<std::array<std::uint8_t, 4>, 341> rgba;
-    std::vector<GlBox> boxes;  ///< round all of the surface that takes colour from it, at whatever level
+    std::vector<GlBox> boxes;  ///< bounds of the surface coloured by this tile at any level
 };
 
 /// The whole atlas at all levels, row 0 at v = 0.
@@ -85,11 +86,10 @@ class GlScene {
 
     /// Clears the picture to the backdrop, from sRGB colour `low` at the bottom to `high`.
     void draw_backdrop(const GlCamera& camera, const Vec3f& low, const Vec3f& high);
-    /// Draws the model. `still`: notes what is hidden, so that `redraw_model` costs less.
+    /// Draws the model. With `still` it records the hidden surfaces, which makes `redraw_model` cheaper.
     void draw_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options, bool still = false);
-    /// Gives the surface inside the boxes its colours anew in a part of the picture, after the texture
-    /// changed there. Camera, section and depth must be those of the last `draw_model`; the result is what that
-    /// would draw now.
+    /// Redraws the surface inside the boxes in a part of the picture, after the texture changed there. Camera,
+    /// section and depth must be those of the last `draw_model`. The result is that of `draw_model` now.
     void redraw_model(const GlCamera& camera, const GlLight& light, const DrawOptions& options, const PixelRect& part,
                       std::span<const GlBox> changed);
     /// Draws the atlas flat into a part of the picture: `centre` in uv lies in its middle,

@@ -4,6 +4,8 @@
 
 #include <string_view>
 
+/// \file
+/// Access to the built-in shaders. Internal to `render/gl`.
 namespace tuft::render {
 
 /// Text of a file of shaders/ ("mesh/mesh.vert"), built in; empty for an unknown name.

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+/// \file
+/// Offscreen picture in graphics memory. `app` draws the view into it and copies parts to the window.
 namespace tuft::render {
 
 /// Part of a picture, pixels, lower left corner first as GL has it.

@@ -5,9 +5,11 @@
 
 #include "render/gl/gl_scene.h"
 
+/// \file
+/// The view of a scene, redrawn only where it changed. `app` draws every frame through it.
 namespace tuft::render {
 
-/// What the model looks like besides the camera.
+/// Appearance of the model, without the camera.
 struct GlLook {
     DrawOptions options;
     GlLight light;
@@ -16,10 +18,9 @@ struct GlLook {
     bool operator==(const GlLook&) const = default;
 };
 
-/// The view of a scene, antialiased, drawn anew only where something changed: the picture of
-/// the model is kept while the camera stands still, and ink that arrives is drawn into
-/// the part of it that it covers; the tuft is drawn over a copy. So a frame while painting costs
-/// little even where the driver draws in software.
+/// An antialiased view of a scene. The picture of the model is cached while the camera does not move. New ink is
+/// drawn into the part of it that it covers; the tuft is drawn over a copy. A frame during painting is therefore
+/// cheap even with a software driver.
 class GlView {
   public:
     GlView();
@@ -37,7 +38,7 @@ class GlView {
         GlLook look;
         const GlSolid* solid = nullptr;  ///< drawn over the model, or nullptr
         float opacity = 1;               ///< of the solid
-        bool moving = false;             ///< more camera changes follow at once: speed before smooth edges
+        bool moving = false;             ///< camera changes follow: fast, without smooth edges
         unsigned framebuffer = 0;        ///< where it goes, with its lower left corner at
         int x = 0, y = 0;
     };

@@ -5,11 +5,12 @@
 
 #include "core/geometry/types.h"
 
-/// A pinhole camera over the model frame, z up.
+/// \file
+/// Pinhole camera of a product picture, over the model frame, z up.
 namespace tuft::render {
 
-/// From where the model is seen. Azimuth turns about z: at 0 the camera stands on the
-/// -y side and looks towards +y, at π/2 on the +x side. Elevation lifts it above the ground.
+/// Viewpoint. Azimuth rotates about z: at 0 the camera is on the −y side and looks towards +y, at π/2 it is on the
+/// +x side. Elevation raises it above the ground.
 struct View {
     double azimuth = 0.6;          ///< radians
     double elevation = 0.45;       ///< radians, within ±π/2
@@ -27,10 +28,9 @@ struct Camera {
     int width = 1280, height = 720;                      ///< pixels
 };
 
-/// Camera for a picture of `width` × `height` pixels. Without a target the eye stands as
-/// near as lets every one of `points` (the object's vertices, metres) into the picture
-/// less its margins, exactly centred; without points it looks at the origin from 1 m.
-/// Throws `Error` for a picture size outside 1 … 16384 or a view out of range.
+/// Returns the camera for a picture of `width` × `height` pixels. Without a target the eye is as near as possible
+/// with all `points` (the object's vertices, metres) inside the margins, exactly centred. Without points it looks
+/// at the origin from 1 m. Throws `Error` for a picture size outside 1 … 16384 or a view out of range.
 Camera make_camera(const View& view, int width, int height, std::span<const Vec3f> points);
 
 /// Unit direction through picture position (x, y) in pixels; pixel (0, 0) is the top

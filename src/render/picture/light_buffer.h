@@ -7,8 +7,9 @@
 #include "render/picture/camera.h"
 #include "render/picture/light_cache.h"
 
-/// The light that falls on what each pixel's centre shows, sampled sparsely and then
-/// smoothed over the picture; edges of objects and of shadows stay.
+/// \file
+/// Light per pixel of a product picture: sampled sparsely, then smoothed over the picture with edges of objects and
+/// shadows preserved. Called by picture.h.
 namespace tuft::render {
 
 enum class Seen : std::uint8_t { backdrop, floor, object };

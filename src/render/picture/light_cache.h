@@ -7,11 +7,12 @@
 #include "render/picture/material.h"
 #include "render/picture/studio.h"
 
-/// Light that has bounced between the surfaces: a radiosity solution on small patches,
-/// one per voxel and facing direction. Pictures use it only for what a surface reflects.
+/// \file
+/// Indirect light: a radiosity solution on small patches, one per voxel and facing direction. Pictures use it only
+/// for light that a surface reflects.
 namespace tuft::render {
 
-/// What rays are traced against; references must outlive it.
+/// Scene for ray tracing; the references must outlive it.
 struct Scene {
     const mesh::TriangleMesh& mesh;
     const mesh::SurfaceQuery& query;

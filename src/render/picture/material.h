@@ -4,7 +4,8 @@
 
 #include "render/picture/picture.h"
 
-/// What the surface is made of at a point of the mesh.
+/// \file
+/// Material at a point of the mesh, for the product pictures.
 namespace tuft::render {
 
 /// Material at a hit: body reflectance (linear RGB), coat roughness, and the slope of the
@@ -23,9 +24,9 @@ class MaterialReader {
 
     Vec3f albedo(std::uint32_t triangle, float b1, float b2) const;
     Material read(std::uint32_t triangle, float b1, float b2) const;
-    /// Part of the light from a small lamp in direction `to_light` (unit, `normal` the surface's)
-    /// that the relief lets through: 0 in the shadow of higher ink beside it, soft over the lamp's
-    /// radius `blur` (radians). Appearance as far as 3 mm, within the chart.
+    /// Returns the fraction of light from a small lamp in direction `to_light` (unit; `normal` is the surface's)
+    /// that the relief lets through: 0 in the shadow of higher ink, soft over the lamp's radius `blur` (radians).
+    /// Looks up to 3 mm away, within the chart.
     float unshaded(std::uint32_t triangle, float b1, float b2, const Vec3f& normal, const Vec3f& to_light,
                    float blur) const;
     bool coated() const { return appearance_.finish == Finish::porcelain; }

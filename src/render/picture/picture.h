@@ -9,7 +9,8 @@
 #include "mesh/query/surface_query.h"
 #include "render/picture/camera.h"
 
-/// Product pictures of a textured model without a GPU or a screen.
+/// \file
+/// Product pictures of a textured model without a GPU or a screen. Called by `tuft` and by the studio's export.
 namespace tuft::render {
 
 /// RGB picture, sRGB encoded, 8 bits, row 0 at the top.

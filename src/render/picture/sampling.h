@@ -8,8 +8,9 @@
 #include "core/geometry/types.h"
 #include "core/random.h"
 
-/// Points for Monte Carlo sums: a (0,2)-sequence, shifted as a torus by a hash per pixel,
-/// so that every pixel is well stratified and neighbours differ.
+/// \file
+/// Sample points for Monte Carlo sums: a (0,2)-sequence, shifted as a torus by a hash per pixel. Every pixel is
+/// well stratified, and neighbours differ. Internal to `render/picture`.
 namespace tuft::render {
 
 /// Point i of Sobol's two-dimensional sequence, in [0,1)². Any first 2^k points are

@@ -4,8 +4,9 @@
 
 #include "core/geometry/types.h"
 
-/// The photographer's studio: three soft boxes, or a lamp from the side, a dim dome and a floor. "Light" is
-/// irradiance over π, so a white matt surface shows the light it gets as its colour.
+/// \file
+/// Light of the photographer's studio: three soft boxes or a lamp from the side, a dim dome and a floor. "Light" is
+/// irradiance over π, so a white matt surface shows its light as its colour. Internal to `render/picture`.
 namespace tuft::render {
 
 /// Flat rectangular lamp that shines towards its normal; its radiance falls off smoothly
