@@ -43,8 +43,8 @@ struct Memory {
 /// Contact at one pose.
 struct Result {
     brush::TuftState tuft;
-    std::vector<brush::ContactPlane> planes;  ///< planes of the last solve, as in brush::step
-    /// One per section of tuft.branches; empty when nothing is near.
+    std::vector<brush::ContactPlane> planes;  ///< of the last solve: one per node, one for all, or none
+    /// [branch][section], tip first, as tuft.branches; empty when nothing is near.
     std::vector<std::vector<brush::ContactPlane>> branch_planes;
     /// On the surface under the contact patch, n outward; t is parallel-transported from the previous stamp;
     /// moves with the hair.
@@ -60,8 +60,9 @@ struct Result {
     EffectivePatch patch;  ///< Method::vertices: vertices the projection plane is made from
 };
 
+/// Moves the brush to `pose`, finds the contact plane of every node and bends the tuft against the planes. The
 /// result is always finite. `dt` is in seconds since the last step. Throws `Error` for a pose that `brush::step`
-/// rejects. Cost: 50–200 µs. result is always finite. Cost: 50–200 µs.
+/// rejects. Cost: 50–200 µs.
 ///
 /// Broad phase: overlap of the oriented boxes of tuft and model. Contact is one-sided: a node is pushed to the side
 /// of the ferrule. This holds where a wall is thinner than the indentation, and where the ferrule itself has passed
