@@ -41,7 +41,12 @@ Vec2 page_uv(const Atlas& atlas, std::uint32_t page, const Vec2f& uv);
 /// Pages from a file retain its numbers.
 std::uint32_t udim_of(const Atlas& atlas, std::uint32_t page);
 
-enum class UvPolicy { automatic, keep, renew };
+/// Use of the UVs of the model's file.
+enum class UvPolicy {
+    automatic,  ///< retained if they are valid and on one page; otherwise new ones
+    keep,       ///< retained, also on several pages; `unwrap` throws when they are invalid
+    renew,      ///< always new ones
+};
 
 /// Edges that no chart may cross, in addition to the borders of the mesh.
 struct RequestedSeams {
@@ -51,10 +56,14 @@ struct RequestedSeams {
     bool any() const { return groups || sharp_angle > 0; }
 };
 
-/// Halving of large charts to cover pages of a given size better: never; where less than 65 % would be covered; or
-/// while the gain is large.
-enum class Cutting { never, where_useful, tight };
+/// Halving of large charts, to cover pages of a given size better.
+enum class Cutting {
+    never,
+    where_useful,  ///< where less than 65 % of the pages would be covered
+    tight,         ///< while the gain is large
+};
 
+/// Options of `unwrap`.
 struct UnwrapOptions {
     std::uint32_t size = 0;  ///< texels per side (of a page); 0: from texel_size
     double texel_size = 0;   ///< metres; used when size is 0. Both 0: size 2048
@@ -85,6 +94,7 @@ struct AtlasReport {
     std::vector<std::pair<std::string, double>> seconds;  ///< per phase, in order
 };
 
+/// Result of `unwrap`.
 struct Unwrapped {
     Atlas atlas;
     AtlasReport report;

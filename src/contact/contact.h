@@ -13,11 +13,13 @@ namespace tuft::contact {
 
 /// Method that finds the surface near the tuft.
 enum class Method {
-    exact,     ///< one plane per node, at the closest point on the triangles
-    vertices,  ///< source paper: one plane by the weighted-average distance of the tip over
-               ///< the nearest vertices; projection plane from the effective vertices
+    exact,  ///< one plane per node, at the closest point on the triangles
+    /// Source paper: one plane by the weighted-average distance of the tip over the nearest vertices; projection
+    /// plane from the effective vertices.
+    vertices,
 };
 
+/// Options of `step`.
 struct Options {
     Method method = Method::exact;
     double tolerance = 1e-3;       ///< metres: distance below which the device force is not 0
@@ -41,14 +43,16 @@ struct Memory {
 /// Contact at one pose.
 struct Result {
     brush::TuftState tuft;
-    std::vector<brush::ContactPlane> planes;  ///< planes of the last solve, as in brush::step
-    std::vector<std::vector<brush::ContactPlane>>
-        branch_planes;  ///< one per section of tuft.branches; empty when nothing is near
-    Frame frame;  ///< on the surface under the contact patch, n outward; t is parallel-transported from the previous
-                  ///< stamp; moves with the hair
+    std::vector<brush::ContactPlane> planes;  ///< of the last solve: one per node, one for all, or none
+    /// [branch][section], tip first, as tuft.branches; empty when nothing is near.
+    std::vector<std::vector<brush::ContactPlane>> branch_planes;
+    /// On the surface under the contact patch, n outward; t is parallel-transported from the previous stamp;
+    /// moves with the hair.
+    Frame frame;
     std::uint32_t triangle = kNone;  ///< under frame.origin; kNone when nothing is near
-    Vec3 travel{0};  ///< metres, world: displacement of the touching hair since the last sample; 0 at first contact.
-                     ///< Differs from that of the frame's origin over a crease
+    /// Metres, world: displacement of the touching hair since the last sample; 0 at first contact. Differs from
+    /// that of the frame's origin over a crease.
+    Vec3 travel{0};
     double distance = 0;   ///< metres from the tuft's skin to the surface; 0 when touching
     double inside = 0;     ///< metres, depth of the ferrule's mouth below the surface at the given pose
     Vec3 device_force{0};  ///< N, to a haptic device: gain, clamp and proximity applied
@@ -57,7 +61,8 @@ struct Result {
 };
 
 /// Moves the brush to `pose`, finds the contact plane of every node and bends the tuft against the planes. The
-/// result is always finite. Cost: 50–200 µs.
+/// result is always finite. `dt` is in seconds since the last step. Throws `Error` for a pose that `brush::step`
+/// rejects. Cost: 50–200 µs.
 ///
 /// Broad phase: overlap of the oriented boxes of tuft and model. Contact is one-sided: a node is pushed to the side
 /// of the ferrule. This holds where a wall is thinner than the indentation, and where the ferrule itself has passed

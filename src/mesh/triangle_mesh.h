@@ -17,11 +17,11 @@
 namespace tuft::mesh {
 
 struct TriangleMesh {
-    std::vector<Vec3f> positions;                             ///< [n_vertices], metres
-    std::vector<std::array<std::uint32_t, 3>> triangles;      ///< [n_triangles] vertex indices
-    std::vector<Vec3f> corner_normals;                        ///< [3 n_triangles], unit; split at creases above 40°
-    std::vector<std::uint32_t> neighbours;                    ///< [3 n_triangles] triangle over the edge from corner
-                                                              ///< k to corner k+1, kNone on a border
+    std::vector<Vec3f> positions;                         ///< [n_vertices], metres
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< [n_triangles] vertex indices
+    std::vector<Vec3f> corner_normals;                    ///< [3 n_triangles], unit; split at creases above 40°
+    /// [3 n_triangles] triangle over the edge from corner k to corner k+1, kNone on a border.
+    std::vector<std::uint32_t> neighbours;
     std::vector<Vec2f> corner_uvs;                            ///< [3 n_triangles] as in the file (v up), or empty
     std::vector<std::array<std::uint8_t, 4>> vertex_colours;  ///< [n_vertices] RGBA, or empty
     std::vector<std::uint32_t> triangle_groups;               ///< [n_triangles] index into group_names, or empty

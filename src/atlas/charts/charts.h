@@ -20,8 +20,8 @@ struct ChartOptions {
     double largest = 1.35;   ///< largest stretch at 99.9 % of a chart's area
     double l2_all = 1.0028;  ///< largest mean stretch of all charts together, after merging
     double worst = 3;        ///< largest stretch of a triangle, where possible
-    double longest =
-        1.35;  ///< long side of a chart's smallest rectangle, over the unit: the width of a page that is half covered
+    /// Long side of a chart's smallest rectangle, over the unit: the width of a page that is half covered.
+    double longest = 1.35;
     double grown = 0.3;                ///< largest fraction of the surface of a chart while seams move
     std::uint32_t triangles = 200000;  ///< most triangles of a chart: the cost of flattening grows faster than linearly
     RequestedSeams seams;              ///< no chart crosses these

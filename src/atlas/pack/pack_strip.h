@@ -47,7 +47,7 @@ class Strip {
         return gap_[y] >= cells;
     }
     void measure_gap(std::uint32_t y);
-    /// `valid`: room for a row's places, an array or a span.
+    /// `valid`: buffer for the positions of a row, an array or a span.
     template <class Words>
     Spot find_among(const Mask& mask, std::uint32_t from_row, std::uint32_t limit, Words valid);
     /// Clears the places where the run hits something; false when none is left.

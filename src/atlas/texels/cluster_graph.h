@@ -13,12 +13,13 @@ namespace tuft::atlas {
 /// A cluster: connected texels of one chart in one tile (a quarter of it where it bends), with
 /// normals within 35° of a seed. Its frame sits at one of its own texels.
 struct TexelCluster {
-    Vec3f centre{0};             ///< metres, a texel near the middle
-    Vec3f normal{0, 0, 1};       ///< unit, of that texel
-    Vec3f tangent{1, 0, 0};      ///< unit; the frame's b is normal × tangent
-    float radius = 0;            ///< metres: no texel centre of the cluster is further from `centre`
-    Vec3f outward{0};            ///< metres: unit vectors out over the open borders of the mesh
-                                 ///< that the cluster lies on, times their lengths, summed
+    Vec3f centre{0};         ///< metres, a texel near the middle
+    Vec3f normal{0, 0, 1};   ///< unit, of that texel
+    Vec3f tangent{1, 0, 0};  ///< unit; the frame's b is normal × tangent
+    float radius = 0;        ///< metres: no texel centre of the cluster is further from `centre`
+    /// Metres: unit vectors out over the open borders of the mesh that the cluster lies on, times their lengths,
+    /// summed.
+    Vec3f outward{0};
     float cone_cos = 1;          ///< smallest dot product of a texel's normal with `normal`
     std::uint32_t slot = kNone;  ///< tile, in the order of `TexelMap::tiles`
     std::uint32_t chart = 0;

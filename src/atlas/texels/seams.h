@@ -22,7 +22,7 @@ struct SeamSide {
 struct SeamSample {
     SeamSide a, b;
     Vec3 position{0};   ///< metres
-    double length = 0;  ///< texels of the seam it stands for, mean of both sides
+    double length = 0;  ///< texels of the seam that the sample represents, mean of both sides
 };
 
 /// An edge of the mesh whose two triangles do not share it in the atlas.

@@ -20,7 +20,7 @@ inline constexpr std::uint8_t kNoCluster = 255;
 /// Area and cluster of the texels of one occupied tile, texel t = row * 16 + column. Texels outside every chart
 /// have cluster == kNoCluster and zero area.
 struct TexelTile {
-    /// m² of surface the texel stands for; beside seams those of both charts share it (border_cells.h)
+    /// m² of surface of the texel; beside seams those of both charts share it (border_cells.h)
     alignas(64) std::array<float, kTileTexels> area;
     alignas(64) std::array<std::uint8_t, kTileTexels> cluster;  ///< index of the texel's cluster in this tile
 };
@@ -58,17 +58,17 @@ struct PackedBox {
 /// Occupied tiles ("slots") of an atlas in row-major tile order. Everything that is
 /// stored per texel elsewhere (ink, wetness) is stored per slot in this order.
 struct TexelMap {
-    std::uint32_t size = 0;                    ///< texels per side of the atlas
-    std::uint32_t tiles_per_side = 0;          ///< ceil(size / 16)
-    double texel_size = 0;                     ///< metres, mean
-    std::vector<std::uint32_t> slot_of_tile;   ///< [tiles_per_side²] slot or kNone
-    std::vector<std::uint32_t> tile_of_slot;   ///< [n_slots] tile index = ty * tiles_per_side + tx
-    std::vector<TexelTile> tiles;              ///< [n_slots]
-    std::vector<TexelShape> shapes;            ///< [n_slots], or empty when packed
-    std::vector<PackedShape> packed;           ///< [n_slots], or empty
-    std::vector<PackedBox> boxes;              ///< [n_clusters] when packed
-    std::vector<float> reach;                  ///< [n_slots] metres: neighbouring texels further
-                                               ///< apart than this do not hang together
+    std::uint32_t size = 0;                   ///< texels per side of the atlas
+    std::uint32_t tiles_per_side = 0;         ///< ceil(size / 16)
+    double texel_size = 0;                    ///< metres, mean
+    std::vector<std::uint32_t> slot_of_tile;  ///< [tiles_per_side²] slot or kNone
+    std::vector<std::uint32_t> tile_of_slot;  ///< [n_slots] tile index = ty * tiles_per_side + tx
+    std::vector<TexelTile> tiles;             ///< [n_slots]
+    std::vector<TexelShape> shapes;           ///< [n_slots], or empty when packed
+    std::vector<PackedShape> packed;          ///< [n_slots], or empty
+    std::vector<PackedBox> boxes;             ///< [n_clusters] when packed
+    /// [n_slots] metres: neighbouring texels further apart than this are not connected on the surface.
+    std::vector<float> reach;
     std::vector<std::uint32_t> cluster_start;  ///< [n_slots + 1] clusters, counted slot by slot
     std::vector<std::uint32_t> cluster_chart;  ///< [n_clusters]
 
@@ -77,7 +77,7 @@ struct TexelMap {
     Vec3f normal(std::uint32_t slot, int texel) const;
 };
 
-/// Positions and normals of a tile: the map's own, or unpacked into `room`. About 0.1 µs
+/// Positions and normals of a tile: the map's own, or unpacked into the buffer `room`. About 0.1 µs
 /// when packed.
 const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& room);
 

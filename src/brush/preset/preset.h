@@ -38,20 +38,21 @@ struct Preset {
     double tip_stiffness = 2e-4;  ///< fraction of B0, added along the whole length: the hairs that reach the tip
     double yield = 0.7;           ///< e = M_e0 L / B0; 0 means it never yields
     double gamma = -1;            ///< γ of the yield stress
-    double plastic_share =
-        0.3;  ///< fraction of the stiffness that yields; 1: ideally plastic as in the paper; below 1 the set saturates
+    /// Fraction of the stiffness that yields; 1: ideally plastic as in the paper; below 1 the set saturates.
+    double plastic_share = 0.3;
 
-    double recovery = 4;    ///< s, time constant of the recovery of a small set without load; 0: none. A large set
-                            ///< recovers slower or not
-    double damping = 3e-3;  ///< s, viscous over elastic stiffness of the wet bundle; time constant of hair that slips
-                            ///< off an edge or buckles
+    /// s, time constant of the recovery of a small set without load; 0: none. A large set recovers slower or not.
+    double recovery = 4;
+    /// s, viscous over elastic stiffness of the wet bundle; time constant of hair that slips off an edge or
+    /// buckles.
+    double damping = 3e-3;
 
     // Contact.
     double transverse_stiffness = 1.2e4;  ///< k_c, N/m²: force per length per indentation of the tuft's side
     double core_stiffness = 150;          ///< factor on k_c for packed hair
     double core_start = 0.65;             ///< indentation over radius at which it is packed
-    double end_compliance =
-        5e-4;  ///< m, scatter of the hair ends: shortening of the point at the buckling load under end-on pressure
+    /// m, scatter of the hair ends: shortening of the point at the buckling load under end-on pressure.
+    double end_compliance = 5e-4;
     double adhesion = 0.5;                            ///< N/m, adhesion of the wet film per length of hair; 0 when dry
     double adhesion_range = 1e-3;                     ///< m, gap at which the film breaks
     double friction_wet = 0.30, friction_dry = 0.45;  ///< Coulomb μ

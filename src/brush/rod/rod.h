@@ -35,6 +35,7 @@ namespace tuft::brush::rod {
 inline constexpr int kFibres = 16;
 inline constexpr int kMaxSegments = 128;
 
+/// A rod of n segments, in units of L and B0.
 struct Rod {
     std::vector<double> length;     ///< [n] segment lengths
     std::vector<double> stiffness;  ///< [n] joint k_j; joint j sits at the root of segment j
@@ -90,23 +91,24 @@ struct Wall {
 
 /// Contact law of all nodes, in units of L and B0.
 struct Law {
-    int points_per_segment =
-        1;  ///< contact points per segment: one node and the points between, whose planes and radii are interpolated
+    /// Contact points per segment: one node and the points between, whose planes and radii are interpolated.
+    int points_per_segment = 1;
     bool hard = false;          ///< exact non-penetration by an augmented Lagrangian
     double stiffness = 1e4;     ///< k_c, force per length per indentation; penalty when hard
-    double core_stiffness = 0;  ///< further k beyond core_start · radius
+    double core_stiffness = 0;  ///< further stiffness at indentations beyond core_start · radius
     double core_start = 0.65;
-    double onset = 0;         ///< indentation over which a stiffness rises from 0, which smooths its kink
-    double end_friction = 1;  ///< fraction of μ of hair normal to the surface; the rest grows with sin² of the angle
-                              ///< between hair and normal
-    double recovery = 0;      ///< Δt/T of the recovery of the set; see `recover_joint`
-    double end_compliance = 0;  ///< shortening of the hair ends at the buckling load when normal to the surface; less
-                                ///< with tilt; 0: none. Fades to 0 at 4 end_compliance behind the tip
-    double damping = 0;         ///< viscous stiffness over elastic stiffness of the joints:
-                                ///< η/(k Δt) of backward Euler
-    double edge =
-        0;  ///< rounding length of creases (wedge.h). At a crease a node has two planes, or neighbouring nodes have
-            ///< different ones. A point stays outside both planes (corner) or either (edge). 0: one plane each
+    double onset = 0;  ///< indentation over which a stiffness rises from 0, which smooths its kink
+    /// Fraction of μ of hair normal to the surface; the rest grows with sin² of the angle between hair and normal.
+    double end_friction = 1;
+    double recovery = 0;  ///< Δt/T of the recovery of the set; see `recover_joint`
+    /// Shortening of the hair ends at the buckling load when normal to the surface; less with tilt; 0: none.
+    /// Fades to 0 at 4 end_compliance behind the tip.
+    double end_compliance = 0;
+    /// Viscous stiffness over elastic stiffness of the joints: η/(k Δt) of backward Euler.
+    double damping = 0;
+    /// Rounding length of creases (wedge.h). At a crease a node has two planes, or neighbouring nodes have
+    /// different ones. A point stays outside both planes (corner) or either (edge). 0: one plane each.
+    double edge = 0;
     double adhesion = 0;        ///< adhesion per length of a wet node at gap 0; it falls
     double adhesion_range = 0;  ///< as (1 − gap/range)² to 0 at this gap
     double friction = 0;        ///< μ
@@ -120,6 +122,7 @@ struct Law {
     double pass_tolerance = 1e-2;  ///< change of normal forces between passes, relative
 };
 
+/// External load at the tip, in units of L and B0.
 struct Load {
     Vec3 tip_force{0};
     double end_moment = 0;  ///< about e = tangent × toward of the clamp; positive bends towards `toward`
@@ -133,6 +136,7 @@ struct JointMemory {
     bool yielded = false;              ///< false: every strain equals the bend
 };
 
+/// Friction state of one contact point.
 struct ContactMemory {
     bool touching = false;
     Vec3 anchor{0};
@@ -142,23 +146,25 @@ struct ContactMemory {
     double multiplier = 0;  ///< hard contact
 };
 
+/// State of the rod from one solve to the next.
 struct Memory {
     Clamp clamp;
     std::vector<Vec3> tangent;  ///< [n] unit
-    std::vector<Vec3>
-        turn;          ///< [n] change of each tangent in the last solve, clamp's frame, for the first guess; or empty
-    double moved = 0;  ///< displacement of the clamp in the last solve
+    /// [n] change of each tangent in the last solve, clamp's frame, for the first guess; or empty.
+    std::vector<Vec3> turn;
+    double moved = 0;                    ///< displacement of the clamp in the last solve
     std::vector<Vec3> node;              ///< [n+1]
     std::vector<JointMemory> joint;      ///< [n]
     std::vector<ContactMemory> contact;  ///< [points_per_segment n + 1], then one per wall
 };
 
+/// Result of one solve, in units of L and B0.
 struct Result {
     bool converged = false;
     int iterations = 0, passes = 0;
     double bend_energy = 0;  ///< stored in the joints
-    double contact_energy =
-        0;  ///< stored in indented and sticking contacts and in the wet film (negative while it attracts)
+    /// Stored in indented and sticking contacts and in the wet film (negative while it attracts).
+    double contact_energy = 0;
     double dissipation = 0;            ///< by yielding, slip and damping in this solve
     std::vector<double> moment;        ///< [n] |m| at the joints
     std::vector<double> normal_force;  ///< [n+1], of the contact points, distributed to the nodes
@@ -195,8 +201,9 @@ struct Probe {
     double value = 0;
     std::vector<double> gradient;
     std::vector<double> hessian;  ///< [2n × 2n] lower half, column major
-    std::vector<double> step;  ///< Newton step, with `damping` times the joint stiffness added to each segment's pivot;
-                               ///< empty where that is not positive definite
+    /// Newton step, with `damping` times the joint stiffness added to each segment's pivot; empty where that is
+    /// not positive definite.
+    std::vector<double> step;
 };
 Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles, const Law& law,
                    const Load& load, std::span<const double> x, double damping = 0);

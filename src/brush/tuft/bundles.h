@@ -23,8 +23,8 @@ struct Bristle {
 struct Bundles {
     std::uint64_t seed = 0;
     std::vector<Vec2> place;  ///< [n] position in the section, unit disc
-    std::vector<double>
-        holds;  ///< [n] seeded, about 1: film that the bundle leaves on the surface, relative to the mean
+    /// [n] seeded, about 1: film that the bundle leaves on the surface, relative to the mean.
+    std::vector<double> holds;
     std::vector<double> resists;     ///< [n] seeded, about 1: factor on the splitting threshold
     std::vector<double> separation;  ///< [n] state: 0 joined to the others … 1 separate
     std::vector<Bristle> bristles;

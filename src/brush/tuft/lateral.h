@@ -41,8 +41,8 @@ struct LateralSide {
 
 /// Factorised springs of one row of side nodes, reusable for several loads.
 struct LateralRow {
-    std::vector<std::array<double, 3>>
-        band;  ///< lower half of their matrix in v: [i][d] is element (i, i − d); the root's row fixes it at 0
+    /// Lower half of their matrix in v: [i][d] is element (i, i − d); the root's row fixes it at 0.
+    std::vector<std::array<double, 3>> band;
     std::vector<double> weight, taper;  ///< w_i, metres; r_i / r_0
     double wall = 0;                    ///< κ_w, N/m²
     std::array<double, 2> at_root{};    ///< elements (1, 0) and (2, 0) before the root was fixed

@@ -34,13 +34,13 @@ struct Spine {
     Vec3 wide{1, 0, 0};               ///< unit, ferrule frame: direction e at the root of the last step
     double root_width = 0;            ///< m, half-width at the root of a sub-spine; 0: that of the ferrule
     Vec2 one_sided{0};                ///< mean direction of splayed hair, across the clamp; see upright_hair.h
-    std::vector<Vec3> side;           ///< side nodes of the last step, metres from the root, ferrule
-                                      ///< frame, tip first, two to a node; or empty
-    std::vector<double> flank;        ///< m, half-widths of those side nodes without walls; or empty
-    std::vector<double> aside;        ///< [n+1] m, shift of the side nodes along e by friction, or empty
-    std::vector<signed char> slips;   ///< [n+1] nodes that slipped in the last step, or empty
-    double aside_energy = 0;          ///< J, stored in their springs by that shift
-    double pressed = 0;               ///< contact energy of the last solve, B0/L
+    /// Side nodes of the last step, metres from the root, ferrule frame, tip first, two to a node; or empty.
+    std::vector<Vec3> side;
+    std::vector<double> flank;       ///< m, half-widths of those side nodes without walls; or empty
+    std::vector<double> aside;       ///< [n+1] m, shift of the side nodes along e by friction, or empty
+    std::vector<signed char> slips;  ///< [n+1] nodes that slipped in the last step, or empty
+    double aside_energy = 0;         ///< J, stored in their springs by that shift
+    double pressed = 0;              ///< contact energy of the last solve, B0/L
 };
 
 /// Persistent state of one tuft. `make_tuft` makes it; a copy is a snapshot.

@@ -27,8 +27,8 @@ struct SectionOutput {
     std::vector<double> aside;                   ///< as in Spine
     std::vector<signed char> slips;              ///< as in Spine
     double aside_energy = 0, spread_energy = 0;  ///< J
-    std::vector<Vec3>
-        sides;  ///< side nodes from the root, metres, ferrule frame, tip first; the side of e, then the other
+    /// Side nodes from the root, metres, ferrule frame, tip first; the side of e, then the other.
+    std::vector<Vec3> sides;
     std::vector<double> flank;  ///< as in Spine
 };
 

@@ -33,15 +33,15 @@ std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails,
 
 /// Wetness and motion of the touching hair.
 struct HairInk {
-    std::span<const double>
-        wet;  ///< [bundles] film of a bundle over the film that closes the gaps between its hairs; ≥ 1: closed
+    /// [bundles] film of a bundle over the film that closes the gaps between its hairs; ≥ 1: closed.
+    std::span<const double> wet;
     double travel = 0;  ///< metres of the stroke so far: the phase of the bristles' rolling
     Vec2 way{0};        ///< unit, direction of the tuft's motion in (u, v); zero: at rest
-    std::span<const Trail> before =
-        {};            ///< previous stamp's, in this one's frame: give each hair's direction; empty: `way`
+    /// Previous stamp's, in this one's frame: give each hair's direction; empty: `way`.
+    std::span<const Trail> before = {};
     double lands = 0;  ///< 0–1: fraction of the hand's motion that is pressing or lifting
-    Vec2 course{
-        0};  ///< direction of the hand's motion without pressing and lifting, any length, in (u, v); zero: at rest
+    /// Direction of the hand's motion without pressing and lifting, any length, in (u, v); zero: at rest.
+    Vec2 course{0};
     double swings = 0;  ///< 0–1: sine of the angle between the tuft's motion over its last millimetre and `course`
 };
 

@@ -15,12 +15,12 @@ namespace tuft::footprint {
 /// one side, the tail point and the cut points of the other side (variable-stiffness
 /// brush paper, section 4.1).
 struct Outline {
-    Vec2 tip{0};                ///< T: front end
-    Vec2 tail{0};               ///< H: rear end
-    std::vector<Vec2> left;     ///< cut points from tip to tail
-    std::vector<Vec2> right;    ///< their mirror images where the tuft is symmetric
-    std::vector<Vec2> control;  ///< of the spline, cyclic: point k of the curve at knot k is
-                                ///< (control[k-1] + 4 control[k] + control[k+1]) / 6
+    Vec2 tip{0};              ///< T: front end
+    Vec2 tail{0};             ///< H: rear end
+    std::vector<Vec2> left;   ///< cut points from tip to tail
+    std::vector<Vec2> right;  ///< their mirror images where the tuft is symmetric
+    /// Of the spline, cyclic: point k of the curve at knot k is (control[k-1] + 4 control[k] + control[k+1]) / 6.
+    std::vector<Vec2> control;
 };
 
 struct OutlineOptions {

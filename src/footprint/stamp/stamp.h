@@ -25,6 +25,7 @@ enum class Mapping : std::uint8_t {
     plane,  ///< paper: from the projection plane along the surface's normals
 };
 
+/// A model and its texels; the references must outlive it.
 struct Surface {
     const mesh::TriangleMesh& mesh;
     const atlas::Atlas& atlas;
@@ -39,6 +40,7 @@ struct Motion {
     double turn = 0;  ///< radians, counter-clockwise
 };
 
+/// Options of `plan_stamp` and `choose_mode`.
 struct StampOptions {
     Mapping mapping = Mapping::log;
     double enter = 0.015;   ///< discrepancy over radius above which each cluster gets a frame
@@ -46,8 +48,8 @@ struct StampOptions {
     double sub_pose = 1.0;  ///< largest displacement of any point between sub-poses, texels
     int max_sub_poses = 64;
     int prefix_sums = 12;  ///< number of sub-poses from which a straight motion is integrated by prefix sums
-    float passes_over =
-        0;  ///< 0–1: weight of the maximum over a straight motion, against the mean; for hairs finer than a texel
+    /// 0–1: weight of the maximum over a straight motion, against the mean; for hairs finer than a texel.
+    float passes_over = 0;
     Isa isa = best_isa();
 };
 
@@ -65,6 +67,7 @@ struct ClusterFrame {
     std::uint8_t partial_quadrants = kAllQuadrants;  ///< other quadrants in which it may cover some of it
 };
 
+/// The frames of one tile that a stamp may touch.
 struct TileJob {
     std::uint32_t slot = kNone;
     std::uint32_t first = 0, count = 0;  ///< in `StampJobs::frames`
@@ -84,8 +87,8 @@ struct StampJobs {
     std::vector<SubPose> sub_poses;    ///< evenly spaced over the motion
     Vec2f reach_lo{0}, reach_hi{0};    ///< cells: bounds of the picture in all sub-poses
     ClusterFrame stamp_frame;          ///< serves all clusters when not piecewise
-    std::vector<ClusterFrame>
-        frames;  ///< one for each cluster reached, by slot; without a position where discrepancy is below `leave`
+    /// One for each cluster reached, by slot; without a position where discrepancy is below `leave`.
+    std::vector<ClusterFrame> frames;
     std::vector<TileJob> tiles;  ///< by slot
     double discrepancy = 0;      ///< between one frame and one per cluster, over the radius
     bool piecewise = false;      ///< set by `choose_mode`

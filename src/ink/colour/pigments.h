@@ -62,17 +62,19 @@ struct InkPart {
 
 /// An ink before it is loaded.
 struct Ink {
-    std::string name;                  ///< preset name: file stem
-    std::string title;                 ///< for people
-    std::vector<InkPart> parts;        ///< fractions sum to at most 1
-    double film = 1.8;                 ///< film units that a full brush deposits
-    double supply = 0.004;             ///< η: fraction of the tuft's ink offered per supply length
-    double supply_length = 0.5e-3;     ///< metres of travel
-    double transfer_length = 0.08e-3;  ///< s0, metres of travel in which a texel takes up its film; short against the
-                                       ///< thinnest hairline, so that this is black too
+    std::string name;               ///< preset name: file stem
+    std::string title;              ///< for people
+    std::vector<InkPart> parts;     ///< fractions sum to at most 1
+    double film = 1.8;              ///< film units that a full brush deposits
+    double supply = 0.004;          ///< η: fraction of the tuft's ink offered per supply length
+    double supply_length = 0.5e-3;  ///< metres of travel
+    /// s0, metres of travel in which a texel takes up its film; short against the thinnest hairline, so that this
+    /// is black too.
+    double transfer_length = 0.08e-3;
 
-    double yield = 0;  ///< Pa: yield stress of the wet ink; below it the ink keeps its shape, like a paste (heavy oil
-                       ///< colour 100 to 1000). 0: it flows
+    /// Pa: yield stress of the wet ink; below it the ink keeps its shape, like a paste (heavy oil colour 100 to
+    /// 1000). 0: it flows.
+    double yield = 0;
 
     /// Sum of the fractions: 1 for undiluted ink.
     double strength() const;

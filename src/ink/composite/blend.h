@@ -11,10 +11,11 @@ namespace tuft::ink {
 /// in all three.
 enum class Blend {
     normal,  ///< films absorb and scatter (Kubelka–Munk): R0 + T² R / (1 − R0 R), film by film
-    glaze,  ///< films only absorb, like colour in clear varnish: S = 0, R · exp(−2 Σ w K). Pigments without absorption,
-            ///< such as whites, are invisible
-    multiply,  ///< filter of the films' colour: R · R_white, with R_white their reflectance over ideal white; never
-               ///< lightens
+    /// Films only absorb, like colour in clear varnish: S = 0, R · exp(−2 Σ w K). Pigments without absorption,
+    /// such as whites, are invisible.
+    glaze,
+    /// Filter of the films' colour: R · R_white, with R_white their reflectance over ideal white; never lightens.
+    multiply,
 };
 /// "normal", "glaze", "multiply"; and back, nothing for any other word.
 const char* name_of(Blend blend);

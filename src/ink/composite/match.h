@@ -31,8 +31,8 @@ inline constexpr double kWorthThickness = 0.5;
 Rgb colour_on(const Ink& ink, const Substrate& substrate, double film = 0);
 
 struct MatchOptions {
-    double film = kMixFilm;      ///< X, film units; 0: as many as the colour needs, up to
-                                 ///< `kThickestMix` and to what stays on the substrate
+    /// X, film units; 0: as many as the colour needs, up to `kThickestMix` and to what stays on the substrate.
+    double film = kMixFilm;
     std::size_t most_parts = 4;  ///< pigments in the mix, 1 to 4
 };
 
@@ -112,7 +112,7 @@ std::vector<Pigment> shipped_pigments();
 std::optional<Rgb> colour_of_hex(std::string_view text);
 std::string to_hex(const Rgb& linear);
 
-/// The same, or where a canvas that has the pigments `held` has no room for those of the mix
+/// The same, or where a canvas that has the pigments `held` has no free planes for those of the mix
 /// (`kMaxPigments`), the nearest mix of the held ones.
 ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::span<const Pigment> held,
                             const MatchOptions& options = {});

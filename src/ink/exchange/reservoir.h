@@ -18,8 +18,8 @@ namespace tuft::ink {
 /// Division of the hair into cells: bundles side by side, each with cells from root to tip.
 struct ReservoirLayout {
     std::vector<Vec2> bundles{Vec2{0}};  ///< [n_bundles] positions in the section, unit disc
-    std::vector<double> cell_ends{
-        1};  ///< [n_cells] end of each cell, fraction of the length from the root; increasing, the last is 1
+    /// [n_cells] end of each cell, fraction of the length from the root; increasing, the last is 1.
+    std::vector<double> cell_ends{1};
     std::vector<double> cell_capacities{1};  ///< [n_cells] fraction of a bundle's capacity; sum 1
     double refill_time = 0.04;               ///< s, time constant of flow between adjacent cells of a bundle
     double side_time = 0.25;                 ///< s, time constant of flow between neighbouring bundles
@@ -50,8 +50,8 @@ struct Reservoir {
     std::size_t n_bundles() const { return layout.bundles.size(); }
     std::size_t n_cells() const { return layout.cell_ends.size(); }  ///< of each bundle
 
-    double remaining() const;
-    double pigment(int plane) const;
+    double remaining() const;         ///< film·m² of wet ink in all cells
+    double pigment(int plane) const;  ///< film·m² of one plane in all cells
     double water() const { return pigment(kMaxPigments); }
     /// Content over capacity, 0–1: of the tuft; of a cell.
     double fullness() const;
@@ -72,14 +72,14 @@ struct Reach {
     double side = 0;   ///< fraction of the width, from the sections' +x side (> 0) or −x side (< 0), −1–1; 0: all
 };
 
-inline constexpr double kMostLevel =
-    1.5;  ///< largest level of a dip; more drips off before the tuft reaches the surface
+/// largest level of a dip; more drips off before the tuft reaches the surface
+inline constexpr double kMostLevel = 1.5;
 
 /// Depth and level of a dip.
 struct Dip {
     double depth = 1;  ///< as `Reach`
-    double level =
-        1;  ///< saturation of the filled cells, at most kMostLevel; the excess over 1 runs off the hair (`shed`)
+    /// Saturation of the filled cells, at most kMostLevel; the excess over 1 runs off the hair (`shed`).
+    double level = 1;
     double side = 0;  ///< as `Reach`
 };
 
@@ -153,8 +153,8 @@ struct StampContact {
     double width = 0;          ///< metres across the motion, gaps between hairs left out
     double area = 0;           ///< m² of the contact patch
     double pending = 0;        ///< film·m² already deposited but not yet withdrawn from the tuft
-    double by_hair =
-        0;  ///< 0–1: fraction of contact by single hairs, which leave a film of their own thickness or none
+    /// 0–1: fraction of contact by single hairs, which leave a film of their own thickness or none.
+    double by_hair = 0;
     std::span<const float> touch = {};  ///< as `ContactCells`; empty: the whole tuft alike
 };
 

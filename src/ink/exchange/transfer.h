@@ -34,8 +34,8 @@ void withdraw(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch,
 struct TransferParams {
     DepositParams deposit;                 ///< target, transfer_length, capacity, extinction; not its mix
     std::array<float, kNodes> exchange{};  ///< fraction of the liquid that a contact renews at each node: 1 − exp(−...)
-    std::array<float, kFirmnessSamples>
-        rub{};         ///< rubbing of the bundles across the patch, relative to the mean: `rub_of`
+    /// Rubbing of the bundles across the patch, relative to the mean: `rub_of`.
+    std::array<float, kFirmnessSamples> rub{};
     float uptake = 0;  ///< 0–1: uptake coefficient of liquid above the target
     float room = 0;    ///< film units of free capacity in the hair beyond what it gives
     float pour = 0;    ///< film units that run off the tuft, whatever the film's thickness

@@ -36,9 +36,9 @@ struct FilmParams {
     double bead_speed = 8e-3;       ///< m/s, speed of a bead of √2 times the radius at which it stops
     double drain = 2;               ///< 1/s: rate at which a bead draws in near liquid above `hold`
     double trail = 0.9;             ///< film units that a bead leaves behind
-    double shortest_step =
-        0.05;  ///< seconds; a fifth on relief, half under liquid. Where stability needs shorter steps, the fastest
-               ///< flows are limited, or computed between blocks of texels; beside seams such steps are divided
+    /// Seconds; a fifth on relief, half under liquid. Where stability needs shorter steps, the fastest flows are
+    /// limited, or computed between blocks of texels; beside seams such steps are divided.
+    double shortest_step = 0.05;
 };
 
 /// Returns the parameters of a substrate (diffusion, threshold, edge, absorbency, pores, evaporation, relief) and

@@ -18,8 +18,8 @@ struct PoolOptions {
     double pin = 1.5;       ///< film units needed to wet dry texels
     double reach = 0.6e-3;  ///< metres over which ink settles
     double strength = 1;    ///< of the ink: pigments in a film unit
-    std::function<bool(std::uint32_t slot, int texel)> free =
-        {};  ///< empty: all; no ink crosses to or from texels that are not free
+    /// Empty: all; no ink crosses to or from texels that are not free.
+    std::function<bool(std::uint32_t slot, int texel)> free = {};
 };
 
 /// Returns the height of dry paint above the substrate, micrometres: `TileAppearance::height` without the open

@@ -49,8 +49,8 @@ class ExactGeodesics {
         std::array<double, 3> length;
         std::array<Vec2, 3> third;             ///< corner k + 2 in the frame of edge k
         std::array<std::uint32_t, 3> windows;  ///< first window entering over edge k; kNone: none
-        std::array<double, 3> nearest,
-            crossing;  ///< shortest path over edge k to the third corner: length, crossing point on the edge
+        /// Shortest path over edge k to the third corner: length, crossing point on the edge.
+        std::array<double, 3> nearest, crossing;
     };
     struct Vertex {
         double distance = std::numeric_limits<double>::infinity();
@@ -64,8 +64,8 @@ class ExactGeodesics {
         Vec2 source;    ///< below the edge
         double before;  ///< metres from the origin to the source: 0, or the distance of a vertex
         Vec2 turn;      ///< rotates directions into the frame of edge 0 of the origin's triangle
-        std::uint32_t root,
-            next;  ///< vertex at the source, or kNone; next window of the face
+        /// Vertex at the source, or kNone; next window of the face.
+        std::uint32_t root, next;
     };
     /// A vertex that a path reaches in direction `onward` (frame of edge `corner`).
     struct Arrival {

@@ -27,8 +27,8 @@ struct RepairReport {
     std::size_t polygons_triangulated = 0;  ///< with more than three corners
     bool loose_triangles = false;           ///< every corner has its own point, as in STL
     std::size_t vertices_welded = 0;        ///< removed because they coincide with another
-    std::size_t crack_vertices_welded =
-        0;  ///< removed because they lie within 1e-6 of the size: border vertices of loose triangles
+    /// Removed because they lie within 1e-6 of the size: border vertices of loose triangles.
+    std::size_t crack_vertices_welded = 0;
     std::size_t unused_vertices_dropped = 0;
     std::size_t degenerate_faces_dropped = 0;   ///< repeated corner or zero area
     std::size_t degenerate_faces_repaired = 0;  ///< a corner on the opposite side: that side flipped

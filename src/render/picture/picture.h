@@ -53,9 +53,9 @@ struct PictureOptions {
     View view;
     bool floor = true;  ///< stands on a seamless studio floor with its shadow
     Lights lights = Lights::studio;
-    double light_azimuth = 0;  ///< radians the lights are turned about z, raking light about the
-                               ///< camera's axis; they follow the camera
-    double exposure = 1;       ///< factor on the light
+    /// Radians the lights are turned about z, raking light about the camera's axis; they follow the camera.
+    double light_azimuth = 0;
+    double exposure = 1;    ///< factor on the light
     int edge_samples = 16;  ///< rays per pixel on edges, up to eight times as many on thin lights (a quarter elsewhere)
     int light_samples = 28;  ///< rays per pixel towards lights and surroundings
     std::uint64_t seed = 1;
