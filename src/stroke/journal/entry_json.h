@@ -32,6 +32,9 @@ Vec3 vector_of(const nlohmann::json& json);
 /// undefined.
 std::uint32_t number_of(const nlohmann::json& json, const char* name);
 
+nlohmann::json json_of(const StrokeSettings& settings);
+StrokeSettings settings_of(const nlohmann::json& json);
+
 nlohmann::json json_of(const LayerEdit& edit);
 LayerEdit layer_edit_of(const nlohmann::json& json);
 

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/text/nesting.h"
 #include "core/text/text.h"
+#include "stroke/journal/entry_json.h"
 
 namespace tuft::stroke {
 namespace {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "brush/preset/preset.h"
@@ -59,8 +58,6 @@ contact::Method contact_method_of(const std::string& name);        ///< exact, v
 /// Settings as one line of JSON, and back; unknown keys are ignored, wrong types and values throw `Error`.
 std::string to_json(const StrokeSettings& settings);
 StrokeSettings settings_from_json(const std::string& json);
-nlohmann::json json_of(const StrokeSettings& settings);
-StrokeSettings settings_of(const nlohmann::json& json);
 /// Throws `Error` for a number out of range.
 void check_settings(const StrokeSettings& settings);
 
