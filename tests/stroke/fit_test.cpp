@@ -19,10 +19,10 @@ std::string reason_on(const Model& revised, const PaintStroke& stroke) {
     Document painting(revised);
     const auto reports = painting.replay({stroke});
     const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
-    const auto misfits =
+    const auto mismatches =
         find_mismatches(reports, compare_fit(painting.journal().entries(), length_of, *former.query, *revised.query));
-    EXPECT_LE(misfits.size(), 1u);
-    return misfits.empty() ? "" : misfits.front().reason;
+    EXPECT_LE(mismatches.size(), 1u);
+    return mismatches.empty() ? "" : mismatches.front().reason;
 }
 
 PaintStroke pressed() {

@@ -88,7 +88,7 @@ TEST(FitTrajectory, CornersHaveNoKnobs) {
     }
 }
 
-TEST(Practise, LeavesWhatHasNoCornerAndIsRepeatable) {
+TEST(FitTrajectory, LeavesWhatHasNoCornerAndIsRepeatable) {
     const StrokeSamples straight = through({{-0.02, 0}, {0.02, 0.003}});
     const StrokeSamples same = fitted(straight);
     ASSERT_EQ(same.samples.size(), straight.samples.size());
