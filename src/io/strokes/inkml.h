@@ -22,7 +22,7 @@ struct InkmlOptions {
     std::size_t max_bytes = std::size_t{1} << 30;
     std::size_t max_samples = 10'000'000;
     bool actions = false;  ///< keeps traces without points that say what is done with a brush
-    std::function<void(const std::string&)> note = {};  ///< told in one line what of the file is left out
+    std::function<void(const std::string&)> note = {};  ///< takes one line on what of the file is left out
 };
 
 /// The pen-down traces of a file, in order.

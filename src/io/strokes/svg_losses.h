@@ -10,7 +10,7 @@
 /// What a drawing loses on its way from an SVG file to brush strokes, for telling a person.
 namespace tuft::io {
 
-/// Kinds of loss, in the order in which they are told.
+/// Kinds of loss, in the order in which they are reported.
 enum class SvgLoss {
     text,
     image,
