@@ -112,6 +112,20 @@ struct GlScene::State {
     GLuint texture = 0, colour_buffer = 0, colour_texture = 0;
     GLsizei n_indices = 0;
     int texture_size = 0;
+
+    /// Gives a program that is in use the atlas, the colours of triangles and what of them it shows.
+    void bind_atlas(GLuint program, const DrawOptions& options) const {
+        const auto at = [&](const char* name) { return glGetUniformLocation(program, name); };
+        glUniform1i(at("u_shading"), static_cast<int>(options.shading));
+        glUniform1f(at("u_atlas_size"), static_cast<float>(texture_size));
+        glUniform1f(at("u_height_range"), options.height_range);
+        glUniform1i(at("u_texture"), 0);
+        glUniform1i(at("u_triangle_colours"), 1);
+        glActiveTexture(GL_TEXTURE1);
+        glBindTexture(GL_TEXTURE_BUFFER, colour_texture);
+        glActiveTexture(GL_TEXTURE0);
+        glBindTexture(GL_TEXTURE_2D, texture);
+    }
 };
 
 GlScene::GlScene() : state_(std::make_unique<State>()) {
@@ -303,18 +317,10 @@ void GlScene::begin_model(const GlCamera& c, const GlLight& light, const DrawOpt
     if (options.section != Vec4f(0)) glEnable(GL_CLIP_DISTANCE0);
     set_view(s.mesh_program, c, light);
     const auto at = [&](const char* name) { return glGetUniformLocation(s.mesh_program, name); };
-    glUniform1i(at("u_shading"), static_cast<int>(options.shading));
     glUniform1f(at("u_roughness"), options.roughness);
-    glUniform1f(at("u_atlas_size"), static_cast<float>(s.texture_size));
-    glUniform1f(at("u_height_range"), options.height_range);
     glUniform1f(at("u_relief"), light.relief);
     glUniform4fv(at("u_section"), 1, glm::value_ptr(options.section));
-    glUniform1i(at("u_texture"), 0);
-    glUniform1i(at("u_triangle_colours"), 1);
-    glActiveTexture(GL_TEXTURE1);
-    glBindTexture(GL_TEXTURE_BUFFER, s.colour_texture);
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, s.texture);
+    s.bind_atlas(s.mesh_program, options);
     glBindVertexArray(options.shading == Shading::triangles ? s.mesh_array : s.cluster_array);
 }
 
@@ -390,15 +396,7 @@ void GlScene::draw_atlas(const AtlasWindow& window, const DrawOptions& options) 
     glUniform4f(at("u_window"), static_cast<float>(window.centre.x), static_cast<float>(window.centre.y),
                 static_cast<float>(0.5 * part.width / window.pixels_per_side),
                 static_cast<float>(0.5 * part.height / window.pixels_per_side));
-    glUniform1i(at("u_shading"), static_cast<int>(options.shading));
-    glUniform1f(at("u_atlas_size"), static_cast<float>(s.texture_size));
-    glUniform1f(at("u_height_range"), options.height_range);
-    glUniform1i(at("u_texture"), 0);
-    glUniform1i(at("u_triangle_colours"), 1);
-    glActiveTexture(GL_TEXTURE1);
-    glBindTexture(GL_TEXTURE_BUFFER, s.colour_texture);
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, s.texture);
+    s.bind_atlas(s.atlas_program, options);
     glBindVertexArray(s.mesh_array);
     glDrawElements(GL_TRIANGLES, s.n_indices, GL_UNSIGNED_INT, nullptr);
     glBindVertexArray(0);
