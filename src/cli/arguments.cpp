@@ -140,10 +140,10 @@ void add_layers(CLI::App* app, std::vector<std::string>& layers) {
     app->add_option("--layers", layers, "show these layers only, hidden ones too: NAME,...")->delimiter(',');
 }
 
-void add_look(CLI::App* app, Look& look) {
-    app->add_option("--substrate", look.substrate,
+void add_recolouring(CLI::App* app, Recolouring& recolouring) {
+    app->add_option("--substrate", recolouring.substrate,
                     "show the ink on this substrate (name or .toml), without painting it anew");
-    app->add_option("--recolour", look.recolours,
+    app->add_option("--recolour", recolouring.recolours,
                     "show what was painted with INK as another ink or recipe: INK=NAME, INK=FILE.toml or INK=#rrggbb")
         ->type_name("INK=NAME");
 }
@@ -377,7 +377,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     r->add_option("--ink", replay.ink,
                   "use this ink for every stroke: a name, a .toml file or a colour such as '#c03020'");
     add_surface(r, replay.surface);
-    add_look(r, replay.look);
+    add_recolouring(r, replay.recolouring);
     r->add_option("--project", replay.out_project, "write a project file (.tuft)");
     r->add_option("--export", replay.exported, "write the textured model: .glb, .gltf or .obj");
     r->add_option("--preview", replay.preview, "write a picture (.png)");
@@ -396,7 +396,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
          "default: the file's name if it is one of these, else base-colour")
         ->check(CLI::IsMember(io::map_names()));
     e->add_option("--bits", exported.bits, "8 or 16 bits a channel of base-colour.png")->check(CLI::IsMember({8, 16}));
-    add_look(e, exported.look);
+    add_recolouring(e, exported.recolouring);
     add_layers(e, exported.layers);
     add_common(e, exported.common);
 
@@ -462,7 +462,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     d->add_option("-o,--output", render.output, "picture (.png); with --turntable a number is added")->required();
     d->add_option("--turntable", render.turntable, "draw N pictures all round")->check(number_in(1, 3600));
     add_frame(d, render.unit, render.up, "unit of a model file (default: a guess from its size)");
-    add_look(d, render.look);
+    add_recolouring(d, render.recolouring);
     d->add_option("--material", render.material, "porcelain, clay, ... (default: the project's)");
     add_view(d, render.view);
     add_common(d, render.common);

@@ -99,7 +99,7 @@ struct Unwrap {
 };
 
 /// How painted work is shown, without painting it anew.
-struct Look {
+struct Recolouring {
     std::string substrate;               ///< name or .toml; empty: as it is
     std::vector<std::string> recolours;  ///< INK=NAME or INK=FILE.toml
 };
@@ -107,7 +107,7 @@ struct Look {
 struct Replay {
     std::filesystem::path project, model, out_project, exported, preview;
     std::string brush, ink;
-    Look look;
+    Recolouring recolouring;
     Surface surface;
     View view;
     Common common;
@@ -118,7 +118,7 @@ struct Export {
     std::vector<std::string> layers;  ///< as in `View`
     int bits = 8;                     ///< a channel of base-colour.png
     std::string map;                  ///< of a picture; empty: by the file's name, else base-colour
-    Look look;
+    Recolouring recolouring;
     Common common;
 };
 
@@ -159,7 +159,7 @@ struct Render {
     int turntable = 0;     ///< number of pictures; 0: one picture
     std::string unit, up;  ///< of a model file; empty: the default
     std::string material;  ///< empty: from the project's substrate, else porcelain
-    Look look;
+    Recolouring recolouring;
     View view;
     Common common;
 };

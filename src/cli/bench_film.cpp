@@ -94,14 +94,14 @@ double transfer_seconds(const stroke::Model& model, std::size_t tiles) {
         places.along[t] = 1.2f + static_cast<float>(t / atlas::kTile) * (ink::kAlong - 1) / 64.0f;
         places.across[t] = 3.1f + static_cast<float>(t % atlas::kTile) * (ink::kAcross - 1) / 64.0f;
     }
-    ink::HatBasis tents;
+    ink::HatBasis hats;
     ink::NodeContents given{};
     std::vector<double> runs;
     for (int i = 0; i < 9; ++i) {
         const double start = seconds(CLOCK_THREAD_CPUTIME_ID);
         for (std::uint32_t slot = 0; slot < tiles; ++slot) {
-            ink::hat_basis(tents, places, coverage);
-            ink::transfer(canvas, slot, coverage, places, tents, model.texels.tiles[slot].area, 1e-4, p, given);
+            ink::hat_basis(hats, places, coverage);
+            ink::transfer(canvas, slot, coverage, places, hats, model.texels.tiles[slot].area, 1e-4, p, given);
         }
         runs.push_back(seconds(CLOCK_THREAD_CPUTIME_ID) - start);
     }

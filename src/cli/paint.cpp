@@ -150,7 +150,7 @@ int run(const Paint& a) {
     stroke::Document painting(model, {.substrate = a.surface.substrate, .record_forces = !a.forces.empty()});
     if (before) {
         restore(*before, painting, console);
-        show_looks(before->file, painting, {}, console);
+        apply_recolouring(before->file, painting, {}, console);
     }
     strokes = stroke::onto_named_layers(std::move(strokes), painting.layers(), a.layer);
     stroke::keep_to_named_masks(strokes, painting.masks(), a.mask);

@@ -97,6 +97,7 @@ nlohmann::json to_json(const Fit& fit) {
                      {"moved_most_mm", fit.total.moved_most / kMillimetre},
                      {"missing", fit.total.missing},
                      {"stretched", fit.total.stretched}};
+    j["misfits"] = j["mismatches"];  // its name before
     if (fit.total.slid) j["moved_on_model_mm"] = *fit.total.slid / kMillimetre;
     if (fit.motion) {
         const Vec3 shift = stroke::shift_of(*fit.motion) / kMillimetre;
@@ -172,7 +173,7 @@ int run(const Replay& a) {
     std::size_t missed = 0;
     for (const stroke::StrokeReport& r : reports) missed += !r.touched();
     note_fit(fit, console);
-    show_looks(project->file, painting, a.look, console);
+    apply_recolouring(project->file, painting, a.recolouring, console);
     if (!a.out_project.empty()) {
         io::Project out = start_project(a.out_project, a.model.empty() ? project->source : a.model.string(),
                                         outputs.frame, painting, strokes);
@@ -192,6 +193,7 @@ int run(const Replay& a) {
                          {"mismatches", std::move(list)},
                          {"atlas", to_json(model.atlas, model.atlas_report)},
                          {"canvas_hash", fmt::format("{:016x}", painting.hash())}};
+        j["misfits"] = j["mismatches"];  // its name before
         if (!a.model.empty()) j["fit"] = to_json(fit);
         print_json(j);
     } else {
@@ -214,7 +216,7 @@ int run(const Export& a) {
     stroke::Document painting(project->model);
     restore(*project, painting, console);
     show_layers(painting, a.layers);
-    show_looks(project->file, painting, a.look, console);
+    apply_recolouring(project->file, painting, a.recolouring, console);
     const ink::ComposeOptions compose = painting.compose_options();
     const std::string extension = a.output.extension().string();
     if (extension == ".png" || extension == ".exr")
@@ -245,7 +247,7 @@ int run(const Render& a) {
         painting = std::make_unique<stroke::Document>(*model);
         restore(*project, *painting, console);
         show_layers(*painting, a.view.layers);
-        show_looks(project->file, *painting, a.look, console);
+        apply_recolouring(project->file, *painting, a.recolouring, console);
     } else {
         bare = load_bare(a.file, a.unit, a.up, console).model;
         if (mesh::has_colours(*bare.mesh) && a.material.empty()) {

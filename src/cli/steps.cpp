@@ -155,12 +155,12 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
     if (!a.bias.empty()) bias = stroke::load_bias(a.bias);
 
     std::vector<stroke::JournalEntry> strokes;
-    std::set<std::string> told;  // a file that is painted twice is told of once
+    std::set<std::string> reported;  // a file that is painted twice is reported once
     for (const fs::path& file : a.strokes) {
         const std::size_t first = strokes.size();
         std::vector<stroke::RecordedStroke> traces =
             io::read_strokes(file, {.actions = true, .note = [&](const std::string& line) {
-                                        if (told.insert(line).second) console.note(line);
+                                        if (reported.insert(line).second) console.note(line);
                                     }});
         if (bias) traces = stroke::correct_bias(*bias, std::move(traces));
         stroke::append_entries(strokes, std::move(traces), options);
@@ -174,28 +174,28 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
 
 render::Image draw_picture(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
                            const View& v, int frame, int count, Console& console) {
-    render::Appearance look;
+    render::Appearance appearance;
     const ink::Substrate substrate = material.empty() && painting
                                          ? painting->substrate()
                                          : ink::load_substrate(material.empty() ? "porcelain" : material);
-    look.finish = substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
-    look.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
+    appearance.finish = substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
+    appearance.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
     ink::AtlasMap<float> colour, height;
     ink::Stack bare{std::vector<ink::LayerView>{}};
     if (material.empty()) bare.ground = &model.ground;
     const ink::Stack stack = painting ? painting->stack() : bare;
-    look.vertex_colours = false;
+    appearance.vertex_colours = false;
     if (!stack.layers.empty() || stack.has_base_colour()) {
         const ink::ComposeOptions compose = painting ? painting->compose_options() : ink::ComposeOptions{};
         colour = ink::compose_linear(stack, model.texels, substrate, compose);
         const auto* first = reinterpret_cast<const Vec3f*>(colour.texels.data());
-        look.maps.size = colour.size;
-        look.maps.corner_uvs = model.atlas.corner_uvs;
-        look.maps.base_colour = std::span(first, std::size_t{colour.size} * colour.size);
+        appearance.maps.size = colour.size;
+        appearance.maps.corner_uvs = model.atlas.corner_uvs;
+        appearance.maps.base_colour = std::span(first, std::size_t{colour.size} * colour.size);
         if (v.raking) {
             height = ink::compose_height(stack, model.texels, compose);
             for (float& h : height.texels) h *= 1e-6f;
-            look.maps.height = height.texels;
+            appearance.maps.height = height.texels;
         }
     }
     render::PictureOptions options;
@@ -214,7 +214,7 @@ render::Image draw_picture(const stroke::Model& model, const stroke::Document* p
     if (v.raking) options.lights = render::Lights::raking;
     options.progress = console.progress();
     if (count > 1) options = render::turntable_frame(options, frame, count);
-    return render::render_picture(*model.mesh, *model.query, look, options);
+    return render::render_picture(*model.mesh, *model.query, appearance, options);
 }
 
 void check_outputs(const Outputs& o) {
@@ -311,12 +311,13 @@ std::unique_ptr<OpenProject> open_project(const fs::path& path, io::Access acces
     return opened;
 }
 
-void show_looks(const io::Project& project, stroke::Document& painting, const Look& look, Console& console) {
-    io::show_looks(project, painting);
+void apply_recolouring(const io::Project& project, stroke::Document& painting, const Recolouring& recolouring,
+                       Console& console) {
+    io::apply_recolouring(project, painting);
     std::set<std::string> used;
     for (const stroke::JournalEntry& s : painting.journal().entries())
         if (const std::string& ink = stroke::ink_of(s); !ink.empty()) used.insert(ink);
-    for (const std::string& text : look.recolours) {
+    for (const std::string& text : recolouring.recolours) {
         const auto equals = text.find('=');
         if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
             throw UsageError("--recolour: '" + text + "' is not INK=NAME, INK=FILE.toml or INK=#rrggbb");
@@ -329,7 +330,7 @@ void show_looks(const io::Project& project, stroke::Document& painting, const Lo
             if (other != name && !ink::shared_pigments(painting.ink(name), painting.ink(other)).empty())
                 console.note(fmt::format("warning: ink {} shares pigments with {} and changes with it", other, name));
     }
-    if (!look.substrate.empty()) painting.preview_substrate(ink::load_substrate(look.substrate));
+    if (!recolouring.substrate.empty()) painting.preview_substrate(ink::load_substrate(recolouring.substrate));
 }
 
 void restore(const OpenProject& project, stroke::Document& painting, Console& console) {

@@ -29,7 +29,7 @@ struct Loaded {
 };
 
 /// Reads, repairs and unwraps a model file. Where neither the arguments nor the format say its
-/// unit, it is guessed from the size; a guess other than millimetres is told.
+/// unit, it is guessed from the size; a guess other than millimetres is reported.
 Loaded load_model(const std::filesystem::path& path, const Surface& surface, Console& console);
 
 /// The same without an atlas and without what finds points of the surface.
@@ -84,13 +84,14 @@ struct OpenProject {
 bool is_project_file(const std::filesystem::path& path);
 /// How this program opens projects: another one that changes it may end within two seconds; Ctrl-C is heard.
 io::OpenOptions open_options(io::Access access, Console& console);
-/// The right to write `path`, held while it lives, so that nobody is told after long work that
-/// another program has it; empty paths are fine.
+/// The right to write `path`, held while it lives, so that another program that has it is
+/// reported before long work, not after it; empty paths are fine.
 std::optional<io::ProjectLock> reserve(const std::filesystem::path& path, Console& console);
 std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, io::Access access, Console& console);
 /// Shows the painting as the project and then the command line say; notes pigments that
 /// other inks share.
-void show_looks(const io::Project& project, stroke::Document& painting, const Look& look, Console& console);
+void apply_recolouring(const io::Project& project, stroke::Document& painting, const Recolouring& recolouring,
+                       Console& console);
 /// Brings the painting to where the project stands: substrate, presets, strokes.
 void restore(const OpenProject& project, stroke::Document& painting, Console& console);
 

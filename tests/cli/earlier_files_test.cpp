@@ -48,6 +48,11 @@ TEST_F(EarlierFiles, ProjectKeepsItsJournalAndItsTexels) {
     EXPECT_EQ(j.at("layers").at(1).at("opacity"), 0.7);
     EXPECT_EQ(j.at("masks").at(0).at("kind"), "lasso");
 
+    // The JSON key that scripts of earlier versions read.
+    const json revised = run_json("replay " + project + " --model " + before("tile.obj"));
+    EXPECT_TRUE(revised.at("misfits").is_array());
+    EXPECT_EQ(revised.at("misfits"), revised.at("mismatches"));
+
     const io::Image8 stored = io::read_image8(colours_of(project, "stored.png"));
     const test::Ran ran = tuft("replay " + project + " --project " + path("again.tuft") + " --quiet");
     ASSERT_EQ(ran.status, 0) << ran.err;

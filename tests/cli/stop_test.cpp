@@ -60,8 +60,8 @@ TEST_F(Stop, AnAreaBeingFilledWithLines) {
 
 TEST_F(Stop, LongLinesBeingWalkedOverTheModel) {
     const std::string drawing = write("line.svg", leaf(20'000, false, 4000)), mesh = write("sheet.obj", sheet_of(300));
-    for (const char* laying : {"wrap", "drape"})
-        expect_stopped("paint " + mesh + " --atlas-size 512 --place 100,100,0 --laying " + std::string(laying) +
+    for (const char* mapping : {"wrap", "drape"})
+        expect_stopped("paint " + mesh + " --atlas-size 512 --place 100,100,0 --mapping " + std::string(mapping) +
                            " --strokes " + drawing + " --export " + path("out.glb"),
                        3);
 }

@@ -20,7 +20,7 @@ struct Event {
     int button = 0;        ///< 0 left, 1 right, 2 middle; of a SpaceMouse from 0
     double pressure = -1;  ///< 0–1 from a pen; below 0: a device without pressure
     Vec2 tilt{0};          ///< radians from a pen: to the right, towards the person
-    double turn = 0;       ///< radians about itself, clockwise for who holds it, of a pen that tells
+    double turn = 0;       ///< radians about itself, clockwise for who holds it, of a pen that reports it
     bool eraser = false;   ///< the pen's other end
     double steps = 0;      ///< of the wheel, away from the person
     int key = 0;           ///< GLFW key code

@@ -56,7 +56,7 @@ class PenSamples {
     void take(const PenReport& report, const PenScreen& screen, double now);
     /// Puts the samples taken since the last call in the place of the cursor movements that the
     /// window saw of them, and the window's presses and releases where the pen's own stand among them, with its
-    /// pressure. The window may see a button later than the pen tells of it: what follows it is
+    /// pressure. The window may see a button later than the pen reports it: what follows it is
     /// held back until then. While the tip is down and shortly after the window's movements are the pen's,
     /// and dropped.
     void merge(EventQueue& events, double now);
@@ -68,7 +68,7 @@ class PenSamples {
     std::vector<Event> samples_;  ///< and presses and releases among them
     Event last_;
     bool down_ = false;  ///< the tip
-    int ahead_ = 0;      ///< buttons that the window told of before the pen
+    int ahead_ = 0;      ///< buttons that the window reported before the pen
     double last_sample_ = -1, held_since_ = -1, offset_ = 0;
     bool synchronised_ = false;
 };

@@ -38,7 +38,7 @@ constexpr double kTips = 0.12,
 constexpr double kSlowest = 0.2;     // seconds in which it arrives at its end, at most
 constexpr double kFlick = 1.5;       // of the working depth: a way to the end on which the brush lifts by the next part
 constexpr double kFlickLift = 0.75;  // of its pressure; the rest goes at the end
-constexpr double kSlanting = 0.35;   // cosine to the line of sight under which no gap is told from an edge
+constexpr double kSlanting = 0.35;   // cosine to the line of sight under which a gap and an edge look alike
 
 double part(double dt, double constant) {
     return 1.0 - std::exp(-dt / std::max(constant, 1e-6));

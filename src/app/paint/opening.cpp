@@ -173,7 +173,7 @@ PaintWork load_project(const fs::path& path, const fs::path& session, OpenAs as,
     work.document->use_substrate(substrate);
     io::use_presets(project, *work.document);
     io::restore_strokes(project, *work.document, progress);
-    io::show_looks(project, *work.document);
+    io::apply_recolouring(project, *work.document);
     work.texture = std::make_unique<Texture>(*work.document, progress);
     work.pixels = work.texture->pixels();
     project.listen({});

@@ -60,7 +60,7 @@ void OutsideChanges::take() {
     if (!same_strokes)
         paint_merged(*file, merged);
     else
-        io::show_looks(*file, *context_.work.document);
+        io::apply_recolouring(*file, *context_.work.document);
     const bool altered = merged.altered && !same_strokes;
     if (viewing)
         autosave.view(std::move(*file), std::move(marks));
@@ -105,7 +105,7 @@ void OutsideChanges::paint_merged(const io::Project& file, const stroke::MergedJ
         }
     }
     if (whole) painting->replay(merged.entries, shown);
-    io::show_looks(file, *painting);
+    io::apply_recolouring(file, *painting);
     context_.history.reset(painting->journal().entries().size());
     for (const stroke::LayerTexels& layer : painting->canvases())
         for (const std::uint32_t slot : layer.canvas->touched_slots()) painting->canvas().mark_dirty(slot);

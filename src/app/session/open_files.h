@@ -6,8 +6,8 @@
 #include "app/session/session.h"
 
 /// \file
-/// Files that are taken into the work besides its model: drawings, inks, reference images. What fails is told in the
-/// status bar.
+/// Files that are taken into the work besides its model: drawings, inks, reference images. The status bar reports
+/// what fails.
 namespace tuft::app {
 
 /// Takes writing into the hand to be placed.

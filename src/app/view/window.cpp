@@ -128,7 +128,7 @@ class Window : public Display {
         glfwGetFramebufferSize(window_, &w, &h);
         return {std::max(1, w), std::max(1, h)};
     }
-    // The daemon tells every program; only the one in front moves.
+    // The daemon reports to every program; only the one in front moves.
     void take_space_mouse() {
         if (!space_mouse_) return;
         EventQueue events;

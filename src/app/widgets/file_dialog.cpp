@@ -366,9 +366,9 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                      ImGuiWindowFlags_NoSavedSettings);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
-    const bool told = !fault_.empty() || ask_replace_;
+    const bool has_message = !fault_.empty() || ask_replace_;
     const float below =
-        ImGui::GetFrameHeightWithSpacing() + ui.px(8) + (told ? ImGui::GetTextLineHeightWithSpacing() : 0);
+        ImGui::GetFrameHeightWithSpacing() + ui.px(8) + (has_message ? ImGui::GetTextLineHeightWithSpacing() : 0);
     draw_top(ui);
     ImGui::Separator();
     ImGui::BeginChild("middle", ImVec2(0, -below));
@@ -385,7 +385,7 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
     }
     ImGui::EndChild();
     ImGui::Separator();
-    if (told) {
+    if (has_message) {
         const std::string why = ui.tr_sentence(ask_replace_ ? "Replace it?" : fault_);
         ImGui::TextColored(
             ui.settings().theme == Theme::dark ? ImVec4(1, 0.62f, 0.45f, 1) : ImVec4(0.72f, 0.10f, 0.02f, 1), "%s",

@@ -19,7 +19,7 @@ constexpr int kReaches = 2;
 constexpr float kReach[kReaches] = {0.25f, 0.08f};  // tried one after the other
 constexpr double kLeastSaved = 0.02;                // of a seam's length, for which charts are laid anew
 constexpr int kIterations = 8;                      // from where a chart lies, most of it well
-constexpr double kLeastValue = 0.05;                // saved, over the unit, for laying all of the mesh anew
+constexpr double kLeastValue = 0.05;                // saved, over the unit, for flattening all of the mesh anew
 constexpr double kLeastValueDear = 0.1;             // the same where that takes many seconds
 constexpr double kMostWork = 8;                     // triangles laid flat, over those of the mesh
 

@@ -87,7 +87,7 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
 enum class Part : std::uint8_t { whole, inside, outside };
 
 struct WetFilm::State : TileList {
-    std::vector<std::uint8_t> told;
+    std::vector<std::uint8_t> reported;
     /// [n_slots] of what is dry, film units: found once in an advance, null where it is plain.
     std::vector<std::unique_ptr<Plane>> relief;
     std::vector<std::unique_ptr<Plane>> paste;  ///< [n_slots] what is paste; null: none
@@ -122,8 +122,8 @@ struct WetFilm::State : TileList {
     }
 
     void tell(std::uint32_t slot, const BeforeFn& before) {
-        if (!before || told[slot]) return;
-        told[slot] = 1;
+        if (!before || reported[slot]) return;
+        reported[slot] = 1;
         before(slot);
     }
 
@@ -549,7 +549,7 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     FilmReport report;
     if (!canvas.wet() || !(seconds > 0)) return report;
     State& s = *state_;
-    s.told.assign(s.map.n_slots(), 0);
+    s.reported.assign(s.map.n_slots(), 0);
     s.forget_relief();
     s.set_unevenness(params.unevenness);
     s.begin(canvas);

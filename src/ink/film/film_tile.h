@@ -90,8 +90,8 @@ struct SplitGeometry {
     static void operator delete(void* split, std::size_t bytes) { Geometry::operator delete(split, bytes); }
 };
 /// `inside` with the faces between texels of tiles of a zone, which `in_zone` says of the tile and
-/// those round it, and `outside` with all others. There what is closed is so but for what tells
-/// that slopes may be taken over it.
+/// those round it, and `outside` with all others. There closed faces keep only the flag
+/// that slopes may be taken over them.
 std::unique_ptr<SplitGeometry> split(const Geometry& g, const std::array<bool, 9>& in_zone);
 
 /// FilmParams for one step, in texels: rates times the step's length.

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Calls fn with every index that the document holds of the kinds that are told apart.
+/// Calls fn with every index that the document holds of the kinds below.
 struct IndexVisitor {
     std::function<void(json&)> accessor, view, material, texture, image;
 

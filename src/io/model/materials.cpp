@@ -68,7 +68,7 @@ void read_library(const fs::path& file, std::map<std::string, MtlEntry>& entries
     }
 }
 
-/// Each picture is read once, and told of once when that fails.
+/// Each picture is read once, and reported once when that fails.
 class Pictures {
   public:
     Pictures(fs::path folder, std::vector<std::string>& warnings) : folder_(std::move(folder)), warnings_(warnings) {}

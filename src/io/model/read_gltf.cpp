@@ -256,7 +256,7 @@ class Gatherer {
         return out;
     }
 
-    /// Each picture is read once, and told of once when that fails.
+    /// Each picture is read once, and reported once when that fails.
     std::shared_ptr<const mesh::Picture> picture(int index) {
         const auto [it, is_new] = pictures_.try_emplace(index);
         const tinygltf::Image* image = element(model_.images, index);

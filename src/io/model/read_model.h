@@ -13,7 +13,7 @@ inline constexpr const char* kModelFormats = "OBJ, PLY, STL, OFF, GLB, glTF, FBX
 /// Whether `path` has the extension of one of them, in any case.
 bool is_model_file(const std::filesystem::path& path);
 
-/// Reads a model file of `kModelFormats`, told apart by their first bytes
+/// Reads a model file of `kModelFormats`, recognised by their first bytes
 /// where the format has any, else by the extension. Throws `Error` naming file and fault.
 ///
 /// glTF: all triangle lists, strips and fans of the default scene (or of all nodes)

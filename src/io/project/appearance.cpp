@@ -2,7 +2,7 @@
 
 namespace tuft::io {
 
-void show_looks(const Project& project, stroke::Document& painting) {
+void apply_recolouring(const Project& project, stroke::Document& painting) {
     const std::string file = project.path().string();
     for (const auto& [name, toml] : project.recolours())
         painting.recolour(name, ink::parse_ink(toml, file + ": ink " + name + " shown"));

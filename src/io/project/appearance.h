@@ -7,7 +7,7 @@
 namespace tuft::io {
 
 /// Shows the painting as the project says. Its inks must be in use already.
-void show_looks(const Project& project, stroke::Document& painting);
+void apply_recolouring(const Project& project, stroke::Document& painting);
 
 /// Stores how the painting is shown.
 void store_looks(Project& project, const stroke::Document& painting);

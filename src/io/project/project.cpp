@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace tuft::io {
 namespace {
 
-/// What tells one state of a file from another at a glance.
+/// What differs between two states of a file, cheap to read.
 struct FileStamp {
     std::uintmax_t size = 0;
     std::int64_t seconds = 0, nanoseconds = 0;  ///< of its last change

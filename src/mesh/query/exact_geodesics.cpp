@@ -11,7 +11,7 @@ constexpr double kNarrowest = 1e-4;        // of an edge: vertices as flat as th
 constexpr double kSlack = 1e-9;            // of a distance, by which rounding may lie
 constexpr double kBeside = 1e-3;           // of an edge: how far beside a window a way may pass
 constexpr double kFarBeside = 0.1;         // the same where no window is nearer
-constexpr std::size_t kFewWindows = 2000;  // before which it cannot be told that they will be too many
+constexpr std::size_t kFewWindows = 2000;  // below which their number is no sign of too many
 constexpr double kDense = 4;               // over the mean of the area that there may be near the origin
 constexpr std::size_t kMostFaces = 64;     // round a vertex
 

@@ -300,7 +300,7 @@ void PlyReader::read_faces(const PlyElement& element) {
     const int list = element.find({"vertex_indices", "vertex_index"});
     const int texcoord = element.find({"texcoord"});
     const int texture = element.find({"texnumber"});
-    // The UVs of several images share one square: they are told apart as groups.
+    // The UVs of several images share one square: groups keep them apart.
     const bool has_groups = texture >= 0 && header_.textures.size() > 1;
     const FaceColour colour(element);
     builder_.soup.polygon_start.reserve(element.count + 1);

@@ -68,7 +68,7 @@ void pair_best(RawMesh& mesh, std::span<const std::uint32_t> half_edges, bool tr
 }
 
 /// Notes the triangles at one edge that repeat an earlier one. Triangles with the same vertices
-/// meet at each of their edges with the same third vertex, so every edge tells the same.
+/// meet at each of their edges with the same third vertex, so every edge gives the same.
 class DuplicateFinder {
   public:
     void look(const RawMesh& mesh, std::span<const std::uint32_t> half_edges) {

@@ -168,7 +168,7 @@ std::string mismatch_reason(const StrokeFit& fit) {
     const auto percent = [&](double part) { return static_cast<int>(std::lround(100 * part / fit.way)); };
     const double far = std::max(kLeastMove, kMovePart * fit.way);
     std::vector<std::string> reasons;
-    // A place in space is the hand's: it moves along the hair only, which the depth tells.
+    // A place in space is the hand's: it moves along the hair only, which the depth shows.
     if (fit.flat && fit.moved > far)
         reasons.push_back(fmt::format("lies {:.1f} mm from where it lay", 1e3 * fit.moved));
     if (fit.slid && *fit.slid > far)

@@ -31,7 +31,7 @@ constexpr double kSharpLift = 1;    // of the way about a sharp turn in which th
 
 constexpr double kTurn = 0.35,
                  kSharp = 1.7;    // radians within a width: less is no corner; more, and the tuft turns over
-constexpr double kFan = pi / 12;  // radians between looks round a corner
+constexpr double kFan = pi / 12;  // radians between edge points round a corner
 constexpr double kLifted = 0.65;  // part of the width that a first try leaves out at a sharp turn
 constexpr double kShift = 0.6, kPress = 0.3, kKick = 2;  // parts of an error taken back at once
 constexpr int kTries = 8;
@@ -45,8 +45,8 @@ struct Station {
     double half = 0;
 };
 
-/// A place of the wanted edge.
-struct Look {
+/// A point of the wanted edge.
+struct EdgePoint {
     Vec2 at{0}, out{0};  ///< metres; unit
     std::size_t station = 0;
     double farthest = 0;  ///< metres outwards before the wanted area begins again
@@ -128,17 +128,17 @@ class DrawnArea {
 namespace {
 
 /// The edge of the discs round the stations.
-std::vector<Look> looks_of(const std::vector<Station>& stations, const std::vector<double>& weight, double width,
-                           const DrawnArea* area) {
-    std::vector<Look> looks;
+std::vector<EdgePoint> find_edge_points(const std::vector<Station>& stations, const std::vector<double>& weight,
+                                        double width, const DrawnArea* area) {
+    std::vector<EdgePoint> points;
     DrawnArea own;
     for (const Station& s : stations) own.add(0, s.centre, s.half);
-    const auto look = [&](std::size_t i, const Vec2& out) {
+    const auto add = [&](std::size_t i, const Vec2& out) {
         const Vec2 at = stations[i].centre + stations[i].half * out;
         if (own.covers(at, 1, kEdge) || (area && area->covers(at, area->line, kUnder))) return;
         double far = 0;
         while (far < kFarthest * width && !own.covers(at + (far + 0.1 * width) * out, 1, 0)) far += 0.1 * width;
-        looks.push_back({at, out, i, far});
+        points.push_back({at, out, i, far});
     };
     for (std::size_t i = 0; i < stations.size(); ++i) {
         check_interrupt();
@@ -148,7 +148,7 @@ std::vector<Look> looks_of(const std::vector<Station>& stations, const std::vect
         if (head && tail) continue;
         if (head || tail) {
             const Vec2 away = head ? -on : in;
-            for (double a = -pi / 2; a <= pi / 2 + 1e-9; a += kFan) look(i, turned(away, a));
+            for (double a = -pi / 2; a <= pi / 2 + 1e-9; a += kFan) add(i, turned(away, a));
             continue;
         }
         const Vec2 left_in = turned(in, pi / 2);
@@ -159,25 +159,25 @@ std::vector<Look> looks_of(const std::vector<Station>& stations, const std::vect
             const double part = n == 0 ? 0.5 : static_cast<double>(k) / (n + 1);
             if (n == 0 && k > 0) break;
             const Vec2 side = turned(left_in, part * turn);
-            look(i, turn > 0 ? -side : side);
+            add(i, turn > 0 ? -side : side);
         }
-        look(i, (turn > 0 ? 1.0 : -1.0) * turned(left_in, 0.5 * turn));
+        add(i, (turn > 0 ? 1.0 : -1.0) * turned(left_in, 0.5 * turn));
     }
-    return looks;
+    return points;
 }
 
 /// How far the ink reaches over the wanted edge, metres; negative: it stays behind.
-double reach_over(const PlaneInk& ink, const Look& look, double half) {
+double reach_over(const PlaneInk& ink, const EdgePoint& point, double half) {
     const double step = 0.5 * ink.cell(), from = -std::min(half, 16 * ink.cell());
-    double before = ink.at({look.at.x + from * look.out.x, -(look.at.y + from * look.out.y)});
+    double before = ink.at({point.at.x + from * point.out.x, -(point.at.y + from * point.out.y)});
     if (before < 0.5) return from;
-    for (double t = from + step; t <= look.farthest; t += step) {
-        const Vec2 p = look.at + t * look.out;
+    for (double t = from + step; t <= point.farthest; t += step) {
+        const Vec2 p = point.at + t * point.out;
         const double now = ink.at({p.x, -p.y});
         if (now < 0.5) return t - step * (0.5 - now) / std::max(before - now, 1e-9);
         before = now;
     }
-    return look.farthest;
+    return point.farthest;
 }
 
 /// By how much the way turns within half a width to both sides of each station, radians.
@@ -245,8 +245,8 @@ StrokeSamples fit_trajectory(StrokeSamples trace, const brush::Preset& preset, c
     for (double& w : weight) w = 1 - smooth_step(w / width - kAbout + 1);
     for (std::size_t i = 0; i < n; ++i)
         wider[i] = -2 * kLifted * wanted[i].half * (1 - smooth_step(wider[i] / (kSharpLift * width)));
-    const std::vector<Look> looks = looks_of(wanted, weight, width, area);
-    if (looks.empty()) return trace;
+    const std::vector<EdgePoint> edge = find_edge_points(wanted, weight, width, area);
+    if (edge.empty()) return trace;
     std::vector<Vec2> moved(n, Vec2{0});
     double least = 1e300;
     StrokeSamples best = trace;
@@ -262,22 +262,22 @@ StrokeSamples fit_trajectory(StrokeSamples trace, const brush::Preset& preset, c
         std::vector<Vec2> shift(n, Vec2{0});
         std::vector<double> press(n, 0), count(n, 0), kicks(n, 0);
         double sum = 0, all = 0;
-        for (const Look& look : looks) {
-            const double e = reach_over(ink, look, wanted[look.station].half);
-            sum += weight[look.station] * e * e;
-            all += weight[look.station];
-            std::size_t by = look.station;
+        for (const EdgePoint& point : edge) {
+            const double e = reach_over(ink, point, wanted[point.station].half);
+            sum += weight[point.station] * e * e;
+            all += weight[point.station];
+            std::size_t by = point.station;
             if (e > 0) {
-                const Vec2 p = look.at + 0.7 * e * look.out;
+                const Vec2 p = point.at + 0.7 * e * point.out;
                 const double when = ink.when({p.x, -p.y});
                 const auto at = std::lower_bound(tried.samples.begin(), tried.samples.end(), when,
                                                  [](const StrokeSample& s, double time) { return s.time < time; });
                 by = std::min<std::size_t>(static_cast<std::size_t>(at - tried.samples.begin()), n - 1);
             }
-            if (std::abs(along[by] - along[look.station]) < kOwn * width) {
-                shift[look.station] -= e * look.out;
-                press[look.station] -= e;
-                ++count[look.station];
+            if (std::abs(along[by] - along[point.station]) < kOwn * width) {
+                shift[point.station] -= e * point.out;
+                press[point.station] -= e;
+                ++count[point.station];
             } else
                 kicks[by] = std::max(kicks[by], e);
         }

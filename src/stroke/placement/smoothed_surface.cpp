@@ -152,7 +152,7 @@ BaseColour feel(const SurfaceQuery& query, const BaseColour& guess, double radiu
         fit_error = fit_error_of<6>(heights, c);
         height = c[0];
         slope = {c[1], c[2]};
-        const double most = 1.0;  // sharper ground than the disk cannot be told from noise
+        const double most = 1.0;  // detail sharper than the disk is no different from noise
         for (int k = 0; k < 3; ++k) ground.curvature[k] = std::clamp(c[3 + k], -most, most) / radius;
     } else if (std::array<double, 3> d; part >= kLeast) {
         for (Height& h : heights)
