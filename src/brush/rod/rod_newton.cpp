@@ -1,26 +1,10 @@
 #include "brush/rod/rod_newton.h"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 namespace tuft::brush::rod {
 
 namespace {
 
-constexpr int kDampedSteps = 6;  ///< of one solve, before eigenvectors are asked
-constexpr int kEigenCost = 12;   ///< iterations that a step by eigenvectors counts for
-
-constexpr double kLongestStep = 0.3;  ///< radians any segment turns in one iteration
-
-/// Largest turn of a segment in ws.step.
-double longest_turn(const Workspace& ws) {
-    double longest = 0;
-    for (std::size_t j = 0; 2 * j < ws.step.size(); ++j) {
-        longest = std::max(longest, ws.step[2 * j] * ws.step[2 * j] + ws.step[2 * j + 1] * ws.step[2 * j + 1]);
-    }
-    return std::sqrt(longest);
-}
+constexpr int kEigenCost = 12;  ///< iterations that a step by eigenvectors counts for
 
 /// Solves H u = -g into ws.step by elimination. A step that turns some segment too far, or an
 /// indefinite H, is damped in proportion to the joints' stiffness, so that the soft tip alone
@@ -34,7 +18,7 @@ int newton_step(const Rod& rod, const Shape& shape, Workspace& ws, bool by_eigen
         ++cost;
         if (descend(rod, shape, ws.at, ws.derivatives, damping, ws.elimination, ws.step)) {
             usable = std::all_of(ws.step.begin(), ws.step.end(), [](double u) { return std::isfinite(u); });
-            if (usable && longest_turn(ws) <= 2 * kLongestStep) return cost;
+            if (usable && longest_turn(ws.step) <= 2 * kLongestStep) return cost;
         } else if (by_eigenvectors) {
             break;
         }
@@ -55,45 +39,35 @@ int newton_step(const Rod& rod, const Shape& shape, Workspace& ws, bool by_eigen
     return u.allFinite() ? cost + kEigenCost : 0;
 }
 
-}  // namespace
+/// One rod as a system of `minimise`.
+struct RodSystem {
+    const Frozen& frozen;
+    Shape& shape;
+    Workspace& ws;
 
-NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit) {
-    const double tolerance = frozen.law->tolerance;
-    NewtonResult out;
-    int damped = 0;
-    while (true) {
-        differentiate(frozen, shape, ws.at, ws.derivatives);
-        double residual = 0;
-        for (const double g : ws.derivatives.gradient) residual = std::max(residual, std::abs(g));
-        if (residual < tolerance) {
-            out.converged = true;
-            return out;
-        }
-        if (out.iterations >= limit || !std::isfinite(residual)) return out;
-        differentiate_twice(frozen, shape, ws.at, ws.derivatives);
-        const int cost = newton_step(*frozen.rod, shape, ws, damped >= kDampedSteps);
-        if (cost == 0) return out;
-        damped += cost > 1;
-        out.iterations += cost;
-        const double longest = longest_turn(ws);
-        double slope = 0;
-        for (std::size_t i = 0; i < ws.step.size(); ++i) slope += ws.derivatives.gradient[i] * ws.step[i];
-        double scale = std::min(1.0, kLongestStep / longest);
-        // Below this a change of Π is round-off.
-        const double noise = 1e-14 * (1 + std::abs(ws.at.value));
-        bool accepted = false;
-        for (int halving = 0; halving < 20 && !accepted; ++halving, scale *= 0.5) {
-            advance(shape, ws.step, scale, ws.next);
-            evaluate(frozen, ws.next, ws.trial);
-            accepted = ws.trial.value <= ws.at.value + 1e-4 * scale * slope + noise;
-        }
-        if (!accepted) {
-            out.converged = residual < 1e3 * tolerance && -slope < 1e3 * noise;
-            return out;
-        }
+    double tolerance() const { return frozen.law->tolerance; }
+    double value() const { return ws.at.value; }
+    std::span<const double> gradient() const { return ws.derivatives.gradient; }
+    std::span<const double> step() const { return ws.step; }
+    void differentiate() { rod::differentiate(frozen, shape, ws.at, ws.derivatives); }
+    void differentiate_twice() { rod::differentiate_twice(frozen, shape, ws.at, ws.derivatives); }
+    int newton_step(bool by_eigenvectors) { return rod::newton_step(*frozen.rod, shape, ws, by_eigenvectors); }
+    double try_step(double scale) {
+        advance(shape, ws.step, scale, ws.next);
+        evaluate(frozen, ws.next, ws.trial);
+        return ws.trial.value;
+    }
+    void accept() {
         std::swap(shape, ws.next);
         std::swap(ws.at, ws.trial);
     }
+};
+
+}  // namespace
+
+NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit) {
+    RodSystem system{frozen, shape, ws};
+    return minimise(system, limit);
 }
 
 }  // namespace tuft::brush::rod

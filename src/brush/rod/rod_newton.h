@@ -1,6 +1,10 @@
 #pragma once
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "brush/rod/rod_energy.h"
@@ -28,8 +32,64 @@ struct NewtonResult {
     int iterations = 0;
 };
 
-/// Minimises Π from `shape` in at most `limit` iterations; ws.at holds the evaluation of `shape`. Π never
-/// increases. On return ws.at holds the evaluation of the result.
+inline constexpr double kLongestStep = 0.3;  ///< radians any segment turns in one iteration
+inline constexpr int kDampedSteps = 6;       ///< of one minimisation, before a system may take its dearer step
+
+/// Largest turn of a segment in `step`, two numbers for each segment, radians.
+inline double longest_turn(std::span<const double> step) {
+    double longest = 0;
+    for (std::size_t j = 0; j + 1 < step.size(); j += 2)
+        longest = std::max(longest, step[j] * step[j] + step[j + 1] * step[j + 1]);
+    return std::sqrt(longest);
+}
+
+/// Minimises the potential Π of `system` in at most `limit` iterations. Π never increases. A system gives
+///
+///     tolerance(), value()             of the residual; Π at its shape
+///     gradient()                       after differentiate()
+///     newton_step(bool dear)           after differentiate_twice(): fills step(), returns its cost, 0 for none
+///     try_step(scale)                  Π at the shape moved by scale · step()
+///     accept()                         takes the shape that was tried
+template <class System>
+NewtonResult minimise(System& system, int limit) {
+    const double tolerance = system.tolerance();
+    NewtonResult out;
+    int damped = 0;
+    while (true) {
+        system.differentiate();
+        const std::span<const double> gradient = system.gradient();
+        double residual = 0;
+        for (const double g : gradient) residual = std::max(residual, std::abs(g));
+        if (residual < tolerance) {
+            out.converged = true;
+            return out;
+        }
+        if (out.iterations >= limit || !std::isfinite(residual)) return out;
+        system.differentiate_twice();
+        const int cost = system.newton_step(damped >= kDampedSteps);
+        if (cost == 0) return out;
+        damped += cost > 1;
+        out.iterations += cost;
+        const std::span<const double> step = system.step();
+        const double longest = longest_turn(step);
+        double slope = 0;
+        for (std::size_t i = 0; i < step.size(); ++i) slope += gradient[i] * step[i];
+        double scale = std::min(1.0, kLongestStep / longest);
+        // Below this a change of Π is round-off.
+        const double value = system.value(), noise = 1e-14 * (1 + std::abs(value));
+        bool accepted = false;
+        for (int halving = 0; halving < 20 && !accepted; ++halving, scale *= 0.5)
+            accepted = system.try_step(scale) <= value + 1e-4 * scale * slope + noise;
+        if (!accepted) {
+            out.converged = residual < 1e3 * tolerance && -slope < 1e3 * noise;
+            return out;
+        }
+        system.accept();
+    }
+}
+
+/// Minimises Π of one rod from `shape`; ws.at holds the evaluation of `shape`. On return ws.at holds that of the
+/// result.
 NewtonResult newton(const Frozen& frozen, Shape& shape, Workspace& ws, int limit);
 
 }  // namespace tuft::brush::rod

@@ -1,0 +1,326 @@
+#include "brush/rod/rod_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tuft::brush::rod {
+
+double clamp_distance(const Clamp& a, const Clamp& b) {
+    return glm::length(b.position - a.position) + glm::length(b.tangent - a.tangent) + glm::length(b.side - a.side);
+}
+
+namespace {
+
+constexpr double kFirstTouch = 0.1;  ///< B0/L²: guess of a first contact's force
+constexpr double kFaint = 0.02;      ///< B0/L²: normal force below which relative accuracy is no aim
+constexpr double kStands =
+    0.9;  ///< cosine of the bend, 26°, up to which hair stands and may yet buckle or fall to any side
+
+/// Where a point first touched on its way from its last place, z0 off the surface, to `x`.
+Vec3 touching_point(double z0, double z1, const Vec3& x_t0, const Vec3& x) {
+    if (z0 <= 0 || z1 >= z0) return x;
+    return x_t0 + std::min(1.0, z0 / (z0 - z1)) * (x - x_t0);
+}
+
+/// Hair along a tangent over a plane of unit normal.
+struct Hair {
+    Vec3 tangent{0}, plane{0};
+    Vec3 grain{0};    ///< unit, along the hair in the plane; zero where it stands upright
+    double lean = 0;  ///< sine of its angle to the normal
+};
+
+Hair hair_over(const Vec3& tangent, const Vec3& plane) {
+    Hair hair{tangent, plane};
+    const Vec3 flat = tangent - glm::dot(tangent, plane) * plane;
+    const double lean = glm::length(flat);
+    if (lean < 1e-6) return hair;
+    hair.grain = flat / lean;
+    hair.lean = lean;
+    return hair;
+}
+
+/// Friction of a point at x for the next pass, from the normal force and hair known so far.
+Friction friction_of(const Law& law, const Hair& hair, double weight, double normal_force, const Vec3& anchor,
+                     const Vec3& x) {
+    Friction f;
+    f.anchor = anchor;
+    f.stick = law.stick_stiffness * weight;
+    f.cap = law.friction * normal_force;
+    f.normal = hair.plane;
+    f.grain = hair.grain;
+    f.along = 1 + (2 * law.grain - 1) * hair.lean;
+    f.across = 1 + (1 - 2 * law.grain) * hair.lean;
+    if (law.with_hair > 0 && hair.lean > 0) {
+        Vec3 d = x - anchor;
+        d -= glm::dot(d, hair.plane) * hair.plane;
+        const double moved = glm::length(d);
+        if (moved > 0) {
+            const double with = std::max(0.0, -glm::dot(d, hair.grain) / moved);
+            f.cap *= 1 - law.with_hair * hair.lean * with * with * with * with;
+        }
+    }
+    return f;
+}
+
+}  // namespace
+
+void Solver::begin(const Load& load, const std::vector<Vec3>& before) {
+    shape.tangent = memory.tangent;
+    transport_sides(memory.clamp, shape.tangent, shape.side);
+    Vec3 a = memory.clamp.tangent, side = memory.clamp.side;
+    for (int j = 0; j < n(); ++j) {
+        // Frames are laid anew along the rod, so that spin gathered in one solve is dropped.
+        memory.joint[j].bend = bend_of(a, side, shape.tangent[j]);
+        recovered += recover_joint(rod, j, memory.joint[j], law.recovery);
+        a = shape.tangent[j];
+        side = shape.side[j];
+    }
+    frozen.rod = &rod;
+    frozen.joint = &memory.joint;
+    frozen.law = &law;
+    frozen.load = load;
+    frozen.clamp = memory.clamp;
+    lay_points(obstacles, memory.node, frozen, fine, walls);
+    frozen.obstacles = fine;
+    lay_patches(frozen);
+    const std::size_t points = fine.size();
+    frozen.friction.resize(points);
+    for (Friction& f : frozen.friction) f.cap = 0;
+    frozen.multiplier.assign(points, 0);
+    normal.assign(points, 0);
+    anchor.assign(points, Vec3{0});
+    anchored.assign(points, 0);
+    const double part = stands() ? 0 : onward();
+    double carried = 0;
+    for (const ContactMemory& c : memory.contact) carried += c.force;
+    memory.contact.resize(std::max(static_cast<std::size_t>(law.points_per_segment) * n() + 1, points));
+    for (std::size_t p = 1; p < points; ++p) {
+        const ContactMemory& c = memory.contact[p];
+        const Vec3 x = point(memory.node, p);
+        if (c.touching) {
+            anchor[p] = carried_anchor(p, c, point(before, p));
+            anchored[p] = 1;
+            normal[p] = std::max(0.0, c.force + part * c.growth);
+            frozen.multiplier[p] = c.multiplier;
+        } else if (const double z = distance(p, x).z - fine[p].radius; z < 0) {
+            const Vec3 from = point(before, p);
+            anchor[p] = touching_point(distance(p, from).z - fine[p].radius, z, from, x);
+            anchored[p] = 1;
+            // Hair that touches for the first time sticks where it touched; without any
+            // friction in the first pass it could slip to the wrong side of the hand.
+            if (carried == 0) normal[p] = kFirstTouch;
+        }
+    }
+}
+
+Vec3 Solver::carried_anchor(std::size_t p, const ContactMemory& c, const Vec3& last) const {
+    if (c.normal == Vec3{0}) return c.anchor;
+    return last - parallel_transport(last - c.anchor, c.normal, normal_at(p, memory.node));
+}
+
+Distance Solver::distance(std::size_t p, const Vec3& x) const {
+    return distance_of(fine[p], frozen.crease[p], law.edge, x);
+}
+
+Vec3 Solver::normal_at(std::size_t p, const std::vector<Vec3>& x) const {
+    return frozen.crease[p].share <= 0 ? fine[p].normal : met_at(p, x).normal;
+}
+
+void Solver::freeze_friction(const std::vector<Vec3>& x, const std::vector<Vec3>& tangents) {
+    if (fine.empty() || law.friction <= 0) return;
+    Hair hair;
+    for (std::size_t p = 1; p < fine.size(); ++p) {
+        frozen.friction[p].cap = 0;
+        if (!anchored[p] || normal[p] <= 0) continue;
+        const PointPlace& at = place(p);
+        const Vec3& tangent = tangents[at.s > 0 ? at.node : at.node - 1];
+        const Vec3 at_point = point(x, p), plane = normal_at(p, x);
+        if (tangent != hair.tangent || plane != hair.plane) hair = hair_over(tangent, plane);
+        Friction f = friction_of(law, hair, frozen.weight[p], normal[p], anchor[p], at_point);
+        const bool tip = p + 1 == frozen.walls_from;
+        const double c = std::min(0.0, glm::dot(tangent, plane));
+        if (law.end_friction < 1) f.cap *= tip ? std::max(law.end_friction, 1 - c * c) : 1 - c * c;
+        if (tip) {
+            f.pore_cap = law.pore_grip * normal[p] * (law.end_friction < 1 ? 1 - c * c : 1) * std::max(0.0, -c);
+        }
+        frozen.friction[p] = f;
+    }
+    turn_patches(frozen);
+}
+
+bool Solver::lay_onward() {
+    const double part = onward();
+    if (memory.turn.empty() || part <= 0) return false;
+    const Mat3 frame = clamp_frame(memory.clamp);
+    ws.next.tangent.resize(shape.tangent.size());
+    ws.ahead = memory.node;
+    for (int j = 0; j < n(); ++j) {
+        ws.next.tangent[j] = glm::normalize(shape.tangent[j] + part * (frame * memory.turn[j]));
+        ws.ahead[j + 1] = ws.ahead[j] + rod.length[j] * ws.next.tangent[j];
+    }
+    transport_sides(memory.clamp, ws.next.tangent, ws.next.side);
+    return true;
+}
+
+bool Solver::stands() const {
+    return glm::dot(memory.tangent.back(), memory.clamp.tangent) > kStands;
+}
+
+void Solver::freeze_onward() {
+    if (stands())
+        freeze_friction(memory.node, shape.tangent);
+    else
+        freeze_friction(ws.ahead, ws.next.tangent);
+}
+
+void Solver::start() {
+    if (lay_onward()) {
+        freeze_onward();
+        evaluate(frozen, ws.next, ws.trial);
+        if (ws.trial.value < value_of(frozen, shape, ws.at)) {
+            std::swap(shape, ws.next);
+            std::swap(ws.at, ws.trial);
+            return;
+        }
+    }
+    freeze_friction(memory.node, shape.tangent);
+    evaluate(frozen, shape, ws.at);
+}
+
+bool Solver::take_normal_forces(int pass) {
+    double change = 0, sum = 0;
+    for (std::size_t p = 1; p < fine.size(); ++p) {
+        const double fresh = ws.at.normal[p];
+        change += std::abs(fresh - (law.hard ? frozen.multiplier[p] : normal[p]));
+        sum += fresh;
+        if (law.hard) frozen.multiplier[p] = fresh;
+        if (fresh > 0 && !anchored[p]) {
+            anchor[p] = point(ws.at.node, p);
+            anchored[p] = 1;
+        }
+    }
+    if (law.friction <= 0 && !law.hard) return true;
+    relax(pass);
+    return change <= law.pass_tolerance * (sum + kFaint);
+}
+
+void Solver::relax(int pass) {
+    double along = 0, before = 0;
+    for (std::size_t p = 1; p < fine.size(); ++p) {
+        const double miss = ws.at.normal[p] - normal[p];
+        if (pass > 1) {
+            along += miss * buffers.last_miss[p];
+            before += buffers.last_miss[p] * buffers.last_miss[p];
+        }
+    }
+    // The last miss went in with `relaxation`: ratio = 1 - relaxation (1 - slope of the map).
+    const double ratio = before > 0 ? along / before : 0;
+    if (pass > 1) relaxation = std::clamp(relaxation / std::max(1 - ratio, 0.2), 0.2, 1.5);
+    buffers.last_miss.assign(fine.size(), 0);
+    for (std::size_t p = 1; p < fine.size(); ++p) {
+        buffers.last_miss[p] = ws.at.normal[p] - normal[p];
+        normal[p] = std::max(0.0, normal[p] + relaxation * buffers.last_miss[p]);
+    }
+}
+
+Result Solver::run() {
+    Result out;
+    start();
+    for (out.passes = 1;; ++out.passes) {
+        const NewtonResult r = newton(frozen, shape, ws, law.max_iterations - out.iterations);
+        out.iterations += r.iterations;
+        const bool settled = fine.empty() || take_normal_forces(out.passes);
+        out.converged = r.converged && settled;
+        if (out.converged || out.passes >= law.max_passes || out.iterations >= law.max_iterations) {
+            break;
+        }
+        ws.ahead = ws.at.node;
+        freeze_friction(ws.ahead, shape.tangent);
+        evaluate(frozen, shape, ws.at);
+    }
+    finish(out);
+    return out;
+}
+
+void Solver::finish(Result& out) {
+    const Evaluation& at = ws.at;
+    out.moment.resize(n());
+    out.dissipation += recovered;
+    out.normal_force.assign(n() + 1, 0);
+    out.contact_force.assign(n() + 1, Vec3{0});
+    out.slip.assign(n() + 1, Vec3{0});
+    if (fine.size() > frozen.walls_from) out.wall_force.assign(n() + 1, Vec3{0});
+    out.contact_energy = at.contact;
+    buffers.friction_sum.assign(n() + 1, 0);
+    for (int j = 0; j < n(); ++j) {
+        out.moment[j] = glm::length(at.joint[j].moment + end_moment(frozen));
+        const Vec2 turn = at.joint[j].bend - memory.joint[j].bend;
+        out.dissipation += law.damping * rod.stiffness[j] * glm::dot(turn, turn);
+        out.dissipation += commit_joint(rod, j, memory.joint[j], at.joint[j].bend);
+        out.bend_energy += stored_energy(rod, j, memory.joint[j], at.joint[j].bend);
+    }
+    for (int i = 1; i <= n(); ++i) {
+        Vec3 f = -at.slope[i];
+        if (i == n()) f -= frozen.load.tip_force;
+        out.contact_force[i] = f;
+        out.force += f;
+        out.root_moment += glm::cross(at.node[i] - at.node[0], f);
+    }
+    out.root_moment += glm::cross(at.node[n()] - at.node[0], frozen.load.tip_force);
+    for (std::size_t p = 0; p < memory.contact.size(); ++p) finish_contact(p, out);
+    for (int i = 0; i <= n(); ++i) out.slip[i] /= std::max(buffers.friction_sum[i], 1e-300);
+    out.met.reserve(memory.node.size());
+    for (std::size_t p = 0; p < std::min(fine.size(), frozen.walls_from); p += law.points_per_segment)
+        out.met.push_back(met_at(p, at.node));
+    const Mat3 back = glm::transpose(clamp_frame(memory.clamp));
+    memory.turn.resize(shape.tangent.size());
+    for (std::size_t j = 0; j < shape.tangent.size(); ++j) {
+        memory.turn[j] = back * (shape.tangent[j] - memory.tangent[j]);
+    }
+    memory.moved = moved;
+    memory.tangent = shape.tangent;
+    memory.node = at.node;
+}
+
+void Solver::finish_contact(std::size_t p, Result& out) {
+    ContactMemory& c = memory.contact[p];
+    c.touching = p < fine.size() && ws.at.normal[p] > 0;
+    if (!c.touching) {
+        c = {};
+        return;
+    }
+    const Stencil& at = frozen.stencil[p];
+    // Half of it taken from before, so that what a pass leaves is not carried on at twice its size.
+    c.growth = c.force > 0 ? 0.5 * (c.growth + ws.at.normal[p] - c.force) : 0;
+    c.force = ws.at.normal[p];
+    c.multiplier = law.hard ? c.force : 0;
+    const bool own = p < frozen.walls_from;
+    for (int k = 0; k < at.count; ++k) {
+        if (own)
+            out.normal_force[at.first + k] += at.w[k] * c.force;
+        else
+            out.wall_force[at.first + k] += at.w[k] * c.force * fine[p].normal;
+    }
+    const Vec3 x = point(ws.at.node, p);
+    const Friction& f = frozen.friction[p];
+    const bool sticks = f.cap > 0 && f.stick > 0;
+    c.normal = sticks ? f.normal : normal_at(p, ws.at.node);
+    Vec3 d = anchored[p] && law.friction > 0 ? x - anchor[p] : Vec3{0};
+    d -= glm::dot(d, c.normal) * c.normal;
+    c.anchor = x - d;
+    if (!sticks) return;
+    const double along = glm::dot(d, f.grain);
+    const Vec3 side = d - along * f.grain;
+    const double q = std::sqrt(f.along * f.along * along * along + f.across * f.across * glm::dot(side, side));
+    const double reach = f.cap / f.stick;
+    out.contact_energy += 0.5 * f.stick * std::min(q, reach) * std::min(q, reach);
+    if (q > reach) {
+        out.dissipation += f.cap * (q - reach);
+        c.anchor = x - d * (reach / q);
+        for (int k = 0; own && k < at.count; ++k) out.slip[at.first + k] += at.w[k] * f.cap * (1 - reach / q) * d;
+    }
+    for (int k = 0; own && k < at.count; ++k) buffers.friction_sum[at.first + k] += at.w[k] * f.cap;
+}
+
+}  // namespace tuft::brush::rod

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "brush/rod/rod.h"
+#include "brush/rod/rod_energy.h"
+#include "brush/rod/rod_newton.h"
+#include "brush/rod/rod_points.h"
+
+/// \file
+/// One solve of one rod: friction passes around Newton, then the memory moves on. Internal to the rod solver; coupled
+/// rods (coupled_rods.h) run their solvers side by side.
+namespace tuft::brush::rod {
+
+/// Returns how far a clamp went, turns counted at one length.
+double clamp_distance(const Clamp& a, const Clamp& b);
+
+/// Buffers of one thread, kept so that a warm solve allocates little.
+struct Buffers {
+    std::vector<Vec3> before;    ///< nodes of the last solve
+    std::vector<Obstacle> fine;  ///< of the contact points
+    Frozen frozen;
+    Shape shape;
+    std::vector<double> normal;  ///< lagged N̂
+    std::vector<Vec3> anchor;
+    std::vector<char> anchored;
+    std::vector<double> last_miss;     ///< of N̂ in the pass before
+    std::vector<double> friction_sum;  ///< [n+1] most friction of the points beside each node
+    Workspace newton;
+};
+
+/// One solve: friction passes around Newton, then the memory moves on.
+struct Solver {
+    const Rod& rod;
+    Memory& memory;
+    std::span<const Obstacle> obstacles;  ///< of the nodes
+    std::span<const Wall> walls;
+    const Law& law;
+    Buffers& buffers;
+    double moved = 0;  ///< of the clamp since the last solve
+    std::vector<Obstacle>& fine = buffers.fine;
+    Frozen& frozen = buffers.frozen;
+    Shape& shape = buffers.shape;
+    std::vector<double>& normal = buffers.normal;
+    std::vector<Vec3>& anchor = buffers.anchor;
+    std::vector<char>& anchored = buffers.anchored;
+    Workspace& ws = buffers.newton;
+    double relaxation = 1;
+    double recovered = 0;  ///< energy lost by the set going back
+
+    int n() const { return rod.segments(); }
+
+    void begin(const Load& load, const std::vector<Vec3>& before);
+    /// The anchor of a point that stuck at `last`: what it is stretched along the surface
+    /// turns with the surface's normal, so that neither a rounded edge nor a change of planes
+    /// pulls at it.
+    Vec3 carried_anchor(std::size_t p, const ContactMemory& c, const Vec3& last) const;
+    const PointPlace& place(std::size_t p) const { return frozen.place[p]; }
+    Vec3 point(const std::vector<Vec3>& x, std::size_t p) const { return frozen.stencil[p].at(x); }
+    Distance distance(std::size_t p, const Vec3& x) const;
+    /// The plane that a contact point meets, and its unit normal.
+    Obstacle met_at(std::size_t p, const std::vector<Vec3>& x) const { return met_by(frozen, static_cast<int>(p), x); }
+    Vec3 normal_at(std::size_t p, const std::vector<Vec3>& x) const;
+    /// Freezes friction for the hair where it lies at nodes x along `tangents`.
+    void freeze_friction(const std::vector<Vec3>& x, const std::vector<Vec3>& tangents);
+    /// Hair that stands may buckle: neither its friction nor its forces go on as they did.
+    bool stands() const;
+    /// How far the hand goes on in this solve, over its way in the last.
+    double onward() const { return memory.moved > 0 ? std::min(2.0, moved / memory.moved) : 0; }
+    /// The shape carried on as it changed in the last solve, with its nodes; none where it is not known.
+    bool lay_onward();
+    /// Freezes friction for that shape, or for the hair as it stands.
+    void freeze_onward();
+    /// Starts from the shape carried on as it changed in the last solve, if Π is lower there with the
+    /// friction of hair that lies so; else from the one carried with the clamp. Friction frozen where the
+    /// hand alone would have taken the hair points the wrong way, and costs passes.
+    void start();
+    /// Takes the normal forces of the pass; true when they no longer change.
+    bool take_normal_forces(int pass);
+    /// Moves N̂ towards the pass' normal forces, by Aitken's rule from the second pass on:
+    /// friction lifts or lowers the tuft, so that plain substitution can swing to and fro.
+    void relax(int pass);
+    Result run();
+    /// Forces from the last evaluation; stops and anchors move on.
+    void finish(Result& out);
+    void finish_contact(std::size_t p, Result& out);
+};
+
+}  // namespace tuft::brush::rod

@@ -1,0 +1,187 @@
+#include "brush/rod/coupled_rods.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace tuft::brush::rod {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// K straight rods side by side, `pitch` apart along x, of stiffness 1/K each, hanging along −z.
+struct Row {
+    std::vector<Rod> rods;
+    std::vector<Memory> memories;
+    std::vector<Clamp> clamps;
+    std::vector<PairMemory> pair_memories;
+    std::vector<std::vector<double>> touching;
+    std::vector<Obstacle> obstacles;
+    Law law;
+    CouplingLaw coupling;
+    Load load;
+
+    Row(int count, double pitch, int n = 12, const Profile& profile = {.alpha = 0, .beta = 0}) {
+        law.tolerance = 1e-9;
+        for (int k = 0; k < count; ++k) {
+            Rod rod = make_rod(profile, n, 1);
+            for (double& s : rod.stiffness) s /= count;
+            rods.push_back(rod);
+            clamps.push_back({.position = {(k - 0.5 * (count - 1)) * pitch, 0, 0}});
+            memories.push_back(make_memory(rod, clamps.back()));
+        }
+        pair_memories.resize(count - 1);
+        touching.assign(count - 1, std::vector<double>(n + 1, pitch));
+    }
+    std::vector<CoupledRod> problem() {
+        std::vector<CoupledRod> out;
+        for (std::size_t k = 0; k < rods.size(); ++k) {
+            Load own = load;
+            own.tip_force /= static_cast<double>(rods.size());
+            out.push_back({&rods[k], &memories[k], clamps[k], obstacles, &law, own, {}});
+        }
+        return out;
+    }
+    std::vector<CoupledPair> pairs() {
+        std::vector<CoupledPair> out;
+        for (std::size_t k = 0; k + 1 < rods.size(); ++k)
+            out.push_back(
+                {static_cast<int>(k), static_cast<int>(k + 1), {1, 0}, touching[k], {}, {}, &pair_memories[k]});
+        return out;
+    }
+    CoupledResult solve() { return solve_coupled(problem(), pairs(), coupling); }
+};
+
+Law soft_ground() {
+    Law law;
+    law.points_per_segment = 6;
+    law.stiffness = 2000;
+    law.friction = 0.3;
+    law.onset = 0.002;
+    law.tolerance = 1e-9;
+    law.pass_tolerance = 1e-8;
+    law.max_passes = 200;
+    law.max_iterations = 2000;
+    return law;
+}
+
+/// The film's potential and its derivatives: force and stiffness are the differences of the value.
+TEST(CoupledRods, PairForceIsTheDerivativeOfItsEnergy) {
+    const CouplingLaw law{.contact = 400, .spread = 30, .film = 0.02, .film_range = 0.05};
+    const double step = 1e-5;
+    for (const double d : {0.17, 0.199, 0.201, 0.23, 0.249, 0.3}) {
+        const PairEnergy at = pair_energy(law, 0.2, 0.22, d);
+        const PairEnergy lo = pair_energy(law, 0.2, 0.22, d - step), hi = pair_energy(law, 0.2, 0.22, d + step);
+        // Central differences: error of the order step² f''' and of rounding over step.
+        EXPECT_NEAR(at.force, -(hi.value - lo.value) / (2 * step), 1e-6) << d;
+        EXPECT_NEAR(at.stiffness, -(hi.force - lo.force) / (2 * step), 1e-3) << d;
+    }
+    EXPECT_NEAR(pair_energy(law, 0.2, 0.2, 0.2).force, 0, 1e-12) << "wet rest is at gap 0";
+}
+
+/// Uncoupled rods: K rods of stiffness 1/K bear the load of one.
+TEST(CoupledRods, UncoupledRodsBearWhatOneBears) {
+    Row row(5, 0.1);
+    row.law = soft_ground();
+    row.obstacles.assign(13, {{0, 0, -0.9}, {0, 0, 1}, 0.02});
+    Rod one = make_rod({.alpha = 0, .beta = 0}, 12, 1);
+    Memory memory = make_memory(one, {});
+    Law law = row.law;
+    row.law.stiffness /= 5;
+    row.law.stick_stiffness /= 5;
+    for (int i = 0; i < 8; ++i) {
+        const double down = -0.01 * i;
+        // Leaning, so that no hair stands upright and could fall to either side.
+        const Vec3 tangent = glm::normalize(Vec3{0, 0.3, -1});
+        for (Clamp& c : row.clamps) c = {{c.position.x, -0.01 * i, down}, tangent, {1, 0, 0}};
+        const Clamp clamp{{0, -0.01 * i, down}, tangent, {1, 0, 0}};
+        std::vector<Obstacle> obstacles = row.obstacles;
+        const Result alone = solve(one, memory, clamp, obstacles, law);
+        const CoupledResult all = row.solve();
+        Vec3 force{0};
+        for (const Result& r : all.rods) force += r.force;
+        // Both stop at the same residual, 1e-8 of B0/L, over forces of the order 1.
+        EXPECT_NEAR(glm::distance(force, alone.force), 0, 1e-5 * (1 + glm::length(alone.force))) << i;
+    }
+}
+
+/// The step found by elimination in blocks solves the dense system.
+TEST(CoupledRods, EliminationSolvesTheDenseSystem) {
+    Row row(4, 0.08);
+    row.law = soft_ground();
+    row.law.stiffness /= 4;
+    row.obstacles.assign(13, {{0, 0, -0.85}, {0, 0.1, std::sqrt(1 - 0.01)}, 0.03});
+    row.coupling = {.contact = 500, .spread = 20, .film = 0.01, .film_range = 0.02, .shear = 200, .friction = 0.3};
+    for (int i = 0; i < 5; ++i) {
+        for (Clamp& c : row.clamps) c.position = {c.position.x + 0.005, 0.01 * i, -0.01 * i};
+        row.solve();
+    }
+    EXPECT_LT(elimination_residual(row.problem(), row.pairs(), row.coupling), 1e-9);
+}
+
+/// Rods that stick to each other bend across their row as a beam with shear layers:
+///     w(L) = P L³/ΣB (1 − tanh x / x) / x²,  x² = (K − 1) k_s p² L² / ΣB.
+TEST(CoupledRods, StickingRowIsStifferAcrossItsBroadSide) {
+    for (const double x2 : {0.25, 4.0, 25.0}) {
+        const int count = 5;
+        const double pitch = 0.05;
+        Row row(count, pitch, 24);
+        // A film that holds the rods together under any pull of this load, so that all bend alike.
+        row.coupling = {.contact = 1e7, .film = 1, .film_range = 1};
+        row.coupling.friction = kInfinite;
+        row.coupling.shear = x2 / ((count - 1) * pitch * pitch);
+        const double load = 0.01;  // small slopes: w below 0.4 %
+        row.load.tip_force = {load, 0, 0};
+        row.solve();
+        const CoupledResult r = row.solve();
+        double w = 0;
+        for (const Memory& m : row.memories) w += (m.node.back().x - m.node.front().x) / count;
+        const double x = std::sqrt(x2), expected = load * (1 - std::tanh(x) / x) / x2;
+        // Segments of 1/24, second order: 0.4 % at x² = 25.
+        EXPECT_NEAR(w / expected, 1, 0.01) << "x² " << x2;
+        EXPECT_LT(w, load / 3 * 1.001);
+    }
+}
+
+/// A wet film of work W zips two rods of stiffness B each from the gap d of their roots: they stay dry up to
+/// s = (9 B d² / W')^(1/4), W' the work less that of the contact (Bico et al. 2004, Py et al. 2007).
+TEST(CoupledRods, WetFilmZipsTwoRodsFromAGap) {
+    const int n = 100;
+    const double gap = 0.02, film = 0.2, touching = 0.02;
+    Row row(2, touching + gap, n);
+    row.touching[0].assign(n + 1, touching);
+    // A film far thinner than the gap, and contact so stiff that it takes little of the film's work.
+    row.coupling = {.contact = 1e7, .film = film, .film_range = 1e-3};
+    const double overlap = row.coupling.rest_gap(), work = film - 0.5 * row.coupling.contact * overlap * overlap;
+    row.law.max_iterations = 4000;
+    row.law.max_passes = 60;
+    // Drawn together first, so that the film has formed from the tip on.
+    for (int k = 0; k < 2; ++k) {
+        Memory& m = row.memories[k];
+        const double way = k == 0 ? 1 : -1;
+        for (int j = 0; j < n; ++j) {
+            const double s = (j + 0.5) / n, bend = s < 0.35 ? way * 3 * gap / 0.35 * (s / 0.35) * (1 - s / 0.35) : 0;
+            m.tangent[j] = glm::normalize(Vec3{bend, 0, -1});
+        }
+        m.node = nodes(row.rods[k], m);
+    }
+    CoupledResult r;
+    for (int i = 0; i < 10; ++i) r = row.solve();
+    const double stiffness = 0.5, dry = std::pow(9 * stiffness * gap * gap / work, 0.25);
+    // The hair turns from the curvature κ at the root to −κ at the dry end, κ = √(W'/B); the joint of the clamp stands
+    // for half a segment, whose mean lies a quarter segment out.
+    const double curvature = std::sqrt(work / stiffness) * (1 - 2 * 0.25 / n / dry);
+    // The front moves by one segment, 3 % of the dry length, before it is found by the next node: half of it.
+    EXPECT_NEAR(r.rods[0].moment[0] / stiffness / curvature, 1, 0.03);
+    // Beside the front the gap grows as κ x²: the front from where it is a fifth of the root's.
+    int first = 0;
+    while (first < n && r.pairs[0].gap[first] > 0.2 * gap) ++first;
+    const double front =
+        static_cast<double>(first) / n + std::sqrt(r.pairs[0].gap[first] / std::sqrt(work / stiffness));
+    EXPECT_NEAR(front / dry, 1, 0.05);
+}
+
+}  // namespace
+}  // namespace tuft::brush::rod
