@@ -57,12 +57,20 @@ std::vector<Vec3> centres(const brush::Branch& branch) {
     return out;
 }
 
-/// Stands of the tuft's nodes, tip first; sub-spines, which follow in the list, start from the
-/// trunk.
-std::vector<Stand> stand_nodes(const Work& w, std::span<const Vec3> nodes, std::size_t trunk,
+/// Stands of the tuft's nodes, tip first, spine after spine, each from the ferrule; sub-spines, which follow in the
+/// list, start from the trunk.
+std::vector<Stand> stand_nodes(const Work& w, const brush::Tuft& tuft, std::span<const Vec3> nodes,
                                std::span<const Stand> before = {}) {
-    std::vector<Stand> out = stand_along(w.surface, w.root, nodes.first(trunk), w.near, w.stand, before);
-    if (nodes.size() == trunk) return out;
+    std::vector<Stand> out;
+    for (const brush::Spine& spine : tuft.spines) {
+        const std::size_t first = out.size(), count = spine.rest_radius.size();
+        const auto known = before.size() >= first + count ? before.subspan(first, count) : std::span<const Stand>{};
+        const std::vector<Stand> own =
+            stand_along(w.surface, w.root, nodes.subspan(first, count), w.near, w.stand, known);
+        out.insert(out.end(), own.begin(), own.end());
+    }
+    if (nodes.size() == out.size()) return out;
+    const std::size_t trunk = out.size();
     const std::size_t sub_spine = (nodes.size() - trunk) / 3;
     for (std::size_t first = trunk; first < nodes.size(); first += sub_spine) {
         const auto points = nodes.subspan(first, sub_spine);
@@ -89,17 +97,25 @@ ContactPlane refreshed(const ContactPlane& old, const Stand& now, const Vec3& p,
     return {p + needed * n, n};
 }
 
-/// What the side nodes of the trunk meet: a ray from the spine to a little beyond each, where
+/// Radii at rest of the nodes of all spines, in their order, metres.
+std::vector<double> node_radii(const brush::Tuft& tuft) {
+    std::vector<double> out;
+    for (const brush::Spine& spine : tuft.spines)
+        out.insert(out.end(), spine.rest_radius.rbegin(), spine.rest_radius.rend());
+    return out;
+}
+
+/// What the side nodes of the spines meet: a ray from the spine to a little beyond each, where
 /// the spine is near a surface. Empty where nothing stands in any way.
 std::vector<ContactPlane> side_walls(const Work& w, const brush::Tuft& tuft, std::span<const Stand> stands) {
     constexpr double kBeyond = 1e-3;  // metres a side may grow in one step
     const std::vector<Vec3> sides = brush::predicted_sides(tuft, w.pose);
-    const std::size_t trunk = tuft.spine.rest_radius.size();
+    const std::vector<double> radii = node_radii(tuft);
     std::vector<ContactPlane> walls;
-    if (sides.size() != 2 * trunk || stands.size() < trunk) return walls;
+    if (sides.size() != 2 * radii.size() || stands.size() < radii.size()) return walls;
     for (std::size_t k = 0; k < sides.size(); ++k) {
         const Stand& stand = stands[k / 2];
-        const double radius = tuft.spine.rest_radius[trunk - 1 - k / 2];
+        const double radius = radii[k / 2];
         if (stand.triangle == kNone || stand.height > 1.5 * radius) continue;
         const Vec3 way = sides[k] - stand.outside;
         const double reach = glm::length(way);
@@ -117,13 +133,14 @@ std::vector<ContactPlane> side_walls(const Work& w, const brush::Tuft& tuft, std
 }
 
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
-/// `planes`: those of the last solve. `rest`: stands of the trunk where it lies now, or empty.
+/// `planes`: those of the last solve. `rest`: stands of the spines where they lie now, or empty.
 brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<ContactPlane>& planes,
                        std::vector<Stand>& rest) {
-    const std::size_t trunk = tuft.spine.rest_radius.size();
+    const std::vector<double> radii = node_radii(tuft);
+    const double root_radius = radii[tuft.trunk().rest_radius.size() - 1];
     const bool was_split = tuft.split;
     const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
-    const std::vector<Stand> predicted = stand_nodes(w, nodes, trunk);
+    const std::vector<Stand> predicted = stand_nodes(w, tuft, nodes);
     for (const Stand& s : predicted) planes.push_back(s.met);
     const std::vector<ContactPlane> walls = side_walls(w, tuft, predicted);
     if (w.options.max_refreshes <= 0) return brush::step(tuft, w.pose, planes, dt, walls);
@@ -134,12 +151,11 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<
         const std::vector<Vec3> now = brush::predicted_nodes(tuft, w.pose);
         if (tuft.split != was_split && now.size() < nodes.size()) break;
         const auto compared = std::span(now).first(nodes.size());
-        const std::vector<Stand> stands = stand_nodes(w, compared, trunk, predicted);
+        const std::vector<Stand> stands = stand_nodes(w, before, compared, predicted);
         double worst = 0;
         std::vector<ContactPlane> fresh = planes;
         for (std::size_t i = 0; i < planes.size(); ++i) {
-            const double radius =
-                i < trunk ? before.spine.rest_radius[trunk - 1 - i] : before.spine.rest_radius[trunk - 1];
+            const double radius = i < radii.size() ? radii[i] : root_radius;
             const double z = brush::height_over(planes[i], compared[i]);
             const double height = brush::height_over(stands[i].met, compared[i]);
             if (std::min(z, height) > 2 * radius) continue;
@@ -148,7 +164,7 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<
         }
         if (worst < w.options.refresh_error) {
             rest = stands;
-            rest.resize(trunk);
+            rest.resize(radii.size());
             break;
         }
         planes = std::move(fresh);
@@ -186,6 +202,17 @@ std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::Tuft&
         if (trunk.size() != count && nodes.size() >= count)
             trunk = stand_along(w.surface, w.root, std::span(nodes).first(count), w.near, w.stand);
         out.push_back(std::move(trunk));
+        return out;
+    }
+    if (tuft.wide) {
+        const std::vector<Vec3> nodes = brush::predicted_nodes(solved, w.pose);
+        if (trunk.size() != nodes.size()) trunk = stand_nodes(w, solved, nodes);
+        for (std::size_t b = 0, first = 0; b < tuft.branches.size(); ++b) {
+            const auto begin = trunk.begin() + static_cast<long>(first);
+            const std::size_t count = tuft.branches[b].sections.size();
+            out.emplace_back(begin, begin + static_cast<long>(count));
+            first += count;
+        }
         return out;
     }
     // The branch that reaches the ferrule first; the others start where it is nearest.
@@ -311,11 +338,13 @@ Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::Surfac
     Result result;
     const brush::Preset& preset = tuft.preset;
     std::vector<Vec3> nodes = brush::predicted_nodes(tuft, asked);
-    const double thick = 1.2 * preset.radius * std::max(1.0, preset.flatten_max);
+    // A wide ferrule reaches half its width to the sides; its nodes lie within that of each other's.
+    const double thick =
+        1.2 * preset.radius * std::max(1.0, preset.flatten_max) + 0.5 * preset.width / std::max(1, preset.spines);
     const bool meets = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
     Work w{surface, asked, options, {}, preset.radius, 0, {}};
-    w.stand.reach = 2 * preset.length + thick;
+    w.stand.reach = 2 * preset.length + thick + preset.width;
     w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
     if (meets) {
         w.root = stand_of_root(w, memory, preset.length);
@@ -324,7 +353,8 @@ Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::Surfac
         if (w.pose.position != asked.position) nodes = brush::predicted_nodes(tuft, w.pose);
     }
     const brush::Pose& pose = w.pose;
-    const bool reachable = meets && w.root.triangle != kNone && w.root.height < preset.length + w.near;
+    const bool reachable =
+        meets && w.root.triangle != kNone && w.root.height < preset.length + w.near + 0.5 * preset.width;
     if (!reachable) {
         result.tuft = brush::step(tuft, pose, {}, dt);
         result.inside = std::max(result.inside, depth_inside(surface, asked.position));

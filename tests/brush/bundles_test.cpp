@@ -58,7 +58,7 @@ TEST(Bundles, SubSpinesTakeEqualSharesOfTheHair) {
     for (int n = 1; n <= 5; ++n) {
         std::vector<int> count(static_cast<std::size_t>(n), 0);
         for (const Bristle& bristle : b.bristles) {
-            const BranchPlace at = in_branch(Vec2(bristle.place), n);
+            const BranchPlace at = in_branch({}, Vec2(bristle.place), n);
             ASSERT_GE(at.branch, 0);
             ASSERT_LT(at.branch, n);
             ++count[static_cast<std::size_t>(at.branch)];
@@ -77,7 +77,7 @@ TEST(Bundles, TheOrderFromSideToSideIsKept) {
         int branch = 0;
         double x = -2;
         for (int i = 0; i <= 1000; ++i) {
-            const BranchPlace at = in_branch({-1 + i / 500.0, 0}, n);
+            const BranchPlace at = in_branch({}, {-1 + i / 500.0, 0}, n);
             EXPECT_GE(at.branch, branch);
             if (at.branch == branch) {
                 EXPECT_GE(at.place.x, x - 1e-12);
@@ -166,10 +166,10 @@ TEST(Bundles, ChildrenOfAnyNumberAddUpToTheirParent) {
             area += b.sections[1].a * b.sections[1].b;
         }
         for (const Spine& sub_spine : tuft.sub_spines) stiffness += sub_spine.rod.stiffness.back();
-        const double r = tuft.spine.rest_radius[tuft.spine.rest_radius.size() - 2];
+        const double r = tuft.trunk().rest_radius[tuft.trunk().rest_radius.size() - 2];
         EXPECT_NEAR(shares, 1, 1e-12);
         EXPECT_NEAR(area, r * r, 1e-9 * r * r);
-        EXPECT_NEAR(stiffness / tuft.spine.rod.stiffness.back(), 1, 1e-12);
+        EXPECT_NEAR(stiffness / tuft.trunk().rod.stiffness.back(), 1, 1e-12);
     }
 }
 

@@ -42,7 +42,7 @@ struct Drawn {
 Drawn draw(const char* name, double left, double right, bool with_walls = true, bool lift = false) {
     Drawn out{.tuft = make_tuft(load_preset(name))};
     const double length = out.tuft.preset.length;
-    const std::vector<ContactPlane> planes(out.tuft.spine.rest_radius.size());
+    const std::vector<ContactPlane> planes(out.tuft.trunk().rest_radius.size());
     Pose before;
     Vec3 force{0};
     const int steps = lift ? 1800 : 1400;
@@ -118,7 +118,7 @@ TEST(Flanks, AreNotMovedByWallsOnBothSides) {
 TEST(Flanks, FeelNothingOfAWallOutOfReach) {
     const Drawn far = draw("mixed-medium", 0.012, 0.012), none = draw("mixed-medium", kNone, kNone, false);
     EXPECT_EQ(far.state.force, none.state.force);
-    EXPECT_EQ(far.tuft.spine.memory.node, none.tuft.spine.memory.node);
+    EXPECT_EQ(far.tuft.trunk().memory.node, none.tuft.trunk().memory.node);
     ASSERT_EQ(far.state.branches.front().sections.size(), none.state.branches.front().sections.size());
     for (std::size_t i = 0; i < none.state.branches.front().sections.size(); ++i)
         EXPECT_EQ(far.state.branches.front().sections[i].a, none.state.branches.front().sections[i].a);

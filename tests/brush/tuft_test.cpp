@@ -56,14 +56,14 @@ TuftState draw(Tuft& tuft, const Stroke& s) {
 TEST(Tuft, SegmentsKeepTheirLengthAndSectionsTheirArea) {
     Tuft tuft = make_tuft(load_preset("goat-medium"));
     const TuftState state = draw(tuft, {});
-    const std::vector<Vec3>& x = tuft.spine.memory.node;
-    for (int j = 0; j < tuft.spine.rod.segments(); ++j) {
-        EXPECT_NEAR(glm::length(x[j + 1] - x[j]), tuft.spine.rod.length[j], 1e-12);
+    const std::vector<Vec3>& x = tuft.trunk().memory.node;
+    for (int j = 0; j < tuft.trunk().rod.segments(); ++j) {
+        EXPECT_NEAR(glm::length(x[j + 1] - x[j]), tuft.trunk().rod.length[j], 1e-12);
     }
     const std::vector<Section>& sections = state.branches.front().sections;
     ASSERT_EQ(sections.size(), x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const double r = tuft.spine.rest_radius[x.size() - 1 - i];
+        const double r = tuft.trunk().rest_radius[x.size() - 1 - i];
         EXPECT_NEAR(sections[i].a * sections[i].b, r * r, 1e-12 * r * r);
         EXPECT_LE(sections[i].a, tuft.preset.flatten_max * r * (1 + 1e-12));
         EXPECT_NEAR(glm::dot(sections[i].e, sections[i].tangent), 0, 1e-12);
@@ -78,7 +78,7 @@ TEST(Tuft, PressAndLiftReturnsToRestWhenElastic) {
     s.lift = 100;
     const TuftState state = draw(tuft, s);
     EXPECT_FALSE(state.touching);
-    for (const Vec3& t : tuft.spine.memory.tangent) {
+    for (const Vec3& t : tuft.trunk().memory.tangent) {
         // Residual moment 1e-6 over the softest joint of about 1e-3.
         EXPECT_GT(glm::dot(t, tuft.pose.axis()), 1 - 1e-6);
     }
@@ -95,7 +95,7 @@ TEST(Tuft, AWetSoftTuftKeepsASetThatReshapingTakesOut) {
     TuftState state = draw(tuft, s);
     EXPECT_FALSE(state.touching);
     const auto tip_angle = [&] {
-        return std::acos(std::min(1.0, glm::dot(tuft.spine.memory.tangent.back(), tuft.pose.axis())));
+        return std::acos(std::min(1.0, glm::dot(tuft.trunk().memory.tangent.back(), tuft.pose.axis())));
     };
     EXPECT_GT(tip_angle(), 0.05);
     reshape(tuft);
@@ -105,7 +105,7 @@ TEST(Tuft, AWetSoftTuftKeepsASetThatReshapingTakesOut) {
 
 /// Angle between the tip and the ferrule's axis, radians.
 double tip_angle(const Tuft& tuft) {
-    return std::acos(std::min(1.0, glm::dot(tuft.spine.memory.tangent.back(), tuft.pose.axis())));
+    return std::acos(std::min(1.0, glm::dot(tuft.trunk().memory.tangent.back(), tuft.pose.axis())));
 }
 
 TEST(Tuft, DryHairSpringsBackWhereWetHairKeepsASet) {
@@ -324,11 +324,11 @@ TEST(Tuft, SteadyDragIsSteady) {
         const double length = tuft.preset.length;
         const ContactPlane plane;
         Pose pose = tuft.pose;
-        Vec3 tip_t0 = tuft.spine.memory.node.back() * length - pose.position;
+        Vec3 tip_t0 = tuft.trunk().memory.node.back() * length - pose.position;
         for (int i = 0; i < 100; ++i) {
             pose.position.x += 0.01 * length;
             const TuftState state = step(tuft, pose, {&plane, 1}, 0.005);
-            const Vec3 tip = tuft.spine.memory.node.back() * length - pose.position;
+            const Vec3 tip = tuft.trunk().memory.node.back() * length - pose.position;
             EXPECT_LT(glm::length(tip - tip_t0), 1e-6) << name;  // a micrometre: far below a texel
             EXPECT_TRUE(state.converged);
             tip_t0 = tip;
@@ -456,7 +456,7 @@ TEST(Tuft, SplitsWhenBentAndDryAndMergesWhenWetAgain) {
     // The tips have the tuft's tip area between them and lie apart.
     double area = 0;
     for (const Branch& b : state.branches) area += b.sections[1].a * b.sections[1].b;
-    const double r = tuft.spine.rest_radius[15];
+    const double r = tuft.trunk().rest_radius[15];
     EXPECT_NEAR(area, r * r, 1e-9 * r * r);
     EXPECT_GT(glm::length(state.branches[0].sections[0].centre - state.branches[2].sections[0].centre), 5e-4);
     // They leave side by side from edge to edge of the trunk, as flat as it is.
@@ -513,8 +513,8 @@ TEST(Tuft, TenThousandRandomPosesStayFiniteAndBounded) {
                     ASSERT_LE(glm::length(s.centre - pose.position), length + about);
                 }
             }
-            for (std::size_t j = 0; j < tuft.spine.memory.tangent.size(); ++j) {
-                ASSERT_NEAR(glm::length(tuft.spine.memory.tangent[j]), 1, 1e-9);
+            for (std::size_t j = 0; j < tuft.trunk().memory.tangent.size(); ++j) {
+                ASSERT_NEAR(glm::length(tuft.trunk().memory.tangent[j]), 1, 1e-9);
             }
         }
     }

@@ -28,7 +28,7 @@ BrushAction action(BrushActionKind what, const std::string& ink = {}, const std:
 // How far the hair has yielded, radians.
 double set_of(const BrushInHand& brush) {
     double sum = 0;
-    for (const auto& joint : brush.tuft.spine.memory.joint)
+    for (const auto& joint : brush.tuft.trunk().memory.joint)
         if (joint.yielded)
             for (const Vec2& stop : joint.stop) sum += glm::length(stop);
     return sum;

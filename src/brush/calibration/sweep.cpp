@@ -110,7 +110,7 @@ Steady drag(const Preset& preset, double depth, const Vec2& lean) {
         pose.time += 0.01;
         state = step(tuft, pose, {&sheet, 1}, 0.01);
         const Vec3 lag_t0 = lag;
-        lag = tuft.spine.memory.node.back() * preset.length - pose.position;
+        lag = tuft.trunk().memory.node.back() * preset.length - pose.position;
         still = i > press && glm::length(lag - lag_t0) < 1e-6 * preset.length ? still + 1 : 0;
     }
     return {patch_of(state), pose.position.x - tip_to_root.x};

@@ -38,6 +38,14 @@ constexpr std::array kFields = {
     Field{"shape", "tip_power", &Preset::tip_power, 1, 0.5, 4},
     Field{"shape", "tip_radius_mm", &Preset::tip_radius, kMillimetre, 0, 10},
     Field{"shape", "hardness", &Preset::hardness, 1, 0, 1},
+    Field{"ferrule", "width_mm", &Preset::width, kMillimetre, 0, 300},
+    Field{"ferrule", "corner", &Preset::corner, 1, 1.5, 32},
+    Field{"ferrule", "toe_mm", &Preset::toe, kMillimetre, 0, 200},
+    Field{"ferrule", "slant_mm", &Preset::slant, kMillimetre, 0, 250},
+    Field{"ferrule", "splay_deg", &Preset::splay, kDegree, 0, 60},
+    Field{"ferrule", "hair_diameter_mm", &Preset::hair_diameter, kMillimetre, 0.01, 2},
+    Field{"ferrule", "surface_tension_n_m", &Preset::surface_tension, 1, 0, 1},
+    Field{"ferrule", "hair_friction", &Preset::hair_friction, 1, 0, 2},
     Field{"bending", "stiffness_n_m2", &Preset::stiffness, 1, 1e-10, 1},
     Field{"bending", "alpha", &Preset::alpha, 1, -6, 3},
     Field{"bending", "beta", &Preset::beta, 1, -0.995, 1},
@@ -81,9 +89,8 @@ struct WholeField {
 };
 
 constexpr std::array kWholeFields = {
-    WholeField{"shape", "segments", &Preset::segments, 4, 64},
-    WholeField{"split", "into", &Preset::split_into, 2, 5},
-    WholeField{"hair", "bundles", &Preset::bundles, 1, 200},
+    WholeField{"shape", "segments", &Preset::segments, 4, 64},  WholeField{"ferrule", "spines", &Preset::spines, 1, 9},
+    WholeField{"split", "into", &Preset::split_into, 2, 5},     WholeField{"hair", "bundles", &Preset::bundles, 1, 200},
     WholeField{"hair", "bristles", &Preset::bristles, 1, 4000},
 };
 
@@ -188,6 +195,17 @@ void check_preset(const Preset& p, const std::string& source) {
     if (p.radius > 0.5 * p.length) {
         throw Error(source, "'shape.radius_mm' must not exceed half of 'shape.length_mm'");
     }
+    if (p.spines > 1 && p.width < 2 * p.radius) {
+        throw Error(source, "'ferrule.width_mm' must be at least the thickness, 2 'shape.radius_mm'");
+    }
+    if (p.spines == 1 && p.width > 0) throw Error(source, "'ferrule.width_mm' needs 'ferrule.spines' above 1");
+    if (p.toe > 0 && p.slant > 0) throw Error(source, "'ferrule.toe_mm' and 'ferrule.slant_mm' exclude each other");
+    if (std::max(p.toe, p.slant) > 0.8 * p.length) {
+        throw Error(source, "the hair at the ferrule's edge must be a fifth of 'shape.length_mm' or longer");
+    }
+    if (p.spines > 1 && p.spine != SpineMethod::rod) {
+        throw Error(source, "several spines need 'bending.spine' = \"rod\"");
+    }
     if (p.merge_at > p.split_at) {
         throw Error(source, "'split.merge_at' must not exceed 'split.at'");
     }
@@ -236,6 +254,11 @@ Preset scaled(const Preset& preset, double factor) {
     for (double Preset::*length : {&Preset::length, &Preset::radius, &Preset::tip_radius, &Preset::end_compliance,
                                    &Preset::adhesion_range, &Preset::adhesion})
         p.*length *= factor;
+    if (p.spines > 1) {
+        for (double Preset::*length :
+             {&Preset::width, &Preset::toe, &Preset::slant, &Preset::hair_diameter, &Preset::surface_tension})
+            p.*length *= factor;
+    }
     p.stiffness *= std::pow(factor, 4);
     p.force_gain /= factor * factor;
     p.capacity *= factor * factor;
@@ -303,6 +326,19 @@ Preset load_preset(const std::string& name_or_path) {
     return as_stored(parse_preset({bytes.data(), bytes.size()}, path.string()), path.string());
 }
 
+namespace {
+
+/// A round tuft says nothing of a ferrule.
+bool has_ferrule(const Preset& p) {
+    const Preset round;
+    if (p.spines != round.spines) return true;
+    return std::any_of(kFields.begin(), kFields.end(), [&](const Field& f) {
+        return std::string_view(f.table) == "ferrule" && p.*f.member != round.*f.member;
+    });
+}
+
+}  // namespace
+
 std::string preset_toml(const Preset& p) {
     std::ostringstream out;
     const auto quoted = [](const std::string& text) {
@@ -316,6 +352,7 @@ std::string preset_toml(const Preset& p) {
     out << "name = " << quoted(p.name) << "\nnote = " << quoted(p.note) << "\n";
     std::string table;
     for (const Field& f : kFields) {
+        if (std::string_view(f.table) == "ferrule" && !has_ferrule(p)) continue;
         if (table != f.table) {
             table = f.table;
             out << "\n[" << table << "]\n";

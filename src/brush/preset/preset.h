@@ -31,8 +31,19 @@ struct Preset {
     double hardness = 0.5;     ///< [0, 1]; softer means shorter segments at the tip
     int segments = 16;         ///< spine segments, 12–24
 
+    // Ferrule (tuft/ferrule.h). One spine is a round tuft; with more, `radius` is half the thickness.
+    int spines = 1;                 ///< K, 1–9, side by side over the width
+    double width = 0;               ///< m, of the ferrule's mouth; 0 for a round tuft
+    double corner = 16;             ///< exponent q of the mouth's shape: 2 an ellipse … 16 a rectangle
+    double toe = 0;                 ///< m, by which the hair at both edges is shorter (filbert)
+    double slant = 0;               ///< m, by which the hair at the edge −x is shorter than at +x (sword)
+    double splay = 0;               ///< rad, lean of the hair at the edges (fan)
+    double hair_diameter = 1e-4;    ///< m, of one hair
+    double surface_tension = 0.05;  ///< N/m, of the ink between two spines
+    double hair_friction = 0.3;     ///< Coulomb μ between hair and hair
+
     // Bending.
-    double stiffness = 2e-4;      ///< B0, N·m², at the root
+    double stiffness = 2e-4;      ///< B0, N·m², at the root, of all hair together
     double alpha = -1;            ///< α of the modulus
     double beta = -0.8;           ///< β of the height, > -1
     double tip_stiffness = 2e-4;  ///< fraction of B0, added along the whole length: the hairs that reach the tip

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/ease.h"
+
 namespace tuft::brush::rod {
 
 namespace {
 
-Sym3 identity() {
-    return {.xx = 1, .yy = 1, .zz = 1};
-}
+constexpr double kFaces = 0.5;  ///< of the depth, shift out of the row up to which neighbours face each other
 
 Vec3 node_tangent(const Clamp& clamp, const std::vector<Vec3>& node, std::size_t i) {
     const Vec3 inner = i == 0 ? clamp.tangent : glm::normalize(node[i] - node[i - 1]);
@@ -78,7 +78,12 @@ void CoupledSystem::freeze_pairs() {
             along = t;
             FrozenNode& node = f.node[i];
             node.tangent = t;
+            node.row = out;
             node.across = glm::cross(t, out);
+            if (!f.pair->depth.empty()) {
+                const double past = std::abs(glm::dot(y[i] - x[i], node.across)) / f.pair->depth[i];
+                node.faces = 1 - smooth_step((past - kFaces) / (1 - kFaces));
+            }
             const double normal = f.normal[i];
             node.cap = std::isfinite(law_.friction) ? law_.friction * normal : law_.friction;
         }
@@ -92,18 +97,14 @@ double CoupledSystem::add_coupling(Evaluation Workspace::*which) {
         const CoupledPair& pair = *f.pair;
         for (int i = 0; i < f.nodes; ++i) {
             const FrozenNode& frozen = f.node[i];
-            const Vec3 d = b.node[i] - a.node[i], t = frozen.tangent;
-            const double along = glm::dot(d, t);
-            const Vec3 flat = d - along * t;
-            const double distance = std::max(glm::length(flat), 1e-9), touching = pair.touching[i];
-            const PairEnergy u = pair_energy(law_, touching, pair.spread.empty() ? touching : pair.spread[i], distance);
-            const Vec3 way = flat / distance;
-            Vec3 slope = -u.force * way;
-            Sym3 curvature = std::max(u.stiffness, 0.0) * outer(way);
-            const double round = -u.force / distance;
-            if (round > 0) curvature += round * (identity() + -1.0 * outer(way) + -1.0 * outer(t));
-            double energy = u.value;
-            f.normal[i] = u.normal;
+            const Vec3 d = b.node[i] - a.node[i];
+            const double touching = pair.touching[i], faces = frozen.faces;
+            const PairEnergy u =
+                pair_energy(law_, touching, pair.spread.empty() ? touching : pair.spread[i], glm::dot(d, frozen.row));
+            Vec3 slope = -faces * u.force * frozen.row;
+            Sym3 curvature = faces * std::max(u.stiffness, 0.0) * outer(frozen.row);
+            double energy = faces * u.value;
+            f.normal[i] = faces * u.normal;
             if (law_.shear > 0) {
                 const Vec3& m = frozen.across;
                 const Slider out = slider(law_.shear, frozen.cap, glm::dot(d, m) - pair.memory->slip[i].y);

@@ -13,8 +13,9 @@ namespace tuft::brush::rod {
 
 /// Directions of a pair of nodes and its friction, constant during one Newton minimisation.
 struct FrozenNode {
-    Vec3 tangent{0, 0, -1}, across{0, 1, 0};  ///< t and m, unit
-    double cap = 0;                           ///< force per length at which the pair slides
+    Vec3 tangent{0, 0, -1}, row{1, 0, 0}, across{0, 1, 0};  ///< t, r and m, unit
+    double cap = 0;                                         ///< force per length at which the pair slides
+    double faces = 1;                                       ///< f: 0 where they have slid past each other
 };
 
 /// Shift along the hair of two facing segments, u = ½ (t₁ + t₂)·d with d the distance of their outboard nodes: what

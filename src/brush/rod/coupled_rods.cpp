@@ -96,13 +96,14 @@ PairState finish_pair(const FrozenPair& f, const CouplingLaw& law, const Work& w
     for (int i = 0; i < f.nodes; ++i) {
         const FrozenNode& frozen = f.node[i];
         const Vec3 d = y[i] - x[i];
-        const double along = glm::dot(d, frozen.tangent), distance = glm::length(d - along * frozen.tangent);
+        const double distance = glm::dot(d, frozen.row);
         const double touching = f.pair->touching[i], spread = f.pair->spread.empty() ? touching : f.pair->spread[i];
         const PairEnergy u = pair_energy(law, touching, spread, distance);
-        out.energy += f.weight[i] * u.value;
-        memory.normal[i] = u.normal;
+        out.energy += f.weight[i] * frozen.faces * u.value;
+        memory.normal[i] = frozen.faces * u.normal;
         state.distance.push_back(distance);
         state.gap.push_back(distance - touching);
+        state.faces.push_back(frozen.faces);
         if (law.shear <= 0) continue;
         slide(law.shear, frozen.cap, f.weight[i], glm::dot(d, frozen.across), memory.slip[i].y, out);
     }

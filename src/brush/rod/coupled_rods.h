@@ -9,21 +9,24 @@
 /// Rods side by side, coupled where they are neighbours: the spines of a tuft with a wide ferrule. `brush/tuft` calls
 /// `solve_coupled` for all spines of a tuft at every sample.
 ///
-/// Nodes of equal number of two neighbours face each other. With d = x₂ − x₁ their distance, t the mean tangent,
-/// d⊥ = d − (d·t) t, D = |d⊥| and gaps g = D − D₀, h = D − D₁ the coupling adds per length of hair
+/// Nodes of equal number of two neighbours face each other. With d = x₂ − x₁, t the mean tangent, r ⊥ t the direction
+/// of their row, m = t × r, D = d·r and gaps g = D − D₀, h = D − D₁ the coupling adds per length of hair
 ///
-///     U = ½ k_n ⟨g₀ − g⟩² − W φ(g/g_b) + ½ k_h ⟨−h⟩² + ψ(u − u_p) + ψ(v − v_p),   g₀ = 3 W / (k_n g_b),
+///     U = f [½ k_n ⟨g₀ − g⟩² − W φ(g/g_b) + ½ k_h ⟨−h⟩²] + ψ(u − u_p) + ψ(v − v_p),   g₀ = 3 W / (k_n g_b),
 ///     φ(y) = (1 − y)³ on [0, 1], 1 − 3 y below, 0 above.
 ///
 /// D₀ is the distance at which the hair of both touches at rest, D₁ the same for hair that is spread. The first term is
-/// the contact of hair with hair. The second is the wet film between two tufts of hair: W its work of separation
-/// (Dupré), g_b the gap at which it breaks. Both are at equilibrium at g = 0. The third is the contact of spread hair.
-/// u = d·t − s₀ and v = d·m are the shifts of the neighbours along the hair and out of their row since the straight
-/// rest, m = t × (direction of the row). ψ is a spring of stiffness k_s that slips where its force passes
-/// μ k_n ⟨g₀ − g⟩ (Coulomb, lagged): coupled hair shears before it slides. u belongs to facing segments, with t =
-/// ½ (t₁ + t₂): it turns with them, which is what makes a row stiff across its broad side.
+/// the contact of hair with hair: neighbours do not pass through each other. The second is the wet film between two
+/// tufts of hair: W its work of separation (Dupré), g_b the gap at which it breaks. Both are at equilibrium at g = 0.
+/// The third is the contact of spread hair. f falls from 1 to 0 where neighbours have slid past each other out of the
+/// row, as |v| goes from half of their depth to all of it.
 ///
-/// In D and v the directions t and m are frozen during one pass of the outer fixed point over friction. Method: Newton
+/// u = d·t − s₀ and v = d·m are the shifts of the neighbours along the hair and out of their row since the straight
+/// rest. ψ is a spring of stiffness k_s that slips where its force passes μ f k_n ⟨g₀ − g⟩ (Coulomb, lagged): coupled
+/// hair shears before it slides. u belongs to facing segments, with t = ½ (t₁ + t₂): it turns with them, which is what
+/// makes a row stiff across its broad side.
+///
+/// In D and v the directions, and f, are frozen during one pass of the outer fixed point over friction. Method: Newton
 /// over all rods together; each step by elimination from tip to root in blocks of all rods. Cost: 2 K tangents against
 /// 5 K further unknowns a segment for K rods.
 ///
@@ -57,6 +60,7 @@ struct CoupledPair {
     Vec2 direction{1, 0};          ///< unit, from the first to the second at rest, along the clamps' side and t × side
     std::vector<double> touching;  ///< [m+1] D₀
     std::vector<double> spread;    ///< [m+1] D₁ ≥ D₀, or empty: D₀
+    std::vector<double> depth;     ///< [m+1] |v| at which they have slid past each other, or empty: they never do
     std::vector<double> rest_shift;  ///< [m] s₀, or empty: 0
     PairMemory* memory = nullptr;
 };
@@ -76,6 +80,7 @@ struct CoupledRod {
 struct PairState {
     std::vector<double> distance;  ///< D
     std::vector<double> gap;       ///< g
+    std::vector<double> faces;     ///< f
 };
 
 struct CoupledResult {

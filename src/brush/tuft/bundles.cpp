@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "brush/tuft/ferrule.h"
 #include "brush/tuft/tuft.h"
 #include "core/noise.h"
 #include "core/random.h"
@@ -28,6 +29,17 @@ Vec2 spiral(std::uint64_t seed, std::size_t i, std::size_t n, double shake) {
                      r * std::sin(w) + step * (2 * uniform(seed, 2 * i + 2) - 1)};
     const double out = glm::length(moved);
     return out > 1 ? moved / out : moved;
+}
+
+constexpr double kSquare = 0.8862269254527580;  ///< √π/2, half the side of the square of the unit disc's area
+
+/// Point i of an even sequence over the mouth of a wide ferrule, each of the same area: over its half-width and the
+/// half-thickness there. R₂ of Roberts (2018): any first points lie evenly, along the broad side alone too.
+Vec2 in_mouth(std::uint64_t seed, std::size_t i) {
+    constexpr double kFirst = 0.7548776662466927, kSecond = 0.5698402909980532;
+    const double x = uniform(seed, 0) + kFirst * static_cast<double>(i + 1),
+                 y = uniform(seed, 1) + kSecond * static_cast<double>(i + 1);
+    return {2 * (x - std::floor(x)) - 1, 2 * (y - std::floor(y)) - 1};
 }
 
 /// Part of the unit disc's area with x below the given one, and back by halving.
@@ -75,9 +87,17 @@ void rank_readiness(Bundles& bundles) {
 Bundles make_bundles(const Preset& p, std::uint64_t seed) {
     Bundles out;
     out.seed = seed;
+    if (p.spines > 1) {
+        for (const FerruleSpine& spine : ferrule_spines(p)) out.strips.push_back({spine.from, spine.to});
+    }
+    const auto place = [&](std::uint64_t salt, std::size_t i, std::size_t count, double shake) {
+        return p.spines > 1 ? in_mouth(hash_bits(seed, salt), i) : spiral(hash_bits(seed, salt), i, count, shake);
+    };
+    // Distances are compared in metres.
+    const Vec2 size = p.spines > 1 ? Vec2{0.5 * p.width / p.radius, 1} : Vec2{1};
     const auto n = static_cast<std::size_t>(std::max(p.bundles, 1));
     for (std::size_t k = 0; k < n; ++k) {
-        out.place.push_back(n == 1 ? Vec2{0} : spiral(hash_bits(seed, 1), k, n, 0.7));
+        out.place.push_back(n == 1 ? Vec2{0} : place(1, k, n, 0.7));
         const double u = uniform(hash_bits(seed, 2), k);
         out.holds.push_back(0.75 + 0.5 * u);
         out.resists.push_back(0.8 + 0.5 * uniform(hash_bits(seed, 3), k));
@@ -85,15 +105,16 @@ Bundles make_bundles(const Preset& p, std::uint64_t seed) {
     out.separation.assign(n, 0);
     const auto hairs = static_cast<std::size_t>(std::max(p.bristles, 1));
     for (std::size_t i = 0; i < hairs; ++i) {
-        const Vec2 at = spiral(hash_bits(seed, 4), i, hairs, 0.9);
+        const Vec2 at = place(4, i, hairs, 0.9);
         std::size_t best = 0;
         for (std::size_t k = 1; k < n; ++k)
-            if (glm::distance(at, out.place[k]) < glm::distance(at, out.place[best])) best = k;
+            if (glm::distance(size * at, size * out.place[k]) < glm::distance(size * at, size * out.place[best]))
+                best = k;
         Bristle b;
         b.place = Vec2f(at);
         // The tip is made by the middle hairs; the outer ones end before it.
         const double shorter = uniform(hash_bits(seed, 5), i);
-        b.end = static_cast<float>(1 - 0.3 * shorter * shorter * glm::length(at));
+        b.end = static_cast<float>(1 - 0.3 * shorter * shorter * (p.spines > 1 ? std::abs(at.y) : glm::length(at)));
         b.bundle = static_cast<std::uint16_t>(best);
         out.bristles.push_back(b);
     }
@@ -124,7 +145,14 @@ Vec2 place_of(const Bundles& bundles, const Bristle& bristle) {
     return at + kDrawn * bundles.separation[bristle.bundle] * (bundles.place[bristle.bundle] - at);
 }
 
-BranchPlace in_branch(const Vec2& place, int count) {
+BranchPlace in_branch(const Bundles& bundles, const Vec2& place, int count) {
+    if (!bundles.strips.empty()) {
+        const std::vector<HairStrip>& strips = bundles.strips;
+        std::size_t k = 0;
+        while (k + 1 < strips.size() && place.x >= strips[k].to) ++k;
+        const double x = 2 * (place.x - strips[k].from) / (strips[k].to - strips[k].from) - 1;
+        return {static_cast<int>(k), kSquare * Vec2{std::clamp(x, -1.0, 1.0), place.y}};
+    }
     if (count <= 1) return {0, place};
     const double at = count * area_below(place.x);
     const int branch = std::clamp(static_cast<int>(at), 0, count - 1);

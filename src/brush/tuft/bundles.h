@@ -20,8 +20,16 @@ struct Bristle {
     std::uint16_t bundle = 0;
 };
 
+/// Strip of a wide ferrule, over its half-width: hair with from ≤ x < to belongs to its spine.
+struct HairStrip {
+    double from = -1, to = 1;
+};
+
 struct Bundles {
     std::uint64_t seed = 0;
+    /// Of a wide ferrule, from −x to +x. Places are then over its half-width and half-thickness, x along the broad
+    /// side.
+    std::vector<HairStrip> strips;
     std::vector<Vec2> place;  ///< [n] position in the section, unit disc
     /// [n] seeded, about 1: film that the bundle leaves on the surface, relative to the mean.
     std::vector<double> holds;
@@ -50,14 +58,15 @@ void gather(Bundles& bundles);
 /// Returns the current position of a bristle in the section. Separation moves it towards its bundle's centre.
 Vec2 place_of(const Bundles& bundles, const Bristle& bristle);
 
-/// Position in a sub-spine of a position in the whole section. The section is cut into `count` strips of equal area
-/// from −e to +e, and each strip is mapped to a disc. Order and fractions of the hair are preserved. For one
-/// sub-spine it is the identity.
+/// Position in a branch of a position in the whole section. The section is cut into `count` strips of equal area from
+/// −e to +e, and each strip is mapped to a disc. Order and fractions of the hair are preserved. For one branch it is
+/// the identity. A strip of a wide ferrule is mapped to the rectangle of equal area about the disc's middle,
+/// half-widths √π/2: side by side the rectangles of neighbours leave no gap.
 struct BranchPlace {
     int branch = 0;
     Vec2 place{0};
 };
-BranchPlace in_branch(const Vec2& place, int count);
+BranchPlace in_branch(const Bundles& bundles, const Vec2& place, int count);
 
 /// Cells of a bundle along its length, for its ink: their ends (fraction of the length from the root) and their
 /// fractions of the hair's volume.

@@ -24,7 +24,8 @@ void set_time(const Preset& p, double dt, rod::Law& law) {
     law.recovery = p.recovery > 0 ? dt / p.recovery : 0;
 }
 
-/// The preset's law in units of L and B0, for one of `share` spines and a solve over `dt`.
+}  // namespace
+
 rod::Law law_of(const Preset& p, double wetness, double share, double dt) {
     const double unit = p.stiffness / std::pow(p.length, 4);
     rod::Law law;
@@ -50,6 +51,8 @@ rod::Law law_of(const Preset& p, double wetness, double share, double dt) {
     return law;
 }
 
+namespace {
+
 /// Energy of the bend s² of a straight rod, B0/L.
 double unit_bend(const rod::Rod& rod) {
     double s = 0, before = 0, sum = 0;
@@ -61,25 +64,24 @@ double unit_bend(const rod::Rod& rod) {
     return sum;
 }
 
-/// Nearly straight hair pressed along its axis could fall to any side: it falls behind the
-/// hand's motion, or to the ferrule's x-axis when the hand only presses.
+}  // namespace
+
 void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
-                    std::span<const ContactPlane> planes) {
+                    std::span<const ContactPlane> planes, const Upright& upright) {
     if (planes.empty()) return;
     const Vec3 axis = spine.memory.clamp.tangent;
     for (const Vec3& t : spine.memory.tangent) {
         if (glm::dot(t, axis) < 1 - kStraight) return;
     }
     const ContactPlane& at_tip = planes.front();
-    const Vec3 tip = to.position + p.length * to.axis();
     const double along = glm::dot(to.axis(), at_tip.normal);
-    const double under = spine.rest_radius.back() - glm::dot(tip - at_tip.origin, at_tip.normal);
+    const double under = spine.rest_radius.back() - glm::dot(upright.tip - at_tip.origin, at_tip.normal);
     if (along > -0.9999 || under < 0) return;
     Vec3 aside = from.position - to.position;
     aside -= glm::dot(aside, to.axis()) * to.axis();
     const Quat back = from.rotation * glm::conjugate(to.rotation);
     aside = glm::length(aside) > 1e-3 * glm::length(to.position - from.position) + 1e-9 ? glm::normalize(back * aside)
-                                                                                        : from.rotation * Vec3{1, 0, 0};
+                                                                                        : from.rotation * upright.aside;
     // Bend angle ε s² that takes the tip back up to the surface: the tip rises by L ε²/10. But buckling
     // makes no energy: it holds what the contact held and what the hand does in the step.
     double angle = std::clamp(std::sqrt(10 * under / p.length), kSeed, 0.6);
@@ -92,6 +94,8 @@ void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose&
         spine.memory.tangent[j] = glm::normalize(axis + std::tan(angle * s * s) * aside);
     }
 }
+
+namespace {
 
 /// Planes of a spine's nodes (tip first) as obstacles of its rod (root first).
 std::vector<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine, std::span<const ContactPlane> planes) {
@@ -131,14 +135,12 @@ Spine make_spine(const Preset& p, const rod::Rod& rod, const rod::Clamp& clamp, 
     return spine;
 }
 
-namespace {
-
 Solved with_sections(const Preset& p, Spine& spine, rod::Result result, std::span<const Vec3> node, const Quat& turn,
                      std::span<const rod::Obstacle> obstacles, double wetness, double share,
-                     std::span<const ContactPlane> walls = {}) {
+                     std::span<const ContactPlane> walls, const Neighbours& neighbours) {
     Solved out{std::move(result), {}};
     const std::span<const rod::Obstacle> met = out.result.met.empty() ? obstacles : out.result.met;
-    SectionOutput sections = make_sections({p, spine, out.result, met, node, turn, wetness, share, walls});
+    SectionOutput sections = make_sections({p, spine, out.result, met, node, turn, wetness, share, walls, neighbours});
     spine.side = std::move(sections.sides);
     spine.flank = std::move(sections.flank);
     spine.wide = sections.wide;
@@ -150,8 +152,6 @@ Solved with_sections(const Preset& p, Spine& spine, rod::Result result, std::spa
     out.branch.sections = std::move(sections.sections);
     return out;
 }
-
-}  // namespace
 
 Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
                    std::span<const ContactPlane> planes, double wetness, double share, double dt,
@@ -176,26 +176,29 @@ constexpr double kLaid = 0.8;      ///< bend from which the hair lies as it will
 constexpr double kTeleport = 0.5;  ///< lengths; a further jump is no motion to follow
 constexpr int kMaxParts = 8;
 
+}  // namespace
+
 Pose between(const Pose& a, const Pose& b, double t) {
     return {glm::mix(a.position, b.position, t), glm::slerp(a.rotation, b.rotation, t), a.time + t * (b.time - a.time)};
 }
 
-}  // namespace
+int parts_of_way(const Preset& p, const Pose& from, const Pose& to, double bend) {
+    const double turned = 2 * std::acos(std::min(1.0, std::abs(glm::dot(from.rotation, to.rotation))));
+    const double moved = glm::length(to.position - from.position) / p.length + turned;
+    if (moved >= kTeleport) return 1;
+    const double largest = bend < kLaid ? kCareful : kOrdinary;
+    return std::clamp(static_cast<int>(std::ceil(moved / largest)), 1, kMaxParts);
+}
 
 Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to, std::span<const ContactPlane> planes,
                 std::span<const ContactPlane> walls, double wetness, double& dt) {
     rod::Law law = law_of(p, wetness, 1, 0);
     Passed passed;
     if (planes.empty()) return passed;
-    const double turned = 2 * std::acos(std::min(1.0, std::abs(glm::dot(from.rotation, to.rotation))));
-    const double moved = glm::length(to.position - from.position) / p.length + turned;
+    const auto upright = [&](const Pose& pose) { return Upright{.tip = pose.position + p.length * pose.axis()}; };
     const double bend =
         std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
-    int parts = 1;
-    if (moved < kTeleport) {
-        const double largest = bend < kLaid ? kCareful : kOrdinary;
-        parts = std::clamp(static_cast<int>(std::ceil(moved / largest)), 1, kMaxParts);
-    }
+    const int parts = parts_of_way(p, from, to, bend);
     law.max_iterations = std::max(30, law.max_iterations / parts);
     dt /= parts;
     set_time(p, dt, law);
@@ -203,7 +206,7 @@ Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
     for (int k = 1; k < parts; ++k) {
         const Pose pose = between(from, to, static_cast<double>(k) / parts);
         turn_with_spread(p, spine, last, pose, planes);
-        break_symmetry(p, spine, last, pose, planes);
+        break_symmetry(p, spine, last, pose, planes, upright(pose));
         const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes),
                                          law, {}, flank_walls(p, spine, pose.rotation, walls, wetness));
         spine.pressed = r.contact_energy;
@@ -213,7 +216,7 @@ Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
         last = pose;
     }
     turn_with_spread(p, spine, last, to, planes);
-    break_symmetry(p, spine, last, to, planes);
+    break_symmetry(p, spine, last, to, planes, upright(to));
     return passed;
 }
 

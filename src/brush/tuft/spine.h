@@ -21,7 +21,35 @@ struct Passed {
     std::vector<Vec3> slip;  ///< [n+1] as in rod::Result; or none
 };
 
+/// Displacements to the neighbouring spines at the nodes, metres, root first; empty on an outer side. A spine's
+/// sections end halfway to them.
+struct Neighbours {
+    std::vector<Vec3> before, after;
+};
+
 rod::Clamp clamp_of(const Preset& preset, const Pose& pose);
+
+/// Contact law in units of L and B0 of one of `share` equal spines, for a solve over `dt` seconds.
+rod::Law law_of(const Preset& preset, double wetness, double share, double dt);
+
+/// Number of parts in which a tuft whose tip is bent by `bend` radians follows its ferrule from one pose to another.
+int parts_of_way(const Preset& preset, const Pose& from, const Pose& to, double bend);
+/// Pose at t in [0, 1] of the way.
+Pose between(const Pose& from, const Pose& to, double t);
+
+/// Where the tip of straight hair would be, and where hair falls that nothing else turns aside.
+struct Upright {
+    Vec3 tip{0};          ///< metres, world
+    Vec3 aside{1, 0, 0};  ///< unit, ferrule frame
+};
+/// Bends nearly straight hair that is pressed along its axis a little: behind the hand's motion, or to `aside`.
+void break_symmetry(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
+                    std::span<const ContactPlane> planes, const Upright& upright);
+
+/// Makes the sections of a solved spine.
+Solved with_sections(const Preset& preset, Spine& spine, rod::Result result, std::span<const Vec3> node,
+                     const Quat& turn, std::span<const rod::Obstacle> obstacles, double wetness, double share,
+                     std::span<const ContactPlane> walls = {}, const Neighbours& neighbours = {});
 
 /// Returns a straight spine with its root at ξ0 of the hair and `share` of the hair.
 Spine make_spine(const Preset& preset, const rod::Rod& rod, const rod::Clamp& clamp, double xi0, double share);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "brush/tuft/spine.h"
+#include "brush/tuft/wide_tuft.h"
 #include "core/error.h"
 
 namespace tuft::brush {
@@ -13,7 +15,8 @@ namespace {
 constexpr double kDryPlastic = 0.3;  ///< plastic share of dry hair over that of wet hair
 
 std::size_t expected_planes(const Tuft& tuft) {
-    std::size_t count = tuft.spine.rest_radius.size();
+    std::size_t count = 0;
+    for (const Spine& spine : tuft.spines) count += spine.rest_radius.size();
     if (tuft.split) {
         for (const Spine& sub_spine : tuft.sub_spines) count += sub_spine.rest_radius.size();
     }
@@ -51,9 +54,14 @@ Tuft make_tuft(const Preset& preset, std::uint64_t seed) {
     Tuft tuft;
     tuft.preset = preset;
     const Profile profile = profile_of(preset);
-    rod::Rod rod = rod::make_rod(profile, preset.segments, 0.25 + 0.75 * preset.hardness);
-    rod.plastic_share = preset.plastic_share;
-    tuft.spine = make_spine(preset, rod, clamp_of(preset, {}), 0, 1);
+    if (preset.spines > 1) {
+        tuft.spines = make_spines(preset, profile);
+        tuft.beside = make_beside(preset, tuft.spines);
+    } else {
+        rod::Rod rod = rod::make_rod(profile, preset.segments, 0.25 + 0.75 * preset.hardness);
+        rod.plastic_share = preset.plastic_share;
+        tuft.spines.push_back(make_spine(preset, rod, clamp_of(preset, {}), 0, 1));
+    }
     if (preset.spine == SpineMethod::table) tuft.table = make_table(preset);
     tuft.bundles = make_bundles(preset, seed);
     return tuft;
@@ -63,12 +71,12 @@ std::vector<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose) {
     std::vector<Vec3> out;
     const Quat turn = tuft.posed ? pose.rotation * glm::conjugate(tuft.pose.rotation) : pose.rotation;
     const auto add = [&](const Spine& spine) {
-        const Vec3 root = tuft.spine.memory.clamp.position;
+        const Vec3 root = tuft.pose.position / tuft.preset.length;
         for (std::size_t i = spine.memory.node.size(); i-- > 0;) {
             out.push_back(pose.position + turn * ((spine.memory.node[i] - root) * tuft.preset.length));
         }
     };
-    add(tuft.spine);
+    for (const Spine& spine : tuft.spines) add(spine);
     if (tuft.split) {
         for (const Spine& sub_spine : tuft.sub_spines) add(sub_spine);
     }
@@ -78,9 +86,83 @@ std::vector<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose) {
 std::vector<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose) {
     std::vector<Vec3> out;
     if (!tuft.posed) return out;
-    for (const Vec3& s : tuft.spine.side) out.push_back(pose.position + pose.rotation * s);
+    for (const Spine& spine : tuft.spines)
+        for (const Vec3& s : spine.side) out.push_back(pose.position + pose.rotation * (spine.root + s));
     return out;
 }
+
+namespace {
+
+rod::Clamp clamp_in(const Tuft& tuft, const Spine& spine, const Pose& pose) {
+    return tuft.wide() ? spine_clamp(tuft.preset, spine, pose) : clamp_of(tuft.preset, pose);
+}
+
+/// Adds what the surface does to one spine, and its branch. `lever`: of its root from the middle of the mouth, metres.
+void add_spine(const Preset& p, const Spine& spine, Solved solved, const Vec3& lever, TuftState& state) {
+    const rod::Result& r = solved.result;
+    const double newton = p.stiffness / (p.length * p.length), newton_metre = p.stiffness / p.length;
+    state.force += r.force * newton;
+    state.moment += r.root_moment * newton_metre + glm::cross(lever, r.force * newton);
+    state.root_moment += r.moment.front() * newton_metre;
+    for (const double f : r.normal_force) state.normal_force += f * newton;
+    state.touching = state.normal_force > 0;
+    state.energy.bend += r.bend_energy * newton_metre;
+    state.energy.contact += r.contact_energy * newton_metre;
+    state.energy.aside += spine.aside_energy;
+    state.energy.spread += solved.spread_energy;
+    state.energy.lost += r.dissipation * newton_metre - solved.aside_gain;
+    state.converged = state.converged && r.converged;
+    state.iterations = std::max(state.iterations, r.iterations);
+    state.branches.push_back(std::move(solved.branch));
+}
+
+/// Bends a tuft of one spine.
+TuftState bend_trunk(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
+                     std::span<const ContactPlane> walls) {
+    const Preset& p = tuft.preset;
+    const rod::Clamp clamp = clamp_of(p, pose);
+    const std::size_t own = tuft.trunk().rest_radius.size();
+    const std::span<const ContactPlane> main_planes = planes.size() > 1 ? planes.first(own) : planes;
+    Passed passed;
+    if (p.spine == SpineMethod::rod)
+        passed = approach(p, tuft.trunk(), tuft.pose, pose, main_planes, walls, tuft.wetness, dt);
+    Solved solved =
+        p.spine == SpineMethod::table
+            ? stand_spine(p, tuft.table, tuft.trunk(), clamp, pose.rotation, main_planes, tuft.wetness)
+            : solve_spine(p, tuft.trunk(), clamp, pose.rotation, main_planes, tuft.wetness, 1, dt, walls, passed);
+    TuftState state;
+    add_spine(p, tuft.trunk(), std::move(solved), Vec3{0}, state);
+    return state;
+}
+
+/// Bends the spines of a wide ferrule together.
+TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
+                    std::span<const ContactPlane> walls) {
+    const Preset& p = tuft.preset;
+    SolvedSpines solved = solve_spines(tuft, pose, planes, walls, dt);
+    TuftState state{.wide = true};
+    double lost = solved.dissipation;
+    for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
+        Spine& spine = tuft.spines[k];
+        lost -= solved.spines[k].result.dissipation;
+        solved.spines[k].branch.ink_share = spine.share;
+        add_spine(p, spine, std::move(solved.spines[k]), pose.rotation * spine.root, state);
+    }
+    // What hair lost on the way to the last part of this step, and between the spines.
+    state.energy.lost += lost * p.stiffness / p.length;
+    state.energy.contact += solved.coupling_energy * p.stiffness / p.length;
+    const double bridged = std::max(tuft.wetness * solved.film_range, p.hair_diameter);
+    for (std::size_t k = 0; k < tuft.beside.size(); ++k) {
+        // From the root on: the hair of the longer one goes on alone.
+        const std::vector<double>& gap = tuft.beside[k].gap;
+        std::vector<double> opening(tuft.spines[k].rest_radius.size(), std::numeric_limits<double>::infinity());
+        for (std::size_t i = 0; i < gap.size(); ++i) opening[opening.size() - 1 - i] = gap[i] - bridged;
+        state.openings.push_back(std::move(opening));
+    }
+    return state;
+}
+
+}  // namespace
 
 TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
                std::span<const ContactPlane> walls) {
@@ -90,55 +172,32 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
         throw Error("brush: " + std::to_string(planes.size()) + " contact planes for " + std::to_string(expected) +
                     " nodes; give one per node, one for all, or none");
     }
-    if (!walls.empty() && walls.size() != 2 * tuft.spine.rest_radius.size()) {
-        throw Error("brush: " + std::to_string(walls.size()) + " walls for " +
-                    std::to_string(2 * tuft.spine.rest_radius.size()) + " side nodes");
+    std::size_t sides = 0;
+    for (const Spine& spine : tuft.spines) sides += 2 * spine.rest_radius.size();
+    if (!walls.empty() && walls.size() != sides) {
+        throw Error("brush: " + std::to_string(walls.size()) + " walls for " + std::to_string(sides) + " side nodes");
     }
     if (!std::isfinite(glm::dot(pose.position, pose.position)) || std::abs(glm::length(pose.rotation) - 1) > 1e-3) {
         throw Error("brush: the pose is not a place and a unit rotation");
     }
-    const rod::Clamp clamp = clamp_of(p, pose);
     if (!tuft.posed) {
         // The first pose is where the hand starts: the tuft comes with it, from above.
-        rod::carry_with_clamp(tuft.spine.memory, clamp);
+        for (Spine& spine : tuft.spines) rod::carry_with_clamp(spine.memory, clamp_in(tuft, spine, pose));
         tuft.pose = pose;
         tuft.posed = true;
     }
     tuft.wetness = std::clamp(tuft.wetness, 0.0, 1.0);
     // Water between the hairs is what yields; dry hair springs back.
-    tuft.spine.rod.plastic_share = p.plastic_share * (kDryPlastic + (1 - kDryPlastic) * tuft.wetness);
-    const std::size_t own = tuft.spine.rest_radius.size();
-    const std::span<const ContactPlane> main_planes = planes.size() > 1 ? planes.first(own) : planes;
-    double part = std::isfinite(dt) ? std::max(0.0, dt) : 0;
-    Passed passed;
-    if (p.spine == SpineMethod::rod)
-        passed = approach(p, tuft.spine, tuft.pose, pose, main_planes, walls, tuft.wetness, part);
-    Solved solved =
-        p.spine == SpineMethod::table
-            ? stand_spine(p, tuft.table, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness)
-            : solve_spine(p, tuft.spine, clamp, pose.rotation, main_planes, tuft.wetness, 1, part, walls, passed);
-    const double moved = glm::length(pose.position - tuft.pose.position);
+    for (Spine& spine : tuft.spines)
+        spine.rod.plastic_share = p.plastic_share * (kDryPlastic + (1 - kDryPlastic) * tuft.wetness);
+    const double part = std::isfinite(dt) ? std::max(0.0, dt) : 0,
+                 moved = glm::length(pose.position - tuft.pose.position);
+    TuftState state =
+        tuft.wide() ? bend_wide(tuft, pose, planes, part, walls) : bend_trunk(tuft, pose, planes, part, walls);
     tuft.pose = pose;
-
-    const rod::Result& r = solved.result;
-    TuftState state;
-    const double newton = p.stiffness / (p.length * p.length), newton_metre = p.stiffness / p.length;
-    state.force = r.force * newton;
-    state.moment = r.root_moment * newton_metre;
-    state.root_moment = r.moment.front() * newton_metre;
-    for (const double f : r.normal_force) state.normal_force += f * newton;
-    state.touching = state.normal_force > 0;
-    state.energy = {.bend = r.bend_energy * newton_metre,
-                    .contact = r.contact_energy * newton_metre,
-                    .aside = tuft.spine.aside_energy,
-                    .spread = solved.spread_energy,
-                    .lost = r.dissipation * newton_metre - solved.aside_gain};
-    state.converged = r.converged;
-    state.iterations = r.iterations;
-    state.branches.push_back(std::move(solved.branch));
-
     feel(tuft, state, dt);
 
+    if (tuft.wide()) return state;  // it parts between its spines
     const double measure = split_measure(p, tuft.ink_left, state.root_moment);
     if (tuft.split) {
         // Too dry for water to draw it together, it stays split until it is wetted or combed.
@@ -162,14 +221,20 @@ void reset(Tuft& tuft) {
 }
 
 void reshape(Tuft& tuft) {
-    const rod::Clamp clamp = tuft.spine.memory.clamp;
-    tuft.spine.side.clear();
-    tuft.spine.flank.clear();
-    tuft.spine.aside.clear();
-    tuft.spine.slips.clear();
-    tuft.spine.aside_energy = 0;
-    tuft.spine.memory = rod::make_memory(tuft.spine.rod, clamp);
-    tuft.spine.one_sided = Vec2{0};
+    for (Spine& spine : tuft.spines) {
+        const rod::Clamp clamp = spine.memory.clamp;
+        spine.side.clear();
+        spine.flank.clear();
+        spine.aside.clear();
+        spine.slips.clear();
+        spine.aside_energy = 0;
+        spine.memory = rod::make_memory(spine.rod, clamp);
+        spine.one_sided = Vec2{0};
+    }
+    for (Beside& beside : tuft.beside) {
+        beside.memory = {};
+        beside.gap.clear();
+    }
     tuft.split = false;
     gather(tuft.bundles);
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "brush/preset/preset.h"
+#include "brush/rod/coupled_rods.h"
 #include "brush/rod/rod.h"
 #include "brush/tuft/bundles.h"
 #include "brush/tuft/table.h"
@@ -30,10 +31,16 @@ inline constexpr double kDeviceForceTime = 4e-3;
 struct Spine {
     rod::Rod rod;                     ///< lengths and stiffness, in units of L and B0
     rod::Memory memory;               ///< state of joints and contacts
-    std::vector<double> rest_radius;  ///< [n+1] m
-    Vec3 wide{1, 0, 0};               ///< unit, ferrule frame: direction e at the root of the last step
-    double root_width = 0;            ///< m, half-width at the root of a sub-spine; 0: that of the ferrule
-    Vec2 one_sided{0};                ///< mean direction of splayed hair, across the clamp; see upright_hair.h
+    std::vector<double> rest_radius;  ///< [n+1] m; √(a b) where the section is no circle
+    /// [n+1] m, half-widths at rest along the ferrule's broad side and across it; empty: a circle of `rest_radius`.
+    std::vector<Vec2> rest_section;
+    Vec3 root{0};             ///< m, ferrule frame
+    double lean = 0;          ///< rad, of the clamp towards +x of the ferrule
+    double share = 1;         ///< of the hair
+    std::vector<Vec3> broad;  ///< [n+1] unit, ferrule frame: its x carried along the bent spine, or empty
+    Vec3 wide{1, 0, 0};       ///< unit, ferrule frame: direction e at the root of the last step
+    double root_width = 0;    ///< m, half-width at the root of a sub-spine; 0: that of the ferrule
+    Vec2 one_sided{0};        ///< mean direction of splayed hair, across the clamp; see upright_hair.h
     /// Side nodes of the last step, metres from the root, ferrule frame, tip first, two to a node; or empty.
     std::vector<Vec3> side;
     std::vector<double> flank;       ///< m, half-widths of those side nodes without walls; or empty
@@ -41,6 +48,14 @@ struct Spine {
     std::vector<signed char> slips;  ///< [n+1] nodes that slipped in the last step, or empty
     double aside_energy = 0;         ///< J, stored in their springs by that shift
     double pressed = 0;              ///< contact energy of the last solve, B0/L
+};
+
+/// Two neighbouring spines: how they stand at rest, and what they remember.
+struct Beside {
+    std::vector<double> distance;  ///< m, of their axes at rest, at which their hair touches. [m+1]
+    std::vector<double> shift;     ///< m, along the hair, of the outboard nodes of facing segments at rest. [m]
+    rod::PairMemory memory;
+    std::vector<double> gap;  ///< m, between their hair in the last step, negative: pressed together. [m+1] or empty
 };
 
 /// Persistent state of one tuft. `make_tuft` makes it; a copy is a snapshot.
@@ -51,33 +66,41 @@ struct Tuft {
 
     Pose pose;           ///< of the last step
     bool posed = false;  ///< false until the first step
-    Spine spine;
+    /// K of them, side by side over the ferrule; a round tuft has one, the trunk of its sub-spines.
+    std::vector<Spine> spines;
+    std::vector<Beside> beside;  ///< of spines k and k + 1. [K−1]
     bool split = false;
     std::vector<Spine> sub_spines;               ///< sub-spines of the last third, `split_into` of them while split
     double spread = 0;                           ///< separation: 0 nonee point … 1 fully
     double branch_width = 0;                     ///< m, semi-axis of the section at their roots
     Vec3 device_force{0}, device_force_rate{0};  ///< device force f, N, and its rate, N/s
     Bundles bundles;                             ///< bundles and bristles
-    QueryTable table;                            ///< for the table method only
+
+    Spine& trunk() { return spines.front(); }
+    const Spine& trunk() const { return spines.front(); }
+    /// A ferrule with several spines; their branches all begin at it.
+    bool wide() const { return spines.size() > 1; }
+    QueryTable table;  ///< for the table method only
 };
 
 /// Returns a straight tuft; `seed` places its hair. Throws `Error` for values out of range.
 Tuft make_tuft(const Preset& preset, std::uint64_t seed = 0);
 
 /// Returns the nodes whose nearest surface planes `step` needs, metres, world: the spine moved rigidly with the
-/// ferrule to `pose`, tip first, root last. While split, the nodes of the sub-spines follow in the same order.
+/// ferrule to `pose`, tip first, root last, spine after spine. While split, the nodes of the sub-spines follow in the
+/// same order.
 std::vector<Vec3> predicted_nodes(const Tuft& tuft, const Pose& pose);
 
-/// Returns the side nodes of the spine moved as in `predicted_nodes`: two to a node, tip first. Empty before the
-/// first step.
+/// Returns the side nodes of the spines moved as in `predicted_nodes`: two to a node, tip first, spine after spine.
+/// Empty before the first step.
 std::vector<Vec3> predicted_sides(const Tuft& tuft, const Pose& pose);
 
 /// Moves the ferrule to `pose` and bends the tuft against `planes`: one for each node of `predicted_nodes` in that
-/// order, or one for all, or none (free in air). `walls` are planes beside the spine, one for each of
+/// order, or one for all, or none (free in air). `walls` are planes beside the spines, one for each of
 /// `predicted_sides`, or none; they limit the side nodes and push the spine. `dt` is in seconds since the last
 /// step. The result is finite and the time is bounded; `converged` is false when the solver stopped early. Throws
 /// `Error` when the number of planes or walls fits none of these cases, or when the pose is not finite or its
-/// rotation not a unit quaternion. Cost: 20–60 µs at 16 segments.
+/// rotation not a unit quaternion. Cost: 20–60 µs for a spine of 16 segments.
 TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
                std::span<const ContactPlane> walls = {});
 

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "brush/tuft/lateral.h"
 #include "core/ease.h"
 
 namespace tuft::brush {
 
-namespace {
-
-/// Unit tangents at the nodes, root first: bisectors of the two segments.
 std::vector<Vec3> node_tangents(const rod::Memory& m) {
     const std::size_t n = m.tangent.size();
     std::vector<Vec3> t(n + 1);
@@ -24,6 +22,20 @@ std::vector<Vec3> node_tangents(const rod::Memory& m) {
     }
     return t;
 }
+
+std::vector<Vec3> broad_axes(const rod::Memory& m, std::span<const Vec3> t) {
+    std::vector<Vec3> out(t.size());
+    Vec3 x = m.clamp.side, from = m.clamp.tangent;
+    for (std::size_t i = 0; i < t.size(); ++i) {
+        x = parallel_transport(x, from, t[i]);
+        x = glm::normalize(x - glm::dot(x, t[i]) * t[i]);
+        from = t[i];
+        out[i] = x;
+    }
+    return out;
+}
+
+namespace {
 
 struct Wide {
     std::size_t node = 0;
@@ -43,7 +55,9 @@ Wide wide_axis(const SectionInput& in, const std::vector<Vec3>& t) {
             best = {i, across};
         }
     }
-    if (most <= 0) {
+    if (most <= 0 && in.wide()) {
+        best = {0, in.spine.memory.clamp.side};
+    } else if (most <= 0) {
         Vec3 bend{0};
         const rod::Memory& m = in.spine.memory;
         for (std::size_t j = 0; j < m.tangent.size(); ++j) {
@@ -134,7 +148,8 @@ std::vector<double> lowering(const SectionInput& in, const std::vector<Section>&
         const Section& s = sections[count - 1 - i];
         const rod::Obstacle& o = in.obstacles[i];
         const double z = glm::dot(s.centre - o.origin * in.preset.length, o.normal);
-        const double r = in.spine.rest_radius[i], upright = std::abs(glm::dot(s.m, o.normal));
+        const double r = in.wide() ? o.radius * in.preset.length : in.spine.rest_radius[i];
+        const double upright = std::abs(glm::dot(s.m, o.normal));
         const double l = in.spine.rod.length[i - 1], gap = z - r;
         if (touch < 0 && gap < 0) touch = i > 1 ? at + l * gap_before / (gap_before - gap) : at;
         at += l;
@@ -168,14 +183,42 @@ struct Widths {
     double spread_energy = 0;
 };
 
+/// Half-widths of the resting sections along e and across it, metres, root first.
+struct Rest {
+    std::vector<double> along, across;
+};
+
+Rest rest_of(const SectionInput& in, const std::vector<Vec3>& t, const std::vector<Vec3>& e) {
+    if (!in.wide()) return {in.spine.rest_radius, in.spine.rest_radius};
+    Rest out;
+    const std::vector<Vec3> x = broad_axes(in.spine.memory, t);
+    for (std::size_t i = 0; i < e.size(); ++i) {
+        const Vec2& rest = in.spine.rest_section[i];
+        out.along.push_back(std::hypot(rest.x * glm::dot(e[i], x[i]), rest.y * glm::dot(e[i], glm::cross(x[i], t[i]))));
+        out.across.push_back(out.along[i] > 0 ? rest.x * rest.y / out.along[i] : 0);
+    }
+    return out;
+}
+
+/// How far, beyond its resting half-width r, a side node may go out along `way` before it meets the middle between its
+/// spine and a neighbour `apart` from it.
+double clearance_beside(const std::vector<Vec3>& apart, std::size_t node, const Vec3& way, double r) {
+    constexpr double kFaces = 0.5;  // cosine to the neighbour from which it is in the way
+    if (node >= apart.size()) return std::numeric_limits<double>::infinity();
+    const double distance = glm::length(apart[node]), nearing = glm::dot(apart[node], way);
+    if (nearing < kFaces * distance) return std::numeric_limits<double>::infinity();
+    // Ellipses that touch as their strips do overlap by 2/√π.
+    return distance * distance / nearing / std::sqrt(std::numbers::pi) - r;
+}
+
 /// How far, beyond its rest radius, a side node may go out along `way` before it meets a wall;
 /// planes that lean away less than 20° are the ground the section lies on.
-double clearance(const SectionInput& in, std::size_t node, const ContactPlane& wall, const Vec3& way) {
+double clearance(const SectionInput& in, std::size_t node, const ContactPlane& wall, const Vec3& way, double r) {
     constexpr double kGround = 0.34;  // sin 20°
     const double nearing = -glm::dot(way, wall.normal);
     if (nearing < kGround) return std::numeric_limits<double>::infinity();
     const Vec3 x = in.node[node] * in.preset.length;
-    return glm::dot(x - wall.origin, wall.normal) / nearing - in.spine.rest_radius[node];
+    return glm::dot(x - wall.origin, wall.normal) / nearing - r;
 }
 
 /// What pushes the side nodes out, as if it worked against the wet stretch springs alone:
@@ -185,17 +228,19 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
     const std::size_t count = e.size();
     const double yield = (p.yield > 0 ? p.yield : 1) / in.share;
     const double newton = p.stiffness / (p.length * p.length);
-    const double k_f = std::min(1.0, p.force_gain * glm::length(in.result.force) * newton / p.force_limit);
+    const double of_tuft = in.wide() ? in.share : 1;
+    const double k_f = std::min(1.0, p.force_gain * glm::length(in.result.force) * of_tuft * newton / p.force_limit);
+    const Rest rest = rest_of(in, t, e);
     const std::vector<double> indentation = indentation_of(in, t);
     const double wet = kSides * p.transverse_stiffness;
     LateralSprings springs{
         .stretch = wet * (kDry + (1 - kDry) * in.wetness), .bend = wet, .reach = kReach * p.length, .wall = kWall};
-    for (const double r : in.spine.rest_radius) springs.taper.push_back(std::max(r, kFinest));
+    for (const double r : rest.along) springs.taper.push_back(std::max(r, kFinest));
     std::vector<double> at(count, 0);
     LateralSide plus{std::vector<double>(count, 0),
                      std::vector<double>(count, std::numeric_limits<double>::infinity())};
     const double root = in.spine.root_width;
-    if (root > 0) plus.root = side_of_width(in.spine.rest_radius.front(), root, p.flatten_max);
+    if (root > 0) plus.root = side_of_width(rest.along.front(), root, p.flatten_max);
     LateralSide minus = plus;
     LateralFriction friction{std::vector<double>(count, 0), std::vector<double>(count, 0), in.spine.slips};
     for (std::size_t i = 0; i < count; ++i) {
@@ -203,7 +248,7 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
         const double moment = i + 1 < count ? in.result.moment[i] : 0;
         // The ferrule holds the hair round for some radii from its mouth.
         const double out_of_ferrule = at[i] / (2.5 * p.radius);
-        const double held = in.share > 1 ? 1 : 1 - std::exp(-out_of_ferrule * out_of_ferrule);
+        const double held = in.share > 1 && !in.wide() ? 1 : 1 - std::exp(-out_of_ferrule * out_of_ferrule);
         const double widen =
             held * (p.flatten_moment * moment / yield + p.flatten_force * k_f + p.flatten_contact * indentation[i]);
         const Vec3 wall = in.result.wall_force.empty() ? Vec3{0} : in.result.wall_force[i];
@@ -213,16 +258,21 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
         if (i < in.result.slip.size()) friction.stuck[i] -= p.length * glm::dot(in.result.slip[i], e[i]);
         if (!in.walls.empty() && i > 0) {
             const std::size_t from_tip = 2 * (count - 1 - i);
-            plus.clear[i] = clearance(in, i, in.walls[from_tip], e[i]);
-            minus.clear[i] = clearance(in, i, in.walls[from_tip + 1], -e[i]);
+            plus.clear[i] = clearance(in, i, in.walls[from_tip], e[i], rest.along[i]);
+            minus.clear[i] = clearance(in, i, in.walls[from_tip + 1], -e[i], rest.along[i]);
         }
-        plus.push[i] = minus.push[i] = wet * in.spine.rest_radius[i] * widen;
+        for (const std::vector<Vec3>* apart : {&in.neighbours.before, &in.neighbours.after}) {
+            plus.clear[i] = std::min(plus.clear[i], clearance_beside(*apart, i, e[i], rest.along[i]));
+            minus.clear[i] = std::min(minus.clear[i], clearance_beside(*apart, i, -e[i], rest.along[i]));
+        }
+        plus.push[i] = minus.push[i] = wet * rest.across[i] * widen;
     }
     Widths out;
     const LateralRow row = lateral_row(at, springs);
     out.shift = drag_lateral(row, friction);
     const std::vector<double>& shift = out.shift.shift;
-    for (std::size_t i = 0; i < count && !in.walls.empty(); ++i) {
+    const bool walled = !in.walls.empty() || in.wide();
+    for (std::size_t i = 0; i < count && walled; ++i) {
         plus.clear[i] -= shift[i];
         minus.clear[i] += shift[i];
     }
@@ -230,11 +280,11 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
     free.clear.assign(count, std::numeric_limits<double>::infinity());
     out.free_plus = solve_lateral(row, free);
     out.free_minus = out.free_plus;
-    out.plus = in.walls.empty() ? out.free_plus : solve_lateral(row, plus);
-    out.minus = in.walls.empty() ? out.plus : solve_lateral(row, minus);
+    out.plus = walled ? solve_lateral(row, plus) : out.free_plus;
+    out.minus = walled ? solve_lateral(row, minus) : out.plus;
     out.spread_energy = stored_at_rest(at, springs, plus, out.plus) + stored_at_rest(at, springs, minus, out.minus);
     for (std::size_t i = 0; i < count; ++i) {
-        const double r = in.spine.rest_radius[i];
+        const double r = rest.along[i];
         out.free_plus[i] = half_width(r, out.free_plus[i] + shift[i], p.flatten_max);
         out.free_minus[i] = half_width(r, out.free_minus[i] - shift[i], p.flatten_max);
         out.plus[i] = half_width(r, out.plus[i] + shift[i], p.flatten_max);

@@ -3,11 +3,17 @@
 #include <span>
 #include <vector>
 
+#include "brush/tuft/spine.h"
 #include "brush/tuft/tuft.h"
 
 /// \file
 /// Cross-sections along a solved spine. Internal to `brush/tuft`.
 namespace tuft::brush {
+
+/// Returns the unit tangents at the nodes, root first: bisectors of the two segments.
+std::vector<Vec3> node_tangents(const rod::Memory& memory);
+/// Returns the clamp's side carried along the spine to its nodes by parallel transport, unit, root first.
+std::vector<Vec3> broad_axes(const rod::Memory& memory, std::span<const Vec3> tangents);
 
 struct SectionInput {
     const Preset& preset;
@@ -19,6 +25,10 @@ struct SectionInput {
     double wetness = 1;                        ///< 0 to 1: adhesion of the tip, cohesion of the hair
     double share = 1;                          ///< number of spines that share the hair
     std::span<const ContactPlane> walls = {};  ///< beside the nodes, tip first; the side of e, then the other; or empty
+    const Neighbours& neighbours;              ///< spines beside it
+
+    /// A spine of a wide ferrule: its section at rest is an ellipse.
+    bool wide() const { return !spine.rest_section.empty(); }
 };
 
 struct SectionOutput {

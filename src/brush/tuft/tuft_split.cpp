@@ -31,16 +31,16 @@ double beside(const Tuft& tuft, int index) {
 
 /// Yaw of a sub-spine: at first they meet in the tuft's tip.
 double yaw_of(const Tuft& tuft, int k, int index) {
-    const double closed = -beside(tuft, index) / outer_length(tuft.spine.rod, k);
+    const double closed = -beside(tuft, index) / outer_length(tuft.trunk().rod, k);
     const double parted = tuft.preset.split_yaw * (index - 0.5 * (tuft.preset.split_into - 1));
     return closed + tuft.spread * (parted - closed);
 }
 
 rod::Clamp sub_spine_clamp(const Tuft& tuft, int k, int index) {
-    const rod::Memory& m = tuft.spine.memory;
+    const rod::Memory& m = tuft.trunk().memory;
     const int inner = std::max(0, k - 1);
     const Vec3 t = m.tangent[inner];
-    Vec3 e = tuft.pose.rotation * tuft.spine.wide;
+    Vec3 e = tuft.pose.rotation * tuft.trunk().wide;
     e = parallel_transport(e, tuft.pose.axis(), t);
     e = glm::normalize(e - glm::dot(e, t) * t);
     const double yaw = yaw_of(tuft, k, index);
@@ -56,7 +56,7 @@ rod::Clamp sub_spine_clamp(const Tuft& tuft, int k, int index) {
 namespace {
 
 void note_width(Tuft& tuft, const std::vector<Section>& whole) {
-    tuft.branch_width = whole[whole.size() - 1 - static_cast<std::size_t>(branch_node(tuft.spine.rod))].a;
+    tuft.branch_width = whole[whole.size() - 1 - static_cast<std::size_t>(branch_node(tuft.trunk().rod))].a;
 }
 
 }  // namespace
@@ -69,21 +69,21 @@ double split_measure(const Preset& p, double ink_left, double root_moment) {
 void split(Tuft& tuft, const Branch& whole) {
     tuft.spread = 0;
     note_width(tuft, whole.sections);
-    const int k = branch_node(tuft.spine.rod), count = tuft.preset.split_into;
+    const int k = branch_node(tuft.trunk().rod), count = tuft.preset.split_into;
     double xi = 0;
-    for (int j = 0; j < k; ++j) xi += tuft.spine.rod.length[j];
+    for (int j = 0; j < k; ++j) xi += tuft.trunk().rod.length[j];
     tuft.sub_spines.resize(static_cast<std::size_t>(count));
     for (int index = 0; index < count; ++index) {
         const rod::Clamp clamp = sub_spine_clamp(tuft, k, index);
-        const rod::Rod part = rod::outer_part(tuft.spine.rod, k, count);
+        const rod::Rod part = rod::outer_part(tuft.trunk().rod, k, count);
         Spine sub_spine = make_spine(tuft.preset, part, clamp, xi, count);
         const double yaw = yaw_of(tuft, k, index);
-        Vec3 up = glm::cross(tuft.pose.rotation * tuft.spine.wide, tuft.pose.axis());
+        Vec3 up = glm::cross(tuft.pose.rotation * tuft.trunk().wide, tuft.pose.axis());
         up = parallel_transport(up, tuft.pose.axis(), clamp.tangent);
         const Quat turn = glm::angleAxis(-yaw, glm::normalize(up));
         for (int j = 0; j < part.segments(); ++j) {
-            sub_spine.memory.tangent[j] = glm::normalize(turn * tuft.spine.memory.tangent[k + j]);
-            sub_spine.memory.joint[j] = tuft.spine.memory.joint[k + j];
+            sub_spine.memory.tangent[j] = glm::normalize(turn * tuft.trunk().memory.tangent[k + j]);
+            sub_spine.memory.joint[j] = tuft.trunk().memory.joint[k + j];
         }
         sub_spine.memory.node = rod::nodes(part, sub_spine.memory);
         tuft.sub_spines[index] = std::move(sub_spine);
@@ -93,7 +93,7 @@ void split(Tuft& tuft, const Branch& whole) {
 
 void solve_sub_spines(Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state, double dt) {
     const Preset& p = tuft.preset;
-    const int k = branch_node(tuft.spine.rod), count_all = static_cast<int>(tuft.sub_spines.size());
+    const int k = branch_node(tuft.trunk().rod), count_all = static_cast<int>(tuft.sub_spines.size());
     const std::vector<Section> whole = std::move(state.branches.front().sections);
     note_width(tuft, whole);
     state.branches.clear();

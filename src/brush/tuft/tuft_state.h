@@ -50,9 +50,14 @@ struct TuftEnergy {
     double stored() const { return bend + contact + aside; }
 };
 
-/// State of the tuft at one time: one branch, or the sub-spines after bifurcation.
+/// State of the tuft at one time: one branch, the sub-spines after bifurcation, or the spines of a wide ferrule.
 struct TuftState {
     std::vector<Branch> branches;
+    /// The branches are the spines of a wide ferrule, from −x to +x; else one trunk, or its sub-spines.
+    bool wide = false;
+    /// [branch] of its sections, tip first: by how much the gap to the next branch is wider than ink bridges, metres;
+    /// at most 0 where they are joined. Infinite where the next one has no hair. [K−1] or none
+    std::vector<std::vector<double>> openings;
     Vec3 force{0};            ///< of the surface on the tuft, newtons, world
     Vec3 device_force{0};     ///< that force filtered by the hair's mass, newtons, world
     Vec3 moment{0};           ///< of `force` about the root, N·m, world

@@ -85,6 +85,14 @@ class TuftSurface {
     /// Parameter of section i of the branch.
     double at_section(std::size_t i) const { return double(cap_ + i); }
 
+    /// A value of the sections at a place, linear between them, where the lesser of both is finite.
+    double value_at(double s, std::span<const double> of_section) const {
+        const double at = std::clamp(s - double(cap_), 0.0, double(of_section.size() - 1));
+        const auto i = std::min(static_cast<std::size_t>(at), of_section.size() - 1);
+        const double p = of_section[i], q = of_section[std::min(i + 1, of_section.size() - 1)], f = at - double(i);
+        return f > 0 ? (std::isfinite(p) && std::isfinite(q) ? std::lerp(p, q, f) : std::max(p, q)) : p;
+    }
+
     /// Metres of hair between the tip and a place.
     double from_tip(double s) const {
         const std::size_t i = std::min(static_cast<std::size_t>(std::max(s, 0.0)), from_tip_.size() - 1);
@@ -217,16 +225,19 @@ std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame, std:
         if (sections.size() < 2) continue;
         const TuftSurface skin(tuft.branches[k], frame, k < planes.size() ? &planes[k] : nullptr, std::max(film, 0.0));
         // The middle one of several branches goes on as the trunk.
-        const bool carries = count > 1 && k == count / 2;
+        const bool carries = count > 1 && k == count / 2 && !tuft.wide;
         const double trunk = carries ? skin.at_section(tuft.branches[0].sections.size() - 1) : 1e9;
+        // The hair of a wide ferrule differs in length.
+        const double whole = tuft.wide && length > 0 ? skin.from_tip(skin.end()) / length : 1;
         for (const Stretch& stretch : touching_stretches(skin)) {
-            Trail trail{.branch = static_cast<int>(k), .cuts = {}, .along = {}};
+            Trail trail{.branch = static_cast<int>(k), .cuts = {}, .along = {}, .strip = tuft.wide};
             for (int i = 0; i < kSamples; ++i) {
                 const double f = 0.5 - 0.5 * std::cos(kPi * i / (kSamples - 1));
                 const double s = stretch.begin + f * (stretch.end - stretch.begin);
                 trail.cuts.push_back(skin.at(s));
-                trail.along.push_back(length > 0 ? 1 - skin.from_tip(s) / length : 0);
+                trail.along.push_back(length > 0 ? whole - skin.from_tip(s) / length : 0);
                 if (s < trunk) trail.trunk = trail.cuts.size();
+                if (k < tuft.openings.size()) trail.opening.push_back(skin.value_at(s, tuft.openings[k]));
             }
             found.push_back(std::move(trail));
         }

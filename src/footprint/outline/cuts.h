@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -32,6 +34,15 @@ struct Trail {
     std::vector<Cut> cuts;      ///< close together at both ends
     std::vector<double> along;  ///< position of each cut along the hair, fraction of the length from the root
     std::size_t trunk = 0;      ///< index of the first cut of the whole tuft, after those of the sub-spine
+    bool strip = false;         ///< a spine of a wide ferrule: its hair fills a rectangle, not a disc
+    /// Of each cut, by how much the gap to the next branch is wider than ink bridges, metres; see brush::TuftState.
+    /// Empty where no branch comes next.
+    std::vector<double> opening;
+
+    /// Half the thickness of the hair at x in [−1, 1] of a section, over b.
+    double chord(double x) const { return strip ? kStripChord : std::sqrt(std::max(0.0, 1 - x * x)); }
+
+    static constexpr double kStripChord = 0.8862269254527580;  ///< √π/2, see brush::in_branch
 };
 
 /// Returns the touching parts of all branches, cut into sections; see `outline` for the arguments. `length` is the
@@ -66,5 +77,9 @@ void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& fo
 
 /// Returns the outline of a trail; without points when the trail is too small.
 Outline outline_of(const Trail& trail, int points);
+
+/// Returns the outlines whose union is the contact patch: one for each trail, and where spines of a wide ferrule are
+/// joined by ink, one for what lies between two of them, at equal distance from the root.
+std::vector<Outline> outlines_of(std::span<const Trail> trails, int points);
 
 }  // namespace tuft::footprint

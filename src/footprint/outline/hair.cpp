@@ -43,8 +43,8 @@ double rise(const Cut& cut, const Vec2& place) {
 }
 
 /// The section's underside at the place is at or below the surface.
-bool touches(const Cut& cut, const Vec2& place) {
-    const double chord = std::sqrt(std::max(0.0, 1 - place.x * place.x));
+bool touches(const Trail& trail, const Cut& cut, const Vec2& place) {
+    const double chord = trail.chord(place.x);
     return cut.z + cut.a * place.x * cut.e.z - chord * cut.b * std::abs(cut.m.z) <= 0;
 }
 
@@ -53,7 +53,8 @@ struct Placed {
     Vec2 whole{0};
     brush::BranchPlace part;
 
-    Placed(const Vec2& place, int branches) : whole(place), part(brush::in_branch(place, branches)) {}
+    Placed(const brush::Bundles& bundles, const Vec2& place, int branches)
+        : whole(place), part(brush::in_branch(bundles, place, branches)) {}
     const Vec2* at(const Trail& trail, std::size_t i) const {
         if (i >= trail.trunk) return &whole;
         return part.branch == trail.branch ? &part.place : nullptr;
@@ -186,9 +187,9 @@ std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& 
 }
 
 /// Where the section at lateral place x meets the surface, or its middle where all of it is below.
-Vec2 on_surface(const Cut& cut, double x) {
+Vec2 on_surface(const Trail& trail, const Cut& cut, double x) {
     const double height = cut.b * cut.m.z, need = cut.z + cut.a * x * cut.e.z;
-    const double chord = std::sqrt(std::max(0.0, 1 - x * x));
+    const double chord = trail.chord(x);
     const double y = std::abs(height) > 1e-9 ? std::clamp(-need / height, -chord, chord) : 0;
     return cut.at(x, need < -chord * std::abs(height) ? 0 : y);
 }
@@ -216,7 +217,7 @@ void draw_strands(const Trail& trail, std::size_t begin, std::size_t end, std::s
         const double most = kBeyond * widest;
         const double past_lo = std::min(strand.past_lo, most) / cell, past_hi = std::min(strand.past_hi, most) / cell;
         const auto place = [&](std::size_t k) {
-            return (on_surface(trail.cuts[at[k]], x) - zero) / cell + 0.5 * (past_hi - past_lo) * across[k];
+            return (on_surface(trail, trail.cuts[at[k]], x) - zero) / cell + 0.5 * (past_hi - past_lo) * across[k];
         };
         const auto half_width = [&](std::size_t k) {
             return half * trail.cuts[at[k]].a / cell + 0.5 * (past_hi + past_lo);
@@ -272,10 +273,10 @@ void each_touch(const Trail& trail, const brush::Bundles& bundles, int branches,
     constexpr std::size_t kStride = 3;  // sections looked at
     const std::size_t count = trail.cuts.size();
     for (std::size_t k = 0; k < bundles.place.size(); ++k) {
-        const Placed placed(bundles.place[k], branches);
+        const Placed placed(bundles, bundles.place[k], branches);
         for (std::size_t i = 0; i < count; i += kStride) {
             const Vec2* at = placed.at(trail, i);
-            if (!at || rise(trail.cuts[i], *at) > 0 || !touches(trail.cuts[i], *at)) continue;
+            if (!at || rise(trail.cuts[i], *at) > 0 || !touches(trail, trail.cuts[i], *at)) continue;
             const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
             f(k, i, *at, std::abs(trail.along[a] - trail.along[b]));
         }
@@ -319,7 +320,7 @@ std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails,
     for (const Trail& trail : trails)
         each_touch(trail, bundles, branches, [&](std::size_t k, std::size_t i, const Vec2& place, double length) {
             found.push_back(
-                {static_cast<std::uint32_t>(k), on_surface(trail.cuts[i], place.x), trail.along[i], length});
+                {static_cast<std::uint32_t>(k), on_surface(trail, trail.cuts[i], place.x), trail.along[i], length});
         });
     return found;
 }
@@ -332,7 +333,8 @@ HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> out
     cell = f.cell;
     std::vector<Placed> places;
     places.reserve(bundles.bristles.size());
-    for (const brush::Bristle& b : bundles.bristles) places.emplace_back(brush::place_of(bundles, b), branches);
+    for (const brush::Bristle& b : bundles.bristles)
+        places.emplace_back(bundles, brush::place_of(bundles, b), branches);
     Bands bands(f.width, f.height, mostly_steep(trails));
     std::vector<Lower> lower;
     const auto draw = [&](const Trail& trail, std::size_t begin, std::size_t end) {

@@ -133,51 +133,72 @@ std::vector<Vec2> spline_control(const std::vector<Vec2>& p) {
 
 }  // namespace
 
-Outline outline_of(const Trail& trail, int points) {
-    const std::vector<Cut>& cuts = trail.cuts;
-    const std::size_t n = cuts.size();
-    points = std::max(points, 4);
-    const Vec2 forward = forward_direction(cuts), left{-forward.y, forward.x};
-    const Vec2 middle = cuts[n / 2].centre;
+namespace {
+
+/// Shadows of sections on the surface, one loop of corners each.
+struct Loops {
     std::vector<Vec2> corners;
-    std::vector<std::size_t> first{0};  // corner of each section, and the end
-    corners.reserve(n * (kDirections + 2));
-    first.reserve(n + 1);
-    for (const Cut& cut : cuts) {
-        add_shadow(cut, corners);
-        first.push_back(corners.size());
+    std::vector<std::size_t> first{0};  ///< corner of each loop, and the end
+
+    void add(std::span<const Cut> cuts) {
+        corners.reserve(corners.size() + cuts.size() * (kDirections + 2));
+        for (const Cut& cut : cuts) {
+            add_shadow(cut, corners);
+            first.push_back(corners.size());
+        }
     }
-    Vec2 front{-1e9, 0}, rear{1e9, 0};
-    for (Vec2& q : corners) {
-        q = {glm::dot(q - middle, forward), glm::dot(q - middle, left)};
-        if (q.x > front.x) front = q;
-        if (q.x < rear.x) rear = q;
+    std::size_t size() const { return first.size() - 1; }
+    std::span<const Vec2> operator[](std::size_t k) const {
+        return {corners.data() + first[k], first[k + 1] - first[k]};
     }
-    Envelope envelope(rear.x, front.x, points);
-    const auto by_y = [](const Vec2& a, const Vec2& b) { return a.y < b.y; };
+};
+
+/// Coordinates along and across a patch.
+struct PatchFrame {
+    Vec2 middle{0}, forward{1, 0};
+
+    Vec2 left() const { return {-forward.y, forward.x}; }
+    void to_patch(std::vector<Vec2>& points) const {
+        for (Vec2& q : points) q = {glm::dot(q - middle, forward), glm::dot(q - middle, left())};
+    }
+    Vec2 to_stamp(const Vec2& q) const { return middle + q.x * forward + q.y * left(); }
+};
+
+bool by_y(const Vec2& a, const Vec2& b) {
+    return a.y < b.y;
+}
+bool by_x(const Vec2& a, const Vec2& b) {
+    return a.x < b.x;
+}
+
+/// Adds the loops of one trail, each with the skin to the next.
+void add_loops(const Loops& loops, std::size_t begin, std::size_t end, Envelope& envelope) {
     Vec2 low_before{0}, high_before{0};
-    for (std::size_t k = 0; k < n; ++k) {
-        const std::span<const Vec2> s(corners.data() + first[k], first[k + 1] - first[k]);
+    for (std::size_t k = begin; k < end; ++k) {
+        const std::span<const Vec2> s = loops[k];
         for (std::size_t i = 0; i + 1 < s.size(); ++i) envelope.add(s[i], s[i + 1]);
         envelope.add(s.back(), s.front());
         const auto [low, high] = std::minmax_element(s.begin(), s.end(), by_y);
-        if (k > 0) {
+        if (k > begin) {
             envelope.add(low_before, *low);
             envelope.add(high_before, *high);
         }
         low_before = *low;
         high_before = *high;
     }
-    const auto to_stamp = [&](const Vec2& q) { return middle + q.x * forward + q.y * left; };
+}
+
+Outline closed_outline(const Envelope& envelope, const PatchFrame& patch, const Vec2& front, const Vec2& rear,
+                       int points) {
     Outline outline;
-    outline.tip = to_stamp(front);
-    outline.tail = to_stamp(rear);
+    outline.tip = patch.to_stamp(front);
+    outline.tail = patch.to_stamp(rear);
     outline.left.reserve(points);
     outline.right.reserve(points);
     for (int j = points - 1; j >= 0; --j) {
         if (!envelope.covered(j)) continue;
-        outline.left.push_back(to_stamp(envelope.top(j)));
-        outline.right.push_back(to_stamp(envelope.bottom(j)));
+        outline.left.push_back(patch.to_stamp(envelope.top(j)));
+        outline.right.push_back(patch.to_stamp(envelope.bottom(j)));
     }
     std::vector<Vec2> closed;
     closed.reserve(2 * outline.left.size() + 2);
@@ -187,6 +208,119 @@ Outline outline_of(const Trail& trail, int points) {
     closed.insert(closed.end(), outline.right.rbegin(), outline.right.rend());
     outline.control = spline_control(closed);
     return outline;
+}
+
+}  // namespace
+
+Outline outline_of(const Trail& trail, int points) {
+    const std::vector<Cut>& cuts = trail.cuts;
+    points = std::max(points, 4);
+    const PatchFrame patch{cuts[cuts.size() / 2].centre, forward_direction(cuts)};
+    Loops loops;
+    loops.add(cuts);
+    patch.to_patch(loops.corners);
+    Vec2 front{-1e9, 0}, rear{1e9, 0};
+    for (const Vec2& q : loops.corners) {
+        if (q.x > front.x) front = q;
+        if (q.x < rear.x) rear = q;
+    }
+    Envelope envelope(rear.x, front.x, points);
+    add_loops(loops, 0, loops.size(), envelope);
+    return closed_outline(envelope, patch, front, rear, points);
+}
+
+namespace {
+
+/// Sections of two neighbouring trails at equal distances from the root, tip side first, and between them the same
+/// number of joined ones.
+struct Joint {
+    std::vector<Cut> first, second;
+};
+
+Cut cut_between(const Cut& p, const Cut& q, double f) {
+    const auto unit = [](const Vec3& v, const Vec3& otherwise) {
+        const double size = glm::length(v);
+        return size > 1e-9 ? v / size : otherwise;
+    };
+    return {glm::mix(p.centre, q.centre, f), std::lerp(p.z, q.z, f),           std::lerp(p.a, q.a, f),
+            std::lerp(p.b, q.b, f),          unit(glm::mix(p.e, q.e, f), p.e), unit(glm::mix(p.m, q.m, f), p.m)};
+}
+
+/// The section of a trail at a distance from the root, nothing beyond its ends; `from`: where to look from on.
+const Cut* cut_at(const Trail& trail, double along, std::size_t& from, Cut& out) {
+    const std::size_t count = trail.cuts.size();
+    if (along > trail.along.front() || along < trail.along.back()) return nullptr;
+    while (from + 2 < count && trail.along[from + 1] > along) ++from;
+    const double run = trail.along[from] - trail.along[from + 1];
+    out = cut_between(trail.cuts[from], trail.cuts[from + 1],
+                      run > 0 ? std::clamp((trail.along[from] - along) / run, 0.0, 1.0) : 0);
+    return &out;
+}
+
+/// The stretches over which two neighbouring trails are joined.
+std::vector<Joint> joints_of(const Trail& a, const Trail& b) {
+    std::vector<Joint> out;
+    std::size_t from = 0;
+    bool open = true;
+    for (std::size_t i = 0; i < a.cuts.size(); ++i) {
+        Cut other;
+        const bool joined = a.opening[i] <= 0 && cut_at(b, a.along[i], from, other);
+        if (joined && open) out.emplace_back();
+        open = !joined;
+        if (!joined) continue;
+        out.back().first.push_back(a.cuts[i]);
+        out.back().second.push_back(other);
+    }
+    std::erase_if(out, [](const Joint& j) { return j.first.size() < 2; });
+    return out;
+}
+
+/// Outline of two joined stretches and of all that lies between them.
+Outline outline_of(const Joint& joint, int points) {
+    const std::size_t n = joint.first.size();
+    const Vec2 forward = forward_direction(joint.first) + forward_direction(joint.second);
+    const PatchFrame patch{0.5 * (joint.first[n / 2].centre + joint.second[n / 2].centre),
+                           unit_or(forward, forward_direction(joint.first))};
+    Loops loops;
+    loops.add(joint.first);
+    loops.add(joint.second);
+    patch.to_patch(loops.corners);
+    const auto [rear, front] = std::minmax_element(loops.corners.begin(), loops.corners.end(), by_x);
+    Envelope envelope(rear->x, front->x, points);
+    add_loops(loops, 0, n, envelope);
+    add_loops(loops, n, 2 * n, envelope);
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::span<const Vec2> p = loops[i], q = loops[n + i];
+        const auto [p_low, p_high] = std::minmax_element(p.begin(), p.end(), by_y);
+        const auto [q_low, q_high] = std::minmax_element(q.begin(), q.end(), by_y);
+        envelope.add(*p_low, *q_low);
+        envelope.add(*p_high, *q_high);
+        if (i != 0 && i + 1 != n) continue;
+        const auto [p_rear, p_front] = std::minmax_element(p.begin(), p.end(), by_x);
+        const auto [q_rear, q_front] = std::minmax_element(q.begin(), q.end(), by_x);
+        envelope.add(*p_rear, *q_rear);
+        envelope.add(*p_front, *q_front);
+    }
+    return closed_outline(envelope, patch, *front, *rear, points);
+}
+
+}  // namespace
+
+std::vector<Outline> outlines_of(std::span<const Trail> trails, int points) {
+    points = std::max(points, 4);
+    std::vector<Outline> out;
+    const auto keep = [&](Outline outline) {
+        if (outline.left.size() >= 3) out.push_back(std::move(outline));
+    };
+    for (const Trail& trail : trails) keep(outline_of(trail, points));
+    for (const Trail& a : trails) {
+        if (a.opening.empty()) continue;
+        for (const Trail& b : trails) {
+            if (b.branch != a.branch + 1) continue;
+            for (const Joint& joint : joints_of(a, b)) keep(outline_of(joint, points));
+        }
+    }
+    return out;
 }
 
 std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes) {
@@ -200,6 +334,17 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<cons
     if (branches.size() == 1 && planes.size() >= branches[0].sections.size())
         return {NodePlanes(planes.begin(), planes.begin() + branches[0].sections.size())};
     if (branches.size() < 2) return {};
+    if (tuft.wide) {
+        std::vector<NodePlanes> own;
+        std::size_t first = 0;
+        for (const brush::Branch& b : branches) {
+            if (planes.size() < first + b.sections.size()) return {};
+            const auto part = planes.subspan(first, b.sections.size());
+            own.emplace_back(part.begin(), part.end());
+            first += b.sections.size();
+        }
+        return own;
+    }
     // The middle branch ends in the whole spine's root; its outer nodes are the sub_spine's.
     const std::size_t trunk = branches[branches.size() / 2].sections.size();
     const std::size_t sub_spine = branches[0].sections.size();
@@ -217,12 +362,7 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<cons
 
 std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                              const OutlineOptions& options) {
-    std::vector<Outline> outlines;
-    for (const Trail& trail : trails(tuft, frame, planes, 0, options.film)) {
-        Outline o = outline_of(trail, options.points);
-        if (o.left.size() >= 3) outlines.push_back(std::move(o));
-    }
-    return outlines;
+    return outlines_of(trails(tuft, frame, planes, 1, options.film), options.points);
 }
 
 std::vector<Vec2> curve_points(const Outline& outline, int per_span) {

@@ -71,7 +71,7 @@ struct Placed {
     BranchPlace part;
 
     Placed(const Bundles& bundles, const Bristle& b, int branches)
-        : bound(b.place), whole(place_of(bundles, b)), part(in_branch(whole, branches)) {}
+        : bound(b.place), whole(place_of(bundles, b)), part(in_branch(bundles, whole, branches)) {}
     std::optional<Vec2> at(const Strand& strand, std::size_t k, std::size_t i) const {
         if (i >= strand.trunk) {
             const auto last = static_cast<double>(strand.sections.size() - 1);

@@ -21,15 +21,6 @@ constexpr double kSeparateLack =
     0.05;  // mean lack of wetness of the bundles at which all of a tuft touches by single hairs
 constexpr double kSpreadLack = 0.4;  // lack of wetness at which no water holds the tip together
 
-std::vector<footprint::Outline> outlines_of(std::span<const footprint::Trail> trails) {
-    std::vector<footprint::Outline> outlines;
-    for (const footprint::Trail& trail : trails) {
-        footprint::Outline outline = footprint::outline_of(trail, footprint::OutlineOptions{}.points);
-        if (outline.left.size() >= 3) outlines.push_back(std::move(outline));
-    }
-    return outlines;
-}
-
 }  // namespace
 
 ink::ContactCells HairContact::take_cells_since() {
@@ -132,7 +123,7 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     if (!contact.planes.empty())
         footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft.brush.tuft, contact.planes.front()),
                                       contact.frame, kSkinFilm);
-    const std::vector<footprint::Outline> outlines = outlines_of(trails);
+    const std::vector<footprint::Outline> outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points);
     Stamp stamp;
     if (by_hair_)
         draw_hairs(stamp, tuft, contact, motion, wetness, trails, outlines);

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "brush/preset/preset.h"
+#include "core/geometry/types.h"
+
+/// \file
+/// Ferrule of a tuft: where its spines are set in, how long their hair is, and how they stand to each other at rest.
+///
+/// The mouth is |x/a|^q + |y/b|^q ≤ 1 with a = width/2, b = radius (half the thickness), x the broad side. It is cut
+/// into K strips of equal area; a spine stands at the centroid of each. Lengths over the width, with s = x/a:
+///
+///     even  L          toe  L − h (1 − √(1 − s²))  (filbert)          slant  L − h (1 − s)/2  (sword)
+///
+/// A fan's hair leans by splay · s to the side. A strip of pitch p and mean thickness t is an ellipse at rest,
+/// semi-axes p/√π and t/√π: its area is that of the strip. Where a fan's strips widen, they thin, so that the area
+/// stays.
+///
+/// Ferrule frame: origin in the middle of the mouth, x along the broad side, −z along the hair. Metres, radians.
+namespace tuft::brush {
+
+struct FerruleSpine {
+    double x = 0;              ///< m, place on the broad side
+    double lean = 0;           ///< rad, of the hair towards +x
+    double share = 1;          ///< of the hair; all shares sum to one
+    double length = 1;         ///< of its hair over the tuft's
+    double pitch = 0;          ///< m, width of the strip at the mouth
+    double thick = 0;          ///< m, mean thickness of the strip at the mouth
+    double from = -1, to = 1;  ///< ends of the strip over the half-width a
+};
+
+/// Returns the spines from −x to +x; one that holds all for a round tuft.
+std::vector<FerruleSpine> ferrule_spines(const Preset& preset);
+
+/// Returns the half-thickness of the mouth over b at s = x/a: (1 − |s|^q)^{1/q}.
+double mouth_height(const Preset& preset, double s);
+
+/// Returns by how much a strip has widened at `along` metres from the mouth: 1 without splay.
+double widening(const Preset& preset, double along);
+
+/// Half-widths of a strip's ellipse at the fraction u of the tuft's length from the root. x: along the broad side; y:
+/// across it, with the taper of `rest_radius`. Metres.
+Vec2 rest_half_widths(const Preset& preset, const FerruleSpine& spine, double u);
+
+}  // namespace tuft::brush

@@ -1,0 +1,293 @@
+#include "brush/tuft/wide_tuft.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brush/rod/rod_points.h"
+#include "brush/tuft/flanks.h"
+#include "brush/tuft/tuft_sections.h"
+
+namespace tuft::brush {
+
+namespace {
+
+constexpr double kShear = 0.4;                 ///< k_s over k_n
+constexpr double kFilled = 0.2;                ///< wetness from which the film between two spines is closed
+constexpr double kThinnest = 1e-3;             ///< m, of hair that neighbours slide past
+constexpr double kHairPart = 0.55;             ///< φ, volume of hair in a packed tuft
+constexpr double kWaterWeight = 9810;          ///< ρ g, N/m³
+constexpr double kTouch = 0.8862269254527580;  ///< √π/2: half the pitch of a strip over its ellipse's semi-axis
+
+/// The part of `all` that belongs to each spine, `per` for each node; the same one for all, or none, where `all` holds
+/// no more than one.
+std::span<const ContactPlane> part_of(std::span<const ContactPlane> all, std::size_t first, std::size_t count) {
+    return all.size() > 1 ? all.subspan(first, count) : all;
+}
+
+/// Obstacles of one spine (root first) from its planes (tip first). The tuft's reach depends on the direction.
+std::vector<rod::Obstacle> obstacles_of_wide(const Preset& p, const Spine& spine,
+                                             std::span<const ContactPlane> planes) {
+    const std::size_t count = spine.rest_radius.size();
+    std::vector<rod::Obstacle> out;
+    if (planes.empty()) return out;
+    const std::vector<Vec3> t = node_tangents(spine.memory), x = broad_axes(spine.memory, t);
+    out.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const ContactPlane& plane = planes.size() == 1 ? planes[0] : planes[count - 1 - i];
+        out[i] = {plane.origin / p.length, plane.normal, rest_reach(spine, i, x[i], t[i], plane.normal) / p.length,
+                  plane.beyond_origin / p.length, plane.beyond_normal};
+    }
+    return out;
+}
+
+/// Half-width of the spread section of each node along the ferrule's broad side, without neighbours, metres, root
+/// first.
+std::vector<double> spread_half_widths(const Spine& spine) {
+    std::vector<double> out;
+    const std::size_t count = spine.rest_radius.size();
+    if (spine.flank.size() != 2 * count || spine.side.size() != 2 * count) return out;
+    const std::vector<Vec3> t = node_tangents(spine.memory), x = broad_axes(spine.memory, t);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t k = 2 * (count - 1 - i);
+        const Vec3 across = spine.side[k] - spine.side[k + 1];
+        const double size = glm::length(across);
+        const double a = 0.5 * (spine.flank[k] + spine.flank[k + 1]);
+        const double r = spine.rest_radius[i];
+        const double along = size > 0 ? std::abs(glm::dot(spine.broad[i], across) / size) : 1;
+        out.push_back(std::hypot(a * along, r * r / a * std::sqrt(std::max(0.0, 1 - along * along))));
+    }
+    return out;
+}
+
+/// One solve of all spines, with what it needs.
+struct Coupled {
+    std::vector<rod::Law> laws;
+    std::vector<std::vector<rod::Obstacle>> obstacles;
+    std::vector<std::vector<rod::Wall>> walls;
+    std::vector<rod::CoupledPair> pairs;
+
+    rod::CoupledResult solve(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes,
+                             std::span<const ContactPlane> beside, double dt, int most_iterations) {
+        const Preset& p = tuft.preset;
+        const std::size_t k_all = tuft.spines.size();
+        laws.clear();
+        obstacles.clear();
+        walls.clear();
+        std::size_t first = 0;
+        for (const Spine& spine : tuft.spines) {
+            const std::size_t count = spine.rest_radius.size();
+            laws.push_back(law_of(p, tuft.wetness, 1 / spine.share, dt));
+            laws.back().max_iterations = std::min(laws.back().max_iterations, most_iterations);
+            obstacles.push_back(obstacles_of_wide(p, spine, part_of(planes, first, count)));
+            walls.push_back(flank_walls(p, spine, pose.rotation, part_of(beside, 2 * first, 2 * count), tuft.wetness));
+            first += count;
+        }
+        std::vector<rod::CoupledRod> rods;
+        for (std::size_t k = 0; k < k_all; ++k) {
+            Spine& spine = tuft.spines[k];
+            rods.push_back(
+                {&spine.rod, &spine.memory, spine_clamp(p, spine, pose), obstacles[k], &laws[k], {}, walls[k]});
+        }
+        lay_pairs(tuft);
+        return rod::solve_coupled(rods, pairs, coupling_of(p, tuft.wetness));
+    }
+
+  private:
+    void lay_pairs(Tuft& tuft) {
+        const double length = tuft.preset.length;
+        pairs.clear();
+        std::vector<double> right = spread_half_widths(tuft.spines.front());
+        for (std::size_t k = 0; k + 1 < tuft.spines.size(); ++k) {
+            Beside& beside = tuft.beside[k];
+            const std::vector<double> left = std::move(right);
+            right = spread_half_widths(tuft.spines[k + 1]);
+            rod::CoupledPair pair{.first = static_cast<int>(k), .second = static_cast<int>(k + 1)};
+            for (std::size_t i = 0; i < beside.distance.size(); ++i) {
+                pair.touching.push_back(beside.distance[i] / length);
+                const Vec2 &l = tuft.spines[k].rest_section[i], &r = tuft.spines[k + 1].rest_section[i];
+                const double grown =
+                    i < left.size() && i < right.size() ? kTouch * (left[i] + right[i] - l.x - r.x) : 0;
+                pair.spread.push_back((beside.distance[i] + std::max(0.0, grown)) / length);
+                pair.depth.push_back(std::max(l.y + r.y, kThinnest) / length);
+            }
+            for (const double s : beside.shift) pair.rest_shift.push_back(s / length);
+            pair.memory = &beside.memory;
+            pairs.push_back(std::move(pair));
+        }
+    }
+};
+
+double bend_of_tip(const Spine& spine) {
+    return std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
+}
+
+/// Nearly straight hair falls to one side with all its spines: across the broad side where the hand says nothing.
+void break_symmetries(Tuft& tuft, const Pose& from, const Pose& to, std::span<const ContactPlane> planes) {
+    std::size_t first = 0;
+    for (Spine& spine : tuft.spines) {
+        const std::size_t count = spine.rest_radius.size();
+        double length = 0;
+        for (const double l : spine.rod.length) length += l;
+        const rod::Clamp clamp = spine_clamp(tuft.preset, spine, to);
+        break_symmetry(tuft.preset, spine, from, to, part_of(planes, first, count),
+                       {.tip = tuft.preset.length * (clamp.position + length * clamp.tangent), .aside = {0, 1, 0}});
+        first += count;
+    }
+}
+
+}  // namespace
+
+std::vector<Spine> make_spines(const Preset& p, const Profile& profile) {
+    const std::vector<double> whole = spine_segments(p.segments, 0.25 + 0.75 * p.hardness);
+    std::vector<Spine> out;
+    for (const FerruleSpine& set : ferrule_spines(p)) {
+        // The nodes of all spines face each other; a shorter one ends where its hair does.
+        std::vector<double> lengths;
+        double s = 0;
+        for (std::size_t j = 0; j < whole.size() && s < set.length - 1e-12; ++j) {
+            const bool last = j + 1 == whole.size() || s + whole[j] + 0.5 * whole[j + 1] > set.length;
+            lengths.push_back(last ? set.length - s : whole[j]);
+            s += lengths.back();
+        }
+        std::vector<double> fractions = lengths;
+        for (double& l : fractions) l /= set.length;
+        rod::Rod rod = rod::make_rod(profile, fractions);
+        rod.plastic_share = p.plastic_share;
+        for (std::size_t j = 0; j < lengths.size(); ++j) {
+            rod.length[j] = lengths[j];
+            rod.stiffness[j] *= set.share / set.length;
+            rod.yield[j] *= set.length;
+        }
+        for (double& w : rod.weight) w *= set.length;
+        rod.buckling *= set.share / (set.length * set.length);
+        Spine spine;
+        spine.root = {set.x, 0, 0};
+        spine.lean = set.lean;
+        spine.share = set.share;
+        spine.rod = std::move(rod);
+        spine.memory = rod::make_memory(spine.rod, spine_clamp(p, spine, {}));
+        double u = 0;
+        for (std::size_t i = 0; i <= lengths.size(); ++i) {
+            spine.rest_section.push_back(rest_half_widths(p, set, std::min(u, set.length)));
+            spine.rest_radius.push_back(std::sqrt(spine.rest_section[i].x * spine.rest_section[i].y));
+            if (i < lengths.size()) u += lengths[i];
+        }
+        out.push_back(std::move(spine));
+    }
+    return out;
+}
+
+std::vector<Beside> make_beside(const Preset& p, std::span<const Spine> spines) {
+    std::vector<Beside> out;
+    for (std::size_t k = 0; k + 1 < spines.size(); ++k) {
+        Beside beside;
+        const std::vector<Vec3>&x = spines[k].memory.node, &y = spines[k + 1].memory.node;
+        const Vec3 t = glm::normalize(spines[k].memory.clamp.tangent + spines[k + 1].memory.clamp.tangent);
+        for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
+            const Vec3 d = y[i] - x[i];
+            beside.distance.push_back(p.length * glm::length(d - glm::dot(d, t) * t));
+            if (i == 0) continue;
+            const Vec3 mean = 0.5 * (spines[k].memory.tangent[i - 1] + spines[k + 1].memory.tangent[i - 1]);
+            beside.shift.push_back(p.length * glm::dot(mean, d));
+        }
+        out.push_back(std::move(beside));
+    }
+    return out;
+}
+
+rod::Clamp spine_clamp(const Preset& p, const Spine& spine, const Pose& pose) {
+    const double c = std::cos(spine.lean), s = std::sin(spine.lean);
+    return {(pose.position + pose.rotation * spine.root) / p.length, pose.rotation * Vec3{s, 0, -c},
+            pose.rotation * Vec3{c, 0, s}};
+}
+
+rod::CouplingLaw coupling_of(const Preset& p, double wetness) {
+    const double unit = p.stiffness / std::pow(p.length, 4);  // N/m² of force per length and displacement
+    rod::CouplingLaw law;
+    law.contact = kHairContact / unit;
+    law.spread = 0.5 * side_stiffness(wetness) * p.transverse_stiffness / p.spines / unit;
+    law.shear = kShear * law.contact;
+    law.friction = p.hair_friction;
+    const double film = 2 * p.surface_tension * 2 * p.radius * std::min(1.0, wetness / kFilled);
+    law.film = film / (unit * p.length * p.length);
+    if (film > 0) {
+        const double menisci = 4 * p.surface_tension * kHairPart * (1 - wetness) / ((1 - kHairPart) * p.hair_diameter);
+        const double suction = kWaterWeight * p.length + menisci;
+        law.film_range = std::max(2 * p.surface_tension / suction, std::sqrt(12 * film / kHairContact)) / p.length;
+    }
+    return law;
+}
+
+double rest_reach(const Spine& spine, std::size_t i, const Vec3& x, const Vec3& t, const Vec3& n) {
+    const Vec2& rest = spine.rest_section[i];
+    const double a = rest.x * glm::dot(n, x), b = rest.y * glm::dot(n, glm::cross(x, t)),
+                 c = std::min(rest.x, rest.y) * glm::dot(n, t);
+    return std::sqrt(a * a + b * b + c * c);
+}
+
+SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPlane> planes,
+                          std::span<const ContactPlane> walls, double dt) {
+    const Preset& p = tuft.preset;
+    const std::size_t k_all = tuft.spines.size();
+    double bend = 0;
+    for (const Spine& spine : tuft.spines) bend = std::max(bend, bend_of_tip(spine));
+    const int parts = planes.empty() ? 1 : parts_of_way(p, tuft.pose, to, bend);
+    const double part_dt = dt / parts;
+    Coupled coupled;
+    std::vector<std::vector<Vec3>> slip(k_all);
+    SolvedSpines out;
+    rod::CoupledResult result;
+    Pose last = tuft.pose;
+    const rod::Law whole = law_of(p, tuft.wetness, 1, part_dt);
+    for (int k = 1; k <= parts; ++k) {
+        const Pose pose = k == parts ? to : between(tuft.pose, to, static_cast<double>(k) / parts);
+        break_symmetries(tuft, last, pose, planes);
+        const int most = k == parts ? whole.max_iterations : std::max(30, whole.max_iterations / parts);
+        result = coupled.solve(tuft, pose, planes, walls, part_dt, most);
+        out.dissipation += result.dissipation;
+        for (std::size_t i = 0; i < k_all; ++i) {
+            const rod::Result& r = result.rods[i];
+            tuft.spines[i].pressed = r.contact_energy;
+            out.dissipation += r.dissipation;
+            slip[i].resize(r.slip.size(), Vec3{0});
+            for (std::size_t j = 0; j < r.slip.size(); ++j) slip[i][j] += r.slip[j];
+        }
+        last = pose;
+    }
+    out.coupling_energy = result.energy;
+    out.film_range = p.length * coupling_of(p, tuft.wetness).film_range * (tuft.wetness > 0 ? 1 : 0);
+    std::vector<std::vector<Vec3>> node;
+    for (Spine& spine : tuft.spines) {
+        node.push_back(rod::curve_nodes(spine.rod, spine.memory.node));
+        const std::vector<Vec3> t = node_tangents(spine.memory);
+        spine.broad = broad_axes(spine.memory, t);
+        const Quat back = glm::conjugate(to.rotation);
+        for (Vec3& x : spine.broad) x = back * x;
+    }
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < k_all; ++k) {
+        Spine& spine = tuft.spines[k];
+        result.rods[k].slip = slip[k];
+        Neighbours neighbours;
+        for (const int side : {-1, 1}) {
+            const std::size_t other = k + static_cast<std::size_t>(side);
+            if (other >= k_all) continue;
+            std::vector<Vec3>& way = side < 0 ? neighbours.before : neighbours.after;
+            for (std::size_t i = 0; i < std::min(node[k].size(), node[other].size()); ++i)
+                way.push_back(p.length * (node[other][i] - node[k][i]));
+        }
+        const std::size_t count = spine.rest_radius.size();
+        out.spines.push_back(with_sections(p, spine, std::move(result.rods[k]), node[k], to.rotation,
+                                           coupled.obstacles[k], tuft.wetness, 1 / spine.share,
+                                           part_of(walls, 2 * first, 2 * count), neighbours));
+        first += count;
+    }
+    for (std::size_t k = 0; k + 1 < k_all; ++k) {
+        Beside& beside = tuft.beside[k];
+        beside.gap = result.pairs[k].gap;
+        for (double& g : beside.gap) g *= p.length;
+    }
+    return out;
+}
+
+}  // namespace tuft::brush

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "brush/tuft/ferrule.h"
+#include "brush/tuft/spine.h"
+#include "brush/tuft/tuft.h"
+
+/// \file
+/// The spines of a wide ferrule, bent together. Internal to `brush/tuft`; `step` calls it where K > 1.
+///
+/// Neighbouring spines are rods coupled by contact, wet film and friction (rod/coupled_rods.h). Their law in SI units,
+/// with t the thickness, γ the surface tension, S the wetness, d the diameter of a hair and φ the part of a tuft that
+/// is hair:
+///
+///     k_n = kHairContact,   k_s = 0.4 k_n,   W = 2 γ t min(1, S/0.2),
+///     g_b = max(2 γ/p_c, √(12 W/k_n)),   p_c = ρ g L + 4 γ φ (1 − S) / ((1 − φ) d).
+///
+/// W is Dupré's work of two new faces. p_c is the suction in the film: of the hanging column of ink, and of the menisci
+/// between hairs that are not full (Princen 1968). The least g_b keeps the film's bond stable: its work is at least
+/// twice what contact takes of it.
+///
+/// Spread hair of two neighbours meets with the stiffness of both side springs in series (tuft_sections.h).
+namespace tuft::brush {
+
+inline constexpr double kHairContact = 1e5;  ///< N/m², hair against hair of two spines; a guess
+
+/// Returns the spines of the preset's ferrule, straight, with their root at the pose {}.
+std::vector<Spine> make_spines(const Preset& preset, const Profile& profile);
+/// Returns the pairs of neighbours at rest.
+std::vector<Beside> make_beside(const Preset& preset, std::span<const Spine> spines);
+
+/// Clamp of a spine for a pose of the holder.
+rod::Clamp spine_clamp(const Preset& preset, const Spine& spine, const Pose& pose);
+
+/// Returns the law of the coupling in units of L and B0.
+rod::CouplingLaw coupling_of(const Preset& preset, double wetness);
+
+/// Returns the half-width of the resting section of node i in the direction of the unit vector n, metres:
+/// √((a n·x)² + (b n·y)² + (min(a, b) n·t)²) with x, y the ferrule's axes carried along the spine to the node.
+double rest_reach(const Spine& spine, std::size_t i, const Vec3& x, const Vec3& t, const Vec3& n);
+
+struct SolvedSpines {
+    std::vector<Solved> spines;
+    double coupling_energy = 0, dissipation = 0;  ///< units of B0/L; the latter of all rods and pairs
+    double film_range = 0;                        ///< m, gap at which the wet film between two spines breaks
+};
+
+/// Moves all spines from the tuft's pose to `to` in small steps and solves them there over `dt` seconds. `planes` and
+/// `walls` as in `step`.
+SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPlane> planes,
+                          std::span<const ContactPlane> walls, double dt);
+
+}  // namespace tuft::brush
