@@ -23,8 +23,43 @@ unsigned hair_colour(const std::string& sort) {
     return IM_COL32(170, 172, 178, 255);
 }
 
+// A wide tuft from its broad side: from edge to edge of the ferrule the end of its hair, which leans in a fan.
+void draw_wide_tuft_icon(const Ui& ui, const brush::Preset& preset, unsigned hair, ImVec2 at, float width,
+                         float height) {
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    constexpr double longest = 0.052;
+    const double widest = preset.width + 2 * preset.length * std::sin(preset.splay);
+    const auto scale = static_cast<float>(std::min(height * 0.74 / longest, (width - ui.px(3)) / widest));
+    const float x = at.x + 0.5f * width, top = at.y + 0.19f * height;
+    constexpr int n = 24;
+    std::vector<ImVec2> roots, ends;
+    for (int i = 0; i <= n; ++i) {
+        const double s = 2.0 * i / n - 1, lean = preset.splay * s;
+        const double toe = preset.toe * (1 - std::sqrt(std::max(0.0, 1 - s * s)));
+        const double length = preset.length - toe - 0.5 * preset.slant * (1 - s);
+        const auto root = x + static_cast<float>(0.5 * preset.width * s) * scale;
+        roots.emplace_back(root, top);
+        ends.emplace_back(root + static_cast<float>(length * std::sin(lean)) * scale,
+                          top + static_cast<float>(length * std::cos(lean)) * scale);
+    }
+    const ImDrawListFlags flags = draw->Flags;
+    draw->Flags &= ~ImDrawListFlags_AntiAliasedFill;
+    for (std::size_t i = 0; i < n; ++i) draw->AddQuadFilled(roots[i], roots[i + 1], ends[i + 1], ends[i], hair);
+    draw->Flags = flags;
+    std::vector<ImVec2> outline = roots;
+    outline.insert(outline.end(), ends.rbegin(), ends.rend());
+    draw->AddPolyline(outline.data(), static_cast<int>(outline.size()), IM_COL32(70, 52, 36, 255), ImDrawFlags_Closed,
+                      1.0f);
+    const float half = static_cast<float>(0.5 * preset.width) * scale + ui.px(0.8f);
+    draw->AddRectFilled(ImVec2(x - half, at.y + 0.11f * height), ImVec2(x + half, top), IM_COL32(150, 152, 160, 255),
+                        1.5f);
+    draw->AddRectFilled(ImVec2(x - 0.4f * half, at.y + 0.02f * height), ImVec2(x + 0.4f * half, at.y + 0.11f * height),
+                        IM_COL32(122, 78, 38, 255), 1.5f);
+}
+
 // The tuft's outline, ferrule above, tip below.
 void draw_tuft_icon(const Ui& ui, const brush::Preset& preset, unsigned hair, ImVec2 at, float width, float height) {
+    if (preset.spines > 1) return draw_wide_tuft_icon(ui, preset, hair, at, width, height);
     ImDrawList* draw = ImGui::GetWindowDrawList();
     constexpr double longest = 0.048;  // metres that fill the icon
     const auto scale = static_cast<float>(height * 0.74f / longest);
@@ -77,8 +112,12 @@ void brush_cell(Ui& ui, BrushSettings& brush, const std::string& name, const std
     draw_tuft_icon(ui, preset, hair_colour(sort), at, width, height);
     if (!over) return;
     char text[256];
-    std::snprintf(text, sizeof text, ui.tr("%.0f mm long, %.1f mm thick"), preset.length * 1e3,
-                  2 * preset.radius * 1e3);
+    if (preset.spines > 1)
+        std::snprintf(text, sizeof text, ui.tr("%.0f mm long, %.0f mm wide, %.1f mm thick"), preset.length * 1e3,
+                      preset.width * 1e3, 2 * preset.radius * 1e3);
+    else
+        std::snprintf(text, sizeof text, ui.tr("%.0f mm long, %.1f mm thick"), preset.length * 1e3,
+                      2 * preset.radius * 1e3);
     ImGui::SetTooltip("%s\n%s", ui.tr(name.c_str()), text);
 }
 
@@ -89,13 +128,14 @@ void brush_rack(Ui& ui, BrushSettings& brush, StatusMessage& status) {
     std::map<std::string, std::vector<std::string>> by_sort;
     for (const std::string& name : brush.presets) by_sort[name.substr(0, name.find('-'))].push_back(name);
     std::vector<std::pair<std::string, std::vector<std::string>>> groups;
-    std::vector<std::string> single;
+    std::vector<std::string> single, wide;
     for (auto& [sort, names] : by_sort) {
         if (names.size() == 1)
-            single.push_back(names.front());
+            (preset_of(names.front()).spines > 1 ? wide : single).push_back(names.front());
         else
             groups.emplace_back(sort, names);
     }
+    if (!wide.empty()) groups.emplace_back("flat", wide);
     if (!single.empty()) groups.emplace_back("other", single);
     const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = ui.px(8),
                 letters = 0.8f * ImGui::GetFontSize();

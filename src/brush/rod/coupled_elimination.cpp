@@ -1,17 +1,13 @@
+#include <algorithm>
+#include <cmath>
+
 #include "brush/rod/coupled_energy.h"
+#include "core/simd.h"
 
 namespace tuft::brush::rod {
 
 namespace {
 
-constexpr int kMaxMoves = 3 * kMaxCoupled, kMaxSteps = 2 * kMaxCoupled;
-/// Blocks over the moves x of the nodes (3 a rod) and over the steps u of the segments (2 a rod).
-using MoveByMove = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxMoves, kMaxMoves>;
-using MoveByStep = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxMoves, kMaxSteps>;
-using StepByMove = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxSteps, kMaxMoves>;
-using StepByStep = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxSteps, kMaxSteps>;
-using Moves = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxMoves, 1>;
-using Steps = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSteps, 1>;
 using Arm = Eigen::Matrix<double, 3, 2>;
 using Block3 = Eigen::Matrix3d;
 
@@ -33,41 +29,102 @@ Arm arm_of(const Solver& s, int j) {
     return out;
 }
 
-/// What segment j of all rods was eliminated with: u = −rest − move x − inner v.
+constexpr int kMaxMoves = 3 * kMaxCoupled, kMaxSteps = 2 * kMaxCoupled;
+/// Columns of a segment's rows: the moves x of the nodes (3 a rod), the steps v of the segments inboard (2 a rod) and
+/// the right-hand side; rounded up to whole vectors.
+constexpr int kMaxColumns = (kMaxMoves + kMaxSteps + 1 + 7) / 8 * 8;
+
+/// Rows of segment j of all rods as it was eliminated: with U = L Lᵀ, Z = L⁻¹ [X | in | g].
 struct Gain {
-    Steps rest;
-    StepByMove move;
-    StepByStep inner;
+    double lower[kMaxSteps][kMaxSteps];
+    double z[kMaxSteps][kMaxColumns];
 };
+
+/// Cholesky factor of the lower half of `a` in place; false where it is not positive definite.
+bool factorise(double (&a)[kMaxSteps][kMaxSteps], int n) {
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            double sum = a[i][j];
+            for (int k = 0; k < j; ++k) sum -= a[i][k] * a[j][k];
+            if (j < i) {
+                a[i][j] = sum / a[j][j];
+            } else {
+                if (!(sum > 0)) return false;
+                a[i][i] = std::sqrt(sum);
+            }
+        }
+    }
+    return true;
+}
+
+/// z ← L⁻¹ z. Sums run along the columns: the same bits for any width of vectors.
+TUFT_CLONES void forward(const double (&lower)[kMaxSteps][kMaxSteps], int n, int columns,
+                         double (&z)[kMaxSteps][kMaxColumns]) {
+    for (int i = 0; i < n; ++i) {
+        double* __restrict row = z[i];
+        for (int j = 0; j < i; ++j) {
+            const double f = lower[i][j];
+            const double* __restrict other = z[j];
+            for (int c = 0; c < columns; ++c) row[c] -= f * other[c];
+        }
+        const double f = 1 / lower[i][i];
+        for (int c = 0; c < columns; ++c) row[c] *= f;
+    }
+}
+
+/// gram ← Zᵀ Z, rows [0, rows).
+TUFT_CLONES void square(const double (&z)[kMaxSteps][kMaxColumns], int n, int rows, int columns,
+                        double (&gram)[kMaxColumns][kMaxColumns]) {
+    for (int r = 0; r < rows; ++r) {
+        double* __restrict out = gram[r];
+        for (int c = 0; c < columns; ++c) out[c] = 0;
+        for (int i = 0; i < n; ++i) {
+            const double f = z[i][r];
+            if (f == 0) continue;
+            const double* __restrict row = z[i];
+            for (int c = 0; c < columns; ++c) out[c] += f * row[c];
+        }
+    }
+}
 
 /// The least of the model over everything outboard of segment j: ½ xᵀ P x + vᵀ Q x + ½ vᵀ R v + p·x + r·v, x the moves
 /// of the nodes outboard of the segments and v their steps.
 struct Outboard {
-    MoveByMove p;
-    StepByMove q;
-    StepByStep r;
-    Moves p1;
-    Steps r1;
+    double p[kMaxMoves][kMaxMoves]{};
+    double q[kMaxSteps][kMaxMoves]{};
+    double r[kMaxSteps][kMaxSteps]{};
+    double p1[kMaxMoves]{}, r1[kMaxSteps]{};
+};
 
-    explicit Outboard(int k)
-        : p(MoveByMove::Zero(3 * k, 3 * k)),
-          q(StepByMove::Zero(2 * k, 3 * k)),
-          r(StepByStep::Zero(2 * k, 2 * k)),
-          p1(Moves::Zero(3 * k)),
-          r1(Steps::Zero(2 * k)) {}
+template <class Block, std::size_t N, std::size_t M>
+void add_block(double (&to)[N][M], int row, int col, const Block& block) {
+    for (int i = 0; i < block.rows(); ++i)
+        for (int k = 0; k < block.cols(); ++k) to[row + i][col + k] += block(i, k);
+}
+
+/// Buffers of one thread.
+struct Scratch {
+    std::vector<Gain> gain;
+    Outboard out;
+    double gram[kMaxColumns][kMaxColumns];
 };
 
 class BlockElimination {
   public:
     BlockElimination(std::span<const Solver> solvers, std::span<const FrozenPair> pairs, double damping)
-        : solvers_(solvers), pairs_(pairs), k_(static_cast<int>(solvers.size())), damping_(damping), out_(k_) {
+        : solvers_(solvers),
+          pairs_(pairs),
+          k_(static_cast<int>(solvers.size())),
+          moves_(3 * k_),
+          steps_(2 * k_),
+          damping_(damping),
+          scratch_(scratch()) {
         for (const Solver& s : solvers) n_ = std::max(n_, s.n());
+        scratch_.gain.resize(n_);
+        scratch_.out = {};
     }
 
     bool run() {
-        thread_local std::vector<Gain> buffer;
-        gain_ = &buffer;
-        buffer.resize(n_);
         add_nodes(n_);
         for (int j = n_ - 1; j >= 0; --j) {
             if (!eliminate(j)) return false;
@@ -79,47 +136,59 @@ class BlockElimination {
         std::size_t size = 0;
         for (const Solver& s : solvers_) size += 2 * static_cast<std::size_t>(s.n());
         step.resize(size);
-        Moves moved = Moves::Zero(3 * k_);
-        Steps before = Steps::Zero(2 * k_);
+        double x[kMaxMoves]{}, v[kMaxSteps]{}, u[kMaxSteps]{};
         for (int j = 0; j < n_; ++j) {
-            const Gain& gain = (*gain_)[j];
-            Steps u = -gain.rest;
-            if (j > 0) u -= gain.move * moved + gain.inner * before;
+            const Gain& gain = scratch_.gain[j];
+            // L Lᵀ u = −L [Z_x x + Z_in v + z_g].
+            for (int i = 0; i < steps_; ++i) {
+                double sum = gain.z[i][moves_ + steps_];
+                for (int c = 0; j > 0 && c < moves_; ++c) sum += gain.z[i][c] * x[c];
+                for (int c = 0; j > 0 && c < steps_; ++c) sum += gain.z[i][moves_ + c] * v[c];
+                u[i] = -sum;
+            }
+            for (int i = steps_; i-- > 0;) {
+                for (int k = i + 1; k < steps_; ++k) u[i] -= gain.lower[k][i] * u[k];
+                u[i] /= gain.lower[i][i];
+            }
             std::size_t first = 0;
             for (int k = 0; k < k_; ++k) {
                 const Solver& s = solvers_[k];
                 if (j < s.n()) {
                     step[first + 2 * j] = u[2 * k];
                     step[first + 2 * j + 1] = u[2 * k + 1];
-                    moved.segment<3>(3 * k) += arm_of(s, j) * u.segment<2>(2 * k);
+                    const Eigen::Vector3d moved = arm_of(s, j) * Eigen::Vector2d(u[2 * k], u[2 * k + 1]);
+                    for (int i = 0; i < 3; ++i) x[3 * k + i] += moved[i];
                 }
                 first += 2 * static_cast<std::size_t>(s.n());
             }
-            before = u;
+            std::copy(u, u + steps_, v);
         }
     }
 
   private:
+    static Scratch& scratch() {
+        thread_local Scratch buffer;
+        return buffer;
+    }
+
     /// Adds the potential of the nodes of number j, by themselves and between neighbours.
     void add_nodes(int j) {
+        Outboard& out = scratch_.out;
         for (int k = 0; k < k_; ++k) {
-            if (j <= solvers_[k].n()) out_.p.block<3, 3>(3 * k, 3 * k) += matrix(solvers_[k].ws.at.curvature[j]);
+            if (j <= solvers_[k].n()) add_block(out.p, 3 * k, 3 * k, matrix(solvers_[k].ws.at.curvature[j]));
         }
         for (const FrozenPair& f : pairs_) {
             if (j >= f.nodes) continue;
-            const Block3 between = matrix(f.curvature[j]);
-            out_.p.block<3, 3>(3 * f.pair->first, 3 * f.pair->second) -= between;
-            out_.p.block<3, 3>(3 * f.pair->second, 3 * f.pair->first) -= between;
+            const Block3 between = -matrix(f.curvature[j]);
+            add_block(out.p, 3 * f.pair->first, 3 * f.pair->second, between);
+            add_block(out.p, 3 * f.pair->second, 3 * f.pair->first, between);
         }
-    }
-
-    double damping_of(const Solver& s, int j) const {
-        return damping_ * (s.rod.stiffness[j] + (j + 1 < s.n() ? s.rod.stiffness[j + 1] : 0));
     }
 
     /// Adds the shear of the pairs' segments j along the hair: ψ'' (∇u)(∇u)ᵀ + ψ' ∇∇u over the moves of the nodes
     /// outboard and the steps of the segments.
     void add_shear(int j) {
+        Outboard& out = scratch_.out;
         for (const FrozenPair& f : pairs_) {
             if (j >= static_cast<int>(f.shear.size())) continue;
             const SegmentShear& shear = f.shear[j];
@@ -135,97 +204,131 @@ class BlockElimination {
                 turn[i].row(1) = 0.5 * t2.transpose();
             }
             const Eigen::Vector3d mean = vector(shear.mean);
+            const Block3 moves = shear.stiffness * mean * mean.transpose();
             constexpr double kSign[2] = {-1, 1};  // of d = x₂ − x₁
             for (int i = 0; i < 2; ++i) {
+                const Eigen::Matrix<double, 2, 3> mixed =
+                    shear.stiffness * by_step[i] * mean.transpose() + shear.force * turn[i];
                 for (int k = 0; k < 2; ++k) {
-                    out_.p.block<3, 3>(3 * side[i], 3 * side[k]) +=
-                        kSign[i] * kSign[k] * shear.stiffness * mean * mean.transpose();
-                    out_.q.block<2, 3>(2 * side[i], 3 * side[k]) +=
-                        kSign[k] * (shear.stiffness * by_step[i] * mean.transpose() + shear.force * turn[i]);
-                    out_.r.block<2, 2>(2 * side[i], 2 * side[k]) +=
-                        shear.stiffness * by_step[i] * by_step[k].transpose();
+                    add_block(out.p, 3 * side[i], 3 * side[k], Block3(kSign[i] * kSign[k] * moves));
+                    add_block(out.q, 2 * side[i], 3 * side[k], Eigen::Matrix<double, 2, 3>(kSign[k] * mixed));
+                    add_block(out.r, 2 * side[i], 2 * side[k],
+                              Eigen::Matrix2d(shear.stiffness * by_step[i] * by_step[k].transpose()));
                 }
             }
         }
     }
 
+    double damping_of(const Solver& s, int j) const {
+        return damping_ * (s.rod.stiffness[j] + (j + 1 < s.n() ? s.rod.stiffness[j + 1] : 0));
+    }
+
     bool eliminate(int j) {
         add_shear(j);
-        MoveByStep arms = MoveByStep::Zero(3 * k_, 2 * k_), x(3 * k_, 2 * k_);
-        for (int k = 0; k < k_; ++k) {
-            if (j < solvers_[k].n()) arms.block<3, 2>(3 * k, 2 * k) = arm_of(solvers_[k], j);
+        Outboard& out = scratch_.out;
+        Gain& gain = scratch_.gain[j];
+        // Rows of U: own + R + AᵀPA + QA + (QA)ᵀ; of Xᵀ: AᵀP + Q.
+        for (int i = 0; i < steps_; ++i) {
+            std::copy(out.r[i], out.r[i] + steps_, gain.lower[i]);
+            std::copy(out.q[i], out.q[i] + moves_, gain.z[i]);
+            std::fill(gain.z[i] + moves_, gain.z[i] + moves_ + steps_, 0.0);
+            gain.z[i][moves_ + steps_] = out.r1[i];
         }
-        for (int k = 0; k < k_; ++k)
-            x.middleCols<2>(2 * k).noalias() = out_.p.middleCols<3>(3 * k) * arms.block<3, 2>(3 * k, 2 * k);
-        StepByStep own(2 * k_, 2 * k_);
-        for (int k = 0; k < k_; ++k)
-            own.middleRows<2>(2 * k).noalias() = arms.block<3, 2>(3 * k, 2 * k).transpose() * x.middleRows<3>(3 * k);
-        StepByStep qa(2 * k_, 2 * k_);
-        for (int k = 0; k < k_; ++k)
-            qa.middleCols<2>(2 * k).noalias() = out_.q.middleCols<3>(3 * k) * arms.block<3, 2>(3 * k, 2 * k);
-        own += out_.r + qa + qa.transpose();
-        x += out_.q.transpose();
-        Steps g = out_.r1;
+        double pa[kMaxSteps][kMaxMoves], qa[kMaxSteps][kMaxSteps]{};
+        for (int k = 0; k < k_; ++k) {
+            const Solver& s = solvers_[k];
+            const bool there = j < s.n();
+            const Arm arm = there ? arm_of(s, j) : Arm::Zero();
+            arms_[k] = arm;
+            for (int i = 0; i < 2; ++i) {
+                const double *p0 = out.p[3 * k], *p1 = out.p[3 * k + 1], *p2 = out.p[3 * k + 2];
+                for (int c = 0; c < moves_; ++c)
+                    pa[2 * k + i][c] = arm(0, i) * p0[c] + arm(1, i) * p1[c] + arm(2, i) * p2[c];
+                for (int r = 0; r < steps_; ++r)
+                    qa[r][2 * k + i] =
+                        out.q[r][3 * k] * arm(0, i) + out.q[r][3 * k + 1] * arm(1, i) + out.q[r][3 * k + 2] * arm(2, i);
+                gain.z[2 * k + i][moves_ + steps_] +=
+                    arm(0, i) * out.p1[3 * k] + arm(1, i) * out.p1[3 * k + 1] + arm(2, i) * out.p1[3 * k + 2];
+            }
+        }
+        for (int i = 0; i < steps_; ++i) {
+            for (int k = 0; k <= i; ++k) {
+                const Arm& arm = arms_[k / 2];
+                const double* row = pa[i] + 3 * (k / 2);
+                gain.lower[i][k] +=
+                    row[0] * arm(0, k % 2) + row[1] * arm(1, k % 2) + row[2] * arm(2, k % 2) + qa[i][k] + qa[k][i];
+            }
+            for (int c = 0; c < moves_; ++c) gain.z[i][c] += pa[i][c];
+        }
         for (int k = 0; k < k_; ++k) {
             const Solver& s = solvers_[k];
             if (j >= s.n()) {
-                own.block<2, 2>(2 * k, 2 * k).setIdentity();
+                gain.lower[2 * k][2 * k] = gain.lower[2 * k + 1][2 * k + 1] = 1;
                 continue;
             }
             const Mat2& m = s.ws.derivatives.segment[j].own;
             const double damped = damping_ > 0 ? damping_of(s, j) : 0;
-            // The lower half of m is filled.
-            own(2 * k, 2 * k) += m.m[0][0] + damped;
-            own(2 * k + 1, 2 * k) += m.m[1][0];
-            own(2 * k, 2 * k + 1) += m.m[1][0];
-            own(2 * k + 1, 2 * k + 1) += m.m[1][1] + damped;
-            g[2 * k] += s.ws.derivatives.gradient[2 * j];
-            g[2 * k + 1] += s.ws.derivatives.gradient[2 * j + 1];
-            g.segment<2>(2 * k).noalias() += arms.block<3, 2>(3 * k, 2 * k).transpose() * out_.p1.segment<3>(3 * k);
+            gain.lower[2 * k][2 * k] += m.m[0][0] + damped;
+            gain.lower[2 * k + 1][2 * k] += m.m[1][0];
+            gain.lower[2 * k + 1][2 * k + 1] += m.m[1][1] + damped;
+            for (int i = 0; i < 2; ++i) gain.z[2 * k + i][moves_ + steps_] += s.ws.derivatives.gradient[2 * j + i];
         }
-        const Eigen::LLT<StepByStep> factor(own);
-        if (factor.info() != Eigen::Success) return false;
-        Gain& gain = (*gain_)[j];
-        gain.rest = factor.solve(g);
-        if (j > 0) move_inboard(j, arms, x, factor, gain);
+        if (!factorise(gain.lower, steps_)) return false;
+        if (j > 0) lay_inboard(j, gain);
+        forward(gain.lower, steps_, moves_ + steps_ + 1, gain.z);
+        if (j > 0) move_inboard(j, gain);
         return true;
     }
 
-    /// The model over the moves of the nodes inboard of segment j and over the steps of the segments there.
-    void move_inboard(int j, const MoveByStep& arms, MoveByStep& x, const Eigen::LLT<StepByStep>& factor, Gain& gain) {
-        StepByMove far = StepByMove::Zero(2 * k_, 3 * k_);
-        StepByStep in = StepByStep::Zero(2 * k_, 2 * k_);
+    /// Completes the rows of segment j by what couples it to the nodes and segments inboard.
+    void lay_inboard(int j, Gain& gain) {
         for (int k = 0; k < k_; ++k) {
             const Solver& s = solvers_[k];
             if (j >= s.n()) continue;
             const Evaluation& at = s.ws.at;
             const Block3 across = matrix(at.across[j - 1]), coupling = matrix(at.coupling[j]) + across;
-            const auto arm = arms.block<3, 2>(3 * k, 2 * k);
-            x.block<3, 2>(3 * k, 2 * k) += coupling * arm;
-            far.block<2, 3>(2 * k, 3 * k) = (across * arm_of(s, j - 1)).transpose();
+            add_block(gain.z, 2 * k, 3 * k, Eigen::Matrix<double, 2, 3>((coupling * arms_[k]).transpose()));
+            far_[k] = (across * arm_of(s, j - 1)).transpose();
             const Mat2& inboard = s.ws.derivatives.segment[j].inboard;
-            auto block = in.block<2, 2>(2 * k, 2 * k);
-            block << inboard.m[0][0], inboard.m[0][1], inboard.m[1][0], inboard.m[1][1];
-            block -= far.block<2, 3>(2 * k, 3 * k) * arm;
-            out_.p.block<3, 3>(3 * k, 3 * k) += 2 * coupling;
+            Eigen::Matrix2d in;  // by the steps inboard and its own
+            in << inboard.m[0][0], inboard.m[0][1], inboard.m[1][0], inboard.m[1][1];
+            in -= far_[k] * arms_[k];
+            add_block(gain.z, 2 * k, moves_ + 2 * k, Eigen::Matrix2d(in.transpose()));
         }
-        gain.move = factor.solve(StepByMove(x.transpose()));
-        gain.inner = factor.solve(StepByStep(in.transpose()));
+    }
+
+    /// The model over the moves of the nodes inboard of segment j and over the steps of the segments there.
+    void move_inboard(int j, const Gain& gain) {
+        Outboard& out = scratch_.out;
+        const int columns = moves_ + steps_ + 1;
+        square(gain.z, steps_, moves_ + steps_, columns, scratch_.gram);
+        const auto& gram = scratch_.gram;
+        for (int i = 0; i < moves_; ++i) {
+            for (int c = 0; c < moves_; ++c) out.p[i][c] -= gram[i][c];
+            out.p1[i] -= gram[i][columns - 1];
+        }
+        for (int i = 0; i < steps_; ++i) {
+            for (int c = 0; c < moves_; ++c) out.q[i][c] = -gram[moves_ + i][c];
+            for (int c = 0; c < steps_; ++c) out.r[i][c] = -gram[moves_ + i][moves_ + c];
+            out.r1[i] = -gram[moves_ + i][columns - 1];
+        }
+        for (int k = 0; k < k_; ++k) {
+            const Solver& s = solvers_[k];
+            if (j >= s.n()) continue;
+            const Block3 coupling = matrix(s.ws.at.coupling[j]) + matrix(s.ws.at.across[j - 1]);
+            add_block(out.p, 3 * k, 3 * k, Block3(2 * coupling));
+            add_block(out.q, 2 * k, 3 * k, Eigen::Matrix<double, 2, 3>(-far_[k]));
+        }
         add_nodes(j);
-        out_.p.noalias() -= x * gain.move;
-        out_.p1.noalias() -= x * gain.rest;
-        out_.q = -far;
-        out_.q.noalias() -= in * gain.move;
-        out_.r1.noalias() = -(in * gain.rest);
-        out_.r.noalias() = -(in * gain.inner);
     }
 
     std::span<const Solver> solvers_;
     std::span<const FrozenPair> pairs_;
-    int k_ = 0, n_ = 0;
+    int k_ = 0, moves_ = 0, steps_ = 0, n_ = 0;
     double damping_ = 0;
-    Outboard out_;
-    std::vector<Gain>* gain_ = nullptr;
+    Scratch& scratch_;
+    Arm arms_[kMaxCoupled];
+    Eigen::Matrix<double, 2, 3> far_[kMaxCoupled];
 };
 
 }  // namespace

@@ -82,6 +82,7 @@ void break_symmetry(const Preset& p, Spine& spine, const Pose& from, const Pose&
     const Quat back = from.rotation * glm::conjugate(to.rotation);
     aside = glm::length(aside) > 1e-3 * glm::length(to.position - from.position) + 1e-9 ? glm::normalize(back * aside)
                                                                                         : from.rotation * upright.aside;
+    if (upright.taken != Vec3{0}) aside = upright.taken;
     // Bend angle ε s² that takes the tip back up to the surface: the tip rises by L ε²/10. But buckling
     // makes no energy: it holds what the contact held and what the hand does in the step.
     double angle = std::clamp(std::sqrt(10 * under / p.length), kSeed, 0.6);

@@ -41,6 +41,7 @@ Pose between(const Pose& from, const Pose& to, double t);
 struct Upright {
     Vec3 tip{0};          ///< metres, world
     Vec3 aside{1, 0, 0};  ///< unit, ferrule frame
+    Vec3 taken{0};        ///< unit, world: where it falls in any case; zero: nothing says so
 };
 /// Bends nearly straight hair that is pressed along its axis a little: behind the hand's motion, or to `aside`.
 void break_symmetry(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,

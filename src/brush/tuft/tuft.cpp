@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "brush/tuft/spine.h"
 #include "brush/tuft/wide_tuft.h"
@@ -153,10 +152,11 @@ TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> 
     state.energy.contact += solved.coupling_energy * p.stiffness / p.length;
     const double bridged = std::max(tuft.wetness * solved.film_range, p.hair_diameter);
     for (std::size_t k = 0; k < tuft.beside.size(); ++k) {
-        // From the root on: the hair of the longer one goes on alone.
+        // Beyond the end of the shorter one its tip says whether the skin goes on.
         const std::vector<double>& gap = tuft.beside[k].gap;
-        std::vector<double> opening(tuft.spines[k].rest_radius.size(), std::numeric_limits<double>::infinity());
-        for (std::size_t i = 0; i < gap.size(); ++i) opening[opening.size() - 1 - i] = gap[i] - bridged;
+        std::vector<double> opening(tuft.spines[k].rest_radius.size());
+        for (std::size_t i = 0; i < opening.size(); ++i)
+            opening[opening.size() - 1 - i] = gap[std::min(i, gap.size() - 1)] - bridged;
         state.openings.push_back(std::move(opening));
     }
     return state;

@@ -56,7 +56,7 @@ struct TuftState {
     /// The branches are the spines of a wide ferrule, from −x to +x; else one trunk, or its sub-spines.
     bool wide = false;
     /// [branch] of its sections, tip first: by how much the gap to the next branch is wider than ink bridges, metres;
-    /// at most 0 where they are joined. Infinite where the next one has no hair. [K−1] or none
+    /// at most 0 where they are joined. Beyond the end of the shorter one: as at its tip. [K−1] or none
     std::vector<std::vector<double>> openings;
     Vec3 force{0};            ///< of the surface on the tuft, newtons, world
     Vec3 device_force{0};     ///< that force filtered by the hair's mass, newtons, world

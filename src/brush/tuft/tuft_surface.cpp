@@ -127,6 +127,39 @@ void add_branch(const std::vector<Section>& sections, const TuftSurfaceOptions& 
     for (std::uint32_t i = 0; i < p; ++i) add(last + i, tip, last + (i + 1) % p);
 }
 
+/// Closes what lies between two joined spines of a wide ferrule: above and below, from section to section, tip first.
+void add_joint(const Branch& first, const Branch& second, const std::vector<double>& opening,
+               const TuftSurfaceOptions& options, TuftSurface& skin) {
+    // Sections of equal number from the root face each other.
+    const std::size_t count = std::min(first.sections.size(), second.sections.size());
+    const auto tail = [&](const Branch& b) {
+        const std::vector<Section> own(b.sections.end() - static_cast<long>(count), b.sections.end());
+        return refine_sections(own, options.rings_between_nodes);
+    };
+    const std::vector<Section> a = tail(first), b = tail(second);
+    const std::size_t off = first.sections.size() - count, per = 1 + options.rings_between_nodes;
+    for (const double side : {1.0, -1.0}) {
+        const auto start = static_cast<std::uint32_t>(skin.positions.size());
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            for (const Section* s : {&a[i], &b[i]}) {
+                const double way = side * (glm::dot(s->m, a[i].m) < 0 ? -1 : 1);
+                skin.positions.push_back(s->centre + way * s->b * s->m);
+                skin.normals.push_back(way * s->m);
+            }
+        }
+        for (std::uint32_t i = 0; i + 1 < a.size(); ++i) {
+            if (!(opening[off + i / per] <= 0)) continue;
+            const std::uint32_t p = start + 2 * i;
+            const Vec3 out =
+                glm::cross(skin.positions[p + 1] - skin.positions[p], skin.positions[p + 2] - skin.positions[p]);
+            if (glm::dot(out, skin.normals[p]) > 0)
+                skin.triangles.insert(skin.triangles.end(), {p, p + 1, p + 2, p + 1, p + 3, p + 2});
+            else
+                skin.triangles.insert(skin.triangles.end(), {p, p + 2, p + 1, p + 1, p + 2, p + 3});
+        }
+    }
+}
+
 }  // namespace
 
 TuftSurface make_tuft_surface(const TuftState& state, const TuftSurfaceOptions& options) {
@@ -135,6 +168,8 @@ TuftSurface make_tuft_surface(const TuftState& state, const TuftSurfaceOptions& 
     TuftSurfaceOptions used = options;
     used.points_per_ring = skin.points_per_ring;
     for (const Branch& branch : state.branches) add_branch(branch.sections, used, skin);
+    for (std::size_t k = 0; k < state.openings.size(); ++k)
+        add_joint(state.branches[k], state.branches[k + 1], state.openings[k], used, skin);
     return skin;
 }
 

@@ -121,8 +121,22 @@ double bend_of_tip(const Spine& spine) {
     return std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
 }
 
-/// Nearly straight hair falls to one side with all its spines: across the broad side where the hand says nothing.
+/// Where the spines that lie already went, across the ferrule's axis; zero while all stand.
+Vec3 side_taken(const Tuft& tuft) {
+    constexpr double kLies = 0.2;  // radians
+    Vec3 sum{0};
+    for (const Spine& spine : tuft.spines) {
+        const Vec3 &axis = spine.memory.clamp.tangent, &tip = spine.memory.tangent.back();
+        const Vec3 across = tip - glm::dot(tip, axis) * axis;
+        if (glm::length(across) > kLies) sum += across;
+    }
+    return glm::length(sum) > kLies ? glm::normalize(sum) : Vec3{0};
+}
+
+/// Nearly straight hair falls to one side with all its spines: to where others lie already, else behind the hand's
+/// motion, else across the broad side.
 void break_symmetries(Tuft& tuft, const Pose& from, const Pose& to, std::span<const ContactPlane> planes) {
+    const Vec3 taken = side_taken(tuft);
     std::size_t first = 0;
     for (Spine& spine : tuft.spines) {
         const std::size_t count = spine.rest_radius.size();
@@ -130,7 +144,9 @@ void break_symmetries(Tuft& tuft, const Pose& from, const Pose& to, std::span<co
         for (const double l : spine.rod.length) length += l;
         const rod::Clamp clamp = spine_clamp(tuft.preset, spine, to);
         break_symmetry(tuft.preset, spine, from, to, part_of(planes, first, count),
-                       {.tip = tuft.preset.length * (clamp.position + length * clamp.tangent), .aside = {0, 1, 0}});
+                       {.tip = tuft.preset.length * (clamp.position + length * clamp.tangent),
+                        .aside = {0, 1, 0},
+                        .taken = taken});
         first += count;
     }
 }

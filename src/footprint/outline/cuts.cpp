@@ -66,10 +66,10 @@ double hermite(double p0, double p1, double m0, double m1, double h, double f) {
 /// The skin of a branch between its nodes: node parameter 0 (tip) … n − 1 (root).
 class TuftSurface {
   public:
-    TuftSurface(const brush::Branch& branch, const Frame& frame, const NodePlanes* planes, double film) {
+    TuftSurface(const brush::Branch& branch, bool strip, const Frame& frame, const NodePlanes* planes, double film) {
         const auto& sections = branch.sections;
         const auto plane = [&](std::size_t i) { return planes && i < planes->size() ? &(*planes)[i] : nullptr; };
-        add_cap(sections.front(), frame, plane(0), film);
+        add_cap(sections.front(), strip, frame, plane(0), film);
         cap_ = nodes_.size();
         for (std::size_t i = 0; i < sections.size(); ++i) {
             if (i > 0) steps_.push_back(glm::length(sections[i].centre - sections[i - 1].centre));
@@ -126,9 +126,10 @@ class TuftSurface {
         double z = 0, a = 0, b = 0;
     };
 
-    /// Closes a blunt tip by half an ellipsoid.
-    void add_cap(const brush::Section& tip, const Frame& frame, const brush::ContactPlane* plane, double film) {
-        const double r = std::sqrt((tip.a + film) * (tip.b + film));
+    /// Closes a blunt tip by half an ellipsoid; the edge of a strip by half a cylinder, as wide as the strip.
+    void add_cap(const brush::Section& tip, bool strip, const Frame& frame, const brush::ContactPlane* plane,
+                 double film) {
+        const double r = strip ? tip.b + film : std::sqrt((tip.a + film) * (tip.b + film));
         if (!(r > 1e-7)) return;
         static constexpr std::array<double, 5> kAhead{1, 0.98, 0.9, 0.7, 0.4};
         for (std::size_t k = 0; k < kAhead.size(); ++k) {
@@ -136,7 +137,7 @@ class TuftSurface {
             const double shrink = std::sqrt(1 - kAhead[k] * kAhead[k]);
             ring.centre += kAhead[k] * r * tip.tangent;
             nodes_.push_back(cut_of(ring, frame, plane, film));
-            nodes_.back().a *= shrink;
+            if (!strip) nodes_.back().a *= shrink;
             nodes_.back().b *= shrink;
             steps_.push_back((kAhead[k] - (k + 1 < kAhead.size() ? kAhead[k + 1] : 0)) * r);
         }
@@ -223,14 +224,15 @@ std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame, std:
     for (std::size_t k = 0; k < count; ++k) {
         const auto& sections = tuft.branches[k].sections;
         if (sections.size() < 2) continue;
-        const TuftSurface skin(tuft.branches[k], frame, k < planes.size() ? &planes[k] : nullptr, std::max(film, 0.0));
+        const TuftSurface skin(tuft.branches[k], tuft.wide, frame, k < planes.size() ? &planes[k] : nullptr,
+                               std::max(film, 0.0));
         // The middle one of several branches goes on as the trunk.
         const bool carries = count > 1 && k == count / 2 && !tuft.wide;
         const double trunk = carries ? skin.at_section(tuft.branches[0].sections.size() - 1) : 1e9;
         // The hair of a wide ferrule differs in length.
         const double whole = tuft.wide && length > 0 ? skin.from_tip(skin.end()) / length : 1;
         for (const Stretch& stretch : touching_stretches(skin)) {
-            Trail trail{.branch = static_cast<int>(k), .cuts = {}, .along = {}, .strip = tuft.wide};
+            Trail trail{.branch = static_cast<int>(k), .cuts = {}, .along = {}, .length = whole, .strip = tuft.wide};
             for (int i = 0; i < kSamples; ++i) {
                 const double f = 0.5 - 0.5 * std::cos(kPi * i / (kSamples - 1));
                 const double s = stretch.begin + f * (stretch.end - stretch.begin);

@@ -34,6 +34,7 @@ struct Trail {
     std::vector<Cut> cuts;      ///< close together at both ends
     std::vector<double> along;  ///< position of each cut along the hair, fraction of the length from the root
     std::size_t trunk = 0;      ///< index of the first cut of the whole tuft, after those of the sub-spine
+    double length = 1;          ///< of the branch's hair over the tuft's
     bool strip = false;         ///< a spine of a wide ferrule: its hair fills a rectangle, not a disc
     /// Of each cut, by how much the gap to the next branch is wider than ink bridges, metres; see brush::TuftState.
     /// Empty where no branch comes next.
@@ -79,7 +80,7 @@ void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& fo
 Outline outline_of(const Trail& trail, int points);
 
 /// Returns the outlines whose union is the contact patch: one for each trail, and where spines of a wide ferrule are
-/// joined by ink, one for what lies between two of them, at equal distance from the root.
+/// joined by ink, one for what lies between two of them, at equal parts of their hair.
 std::vector<Outline> outlines_of(std::span<const Trail> trails, int points);
 
 }  // namespace tuft::footprint

@@ -50,6 +50,26 @@ void add_shadow(const Cut& cut, std::vector<Vec2>& corners) {
     if (level < 1) corners.push_back(cut.at(to.x, to.y));
 }
 
+/// The same of a strip: the rectangle of the ellipse's area, which meets the surface when the ellipse does, cut by it.
+void add_strip_shadow(const Cut& cut, std::vector<Vec2>& corners) {
+    const double rise[2] = {Trail::kStripChord * cut.a * cut.e.z, Trail::kStripChord * cut.b * cut.m.z};
+    const double reach = std::abs(rise[0]) + std::abs(rise[1]), half = cut.half_height();
+    const double z = half > 0 ? cut.z * reach / half : cut.z;
+    static constexpr double kCorner[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    const auto height = [&](int k) { return z + kCorner[k][0] * rise[0] + kCorner[k][1] * rise[1]; };
+    const auto point = [&](int k) {
+        return cut.at(Trail::kStripChord * kCorner[k][0], Trail::kStripChord * kCorner[k][1]);
+    };
+    const std::size_t before = corners.size();
+    for (int k = 0; k < 4; ++k) {
+        const int next = (k + 1) % 4;
+        const double p = height(k), q = height(next);
+        if (p <= 0) corners.push_back(point(k));
+        if ((p <= 0) != (q <= 0)) corners.push_back(glm::mix(point(k), point(next), p / (p - q)));
+    }
+    if (corners.size() == before) corners.push_back(cut.centre);  // it only just touches
+}
+
 Vec2 unit_or(const Vec2& v, const Vec2& other) {
     const double length = glm::length(v);
     return length > 1e-12 ? v / length : other;
@@ -140,10 +160,13 @@ struct Loops {
     std::vector<Vec2> corners;
     std::vector<std::size_t> first{0};  ///< corner of each loop, and the end
 
-    void add(std::span<const Cut> cuts) {
-        corners.reserve(corners.size() + cuts.size() * (kDirections + 2));
+    void add(std::span<const Cut> cuts, bool strip) {
+        corners.reserve(corners.size() + cuts.size() * (strip ? 6 : kDirections + 2));
         for (const Cut& cut : cuts) {
-            add_shadow(cut, corners);
+            if (strip)
+                add_strip_shadow(cut, corners);
+            else
+                add_shadow(cut, corners);
             first.push_back(corners.size());
         }
     }
@@ -217,7 +240,7 @@ Outline outline_of(const Trail& trail, int points) {
     points = std::max(points, 4);
     const PatchFrame patch{cuts[cuts.size() / 2].centre, forward_direction(cuts)};
     Loops loops;
-    loops.add(cuts);
+    loops.add(cuts, trail.strip);
     patch.to_patch(loops.corners);
     Vec2 front{-1e9, 0}, rear{1e9, 0};
     for (const Vec2& q : loops.corners) {
@@ -231,8 +254,8 @@ Outline outline_of(const Trail& trail, int points) {
 
 namespace {
 
-/// Sections of two neighbouring trails at equal distances from the root, tip side first, and between them the same
-/// number of joined ones.
+/// Sections of two neighbouring trails at equal parts of their hair, tip side first: the skin between two spines goes
+/// from tip to tip.
 struct Joint {
     std::vector<Cut> first, second;
 };
@@ -249,7 +272,8 @@ Cut cut_between(const Cut& p, const Cut& q, double f) {
 /// The section of a trail at a distance from the root, nothing beyond its ends; `from`: where to look from on.
 const Cut* cut_at(const Trail& trail, double along, std::size_t& from, Cut& out) {
     const std::size_t count = trail.cuts.size();
-    if (along > trail.along.front() || along < trail.along.back()) return nullptr;
+    constexpr double kPast = 0.02;  // of the length, that one of two joined ends may touch further
+    if (along > trail.along.front() + kPast || along < trail.along.back() - kPast) return nullptr;
     while (from + 2 < count && trail.along[from + 1] > along) ++from;
     const double run = trail.along[from] - trail.along[from + 1];
     out = cut_between(trail.cuts[from], trail.cuts[from + 1],
@@ -264,7 +288,7 @@ std::vector<Joint> joints_of(const Trail& a, const Trail& b) {
     bool open = true;
     for (std::size_t i = 0; i < a.cuts.size(); ++i) {
         Cut other;
-        const bool joined = a.opening[i] <= 0 && cut_at(b, a.along[i], from, other);
+        const bool joined = a.opening[i] <= 0 && cut_at(b, a.along[i] * b.length / a.length, from, other);
         if (joined && open) out.emplace_back();
         open = !joined;
         if (!joined) continue;
@@ -282,8 +306,8 @@ Outline outline_of(const Joint& joint, int points) {
     const PatchFrame patch{0.5 * (joint.first[n / 2].centre + joint.second[n / 2].centre),
                            unit_or(forward, forward_direction(joint.first))};
     Loops loops;
-    loops.add(joint.first);
-    loops.add(joint.second);
+    loops.add(joint.first, true);
+    loops.add(joint.second, true);
     patch.to_patch(loops.corners);
     const auto [rear, front] = std::minmax_element(loops.corners.begin(), loops.corners.end(), by_x);
     Envelope envelope(rear->x, front->x, points);

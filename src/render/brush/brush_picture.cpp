@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <string>
 
 #include "core/text/units.h"
@@ -27,15 +28,20 @@ struct Posed {
     double depth = 0;
 };
 
+/// How a wide ferrule is moved: over its broad side, or along it.
+enum class Side { broad, edge };
+
 /// A hand over the sheet z = 0. `tilt` about y leans the holder ahead of a motion to the left,
 /// `slant` about x leans it across.
 struct Hand {
     Posed now;
     double lowest = 0;  ///< of the root, where the straight tip touches
 
-    Hand(const Preset& p, double tilt, double slant) {
+    Hand(const Preset& p, double tilt, double slant, Side side) {
         now.tuft = make_tuft(p, 3);
         now.pose.rotation = glm::angleAxis(-tilt, Vec3{0, 1, 0}) * glm::angleAxis(slant, Vec3{1, 0, 0});
+        if (now.tuft.wide() && side == Side::broad)
+            now.pose.rotation = now.pose.rotation * glm::angleAxis(0.5 * std::numbers::pi, Vec3{0, 0, 1});
         lowest = p.length * -now.pose.axis().z;
         now.pose.position = {0, 0, lowest};
     }
@@ -112,13 +118,13 @@ void fill_ground(const Sheet& sheet, double top, double ground, double bottom) {
 }
 
 /// One row from the side; `top` to `top` + 535 units.
-void draw_row(const Sheet& sheet, double top, double tilt, const char* name) {
+void draw_row(const Sheet& sheet, double top, double tilt, Side side, const char* name) {
     const double u = sheet.unit, ground = top + 370 * u, plan = ground + 84 * u;
     fill_ground(sheet, top, ground, top + 535 * u);
     const double length = sheet.preset.length;
     for (int k = 0; k < kColumns; ++k) {
         const bool lifted = k + 1 == kColumns;
-        Hand hand(sheet.preset, tilt, 0);
+        Hand hand(sheet.preset, tilt, 0, side);
         hand.press(kPressings[std::min(k, kColumns - 2)] * length);
         if (lifted) hand.lift(0.12 * length);
         const Posed& at = hand.now;
@@ -152,7 +158,7 @@ void draw_tips(const Sheet& sheet, double top) {
     fill_ground(sheet, top, top + 200 * u, top + 540 * u);
     for (int k = 0; k < 4; ++k) {
         TuftLook look;
-        Hand hand(sheet.preset, k == 1 ? 0.2 : 0, k == 0 ? 0.7 : 0);
+        Hand hand(sheet.preset, k == 1 ? 0.2 : 0, k == 0 ? 0.7 : 0, Side::broad);
         std::string name = "slanted tip, along one side";
         if (k == 2) {
             hand.now.tuft.ink_left = 0.05;
@@ -208,12 +214,19 @@ BrushPicture draw_tuft(const Preset& preset, int width) {
     const double column = static_cast<double>(width) / kColumns;
     const Sheet sheet{canvas, preset, unit, static_cast<double>(width), column, 0.92 * column / (1.3 * preset.length)};
     draw_tips(sheet, head + 3 * row);
-    draw_row(sheet, head + 2 * row, -kLean, "leaning back, pushed");
-    draw_row(sheet, head + row, kLean, "leaning ahead, pulled");
-    draw_row(sheet, head, 0, "upright");
+    if (preset.spines > 1) {
+        draw_row(sheet, head + 2 * row, kLean, Side::edge, "leaning ahead, on its edge");
+        draw_row(sheet, head + row, kLean, Side::broad, "leaning ahead, on its broad side");
+        draw_row(sheet, head, 0, Side::broad, "upright, on its broad side");
+    } else {
+        draw_row(sheet, head + 2 * row, -kLean, Side::broad, "leaning back, pushed");
+        draw_row(sheet, head + row, kLean, Side::broad, "leaning ahead, pulled");
+        draw_row(sheet, head, 0, Side::broad, "upright");
+    }
     const Vec2 band[] = {{0, 0}, {sheet.width, 0}, {sheet.width, head}, {0, head}};
     fill_polygon(canvas, band, linear_colour(246, 243, 236));
     sheet.text(preset.name + label(", hair %.0f mm long", preset.length / kMillimetre) +
+                   (preset.spines > 1 ? label(", %.0f mm wide", preset.width / kMillimetre) : "") +
                    label(", %.1f mm thick", 2 * preset.radius / kMillimetre),
                {24 * unit, 36 * unit}, 18, sheet.ink);
     return {width, height, to_srgb(canvas)};

@@ -33,7 +33,9 @@ std::vector<Strand> strands_of(const TuftState& state, const TuftLook& look) {
         Strand strand;
         std::vector<Section> all = branch.sections;
         std::size_t trunk = 0;
-        if (count > 1) {
+        if (state.wide) {
+            trunk = all.size();  // every hair keeps to its spine
+        } else if (count > 1) {
             // The middle branch carries the trunk behind its own sections.
             const std::size_t own = state.branches[middle == 0 ? 1 : 0].sections.size();
             trunk = own - 1;
@@ -47,7 +49,7 @@ std::vector<Strand> strands_of(const TuftState& state, const TuftLook& look) {
         double widest = 0;
         for (std::size_t i = strand.sections.size(); i-- > 0;) {
             Section& s = strand.sections[i];
-            if (i + 1 == strand.trunk) widest = 0;
+            if (i + 1 == strand.trunk && !state.wide) widest = 0;
             widest = std::max(widest, s.a);
             if (look.dry) {
                 const double grow = widest / s.a;
@@ -78,7 +80,8 @@ struct Placed {
             return glm::mix(bound, whole, smooth_step((last - static_cast<double>(i)) / (kBound * last)));
         }
         // Between the last section of its own and the trunk's first it goes straight.
-        if (part.branch != static_cast<int>(k) || i + kBetween + 1 > strand.trunk) return std::nullopt;
+        const bool joins = strand.trunk < strand.sections.size();
+        if (part.branch != static_cast<int>(k) || (joins && i + kBetween + 1 > strand.trunk)) return std::nullopt;
         return part.place;
     }
 };
@@ -94,7 +97,7 @@ void fill_silhouette(BrushCanvas& canvas, const Strand& strand, const BrushView&
     std::vector<Vec2> before, now;
     for (std::size_t i = 0; i < strand.sections.size(); ++i) {
         // Like its hair a branch goes straight from its last section to the trunk's first.
-        if (i < strand.trunk && i + kBetween + 1 > strand.trunk) continue;
+        if (strand.trunk < strand.sections.size() && i < strand.trunk && i + kBetween + 1 > strand.trunk) continue;
         const Section& s = strand.sections[i];
         const Vec2 centre = view(s.centre);
         // Round a branch's root it lies within the hair, which runs straight past it.
@@ -215,15 +218,53 @@ void fill_turned(BrushCanvas& canvas, const Turned& piece, const Pose& pose, con
 
 }  // namespace
 
+namespace {
+
+/// A ferrule with a wide mouth, pressed from a round tube: from its mouth to the height where it is round.
+void fill_wide_ferrule(BrushCanvas& canvas, const Preset& p, const Pose& pose, const BrushView& view, double height,
+                       double radius) {
+    constexpr int kSides = 96;
+    const Vec3 viewer = view.toward(), up = -pose.axis();
+    const auto round = [&](int k) { return 2 * std::numbers::pi * k / kSides; };
+    const auto at = [&](int k, bool top) {
+        const double w = round(k), c = std::cos(w), s = std::sin(w);
+        const double q = 2 / p.corner;
+        const Vec2 mouth{0.5 * p.width * std::copysign(std::pow(std::abs(c), q), c),
+                         1.06 * p.radius * std::copysign(std::pow(std::abs(s), q), s)};
+        const Vec2 flat = top ? radius * Vec2{c, s} : 1.03 * mouth;
+        return pose.position + pose.rotation * Vec3{flat.x, flat.y, 0} + (top ? height : 0) * up;
+    };
+    const Vec3 dark = linear_colour(28, 28, 32), light = linear_colour(165, 165, 174);
+    for (int k = 0; k < kSides; ++k) {
+        const Vec3 p0 = at(k, false), p1 = at(k + 1, false), q0 = at(k, true), q1 = at(k + 1, true);
+        const Vec3 out = glm::cross(p1 - p0, q0 - p0);
+        const double size = glm::length(out);
+        if (!(size > 0) || glm::dot(out, viewer) <= 0) continue;
+        const double facing = glm::dot(out, viewer) / size;
+        const Vec2 quad[] = {view(p0), view(p1), view(q1), view(q0)};
+        fill_polygon(canvas, quad, glm::mix(dark, light, 0.15 + 0.75 * facing * facing));
+    }
+}
+
+}  // namespace
+
 void draw_brush(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, const Pose& pose, const BrushView& view,
                 double length, const TuftLook& look) {
     const Preset& p = tuft.preset;
-    const double r = 1.12 * rest_radius(p, 0);
+    const double r = tuft.wide() ? std::max(1.3 * p.radius, 0.3 * p.width) : 1.12 * rest_radius(p, 0);
     const Turned handle{
         0.2 * p.length, length, 0.92 * r, 0.9 * r, linear_colour(96, 66, 34), linear_colour(222, 184, 120)};
     const Turned ferrule{0, 0.22 * p.length, r, 1.04 * r, linear_colour(28, 28, 32), linear_colour(150, 150, 158)};
     const bool into_mouth = glm::dot(pose.axis(), view.toward()) > 0;
-    if (into_mouth) {
+    if (tuft.wide()) {
+        Turned out = handle;
+        out.from = std::max(ferrule.to, 0.6 * p.width);
+        if (into_mouth) fill_turned(canvas, out, pose, view);
+        if (into_mouth) fill_wide_ferrule(canvas, p, pose, view, out.from, r);
+        draw_tuft_hair(canvas, tuft, state, view, look);
+        if (!into_mouth) fill_wide_ferrule(canvas, p, pose, view, out.from, r);
+        if (!into_mouth) fill_turned(canvas, out, pose, view);
+    } else if (into_mouth) {
         fill_turned(canvas, handle, pose, view);
         fill_turned(canvas, ferrule, pose, view);
         draw_tuft_hair(canvas, tuft, state, view, look);
@@ -306,7 +347,9 @@ void draw_patch(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, c
                 const Section& s = strands[k].sections[i];
                 const std::optional<Vec2> at = placed.at(strands[k], k, i);
                 if (!at || at->y * s.m.z > 0) continue;
-                const double under = std::sqrt(std::max(0.0, 1 - at->x * at->x)) * s.b * std::abs(s.m.z);
+                const double chord =
+                    state.wide ? std::sqrt(std::numbers::pi) / 2 : std::sqrt(std::max(0.0, 1 - at->x * at->x));
+                const double under = chord * s.b * std::abs(s.m.z);
                 if (s.centre.z + s.a * at->x * s.e.z - under <= 1e-4) line.push_back(plan(point_of(s, *at)));
             }
             stroke_line(canvas, line, {&width, 1}, ink, 0.85);
