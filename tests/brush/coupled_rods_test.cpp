@@ -48,7 +48,7 @@ struct Row {
         std::vector<CoupledPair> out;
         for (std::size_t k = 0; k + 1 < rods.size(); ++k)
             out.push_back(
-                {static_cast<int>(k), static_cast<int>(k + 1), {1, 0}, touching[k], {}, {}, {}, &pair_memories[k]});
+                {static_cast<int>(k), static_cast<int>(k + 1), {1, 0}, touching[k], {}, {}, {}, {}, &pair_memories[k]});
         return out;
     }
     CoupledResult solve() { return solve_coupled(problem(), pairs(), coupling); }

@@ -99,8 +99,8 @@ double CoupledSystem::add_coupling(Evaluation Workspace::*which) {
             const FrozenNode& frozen = f.node[i];
             const Vec3 d = b.node[i] - a.node[i];
             const double touching = pair.touching[i], faces = frozen.faces;
-            const PairEnergy u =
-                pair_energy(law_, touching, pair.spread.empty() ? touching : pair.spread[i], glm::dot(d, frozen.row));
+            const PairEnergy u = pair_energy(pair.law_at(law_, i), touching,
+                                             pair.spread.empty() ? touching : pair.spread[i], glm::dot(d, frozen.row));
             Vec3 slope = -faces * u.force * frozen.row;
             Sym3 curvature = faces * std::max(u.stiffness, 0.0) * outer(frozen.row);
             double energy = faces * u.value;

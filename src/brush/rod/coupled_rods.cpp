@@ -98,7 +98,7 @@ PairState finish_pair(const FrozenPair& f, const CouplingLaw& law, const Work& w
         const Vec3 d = y[i] - x[i];
         const double distance = glm::dot(d, frozen.row);
         const double touching = f.pair->touching[i], spread = f.pair->spread.empty() ? touching : f.pair->spread[i];
-        const PairEnergy u = pair_energy(law, touching, spread, distance);
+        const PairEnergy u = pair_energy(f.pair->law_at(law, i), touching, spread, distance);
         out.energy += f.weight[i] * frozen.faces * u.value;
         memory.normal[i] = frozen.faces * u.normal;
         state.distance.push_back(distance);

@@ -45,6 +45,12 @@ struct CouplingLaw {
     double shear = 0;       ///< k_s
     double friction = 0;    ///< μ between hair; infinite: it never slides
 
+    /// The same where the film is `part` as high.
+    CouplingLaw with_film(double part) const {
+        CouplingLaw out = *this;
+        out.film *= part;
+        return out;
+    }
     double rest_gap() const { return contact > 0 ? 3 * film / (contact * film_range) : 0; }
 };
 
@@ -61,8 +67,12 @@ struct CoupledPair {
     std::vector<double> touching;  ///< [m+1] D₀
     std::vector<double> spread;    ///< [m+1] D₁ ≥ D₀, or empty: D₀
     std::vector<double> depth;     ///< [m+1] |v| at which they have slid past each other, or empty: they never do
+    std::vector<double> film;      ///< [m+1] W over that of the law, 0–1, or empty: 1
     std::vector<double> rest_shift;  ///< [m] s₀, or empty: 0
     PairMemory* memory = nullptr;
+
+    /// The law between nodes i.
+    CouplingLaw law_at(const CouplingLaw& law, int i) const { return film.empty() ? law : law.with_film(film[i]); }
 };
 
 /// A rod with what it meets, as the arguments of `solve`.

@@ -108,6 +108,7 @@ struct Coupled {
                 const double grown =
                     i < left.size() && i < right.size() ? kTouch * (left[i] + right[i] - l.x - r.x) : 0;
                 pair.spread.push_back((beside.distance[i] + std::max(0.0, grown)) / length);
+                pair.film.push_back(std::min({1.0, l.y / tuft.preset.radius, r.y / tuft.preset.radius}));
                 pair.depth.push_back(std::max(l.y + r.y, kThinnest) / length);
             }
             for (const double s : beside.shift) pair.rest_shift.push_back(s / length);

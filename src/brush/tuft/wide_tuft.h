@@ -17,9 +17,9 @@
 ///     k_n = kHairContact,   k_s = 0.4 k_n,   W = 2 γ t min(1, S/0.2),
 ///     g_b = max(2 γ/p_c, √(12 W/k_n)),   p_c = ρ g L + 4 γ φ (1 − S) / ((1 − φ) d).
 ///
-/// W is Dupré's work of two new faces. p_c is the suction in the film: of the hanging column of ink, and of the menisci
-/// between hairs that are not full (Princen 1968). The least g_b keeps the film's bond stable: its work is at least
-/// twice what contact takes of it.
+/// W is Dupré's work of two new faces; t is the thickness of the hair at the node, so that a thin edge holds little.
+/// p_c is the suction in the film: of the hanging column of ink, and of the menisci between hairs that are not full
+/// (Princen 1968). The least g_b keeps the film's bond stable: its work is at least twice what contact takes of it.
 ///
 /// Spread hair of two neighbours meets with the stiffness of both side springs in series (tuft_sections.h).
 namespace tuft::brush {

@@ -269,31 +269,35 @@ Cut cut_between(const Cut& p, const Cut& q, double f) {
             std::lerp(p.b, q.b, f),          unit(glm::mix(p.e, q.e, f), p.e), unit(glm::mix(p.m, q.m, f), p.m)};
 }
 
-/// The section of a trail at a distance from the root, nothing beyond its ends; `from`: where to look from on.
-const Cut* cut_at(const Trail& trail, double along, std::size_t& from, Cut& out) {
-    const std::size_t count = trail.cuts.size();
-    constexpr double kPast = 0.02;  // of the length, that one of two joined ends may touch further
-    if (along > trail.along.front() + kPast || along < trail.along.back() - kPast) return nullptr;
-    while (from + 2 < count && trail.along[from + 1] > along) ++from;
+/// The section of a trail at the part u of its own hair, and the opening there; `from`: where to look from on.
+Cut cut_at(const Trail& trail, double u, std::size_t& from, double* opening = nullptr) {
+    const double along = u * trail.length;
+    while (from + 2 < trail.cuts.size() && trail.along[from + 1] > along) ++from;
     const double run = trail.along[from] - trail.along[from + 1];
-    out = cut_between(trail.cuts[from], trail.cuts[from + 1],
-                      run > 0 ? std::clamp((trail.along[from] - along) / run, 0.0, 1.0) : 0);
-    return &out;
+    const double f = run > 0 ? std::clamp((trail.along[from] - along) / run, 0.0, 1.0) : 0;
+    if (opening) *opening = std::lerp(trail.opening[from], trail.opening[from + 1], f);
+    return cut_between(trail.cuts[from], trail.cuts[from + 1], f);
 }
 
-/// The stretches over which two neighbouring trails are joined.
+/// The stretches over which two neighbouring trails are joined, of where both touch.
 std::vector<Joint> joints_of(const Trail& a, const Trail& b) {
+    constexpr int kJointSamples = 24;
+    constexpr double kPast = 0.02;  // of the hair, that one of two joined ends may touch further
     std::vector<Joint> out;
-    std::size_t from = 0;
+    const double tip = std::min(a.along.front() / a.length, b.along.front() / b.length) + kPast,
+                 root = std::max(a.along.back() / a.length, b.along.back() / b.length) - kPast;
+    std::size_t at_a = 0, at_b = 0;
     bool open = true;
-    for (std::size_t i = 0; i < a.cuts.size(); ++i) {
-        Cut other;
-        const bool joined = a.opening[i] <= 0 && cut_at(b, a.along[i] * b.length / a.length, from, other);
-        if (joined && open) out.emplace_back();
-        open = !joined;
-        if (!joined) continue;
-        out.back().first.push_back(a.cuts[i]);
-        out.back().second.push_back(other);
+    for (int i = 0; i < kJointSamples && root < tip; ++i) {
+        const double u = std::lerp(tip, root, 0.5 - 0.5 * std::cos(kPi * i / (kJointSamples - 1)));
+        double opening = 0;
+        const Cut first = cut_at(a, u, at_a, &opening);
+        if (opening <= 0) {
+            if (open) out.emplace_back();
+            out.back().first.push_back(first);
+            out.back().second.push_back(cut_at(b, u, at_b));
+        }
+        open = opening > 0;
     }
     std::erase_if(out, [](const Joint& j) { return j.first.size() < 2; });
     return out;
