@@ -131,6 +131,17 @@ double number_of(const toml::node& node, const std::string& source, const std::s
     return *v;
 }
 
+SpineMethod spine_of(const toml::node& node, const std::string& source, const std::string& key) {
+    const std::string v = text_of(node, source, key);
+    const auto word = std::find(kSpineWords.begin(), kSpineWords.end(), v);
+    if (word != kSpineWords.end()) return static_cast<SpineMethod>(word - kSpineWords.begin());
+    std::string known;
+    for (std::size_t i = 0; i < kSpineWords.size(); ++i) {
+        known += std::string(i == 0 ? "" : i + 1 == kSpineWords.size() ? " or " : ", ") + '"' + kSpineWords[i] + '"';
+    }
+    fail(source, line_of(node), "'" + key + "' must be " + known + ", not \"" + v + "\"");
+}
+
 /// Key that took the place of one in earlier files.
 std::string current_key(const std::string& table, const std::string& key) {
     return table == "contact" && key == "end_give_mm" ? "end_compliance_mm" : key;
@@ -141,11 +152,7 @@ void read_value(Preset& p, const std::string& table, const std::string& written,
     const std::string key = current_key(table, written);
     const std::string full = table + "." + key;
     if (full == "bending.spine") {
-        const std::string v = text_of(node, source, full);
-        if (v != "rod" && v != "table") {
-            fail(source, line_of(node), "'bending.spine' must be \"rod\" or \"table\", not \"" + v + "\"");
-        }
-        p.spine = v == "rod" ? SpineMethod::rod : SpineMethod::table;
+        p.spine = spine_of(node, source, full);
         return;
     }
     for (const WholeField& f : kWholeFields) {
@@ -320,7 +327,7 @@ std::string preset_toml(const Preset& p) {
             table = f.table;
             out << "\n[" << table << "]\n";
             if (table == "bending") {
-                out << "spine = \"" << (p.spine == SpineMethod::rod ? "rod" : "table") << "\"\n";
+                out << "spine = \"" << kSpineWords[static_cast<std::size_t>(p.spine)] << "\"\n";
             }
             for (const WholeField& w : kWholeFields)
                 if (table == w.table) out << w.key << " = " << p.*w.member << "\n";

@@ -4,10 +4,11 @@
 #include <vector>
 
 #include "brush/preset/preset.h"
+#include "brush/preset/rest_shape.h"
 #include "brush/rod/rod.h"
+#include "brush/state/tuft_state.h"
 #include "brush/tuft/bundles.h"
 #include "brush/tuft/table.h"
-#include "brush/tuft/tuft_state.h"
 #include "core/geometry/types.h"
 
 /// \file
@@ -91,12 +92,5 @@ void reshape(Tuft& tuft);
 /// Returns the force for a haptic device, newtons, world: min(G |f|, limit) in the direction of the filtered force
 /// f.
 Vec3 device_force(const Preset& preset, const TuftState& state);
-
-/// Returns the stiffness and yield profile of the preset.
-Profile profile_of(const Preset& preset);
-
-/// Returns the radius of the resting tuft, metres: 1.06 R (1−u^2.4)^q (1 − 0.14 (1−u)^6), u from root to tip,
-/// combined with the tip radius as the root of the sum of squares.
-double rest_radius(const Preset& preset, double u);
 
 }  // namespace tuft::brush
