@@ -133,11 +133,13 @@ double number_of(const toml::node& node, const std::string& source, const std::s
 
 SpineMethod spine_of(const toml::node& node, const std::string& source, const std::string& key) {
     const std::string v = text_of(node, source, key);
-    const auto word = std::find(kSpineWords.begin(), kSpineWords.end(), v);
-    if (word != kSpineWords.end()) return static_cast<SpineMethod>(word - kSpineWords.begin());
     std::string known;
-    for (std::size_t i = 0; i < kSpineWords.size(); ++i) {
-        known += std::string(i == 0 ? "" : i + 1 == kSpineWords.size() ? " or " : ", ") + '"' + kSpineWords[i] + '"';
+    for (std::size_t i = 0; i < std::size(kSpineWords); ++i) {
+        if (v == kSpineWords[i]) return static_cast<SpineMethod>(i);
+        known += std::string(i == 0                            ? ""
+                             : i + 1 == std::size(kSpineWords) ? " or "
+                                                               : ", ") +
+                 '"' + kSpineWords[i] + '"';
     }
     fail(source, line_of(node), "'" + key + "' must be " + known + ", not \"" + v + "\"");
 }

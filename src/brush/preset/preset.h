@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -21,7 +20,7 @@ enum class SpineMethod {
 };
 
 /// Word of each method in files and options, in the order of the values.
-inline constexpr std::array<const char*, 5> kSpineWords = {"rod", "table", "macro", "chain", "truss"};
+inline constexpr const char* kSpineWords[] = {"rod", "table", "macro", "chain", "truss"};
 
 /// Constants of one tuft. Lengths in metres, stiffness in SI. TOML files use millimetres, cubic centimetres and
 /// plain SI (see `load_preset`). Symbols as in the variable stiffness brush, B(ξ) = B0 e^{αξ} (1+βξ)³ and M_e(ξ) =

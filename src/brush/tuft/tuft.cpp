@@ -29,6 +29,24 @@ void feel(Tuft& tuft, TuftState& state, double dt) {
     state.device_force = tuft.device_force;
 }
 
+/// Bends the tuft by its model of the papers, and takes its nodes over into the spine.
+TuftState step_model(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt) {
+    const double length = tuft.preset.length;
+    TuftState state = tuft.model->step({pose, planes, std::isfinite(dt) ? std::max(0.0, dt) : 0, tuft.wetness});
+    state.touching = state.normal_force > 0;
+    rod::Memory& m = tuft.spine.memory;
+    m.clamp = clamp_of(tuft.preset, pose);
+    const std::vector<Vec3> nodes = tuft.model->nodes();
+    for (std::size_t i = 0; i < m.node.size(); ++i) m.node[i] = nodes[nodes.size() - 1 - i] / length;
+    for (std::size_t j = 0; j < m.tangent.size(); ++j) {
+        const Vec3 d = m.node[j + 1] - m.node[j];
+        m.tangent[j] = glm::length(d) > 1e-9 ? glm::normalize(d) : j > 0 ? m.tangent[j - 1] : m.clamp.tangent;
+    }
+    tuft.pose = pose;
+    feel(tuft, state, dt);
+    return state;
+}
+
 constexpr double kCoheres = 0.25;        ///< of the capacity: ink from which water draws parted hair together
 constexpr double kMergingTime = 0.03;    ///< s in which it does
 constexpr double kPartingLength = 6e-3;  ///< m of the hand's way in which sub-spines part
@@ -45,6 +63,7 @@ Tuft make_tuft(const Preset& preset, std::uint64_t seed) {
     rod.plastic_share = preset.plastic_share;
     tuft.spine = make_spine(preset, rod, clamp_of(preset, {}), 0, 1);
     if (preset.spine == SpineMethod::table) tuft.table = make_table(preset);
+    tuft.model = SpineModelCopy(make_spine_model(preset));
     tuft.bundles = make_bundles(preset, seed);
     return tuft;
 }
@@ -91,10 +110,12 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     if (!tuft.posed) {
         // The first pose is where the hand starts: the tuft comes with it, from above.
         rod::carry_with_clamp(tuft.spine.memory, clamp);
+        if (tuft.model) tuft.model->straighten(pose);
         tuft.pose = pose;
         tuft.posed = true;
     }
     tuft.wetness = std::clamp(tuft.wetness, 0.0, 1.0);
+    if (tuft.model) return step_model(tuft, pose, planes, dt);
     // Water between the hairs is what yields; dry hair springs back.
     tuft.spine.rod.plastic_share = p.plastic_share * (kDryPlastic + (1 - kDryPlastic) * tuft.wetness);
     const std::size_t own = tuft.spine.rest_radius.size();
@@ -159,6 +180,7 @@ void reshape(Tuft& tuft) {
     tuft.spine.slips.clear();
     tuft.spine.aside_energy = 0;
     tuft.spine.memory = rod::make_memory(tuft.spine.rod, clamp);
+    if (tuft.model) tuft.model->straighten(tuft.pose);
     tuft.spine.one_sided = Vec2{0};
     tuft.split = false;
     gather(tuft.bundles);

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "brush/papers/spine_model.h"
 #include "brush/preset/preset.h"
 #include "brush/preset/rest_shape.h"
 #include "brush/rod/rod.h"
@@ -60,6 +61,8 @@ struct Tuft {
     Vec3 device_force{0}, device_force_rate{0};  ///< device force f, N, and its rate, N/s
     Bundles bundles;                             ///< bundles and bristles
     QueryTable table;                            ///< for the table method only
+    /// For the methods of brush/papers only; `spine` then follows its nodes, and there are no sub-spines of ours.
+    SpineModelCopy model;
 };
 
 /// Returns a straight tuft; `seed` places its hair. Throws `Error` for values out of range.
