@@ -153,7 +153,7 @@ TEST_P(Papers, EveryShippedBrushBendsAndStaysFinite) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfTheFive, Papers, testing::Values(SpineMethod::chain),
+INSTANTIATE_TEST_SUITE_P(OfTheFive, Papers, testing::Values(SpineMethod::macro, SpineMethod::chain, SpineMethod::truss),
                          [](const auto& at) { return std::string(kSpineWords[static_cast<std::size_t>(at.param)]); });
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "brush/papers/spine_model.h"
 
 #include "brush/papers/chain.h"
+#include "brush/papers/macro_model.h"
+#include "brush/papers/truss_model.h"
 
 namespace tuft::brush {
 
@@ -12,8 +14,9 @@ std::unique_ptr<SpineModel> make_spine_model(const Preset& preset) {
         case SpineMethod::chain:
             return make_chain_model(preset);
         case SpineMethod::macro:
+            return make_macro_model(preset);
         case SpineMethod::truss:
-            break;
+            return make_truss_model(preset);
     }
     return nullptr;
 }
