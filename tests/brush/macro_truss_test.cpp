@@ -19,7 +19,7 @@ class MacroAndTruss : public testing::TestWithParam<const char*> {
         const std::string name = GetParam();
         if (name == "macro") return make_macro_model(p);
         if (name == "truss") return make_truss_model(p);
-        return make_truss_model(p, truss::Kind::flat, 12e-3, 4e-3);
+        return make_truss_model(p, name == "flat" ? truss::Kind::flat : truss::Kind::filbert, 12e-3, 4e-3);
     }
 };
 
@@ -141,7 +141,7 @@ TEST_P(MacroAndTruss, EachNodeKeepsOffItsOwnPlane) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, MacroAndTruss, testing::Values("macro", "truss", "flat"));
+INSTANTIATE_TEST_SUITE_P(Models, MacroAndTruss, testing::Values("macro", "truss", "flat", "filbert"));
 
 }  // namespace
 }  // namespace tuft::brush::papers

@@ -21,13 +21,6 @@ Vec3 to_world(const Pose& pose, const Vec3& p) {
     return pose.position + pose.rotation * p;
 }
 
-std::vector<Vec3> nodes_of(const CurveSpline& skeleton, const HairRow& row) {
-    std::vector<Vec3> nodes;
-    nodes.reserve(row.t.size());
-    for (const double t : row.t) nodes.push_back(value(skeleton, t));
-    return nodes;
-}
-
 /// Frames of the nodes: e is the ferrule's x, transported along the skeleton.
 std::vector<Section> frames_of(std::span<const Vec3> nodes, const Pose& pose) {
     return frame_sections(nodes, pose.axis(), nodes.size() - 1, pose.rotation * Vec3{1, 0, 0});
@@ -116,6 +109,13 @@ CurveSpline fitted_to_contact(const HairRow& row, const BentSkeleton& bent, std:
 
 }  // namespace
 
+std::vector<Vec3> nodes_of(const CurveSpline& skeleton, const HairRow& row) {
+    std::vector<Vec3> nodes;
+    nodes.reserve(row.t.size());
+    for (const double t : row.t) nodes.push_back(value(skeleton, t));
+    return nodes;
+}
+
 HairRow make_hair_row(const Preset& p) {
     HairRow row{.length = p.length};
     std::vector<double> segment = spine_segments(p.segments, 0.25 + 0.75 * p.hardness);
@@ -173,7 +173,8 @@ void recover(HairMacro& m, const Pose& pose, const MacroLaw& law, double dt) {
 void collide(HairMacro& m, const HairRow& row, const MacroLaw& law, const Collision& c) {
     const std::vector<Vec3> nodes = nodes_of(m.skeleton, row);
     const std::vector<HalfSpace> above = half_spaces(c.planes, nodes);
-    BentSkeleton bent = deform_skeleton(nodes, row.t, above, {.rigidity = law.rigidity, .aside = c.aside});
+    BentSkeleton bent =
+        deform_skeleton(nodes, row.t, above, {.rigidity = law.rigidity, .aside = c.aside, .trunk = c.trunk});
     m.touching = bent.touching;
     if (bent.touching) {
         kink_up(bent, row.t, above, row.length, friction_hold(m, law, bent.along, c.push));

@@ -74,6 +74,9 @@ HairMacro make_macro(const HairRow& row, const Pose& pose);
 /// Returns the macro at rest at `pose`, as it was made.
 HairMacro at_rest(const HairMacro& macro, const Pose& pose);
 
+/// Returns K(t) at the nodes, metres, world. [n+1]
+std::vector<Vec3> nodes_of(const CurveSpline& skeleton, const HairRow& row);
+
 /// Moves the macro rigidly with the ferrule.
 void carry(HairMacro& macro, const Pose& from, const Pose& to);
 
@@ -86,6 +89,7 @@ struct Collision {
     std::span<const ContactPlane> planes;  ///< one for all, one per node, or none
     Vec3 aside{1, 0, 0};                   ///< in which upright hair falls, world
     Vec3 push{0};                          ///< direction of the hand's motion over the surface, unit; or zero
+    std::span<const Vec3> trunk = {};      ///< [n+1] metres, mean of all macros before it; or none
 };
 
 /// Bends the skeleton out of the surface (5.3), kinks it up, and flattens the ellipses (5.4). A macro that is nowhere

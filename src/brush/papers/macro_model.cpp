@@ -36,7 +36,8 @@ class MacroModel final : public SpineModel {
 
   private:
     Collision collision_of(const SpineModelInput& input);
-    void bend(const Collision& collision, double dt);
+    std::vector<Vec3> mean_nodes() const;
+    void bend(Collision& collision, double dt);
     void split_all(const Collision& collision, double wetness);
     TuftState make_state(const Collision& collision, double wetness) const;
     void load(const HairMacro& macro, const Collision& c, double wetness, Branch& branch, TuftState& state) const;
@@ -71,15 +72,30 @@ Collision MacroModel::collision_of(const SpineModelInput& input) {
     return c;
 }
 
-void MacroModel::bend(const Collision& collision, double dt) {
+/// Mean of all macros, weighted by their hair.
+std::vector<Vec3> MacroModel::mean_nodes() const {
+    std::vector<Vec3> mean(row_.t.size(), Vec3{0});
+    for (const HairMacro& macro : macros_of(clusters_, across_, pose_)) {
+        const std::vector<Vec3> nodes = nodes_of(macro.skeleton, row_);
+        for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += macro.rest.share * nodes[i];
+    }
+    return mean;
+}
+
+void MacroModel::bend(Collision& collision, double dt) {
     release_copies(clusters_, collision, pose_);
     for (MacroCluster& cluster : clusters_) {
         carry(cluster.primitive, pose_, collision.pose);
         recover(cluster.primitive, collision.pose, law_, dt);
+    }
+    pose_ = collision.pose;
+    const std::vector<Vec3> trunk = mean_nodes();
+    collision.trunk = trunk;
+    for (MacroCluster& cluster : clusters_) {
         collide(cluster.primitive, row_, law_, collision);
         distend(cluster.primitive, row_, law_);
     }
-    pose_ = collision.pose;
+    collision.trunk = {};
 }
 
 void MacroModel::split_all(const Collision& collision, double wetness) {
@@ -109,7 +125,7 @@ void MacroModel::split_all(const Collision& collision, double wetness) {
 }
 
 TuftState MacroModel::step(const SpineModelInput& input) {
-    const Collision collision = collision_of(input);
+    Collision collision = collision_of(input);
     bend(collision, input.dt);
     split_all(collision, input.wetness);
     TuftState state = make_state(collision, input.wetness);

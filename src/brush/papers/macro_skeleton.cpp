@@ -84,7 +84,9 @@ BentSkeleton deform_skeleton(std::span<const Vec3> nodes, std::span<const double
         bent.touch = std::lerp(t[below], t[below + 1], f);
     }
     const Vec3& n = above[below].normal;
-    const Vec3 tipward = below + 1 < count ? nodes[below] - nodes[below + 1] : nodes[below - 1] - nodes[below];
+    const std::size_t outer = below + 1 < count ? below : below - 1;
+    const std::span<const Vec3> whole = law.trunk.empty() ? nodes : law.trunk;
+    const Vec3 tipward = whole[outer] - whole[outer + 1];
     bent.along = fall_direction(tipward, n, law);
     const Hinge hinge{bent.pivot, glm::normalize(glm::cross(bent.along, n))};
     bent.turn = least_turn_of_all(hinge, nodes.first(below + 1), above.first(below + 1));

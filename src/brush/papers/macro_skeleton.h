@@ -27,6 +27,9 @@ struct SkeletonLaw {
     double rigidity = 0.5;  ///< r of (5.3a), 0 projected … 1 rotated
     Vec3 aside{1, 0, 0};    ///< direction in which hair falls that is upright, world
     double upright = 0.02;  ///< sine of the angle to the normal below which hair is upright [X]
+    /// [nodes] or none: the mean of all hair of the tuft, metres, world. A part falls as the whole does: that it leans
+    /// away from the rest is no lean [X].
+    std::span<const Vec3> trunk = {};
 };
 
 struct BentSkeleton {

@@ -1,6 +1,7 @@
 #include "brush/papers/truss_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "brush/papers/frames.h"
@@ -21,16 +22,19 @@ constexpr double kHandleOver = 40;    ///< k2/k1
 constexpr double kDragOver = 1;       ///< k_t/k1, s/m
 constexpr double kLeastAlong = 0.02;  ///< of the length: least l_p, where the head lies along the surface
 
-/// Heights u of the rings of the control mesh.
-constexpr std::array<double, 6> kRingHeights{0, 0.25, 0.5, 0.75, 0.9, 0.97};
+/// Heights u of the rings of the control mesh; a toe is the last ring, a point closes behind the one before.
+constexpr std::array<double, 7> kRingHeights{0, 0.25, 0.5, 0.75, 0.9, 0.97, 1};
+/// Widths of a filbert's rings over that of its base: the toe spans the two inner trusses [X].
+constexpr std::array<double, 7> kFilbertWidths{1, 1, 1, 1, 0.8, 0.55, 0.25};
 
 std::vector<RingShape> ring_shapes(const Preset& p, const Shape& shape) {
     std::vector<RingShape> rings;
     const double root = rest_radius(p, 0);
-    for (const double u : kRingHeights) {
-        const double taper = rest_radius(p, u) / root;
-        const bool round = shape.kind == Kind::round;
-        rings.push_back({u, shape.half_width * (round ? taper : 1), shape.half_thickness * taper});
+    const bool round = shape.kind == Kind::round;
+    for (std::size_t k = 0; k < kRingHeights.size() - (round ? 1 : 0); ++k) {
+        const double taper = rest_radius(p, kRingHeights[k]) / root;
+        const double width = round ? taper : shape.kind == Kind::filbert ? kFilbertWidths[k] : 1;
+        rings.push_back({kRingHeights[k], shape.half_width * width, shape.half_thickness * taper});
     }
     return rings;
 }

@@ -141,19 +141,20 @@ Skin make_control_skin(const Truss& truss, std::span<const RingShape> rings) {
             const double angle = 2 * std::numbers::pi * k / kRingPoints;
             add(ring.half_width * std::cos(angle), ring.half_thickness * std::sin(angle), ring.u);
         }
-    add(0, 0, 1);
+    const bool closed = truss.count == 1;
+    if (closed) add(0, 0, 1);
     const int count = static_cast<int>(rings.size());
     for (int i = 0; i < count; ++i)
         for (int k = 0; k < kRingPoints; ++k) {
             const int next = (k + 1) % kRingPoints, a = i * kRingPoints + k, b = i * kRingPoints + next;
             if (i + 1 == count) {
-                skin.triangles.push_back({a, count * kRingPoints, b});
+                if (closed) skin.triangles.push_back({a, count * kRingPoints, b});
                 continue;
             }
             const int c = a + kRingPoints, d = b + kRingPoints;
             // A round is the same all round. The diagonals of others alternate from quarter to quarter, so that the
             // mesh is its own mirror image.
-            if (truss.count == 1 || 4 * k / kRingPoints % 2 == 0)
+            if (closed || 4 * k / kRingPoints % 2 == 0)
                 skin.triangles.insert(skin.triangles.end(), {{a, c, b}, {b, c, d}});
             else
                 skin.triangles.insert(skin.triangles.end(), {{a, c, d}, {a, d, b}});

@@ -41,9 +41,10 @@ struct RingShape {
 
 inline constexpr int kRingPoints = 8;  ///< of the control mesh [X]
 
-/// Returns the control mesh: `rings` of kRingPoints vertices each, root first, closed by one vertex at u = 1. A vertex
-/// at (x, y, u) is (1 − u) times its place in the base plane and u times that at the points, interpolated in x between
-/// the trusses and extrapolated beyond; so at rest it lies at (x, y, −u L(x)).
+/// Returns the control mesh: `rings` of kRingPoints vertices each, root first. That of a round is closed by one vertex
+/// at u = 1; the others are open at the toe, which is their last ring. A vertex at (x, y, u) is (1 − u) times its place
+/// in the base plane and u times that at the points, interpolated in x between the trusses and extrapolated beyond; so
+/// at rest it lies at (x, y, −u L(x)).
 Skin make_control_skin(const Truss& truss, std::span<const RingShape> rings);
 
 /// Returns the skin with each triangle divided into four. Old vertices keep their index and place.
@@ -54,7 +55,7 @@ Vec3 place(std::span<const double> weights, std::span<const Vec3> particles);
 
 /// Cross-section of a skin as functions of the particles X.
 struct SkinSection {
-    double u = 0;                ///< height of its centre at rest over that of the closing vertex, from the root
+    double u = 0;                ///< height of its centre at rest over that of the last section, from the root
     std::vector<double> mean;    ///< [particles] weights of the centre
     std::vector<double> spread;  ///< [particles × particles] weights C of the variance along d, Σ C_ij (X_i·d)(X_j·d)
 
@@ -63,8 +64,8 @@ struct SkinSection {
     double semi_axis(std::span<const Vec3> particles, const Vec3& d) const;
 };
 
-/// Returns a section for each ring of the control mesh refined `refinements` times, root first; the last is the closing
-/// vertex alone.
+/// Returns a section for each ring of the control mesh refined `refinements` times, root first. The last of a round
+/// is the closing vertex alone.
 std::vector<SkinSection> skin_sections(const Truss& truss, std::span<const RingShape> rings, int refinements);
 
 /// Returns the section at u between the sections beside it: linear in u.
