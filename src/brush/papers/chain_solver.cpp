@@ -83,7 +83,7 @@ Power power_of(const Vec2& u, double m) {
     return p;
 }
 
-/// Friction of one node: energy, gradient, and a positive semidefinite part of the Hessian.
+/// Friction of one node: energy, gradient, Hessian.
 struct Drag {
     double value = 0;
     Vec3 slope{0};
@@ -111,14 +111,21 @@ Drag drag_of(const ChainFriction& f, const ChainContact& c, const Vec3& x) {
     const double rho = std::sqrt(glm::dot(d, d) + eps * eps), cosine = std::max(0.0, -along / rho);
     const double factor = 1 - f.with_hair * std::pow(cosine, 4);
     Vec3 factor_slope{0};
+    Mat3 factor_hessian{0};
     if (cosine > 0) {
-        const Vec3 turning = -f.along / rho + along / (rho * rho * rho) * d;
+        const double cube = rho * rho * rho;
+        const Vec3 turning = -f.along / rho + along / cube * d;
+        const Mat3 both = glm::outerProduct(f.along, d) + glm::outerProduct(d, f.along);
+        const Mat3 bending = (both + along * tangential - 3 * along / (rho * rho) * glm::outerProduct(d, d)) / cube;
         factor_slope = -4 * f.with_hair * std::pow(cosine, 3) * turning;
+        factor_hessian =
+            -4 * f.with_hair * cosine * cosine * (3.0 * glm::outerProduct(turning, turning) + cosine * bending);
     }
     const double mu = f.coefficient * c.normal_force;
     out.value = mu * factor * h;
     out.slope = mu * (factor * h_slope + h * factor_slope);
-    out.hessian = mu * factor * h_hessian;
+    out.hessian = mu * (factor * h_hessian + h * factor_hessian + glm::outerProduct(factor_slope, h_slope) +
+                        glm::outerProduct(h_slope, factor_slope));
     return out;
 }
 
