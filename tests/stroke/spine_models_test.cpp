@@ -62,9 +62,12 @@ TEST_P(SpineModels, DrawAFlatLineWhereItsPathIs) {
     EXPECT_NEAR(aside / sum, 0, kSide / 384);  // a texel
 }
 
-INSTANTIATE_TEST_SUITE_P(OfThePapers, SpineModels, testing::Values(brush::SpineMethod::chain), [](const auto& at) {
-    return std::string(brush::kSpineWords[static_cast<std::size_t>(at.param)]);
-});
+INSTANTIATE_TEST_SUITE_P(OfThePapers, SpineModels,
+                         testing::Values(brush::SpineMethod::macro, brush::SpineMethod::chain,
+                                         brush::SpineMethod::truss),
+                         [](const auto& at) {
+                             return std::string(brush::kSpineWords[static_cast<std::size_t>(at.param)]);
+                         });
 
 }  // namespace
 }  // namespace tuft::stroke
