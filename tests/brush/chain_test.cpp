@@ -49,16 +49,26 @@ TEST(ActiveSet, FindsTheConditionsOfKarushKuhnAndTucker) {
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal;
     for (int run = 0; run < 200; ++run) {
-        const Eigen::Index n = 1 + run % 12;
-        const Eigen::MatrixXd a = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return normal(random); });
-        const Eigen::MatrixXd q = a * a.transpose() + 0.01 * Eigen::MatrixXd::Identity(n, n);
-        const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
-        const Eigen::VectorXd start = Eigen::VectorXd::NullaryExpr(n, [&] { return std::max(0.0, normal(random)); });
-        const Eigen::VectorXd x = minimise_nonnegative(q, b, start), slope = q * x + b;
-        // Condition up to 1e4 times rounding.
-        EXPECT_GE(x.minCoeff(), 0);
-        EXPECT_GE(slope.minCoeff(), -1e-9);
-        EXPECT_NEAR(x.dot(slope), 0, 1e-9 * (1 + x.norm()));
+        const std::size_t n = 1 + static_cast<std::size_t>(run) % 12;
+        std::vector<double> a(n * n), q(n * n, 0), b(n), start(n);
+        for (double& v : a) v = normal(random);
+        for (double& v : b) v = normal(random);
+        for (double& v : start) v = std::max(0.0, normal(random));
+        for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t j = 0; j < n; ++j) {
+                for (std::size_t k = 0; k < n; ++k) q[i * n + j] += a[i * n + k] * a[j * n + k];
+            }
+            q[i * n + i] += 0.01;
+        }
+        const std::vector<double> x = minimise_nonnegative(q, b, start);
+        for (std::size_t i = 0; i < n; ++i) {
+            double slope = b[i];
+            for (std::size_t j = 0; j < n; ++j) slope += q[i * n + j] * x[j];
+            // Condition up to 1e4 times rounding.
+            EXPECT_GE(x[i], 0);
+            EXPECT_GE(slope, -1e-9);
+            EXPECT_NEAR(x[i] * slope, 0, 1e-9 * (1 + x[i]));
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 #include "brush/papers/active_set.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <vector>
 
 namespace tuft::brush {
@@ -10,7 +11,8 @@ namespace {
 using Eigen::Index;
 
 /// The minimum over the free unknowns alone; the others are 0.
-Eigen::VectorXd solve_free(const Eigen::MatrixXd& q, const Eigen::VectorXd& b, const std::vector<char>& free) {
+Eigen::VectorXd solve_free(const Eigen::Ref<const Eigen::MatrixXd>& q, const Eigen::Ref<const Eigen::VectorXd>& b,
+                           const std::vector<char>& free) {
     std::vector<Index> index;
     for (Index i = 0; i < b.size(); ++i)
         if (free[static_cast<std::size_t>(i)]) index.push_back(i);
@@ -31,13 +33,18 @@ Eigen::VectorXd solve_free(const Eigen::MatrixXd& q, const Eigen::VectorXd& b, c
 
 }  // namespace
 
-Eigen::VectorXd minimise_nonnegative(const Eigen::MatrixXd& q, const Eigen::VectorXd& b, const Eigen::VectorXd& start) {
-    const Index n = b.size();
+std::vector<double> minimise_nonnegative(std::span<const double> q_rows, std::span<const double> b_elements,
+                                         std::span<const double> start) {
+    const Index n = static_cast<Index>(b_elements.size());
+    if (n == 0) return {};
+    const Eigen::Map<const Eigen::MatrixXd> q(q_rows.data(), n, n);  // symmetric: rows are columns
+    const Eigen::Map<const Eigen::VectorXd> b(b_elements.data(), n);
     std::vector<char> free(static_cast<std::size_t>(n), 0);
     Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
     for (Index i = 0; i < n; ++i) {
-        free[static_cast<std::size_t>(i)] = start[i] > 0;
-        x[i] = std::max(start[i], 0.0);
+        const double first = start[static_cast<std::size_t>(i)];
+        free[static_cast<std::size_t>(i)] = first > 0;
+        x[i] = std::max(first, 0.0);
     }
     const double tolerance = 1e-13 * (1 + b.cwiseAbs().maxCoeff());
     for (int change = 0; change < 4 * n + 10; ++change) {
@@ -71,7 +78,9 @@ Eigen::VectorXd minimise_nonnegative(const Eigen::MatrixXd& q, const Eigen::Vect
         if (worst < 0) break;
         free[static_cast<std::size_t>(worst)] = 1;
     }
-    return x.cwiseMax(0.0);
+    std::vector<double> out(x.begin(), x.end());
+    for (double& v : out) v = std::max(v, 0.0);
+    return out;
 }
 
 }  // namespace tuft::brush

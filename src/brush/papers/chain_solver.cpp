@@ -318,7 +318,11 @@ VectorXd Sqp::step_of(const Evaluation& e, std::span<const Vec2> bend) {
     const MatrixXd answer = factor.solve(rows.transpose());
     MatrixXd dual = rows * answer;
     dual.diagonal().array() += kGivesWay;
-    multiplier_ = minimise_nonnegative(dual, e.room + rows * free, multiplier_);
+    const VectorXd room = e.room + rows * free;
+    const std::size_t n = constraints_;
+    const std::vector<double> found =
+        minimise_nonnegative({dual.data(), n * n}, {room.data(), n}, {multiplier_.data(), n});
+    multiplier_ = Eigen::Map<const VectorXd>(found.data(), static_cast<Index>(n));
     return free + answer * multiplier_;
 }
 
