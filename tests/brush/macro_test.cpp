@@ -89,12 +89,12 @@ TEST(MacroSpline, AFitReturnsItsOwnSplineAndStaysAbove) {
     std::vector<Vec3> nodes;
     for (const double s : t) nodes.push_back(value(own, s));
     const ContactPlane plane;
-    const CurveFit fit{t, weight, nodes, half_spaces({&plane, 1}, nodes), own[3], {0, 0, -1}, kLength};
-    const CurveSpline same = fit_curve(fit);
+    const std::vector<HalfSpace> above = half_spaces({&plane, 1}, nodes);
+    const CurveSpline same = fit_curve({t, weight, nodes, above, own[3], {0, 0, -1}, kLength});
     // Normal equations with a condition number of about 1e3.
     for (int k = 0; k < 4; ++k) EXPECT_LT(glm::length(same[k] - own[k]), 1e-12);
     for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].z = std::max(0.0, nodes[i].z - 6e-3);
-    const CurveSpline bent = fit_curve({t, weight, nodes, fit.above, own[3], {0, 0, -1}, kLength});
+    const CurveSpline bent = fit_curve({t, weight, nodes, above, own[3], {0, 0, -1}, kLength});
     for (const double s : t) EXPECT_GE(value(bent, s).z, -1e-12 * kLength);
 }
 
