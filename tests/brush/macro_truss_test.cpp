@@ -43,6 +43,7 @@ TEST_P(MacroAndTruss, AMirrorImageOfTheHandBendsTheMirrorImage) {
                 EXPECT_LT(glm::length(mirrored(one->nodes()[i]) - there[i]), 1e-6 * p.length);
             EXPECT_LT(glm::length(mirrored(a.force) - b.force), 1e-6);
             ASSERT_EQ(a.branches.size(), b.branches.size());
+            EXPECT_EQ(a.branches.size() > 1, std::string(GetParam()) == "macro" && wetness == 0);
             double width_a = 0, width_b = 0;
             for (const Branch& branch : a.branches)
                 for (const Section& s : branch.sections) width_a += s.a;

@@ -183,16 +183,33 @@ void collide(HairMacro& m, const HairRow& row, const MacroLaw& law, const Collis
     flatten(m, row, law, c.pose, c.planes);
 }
 
-double macro_stress(const HairMacro& m, const HairRow& row, const MacroLaw& law, double growth) {
+namespace {
+
+/// τ of each profile without growth.
+std::vector<int> profile_turns(const HairMacro& m, const HairRow& row, const MacroLaw& law) {
+    std::vector<int> turns;
+    turns.reserve(row.t.size());
+    for (const double t : row.t) turns.push_back(least_stress(m.rest.axes, profile_at(m, t, law, 1), law.stress).turn);
+    return turns;
+}
+
+double stress_at(const HairMacro& m, const HairRow& row, const MacroLaw& law, std::span<const int> turns,
+                 double growth) {
     double sum = 0;
-    for (std::size_t i = 0; i < row.t.size(); ++i) {
-        sum += row.weight[i] * least_stress(m.rest.axes, profile_at(m, row.t[i], law, growth), law.stress).stress;
-    }
+    for (std::size_t i = 0; i < row.t.size(); ++i)
+        sum += row.weight[i] * mean_stress(m.rest.axes, profile_at(m, row.t[i], law, growth), turns[i], law.stress);
     return sum;
 }
 
+}  // namespace
+
+double macro_stress(const HairMacro& m, const HairRow& row, const MacroLaw& law, double growth) {
+    return stress_at(m, row, law, profile_turns(m, row, law), growth);
+}
+
 void distend(HairMacro& m, const HairRow& row, const MacroLaw& law) {
-    const auto excess = [&](double g) { return g - 2 * distensibility(macro_stress(m, row, law, g), law.stress); };
+    const std::vector<int> turns = profile_turns(m, row, law);
+    const auto excess = [&](double g) { return g - 2 * distensibility(stress_at(m, row, law, turns, g), law.stress); };
     constexpr int kMost = 60;
     constexpr double kClose = 1e-10;
     double low = 1e-3, high = 2, at_low = excess(low), at_high = excess(high), g = 1, at = excess(1);
@@ -208,7 +225,7 @@ void distend(HairMacro& m, const HairRow& row, const MacroLaw& law) {
         at = excess(g);
     }
     m.growth = g;
-    m.stress = macro_stress(m, row, law, g);
+    m.stress = stress_at(m, row, law, turns, g);
 }
 
 std::vector<Section> macro_sections(const HairMacro& m, const HairRow& row, const MacroLaw& law, const Pose& pose,

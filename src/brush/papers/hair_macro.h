@@ -101,7 +101,8 @@ void collide(HairMacro& macro, const HairRow& row, const MacroLaw& law, const Co
 /// step does not converge; ρ rises with g, so the balance is unique [R].
 void distend(HairMacro& macro, const HairRow& row, const MacroLaw& law);
 
-/// Average inner stress ρ(H) = ∫₀¹ ρ(E(t)) dt (5.7) at the growth g.
+/// Average inner stress ρ(H) = ∫₀¹ ρ(E(t)) dt (5.7) at the growth g. The turns τ are those of the macro without growth,
+/// so that the stress has no steps [X].
 double macro_stress(const HairMacro& macro, const HairRow& row, const MacroLaw& law, double growth);
 
 /// Returns the sections, tip first, with a = L and b = S. Moments and pressures are 0. No centre but the root's is

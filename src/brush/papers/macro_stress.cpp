@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kRay = 2 * std::numbers::pi / kRays;
 constexpr int kMeanRays = 32;  ///< directions of a mean stress with a turn; a turn is a shift of them
-constexpr int kTurns = 8;      ///< in the half turn after which a profile is the same
 
 double ray_angle(int k) {
     return kRay * (k + 0.5);
@@ -55,29 +54,28 @@ double point_stress(double ratio, const StressLaw& law) {
     return std::tan(q <= 0 ? std::max(law.compressed * q, -pole) : std::min(law.stretched * q, pole));
 }
 
-double mean_stress(const Ellipse& u, const Ellipse& d, const StressLaw& law) {
-    double sum = 0;  // all quarters are alike
-    for (int k = 0; k < kRays / 4; ++k)
-        sum += point_stress(directions<kRays>().radius(u, k) / directions<kRays>().radius(d, k), law);
-    return sum / (kRays / 4);
+double mean_stress(const Ellipse& u, const Ellipse& d, int turn, const StressLaw& law) {
+    double sum = 0;
+    if (turn == 0) {
+        // All quarters are alike.
+        for (int k = 0; k < kRays / 4; ++k)
+            sum += point_stress(directions<kRays>().radius(u, k) / directions<kRays>().radius(d, k), law);
+        return sum / (kRays / 4);
+    }
+    constexpr int kShift = kMeanRays / 2 / kTurns;
+    // Both halves are alike.
+    for (int k = 0; k < kMeanRays / 2; ++k) {
+        const double undeformed = directions<kMeanRays>().radius(u, (k + kShift * turn) % kMeanRays);
+        sum += point_stress(undeformed / directions<kMeanRays>().radius(d, k), law);
+    }
+    return sum / (kMeanRays / 2);
 }
 
 TurnedStress least_stress(const Ellipse& u, const Ellipse& d, const StressLaw& law) {
-    if (round_profile(u)) return {0, mean_stress(u, d, law)};
-    std::array<double, kMeanRays / 2> undeformed{}, deformed{};  // of half the directions, the others are alike
-    for (std::size_t k = 0; k < undeformed.size(); ++k) {
-        undeformed[k] = directions<kMeanRays>().radius(u, static_cast<int>(k));
-        deformed[k] = directions<kMeanRays>().radius(d, static_cast<int>(k));
-    }
-    TurnedStress best;
-    constexpr int kShift = kMeanRays / 2 / kTurns;
-    // τ and −τ have the same mean.
-    for (int turn = 0; turn <= kTurns / 2; ++turn) {
-        double sum = 0;
-        for (std::size_t k = 0; k < deformed.size(); ++k)
-            sum += point_stress(undeformed[(k + kShift * turn) % undeformed.size()] / deformed[k], law);
-        const double stress = sum / static_cast<double>(deformed.size());
-        if (turn == 0 || std::abs(stress) < std::abs(best.stress)) best = {std::numbers::pi * turn / kTurns, stress};
+    TurnedStress best{0, mean_stress(u, d, 0, law)};
+    for (int turn = 1; turn <= kTurns / 2 && !round_profile(u); ++turn) {
+        const double stress = mean_stress(u, d, turn, law);
+        if (std::abs(stress) < std::abs(best.stress)) best = {turn, stress};
     }
     return best;
 }

@@ -39,13 +39,16 @@ struct StressLaw {
 /// Stress (5.5) of a point with R_u/R_d = `ratio`.
 double point_stress(double ratio, const StressLaw& law);
 
-/// Mean stress (1/2π) ∮ ρ dw of a profile (5.6) with τ = 0; the same with or without Jacobian [R].
-double mean_stress(const Ellipse& undeformed, const Ellipse& deformed, const StressLaw& law);
+inline constexpr int kTurns = 8;  ///< in the half turn after which a profile is the same
 
-/// Turn τ and mean stress, where its absolute value is least (5.6); the bars are lost in print, the text has them [R].
-/// τ is a multiple of π/8 [X]; of a round undeformed profile it is 0.
+/// Mean stress (1/2π) ∮ ρ dw of a profile (5.6) with τ = π turn/kTurns; the same with or without Jacobian [R].
+double mean_stress(const Ellipse& undeformed, const Ellipse& deformed, int turn, const StressLaw& law);
+
+/// Turn and mean stress, where its absolute value is least (5.6); the bars are lost in print, the text has them [R].
+/// The turn is 0 … kTurns/2 [X]: τ and −τ have the same mean, and of a round undeformed profile all have.
 struct TurnedStress {
-    double turn = 0, stress = 0;
+    int turn = 0;
+    double stress = 0;
 };
 TurnedStress least_stress(const Ellipse& undeformed, const Ellipse& deformed, const StressLaw& law);
 
