@@ -8,6 +8,7 @@
 #include "brush/papers/truss_force.h"
 #include "brush/preset/rest_shape.h"
 #include "brush/rod/profile.h"
+#include "core/ease.h"
 
 namespace tuft::brush::truss {
 
@@ -21,6 +22,9 @@ constexpr double kInkFilm = 1e-5;     ///< m, a section this far off the surface
 constexpr double kHandleOver = 40;    ///< k2/k1
 constexpr double kDragOver = 1;       ///< k_t/k1, s/m
 constexpr double kLeastAlong = 0.02;  ///< of the length: least l_p, where the head lies along the surface
+
+constexpr double kLeaves = 0.3;    ///< u up to which sections turn from the ferrule's plane across the hair
+constexpr double kSteepest = 0.2;  ///< cosine between hair and section
 
 /// Heights u of the rings of the control mesh; a toe is the last ring, a point closes behind the one before.
 constexpr std::array<double, 7> kRingHeights{0, 0.25, 0.5, 0.75, 0.9, 0.97, 1};
@@ -52,6 +56,17 @@ std::vector<SkinSection> node_sections(const Preset& p, const Shape& shape, cons
     std::reverse(out.begin(), out.end());
     out.front() = fine.back();
     return out;
+}
+
+/// Turns a section from across the hair to the plane of the ferrule, all of it at the root: the skin's rings are
+/// parallel to the base, so that none comes out of the ferrule at an angle.
+void lean_to_ferrule(Section& s, const Vec3& axis, double u) {
+    const Vec3 mixed = glm::mix(axis, s.tangent, smooth_step(u / kLeaves));
+    if (u >= kLeaves || glm::length(mixed) < kSteepest) return;
+    const Vec3 tangent = u > 0 ? glm::normalize(mixed) : axis, e = parallel_transport(s.e, s.tangent, tangent);
+    s.tangent = tangent;
+    s.e = glm::normalize(e - glm::dot(e, tangent) * tangent);
+    s.m = glm::cross(s.e, s.tangent);
 }
 
 class TrussModel final : public SpineModel {
@@ -173,8 +188,14 @@ std::vector<Section> TrussModel::make_sections(const SpineModelInput& input) {
     std::vector<Section> sections = frame_sections(nodes_, axis, wide.at, wide.direction);
     for (std::size_t k = 0; k < sections.size(); ++k) {
         Section& s = sections[k];
-        s.a = std::max(skin_[k].semi_axis(particles_, s.e), preset_.tip_radius);
-        s.b = std::max(skin_[k].semi_axis(particles_, s.m), preset_.tip_radius);
+        const Vec3 along = k + 1 < sections.size() ? s.tangent : axis;
+        lean_to_ferrule(s, axis, skin_[k].u);
+        // A cut of the skin by the section's plane: its ring, projected along the hair.
+        const double slope = 1 / std::max(glm::dot(along, s.tangent), kSteepest);
+        const Vec3 e = s.e - slope * glm::dot(along, s.e) * s.tangent,
+                   m = s.m - slope * glm::dot(along, s.m) * s.tangent;
+        s.a = std::max(skin_[k].semi_axis(particles_, e), preset_.tip_radius);
+        s.b = std::max(skin_[k].semi_axis(particles_, m), preset_.tip_radius);
     }
     wide_ = glm::conjugate(input.pose.rotation) * sections.back().e;
     return sections;

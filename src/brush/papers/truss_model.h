@@ -19,8 +19,8 @@
 /// by 1e-3 lengths against the hand's last motion, or to the ferrule's x [X]. Then its point trails √(L² − (L − z)²)
 /// behind the axis at depth z.
 ///
-/// The sections are rings of the skin, projected along the hair. The skin shears with the point, so they are as the
-/// head was made but for the lean: a b is not kept. Hair touches near the point alone.
+/// The sections are cuts of the skin: across the hair, and near the ferrule parallel to its mouth. The skin shears with
+/// the point, so they are as the head was made but for the lean: a b is not kept. Hair touches near the point alone.
 ///
 /// `force` is the law of truss_force.h with the depth of the undeformed point: k1 = B0/L² [X], k2 = 40 k1 and
 /// k_t = 1 s/m · k1, the ratios of MODEL's defaults [X]. Friction is −k_t v_t (4.4, the sign is missing in print [R]),

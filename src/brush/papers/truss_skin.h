@@ -60,7 +60,7 @@ struct SkinSection {
     std::vector<double> spread;  ///< [particles × particles] weights C of the variance along d, Σ C_ij (X_i·d)(X_j·d)
 
     Vec3 centre(std::span<const Vec3> particles) const { return place(mean, particles); }
-    /// Returns √(2 variance) along unit d, metres: the semi-axis of an ellipse with evenly spaced points.
+    /// Returns √(2 variance) along d, |d| times metres: the semi-axis of an ellipse with evenly spaced points.
     double semi_axis(std::span<const Vec3> particles, const Vec3& d) const;
 };
 
