@@ -10,10 +10,10 @@ core/geometry core/text
 core/system
 core/manual
 mesh brush/rod
-mesh/read brush/preset
-mesh/repair mesh/query brush/tuft
-atlas brush/calibration
-atlas/seams
+mesh/read brush/preset brush/state
+mesh/repair mesh/query brush/papers
+atlas brush/tuft
+atlas/seams brush/calibration
 atlas/flatten
 atlas/pack
 atlas/charts

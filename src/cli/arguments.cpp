@@ -8,6 +8,7 @@
 #include <iostream>
 #include <optional>
 
+#include "brush/preset/preset.h"
 #include "cli/reference.h"
 #include "core/error.h"
 #include "core/geometry/bounds.h"
@@ -241,8 +242,11 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         "the strokes take ink away, wet and dry, instead of leaving some");
     p->add_option("--layer", paint.layer, "layer for strokes that name none; it is made when there is none yet");
     p->add_option("--substrate", paint.surface.substrate, "what the model is made of: porcelain, bisque, clay, ...");
-    p->add_option("--spine", paint.spine, "how the tuft bends: rod (live solve) or table (query table)")
-        ->check(CLI::IsMember({"rod", "table"}));
+    p->add_option("--spine", paint.spine,
+                  "how the tuft bends: rod (live solve; as the brush says), table (query table), or a model of the "
+                  "papers: macro "
+                  "(hair macros), chain (kinematic chain), truss (spring truss)")
+        ->check(CLI::IsMember(std::vector<std::string>(std::begin(brush::kSpineWords), std::end(brush::kSpineWords))));
     p->add_option("--footprint", paint.footprint, "footprint along the surface, or on one plane")
         ->check(CLI::IsMember({"surface", "plane"}));
     p->add_option("--contact", paint.contact, "exact closest points, or weighted distance to vertices")
@@ -473,6 +477,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     b->add_option("--picture", brush.picture,
                   "draw the tuft at five depths and three tilts, lifted, slanted, reversed, split and dry (.png)");
     b->add_option("--sweep-depth", brush.sweep_depth, "write line width over depth (.csv)");
+    b->add_option("--compare", brush.compare,
+                  "print what each way to bend the tuft draws beside a measured table (.csv); --picture draws that");
     auto* fit = b->add_subcommand("calibrate", "fit a brush to a table of depth against line width");
     fit->add_option("MEASURED", brush.calibrate, "measured table (.csv)")->required();
     fit->add_option("-o,--output", brush.output, "brush preset to write (.toml)")->required();

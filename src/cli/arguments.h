@@ -167,6 +167,7 @@ struct Render {
 struct Brush {
     std::string name;
     std::filesystem::path picture, sweep_depth;
+    std::filesystem::path compare;            ///< measured table that all spine methods stand beside
     std::filesystem::path calibrate, output;  ///< `tuft brush calibrate MEASURED.csv -o BRUSH.toml`
     Common common;
 };

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "brush/calibration/compare.h"
 #include "brush/calibration/sweep.h"
 #include "brush/preset/preset.h"
 #include "brush/tuft/table.h"
@@ -13,6 +14,7 @@
 #include "core/text/units.h"
 #include "io/image/image.h"
 #include "render/brush/brush_picture.h"
+#include "render/brush/comparison_picture.h"
 #include "stroke/placement/placement.h"
 
 namespace tuft::cli {
@@ -89,10 +91,83 @@ int calibrate(const Brush& a) {
     return 0;
 }
 
+nlohmann::json row_json(const brush::SweepRow& row) {
+    return {{"width_mm", row.width / kMillimetre},
+            {"drag_mm", row.drag / kMillimetre},
+            {"offset_mm", row.offset / kMillimetre}};
+}
+
+nlohmann::json comparison_json(const brush::Preset& preset, std::span<const brush::ModelSweep> models) {
+    nlohmann::json j{{"brush", preset.name}, {"models", nlohmann::json::array()}};
+    for (const brush::ModelSweep& model : models) {
+        nlohmann::json m{{"spine", brush::kSpineWords[static_cast<std::size_t>(model.method)]},
+                         {"rms", row_json(model.rms)}};
+        for (const brush::SweepRow& row : model.rows) {
+            nlohmann::json r = row_json(row);
+            r["z_mm"] = row.depth / kMillimetre;
+            m["rows"].push_back(std::move(r));
+        }
+        j["models"].push_back(std::move(m));
+    }
+    return j;
+}
+
+/// Mean of a column over the measured rows of one depth, mm.
+double measured_mean(std::span<const brush::SweepRow> measured, double depth, double brush::SweepRow::*column) {
+    double sum = 0;
+    int count = 0;
+    for (const brush::SweepRow& row : measured) {
+        if (row.depth != depth) continue;
+        sum += row.*column / kMillimetre;
+        ++count;
+    }
+    return sum / count;
+}
+
+void print_comparison(std::span<const brush::ModelSweep> models, std::span<const brush::SweepRow> measured) {
+    constexpr const char* kNames[] = {"width of the line", "contact length", "offset behind the axis"};
+    for (std::size_t k = 0; k < std::size(kNames); ++k) {
+        double brush::SweepRow::*const column = brush::kSweepColumns[k];
+        fmt::print("{}{}, mm\n{:>9}{:>10}", k > 0 ? "\n" : "", kNames[k], "depth mm", "measured");
+        for (const brush::ModelSweep& model : models)
+            fmt::print("{:>8}", brush::kSpineWords[static_cast<std::size_t>(model.method)]);
+        fmt::print("\n");
+        for (std::size_t i = 0; i < models.front().rows.size(); ++i) {
+            const double depth = models.front().rows[i].depth;
+            fmt::print("{:>9.4g}{:>10.2f}", depth / kMillimetre, measured_mean(measured, depth, column));
+            for (const brush::ModelSweep& model : models) fmt::print("{:>8.2f}", model.rows[i].*column / kMillimetre);
+            fmt::print("\n");
+        }
+        fmt::print("{:>19}", "rms difference");
+        for (const brush::ModelSweep& model : models) fmt::print("{:>8.2f}", model.rms.*column / kMillimetre);
+        fmt::print("\n");
+    }
+}
+
+int compare(const Brush& a) {
+    check_extension(a.picture, {".png"});
+    check_output(a.picture);
+    const std::vector<brush::SweepRow> measured = brush::read_sweep(a.compare.string());
+    brush::Preset preset = brush::load_preset(a.name.empty() ? "robot-2020" : a.name);
+    if (const auto length = brush::stated_length(a.compare.string())) preset.length = *length;
+    brush::check_preset(preset, preset.name);
+    const std::vector<brush::ModelSweep> models = brush::compare_models(preset, measured);
+    if (!a.picture.empty()) {
+        const render::BrushPicture picture = render::draw_comparison(models, measured);
+        io::write_image(a.picture, io::view_of(picture.width, picture.height, 3, picture.rgb.data()));
+    }
+    if (a.common.json)
+        print_json(comparison_json(preset, models));
+    else
+        print_comparison(models, measured);
+    return 0;
+}
+
 }  // namespace
 
 int run(const Brush& a) {
     if (!a.calibrate.empty()) return calibrate(a);
+    if (!a.compare.empty()) return compare(a);
     if (a.name.empty()) {
         list_brushes(a.common.json);
         return 0;

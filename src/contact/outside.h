@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "brush/tuft/tuft_state.h"
+#include "brush/state/tuft_state.h"
 #include "mesh/query/surface_query.h"
 
 /// \file

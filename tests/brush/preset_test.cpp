@@ -76,7 +76,8 @@ TEST(Presets, MistakesAreNamedWithTheirLine) {
     EXPECT_THAT(error_of("[shape]\nlength_mm = \"long\"\n"), testing::HasSubstr("must be a number"));
     EXPECT_THAT(error_of("[shape]\nlength_mm = nan\n"), testing::HasSubstr("outside"));
     EXPECT_THAT(error_of("[shape]\nsegments = 12.5\n"), testing::HasSubstr("whole number"));
-    EXPECT_THAT(error_of("[bending]\nspine = \"rope\"\n"), testing::HasSubstr("\"rod\" or \"table\""));
+    EXPECT_THAT(error_of("[bending]\nspine = \"rope\"\n"),
+                testing::HasSubstr("must be \"rod\", \"table\", \"macro\", \"chain\" or \"truss\""));
     EXPECT_THAT(error_of("[shape\nlength_mm = 3"), testing::HasSubstr("test.toml:1"));
     EXPECT_THAT(error_of("[split]\nat = 0.5\nmerge_at = 0.9\n"), testing::HasSubstr("must not exceed"));
 }

@@ -200,6 +200,25 @@ TEST_F(Commands, BrushPrintsItsTableAndListsItself) {
     EXPECT_EQ(std::ranges::count(read(path("fine.csv")), char(10)), 12) << "a tenth of the working depth to the next";
 }
 
+TEST_F(Commands, BrushComparesItsSpineMethodsWithAMeasuredBrush) {
+    const std::string measured = source_folder() + "/tests/data/brush/brush_robot2020_even.csv";
+    const Ran ran = tuft("brush robot-2020 --compare " + measured + " --json --picture " + path("c.png"));
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const json models = json::parse(ran.out)["models"];
+    constexpr const char* kSpines[] = {"rod", "table", "macro", "chain", "truss"};
+    ASSERT_EQ(models.size(), std::size(kSpines));
+    for (std::size_t m = 0; m < models.size(); ++m) {
+        EXPECT_EQ(models[m]["spine"], kSpines[m]);
+        EXPECT_EQ(models[m]["rows"].size(), 7u) << "0 to 12 mm by 2";
+        // The rod was fitted to this table.
+        if (m > 0) EXPECT_GT(models[m]["rms"]["offset_mm"], models[0]["rms"]["offset_mm"]);
+    }
+    EXPECT_GT(read(path("c.png")).size(), 10'000u);
+    const Ran text = tuft("brush robot-2020 --compare " + measured);
+    ASSERT_EQ(text.status, 0) << text.err;
+    EXPECT_NE(text.out.find("rms difference"), std::string::npos);
+}
+
 TEST_F(Commands, ABrushIsCarriedOnAndReplaysTheSame) {
     // Three strokes beside each other; before the third the brush is dipped into another ink.
     std::string ink = stroke_file();

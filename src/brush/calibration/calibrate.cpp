@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "brush/calibration/compare.h"
 #include "brush/calibration/sweep.h"
 #include "core/error.h"
 #include "core/system/parallel.h"
@@ -56,8 +57,6 @@ Preset preset_at(const Preset& start, const Point& x) {
     return p;
 }
 
-constexpr double SweepRow::*kColumns[] = {&SweepRow::width, &SweepRow::drag, &SweepRow::offset};
-
 struct Fit {
     SweepRow rms;
     double cost = 0;
@@ -65,28 +64,22 @@ struct Fit {
 };
 
 Fit compare(const Preset& p, std::span<const SweepRow> measured, const SweepRow& spread) {
-    std::vector<double> depths;
-    for (const SweepRow& row : measured) depths.push_back(row.depth);
-    std::sort(depths.begin(), depths.end());
-    depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
+    const std::vector<double> depths = depths_of(measured);
     std::vector<SweepRow> swept(depths.size());
     parallel_for(depths.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             swept[i] = sweep_depth(p, std::span(&depths[i], 1)).front();
         }
     });
-    Fit fit;
+    Fit fit{.rms = rms_difference(swept, measured)};
     for (const SweepRow& row : measured) {
         const auto at = std::lower_bound(depths.begin(), depths.end(), row.depth) - depths.begin();
-        for (double SweepRow::*column : kColumns) {
+        for (double SweepRow::*column : kSweepColumns) {
             const double d = swept[static_cast<std::size_t>(at)].*column - row.*column;
-            fit.rms.*column += d * d;
             fit.misses.push_back(d / (spread.*column));
         }
     }
-    const double n = static_cast<double>(measured.size());
-    for (double SweepRow::*column : kColumns) {
-        fit.rms.*column = std::sqrt(fit.rms.*column / n);
+    for (double SweepRow::*column : kSweepColumns) {
         const double part = fit.rms.*column / (spread.*column);
         fit.cost += std::pow(part, kNorm) / 3;
     }

@@ -84,6 +84,7 @@ Patch patch_of(const TuftState& state) {
 struct Steady {
     Patch patch;
     double tip = 0;
+    std::vector<Vec3> node;  ///< tip first, metres
 };
 
 Steady drag(const Preset& preset, double depth, const Vec2& lean) {
@@ -113,30 +114,31 @@ Steady drag(const Preset& preset, double depth, const Vec2& lean) {
         lag = tuft.trunk().memory.node.back() * preset.length - pose.position;
         still = i > press && glm::length(lag - lag_t0) < 1e-6 * preset.length ? still + 1 : 0;
     }
-    return {patch_of(state), pose.position.x - tip_to_root.x};
-}
-
-SweepRow sweep_one(const Preset& preset, double depth) {
-    const auto [patch, foot] = drag(preset, depth, Vec2{0});
-    SweepRow row{depth};
-    if (patch.empty()) return row;
-    row.width = patch.width;
-    row.drag = patch.back - patch.front;
-    row.offset = foot - patch.back;
-    return row;
+    return {patch_of(state), pose.position.x - tip_to_root.x, predicted_nodes(tuft, pose)};
 }
 
 }  // namespace
 
+SteadyTuft sweep_at(const Preset& preset, double depth) {
+    const auto [patch, foot, node] = drag(preset, depth, Vec2{0});
+    SteadyTuft out{{depth}, {}};
+    for (const Vec3& x : node) out.spine.emplace_back(x.x - foot, x.z);
+    if (patch.empty()) return out;
+    out.row.width = patch.width;
+    out.row.drag = patch.back - patch.front;
+    out.row.offset = foot - patch.back;
+    return out;
+}
+
 std::vector<SweepRow> sweep_depth(const Preset& preset, std::span<const double> depths) {
     std::vector<SweepRow> rows;
     rows.reserve(depths.size());
-    for (const double depth : depths) rows.push_back(sweep_one(preset, depth));
+    for (const double depth : depths) rows.push_back(sweep_at(preset, depth).row);
     return rows;
 }
 
 LinePlace line_place(const Preset& preset, double depth, const Vec2& lean) {
-    const auto [patch, tip] = drag(preset, depth, lean);
+    const auto [patch, tip, node] = drag(preset, depth, lean);
     if (patch.empty()) return {};
     return {tip - 0.5 * (patch.left.x + patch.right.x), 0.5 * (patch.left.y + patch.right.y)};
 }

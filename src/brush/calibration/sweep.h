@@ -22,6 +22,16 @@ struct SweepRow {
     double offset = 0;  ///< distance of the patch's root-side end behind the foot of the holder's axis
 };
 
+/// The measured columns.
+inline constexpr double SweepRow::*kSweepColumns[] = {&SweepRow::width, &SweepRow::drag, &SweepRow::offset};
+
+/// A steady stroke along +x at one depth.
+struct SteadyTuft {
+    SweepRow row;
+    std::vector<Vec2> spine;  ///< nodes, tip first: metres ahead of the axis' foot, metres over the sheet
+};
+SteadyTuft sweep_at(const Preset& preset, double depth);
+
 /// Computes one row per depth (metres). Each drag lasts until it is steady, at most three hair lengths.
 std::vector<SweepRow> sweep_depth(const Preset& preset, std::span<const double> depths);
 

@@ -138,6 +138,19 @@ double number_of(const toml::node& node, const std::string& source, const std::s
     return *v;
 }
 
+SpineMethod spine_of(const toml::node& node, const std::string& source, const std::string& key) {
+    const std::string v = text_of(node, source, key);
+    std::string known;
+    for (std::size_t i = 0; i < std::size(kSpineWords); ++i) {
+        if (v == kSpineWords[i]) return static_cast<SpineMethod>(i);
+        known += std::string(i == 0                            ? ""
+                             : i + 1 == std::size(kSpineWords) ? " or "
+                                                               : ", ") +
+                 '"' + kSpineWords[i] + '"';
+    }
+    fail(source, line_of(node), "'" + key + "' must be " + known + ", not \"" + v + "\"");
+}
+
 /// Key that took the place of one in earlier files.
 std::string current_key(const std::string& table, const std::string& key) {
     return table == "contact" && key == "end_give_mm" ? "end_compliance_mm" : key;
@@ -148,11 +161,7 @@ void read_value(Preset& p, const std::string& table, const std::string& written,
     const std::string key = current_key(table, written);
     const std::string full = table + "." + key;
     if (full == "bending.spine") {
-        const std::string v = text_of(node, source, full);
-        if (v != "rod" && v != "table") {
-            fail(source, line_of(node), "'bending.spine' must be \"rod\" or \"table\", not \"" + v + "\"");
-        }
-        p.spine = v == "rod" ? SpineMethod::rod : SpineMethod::table;
+        p.spine = spine_of(node, source, full);
         return;
     }
     for (const WholeField& f : kWholeFields) {
@@ -357,7 +366,7 @@ std::string preset_toml(const Preset& p) {
             table = f.table;
             out << "\n[" << table << "]\n";
             if (table == "bending") {
-                out << "spine = \"" << (p.spine == SpineMethod::rod ? "rod" : "table") << "\"\n";
+                out << "spine = \"" << kSpineWords[static_cast<std::size_t>(p.spine)] << "\"\n";
             }
             for (const WholeField& w : kWholeFields)
                 if (table == w.table) out << w.key << " = " << p.*w.member << "\n";

@@ -14,7 +14,13 @@ namespace tuft::brush {
 enum class SpineMethod {
     rod,    ///< discrete elastic rod in contact, solved at every sample
     table,  ///< query table over the bending moment, rotated until the tip touches
+    macro,  ///< hair macros of Xu, Lau and Pan 2009
+    chain,  ///< kinematic chain of Chu and Tai 2002 and of Van Laerhoven and Van Reeth 2007
+    truss,  ///< spring truss of Baxter, Scheib, Lin and Manocha 2001
 };
+
+/// Word of each method in files and options, in the order of the values.
+inline constexpr const char* kSpineWords[] = {"rod", "table", "macro", "chain", "truss"};
 
 /// Constants of one tuft. Lengths in metres, stiffness in SI. TOML files use millimetres, cubic centimetres and
 /// plain SI (see `load_preset`). Symbols as in the variable stiffness brush, B(ξ) = B0 e^{αξ} (1+βξ)³ and M_e(ξ) =

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "brush/rod/rod_points.h"
-#include "brush/rod/wedge.h"
 #include "brush/tuft/flanks.h"
 #include "brush/tuft/tuft_sections.h"
 #include "brush/tuft/upright_hair.h"
@@ -113,12 +112,6 @@ std::vector<rod::Obstacle> obstacles_of(const Preset& p, const Spine& spine, std
 }
 
 }  // namespace
-
-double height_over(const ContactPlane& plane, const Vec3& p) {
-    if (plane.beyond_normal == Vec3{0}) return glm::dot(p - plane.origin, plane.normal);
-    const Wedge wedge{{plane.origin, plane.beyond_origin}, {plane.normal, plane.beyond_normal}};
-    return edge_distance(wedge, kEdgeRounding, p).z;
-}
 
 rod::Clamp clamp_of(const Preset& p, const Pose& pose) {
     return {pose.position / p.length, pose.axis(), pose.rotation * Vec3{1, 0, 0}};

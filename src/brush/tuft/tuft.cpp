@@ -31,22 +31,30 @@ void feel(Tuft& tuft, TuftState& state, double dt) {
     state.device_force = tuft.device_force;
 }
 
+/// Bends the tuft by its model of the papers, and takes its nodes over into the spine.
+TuftState step_model(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt) {
+    const double length = tuft.preset.length;
+    TuftState state = tuft.model->step({pose, planes, std::isfinite(dt) ? std::max(0.0, dt) : 0, tuft.wetness});
+    state.touching = state.normal_force > 0;
+    rod::Memory& m = tuft.trunk().memory;
+    m.clamp = clamp_of(tuft.preset, pose);
+    const std::vector<Vec3> nodes = tuft.model->nodes();
+    for (std::size_t i = 0; i < m.node.size(); ++i) m.node[i] = nodes[nodes.size() - 1 - i] / length;
+    for (std::size_t j = 0; j < m.tangent.size(); ++j) {
+        const Vec3 d = m.node[j + 1] - m.node[j];
+        m.tangent[j] = glm::length(d) > 1e-9 ? glm::normalize(d) : j > 0 ? m.tangent[j - 1] : m.clamp.tangent;
+    }
+    tuft.pose = pose;
+    feel(tuft, state, dt);
+    return state;
+}
+
 constexpr double kCoheres = 0.25;        ///< of the capacity: ink from which water draws parted hair together
 constexpr double kMergingTime = 0.03;    ///< s in which it does
 constexpr double kPartingLength = 6e-3;  ///< m of the hand's way in which sub-spines part
 constexpr double kMerged = 0.02;         ///< spread at which they are one again
 
 }  // namespace
-
-double rest_radius(const Preset& p, double u) {
-    u = std::clamp(u, 0.0, 1.0);
-    const double taper = std::pow(std::max(0.0, 1 - std::pow(u, 2.4)), p.tip_power);
-    return std::hypot(1.06 * p.radius * taper * (1 - 0.14 * std::pow(1 - u, 6)), p.tip_radius);
-}
-
-Profile profile_of(const Preset& p) {
-    return {p.alpha, p.beta, p.yield, p.gamma, p.tip_stiffness};
-}
 
 Tuft make_tuft(const Preset& preset, std::uint64_t seed) {
     check_preset(preset, preset.name.empty() ? "brush" : preset.name);
@@ -62,6 +70,7 @@ Tuft make_tuft(const Preset& preset, std::uint64_t seed) {
         tuft.spines.push_back(make_spine(preset, rod, clamp_of(preset, {}), 0, 1));
     }
     if (preset.spine == SpineMethod::table) tuft.table = make_table(preset);
+    tuft.model = SpineModelCopy(make_spine_model(preset));
     tuft.bundles = make_bundles(preset, seed);
     return tuft;
 }
@@ -183,10 +192,12 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     if (!tuft.posed) {
         // The first pose is where the hand starts: the tuft comes with it, from above.
         for (Spine& spine : tuft.spines) rod::carry_with_clamp(spine.memory, clamp_in(tuft, spine, pose));
+        if (tuft.model) tuft.model->straighten(pose);
         tuft.pose = pose;
         tuft.posed = true;
     }
     tuft.wetness = std::clamp(tuft.wetness, 0.0, 1.0);
+    if (tuft.model) return step_model(tuft, pose, planes, dt);
     // Water between the hairs is what yields; dry hair springs back.
     for (Spine& spine : tuft.spines)
         spine.rod.plastic_share = p.plastic_share * (kDryPlastic + (1 - kDryPlastic) * tuft.wetness);
@@ -235,6 +246,7 @@ void reshape(Tuft& tuft) {
         beside.memory = {};
         beside.gap.clear();
     }
+    if (tuft.model) tuft.model->straighten(tuft.pose);
     tuft.split = false;
     gather(tuft.bundles);
 }

@@ -3,12 +3,14 @@
 #include <span>
 #include <vector>
 
+#include "brush/papers/spine_model.h"
 #include "brush/preset/preset.h"
+#include "brush/preset/rest_shape.h"
 #include "brush/rod/coupled_rods.h"
 #include "brush/rod/rod.h"
+#include "brush/state/tuft_state.h"
 #include "brush/tuft/bundles.h"
 #include "brush/tuft/table.h"
-#include "brush/tuft/tuft_state.h"
 #include "core/geometry/types.h"
 
 /// \file
@@ -75,12 +77,14 @@ struct Tuft {
     double branch_width = 0;                     ///< m, semi-axis of the section at their roots
     Vec3 device_force{0}, device_force_rate{0};  ///< device force f, N, and its rate, N/s
     Bundles bundles;                             ///< bundles and bristles
+    QueryTable table;                            ///< for the table method only
+    /// For the methods of brush/papers only; the trunk then follows its nodes, and there are no sub-spines of ours.
+    SpineModelCopy model;
 
     Spine& trunk() { return spines.front(); }
     const Spine& trunk() const { return spines.front(); }
     /// A ferrule with several spines; their branches all begin at it.
     bool wide() const { return spines.size() > 1; }
-    QueryTable table;  ///< for the table method only
 };
 
 /// Returns a straight tuft; `seed` places its hair. Throws `Error` for values out of range.
@@ -114,12 +118,5 @@ void reshape(Tuft& tuft);
 /// Returns the force for a haptic device, newtons, world: min(G |f|, limit) in the direction of the filtered force
 /// f.
 Vec3 device_force(const Preset& preset, const TuftState& state);
-
-/// Returns the stiffness and yield profile of the preset.
-Profile profile_of(const Preset& preset);
-
-/// Returns the radius of the resting tuft, metres: 1.06 R (1−u^2.4)^q (1 − 0.14 (1−u)^6), u from root to tip,
-/// combined with the tip radius as the root of the sum of squares.
-double rest_radius(const Preset& preset, double u);
 
 }  // namespace tuft::brush

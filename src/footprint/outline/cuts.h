@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "brush/tuft/tuft_state.h"
+#include "brush/state/tuft_state.h"
 #include "brush/tuft/upright_hair.h"
 #include "footprint/outline/outline.h"
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "brush/tuft/tuft_state.h"
+#include "brush/state/tuft_state.h"
 #include "footprint/outline/footprint.h"
 
 /// \file

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "brush/tuft/tuft_state.h"
+#include "brush/state/tuft_state.h"
 #include "contact/contact.h"
 
 namespace tuft::stroke {

@@ -82,7 +82,7 @@ BrushInHand Document::clean_brush(const brush::Preset& preset) const {
 
 brush::Preset Document::preset_of(const std::string& name, brush::SpineMethod spine) {
     brush::Preset preset = brush(name);
-    if (spine == brush::SpineMethod::table) preset.spine = spine;
+    if (spine != brush::SpineMethod::rod) preset.spine = spine;
     return preset;
 }
 

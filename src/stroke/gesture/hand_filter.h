@@ -2,7 +2,7 @@
 
 #include <deque>
 
-#include "brush/tuft/tuft_state.h"
+#include "brush/state/tuft_state.h"
 #include "stroke/journal/samples.h"
 
 /// Steadies a hand as its samples arrive: a low-pass that follows fast motion, and a string

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "brush/tuft/tuft_state.h"
+#include "brush/state/tuft_state.h"
 
 /// Symmetric decoration: the pose is mirrored and turned, and each copy is painted as a
 /// stroke of its own, so an unsymmetric model gets its own contact everywhere.

@@ -16,7 +16,6 @@ constexpr double kLongestString = 1.0;  // metres
 constexpr double kStrongestFilter = 100;
 
 // In the order of the enumerators.
-constexpr const char* kSpines[] = {"rod", "table"};
 constexpr const char* kFootprints[] = {"surface", "plane"};
 constexpr const char* kContacts[] = {"exact", "vertices"};
 constexpr const char* kDips[] = {"each", "carry"};
@@ -59,7 +58,7 @@ FilmModel film_model_of(const std::string& name) {
     return enumerator<FilmModel>(kFilms, name, "film");
 }
 brush::SpineMethod spine_method_of(const std::string& name) {
-    return enumerator<brush::SpineMethod>(kSpines, name, "spine");
+    return enumerator<brush::SpineMethod>(brush::kSpineWords, name, "spine");
 }
 footprint::Mapping footprint_mapping_of(const std::string& name) {
     return enumerator<footprint::Mapping>(kFootprints, name, "footprint");
@@ -69,7 +68,7 @@ contact::Method contact_method_of(const std::string& name) {
 }
 
 nlohmann::json json_of(const StrokeSettings& s) {
-    nlohmann::json j = {{"spine", word(kSpines, s.spine)},
+    nlohmann::json j = {{"spine", word(brush::kSpineWords, s.spine)},
                         {"footprint", word(kFootprints, s.footprint)},
                         {"contact", word(kContacts, s.contact)},
                         {"spacing", s.spacing},

@@ -51,7 +51,7 @@ std::string name_of(FilmModel film);     ///< still, wet
 DipMode dip_mode_of(const std::string& name);
 PressureFrom pressure_from(const std::string& name);
 FilmModel film_model_of(const std::string& name);
-brush::SpineMethod spine_method_of(const std::string& name);       ///< rod, table
+brush::SpineMethod spine_method_of(const std::string& name);       ///< brush::kSpineWords
 footprint::Mapping footprint_mapping_of(const std::string& name);  ///< surface, plane
 contact::Method contact_method_of(const std::string& name);        ///< exact, vertices
 

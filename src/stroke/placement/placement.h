@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "brush/preset/preset.h"
-#include "brush/tuft/tuft_state.h"
+#include "brush/state/tuft_state.h"
 #include "mesh/query/surface_query.h"
 #include "stroke/journal/samples.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "brush/tuft/tuft_state.h"
+#include "brush/state/tuft_state.h"
 #include "ink/exchange/erase.h"
 
 namespace tuft::stroke {
