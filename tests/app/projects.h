@@ -15,6 +15,7 @@
 #include "io/project/project.h"
 #include "paths.h"
 #include "stroke/document/document.h"
+#include "stroke/journal/tables.h"
 
 /// What the studio kept, asked of the file and of the command line.
 namespace tuft::test {
