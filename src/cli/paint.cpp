@@ -66,7 +66,7 @@ void note_dry(const std::vector<stroke::StrokeReport>& reports, Console& console
     console.note(
         fmt::format("warning: {} full brush{} run{} dry: stroke {} after {:.0f} of {:.0f} mm{} (see --dip "
                     "endless, a larger --brush; dry_from_mm of --json)",
-                    dry, dry == 1 ? "" : "es", dry == 1 ? "s" : "", first->stroke_id, first->dry_from / kMillimetre,
+                    dry, dry == 1 ? "" : "es", dry == 1 ? "s" : "", first->stroke_id, first->dryness.from / kMillimetre,
                     first->path / kMillimetre, dry == 1 ? "" : ", and others"));
 }
 
@@ -98,14 +98,14 @@ void note_inside(const std::vector<stroke::StrokeReport>& reports,
     const auto noted = [](double depth, double from) { return depth > from ? std::optional(depth) : std::nullopt; };
     double deepest = 0;
     if (const std::string which = strokes_with(
-            reports, strokes, [&](const auto& r) { return noted(r.origin_inside, place_inside_noted(model)); },
+            reports, strokes, [&](const auto& r) { return noted(r.inside.origin, place_inside_noted(model)); },
             deepest);
         !which.empty())
         console.note(
             fmt::format("warning: the place of {} lies up to {:.2f} mm inside the model; strokes go onto its surface",
                         which, deepest / kMillimetre));
     if (const std::string which = strokes_with(
-            reports, strokes, [&](const auto& r) { return noted(r.deepest, kInsideNoted); }, deepest);
+            reports, strokes, [&](const auto& r) { return noted(r.inside.deepest, kInsideNoted); }, deepest);
         !which.empty())
         console.note(
             fmt::format("warning: {} the ferrule into the model, up to {:.2f} mm deep; it is held on the surface there "

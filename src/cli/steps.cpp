@@ -412,11 +412,11 @@ nlohmann::json to_json(const stroke::StrokeReport& r, const stroke::JournalEntry
             {"removed_mm3", r.removed.sum() * ink::kFilmUnit * 1e9},
             {"touched", r.touched()},
             {"nearest_mm", r.nearest / kMillimetre},
-            {"inside_mm", r.deepest / kMillimetre},
-            {"origin_inside_mm", r.origin_inside / kMillimetre},
+            {"inside_mm", r.inside.deepest / kMillimetre},
+            {"origin_inside_mm", r.inside.origin / kMillimetre},
             {"path_mm", r.path / kMillimetre},
-            {"dry_from_mm", r.dry_from < 0 ? nlohmann::json() : nlohmann::json(r.dry_from / kMillimetre)},
-            {"dry_path_mm", r.dry_path / kMillimetre},
+            {"dry_from_mm", r.dryness.from < 0 ? nlohmann::json() : nlohmann::json(r.dryness.from / kMillimetre)},
+            {"dry_path_mm", r.dryness.path / kMillimetre},
             {"ran_dry", r.ran_dry()}};
 }
 

@@ -97,7 +97,7 @@ constexpr double kSides = 0.15e-3, kHeads = 0.2;
 TEST(LongLines, ALineIsAsFullAtItsEndAsAtItsBeginning) {
     const Drawn line = drawn(serpentine(6), true);
     ASSERT_GT(line.reports.size(), 1u) << "the brush is dipped again";
-    for (const StrokeReport& r : line.reports) EXPECT_FALSE(r.ran_dry()) << r.dry_from;
+    for (const StrokeReport& r : line.reports) EXPECT_FALSE(r.ran_dry()) << r.dryness.from;
     for (std::size_t i = 1; i + 2 < line.width.size(); ++i)
         EXPECT_NEAR(line.width[i], kWidth, kSides + kHeads * kWidth) << "at " << 5 * i << " mm";
     // As it was: one dip for all of it.

@@ -124,7 +124,7 @@ StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const P
                               static_cast<double>(i + 1) / static_cast<double>(poses.size()));
         StrokeReport report = finish_session(id);
         if (stroke.trace.flat)
-            report.origin_inside =
+            report.inside.origin =
                 contact::depth_inside(*target(stroke.layer, 0).model.query, stroke.trace.placement.origin);
         return report;
     } catch (...) {

@@ -50,7 +50,7 @@ class StrokeSession {
     StrokeSession& operator=(const StrokeSession&) = delete;
 
     /// Asked before every stamp whether to go on, and between the steps of long ones; a stop throws `Cancelled`.
-    void set_progress(ProgressFn progress) { progress_ = std::move(progress); }
+    void set_progress(ProgressFn progress) { progress_.ask = std::move(progress); }
     /// Paints on. `done`: part of the stroke that is reported as done.
     void advance(std::span<const brush::Pose> poses, double done = 0);
     /// The first `poses` of those to come set the brush down; the stroke's own samples come after them.
@@ -71,6 +71,9 @@ class StrokeSession {
   private:
     /// From samples to even poses.
     struct Path {
+        Path(double step, double lever) : spacing(step), resampler({.step = step, .lever = lever}) {}
+
+        double spacing;  // metres between poses
         GestureFilter steady;
         Resampler resampler;
         std::vector<brush::Pose> poses;  // not painted yet
@@ -88,6 +91,13 @@ class StrokeSession {
         std::vector<ForceRecord> poses;    // at every pose of the resampled path
         std::size_t before_first = 0;      // samples before the stroke's own
     };
+    struct Progress {
+        ProgressFn ask;
+        double done = 0;  // part of the stroke
+
+        bool go_on() const { return !ask || ask("painting", done); }
+    };
+    bool holds_mixed_ink() const;
     std::unique_ptr<DepositModel> make_deposit();
     std::vector<ForceRecord> forces_at_samples() const;
     void paint_poses();
@@ -98,8 +108,6 @@ class StrokeSession {
     void note_dryness(double film, double displacement);
 
     SessionInput input_;
-    bool mixed_ = false;  // the tuft holds several inks, or thicker ink on one side
-    double spacing_ = 0;  // metres between poses
     TuftInHand tuft_;
     Path path_;
     ContactState contact_;
@@ -110,8 +118,7 @@ class StrokeSession {
     std::unique_ptr<DepositModel> deposit_;
     ForceLog forces_;
     StrokeReport report_;
-    ProgressFn progress_;
-    double done_ = 0;                       // part of the stroke
+    Progress progress_;
     double wet_from_ = 0;                   // metres of the hand's path up to the last stamp that lacked ink
     std::optional<ink::Reservoir> refill_;  // what the tuft holds before every pose; none: it runs dry
 };
