@@ -47,8 +47,7 @@ struct Range {
 void read_number(const Field& field, double& out, const Range& range) {
     const auto v = field.node.value<double>();
     if (!field.node.is_number() || !v || !(*v >= range.lo && *v <= range.hi))
-        field.fail(
-            fmt::format("'{}' has a value that is no number from {} to {}", field.key, range.lo, range.hi));
+        field.fail(fmt::format("'{}' has a value that is no number from {} to {}", field.key, range.lo, range.hi));
     out = *v * range.unit;
 }
 

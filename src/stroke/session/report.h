@@ -38,16 +38,16 @@ struct InsideModel {
 
 /// What a stroke or a fill did.
 struct StrokeReport {
-    std::uint64_t stroke_id = 0;      ///< of its entry in the journal
+    std::uint64_t stroke_id = 0;  ///< of its entry in the journal
     std::size_t samples = 0;
-    std::size_t stamps = 0;           ///< poses at which the tuft touched
-    std::size_t unconverged = 0;      ///< of them, solved only to the iteration limit
-    double ink_given = 0;             ///< film·m², now on the texels
-    double ink_left = 0;              ///< film·m², in the tuft
-    double path = 0;                  ///< metres of the hand while the tuft touched
+    std::size_t stamps = 0;       ///< poses at which the tuft touched
+    std::size_t unconverged = 0;  ///< of them, solved only to the iteration limit
+    double ink_given = 0;         ///< film·m², now on the texels
+    double ink_left = 0;          ///< film·m², in the tuft
+    double path = 0;              ///< metres of the hand while the tuft touched
     Dryness dryness;
-    ink::Amounts removed;             ///< by an eraser, of all films of its layer, film·m²
-    double nearest = 0;               ///< metres: least distance of tuft and model; 0 when it touched
+    ink::Amounts removed;  ///< by an eraser, of all films of its layer, film·m²
+    double nearest = 0;    ///< metres: least distance of tuft and model; 0 when it touched
     InsideModel inside;
     std::vector<ForceRecord> forces;  ///< one per sample of the stroke, in order; with `record_forces` only
 
