@@ -226,15 +226,15 @@ void check_outputs(const Outputs& o) {
 
 void write_outputs(const Outputs& o, const stroke::Document& painting, Console& console) {
     const stroke::Model& model = painting.model();
+    const stroke::Appearance& shown = painting.appearance();
     if (!o.exported.empty()) {
         const io::ModelMaps maps =
-            io::make_maps(painting.appearance().stack(), model.texels, painting.appearance().substrate(),
-                          painting.appearance().compose_options());
-        const std::vector<std::string> notes = io::export_model(
-            o.exported, *model.mesh, model.atlas, maps,
-            {.frame = o.frame,
-             .painted = io::painted_parts(painting.appearance().stack(), *model.mesh, model.atlas, model.texels),
-             .progress = console.progress()});
+            io::make_maps(shown.stack(), model.texels, shown.substrate(), shown.compose_options());
+        const std::vector<std::string> notes =
+            io::export_model(o.exported, *model.mesh, model.atlas, maps,
+                             {.frame = o.frame,
+                              .painted = io::painted_parts(shown.stack(), *model.mesh, model.atlas, model.texels),
+                              .progress = console.progress()});
         for (const std::string& note : notes) console.note(note);
     }
     if (!o.preview.empty()) write_picture(o.preview, draw_picture(model, &painting, "", o.view, 0, 1, console));

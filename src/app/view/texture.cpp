@@ -78,14 +78,14 @@ void Texture::show_wetness(bool on, const stroke::Document& painting) {
 
 Texture::Texture(const stroke::Document& painting, const ProgressFn& progress) {
     const stroke::Model& model = painting.model();
+    const stroke::Appearance& shown = painting.appearance();
     report(progress, "picture of the ink", 0);
-    const ink::ComposeOptions options = painting.appearance().compose_options();
+    const ink::ComposeOptions options = shown.compose_options();
     report(progress, "picture of the ink", 0.6);
-    colour_ =
-        ink::compose_srgb8(painting.appearance().stack(), model.texels, painting.appearance().substrate(), options);
+    colour_ = ink::compose_srgb8(shown.stack(), model.texels, shown.substrate(), options);
     padded_ = model.texels.tiles_per_side * atlas::kTile;
     height_.assign(static_cast<std::size_t>(colour_.size) * colour_.size, 0);
-    refresh_heights(painting.appearance().stack().touched_slots(), painting);
+    refresh_heights(shown.stack().touched_slots(), painting);
     report(progress, "picture of the ink", 1);
 }
 
@@ -188,9 +188,9 @@ std::vector<render::TilePixels> Texture::show_marks(Marks marks, const stroke::D
 }
 
 void Texture::refresh_all(const stroke::Document& painting) {
-    colour_ = ink::compose_srgb8(painting.appearance().stack(), painting.model().texels,
-                                 painting.appearance().substrate(), painting.appearance().compose_options());
-    refresh_heights(painting.appearance().stack().touched_slots(), painting);
+    const stroke::Appearance& shown = painting.appearance();
+    colour_ = ink::compose_srgb8(shown.stack(), painting.model().texels, shown.substrate(), shown.compose_options());
+    refresh_heights(shown.stack().touched_slots(), painting);
 }
 
 std::array<std::uint8_t, 4> Texture::texel(std::size_t x, std::size_t y) const {
@@ -251,9 +251,10 @@ std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> 
     std::vector<render::TilePixels> tiles;
     if (slots.empty()) return tiles;
     const stroke::Model& model = painting.model();
-    ink::refresh_srgb8(colour_, slots, painting.appearance().stack(), model.texels, painting.appearance().substrate(),
-                       painting.appearance().compose_options());
-    const ink::GutterPlan& plan = *painting.appearance().compose_options().seams;
+    const stroke::Appearance& shown = painting.appearance();
+    const ink::ComposeOptions options = shown.compose_options();
+    ink::refresh_srgb8(colour_, slots, shown.stack(), model.texels, shown.substrate(), options);
+    const ink::GutterPlan& plan = *options.seams;
     refresh_heights(slots, painting);
     std::set<std::uint32_t> changed;
     for (const std::uint32_t slot : slots) {

@@ -31,9 +31,9 @@ struct StrokeFit {
     double moved_most = 0;       ///< largest displacement of the ink
     std::optional<double> slid;  ///< median distance of the ink from its former point moved by the model's motion;
                                  ///< empty without a motion
-    double kept = 0;       ///< of the path, where both models have ink
-    double kept_now = 0;   ///< length of the same part on the revised model
-    double stretched = 0;  ///< of `kept`, where 5 mm became more than a quarter longer or shorter
+    double kept = 0;             ///< of the path, where both models have ink
+    double kept_now = 0;         ///< length of the same part on the revised model
+    double stretched = 0;        ///< of `kept`, where 5 mm became more than a quarter longer or shorter
 
     /// Part of the path without ink, 0–1.
     double missing() const { return way > 0 ? (lost + buried) / way : 0; }

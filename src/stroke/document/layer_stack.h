@@ -46,7 +46,7 @@ class LayerStack {
     std::uint64_t hash() const;
 
     /// Carries the edit out on table and texels. Returns what it changed. Throws `Error` and changes nothing where
-    /// `apply` does.
+    /// `apply` does. Precondition: a new layer's id is not 0.
     LayerBackup edit(const LayerEdit& edit);
     /// Takes the last edit back. Pigments met since then stay, in their planes.
     void restore(LayerBackup before);
