@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "stroke/document/apply_fill.h"
 #include "stroke/document/document.h"
-#include "stroke/document/lay_fill.h"
 #include "stroke/journal/tables.h"
 
 /// What each kind of entry does, but for strokes.
@@ -131,7 +131,7 @@ StrokeReport Document::fill(std::uint64_t id, const Fill& fill) {
     check_fill(fill);
     FillMixes mixes{.first = mix_of(fill.ink)};
     mixes.second = fill.to_ink.empty() ? mixes.first : mix_of(fill.to_ink);
-    FillResult result = lay_fill(fill, target(fill.layer, fill.mask), mixes);
+    FillResult result = apply_fill(fill, target(fill.layer, fill.mask), mixes);
     UndoRecord undo{.entry = id};
     undo.tiles.push_back({fill.layer, std::move(result.before)});
     record(std::move(undo));

@@ -118,7 +118,7 @@ double drape_radius(const mesh::TriangleMesh& mesh) {
     return std::min(0.008, 0.04 * mesh.bounds.diagonal());
 }
 
-SurfaceTrace lay_draped(const SurfaceQuery& query, const StrokeSamples& trace) {
+SurfaceTrace map_draped(const SurfaceQuery& query, const StrokeSamples& trace) {
     Drape drape(query, trace.placement);
     SurfaceTrace mapped;
     mapped.origin_gap = drape.origin_gap();

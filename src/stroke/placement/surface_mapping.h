@@ -31,6 +31,6 @@ std::optional<mesh::SurfacePoint> exact_ray(const mesh::SurfaceQuery& query, con
 SurfaceSample hand_data(const StrokeSample& sample);
 
 /// `SurfaceMapping::drape` of `map_to_surface`.
-SurfaceTrace lay_draped(const mesh::SurfaceQuery& query, const StrokeSamples& trace);
+SurfaceTrace map_draped(const mesh::SurfaceQuery& query, const StrokeSamples& trace);
 
 }  // namespace tuft::stroke

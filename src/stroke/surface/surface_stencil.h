@@ -51,6 +51,6 @@ class SurfaceStencil {
 /// Returns the signed distance from a point to the nearest edge, metres, positive where it may be painted; +∞ without
 /// edges. Of two equally near edges, which share the nearest end, the one with the larger distance to the side gives
 /// the sign: so sharp corners, inner and outer, are right.
-double inside_stencil(std::span<const StencilEdge> tape, const Vec2& place);
+double inside_stencil(std::span<const StencilEdge> edges, const Vec2& point);
 
 }  // namespace tuft::stroke

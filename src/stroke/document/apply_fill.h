@@ -23,6 +23,6 @@ struct FillResult {
 
 /// Lays the film of `fill` on every texel of its region, weighted by the mask; on the palette the film's water comes
 /// with it. Tiles in parallel; the bits do not depend on the number of threads. Throws `Error` as `check_fill` does.
-FillResult lay_fill(const Fill& fill, const PaintTarget& target, const FillMixes& mixes);
+FillResult apply_fill(const Fill& fill, const PaintTarget& target, const FillMixes& mixes);
 
 }  // namespace tuft::stroke

@@ -1,4 +1,4 @@
-#include "stroke/document/lay_fill.h"
+#include "stroke/document/apply_fill.h"
 
 #include <algorithm>
 #include <array>
@@ -45,7 +45,7 @@ void set_coat(ink::Coat& coat, const Fill& fill, const atlas::TexelMap& map, con
 
 }  // namespace
 
-FillResult lay_fill(const Fill& fill, const PaintTarget& target, const FillMixes& mixes) {
+FillResult apply_fill(const Fill& fill, const PaintTarget& target, const FillMixes& mixes) {
     check_fill(fill);
     const std::vector<std::uint8_t> charts = charts_of(fill, target.model);
     const std::vector<std::uint32_t> slots = slots_of(charts, target);
