@@ -29,10 +29,11 @@ static stroke::PaintStroke wavy_line(const stroke::Model& model) {
 
 // Square metres of the texels with any pigment on them.
 static double ink_area(const stroke::Document& painting) {
+    const ink::Canvas& canvas = painting.layers().canvas();
     double area = 0;
-    for (const std::uint32_t slot : painting.canvas().touched_slots())
+    for (const std::uint32_t slot : canvas.touched_slots())
         for (int t = 0; t < atlas::kTileTexels; ++t) {
-            const ink::Plane* film = painting.canvas().plane(slot, 0);
+            const ink::Plane* film = canvas.plane(slot, 0);
             if (film && (*film)[t] > 0) area += static_cast<double>(painting.model().texels.tiles[slot].area[t]);
         }
     return area;
@@ -47,9 +48,9 @@ int main(int argc, char** argv) {
         const stroke::Model model = stroke::prepare_model(io::read_model(argv[1]), options);
         stroke::Document painting(model, {.substrate = "porcelain"});
         painting.paint(wavy_line(model));
-        io::export_model(
-            argv[2], *model.mesh, model.atlas,
-            io::make_maps(painting.stack(), model.texels, painting.substrate(), painting.compose_options()));
+        const stroke::Appearance& shown = painting.appearance();
+        io::export_model(argv[2], *model.mesh, model.atlas,
+                         io::make_maps(shown.stack(), model.texels, shown.substrate(), shown.compose_options()));
         std::printf("%u charts, %.1f mm2 of ink\n", model.atlas.n_charts, 1e6 * ink_area(painting));
     } catch (const std::exception& error) {
         return std::fprintf(stderr, "tuft-hello: %s\n", error.what()), 1;

@@ -52,12 +52,13 @@ void draw_seams(const stroke::Model& model, ink::AtlasMap<float>& colour) {
 
 void draw(const stroke::Document& painting, const render::View& view, const std::filesystem::path& out) {
     const stroke::Model& model = painting.model();
+    const stroke::Appearance& shown = painting.appearance();
     for (const bool seams : {false, true}) {
         ink::AtlasMap<float> colour =
-            ink::compose_linear(painting.canvas(), model.texels, painting.substrate(), painting.compose_options());
+            ink::compose_linear(shown.stack(), model.texels, shown.substrate(), shown.compose_options());
         if (seams) draw_seams(model, colour);
         render::Appearance look;
-        const ink::Substrate& substrate = painting.substrate();
+        const ink::Substrate& substrate = shown.substrate();
         look.finish = substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
         look.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
         look.maps.size = colour.size;
@@ -73,33 +74,41 @@ void draw(const stroke::Document& painting, const render::View& view, const std:
     }
 }
 
+// A document whose texels come from elsewhere, not from strokes.
+void show(const stroke::Model& model, const std::string& substrate, ink::Canvas canvas, const render::View& view,
+          const std::filesystem::path& out) {
+    stroke::Document painting(model, {.substrate = substrate});
+    painting.adopt({}, {{stroke::kFirstLayer, std::move(canvas)}}, 0);
+    draw(painting, view, out);
+}
+
 /// 20 mm checks, four abreast, over bonnet, its edge, the shoulder and the wheel arch.
 void car(const std::filesystem::path& folder) {
     const stroke::Model model = load("car", 8192);
-    stroke::Document painting(model, {.substrate = "clay"});
-    const int pigment = painting.canvas().add_pigment(painting.ink("carbon").parts[0].pigment);
+    ink::Canvas canvas(model.texels.n_slots());
+    const int pigment = canvas.add_pigment(ink::load_ink("carbon").parts[0].pigment);
     const double check = 20 * kMillimetre, step = check / 48, length = 12 * check;
     const auto way = straight_way(model, {0.34, -0.02, 0.25}, {0.08, -1, 0}, step, 12 * 48);
-    roll(model, painting.canvas(), pigment, 2.5f, way, step, 4 * check, [&](double x, double v) {
+    roll(model, canvas, pigment, 2.5f, way, step, 4 * check, [&](double x, double v) {
         if (x < 0 || x > length || std::abs(v) > 2 * check) return false;
         return static_cast<int>(std::floor(x / check) + std::floor(v / check)) % 2 == 0;
     });
     render::View view{.azimuth = 15 * kDegree, .elevation = 28 * kDegree};
     view.target = Vec3{0.36, -0.18, 0.19};
     view.width_at_target = 0.42;
-    draw(painting, view, folder / "car-checks");
+    show(model, "clay", std::move(canvas), view, folder / "car-checks");
 }
 
 /// A band of waves between two lines round the plate's rim; its ends meet.
 void plate(const std::filesystem::path& folder) {
     const stroke::Model model = load("plate");
-    stroke::Document painting(model);
-    const int pigment = painting.canvas().add_pigment(painting.ink("cobalt").parts[0].pigment);
+    ink::Canvas canvas(model.texels.n_slots());
+    const int pigment = canvas.add_pigment(ink::load_ink("cobalt").parts[0].pigment);
     const double radius = 113.5 * kMillimetre;
     constexpr int kPeriods = 48, kRows = 180;  // of a period
     const double step = 2 * pi * radius / (kPeriods * kRows), period = kRows * step;
     const auto way = ring(model, radius, 0.1, kPeriods * kRows);
-    roll(model, painting.canvas(), pigment, 2.0f, way, step, 18 * kMillimetre, [&](double x, double v) {
+    roll(model, canvas, pigment, 2.0f, way, step, 18 * kMillimetre, [&](double x, double v) {
         const double mm = v / kMillimetre;
         if (std::abs(std::abs(mm) - 8) < 0.4) return true;
         if (std::abs(mm - 3.6 * std::sin(2 * pi * x / period)) < 0.7) return true;
@@ -108,7 +117,7 @@ void plate(const std::filesystem::path& folder) {
         return std::hypot(s - 0.25 * period, v + 0.5 * kMillimetre) < 1.3 * kMillimetre ||
                std::hypot(s - 0.75 * period, v - 0.5 * kMillimetre) < 1.3 * kMillimetre;
     });
-    draw(painting, {.azimuth = 0, .elevation = 60 * kDegree}, folder / "plate-ring");
+    show(model, "porcelain", std::move(canvas), {.azimuth = 0, .elevation = 60 * kDegree}, folder / "plate-ring");
 }
 
 /// A stroke with a brush from inside over the rim to the outside.
@@ -119,7 +128,7 @@ void bowl(const std::filesystem::path& folder) {
     s.trace.flat = false;
     s.brush = "wolf-small";
     s.ink = "cinnabar";
-    const double length = painting.brush(s.brush).length, step = 0.25 * kMillimetre;
+    const double length = painting.materials().brush(s.brush).length, step = 0.25 * kMillimetre;
     const auto way = straight_way(model, {0.035, -0.01, 0.02}, glm::normalize(Vec3{1, -0.3, 0.6}), step, 400);
     const auto rim = std::max_element(
         way.begin(), way.end(), [](const Contact& a, const Contact& b) { return a.frame.origin.z < b.frame.origin.z; });

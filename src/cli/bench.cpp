@@ -182,7 +182,7 @@ stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting,
     preset.radius *= scale;
     preset.stiffness *= std::pow(scale, 4);
     preset.capacity = 1e-4;
-    painting.use_brush(preset);
+    painting.use(preset);
     stroke::PaintStroke s;
     s.trace.flat = false;
     s.brush = "bench";
@@ -234,7 +234,7 @@ double first_ink_milliseconds(const stroke::Model& model, int texels) {
         s.trace.samples.clear();
         const double start = wall_seconds();
         painting.begin(s);
-        for (std::size_t i = 0; i < poses.size() && painting.take_dirty().empty(); ++i)
+        for (std::size_t i = 0; i < poses.size() && painting.appearance().take_dirty().empty(); ++i)
             painting.extend(std::span(&poses[i], 1));
         runs.push_back((wall_seconds() - start) * 1e3);
     }

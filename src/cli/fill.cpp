@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/steps.h"
 #include "core/text/units.h"
+#include "stroke/journal/tables.h"
 
 namespace tuft::cli {
 namespace {
@@ -18,9 +19,9 @@ stroke::Fill fill_of(const FillWork& a, stroke::Document& painting) {
     stroke::Fill fill{.ink = a.ink};
     if (a.palette) fill.layer = stroke::kPaletteLayer;
     if (a.palette && !(a.layer.empty() && a.mask.empty())) throw UsageError("the palette has neither layers nor masks");
-    fill.film = a.film >= 0 ? a.film : painting.ink(a.ink).film;
+    fill.film = a.film >= 0 ? a.film : painting.materials().ink(a.ink).film;
     fill.to_film = fill.film;
-    if (!a.to_ink.empty()) fill.to_film = painting.ink(a.to_ink).film;
+    if (!a.to_ink.empty()) fill.to_film = painting.materials().ink(a.to_ink).film;
     if (a.to_film >= 0) fill.to_film = a.to_film;
     fill.to_ink = a.to_ink;
     if (!a.from_mm.empty()) {
@@ -46,8 +47,8 @@ int run(const FillWork& a) {
     stroke::Document painting(project->model);
     restore(*project, painting, console);
     std::vector<stroke::JournalEntry> entries =
-        stroke::onto_named_layers({stroke::JournalEntry(fill_of(a, painting))}, painting.layers(), a.layer);
-    stroke::keep_to_named_masks(entries, painting.masks(), a.mask);
+        stroke::onto_named_layers({stroke::JournalEntry(fill_of(a, painting))}, painting.layers().table(), a.layer);
+    stroke::keep_to_named_masks(entries, painting.masks().table(), a.mask);
     find_presets(painting, entries);
     stroke::StrokeReport report;
     std::vector<stroke::JournalEntry> done;
@@ -57,14 +58,14 @@ int run(const FillWork& a) {
     }
     put_presets(project->file, painting, entries);
     project->file.append(done);
-    project->file.save_canvases(painting.all_canvases(), done.back().id);
+    project->file.save_canvases(stroke::all_canvases(painting), done.back().id);
     console.clear();
     const double volume = report.ink_given * ink::kFilmUnit * 1e9;
     if (a.common.json)
         print_json(nlohmann::json{{"project", a.project.string()},
                                   {"id", done.back().id},
                                   {"pigment_mm3", volume},
-                                  {"canvas_hash", fmt::format("{:016x}", painting.hash())}});
+                                  {"canvas_hash", fmt::format("{:016x}", painting.layers().hash())}});
     else
         fmt::print("filled with {:.1f} mm3 of pigment\n", volume);
     return 0;

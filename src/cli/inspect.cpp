@@ -14,6 +14,8 @@
 #include "core/text/counted.h"
 #include "core/text/units.h"
 #include "io/model/read_model.h"
+#include "stroke/document/pick.h"
+#include "stroke/journal/tables.h"
 
 namespace tuft::cli {
 namespace {
@@ -32,16 +34,16 @@ int inspect_point(const Inspect& a) {
     restore(*project, painting, console);
     console.clear();
     const Vec3 at = kMillimetre * vector_of(a.at_mm);
-    const stroke::Pick pick = a.palette ? painting.pick_palette(at) : painting.pick(at);
+    const stroke::Pick pick = a.palette ? stroke::pick_on_palette(painting, at) : stroke::pick(painting, at);
     if (!a.palette) check_on_surface(project->model, at, "--at");
     const std::string name = a.save_ink.empty() ? "picked" : a.save_ink.stem().string();
-    const std::optional<ink::Ink> ink = painting.ink_of(pick, name);
+    const std::optional<ink::Ink> ink = stroke::picked_ink(pick, painting.layers().pigments(), name);
     if (!a.save_ink.empty()) {
         if (!ink) throw Error(a.file.string(), "has no ink at this point to make an ink of");
         const std::string toml = ink::ink_toml(*ink);
         write_file(a.save_ink, toml.data(), toml.size());
     }
-    const std::vector<ink::Pigment>& pigments = painting.canvas().pigments();
+    const std::vector<ink::Pigment>& pigments = painting.layers().pigments();
     const auto amounts = [&](const auto& of) {
         nlohmann::json j = nlohmann::json::object();
         for (std::size_t p = 0; p < pigments.size(); ++p)
@@ -58,7 +60,8 @@ int inspect_point(const Inspect& a) {
                          {"parts", nlohmann::json::object()}};
         for (const stroke::PickedFilm& f : pick.films)
             j["films"].push_back(
-                {{"layer", f.layer == stroke::kPaletteLayer ? "palette" : painting.layers().find(f.layer)->name},
+                {{"layer",
+                  f.layer == stroke::kPaletteLayer ? "palette" : painting.layers().table().find(f.layer)->name},
                  {"film", f.film == ink::kOpenFilm     ? "open"
                           : f.film == ink::kSoakedFilm ? "soaked"
                                                        : "dry " + std::to_string(f.film)},

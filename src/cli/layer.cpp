@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/steps.h"
 #include "core/error.h"
+#include "stroke/journal/tables.h"
 
 /// `tuft layer`: what a project's layers are, changed by entries of its journal.
 namespace tuft::cli {

@@ -11,6 +11,7 @@
 #include "core/geometry/bounds.h"
 #include "core/text/text.h"
 #include "core/text/units.h"
+#include "stroke/journal/tables.h"
 
 /// `tuft mask`: masks of a project, made and ended by entries of its journal.
 namespace tuft::cli {

@@ -12,6 +12,7 @@
 #include "core/system/files.h"
 #include "core/text/counted.h"
 #include "core/text/units.h"
+#include "stroke/journal/tables.h"
 
 namespace tuft::cli {
 namespace {
@@ -65,7 +66,7 @@ void note_dry(const std::vector<stroke::StrokeReport>& reports, Console& console
     console.note(
         fmt::format("warning: {} full brush{} run{} dry: stroke {} after {:.0f} of {:.0f} mm{} (see --dip "
                     "endless, a larger --brush; dry_from_mm of --json)",
-                    dry, dry == 1 ? "" : "es", dry == 1 ? "s" : "", first->stroke_id, first->dry_from / kMillimetre,
+                    dry, dry == 1 ? "" : "es", dry == 1 ? "s" : "", first->stroke_id, first->dryness.from / kMillimetre,
                     first->path / kMillimetre, dry == 1 ? "" : ", and others"));
 }
 
@@ -97,14 +98,14 @@ void note_inside(const std::vector<stroke::StrokeReport>& reports,
     const auto noted = [](double depth, double from) { return depth > from ? std::optional(depth) : std::nullopt; };
     double deepest = 0;
     if (const std::string which = strokes_with(
-            reports, strokes, [&](const auto& r) { return noted(r.origin_inside, place_inside_noted(model)); },
+            reports, strokes, [&](const auto& r) { return noted(r.inside.origin, place_inside_noted(model)); },
             deepest);
         !which.empty())
         console.note(
             fmt::format("warning: the place of {} lies up to {:.2f} mm inside the model; strokes go onto its surface",
                         which, deepest / kMillimetre));
     if (const std::string which = strokes_with(
-            reports, strokes, [&](const auto& r) { return noted(r.deepest, kInsideNoted); }, deepest);
+            reports, strokes, [&](const auto& r) { return noted(r.inside.deepest, kInsideNoted); }, deepest);
         !which.empty())
         console.note(
             fmt::format("warning: {} the ferrule into the model, up to {:.2f} mm deep; it is held on the surface there "
@@ -152,8 +153,8 @@ int run(const Paint& a) {
         restore(*before, painting, console);
         apply_recolouring(before->file, painting, {}, console);
     }
-    strokes = stroke::onto_named_layers(std::move(strokes), painting.layers(), a.layer);
-    stroke::keep_to_named_masks(strokes, painting.masks(), a.mask);
+    strokes = stroke::onto_named_layers(std::move(strokes), painting.layers().table(), a.layer);
+    stroke::keep_to_named_masks(strokes, painting.masks().table(), a.mask);
     const std::size_t n_before = painting.journal().entries().size();
     // Files are numbered from 1: each is a group of its own in this journal.
     const std::uint64_t first_group = painting.journal().next_group_id();
@@ -192,7 +193,7 @@ int run(const Paint& a) {
         throw;
     }
     if (project && !strokes.empty())
-        project->save_canvases(painting.all_canvases(), painting.journal().entries().back().id);
+        project->save_canvases(stroke::all_canvases(painting), painting.journal().entries().back().id);
     const double painted = seconds_since(painting_start);
     console.clear();
     const std::vector<const stroke::JournalEntry*> done = painted_strokes(painting.journal(), n_before);
@@ -222,7 +223,7 @@ int run(const Paint& a) {
         for (std::size_t i = 0; i < reports.size(); ++i) j["strokes"].push_back(to_json(reports[i], *done[i]));
         j["stamps"] = stamps;
         j["ink_mm3"] = given * ink::kFilmUnit * 1e9;
-        j["canvas_hash"] = fmt::format("{:016x}", painting.hash());
+        j["canvas_hash"] = fmt::format("{:016x}", painting.layers().hash());
         j["seconds"] = {{"to_first_stamp", first_stamp},
                         {"preparing", prepared},
                         {"painting", painted},

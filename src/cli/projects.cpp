@@ -57,7 +57,7 @@ Fit find_fit(const Replay& a, const OpenProject& project, stroke::Document& pain
              const std::vector<stroke::JournalEntry>& strokes, const std::vector<stroke::StrokeReport>& reports) {
     Fit fit;
     if (!a.model.empty()) {
-        const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
+        const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
         const mesh::SurfaceQuery &former = *project.model.query, &revised = *painting.model().query;
         fit.motion = stroke::find_motion(former, revised);
         fit.fits = stroke::compare_fit(strokes, length_of, former, revised, fit.motion);
@@ -155,7 +155,7 @@ int run(const Replay& a) {
     const stroke::Model model = replay_model(a, *project, console);
 
     stroke::Document painting(model);
-    painting.use_substrate(project->substrate);
+    painting.use(project->substrate);
     io::use_presets(project->file, painting);
     for (stroke::JournalEntry& s : strokes) {
         if (!a.brush.empty()) stroke::set_brush(s, a.brush);
@@ -163,7 +163,7 @@ int run(const Replay& a) {
     }
     find_presets(painting, strokes);
     if (!a.model.empty()) {
-        const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
+        const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
         const std::string fault = stroke::size_fault(strokes, length_of, *project->model.query, *model.query);
         if (!fault.empty()) throw Error(a.model.string(), fault + " (see --unit)");
     }
@@ -178,7 +178,7 @@ int run(const Replay& a) {
         io::Project out = start_project(a.out_project, a.model.empty() ? project->source : a.model.string(),
                                         outputs.frame, painting, strokes);
         out.append(painting.journal().entries());
-        if (!strokes.empty()) out.save_canvases(painting.all_canvases(), strokes.back().id);
+        if (!strokes.empty()) out.save_canvases(stroke::all_canvases(painting), strokes.back().id);
     }
     show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);
@@ -192,7 +192,7 @@ int run(const Replay& a) {
                          {"missed", missed},
                          {"mismatches", std::move(list)},
                          {"atlas", to_json(model.atlas, model.atlas_report)},
-                         {"canvas_hash", fmt::format("{:016x}", painting.hash())}};
+                         {"canvas_hash", fmt::format("{:016x}", painting.layers().hash())}};
         j["misfits"] = j["mismatches"];  // its name before
         if (!a.model.empty()) j["fit"] = to_json(fit);
         print_json(j);
@@ -217,7 +217,7 @@ int run(const Export& a) {
     restore(*project, painting, console);
     show_layers(painting, a.layers);
     apply_recolouring(project->file, painting, a.recolouring, console);
-    const ink::ComposeOptions compose = painting.compose_options();
+    const ink::ComposeOptions compose = painting.appearance().compose_options();
     const std::string extension = a.output.extension().string();
     if (extension == ".png" || extension == ".exr")
         io::write_map(a.output, map, painting, compose, a.bits);
@@ -227,7 +227,7 @@ int run(const Export& a) {
     if (a.common.json)
         print_json(nlohmann::json{{"project", a.project.string()},
                                   {"wrote", a.output.string()},
-                                  {"canvas_hash", fmt::format("{:016x}", painting.hash())}});
+                                  {"canvas_hash", fmt::format("{:016x}", painting.layers().hash())}});
     else
         fmt::print("wrote {}\n", a.output.string());
     return 0;

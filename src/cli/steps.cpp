@@ -176,17 +176,17 @@ render::Image draw_picture(const stroke::Model& model, const stroke::Document* p
                            const View& v, int frame, int count, Console& console) {
     render::Appearance appearance;
     const ink::Substrate substrate = material.empty() && painting
-                                         ? painting->substrate()
+                                         ? painting->appearance().substrate()
                                          : ink::load_substrate(material.empty() ? "porcelain" : material);
     appearance.finish = substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
     appearance.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
     ink::AtlasMap<float> colour, height;
     ink::Stack bare{std::vector<ink::LayerView>{}};
     if (material.empty()) bare.ground = &model.ground;
-    const ink::Stack stack = painting ? painting->stack() : bare;
+    const ink::Stack stack = painting ? painting->appearance().stack() : bare;
     appearance.vertex_colours = false;
     if (!stack.layers.empty() || stack.has_base_colour()) {
-        const ink::ComposeOptions compose = painting ? painting->compose_options() : ink::ComposeOptions{};
+        const ink::ComposeOptions compose = painting ? painting->appearance().compose_options() : ink::ComposeOptions{};
         colour = ink::compose_linear(stack, model.texels, substrate, compose);
         const auto* first = reinterpret_cast<const Vec3f*>(colour.texels.data());
         appearance.maps.size = colour.size;
@@ -226,13 +226,14 @@ void check_outputs(const Outputs& o) {
 
 void write_outputs(const Outputs& o, const stroke::Document& painting, Console& console) {
     const stroke::Model& model = painting.model();
+    const stroke::Appearance& shown = painting.appearance();
     if (!o.exported.empty()) {
         const io::ModelMaps maps =
-            io::make_maps(painting.stack(), model.texels, painting.substrate(), painting.compose_options());
+            io::make_maps(shown.stack(), model.texels, shown.substrate(), shown.compose_options());
         const std::vector<std::string> notes =
             io::export_model(o.exported, *model.mesh, model.atlas, maps,
                              {.frame = o.frame,
-                              .painted = io::painted_parts(painting.stack(), *model.mesh, model.atlas, model.texels),
+                              .painted = io::painted_parts(shown.stack(), *model.mesh, model.atlas, model.texels),
                               .progress = console.progress()});
         for (const std::string& note : notes) console.note(note);
     }
@@ -246,11 +247,12 @@ void write_picture(const fs::path& path, const render::Image& image) {
 io::Project start_project(const fs::path& path, const std::string& source, const FileFrame& frame,
                           stroke::Document& painting, const std::vector<stroke::JournalEntry>& strokes) {
     const stroke::Model& model = painting.model();
-    io::Project project = io::Project::create(path, {.source = source,
-                                                     .frame = frame,
-                                                     .mesh = *model.mesh,
-                                                     .atlas = model.atlas,
-                                                     .substrate = ink::substrate_toml(painting.painted_on())});
+    io::Project project =
+        io::Project::create(path, {.source = source,
+                                   .frame = frame,
+                                   .mesh = *model.mesh,
+                                   .atlas = model.atlas,
+                                   .substrate = ink::substrate_toml(painting.materials().substrate())});
     io::store_looks(project, painting);
     put_presets(project, painting, strokes);
     return project;
@@ -261,16 +263,16 @@ void put_presets(io::Project& project, stroke::Document& painting, const std::ve
     for (const stroke::JournalEntry& s : strokes) {
         const std::string& brush = stroke::brush_of(s);
         if (stroke::has_brush(stroke::kind_of(s)) && brushes.insert(brush).second)
-            project.put_brush({brush, brush::preset_toml(painting.brush(brush))});
+            project.put_brush({brush, brush::preset_toml(painting.materials().brush(brush))});
         for (const std::string& ink : stroke::inks_of(s))
-            if (inks.insert(ink).second) project.put_ink({ink, ink::ink_toml(painting.ink(ink))});
+            if (inks.insert(ink).second) project.put_ink({ink, ink::ink_toml(painting.materials().ink(ink))});
     }
 }
 
 void find_presets(stroke::Document& painting, const std::vector<stroke::JournalEntry>& strokes) {
     for (const stroke::JournalEntry& s : strokes) {
-        if (stroke::has_brush(stroke::kind_of(s))) painting.brush(stroke::brush_of(s));
-        for (const std::string& ink : stroke::inks_of(s)) painting.ink(ink);
+        if (stroke::has_brush(stroke::kind_of(s))) painting.materials().brush(stroke::brush_of(s));
+        for (const std::string& ink : stroke::inks_of(s)) painting.materials().ink(ink);
     }
 }
 
@@ -281,13 +283,13 @@ bool is_project_file(const fs::path& path) {
 void show_layers(stroke::Document& painting, const std::vector<std::string>& names) {
     std::vector<std::uint32_t> ids;
     std::vector<std::string> all;
-    for (const stroke::Layer& layer : painting.layers().layers) all.push_back(layer.name);
+    for (const stroke::Layer& layer : painting.layers().table().layers) all.push_back(layer.name);
     for (const std::string& name : names) {
-        const stroke::Layer* layer = painting.layers().find(name);
+        const stroke::Layer* layer = painting.layers().table().find(name);
         if (!layer) throw UsageError(fmt::format("there is no layer '{}'; there are {}", name, fmt::join(all, ", ")));
         ids.push_back(layer->id);
     }
-    if (!ids.empty()) painting.show_only(std::move(ids));
+    if (!ids.empty()) painting.appearance().show_only(std::move(ids));
 }
 
 io::OpenOptions open_options(io::Access access, Console& console) {
@@ -325,16 +327,19 @@ void apply_recolouring(const io::Project& project, stroke::Document& painting, c
         if (!used.contains(name))
             throw Error("nothing is painted with ink '" + name +
                         "'; there are: " + fmt::format("{}", fmt::join(used, ", ")));
-        painting.recolour(name, ink::ink_named(text.substr(equals + 1), painting.substrate()));
+        painting.appearance().recolour(name,
+                                       ink::ink_named(text.substr(equals + 1), painting.appearance().substrate()));
         for (const std::string& other : used)
-            if (other != name && !ink::shared_pigments(painting.ink(name), painting.ink(other)).empty())
+            if (other != name &&
+                !ink::shared_pigments(painting.materials().ink(name), painting.materials().ink(other)).empty())
                 console.note(fmt::format("warning: ink {} shares pigments with {} and changes with it", other, name));
     }
-    if (!recolouring.substrate.empty()) painting.preview_substrate(ink::load_substrate(recolouring.substrate));
+    if (!recolouring.substrate.empty())
+        painting.appearance().preview_substrate(ink::load_substrate(recolouring.substrate));
 }
 
 void restore(const OpenProject& project, stroke::Document& painting, Console& console) {
-    painting.use_substrate(project.substrate);
+    painting.use(project.substrate);
     io::use_presets(project.file, painting);
     io::restore_strokes(project.file, painting, console.progress());
 }
@@ -407,11 +412,11 @@ nlohmann::json to_json(const stroke::StrokeReport& r, const stroke::JournalEntry
             {"removed_mm3", r.removed.sum() * ink::kFilmUnit * 1e9},
             {"touched", r.touched()},
             {"nearest_mm", r.nearest / kMillimetre},
-            {"inside_mm", r.deepest / kMillimetre},
-            {"origin_inside_mm", r.origin_inside / kMillimetre},
+            {"inside_mm", r.inside.deepest / kMillimetre},
+            {"origin_inside_mm", r.inside.origin / kMillimetre},
             {"path_mm", r.path / kMillimetre},
-            {"dry_from_mm", r.dry_from < 0 ? nlohmann::json() : nlohmann::json(r.dry_from / kMillimetre)},
-            {"dry_path_mm", r.dry_path / kMillimetre},
+            {"dry_from_mm", r.dryness.from < 0 ? nlohmann::json() : nlohmann::json(r.dryness.from / kMillimetre)},
+            {"dry_path_mm", r.dryness.path / kMillimetre},
             {"ran_dry", r.ran_dry()}};
 }
 

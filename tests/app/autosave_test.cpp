@@ -45,7 +45,7 @@ class KeeperTest : public testing::Test {
         stroke.brush = "wolf-small";
         stroke.ink = "carbon";
         painting_.begin(std::move(stroke));
-        painting_.extend(test::poses_above(model_, painting_.brush("wolf-small"), 0.02, y));
+        painting_.extend(test::poses_above(model_, painting_.materials().brush("wolf-small"), 0.02, y));
         painting_.end();
         autosave_.add(painting_.journal().entries().back());
     }

@@ -52,39 +52,45 @@ std::vector<Aim> drawn(const View& view, const std::vector<Vec2>& corners, doubl
     return aims;
 }
 
-stroke::Document painted(const stroke::Model& model, const std::string& brush, const std::vector<Aim>& aims,
-                         PointerSettings settings = {}) {
-    const brush::Preset preset = brush::load_preset(brush);
-    PointerInput hand(*model.query, preset, settings, {stroke::measure_tip_lag(preset)});
-    stroke::Document painting(model);
-    const auto take = [&](const std::vector<HandStep>& steps) {
+/// What a pointer that goes along `aims` paints.
+struct Painted : stroke::Document {
+    Painted(const stroke::Model& model, const std::string& brush, const std::vector<Aim>& aims,
+            PointerSettings settings = {})
+        : stroke::Document(model), brush_(brush) {
+        const brush::Preset preset = brush::load_preset(brush);
+        PointerInput hand(*model.query, preset, settings, {stroke::measure_tip_lag(preset)});
+        for (const Aim& aim : aims) take(hand.move(aim));
+        Aim last = aims.back();  // the button comes up at the last place, one event later
+        last.time += 1 / kRate;
+        take(hand.move(last));
+        take(hand.lift());
+    }
+
+  private:
+    void take(const std::vector<HandStep>& steps) {
         for (const HandStep& step : steps) {
             if (step.kind == HandStep::Kind::begin) {
                 stroke::PaintStroke s;
                 s.trace.flat = false;
-                s.brush = brush;
+                s.brush = brush_;
                 s.ink = "carbon";
-                painting.begin(std::move(s));
+                begin(std::move(s));
             } else if (step.kind == HandStep::Kind::end) {
-                painting.end();
+                end();
             } else {
-                painting.extend(step.poses);
+                extend(step.poses);
             }
         }
-    };
-    for (const Aim& aim : aims) take(hand.move(aim));
-    Aim last = aims.back();  // the button comes up at the last place, one event later
-    last.time += 1 / kRate;
-    take(hand.move(last));
-    take(hand.lift());
-    return painting;
-}
+    }
+
+    std::string brush_;
+};
 
 /// Places of the view with ink, pixels.
-std::vector<Vec2> inked(stroke::Document& painting, const View& view) {
+std::vector<Vec2> inked(const stroke::Document& painting, const View& view) {
     std::vector<Vec2> places;
     const stroke::Model& model = painting.model();
-    const ink::Canvas& canvas = painting.canvas();
+    const ink::Canvas& canvas = painting.layers().canvas();
     for (const std::uint32_t slot : canvas.touched_slots())
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             double film = 0;
@@ -141,7 +147,7 @@ TEST(CleanEnds, InkBeginsAtThePressAndEndsAtTheRelease) {
         for (const auto& [pace, eased] : kPaces)
             for (const double angle : {0.0, 2.6}) {
                 const Vec2 d{std::cos(angle), std::sin(angle)}, a = glm::round(-90.0 * d), b = glm::round(90.0 * d);
-                stroke::Document painting = painted(sheet(), brush, drawn(view, {a, b}, pace, eased));
+                const Painted painting(sheet(), brush, drawn(view, {a, b}, pace, eased));
                 expect_clean(measure(inked(painting, view), a, b), glm::distance(a, b),
                              std::string(brush) + " at " + std::to_string(pace) + (eased ? " eased" : "") +
                                  ", direction " + std::to_string(angle));
@@ -154,10 +160,10 @@ TEST(CleanEnds, WithoutThemStrokesBeginWithAClawAndEndShort) {
     const Vec2 d{std::cos(1.0), std::sin(1.0)}, a = glm::round(-90.0 * d), b = glm::round(90.0 * d);
     PointerSettings plain;
     plain.clean_ends = false;
-    stroke::Document slow = painted(sheet(), "wolf-medium", drawn(view, {a, b}, 100, true), plain);
+    const Painted slow(sheet(), "wolf-medium", drawn(view, {a, b}, 100, true), plain);
     const Line claw = measure(inked(slow, view), a, b);
     EXPECT_GT(claw.aside, 3 * claw.half);
-    stroke::Document fast = painted(sheet(), "wolf-medium", drawn(view, {a, b}, 1500, false), plain);
+    const Painted fast(sheet(), "wolf-medium", drawn(view, {a, b}, 1500, false), plain);
     EXPECT_LT(measure(inked(fast, view), a, b).end, glm::distance(a, b) - 15);
 }
 
@@ -165,7 +171,7 @@ TEST(CleanEnds, AClickIsADotWhereItWas) {
     const View view{.middle = sheet().mesh->bounds.centre()};
     for (const char* brush : {"wolf-small", "goat-large"}) {
         const Vec2 at{12, -7};
-        stroke::Document painting = painted(sheet(), brush, {view.aim(at, 0), view.aim(at, 0.08)});
+        const Painted painting(sheet(), brush, {view.aim(at, 0), view.aim(at, 0.08)});
         const std::vector<Vec2> ink = inked(painting, view);
         ASSERT_GT(ink.size(), 20u) << brush;
         double furthest = 0, nearest = 1e9;
@@ -182,7 +188,7 @@ TEST(CleanEnds, AZigzagBeginsAndEndsWhereTheHandDid) {
     const View view{.middle = sheet().mesh->bounds.centre()};
     for (const double pace : {200.0, 800.0}) {
         const std::vector<Vec2> corners{{-80, -30}, {-40, 30}, {0, -30}, {40, 30}, {80, -30}};
-        stroke::Document painting = painted(sheet(), "wolf-small", drawn(view, corners, pace, false));
+        const Painted painting(sheet(), "wolf-small", drawn(view, corners, pace, false));
         const std::vector<Vec2> ink = inked(painting, view);
         for (const Vec2& end : {corners.front(), corners.back()}) {
             double nearest = 1e9, beyond = 0;
@@ -214,7 +220,7 @@ TEST(CleanEnds, HoldOnBowlsAndCars) {
         for (const auto& [pace, eased] : {std::pair{150.0, true}, {800.0, false}})
             for (const double angle : {0.0, 2.8}) {
                 const Vec2 d{std::cos(angle), std::sin(angle)}, a = glm::round(-45.0 * d), b = glm::round(45.0 * d);
-                stroke::Document painting = painted(model, brush, drawn(view, {a, b}, pace, eased));
+                const Painted painting(model, brush, drawn(view, {a, b}, pace, eased));
                 const Line line = measure(inked(painting, view), a, b);
                 expect_clean(
                     line, glm::distance(a, b),
@@ -224,11 +230,10 @@ TEST(CleanEnds, HoldOnBowlsAndCars) {
 
 TEST(CleanEnds, StrokesReplayToTheBit) {
     const View view{.middle = sheet().mesh->bounds.centre()};
-    const stroke::Document painting =
-        painted(sheet(), "wolf-medium", drawn(view, {{-60, 0}, {20, 30}, {60, -20}}, 500, false));
+    const Painted painting(sheet(), "wolf-medium", drawn(view, {{-60, 0}, {20, 30}, {60, -20}}, 500, false));
     stroke::Document again(sheet());
     again.replay(painting.journal().entries());
-    EXPECT_EQ(again.hash(), painting.hash());
+    EXPECT_EQ(again.layers().hash(), painting.layers().hash());
 }
 
 }  // namespace

@@ -130,8 +130,8 @@ TEST(FirstBrush, OfASampleInBrushSizeIsNotScaled) {
 TEST(Thumbnails, ShowEachLayerAlone) {
     const stroke::Model model = test::shipped_model("sheet.ply", 256);
     stroke::Document painting(model);
-    painting.paint(stroke::add_on_top(painting.layers(), "gold"));
-    const std::uint32_t gold = painting.layers().layers.back().id;
+    painting.paint(stroke::add_on_top(painting.layers().table(), "gold"));
+    const std::uint32_t gold = painting.layers().table().layers.back().id;
     Orbit orbit;
     orbit.look_from(StandardView::top);
     orbit.frame(model.mesh->bounds);
@@ -140,7 +140,7 @@ TEST(Thumbnails, ShowEachLayerAlone) {
     thumbnails.look_from(model, orbit.camera(48, 36, model.mesh->bounds));
     EXPECT_EQ(thumbnails.draw(painting).size(), 2u);
     EXPECT_FALSE(thumbnails.waiting(painting));
-    painting.take_dirty();
+    painting.appearance().take_dirty();
     const brush::Preset preset = brush::load_preset("goat-large");
     stroke::PaintStroke s;
     s.trace.flat = false;
@@ -150,7 +150,7 @@ TEST(Thumbnails, ShowEachLayerAlone) {
     painting.begin(s);
     painting.extend(test::poses_above(model, preset, 0.1));
     painting.end();
-    thumbnails.touch(painting.take_dirty());
+    thumbnails.touch(painting.appearance().take_dirty());
     ASSERT_TRUE(thumbnails.waiting(painting));
     const std::vector<Thumbnail> changed = thumbnails.draw(painting);
     const auto darkest = [&](std::uint32_t layer) {

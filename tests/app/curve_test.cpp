@@ -81,7 +81,7 @@ TEST_P(LeaningCurve, ItsInkLiesOnIt) {
         points.push_back({.position = c + radius * Vec3(std::cos(a), std::sin(a), 0)});
     }
     stroke::Document painting(model);
-    const brush::Preset preset = painting.brush("wolf-medium");
+    const brush::Preset preset = painting.materials().brush("wolf-medium");
     CurveHand hand{.hold = stroke::holder_options(preset, *model.mesh),
                    .pressure = 0.4,
                    .tilt = {GetParam().first, GetParam().second}};

@@ -146,11 +146,11 @@ void Painted::compare(const stroke::Model& model, std::uint64_t seed) {
         stroke.ink = round % 2 ? "carbon" : "cinnabar";
         painting.begin(stroke);
         const std::vector<brush::Pose> poses = test::poses_above(
-            model, painting.brush(stroke.brush), random.uniform(0.04, 0.2), random.uniform(-0.02, 0.02));
+            model, painting.materials().brush(stroke.brush), random.uniform(0.04, 0.2), random.uniform(-0.02, 0.02));
         std::vector<std::uint8_t> pieces;
         for (std::size_t i = 0; i < poses.size(); i += poses.size() / 3 + 1) {
             painting.extend(std::span(poses).subspan(i, std::min(poses.size() / 3 + 1, poses.size() - i)));
-            const auto tiles = texture.refresh(painting.take_dirty(), painting);
+            const auto tiles = texture.refresh(painting.appearance().take_dirty(), painting);
             scene.update_tiles(tiles);
             for (const render::TilePixels& t : tiles) view.texture_changed(t.boxes);
             pieces = shot(view);

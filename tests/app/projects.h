@@ -15,6 +15,7 @@
 #include "io/project/project.h"
 #include "paths.h"
 #include "stroke/document/document.h"
+#include "stroke/journal/tables.h"
 
 /// What the studio kept, asked of the file and of the command line.
 namespace tuft::test {
@@ -28,8 +29,8 @@ inline nlohmann::json tuft(const std::string& arguments, const std::string& out)
     return nlohmann::json::parse(in);
 }
 
-/// Hash of the texels of all layers as the studio left them in a project, as stroke::Document::hash makes it; "" where
-/// none are stored.
+/// Hash of the texels of all layers as the studio left them in a project, as stroke::LayerStack::hash makes it; ""
+/// where none are stored.
 inline std::string stored_hash(const std::string& project) {
     const io::Project p = io::Project::open(project);
     const io::ProjectModel model = p.model();

@@ -19,6 +19,7 @@
 #include "io/project/project.h"
 #include "mesh/query/surface_query.h"
 #include "stroke/journal/entry_json.h"
+#include "stroke/journal/tables.h"
 #include "studio_program.h"
 
 /// The real program, played by scripts without a display.

@@ -22,10 +22,10 @@ TEST(Texture, RefreshedTilesAreWhatTheWholeWouldBe) {
         stroke.brush = "wolf-medium";
         stroke.ink = i == 1 ? "cinnabar" : "carbon";
         painting.begin(std::move(stroke));
-        painting.extend(test::poses_above(model, painting.brush("wolf-medium"), 0.1, 0.01 * i));
+        painting.extend(test::poses_above(model, painting.materials().brush("wolf-medium"), 0.1, 0.01 * i));
         painting.end();
         if (i == 2) painting.undo();
-        const auto slots = painting.take_dirty();
+        const auto slots = painting.appearance().take_dirty();
         for (const render::TilePixels& tile : texture.refresh(slots, painting)) {
             const std::size_t column = tile.tile % per_side, row = tile.tile / per_side;
             for (std::size_t level = 0; level < render::kTextureLevels; ++level) {
@@ -36,7 +36,7 @@ TEST(Texture, RefreshedTilesAreWhatTheWholeWouldBe) {
             }
         }
     }
-    ASSERT_FALSE(painting.canvas().touched_slots().empty());
+    ASSERT_FALSE(painting.layers().canvas().touched_slots().empty());
     const render::MapPixels whole = Texture(painting).pixels();
     for (std::size_t level = 0; level < render::kTextureLevels; ++level)
         EXPECT_EQ(map.levels[level], whole.levels[level]) << level;

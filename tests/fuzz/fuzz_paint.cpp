@@ -113,10 +113,10 @@ void run_paint(std::span<const std::uint8_t> input) {
         const stroke::Model model = stroke::prepare_model(tiny_mesh(bytes), options);
         stroke::Document painting(model);
         for (int i = 0; i < 3 && !bytes.empty(); ++i) refusing([&] { painting.paint(entry_of(bytes)); });
-        check_ink(painting.canvas());
+        check_ink(painting.layers().canvas());
         stroke::Document again(model);
         again.replay(painting.journal().entries());
-        promise(again.hash() == painting.hash(), "a replay gives the same bits");
+        promise(again.layers().hash() == painting.layers().hash(), "a replay gives the same bits");
     });
 }
 

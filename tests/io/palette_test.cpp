@@ -6,6 +6,7 @@
 #include "io/project/project.h"
 #include "io/project/restore.h"
 #include "io/strokes/inkml.h"
+#include "stroke/document/pick.h"
 
 namespace tuft::io {
 namespace {
@@ -43,11 +44,11 @@ TEST(Palette, ComesBackFromAProjectWithoutAReplay) {
         ProjectModel stored;
         stored.mesh = *model.mesh;
         stored.atlas = model.atlas;
-        stored.substrate = ink::substrate_toml(painting.painted_on());
+        stored.substrate = ink::substrate_toml(painting.materials().substrate());
         Project project = Project::create(file, stored);
         project.append(painting.journal().entries());
         EXPECT_EQ(project.format(), 4) << "programs without a palette would paint on the model";
-        project.save_canvases(painting.all_canvases(), last);
+        project.save_canvases(stroke::all_canvases(painting), last);
     }
     const Project project = Project::open(file);
     EXPECT_EQ(stroke::layer_of(project.strokes()[0]), stroke::kPaletteLayer);
@@ -56,11 +57,11 @@ TEST(Palette, ComesBackFromAProjectWithoutAReplay) {
         ADD_FAILURE() << "a replay: " << phase;
         return true;
     });
-    ASSERT_NE(back.palette(), nullptr);
-    EXPECT_EQ(back.palette()->hash(), painting.palette()->hash());
-    EXPECT_EQ(back.hash(), painting.hash());
+    ASSERT_NE(back.palette().canvas(), nullptr);
+    EXPECT_EQ(back.palette().canvas()->hash(), painting.palette().canvas()->hash());
+    EXPECT_EQ(back.layers().hash(), painting.layers().hash());
     // The eyedropper there: both pigments in the pool that was crossed second.
-    const stroke::Pick pick = back.pick_palette({0.006, 0, 0});
+    const stroke::Pick pick = stroke::pick_on_palette(back, {0.006, 0, 0});
     EXPECT_GT(pick.amounts[0], 0);
     EXPECT_GT(pick.amounts[1], 0);
     ASSERT_EQ(pick.films.size(), 1u);
@@ -73,7 +74,7 @@ TEST(Palette, IsOneMoreThanTheMostLayers) {
     const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "tuft_palette_layers.tuft";
     stroke::Document painting(model);
     painting.paint(mixing()[0]);
-    const stroke::LayerTexels palette = painting.all_canvases().back();
+    const stroke::LayerTexels palette = stroke::all_canvases(painting).back();
     ASSERT_EQ(palette.layer, stroke::kPaletteLayer);
     std::vector<stroke::LayerTexels> all;
     for (std::uint32_t i = 0; i < stroke::kMaxLayers; ++i) all.push_back({stroke::kFirstLayer + i, palette.canvas});
@@ -81,7 +82,7 @@ TEST(Palette, IsOneMoreThanTheMostLayers) {
         ProjectModel kept;
         kept.mesh = *model.mesh;
         kept.atlas = model.atlas;
-        kept.substrate = ink::substrate_toml(painting.painted_on());
+        kept.substrate = ink::substrate_toml(painting.materials().substrate());
         Project project = Project::create(file, kept);
         project.append(painting.journal().entries());
         project.save_canvases(canvases, painting.journal().entries().back().id);

@@ -37,7 +37,7 @@ double set_of(const BrushInHand& brush) {
 TEST(Carry, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
     const Model model = sheet();
     Document painting(model);
-    const double capacity = painting.brush(kBrush).capacity * ink::kFilmPerVolume;
+    const double capacity = painting.materials().brush(kBrush).capacity * ink::kFilmPerVolume;
     double left = capacity;
     for (int row = 0; row < 3; ++row) {
         const StrokeReport r = painting.paint(carried(row));
@@ -45,12 +45,12 @@ TEST(Carry, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
         EXPECT_NEAR((r.ink_given + r.ink_left) / left, 1, 1e-9);
         EXPECT_LT(r.ink_left, left);
         left = r.ink_left;
-        EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), left);
+        EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), left);
     }
     painting.paint(action(BrushActionKind::dip, "carbon"));
-    EXPECT_NEAR(painting.held(kBrush)->reservoir.remaining() / capacity, 1, 1e-12);
+    EXPECT_NEAR(painting.brushes().find(kBrush)->reservoir.remaining() / capacity, 1, 1e-12);
     painting.paint(action(BrushActionKind::rinse));
-    EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), 0);
+    EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), 0);
     const StrokeReport dry = painting.paint(carried(3));
     EXPECT_TRUE(dry.touched());
     EXPECT_EQ(dry.ink_given, 0);
@@ -59,20 +59,20 @@ TEST(Carry, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
 TEST(Carry, HairKeepsItsSetUntilItIsCombed) {
     const Model model = sheet();
     Document painting(model);
-    painting.paint(carried(0, "carbon", kBrush, 0.6 * painting.brush(kBrush).length));
-    const double set = set_of(*painting.held(kBrush));
+    painting.paint(carried(0, "carbon", kBrush, 0.6 * painting.materials().brush(kBrush).length));
+    const double set = set_of(*painting.brushes().find(kBrush));
     ASSERT_GT(set, 0);
     painting.paint(action(BrushActionKind::dip, "carbon"));
-    EXPECT_EQ(set_of(*painting.held(kBrush)), set);
-    const double ink = painting.held(kBrush)->reservoir.remaining();
+    EXPECT_EQ(set_of(*painting.brushes().find(kBrush)), set);
+    const double ink = painting.brushes().find(kBrush)->reservoir.remaining();
     painting.paint(action(BrushActionKind::reshape));
-    EXPECT_EQ(set_of(*painting.held(kBrush)), 0);
-    EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), ink);
+    EXPECT_EQ(set_of(*painting.brushes().find(kBrush)), 0);
+    EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), ink);
 }
 
 TEST(Carry, WetnessFollowsTheInkAlsoInAReplay) {
     const Model model = sheet();
-    const auto wetness = [](const Document& painting) { return painting.held(kBrush)->tuft.wetness; };
+    const auto wetness = [](const Document& painting) { return painting.brushes().find(kBrush)->tuft.wetness; };
     Document painting(model);
     painting.paint(action(BrushActionKind::dip, "carbon"));
     EXPECT_EQ(wetness(painting), 1);
@@ -99,7 +99,8 @@ TEST(Carry, ACombedFullBrushIsAFreshOne) {
     each.paint(a);
     each.paint(b);
     // The same up to the rounding of a refilled reservoir and a hair brought from elsewhere.
-    EXPECT_NEAR(carry.canvas().total(model.texels, 0) / each.canvas().total(model.texels, 0), 1, 1e-3);
+    EXPECT_NEAR(carry.layers().canvas().total(model.texels, 0) / each.layers().canvas().total(model.texels, 0), 1,
+                1e-3);
 }
 
 TEST(Carry, AnotherInkIsDippedIntoUnlessItWasToldBefore) {
@@ -107,16 +108,16 @@ TEST(Carry, AnotherInkIsDippedIntoUnlessItWasToldBefore) {
     Document painting(model);
     painting.paint(carried(0, "carbon"));
     painting.paint(carried(1, "cinnabar"));
-    EXPECT_EQ(painting.held(kBrush)->dipped, "cinnabar");
-    EXPECT_EQ(painting.held(kBrush)->reservoir.pigment(0), 0) << "washed before";
+    EXPECT_EQ(painting.brushes().find(kBrush)->dipped, "cinnabar");
+    EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.pigment(0), 0) << "washed before";
     // Told: a dip on top of what is left, which the next stroke keeps whichever of the two it names.
     painting.paint(action(BrushActionKind::dip, "carbon"));
-    const double mixed = painting.held(kBrush)->reservoir.pigment(0);
+    const double mixed = painting.brushes().find(kBrush)->reservoir.pigment(0);
     EXPECT_GT(mixed, 0);
     painting.paint(carried(2, "cinnabar"));
-    EXPECT_GT(painting.held(kBrush)->reservoir.pigment(0), 0);
-    EXPECT_LT(painting.held(kBrush)->reservoir.pigment(0), mixed);
-    EXPECT_GT(painting.held(kBrush)->reservoir.pigment(1), 0);
+    EXPECT_GT(painting.brushes().find(kBrush)->reservoir.pigment(0), 0);
+    EXPECT_LT(painting.brushes().find(kBrush)->reservoir.pigment(0), mixed);
+    EXPECT_GT(painting.brushes().find(kBrush)->reservoir.pigment(1), 0);
 }
 
 // Strokes and actions of two brushes.
@@ -140,13 +141,14 @@ TEST(Carry, ReplayIsTheSameToTheBitForAnyThreadCount) {
         set_thread_count(threads);
         Document painting(model);
         for (const JournalEntry& s : session()) painting.paint(s);
-        if (threads == 1) hash = painting.canvas().hash();
-        EXPECT_EQ(painting.canvas().hash(), hash);
+        if (threads == 1) hash = painting.layers().canvas().hash();
+        EXPECT_EQ(painting.layers().canvas().hash(), hash);
         Document again(model);
         const auto reports = again.replay(painting.journal().entries());
         EXPECT_EQ(reports.size(), 6u) << "one for each stroke, none for the actions";
-        EXPECT_EQ(again.canvas().hash(), hash);
-        EXPECT_EQ(again.held(kBrush)->reservoir.remaining(), painting.held(kBrush)->reservoir.remaining());
+        EXPECT_EQ(again.layers().canvas().hash(), hash);
+        EXPECT_EQ(again.brushes().find(kBrush)->reservoir.remaining(),
+                  painting.brushes().find(kBrush)->reservoir.remaining());
     }
     set_thread_count(0);
 }
@@ -155,8 +157,6 @@ TEST(Carry, UndoBringsTheBrushBackToo) {
     const Model model = sheet();
     for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
         Document painting(model, {.undo_bytes = undo_bytes});
-        for (const char* name : {"carbon", "cinnabar"})  // a canvas never forgets a pigment it has met
-            ink::mix_of(painting.canvas(), painting.ink(name));
         const std::vector<JournalEntry> entries = session();
         struct Moment {
             std::uint64_t canvas;
@@ -164,14 +164,15 @@ TEST(Carry, UndoBringsTheBrushBackToo) {
         };
         std::vector<Moment> moments;
         const auto now = [&]() -> Moment {
-            const BrushInHand* brush = painting.held(kBrush);
-            return {painting.canvas().hash(), brush ? brush->reservoir.remaining() : -1, brush ? set_of(*brush) : -1};
+            const BrushInHand* brush = painting.brushes().find(kBrush);
+            return {painting.layers().canvas().hash(), brush ? brush->reservoir.remaining() : -1,
+                    brush ? set_of(*brush) : -1};
         };
         for (const JournalEntry& s : entries) {
             moments.push_back(now());
             painting.paint(s);
         }
-        const std::uint64_t end = painting.canvas().hash();
+        const std::uint64_t end = painting.layers().canvas().hash();
         for (std::size_t i = entries.size(); i-- > 1;) {
             ASSERT_TRUE(painting.undo());
             const Moment m = now();
@@ -181,7 +182,7 @@ TEST(Carry, UndoBringsTheBrushBackToo) {
         }
         while (painting.redo()) {
         }
-        EXPECT_EQ(painting.canvas().hash(), end);
+        EXPECT_EQ(painting.layers().canvas().hash(), end);
     }
 }
 
@@ -194,27 +195,29 @@ TEST(Carry, AReopenedPaintingTakesAFreshBrushAndSaysSo) {
     first.paint(carried(1));
     EXPECT_EQ(first.journal().entries()[1].get<PaintStroke>().settings.dip, DipMode::carry);
     Document second(model);
-    second.adopt(first.journal().entries(), first.canvas());
-    EXPECT_EQ(second.held(kBrush), nullptr);
+    second.adopt(first.journal().entries(), {{kFirstLayer, first.layers().canvas()}},
+                 first.journal().entries().back().id);
+    EXPECT_EQ(second.brushes().find(kBrush), nullptr);
     second.paint(carried(2));
     EXPECT_EQ(second.journal().entries()[2].get<PaintStroke>().settings.dip, DipMode::each);
     second.paint(carried(3));
     Document replayed(model);
     replayed.replay(second.journal().entries());
-    EXPECT_EQ(replayed.canvas().hash(), second.canvas().hash());
+    EXPECT_EQ(replayed.layers().canvas().hash(), second.layers().canvas().hash());
 }
 
 TEST(Carry, ACancelledStrokeLeavesTheBrushAsItWas) {
     const Model model = sheet();
     Document painting(model);
     painting.paint(carried(0));
-    const double ink = painting.held(kBrush)->reservoir.remaining(), set = set_of(*painting.held(kBrush));
+    const double ink = painting.brushes().find(kBrush)->reservoir.remaining(),
+                 set = set_of(*painting.brushes().find(kBrush));
     painting.begin(carried(1));
     const auto poses = spatial_poses(carried(1).trace);
     painting.extend(std::span(poses).first(poses.size() / 2));
     painting.cancel();
-    EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), ink);
-    EXPECT_EQ(set_of(*painting.held(kBrush)), set);
+    EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), ink);
+    EXPECT_EQ(set_of(*painting.brushes().find(kBrush)), set);
     EXPECT_THROW(painting.paint(action(BrushActionKind::dip, "no-such-ink")), Error);
     EXPECT_EQ(painting.journal().entries().size(), 1u);
 }
@@ -233,12 +236,12 @@ TEST(Steady, AStrokeInPiecesIsTheWholeStrokeAndReplays) {
     in_pieces.begin(header);
     for (const brush::Pose& pose : spatial_poses(whole.trace)) in_pieces.extend(std::span(&pose, 1));
     in_pieces.end();
-    EXPECT_EQ(in_pieces.canvas().hash(), at_once.canvas().hash());
+    EXPECT_EQ(in_pieces.layers().canvas().hash(), at_once.layers().canvas().hash());
     // The journal keeps the hand as it was, so that the settings can still be changed.
     EXPECT_EQ(in_pieces.journal().entries()[0].get<PaintStroke>().trace.samples[20].position,
               whole.trace.samples[20].position);
     again.replay(in_pieces.journal().entries());
-    EXPECT_EQ(again.canvas().hash(), at_once.canvas().hash());
+    EXPECT_EQ(again.layers().canvas().hash(), at_once.layers().canvas().hash());
 }
 
 }  // namespace

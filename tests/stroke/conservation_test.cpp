@@ -47,7 +47,7 @@ TEST(Conservation, AThousandStrokesKeepEachPigment) {
     Document painting(model, {.substrate = "bisque", .undo_bytes = 1});
     std::array<double, kPigments> supplied{};
     const auto in_hair = [&](int p) {
-        const BrushInHand* held = painting.held(kBrush);
+        const BrushInHand* held = painting.brushes().find(kBrush);
         return held ? held->reservoir.pigment(p) : 0;
     };
     // What a dip brings and a rag takes is counted where it happens: in the hair.
@@ -70,7 +70,7 @@ TEST(Conservation, AThousandStrokesKeepEachPigment) {
     }
     EXPECT_EQ(touched, 1000u);
     for (int p = 0; p < kPigments; ++p) {
-        const double on_sheet = painting.canvas().total(model.texels, p);
+        const double on_sheet = painting.layers().canvas().total(model.texels, p);
         EXPECT_GT(on_sheet, 0.01 * supplied[p]) << "a part of it worth the name";
         EXPECT_NEAR((on_sheet + in_hair(p)) / supplied[p], 1, 1e-5) << kInks[p];
     }

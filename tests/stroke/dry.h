@@ -22,16 +22,17 @@ inline PaintStroke drag(std::uint64_t seed, double speed = 0.06, int rate = 200)
 }
 
 /// A brush wiped to `left` of its ink draws one stroke.
-inline Document dry_stroke(const Model& model, double left, std::uint64_t seed, const DocumentOptions& options = {},
-                           PaintStroke s = {}) {
-    Document painting(model, options);
-    if (s.trace.samples.empty()) s = drag(seed);
-    if (left < 1) {
-        painting.paint(wipe(1 - left, seed));
-        s.settings.dip = DipMode::carry;
+struct DryStroke : Document {
+    DryStroke(const Model& model, double left, std::uint64_t seed, const DocumentOptions& options = {},
+              PaintStroke s = {})
+        : Document(model, options) {
+        if (s.trace.samples.empty()) s = drag(seed);
+        if (left < 1) {
+            paint(wipe(1 - left, seed));
+            s.settings.dip = DipMode::carry;
+        }
+        paint(s);
     }
-    painting.paint(s);
-    return painting;
-}
+};
 
 }  // namespace tuft::stroke

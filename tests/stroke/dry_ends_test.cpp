@@ -30,8 +30,8 @@ PaintStroke drawn_and_lifted(std::uint64_t seed, double lift, double on) {
 std::vector<std::vector<bool>> inked(const Document& p) {
     std::vector<std::vector<bool>> rows(kSize, std::vector<bool>(kSize));
     const atlas::TexelMap& map = p.model().texels;
-    for (const std::uint32_t slot : p.canvas().touched_slots()) {
-        const ink::Plane* plane = p.canvas().plane(slot, 0);
+    for (const std::uint32_t slot : p.layers().canvas().touched_slots()) {
+        const ink::Plane* plane = p.layers().canvas().plane(slot, 0);
         for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
             if (map.tiles[slot].area[t] <= 0 || (*plane)[t] < 0.1f) continue;
             const Vec3 at = (Vec3(map.position(slot, t)) / kSide + 0.5) * static_cast<double>(kSize - 17);
@@ -122,8 +122,8 @@ double off_the_stroke(const Document& p, double from, double to) {
     const atlas::TexelMap& map = p.model().texels;
     std::vector<double> tone(kSize * kSize, 0);
     const auto cell = [&](double v) { return static_cast<std::size_t>((v / kSide + 0.5) * (kSize - 1)); };
-    for (const std::uint32_t slot : p.canvas().touched_slots()) {
-        const ink::Plane* plane = p.canvas().plane(slot, 0);
+    for (const std::uint32_t slot : p.layers().canvas().touched_slots()) {
+        const ink::Plane* plane = p.layers().canvas().plane(slot, 0);
         for (int t = 0; plane && t < atlas::kTileTexels; ++t)
             if (map.tiles[slot].area[t] > 0)
                 tone[cell(map.position(slot, t).y) * kSize + cell(map.position(slot, t).x)] =
@@ -155,7 +155,7 @@ TEST(DryBrush, ASplitTipBeginsAndEndsAlongTheStroke) {
             const double u = static_cast<double>(i) / n;
             s.trace.samples[i].position.z = std::lerp(top, low, std::min(1.0, std::min(u, 1 - u) * 24));
         }
-        const Document p = dry_stroke(model, 0.14, seed, {}, s);
+        const DryStroke p(model, 0.14, seed, {}, s);
         begin += off_the_stroke(p, -0.020, -0.011) / 3;
         end += off_the_stroke(p, 0.007, 0.016) / 3;
     }
@@ -184,7 +184,7 @@ TEST(DryBrush, ALeaningTuftThatSwingsRoundLeavesNoFan) {
     double begin = 0, end = 0;
     for (const std::uint64_t seed : {21, 22, 23}) {
         const PaintStroke s = leaning(seed);
-        const Document p = dry_stroke(model, 0.28, seed, {}, s);
+        const DryStroke p(model, 0.28, seed, {}, s);
         begin += off_the_stroke(p, -0.020, -0.010) / 3;
         end += off_the_stroke(p, 0.009, 0.020) / 3;
     }
@@ -200,8 +200,8 @@ double loose_ink(const Document& p, int gap) {
     const auto n = static_cast<int>(kSize);
     std::vector<char> inked(static_cast<std::size_t>(n) * n, 0);
     const double texel = p.model().texels.texel_size;
-    for (const std::uint32_t slot : p.canvas().touched_slots()) {
-        const ink::Plane* plane = p.canvas().plane(slot, 0);
+    for (const std::uint32_t slot : p.layers().canvas().touched_slots()) {
+        const ink::Plane* plane = p.layers().canvas().plane(slot, 0);
         for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
             if (!((*plane)[t] > 0.1f)) continue;
             const Vec3 at(p.model().texels.position(slot, t));

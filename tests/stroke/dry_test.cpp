@@ -17,8 +17,8 @@ namespace {
 double covered(const Document& p, double from = -1, double to = 1) {
     double sum = 0;
     const atlas::TexelMap& map = p.model().texels;
-    for (const std::uint32_t slot : p.canvas().touched_slots()) {
-        const ink::Plane* plane = p.canvas().plane(slot, 0);
+    for (const std::uint32_t slot : p.layers().canvas().touched_slots()) {
+        const ink::Plane* plane = p.layers().canvas().plane(slot, 0);
         for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
             const auto x = static_cast<double>(map.position(slot, t).x);
             if (x >= from && x < to && map.tiles[slot].area[t] > 0)
@@ -33,7 +33,7 @@ double apart(const Document& a, const Document& b) {
     double difference = 0, all = 0;
     const atlas::TexelMap& map = a.model().texels;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
-        const ink::Plane *p = a.canvas().plane(slot, 0), *q = b.canvas().plane(slot, 0);
+        const ink::Plane *p = a.layers().canvas().plane(slot, 0), *q = b.layers().canvas().plane(slot, 0);
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             const double x = p ? std::min(1.0f, (*p)[t]) : 0, y = q ? std::min(1.0f, (*q)[t]) : 0;
             difference += std::abs(x - y);
@@ -45,17 +45,17 @@ double apart(const Document& a, const Document& b) {
 
 TEST(DryBrush, AFullOneClosesWhateverItsHair) {
     const Model model = sheet();
-    const Document a = dry_stroke(model, 1, 1), b = dry_stroke(model, 1, 2);
+    const DryStroke a(model, 1, 1), b(model, 1, 2);
     // The shape is the outline's; only how much each bundle gives differs, and so the film by a little.
     EXPECT_LT(apart(a, b), 0.005);
 }
 
 TEST(DryBrush, LessInkLeavesMoreWhite) {
     const Model model = sheet();
-    double before = covered(dry_stroke(model, 1, 3));
+    double before = covered(DryStroke(model, 1, 3));
     const double full = before;
     for (const double left : {0.3, 0.15, 0.05}) {
-        const double now = covered(dry_stroke(model, left, 3));
+        const double now = covered(DryStroke(model, left, 3));
         EXPECT_LT(now, 0.9 * before) << left;
         before = now;
     }
@@ -65,8 +65,8 @@ TEST(DryBrush, LessInkLeavesMoreWhite) {
 
 TEST(DryBrush, AnotherSeedOtherStreaksTheSameSeedTheSameBits) {
     const Model model = sheet();
-    const Document a = dry_stroke(model, 0.15, 1), b = dry_stroke(model, 0.15, 1), c = dry_stroke(model, 0.15, 2);
-    EXPECT_EQ(a.canvas().hash(), b.canvas().hash());
+    const DryStroke a(model, 0.15, 1), b(model, 0.15, 1), c(model, 0.15, 2);
+    EXPECT_EQ(a.layers().canvas().hash(), b.layers().canvas().hash());
     EXPECT_GT(apart(a, c), 0.3);
     EXPECT_NEAR(covered(a) / covered(c), 1, 0.4) << "as dry as the other";
 }
@@ -74,16 +74,15 @@ TEST(DryBrush, AnotherSeedOtherStreaksTheSameSeedTheSameBits) {
 TEST(DryBrush, ThreadsDoNotChangeABit) {
     const Model model = sheet();
     set_thread_count(1);
-    const std::uint64_t one = dry_stroke(model, 0.2, 4, {.substrate = "rice-paper"}).canvas().hash();
+    const std::uint64_t one = DryStroke(model, 0.2, 4, {.substrate = "rice-paper"}).layers().hash();
     set_thread_count(3);
-    EXPECT_EQ(dry_stroke(model, 0.2, 4, {.substrate = "rice-paper"}).canvas().hash(), one);
+    EXPECT_EQ(DryStroke(model, 0.2, 4, {.substrate = "rice-paper"}).layers().hash(), one);
     set_thread_count(0);
 }
 
 TEST(DryBrush, StreaksLieWhereTheyLieAtAnySamplingRate) {
     const Model model = sheet();
-    const Document slow = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 100)),
-                   fast = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 800));
+    const DryStroke slow(model, 0.2, 5, {}, drag(5, 0.06, 100)), fast(model, 0.2, 5, {}, drag(5, 0.06, 800));
     // Another seed differs in more than 0.3; the corners of the press are rounded by a sample.
     EXPECT_LT(apart(slow, fast), 0.1);
 }
@@ -92,8 +91,8 @@ TEST(DryBrush, StreaksLieWhereTheyLieAtAnySamplingRate) {
 double half_tone(const Document& p, const ink::Ink& ink) {
     const double extinction = ink::extinction_of(ink);
     double half = 0, all = 0;
-    for (const std::uint32_t slot : p.canvas().touched_slots()) {
-        const ink::Plane* plane = p.canvas().plane(slot, 0);
+    for (const std::uint32_t slot : p.layers().canvas().touched_slots()) {
+        const ink::Plane* plane = p.layers().canvas().plane(slot, 0);
         for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
             const double shows = -std::expm1(-extinction * static_cast<double>((*plane)[t]));
             if (shows < 0.1) continue;
@@ -115,8 +114,8 @@ Streaks streaks_of(const Document& p, const ink::Ink& ink) {
     const double extinction = ink::extinction_of(ink), texel = p.model().texels.texel_size;
     const auto n = static_cast<int>(std::ceil(kSide / texel));
     std::vector<char> inked(static_cast<std::size_t>(n) * n, 0);
-    for (const std::uint32_t slot : p.canvas().touched_slots()) {
-        const ink::Plane* plane = p.canvas().plane(slot, 0);
+    for (const std::uint32_t slot : p.layers().canvas().touched_slots()) {
+        const ink::Plane* plane = p.layers().canvas().plane(slot, 0);
         for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
             if (-std::expm1(-extinction * static_cast<double>((*plane)[t])) < 0.5) continue;
             const Vec3 at(p.model().texels.position(slot, t));
@@ -147,7 +146,7 @@ TEST(DryBrush, HairLeavesInkOrNone) {
         double part[2];
         int k = 0;
         for (const Model* model : {&coarse, &fine}) {
-            const Document p = dry_stroke(*model, left, seed);
+            const DryStroke p(*model, left, seed);
             const Streaks streaks = streaks_of(p, ink);
             part[k] = half_tone(p, ink);
             EXPECT_LT(part[k] / (1 - part[k]) * streaks.area, streaks.edge * model->texels.texel_size) << seed;
@@ -162,8 +161,8 @@ std::vector<double> by_squares(const Document& p, double side) {
     const int n = static_cast<int>(std::ceil(kSide / side));
     std::vector<double> sum(static_cast<std::size_t>(n) * n, 0);
     const atlas::TexelMap& map = p.model().texels;
-    for (const std::uint32_t slot : p.canvas().touched_slots()) {
-        const ink::Plane* plane = p.canvas().plane(slot, 0);
+    for (const std::uint32_t slot : p.layers().canvas().touched_slots()) {
+        const ink::Plane* plane = p.layers().canvas().plane(slot, 0);
         for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
             const double area = static_cast<double>(map.tiles[slot].area[t]);
             if (!(area > 0)) continue;
@@ -191,7 +190,7 @@ TEST(DryBrush, AFinerAtlasShowsTheSameStreaks) {
     };
     for (const char* ground : {"porcelain", "rice-paper"}) {
         const auto squares = [&](const Model& model, std::uint64_t seed) {
-            return by_squares(dry_stroke(model, 0.2, seed, {.substrate = ground}), 0.18e-3);
+            return by_squares(DryStroke(model, 0.2, seed, {.substrate = ground}), 0.18e-3);
         };
         const std::vector<double> a = squares(coarse, 5), b = squares(fine, 5);
         EXPECT_LT(apart_by(a, b), 0.5 * apart_by(a, squares(coarse, 6))) << ground << " " << apart_by(a, b);
@@ -203,21 +202,21 @@ TEST(DryBrush, TuftAndTexelsKeepTheInk) {
     const Model model = sheet();
     Document painting(model);
     painting.paint(wipe(0.8, 6));
-    const double start = painting.held(kBrush)->reservoir.remaining();
+    const double start = painting.brushes().find(kBrush)->reservoir.remaining();
     PaintStroke s = drag(6);
     s.settings.dip = DipMode::carry;
     const StrokeReport r = painting.paint(s);
-    EXPECT_NEAR(r.ink_given + painting.held(kBrush)->reservoir.remaining(), start, 1e-12 * start);
+    EXPECT_NEAR(r.ink_given + painting.brushes().find(kBrush)->reservoir.remaining(), start, 1e-12 * start);
     // Texels are floats: 1e-6 of the sum, for each pigment by itself.
-    EXPECT_NEAR(painting.canvas().total(model.texels, 0), r.ink_given, 1e-6 * start);
+    EXPECT_NEAR(painting.layers().canvas().total(model.texels, 0), r.ink_given, 1e-6 * start);
 }
 
 TEST(DryBrush, AStrokeRunsDryByItself) {
     const Model model = sheet();
     Document painting(model);
-    brush::Preset small = painting.brush(kBrush);
+    brush::Preset small = painting.materials().brush(kBrush);
     small.capacity *= 0.006;  // about what the stroke asks for
-    painting.use_brush(small);
+    painting.use(small);
     painting.paint(drag(7));
     double before = 1e9;
     // Thirds of the stroke's even part, which the hair that the hand lifts from x = 10 mm on no longer reaches, some 7
@@ -241,11 +240,11 @@ std::vector<std::vector<bool>> rows_of_slanted_stroke(const Model& model, std::u
         p.position = Vec3{p.position.x, 0, 0} + length * (turn * Vec3{0, 0, 1}) + Vec3{0, 0, 1e-3 - press};
     }
     s.settings.spacing = 1;
-    const Document painting = dry_stroke(model, 0.3, seed, {}, s);
+    const DryStroke painting(model, 0.3, seed, {}, s);
     const atlas::TexelMap& map = model.texels;
     std::vector<std::vector<bool>> rows(kSize, std::vector<bool>(kSize, false));
-    for (const std::uint32_t slot : painting.canvas().touched_slots())
-        if (const ink::Plane* plane = painting.canvas().plane(slot, 0))
+    for (const std::uint32_t slot : painting.layers().canvas().touched_slots())
+        if (const ink::Plane* plane = painting.layers().canvas().plane(slot, 0))
             for (int t = 0; t < atlas::kTileTexels; ++t) {
                 const Vec3 at(map.position(slot, t));
                 if (std::abs(at.x) < 8e-3)
@@ -277,8 +276,8 @@ double raggedness(const Document& p, int side, double x0, double x1) {
     constexpr double texel = kSide / (kSize - 16), strip = 0.5e-3;
     const atlas::TexelMap& map = p.model().texels;
     const auto each = [&](auto f) {
-        for (const std::uint32_t slot : p.canvas().touched_slots())
-            if (const ink::Plane* plane = p.canvas().plane(slot, 0))
+        for (const std::uint32_t slot : p.layers().canvas().touched_slots())
+            if (const ink::Plane* plane = p.layers().canvas().plane(slot, 0))
                 for (int t = 0; t < atlas::kTileTexels; ++t)
                     if (const Vec3 at(map.position(slot, t)); at.x > x0 && at.x < x1)
                         f(static_cast<std::size_t>((at.x - x0) / texel), side * at.y,
@@ -340,9 +339,9 @@ TEST(DryBrush, PaintingDriesTheTuft) {
     // Its wetness is what it holds over a quarter of its capacity, x (2 - x), and only falls.
     const Model model = sheet();
     Document painting(model);
-    brush::Preset small = painting.brush(kBrush);
+    brush::Preset small = painting.materials().brush(kBrush);
     small.capacity *= 0.006;
-    painting.use_brush(small);
+    painting.use(small);
     painting.paint(wipe(0.6, 7));
     double wet = 1, left = 1e9;
     for (int i = 0; i < 12; ++i) {
@@ -350,7 +349,7 @@ TEST(DryBrush, PaintingDriesTheTuft) {
         for (StrokeSample& sample : s.trace.samples) sample.position.y += 5e-3 * (i - 5.5);  // each on bare ground
         s.settings.dip = DipMode::carry;
         const StrokeReport r = painting.paint(s);
-        const BrushInHand* held = painting.held(kBrush);
+        const BrushInHand* held = painting.brushes().find(kBrush);
         ASSERT_NE(held, nullptr);
         EXPECT_LT(r.ink_left, left) << i;
         EXPECT_LE(held->tuft.wetness, wet) << i;
@@ -365,14 +364,14 @@ TEST(DryBrush, PaintingDriesTheTuft) {
 
 TEST(DryBrush, FastHairIsDrierAndRoughGroundShowsItsGrain) {
     const Model model = sheet();
-    const double slow = covered(dry_stroke(model, 0.4, 8, {}, drag(8, 0.02))),
-                 fast = covered(dry_stroke(model, 0.4, 8, {}, drag(8, 0.5)));
+    const double slow = covered(DryStroke(model, 0.4, 8, {}, drag(8, 0.02))),
+                 fast = covered(DryStroke(model, 0.4, 8, {}, drag(8, 0.5)));
     EXPECT_LT(fast, 0.97 * slow);
-    const double glaze = covered(dry_stroke(model, 0.12, 8)),
-                 paper = covered(dry_stroke(model, 0.12, 8, {.substrate = "rice-paper"}));
+    const double glaze = covered(DryStroke(model, 0.12, 8)),
+                 paper = covered(DryStroke(model, 0.12, 8, {.substrate = "rice-paper"}));
     EXPECT_LT(paper, 0.9 * glaze);
-    const double full_glaze = covered(dry_stroke(model, 1, 8)),
-                 full_paper = covered(dry_stroke(model, 1, 8, {.substrate = "rice-paper"}));
+    const double full_glaze = covered(DryStroke(model, 1, 8)),
+                 full_paper = covered(DryStroke(model, 1, 8, {.substrate = "rice-paper"}));
     EXPECT_NEAR(full_paper / full_glaze, 1, 1e-3) << "a full tuft fills it";
 }
 
@@ -387,11 +386,11 @@ TEST(DryBrush, AShallowDipIsDarkAtTheTipAndReplays) {
     dip.ink = "cinnabar";
     dip.extent = {.depth = 1, .amount = 0.7};
     painting.paint(dip);
-    EXPECT_NEAR(painting.held(kBrush)->reservoir.fullness(), 0.7, 1e-12);
+    EXPECT_NEAR(painting.brushes().find(kBrush)->reservoir.fullness(), 0.7, 1e-12);
     dip.ink = "carbon";
     dip.extent = {.depth = 0.15, .amount = 1};
     painting.paint(dip);
-    const ink::Reservoir& tuft = painting.held(kBrush)->reservoir;
+    const ink::Reservoir& tuft = painting.brushes().find(kBrush)->reservoir;
     const std::size_t cells = tuft.n_cells();
     EXPECT_GT(tuft.saturation(cells - 1), 0.99) << "the tip is filled up";
     EXPECT_NEAR(tuft.saturation(0), 0.7, 1e-12) << "the belly is as it was";
@@ -401,8 +400,9 @@ TEST(DryBrush, AShallowDipIsDarkAtTheTipAndReplays) {
     painting.paint(s);
     Document again(model);
     again.replay(painting.journal().entries());
-    EXPECT_EQ(again.canvas().hash(), painting.canvas().hash());
-    EXPECT_EQ(again.held(kBrush)->reservoir.remaining(), painting.held(kBrush)->reservoir.remaining());
+    EXPECT_EQ(again.layers().canvas().hash(), painting.layers().canvas().hash());
+    EXPECT_EQ(again.brushes().find(kBrush)->reservoir.remaining(),
+              painting.brushes().find(kBrush)->reservoir.remaining());
 }
 
 TEST(DryBrush, LeavesFlyingWhiteWithWetInkAsWithInkThatStays) {
@@ -412,8 +412,8 @@ TEST(DryBrush, LeavesFlyingWhiteWithWetInkAsWithInkThatStays) {
     for (const bool wet : {false, true}) {
         PaintStroke s = drag(5, 0.2);
         if (wet) s.settings.film = FilmModel::wet;
-        const Document painting = dry_stroke(model, 0.18, 5, {}, s);
-        ink[wet] = painting.canvas().total(model.texels, 0);
+        const DryStroke painting(model, 0.18, 5, {}, s);
+        ink[wet] = painting.layers().canvas().total(model.texels, 0);
     }
     EXPECT_GT(ink[1], 0.4 * ink[0]);
     EXPECT_LT(ink[1], 1.5 * ink[0]) << "the same hair, pressed the same way";

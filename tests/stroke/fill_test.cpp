@@ -45,7 +45,8 @@ PaintStroke eraser(double depth = 3e-3) {
 
 double total(const Document& p) {
     double sum = 0;
-    for (int k = 0; k < static_cast<int>(p.canvas().pigments().size()); ++k) sum += p.canvas().total(model().texels, k);
+    for (int k = 0; k < static_cast<int>(p.layers().canvas().pigments().size()); ++k)
+        sum += p.layers().canvas().total(model().texels, k);
     return sum;
 }
 
@@ -56,7 +57,7 @@ double film_at(const Document& p, const Vec3& at, int pigment) {
         atlas::texel_at(*model().mesh, model().atlas, model().texels, near->triangle, near->position);
     double sum = 0;
     for (int film = 0; film < ink::kFilms; ++film)
-        if (const ink::Plane* w = p.canvas().film_plane(texel.slot, film, pigment))
+        if (const ink::Plane* w = p.layers().canvas().film_plane(texel.slot, film, pigment))
             sum += static_cast<double>((*w)[texel.texel]);
     return sum;
 }
@@ -64,11 +65,12 @@ double film_at(const Document& p, const Vec3& at, int pigment) {
 TEST(Fill, IsFilmTimesArea) {
     Document p(model());
     const StrokeReport r = p.paint(fill("carbon", {.film = 1.5}));
-    const double wanted = 1.5 * area() * p.ink("carbon").strength();
+    const double wanted = 1.5 * area() * p.materials().ink("carbon").strength();
     EXPECT_NEAR(total(p) / wanted, 1, 1e-6);  // films are single precision
     EXPECT_NEAR(r.ink_given / total(p), 1, 1e-12);
     p.paint(fill("carbon", {.film = 1000}));
-    EXPECT_NEAR(total(p) / (static_cast<double>(p.substrate().capacity) * area()), 1, 1e-6) << "no more than stays";
+    EXPECT_NEAR(total(p) / (static_cast<double>(p.appearance().substrate().capacity) * area()), 1, 1e-6)
+        << "no more than stays";
     ASSERT_TRUE(p.undo());
     EXPECT_NEAR(total(p) / wanted, 1, 1e-6);
     ASSERT_TRUE(p.undo());
@@ -83,7 +85,7 @@ TEST(Fill, AGradientIsLinearBetweenItsEnds) {
                               .to_ink = "indigo",
                               .from = {-0.02, 0, 0},
                               .to = {0.02, 0, 0}}));
-    const double red = p.ink("cinnabar").strength(), blue = p.ink("indigo").strength();
+    const double red = p.materials().ink("cinnabar").strength(), blue = p.materials().ink("indigo").strength();
     for (const double x : {-0.025, -0.02, -0.01, 0.0, 0.0137, 0.02, 0.028}) {
         const double t = std::clamp((x + 0.02) / 0.04, 0.0, 1.0), film = 2 - 1.5 * t;
         // The texel asked for lies up to 0.7 texels away: 0.04 mm of 40.
@@ -93,8 +95,8 @@ TEST(Fill, AGradientIsLinearBetweenItsEnds) {
     Document round(model());
     round.paint(
         fill("carbon", {.film = 0, .gradient = Gradient::round, .to_film = 1, .from = {0, 0, 0}, .to = {0, 0.02, 0}}));
-    EXPECT_NEAR(film_at(round, {0.006, 0.008, 0}, 0), 0.5 * round.ink("carbon").strength(), 4e-3);
-    EXPECT_NEAR(film_at(round, {0.025, 0, 0}, 0), round.ink("carbon").strength(), 1e-6);
+    EXPECT_NEAR(film_at(round, {0.006, 0.008, 0}, 0), 0.5 * round.materials().ink("carbon").strength(), 4e-3);
+    EXPECT_NEAR(film_at(round, {0.025, 0, 0}, 0), round.materials().ink("carbon").strength(), 1e-6);
 }
 
 // Two sheets that do not hang together, and the charts of a cube.
@@ -116,12 +118,12 @@ TEST(Fill, APartAndAChartEndWhereTheyEnd) {
     for (const Region region : {Region::part, Region::chart}) {
         Document p(two);
         p.paint(fill("carbon", {.film = 1, .region = region, .at = {0.01, 0.01, 0.011}}));
-        const double strength = p.ink("carbon").strength();
+        const double strength = p.materials().ink("carbon").strength();
         // 256² texels approximate the area of a chart to a texel along its rim.
-        EXPECT_NEAR(p.canvas().total(two.texels, 0) / strength, 4e-4, 0.03 * 4e-4);
-        for (const std::uint32_t slot : p.canvas().touched_slots())
+        EXPECT_NEAR(p.layers().canvas().total(two.texels, 0) / strength, 4e-4, 0.03 * 4e-4);
+        for (const std::uint32_t slot : p.layers().canvas().touched_slots())
             for (int t = 0; t < atlas::kTileTexels; ++t)
-                if ((*p.canvas().plane(slot, 0))[t] > 0) {
+                if ((*p.layers().canvas().plane(slot, 0))[t] > 0) {
                     EXPECT_GT(two.texels.position(slot, t).z, 0.009f);
                 }
     }
@@ -133,7 +135,7 @@ TEST(Eraser, TakesWhatItsContactCoversAndTheBooksBalance) {
     p.paint(Dry{});  // a dry film below
     p.paint(fill("cinnabar", {.film = 1}));
     const double before = total(p);
-    const std::uint64_t hash = p.hash();
+    const std::uint64_t hash = p.layers().hash();
     const StrokeReport r = p.paint(eraser());
     EXPECT_GT(r.stamps, 10u);
     EXPECT_EQ(r.ink_given, 0);
@@ -141,12 +143,13 @@ TEST(Eraser, TakesWhatItsContactCoversAndTheBooksBalance) {
     EXPECT_NEAR((total(p) + r.removed.sum()) / before, 1, 1e-6);
     // Both films go, in proportion to what was there.
     EXPECT_NEAR(r.removed.pigment[0] / r.removed.pigment[1],
-                2 * p.ink("carbon").strength() / p.ink("cinnabar").strength(), 1e-3);
+                2 * p.materials().ink("carbon").strength() / p.materials().ink("cinnabar").strength(), 1e-3);
     EXPECT_EQ(film_at(p, {0, 0, 0}, 0), 0) << "the middle of the stroke is bare";
-    EXPECT_EQ(film_at(p, {0, 0.02, 0}, 0), static_cast<double>(2 * static_cast<float>(p.ink("carbon").strength())));
-    EXPECT_EQ(p.held("wolf-small"), nullptr) << "an eraser is no brush of the rack";
+    EXPECT_EQ(film_at(p, {0, 0.02, 0}, 0),
+              static_cast<double>(2 * static_cast<float>(p.materials().ink("carbon").strength())));
+    EXPECT_EQ(p.brushes().find("wolf-small"), nullptr) << "an eraser is no brush of the rack";
     ASSERT_TRUE(p.undo());
-    EXPECT_EQ(p.hash(), hash);
+    EXPECT_EQ(p.layers().hash(), hash);
     ASSERT_TRUE(p.redo());
     EXPECT_NEAR((total(p) + r.removed.sum()) / before, 1, 1e-6);
 }
@@ -157,12 +160,13 @@ TEST(Eraser, FilmOnlyFallsAndMoreSoUnderMorePressure) {
         Document p(model());
         p.paint(fill("carbon", {.film = 2}));
         std::vector<ink::TileSnapshot> before;
-        for (const std::uint32_t slot : p.canvas().touched_slots()) before.push_back(p.canvas().snapshot(slot));
+        for (const std::uint32_t slot : p.layers().canvas().touched_slots())
+            before.push_back(p.layers().canvas().snapshot(slot));
         const double removed = p.paint(eraser(depth)).removed.sum();
         EXPECT_GT(removed, last) << depth;
         last = removed;
         for (const ink::TileSnapshot& tile : before) {
-            const ink::TileSnapshot after = p.canvas().snapshot(tile.slot);
+            const ink::TileSnapshot after = p.layers().canvas().snapshot(tile.slot);
             ASSERT_EQ(after.amounts.size(), tile.amounts.size());
             for (std::size_t i = 0; i < tile.amounts.size(); ++i) {
                 ASSERT_LE(after.amounts[i], tile.amounts[i]);
@@ -174,7 +178,7 @@ TEST(Eraser, FilmOnlyFallsAndMoreSoUnderMorePressure) {
 
 /// How dark a texel looks, 0–1: what it hides.
 double looks(const Document& p, std::uint32_t slot, int t) {
-    const ink::EraseStart start = ink::erase_start(p.canvas(), slot);
+    const ink::EraseStart start = ink::erase_start(p.layers().canvas(), slot);
     return 1 - std::exp(-static_cast<double>(start.hides[t]));
 }
 
@@ -183,7 +187,7 @@ TEST(Eraser, TheSameStrokeLeavesNothingOfIt) {
     p.paint(quick());
     double before = 0, after = 0, worst = 0;
     const auto each = [&](auto&& fn) {
-        for (const std::uint32_t slot : p.canvas().touched_slots())
+        for (const std::uint32_t slot : p.layers().canvas().touched_slots())
             for (int t = 0; t < atlas::kTileTexels; ++t) fn(looks(p, slot, t));
     };
     each([&](double look) { before += look; });
@@ -196,12 +200,12 @@ TEST(Eraser, TheSameStrokeLeavesNothingOfIt) {
 TEST(Eraser, WorksOnItsLayerAlone) {
     Document p(model());
     p.paint(fill("carbon", {.film = 2}));
-    p.paint(add_on_top(p.layers(), "top"));
-    const std::uint64_t below = p.canvas().hash();
+    p.paint(add_on_top(p.layers().table(), "top"));
+    const std::uint64_t below = p.layers().canvas().hash();
     PaintStroke s = eraser();
     s.layer = 2;
     EXPECT_EQ(p.paint(s).removed.sum(), 0) << "nothing is there";
-    EXPECT_EQ(p.canvas().hash(), below);
+    EXPECT_EQ(p.layers().canvas().hash(), below);
 }
 
 TEST(Eraser, ReplaysToTheBitForAnyThreadCount) {
@@ -213,8 +217,8 @@ TEST(Eraser, ReplaysToTheBitForAnyThreadCount) {
                      {.film = 1, .gradient = Gradient::round, .to_film = 2, .from = {0, 0, 0}, .to = {0, 0.02, 0}}));
         p.paint(quick());
         p.paint(eraser(2e-3));
-        if (threads == 1) hash = p.hash();
-        EXPECT_EQ(p.hash(), hash);
+        if (threads == 1) hash = p.layers().hash();
+        EXPECT_EQ(p.layers().hash(), hash);
         Document again(model());
         std::vector<JournalEntry> strokes = p.journal().entries();
         for (JournalEntry& s : strokes) {  // as a file has them
@@ -225,7 +229,7 @@ TEST(Eraser, ReplaysToTheBitForAnyThreadCount) {
             s = back;
         }
         again.replay(strokes);
-        EXPECT_EQ(again.hash(), hash);
+        EXPECT_EQ(again.layers().hash(), hash);
     }
     set_thread_count(0);
 }

@@ -18,7 +18,7 @@ std::string reason_on(const Model& revised, const PaintStroke& stroke) {
     const Model former = sheet();
     Document painting(revised);
     const auto reports = painting.replay({stroke});
-    const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
+    const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
     const auto mismatches =
         find_mismatches(reports, compare_fit(painting.journal().entries(), length_of, *former.query, *revised.query));
     EXPECT_LE(mismatches.size(), 1u);

@@ -37,7 +37,7 @@ TEST(Forces, GrowAndFallWithoutJumpsAndStayWithinTheClamp) {
     const Model model = sheet();
     for (const char* name : {"wolf-small", "goat-medium", "wolf-medium"}) {
         Document painting(model, {.record_forces = true});
-        const brush::Preset& preset = painting.brush(name);
+        const brush::Preset& preset = painting.materials().brush(name);
         const StrokeReport r = painting.paint(press_drag_lift(name, 0.3 * preset.length));
         ASSERT_GT(r.forces.size(), 500u);
         double greatest = 0, fastest = 0;
@@ -63,7 +63,7 @@ TEST(Forces, GrowAndFallWithoutJumpsAndStayWithinTheClamp) {
 TEST(Forces, PullBackAndTurnAsTheyMust) {
     const Model model = sheet();
     Document painting(model, {.record_forces = true});
-    const brush::Preset& preset = painting.brush("wolf-medium");
+    const brush::Preset& preset = painting.materials().brush("wolf-medium");
     const StrokeReport r = painting.paint(press_drag_lift("wolf-medium", 0.25 * preset.length));
     bool dragged = false;
     for (const ForceRecord& f : r.forces) {
@@ -83,7 +83,7 @@ TEST(Forces, PullBackAndTurnAsTheyMust) {
 TEST(Forces, TellWhenTheSurfaceIsNear) {
     const Model model = sheet();
     Document painting(model, {.record_forces = true});
-    const double length = painting.brush("wolf-small").length;
+    const double length = painting.materials().brush("wolf-small").length;
     const auto resting = [&](double height) {
         PaintStroke s = line("wolf-small", 4e-3);
         for (StrokeSample& p : s.trace.samples) p.position.z = length + height;

@@ -9,6 +9,7 @@
 #include "core/system/parallel.h"
 #include "entry_text.h"
 #include "sheet.h"
+#include "stroke/journal/tables.h"
 
 namespace tuft::stroke {
 namespace {
@@ -27,18 +28,18 @@ PaintStroke on(std::uint32_t layer, int row = 0, const std::string& ink = "carbo
 }
 
 std::uint32_t add(Document& p, const std::string& name) {
-    p.paint(add_on_top(p.layers(), name));
-    return p.layers().layers.back().id;
+    p.paint(add_on_top(p.layers().table(), name));
+    return p.layers().table().layers.back().id;
 }
 
 void set(Document& p, std::uint32_t id, const std::function<void(Layer&)>& how) {
-    Layer layer = *p.layers().find(id);
+    Layer layer = *p.layers().table().find(id);
     how(layer);
-    p.paint(changed(p.layers(), layer));
+    p.paint(changed(p.layers().table(), layer));
 }
 
 std::vector<std::uint8_t> picture(const Document& p) {
-    return ink::compose_srgb8(p.stack(), model().texels, p.substrate()).texels;
+    return ink::compose_srgb8(p.appearance().stack(), model().texels, p.appearance().substrate()).texels;
 }
 
 TEST(Layers, OneOverAnEmptyOneIsASingleLayerToTheBit) {
@@ -47,16 +48,18 @@ TEST(Layers, OneOverAnEmptyOneIsASingleLayerToTheBit) {
     two.paint(on(add(two, "gold")));
     below.paint(on(kFirstLayer));
     add(below, "gold");
-    EXPECT_TRUE(two.canvas(2).same_contents(single.canvas()));
-    EXPECT_TRUE(below.canvas().same_contents(single.canvas()));
+    EXPECT_TRUE(two.layers().canvas(2).same_contents(single.layers().canvas()));
+    EXPECT_TRUE(below.layers().canvas().same_contents(single.layers().canvas()));
     const auto linear = [](const Document& p) {
-        return ink::compose_linear(p.stack(), model().texels, p.substrate()).texels;
+        return ink::compose_linear(p.appearance().stack(), model().texels, p.appearance().substrate()).texels;
     };
     EXPECT_EQ(linear(two), linear(single));
     EXPECT_EQ(linear(below), linear(single));
-    const auto height = [](const Document& p) { return ink::compose_height(p.stack(), model().texels).texels; };
+    const auto height = [](const Document& p) {
+        return ink::compose_height(p.appearance().stack(), model().texels).texels;
+    };
     EXPECT_EQ(height(two), height(single));
-    EXPECT_EQ(single.hash(), single.canvas().hash()) << "as without layers";
+    EXPECT_EQ(single.layers().hash(), single.layers().canvas().hash()) << "as without layers";
 }
 
 TEST(Layers, AHiddenOneAndOneWithoutOpacityContributeNothing) {
@@ -71,10 +74,10 @@ TEST(Layers, AHiddenOneAndOneWithoutOpacityContributeNothing) {
     EXPECT_EQ(picture(p), before);
     set(p, gold, [](Layer& l) { l.visible = true, l.opacity = 0; });
     EXPECT_EQ(picture(p), before);
-    p.show_only({gold});
-    EXPECT_TRUE(p.stack().layers.empty()) << "shown, but without opacity";
+    p.appearance().show_only({gold});
+    EXPECT_TRUE(p.appearance().stack().layers.empty()) << "shown, but without opacity";
     set(p, gold, [](Layer& l) { l.opacity = 1; });
-    p.show_only({});
+    p.appearance().show_only({});
     EXPECT_EQ(picture(p), both);
 }
 
@@ -83,28 +86,28 @@ TEST(Layers, AChangeOfTheLookIsDirtyWhereTheLayerHasInk) {
     Document p(model());
     p.paint(on(kFirstLayer, -3));
     const std::uint32_t gold = add(p, "gold");
-    p.take_dirty();
+    p.appearance().take_dirty();
     p.paint(on(gold, 3));
-    const std::vector<std::uint32_t> touched = p.canvas(gold).touched_slots();
-    EXPECT_EQ(p.take_dirty(), touched);
+    const std::vector<std::uint32_t> touched = p.layers().canvas(gold).touched_slots();
+    EXPECT_EQ(p.appearance().take_dirty(), touched);
     set(p, gold, [](Layer& l) { l.visible = false; });
-    EXPECT_EQ(p.take_dirty(), touched);
-    EXPECT_TRUE(p.take_dirty().empty());
+    EXPECT_EQ(p.appearance().take_dirty(), touched);
+    EXPECT_TRUE(p.appearance().take_dirty().empty());
     p.paint(removed(gold));
-    EXPECT_EQ(p.take_dirty(), touched);
+    EXPECT_EQ(p.appearance().take_dirty(), touched);
     p.undo();
-    EXPECT_EQ(p.take_dirty(), touched);
+    EXPECT_EQ(p.appearance().take_dirty(), touched);
 }
 
 TEST(Layers, ALockedOneRefusesTheHandAndNothingChanges) {
     Document p(model());
     const std::uint32_t gold = add(p, "gold");
     set(p, gold, [](Layer& l) { l.locked = true; });
-    const std::uint64_t before = p.hash();
+    const std::uint64_t before = p.layers().hash();
     EXPECT_THROW(p.paint(on(gold)), Error);
     EXPECT_THROW(p.begin(on(gold)), Error);
     EXPECT_THROW(p.paint(on(7)), Error) << "no such layer";
-    EXPECT_EQ(p.hash(), before);
+    EXPECT_EQ(p.layers().hash(), before);
     EXPECT_EQ(p.journal().entries().size(), 2u);
     EXPECT_TRUE(p.paint(on(kFirstLayer)).touched());
 }
@@ -135,26 +138,24 @@ std::vector<JournalEntry> session() {
 TEST(Layers, UndoAndRedoGoOverEveryChange) {
     for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
         Document p(model(), {.undo_bytes = undo_bytes});
-        for (const char* name : {"carbon", "cinnabar", "indigo"})  // a canvas never forgets a pigment
-            ink::mix_of(p.canvas(), p.ink(name));
         std::vector<LayerTable> tables;
         std::vector<std::vector<std::uint8_t>> pictures;
         const std::vector<JournalEntry> entries = session();
         for (const JournalEntry& s : entries) {
-            tables.push_back(p.layers());
+            tables.push_back(p.layers().table());
             pictures.push_back(picture(p));
             p.paint(s);
         }
-        const LayerTable last = p.layers();
+        const LayerTable last = p.layers().table();
         const auto end = picture(p);
         for (std::size_t i = entries.size(); i-- > 0;) {
             ASSERT_TRUE(p.undo());
-            EXPECT_EQ(p.layers(), tables[i]) << i;
+            EXPECT_EQ(p.layers().table(), tables[i]) << i;
             EXPECT_EQ(picture(p), pictures[i]) << i;
         }
         while (p.redo()) {
         }
-        EXPECT_EQ(p.layers(), last);
+        EXPECT_EQ(p.layers().table(), last);
         EXPECT_EQ(picture(p), end);
     }
 }
@@ -165,12 +166,12 @@ TEST(Layers, AReplayIsTheSameToTheBitForAnyThreadCount) {
         set_thread_count(threads);
         Document p(model());
         for (const JournalEntry& s : session()) p.paint(s);
-        if (threads == 1) hash = p.hash();
-        EXPECT_EQ(p.hash(), hash);
+        if (threads == 1) hash = p.layers().hash();
+        EXPECT_EQ(p.layers().hash(), hash);
         Document again(model());
         again.replay(p.journal().entries());
-        EXPECT_EQ(again.hash(), hash);
-        EXPECT_EQ(again.layers(), p.layers());
+        EXPECT_EQ(again.layers().hash(), hash);
+        EXPECT_EQ(again.layers().table(), p.layers().table());
     }
     set_thread_count(0);
 }
@@ -185,7 +186,7 @@ TEST(Layers, ChangesAfterTheStoredTexelsNeedNoReplay) {
     at.replay({strokes.begin(), strokes.begin() + 7});
     const auto stored_texels = [&] {
         std::vector<LayerCanvas> out;
-        for (const LayerTexels& l : at.canvases()) out.push_back({l.layer, *l.canvas});
+        for (const LayerTexels& l : at.layers().canvases()) out.push_back({l.layer, *l.canvas});
         return out;
     };
     EXPECT_FALSE(fits(strokes, stored)) << "a stroke came after them";
@@ -195,12 +196,12 @@ TEST(Layers, ChangesAfterTheStoredTexelsNeedNoReplay) {
     Document adopted(model()), replayed(model());
     adopted.adopt(strokes, stored_texels(), stored);
     replayed.replay(strokes);
-    EXPECT_EQ(adopted.layers(), replayed.layers());
+    EXPECT_EQ(adopted.layers().table(), replayed.layers().table());
     EXPECT_EQ(picture(adopted), picture(replayed));
     ASSERT_TRUE(adopted.undo());  // the removal, by what it kept
-    EXPECT_EQ(adopted.layers().layers.size(), 3u);
+    EXPECT_EQ(adopted.layers().table().layers.size(), 3u);
     while (adopted.undo()) replayed.undo();
-    EXPECT_EQ(adopted.layers(), LayerTable{});
+    EXPECT_EQ(adopted.layers().table(), LayerTable{});
 }
 
 // Copies, blends and a merge, with strokes between them.
@@ -229,21 +230,20 @@ std::vector<JournalEntry> merging_session() {
 TEST(Layers, MergingAndCopyingUndoRedoAndReplayToTheBit) {
     for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
         Document p(model(), {.undo_bytes = undo_bytes});
-        for (const char* name : {"carbon", "cinnabar", "indigo"}) ink::mix_of(p.canvas(), p.ink(name));
         std::vector<LayerTable> tables;
         std::vector<std::vector<std::uint8_t>> pictures;
         const std::vector<JournalEntry> entries = merging_session();
         for (const JournalEntry& s : entries) {
-            tables.push_back(p.layers());
+            tables.push_back(p.layers().table());
             pictures.push_back(picture(p));
             p.paint(s);
         }
         const auto end = picture(p);
-        EXPECT_EQ(p.layers().layers.size(), 1u);
-        EXPECT_EQ(p.layers().next_id, 4u);
+        EXPECT_EQ(p.layers().table().layers.size(), 1u);
+        EXPECT_EQ(p.layers().table().next_id, 4u);
         for (std::size_t i = entries.size(); i-- > 0;) {
             ASSERT_TRUE(p.undo());
-            EXPECT_EQ(p.layers(), tables[i]) << i;
+            EXPECT_EQ(p.layers().table(), tables[i]) << i;
             EXPECT_EQ(picture(p), pictures[i]) << i;
         }
         while (p.redo()) {
@@ -259,13 +259,13 @@ TEST(Layers, MergingAndCopyingUndoRedoAndReplayToTheBit) {
 TEST(Layers, ACopyHasTheSameTexelsAndIsItsOwn) {
     Document p(model());
     p.paint(on(kFirstLayer));
-    p.paint(duplicated(p.layers(), kFirstLayer, "copy"));
-    const std::uint32_t copy = p.layers().layers.back().id;
-    EXPECT_TRUE(p.canvas(copy).same_contents(p.canvas()));
-    const std::uint64_t original = p.canvas().hash();
+    p.paint(duplicated(p.layers().table(), kFirstLayer, "copy"));
+    const std::uint32_t copy = p.layers().table().layers.back().id;
+    EXPECT_TRUE(p.layers().canvas(copy).same_contents(p.layers().canvas()));
+    const std::uint64_t original = p.layers().canvas().hash();
     p.paint(on(copy, 1, "cinnabar"));
-    EXPECT_EQ(p.canvas().hash(), original);
-    EXPECT_FALSE(p.canvas(copy).same_contents(p.canvas()));
+    EXPECT_EQ(p.layers().canvas().hash(), original);
+    EXPECT_FALSE(p.layers().canvas(copy).same_contents(p.layers().canvas()));
 }
 
 TEST(Layers, MergedOnesLookAsBeforeAndLoseNoPigment) {
@@ -276,16 +276,18 @@ TEST(Layers, MergedOnesLookAsBeforeAndLoseNoPigment) {
         p.paint(on(gold, 0, "cinnabar"));  // over the first
         p.paint(on(gold, 2, "gamboge"));   // beside it
         for (const std::uint32_t id : {kFirstLayer, gold}) set(p, id, [blend](Layer& l) { l.blend = blend; });
-        const auto look = ink::compose_linear(p.stack(), model().texels, p.substrate()).texels;
-        const auto amounts = ink::compose_amounts(p.stack(), model().texels).texels;
-        p.paint(merged_down(p.layers(), gold));
-        ASSERT_EQ(p.layers().layers.size(), 1u);
-        const auto merged = ink::compose_linear(p.stack(), model().texels, p.substrate()).texels;
+        const auto look =
+            ink::compose_linear(p.appearance().stack(), model().texels, p.appearance().substrate()).texels;
+        const auto amounts = ink::compose_amounts(p.appearance().stack(), model().texels).texels;
+        p.paint(merged_down(p.layers().table(), gold));
+        ASSERT_EQ(p.layers().table().layers.size(), 1u);
+        const auto merged =
+            ink::compose_linear(p.appearance().stack(), model().texels, p.appearance().substrate()).texels;
         float most = 0;
         for (std::size_t i = 0; i < look.size(); ++i) most = std::max(most, std::abs(look[i] - merged[i]));
         // The same films in the same order; glazes multiply in single precision.
         EXPECT_LT(most, blend == ink::Blend::normal ? 1e-6f : 1e-5f);
-        const auto after = ink::compose_amounts(p.stack(), model().texels).texels;
+        const auto after = ink::compose_amounts(p.appearance().stack(), model().texels).texels;
         ASSERT_EQ(after.size(), amounts.size());
         for (std::size_t i = 0; i < amounts.size(); ++i) ASSERT_NEAR(after[i], amounts[i], 1e-5f);
     }
@@ -320,15 +322,15 @@ TEST(Layers, CopiesAndMergesAfterTheStoredTexelsNeedNoReplay) {
     const std::uint32_t gold = add(p, "gold");
     p.paint(on(gold, 0, "cinnabar"));
     std::vector<LayerCanvas> stored;
-    for (const LayerTexels& l : p.canvases()) stored.push_back({l.layer, *l.canvas});
+    for (const LayerTexels& l : p.layers().canvases()) stored.push_back({l.layer, *l.canvas});
     const std::uint64_t last = p.journal().entries().back().id;
-    p.paint(duplicated(p.layers(), gold, "copy"));
-    p.paint(merged_down(p.layers(), gold));
+    p.paint(duplicated(p.layers().table(), gold, "copy"));
+    p.paint(merged_down(p.layers().table(), gold));
     Document adopted(model());
     ASSERT_TRUE(fits(p.journal().entries(), last));
     adopted.adopt(p.journal().entries(), std::move(stored), last);
     replayed.replay(p.journal().entries());
-    EXPECT_EQ(adopted.layers(), replayed.layers());
+    EXPECT_EQ(adopted.layers().table(), replayed.layers().table());
     EXPECT_EQ(picture(adopted), picture(replayed));
     EXPECT_EQ(picture(adopted), picture(p));
 }

@@ -40,8 +40,8 @@ Band drawn(const PaintStroke& stroke) {
     const atlas::TexelMap& map = model.texels;
     const Placement& place = stroke.trace.placement;
     Band band;
-    for (const std::uint32_t slot : painting.canvas().touched_slots())
-        if (const ink::Plane* plane = painting.canvas().plane(slot, 0))
+    for (const std::uint32_t slot : painting.layers().canvas().touched_slots())
+        if (const ink::Plane* plane = painting.layers().canvas().plane(slot, 0))
             for (int t = 0; t < atlas::kTileTexels; ++t) {
                 if (map.tiles[slot].area[t] <= 0 || (*plane)[t] < 0.1f) continue;
                 const Vec3 p = Vec3(map.position(slot, t)) - place.origin;
@@ -106,8 +106,8 @@ TEST(LineWidth, AFineBrushSetsDownOnItsLineToo) {
     Document painting(model);
     painting.paint(circle("wolf-medium*0.1074", width, radius));
     double farthest = 0;
-    for (const std::uint32_t slot : painting.canvas().touched_slots())
-        if (const ink::Plane* plane = painting.canvas().plane(slot, 0))
+    for (const std::uint32_t slot : painting.layers().canvas().touched_slots())
+        if (const ink::Plane* plane = painting.layers().canvas().plane(slot, 0))
             for (int t = 0; t < atlas::kTileTexels; ++t)
                 if (model.texels.tiles[slot].area[t] > 0 && (*plane)[t] >= 0.1f)
                     farthest = std::max(farthest, std::abs(glm::length(Vec3(model.texels.position(slot, t))) - radius));
@@ -124,8 +124,8 @@ TEST(LineWidth, AClosedLineHasNoGapWhereItsEndsMeet) {
     Document painting(model);
     painting.paint(stroke);
     std::vector<double> across(36, 0);  // area of ink per ten degrees
-    for (const std::uint32_t slot : painting.canvas().touched_slots())
-        if (const ink::Plane* plane = painting.canvas().plane(slot, 0))
+    for (const std::uint32_t slot : painting.layers().canvas().touched_slots())
+        if (const ink::Plane* plane = painting.layers().canvas().plane(slot, 0))
             for (int t = 0; t < atlas::kTileTexels; ++t) {
                 if (model.texels.tiles[slot].area[t] <= 0 || (*plane)[t] < 0.1f) continue;
                 const Vec3 p(model.texels.position(slot, t));
@@ -181,8 +181,8 @@ TEST(LineWidth, LinesOnCurvedWallsLieWhereTheyAreLaidBothWays) {
             painting.paint(stroke);
             const Vec3 across = (place.right - place.down) * std::sqrt(0.5);
             double area = 0;
-            for (const std::uint32_t slot : painting.canvas().touched_slots())
-                if (const ink::Plane* plane = painting.canvas().plane(slot, 0))
+            for (const std::uint32_t slot : painting.layers().canvas().touched_slots())
+                if (const ink::Plane* plane = painting.layers().canvas().plane(slot, 0))
                     for (int t = 0; t < atlas::kTileTexels; ++t) {
                         const double texel = model.texels.tiles[slot].area[t];
                         const Vec3 p = Vec3(model.texels.position(slot, t)) - at.position;

@@ -74,9 +74,9 @@ Drawn drawn(const StrokeSamples& line, bool redips, const std::string& brush = "
     for (std::size_t i = 1; i < at.size(); ++i)
         at[i] = at[i - 1] + glm::distance(line.samples[i].position, line.samples[i - 1].position);
     out.width.assign(static_cast<std::size_t>(at.back() / 0.005) + 1, 0);
-    const double full = 0.6 * painting.ink(ink).film;
-    for (const std::uint32_t slot : painting.canvas().touched_slots())
-        if (const ink::Plane* plane = painting.canvas().plane(slot, 0))
+    const double full = 0.6 * painting.materials().ink(ink).film;
+    for (const std::uint32_t slot : painting.layers().canvas().touched_slots())
+        if (const ink::Plane* plane = painting.layers().canvas().plane(slot, 0))
             for (int t = 0; t < atlas::kTileTexels; ++t) {
                 if (map.tiles[slot].area[t] <= 0 || (*plane)[t] < full) continue;
                 const Vec3 p(map.position(slot, t));  // down is −y
@@ -97,7 +97,7 @@ constexpr double kSides = 0.15e-3, kHeads = 0.2;
 TEST(LongLines, ALineIsAsFullAtItsEndAsAtItsBeginning) {
     const Drawn line = drawn(serpentine(6), true);
     ASSERT_GT(line.reports.size(), 1u) << "the brush is dipped again";
-    for (const StrokeReport& r : line.reports) EXPECT_FALSE(r.ran_dry()) << r.dry_from;
+    for (const StrokeReport& r : line.reports) EXPECT_FALSE(r.ran_dry()) << r.dryness.from;
     for (std::size_t i = 1; i + 2 < line.width.size(); ++i)
         EXPECT_NEAR(line.width[i], kWidth, kSides + kHeads * kWidth) << "at " << 5 * i << " mm";
     // As it was: one dip for all of it.

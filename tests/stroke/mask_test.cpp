@@ -8,6 +8,7 @@
 #include "core/text/units.h"
 #include "entry_text.h"
 #include "sheet.h"
+#include "stroke/document/pick.h"
 #include "stroke/surface/mask_texels.h"
 
 namespace tuft::stroke {
@@ -131,20 +132,20 @@ TEST(Mask, NothingOutsideAndTheSameInside) {
     brush::Preset deep = brush::load_preset("wolf-small");
     deep.capacity *= 100;
     Document free(model()), kept(model());
-    free.use_brush(deep);
-    kept.use_brush(deep);
+    free.use(deep);
+    kept.use(deep);
     free.paint(quick());
     kept.paint(MaskEdit({.mask = lasso({{-0.005, -1}, {0.004, -1}, {0.004, 1}, {-0.005, 1}})}));
     PaintStroke s = quick();
     s.mask = 1;
     EXPECT_GT(kept.paint(s).ink_given, 0);
-    const MaskTexels& mask = kept.mask(1);
-    const double fresh = free.canvas().total(model().texels, 0);
-    EXPECT_LT(kept.canvas().total(model().texels, 0), 0.5 * fresh);
+    const MaskTexels& mask = kept.masks().texels(1);
+    const double fresh = free.layers().canvas().total(model().texels, 0);
+    EXPECT_LT(kept.layers().canvas().total(model().texels, 0), 0.5 * fresh);
     double difference = 0;
-    for (const std::uint32_t slot : free.canvas().touched_slots()) {
-        const ink::Plane* there = free.canvas().plane(slot, 0);
-        const ink::Plane* here = kept.canvas().plane(slot, 0);
+    for (const std::uint32_t slot : free.layers().canvas().touched_slots()) {
+        const ink::Plane* there = free.layers().canvas().plane(slot, 0);
+        const ink::Plane* here = kept.layers().canvas().plane(slot, 0);
         for (int t = 0; there && t < atlas::kTileTexels; ++t) {
             const float w = here ? (*here)[t] : 0;
             if (mask.coverage(slot, t) == 0) {
@@ -157,11 +158,11 @@ TEST(Mask, NothingOutsideAndTheSameInside) {
     EXPECT_LT(difference, 1e-3);
     // A mask of everything is none, to the bit.
     Document all(model());
-    all.use_brush(deep);
+    all.use(deep);
     all.paint(MaskEdit({.mask = {.name = "all", .kind = MaskKind::angle, .within = 3.14159}}));
     s.mask = 1;
     all.paint(s);
-    EXPECT_TRUE(all.canvas().same_contents(free.canvas()));
+    EXPECT_TRUE(all.layers().canvas().same_contents(free.layers().canvas()));
 }
 
 TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
@@ -175,14 +176,14 @@ TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
     wet.settings.film = FilmModel::wet;
     const Dry wait{.seconds = 5};
     const auto outside = [](Document& painting) {
-        const MaskTexels& mask = painting.mask(1);
+        const MaskTexels& mask = painting.masks().texels(1);
         double sum = 0;
         for (std::uint32_t slot = 0; slot < model().texels.n_slots(); ++slot)
-            for (int p = 0; p < static_cast<int>(painting.canvas().pigments().size()); ++p)
+            for (int p = 0; p < static_cast<int>(painting.layers().canvas().pigments().size()); ++p)
                 for (int t = 0; t < atlas::kTileTexels; ++t)
                     if (mask.coverage(slot, t) == 0)
                         for (int film = 0; film < ink::kFilms; ++film)
-                            if (const ink::Plane* w = painting.canvas().film_plane(slot, film, p))
+                            if (const ink::Plane* w = painting.layers().canvas().film_plane(slot, film, p))
                                 sum += static_cast<double>((*w)[t]);
         return sum;
     };
@@ -192,16 +193,16 @@ TEST(Mask, WetInkDoesNotFlowOutOfItUntilItIsPaintedWithoutIt) {
     painting.paint(wet);
     painting.paint(wait);
     EXPECT_EQ(outside(painting), 0);
-    EXPECT_TRUE(painting.canvas().wet());
-    const std::uint64_t hash = painting.hash();
+    EXPECT_TRUE(painting.layers().canvas().wet());
+    const std::uint64_t hash = painting.layers().hash();
     painting.undo();
     painting.undo();
     painting.redo();
     painting.redo();
-    EXPECT_EQ(painting.hash(), hash);
+    EXPECT_EQ(painting.layers().hash(), hash);
     Document again(model(), {.substrate = "rice-paper"});
     again.replay(painting.journal().entries());
-    EXPECT_EQ(again.hash(), hash);
+    EXPECT_EQ(again.layers().hash(), hash);
     // The stencil edge comes off with the next stroke, which lies elsewhere.
     PaintStroke beside = wet;
     beside.mask = 0;
@@ -222,9 +223,9 @@ TEST(Mask, UndoReplayAndTextKeepIt) {
         PaintStroke s = quick();
         s.mask = 1;
         p.paint(s);
-        const MaskTable table = p.masks();
-        if (threads == 1) hash = p.hash();
-        EXPECT_EQ(p.hash(), hash);
+        const MaskTable table = p.masks().table();
+        if (threads == 1) hash = p.layers().hash();
+        EXPECT_EQ(p.layers().hash(), hash);
         std::vector<JournalEntry> strokes = p.journal().entries();
         for (JournalEntry& e : strokes) {
             const JournalEntry back = written_and_read(e);
@@ -235,15 +236,15 @@ TEST(Mask, UndoReplayAndTextKeepIt) {
         }
         Document again(model());
         again.replay(strokes);
-        EXPECT_EQ(again.hash(), hash);
-        EXPECT_EQ(again.masks(), table);
+        EXPECT_EQ(again.layers().hash(), hash);
+        EXPECT_EQ(again.masks().table(), table);
         while (p.undo()) {
         }
-        EXPECT_EQ(p.masks(), MaskTable{});
+        EXPECT_EQ(p.masks().table(), MaskTable{});
         while (p.redo()) {
         }
-        EXPECT_EQ(p.masks(), table);
-        EXPECT_EQ(p.hash(), hash);
+        EXPECT_EQ(p.masks().table(), table);
+        EXPECT_EQ(p.layers().hash(), hash);
     }
     set_thread_count(0);
 }
@@ -283,20 +284,21 @@ TEST(Eyedropper, ReturnsWhatWasDepositedAndMakesAnInkOfIt) {
     Document p(model());
     const auto fill = [&](const std::string& ink, double film) { p.paint(Fill{.ink = ink, .film = film}); };
     const Vec3 at{0.0123, -0.007, 0.001};
-    EXPECT_TRUE(p.pick(at).films.empty());
-    EXPECT_FALSE(p.ink_of(p.pick(at), "none"));
+    EXPECT_TRUE(pick(p, at).films.empty());
+    EXPECT_FALSE(picked_ink(pick(p, at), p.layers().pigments(), "none"));
     fill("cinnabar", 1.5);
     p.paint(Dry{});
     fill("indigo", 0.5);
-    const Pick pick = p.pick(at);
-    EXPECT_NEAR(pick.at.distance, 1e-3, 1e-9);
-    ASSERT_EQ(pick.films.size(), 2u);
-    EXPECT_EQ(pick.films[0].film, ink::kFirstDryFilm);
-    EXPECT_EQ(pick.films[1].film, ink::kOpenFilm);
-    const double red = 1.5 * p.ink("cinnabar").strength(), blue = 0.5 * p.ink("indigo").strength();
-    EXPECT_NEAR(pick.amounts[0], red, 1e-6);  // single precision
-    EXPECT_NEAR(pick.amounts[1], blue, 1e-6);
-    ink::Ink picked = *p.ink_of(pick, "picked");
+    const Pick both = pick(p, at);
+    EXPECT_NEAR(both.at.distance, 1e-3, 1e-9);
+    ASSERT_EQ(both.films.size(), 2u);
+    EXPECT_EQ(both.films[0].film, ink::kFirstDryFilm);
+    EXPECT_EQ(both.films[1].film, ink::kOpenFilm);
+    const double red = 1.5 * p.materials().ink("cinnabar").strength(),
+                 blue = 0.5 * p.materials().ink("indigo").strength();
+    EXPECT_NEAR(both.amounts[0], red, 1e-6);  // single precision
+    EXPECT_NEAR(both.amounts[1], blue, 1e-6);
+    ink::Ink picked = *picked_ink(both, p.layers().pigments(), "picked");
     ASSERT_EQ(picked.parts.size(), 2u);
     EXPECT_NEAR(picked.parts[0].fraction, red / (red + blue), 1e-6);
     EXPECT_LE(picked.strength(), 1);
@@ -305,10 +307,10 @@ TEST(Eyedropper, ReturnsWhatWasDepositedAndMakesAnInkOfIt) {
     picked = ink::parse_ink(ink::ink_toml(picked), "picked");
     picked.name = "picked";
     Document other(model());
-    other.use_ink(picked);
+    other.use(picked);
     other.paint(Fill{.ink = "picked", .film = picked.film});
-    EXPECT_NEAR(other.pick(at).amounts[0], red, 1e-5);
-    EXPECT_NEAR(other.pick(at).amounts[1], blue, 1e-5);
+    EXPECT_NEAR(pick(other, at).amounts[0], red, 1e-5);
+    EXPECT_NEAR(pick(other, at).amounts[1], blue, 1e-5);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ Spread spread(const Document& painting, const Model& model, int plane) {
     for (std::uint32_t slot = 0; slot < model.texels.n_slots(); ++slot)
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             const Vec3f p = model.texels.position(slot, t);
-            const ink::Plane* w = painting.canvas().plane(slot, plane);
+            const ink::Plane* w = painting.layers().canvas().plane(slot, plane);
             if (!w || std::abs(p.y) > 5e-3f) continue;
             const double v = static_cast<double>((*w)[t]) * static_cast<double>(model.texels.tiles[slot].area[t]);
             out.amount += v;
@@ -75,13 +75,14 @@ TEST(MixedInk, EachPigmentIsKeptStillAndWet) {
         Document painting(model);
         load_sides(painting);
         std::array<double, 2> whole;
-        for (int p = 0; p < 2; ++p) whole[p] = painting.held(kBrush)->reservoir.pigment(p);
+        for (int p = 0; p < 2; ++p) whole[p] = painting.brushes().find(kBrush)->reservoir.pigment(p);
         for (int i = 0; i < 3; ++i) painting.paint(drawn(film, 4e-3 * i - 4e-3, i != 1));
         for (int p = 0; p < 2; ++p) {
-            const double now = painting.canvas().total(model.texels, p) + painting.held(kBrush)->reservoir.pigment(p);
+            const double now = painting.layers().canvas().total(model.texels, p) +
+                               painting.brushes().find(kBrush)->reservoir.pigment(p);
             EXPECT_NEAR(now / whole[p], 1, 1e-6) << name_of(film) << ' ' << p;
         }
-        for (const auto& cell : painting.held(kBrush)->reservoir.content)
+        for (const auto& cell : painting.brushes().find(kBrush)->reservoir.content)
             for (const double v : cell) EXPECT_GE(v, -1e-9 * (whole[0] + whole[1])) << "the rounding of the texels";
     }
 }
@@ -101,7 +102,7 @@ TEST(MixedInk, ReplaysToTheBitOnAnyNumberOfThreads) {
             } else {
                 painting.replay(journal);
             }
-            hashes[i] = painting.canvas().hash();
+            hashes[i] = painting.layers().canvas().hash();
         }
         EXPECT_EQ(hashes[0], hashes[1]) << name_of(film);
     }

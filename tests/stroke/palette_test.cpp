@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "entry_text.h"
 #include "sheet.h"
+#include "stroke/document/pick.h"
 
 namespace tuft::stroke {
 namespace {
@@ -50,9 +51,10 @@ std::vector<JournalEntry> mixing() {
 
 // Of pigment `plane`: on palette and model, and in the brush, film·m².
 double all_of(Document& painting, int plane) {
-    double sum = painting.canvas().total(painting.model().texels, plane);
-    if (painting.palette()) sum += painting.palette()->total(painting.palette_model().texels, plane);
-    if (const BrushInHand* brush = painting.held(kBrush)) sum += brush->reservoir.pigment(plane);
+    double sum = painting.layers().canvas().total(painting.model().texels, plane);
+    if (painting.palette().canvas())
+        sum += painting.palette().canvas()->total(painting.palette().model().texels, plane);
+    if (const BrushInHand* brush = painting.brushes().find(kBrush)) sum += brush->reservoir.pigment(plane);
     return sum;
 }
 
@@ -90,7 +92,7 @@ TEST(Palette, NoMaskOfTheModelHoldsOnIt) {
             if (Fill* fill = s.as<Fill>(); fill && on_palette(s)) fill->mask = with;
             painting.paint(s);
         }
-        return std::pair{painting.palette()->hash(), painting.hash()};
+        return std::pair{painting.palette().canvas()->hash(), painting.layers().hash()};
     };
     // A project from elsewhere may say so, and its model may have fewer texels than the palette.
     EXPECT_EQ(painted(1), painted(0));
@@ -102,30 +104,30 @@ TEST(Palette, ABrushMixesOnItAndPaintsTheMixture) {
     const std::vector<JournalEntry> strokes = mixing();
     for (std::size_t i = 0; i < 3; ++i) painting.paint(strokes[i]);
     const int red = 0, yellow = 1;
-    ASSERT_EQ(painting.canvas().pigments().size(), 2u);
+    ASSERT_EQ(painting.layers().canvas().pigments().size(), 2u);
     // A cone of 50 units: π r² h / 3, times the pigment's part of the ink.
-    const double cone = 3.14159265 * 0.008 * 0.008 * 50 / 3 * painting.ink("cinnabar").parts[0].fraction;
-    EXPECT_NEAR(painting.palette()->total(painting.palette_model().texels, red) / cone, 1,
+    const double cone = 3.14159265 * 0.008 * 0.008 * 50 / 3 * painting.materials().ink("cinnabar").parts[0].fraction;
+    EXPECT_NEAR(painting.palette().canvas()->total(painting.palette().model().texels, red) / cone, 1,
                 1e-3);  // texels of 1/64 of its width
     const double before[] = {all_of(painting, red), all_of(painting, yellow)};
-    EXPECT_EQ(painting.held(kBrush)->reservoir.remaining(), 0);
+    EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), 0);
 
     painting.paint(strokes[3]);
-    EXPECT_GT(painting.held(kBrush)->reservoir.fullness(), 0.02);
-    EXPECT_EQ(painting.held(kBrush)->reservoir.pigment(yellow), 0);
+    EXPECT_GT(painting.brushes().find(kBrush)->reservoir.fullness(), 0.02);
+    EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.pigment(yellow), 0);
     painting.paint(strokes[4]);
-    const ink::Reservoir& loaded = painting.held(kBrush)->reservoir;
+    const ink::Reservoir& loaded = painting.brushes().find(kBrush)->reservoir;
     EXPECT_GT(loaded.pigment(red), 0);
     EXPECT_GT(loaded.pigment(yellow), 0);
-    EXPECT_EQ(painting.canvas().total(model.texels, red), 0) << "the model is clean so far";
+    EXPECT_EQ(painting.layers().canvas().total(model.texels, red), 0) << "the model is clean so far";
 
     painting.paint(strokes[5]);
-    for (const int p : {red, yellow}) EXPECT_GT(painting.canvas().total(model.texels, p), 0);
+    for (const int p : {red, yellow}) EXPECT_GT(painting.layers().canvas().total(model.texels, p), 0);
 
     // Stirred to and fro over both pools, what lies between them is of both.
     for (int i = 0; i < 3; ++i)
         painting.paint(through({0, 0, 0}, kPaletteLayer, "cinnabar", {i == 1 ? -1.0 : 1.0, 0, 0}));
-    const Pick between = painting.pick_palette({0, 0, 0});
+    const Pick between = pick_on_palette(painting, {0, 0, 0});
     EXPECT_GT(between.amounts[red], 0.05 * between.amounts[yellow]);
     EXPECT_GT(between.amounts[yellow], 0.05 * between.amounts[red]);
     // Amounts are floats on texels, some 1e5 of them: what goes astray is rounding.
@@ -134,14 +136,14 @@ TEST(Palette, ABrushMixesOnItAndPaintsTheMixture) {
 
 // 0: every texel is of one of two pigments; 1: all have them in the same parts.
 double mixedness(Document& painting) {
-    const atlas::TexelMap& map = painting.palette_model().texels;
-    const double whole[] = {painting.palette()->total(map, 0), painting.palette()->total(map, 1)};
+    const atlas::TexelMap& map = painting.palette().model().texels;
+    const double whole[] = {painting.palette().canvas()->total(map, 0), painting.palette().canvas()->total(map, 1)};
     double sum = 0, parts = 0, square = 0;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             double of[2] = {};
             for (int k = 0; k < 2; ++k)
-                if (const ink::Plane* plane = painting.palette()->plane(slot, k))
+                if (const ink::Plane* plane = painting.palette().canvas()->plane(slot, k))
                     of[k] = static_cast<double>((*plane)[t] * map.tiles[slot].area[t]) / whole[k];
             const double both = of[0] + of[1];
             if (!(both > 0)) continue;
@@ -182,31 +184,31 @@ TEST(Palette, ReplaysAndIsTakenBackToTheBit) {
     Document painting(model);
     std::vector<std::uint64_t> palette, texels;
     const auto note = [&] {
-        palette.push_back(painting.palette() ? painting.palette()->hash() : 0);
-        texels.push_back(painting.hash());
+        palette.push_back(painting.palette().canvas() ? painting.palette().canvas()->hash() : 0);
+        texels.push_back(painting.layers().hash());
     };
     for (const JournalEntry& s : mixing()) {
         painting.paint(s);
         note();
     }
     painting.paint(WashPalette{});
-    EXPECT_TRUE(painting.palette()->touched_slots().empty());
-    EXPECT_EQ(painting.hash(), texels.back());
+    EXPECT_TRUE(painting.palette().canvas()->touched_slots().empty());
+    EXPECT_EQ(painting.layers().hash(), texels.back());
 
     // Hashes tell the pigments met so far: from the second pool on there are two.
     for (std::size_t i = palette.size(); i-- > 1;) {
         ASSERT_TRUE(painting.undo());
-        EXPECT_EQ(painting.palette()->hash(), palette[i]) << i;
-        EXPECT_EQ(painting.hash(), texels[i]) << i;
+        EXPECT_EQ(painting.palette().canvas()->hash(), palette[i]) << i;
+        EXPECT_EQ(painting.layers().hash(), texels[i]) << i;
     }
     for (std::size_t i = 2; i < palette.size(); ++i) ASSERT_TRUE(painting.redo());
-    EXPECT_EQ(painting.palette()->hash(), palette.back());
-    EXPECT_EQ(painting.hash(), texels.back());
+    EXPECT_EQ(painting.palette().canvas()->hash(), palette.back());
+    EXPECT_EQ(painting.layers().hash(), texels.back());
 
     Document again(model);
     again.replay(painting.journal().entries());
-    EXPECT_EQ(again.palette()->hash(), palette.back());
-    EXPECT_EQ(again.hash(), texels.back());
+    EXPECT_EQ(again.palette().canvas()->hash(), palette.back());
+    EXPECT_EQ(again.layers().hash(), texels.back());
     EXPECT_NE(texels.back(), texels.front());
 }
 
@@ -215,11 +217,11 @@ TEST(Palette, PicturesShowThePoolsInTheirPlaces) {
     Document painting(model);
     PalettePicture bare, inked;
     painting.paint(rinse("cinnabar"));
-    painting.palette_model();
-    refresh(bare, painting);
+    painting.palette().model();
+    refresh(bare, painting.palette());
     painting.paint(pool("cinnabar", {0.03, 0.02, 0}));
     inked = bare;
-    refresh(inked, painting, painting.take_palette_dirty());
+    refresh(inked, painting.palette(), painting.appearance().take_palette_dirty());
     // 0.03 m to the right of the middle and 0.02 above it, in pixels of 0.25 mm.
     const auto at = [](const PalettePicture& p, int x, int y) {
         return &p.rgb[3 * static_cast<std::size_t>(y * p.width + x)];
@@ -228,7 +230,7 @@ TEST(Palette, PicturesShowThePoolsInTheirPlaces) {
     EXPECT_GT(there[0], there[2] + 60) << "red";
     EXPECT_EQ(std::vector(mirrored, mirrored + 3), std::vector(at(bare, 360, 260), at(bare, 360, 260) + 3));
     PalettePicture whole;
-    refresh(whole, painting);
+    refresh(whole, painting.palette());
     EXPECT_EQ(whole.rgb, inked.rgb);
 }
 

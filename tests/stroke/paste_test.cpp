@@ -33,7 +33,7 @@ double capacity() {
 
 // Heights along a line across the stroke, micrometres.
 std::vector<double> heights_across(const Document& painting, double x) {
-    const ink::AtlasMap<float> map = ink::compose_height(painting.stack(), painting.model().texels);
+    const ink::AtlasMap<float> map = ink::compose_height(painting.appearance().stack(), painting.model().texels);
     std::vector<double> out;
     const double texel = painting.model().texels.texel_size;
     const auto column = static_cast<std::size_t>(kSize / 2 + x / texel);
@@ -80,18 +80,19 @@ TEST(PasteStroke, ItLeavesFurrowsAlongTheHairAndSmoothOnes) {
 TEST(PasteStroke, EachPigmentIsKeptWhenItPloughsAnother) {
     const Model model = sheet();
     Document painting(model);
-    painting.use_ink(red_paste());
+    painting.use(red_paste());
     painting.paint(stroke_of(kWhite, {}));
-    const double left = painting.held(kBrush)->reservoir.pigment(0);
-    const double white = painting.canvas().total(model.texels, 0);
+    const double left = painting.brushes().find(kBrush)->reservoir.pigment(0);
+    const double white = painting.layers().canvas().total(model.texels, 0);
     // Floats on texels, some 1e5 of them: what goes astray is rounding.
     EXPECT_NEAR((left + white) / capacity(), 1, 1e-6);
     painting.paint(stroke_of("red paste", make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0})));
-    const ink::Reservoir& brush = painting.held(kBrush)->reservoir;
+    const ink::Reservoir& brush = painting.brushes().find(kBrush)->reservoir;
     EXPECT_GT(brush.pigment(0), 0) << "it took white up";
-    EXPECT_NEAR((painting.canvas().total(model.texels, 0) + brush.pigment(0)) / white, 1, 1e-6);
-    EXPECT_NEAR((painting.canvas().total(model.texels, 1) + brush.pigment(1)) / capacity(), 1, 1e-6);
-    EXPECT_EQ(painting.canvas().liquid(painting.canvas().touched_slots()[0], ink::Liquid::film), nullptr);
+    EXPECT_NEAR((painting.layers().canvas().total(model.texels, 0) + brush.pigment(0)) / white, 1, 1e-6);
+    EXPECT_NEAR((painting.layers().canvas().total(model.texels, 1) + brush.pigment(1)) / capacity(), 1, 1e-6);
+    EXPECT_EQ(painting.layers().canvas().liquid(painting.layers().canvas().touched_slots()[0], ink::Liquid::film),
+              nullptr);
 }
 
 TEST(PasteStroke, ThinInkOverDryPasteStandsInItsFurrows) {
@@ -99,13 +100,15 @@ TEST(PasteStroke, ThinInkOverDryPasteStandsInItsFurrows) {
     Document painting(model);
     painting.paint(stroke_of(kWhite, {}));
     painting.paint(Dry{});
-    const std::uint64_t before = painting.hash();
+    const std::uint64_t before = painting.layers().hash();
     const std::vector<double> relief = heights_across(painting, 0);
     PaintStroke glaze = stroke_of("carbon", make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0}));
     painting.paint(glaze);
-    EXPECT_NEAR((painting.canvas().total(model.texels, 1) + painting.held(kBrush)->reservoir.pigment(1)) / capacity(),
-                1, 1e-6);
-    const ink::AtlasMap<float> amounts = ink::compose_amounts(painting.stack(), model.texels);
+    EXPECT_NEAR(
+        (painting.layers().canvas().total(model.texels, 1) + painting.brushes().find(kBrush)->reservoir.pigment(1)) /
+            capacity(),
+        1, 1e-6);
+    const ink::AtlasMap<float> amounts = ink::compose_amounts(painting.appearance().stack(), model.texels);
     double ridges = 0, n_ridges = 0, furrows = 0, n_furrows = 0;
     const double texel = model.texels.texel_size;
     const auto reach = static_cast<std::size_t>(0.4e-3 / texel);  // half a furrow and more
@@ -121,11 +124,11 @@ TEST(PasteStroke, ThinInkOverDryPasteStandsInItsFurrows) {
     ASSERT_GT(n_ridges, 5);
     ASSERT_GT(n_furrows, 5);
     EXPECT_GT(furrows / n_furrows, 2 * ridges / n_ridges) << "as mapped they are alike";
-    const std::uint64_t after = painting.hash();
+    const std::uint64_t after = painting.layers().hash();
     painting.undo();
-    EXPECT_EQ(painting.hash(), before);
+    EXPECT_EQ(painting.layers().hash(), before);
     painting.redo();
-    EXPECT_EQ(painting.hash(), after);
+    EXPECT_EQ(painting.layers().hash(), after);
 }
 
 PaintStroke wash_over(double depth) {
@@ -141,14 +144,14 @@ TEST(PasteStroke, AWashTakesOfItsSurfaceAndLeavesItsBodyStanding) {
     paste.settings.film = FilmModel::wet;
     painting.paint(paste);
     const std::vector<double> before = heights_across(painting, 0);
-    const auto white = [&] { return painting.canvas().total(model.texels, 0); };
+    const auto white = [&] { return painting.layers().canvas().total(model.texels, 0); };
     const double all = white();
     painting.paint(wash_over(8e-3));
-    const std::uint64_t hash = painting.hash();
-    const ink::Reservoir& brush = painting.held(kBrush)->reservoir;
+    const std::uint64_t hash = painting.layers().hash();
+    const ink::Reservoir& brush = painting.brushes().find(kBrush)->reservoir;
     EXPECT_GT(brush.pigment(0), 0) << "it tints itself";
     EXPECT_NEAR((white() + brush.pigment(0)) / all, 1, 1e-6) << "floats";
-    EXPECT_NEAR((painting.canvas().total(model.texels, 1) + brush.pigment(1)) / capacity(), 1, 1e-6);
+    EXPECT_NEAR((painting.layers().canvas().total(model.texels, 1) + brush.pigment(1)) / capacity(), 1, 1e-6);
     const std::vector<double> after = heights_across(painting, 0);
     double lost = 0, n = 0;
     for (std::size_t row = 0; row < kSize; ++row) {
@@ -164,7 +167,7 @@ TEST(PasteStroke, AWashTakesOfItsSurfaceAndLeavesItsBodyStanding) {
     painting.undo();
     EXPECT_EQ(white(), all);
     painting.redo();
-    EXPECT_EQ(painting.hash(), hash);
+    EXPECT_EQ(painting.layers().hash(), hash);
 }
 
 TEST(PasteStroke, ItReplaysAndIsTakenBackToTheBit) {
@@ -173,18 +176,18 @@ TEST(PasteStroke, ItReplaysAndIsTakenBackToTheBit) {
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
         Document painting(model);
-        painting.use_ink(red_paste());
+        painting.use(red_paste());
         painting.paint(stroke_of(kWhite, {}));
-        const std::uint64_t first = painting.hash();
+        const std::uint64_t first = painting.layers().hash();
         painting.paint(stroke_of("red paste", make_frame({0, 0, 0}, {0, 0, 1}, {0, 1, 0})));
         if (hash) {
-            EXPECT_EQ(painting.hash(), hash);
+            EXPECT_EQ(painting.layers().hash(), hash);
         }
-        hash = painting.hash();
+        hash = painting.layers().hash();
         painting.undo();
         // The second pigment stays known, without any of it.
         painting.redo();
-        EXPECT_EQ(painting.hash(), hash);
+        EXPECT_EQ(painting.layers().hash(), hash);
         EXPECT_NE(first, hash);
     }
     set_thread_count(0);

@@ -156,7 +156,7 @@ std::vector<float> films(const Document& p, double from) {
     std::vector<float> films;
     const atlas::TexelMap& map = p.model().texels;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot) {
-        const ink::Plane* plane = p.canvas().plane(slot, 0);
+        const ink::Plane* plane = p.layers().canvas().plane(slot, 0);
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             if (map.tiles[slot].area[t] <= 0) continue;
             const Vec3 at(map.position(slot, t));

@@ -73,7 +73,7 @@ TEST(Tape, InkStaysWithinAndFillsWhatItFilled) {
         const double texel = model.texels.texel_size;
         int inside = 0, outside = 0;
         for (std::uint32_t slot = 0; slot < model.texels.n_slots(); ++slot) {
-            const ink::Plane *p = a.canvas().plane(slot, 0), *q = b.canvas().plane(slot, 0);
+            const ink::Plane *p = a.layers().canvas().plane(slot, 0), *q = b.layers().canvas().plane(slot, 0);
             for (int t = 0; q && t < atlas::kTileTexels; ++t) {
                 if (model.texels.tiles[slot].area[t] <= 0 || (*q)[t] < 0.5f) continue;
                 const Vec3 at = Vec3(model.texels.position(slot, t)) - frame.origin;

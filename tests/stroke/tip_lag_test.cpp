@@ -42,8 +42,8 @@ struct Span {
 std::map<int, Span> columns_of(const Document& painting) {
     std::map<int, Span> columns;
     const atlas::TexelMap& map = painting.model().texels;
-    for (const std::uint32_t slot : painting.canvas().touched_slots()) {
-        const ink::Plane* plane = painting.canvas().plane(slot, 0);
+    for (const std::uint32_t slot : painting.layers().canvas().touched_slots()) {
+        const ink::Plane* plane = painting.layers().canvas().plane(slot, 0);
         for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
             if ((*plane)[t] < 0.2f || map.tiles[slot].area[t] <= 0) continue;
             const Vec3 p = Vec3(map.position(slot, t));

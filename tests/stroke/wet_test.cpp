@@ -25,7 +25,7 @@ Dry dry(double seconds) {
 }
 
 double in_hair(const Document& painting, int plane) {
-    const BrushInHand* brush = painting.held(kBrush);
+    const BrushInHand* brush = painting.brushes().find(kBrush);
     return brush ? brush->reservoir.pigment(plane) : 0;
 }
 
@@ -35,7 +35,7 @@ TEST(WetInk, AStopAtAnyMomentLeavesEverythingAsItWas) {
     PaintStroke slow = wet_line("carbon", true);
     slow.trace.samples.back().time += 1;  // the hand rests, the film flows meanwhile
     for (const JournalEntry& entry : {JournalEntry(wet_line("carbon")), JournalEntry(slow), JournalEntry(dry(1))}) {
-        const std::uint64_t before = painting.canvas().hash();
+        const std::uint64_t before = painting.layers().canvas().hash();
         const double hair = in_hair(painting, 0);
         int asked = 0;
         const StrokeReport report = undisturbed.paint(entry, [&](std::string_view, double) { return ++asked > 0; });
@@ -46,11 +46,12 @@ TEST(WetInk, AStopAtAnyMomentLeavesEverythingAsItWas) {
             int n = 0;
             EXPECT_THROW(painting.paint(entry, [&](std::string_view, double) { return ++n < last; }), Cancelled);
             EXPECT_EQ(n, last) << "it stops at once";
-            EXPECT_EQ(painting.canvas().hash(), before);
+            EXPECT_EQ(painting.layers().canvas().hash(), before);
             EXPECT_EQ(in_hair(painting, 0), hair);
         }
         painting.paint(entry);
-        EXPECT_EQ(painting.canvas().hash(), undisturbed.canvas().hash()) << "what comes after does not know of it";
+        EXPECT_EQ(painting.layers().canvas().hash(), undisturbed.layers().canvas().hash())
+            << "what comes after does not know of it";
     }
     EXPECT_EQ(painting.journal().entries().size(), 3u);
 }
@@ -59,27 +60,27 @@ TEST(WetInk, KeepsEachPigmentThroughStrokePickUpFlowDryAndUndo) {
     const Model model = sheet();
     Document painting(model, {.substrate = "bisque"});
     painting.paint(wet_line("carbon"));
-    const double carbon = painting.canvas().total(model.texels, 0) + in_hair(painting, 0);
-    const double capacity = painting.brush(kBrush).capacity * ink::kFilmPerVolume;
+    const double carbon = painting.layers().canvas().total(model.texels, 0) + in_hair(painting, 0);
+    const double capacity = painting.materials().brush(kBrush).capacity * ink::kFilmPerVolume;
     EXPECT_NEAR(carbon / capacity, 1, 1e-6) << "the brush was full of it";
-    const std::uint64_t first = painting.canvas().hash();
+    const std::uint64_t first = painting.layers().canvas().hash();
     painting.paint(wet_line("carbon", true));  // through the wet line with what is left in the hair
-    EXPECT_NEAR((painting.canvas().total(model.texels, 0) + in_hair(painting, 0)) / carbon, 1, 1e-6);
-    const double left = painting.canvas().total(model.texels, 0);
-    const std::uint64_t second = painting.canvas().hash();
+    EXPECT_NEAR((painting.layers().canvas().total(model.texels, 0) + in_hair(painting, 0)) / carbon, 1, 1e-6);
+    const double left = painting.layers().canvas().total(model.texels, 0);
+    const std::uint64_t second = painting.layers().canvas().hash();
     painting.paint(dry(3));
-    EXPECT_NEAR(painting.canvas().total(model.texels, 0) / left, 1, 1e-5);
-    EXPECT_TRUE(painting.canvas().wet());
+    EXPECT_NEAR(painting.layers().canvas().total(model.texels, 0) / left, 1, 1e-5);
+    EXPECT_TRUE(painting.layers().canvas().wet());
     painting.paint(dry(0));
-    EXPECT_FALSE(painting.canvas().wet());
-    EXPECT_NEAR(painting.canvas().total(model.texels, 0) / left, 1, 1e-5);
+    EXPECT_FALSE(painting.layers().canvas().wet());
+    EXPECT_NEAR(painting.layers().canvas().total(model.texels, 0) / left, 1, 1e-5);
     painting.undo();
     painting.undo();
-    EXPECT_EQ(painting.canvas().hash(), second) << "drying taken back, wet tiles that flowed too";
+    EXPECT_EQ(painting.layers().canvas().hash(), second) << "drying taken back, wet tiles that flowed too";
     painting.undo();
-    EXPECT_EQ(painting.canvas().hash(), first);
+    EXPECT_EQ(painting.layers().canvas().hash(), first);
     painting.redo();
-    EXPECT_EQ(painting.canvas().hash(), second);
+    EXPECT_EQ(painting.layers().canvas().hash(), second);
 }
 
 TEST(WetInk, ReplaysToTheBitOnAnyNumberOfThreads) {
@@ -98,7 +99,7 @@ TEST(WetInk, ReplaysToTheBitOnAnyNumberOfThreads) {
         } else {
             painting.replay(journal);
         }
-        hashes[i] = painting.canvas().hash();
+        hashes[i] = painting.layers().canvas().hash();
     }
     set_thread_count(0);
     EXPECT_EQ(hashes[0], hashes[1]);
@@ -116,19 +117,19 @@ TEST(WetInk, NothingStaysOfAStrokeThatTheSameStrokeErases) {
     s.settings.spacing = 1;
     s.settings.dip = DipMode::each;  // with the same hair
     painting.paint(s);
-    const double painted = painting.canvas().total(model.texels, 0);
-    const std::uint64_t before = painting.canvas().hash();
+    const double painted = painting.layers().canvas().total(model.texels, 0);
+    const std::uint64_t before = painting.layers().canvas().hash();
     const StrokeReport report = painting.paint(erasing(s));
     double most = 0;
-    for (const std::uint32_t slot : painting.canvas().touched_slots())
-        if (const ink::Plane* w = painting.canvas().plane(slot, 0))
+    for (const std::uint32_t slot : painting.layers().canvas().touched_slots())
+        if (const ink::Plane* w = painting.layers().canvas().plane(slot, 0))
             for (const float v : *w) most = std::max(most, static_cast<double>(v));
     EXPECT_LT(most, 0.02)
         << "of 1.8: a reflectance less by 8 %, on single texels; 0.3 on a rim where the ink had run on";
-    EXPECT_LT(painting.canvas().total(model.texels, 0), 1e-4 * painted);
-    EXPECT_NEAR((report.removed.pigment[0] + painting.canvas().total(model.texels, 0)) / painted, 1, 1e-6);
+    EXPECT_LT(painting.layers().canvas().total(model.texels, 0), 1e-4 * painted);
+    EXPECT_NEAR((report.removed.pigment[0] + painting.layers().canvas().total(model.texels, 0)) / painted, 1, 1e-6);
     painting.undo();
-    EXPECT_EQ(painting.canvas().hash(), before);
+    EXPECT_EQ(painting.layers().canvas().hash(), before);
 }
 
 TEST(WetInk, AnEraserThroughAWashLeavesItsEdgesAsDryOnesAre) {
@@ -139,11 +140,11 @@ TEST(WetInk, AnEraserThroughAWashLeavesItsEdgesAsDryOnesAre) {
         PaintStroke s = wet_line("carbon");
         if (!wet) s.settings.film = FilmModel::still;
         painting.paint(s);
-        const double painted = painting.canvas().total(model.texels, 0);
+        const double painted = painting.layers().canvas().total(model.texels, 0);
         PaintStroke across = erasing(wet_line("carbon", true));
         across.settings.film = s.settings.film;
         painting.paint(across);
-        ink.push_back(painting.canvas().total(model.texels, 0) / painted);
+        ink.push_back(painting.layers().canvas().total(model.texels, 0) / painted);
     }
     EXPECT_LT(ink[0], 0.95) << "it did erase";
     EXPECT_NEAR(ink[1], ink[0], 0.01);
@@ -161,7 +162,7 @@ TEST(WetInk, YellowThroughWetPurplePicksItUpAndNotWhenItIsDry) {
         picked[i] = 0;
         for (std::uint32_t slot = 0; slot < model.texels.n_slots(); ++slot)
             for (int t = 0; t < atlas::kTileTexels; ++t)
-                if (const ink::Plane* w = painting.canvas().plane(slot, 0);
+                if (const ink::Plane* w = painting.layers().canvas().plane(slot, 0);
                     w && std::abs(model.texels.position(slot, t).y) > 6e-3f)
                     picked[i] += static_cast<double>((*w)[t] * model.texels.tiles[slot].area[t]);
     }
@@ -179,16 +180,16 @@ TEST(WetInk, ADrippingTuftLeavesDripsOnAWallAndAFullOneDoesNot) {
         line.settings.down = {0, -1, 0};  // the sheet as a wall
         painting.paint(dip);
         const double held = in_hair(painting, 0);
-        const double capacity = painting.brush(kBrush).capacity * ink::kFilmPerVolume;
+        const double capacity = painting.materials().brush(kBrush).capacity * ink::kFilmPerVolume;
         EXPECT_NEAR(held / capacity, dip.extent.amount, 1e-9);
         painting.paint(line);
         const Dry wait{.seconds = 2, .down = line.settings.down};
         painting.paint(wait);
-        EXPECT_NEAR((painting.canvas().total(model.texels, 0) + in_hair(painting, 0)) / held, 1, 1e-5);
+        EXPECT_NEAR((painting.layers().canvas().total(model.texels, 0) + in_hair(painting, 0)) / held, 1, 1e-5);
         lowest[i] = 1;
-        for (const std::uint32_t slot : painting.canvas().touched_slots())
+        for (const std::uint32_t slot : painting.layers().canvas().touched_slots())
             for (int t = 0; t < atlas::kTileTexels; ++t)
-                if (const ink::Plane* p = painting.canvas().plane(slot, 0); p && (*p)[t] > 0.05f)
+                if (const ink::Plane* p = painting.layers().canvas().plane(slot, 0); p && (*p)[t] > 0.05f)
                     lowest[i] = std::min(lowest[i], static_cast<double>(model.texels.position(slot, t).y));
     }
     EXPECT_LT(lowest[1], lowest[0] - 4e-3);
@@ -202,12 +203,12 @@ TEST(WetInk, StillInkIsAsItAlwaysWas) {
     PaintStroke s = wet_line("carbon");
     s.settings.film = FilmModel::still;
     painting.paint(s);
-    EXPECT_FALSE(painting.canvas().wet());
-    const std::uint64_t hash = painting.canvas().hash();
+    EXPECT_FALSE(painting.layers().canvas().wet());
+    const std::uint64_t hash = painting.layers().canvas().hash();
     painting.paint(dry(100));
-    EXPECT_EQ(painting.canvas().hash(), hash) << "it is closed only when all is to dry";
+    EXPECT_EQ(painting.layers().canvas().hash(), hash) << "it is closed only when all is to dry";
     painting.paint(dry(0));
-    EXPECT_NE(painting.canvas().hash(), hash);
+    EXPECT_NE(painting.layers().canvas().hash(), hash);
 }
 
 TEST(WetInk, SettingsComeBackFromTheirText) {

@@ -97,7 +97,7 @@ std::string Autosave::start(const std::filesystem::path& path, const std::string
                                                    .frame = frame,
                                                    .mesh = *model.mesh,
                                                    .atlas = model.atlas,
-                                                   .substrate = ink::substrate_toml(painting.painted_on())},
+                                                   .substrate = ink::substrate_toml(painting.materials().substrate())},
                                                   [&](io::Project& fresh) {
                                                       io::store_looks(fresh, painting);
                                                       for (const auto& preset : brushes_) fresh.put_brush(preset);
@@ -106,7 +106,7 @@ std::string Autosave::start(const std::filesystem::path& path, const std::string
                                                           fresh.put_attachment(key.first, attachment);
                                                       fresh.append(painting.journal().entries());
                                                       if (!painting.journal().empty())
-                                                          fresh.save_canvases(painting.all_canvases(),
+                                                          fresh.save_canvases(stroke::all_canvases(painting),
                                                                               painting.journal().entries().back().id);
                                                   });
         project_ = std::move(project);
@@ -128,20 +128,20 @@ void Autosave::prepare(stroke::Document& painting, const std::string& brush, con
             wanted_->fault = trouble_ = std::move(fault);
     }
     if (!brush.empty() && !brushes_.contains(brush)) {
-        const std::string toml = brush::preset_toml(painting.brush(brush));
+        const std::string toml = brush::preset_toml(painting.materials().brush(brush));
         brush::Preset preset = brush::parse_preset(toml, brush);
         preset.name = brush;
-        painting.use_brush(preset);
+        painting.use(preset);
         brushes_[brush] = toml;
         attempt([&] {
             if (project_ && !viewing_) project_->put_brush({brush, toml});
         });
     }
     if (!ink.empty() && !inks_.contains(ink)) {
-        const std::string toml = ink::ink_toml(painting.ink(ink));
+        const std::string toml = ink::ink_toml(painting.materials().ink(ink));
         ink::Ink parsed = ink::parse_ink(toml, ink);
         parsed.name = ink;
-        painting.use_ink(parsed);
+        painting.use(parsed);
         inks_[ink] = toml;
         attempt([&] {
             if (project_ && !viewing_) project_->put_ink({ink, toml});
@@ -259,7 +259,7 @@ void Autosave::store_canvas(const stroke::Document& painting) {
     if (painting.journal().empty()) return;
     attempt([&] {
         if (project_ && !viewing_ && pending_.empty() && !behind_)
-            project_->save_canvases(painting.all_canvases(), painting.journal().entries().back().id);
+            project_->save_canvases(stroke::all_canvases(painting), painting.journal().entries().back().id);
     });
 }
 

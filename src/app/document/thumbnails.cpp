@@ -37,7 +37,7 @@ void Thumbnails::look_from(const stroke::Model& model, const render::GlCamera& c
 
 bool Thumbnails::waiting(const stroke::Document& painting) const {
     if (width_ == 0) return false;
-    const auto& layers = painting.layers().layers;
+    const auto& layers = painting.layers().table().layers;
     return !touched_.empty() || layers.size() != pictures_.size() ||
            std::any_of(layers.begin(), layers.end(), [&](const stroke::Layer& l) { return !pictures_.contains(l.id); });
 }
@@ -75,11 +75,12 @@ bool Thumbnails::paint(Thumbnail& picture, const ink::Canvas& canvas, const ink:
 
 std::vector<Thumbnail> Thumbnails::draw(stroke::Document& painting) {
     std::vector<Thumbnail> changed;
-    std::erase_if(pictures_, [&](const auto& entry) { return !painting.layers().find(entry.first); });
-    for (const stroke::LayerTexels& layer : painting.canvases()) {
+    std::erase_if(pictures_, [&](const auto& entry) { return !painting.layers().table().find(entry.first); });
+    for (const stroke::LayerTexels& layer : painting.layers().canvases()) {
         const auto [at, is_new] = pictures_.try_emplace(layer.layer);
-        if (is_new) at->second = bare(painting.substrate(), layer.layer);
-        if (paint(at->second, *layer.canvas, painting.substrate(), is_new) || is_new) changed.push_back(at->second);
+        if (is_new) at->second = bare(painting.appearance().substrate(), layer.layer);
+        if (paint(at->second, *layer.canvas, painting.appearance().substrate(), is_new) || is_new)
+            changed.push_back(at->second);
     }
     touched_.clear();
     return changed;

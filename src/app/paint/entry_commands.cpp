@@ -11,7 +11,7 @@ void act_on_brush(PaintContext& context, JournalEditor& journal, const ActOnBrus
                                .extent = command.extent,
                                .dip = stroke::DipMode::carry};
     // A brush that is not held yet begins full of the chosen ink.
-    if (action.kind == stroke::BrushActionKind::dip || !context.work.document->held(command.brush))
+    if (action.kind == stroke::BrushActionKind::dip || !context.work.document->brushes().find(command.brush))
         action.ink = command.ink;
     journal.add(std::move(action));
 }
@@ -27,7 +27,7 @@ void fill_model(PaintContext& context, JournalEditor& journal, const FillModel& 
 }
 
 void change_layers(PaintContext& context, JournalEditor& journal, const ChangeLayers& command) {
-    const stroke::LayerTable& table = context.work.document->layers();
+    const stroke::LayerTable& table = context.work.document->layers().table();
     stroke::LayerEdit edit = command.edit;
     std::string label = edit.layer.name;
     if (edit.what == stroke::LayerChange::remove)
@@ -48,18 +48,18 @@ void change_layers(PaintContext& context, JournalEditor& journal, const ChangeLa
 
 void change_masks(PaintContext& context, JournalEditor& journal, const ChangeMasks& command) {
     const auto entry_of = [&](const stroke::MaskEdit& edit) {
-        const stroke::Mask* known = context.work.document->masks().find(edit.mask.id);
+        const stroke::Mask* known = context.work.document->masks().table().find(edit.mask.id);
         return stroke::JournalEntry(edit, known ? known->name : edit.mask.name);
     };
     if (command.edit.remove) return journal.add(entry_of(command.edit));
     const stroke::MaskTexels texels =
-        stroke::evaluate(command.edit.mask, context.work.document->masks(), *context.work.model);
+        stroke::evaluate(command.edit.mask, context.work.document->masks().table(), *context.work.model);
     bool any = false;
     for (std::uint32_t slot = 0; slot < context.work.model->texels.n_slots() && !any; ++slot) any = !texels.none(slot);
     if (!any) return context.outbox.report("Nothing of the model lies in this mask.");
     journal.add(entry_of(command.edit));
     if (command.with == 0) return;
-    const stroke::Mask& made = context.work.document->masks().masks.back();
+    const stroke::Mask& made = context.work.document->masks().table().masks.back();
     stroke::MaskEdit both;
     both.mask.name = made.name + (command.how == stroke::MaskKind::unite ? " +" : " \xc3\x97");
     both.mask.kind = command.how;

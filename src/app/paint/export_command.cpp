@@ -17,7 +17,7 @@ void export_maps(const ExportModel& command, const stroke::Document& painting, c
     std::vector<std::string> names{"base-colour"};
     if (command.orm) names.emplace_back("roughness");
     if (command.height) names.insert(names.end(), {"normal", "height"});
-    if (command.pigments && command.path.extension() == ".exr" && !painting.canvas().pigments().empty())
+    if (command.pigments && command.path.extension() == ".exr" && !painting.layers().pigments().empty())
         names.emplace_back("pigments");
     io::write_together(command.path, [&](const fs::path& folder) {
         for (const std::string& name : names) {
@@ -39,9 +39,9 @@ void export_strokes(PaintContext& context, const std::filesystem::path& path) {
 
 void draw_pictures(PaintContext& context, const ExportModel& command, const stroke::Document& painting) {
     const stroke::Model& m = painting.model();
-    const ink::Substrate& ground = painting.substrate();
+    const ink::Substrate& ground = painting.appearance().substrate();
     const ink::AtlasMap<float> colour =
-        ink::compose_linear(painting.stack(), m.texels, ground, painting.compose_options());
+        ink::compose_linear(painting.appearance().stack(), m.texels, ground, painting.appearance().compose_options());
     render::Appearance look;
     look.finish = ground.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
     look.body_colour = Vec3f(ground.reflectance[0], ground.reflectance[1], ground.reflectance[2]);
@@ -90,7 +90,7 @@ void export_model(PaintContext& context, const ExportModel& command) {
         painting = resized.get();
     }
     const stroke::Model& m = painting->model();
-    ink::ComposeOptions compose = painting->compose_options();
+    ink::ComposeOptions compose = painting->appearance().compose_options();
     compose.progress = context.progress("Exporting");
     if (const fs::path e = command.path.extension(); e == ".png" || e == ".exr") {
         export_maps(command, *painting, compose);
@@ -98,13 +98,14 @@ void export_model(PaintContext& context, const ExportModel& command) {
         context.outbox.report("Exported " + command.path.string());
         return context.publisher.publish();
     }
-    io::ModelMaps maps = io::make_maps(painting->stack(), m.texels, painting->substrate(), compose);
+    io::ModelMaps maps =
+        io::make_maps(painting->appearance().stack(), m.texels, painting->appearance().substrate(), compose);
     if (!command.height) maps.height = {};
     if (!command.orm) maps.orm = {};
     const std::vector<std::string> notes =
         io::export_model(command.path, *m.mesh, m.atlas, maps,
                          {.frame = context.work.frame,
-                          .painted = io::painted_parts(painting->stack(), *m.mesh, m.atlas, m.texels),
+                          .painted = io::painted_parts(painting->appearance().stack(), *m.mesh, m.atlas, m.texels),
                           .progress = context.progress("Exporting")});
     if (command.pictures > 0) draw_pictures(context, command, *painting);
     context.outbox.report("Exported " + command.path.string() + (notes.empty() ? "" : "; " + notes.front()));

@@ -54,7 +54,7 @@ void highlight_strokes(PaintContext& context, const HighlightStrokes& command, c
         std::vector<OutlinePoint> outline = outline_of(context.work.texture->marks(), *context.work.model);
         context.outbox.change([&](Update& update) { update.events.outline = std::move(outline); });
     };
-    if (wanted.empty() || context.work.document->in_stroke()) return show({});
+    if (wanted.empty() || context.work.document->session()) return show({});
     const ProgressFn go_on = [&](std::string_view, double) { return !queue.interrupts() && !context.stop.load(); };
     Texture::Marks marks;
     auto shown = std::chrono::steady_clock::now();
@@ -67,8 +67,8 @@ void highlight_strokes(PaintContext& context, const HighlightStrokes& command, c
                 blank.paint(s);
             else if (paints && wanted.contains(s.id) && !stroke::on_palette(s)) {
                 blank.paint(alone(s), go_on);
-                add_inked(marks, blank.canvas());
-                blank.canvas().clear();
+                add_inked(marks, blank.layers().canvas());
+                blank.undo();
             }
             if (std::chrono::duration<double>(std::chrono::steady_clock::now() - shown).count() < kShowEvery) continue;
             show(marks);

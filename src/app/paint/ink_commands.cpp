@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "stroke/document/pick.h"
+
 namespace tuft::app {
 
 void add_ink(PaintContext& context, ink::Ink ink) {
@@ -12,9 +14,9 @@ void add_ink(PaintContext& context, ink::Ink ink) {
     };
     const std::string wanted = ink.name;
     for (int n = 2; known(ink.name); ++n) ink.name = wanted + "-" + std::to_string(n);
-    context.work.document->use_ink(ink);
+    context.work.document->use(ink);
     context.work.autosave.prepare(*context.work.document, "", ink.name);
-    context.own_inks.push_back(context.work.document->ink(ink.name));
+    context.own_inks.push_back(context.work.document->materials().ink(ink.name));
     context.publisher.publish();
     context.outbox.change([&](Update& update) {
         update.events.own_inks = context.own_inks;
@@ -24,14 +26,15 @@ void add_ink(PaintContext& context, ink::Ink ink) {
 
 void pick_ink(PaintContext& context, const PickInk& command) {
     stroke::Document& painting = *context.work.document;
-    std::optional<ink::Ink> ink = painting.ink_of(
-        command.on_palette ? painting.pick_palette(command.point) : painting.pick(command.point), "mixture");
+    const stroke::Pick pick =
+        command.on_palette ? stroke::pick_on_palette(painting, command.point) : stroke::pick(painting, command.point);
+    std::optional<ink::Ink> ink = stroke::picked_ink(pick, painting.layers().pigments(), "mixture");
     if (!ink) return context.outbox.report("There is no ink here to pick up.");
     add_ink(context, std::move(*ink));
 }
 
 void recolour(PaintContext& context, const RecolourInk& command) {
-    context.work.document->recolour(command.name, command.wanted);
+    context.work.document->appearance().recolour(command.name, command.wanted);
     context.work.autosave.store_appearance(*context.work.document);
     context.publisher.publish();
     context.publisher.publish_appearance();
@@ -39,12 +42,12 @@ void recolour(PaintContext& context, const RecolourInk& command) {
 
 void preview_substrate(PaintContext& context, const PreviewSubstrate& command) {
     stroke::Document& painting = *context.work.document;
-    if (command.substrate == painting.painted_on().name)
-        painting.preview_substrate(std::nullopt);
+    if (command.substrate == painting.materials().substrate().name)
+        painting.appearance().preview_substrate(std::nullopt);
     else
-        painting.preview_substrate(ink::load_substrate(command.substrate));
+        painting.appearance().preview_substrate(ink::load_substrate(command.substrate));
     context.work.autosave.store_appearance(painting);
-    painting.take_dirty();
+    painting.appearance().take_dirty();
     context.work.texture->refresh_all(painting);
     context.publisher.forget_thumbnails();
     context.publisher.publish();
@@ -53,8 +56,9 @@ void preview_substrate(PaintContext& context, const PreviewSubstrate& command) {
 }
 
 void show_mask(PaintContext& context, const ShowMask& command) {
-    const bool there = command.id != 0 && context.work.document->masks().find(command.id);
-    context.work.texture->show_veil(there ? &context.work.document->mask(command.id) : nullptr, *context.work.document);
+    const stroke::MaskSet& masks = context.work.document->masks();
+    const bool there = command.id != 0 && masks.table().find(command.id);
+    context.work.texture->show_veil(there ? &masks.texels(command.id) : nullptr, *context.work.document);
     context.publisher.publish();
     context.publisher.send_texture();
 }

@@ -96,13 +96,13 @@ Inspected inspect_file(const fs::path& path, const ProgressFn& progress) {
 // Strokes of a former project, its presets and ground, on the new model.
 void carry_strokes(const fs::path& former, PaintWork& work, const ProgressFn& progress) {
     const io::Project project = io::Project::open(former, {.access = io::Access::read, .progress = progress});
-    work.document->use_substrate(ink::parse_substrate(project.model().substrate, former.string()));
+    work.document->use(ink::parse_substrate(project.model().substrate, former.string()));
     io::use_presets(project, *work.document);
     work.autosave.take_presets(project);
     work.autosave.take_attachments(project);
     const std::vector<stroke::JournalEntry> strokes = project.strokes();
     const mesh::TriangleMesh mesh = project.model().mesh;
-    const auto length_of = [&](const std::string& brush) { return work.document->brush(brush).length; };
+    const auto length_of = [&](const std::string& brush) { return work.document->materials().brush(brush).length; };
     const mesh::SurfaceQuery before(mesh);
     const std::string fault = stroke::size_fault(strokes, length_of, before, *work.model->query);
     if (!fault.empty()) throw Error(fault);
@@ -170,7 +170,7 @@ PaintWork load_project(const fs::path& path, const fs::path& session, OpenAs as,
     work.model = std::make_unique<stroke::Model>(
         stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas), progress));
     work.document = std::make_unique<stroke::Document>(*work.model);
-    work.document->use_substrate(substrate);
+    work.document->use(substrate);
     io::use_presets(project, *work.document);
     io::restore_strokes(project, *work.document, progress);
     io::apply_recolouring(project, *work.document);

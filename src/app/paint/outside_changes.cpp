@@ -33,7 +33,7 @@ bool goes_on(const stroke::JournalEntry& entry) {
 }  // namespace
 
 void OutsideChanges::look() {
-    if (context_.work.document->in_stroke() || !context_.work.autosave.overtaken()) return;
+    if (context_.work.document->session() || !context_.work.autosave.overtaken()) return;
     try {
         take();
     } catch (const std::exception& error) {
@@ -107,8 +107,7 @@ void OutsideChanges::paint_merged(const io::Project& file, const stroke::MergedJ
     if (whole) painting->replay(merged.entries, shown);
     io::apply_recolouring(file, *painting);
     context_.history.reset(painting->journal().entries().size());
-    for (const stroke::LayerTexels& layer : painting->canvases())
-        for (const std::uint32_t slot : layer.canvas->touched_slots()) painting->canvas().mark_dirty(slot);
+    painting->appearance().mark_all_changed();
     context_.replace_document(std::move(painting));
     context_.work.texture->refresh_all(*context_.work.document);  // they may show it otherwise
     context_.publisher.send_texture();
@@ -128,7 +127,7 @@ bool OutsideChanges::follow(const io::Project& file, std::span<const stroke::Jou
     for (const stroke::JournalEntry& s : rest) {
         if (!stroke::has_brush(stroke::kind_of(s))) continue;
         const std::string& brush = stroke::brush_of(s);
-        if (goes_on(s) && !brushes.contains(brush) && !painting.held(brush)) return false;
+        if (goes_on(s) && !brushes.contains(brush) && !painting.brushes().find(brush)) return false;
         brushes.insert(brush);
     }
     for (const stroke::JournalEntry& s : rest)
@@ -138,9 +137,9 @@ bool OutsideChanges::follow(const io::Project& file, std::span<const stroke::Jou
         for (const std::string& ink : stroke::inks_of(s)) inks.erase(ink);
     }
     for (const auto& [name, toml] : file.brushes())
-        if (brushes.contains(name)) painting.use_brush(named(brush::parse_preset(toml, name), name));
+        if (brushes.contains(name)) painting.use(named(brush::parse_preset(toml, name), name));
     for (const auto& [name, toml] : file.inks())
-        if (inks.contains(name)) painting.use_ink(named(ink::parse_ink(toml, name), name));
+        if (inks.contains(name)) painting.use(named(ink::parse_ink(toml, name), name));
     painting.replay({rest.begin(), rest.end()}, {});
     context_.history.done.resize(theirs.size(), EditStep{.made = 1});
     context_.history.undone.clear();

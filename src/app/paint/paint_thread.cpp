@@ -80,7 +80,7 @@ void PaintThread::run() {
 
 void PaintThread::finish_file() {
     PaintWork& work = context_.work;
-    if (work.document->in_stroke()) strokes_.end();
+    if (work.document->session()) strokes_.end();
     outside_.look();
     Autosave& autosave = work.autosave;
     autosave.retry(work.source, work.frame, *work.document);

@@ -15,7 +15,8 @@ void StrokePainter::begin(const BeginStroke& command) {
     cancel();
     current_ = command;
     context_.publisher.set_brush(command.brush, command.layer == stroke::kPaletteLayer);
-    if (const stroke::BrushInHand* held = context_.work.document->held(command.brush); command.as_it_is && held)
+    if (const stroke::BrushInHand* held = context_.work.document->brushes().find(command.brush);
+        command.as_it_is && held)
         current_.ink = held->named;
     context_.work.autosave.prepare(*context_.work.document, command.brush, command.ink);
     if (!command.tip_ink.empty()) undone_before_ = context_.work.document->journal().undone();
@@ -48,7 +49,7 @@ void StrokePainter::load_tip(const BeginStroke& command, std::size_t& made) {
 }
 
 void StrokePainter::extend(const ExtendStroke& command) {
-    if (!context_.work.document->in_stroke()) return;
+    if (!context_.work.document->session()) return;
     const std::span<const brush::Pose> poses(command.poses);
     for (std::size_t i = 0; i < poses.size(); i += kPosesAtOnce) {
         context_.work.document->extend(poses.subspan(i, std::min(kPosesAtOnce, poses.size() - i)));
@@ -60,7 +61,7 @@ void StrokePainter::extend(const ExtendStroke& command) {
 
 void StrokePainter::end() {
     stroke::Document& document = *context_.work.document;
-    if (!document.in_stroke()) return;
+    if (!document.session()) return;
     document.end();
     context_.work.autosave.add(document.journal().entries().back());
     const stroke::JournalEntry original = document.journal().entries().back();
@@ -88,7 +89,7 @@ void StrokePainter::add_copies(const stroke::JournalEntry& original, std::size_t
 }
 
 void StrokePainter::cancel() {
-    if (!context_.work.document->in_stroke()) return;
+    if (!context_.work.document->session()) return;
     context_.work.document->cancel();
     drop_loads();
     context_.publisher.publish(true);
@@ -108,7 +109,7 @@ void StrokePainter::drop_loads() {
 std::vector<stroke::JournalEntry> StrokePainter::entries_of(PaintDrawing& command) {
     PlacedWriting& drawing = command.drawing;
     drawing.fit.film = [this](const std::string& ink) {
-        return context_.work.document->ink(ink).film * ink::kFilmUnit;
+        return context_.work.document->materials().ink(ink).film * ink::kFilmUnit;
     };
     stroke::choose_brushes(drawing.entries, stroke::drawing_in(drawing.entries, true), drawing.scale, drawing.extent,
                            drawing.fit, widths_);

@@ -60,7 +60,7 @@ std::uint8_t code_of(float micrometres) {
 // Micrometres of liquid on and in the surface, of all layers.
 std::array<float, atlas::kTileTexels> liquid_of(const stroke::Document& painting, std::uint32_t slot) {
     std::array<float, atlas::kTileTexels> wet{};
-    for (const stroke::LayerTexels& layer : painting.canvases())
+    for (const stroke::LayerTexels& layer : painting.layers().canvases())
         for (const ink::Liquid where : {ink::Liquid::film, ink::Liquid::pores})
             if (const ink::Plane* plane = layer.canvas->liquid(slot, where))
                 for (std::size_t t = 0; t < atlas::kTileTexels; ++t)
@@ -73,31 +73,32 @@ std::array<float, atlas::kTileTexels> liquid_of(const stroke::Document& painting
 void Texture::show_wetness(bool on, const stroke::Document& painting) {
     if (wetness_ == on) return;
     wetness_ = on;
-    refresh_heights(painting.stack().touched_slots(), painting);
+    refresh_heights(painting.appearance().stack().touched_slots(), painting);
 }
 
 Texture::Texture(const stroke::Document& painting, const ProgressFn& progress) {
     const stroke::Model& model = painting.model();
+    const stroke::Appearance& shown = painting.appearance();
     report(progress, "picture of the ink", 0);
-    const ink::ComposeOptions options = painting.compose_options();
+    const ink::ComposeOptions options = shown.compose_options();
     report(progress, "picture of the ink", 0.6);
-    colour_ = ink::compose_srgb8(painting.stack(), model.texels, painting.substrate(), options);
+    colour_ = ink::compose_srgb8(shown.stack(), model.texels, shown.substrate(), options);
     padded_ = model.texels.tiles_per_side * atlas::kTile;
     height_.assign(static_cast<std::size_t>(colour_.size) * colour_.size, 0);
-    refresh_heights(painting.stack().touched_slots(), painting);
+    refresh_heights(shown.stack().touched_slots(), painting);
     report(progress, "picture of the ink", 1);
 }
 
 void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke::Document& painting) {
     const atlas::TexelMap& map = painting.model().texels;
-    const ink::Stack stack = painting.stack();
+    const ink::Stack stack = painting.appearance().stack();
     const std::size_t size = colour_.size;
     for (const std::uint32_t slot : slots) {
         const std::size_t tile = map.tile_of_slot[slot];
         const std::size_t x0 = tile % map.tiles_per_side * atlas::kTile, y0 = tile / map.tiles_per_side * atlas::kTile;
         const bool inked = stack.touched(slot);
         const ink::TileAppearance look =
-            inked ? ink::shade_tile(stack, slot, painting.substrate()) : ink::TileAppearance{};
+            inked ? ink::shade_tile(stack, slot, painting.appearance().substrate()) : ink::TileAppearance{};
         const std::array<float, atlas::kTileTexels> wet =
             wetness_ ? liquid_of(painting, slot) : std::array<float, atlas::kTileTexels>{};
         for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
@@ -113,7 +114,7 @@ void Texture::refresh_heights(std::span<const std::uint32_t> slots, const stroke
 void Texture::continue_over_seams(std::vector<std::uint8_t>& values, std::uint32_t slot,
                                   const stroke::Document& painting) const {
     const atlas::TexelMap& map = painting.model().texels;
-    const ink::GutterPlan& plan = *painting.compose_options().seams;
+    const ink::GutterPlan& plan = *painting.appearance().compose_options().seams;
     const std::size_t size = colour_.size;
     for (std::uint32_t e = plan.first_of_slot[slot]; e < plan.first_of_slot[slot + 1]; ++e) {
         const std::uint32_t entry = plan.entries[e];
@@ -187,9 +188,9 @@ std::vector<render::TilePixels> Texture::show_marks(Marks marks, const stroke::D
 }
 
 void Texture::refresh_all(const stroke::Document& painting) {
-    colour_ =
-        ink::compose_srgb8(painting.stack(), painting.model().texels, painting.substrate(), painting.compose_options());
-    refresh_heights(painting.stack().touched_slots(), painting);
+    const stroke::Appearance& shown = painting.appearance();
+    colour_ = ink::compose_srgb8(shown.stack(), painting.model().texels, shown.substrate(), shown.compose_options());
+    refresh_heights(shown.stack().touched_slots(), painting);
 }
 
 std::array<std::uint8_t, 4> Texture::texel(std::size_t x, std::size_t y) const {
@@ -250,9 +251,10 @@ std::vector<render::TilePixels> Texture::refresh(std::span<const std::uint32_t> 
     std::vector<render::TilePixels> tiles;
     if (slots.empty()) return tiles;
     const stroke::Model& model = painting.model();
-    ink::refresh_srgb8(colour_, slots, painting.stack(), model.texels, painting.substrate(),
-                       painting.compose_options());
-    const ink::GutterPlan& plan = *painting.compose_options().seams;
+    const stroke::Appearance& shown = painting.appearance();
+    const ink::ComposeOptions options = shown.compose_options();
+    ink::refresh_srgb8(colour_, slots, shown.stack(), model.texels, shown.substrate(), options);
+    const ink::GutterPlan& plan = *options.seams;
     refresh_heights(slots, painting);
     std::set<std::uint32_t> changed;
     for (const std::uint32_t slot : slots) {

@@ -6,11 +6,11 @@ namespace tuft::app {
 
 PaintContext::PaintContext(PaintWork open, Outbox& window)
     : work(std::move(open)), outbox(window), publisher(work, history, window) {
-    work.document->take_dirty();
+    work.document->appearance().take_dirty();
     const std::vector<std::string> shipped = ink::list_inks();
     for (const std::string& name : work.autosave.inks())
         if (std::find(shipped.begin(), shipped.end(), name) == shipped.end())
-            own_inks.push_back(work.document->ink(name));
+            own_inks.push_back(work.document->materials().ink(name));
     outbox.change([&](Update& update) { update.events.own_inks = own_inks; });
     history.reset(work.document->journal().entries().size());
     publisher.publish_appearance();
@@ -26,31 +26,31 @@ ProgressFn PaintContext::progress(const std::string& name) {
 }
 
 std::uint32_t PaintContext::layer_of(std::uint32_t requested) const {
-    const stroke::LayerTable& table = work.document->layers();
+    const stroke::LayerTable& table = work.document->layers().table();
     if (requested != kNewestLayer) return requested;
     return table.find(table.next_id - 1) ? table.next_id - 1 : table.layers.back().id;
 }
 
 void PaintContext::take_presets(stroke::Document& document, const std::vector<stroke::JournalEntry>& entries) {
     stroke::Document& own = *work.document;
-    document.use_substrate(own.painted_on());
-    if (own.has_preview_substrate()) document.preview_substrate(own.substrate());
-    for (const ink::Ink& ink : own_inks) document.use_ink(ink);  // also those that no entry uses now
+    document.use(own.materials().substrate());
+    if (own.appearance().has_preview_substrate()) document.appearance().preview_substrate(own.appearance().substrate());
+    for (const ink::Ink& ink : own_inks) document.use(ink);  // also those that no entry uses now
     for (const std::vector<stroke::JournalEntry>* of : {&own.journal().entries(), &entries})
         for (const stroke::JournalEntry& s : *of) {
-            if (stroke::has_brush(stroke::kind_of(s))) document.use_brush(own.brush(stroke::brush_of(s)));
-            if (const std::string& ink = stroke::ink_of(s); !ink.empty()) document.use_ink(own.ink(ink));
-            for (const std::string& ink : stroke::inks_of(s)) document.use_ink(own.ink(ink));
+            if (stroke::has_brush(stroke::kind_of(s))) document.use(own.materials().brush(stroke::brush_of(s)));
+            if (const std::string& ink = stroke::ink_of(s); !ink.empty()) document.use(own.materials().ink(ink));
+            for (const std::string& ink : stroke::inks_of(s)) document.use(own.materials().ink(ink));
         }
-    for (const auto& [name, wanted] : own.recolours()) {
-        document.use_ink(own.ink(name));
-        document.recolour(name, wanted);
+    for (const auto& [name, wanted] : own.appearance().recolours()) {
+        document.use(own.materials().ink(name));
+        document.appearance().recolour(name, wanted);
     }
 }
 
 void PaintContext::replace_document(std::unique_ptr<stroke::Document> document) {
-    for (const stroke::LayerTexels& layer : work.document->canvases())
-        for (const std::uint32_t slot : layer.canvas->touched_slots()) document->canvas().mark_dirty(slot);
+    for (const stroke::LayerTexels& layer : work.document->layers().canvases())
+        document->appearance().mark_changed(layer.canvas->touched_slots());
     work.document = std::move(document);
     publisher.forget_journal();
     publisher.publish(true);

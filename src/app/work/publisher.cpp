@@ -9,6 +9,7 @@
 #include "ink/composite/composite.h"
 #include "ink/spectra/kubelka_munk.h"
 #include "io/project/attachments.h"
+#include "stroke/session/session.h"
 
 namespace tuft::app {
 namespace {
@@ -23,35 +24,35 @@ double now() {
 
 Publisher::Publisher(PaintWork& work, const EditHistory& history, Outbox& outbox)
     : work_(work), history_(history), outbox_(outbox) {
-    if (!work_.document->palette()) return;
-    refresh(palette_, *work_.document);
+    if (!work_.document->palette().canvas()) return;
+    refresh(palette_, work_.document->palette());
     outbox_.change([&](Update& update) { update.events.palette = palette_; });
 }
 
 void Publisher::publish(bool journal_changed) {
     stroke::Document& document = *work_.document;
-    const std::vector<std::uint32_t> dirty = document.take_dirty();
+    const std::vector<std::uint32_t> dirty = document.appearance().take_dirty();
     thumbnails_.touch(dirty);
     std::vector<render::TilePixels> tiles = work_.texture->refresh(dirty, document);
     if (journal_changed) update_lines();
-    const std::vector<std::uint32_t> wells = document.take_palette_dirty();
-    if (!wells.empty()) refresh(palette_, document, wells);
+    const std::vector<std::uint32_t> wells = document.appearance().take_palette_dirty();
+    if (!wells.empty()) refresh(palette_, document.palette(), wells);
     if (journal_changed) update_brush_colour();
     send_tiles(std::move(tiles));
-    const brush::TuftState* tuft = document.tuft();
-    const stroke::BrushInHand* held = document.held(brush_);
+    const brush::TuftState* tuft = document.session() ? &document.session()->tuft() : nullptr;
+    const stroke::BrushInHand* held = document.brushes().find(brush_);
     const Autosave& file = work_.autosave;
     outbox_.change([&](Update& update) {
         if (journal_changed) update.events.strokes = lines_;
         if (!wells.empty()) update.events.palette = palette_;
         PaintStatus& status = update.status;
-        status.document = {
-            .layers = document.layers(),
-            .masks = document.masks(),
-            .can_undo = !history_.done.empty() && !file.viewing(),
-            .can_redo = !history_.undone.empty(),
-            .wet = std::ranges::any_of(document.canvases(), [](const auto& layer) { return layer.canvas->wet(); }),
-            .undo_seconds = undo_seconds_};
+        status.document = {.layers = document.layers().table(),
+                           .masks = document.masks().table(),
+                           .can_undo = !history_.done.empty() && !file.viewing(),
+                           .can_redo = !history_.undone.empty(),
+                           .wet = std::ranges::any_of(document.layers().canvases(),
+                                                      [](const auto& layer) { return layer.canvas->wet(); }),
+                           .undo_seconds = undo_seconds_};
         status.brush = {.tuft = tuft ? *tuft : brush::TuftState{},
                         .on_palette = tuft && on_palette_,
                         .fullness = held ? held->reservoir.fullness() : 1,
@@ -85,9 +86,9 @@ void Publisher::update_lines() {
 // The mixture in the brush last painted with, for its picture.
 void Publisher::update_brush_colour() {
     brush_colour_.reset();
-    const stroke::BrushInHand* held = work_.document->held(brush_);
+    const stroke::BrushInHand* held = work_.document->brushes().find(brush_);
     if (!held) return;
-    const std::vector<ink::Pigment>& pigments = work_.document->canvas().pigments();
+    const std::vector<ink::Pigment>& pigments = work_.document->layers().pigments();
     const ink::Mix mix = held->reservoir.mix();
     ink::Ink ink;
     for (std::size_t p = 0; p < pigments.size(); ++p)
@@ -118,11 +119,11 @@ void Publisher::send_texture() {
 }
 
 void Publisher::publish_appearance() {
-    const stroke::Document& painting = *work_.document;
-    Appearance appearance{.recolours = painting.recolours(),
-                          .substrate = painting.substrate().name,
-                          .painted_on = painting.painted_on().name,
-                          .roughness = painting.substrate().roughness};
+    const stroke::Appearance& shown = work_.document->appearance();
+    Appearance appearance{.recolours = shown.recolours(),
+                          .substrate = shown.substrate().name,
+                          .painted_on = work_.document->materials().substrate().name,
+                          .roughness = shown.substrate().roughness};
     outbox_.change([&](Update& update) { update.events.appearance = std::move(appearance); });
 }
 
@@ -134,7 +135,7 @@ void Publisher::publish_snapshots() {
 
 void Publisher::draw_thumbnails() {
     stroke::Document& document = *work_.document;
-    if (document.in_stroke() || !thumbnails_.waiting(document)) return;
+    if (document.session() || !thumbnails_.waiting(document)) return;
     std::vector<Thumbnail> changed = thumbnails_.draw(document);
     outbox_.change([&](Update& update) {
         for (Thumbnail& picture : changed) {
@@ -152,7 +153,7 @@ void Publisher::look_from(const render::GlCamera& camera) {
 void Publisher::forget_journal() {
     lines_.clear();
     if (palette_.rgb.empty()) return;
-    refresh(palette_, *work_.document);
+    refresh(palette_, work_.document->palette());
     outbox_.change([&](Update& update) { update.events.palette = palette_; });
 }
 

@@ -27,7 +27,8 @@ const std::vector<std::string>& map_names() {
 
 void write_map(const fs::path& path, const std::string& name, const stroke::Document& painting,
                const ink::ComposeOptions& compose, int bits) {
-    const ink::Stack stack = painting.stack();
+    const ink::Stack stack = painting.appearance().stack();
+    const ink::Substrate& substrate = painting.appearance().substrate();
     const stroke::Model& model = painting.model();
     const bool png = path.extension() == ".png";
     ImageOptions data;
@@ -37,23 +38,23 @@ void write_map(const fs::path& path, const std::string& name, const stroke::Docu
             write_image(page_path(path, model.atlas, page), page_view(whole, model.atlas, page), options);
     };
     if (name == "palette") {
-        if (!painting.palette()) throw Error("there is nothing on the palette");
+        if (!painting.palette().canvas()) throw Error("there is nothing on the palette");
         stroke::PalettePicture picture;
-        stroke::refresh(picture, painting);
+        stroke::refresh(picture, painting.palette());
         return write_image(path, view_of(picture.width, picture.height, 3, picture.rgb.data()));
     }
     if (name == "base-colour" && png && bits == 16) {
-        write(view_of(srgb16(ink::compose_linear(stack, model.texels, painting.substrate(), compose))));
+        write(view_of(srgb16(ink::compose_linear(stack, model.texels, substrate, compose))));
     } else if (name == "base-colour" && png) {
-        write(view_of(ink::compose_srgb8(stack, model.texels, painting.substrate(), compose)));
+        write(view_of(ink::compose_srgb8(stack, model.texels, substrate, compose)));
     } else if (name == "base-colour") {
         data.half = true;
-        write(view_of(ink::compose_linear(stack, model.texels, painting.substrate(), compose)), data);
+        write(view_of(ink::compose_linear(stack, model.texels, substrate, compose)), data);
     } else if (name == "roughness") {
         data.half = true;
-        write(view_of(ink::compose_roughness(stack, model.texels, painting.substrate(), compose)), data);
+        write(view_of(ink::compose_roughness(stack, model.texels, substrate, compose)), data);
     } else if (name == "pigments") {
-        const std::vector<ink::Pigment>& pigments = painting.canvas().pigments();
+        const std::vector<ink::Pigment>& pigments = painting.layers().pigments();
         if (pigments.empty() || stack.layers.empty())
             throw Error(path.string(), "nothing is painted: there are no pigments to write");
         const ink::AtlasMap<float> amounts = ink::compose_amounts(stack, model.texels, compose);

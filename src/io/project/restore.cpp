@@ -1,5 +1,7 @@
 #include "io/project/restore.h"
 
+#include "stroke/journal/tables.h"
+
 namespace tuft::io {
 
 void use_presets(const Project& project, stroke::Document& painting) {
@@ -7,12 +9,12 @@ void use_presets(const Project& project, stroke::Document& painting) {
     for (const auto& [name, toml] : project.brushes()) {
         brush::Preset preset = brush::parse_preset(toml, file + ": brush " + name);
         preset.name = name;
-        painting.use_brush(preset);
+        painting.use(preset);
     }
     for (const auto& [name, toml] : project.inks()) {
         ink::Ink ink = ink::parse_ink(toml, file + ": ink " + name);
         ink.name = name;
-        painting.use_ink(ink);
+        painting.use(ink);
     }
 }
 

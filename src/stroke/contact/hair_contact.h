@@ -9,44 +9,49 @@
 #include "stroke/contact/stamp.h"
 #include "stroke/contact/tuft_in_hand.h"
 
+/// \file
+/// From the bent tuft to the footprint of a stamp. Called by `StrokeSession`; deposit models read the cells and nodes
+/// of the ink that touches.
+
 namespace tuft::stroke {
 
 struct HairContactOptions {
     double cell = 1e-4;          ///< metres, of footprints
-    bool always_closed = false;  ///< what lies there fills the gaps of dry hair, as a pool does
-    bool places_nodes = false;   ///< ink differs over the footprint: find the grid of its nodes
-    double relief = 0;           ///< metres, rms height of the substrate's grain
+    bool always_closed = false;  ///< ink on the surface, such as a pool, fills the gaps of dry hair
+    bool places_nodes = false;   ///< computes the stamp's grid, for ink that varies over the footprint
+    double relief = 0;           ///< rms height of the substrate's grain, metres
 };
 
-/// The hair that touches at one pose: from the bent tuft to a footprint, in one closed shape where the hair is wet
-/// enough to close its gaps, hair by hair where it is not.
+/// The touching hair at one pose. Its footprint is one closed patch where the hair is wet enough to close its gaps,
+/// else the sum of its hairs.
 class HairContact {
   public:
     explicit HairContact(const HairContactOptions& options) : options_(options) {}
 
-    /// Makes the stamp of the next pose: its footprint, how far it is single hairs, its grid. Its motion and ink are
-    /// the caller's. Splits and merges the tuft's bundles by their wetness. `dt`: seconds since the pose before.
+    /// Returns the stamp of the next pose with footprint, separation and grid; the caller sets motion and ink. Splits
+    /// and merges the tuft's bundles by their wetness. `dt`: seconds since the pose before.
     Stamp make_stamp(TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion, double dt);
 
-    /// Which cells of the hair touch, parts that sum to one; nodes of the stamp's grid, where they were asked for.
+    /// Cells of the reservoir that touch, with weights of sum 1; and the nodes of the stamp's grid, with
+    /// `places_nodes`.
     const ink::ContactCells& cells() const { return cells_; }
     const ink::NodeContact& nodes() const { return nodes_; }
-    /// The same summed over the stamps since it was last taken, parts that sum to one.
+    /// Returns the cells over all stamps since the last call, with weights of sum 1.
     ink::ContactCells take_cells_since();
-    /// Unit, of the hair on the surface in the contact frame.
+    /// Direction of the hair on the surface, unit, contact frame.
     const Vec2& axis() const { return axis_; }
-    /// The section's +x is at the end of the patch's width (1) or at its beginning (-1).
+    /// 1: the section's +x is at the end of the patch's width; −1: at its beginning.
     double orientation() const { return orientation_; }
     bool by_hair() const { return by_hair_; }
-    /// m² of the outlines of a stamp with gaps; 0: it has none.
+    /// Area of the outlines of a stamp with gaps, m²; 0: it has none.
     double closed_area() const { return closed_area_; }
-    /// Part of the outlines of its hair that `area` (m²) covers; 1 where no single hairs are drawn.
+    /// Returns the part of its outlines that `area` (m²) covers; 1 for a closed patch.
     double coverage(double area) const { return closed_area_ > 0 ? area / closed_area_ : 1; }
 
   private:
     struct Wetness {
         std::vector<double> of_bundle;
-        double mean = 0, lack = 0;  ///< over the bundles; `lack`: mean of what each lacks of 1
+        double mean = 0, lack = 0;  ///< over the bundles; `lack`: mean of max(0, 1 − wetness)
     };
     Wetness bundle_wetness(TuftInHand& tuft, const MotionTracker& motion, double stress, double dt);
     void draw_hairs(Stamp& stamp, const TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion,

@@ -6,38 +6,41 @@
 #include "ink/colour/pigments.h"
 #include "ink/exchange/reservoir.h"
 
+/// \file
+/// A brush with its ink: between strokes (`BrushesInHand`) and during one (`StrokeSession`).
+
 namespace tuft::stroke {
 
-/// A brush as it persists between two strokes.
+/// Hair and ink that persist between strokes.
 struct BrushInHand {
     brush::Tuft tuft;
     ink::Reservoir reservoir;
-    std::string dipped;  ///< the ink it was last dipped into
-    std::string named;   ///< the ink that its last stroke named
+    std::string dipped;  ///< name of the ink last dipped into
+    std::string named;   ///< name of the ink of the last stroke
 };
 
-/// 0 dry … 1 wet: hair is wet while it holds ink; the last quarter of its fill leaves it to dry.
+/// Returns the wetness of the hair, 0 dry … 1 wet: x (2 − x), with x = min(1, fullness / 0.25).
 double wetness_of(const ink::Reservoir& reservoir);
 
-/// A new brush's reservoir, empty: a cell for each cluster of each bundle of its hair.
+/// Returns an empty reservoir for a tuft: a cell per cluster of hair of each bundle.
 ink::Reservoir empty_reservoir(const brush::Tuft& tuft);
 
 /// The brush during one stroke: its hair, its ink, and how it bends.
 struct TuftInHand {
     BrushInHand brush;
-    ink::Ink ink;               ///< that it was dipped into
+    ink::Ink ink;               ///< dipped into
     brush::TuftState state;     ///< at the last pose
     Quat rotation{1, 0, 0, 0};  ///< of the ferrule at the last pose
 
     const brush::Preset& preset() const { return brush.tuft.preset; }
-    /// Tells the hair how much ink it holds: friction, cohesion, plasticity and splitting depend on it.
+    /// Sets the hair's wetness from the reservoir. Friction, cohesion, plasticity and splitting depend on it.
     void update_wetness();
-    /// Takes over the bent tuft of the next pose. Bending mixes what the bundles hold.
+    /// Takes the bent tuft of the next pose. Bending mixes the ink of the bundles.
     void bend(brush::TuftState next, const brush::Pose& pose);
-    /// k in [0, 1] of the ink's laws: root moment over that of a firm press.
+    /// Returns k of the ink's laws: root moment over that of a firm press, clamped to [0, 1].
     double stress() const;
-    /// How what hangs on the tuft runs to the contact at `contact` (metres, world); `down`: the direction of weight,
-    /// zero without.
+    /// Returns how ink that hangs on the tuft drains to `contact` (metres, world). `down`: direction of gravity; zero:
+    /// none.
     ink::Drain drain(const brush::Pose& pose, const Vec3& contact, const Vec3& down) const;
 };
 

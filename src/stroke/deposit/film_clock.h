@@ -4,22 +4,26 @@
 #include "ink/film/film.h"
 #include "stroke/deposit/stamp_target.h"
 
+/// \file
+/// Time of the wet film during a stroke. Called by deposit models for wet ink.
+
 namespace tuft::stroke {
 
-/// Wet ink's film and what it flows by; null film: ink stays where it is put.
+/// The film of wet ink in use, with its parameters. Null: ink stays where it is deposited.
 struct WetFilmInUse {
     ink::WetFilm* film = nullptr;
     ink::FilmParams params;
 };
 
-/// Lets the film flow as the time of a stroke goes by, in steps of 50 ms. Does nothing without a film.
+/// Advances the film with the time of a stroke, in steps of at least 50 ms. Without a film it does nothing.
 class FilmClock {
   public:
     FilmClock(StampTarget& target, const WetFilmInUse& wet, ProgressFn progress)
         : target_(target), wet_(wet), progress_(std::move(progress)) {}
 
+    /// Adds time; advances the film once 50 ms have gathered. Throws `Cancelled` when `progress` stops it.
     void pass(double seconds);
-    /// Steps what has not been stepped yet.
+    /// Advances the film by the time that is left.
     void catch_up();
 
   private:

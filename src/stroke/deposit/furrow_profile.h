@@ -5,13 +5,17 @@
 #include "ink/film/paste.h"
 #include "stroke/contact/hair_contact.h"
 
+/// \file
+/// Furrows that bundles of hair draw in paste. Called by deposit_paste.cpp.
+
 namespace tuft::stroke {
 
-/// How firmly each bundle lies over the width of the patch, from stamp to stamp: bundles come to lie otherwise within
-/// 1.5 mm of travel, and a furrow deepens and fades over 9 mm.
+/// Firmness of each bundle over the width of the patch, from stamp to stamp. The order of bundles changes within 1.5 mm
+/// of travel; a furrow deepens and fades over 9 mm.
 class FurrowProfile {
   public:
-    /// The bundles at the next stamp: place over the patch's width, 0–1, and firmness over the firmest.
+    /// Returns the bundles at the next stamp, after `travel` metres of the stroke: position over the patch's width,
+    /// 0–1, and firmness relative to the firmest bundle.
     std::vector<ink::BundleFirmness> advance(const TuftInHand& tuft, const HairContact& hair, double travel);
 
   private:

@@ -6,13 +6,16 @@
 
 #include "footprint/stamp/stamp.h"
 
+/// \file
+/// Scratch buffers for planning stamps in parallel. A `Document` owns one pool for all of its strokes.
+
 namespace tuft::stroke {
 
-/// Scratch buffers to plan stamps with: as many as threads plan at a time. Outlives a stroke, so that the memory is
-/// used again by the next one.
+/// Buffers for `footprint::plan_stamp`, as many as threads plan at the same time. Thread-safe. Memory is reused by the
+/// next stroke.
 class PlanScratchPool {
   public:
-    /// A buffer for one thread, until it is destroyed.
+    /// A buffer for one thread, given back at the end of its life.
     class Lease {
       public:
         explicit Lease(PlanScratchPool& pool);

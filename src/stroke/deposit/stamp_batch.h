@@ -6,11 +6,13 @@
 #include "stroke/contact/stamp.h"
 #include "stroke/deposit/stamp_target.h"
 
+/// \file
+/// Stamps of one ink, deposited or erased a batch at a time. Called by deposit_still.cpp.
+
 namespace tuft::stroke {
 
-/// Puts stamps of one ink onto texels, or takes ink off with them, a batch at a time: tiles in parallel, on each tile
-/// the stamps in their order, so that the texels do not depend on the number of threads. Batches have a fixed
-/// length; the ink given is known after each.
+/// Applies stamps to texels in batches of `kStamps`: tiles in parallel, the stamps of one tile in order, so that the
+/// bits do not depend on the number of threads. The ink given is known after each batch.
 class StampBatch {
   public:
     static constexpr std::size_t kStamps = 8;
@@ -18,16 +20,16 @@ class StampBatch {
     /// `target` must outlive it.
     StampBatch(StampTarget& target, const footprint::StampOptions& options);
 
-    /// Takes a stamp; true when the batch is full and must be flushed. A stamp that erases may only stand beside
-    /// others that do.
+    /// Adds a stamp; returns true when the batch is full and must be flushed. Precondition: all stamps of a batch
+    /// erase, or none does.
     bool add(Stamp stamp);
-    /// Deposits what was added. Returns the ink given, film·m². Asks `going_on` every few hundred tiles; a stop
-    /// leaves tiles half done, of which the target has copies.
+    /// Deposits the batch. Returns the ink given, film·m². Calls `going_on` every few hundred tiles; a stop throws
+    /// `Cancelled` and leaves tiles half done, of which the target has copies.
     double flush(const ProgressFn& going_on = {});
 
-    /// What erasing stamps have taken away so far.
+    /// Ink erased so far, film·m².
     const ink::Amounts& erased() const { return erased_; }
-    /// After erasing: draws off wet ink that stayed round what was erased.
+    /// After erasing: removes wet ink that stayed round the erased texels.
     void blot(const atlas::SeamLinks& seams);
 
   private:
@@ -43,7 +45,7 @@ class StampBatch {
     StampTarget& target_;
     footprint::StampOptions options_;
     std::vector<Stamp> batch_;
-    std::vector<footprint::StampJobs> plans_;  ///< one per place in the batch; their memory is used again
+    std::vector<footprint::StampJobs> plans_;  ///< one per place in the batch; memory is reused
     bool piecewise_ = false;
     ink::EraseStarts erase_starts_;
     ink::Amounts erased_;

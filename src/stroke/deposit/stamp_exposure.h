@@ -7,37 +7,40 @@
 #include "stroke/contact/stamp.h"
 #include "stroke/deposit/stamp_target.h"
 
+/// \file
+/// Stamps applied one at a time, for ink that varies over the footprint. Called by deposit models for mixed ink, wet
+/// ink and paste.
+
 namespace tuft::stroke {
 
-/// One stamp at a time, for ink that differs over the footprint or is exchanged with what lies there: first the texels
-/// that the stamp exposes are found, then ink acts on them, tiles in parallel. The bits do not depend on the number of
-/// threads.
+/// Exposure of texels by the present stamp, and laws of ink that act on it: `expose` first, then one of the others.
+/// Tiles in parallel; the bits do not depend on the number of threads.
 class StampExposure {
   public:
     /// `target` must outlive it.
     StampExposure(StampTarget& target, const footprint::StampOptions& options);
 
-    /// Finds the exposed texels. Returns the surface under each node of the stamp's grid, m².
+    /// Computes the exposure of texels by a stamp. Returns the area under each node of the stamp's grid, m².
     ink::NodeAreas expose(const Stamp& stamp);
 
-    /// Exchanges wet ink there; of paste no more than `loose` film units. Returns what was given less what was taken,
-    /// by node.
+    /// Exchanges wet ink (ink/exchange/transfer.h), of paste at most `loose` film units. Returns ink given minus ink
+    /// taken, film·m², by node. `ds`: metres of travel.
     ink::NodeContents exchange(const ink::TransferParams& params, double ds, double loose);
-    /// Deposits ink there that differs from node to node. Returns what was given.
+    /// Deposits ink that differs from node to node. Returns the ink given, film·m², by node.
     ink::NodeContents deposit(const ink::DepositParams& params, const ink::NodeMixes& mixes, double ds);
 
-    /// Ink given and taken, by node.
+    /// Ink given and taken, film·m², by node.
     struct Exchanged {
         ink::NodeContents given{}, taken{};
     };
-    /// Ploughs paste there.
+    /// Ploughs paste (ink/film/paste.h).
     Exchanged plough(const ink::PasteParams& params, const ink::NodeMixes& mixes, double ds);
-    /// Rounds the paste that was deposited over `length` metres.
+    /// Levels the paste of the stroke over `length` metres.
     void level(const atlas::SeamLinks& seams, double length);
 
   private:
     struct Tile {
-        std::uint32_t slot = kNone;  ///< kNone: nothing of it is exposed
+        std::uint32_t slot = kNone;  ///< kNone: not exposed
         alignas(64) std::array<float, atlas::kTileTexels> exposure;
         ink::TexelPlaces places;
         ink::NodeAreas areas{};
@@ -52,8 +55,8 @@ class StampExposure {
     footprint::StampOptions options_;
     footprint::StampJobs plan_;
     bool piecewise_ = false;
-    std::vector<Tile> tiles_;  ///< that the present stamp reaches
-    ink::OpenBefore pastes_;   ///< paste on the tiles before the stroke
+    std::vector<Tile> tiles_;  ///< of the present stamp
+    ink::OpenBefore pastes_;   ///< paste before the stroke
 };
 
 }  // namespace tuft::stroke

@@ -10,15 +10,18 @@
 #include "stroke/surface/mask_texels.h"
 #include "stroke/surface/model.h"
 
+/// \file
+/// The texels of one stroke. `StrokeSession` owns the target; deposit models write to it.
+
 namespace tuft::stroke {
 
-/// The texels that one stroke writes to, with what every way of writing needs: the mask, the grain of the substrate,
-/// and copies of the tiles as they were before the stroke, for undo.
+/// The canvas that a stroke writes to, with its mask, the substrate's grain, and copies of tiles before the stroke, for
+/// undo.
 class StampTarget {
   public:
     using Grain = std::array<float, atlas::kTileTexels>;
 
-    /// All must outlive it. `mask`: what the stroke may change; null: everything.
+    /// All must outlive it. `mask`: texels that may change; null: all.
     StampTarget(const Model& model, ink::Canvas& canvas, const ink::Substrate& substrate, const MaskTexels* mask,
                 PlanScratchPool& scratch);
 
@@ -28,17 +31,17 @@ class StampTarget {
     const MaskTexels* mask() const { return mask_; }
     PlanScratchPool& scratch() { return scratch_; }
 
-    /// Must be called before `expose_grain` is, by one thread.
+    /// Must be called once, by one thread, before `expose_grain`.
     void prepare_grain();
-    /// Leaves of a tile's exposure what hair with `film` metres of ink under it reaches of the grain. Called by the
-    /// one thread that works on the tile.
+    /// Reduces a tile's exposure to the part of the grain that hair with `film` metres of ink under it reaches. One
+    /// thread per tile.
     void expose_grain(std::uint32_t slot, std::array<float, atlas::kTileTexels>& exposure, double film);
 
-    /// Copies a tile as it is now, unless it was copied already.
+    /// Copies a tile, unless it was copied before.
     void snapshot(std::uint32_t slot);
-    /// Slots copied so far, in no order.
+    /// Copies so far by slot.
     const std::unordered_map<std::uint32_t, ink::TileSnapshot>& snapshots() const { return before_; }
-    /// Hands the copies over, by slot, and forgets them.
+    /// Returns the copies, ascending by slot, and forgets them.
     std::vector<ink::TileSnapshot> take_snapshots();
 
   private:
@@ -48,8 +51,8 @@ class StampTarget {
     ink::Canvas& canvas_;
     const MaskTexels* mask_;
     PlanScratchPool& scratch_;
-    float grain_rms_, grain_length_;             ///< metres, of the substrate
-    std::vector<std::unique_ptr<Grain>> grain_;  ///< by slot, evaluated when dry hair comes there
+    float grain_rms_, grain_length_;             ///< rms height and length of the substrate's grain, metres
+    std::vector<std::unique_ptr<Grain>> grain_;  ///< by slot, evaluated at first use by dry hair
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
 };
 

@@ -10,79 +10,80 @@
 #include "stroke/document/document.h"
 #include "stroke/journal/model_motion.h"
 
+/// \file
+/// Fit of strokes to a revised model: where their ink lies, and which of them no longer fit. Called by `tuft replay
+/// --model` and when the studio opens a project on a revised model.
 namespace tuft::stroke {
 
-/// How a stroke that was made on one model lies on another one. Lengths in metres; those of paths
-/// are of the ink's path on the former model. The place of a sample's ink is where a flat trace is
-/// draped or projected, and where the axis of a holder in space meets the surface.
+/// How a stroke made on a former model lies on a revised one. Lengths in metres; path lengths are those of the ink's
+/// path on the former model. The ink of a sample is where a flat trace is mapped to, and where the axis of a holder in
+/// space meets the surface.
 struct StrokeFit {
     std::uint64_t stroke = 0;
-    bool reached = false;        ///< the former model was within a tuft's length of the mouth somewhere
-    double way = 0;              ///< in all
-    double lost = 0;             ///< of it, where there is no surface for the ink in the other model
-    double buried = 0;           ///< of it, where the other model's surface lies above the ferrule's mouth
-    double depth = 0;            ///< median depth of the straight tip in the former model, of what is
-                                 ///< neither; in space only
-    double deeper = 0;           ///< median of how much deeper it lies in the other one; below 0: less deep
-    bool flat = false;           ///< laid on the model anew, in the place of the former one
-    double moved = 0;            ///< median way of the place of the ink from one model to the other
-    double moved_most = 0;       ///< and the longest
-    std::optional<double> slid;  ///< median distance from where the ink's place on the former model
-                                 ///< went; without a motion: nothing
-    double kept = 0;             ///< length of the path where both models have ink, on the former one
-    double kept_now = 0;         ///< the same on the other one
-    double stretched = 0;        ///< of `kept`, where 5 mm of it are more than a quarter longer or shorter now
+    bool reached = false;        ///< the former model was within a tuft's length of the ferrule's mouth somewhere
+    double way = 0;              ///< length of the path
+    double lost = 0;             ///< of it, where the revised model has no surface for the ink
+    double buried = 0;           ///< of it, where the revised surface lies above the ferrule's mouth
+    double depth = 0;            ///< in space: median depth of the unbent tip in the former model, of the rest
+    double deeper = 0;           ///< in space: median increase of that depth
+    bool flat = false;           ///< a flat stroke, mapped anew onto the revised model
+    double moved = 0;            ///< median displacement of the ink
+    double moved_most = 0;       ///< largest displacement of the ink
+    std::optional<double> slid;  ///< median distance of the ink from its former point moved by the model's motion;
+                                 ///< empty without a motion
+    double kept = 0;             ///< of the path, where both models have ink
+    double kept_now = 0;         ///< length of the same part on the revised model
+    double stretched = 0;        ///< of `kept`, where 5 mm became more than a quarter longer or shorter
 
-    double missing() const { return way > 0 ? (lost + buried) / way : 0; }  ///< part of the ink's path, 0–1
+    /// Part of the path without ink, 0–1.
+    double missing() const { return way > 0 ? (lost + buried) / way : 0; }
 };
 
-/// Why a revised model is too small to be painted on, in a sentence for people; "" where it is not. It is too small
-/// where its bounding box has a diagonal less than a quarter of the former one's and less than the length of a tuft
-/// that painted: each stamp would reach the whole model, a thousand times the work of the former one, and nothing would
-/// fit. Hidden strokes and the palette's are left out.
+/// Returns why a revised model is too small to be painted on, as a sentence for people; "" where it is not. Too small:
+/// the diagonal of its box is less than a quarter of the former one and less than the length of a tuft that painted.
+/// Each stamp would then reach the whole model, a thousand times the work, and nothing would fit. `length_of` returns
+/// the tuft length of a brush, metres. Hidden strokes and those on the palette do not count.
 std::string size_fault(const std::vector<JournalEntry>& entries,
                        const std::function<double(const std::string& brush)>& length_of,
                        const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised);
 
-/// Compares the surfaces along the hair: at each sample of a stroke in space rays leave the
-/// ferrule's mouth along its axis, one tuft's length to both sides; flat strokes are laid on both
-/// models. `length_of` gives a brush's tuft length, `motion` how the model moved as a whole. Hidden
-/// strokes and the palette's are left out. Cost: two rays a sample, or twice what laying takes.
+/// Compares two models along strokes. At each sample of a stroke in space, rays from the ferrule's mouth along its
+/// axis, one tuft length to both sides, find the surfaces; flat strokes are mapped onto both models. `length_of`
+/// returns the tuft length of a brush, metres; `motion` is that of the whole model. Hidden strokes and those on the
+/// palette are left out. Cost: two rays per sample, or two mappings.
 std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
                                    const std::function<double(const std::string& brush)>& length_of,
                                    const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
                                    const std::optional<ModelMotion>& motion = {});
 
-/// Why a stroke does not fit any more, in a sentence for people; "" when it fits. Reported is what
-/// shows:
-/// - more than a tenth of its path without ink;
-/// - in space, a depth changed by more than half of what it was, and by more than 0.2 mm;
-/// - its place moved (flat), or left its place on a model that was moved as a whole, by more than 1
-/// mm and by more than
-///   1 % of its path: as wide as a fine brush's line, more than a mesh of other triangles moves it;
-/// - more than a tenth of its path longer or shorter by more than a quarter.
+/// Returns why a stroke no longer fits, as a sentence for people; "" where it fits. It does not fit if
+/// - more than 10 % of its path have no ink, or
+/// - in space, its depth changed by more than half and by more than 0.2 mm, or
+/// - it moved (flat, or relative to a model moved as a whole) by more than 1 mm and by more than 1 % of its path: the
+///   width of a fine brush's line, and more than another triangulation moves it, or
+/// - more than 10 % of its path are longer or shorter by more than a quarter.
 std::string mismatch_reason(const StrokeFit& fit);
 
-/// A stroke that does not fit another model any more.
+/// A stroke that does not fit a revised model.
 struct StrokeMismatch {
-    std::uint64_t stroke = 0;
-    std::string reason;  ///< English, for people
+    std::uint64_t stroke = 0;  ///< id of its entry
+    std::string reason;        ///< English, for people
 };
-/// Of a replay on the other model (its reports) and its fits, in the journal's order: strokes that
-/// touch nothing any more, and those for which `mismatch_reason` has one.
+/// Returns the mismatches of a replay on the revised model, in the journal's order: strokes that touched nothing, and
+/// those with a `mismatch_reason`.
 std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& reports,
                                             const std::vector<StrokeFit>& fits);
 
-/// All strokes of a replay on another model together.
+/// Fit of all strokes of a journal.
 struct FitTotal {
     std::size_t strokes = 0, mismatches = 0;
-    double moved = 0, moved_most = 0;   ///< metres: median over the strokes, longest
-    std::optional<double> slid;         ///< metres: median over the strokes
-    double missing = 0, stretched = 0;  ///< parts of the path of all ink, 0–1
+    double moved = 0, moved_most = 0;   ///< median over the strokes, and largest; metres
+    std::optional<double> slid;         ///< median over the strokes, metres
+    double missing = 0, stretched = 0;  ///< parts of the path of all strokes, 0–1
 };
 FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMismatch>& mismatches);
 
-/// In a sentence: "12 of 40 strokes no longer fit: they lie 20.0 mm from where they lay (31.2 mm at
+/// Returns the fit as a sentence: "12 of 40 strokes no longer fit: they lie 20.0 mm from where they lay (31.2 mm at
 /// most), 4 % of their ink is missing, 0 % of it is stretched or squeezed by more than a quarter".
 std::string describe(const FitTotal& total);
 

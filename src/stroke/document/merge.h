@@ -7,14 +7,14 @@
 
 #include "stroke/journal/journal.h"
 
-/// Two journals that went on from the same one, made one again.
+/// \file
+/// Three-way merge of journals. Called by the studio when another program changed the open project.
 namespace tuft::stroke {
 
-/// What is remembered of an entry, to tell later whether somebody changed it.
+/// Identity and content of an entry at some time, to detect changes.
 struct EntryMark {
     std::uint64_t id = 0;
-    std::uint64_t content = 0;  ///< hash of all that a project stores of it, but for its id; of a
-                                ///< hidden one with all bits turned
+    std::uint64_t content = 0;  ///< hash of all that a project stores of it but its id; complemented for a hidden entry
     bool hidden = false;
 
     bool operator==(const EntryMark&) const = default;
@@ -25,17 +25,16 @@ std::vector<EntryMark> marks_of(std::span<const JournalEntry> entries);
 
 struct MergedJournal {
     std::vector<JournalEntry> entries;
-    std::size_t from_theirs = 0;  ///< the first so many are all of theirs, as they are; the rest is painted after them
-    bool altered = false;         ///< else: mine took out or changed some of theirs, and `from_theirs` is 0
-    std::size_t news = 0;         ///< entries of theirs that mine did not have, or not so
+    std::size_t from_theirs = 0;  ///< number of leading entries that are all of theirs, unchanged; 0 if `altered`
+    bool altered = false;         ///< mine removed or changed some of theirs
+    std::size_t news = 0;         ///< entries of theirs that are new to mine or differ from it
 };
 
-/// Three-way merge of `mine` and `theirs`, which both came from `base`. Theirs goes first, in its
-/// order; what only mine has is painted after it, in its order. Nothing that was painted or changed
-/// on either side is lost: an entry goes only where one side took it out and the other left it as
-/// it was; of an entry that both changed mine stays. What comes after gets ids that are free,
-/// layers and masks too, under names that are free; a layer or mask that it needs and theirs has no
-/// more is added again. Of changes of layers, those that theirs makes impossible are left out.
+/// Merges `mine` and `theirs`, both descended from `base`. The result has the entries of `theirs` in their order, then
+/// those that only `mine` has, in their order. Nothing painted or changed on either side is lost: an entry is removed
+/// only where one side removed it and the other did not change it; of an entry changed on both sides that of `mine`
+/// stays. Entries of `mine` get free ids; their layers and masks get free ids and names. A layer or mask that they need
+/// and `theirs` removed is added again. Edits of layers that `theirs` made impossible are left out.
 MergedJournal merge_journals(std::span<const EntryMark> base, std::vector<JournalEntry> mine,
                              std::vector<JournalEntry> theirs);
 

@@ -1,6 +1,9 @@
 #include "stroke/document/palette.h"
 
-#include "atlas/texels/seam_links.h"
+#include <cmath>
+
+#include "ink/composite/composite.h"
+#include "ink/spectra/kubelka_munk.h"
 
 namespace tuft::stroke {
 namespace {
@@ -9,6 +12,10 @@ constexpr double kPaletteCell = 0.01;  // metres, of its mesh
 constexpr int kColumns = 12, kRows = 9;
 constexpr double kPoolEdge = 25;  // film units that stand at the rim of a pool on glaze
 constexpr Vec2 kCorner{kPaletteTexels / 2 * kPaletteTexel, 0.049};  // uv (0, 0) lies at − this
+
+// Of the texels that the plate covers.
+constexpr int kFirstColumn = static_cast<int>((kPaletteTexels * kPaletteTexel - kPaletteWidth) / 2 / kPaletteTexel);
+constexpr int kFirstRow = 16;
 
 }  // namespace
 
@@ -68,12 +75,65 @@ ink::FilmParams palette_film() {
     return params;
 }
 
-Palette::Palette()
+Palette::Plate::Plate()
     : model(make_palette()),
       substrate(palette_substrate()),
       params(palette_film()),
       canvas(model.texels.n_slots()),
       seams(atlas::build_seam_links(*model.mesh, model.atlas, model.texels)),
       film(std::make_unique<ink::WetFilm>(model.texels, seams)) {}
+
+Palette::Plate& Palette::made() const {
+    if (!plate_) plate_ = std::make_unique<Plate>();
+    return *plate_;
+}
+
+Palette::Plate& Palette::plate() {
+    return made();
+}
+
+ink::Canvas& Palette::canvas_with(const std::vector<ink::Pigment>& pigments) {
+    ink::Canvas& canvas = plate().canvas;
+    for (std::size_t p = canvas.pigments().size(); p < pigments.size(); ++p) canvas.add_pigment(pigments[p]);
+    return canvas;
+}
+
+void Palette::clear() {
+    if (plate_) plate_->canvas.clear();
+}
+
+void Palette::forget_pigments(std::size_t n) {
+    if (plate_) plate_->canvas.forget_pigments(n);
+}
+
+std::vector<std::uint32_t> Palette::take_dirty() {
+    return plate_ ? plate_->canvas.take_dirty() : std::vector<std::uint32_t>{};
+}
+
+void refresh(PalettePicture& picture, const Palette& palette) {
+    const ink::Rgb bare = palette_substrate().reflectance;
+    picture.rgb.resize(3 * static_cast<std::size_t>(picture.width * picture.height));
+    for (std::size_t i = 0; i < picture.rgb.size(); ++i)
+        picture.rgb[i] = static_cast<std::uint8_t>(std::lround(255 * ink::srgb_encode(bare[i % 3])));
+    if (palette.canvas()) refresh(picture, palette, palette.canvas()->touched_slots());
+}
+
+void refresh(PalettePicture& picture, const Palette& palette, std::span<const std::uint32_t> slots) {
+    if (picture.rgb.empty()) return refresh(picture, palette);
+    const atlas::TexelMap& map = palette.model().texels;
+    const ink::Substrate substrate = palette_substrate();
+    for (const std::uint32_t slot : slots) {
+        const ink::TileAppearance look = ink::shade_tile(*palette.canvas(), slot, substrate);
+        const int tile = static_cast<int>(map.tile_of_slot[slot]), per_side = static_cast<int>(map.tiles_per_side);
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            const int x = tile % per_side * atlas::kTile + t % atlas::kTile - kFirstColumn;
+            const int y = picture.height - 1 - (tile / per_side * atlas::kTile + t / atlas::kTile - kFirstRow);
+            if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) continue;
+            for (std::size_t c = 0; c < 3; ++c)
+                picture.rgb[3 * static_cast<std::size_t>(y * picture.width + x) + c] = static_cast<std::uint8_t>(
+                    std::lround(255 * ink::srgb_encode(look.colour[c][static_cast<std::size_t>(t)])));
+        }
+    }
+}
 
 }  // namespace tuft::stroke

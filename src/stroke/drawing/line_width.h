@@ -8,23 +8,25 @@
 #include "stroke/journal/samples.h"
 #include "stroke/placement/placement.h"
 
-/// Lines as wide as a drawing has them: how hard, and with which size of a brush, to press.
+/// \file
+/// Widths of lines: the pressure and the size of a brush that draw a given width. Called by drawing.h and long_lines.h.
 namespace tuft::stroke {
 
 inline constexpr double kSkinFilm = 0.1e-3;  ///< metres of ink round wet hair
 
-/// Width of the line that a wet brush draws, straight, steady and upright, over the pressure of the hand:
-/// `brush::sweep_depth` at twelve depths up to the working depth, linear between, never falling, and the
-/// ink round the hair to both sides.
+/// Width of the straight line that a wet, upright brush draws, by pressure: `brush::sweep_depth` at twelve depths up to
+/// the working depth, linear between them, monotone, plus `kSkinFilm` on both sides.
 class LineWidths {
   public:
-    static constexpr double kLightest = 0.05;  ///< pressure of a line that is still whole
+    static constexpr double kLightest = 0.05;  ///< least pressure of a line without gaps
 
-    /// Takes some 50 ms.
+    /// Cost: about 50 ms.
     explicit LineWidths(const brush::Preset& preset);
 
-    double at(double pressure) const;     ///< metres; pressure 0–1
-    double pressure(double width) const;  ///< kLightest–1: nearest to a width in metres
+    /// Returns the width at a pressure in [0, 1], metres.
+    double at(double pressure) const;
+    /// Returns the pressure in [kLightest, 1] whose width is nearest to `width`, metres.
+    double pressure(double width) const;
     double least() const { return at(kLightest); }
     double most() const { return at(1); }
 
@@ -32,12 +34,12 @@ class LineWidths {
     std::vector<double> widths_;  // metres, at pressures i / 12
 };
 
-/// Those of brushes by name (`brush::load_preset`), each found out once.
+/// Widths, presets and holders of brushes by name, each made at its first use. Throws `Error` as `brush::load_preset`.
 class WidthTables {
   public:
     const LineWidths& of(const std::string& brush);
     const brush::Preset& preset(const std::string& brush);
-    /// An upright holder over a plane that tip_lags its line (`measure_tip_lag`).
+    /// Returns options of an upright holder over a plane that compensates the tip lag (`measure_tip_lag`).
     const HolderOptions& hold(const std::string& brush);
 
   private:
@@ -46,26 +48,25 @@ class WidthTables {
     std::map<std::string, HolderOptions> holds_;
 };
 
-/// From one size of a brush that is chosen for a line to the next: few brushes for many widths.
+/// Ratio of neighbouring sizes of a brush that are chosen for lines: few brushes for many widths.
 inline constexpr double kBrushSizes = 1.25;
 
-/// The brush in the size that its name has if a pressure from 0.3 to 0.7 draws the width, else in the size
-/// (`brush::scaled`; powers of `kBrushSizes`) that draws it at about 0.36, at which corners come out best: less, and
-/// the tuft is long for the line and swings out; more, and it lies and cuts them. `widths` is of `name`. Sizes are held
-/// to what brushes have.
+/// Returns `name` if a pressure from 0.3 to 0.7 draws `width` (metres), else the name of the size (`brush::scaled`,
+/// powers of `kBrushSizes`) that draws it at a pressure of about 0.36. Corners come out best there: at less pressure
+/// the tuft is long for the line and swings out, at more it lies flat and cuts them. `widths` is that of `name`. Sizes
+/// are clamped to the range of presets.
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width);
 
-/// Adds what the ink of a line takes up to a box: its stencil edge, or its samples, with half of its width beside them
-/// where it has one; metres, in its own frame.
+/// Adds the ink of a line to a box: its stencil, else its samples with half of the line width around them. Metres,
+/// frame of the trace.
 void add_extent(Box& box, const StrokeSamples& trace);
 
-/// Metres of a line with this width over which a hand that set down or lifts comes to its pressure.
+/// Returns the length over which the pressure of a line of this width rises or falls at its ends, metres.
 double line_end(double width);
 
-/// Lays out the pressures of a trace with made-up ones so that it draws its `line_width`, or as much less of it as they
-/// are below 0.5: the hand sets down and
-/// lifts within one and a half widths each, or a quarter of the line if that is less. A line that ends where it began
-/// goes on along itself for as long as both take, so that no gap shows where its ends meet.
+/// Sets the pressures of a trace with made-up ones so that it draws its `line_width`, times twice the former pressure
+/// where that is below 0.5. The hand sets down and lifts within 1.5 widths each, at most a quarter of the line. A
+/// closed line is continued along itself by both lengths, so that no gap shows where its ends meet.
 void draw_to_width(StrokeSamples& trace, const LineWidths& widths);
 
 }  // namespace tuft::stroke

@@ -10,20 +10,21 @@
 #include "footprint/outline/footprint.h"
 #include "stroke/placement/placement.h"
 
-/// What a trace leaves on a plane, without texels.
+/// \file
+/// Ink of a trace on a plane, without texels. Called by fit_trajectory.h, which compares it with the drawing.
 namespace tuft::stroke {
 
-/// Coverage of the plane in cells, whose tiles are there where something is.
+/// Coverage of the plane in square cells of `cell` metres, stored in sparse tiles.
 class PlaneInk {
   public:
     explicit PlaneInk(double cell) : cell_(cell) {}
 
-    /// The larger of what is there and a footprint in the plane's own frame, with cells of this
-    /// picture, at a time.
+    /// Takes the maximum of the coverage and a footprint at `time` (seconds). The footprint has cells of the same size,
+    /// in the plane's frame.
     void add(const footprint::Footprint& footprint, double time);
-    /// Coverage at a point, metres, 0–1: bilinear between the middles of cells.
+    /// Returns the coverage at a point (metres), 0–1, bilinear between centres of cells.
     double at(const Vec2& p) const;
-    /// When half of the cell at a point was first covered, seconds of the trace; negative: never.
+    /// Returns the time at which half of the cell at a point was first covered, seconds; negative: never.
     double when(const Vec2& p) const;
     double cell() const { return cell_; }
 
@@ -40,9 +41,9 @@ class PlaneInk {
     std::unordered_map<std::uint64_t, Tile> tiles_;
 };
 
-/// The area that a brush full of ink touches that is led along a flat trace over a plane; metres, x
-/// right and y up, which is the trace's -y. The same hand (`lead_hand`, `pose_holder`), resampling,
-/// tuft and outlines as those of a stroke on a model, in steps of `step`; some 0.1 ms each.
+/// Returns the area that a full brush touches along a flat trace on a plane. Frame: metres, x to the right, y up (−y of
+/// the trace). Holder (`lead_hand`, `pose_holder`), resampling, tuft and outlines are those of a stroke on a model, in
+/// steps of `step` metres. Cost: 0.1 ms per step.
 PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, const HolderOptions& options, double step,
                    double cell);
 

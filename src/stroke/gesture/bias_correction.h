@@ -9,20 +9,20 @@
 
 #include "stroke/journal/recorded_stroke.h"
 
-/// A writer's bias: how the strokes they make differ from those they mean, learned from
-/// pairs and taken back on strokes to come. After Xu's user manipulability component (Xu et
-/// al., A Solid Model Based Virtual Hairy Brush, and its book chapter, 5.5.1.2), with
-/// ratios for the pressure and differences for position and tilt, so that nothing depends
-/// on an origin or blows up where the pen barely touches.
+/// \file
+/// A writer's bias: the difference of the strokes that they write from those that they mean, learned from pairs and
+/// corrected in later strokes. Called by `tuft bias` and `tuft paint --bias`. Source: the user manipulability component
+/// of Xu et al. 2004, here with ratios for pressure and differences for position and tilt: independent of the origin,
+/// and finite where the pen barely touches.
 namespace tuft::stroke {
 
-/// A piece of a sample stroke: what the writer did, to be compared with, and what to do
-/// about it: cubic Bézier curves over the piece, by their four control values.
+/// A piece of a sample stroke: features that other pieces are compared with, and its correction as cubic Bézier curves
+/// over the piece, by four control values each.
 struct BiasPiece {
     static constexpr int kPoints = 12;                 ///< at even arc length
     double length = 0;                                 ///< metres
-    double begin = 0, end = 1;                         ///< place in its stroke, parts of its length
-    std::array<Vec2, kPoints> shape{};                 ///< about its middle, over its length
+    double begin = 0, end = 1;                         ///< place in its stroke, parts of the stroke's length
+    std::array<Vec2, kPoints> shape{};                 ///< (point − centre) / length
     std::array<double, kPoints> pressure{};            ///< 0–1
     std::array<Vec2, kPoints> tilt{};                  ///< radians
     std::array<double, 4> pressure_ratio{1, 1, 1, 1};  ///< intended over written, in [1/2, 2]
@@ -31,25 +31,24 @@ struct BiasPiece {
 };
 
 struct BiasCorrection {
-    glm::dmat2 linear{1};  ///< of flat positions about the middle of what is written together
+    glm::dmat2 linear{1};  ///< map of flat positions about the centre of strokes written together
     std::vector<BiasPiece> pieces;
 };
 
-/// Learns from pairs: `intended[i]` is what `written[i]` was meant to be. Strokes that follow
-/// each other with one placement belong together (a character, a line): where they lie as a
-/// whole is no bias. The linear map (slant, width) is a least-squares fit, paired by arc length
-/// and drawn to the identity where the strokes say nothing; its stretches lie in [1/2, 2].
-/// What it leaves is kept piece by piece, pieces of about 6 mm that overlap by half.
-/// Throws `Error` when the counts differ, there are none, or a stroke is not flat.
+/// Learns a bias from pairs; `intended[i]` is what `written[i]` was meant to be. Consecutive strokes with one placement
+/// (a character, a line) are taken together: their common displacement is no bias. The linear map (slant, width) is a
+/// least-squares fit over points paired by arc length, regularised towards the identity; its singular values lie in
+/// [1/2, 2]. The rest is stored per piece; pieces are about 6 mm long and overlap by half. Throws `Error` if the counts
+/// differ, are 0, or a stroke is not flat.
 BiasCorrection learn_bias(std::span<const RecordedStroke> intended, std::span<const RecordedStroke> written);
 
-/// What was meant by these strokes: linear map, then for every piece the corrections of the
-/// four pieces most like it, weighted by likeness (shape and heading, length, place in the stroke,
-/// pressure, tilt). Strokes in space stay as they are. Times stay.
+/// Returns the strokes corrected: by the linear map, then every piece by the corrections of the four most similar
+/// pieces, weighted by similarity (shape and heading, length, place in the stroke, pressure, tilt). Strokes in space
+/// and times do not change.
 std::vector<RecordedStroke> correct_bias(const BiasCorrection& bias, std::vector<RecordedStroke> traces);
 
-/// As a TOML file and back; `source` names it in errors. Throws `Error` with the line for
-/// unknown keys, wrong types and values out of range.
+/// A bias as a TOML file, and back. `source` is the file's name in errors. Throws `Error` with the line for unknown
+/// keys, wrong types and values out of range.
 std::string bias_toml(const BiasCorrection& bias);
 BiasCorrection parse_bias(std::string_view text, const std::string& source);
 BiasCorrection load_bias(const std::filesystem::path& path);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <iterator>
+#include <span>
 
 #include "core/error.h"
 #include "core/system/files.h"
@@ -28,55 +29,65 @@ void add_row(std::string& out, const char* key, const std::array<Vec2, N>& v, do
     add_row(out, key, &v[0].x, 2 * N, unit);
 }
 
-[[noreturn]] void fail(const toml::node& node, const std::string& source, const std::string& what) {
-    throw Error(source, static_cast<long>(node.source().begin.line), what);
+/// A value of the file: where it stands, and what it may be.
+struct Field {
+    const toml::node& node;
+    const std::string& source;  ///< name of the file
+    std::string key;
+
+    [[noreturn]] void fail(const std::string& what) const {
+        throw Error(source, static_cast<long>(node.source().begin.line), what);
+    }
+};
+struct Range {
+    double lo = -1e300, hi = 1e300;  ///< as written
+    double unit = 1;                 ///< of the file in SI
+};
+
+void read_number(const Field& field, double& out, const Range& range) {
+    const auto v = field.node.value<double>();
+    if (!field.node.is_number() || !v || !(*v >= range.lo && *v <= range.hi))
+        field.fail(fmt::format("'{}' has a value that is no number from {} to {}", field.key, range.lo, range.hi));
+    out = *v * range.unit;
 }
 
-void read_number(const toml::node& node, const std::string& source, const std::string& key, double& out, double unit,
-                 double lo, double hi) {
-    const auto v = node.value<double>();
-    if (!node.is_number() || !v || !(*v >= lo && *v <= hi))
-        fail(node, source, fmt::format("'{}' has a value that is no number from {} to {}", key, lo, hi));
-    out = *v * unit;
-}
-
-void read_row(const toml::node& node, const std::string& source, const std::string& key, double* out, std::size_t n,
-              double unit, double lo, double hi) {
-    const toml::array* row = node.as_array();
-    if (!row || row->size() != n) fail(node, source, fmt::format("'{}' must be a row of {} numbers", key, n));
-    for (std::size_t i = 0; i < n; ++i) read_number(*row->get(i), source, key, out[i], unit, lo, hi);
+void read_row(const Field& field, std::span<double> out, const Range& range) {
+    const toml::array* row = field.node.as_array();
+    if (!row || row->size() != out.size())
+        field.fail(fmt::format("'{}' must be a row of {} numbers", field.key, out.size()));
+    for (std::size_t i = 0; i < out.size(); ++i) read_number({*row->get(i), field.source, field.key}, out[i], range);
 }
 
 template <std::size_t N>
-void read_row(const toml::node& node, const std::string& source, const std::string& key, std::array<Vec2, N>& out,
-              double unit, double lo, double hi) {
-    read_row(node, source, key, &out[0].x, 2 * N, unit, lo, hi);
+void read_row(const Field& field, std::array<Vec2, N>& out, const Range& range) {
+    read_row(field, std::span(&out[0].x, 2 * N), range);
 }
 
 BiasPiece read_piece(const toml::table& table, const std::string& source) {
     BiasPiece p;
     for (const auto& [key, node] : table) {
-        const std::string name(key.str());
+        const Field field{node, source, std::string(key.str())};
+        const std::string& name = field.key;
         if (name == "length_mm") {
-            read_number(node, source, name, p.length, kMillimetre, 0, 1e6);
+            read_number(field, p.length, {.lo = 0, .hi = 1e6, .unit = kMillimetre});
         } else if (name == "place") {
             std::array<double, 2> place{};
-            read_row(node, source, name, place.data(), 2, 1, 0, 1);
+            read_row(field, place, {.lo = 0, .hi = 1});
             p.begin = place[0], p.end = place[1];
         } else if (name == "shape") {
-            read_row(node, source, name, p.shape, 1, -2, 2);
+            read_row(field, p.shape, {.lo = -2, .hi = 2});
         } else if (name == "pressure") {
-            read_row(node, source, name, p.pressure.data(), p.pressure.size(), 1, 0, 1);
+            read_row(field, p.pressure, {.lo = 0, .hi = 1});
         } else if (name == "tilt_deg") {
-            read_row(node, source, name, p.tilt, kDegree, -90, 90);
+            read_row(field, p.tilt, {.lo = -90, .hi = 90, .unit = kDegree});
         } else if (name == "pressure_ratio") {
-            read_row(node, source, name, p.pressure_ratio.data(), 4, 1, 0.5, 2);
+            read_row(field, p.pressure_ratio, {.lo = 0.5, .hi = 2});
         } else if (name == "shift_mm") {
-            read_row(node, source, name, p.shift, kMillimetre, -1e4, 1e4);
+            read_row(field, p.shift, {.lo = -1e4, .hi = 1e4, .unit = kMillimetre});
         } else if (name == "tilt_change_deg") {
-            read_row(node, source, name, p.tilt_change, kDegree, -360, 360);
+            read_row(field, p.tilt_change, {.lo = -360, .hi = 360, .unit = kDegree});
         } else {
-            fail(node, source, "unknown key '" + name + "' in a piece of a bias correction");
+            field.fail("unknown key '" + name + "' in a piece of a bias correction");
         }
     }
     return p;
@@ -113,17 +124,18 @@ BiasCorrection parse_bias(std::string_view text, const std::string& source) {
     }
     BiasCorrection bias;
     for (const auto& [key, node] : root) {
-        if (key == "linear") {
+        const Field field{node, source, std::string(key.str())};
+        if (field.key == "linear") {
             std::array<double, 4> m{};
-            read_row(node, source, "linear", m.data(), 4, 1, -2, 2);
+            read_row(field, m, {.lo = -2, .hi = 2});
             bias.linear = glm::dmat2(m[0], m[2], m[1], m[3]);
-            if (!(std::abs(glm::determinant(bias.linear)) > 1e-3)) fail(node, source, "'linear' folds strokes flat");
-        } else if (key == "piece" && node.is_array_of_tables()) {
-            if (node.as_array()->size() > kMaxPieces) fail(node, source, "a bias correction has too many pieces");
+            if (!(std::abs(glm::determinant(bias.linear)) > 1e-3)) field.fail("'linear' folds strokes flat");
+        } else if (field.key == "piece" && node.is_array_of_tables()) {
+            if (node.as_array()->size() > kMaxPieces) field.fail("a bias correction has too many pieces");
             for (const toml::node& piece : *node.as_array())
                 bias.pieces.push_back(read_piece(*piece.as_table(), source));
         } else {
-            fail(node, source, "unknown key '" + std::string(key.str()) + "' in a bias correction");
+            field.fail("unknown key '" + field.key + "' in a bias correction");
         }
     }
     return bias;

@@ -4,19 +4,21 @@
 #include "stroke/gesture/hand_pressure.h"
 #include "stroke/journal/settings.h"
 
-/// What a stroke's settings do to the hand before it meets the model: filter, then string,
-/// then pressure from motion. The journal keeps the hand as it was.
+/// \file
+/// Samples of a stroke as its settings change them: filter, then string, then pressure from motion. Called before a
+/// stroke meets the model; the journal stores the samples unchanged.
 namespace tuft::stroke {
 
-/// A flat trace, all at once: the filter runs to its end and back again, so that nothing lags
-/// and both ends stay; where the string ends, the tip catches up with the hand.
+/// Steadies a whole flat trace. The filter runs forwards and backwards, so that nothing lags and both ends stay. At the
+/// end of the string the tip catches up with the hand.
 StrokeSamples steady(StrokeSamples trace, const StrokeSettings& settings);
 
-/// Poses in space as they come. Filter and string only: a pose has its depth.
+/// Filter and string for poses in space, one after the other. Their depth is their pressure.
 struct GestureFilter {
     HandFilter filter;
     String string;
 };
+/// Returns the next pose, steadied.
 brush::Pose steady(GestureFilter& state, const brush::Pose& pose, const StrokeSettings& settings);
 
 }  // namespace tuft::stroke

@@ -6,23 +6,25 @@
 #include "stroke/journal/samples.h"
 #include "stroke/journal/settings.h"
 
-/// Pressure for hands whose device has none, from how they move.
+/// \file
+/// Pressure from motion, for devices that measure none: a mouse, a finger, a drawing. Called by hand.h and by the
+/// studio's pointer.
 namespace tuft::stroke {
 
-/// The hand presses `level` where it goes slowly without resting. With speed v and rest q,
+/// Pressure p of a hand with speed v and rest q:
 ///
 ///     goal = level (1 − speed_effect (1 − e^{−v/fast})) (1 + dwell_effect q),
-///     dq/dt = (1 / (1 + (v/still)²) − q) / dwell_time
+///     dq/dt = (1 / (1 + (v/still)²) − q) / dwell_time,
+///     dp/dt = (goal − p) / follow,
 ///
-/// (the first factor for `speed`, the second for `dwell`), clamped to [0, 1]; the pressure
-/// follows the goal in `follow`, and reaches it from 0 in about 3 × `follow` after pen down.
-/// Speed is that of the samples under a low-pass of `speed_time`.
+/// with the first factor of the goal for `speed`, the second for `dwell`, and the goal clamped to [0, 1]. From pen down
+/// p rises to the goal in about 3 × `follow`. v is the speed of the samples after a low-pass of time `speed_time`.
 struct PressureOptions {
     PressureFrom from = PressureFrom::speed_dwell;
-    double level = 0.5;         ///< 0–1 of the working depth
-    double speed_effect = 0.6;  ///< part of the pressure lost at high speed
+    double level = 0.5;         ///< pressure of slow motion, part of the working depth, 0–1
+    double speed_effect = 0.6;  ///< part of the pressure lost at high speed, 0–1
     double fast = 0.12;         ///< m/s
-    double dwell_effect = 0.6;  ///< part gained by resting
+    double dwell_effect = 0.6;  ///< part of the pressure gained by resting, ≥ 0
     double still = 0.006;       ///< m/s, below which the hand rests
     double dwell_time = 0.35;   ///< seconds
     double speed_time = 0.03;   ///< seconds
@@ -38,14 +40,14 @@ struct PressureState {
     double pressure = 0;  ///< 0–1
 };
 
-/// The pressure of the next sample of a hand at `position` (metres). The first is 0: pen down.
-/// Steps of any length give the same curve to the order of (dt / follow).
+/// Returns the pressure of the next sample at `position` (metres) and `time` (seconds); 0 for the first one.
+/// Independent of the sampling rate to O(dt / follow).
 double press(PressureState& state, const Vec3& position, double time, const PressureOptions& options = {});
 
-/// The pressures of a whole flat trace: as above, but the hand is in motion when it
-/// touches (its first speed is that of its first samples), and lifts while it still moves:
-/// over the last 3 mm, at most a quarter of the way, the pressure runs out, and in 60 ms more
-/// (samples are added) the tip is taken back over ink as it leaves. `none` changes nothing.
+/// Sets the pressures of a whole flat trace. As above, but the hand moves when it touches (its initial speed is that of
+/// the first samples) and when it lifts: over the last 3 mm, at most a quarter of the path, the pressure falls to 0. In
+/// 60 ms more (samples are added) the tip is taken back over the ink as it leaves. `PressureFrom::none` changes
+/// nothing.
 StrokeSamples press(StrokeSamples trace, const PressureOptions& options);
 
 }  // namespace tuft::stroke

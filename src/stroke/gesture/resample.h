@@ -7,38 +7,39 @@
 
 #include "brush/state/tuft_state.h"
 
+/// \file
+/// Poses at even steps from samples at any rate. Called by `StrokeSession` for every stroke.
+
 namespace tuft::stroke {
 
 struct ResampleOptions {
     double step = 1e-4;   ///< metres between two poses, in the measure below
-    double lever = 0.02;  ///< metres: what a turn by one radian counts as (the tuft's length)
-    double drift = 2e-3;  ///< m/s: what resting counts as, so that a dwell keeps its time
+    double lever = 0.02;  ///< metres that a rotation by 1 rad counts (the tuft's length)
+    double drift = 2e-3;  ///< m/s that time counts, so that a dwell gets poses, too
     std::size_t max_poses = 4'000'000;
 };
 
-/// Poses at even steps along the path of the hand, as samples arrive: the first one,
-/// one at every multiple of `step`, and the last one.
+/// Resamples the path of a hand as its samples arrive: a pose at the first sample, one at every multiple of `step` of
+/// the length
 ///
-/// Between samples the position follows a centripetal Catmull–Rom spline (Catmull and
-/// Rom 1974; Yuksel et al. 2011: no cusps, no self-crossings within a segment), time a rising
-/// cubic over the spline's knots (Fritsch and Carlson 1980) and the rotation a cumulative cubic in
-/// time (Kim, Kim and Shin 1995), with the rates of the parabolas through three samples, so that
-/// all are third-order exact. Length is measured in the space of poses,
-/// ds² = |dx|² + (lever dφ)² + (drift dt)², so the result is the same for any rate at
-/// which the device sampled the same motion, and the same whether the samples came one by
-/// one or all at once. The spline looks one sample ahead. Samples whose time falls are
-/// taken as simultaneous with the one before; repeated samples are merged.
-/// Throws `Error` when the path needs more than `max_poses`.
+///     ds² = |dx|² + (lever dφ)² + (drift dt)²,
+///
+/// and one at the last sample. Between samples the position follows a centripetal Catmull–Rom spline (Catmull and Rom
+/// 1974; Yuksel et al. 2011: no cusps, no self-crossings within a segment), time a monotone cubic over the spline's
+/// knots (Fritsch and Carlson 1980), the rotation a cumulative cubic in time (Kim, Kim and Shin 1995), with rates from
+/// the parabola through three samples: all are of third order. The result does not depend on the sampling rate beyond
+/// that order, nor on whether samples come one by one or all at once. The spline looks one sample ahead. A sample whose
+/// time falls counts as simultaneous with the one before; repeated samples are merged. Throws `Error` when the path
+/// needs more than `max_poses`.
 class Resampler {
   public:
     explicit Resampler(const ResampleOptions& options);
-    /// Adds a sample and appends the poses that became known to `out`.
+    /// Adds a sample; appends the poses that are known by now to `out`.
     void push(brush::Pose sample, std::vector<brush::Pose>& out);
-    /// Ends the path: appends what is left, ending with the last sample.
+    /// Ends the path: appends the remaining poses, the last one at the last sample.
     void finish(std::vector<brush::Pose>& out);
-    /// Where the samples lie among the poses given out, in steps from the first pose: pose k lies at k, but the one
-    /// that `finish` ends with, which lies at the last sample. One for each sample pushed that lies behind the last
-    /// pose.
+    /// Returns the position of each sample among the poses, in steps from the first pose, as far as poses are known.
+    /// Pose k lies at k; the last one of `finish` lies at the last sample.
     std::vector<double> places() const;
 
   private:
@@ -48,13 +49,13 @@ class Resampler {
     ResampleOptions options_;
     std::deque<brush::Pose> window_;  ///< up to four samples; the segment in work is the middle one
     std::size_t emitted_ = 0;
-    double since_last_ = 0;  ///< length since the last pose given out, metres
+    double since_last_ = 0;  ///< length since the last pose, metres
     bool has_before_ = false;
-    std::vector<std::uint32_t> merged_;  ///< for each sample pushed, which of those that differ it is
-    std::vector<double> places_;         ///< of those that differ
+    std::vector<std::uint32_t> merged_;  ///< [samples] index into `places_`
+    std::vector<double> places_;         ///< of samples that differ from the one before
 };
 
-/// All at once.
+/// Resamples a whole path.
 std::vector<brush::Pose> resample(std::span<const brush::Pose> poses, const ResampleOptions& options = {});
 
 }  // namespace tuft::stroke

@@ -8,14 +8,13 @@
 #include "core/geometry/types.h"
 
 /// \file
-/// A point dragged on a string, solved exactly along the straight pieces of a path, and the length
-/// of path that it counts. Used wherever the hand's samples are followed over path length, so that
-/// the result does not depend on how many samples the path has.
+/// A point dragged on a string along a polyline, solved exactly, and path length that ignores tremor. Called where a
+/// hand's samples are followed over path length; the result does not depend on how many samples the path has.
 namespace tuft::stroke {
 
-/// Where the free end of a string lies after its other end went straight from `from` to `to`
-/// (metres, any frame). The end stays while the string is slack, and follows a tractrix while it is
-/// taut: with φ the angle between the string and the motion, and x the way of the taut string,
+/// Returns the position of the free end of a string after its other end moved straight from `from` to `to` (metres, any
+/// frame). The free end rests while the string is slack and follows a tractrix while it is taut: with φ the angle
+/// between string and motion, and x the motion of the taut string,
 ///
 ///     tan(φ/2) = tan(φ0/2) e^(−x / length)
 ///
@@ -42,9 +41,8 @@ V drag_string(const V& end, const V& from, const V& to, double length) {
     return to - length * scale * ((1 - half * half) * ahead + (2 * half / sine) * across);
 }
 
-/// Metres of path from the first sample to each, of samples with a `position`: the way of a point
-/// dragged behind them on a string of length `slack`. A hand that trembles within `slack` does not
-/// advance. 0: the lengths of the straight lines between the samples.
+/// Returns the path length from the first sample to each, metres: of the path of a point dragged behind the samples on
+/// a string of length `slack`. Tremor within `slack` adds nothing. 0: the length of the polyline. [samples]
 template <class Sample>
 std::vector<double> travelled(std::span<const Sample> samples, double slack = 0) {
     std::vector<double> along(samples.size(), 0);

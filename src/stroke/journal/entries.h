@@ -6,21 +6,21 @@
 #include "stroke/journal/recorded_stroke.h"
 
 /// \file
-/// Strokes of stroke files as journal entries; used wherever a file is painted.
+/// Strokes of stroke files as journal entries. Called by `tuft paint` and by the studio.
 namespace tuft::stroke {
 
 struct EntryOptions {
-    StrokeSettings settings = {};                ///< of strokes that bring none
-    std::string brush, ink;                      ///< presets for all strokes; empty: as the strokes name
-    std::string other_ink = "carbon";            ///< of strokes that name none
-    PressureFrom pressure = PressureFrom::none;  ///< of flat strokes with made-up pressures
-    std::vector<Preparation> prepare = {};       ///< done with each brush before its first stroke; with
-                                                 ///< `settings.dip` "each" before every stroke
-    bool erases = false;                         ///< all strokes take ink away
+    StrokeSettings settings = {};                ///< of strokes without settings
+    std::string brush, ink;                      ///< presets for all strokes; empty: those that the strokes name
+    std::string other_ink = "carbon";            ///< of strokes that name no ink
+    PressureFrom pressure = PressureFrom::none;  ///< of flat strokes whose pressures were made up
+    std::vector<Preparation> prepare = {};       ///< before the first stroke of each brush; with `DipMode::each` before
+                                                 ///< every stroke
+    bool erases = false;                         ///< all strokes are an eraser's
 };
 
-/// Appends each recorded stroke, after entries for what its file wants done before it. One without samples gives these
-/// entries alone. Brushes that no one names stay empty.
+/// Appends an entry per recorded stroke, each after entries for its `before`. A stroke without samples gives those
+/// alone. A brush that neither file nor options name stays empty.
 void append_entries(std::vector<JournalEntry>& entries, std::vector<RecordedStroke> strokes,
                     const EntryOptions& options);
 

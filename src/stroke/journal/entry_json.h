@@ -7,29 +7,29 @@
 #include "stroke/journal/entry.h"
 
 /// \file
-/// Entries as files store them: some columns of their own, everything else as one line of JSON. Readers throw `Error`
-/// for wrong types and values.
+/// Entries as projects store them: some columns, everything else as one line of JSON. Readers throw `Error` for wrong
+/// types and values.
 namespace tuft::stroke {
 
-/// What a file stores of an entry beside its JSON.
+/// Columns of an entry beside its JSON.
 struct EntryColumns {
     std::uint64_t id = 0;
     bool hidden = false;
     std::string brush, ink, label;
     std::uint64_t seed = 0;
-    StrokeSamples trace;  ///< without stencil, which is in the JSON
+    StrokeSamples trace;  ///< without its stencil, which is in the JSON
 };
 
-/// The keys of `StrokeSettings`, which all kinds write, and those of the kind.
+/// Returns the JSON of an entry: the keys of `StrokeSettings`, which every kind writes, and those of its kind.
+/// `entry_of` is the inverse.
 std::string entry_json(const JournalEntry& entry);
 JournalEntry entry_of(EntryColumns columns, const std::string& json);
 
-/// Three numbers.
+/// A vector as an array of three numbers.
 nlohmann::json json_of(const Vec3& v);
 Vec3 vector_of(const nlohmann::json& json);
 
-/// A whole number from 0 to `kNone` - 1, the number `name` of a thing. nlohmann's own conversion from 1e300 is
-/// undefined.
+/// Returns an integer from 0 to `kNone` − 1; errors call it `name`. nlohmann's own conversion of 1e300 is undefined.
 std::uint32_t number_of(const nlohmann::json& json, const char* name);
 
 nlohmann::json json_of(const StrokeSettings& settings);

@@ -6,48 +6,49 @@
 #include "core/geometry/types.h"
 #include "stroke/journal/layers.h"
 
-/// Ink laid over a whole part of a model at once.
+/// \file
+/// Fills and gradients: ink over a whole part of a model. `Document` carries them out (document/apply_fill.h).
 namespace tuft::stroke {
 
-/// What is filled.
+/// Part of the model that is filled.
 enum class Region {
     all,    ///< the whole model
-    part,   ///< what hangs together with the surface at `Fill::at`
+    part,   ///< the connected component at `Fill::at`
     chart,  ///< the chart of the atlas at `Fill::at`
 };
 
-/// How the second ink or film takes the place of the first.
+/// Parameter t of a gradient at a point p, clamped to [0, 1].
 enum class Gradient {
-    none,   ///< it does not
+    none,   ///< t = 0
     along,  ///< t = (p − from)·(to − from) / |to − from|²
     round,  ///< t = |p − from| / |to − from|
 };
 
-/// A fill: at the point p the film is film + t (to_film − film), of which the part t is the
-/// second ink; t is kept to [0, 1]. Metres, model frame; film units of wet ink.
+/// A fill. At a point p the film is film + t (to_film − film), film units of wet ink, of which the part t is the second
+/// ink. Points in metres, model frame.
 struct Fill {
-    std::string ink;                    ///< the first one
-    std::uint32_t layer = kFirstLayer;  ///< that is filled, or `kPaletteLayer`
-    std::uint32_t mask = 0;             ///< that it keeps to; 0: none
-    PlaceNames names;                   ///< as its file says, until it has a layer and a mask
+    std::string ink;                    ///< name of the first ink
+    std::uint32_t layer = kFirstLayer;  ///< id of the layer filled, or `kPaletteLayer`
+    std::uint32_t mask = 0;             ///< id of the mask it stays within; 0: none
+    PlaceNames names;                   ///< of a stroke file, until `layer` and `mask` are set
     double film = 1.8;
     Gradient gradient = Gradient::none;
     double to_film = 1.8;
-    std::string to_ink;  ///< empty: the same
-    Vec3 from{0}, to{0};
+    std::string to_ink;   ///< name of the second ink; empty: the first one
+    Vec3 from{0}, to{0};  ///< of the gradient
     Region region = Region::all;
-    Vec3 at{0};  ///< a point on or near the surface, for `part` and `chart`
+    Vec3 at{0};  ///< on or near the surface, for `Region::part` and `chart`
 
     bool operator==(const Fill&) const = default;
 };
 
-/// Throws `Error` for numbers out of range and gradients without length.
+/// Throws `Error` for numbers out of range and for a gradient whose ends coincide.
 void check_fill(const Fill& fill);
 
-/// t at a point.
+/// Returns t at a point.
 double along_gradient(const Fill& fill, const Vec3& point);
 
-/// Words for regions and gradients; back throws `Error` for any other.
+/// Words for regions and gradients, the names of their constants, and back. Back throws `Error` for any other word.
 std::string name_of(Region region);
 std::string name_of(Gradient gradient);
 Region region_of(const std::string& name);

@@ -5,27 +5,30 @@
 
 #include "stroke/journal/entry.h"
 
+/// \file
+/// The journal: entries in order, with undo and redo. `Document` owns one and makes texels from it.
+
 namespace tuft::stroke {
 
-/// What the hand did, in order, with undo and redo. Texels are made from it.
+/// Entries in the order in which they are performed.
 class Journal {
   public:
-    /// Appends an entry (its id is set here); what could be redone is gone.
+    /// Appends an entry with the next free id. Entries taken back are forgotten.
     const JournalEntry& append(JournalEntry entry);
-    /// Puts an entry back as it was stored, id kept.
+    /// Appends a stored entry with its own id.
     void restore(JournalEntry entry);
-    /// Takes the last entry off, to be put back by `redo`; false when there is none.
+    /// Take the last entry off, and put the last one taken off back. False when there is none.
     bool undo();
     bool redo();
-    /// Entries that `redo` shall bring back, the next one last; of a journal that this one takes the place of.
+    /// Sets the entries for `redo`, the next one last, of a journal that this one replaces.
     void restore_undone(std::vector<JournalEntry> undone) { undone_ = std::move(undone); }
     const std::vector<JournalEntry>& undone() const { return undone_; }
     bool can_undo() const { return !entries_.empty(); }
     bool can_redo() const { return !undone_.empty(); }
 
-    /// The id that the next appended entry gets.
+    /// Returns the id that the next appended entry gets.
     std::uint64_t next_id() const { return next_id_; }
-    /// An id that no group of this journal has.
+    /// Returns an id that no group of this journal has.
     std::uint64_t next_group_id() const;
 
     const std::vector<JournalEntry>& entries() const { return entries_; }

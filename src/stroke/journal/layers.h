@@ -10,29 +10,30 @@
 #include "ink/canvas/canvas.h"
 #include "ink/composite/blend.h"
 
-/// User layers: films of their own that are painted, shown and changed apart from each other.
+/// \file
+/// User layers: films that are painted, shown and changed apart from each other. `LayerStack` holds a document's
+/// layers; the studio and `tuft layer` make edits.
 namespace tuft::stroke {
 
-inline constexpr std::uint32_t kFirstLayer = 1;  ///< the layer that every painting begins with
-/// In the place of a layer: entries that belong on the palette (palette.h). No layer has this id.
+inline constexpr std::uint32_t kFirstLayer = 1;  ///< id of the layer of a new document
+/// In the place of an id: the palette (document/palette.h). No layer has this id.
 inline constexpr std::uint32_t kPaletteLayer = kNone - 1;
 inline constexpr std::size_t kMaxLayers = 100;
-inline constexpr std::size_t kMaxNameBytes = 200;
+inline constexpr std::size_t kMaxNameBytes = 200;  ///< of names of layers, masks and groups
 
-/// What is known of a layer besides its texels.
+/// A layer without its texels.
 struct Layer {
-    std::uint32_t id = kFirstLayer;  ///< unique in its painting, never used again
-    std::string name = "Layer 1";    ///< unique among the layers that there are
+    std::uint32_t id = kFirstLayer;  ///< unique in its document, never reused
+    std::string name = "Layer 1";    ///< unique among the layers of the table
     bool visible = true;
-    double opacity = 1;                     ///< 0–1, see ink::shade_tile
-    bool locked = false;                    ///< takes no strokes from the hand
-    ink::Blend blend = ink::Blend::normal;  ///< how its films meet what lies below
+    double opacity = 1;                     ///< 0–1 (`ink::shade_tile`)
+    bool locked = false;                    ///< rejects new strokes and fills; a replay ignores it
+    ink::Blend blend = ink::Blend::normal;  ///< how its films combine with the layers below
 
     bool operator==(const Layer&) const = default;
 };
 
-/// The layers from the lowest to the highest. Only strokes and layer edits in their order
-/// make it, so a replay gives the same.
+/// The layers, the lowest first. Made by the `LayerEdit`s of a journal alone.
 struct LayerTable {
     std::vector<Layer> layers{Layer{}};
     std::uint32_t next_id = kFirstLayer + 1;
@@ -42,61 +43,65 @@ struct LayerTable {
     bool operator==(const LayerTable&) const = default;
 };
 
-/// `duplicate`: a new layer with a copy of another's texels as they are then. `merge`: the texels of
-/// a layer are laid on those of another (ink/texels/merge.h), and the layer ends.
-enum class LayerChange { add, change, remove, duplicate, merge };
+enum class LayerChange {
+    add,        ///< a new empty layer
+    change,     ///< another name, state or place of a layer
+    remove,     ///< its end, with its texels
+    duplicate,  ///< a new layer with a copy of another one's texels
+    merge,      ///< its texels are added over those of another layer (ink/texels/merge.h), and it ends
+};
 
-/// One change of the table: a new layer, another state or place of one, or its end.
+/// One change of the table.
 struct LayerEdit {
     LayerChange what = LayerChange::add;
-    Layer layer;              ///< as it is to be; `remove` and `merge` look at the id only.
-                              ///< `add` and `duplicate` with id 0: the next one
-    std::uint32_t place = 0;  ///< index from the bottom that it is to have
-    std::uint32_t other = 0;  ///< `duplicate`: the layer copied; `merge`: the one merged into
+    Layer layer;              ///< its new state; `remove` and `merge` read the id only. Id 0 with `add` and
+                              ///< `duplicate`: the next free one
+    std::uint32_t place = 0;  ///< its new index, 0 the lowest
+    std::uint32_t other = 0;  ///< `duplicate`: id of the layer copied; `merge`: id of the layer merged into
 
     bool operator==(const LayerEdit&) const = default;
 };
 
-/// Carries the edit out. Throws `Error` and changes nothing where it cannot: no such layer, a
-/// name that is empty or taken, the last layer, a number out of range.
+/// Carries the edit out. Throws `Error` and changes nothing for an unknown layer, a name that is empty or taken, the
+/// removal of the last layer, and numbers out of range.
 void apply(LayerTable& table, const LayerEdit& edit);
 
-/// Edits that make a table's layer something else; `id` must be there.
+/// Return edits of a table. Precondition: it has the layer.
 LayerEdit add_on_top(const LayerTable& table, const std::string& name);
 LayerEdit changed(const LayerTable& table, const Layer& layer);
 LayerEdit moved(const LayerTable& table, std::uint32_t id, std::uint32_t place);
 LayerEdit removed(std::uint32_t id);
-/// A copy right above the layer, looking the same but for its name.
+/// Returns a copy right above the layer, with the same state and another name.
 LayerEdit duplicated(const LayerTable& table, std::uint32_t id, const std::string& name);
-/// The layer laid on the one below it. Throws `Error` where that would look different: both must be
-/// visible, unlocked, of opacity 1 and of the same blend, normal or glaze; and for the lowest layer.
+/// Returns a merge with the layer below. Throws `Error` for the lowest layer, and where the appearance would change:
+/// both must be visible, unlocked, of opacity 1 and of the same blend, normal or glaze.
 LayerEdit merged_down(const LayerTable& table, std::uint32_t id);
-/// `base`, or where a layer has that name the first of "base 2", "base 3", … that none has.
+/// Returns `base`, or where a layer has that name the first of "base 2", "base 3", … that is free.
 std::string free_name(const LayerTable& table, const std::string& base);
 
-/// Throws `Error` for a name that is empty, too long or no readable text.
+/// Throws `Error` for a name that is empty, longer than `kMaxNameBytes` or no readable text.
 void check_name(std::string_view name, const char* of_what);
 
-/// Layer and mask by their names, as a stroke file has them; empty: none named.
+/// Names of a layer and a mask in a stroke file; empty: none named.
 struct PlaceNames {
     std::string layer, mask;
 
     bool operator==(const PlaceNames&) const = default;
 };
 
-/// The texels of a layer.
+/// The texels of a layer, or of the palette.
 struct LayerCanvas {
     std::uint32_t layer = kFirstLayer;
     ink::Canvas canvas;
 };
 
-/// The same, looked at.
+/// The same, not owned.
 struct LayerTexels {
     std::uint32_t layer = kFirstLayer;
     const ink::Canvas* canvas = nullptr;
 };
 
-/// Tiles of a layer as they were.
+/// Former contents of tiles of a layer, or of the palette.
 struct LayerTiles {
     std::uint32_t layer = kFirstLayer;
     std::vector<ink::TileSnapshot> tiles;

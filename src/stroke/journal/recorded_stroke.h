@@ -8,29 +8,29 @@
 #include "stroke/journal/entry.h"
 
 /// \file
-/// Strokes as a stroke file has them.
+/// Strokes of a stroke file (InkML, SVG). `io/strokes` reads and writes them; entries.h makes journal entries of them.
 namespace tuft::stroke {
 
-/// Something done before a stroke.
+/// An entry that a stroke file has before a stroke.
 using Preparation = std::variant<BrushAction, Dry, WashPalette, Fill>;
 
 EntryKind kind_of(const Preparation& preparation);
 
-/// A preparation in words, "ACTION[:INK][,depth=PART][,amount=PART][,side=PART]": "dip:cinnabar,depth=0.2",
-/// "wipe,amount=0.6"; and back, throwing `Error` for anything else.
+/// Returns a preparation as "ACTION[:INK][,depth=PART][,amount=PART][,side=PART]", such as "dip:cinnabar,depth=0.2" or
+/// "wipe,amount=0.6", and back. Back throws `Error` for any other text.
 std::string preparation_text(const Preparation& preparation);
 Preparation preparation_of(const std::string& text);
 
-/// One stroke with all that its file says of it; without samples only what is done before it.
+/// A stroke as its file has it. Without samples it stands for its `before` alone.
 struct RecordedStroke : StrokeSamples {
-    std::string brush, ink;   ///< presets; empty: as the command line says
-    bool on_palette = false;  ///< belongs on the palette, in its frame (palette.h)
-    bool erases = false;      ///< see `Tool::eraser`
-    PlaceNames names;         ///< layer and mask; empty: as the command line says
+    std::string brush, ink;   ///< names of presets; empty: those of the command line
+    bool on_palette = false;  ///< on the palette, in its frame (document/palette.h)
+    bool erases = false;      ///< `Tool::eraser`
+    PlaceNames names;         ///< of layer and mask; empty: those of the command line
     std::uint64_t seed = 0;
     std::string label;
-    std::vector<Preparation> before;         ///< what is done first, with its brush
-    std::optional<StrokeSettings> settings;  ///< none: as the command line says
+    std::vector<Preparation> before;         ///< performed before the stroke, with its brush
+    std::optional<StrokeSettings> settings;  ///< none: those of the command line
 };
 
 }  // namespace tuft::stroke

@@ -8,22 +8,24 @@
 #include "core/geometry/types.h"
 
 /// \file
-/// What a hand did during one stroke, before it meets a model.
+/// What a hand did during one stroke, before it meets a model. Pens, stroke files and projects make `StrokeSamples`;
+/// placement/placement.h maps them onto a model.
 namespace tuft::stroke {
 
-/// How flat pen data gets onto the model.
+/// How flat pen data is mapped onto the model (placement/placement.h).
 enum class SurfaceMapping {
-    wrap,     ///< along the surface: (x, y) is walked as a geodesic from the placement's origin
-    drape,    ///< the same on the surface without its narrow grooves, bumps and gaps
-    project,  ///< along the placement's normal: first surface met by a ray from outside
+    wrap,     ///< along the triangles: straightest geodesics from the placement's origin
+    drape,    ///< along the smoothed surface, without narrow grooves, bumps and gaps
+    project,  ///< along the placement's normal: the first hit of a ray from outside
 };
 
-/// "wrap", "drape", "project", and back; nothing for another name.
+/// Returns "wrap", "drape" or "project".
 std::string_view surface_mapping_name(SurfaceMapping mapping);
+/// Returns the mapping of that name; nothing for another name.
 std::optional<SurfaceMapping> surface_mapping_named(std::string_view name);
 
-/// Where flat pen data lies: its origin near the surface and the direction of its
-/// x (to the right) and y axis (down, as pens and tablets give it), metres, model frame.
+/// Position of flat pen data on a model, metres, model frame: its origin, near the surface, and the directions of its
+/// x axis (to the right) and y axis (down, as pens and tablets report it), of any length but 0.
 struct Placement {
     Vec3 origin{0};
     Vec3 right{1, 0, 0};
@@ -34,15 +36,14 @@ struct Placement {
 /// One sample of the hand.
 struct StrokeSample {
     double time = 0;            ///< seconds since the start of the stroke
-    Vec3 position{0};           ///< metres. Flat: x right, y down, z unused.
-                                ///< Spatial: the ferrule's mouth, model frame
-    double pressure = 0;        ///< flat: 0–1 of the brush's working depth; 0 lifts off
-    Vec2 tilt{0};               ///< flat: lean of the holder, radians: towards +x, towards +y (down)
-    Quat rotation{1, 0, 0, 0};  ///< spatial: of the ferrule (see brush::Pose)
+    Vec3 position{0};           ///< metres. Flat: x right, y down, z unused. In space: the ferrule's mouth, model frame
+    double pressure = 0;        ///< flat: part of the brush's working depth, 0–1; 0: pen up
+    Vec2 tilt{0};               ///< flat: lean of the holder towards +x and towards +y (down), radians
+    Quat rotation{1, 0, 0, 0};  ///< in space: of the ferrule (`brush::Pose`)
 };
 
-/// Part of a line of stencil edge stuck on the surface, in the frame of flat samples, metres. What may be painted lies
-/// to the side of `inward`, (from.y − to.y, to.x − from.x).
+/// A straight part of a stencil's edge, metres, frame of flat samples. The part that may be painted lies towards
+/// (from.y − to.y, to.x − from.x).
 struct StencilEdge {
     Vec2 from{0}, to{0};
 
@@ -52,19 +53,19 @@ inline constexpr std::size_t kMaxStencilEdges = 100'000;  ///< edges of one stro
 
 /// The samples of one stroke from pen down to pen up.
 struct StrokeSamples {
-    bool flat = true;                   ///< flat pen data with a placement, or poses in space
+    bool flat = true;                   ///< flat pen data with a placement; false: poses in space
     Placement placement;                ///< of flat samples
-    bool placed = false;                ///< the file says where; else the placement is only a default
-    std::vector<StrokeSample> samples;  ///< time never falls
-    bool pressed = true;                ///< false: pressures were made up, the device gave none
-    double line_width = 0;              ///< metres, as a drawing has it; 0: it says nothing
-    std::vector<StencilEdge> stencil;   ///< flat: the hair lays no ink over it, wet ink creeps under; none: it may
-                                        ///< go anywhere
+    bool placed = false;                ///< the file gives a placement; false: it is a default
+    std::vector<StrokeSample> samples;  ///< in order of time; times may repeat
+    bool pressed = true;                ///< the device measured pressure; false: it was made up
+    double line_width = 0;              ///< metres, from a drawing; 0: not stated
+    std::vector<StencilEdge> stencil;   ///< flat: hair leaves no ink beyond it, wet ink creeps under it; empty: no
+                                        ///< stencil
 };
 
-/// Throws `Error` for samples, a placement or stencil edge that no hand can have made: numbers that are not finite,
-/// places beyond `kFarthest`, times beyond three years, pressures and tilts out of range, rotations and directions that
-/// are none.
+/// Throws `Error` for samples, a placement or a stencil that no hand can have made: numbers that are not finite, points
+/// beyond `kFarthest`, times beyond three years, pressures and tilts out of range, rotations and directions of length
+/// 0.
 void check_samples(const StrokeSamples& stroke);
 
 }  // namespace tuft::stroke

@@ -7,44 +7,40 @@
 #include "footprint/stamp/stamp.h"
 
 /// \file
-/// How strokes become texels. Part of the journal, so that a replay is the same.
+/// How a stroke becomes texels. Stored with every stroke in the journal, so that a replay gives the same bits.
 namespace tuft::stroke {
 
 enum class DipMode {
-    each,   ///< every stroke with a fresh full brush
-    carry,  ///< with the hair and ink that the last one with it left
+    each,   ///< a fresh full brush for every stroke
+    carry,  ///< the hair and ink that the last entry with the brush left
 };
 
-/// Pressure of flat strokes whose device gave none, see hand_pressure.h.
+/// Pressure of flat strokes whose device measured none (gesture/hand_pressure.h).
 enum class PressureFrom { none, speed, dwell, speed_dwell };
 
 enum class FilmModel {
-    still,  ///< ink stays where it is put
-    wet,    ///< it flows, soaks in and dries, and goes both ways between brush and surface
+    still,  ///< ink stays where it is deposited
+    wet,    ///< ink flows, soaks in, dries, and is exchanged both ways between tuft and surface
 };
 
 struct StrokeSettings {
-    brush::SpineMethod spine = brush::SpineMethod::rod;      ///< `rod`: as the brush's preset says
+    brush::SpineMethod spine = brush::SpineMethod::rod;      ///< `rod`: the method of the brush's preset
     footprint::Mapping footprint = footprint::Mapping::log;  ///< along the surface, or on one plane
     contact::Method contact = contact::Method::exact;
     double spacing = 1.0;            ///< texels between two stamps, 0–1000
-    bool compensate_tip_lag = true;  ///< flat: the hand runs ahead so that the ink lies on
-                                     ///< the samples
+    bool compensate_tip_lag = true;  ///< flat: the hand leads the ink, which so lies on the samples
     DipMode dip = DipMode::each;
-    bool endless = false;                        ///< the ink that leaves the tuft is replaced at once,
-                                                 ///< what it takes up is gone: it paints as full as it
-                                                 ///< began
+    bool endless = false;                        ///< the tuft holds before every pose what it held at pen down
     PressureFrom pressure = PressureFrom::none;  ///< of flat samples; none: as sampled
-    double smooth = 0;                           ///< strength of the hand's filter; 0: off, 1: its
-                                                 ///< defaults
+    double smooth = 0;                           ///< strength of the filter (`hand_filter_options`); 0: off
     FilmModel film = FilmModel::still;
-    Vec3 down{0, 0, -1};   ///< towards the ground, for wet ink; zero: no weight
-    double stabilise = 0;  ///< metres of the string that pulls the tip; 0: off
+    Vec3 down{0, 0, -1};   ///< direction of gravity, for wet ink, any length; zero: no weight
+    double stabilise = 0;  ///< length of the string that pulls the tip, metres; 0: off
 
     bool operator==(const StrokeSettings&) const = default;
 };
 
-/// The words that files and the command line have for them; back throws `Error` for another word.
+/// Words of files and of the command line, and back. The functions back throw `Error` for any other word.
 std::string name_of(DipMode dip);        ///< each, carry
 std::string name_of(PressureFrom from);  ///< none, speed, dwell, speed+dwell
 std::string name_of(FilmModel film);     ///< still, wet
@@ -55,7 +51,7 @@ brush::SpineMethod spine_method_of(const std::string& name);       ///< brush::k
 footprint::Mapping footprint_mapping_of(const std::string& name);  ///< surface, plane
 contact::Method contact_method_of(const std::string& name);        ///< exact, vertices
 
-/// Settings as one line of JSON, and back; unknown keys are ignored, wrong types and values throw `Error`.
+/// Settings as one line of JSON, and back. Unknown keys are ignored; wrong types and values throw `Error`.
 std::string to_json(const StrokeSettings& settings);
 StrokeSettings settings_from_json(const std::string& json);
 /// Throws `Error` for a number out of range.

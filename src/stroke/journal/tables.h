@@ -7,29 +7,29 @@
 #include "stroke/journal/entry.h"
 
 /// \file
-/// The tables of layers and masks that a journal's entries make.
+/// Tables of layers and masks from the entries of a journal, and names in stroke files resolved by them.
 namespace tuft::stroke {
 
-/// The layers that these entries of a journal make. Throws `Error` where one cannot be.
+/// Returns the table of layers after these entries of a journal. Throws `Error` for an edit that cannot be.
 LayerTable layers_after(std::span<const JournalEntry> entries);
 
-/// The masks that they make.
+/// Returns the table of masks likewise.
 MaskTable masks_after(std::span<const JournalEntry> entries);
 
-/// The mask that was last painted through on a layer by these entries; 0: none.
+/// Returns the id of the mask through which these entries last painted on a layer; 0: none.
 std::uint32_t last_mask_on(std::span<const JournalEntry> entries, std::uint32_t layer);
 
-/// Whether texels stored after entry `id` show all these entries, but for changes of
-/// layers and masks since, so that `Document::adopt` takes them.
+/// Whether only edits of layers and masks come after entry `id`, so that `Document::adopt` can take texels stored after
+/// it.
 bool fits(std::span<const JournalEntry> entries, std::uint64_t id);
 
-/// Gives each stroke and fill the layer that its names say (or `name` where they say none; empty: the
-/// one it has), before it an entry that adds the layer on top where it is not there yet.
+/// Sets the layer of each stroke and fill to the one that its `names` give, else to the one called `name`; empty: to
+/// its own. Inserts an entry that adds the layer on top before the first one that needs it.
 std::vector<JournalEntry> onto_named_layers(std::vector<JournalEntry> entries, LayerTable table,
                                             const std::string& name = {});
 
-/// Gives each stroke and fill the mask that its names say, or `name` where they say none. Throws
-/// `Error` for a mask that is not there.
+/// Sets the mask of each stroke and fill to the one that its `names` give, else to the one called `name`. Throws
+/// `Error` for a mask that does not exist.
 void keep_to_named_masks(std::vector<JournalEntry>& entries, const MaskTable& table, const std::string& name = {});
 
 }  // namespace tuft::stroke

@@ -19,16 +19,16 @@ constexpr int kRays = 180;  // headings in which lines are walked; between them 
 constexpr std::size_t kMostSteps = 20'000;
 
 /// One step of a straightest line: ahead on the osculating paraboloid, then onto the ground.
-BaseColour step(const SurfaceQuery& query, const BaseColour& from, double length, double radius) {
+SurfacePatch step(const SurfaceQuery& query, const SurfacePatch& from, double length, double radius) {
     const double k = from.found ? from.curvature[0] : 0, mixed = from.found ? from.curvature[1] : 0;
     const Vec3 side = glm::cross(from.normal, from.heading);
-    BaseColour guess = from;
+    SurfacePatch guess = from;
     guess.found = false;
     const double turn = k * length;
     guess.position += length * (1 - turn * turn / 6) * from.heading + 0.5 * turn * length * from.normal;
     guess.normal = glm::normalize(from.normal - length * (k * from.heading + mixed * side));
     guess.heading = into_plane(parallel_transport(from.heading, from.normal, guess.normal), guess.normal);
-    BaseColour next = feel(query, guess, radius);
+    SurfacePatch next = fit_patch(query, guess, radius);
     if (!next.found) {  // past an edge: straight on
         next = from;
         next.found = false;
@@ -45,9 +45,9 @@ class Drape {
         const auto start = query.closest_point(place.origin);
         if (!start) throw Error("there is no surface to lay a stroke on");
         gap_ = start->distance;
-        BaseColour ground{
+        SurfacePatch ground{
             start->position, start->normal, axes_across(start->normal, place.right, place.down).right, {0, 0, 0}, true};
-        for (int pass = 0; pass < 4; ++pass) ground = feel(query, ground, radius_);
+        for (int pass = 0; pass < 4; ++pass) ground = fit_patch(query, ground, radius_);
         origin_ = ground;
         axes_ = axes_across(ground.normal, place.right, place.down);
         hand_ = glm::dot(glm::cross(axes_.right, ground.normal), axes_.down) < 0 ? -1 : 1;
@@ -70,7 +70,7 @@ class Drape {
             const int ray = ((static_cast<int>(left) + r) % kRays + kRays) % kRays;
             for (std::size_t s = 0; s < 2; ++s) {
                 const double weight = (r ? u : 1 - u) * (s ? v : 1 - v);
-                const BaseColour& g = node(ray, ring + s);
+                const SurfacePatch& g = node(ray, ring + s);
                 const double phi = 2 * std::numbers::pi * ray / kRays;
                 const Vec3 side = hand_ * glm::cross(g.heading, g.normal);
                 out.position += weight * g.position;
@@ -88,14 +88,14 @@ class Drape {
     }
 
   private:
-    const BaseColour& node(int ray, std::size_t ring) {
-        std::vector<BaseColour>& line = lines_[static_cast<std::size_t>(ray)];
+    const SurfacePatch& node(int ray, std::size_t ring) {
+        std::vector<SurfacePatch>& line = lines_[static_cast<std::size_t>(ray)];
         if (line.empty()) {
             const double phi = 2 * std::numbers::pi * ray / kRays;
-            BaseColour start = origin_;
+            SurfacePatch start = origin_;
             start.heading = std::cos(phi) * axes_.right + std::sin(phi) * axes_.down;
-            BaseColour turned = start;
-            turned.curvature = feel(query_, start, radius_).curvature;
+            SurfacePatch turned = start;
+            turned.curvature = fit_patch(query_, start, radius_).curvature;
             line.push_back(turned);
         }
         while (line.size() <= ring) {
@@ -107,9 +107,9 @@ class Drape {
 
     const SurfaceQuery& query_;
     double radius_, stride_, gap_ = 0, hand_ = 1;
-    BaseColour origin_;
+    SurfacePatch origin_;
     Axes axes_;
-    std::array<std::vector<BaseColour>, kRays> lines_;
+    std::array<std::vector<SurfacePatch>, kRays> lines_;
 };
 
 }  // namespace
@@ -118,7 +118,7 @@ double drape_radius(const mesh::TriangleMesh& mesh) {
     return std::min(0.008, 0.04 * mesh.bounds.diagonal());
 }
 
-SurfaceTrace lay_draped(const SurfaceQuery& query, const StrokeSamples& trace) {
+SurfaceTrace map_draped(const SurfaceQuery& query, const StrokeSamples& trace) {
     Drape drape(query, trace.placement);
     SurfaceTrace mapped;
     mapped.origin_gap = drape.origin_gap();

@@ -2,23 +2,25 @@
 
 #include "stroke/placement/placement.h"
 
-/// A holder over one place.
+/// \file
+/// The pose of a holder over one point. Called by `hold` for surfaces and by drawing/plane_ink.h for planes.
 namespace tuft::stroke {
 
-/// What a holder is held over, and how.
+/// A point that a holder stands over, and its lean.
 struct HolderPose {
     Vec3 normal{0, 0, 1};  ///< unit, of the surface
-    Vec3 right{1, 0, 0};   ///< unit, along it: what a tilt's axes are
-    Vec3 down{0, -1, 0};
-    double depth = 0;  ///< metres of the unbent tip below the surface; above it: negative
-    Vec2 tilt{0};      ///< radians, towards right, towards down
-    double time = 0;
+    Vec3 right{1, 0, 0};   ///< unit, along the surface: first axis of the tilt
+    Vec3 down{0, -1, 0};   ///< unit, along the surface: second axis of the tilt
+    double depth = 0;      ///< metres of the unbent tip below the surface; negative above it
+    Vec2 tilt{0};          ///< radians, towards right, towards down
+    double time = 0;       ///< seconds
 };
 
-/// The ferrule over a place, as `hold` has it; `height`: metres of the ground over that place.
+/// Returns the ferrule's pose over `place` (metres, world), by the law of `hold`. `height`: metres of the levelled
+/// surface over `place`.
 brush::Pose pose_holder(const Vec3& place, double height, const HolderPose& held, const HolderOptions& options);
 
-/// Options for a brush over a plane, without a tip_lag.
+/// Returns options for a brush over a plane, without tip lag.
 HolderOptions holder_options(const brush::Preset& preset);
 
 }  // namespace tuft::stroke

@@ -9,118 +9,116 @@
 #include "mesh/query/surface_query.h"
 #include "stroke/journal/samples.h"
 
-/// From flat pen data to the hand that holds a brush over a model: lay the samples
-/// onto the surface, then hold the brush over them.
+/// \file
+/// From flat pen data to poses of the ferrule: samples are mapped onto the surface, then the holder is posed over them.
+/// Called by `Document` for flat strokes, and by fit.h to compare models.
 namespace tuft::stroke {
 
 /// A flat sample on the model.
 struct SurfaceSample {
-    mesh::SurfacePoint on;   ///< where it lies; past an edge: the last point of the surface
-    Vec3 position{0};        ///< metres, model frame: `on.position`, or beyond the edge the
-                             ///< place where the surface would be if it went on flat
-    Vec3 normal{0, 0, 1};    ///< unit, smooth, out of the surface
-    Vec3 right{1, 0, 0};     ///< unit, along the surface: the direction of +x there
-    Vec3 down{0, -1, 0};     ///< unit, along the surface, normal to `right`: that of +y
-    bool on_surface = true;  ///< false past an edge, or where the ray met nothing
+    mesh::SurfacePoint on;   ///< past a border: the last point of the surface
+    Vec3 position{0};        ///< metres, model frame: `on.position`; past a border the point of the surface continued
+                             ///< flat
+    Vec3 normal{0, 0, 1};    ///< unit, smooth, outward
+    Vec3 right{1, 0, 0};     ///< unit, along the surface: direction of +x there
+    Vec3 down{0, -1, 0};     ///< unit, along the surface, orthogonal to `right`: direction of +y
+    bool on_surface = true;  ///< false past a border, or where the ray hit nothing
     double time = 0;         ///< seconds
-    double pressure = 0;     ///< 0–1 of the working depth
+    double pressure = 0;     ///< part of the working depth, 0–1
     Vec2 tilt{0};            ///< radians, towards right, towards down
-    Vec2 tip_lag{0};         ///< metres to the right and down, in the plane of the surface there, that the
-                             ///< hand is ahead of the ink
+    Vec2 tip_lag{0};         ///< metres to the right and down, in the tangent plane, by which the hand leads the ink
 };
 
+/// A flat trace on the model.
 struct SurfaceTrace {
     std::vector<SurfaceSample> samples;  ///< one per sample of the trace, in order
     std::size_t missed = 0;              ///< samples that are not on the surface
     double origin_gap = 0;               ///< metres between the placement's origin and the surface
 };
 
-/// Lays a flat trace onto the mesh.
+/// Maps a flat trace onto the mesh.
 ///
-/// `SurfaceMapping::wrap` is the exponential map of the polyhedral surface at the point nearest to
-/// the placement's origin: sample (x, y) lies |(x, y)| away along the straightest line that
-/// leaves in direction x right + y down (Polthier and Schmies 1998: a line crosses an edge
-/// straight in the unfolded plane), and its frame is carried along that line. Lengths and
-/// angles at the origin are kept; on a developable surface all of them are.
-/// `SurfaceMapping::drape` is the same map on the ground as a hand feels it that lies on it: at each
-/// step along a line a paraboloid is fitted to the surface within `drape_radius` (rays onto
-/// a hexagonal pattern of 37 points, least sum of pseudo-Huber distances, so that what is narrow
-/// hardly counts), the line goes on straight on it, and the sample is taken down to the surface
-/// along its normal. On a surface without detail of that size it is `wrap` within 0.2 % of the
-/// length; over grooves, relief, the noise of a scan, and gaps between parts writing stays whole,
-/// where straightest lines of the triangles part. It does not turn round a rim. `normal` and axes
-/// are those of the ground. Past an edge it goes on straight.
-/// `SurfaceMapping::project` shoots a ray along the placement's inward normal right × down from
-/// outside the mesh and takes the first hit.
+/// `SurfaceMapping::wrap` is the exponential map of the polyhedral surface at the point nearest to the placement's
+/// origin. Sample (x, y) lies at distance |(x, y)| along the straightest geodesic in the direction x right + y down
+/// (Polthier and Schmies 1998: it crosses an edge straight in the unfolded plane); its frame is parallel transported
+/// along it. Lengths and angles at the origin are preserved; on a developable surface all of them are.
 ///
-/// Past a border the line goes on straight in the last triangle's plane, and a ray that
-/// misses takes the height and frame of the nearest sample in time that hit.
-/// Throws `Error` when the trace is not flat, a number is not finite, or the placement's
-/// directions are zero or parallel. Cost: about 0.1 µs per triangle crossed.
+/// `SurfaceMapping::drape` is the same map on the smoothed surface: at each step a patch is fitted to the surface
+/// within `drape_radius` (`fit_patch`), the geodesic continues straight on it, and the sample is projected onto the
+/// triangles along the patch's normal. On a surface without detail of that size it agrees with `wrap` to 0.2 % of the
+/// length. Over grooves, relief, noise of a scan and gaps between parts a drawing stays whole, where geodesics of the
+/// triangles diverge. It does not turn round a rim. Normal and axes are those of the patch.
+///
+/// `SurfaceMapping::project` takes the first hit of a ray along right × down from outside the mesh.
+///
+/// Past a border a geodesic continues straight in the last plane. A ray without a hit takes height and frame of the
+/// sample nearest in time that has one. Throws `Error` for a trace that is not flat, numbers that are not finite, and
+/// directions of the placement that are zero or parallel. Cost: about 0.1 µs per triangle crossed.
 SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const StrokeSamples& trace);
 
-/// Radius in metres of the ground that `SurfaceMapping::drape` levels: 8 mm, or 4 % of the box diagonal
-/// of a smaller model.
+/// Returns the radius of patches of `SurfaceMapping::drape`, metres: 8 mm, or 4 % of the box diagonal of a small model.
 double drape_radius(const mesh::TriangleMesh& mesh);
 
-/// The point a straightest line of the given length reaches, and the frame carried to it.
+/// End of a straightest geodesic.
 struct StraightestGeodesic {
-    mesh::SurfacePoint end;   ///< `distance`: length walked on the surface
-    Vec3 direction{1, 0, 0};  ///< unit, in the plane of the last triangle: where the line points
-    double beyond = 0;        ///< metres left when it met a border
+    mesh::SurfacePoint end;   ///< `distance`: length on the surface
+    Vec3 direction{1, 0, 0};  ///< unit tangent at the end, in the plane of the last triangle
+    double beyond = 0;        ///< metres that were left at a border; 0: it met none
 };
 
-/// Walks from `start` (a point of the mesh) along `direction`, which is taken into the
-/// triangle's plane. Bounded work: at most 4 n_triangles + 1000 crossings.
+/// Traces a geodesic of `length` metres from `start`, a point of the mesh, along `direction` projected into the
+/// triangle's plane. At most 4 n_triangles + 1000 crossings.
 StraightestGeodesic trace_geodesic(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& start,
                                    const Vec3& direction, double length);
 
-/// How far the hand runs ahead of the ink at one depth.
+/// Tip lag of a brush at one depth: distance from the foot of the holder's axis back to the ink.
 struct TipLag {
-    double depth = 0;   ///< metres, of the unbent tip below the surface
+    double depth = 0;   ///< metres of the unbent tip below the surface
     double length = 0;  ///< metres
 };
 
+/// How a holder is posed over a surface.
 struct HolderOptions {
     double tuft_length = 0.02;     ///< metres from the ferrule's mouth to the unbent tip
     double working_depth = 0.010;  ///< metres of the unbent tip below the surface at pressure 1
     double hover = 0.002;          ///< metres of the tip above the surface when not pressed
-    double max_tilt = 1.2;         ///< radians; more lean than this is cut
-    double steady = 0.008;         ///< metres to both sides over which the hand levels out height and normal: it
-                                   ///< does not dip into grooves; 0: it feels every dent
-    std::vector<TipLag> tip_lag;   ///< rising in depth, linear between, constant outside; empty: none
-    /// What a lean adds to the tip_lag: metres ahead and to the path's left, for a depth (metres) and a
-    /// lean along the path and to its left (radians); see TiltedTipLag. None: it adds nothing.
+    double max_tilt = 1.2;         ///< radians; larger tilts are clamped
+    double steady = 0.008;         ///< radius of `level_surface`, metres; 0: no levelling
+    std::vector<TipLag> tip_lag;   ///< ascending in depth, linear between, constant outside; empty: no tip lag
+    /// Change of the tip lag by a lean: metres ahead and to the path's left, for a depth (metres) and a lean along the
+    /// path and to its left (radians); `TiltedTipLag::at`. Empty: no change.
     std::function<Vec2(double depth, const Vec2& lean)> leaned = {};
-    double tip_lag_turn = 0.0015;  ///< metres of travel in which the tip_lag follows a turn
+    double tip_lag_turn = 0.0015;  ///< metres of travel in which the tip lag follows a turn
 };
 
-/// Working depth of a brush: half of the free hair.
+/// Returns the working depth of a brush, metres: half of the free hair.
 double working_depth(const brush::Preset& preset);
 
-/// Options for a brush over a model (`steady` is its `drape_radius`), without a tip_lag.
+/// Returns options for a brush over a model, `steady` its `drape_radius`, without tip lag.
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh);
 
-/// The ferrule over each mapped sample. The holder's axis is the surface normal leaned by the
-/// tilt, up ∝ normal + tan(tilt.x) right + tan(tilt.y) down; the unbent tip lies
-/// `tip_depths` below the sample, ahead of it by the tip_lag:
-/// where the ink is to lie, the hand does what it would do over the plane there.
-/// Normal and height are those of a steady hand (`level_surface` over `steady` of path). It follows ridges and valleys,
-/// and passes over grooves narrower than half of the radius. On a surface of curvature κ along the path the height is κ
-/// steady² / 200 off at most.
+/// Returns the ferrule's pose over each mapped sample. The holder's axis is the normal leaned by the tilt,
+///
+///     up ∝ normal + tan(tilt.x) right + tan(tilt.y) down.
+///
+/// The unbent tip lies `tip_depths` below the sample and leads it by the tip lag in the tangent plane. Normal and
+/// height are levelled (`level_surface` over `steady` of path): the holder follows ridges and valleys and passes over
+/// grooves narrower than half of that radius. On a surface of curvature κ along the path the height is off by at most
+/// κ steady² / 200.
 std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
                               const HolderOptions& options);
 
-/// Poses of a trace in space: its samples as they are, rotations of unit length.
+/// Returns the poses of a trace in space: its samples, with rotations normalised.
 std::vector<brush::Pose> spatial_poses(const StrokeSamples& trace);
 
-/// The whole way for any trace: tip_lag, lay, hold, lift off; or the poses as they are for one in space
-/// (then `mapped` is empty).
+/// Poses of a trace.
 struct HandPath {
-    SurfaceTrace mapped;
+    SurfaceTrace mapped;  ///< of a flat trace
     std::vector<brush::Pose> poses;
-    std::size_t set_down = 0;  ///< of the poses, before that of the trace's first sample; those of the others follow
+    std::size_t set_down = 0;  ///< poses before that of the trace's first sample
 };
+/// Returns the poses of a trace: of a flat one after `lead_hand`, `lift_off`, `map_to_surface` and `hold`; of one in
+/// space its own.
 HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options);
 
 }  // namespace tuft::stroke

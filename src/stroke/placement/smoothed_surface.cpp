@@ -128,7 +128,7 @@ double clearance(const SurfaceQuery& query, const Vec3& p, const Vec3& normal, d
     return most;
 }
 
-BaseColour feel(const SurfaceQuery& query, const BaseColour& guess, double radius, double below) {
+SurfacePatch fit_patch(const SurfaceQuery& query, const SurfacePatch& guess, double radius, double below) {
     const Vec3 side = glm::cross(guess.normal, guess.heading);
     const double up = clearance(query, guess.position, guess.normal, radius);
     const Vec3f down(-guess.normal);
@@ -144,7 +144,7 @@ BaseColour feel(const SurfaceQuery& query, const BaseColour& guess, double radiu
         if (hit.triangle == kNone || glm::dot(face_normal(query.mesh(), hit.triangle), guess.normal) < 0.1) continue;
         heights.push_back({p.x, p.y, (glm::dot(eye - guess.position, guess.normal) - double(hit.distance)) / radius});
     }
-    BaseColour ground = guess;
+    SurfacePatch ground = guess;
     const auto part = double(heights.size()) / double(pattern().size());
     double height = 0, fit_error = 0;
     Vec2 slope{0};
@@ -178,8 +178,9 @@ double level_at(const SurfaceQuery& query, const Vec3& position, const Vec3& nor
     constexpr int kScales = 3;
     double height = 0, left = 1, before = 0;
     for (int scale = 0; scale < kScales; ++scale) {
-        const BaseColour ground = feel(query, {.position = position, .normal = normal, .heading = any_across(normal)},
-                                       radius / double(1 << scale), kBelow);
+        const SurfacePatch ground =
+            fit_patch(query, {.position = position, .normal = normal, .heading = any_across(normal)},
+                      radius / double(1 << scale), kBelow);
         if (!ground.found) continue;
         const double up = glm::dot(ground.position - position, normal);
         if (before > 0) left *= smooth_step((kSame - ground.fit_error / before) / (kSame - kBetter));

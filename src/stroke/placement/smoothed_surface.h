@@ -4,34 +4,34 @@
 
 #include "mesh/query/surface_query.h"
 
-/// The ground as a hand feels it that lies on it or is held over it: the surface without what is narrow.
+/// \file
+/// The surface without detail narrower than a given radius. Called by draping and by levelling.
 namespace tuft::stroke {
 
-/// The ground under a small disk: z = c[0] + c[1] a + c[2] b + (c[3] a² + 2 c[4] a b + c[5] b²) / 2
-/// over its plane, metres, a along `heading`, b along normal × heading.
-struct BaseColour {
+/// The smoothed surface near a point: the paraboloid z = (k₀ a² + 2 k₁ a b + k₂ b²) / 2 over the tangent plane, metres,
+/// world frame, with a along `heading`, b along normal × heading and k the curvatures.
+struct SurfacePatch {
     Vec3 position{0};
-    Vec3 normal{0, 0, 1};
-    Vec3 heading{1, 0, 0};
-    std::array<double, 3> curvature{0, 0, 0};  ///< 1/m: along, mixed, across
-    double fit_error = 0;                      ///< metres: median distance of the surface from it
-    bool found = false;
+    Vec3 normal{0, 0, 1};                      ///< unit
+    Vec3 heading{1, 0, 0};                     ///< unit, in the tangent plane
+    std::array<double, 3> curvature{0, 0, 0};  ///< k, 1/m: along, mixed, across
+    double fit_error = 0;                      ///< median distance of the surface from the paraboloid, metres
+    bool found = false;                        ///< the surface was hit where a patch needs it
 };
 
-/// The ground near where it is thought to be: a paraboloid fitted to the surface within `radius` (rays along the
-/// guess's normal onto a hexagonal pattern of 37 points, least sum of pseudo-Huber distances). Where too little
-/// of it is there for a curvature, that of the guess stays; where there is next to none, the guess itself. What lies
-/// below the fit counts `below` as much as what lies above.
-BaseColour feel(const mesh::SurfaceQuery& query, const BaseColour& guess, double radius, double below = 1);
+/// Fits a patch to the surface within `radius` (metres) of a guess, at 37 points of a hexagonal pattern hit by rays
+/// along the guess's normal. Minimises the sum of pseudo-Huber distances; points below the patch count `below` times.
+/// With too few hits the guess's curvature is retained, with hardly any the guess.
+SurfacePatch fit_patch(const mesh::SurfaceQuery& query, const SurfacePatch& guess, double radius, double below = 1);
 
-/// Metres from a point of the surface up along `normal` (unit) to the ground there: 0 on what is smooth, the depth
-/// of the groove in one that is narrower than half of `radius`. The ground is felt within `radius`; where the surface
-/// does not fit (median distance 0.5 % of `radius` to 2 %, the more the less it counts) and a disk half as wide fits
-/// better by itself, within a half of it, and then a quarter: a hand follows the ridge of a nose, passes over a shut
-/// line, and does not tremble on the noise of a scan. It rests on what is high: what lies below counts a third.
+/// Returns the height of the smoothed surface over a point of the surface, metres along `normal` (unit): 0 on smooth
+/// surface, the depth in a groove narrower than half of `radius`. The patch is fitted within `radius`. Where it fits
+/// badly (median distance from 0.5 % of `radius`, weight 1, to 2 %, weight 0) and a disk half as wide fits better, a
+/// half and then a quarter of `radius` are used: ridges are followed, shut lines and noise of a scan are not. Points
+/// below the patch count one third: a hand rests on what is high.
 double level_at(const mesh::SurfaceQuery& query, const Vec3& position, const Vec3& normal, double radius);
 
-/// Room above a point before the surface on the other side comes, at most `most`; metres.
+/// Returns the distance from `p` along `normal` to the next surface, at most `most`; metres.
 double clearance(const mesh::SurfaceQuery& query, const Vec3& p, const Vec3& normal, double most);
 
 }  // namespace tuft::stroke

@@ -281,7 +281,7 @@ SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const StrokeSamples
         case SurfaceMapping::project:
             return lay_projected(query, trace);
         case SurfaceMapping::drape:
-            return lay_draped(query, trace);
+            return map_draped(query, trace);
         case SurfaceMapping::wrap:
             break;
     }

@@ -7,27 +7,30 @@
 #include "mesh/query/surface_query.h"
 #include "stroke/placement/placement.h"
 
-/// What the ways of laying flat samples onto a model share.
+/// \file
+/// Functions shared by the mappings of flat samples onto a model: wrap and project (surface_mapping.cpp), drape
+/// (drape.cpp).
 namespace tuft::stroke {
 
-/// Right and down as an orthonormal pair across `normal`; right keeps its heading.
+/// Axes of flat samples on the surface, orthonormal.
 struct Axes {
     Vec3 right, down;
 };
+/// Returns right and down orthonormal and orthogonal to `normal`; right retains its heading.
 Axes axes_across(const Vec3& normal, const Vec3& right, const Vec3& down);
 
-/// `direction` turned into the plane with the given unit normal, unit length.
+/// Returns `direction` rotated into the plane of a unit normal, of unit length.
 Vec3 into_plane(const Vec3& direction, const Vec3& normal);
 
-/// The first point of the surface that a ray meets at a distance in [0, t_max], where it meets
-/// the plane of the triangle, in double.
+/// Returns the first hit of a ray at a distance in [0, t_max], metres. The point is the intersection with the
+/// triangle's plane in double precision; Embree's is single.
 std::optional<mesh::SurfacePoint> exact_ray(const mesh::SurfaceQuery& query, const Vec3& origin, const Vec3& direction,
                                             double t_max);
 
-/// What a sample brings with it from the hand.
+/// Returns a surface sample with the time, pressure and tilt of a flat one.
 SurfaceSample hand_data(const StrokeSample& sample);
 
-/// `SurfaceMapping::drape`; see `lay`.
-SurfaceTrace lay_draped(const mesh::SurfaceQuery& query, const StrokeSamples& trace);
+/// `SurfaceMapping::drape` of `map_to_surface`.
+SurfaceTrace map_draped(const mesh::SurfaceQuery& query, const StrokeSamples& trace);
 
 }  // namespace tuft::stroke

@@ -176,7 +176,7 @@ bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ah
     return true;
 }
 
-// BaseColour that is not quite as the hand takes it leans the tuft, and one that leans tip ahead is pushed. The holder
+// Surface that differs from the levelled one leans the tuft, and a tuft that leans tip ahead is pushed. The holder
 // is tipped ahead by more than that until the tuft trails.
 void lean_ahead(StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
     const double until = kLeanTurns * options.tip_lag_turn;

@@ -12,25 +12,26 @@
 #include "stroke/gesture/tractrix.h"
 #include "stroke/placement/placement.h"
 
-/// How far the hand runs ahead of the ink.
+/// \file
+/// Tip lag: a dragged tuft paints behind the hand, and beside it under a leaning holder. Measured per brush, and
+/// compensated in the hand's samples. Called by `Materials` and `hand_path`.
 namespace tuft::stroke {
 
-/// The tip_lag of a brush at depths up to its working depth: from the foot of the holder's
-/// axis back to the widest place of the steady contact patch, which lies half a line's
-/// width behind its end (`brush::sweep_depth`; takes some 50 ms).
+/// Measures the tip lag of a brush at depths up to its working depth: the distance from the foot of the holder's axis
+/// back to the widest place of the steady contact patch, which lies half a line's width behind its end
+/// (`brush::sweep_depth`). Cost: about 50 ms.
 std::vector<TipLag> measure_tip_lag(const brush::Preset& preset);
 
-/// What a lean of the holder adds to the tip_lag of one brush (see `measure_tip_lag`), from steady strokes of
-/// it at a grid of leans and depths, made as they are asked for (some 25 ms for each of the grid's
-/// leans). Up to 0.05 rad, as a hand holds a brush upright, it adds nothing; from 0.15 rad all.
+/// Change of a brush's tip lag by a lean of the holder, measured on steady strokes at a grid of leans and depths. A
+/// node of the grid is measured at its first use (25 ms). Leans up to 0.05 rad change nothing, as a hand does not hold
+/// a brush more upright; from 0.15 rad on the change is full. Not safe in several threads.
 class TiltedTipLag {
   public:
     explicit TiltedTipLag(brush::Preset preset) : preset_(std::move(preset)) {}
 
-    /// Metres ahead along the path and to its left that the hand must be further than that of an upright holder,
-    /// so that the line lies where the path is. `lean`: radians along the path and to its left, the
-    /// axis' up ∝ normal + tan(lean.x) ahead + tan(lean.y) left. `depth`: metres of the unbent tip
-    /// below the surface.
+    /// Returns the additional lead of the hand, metres ahead along the path and to its left, that puts the line onto
+    /// the path. `lean`: radians along the path and to its left, up ∝ normal + tan(lean.x) ahead + tan(lean.y) left.
+    /// `depth`: metres of the unbent tip below the surface.
     Vec2 at(double depth, const Vec2& lean);
 
   private:
@@ -45,40 +46,38 @@ class TiltedTipLag {
     std::array<std::vector<Vec2>, kAlong.size() * kAcross.size()> nodes_;  // ahead and left by depth
 };
 
-/// The tip_lag at one place of a path, metres to the right and down in the axes of `tilt` (radians, as in
-/// SurfaceSample). `ahead`: unit, the path's direction in them.
+/// Returns the tip lag at one point of a path, metres to the right and down. `tilt`: radians towards right and down, as
+/// in `SurfaceSample`; `ahead`: unit direction of the path in the same axes.
 Vec2 lead_of(const HolderOptions& options, double pressure, const Vec2& tilt, const Vec2& ahead);
 
-/// Times the pace of the trace at which its hand sets the brush down, ahead and down together, and the
-/// least pace that is taken for that, m/s.
+/// Speed of setting down, ahead and down together: over the speed of the trace, and the least speed of the trace that
+/// is taken for it, m/s.
 inline constexpr double kSetDownPace = 1.5, kSlowestSetDown = 0.02;
-inline constexpr double kHoverTime = 0.05;  ///< seconds in which the tip goes between touch and `hover`
+inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the surface and `hover`
 
-/// A dragged tuft paints behind the hand, and under a leaning holder aside of it. Moves the samples
-/// of a flat trace ahead along the path by the tip_lag for their depth, and by what their lean
-/// adds, so that the ink will lie where the trace was. The
-/// direction is that of a point dragged behind the trace on a string of `tip_lag_turn` (a
-/// tractrix), taut from the first touch in the direction in which the trace sets out;
-/// where the path reverses, the tip_lag passes through zero. A trace that begins pressed gets samples
-/// before its first, at the same place and earlier in time, in which the pressure rises to it, the holder moving at
-/// `kSetDownPace` times the trace's pace: the tip touches first and trails then.
-/// A holder that is upright but for 0.05 rad sets the brush down plumb and comes to that lean within 0.3 lengths of the
-/// tuft.
+/// Compensates the tip lag of a flat trace: moves its samples ahead along the path by the tip lag at their depth and
+/// lean, so that the ink lies where the trace was.
+///
+/// Ahead is the direction of a point dragged behind the trace on a string of length `tip_lag_turn` (a tractrix), taut
+/// from the first touch in the initial direction of the trace. Where the path reverses, the tip lag passes through
+/// zero. A trace that begins pressed gets samples before its first one, at the same place and earlier in time, whose
+/// pressure rises to the first; the holder moves at `kSetDownPace` times the trace's speed, so that the tip touches
+/// first and trails. A holder upright to 0.05 rad sets the brush down plumb and reaches its lean within 0.3 lengths of
+/// the tuft.
+///
 /// The hand's speed bounds the holder's. Over a surface of curvature κ, while the tuft is pressed,
 ///
 ///     |v_holder| ≤ (1 + tip_lag / tip_lag_turn + 2 κ L + 1.5) |v_path| + 4 (|depth'| + L |tilt'|),
 ///
-/// L the tuft's length; and at most `hover / kHoverTime` faster than the hand while it is not.
+/// with L the tuft's length; above the surface it is at most `hover / kHoverTime` faster than the hand.
 StrokeSamples lead_hand(StrokeSamples trace, const HolderOptions& options);
 
-/// A trace that ends with the pressure 0 gets samples after its last, in which the hand takes the tip
-/// up to `hover`; others stay.
+/// Adds samples after a trace that ends with pressure 0, in which the tip rises to `hover`. Other traces do not change.
 StrokeSamples lift_off(StrokeSamples trace, const HolderOptions& options);
 
-/// Metres of the unbent tip below the surface at each of the samples, which have `position`, `pressure`
-/// and `time`: pressure · working depth; where the pressure is 0, minus the height to which the hand has lifted
-/// it: as far as it goes along the path from the nearest pressed sample, or `hover` in `kHoverTime`, what is more,
-/// up to `hover`.
+/// Returns the depth of the unbent tip below the surface at each sample, metres. [samples] Pressed: pressure · working
+/// depth. Lifted: −min(hover, max(d, t hover / kHoverTime)), with d and t the path length and time from the nearest
+/// pressed sample. `Sample` has `position`, `pressure` and `time`.
 template <class Sample>
 std::vector<double> tip_depths(std::span<const Sample> samples, const HolderOptions& options) {
     const std::vector<double> along = travelled(samples);

@@ -37,28 +37,31 @@ HairContactOptions hair_options(const SessionInput& in, bool mixed) {
 
 StrokeSession::StrokeSession(SessionInput input)
     : input_(std::move(input)),
-      mixed_(!input_.stroke.erases() && ink::is_mixed(input_.brush.reservoir)),
-      spacing_(spacing_of(input_)),
       tuft_{.brush = std::move(input_.brush), .ink = input_.ink, .state = {}},
-      path_{.steady = {}, .resampler = Resampler({.step = spacing_, .lever = tuft_.preset().length}), .poses = {}},
-      hair_(hair_options(input_, mixed_)),
+      path_(spacing_of(input_), tuft_.preset().length),
+      hair_(hair_options(input_, holds_mixed_ink())),
       stencil_(*input_.model.query, input_.stroke.trace),
       target_(input_.model, input_.canvas, input_.substrate, input_.mask, input_.scratch),
       deposit_(make_deposit()) {
     contact_.options.method = input_.stroke.settings.contact;
     report_.nearest = std::numeric_limits<double>::infinity();
-    report_.full_at_start = tuft_.brush.reservoir.fullness();
+    report_.dryness.full_at_start = tuft_.brush.reservoir.fullness();
     if (input_.stroke.settings.endless && !input_.stroke.erases()) refill_ = tuft_.brush.reservoir;
 }
 
+bool StrokeSession::holds_mixed_ink() const {
+    return !input_.stroke.erases() && ink::is_mixed(tuft_.brush.reservoir);
+}
+
 std::unique_ptr<DepositModel> StrokeSession::make_deposit() {
+    const bool mixed = holds_mixed_ink();
     DepositOptions options{.wet = input_.wet};
     options.stamp.mapping = input_.stroke.settings.footprint;
-    options.progress = [this](std::string_view, double) { return !progress_ || progress_("painting", done_); };
+    options.progress = [this](std::string_view, double) { return progress_.go_on(); };
     if (input_.stroke.erases()) return make_eraser(target_, options);
     if (is_paste(input_)) return make_paste_deposit(target_, options);
-    if (input_.wet.film) return make_wet_deposit(target_, options, mixed_);
-    return mixed_ ? make_mixed_deposit(target_, options) : make_still_deposit(target_, options);
+    if (input_.wet.film) return make_wet_deposit(target_, options, mixed);
+    return mixed ? make_mixed_deposit(target_, options) : make_still_deposit(target_, options);
 }
 
 void StrokeSession::extend(std::span<const brush::Pose> poses) {
@@ -79,7 +82,7 @@ void StrokeSession::advance(std::span<const brush::Pose> poses, double done) {
         path_.resampler.push(held, path_.poses);
     }
     paint_poses();
-    done_ = done;
+    progress_.done = done;
 }
 
 void StrokeSession::paint_poses() {
@@ -102,8 +105,8 @@ contact::Result StrokeSession::bend_on_surface(const brush::Pose& pose, double d
     deposit_->pass_time(dt);
     tuft_.bend(contact.tuft, pose);
     report_.nearest = std::min(report_.nearest, contact.distance);
-    report_.inside += contact.inside > 0;
-    report_.deepest = std::max(report_.deepest, contact.inside);
+    report_.inside.poses += contact.inside > 0;
+    report_.inside.deepest = std::max(report_.inside.deepest, contact.inside);
     if (input_.record_forces)
         forces_.poses.push_back(
             {pose, contact.tuft.force, contact.device_force, contact.tuft.moment, contact.tuft.root_moment});
@@ -119,7 +122,7 @@ void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double 
     // Dry hair leaves ink by how it is drawn: where it only comes to touch, a tip that leans would print a speck that
     // its stroke, which begins where it has been pressed aside, does not reach.
     const bool prints = motion_.contact_travel >= kPrintTravel;
-    stamp.ds = prints ? spacing_ : (1 - static_cast<double>(stamp.separation)) * spacing_;
+    stamp.ds = prints ? path_.spacing : (1 - static_cast<double>(stamp.separation)) * path_.spacing;
 }
 
 void StrokeSession::set_ink(Stamp& stamp, double area) const {
@@ -137,19 +140,20 @@ void StrokeSession::set_ink(Stamp& stamp, double area) const {
 void StrokeSession::note_dryness(double film, double displacement) {
     constexpr double kDry = 0.6;        // of a full film: what is paler looks torn
     constexpr double kWetAgain = 5e-3;  // metres of full film after which a stroke is no longer dry
+    Dryness& dryness = report_.dryness;
     report_.path += displacement;
     if (film < kDry * tuft_.ink.film) {
-        if (report_.dry_from < 0) report_.dry_from = report_.path;
-        report_.dry_path += displacement;
+        if (dryness.from < 0) dryness.from = report_.path;
+        dryness.path += displacement;
         wet_from_ = report_.path;
     } else if (report_.path - wet_from_ > kWetAgain) {
-        report_.dry_from = -1;
-        report_.dry_path = 0;
+        dryness.from = -1;
+        dryness.path = 0;
     }
 }
 
 void StrokeSession::step(const brush::Pose& pose) {
-    report(progress_, "painting", done_);
+    report(progress_.ask, "painting", progress_.done);
     const double dt = path_.started ? pose.time - path_.time : 0.0;
     const contact::Result contact = bend_on_surface(pose, dt);
     if (!contact.tuft.touching || contact.triangle == kNone) return motion_.lose_contact();

@@ -12,65 +12,71 @@
 #include "stroke/session/report.h"
 #include "stroke/surface/surface_stencil.h"
 
+/// \file
+/// One stroke, from pen down to pen up. `Document` makes a session for each stroke.
+
 namespace tuft::stroke {
 
-/// What a stroke is painted with and onto. What is referred to must outlive the session.
+/// What a stroke is painted with and onto. All that is referred to must outlive the session.
 struct SessionInput {
     PaintStroke stroke;  ///< settings and stencil; its samples may still be empty
     BrushInHand brush;   ///< as the stroke begins
-    ink::Ink ink;        ///< that the brush was dipped into
+    ink::Ink ink;        ///< dipped into
     const Model& model;
     const ink::Substrate& substrate;
     ink::Canvas& canvas;               ///< of the stroke's layer
-    const MaskTexels* mask = nullptr;  ///< what may be changed; null: everything
-    WetFilmInUse wet;                  ///< a film for strokes with wet ink
+    const MaskTexels* mask = nullptr;  ///< texels that may change; null: all
+    WetFilmInUse wet;                  ///< for strokes with wet ink
     PlanScratchPool& scratch;
-    SeamLinksFn seams;  ///< of the model; asked for at most once, at the end
-    bool record_forces = false;
+    SeamLinksFn seams;           ///< of the model; called at most once, at the end
+    bool record_forces = false;  ///< fills `StrokeReport::forces`
 };
 
 /// A finished stroke.
 struct SessionResult {
     StrokeReport report;
-    BrushInHand brush;                      ///< as the stroke left it
-    std::vector<ink::TileSnapshot> before;  ///< the tiles that it wrote to as they were, by slot
+    BrushInHand brush;                      ///< after the stroke
+    std::vector<ink::TileSnapshot> before;  ///< tiles that it wrote to, before the stroke, ascending by slot
 };
 
-/// One stroke, from pen down to pen up:
+/// Paints one stroke:
 ///
 ///     sample → resample → contact → brush → footprint → deposit
 ///
-/// Poses of a hand or a replay go in, texels of one layer change. The poses of a flat stroke are those of its whole
-/// prepared gesture; poses in space are smoothed and stabilised here, as they come. The texels are the same whether the
-/// poses come one by one or all at once, and for any number of threads.
+/// Poses go in, texels of one layer change. Poses of a flat stroke are those of its prepared gesture (`hand_path`);
+/// poses in space are smoothed and stabilised here. The bits are the same for poses one by one or all at once, and for
+/// any number of threads.
 class StrokeSession {
   public:
     explicit StrokeSession(SessionInput input);
     StrokeSession(const StrokeSession&) = delete;
     StrokeSession& operator=(const StrokeSession&) = delete;
 
-    /// Asked before every stamp whether to go on, and between the steps of long ones; a stop throws `Cancelled`.
-    void set_progress(ProgressFn progress) { progress_ = std::move(progress); }
-    /// Paints on. `done`: part of the stroke that is reported as done.
+    /// Called before every stamp, and between steps of long ones; false stops by `Cancelled`.
+    void set_progress(ProgressFn progress) { progress_.ask = std::move(progress); }
+    /// Paints the next poses. `done`: part of the stroke to be reported, 0–1.
     void advance(std::span<const brush::Pose> poses, double done = 0);
-    /// The first `poses` of those to come set the brush down; the stroke's own samples come after them.
+    /// Declares that the first `poses` set the brush down; the stroke's own samples come after them.
     void begin_with_set_down(std::size_t poses) { forces_.before_first = poses; }
-    /// Poses of a hand in space: kept as samples of the stroke, then painted.
+    /// Appends poses of a hand in space to the stroke's samples and paints them.
     void extend(std::span<const brush::Pose> poses);
-    /// Paints what is left and ends the stroke.
+    /// Paints the remaining poses and ends the stroke.
     SessionResult finish();
-    /// The tiles that were written to so far as they were, by slot: to take the stroke back.
+    /// Returns the tiles written to so far as they were before, ascending by slot, to take the stroke back.
     std::vector<ink::TileSnapshot> take_snapshots() { return target_.take_snapshots(); }
 
     const PaintStroke& stroke() const { return input_.stroke; }
-    /// The bent tuft at the last pose.
+    /// The bent tuft at the last pose, for drawing it.
     const brush::TuftState& tuft() const { return tuft_.state; }
-    /// What a haptic device shall give at the last pose, newtons.
+    /// Force for a haptic device at the last pose, newtons, world frame.
     const Vec3& device_force() const { return contact_.device_force; }
 
   private:
     /// From samples to even poses.
     struct Path {
+        Path(double step, double lever) : spacing(step), resampler({.step = step, .lever = lever}) {}
+
+        double spacing;  // metres between poses
         GestureFilter steady;
         Resampler resampler;
         std::vector<brush::Pose> poses;  // not painted yet
@@ -88,6 +94,13 @@ class StrokeSession {
         std::vector<ForceRecord> poses;    // at every pose of the resampled path
         std::size_t before_first = 0;      // samples before the stroke's own
     };
+    struct Progress {
+        ProgressFn ask;
+        double done = 0;  // part of the stroke
+
+        bool go_on() const { return !ask || ask("painting", done); }
+    };
+    bool holds_mixed_ink() const;
     std::unique_ptr<DepositModel> make_deposit();
     std::vector<ForceRecord> forces_at_samples() const;
     void paint_poses();
@@ -98,8 +111,6 @@ class StrokeSession {
     void note_dryness(double film, double displacement);
 
     SessionInput input_;
-    bool mixed_ = false;  // the tuft holds several inks, or thicker ink on one side
-    double spacing_ = 0;  // metres between poses
     TuftInHand tuft_;
     Path path_;
     ContactState contact_;
@@ -110,8 +121,7 @@ class StrokeSession {
     std::unique_ptr<DepositModel> deposit_;
     ForceLog forces_;
     StrokeReport report_;
-    ProgressFn progress_;
-    double done_ = 0;                       // part of the stroke
+    Progress progress_;
     double wet_from_ = 0;                   // metres of the hand's path up to the last stamp that lacked ink
     std::optional<ink::Reservoir> refill_;  // what the tuft holds before every pose; none: it runs dry
 };

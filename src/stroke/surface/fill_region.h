@@ -6,9 +6,12 @@
 #include "stroke/journal/fill.h"
 #include "stroke/surface/model.h"
 
+/// \file
+/// Charts that a fill covers. Called by document/apply_fill.h.
+
 namespace tuft::stroke {
 
-/// For each chart of the atlas whether it is filled, [n_charts].
+/// Returns for each chart of the atlas whether it is filled, 0 or 1. [n_charts]
 std::vector<std::uint8_t> charts_of(const Fill& fill, const Model& model);
 
 }  // namespace tuft::stroke

@@ -9,18 +9,20 @@
 #include "stroke/surface/model.h"
 
 /// \file
-/// Masks on the texels of a model.
+/// Coverage of a model's texels by a mask. Made once per mask by `MaskSet`; read by strokes, fills and the wet film.
 namespace tuft::stroke {
 
-/// Coverage of texels, 0–255; tiles that are covered all or not at all take no room.
+/// Coverage of texels, 0–255. Tiles of full or no coverage take no memory. Reading is safe in several threads.
 class MaskTexels {
   public:
+    /// No coverage on any of `n_slots` tiles.
     explicit MaskTexels(std::size_t n_slots) : place_(n_slots, kNone_) {}
 
     void set(std::uint32_t slot, const std::array<std::uint8_t, atlas::kTileTexels>& coverage);
     std::uint8_t coverage(std::uint32_t slot, int texel) const;
+    /// Whether no texel of the tile is covered.
     bool none(std::uint32_t slot) const { return place_[slot] == kNone_; }
-    /// exposure *= coverage; nothing is multiplied where all is covered.
+    /// Multiplies the exposure by coverage / 255; tiles of full coverage do not change a bit.
     void apply(std::uint32_t slot, std::span<float, atlas::kTileTexels> exposure) const;
     std::size_t memory_bytes() const;
 
@@ -30,9 +32,9 @@ class MaskTexels {
     std::vector<std::array<std::uint8_t, atlas::kTileTexels>> parts_;
 };
 
-/// Evaluates a mask on a model's texels. Groups and charts have hard edges, a lasso's are a texel
-/// wide, an angle's as soft as asked. The same bits for any number of threads. Throws `Error`
-/// for groups that the mesh does not have.
+/// Evaluates a mask of `table` on a model's texels. Edges of groups and charts are hard, those of a lasso one texel
+/// wide, those of an angle as soft as its `soft`. The same bits for any number of threads. Throws `Error` for groups
+/// that the mesh lacks.
 MaskTexels evaluate(const Mask& mask, const MaskTable& table, const Model& model);
 
 }  // namespace tuft::stroke

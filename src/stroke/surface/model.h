@@ -10,47 +10,48 @@
 #include "mesh/query/surface_query.h"
 #include "mesh/repair/repair.h"
 
+/// \file
+/// A model prepared for painting. Made once from a file or a project; documents, pictures and exports read it.
+
 namespace tuft::stroke {
 
-/// A model ready to be painted on: clean mesh, atlas, queries, texel map. Built once;
-/// everything that paints only reads it.
+/// Clean mesh, atlas, queries and texel map. Constant after it is built; reading is safe in several threads.
 struct Model {
-    std::unique_ptr<mesh::TriangleMesh> mesh;  ///< on the heap: `query` keeps its address
+    std::unique_ptr<mesh::TriangleMesh> mesh;  ///< on the heap: `query` holds its address
     mesh::RepairReport repairs;
     atlas::Atlas atlas;
     atlas::AtlasReport atlas_report;
     std::unique_ptr<mesh::SurfaceQuery> query;
     atlas::TexelMap texels;
     atlas::ClusterGraph clusters;
-    ink::BaseColour ground;  ///< the mesh's own colours, or empty
+    ink::BaseColour ground;  ///< colours of the mesh's file, or empty
 
     footprint::Surface surface() const { return {*mesh, atlas, texels, clusters}; }
 };
 
 struct ModelOptions {
-    mesh::RepairOptions repair;   ///< its `progress` is set from the one below
+    mesh::RepairOptions repair;   ///< its `progress` is replaced by the one below
     atlas::UnwrapOptions unwrap;  ///< likewise
     atlas::TexelStore texels = atlas::TexelStore::automatic;
-    std::size_t memory_limit = 0;  ///< bytes; 0: what the machine has free
+    std::size_t memory_limit = 0;  ///< bytes; 0: `available_memory`
     ProgressFn progress;
 };
 
-/// Repairs the mesh, unwraps it and builds what painting needs. Throws `Error` when
-/// nothing can be painted on, or when the atlas would need more memory than the limit,
-/// before taking any, with the size it would need.
+/// Repairs a mesh, unwraps it and builds queries and texel map. Throws `Error` for a mesh without surface, and before
+/// it allocates where the atlas needs more memory than the limit, with the size that it needs.
 Model prepare_model(mesh::PolygonSoup soup, const ModelOptions& options = {});
 
-/// The same from a mesh and an atlas that exist already, such as a project's.
+/// The same from an existing mesh and atlas, such as a project's.
 Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressFn& progress = {},
                     atlas::TexelStore texels = atlas::TexelStore::automatic);
 
-/// The same mesh with a new atlas, of another size or with new charts.
+/// Returns the same mesh with a new atlas, of another size or with new charts.
 Model rescale_model(Model model, const ModelOptions& options);
 
-/// Bytes that painting on an atlas of size × size texels takes at most.
+/// Returns an upper bound for the memory of painting on an atlas of size × size texels, bytes.
 std::size_t atlas_memory(std::uint32_t size, atlas::TexelStore texels = atlas::TexelStore::automatic);
 
-/// Bytes this process may still take: free memory of the machine or of its control group.
+/// Returns the memory that this process may still allocate, bytes: free memory of the machine or of its control group.
 std::size_t available_memory();
 
 }  // namespace tuft::stroke

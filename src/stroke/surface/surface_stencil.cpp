@@ -145,9 +145,9 @@ void SurfaceStencil::gather() {
     }
 }
 
-double inside_stencil(std::span<const StencilEdge> tape, const Vec2& place) {
+double inside_stencil(std::span<const StencilEdge> edges, const Vec2& point) {
     Nearest nearest;
-    for (const StencilEdge& e : tape) nearest.meet(segment_distance(e.from, e.to, place), beside(e, place));
+    for (const StencilEdge& e : edges) nearest.meet(segment_distance(e.from, e.to, point), beside(e, point));
     return nearest.inside();
 }
 

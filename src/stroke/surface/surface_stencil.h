@@ -7,39 +7,38 @@
 #include "mesh/query/surface_query.h"
 #include "stroke/journal/samples.h"
 
-/// Tape on the surface: a stroke goes over its edges, ink does not.
+/// \file
+/// The stencil of a stroke on the surface: the tuft passes its edges, ink does not. Called by `StrokeSession`.
 namespace tuft::stroke {
 
-/// A straight cluster of stencil edge on the model; metres, model frame.
+/// A straight segment of a stencil's edge on the model; metres, model frame.
 struct StencilSegment {
     Vec3 from{0}, to{0};
-    Vec3 inward{0};  ///< unit, along the surface: towards what may be painted
+    Vec3 inward{0};  ///< unit, along the surface: towards the part that may be painted
 };
 
-/// The stencil edge of a stroke on the model.
+/// The stencil of one stroke, mapped onto the model.
 class SurfaceStencil {
   public:
     SurfaceStencil() = default;
-    /// Lays the stencil edge of a flat trace as its samples are laid (`lay`), in clusters of 1 mm, of more
-    /// where that would be over 100,000. Pieces past the surface's edge are left out. Empty for
-    /// traces in space.
+    /// Maps the stencil of a flat trace like its samples (`map_to_surface`), in segments of 1 mm, longer ones where
+    /// there would be more than 100,000. Segments past a border of the surface are left out. Empty for traces in space.
     SurfaceStencil(const mesh::SurfaceQuery& query, const StrokeSamples& trace);
 
     bool empty() const { return pieces_.empty(); }
     std::span<const StencilSegment> clusters() const { return pieces_; }
 
-    /// Takes off a footprint's coverage what lies beyond the stencil edge: of a cell with its centre at a
-    /// distance d inside the part 1/2 + d / cell stays, kept to [0, 1]; where no stencil edge crosses the
-    /// footprint, all of it or nothing. The stencil edge is seen along the frame's normal; what lies
-    /// further from the frame's plane than the footprint is wide belongs to another side of the
-    /// model.
+    /// Multiplies a footprint's coverage by clamp(1/2 + d / cell, 0, 1), with d the distance of a cell's centre inside
+    /// the edge; by 0 or 1 where no edge crosses the footprint. The edge is projected along the frame's normal.
+    /// Segments farther from the frame's plane than the footprint is wide belong to another side of the model and are
+    /// ignored.
     void cut_off(footprint::Footprint& footprint) const;
 
   private:
     void gather();
     std::vector<StencilEdge> seen_from(const footprint::Footprint& footprint, double reach) const;
 
-    /// Pieces that follow each other, in a sphere.
+    /// Consecutive segments and their bounding sphere.
     struct Run {
         std::uint32_t begin, end;
         Vec3 centre;
@@ -49,9 +48,9 @@ class SurfaceStencil {
     std::vector<Run> runs_;
 };
 
-/// Metres from a place to the nearest edge, positive where one may paint; +∞ without edges. Where
-/// two edges are equally near, which is off their common end, the one that the place is further
-/// beside says on which side it lies: sharp corners, in and out.
-double inside_stencil(std::span<const StencilEdge> tape, const Vec2& place);
+/// Returns the signed distance from a point to the nearest edge, metres, positive where it may be painted; +∞ without
+/// edges. Of two equally near edges, which share the nearest end, the one with the larger distance to the side gives
+/// the sign: so sharp corners, inner and outer, are right.
+double inside_stencil(std::span<const StencilEdge> edges, const Vec2& point);
 
 }  // namespace tuft::stroke

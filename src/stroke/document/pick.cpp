@@ -1,16 +1,13 @@
+#include "stroke/document/pick.h"
+
 #include <algorithm>
 
 #include "atlas/texels/cluster_graph.h"
-#include "stroke/document/document.h"
 
-/// The eyedropper.
 namespace tuft::stroke {
+namespace {
 
-Pick Document::pick(const Vec3& point) const {
-    return pick_at(point, *model_, shown_layers());
-}
-
-Pick Document::pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels> layers) const {
+Pick pick_at(const Vec3& point, const Model& model, std::span<const LayerTexels> layers) {
     const auto at = model.query->closest_point(point);
     if (!at) throw Error("there is no surface to look at");
     Pick pick;
@@ -38,18 +35,30 @@ Pick Document::pick_at(const Vec3& point, const Model& model, std::span<const La
     return pick;
 }
 
-std::optional<ink::Ink> Document::ink_of(const Pick& pick, const std::string& name) const {
+}  // namespace
+
+Pick pick(const Document& document, const Vec3& point) {
+    return pick_at(point, document.model(), document.appearance().shown_layers());
+}
+
+Pick pick_on_palette(const Document& document, const Vec3& point) {
+    const Model& model = document.palette().model();
+    const LayerTexels texels{kPaletteLayer, document.palette().canvas()};
+    return pick_at(point, model, std::span(&texels, 1));
+}
+
+std::optional<ink::Ink> picked_ink(const Pick& pick, std::span<const ink::Pigment> pigments, const std::string& name) {
     constexpr double kThinnest = 0.05, kThickest = 8;  // film units that a brush leaves
     double all = 0;
     for (const double a : pick.amounts) all += a;
     if (!(all > 1e-6)) return std::nullopt;
     ink::Ink ink{.name = name, .title = "picked from the surface"};
     double left = 1;  // rounding never makes it more than whole
-    for (std::size_t p = 0; p < canvas_.pigments().size(); ++p) {
+    for (std::size_t p = 0; p < pigments.size(); ++p) {
         const double part = std::min(left, pick.amounts[p] / all);
         if (!(part > 0)) continue;
         left -= part;
-        ink.parts.push_back({canvas_.pigments()[p], part});
+        ink.parts.push_back({pigments[p], part});
     }
     ink.film = std::clamp(all, kThinnest, kThickest);
     return ink;

@@ -1,0 +1,136 @@
+#include <utility>
+
+#include "contact/outside.h"
+#include "stroke/document/document.h"
+#include "stroke/gesture/hand.h"
+#include "stroke/session/session.h"
+
+/// Strokes: the brush is taken up, led over the model by a session, and put down.
+namespace tuft::stroke {
+namespace {
+
+/// Each stamp of a tuft this wide takes a tenth of a second, and a stroke thousands of them.
+void check_width(const brush::Preset& preset, double texel) {
+    constexpr double kWidest = 2048;  // texels
+    const double width = 2 * preset.radius;
+    if (width > kWidest * texel)
+        throw Error("the brush is " + std::to_string(1e3 * width) + " mm wide, " +
+                    std::to_string(static_cast<long long>(width / texel)) + " texels of this model, more than " +
+                    std::to_string(static_cast<int>(kWidest)) + ": use a larger texel size or a smaller brush");
+}
+
+}  // namespace
+
+void Document::begin(JournalEntry entry) {
+    check_layer(entry);
+    begin_session(std::get<PaintStroke>(entry.content));
+    open_ = std::move(entry);
+}
+
+void Document::extend(std::span<const brush::Pose> poses) {
+    session_->extend(poses);
+}
+
+StrokeReport Document::end() {
+    open_.content = session_->stroke();
+    StrokeReport report = finish_session(journal_.next_id());
+    journal_.append(std::move(open_));
+    return report;
+}
+
+void Document::cancel() {
+    if (!session_) return;
+    std::vector<LayerTiles> before;
+    before.push_back({session_->stroke().layer, session_->take_snapshots()});
+    restore(before);
+    session_.reset();
+    forget_pigments();
+}
+
+BrushInHand Document::take_up(const PaintStroke& stroke) {
+    const StrokeSettings& settings = stroke.settings;
+    const brush::Preset preset = preset_of(stroke.brush, settings.spine);
+    if (stroke.erases()) return clean_brush(preset);
+    return brushes_.take_up_for_stroke({.preset = preset,
+                                        .name = stroke.brush,
+                                        .ink = stroke.ink,
+                                        .mix = mix_of(stroke.ink),
+                                        .seed = stroke.seed,
+                                        .dip = settings.dip});
+}
+
+// An eraser lets no ink flow.
+WetFilmInUse Document::wet_film_for(const PaintStroke& stroke, const PaintTarget& target) {
+    if (stroke.settings.film != FilmModel::wet || stroke.erases()) return {};
+    if (target.on_palette) return {palette_.plate().film.get(), palette_.plate().params};
+    return {&film_.within(stroke.mask, masks_), ink::film_params(target.substrate, stroke.settings.down)};
+}
+
+void Document::begin_session(PaintStroke stroke) {
+    cancel();
+    settle(stroke);
+    BrushInHand brush = take_up(stroke);
+    const ink::Ink ink = stroke.erases() ? ink::Ink{} : materials_.ink(brush.dipped);
+    const PaintTarget target = this->target(stroke.layer, stroke.mask);
+    check_width(brush.tuft.preset, target.model.texels.texel_size);
+    WetFilmInUse wet = wet_film_for(stroke, target);
+    const SeamLinksFn seams = [this, on_palette = target.on_palette]() -> const atlas::SeamLinks& {
+        return on_palette ? palette_.plate().seams : film_.seams();
+    };
+    session_ = std::make_unique<StrokeSession>(SessionInput{.stroke = std::move(stroke),
+                                                            .brush = std::move(brush),
+                                                            .ink = ink,
+                                                            .model = target.model,
+                                                            .substrate = target.substrate,
+                                                            .canvas = target.canvas,
+                                                            .mask = target.mask,
+                                                            .wet = std::move(wet),
+                                                            .scratch = *plan_scratch_,
+                                                            .seams = seams,
+                                                            .record_forces = options_.record_forces});
+}
+
+// Ends the stroke in work without a word to the journal.
+StrokeReport Document::finish_session(std::uint64_t id) {
+    SessionResult result = session_->finish();
+    const PaintStroke& stroke = session_->stroke();
+    UndoRecord undo{.entry = id};
+    undo.tiles.push_back({stroke.layer, std::move(result.before)});
+    if (!stroke.erases()) undo.brush = brushes_.put_down(stroke.brush, std::move(result.brush));
+    record(std::move(undo));
+    session_.reset();
+    result.report.stroke_id = id;
+    return std::move(result.report);
+}
+
+HandPath Document::path_of(const PaintStroke& stroke) {
+    if (!stroke.trace.flat) return {{}, spatial_poses(stroke.trace), 0};
+    const Model& model = stroke.layer == kPaletteLayer ? palette_.model() : model_;
+    const mesh::SurfaceQuery& query = *model.query;
+    return hand_path(query, steady(stroke.trace, stroke.settings),
+                     materials_.holder(stroke.brush, query.mesh(), stroke.settings.compensate_tip_lag));
+}
+
+StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const ProgressFn& progress) {
+    if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
+    const HandPath path = path_of(stroke);
+    const std::vector<brush::Pose>& poses = path.poses;
+    begin_session(stroke);
+    session_->set_progress(progress);
+    session_->begin_with_set_down(path.set_down);
+    try {
+        for (std::size_t i = 0; i < poses.size(); ++i)
+            session_->advance(std::span(poses).subspan(i, 1),
+                              static_cast<double>(i + 1) / static_cast<double>(poses.size()));
+        StrokeReport report = finish_session(id);
+        if (stroke.trace.flat)
+            report.inside.origin =
+                contact::depth_inside(*target(stroke.layer, 0).model.query, stroke.trace.placement.origin);
+        return report;
+    } catch (...) {
+        cancel();
+        throw;
+    }
+}
+
+}  // namespace tuft::stroke

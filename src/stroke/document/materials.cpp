@@ -1,0 +1,35 @@
+#include "stroke/document/materials.h"
+
+#include "ink/composite/match.h"
+
+namespace tuft::stroke {
+
+Materials::Brush& Materials::find_brush(const std::string& name) const {
+    const auto found = brushes_.find(name);
+    if (found != brushes_.end()) return found->second;
+    return brushes_.emplace(name, Brush{brush::load_preset(name), {}, {}}).first->second;
+}
+
+const ink::Ink& Materials::ink(const std::string& name) const {
+    const auto found = inks_.find(name);
+    if (found != inks_.end()) return found->second;
+    return inks_.emplace(name, ink::ink_named(name, substrate_, layers_.pigments())).first->second;
+}
+
+HolderOptions Materials::holder(const std::string& name, const mesh::TriangleMesh& mesh,
+                                bool compensate_tip_lag) const {
+    Brush& brush = find_brush(name);
+    HolderOptions options = holder_options(brush.preset, mesh);
+    if (!compensate_tip_lag) return options;
+    if (!brush.tilted_tip_lag) {
+        brush.tip_lag = measure_tip_lag(brush.preset);
+        brush.tilted_tip_lag = std::make_unique<TiltedTipLag>(brush.preset);
+    }
+    options.tip_lag = brush.tip_lag;
+    options.leaned = [tilted = brush.tilted_tip_lag.get()](double depth, const Vec2& lean) {
+        return tilted->at(depth, lean);
+    };
+    return options;
+}
+
+}  // namespace tuft::stroke
