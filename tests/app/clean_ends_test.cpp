@@ -57,15 +57,15 @@ stroke::Document painted(const stroke::Model& model, const std::string& brush, c
     const brush::Preset preset = brush::load_preset(brush);
     PointerInput hand(*model.query, preset, settings, {stroke::measure_tip_lag(preset)});
     stroke::Document painting(model);
-    const auto take = [&](const std::vector<HandStep>& steps) {
-        for (const HandStep& step : steps) {
-            if (step.kind == HandStep::Kind::begin) {
+    const auto take = [&](const std::vector<StrokeStep>& steps) {
+        for (const StrokeStep& step : steps) {
+            if (step.kind == StrokeStep::Kind::begin) {
                 stroke::PaintStroke s;
                 s.trace.flat = false;
                 s.brush = brush;
                 s.ink = "carbon";
                 painting.begin(std::move(s));
-            } else if (step.kind == HandStep::Kind::end) {
+            } else if (step.kind == StrokeStep::Kind::end) {
                 painting.end();
             } else {
                 painting.extend(step.poses);

@@ -80,7 +80,7 @@ TEST(DryBrush, ThreadsDoNotChangeABit) {
     set_thread_count(0);
 }
 
-TEST(DryBrush, StreaksLieWhereTheyLieAtAnySamplingRate) {
+TEST(DryBrush, StreaksDoNotDependOnTheSamplingRate) {
     const Model model = sheet();
     const Document slow = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 100)),
                    fast = dry_stroke(model, 0.2, 5, {}, drag(5, 0.06, 800));
