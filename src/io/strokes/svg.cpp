@@ -29,7 +29,7 @@ constexpr std::size_t kMostText = std::size_t{1} << 30;  // bytes of attributes 
 // A line of the drawing; metres.
 struct Drawn {
     SvgLine line;
-    double width = 0;           // of its stroke; 0: it has none
+    double width = 0;                    // of its stroke; 0: it has none
     double taper_in = 0, taper_out = 0;  // lengths over which it runs out into a point
     std::vector<stroke::StencilEdge> stencil = {};
 };
