@@ -83,9 +83,9 @@ struct UnwrapOptions {
 /// Measures of an atlas. Stretch after Sander et al. 2001 (1 = isometry).
 struct AtlasReport {
     std::size_t charts = 0;
-    std::size_t flips = 0;               ///< triangles with negative area in UV
-    std::size_t overlapping_texels = 0;  ///< texel centres covered by two triangles
-    std::size_t roomless_triangles = 0;  ///< with a zero or non-finite UV area
+    std::size_t flips = 0;                ///< triangles with negative area in UV
+    std::size_t overlapping_texels = 0;   ///< texel centres covered by two triangles
+    std::size_t zero_area_triangles = 0;  ///< with a zero or non-finite UV area
     double l2_stretch = 0, linf_stretch = 0;
     double angle_distortion = 0, area_distortion = 0;     ///< area-weighted means, 1 = none
     double utilisation = 0;                               ///< covered texels over texels of all used pages

@@ -8,102 +8,108 @@
 
 #include "core/geometry/types.h"
 
-/// What the command line asks for, as plain data. Lengths are in millimetres and
-/// angles in degrees here; the commands convert.
+/// \file
+/// The command line as plain data, one struct per command. Lengths are in millimetres and angles in degrees, as typed;
+/// the commands convert them. Filled by `parse_arguments`, read by the commands.
 namespace tuft::cli {
 
-/// Of the three numbers of an option.
+/// Returns the three numbers of an option as a vector; `v` has three.
 inline Vec3 vector_of(const std::vector<double>& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// Options that several commands share.
+/// Options of all commands that read a model.
 struct Surface {
-    std::string unit, up;          ///< of the model file; empty: the default, or as the project says
-    std::uint32_t atlas_size = 0;  ///< texels per side; 0: from texel_size_mm or the default
-    double texel_size_mm = 0;
-    std::uint32_t pages = 0;  ///< most pages (UDIM); 0: not said
+    std::string unit, up;          ///< of the model file; empty: the project's, else the default
+    std::uint32_t atlas_size = 0;  ///< texels per side; 0: from texel_size_mm, else the default
+    double texel_size_mm = 0;      ///< 0: from atlas_size
+    std::uint32_t pages = 0;       ///< most pages (UDIM); 0: the default
     bool new_uv = false, keep_uv = false;
     bool tight = false, whole = false;
     std::string seams = "free";  ///< free | groups | sharp | both
     double sharp_angle_deg = 40;
     std::string texel_store = "auto";  ///< auto | float | packed
     std::string substrate = "porcelain";
-    bool plain = false;  ///< without the colours that the model brings along
+    bool plain = false;  ///< ignores the model's own colours
 };
 
+/// Options of all commands.
 struct Common {
     int threads = 0;  ///< 0: one per core
     bool json = false;
     bool quiet = false;
 };
 
-/// What to see of a painting, and from where.
+/// Options of all commands that draw a picture.
 struct View {
-    std::vector<std::string> layers;  ///< names of those to be seen; empty: the visible ones
+    std::vector<std::string> layers;  ///< names of the layers to draw; empty: the visible ones
     int width = 1280, height = 720;
     double azimuth = 30, elevation = 25;
-    bool directed = false;  ///< these two were asked for
+    bool directed = false;  ///< azimuth or elevation was given
     double zoom = 1;
-    double light = 0;               ///< degrees the lights are turned about z
-    bool raking = false;            ///< light from the side
-    std::vector<double> target_mm;  ///< three numbers, or empty: the middle of the model
+    double light = 0;               ///< degrees, rotation of the lights about z
+    bool raking = false;            ///< grazing light from the side
+    std::vector<double> target_mm;  ///< [3], or empty: the middle of the model
 };
 
+/// `tuft paint MODEL STROKES...`
 struct Paint {
     std::filesystem::path model;
     std::vector<std::filesystem::path> strokes;
-    std::string brush, ink;              ///< empty: as the stroke file says, else the default
-    std::string layer;                   ///< name; empty: as the stroke file says, else the first one
-    std::string mask;                    ///< name; empty: as the stroke file says, else none
-    bool erases = false;                 ///< all strokes take ink away
+    std::string brush, ink;              ///< empty: the stroke file's, else the default
+    std::string layer;                   ///< name; empty: the stroke file's, else the first one
+    std::string mask;                    ///< name; empty: the stroke file's, else none
+    bool erases = false;                 ///< all strokes erase
     std::string spine = "rod";           ///< rod | table
     std::string footprint = "surface";   ///< surface | plane
     std::string contact = "exact";       ///< exact | vertices
     std::string dip = "each";            ///< each | carry | endless
     std::string film = "still";          ///< still | wet
-    std::vector<double> down{0, 0, -1};  ///< towards the ground, for wet ink
-    double dry = -1;  ///< seconds that the ink dries after each stroke file; 0: until dry; < 0: not at all
-    std::vector<std::string> prepare;  ///< what is done with a full brush first; see stroke::preparation_of
-    std::string pressure = "none";     ///< none | speed | dwell | speed+dwell, for strokes without any
-    double smooth = 0;                 ///< strength of the hand's filter; 0: off
-    double stabilise_mm = 0;           ///< length of the string; 0: off
-    std::filesystem::path bias;        ///< bias to correct, or empty
-    std::vector<double> place_mm;      ///< x,y,z of the placement for flat strokes, or empty
-    std::string on;                    ///< side of the model (stroke::side_name) for flat strokes, or empty
-    std::vector<double> read_from;     ///< direction of who reads the drawing, three numbers, or empty
-    double place_width_mm = 0;         ///< of the whole drawing placed; 0: as written
-    std::string mapping;               ///< drape, wrap, project; empty: see place_strokes
-    double place_turn_deg = 0;         ///< anticlockwise, as seen by who stands before the surface
-    bool place_mirror = false;         ///< flips the drawing from left to right
-    bool fit_brush = false;            ///< `brush` in the sizes that the lines of a drawing need
+    std::vector<double> down{0, 0, -1};  ///< [3] direction of gravity on wet ink, model frame
+    double dry = -1;                     ///< seconds of drying after each stroke file; 0: until dry; < 0: none
+    std::vector<std::string> prepare;    ///< actions on the full brush before each stroke; see stroke::preparation_of
+    std::string pressure = "none";       ///< none | speed | dwell | speed+dwell, for strokes without pressure
+    double smooth = 0;                   ///< strength of the hand's filter; 0: off
+    double stabilise_mm = 0;             ///< length of the stabiliser's string; 0: off
+    std::filesystem::path bias;          ///< file of the writer's bias to correct, or empty
+    std::vector<double> place_mm;        ///< [3] position of flat strokes, or empty
+    std::string on;                      ///< side of the model (stroke::side_name) for flat strokes, or empty
+    std::vector<double> read_from;       ///< [3] direction towards the reader of a drawing, or empty
+    double place_width_mm = 0;           ///< width of the whole drawing; 0: as in the file
+    std::string mapping;                 ///< drape, wrap, project; empty: see place_strokes
+    double place_turn_deg = 0;           ///< anticlockwise, seen from outside the surface
+    bool place_mirror = false;           ///< mirrors the drawing from left to right
+    bool fit_brush = false;              ///< scales `brush` to the line widths of a drawing
     Surface surface;
     std::filesystem::path project, exported, preview, forces;
     View view;
     Common common;
 };
 
+/// `tuft inspect FILE`
 struct Inspect {
     std::filesystem::path file;
     std::string unit, up;            ///< empty: guess; z
-    std::vector<double> at_mm;       ///< of a project: three numbers, or empty
-    std::filesystem::path save_ink;  ///< write what lies there as an ink, or empty
-    bool palette = false;            ///< `at_mm` is a place of the palette
+    std::vector<double> at_mm;       ///< [3] point of a project, or empty
+    std::filesystem::path save_ink;  ///< ink preset to write with the mixture at that point, or empty
+    bool palette = false;            ///< `at_mm` is on the palette
     Common common;
 };
 
+/// `tuft unwrap MODEL -o OUTPUT`
 struct Unwrap {
     std::filesystem::path model, output, picture;
     Surface surface;
     Common common;
 };
 
-/// How painted work is shown, without painting it anew.
+/// Options that change how a painting is shown, not how it was painted.
 struct Recolouring {
-    std::string substrate;               ///< name or .toml; empty: as it is
+    std::string substrate;               ///< name or .toml file; empty: the project's
     std::vector<std::string> recolours;  ///< INK=NAME or INK=FILE.toml
 };
 
+/// `tuft replay PROJECT`
 struct Replay {
     std::filesystem::path project, model, out_project, exported, preview;
     std::string brush, ink;
@@ -113,11 +119,12 @@ struct Replay {
     Common common;
 };
 
+/// `tuft export PROJECT`
 struct Export {
     std::filesystem::path project, output;
     std::vector<std::string> layers;  ///< as in `View`
-    int bits = 8;                     ///< a channel of base-colour.png
-    std::string map;                  ///< of a picture; empty: by the file's name, else base-colour
+    int bits = 8;                     ///< per channel of base-colour.png, 8 or 16
+    std::string map;                  ///< to write as a picture; empty: by the file's name, else base-colour
     Recolouring recolouring;
     Common common;
 };
@@ -133,10 +140,10 @@ struct LayerWork {
 struct FillWork {
     std::filesystem::path project;
     std::string ink = "carbon", to_ink, layer, mask;
-    double film = -1, to_film = -1;                         ///< film units; < 0: what a full brush leaves of the ink
-    std::vector<double> from_mm, to_mm, part_mm, chart_mm;  ///< three numbers, or empty
+    double film = -1, to_film = -1;                         ///< film units; < 0: the film that a full brush leaves
+    std::vector<double> from_mm, to_mm, part_mm, chart_mm;  ///< [3] each, or empty
     bool round = false;
-    bool palette = false;  ///< a pool on the palette, not on the model
+    bool palette = false;  ///< pours onto the palette, not onto the model
     Common common;
 };
 
@@ -146,24 +153,26 @@ struct MaskWork {
     std::string name;
     std::vector<std::string> groups, intersect, unite;
     std::string invert;
-    std::vector<double> direction, chart_mm;  ///< three numbers, or empty
-    double within = 45, soft = 0;
-    std::string lasso;  ///< "X,Y X,Y ..." in mm as seen from `view`
+    std::vector<double> direction, chart_mm;  ///< [3] each, or empty
+    double within = 45, soft = 0;             ///< degrees, angle of the normal to `direction`, and its soft range
+    std::string lasso;                        ///< "X,Y X,Y ...", mm, as seen from `view`
     View view;
     bool through = false, remove = false;
     Common common;
 };
 
+/// `tuft render FILE -o OUTPUT`
 struct Render {
     std::filesystem::path file, output;
-    int turntable = 0;     ///< number of pictures; 0: one picture
+    int turntable = 0;     ///< number of pictures round the model; 0: one picture
     std::string unit, up;  ///< of a model file; empty: the default
-    std::string material;  ///< empty: from the project's substrate, else porcelain
+    std::string material;  ///< empty: the project's substrate, else porcelain
     Recolouring recolouring;
     View view;
     Common common;
 };
 
+/// `tuft brush NAME`
 struct Brush {
     std::string name;
     std::filesystem::path picture, sweep_depth;
@@ -180,17 +189,18 @@ struct BiasCorrection {
 
 /// `tuft ink`, `tuft ink match COLOUR`
 struct InkWork {
-    std::string colour;  ///< to be matched; empty: the inks are listed
+    std::string colour;  ///< to match; empty: lists the inks
     std::string substrate = "porcelain";
-    double film = 0;                    ///< film units; 0: as many as the colour needs
-    int parts = 4;                      ///< pigments in the mix, at most
-    std::vector<std::string> pigments;  ///< names or .toml files to choose from; empty: all shipped ones
+    double film = 0;                    ///< film units; 0: as the colour needs
+    int parts = 4;                      ///< most pigments in the mixture
+    std::vector<std::string> pigments;  ///< names or .toml files to choose from; empty: all shipped
     std::filesystem::path output;
     Common common;
 };
 
+/// `tuft bench`
 struct Bench {
-    std::filesystem::path model;  ///< empty: models made by the benchmark
+    std::filesystem::path model;  ///< empty: models that the benchmark generates
     bool quick = false;
     Surface surface{.atlas_size = 0};  ///< size 0: 4096, or 2048 when quick
     std::string isa = "best";          ///< best | avx512 | avx2 | baseline
@@ -200,9 +210,9 @@ struct Bench {
 using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, BiasCorrection, Bench, LayerWork,
                              FillWork, MaskWork, InkWork>;
 
-/// Reads the command line. Prints help or version and returns false with `status` set
-/// when there is nothing to run; a wrong command line gives one line on standard error
-/// and status 2.
+/// Parses the command line into `command`. Returns false, with the exit status in `status`, when there is nothing to
+/// run: after printing help or version (0), and after one line on standard error for a wrong command line (2). Main
+/// thread.
 bool parse_arguments(int argc, const char* const* argv, Command& command, int& status);
 
 }  // namespace tuft::cli

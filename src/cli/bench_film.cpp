@@ -84,8 +84,9 @@ double transfer_seconds(const stroke::Model& model, std::size_t tiles) {
     ink::NodeAreas areas;
     areas.fill(1e-5);
     const ink::NodeContact nodes = ink::node_contact(tuft, {}, {}, {});
-    refresh(liquid, tuft, {}, nodes, areas, 0.1);
-    const ink::TransferParams p = transfer_params(liquid, tuft, {}, areas, {}, 1e-4, 2e-3, 0.5);
+    refresh(liquid, tuft, {}, nodes, areas, {.dt = 0.1});
+    const double ds = 1e-4;
+    const ink::TransferParams p = transfer_params(liquid, tuft, {}, areas, {}, {.ds = ds, .dt = 2e-3, .stress = 0.5});
     std::array<float, atlas::kTileTexels> coverage;
     coverage.fill(0.8f);
     // As under a patch of 64 × 64 texels, and mostly between two nodes.
@@ -101,7 +102,7 @@ double transfer_seconds(const stroke::Model& model, std::size_t tiles) {
         const double start = seconds(CLOCK_THREAD_CPUTIME_ID);
         for (std::uint32_t slot = 0; slot < tiles; ++slot) {
             ink::hat_basis(hats, places, coverage);
-            ink::transfer(canvas, slot, coverage, places, hats, model.texels.tiles[slot].area, 1e-4, p, given);
+            ink::transfer(canvas, {{slot, coverage, model.texels.tiles[slot].area, ds}, places, hats}, p, given);
         }
         runs.push_back(seconds(CLOCK_THREAD_CPUTIME_ID) - start);
     }

@@ -2,10 +2,12 @@
 
 #include "cli/arguments.h"
 
+/// \file
+/// The commands of `tuft`. Called by main.cpp on the main thread.
 namespace tuft::cli {
 
-/// One function per command. Results go to standard output, notes and progress to
-/// standard error. They throw `Error` or `Cancelled`; the return value is the exit status.
+/// Runs one command and returns the exit status. Results go to standard output, notes and progress to standard error.
+/// Throws `Error` or `Cancelled`.
 int run(const Paint& arguments);
 int run(const Inspect& arguments);
 int run(const Unwrap& arguments);

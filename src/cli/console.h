@@ -5,23 +5,25 @@
 
 #include "core/system/progress.h"
 
+/// \file
+/// Signals and the terminal. Called by main.cpp and the commands on the main thread.
 namespace tuft::cli {
 
-/// From here on, interrupt, termination and hang-up signals ask all work to stop
-/// (core/system/interrupt.h). Work that has not unwound 0.7 s later, and a second signal, end the program
-/// at once; half-written files are removed. To be called once, before any other thread starts.
+/// Makes interrupt, termination and hang-up signals cancel all work (core/system/interrupt.h). The program ends at
+/// once, half-written files removed, after a second signal or 0.7 s without an end. Call it once, before any other
+/// thread starts.
 void listen_for_signals();
 
-/// The terminal: progress bars and notes on standard error. The bar is drawn only when
-/// standard error is a terminal; after a signal the callback answers "stop".
+/// Progress bars and notes on standard error. The bar is drawn only on a terminal. Main thread, except the callback of
+/// `progress`: any thread, one at a time.
 class Console {
   public:
     explicit Console(bool quiet);
     ~Console();
 
-    /// A callback for long work. It draws "phase [####    ] 43 %  12 s left".
+    /// Returns a callback for long work. It draws "phase [####    ] 43 %  12 s left" and returns false after a signal.
     ProgressFn progress();
-    /// One line for people, such as a warning; above the bar if there is one.
+    /// Writes one line for the user, such as a warning, above the bar.
     void note(const std::string& line);
     /// Removes the bar.
     void clear();

@@ -296,7 +296,7 @@ int run(const Inspect& a) {
                in_file.pages > 1 ? fmt::format("{} UDIM pages", in_file.pages) : "one page", quality.seam_length,
                quality.l2_stretch, quality.linf_stretch, 100 * quality.utilisation);
     fmt::print("     {} flipped triangles, {} without room; at {} x {} texels {} overlap, gap {}\n", quality.flips,
-               quality.roomless_triangles, kPage, kPage, quality.overlapping_texels, quality.smallest_gap);
+               quality.zero_area_triangles, kPage, kPage, quality.overlapping_texels, quality.smallest_gap);
     if (uvs.fault.empty())
         fmt::print("     --keep-uv keeps them\n");
     else

@@ -10,37 +10,42 @@
 #include "stroke/journal/journal.h"
 #include "stroke/surface/model.h"
 
-/// Where drawings and handwriting without a place of their own go.
+/// \file
+/// Placement of flat drawings on the model, for `tuft paint`. Main thread.
 namespace tuft::cli {
 
-/// Metres below the surface of a closed model from which on a ferrule is noted as inside it: facets of a fine mesh lie
-/// within the curve that they stand for by less.
+/// Depth in metres below the surface of a closed model from which a ferrule is reported as inside. Facets of a fine
+/// mesh deviate from their curve by less.
 inline constexpr double kInsideNoted = 1e-4;
-/// The same of a place: one that is read off the model to the millimetre lies within 0.87 mm of it.
+/// Returns the same depth for a placement, metres: a point read off the model to the millimetre is within 0.87 mm of
+/// it.
 inline double place_inside_noted(const Box& model) {
     return std::min(1e-3, 0.01 * model.diagonal());
 }
 
-/// Where a drawing was put.
+/// Where `place_strokes` put a drawing.
 struct PlacedDrawing {
-    Vec3 at{0}, normal{0, 0, 1};  ///< metres; unit: the surface under its middle
-    Vec2 size{0};                 ///< metres, of its ink, as the drawing has its sides
-    std::string side;             ///< stroke::side_name; empty: a point was named
-    Vec2 free{0};                 ///< metres, as seen, of the largest calm area of that side; 0: none was found
-    double part = 0;              ///< of it that the drawing takes, by the longer way
+    Vec3 at{0}, normal{0, 0, 1};  ///< metres; unit, of the surface at the drawing's centre
+    Vec2 size{0};                 ///< metres, of the ink, along the drawing's axes
+    std::string side;             ///< stroke::side_name; empty: a point was given
+    Vec2 free{0};                 ///< metres, in projection, of the side's largest free area; 0: none found
+    double part = 0;              ///< fraction of that area's length that the drawing takes, the larger of both
 };
 
-/// Puts flat strokes that have no place of their own, or all of them when a place or a side is given, onto the model:
-/// as one drawing, its middle at the point nearest to the place, else in the middle of the largest calm area of a side
-/// (stroke::find_free_area), upright unless the arguments say who reads it. Without a width given, a drawing without a
-/// place that takes more than 0.9 or less than 0.15 of that area is scaled to 0.6 of it, with a note. Scaling keeps the
-/// hand's speed; the brushes that the files name grow and shrink with the drawing. What had no place is draped;
-/// `--mapping` says how all flat strokes lie. Nothing when no stroke is flat. Throws `Error` when a side that was asked
-/// for has no such area.
+/// Places flat strokes on the model as one drawing: those without a placement, or all of them when the arguments give a
+/// point or a side.
+///
+/// Its centre is at the surface point nearest to the given point, else in the middle of the largest free area of a side
+/// (stroke::find_free_area). The drawing is upright unless the arguments give the reader's direction. Without a given
+/// width, a drawing on a free area that takes more than 0.9 or less than 0.15 of it is scaled to 0.6, with a note.
+/// Scaling retains the hand's speed and scales the brushes that the files name. Strokes without a placement are draped;
+/// `--mapping` overrides the mapping of all flat strokes.
+///
+/// Returns nothing when no stroke is flat. Throws `Error` when the given side has no free area.
 std::optional<PlacedDrawing> place_strokes(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                            const Paint& arguments, Console& console);
 
-/// Turns the view to the side the strokes are on, when they are on one side.
+/// Sets the view's direction to the side that the strokes are on; unchanged when they are on several.
 void look_at_strokes(View& view, const std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model);
 
 }  // namespace tuft::cli

@@ -263,7 +263,7 @@ int run(const Render& a) {
     std::vector<std::string> wrote;
     for (int i = 0; i < count; ++i) {
         const auto path = a.turntable > 0 ? numbered(a.output, i, count) : a.output;
-        write_picture(path, draw_picture(*model, painting.get(), a.material, a.view, i, count, console));
+        write_picture(path, draw_picture({*model, painting.get(), a.view, a.material, i, count}, console));
         wrote.push_back(path.string());
     }
     console.clear();

@@ -6,14 +6,14 @@ namespace CLI {
 class App;
 }
 
+/// \file
+/// The command line's own description, for manual pages, completions and `--version`. Called by arguments.cpp.
 namespace tuft::cli {
 
-/// The tables that the command line is parsed by, as what manual pages and completions are made
-/// from. Commands and options without a group are left out.
+/// Returns commands and options of the parser for manual pages and completions. Those without a group are left out.
 Manual manual_of(const CLI::App& app);
 
-/// What `tuft --version` prints: a line, or one JSON object with the libraries' versions and facts
-/// of the build.
+/// Returns the output of `tuft --version`: one line, or one JSON object with versions of libraries and build facts.
 std::string version_text(bool json);
 
 }  // namespace tuft::cli

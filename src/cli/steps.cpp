@@ -172,8 +172,8 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
     return strokes;
 }
 
-render::Image draw_picture(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
-                           const View& v, int frame, int count, Console& console) {
+render::Image draw_picture(const PictureRequest& request, Console& console) {
+    const auto& [model, painting, v, material, frame, count] = request;
     render::Appearance appearance;
     const ink::Substrate substrate = material.empty() && painting
                                          ? painting->appearance().substrate()
@@ -237,7 +237,8 @@ void write_outputs(const Outputs& o, const stroke::Document& painting, Console& 
                               .progress = console.progress()});
         for (const std::string& note : notes) console.note(note);
     }
-    if (!o.preview.empty()) write_picture(o.preview, draw_picture(model, &painting, "", o.view, 0, 1, console));
+    if (!o.preview.empty())
+        write_picture(o.preview, draw_picture({.model = model, .painting = &painting, .view = o.view}, console));
 }
 
 void write_picture(const fs::path& path, const render::Image& image) {
@@ -253,7 +254,7 @@ io::Project start_project(const fs::path& path, const std::string& source, const
                                    .mesh = *model.mesh,
                                    .atlas = model.atlas,
                                    .substrate = ink::substrate_toml(painting.materials().substrate())});
-    io::store_looks(project, painting);
+    io::store_recolouring(project, painting);
     put_presets(project, painting, strokes);
     return project;
 }
@@ -385,7 +386,7 @@ nlohmann::json to_json(const atlas::Atlas& a, const atlas::AtlasReport& r) {
                      {"charts", r.charts},
                      {"flips", r.flips},
                      {"overlapping_texels", r.overlapping_texels},
-                     {"roomless_triangles", r.roomless_triangles},
+                     {"roomless_triangles", r.zero_area_triangles},
                      {"l2_stretch", r.l2_stretch},
                      {"linf_stretch", r.linf_stretch},
                      {"angle_distortion", r.angle_distortion},

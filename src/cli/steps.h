@@ -13,13 +13,14 @@
 #include "render/picture/picture.h"
 #include "stroke/document/document.h"
 
-/// Steps that several commands share.
+/// \file
+/// Steps that several commands share. Main thread. All functions throw `Error` where a file cannot be read or written.
 namespace tuft::cli {
 
-/// What the arguments say of the model file, else `otherwise`.
+/// Returns unit and axes of a model file by the arguments, else `otherwise`. Throws `UsageError` for unknown names.
 FileFrame frame_of(const std::string& unit, const std::string& up, const FileFrame& otherwise = {});
 
-/// Atlas and UV options in the terms of `stroke`.
+/// Returns the atlas and UV options of `stroke` for these arguments.
 stroke::ModelOptions model_options(const Surface& surface, Console& console);
 
 /// A model and how its file was read.
@@ -28,52 +29,58 @@ struct Loaded {
     FileFrame frame;
 };
 
-/// Reads, repairs and unwraps a model file. Where neither the arguments nor the format say its
-/// unit, it is guessed from the size; a guess other than millimetres is reported.
+/// Reads, repairs and unwraps a model file. Its unit is that of the arguments or the format, else it is guessed from
+/// the size. A guess other than millimetres is reported.
 Loaded load_model(const std::filesystem::path& path, const Surface& surface, Console& console);
 
-/// The same without an atlas and without what finds points of the surface.
+/// Reads and repairs a model file, without an atlas and without surface queries.
 Loaded load_bare(const std::filesystem::path& path, const std::string& unit, const std::string& up, Console& console);
 
-/// Throws `Error` when a file could not be written there: its folder is missing or not
-/// writable. Called before long work. Empty paths are fine.
+/// Throws `Error` when a file cannot be written there because its folder is missing or not writable. Call it before
+/// long work. Empty paths are skipped.
 void check_output(const std::filesystem::path& path);
-/// Throws `UsageError` when the extension is none of `allowed` (".glb", ...).
+/// Throws `UsageError` when the extension is none of `allowed` (".glb" …).
 void check_extension(const std::filesystem::path& path, const std::vector<std::string>& allowed);
 
-/// Strokes of InkML and SVG files in order, with brush and ink filled in where the file names none; each file is a
-/// group, numbered from 1.
+/// Returns the strokes of InkML and SVG files in order. Brush and ink are filled in where the file names none. Each
+/// file is a group, numbered from 1.
 std::vector<stroke::JournalEntry> load_strokes(const Paint& arguments, Console& console);
 
-/// Has only the layers of these names seen; throws `UsageError` for a name that is not there.
+/// Makes only the layers of these names visible. Throws `UsageError` for an unknown name.
 void show_layers(stroke::Document& painting, const std::vector<std::string>& names);
 
-/// What every painting command can leave behind; empty paths are skipped.
+/// Output files of a painting command; empty paths are skipped.
 struct Outputs {
     std::filesystem::path project, exported, preview;
     View view;
     FileFrame frame;
 };
 void check_outputs(const Outputs& outputs);
-/// Exported model and preview; the project is written while painting.
+/// Writes the exported model and the preview. The project is written while painting.
 void write_outputs(const Outputs& outputs, const stroke::Document& painting, Console& console);
 
-/// Picture of a painted model, or of a bare one (canvas == nullptr).
-render::Image draw_picture(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
-                           const View& view, int turntable_frame, int turntable_count, Console& console);
+/// What to draw. The references must outlive it.
+struct PictureRequest {
+    const stroke::Model& model;
+    const stroke::Document* painting = nullptr;  ///< null: the bare model
+    const View& view;
+    std::string material = {};                     ///< of the bare surface; empty: the painting's, else porcelain
+    int turntable_frame = 0, turntable_count = 1;  ///< the view is rotated by frame / count of a revolution
+};
+/// Draws a painted or a bare model.
+render::Image draw_picture(const PictureRequest& request, Console& console);
 
 void write_picture(const std::filesystem::path& path, const render::Image& image);
 
-/// A new project with the model and the presets of these strokes; strokes are appended
-/// to it as they are finished.
-/// Throws `Error` for a brush or ink that there is none of, before any paint flows.
+/// Loads the brushes and inks of the strokes. Throws `Error` for an unknown one, before any ink flows.
 void find_presets(stroke::Document& painting, const std::vector<stroke::JournalEntry>& strokes);
-/// Stores the presets that these entries use.
+/// Stores the presets that the strokes use.
 void put_presets(io::Project& project, stroke::Document& painting, const std::vector<stroke::JournalEntry>& strokes);
+/// Creates a project with the model and the presets of the strokes. Finished strokes are appended to it later.
 io::Project start_project(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
                           stroke::Document& painting, const std::vector<stroke::JournalEntry>& strokes);
 
-/// A project with its model ready to be painted on.
+/// A project and its model, ready for painting.
 struct OpenProject {
     io::Project file;
     std::string source;
@@ -82,30 +89,30 @@ struct OpenProject {
     stroke::Model model;
 };
 bool is_project_file(const std::filesystem::path& path);
-/// How this program opens projects: another one that changes it may end within two seconds; Ctrl-C is heard.
+/// Returns the options by which this program opens projects: it waits up to two seconds for another writer and stops on
+/// Ctrl-C.
 io::OpenOptions open_options(io::Access access, Console& console);
-/// The right to write `path`, held while it lives, so that another program that has it is
-/// reported before long work, not after it; empty paths are fine.
+/// Takes the lock of the project `path`, so that another program that holds it is reported before long work. Empty
+/// paths are skipped.
 std::optional<io::ProjectLock> reserve(const std::filesystem::path& path, Console& console);
 std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, io::Access access, Console& console);
-/// Shows the painting as the project and then the command line say; notes pigments that
-/// other inks share.
+/// Shows the painting by the project's recolouring, then by the command line's. Notes pigments that other inks share.
 void apply_recolouring(const io::Project& project, stroke::Document& painting, const Recolouring& recolouring,
                        Console& console);
-/// Brings the painting to where the project stands: substrate, presets, strokes.
+/// Brings the painting to the project's last stroke: substrate, presets, strokes.
 void restore(const OpenProject& project, stroke::Document& painting, Console& console);
 
-/// Throws `Error` when `at` (metres) lies further beside the surface than a twentieth of the model: then it is another
-/// point that was meant. `option` gave it.
+/// Throws `Error` when `at` (metres) is further from the surface than 1/20 of the model's size. `option` names the
+/// option that gave the point.
 void check_on_surface(const stroke::Model& model, const Vec3& at, const char* option);
 
-/// One JSON object on standard output. Names of files that are not UTF-8 get a replacement character.
+/// Writes one JSON object to standard output. File names that are not UTF-8 get replacement characters.
 void print_json(const nlohmann::json& json);
 nlohmann::json to_json(const mesh::RepairReport& report);
 nlohmann::json to_json(const atlas::Atlas& atlas, const atlas::AtlasReport& report);
 nlohmann::json to_json(const stroke::StrokeReport& report, const stroke::JournalEntry& stroke);
 
-/// Greatest resident memory of this process so far, MiB.
+/// Returns the greatest resident memory of this process so far, MiB.
 double peak_megabytes();
 
 }  // namespace tuft::cli

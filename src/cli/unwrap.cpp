@@ -53,7 +53,7 @@ int run(const Unwrap& a) {
     fmt::print(
         "stretch L2 {:.4f}, Linf {:.2f}; seams {:.1f} x the diagonal; flips {}, overlapping texels {}, triangles "
         "without room {}\n",
-        r.l2_stretch, r.linf_stretch, r.seam_length, r.flips, r.overlapping_texels, r.roomless_triangles);
+        r.l2_stretch, r.linf_stretch, r.seam_length, r.flips, r.overlapping_texels, r.zero_area_triangles);
     fmt::print("wrote {}\n", a.output.string());
     return 0;
 }

@@ -27,7 +27,7 @@ class FullDisk {
     rlimit before_{};
 };
 
-class KeeperTest : public testing::Test {
+class AutosaveTest : public testing::Test {
   protected:
     void SetUp() override {
         std::signal(SIGXFSZ, SIG_IGN);
@@ -55,7 +55,7 @@ class KeeperTest : public testing::Test {
     std::filesystem::path folder_, path_;
 };
 
-TEST_F(KeeperTest, AFullDiskLosesNothingThatRoomCanBring) {
+TEST_F(AutosaveTest, AFullDiskLosesNothingOnceThereIsSpace) {
     paint(0);
     EXPECT_EQ(autosave_.trouble(), "");
 
@@ -72,7 +72,7 @@ TEST_F(KeeperTest, AFullDiskLosesNothingThatRoomCanBring) {
     EXPECT_EQ(io::Project::open(path_).strokes().size(), painting_.journal().entries().size());
 }
 
-TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
+TEST_F(AutosaveTest, AFailedSaveKeepsTheFormerProject) {
     EXPECT_NE(autosave_.start(folder_ / "no such folder" / "x.tuft", "sheet.ply", {}, painting_), "");
     EXPECT_EQ(autosave_.path(), path_);
     paint(0);
@@ -82,7 +82,7 @@ TEST_F(KeeperTest, AFailedSaveKeepsTheFormerProject) {
 
 // No folder can be written into when the work begins: it waits in memory, and is in its file as soon as there can be
 // one.
-TEST_F(KeeperTest, WorkThatHasNoFileYetWaitsForOne) {
+TEST_F(AutosaveTest, WorkThatHasNoFileYetWaitsForOne) {
     Autosave autosave;
     const auto file = folder_ / "later" / "work.tuft";
     const std::string fault = autosave.start(file, "sheet.ply", {}, painting_);
@@ -108,7 +108,7 @@ TEST_F(KeeperTest, WorkThatHasNoFileYetWaitsForOne) {
 }
 
 // Texels are never stored beside a journal that they do not show.
-TEST_F(KeeperTest, AChangeThatCannotBeWrittenKeepsTexelsAway) {
+TEST_F(AutosaveTest, AChangeThatCannotBeWrittenKeepsTexelsAway) {
     for (int i = 0; i < 3; ++i) paint(0.002 * i);
     const std::uint64_t gone = painting_.journal().entries().back().id;
     painting_.undo();
@@ -130,7 +130,7 @@ TEST_F(KeeperTest, AChangeThatCannotBeWrittenKeepsTexelsAway) {
 
 // A change of a stroke in the middle writes the file anew: when the disk gets full over that, the strokes of before
 // must still be in it.
-TEST_F(KeeperTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {
+TEST_F(AutosaveTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {
     for (int i = 0; i < 8; ++i) paint(0.002 * i);
     std::string fault, elsewhere;
     {
@@ -151,7 +151,7 @@ TEST_F(KeeperTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {
     EXPECT_EQ(io::Project::open(path_).strokes().size(), 9u);
 }
 
-TEST_F(KeeperTest, WhatGoesAlongWithTheWorkIsInEachOfItsFiles) {
+TEST_F(AutosaveTest, AttachmentsAreInEachOfItsFiles) {
     const io::Attachment image{"0001", R"({"name":"leaf.png"})", {'a', 'b'}}, other{"0002", "{}", {}};
     autosave_.attach(io::kReferences, image);
     autosave_.attach(io::kReferences, other);

@@ -67,15 +67,15 @@ struct Painted : stroke::Document {
     }
 
   private:
-    void take(const std::vector<HandStep>& steps) {
-        for (const HandStep& step : steps) {
-            if (step.kind == HandStep::Kind::begin) {
+    void take(const std::vector<StrokeStep>& steps) {
+        for (const StrokeStep& step : steps) {
+            if (step.kind == StrokeStep::Kind::begin) {
                 stroke::PaintStroke s;
                 s.trace.flat = false;
                 s.brush = brush_;
                 s.ink = "carbon";
                 begin(std::move(s));
-            } else if (step.kind == HandStep::Kind::end) {
+            } else if (step.kind == StrokeStep::Kind::end) {
                 end();
             } else {
                 extend(step.poses);

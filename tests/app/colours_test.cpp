@@ -31,9 +31,9 @@ ink::ColourMatch wait_for(MixFinder& finder) {
     return {};
 }
 
-TEST(MixFinder, TheNewestWishCounts) {
+TEST(MixFinder, TheNewestRequestCounts) {
     MixFinder finder;
-    for (const char* hex : {"#c03020", "#203040", "#e0c040"}) finder.want({.colour = *ink::colour_of_hex(hex)});
+    for (const char* hex : {"#c03020", "#203040", "#e0c040"}) finder.request({.colour = *ink::colour_of_hex(hex)});
     EXPECT_TRUE(finder.busy());
     EXPECT_EQ(ink::to_hex(wait_for(finder).wanted), "#e0c040");
     EXPECT_FALSE(finder.busy());
@@ -42,7 +42,7 @@ TEST(MixFinder, TheNewestWishCounts) {
 
 TEST(MixFinder, ASubstrateOfAProjectsOwnIsTakenAsPorcelain) {
     MixFinder finder;
-    finder.want({.colour = *ink::colour_of_hex("#603010"), .substrate = "of-nobody"});
+    finder.request({.colour = *ink::colour_of_hex("#603010"), .substrate = "of-nobody"});
     EXPECT_LT(wait_for(finder).delta_e, 1);
 }
 

@@ -62,16 +62,16 @@ TEST(Curve, BreaksWhereThereIsNoModel) {
         points.push_back({.position = hit->position});
     }
     const brush::Preset preset = brush::load_preset("wolf-small");
-    EXPECT_EQ(curve_poses(query, points, {.hold = stroke::holder_options(preset, query.mesh())}).size(),
+    EXPECT_EQ(curve_poses(query, points, {.holder = stroke::holder_options(preset, query.mesh())}).size(),
               2u);  // over the hole
 }
 
 /// Under a holder that leans by so many radians to the right and down.
-class LeaningCurve : public testing::TestWithParam<std::pair<double, double>> {};
-INSTANTIATE_TEST_SUITE_P(Curve, LeaningCurve,
+class TiltedCurve : public testing::TestWithParam<std::pair<double, double>> {};
+INSTANTIATE_TEST_SUITE_P(Curve, TiltedCurve,
                          testing::Values(std::pair(0.0, 0.0), std::pair(0.6, 0.0), std::pair(0.0, -0.6)));
 
-TEST_P(LeaningCurve, ItsInkLiesOnIt) {
+TEST_P(TiltedCurve, ItsInkIsOnIt) {
     const stroke::Model model = test::shipped_model("sheet.ply", 1024);
     const Vec3 c(model.mesh->bounds.centre().x, model.mesh->bounds.centre().y, model.mesh->bounds.hi.z);
     constexpr double radius = 0.03;
@@ -82,12 +82,12 @@ TEST_P(LeaningCurve, ItsInkLiesOnIt) {
     }
     stroke::Document painting(model);
     const brush::Preset preset = painting.materials().brush("wolf-medium");
-    CurveHand hand{.hold = stroke::holder_options(preset, *model.mesh),
+    CurveHand hand{.holder = stroke::holder_options(preset, *model.mesh),
                    .pressure = 0.4,
                    .tilt = {GetParam().first, GetParam().second}};
-    hand.hold.tip_lag = stroke::measure_tip_lag(preset);
+    hand.holder.tip_lag = stroke::measure_tip_lag(preset);
     stroke::TiltedTipLag leaned(preset);
-    hand.hold.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
+    hand.holder.leaned = [&leaned](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
     const auto strokes = curve_poses(*model.query, points, hand);
     ASSERT_EQ(strokes.size(), 1u);
     stroke::PaintStroke stroke;

@@ -35,7 +35,7 @@ TEST(FileList, FoldersComeFirstAndFilesInTheOrderAskedFor) {
     }
 }
 
-TEST(FileList, AFilterLooksAtNoCase) {
+TEST(FileList, AFilterIgnoresCase) {
     EXPECT_TRUE(matches_filter("Bowl-Fired.tuft", "fired"));
     EXPECT_TRUE(matches_filter("bowl.tuft", ""));
     EXPECT_FALSE(matches_filter("bowl.tuft", "vase"));

@@ -111,9 +111,9 @@ render::GlView::Frame any_frame(const stroke::Model& model, Random& random) {
     render::GlView::Frame frame{.camera = orbit.camera(kWidth, kHeight, b)};
     constexpr render::Shading shadings[] = {render::Shading::glaze, render::Shading::glaze,  render::Shading::clay,
                                             render::Shading::flat,  render::Shading::height, render::Shading::texels};
-    frame.look.options.shading = shadings[static_cast<std::size_t>(random.uniform(0, 6))];
-    if (random.uniform() < 0.3) frame.look.options.section = Vec4f(0, -1, 0, static_cast<float>(b.centre().y));
-    frame.look.light =
+    frame.appearance.options.shading = shadings[static_cast<std::size_t>(random.uniform(0, 6))];
+    if (random.uniform() < 0.3) frame.appearance.options.section = Vec4f(0, -1, 0, static_cast<float>(b.centre().y));
+    frame.appearance.light =
         render::make_light(random.uniform() < 0.5 ? render::LightRig::studio : render::LightRig::raking, frame.camera);
     frame.moving = random.uniform() < 0.1;
     return frame;

@@ -11,7 +11,7 @@
 namespace tuft::app {
 namespace {
 
-class HandOnSheet : public testing::Test {
+class PointerOnSheet : public testing::Test {
   protected:
     static void SetUpTestSuite() {
         mesh_ = new mesh::TriangleMesh(mesh::build_surface(io::read_model(source_folder() + "/models/sheet.ply")).mesh);
@@ -35,7 +35,7 @@ class HandOnSheet : public testing::Test {
         PointerInput hand(*query_, preset_, settings);
         brush::Pose last;
         for (int i = 0; i * 0.004 < seconds; ++i)
-            for (const HandStep& step : hand.move(above(-0.05 + speed * 0.004 * i, 0, 0.004 * i, pressure)))
+            for (const StrokeStep& step : hand.move(above(-0.05 + speed * 0.004 * i, 0, 0.004 * i, pressure)))
                 if (!step.poses.empty()) last = step.poses.back();
         return preset_.length - (last.position.z - mesh_->bounds.hi.z);
     }
@@ -44,7 +44,7 @@ class HandOnSheet : public testing::Test {
     static inline const brush::Preset preset_ = brush::load_preset("wolf-medium");
 };
 
-TEST_F(HandOnSheet, AFastMousePressesLessThanASlowOne) {
+TEST_F(PointerOnSheet, AFastMousePressesLessThanASlowOne) {
     PointerSettings s;
     s.dwell_effect = 0;
     const double slow = depth_at(0.005, s), fast = depth_at(0.15, s);
@@ -57,12 +57,12 @@ TEST_F(HandOnSheet, AFastMousePressesLessThanASlowOne) {
     EXPECT_NEAR(depth_at(0.15, s), s.pressure * stroke::working_depth(preset_), 1e-6);
 }
 
-TEST_F(HandOnSheet, ARestingMouseSinksIn) {
+TEST_F(PointerOnSheet, ARestingMouseSinksIn) {
     PointerSettings s;
     EXPECT_GT(depth_at(0, s, -1, 1.5), depth_at(0, s, -1, 0.3) + 1e-4);
 }
 
-TEST_F(HandOnSheet, APensPressureIsTheDepthWhateverItsSpeed) {
+TEST_F(PointerOnSheet, APensPressureIsTheDepthWhateverItsSpeed) {
     PointerSettings s;
     for (const double p : {0.2, 0.7})
         for (const double v : {0.005, 0.15}) EXPECT_NEAR(depth_at(v, s, p), p * stroke::working_depth(preset_), 1e-9);
@@ -71,11 +71,11 @@ TEST_F(HandOnSheet, APensPressureIsTheDepthWhateverItsSpeed) {
 }
 
 // Drivers leave reports out in which nothing changed.
-TEST_F(HandOnSheet, APenHeldStillWithoutReportsKeepsItsPressureUntilItsNextOne) {
+TEST_F(PointerOnSheet, APenHeldStillWithoutReportsKeepsItsPressureUntilItsNextOne) {
     PointerInput hand(*query_, preset_, {});
     std::vector<brush::Pose> poses;
     const auto move = [&](double t, double pressure) {
-        for (const HandStep& step : hand.move(above(0, 0, t, pressure)))
+        for (const StrokeStep& step : hand.move(above(0, 0, t, pressure)))
             poses.insert(poses.end(), step.poses.begin(), step.poses.end());
     };
     for (int i = 0; i <= 20; ++i) move(0.004 * i, 0.7);
@@ -92,7 +92,7 @@ TEST_F(HandOnSheet, APenHeldStillWithoutReportsKeepsItsPressureUntilItsNextOne) 
     EXPECT_NEAR(poses.back().time, 1.08, 1e-9);
 }
 
-TEST_F(HandOnSheet, TheSamePathGivesTheSameStrokeForAnyRateOfSamples) {
+TEST_F(PointerOnSheet, TheSamePathGivesTheSameStrokeForAnyRateOfSamples) {
     // The low-pass steps at 4 ms whatever the rate, so a path sampled at 4 ms and at 20 ms
     // ends within what the smoothing lags behind in one sample.
     PointerSettings s;
@@ -103,36 +103,36 @@ TEST_F(HandOnSheet, TheSamePathGivesTheSameStrokeForAnyRateOfSamples) {
         const int n = k ? 30 : 150;
         for (int i = 0; i <= n; ++i) {
             const double t = 0.6 * i / n;
-            for (const HandStep& step : hand.move(above(-0.03 + 0.1 * t, 0, t)))
+            for (const StrokeStep& step : hand.move(above(-0.03 + 0.1 * t, 0, t)))
                 if (!step.poses.empty()) end[k] = step.poses.back().position;
         }
     }
     EXPECT_LT(glm::distance(end[0], end[1]), 1e-5);
 }
 
-TEST_F(HandOnSheet, OnAStringTheBrushStaysBehindByItsLength) {
+TEST_F(PointerOnSheet, OnAStringTheBrushStaysBehindByItsLength) {
     PointerSettings s;
     s.string = 0.010;
     s.smoothing = 1e-4;
     PointerInput hand(*query_, preset_, s);
     Vec3 last(0);
     for (int i = 0; i <= 200; ++i)
-        for (const HandStep& step : hand.move(above(-0.04 + 0.0004 * i, 0, 0.004 * i)))
+        for (const StrokeStep& step : hand.move(above(-0.04 + 0.0004 * i, 0, 0.004 * i)))
             if (!step.poses.empty()) last = step.poses.back().position;
     EXPECT_NEAR(last.x, mesh_->bounds.centre().x + 0.04 - 0.010, 1e-4);
 }
 
-TEST_F(HandOnSheet, LeavingTheModelLiftsAndComingBackBegins) {
+TEST_F(PointerOnSheet, LeavingTheModelLiftsAndComingBackBegins) {
     PointerSettings s;
     PointerInput hand(*query_, preset_, s);
     int begins = 0, ends = 0;
     double t = 0;
     for (const double x : {0.0, 0.001, 10.0, 11.0, 0.002, 0.003})
-        for (const HandStep& step : hand.move(above(x, 0, t += 0.004))) {
-            begins += step.kind == HandStep::Kind::begin;
-            ends += step.kind == HandStep::Kind::end;
+        for (const StrokeStep& step : hand.move(above(x, 0, t += 0.004))) {
+            begins += step.kind == StrokeStep::Kind::begin;
+            ends += step.kind == StrokeStep::Kind::end;
         }
-    for (const HandStep& step : hand.lift()) ends += step.kind == HandStep::Kind::end;
+    for (const StrokeStep& step : hand.lift()) ends += step.kind == StrokeStep::Kind::end;
     EXPECT_EQ(begins, 2);
     EXPECT_EQ(ends, 2);
     EXPECT_TRUE(hand.lift().empty());
@@ -180,9 +180,9 @@ Crossing cross(const Slabs& slabs, const brush::Preset& preset, double slant) {
     const Vec3 down = glm::normalize(Vec3(0, std::sin(slant), -std::cos(slant))),
                up = glm::normalize(Vec3(0, std::cos(slant), std::sin(slant)));
     std::vector<brush::Pose> poses;
-    const auto take = [&](const std::vector<HandStep>& steps, bool look) {
-        for (const HandStep& step : steps) {
-            if (step.kind == HandStep::Kind::begin) ++out.strokes, poses.clear();
+    const auto take = [&](const std::vector<StrokeStep>& steps, bool look) {
+        for (const StrokeStep& step : steps) {
+            if (step.kind == StrokeStep::Kind::begin) ++out.strokes, poses.clear();
             for (const brush::Pose& pose : step.poses) {
                 if (!poses.empty()) out.step = std::max(out.step, std::abs(pose.position.x - poses.back().position.x));
                 poses.push_back(pose);
@@ -206,7 +206,7 @@ Crossing cross(const Slabs& slabs, const brush::Preset& preset, double slant) {
     return out;
 }
 
-TEST(HandOverAGap, AGapNarrowerThanTheTuftIsCrossedInOneLevelStroke) {
+TEST(PointerOverAGap, AGapNarrowerThanTheTuftIsCrossedInOneLevelStroke) {
     for (const char* name : {"wolf-medium", "goat-large"}) {
         const brush::Preset preset = brush::load_preset(name);
         for (const double floor : {0.0, 0.012})
@@ -225,13 +225,13 @@ TEST(HandOverAGap, AGapNarrowerThanTheTuftIsCrossedInOneLevelStroke) {
     }
 }
 
-TEST(HandOverAGap, AGapWiderThanTheTuftEndsTheStroke) {
+TEST(PointerOverAGap, AGapWiderThanTheTuftEndsTheStroke) {
     const brush::Preset preset = brush::load_preset("wolf-small");
     for (const double slant : {0.0, 0.7}) EXPECT_EQ(cross(Slabs(0.02, 0), preset, slant).strokes, 2);
 }
 
 // A rim with something far behind it is none.
-TEST(HandOverAGap, AnEdgeIsNoGap) {
+TEST(PointerOverAGap, AnEdgeIsNoGap) {
     const Slabs slabs(0.03, 0.013);
     const PointerInput hand(slabs.query, brush::load_preset("goat-large"), {});
     for (const double x : {-0.0155, -0.0145, -0.012, 0.0}) {
@@ -244,7 +244,7 @@ TEST(HandOverAGap, AnEdgeIsNoGap) {
     }
 }
 
-TEST_F(HandOnSheet, LeanTurnsTheHolderAboutTheTip) {
+TEST_F(PointerOnSheet, LeanTurnsTheHolderAboutTheTip) {
     PointerSettings s;
     s.tilt = {0.4, 0};
     const PointerInput hand(*query_, preset_, s);
@@ -255,7 +255,7 @@ TEST_F(HandOnSheet, LeanTurnsTheHolderAboutTheTip) {
     EXPECT_NEAR(up.y, 0, 1e-9);
 }
 
-TEST_F(HandOnSheet, ATurnOfThePenTurnsTheTuftAboutItsHolder) {
+TEST_F(PointerOnSheet, ATurnOfThePenTurnsTheTuftAboutItsHolder) {
     const PointerInput hand(*query_, preset_, {});
     Aim aim = above(0, 0, 0, 0.5);
     aim.tilt = Vec2(0.3, 0.1);

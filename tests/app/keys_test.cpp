@@ -9,26 +9,26 @@ namespace {
 
 TEST(Keys, EveryShippedChordHasANameThatIsReadBackAndNoTwoAreTheSame) {
     const KeyTable keys;
-    for (int i = 0; i < static_cast<int>(Act::count); ++i) {
-        const Chord chord = keys.chord(static_cast<Act>(i));
+    for (int i = 0; i < static_cast<int>(Action::count); ++i) {
+        const Chord chord = keys.chord(static_cast<Action>(i));
         const auto back = chord_of(name_of(chord));
-        ASSERT_TRUE(back) << title_of(static_cast<Act>(i));
+        ASSERT_TRUE(back) << title_of(static_cast<Action>(i));
         EXPECT_EQ(*back, chord);
-        EXPECT_EQ(keys.find(chord), static_cast<Act>(i));
+        EXPECT_EQ(keys.find(chord), static_cast<Action>(i));
     }
 }
 
 TEST(Keys, AKeyGivenToAnotherActionLeavesTheFirstWithout) {
     KeyTable keys;
-    EXPECT_EQ(keys.assign(Act::curve, *chord_of("B")), Act::brush);
-    EXPECT_EQ(keys.find(*chord_of("B")), Act::curve);
+    EXPECT_EQ(keys.assign(Action::curve, *chord_of("B")), Action::brush);
+    EXPECT_EQ(keys.find(*chord_of("B")), Action::curve);
     EXPECT_EQ(keys.find(*chord_of("C")), std::nullopt);
-    EXPECT_EQ(keys.chord(Act::brush).key, 0);
+    EXPECT_EQ(keys.chord(Action::brush).key, 0);
     EXPECT_FALSE(keys.shipped());
     KeyTable other;
     for (const auto& [word, chord] : keys.changes()) other.restore(word, chord);
     EXPECT_EQ(other.changes(), keys.changes());
-    EXPECT_EQ(other.find(*chord_of("B")), Act::curve);
+    EXPECT_EQ(other.find(*chord_of("B")), Action::curve);
 }
 
 TEST(Keys, NonsenseInTheSettingsChangesNothing) {

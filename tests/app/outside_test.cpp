@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr double kLongest = 60;  // seconds until something that must happen is given up; it takes one or two
 
-class OutsideTest : public testing::Test {
+class OutsideChangesTest : public testing::Test {
   protected:
     void SetUp() override {
         folder_ = fs::path(testing::TempDir()) / ("tuft_outside_" + std::to_string(getpid()));
@@ -97,7 +97,7 @@ const std::string kCopyFirst =
     "sample_count, samples "
     "FROM strokes LIMIT 1";
 
-TEST_F(OutsideTest, AChangeBesideIsSeenByItselfAndThePaintingGoesOnAfterIt) {
+TEST_F(OutsideChangesTest, AChangeIsNoticedWithoutAStrokeAndPaintingContinuesAfterIt) {
     stroke(0);
     as_old_program(kCopyFirst);
     EXPECT_TRUE(comes([&] {
@@ -111,7 +111,7 @@ TEST_F(OutsideTest, AChangeBesideIsSeenByItselfAndThePaintingGoesOnAfterIt) {
 }
 
 // No time to notice it before the stroke is to be written.
-TEST_F(OutsideTest, AStrokeThatMeetsAChangeIsPaintedAfterIt) {
+TEST_F(OutsideChangesTest, AStrokeThatMeetsAChangeIsPaintedAfterIt) {
     stroke(0);
     for (int i = 1; i <= 3; ++i) {
         as_old_program(kCopyFirst);
@@ -128,7 +128,7 @@ TEST_F(OutsideTest, AStrokeThatMeetsAChangeIsPaintedAfterIt) {
     expect_file(6, path_);
 }
 
-TEST_F(OutsideTest, AnUndoThatMeetsAChangeTakesBackWhatIsItsOwn) {
+TEST_F(OutsideChangesTest, AnUndoThatMeetsAChangeTakesBackWhatIsItsOwn) {
     stroke(0);
     stroke(0.01);
     as_old_program(kCopyFirst);
@@ -141,7 +141,7 @@ TEST_F(OutsideTest, AnUndoThatMeetsAChangeTakesBackWhatIsItsOwn) {
 }
 
 // As `tuft replay --project` of before did over an open project: with the same strokes and one more.
-TEST_F(OutsideTest, AFilePutInThePlaceOfTheProjectIsTakenIn) {
+TEST_F(OutsideChangesTest, AFilePutInThePlaceOfTheProjectIsTakenIn) {
     stroke(0);
     fs::copy_file(path_, folder_ / "other.tuft");
     SQLite::Database((folder_ / "other.tuft").string(), SQLite::OPEN_READWRITE).exec(kCopyFirst);
@@ -153,7 +153,7 @@ TEST_F(OutsideTest, AFilePutInThePlaceOfTheProjectIsTakenIn) {
     expect_file(3, path_);
 }
 
-TEST_F(OutsideTest, WhereAnotherModelIsPutInItsPlaceTheWorkGoesOnInACopy) {
+TEST_F(OutsideChangesTest, WhereAnotherModelIsPutInItsPlaceTheWorkGoesOnInACopy) {
     stroke(0);
     {
         const stroke::Model other = test::shipped_model("sphere.ply", 256);
@@ -173,7 +173,7 @@ TEST_F(OutsideTest, WhereAnotherModelIsPutInItsPlaceTheWorkGoesOnInACopy) {
 }
 
 // The folder is gone to the end: what is in memory goes where it can, and that is said.
-TEST_F(OutsideTest, AtTheEndWorkThatItsOwnFileCannotTakeIsInTheSpareOne) {
+TEST_F(OutsideChangesTest, AtTheEndWorkThatItsOwnFileCannotTakeIsInTheSpareOne) {
     stroke(0);
     fs::rename(folder_ / "place", folder_ / "elsewhere");
     stroke(0.01);
@@ -183,7 +183,7 @@ TEST_F(OutsideTest, AtTheEndWorkThatItsOwnFileCannotTakeIsInTheSpareOne) {
     expect_file(2, folder_ / "spare.tuft");
 }
 
-TEST_F(OutsideTest, AtTheEndAFolderThatCameBackIsEnough) {
+TEST_F(OutsideChangesTest, AtTheEndAFolderThatCameBackIsEnough) {
     stroke(0);
     fs::rename(folder_ / "place", folder_ / "elsewhere");
     stroke(0.01);

@@ -15,7 +15,7 @@
 namespace tuft::app {
 namespace {
 
-class PainterTest : public testing::Test {
+class PaintThreadTest : public testing::Test {
   protected:
     void SetUp() override {
         folder_ = std::filesystem::path(testing::TempDir()) / ("tuft_painter_" + std::to_string(getpid()));
@@ -100,7 +100,7 @@ class PainterTest : public testing::Test {
     std::string trouble_, busy_;
 };
 
-TEST_F(PainterTest, AStoppedChangeLeavesTexelsAndJournalTogether) {
+TEST_F(PaintThreadTest, AStoppedChangeLeavesTexelsAndJournalTogether) {
     const char* inks[] = {"carbon", "cinnabar", "indigo", "gamboge"};
     for (int i = 0; i < 4; ++i) stroke(0.001 * i, inks[i]);
     rest();
@@ -136,7 +136,7 @@ TEST_F(PainterTest, AStoppedChangeLeavesTexelsAndJournalTogether) {
     end();
 }
 
-TEST_F(PainterTest, AStrokeThatIsCalledOffLeavesWhatCanBeRedone) {
+TEST_F(PaintThreadTest, AStrokeThatIsCalledOffLeavesWhatCanBeRedone) {
     for (int i = 0; i < 3; ++i) stroke(0.001 * i);
     rest();
     painter_->post(EditStrokes{.ids = {id(2)}, .remove = true});
@@ -158,7 +158,7 @@ TEST_F(PainterTest, AStrokeThatIsCalledOffLeavesWhatCanBeRedone) {
     end();
 }
 
-TEST_F(PainterTest, AChangeOrAnUndoWhileTheHandIsDownCallsItsStrokeOff) {
+TEST_F(PaintThreadTest, AChangeOrAnUndoWhileTheHandIsDownCallsItsStrokeOff) {
     for (int i = 0; i < 2; ++i) stroke(0.001 * i);
     rest();
     const std::uint64_t first = id(0);
@@ -176,7 +176,7 @@ TEST_F(PainterTest, AChangeOrAnUndoWhileTheHandIsDownCallsItsStrokeOff) {
     end();
 }
 
-TEST_F(PainterTest, AFileLeftAfterAChangeIsNotOpenedWithFormerTexels) {
+TEST_F(PaintThreadTest, AFileLeftAfterAChangeIsNotOpenedWithFormerTexels) {
     for (int i = 0; i < 3; ++i) stroke(0.001 * i);
     painter_->post(SaveProject{folder_ / "work.tuft"});  // with its texels
     rest();
@@ -192,7 +192,7 @@ TEST_F(PainterTest, AFileLeftAfterAChangeIsNotOpenedWithFormerTexels) {
 }
 
 // Before the first new layer is shown: both are there, and what is painted on the newest is on the second.
-TEST_F(PainterTest, ALayerThatIsAskedForTwiceComesTwiceUnderTwoNames) {
+TEST_F(PaintThreadTest, ALayerThatIsAskedForTwiceComesTwiceUnderTwoNames) {
     const ChangeLayers add{stroke::add_on_top(stroke::LayerTable{}, "Layer 2")};
     painter_->post(add);
     painter_->post(add);

@@ -65,7 +65,7 @@ TEST(PenSamples, TheTurnOfAnArtPenIsAnAngle) {
     EXPECT_NEAR(events[2].turn, -180 * kDegree, 1e-12);
 }
 
-TEST(PenSamples, TheEraserEndIsToldApart) {
+TEST(PenSamples, TheEraserEndIsRecognised) {
     PenSamples pen;
     pen.set_devices(tablet());
     pen.take({.device = 12, .time = 1, .axes = {0, 1, 2}, .values = {0, 0, 100}}, kScreen, 1);
@@ -179,7 +179,7 @@ TEST(PenSamples, OfAThousandReportsASecondNoneIsLostOnItsWayToTheBrush) {
             const Aim aim{.ray = {mesh.bounds.centre() + Vec3(1e-4 * (e.x - 500), 0, 0.5), {0, 0, -1}},
                           .time = e.time,
                           .pressure = e.pressure};
-            for (const HandStep& step : hand.move(aim))
+            for (const StrokeStep& step : hand.move(aim))
                 for (const brush::Pose& pose : step.poses)
                     depths.push_back(preset.length - (pose.position.z - mesh.bounds.hi.z));
         }

@@ -44,7 +44,7 @@ class SpaceMouseTest : public testing::Test {
     std::atomic<int> woken_{0};
 };
 
-TEST_F(SpaceMouseTest, TheWayOfTheCapIsItsDeflectionTimesTheTimeItStands) {
+TEST_F(SpaceMouseTest, TheDisplacementOfTheCapIsItsDeflectionTimesItsDuration) {
     SpaceDaemon daemon(path_);
     const auto mouse = open_space_mouse([this] { ++woken_; }, 0.02);
     if (!mouse) GTEST_SKIP() << "built without libspnav: no SpaceMouse is tested";

@@ -70,7 +70,7 @@ TEST_F(Panels, WhatIsFoldedStaysFolded) {
     EXPECT_FALSE(found.contains("Undo"));
 }
 
-TEST_F(Panels, AFoldedPanelLeavesItsRoomToTheModel) {
+TEST_F(Panels, AHiddenPanelGivesItsSpaceToTheModel) {
     // The handle of the journal is at the view's right edge.
     const Ran ran =
         studio(kBowl + "wait 0.1\nplaces\nclick \"Fold the journal\"\nclick \"Fold the tools\"\nwait 0.2\nplaces\n",

@@ -181,7 +181,7 @@ TEST_F(StudioProgram, ALineFollowsItsControlPointsAndIsUndoneAsOne) {
     EXPECT_EQ(tuft("replay '" + path("after.tuft") + "'")["canvas_hash"], test::stored_hash(path("after.tuft")));
 }
 
-TEST_F(StudioProgram, LinesAndCurvesArePaintedWithAllThatIsChosenForTheHand) {
+TEST_F(StudioProgram, LinesAndCurvesArePaintedWithTheChosenSettings) {
     const std::string half =
         "set elevation 10\nset zoom 4\nset tool mask\nset mask-kind angle\nset mask-within 90\nmove "
         "50%,58%\npress\nrelease\nwait-ready\nwait 0.1\n";
@@ -245,7 +245,7 @@ TEST_F(StudioProgram, AStrokeMovedInTheMiddleReplaysToTheSameTexels) {
     EXPECT_EQ(tuft("replay '" + path("work.tuft") + "'")["canvas_hash"], test::stored_hash(path("work.tuft")));
 }
 
-TEST_F(StudioProgram, ARevisedModelCarriesTheStrokesAndNamesThoseThatDoNotFit) {
+TEST_F(StudioProgram, ARevisedModelGetsTheStrokesAndNamesThoseThatDoNotFit) {
     const Ran ran = studio(kBowl + kTwoStrokes + "save work.tuft\nwait-ready\nrevise " + source_folder() +
                            "/models/torus.ply\nwait-ready\nset texels 512\n"
                            "click \"Unwrap and repaint\"\nwait-ready\nexpect model\nexpect strokes 2\nwait 0.2\nnames\n"

@@ -147,7 +147,7 @@ TEST_F(Views, AStrokeInAnInkOfOnesOwnComesBackAfterItWasTheOnlyOne) {
     EXPECT_EQ(ran.status, 0) << ran.err;
 }
 
-TEST_F(Views, TheGuideGoesOnAsThingsAreDoneAndCanBeSkipped) {
+TEST_F(Views, TheGuideAdvancesWithEachActionAndCanBeSkipped) {
     const Ran ran = studio(kBowl + "wait 0.2\nnames\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     EXPECT_EQ(ran.out.find("Skip the guide"), std::string::npos) << "it comes over no script";
@@ -178,7 +178,7 @@ TEST_F(Views, TheManualIsInTheHelpMenu) {
 
 TEST(Manual, EveryPageIsThereInBothLanguagesWithTheKeysThatAreSet) {
     KeyTable keys;
-    keys.assign(Act::undo, *chord_of("Ctrl+U"));
+    keys.assign(Action::undo, *chord_of("Ctrl+U"));
     EXPECT_GE(manual_pages().size(), 8u);
     for (const ManualPage& page : manual_pages())
         for (const Language language : {Language::english, Language::chinese}) {

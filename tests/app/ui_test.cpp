@@ -162,7 +162,7 @@ TEST(ChineseFont, IsFoundByItsNameTheBestOneFirst) {
 }
 
 // However the model moved: a size may be 0.04, 25 or 1e-05, and a shift negative.
-TEST(UiText, ARevisedModelThatMovedIsSaidInChinese) {
+TEST(UiText, ARevisedModelThatMovedIsReportedInChinese) {
     const auto chinese = [](const stroke::ModelMotion& motion) {
         return chinese_sentence("The revised model is the former one " + stroke::describe(motion) + ".");
     };

@@ -156,7 +156,7 @@ std::string refusal(const TriangleMesh& m, std::uint32_t size = 256) {
 void expect_sound(const Unwrapped& u) {
     EXPECT_EQ(u.report.flips, 0u);
     EXPECT_EQ(u.report.overlapping_texels, 0u);
-    EXPECT_EQ(u.report.roomless_triangles, 0u);
+    EXPECT_EQ(u.report.zero_area_triangles, 0u);
 }
 
 // 2 to 7 pages: squares of 2 x 2 pages, which floats divide exactly, and of 3 x 3, which they

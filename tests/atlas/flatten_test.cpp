@@ -108,7 +108,7 @@ TEST(CarryUvs, IsExactBetweenChartsOfADevelopableSurface) {
 // SurfaceMapping a part anew leaves all corners outside it where they are to the bit, and pulls those inside back
 // to where a developable surface has no stretch: the energy's only minimum there, so that what is left
 // is where the iteration stops. 1e-5 of a facet's size 0.033, from 0.3 of it.
-TEST(Arap, LaysAPartAnew) {
+TEST(Arap, RefinesOnlyTheGivenFaces) {
     const double turn = 2.0;
     const mesh::TriangleMesh m = cylinder_part(turn);
     std::vector<std::uint32_t> all(m.n_triangles()), part;
@@ -130,7 +130,7 @@ TEST(Arap, LaysAPartAnew) {
         if (!outside[v])
             uv[v] += 0.01 * Vec2(std::sin(12.0 * double(inside)), std::cos(7.0 * double(inside))), ++inside;
     ASSERT_GT(inside, 50u);
-    arap(truth.mesh, uv, {.iterations = 2000, .tolerance = 1e-12, .enough = 1e-20}, part);
+    arap(truth.mesh, uv, {.iterations = 2000, .tolerance = 1e-12, .converged_energy = 1e-20}, part);
     for (std::size_t v = 0; v < uv.size(); ++v) {
         if (outside[v])
             EXPECT_EQ(uv[v], truth.uv[v]);

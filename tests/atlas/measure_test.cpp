@@ -61,7 +61,7 @@ TEST(Measure, CubeOfSixSquares) {
     EXPECT_NEAR(r.area_distortion, 1, 1e-9);
     EXPECT_DOUBLE_EQ(r.utilisation, 6 * 256.0 * 256 / 1024 / 1024);
     EXPECT_EQ(r.smallest_gap, 64);
-    EXPECT_EQ(r.flips + r.overlapping_texels + r.roomless_triangles, 0u);
+    EXPECT_EQ(r.flips + r.overlapping_texels + r.zero_area_triangles, 0u);
 }
 
 TEST(Measure, SquareSquashedToHalfItsHeight) {
@@ -106,15 +106,15 @@ TEST(Measure, GapsAreRoundedDown) {
     EXPECT_EQ(gap(70, 0), 64);
 }
 
-TEST(Measure, FlipsAndTrianglesWithoutRoom) {
+TEST(Measure, FlipsAndTrianglesWithoutArea) {
     const mesh::TriangleMesh two = quads(kTwoSquares, {{0, 1, 2, 3}, {4, 5, 6, 7}});
     Atlas atlas = rectangles({{0, 0, 0.25f, 0.25f}, {0.5f, 0.5f, 0.75f, 0.75f}}, 64);
     std::swap(atlas.corner_uvs[1], atlas.corner_uvs[2]);
     atlas.corner_uvs[5] = atlas.corner_uvs[4];
     EXPECT_EQ(measure(two, atlas).flips, 1u);
-    EXPECT_EQ(measure(two, atlas).roomless_triangles, 1u);
+    EXPECT_EQ(measure(two, atlas).zero_area_triangles, 1u);
     atlas.corner_uvs[5] = Vec2f(NAN);
-    EXPECT_EQ(measure(two, atlas).roomless_triangles, 1u);
+    EXPECT_EQ(measure(two, atlas).zero_area_triangles, 1u);
 }
 
 // What is not finite counts as having no room; the rest is measured as if it were alone.
@@ -127,7 +127,7 @@ TEST(Measure, UvsThatAreNotNumbersAreLeftOut) {
         Atlas atlas = rectangles({{0, 0, 0.25f, 0.25f}, {0.2578125f, 0, 0.5f, 0.25f}, {0.75f, 0.75f, 1, 1}}, 1024);
         for (const std::size_t corner : {12u, 16u}) atlas.corner_uvs[corner].x = bad;
         const AtlasReport r = measure(three, atlas);
-        EXPECT_EQ(r.roomless_triangles, 2u);
+        EXPECT_EQ(r.zero_area_triangles, 2u);
         EXPECT_EQ(r.flips + r.overlapping_texels, 0u);
         EXPECT_EQ(r.smallest_gap, 8);
         EXPECT_DOUBLE_EQ(r.utilisation, (256.0 * 256 + 248 * 256) / 1024 / 1024);

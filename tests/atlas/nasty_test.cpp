@@ -18,7 +18,7 @@ void expect_atlas(const mesh::TriangleMesh& mesh) {
     ASSERT_EQ(u.atlas.corner_uvs.size(), 3 * mesh.n_triangles());
     EXPECT_EQ(u.report.flips, 0u);
     EXPECT_EQ(u.report.overlapping_texels, 0u);
-    EXPECT_EQ(u.report.roomless_triangles, 0u);
+    EXPECT_EQ(u.report.zero_area_triangles, 0u);
     EXPECT_GE(u.report.smallest_gap, 4);
     EXPECT_GT(u.report.utilisation, 0);
     EXPECT_TRUE(u.atlas.texel_size > 0 && std::isfinite(u.atlas.texel_size));

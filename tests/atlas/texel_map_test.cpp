@@ -227,7 +227,7 @@ TEST(LogMap, MatchesTheReferenceTable) {
     EXPECT_LT(worst_torus, 5e-3);  // third order: measured .0021 oblique at r/R = .5
 }
 
-TEST(ClusterGraph, EdgesComeInInversePairsAndPiecesCoverEveryTexelOnce) {
+TEST(ClusterGraph, EdgesComeInInversePairsAndClustersCoverEveryTexelOnce) {
     const Unwrapped u = testing::sphere(0.02, 100);
     const TexelMap map = build_texel_map(u.mesh, u.atlas);
     const ClusterGraph g = build_cluster_graph(u.mesh, u.atlas, map);

@@ -34,7 +34,7 @@ TriangleMesh scaled(TriangleMesh m, float factor) {
 void expect_sound(const TriangleMesh& m, const Unwrapped& u) {
     EXPECT_EQ(u.report.flips, 0u);
     EXPECT_EQ(u.report.overlapping_texels, 0u);
-    EXPECT_EQ(u.report.roomless_triangles, 0u);
+    EXPECT_EQ(u.report.zero_area_triangles, 0u);
     EXPECT_GE(u.report.smallest_gap, static_cast<int>(u.atlas.gutter));
     ASSERT_EQ(u.atlas.corner_uvs.size(), 3 * m.n_triangles());
     ASSERT_EQ(u.atlas.triangle_chart.size(), m.n_triangles());
@@ -162,7 +162,7 @@ void expect_parted(const TriangleMesh& m, const Atlas& atlas, Asked&& asked) {
     EXPECT_GT(edges, 0u);
 }
 
-TEST(Unwrap, SeamsFollowSharpEdgesWhereAsked) {
+TEST(Unwrap, SeamsFollowSharpEdgesOnRequest) {
     const TriangleMesh cube = box(8);
     const TriangleMesh roof = test::grid_mesh(20, 20, false, false, [](double u, double v) {
         return Vec3(u, v, -0.25 * std::abs(u - 0.5));  // bent by 28° along its ridge
@@ -184,7 +184,7 @@ TEST(Unwrap, SeamsFollowSharpEdgesWhereAsked) {
     EXPECT_EQ(unwrap(roof, options).report.charts, 1u);
 }
 
-TEST(Unwrap, SeamsFollowFaceGroupsWhereAsked) {
+TEST(Unwrap, SeamsFollowFaceGroupsOnRequest) {
     const std::string text = [] {
         std::string obj;
         for (int j = 0; j <= 20; ++j)
@@ -220,7 +220,7 @@ TEST(Unwrap, SeamsFollowFaceGroupsWhereAsked) {
 }
 
 // The car has creases that end in smooth metal: slits, which must not become annuli.
-TEST(Unwrap, AskedSeamsKeepTheInvariantsOfARealModel) {
+TEST(Unwrap, RequestedSeamsKeepTheInvariantsOfARealModel) {
     const TriangleMesh m = model("car.ply");
     UnwrapOptions options;
     options.size = 1024;

@@ -305,7 +305,7 @@ TEST(RodLaws, ThePotentialNeverRisesFromStepToStep) {
     EXPECT_GT(steps, 200);
 }
 
-TEST(RodLaws, EndsThatMeetTheSurfaceEndOnGiveAsTheySay) {
+TEST(RodLaws, EndsThatMeetTheSurfaceEndOnHaveTheirCompliance) {
     // A straight stiff rod pushed down upright: the force follows k_e s²/2, k_e = 2 P/s_e², and
     // reaches the buckling load P at s_e, less where the give fades behind the tip.
     Rod rod = make_rod({0, 0}, 16, 0.3);

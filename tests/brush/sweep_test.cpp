@@ -117,7 +117,7 @@ TEST(Calibrate, FindsTheMeasuredBrushFromAnother) {
     EXPECT_LT(fit.rms.offset, 1.25 * 0.7e-3);
 }
 
-TEST(Calibrate, HoldsForDepthsThatWereHeldBack) {
+TEST(Calibrate, HoldsForDepthsOutsideTheFit) {
     // Fitted on 0, 4, 8 and 12 mm only; the lines of 2, 6 and 10 mm must come out right.
     const std::string path = test_data() + "/brush/brush_robot2020_even.csv";
     std::vector<SweepRow> fitted, held;
@@ -157,7 +157,7 @@ double least_miss_without_inflection(const std::vector<SweepRow>& rows) {
     return std::sqrt((std::min(down, up) + a.scatter + b.scatter + c.scatter) / rows.size());
 }
 
-TEST(Calibrate, HeldBackTheOtherWayItMissesNoMoreThanTheTableContradictsItself) {
+TEST(Calibrate, CrossValidationErrorIsWithinTheScatterOfTheTable) {
     // Fitted on 2, 6 and 10 mm. The contact lengths measured at 4, 8 and 12 mm (4.5, 6.0, 10.0 mm) lie
     // on no curve without an inflection: even one that knew these rows would miss them by 0.77 mm,
     // more than the 1.25 x 0.5 mm of one that agrees with itself. To that comes what a law of two parameters fitted to

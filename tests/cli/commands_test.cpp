@@ -28,7 +28,7 @@ TEST_F(Commands, PaintLeavesProjectModelAndPicture) {
     EXPECT_TRUE(ran.err.empty()) << ran.err;  // no progress where there is no terminal
 }
 
-TEST_F(Commands, OneOfAThingIsNamedAsOne) {
+TEST_F(Commands, CountsOfOneAreSingular) {
     write("s.inkml", stroke_file());
     const Ran unwrapped = tuft("unwrap " + model("sheet.ply") + " -o " + path("m.obj") + " --atlas-size 256");
     const Ran painted = tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") +
@@ -73,7 +73,7 @@ TEST_F(Commands, ReplayTakesAnotherSizeInkAndModel) {
     EXPECT_EQ(json::parse(revised.out)["missed"], 0);
 }
 
-TEST_F(Commands, InkLiesOnTheColoursTheModelBringsAlongUnlessItIsPlain) {
+TEST_F(Commands, InkIsOverTheModelsOwnColoursUnlessPlain) {
     const std::string faces = "3 0 1 2\n3 0 2 3\n";
     const auto ply = [&](const std::string& properties, const std::string& colour) {
         std::string text =
@@ -171,7 +171,7 @@ TEST_F(Commands, RecolouringChangesColoursButNoAmount) {
     EXPECT_EQ(tuft("export " + path("p.tuft") + " -o " + path("c.png") + " --recolour carbon").status, 2);
 }
 
-TEST_F(Commands, UnwrapTellsItsFigures) {
+TEST_F(Commands, UnwrapReportsItsFigures) {
     const Ran ran = tuft("unwrap " + model("torus.ply") + " -o " + path("t.obj") + " --atlas-size 1024 --picture " +
                          path("t.png") + " --json");
     ASSERT_EQ(ran.status, 0) << ran.err;
@@ -219,7 +219,7 @@ TEST_F(Commands, BrushComparesItsSpineMethodsWithAMeasuredBrush) {
     EXPECT_NE(text.out.find("rms difference"), std::string::npos);
 }
 
-TEST_F(Commands, ABrushIsCarriedOnAndReplaysTheSame) {
+TEST_F(Commands, APersistentBrushReplaysTheSame) {
     // Three strokes beside each other; before the third the brush is dipped into another ink.
     std::string ink = stroke_file();
     const std::size_t at = ink.find("<trace>"), end = ink.find("</trace>") + 8;
@@ -286,7 +286,7 @@ TEST_F(Commands, AHandWithoutPressureGetsItWhenAsked) {
     EXPECT_EQ(tuft("paint a.ply --strokes b.inkml --stabilise -1").status, 2);
 }
 
-TEST_F(Commands, AHabitIsLearnedAndTakenBack) {
+TEST_F(Commands, AWritersBiasIsLearnedAndCorrected) {
     write("meant.inkml", plain_pen(0, true, 0.5));
     write("written.inkml", plain_pen(-0.3, true, 0.4));
     const Ran learned =
@@ -342,7 +342,7 @@ TEST_F(Commands, ForcesAreATableOfNumbers) {
     EXPECT_EQ(std::count(fine.begin(), fine.end(), '\n'), rows + 1);
 }
 
-TEST_F(Commands, WhatIsPlacedInsideASolidIsSaid) {
+TEST_F(Commands, APlacementInsideASolidIsReported) {
     const std::string head = "<ink xmlns='http://www.w3.org/2003/InkML'>",
                       channels =
                           "<channel name='X' type='decimal' units='mm'/><channel name='Y' type='decimal' units='mm'/>";
@@ -462,7 +462,7 @@ TEST_F(Commands, InspectMeasuresUvsOfAModelAsUnwrapDoes) {
     EXPECT_TRUE(json::parse(far.out)["uv_fault"].is_string()) << far.out;
 }
 
-TEST_F(Commands, InspectSaysWhatSoundUvsCannotDoWell) {
+TEST_F(Commands, InspectReportsWeaknessesOfValidUvs) {
     // Three squares of 10 mm: the second has a quarter of the first one's texels along a side and lies
     // 1.5 texels of 2048 beside it, the third, of 0.01 mm, has two texels.
     const auto square = [](double x, double side, double u, double v, double width, int first) {

@@ -118,7 +118,7 @@ TEST_F(Place, TheWidthAskedForIsThatOfTheInk) {
         EXPECT_NEAR(own.size(axis), asked.size(axis), 1e-6) << "the scale is 1 but for rounding";
 }
 
-TEST_F(Place, ADrawingFarLargerThanTheModelIsTold) {
+TEST_F(Place, ADrawingFarLargerThanTheModelIsReported) {
     write("box.obj", box(false));  // 108 mm across
     write("lines.inkml", lines(0, 0, 10));
     for (const auto& [width, told] : {std::pair{"300", false}, {"400", true}}) {
@@ -153,7 +153,7 @@ TEST_F(Place, WhatLiesFlatIsWrittenOnFromAbove) {
     EXPECT_GT(painted("lines.inkml", "").low[2], 2) << "over the top";
 }
 
-TEST_F(Place, WhatLiesOnASlopeIsShownTheWayItReads) {
+TEST_F(Place, ADrawingOnASlopeIsShownUpright) {
     // The lid falls by 18 degrees to the back; the drawing stands upright seen from the front.
     write("lid.obj",
           "v -40 -30 0\nv 40 -30 0\nv 40 30 0\nv -40 30 0\nv -40 -30 40\nv 40 -30 40\nv 40 30 20\nv -40 30 20\n"
@@ -326,7 +326,7 @@ TEST_F(Place, ADrawingGoesToTheSideThatIsNamedAndSaysWhatWasChosen) {
               2);
 }
 
-TEST_F(Place, WhoReadsItSaysWhichWayUpItIs) {
+TEST_F(Place, TheReadersDirectionSaysWhichWayUpItIs) {
     write("box.obj", box(false));
     write("lines.inkml", lines(0, 0, 30));
     // Up to the lead of the hand, as in the tests above.

@@ -102,7 +102,7 @@ TEST(Contact, TurnedAndMovedSheetTurnsAndMovesEverything) {
     }
 }
 
-TEST(Contact, ThinPlateIsMetFromTheSideOfTheFerrule) {
+TEST(Contact, ThinPlateHasContactOnTheSideOfTheFerrule) {
     // 1 mm thick, pressed 12 mm deep at once and little by little, from above and from below.
     const mesh::TriangleMesh m = shapes::plate({0.08, 0.08, 0.0005});
     const mesh::SurfaceQuery surface(m);
@@ -139,7 +139,7 @@ TEST(Contact, FerrulePushedThroughAPlateKeepsItsSide) {
     EXPECT_FALSE(hand.move({0, 0, 0.01}).tuft.touching);
 }
 
-TEST(Contact, OpenSheetIsMetFromEitherSide) {
+TEST(Contact, OpenSheetHasContactFromEitherSide) {
     const mesh::TriangleMesh m = shapes::sheet();  // normals +z, no thickness
     const mesh::SurfaceQuery surface(m);
     Hand hand(surface);
@@ -324,7 +324,7 @@ TEST(Contact, ALedgeBesideTheTuftPushesIt) {
     EXPECT_LT(nearer.force.x, free.force.x - 1e-4);
 }
 
-TEST(Contact, HoverFeelsTheSurfaceWithinTheTolerance) {
+TEST(Contact, HoverHasAForceWithinTheTolerance) {
     const mesh::TriangleMesh m = shapes::sheet();
     const mesh::SurfaceQuery surface(m);
     Hand hand(surface);
@@ -350,7 +350,7 @@ TEST(Contact, HoverFeelsTheSurfaceWithinTheTolerance) {
     }
 }
 
-TEST(Contact, HandForceIsClamped) {
+TEST(Contact, DeviceForceIsClamped) {
     const mesh::TriangleMesh m = shapes::sheet();
     const mesh::SurfaceQuery surface(m);
     Hand hand(surface);
@@ -380,7 +380,7 @@ TEST(Contact, VertexMethodGivesThePlaneOfTheSheetAndTheSphereOfTheTuft) {
     }
 }
 
-TEST(Contact, AnyPoseIsFiniteAndLeavesTheTuftFit) {
+TEST(Contact, AnyPoseIsFiniteAndLeavesTheTuftUsable) {
     const mesh::TriangleMesh bowl = shapes::bowl(0.06, 40);
     const mesh::TriangleMesh plate = shapes::plate({0.05, 0.04, 0.001}, 20);
     const mesh::TriangleMesh roof = shapes::roof(1.2, 0.1, 20);
@@ -462,7 +462,7 @@ TEST(Contact, AFerruleThatWouldEnterTheObjectIsHeldOnItsSurface) {
     }
 }
 
-TEST(Contact, DepthInsideTellsClosedBodiesOnly) {
+TEST(Contact, DepthInsideIsOfClosedBodiesOnly) {
     const mesh::TriangleMesh block = shapes::plate({0.1, 0.1, 0.05}), sheet = shapes::sheet(),
                              bowl = shapes::bowl(0.05);
     const mesh::SurfaceQuery in_block(block), on_sheet(sheet), in_bowl(bowl);

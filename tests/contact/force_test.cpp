@@ -303,7 +303,7 @@ Recording light_stroke(const mesh::SurfaceQuery& surface, const std::string& bru
     return curve;
 }
 
-TEST(Force, NoTouchSlipOrLiftKnocks) {
+TEST(Force, NoContactSlipOrLiftIsAbrupt) {
     // A wet tip is drawn to the paper when it first touches (18 % of the goat's whole force in a millisecond), a
     // leaning one slips (up to two thirds of a small force): the hand feels neither as a knock.
     const mesh::TriangleMesh sheet = shapes::sheet(0.2, 60);

@@ -107,7 +107,7 @@ std::vector<double> distance_errors(Model& model, double texels, int stamps, dou
 }
 
 // Both are exact: positions are in single precision, sums along a way in double. Origins lie a nanometre off.
-TEST(Geodesics, WaysOverTheTrianglesAreAsLongAsCgals) {
+TEST(Geodesics, PathsAreAsLongAsCgals) {
     for (const char* name : {"car", "bowl"}) {
         const auto path = source_folder() + "/models/" + name + ".ply";
         const mesh::TriangleMesh m = mesh::build_surface(mesh::read_polygon_file(path), {}).mesh;

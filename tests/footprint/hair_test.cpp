@@ -167,7 +167,7 @@ TEST(Hair, MirroredHairDrawsTheMirroredPicture) {
     EXPECT_NEAR(moment(a), -moment(b), 2e-3 * sum * pressed().tuft.preset.radius);
 }
 
-TEST(Hair, PartedBundlesLeaveGapsBetweenThem) {
+TEST(Hair, SeparatedBundlesLeaveGapsBetweenThem) {
     double together_area = 0, parted_area = 0;
     for (const std::uint64_t seed : {11, 12, 13, 14}) {
         SCOPED_TRACE(seed);
@@ -208,7 +208,7 @@ TEST(Hair, DriesIntoThreadsOfItsOwnWidth) {
     EXPECT_EQ(area_of(marks(one, 0.3)), 0);
 }
 
-TEST(Hair, DrawnSidewaysHasInkForNoWiderAWay) {
+TEST(Hair, DrawnSidewaysHasInkForNoWiderAPath) {
     // The tuft lies along x: drawn along y its bristles would paint with their whole length.
     const Pressed& p = pressed();
     const std::vector<double> wet(p.tuft.bundles.place.size(), 0.5);
@@ -220,7 +220,7 @@ TEST(Hair, DrawnSidewaysHasInkForNoWiderAWay) {
     EXPECT_GT(area({0, 1}), 0);
 }
 
-TEST(Hair, SidewaysByItselfHasInkForNoWiderAWay) {
+TEST(Hair, MovingSidewaysByItselfHasInkForNoWiderAPath) {
     // The hand stands; hair that goes aside, or spreads, or turns about a point, leaves no more than lying hair of its
     // width drawn that way, and hair that goes along itself leaves what a drag does.
     const Pressed& p = pressed();
@@ -267,7 +267,7 @@ TEST(Hair, SweptAsideByAPressDrawsNoLine) {
     EXPECT_NEAR(area(0.5, 1, follows, 0.3), area(0.5, 0, follows), 0.02 * area(0.5, 0, follows));
 }
 
-TEST(Hair, CarriedTrailsLieWhereTheyLay) {
+TEST(Hair, TransportedTrailsKeepTheirPositions) {
     std::vector<Trail> trails = pressed().trails;
     Frame other;
     other.origin = {1e-3, -2e-3, 0};
@@ -324,7 +324,7 @@ TEST(Hair, FollowsInItsTrack) {
     }
 }
 
-TEST(Hair, ComesWithTheTuftThatLiftsIt) {
+TEST(Hair, LeavesTheSurfaceWithTheLiftedTuft) {
     // Drawn on, splayed hair is as wide at its ends as the belly; of a tuft whose last millimetres lie it fans out by
     // 0.35 of what lies to either side at most, until it leaves with the tip.
     const Pressed& p = pressed();

@@ -114,7 +114,7 @@ TEST(Stamp, HairDrawnSidewaysInksAllThatItPassesOver) {
                     f.coverage[static_cast<std::size_t>(j) * f.width + i] =
                         end < 20 ? static_cast<std::uint8_t>(255 * std::clamp(1.5 - off, 0.0, 1.0)) : 0;
                 }
-            const StampJobs jobs = stage.plan(f, {way * texel * on, 0}, {.passes_over = 1});
+            const StampJobs jobs = stage.plan(f, {way * texel * on, 0}, {.max_weight = 1});
             ASSERT_EQ(jobs.sub_poses.size(), 1u);
             double inside = 1, outside = 0;
             for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float e) {
@@ -128,7 +128,7 @@ TEST(Stamp, HairDrawnSidewaysInksAllThatItPassesOver) {
             // Half of it: half of what lies over the mean that any closed picture leaves.
             const auto exposed = [&](float part) {
                 std::map<std::pair<std::uint32_t, int>, float> by_texel;
-                const StampJobs some = stage.plan(f, {way * texel * on, 0}, {.passes_over = part});
+                const StampJobs some = stage.plan(f, {way * texel * on, 0}, {.max_weight = part});
                 for_exposed(stage, some, [&](std::uint32_t slot, int t, float e) { by_texel[{slot, t}] = e; });
                 return by_texel;
             };
@@ -234,7 +234,7 @@ TEST(Stamp, SixteenBitTexelsAreExposedAsFloatOnes) {
     EXPECT_LT(std::abs(difference) / total, 1e-5);
 }
 
-TEST(Stamp, QuartersCalledFullOrEmptyAreSoToTheBit) {
+TEST(Stamp, FullAndEmptyQuadrantsAreExact) {
     Stage stage(testing::sphere(0.02, 300));
     Random random(3);
     std::size_t full = 0, empty = 0;

@@ -137,8 +137,8 @@ void run_substrate(Input input) {
 
 void run_habit(Input input) {
     refusing([&] {
-        const stroke::BiasCorrection habit = stroke::parse_bias(text_of(input), "input.toml");
-        stroke::parse_bias(stroke::bias_toml(habit), "again.toml");
+        const stroke::BiasCorrection bias = stroke::parse_bias(text_of(input), "input.toml");
+        stroke::parse_bias(stroke::bias_toml(bias), "again.toml");
     });
 }
 

@@ -62,7 +62,7 @@ int main() {
         p.deposit = {
             .target = 1.8f + static_cast<float>(round % 3), .capacity = 6, .extinction = round % 4 < 2 ? 0.0f : 0.7f};
         p.uptake = 0.4f * chance(round, 1);
-        p.room = round % 5 ? 2.0f : 0.0f;
+        p.free_capacity = round % 5 ? 2.0f : 0.0f;
         p.pour = round % 6 ? 0.0f : 0.5f;
         NodeMixes mixes{};
         FurrowDepths furrows;
@@ -75,13 +75,14 @@ int main() {
         }
         NodeContents given{}, taken{};
         for (int touch = 0; touch < 3; ++touch) {
-            transfer(tile.canvas, 0, tile.coverage, tile.places, tile.hats, tile.area, 4e-5, p, given);
+            transfer(tile.canvas, {{0, tile.coverage, tile.area, 4e-5}, tile.places, tile.hats}, p, given);
             p.deposit.mix = {0.2f, 0.1f, 0.05f};
             add(deposit(tile.canvas, 0, tile.coverage, tile.area, 3e-5, p.deposit));
-            deposit_mixed(tile.canvas, 0, tile.coverage, tile.hats, tile.area, 3e-5, p.deposit, mixes, given);
+            deposit_mixed(tile.canvas, {0, tile.coverage, tile.area, 3e-5}, tile.hats, p.deposit, mixes, given);
             const Plane before = open_pigment(tile.canvas, 0);
-            lay_paste(tile.canvas, 0, tile.coverage, tile.places, tile.hats, tile.area, 5e-5,
-                      {.target = 12, .exchange = 0.2, .room = 3, .furrows = furrows}, mixes, before, given, taken);
+            deposit_paste(tile.canvas, {{0, tile.coverage, tile.area, 5e-5}, tile.places, tile.hats},
+                          {.target = 12, .exchange = 0.2, .free_capacity = 3, .furrows = furrows}, mixes, before,
+                          {given, taken});
         }
         add(given);
         add(taken);

@@ -48,7 +48,7 @@ TEST(Deposit, PassingAgainNeitherBeadsNorLosesTheEdge) {
     for (int t = 0; t < kN; ++t) EXPECT_NEAR((*canvas.plane(0, 0))[t], 1.8f * coverage[t], 2e-6f) << "the edge keeps f";
 }
 
-TEST(Deposit, IsTheSameBesideAPlaneOfNothing) {
+TEST(Deposit, AnEmptyPlaneChangesNothing) {
     // A tile that holds one pigment is inked in one pass, one that holds more step by step: to the bit the same.
     Texels coverage = random_texels(11, 0, 1);
     std::fill(coverage.begin(), coverage.begin() + 48, 0.0f);

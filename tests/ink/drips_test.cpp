@@ -230,7 +230,7 @@ TEST(Drips, ABeadDriesBluntInFrontAndRunsOutIntoItsTrail) {
 
 // A bead at rest is drawn out into the trail that it came down on, and no further: nothing flows uphill. 0.6 mm: the
 // blot's soft edge of 0.15 mm, and three texels over which the cap of a bead that hardly moved rounds it.
-TEST(Drips, NothingGetsAboveWhereItWasLaidDown) {
+TEST(Drips, NothingRisesAboveWhereItWasDeposited) {
     for (const auto& [thickness, radius] :
          {std::pair{6.0, 0.75e-3}, {7.0, 0.75e-3}, {8.0, 0.75e-3}, {9.0, 0.75e-3}, {8.0, 1.25e-3}}) {
         Wall w;
@@ -259,7 +259,7 @@ TEST(Drips, AThickDotOnDrySurfaceStaysWhereItsVolumeIsHeld) {
         }
 }
 
-TEST(Drips, BeadsStopAtTape) {
+TEST(Drips, BeadsStopAtAStencil) {
     for (const bool cut : {false, true}) {
         Wall w(0, cut);
         w.film.keep_within([&](std::uint32_t slot, int t) { return w.map.position(slot, t).z > 5e-3f ? 255 : 0; });

@@ -61,7 +61,7 @@ TEST(Drying, DoesNotChangeTheColourByABit) {
     }
 }
 
-TEST(Drying, TakesOnlyTheTexelsItIsTold) {
+TEST(Drying, DriesOnlyTheGivenTexels) {
     Canvas canvas = canvas_of(1);
     paint(canvas, 1);
     const Canvas before = canvas;

@@ -25,8 +25,8 @@ bool beside(int texel) {
 /// Conductances as of a stretched, sheared chart with a hole in it.
 void fill(Geometry& g, std::uint64_t seed) {
     for (int k = 0; k < kField; ++k)
-        g.room[static_cast<std::size_t>(k)] =
-            static_cast<std::uint16_t>((0.4f + 0.8f * chance(seed + 9, k)) / kRoomUnit);
+        g.flow_area[static_cast<std::size_t>(k)] =
+            static_cast<std::uint16_t>((0.4f + 0.8f * chance(seed + 9, k)) / kFlowAreaUnit);
     g.blocks = 0xf7ff;
     g.valid.fill((1u << (kSide + 2)) - 1);
     if (seed % 2) g.gd = std::make_unique<Geometry::Diagonals>();
@@ -82,7 +82,7 @@ int main() {
         const Step step{.flow = 0.02f,
                         .levelling = 0.01f,
                         .limit = 0.06f,
-                        .most = round & 16 ? 0.02f * kRoomUnit : 0.0f,
+                        .most = round & 16 ? 0.02f * kFlowAreaUnit : 0.0f,
                         .most_of_link = 0.03f,
                         .threshold = 0.1f,
                         .pin = 1,
@@ -114,7 +114,7 @@ int main() {
         for (std::size_t lane = 0; lane < 2 * kSide; ++lane) {
             SeamLanes& l = seams[lane / kSide];
             const auto x = lane % kSide;
-            l.weight[x] = 0.7f, l.room[x] = 0.5f, l.apart[x] = 0.05f * static_cast<float>(lane);
+            l.weight[x] = 0.7f, l.flow_area[x] = 0.5f, l.apart[x] = 0.05f * static_cast<float>(lane);
             for (std::size_t end = 0; end < 2; ++end) {
                 l.w[end][x] = w[end][4 * lane], l.s[end][x] = s[end][4 * lane], l.z[end][x] = z[end][4 * lane];
                 l.grain[end][x] = end ? 1.1f : 0.9f;
@@ -134,7 +134,7 @@ int main() {
         std::array<float, kTexels> pigment;
         pigment_step(pigment.data(), work, g, round & 16, round);
         std::array<std::uint8_t, kTexels> closing{};
-        const Outcome out = local_step(w[4].data(), s[4].data(), work, g, step, round, closing);
+        const Outcome out = local_step({w[4].data(), s[4].data(), closing}, work, g, step, round);
         add(pigment);
         add(w[4]);
         add(s[4]);

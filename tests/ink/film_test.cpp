@@ -158,7 +158,7 @@ TEST(WetFilm, FibresHoldGrainsBackFromWhatSeeps) {
     }
 }
 
-TEST(WetFilm, TapeThrowsBackWhatSpreadsAndLetsNothingPass) {
+TEST(WetFilm, AStencilReflectsWhatSpreadsAndLetsNothingPass) {
     // A Gaussian 1.5 mm beside the edge of a stencil edge goes on as it and its image do; on the stencil edge there is
     // nothing. In one chart, and over a seam at right angles to the edge.
     for (const int charts : {1, 2}) {
@@ -167,7 +167,7 @@ TEST(WetFilm, TapeThrowsBackWhatSpreadsAndLetsNothingPass) {
         p.mixing = 2e-9;
         const auto is_free = [&](const Vec3& at) { return at.x > -1.5e-3; };
         s.film.keep_within([&](std::uint32_t slot, int t) { return is_free(Vec3(s.map.position(slot, t))) ? 255 : 0; });
-        double edge = -1;  // between the last texels that are taped and the first that are free
+        double edge = -1;  // between the last texels that are masked and the first that are free
         s.each([&](std::uint32_t, int, const Vec3& at) {
             if (!is_free(at)) edge = std::max(edge, at.x + 0.5 * s.map.texel_size);
         });

@@ -22,7 +22,7 @@ TexelPlaces whole_patch() {
     return p;
 }
 
-HatBasis tents_over(const Texels& coverage) {
+HatBasis hats_over(const Texels& coverage) {
     HatBasis hats;
     hat_basis(hats, whole_patch(), coverage);
     return hats;
@@ -74,10 +74,10 @@ TEST(ContactGrid, SpansThePatchAlongTheHair) {
     }
 }
 
-TEST(ContactGrid, TentsSumToOneOnCoveredTexelsAndInterpolateLinearly) {
+TEST(ContactGrid, HatsSumToOneOnCoveredTexelsAndInterpolateLinearly) {
     Texels coverage = random_texels(5, -1, 1);
     for (float& f : coverage) f = std::max(f, 0.0f);
-    const HatBasis hats = tents_over(coverage);
+    const HatBasis hats = hats_over(coverage);
     std::array<float, kNodes> ones, slope;
     ones.fill(1);
     for (int n = 0; n < kNodes; ++n) slope[n] = static_cast<float>(2 * (n / kAcross) - 3 * (n % kAcross));
@@ -95,7 +95,7 @@ TEST(ContactGrid, TentsSumToOneOnCoveredTexelsAndInterpolateLinearly) {
     }
 }
 
-TEST(TouchNodes, EachNodeMeetsTheHairOverIt) {
+TEST(ContactNodes, EachNodeHasTheHairOverIt) {
     const Reservoir tuft = two_inks();
     const NodeContact nodes = node_contact(tuft, patch(), straight_hair(tuft), {});
     const NodeMixes mixes = mixes_at(tuft, nodes);
@@ -120,7 +120,7 @@ TEST(TouchNodes, EachNodeMeetsTheHairOverIt) {
     EXPECT_FALSE(is_mixed(one)) << "the same mixture, however much of it";
 }
 
-TEST(TouchNodes, WhatTheNodesGiveAndTakeIsKept) {
+TEST(ContactNodes, WhatTheNodesGiveAndTakeIsConserved) {
     Reservoir tuft = two_inks();
     const NodeContact nodes = node_contact(tuft, patch(), straight_hair(tuft), {});
     const double whole = tuft.remaining();
@@ -141,14 +141,14 @@ TEST(TouchNodes, WhatTheNodesGiveAndTakeIsKept) {
     NodeContents given{};
     given[0][0] = 0.9 * before[0];
     given[kNodes - 1][1] = 0.1 * before[1];
-    spend(tuft, given, nodes);
+    withdraw_contents(tuft, given, nodes);
     EXPECT_NEAR(tuft.pigment(0), 0.1 * before[0], 1e-12 * whole);
     EXPECT_NEAR(tuft.pigment(1), 0.9 * before[1], 1e-12 * whole);
     for (const auto& cell : tuft.content)
         for (const double v : cell) EXPECT_GE(v, 0);
 }
 
-TEST(DepositMixed, LaysEachInkUnderTheHairThatHoldsItAndBooksWhatIsStored) {
+TEST(DepositMixed, DepositsEachInkUnderItsHairAndReportsWhatIsStored) {
     Reservoir tuft = two_inks();
     const NodeContact nodes = node_contact(tuft, patch(), straight_hair(tuft), {});
     const NodeMixes mixes = mixes_at(tuft, nodes);
@@ -162,7 +162,7 @@ TEST(DepositMixed, LaysEachInkUnderTheHairThatHoldsItAndBooksWhatIsStored) {
     const DepositParams params{.target = 1.6f};
     NodeContents given{};
     for (int i = 0; i < 5; ++i)
-        deposit_mixed(canvas, 0, coverage, tents_over(coverage), area, 0.1e-3, params, mixes, given);
+        deposit_mixed(canvas, {0, coverage, area, 0.1e-3}, hats_over(coverage), params, mixes, given);
     for (int p = 0; p < 2; ++p) {
         double stored = 0, booked = 0;
         for (int t = 0; t < kN; ++t)
@@ -187,7 +187,7 @@ TEST(DepositMixed, LaysEachInkUnderTheHairThatHoldsItAndBooksWhatIsStored) {
     EXPECT_NEAR(given[kAcross - 1][kWater] / given[kAcross - 1][1], 1, 1e-5) << "as much as pigment";
 }
 
-TEST(DepositMixed, OfOneInkItIsDepositAndOfChangingOnesItDoesNotPileUp) {
+TEST(DepositMixed, EqualsDepositForOneInkAndDoesNotAccumulateForChangingInks) {
     Canvas one(1), mixed(1);
     Pigment pigment;
     pigment.name = "black";
@@ -201,7 +201,7 @@ TEST(DepositMixed, OfOneInkItIsDepositAndOfChangingOnesItDoesNotPileUp) {
     NodeContents given{};
     for (int i = 0; i < 4; ++i) {
         deposit(one, 0, coverage, area, 0.05e-3, params);
-        deposit_mixed(mixed, 0, coverage, tents_over(coverage), area, 0.05e-3, params, mixes, given);
+        deposit_mixed(mixed, {0, coverage, area, 0.05e-3}, hats_over(coverage), params, mixes, given);
     }
     for (int t = 0; t < kN; ++t) EXPECT_NEAR((*mixed.plane(0, 0))[t], (*one.plane(0, 0))[t], 2e-6) << t;
 
@@ -217,7 +217,7 @@ TEST(DepositMixed, OfOneInkItIsDepositAndOfChangingOnesItDoesNotPileUp) {
         mixes[0].fill(1 - static_cast<float>(i) / 100);
         mixes[1].fill(static_cast<float>(i) / 100);
         mixes[kWater].fill(0);
-        deposit_mixed(mixed, 0, constant(1), tents_over(constant(1)), area, 0.3e-3, params, mixes, given);
+        deposit_mixed(mixed, {0, constant(1), area, 0.3e-3}, hats_over(constant(1)), params, mixes, given);
     }
     for (int p = 0; p < 2; ++p) {
         EXPECT_LE((*mixed.plane(0, p))[77], 1.5f * 1.001f);
@@ -226,7 +226,7 @@ TEST(DepositMixed, OfOneInkItIsDepositAndOfChangingOnesItDoesNotPileUp) {
     // And never above the capacity.
     params.target = 100;
     for (int i = 0; i < 50; ++i)
-        deposit_mixed(mixed, 0, constant(1), tents_over(constant(1)), area, 1e-3, params, mixes, given);
+        deposit_mixed(mixed, {0, constant(1), area, 1e-3}, hats_over(constant(1)), params, mixes, given);
     for (int t = 0; t < kN; ++t)
         EXPECT_LE((*mixed.plane(0, 0))[t] + (*mixed.plane(0, 1))[t], params.capacity * 1.00001f);
 }

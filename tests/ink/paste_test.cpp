@@ -93,7 +93,7 @@ double sum_of(const NodeContents& c, int plane) {
     return sum;
 }
 
-TEST(Paste, ItIsLaidAndPloughedAndEachPigmentIsKept) {
+TEST(Paste, ItIsDepositedAndPloughedAndEachPigmentIsConserved) {
     // A tile over all of the grid's width.
     Canvas canvas(1);
     const Pigment a{.name = "a"}, b{.name = "b"};
@@ -112,7 +112,7 @@ TEST(Paste, ItIsLaidAndPloughedAndEachPigmentIsKept) {
     first[0].fill(0.8f);
     first[kMaxPigments].fill(0.2f);
     second[1].fill(1);
-    PasteParams params{.target = 40, .exchange = 0.01, .room = 1e3};
+    PasteParams params{.target = 40, .exchange = 0.01, .free_capacity = 1e3};
     params.furrows = furrow_depths(bundles(9), {.width = 9e-3, .film = 4e-4, .yield = 800});
     const Texels area = random_texels(3, 0.9e-8, 1.1e-8);
     const auto total = [&](int p) {
@@ -124,7 +124,7 @@ TEST(Paste, ItIsLaidAndPloughedAndEachPigmentIsKept) {
     const auto pass = [&](const NodeMixes& mixes, const Plane& before) {
         const double had[] = {total(0), total(1)};
         Pass out;
-        lay_paste(canvas, 0, coverage, places, hats, area, 5e-5, params, mixes, before, out.given, out.taken);
+        deposit_paste(canvas, {{0, coverage, area, 5e-5}, places, hats}, params, mixes, before, {out.given, out.taken});
         for (int p = 0; p < 2; ++p) {
             const double kept = sum_of(out.given, p) - sum_of(out.taken, p);
             // Doubles of what floats took; 256 of them.
@@ -164,7 +164,7 @@ TEST(Paste, ItIsLaidAndPloughedAndEachPigmentIsKept) {
         EXPECT_LE(after[t], before[t] + 40 * 2.0);
     }
     // A brush without room leaves what stands there.
-    params.room = 0;
+    params.free_capacity = 0;
     params.exchange = 0;
     params.furrows.fill(0);
     const Pass none = pass(first, open_pigment(canvas, 0));

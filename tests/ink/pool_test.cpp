@@ -143,24 +143,24 @@ TEST(Pool, ASeamDoesNotShow) {
     expect_same_means(whole, cut);
 }
 
-TEST(Pool, StopsAtTape) {
+TEST(Pool, StopsAtAStencil) {
     Furrowed f(150, 2);
-    const auto taped = [&](std::uint32_t slot, int t) { return f.map.position(slot, t).x > 0.4e-3f; };
+    const auto masked = [&](std::uint32_t slot, int t) { return f.map.position(slot, t).x > 0.4e-3f; };
     const auto under = [&] {
         std::vector<float> out;
         f.each([&](std::uint32_t slot, int t, const Vec3&) {
-            if (taped(slot, t)) out.push_back((*f.canvas.plane(slot, 1))[t]);
+            if (masked(slot, t)) out.push_back((*f.canvas.plane(slot, 1))[t]);
         });
         return out;
     };
     const std::vector<float> before = under();
     const double all = f.canvas.total(f.map, 1);
-    f.settle({.free = [&](std::uint32_t slot, int t) { return !taped(slot, t); }});
+    f.settle({.free = [&](std::uint32_t slot, int t) { return !masked(slot, t); }});
     EXPECT_EQ(under(), before);
     EXPECT_NEAR(f.canvas.total(f.map, 1) / all, 1, 1e-6);
 }
 
-TEST(Pool, LeavesPlainGroundAsItIsPainted) {
+TEST(Pool, LeavesASmoothSubstrateAsItIsPainted) {
     Furrowed thin(0);  // 60 µm all over, level
     thin.each(
         [&](std::uint32_t slot, int t, const Vec3&) { thin.canvas.touch_film(slot, kFirstDryFilm, 0)[t] = 5.9f; });

@@ -259,7 +259,7 @@ TEST(Reservoir, HalfTheStepMakesHalfTheError) {
     EXPECT_NEAR(difference, std::exp(-0.3 / 0.3 * (1 + 0.2 / 0.8)), 0.02) << "Euler, 30 steps: 2 %";
 }
 
-TEST(Reservoir, WhatTouchesGivesItsOwnMixtureAndNothingIsLost) {
+TEST(Reservoir, TouchingCellsGiveTheirOwnMixtureAndNothingIsLost) {
     Reservoir tuft = uneven();
     double whole = tuft.remaining();
     Content all_taken{};
@@ -284,22 +284,22 @@ TEST(Reservoir, WhatTouchesGivesItsOwnMixtureAndNothingIsLost) {
     EXPECT_NEAR(tuft.remaining(), 0, 1e-15);
 }
 
-TEST(Reservoir, TakingUpFromTheSurfaceKeepsTheSumAndFillsWhatTouchesFirst) {
+TEST(Reservoir, AbsorptionFromTheSurfaceKeepsTheSumAndFillsTheTouchingCellsFirst) {
     Reservoir tuft = uneven();
     const ContactCells touch = some_touch(tuft, 5);
     const Content before = planes_of(tuft);
-    const double room = room_left(tuft, touch);
+    const double free = free_capacity(tuft, touch);
     Content lifted{};
-    lifted[2] = 0.3 * room;
-    lifted[kMaxPigments] = 0.2 * room;
+    lifted[2] = 0.3 * free;
+    lifted[kMaxPigments] = 0.2 * free;
     absorb(tuft, lifted, touch);
     expect_sound(tuft);
     EXPECT_GT(mix_at(tuft, touch)[2], tuft.mix()[2]) << "the hair that touched holds it";
     lifted[2] = 2 * tuft.capacity;  // more than there is room for
     absorb(tuft, lifted, touch);
     Content expected = before;
-    expected[2] += 0.3 * room + 2 * tuft.capacity;
-    expected[kMaxPigments] += 2 * 0.2 * room;
+    expected[2] += 0.3 * free + 2 * tuft.capacity;
+    expected[kMaxPigments] += 2 * 0.2 * free;
     expect_same(planes_of(tuft), expected, 3 * tuft.capacity, "plane ");
 }
 
@@ -308,7 +308,7 @@ TEST(Reservoir, AShallowDipLoadsAGradientThatSpreadsSlowly) {
     dip(tuft, kThin, {.level = 0.7});
     EXPECT_NEAR(tuft.fullness(), 0.7, 1e-12);
     const double taken = dip(tuft, kBlack, {.depth = 0.2});
-    // The last cell and a half: of rooms 0.05 and 0.15 · ½ the missing 0.3.
+    // The last cell and a half: of free capacities 0.05 and 0.15 · ½ the missing 0.3.
     EXPECT_NEAR(taken / tuft.capacity, 0.3 * (0.05 + 0.5 * 0.15), 1e-12);
     ContactCells tip(tuft.content.size(), 0), root(tuft.content.size(), 0);
     for (std::size_t i = 0; i < tip.size(); ++i)
@@ -326,18 +326,18 @@ TEST(Reservoir, WhatItsHairDoesNotHoldRunsOffADrippingTuft) {
     const Drain drain{.length = 0.04, .radius = 4e-3, .slope = 0.5};
     Reservoir full = make_reservoir(0.5), wet = full;
     dip(full, black);
-    EXPECT_EQ(shed(full, drain, 1), 0);
+    EXPECT_EQ(drained_volume(full, drain, 1), 0);
     dip(wet, black, {.level = 1.1});
     EXPECT_NEAR(wet.remaining() / wet.capacity, 1.1, 1e-12);
     // 50 mm³ on 503 mm²: a film of 0.0995 mm, ρ g δ³ / 3 μ = 1610 mm²/s, halved, round 25.1 mm.
-    const double at_once = shed(wet, drain, 1e-6) / 1e-6 * kFilmUnit;
+    const double at_once = drained_volume(wet, drain, 1e-6) / 1e-6 * kFilmUnit;
     EXPECT_NEAR(at_once, 0.5 * 9810 * std::pow(0.05e-6 / 5.0265e-4, 3) / (3 * 2e-3) * 0.0251327, 1e-3 * at_once);
     EXPECT_NEAR(at_once * 1e9, 20.2, 0.1) << "mm³ a second";
     // A second at once, and in steps that are taken from the tuft.
-    const double all = shed(wet, drain, 1);
+    const double all = drained_volume(wet, drain, 1);
     double sum = 0;
     for (int i = 0; i < 100; ++i) {
-        const double part = shed(wet, drain, 0.01);
+        const double part = drained_volume(wet, drain, 0.01);
         take(wet, part);
         sum += part;
     }
@@ -345,7 +345,7 @@ TEST(Reservoir, WhatItsHairDoesNotHoldRunsOffADrippingTuft) {
     EXPECT_GT(wet.remaining(), wet.capacity);
 }
 
-TEST(Reservoir, ARagTakesWhatItTouches) {
+TEST(Reservoir, WipingTakesTheInkOfTheTouchedCells) {
     Reservoir tuft = make_reservoir(0.5, layout_of(16));
     dip(tuft, kBlack);
     EXPECT_NEAR(wipe(tuft, 0.5) / tuft.capacity, 0.5, 1e-12);

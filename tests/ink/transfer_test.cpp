@@ -11,11 +11,11 @@ namespace {
 constexpr int kN = atlas::kTileTexels;
 constexpr float kArea = 1e-8f;
 
-/// A surface of one tile, a tuft and its skin, and touches of all of the tile.
+/// A surface of one tile, a tuft with its surface liquid, and contact with all of the tile.
 struct Touching {
     Canvas canvas{1};
     Reservoir tuft;
-    SurfaceLiquid skin;
+    SurfaceLiquid liquid;
     Mix purple{}, yellow{};
     DepositParams deposit;
     ContactCells touch;
@@ -39,24 +39,25 @@ struct Touching {
             if (mix[p] > 0) canvas.touch(0, p).fill(film * mix[p]);
     }
     NodeAreas areas() const {
-        NodeAreas out{}, of_tents;
-        integrate_hats(of_tents, hats, nullptr, area);
-        for (int k = 0; k < hats.count; ++k) out[hats.node[k]] = of_tents[k];
+        NodeAreas out{}, of_hats;
+        integrate_hats(of_hats, hats, nullptr, area);
+        for (int k = 0; k < hats.count; ++k) out[hats.node[k]] = of_hats[k];
         return out;
     }
     NodeContact nodes() const { return node_contact(tuft, {}, {}, touch); }
     void move(double ds, double dt) {
         hat_basis(hats, places, coverage);
-        refresh(skin, tuft, touch, nodes(), areas(), dt);
-        const TransferParams p = transfer_params(skin, tuft, touch, areas(), deposit, ds, dt, 1);
+        const ContactStep step{.ds = ds, .dt = dt, .stress = 1};
+        refresh(liquid, tuft, touch, nodes(), areas(), step);
+        const TransferParams p = transfer_params(liquid, tuft, touch, areas(), deposit, step);
         NodeContents given{};
-        transfer(canvas, 0, coverage, places, hats, area, ds, p, given);
+        transfer(canvas, {{0, coverage, area, ds}, places, hats}, p, given);
         for (int node = 0; node < kNodes; ++node)
-            for (int k = 0; k < Reservoir::kPlanes; ++k) skin.content[node][k] -= given[node][k];
+            for (int k = 0; k < Reservoir::kPlanes; ++k) liquid.content[node][k] -= given[node][k];
     }
     double in_hair(int plane) const {
         double sum = tuft.pigment(plane);
-        for (const auto& node : skin.content) sum += node[plane];
+        for (const auto& node : liquid.content) sum += node[plane];
         return sum;
     }
     double on_surface(int plane) const {
@@ -80,11 +81,11 @@ TEST(Transfer, KeepsEachPigmentAndTheWater) {
     const double whole = t.all(0) + t.all(1);
     for (int i = 0; i < 1000; ++i) {
         t.move(0.1e-3, 2e-3);
-        for (const auto& node : t.skin.content)
+        for (const auto& node : t.liquid.content)
             for (const double v : node) ASSERT_GE(v, -1e-9 * whole) << "the rounding of the texels";
     }
     for (int p = 0; p < Reservoir::kPlanes; ++p) EXPECT_NEAR(t.all(p), before[p], 1e-9 * whole) << p;
-    withdraw(t.skin, t.tuft, t.touch, t.nodes());
+    withdraw(t.liquid, t.tuft, t.touch, t.nodes());
     for (int p = 0; p < Reservoir::kPlanes; ++p) EXPECT_NEAR(t.all(p), before[p], 1e-9 * whole) << p;
 }
 
@@ -97,7 +98,7 @@ TEST(Transfer, DoesNotDependOnSampling) {
         for (int i = 0; i < 10 * parts; ++i) t.move(0.4e-3 / parts, 8e-3 / parts);
         purple.push_back(t.on_surface(0));
     }
-    // Exponential forms; what is left is that the skin changes between touches.
+    // Exponential forms; what is left is that the liquid changes between touches.
     EXPECT_NEAR(purple[1] / purple[2], 1, 0.02);
     EXPECT_NEAR(purple[0] / purple[2], 1, 0.05);
 }
@@ -187,13 +188,13 @@ TEST(Transfer, AFullTuftTakesNoMoreAndDryFilmsStay) {
     for (int i = 0; i < 300; ++i) {
         t.move(0.1e-3, 2e-3);
         double held = t.tuft.remaining();
-        for (int node = 0; node < kNodes; ++node) held += t.skin.volume(node);
+        for (int node = 0; node < kNodes; ++node) held += t.liquid.volume(node);
         ASSERT_LE(held, t.tuft.capacity * (1 + 1e-4)) << "the rounding of the texels";
     }
     EXPECT_EQ((*t.canvas.film_plane(0, kFirstDryFilm, 0))[100], 1);
 }
 
-TEST(Transfer, OnADrySurfaceItLaysDownWhatDepositDoes) {
+TEST(Transfer, OnADrySurfaceItEqualsDeposit) {
     Touching t;
     dip(t.tuft, t.yellow);
     for (int i = 0; i < kN; ++i) t.coverage[i] = static_cast<float>(i) / (kN - 1);

@@ -42,8 +42,8 @@ double reach(const std::vector<AreaLine>& lines, const Vec2& p) {
             const double length = glm::length(d),
                          t = length > 0 ? std::clamp(glm::dot(p - a, d) / (length * length), 0.0, 1.0) : 0;
             const double at = along + t * length;
-            const double part =
-                std::min({1.0, l.head > 0 ? at / l.head : 1.0, l.tail > 0 ? (whole - at) / l.tail : 1.0});
+            const double part = std::min(
+                {1.0, l.taper_in > 0 ? at / l.taper_in : 1.0, l.taper_out > 0 ? (whole - at) / l.taper_out : 1.0});
             least = std::min(least, glm::distance(p, a + t * d) / std::max(0.5 * l.width * part, 1e-9));
             along += length;
         }
@@ -139,7 +139,7 @@ TEST(AreaLines, AJaggedOutlineIsDrawnAsASmoothOne) {
                        out = glm::normalize(line.line[i + 1] - line.line[i]);
             EXPECT_LT(std::acos(std::min(1.0, glm::dot(in, out))), bend) << i;
         }
-        EXPECT_GT(line.stencil.size(), ring.size() / 2) << "the tape is the outline's own";
+        EXPECT_GT(line.stencil.size(), ring.size() / 2) << "the stencil is the outline's own";
     }
 }
 
@@ -155,7 +155,7 @@ TEST(AreaLines, ADeeplyJaggedOutlineIsFilledToo) {
     }
 }
 
-TEST(AreaLines, RunIntoPoints) {
+TEST(AreaLines, TaperIntoCorners) {
     const std::vector<Ring> rings{star()};
     const auto lines = area_lines(rings, FillRule::nonzero);
     // Each of the five tips is met by the end of a line that falls to nothing there.
@@ -166,8 +166,8 @@ TEST(AreaLines, RunIntoPoints) {
             const auto passes = [&](const Vec2& end, const Vec2& before) {
                 return glm::distance(end - 0.5 * l.width * glm::normalize(end - before), rings[0][i]);
             };
-            if (l.head > 0) nearest = std::min(nearest, passes(l.line.front(), l.line[1]));
-            if (l.tail > 0) nearest = std::min(nearest, passes(l.line.back(), l.line[l.line.size() - 2]));
+            if (l.taper_in > 0) nearest = std::min(nearest, passes(l.line.front(), l.line[1]));
+            if (l.taper_out > 0) nearest = std::min(nearest, passes(l.line.back(), l.line[l.line.size() - 2]));
         }
         // Points lie a tenth of a width apart, so that the way ahead leaves the tip's middle by half of that, and its
         // side, which is 24 degrees off, by 0.05 w / tan 24 = 0.11 w before the end; twice for both sides' chords.
@@ -193,7 +193,7 @@ TEST(AreaLines, AreTheSameInEverySize) {
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(b[i].width, 8 * a[i].width, 1e-12);
 }
 
-TEST(AreaLines, NothingComesOfWhatHasNoArea) {
+TEST(AreaLines, WithoutAreaThereAreNone) {
     EXPECT_TRUE(area_lines(std::vector<Ring>{{{0, 0}, {1, 1}}}, FillRule::nonzero).empty());
     EXPECT_TRUE(area_lines(std::vector<Ring>{}, FillRule::nonzero).empty());
     EXPECT_TRUE(area_lines(std::vector<Ring>{{{0, 0}, {0, 0}, {0, 0}}}, FillRule::even_odd).empty());

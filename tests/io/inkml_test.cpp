@@ -443,7 +443,7 @@ TEST(Inkml, EntriesOfEveryKindThatAFileCanSayComeBack) {
     EXPECT_EQ(stroke::record(entries).left_out, 1u) << "a layer is added again where it is painted on";
 }
 
-TEST(Inkml, TracesThatOnlyCareForTheBrushAreReadWhereTheyAreWanted) {
+TEST(Inkml, TracesWithBrushActionsOnlyAreReadOnRequest) {
     const std::string body = "<trace><annotation type='tuft:rinse'/></trace><trace></trace><trace>0 0,1 1</trace>";
     EXPECT_EQ(parse(body).size(), 1u);
     const auto all = parse(body, {.actions = true});
@@ -530,7 +530,7 @@ TEST(Inkml, AnyTruncationOrGarbledByteIsAnErrorOrAFile) {
     }
 }
 
-TEST(Inkml, TapeIsReadAsItIsWritten) {
+TEST(Inkml, AStencilIsReadAsItIsWritten) {
     stroke::RecordedStroke trace;
     for (int i = 0; i < 3; ++i)
         trace.samples.push_back({.time = 0.1 * i, .position = {0.01 * i, 0, 0}, .pressure = 0.5});

@@ -54,7 +54,7 @@ TEST(Materials, ObjHasTheColoursAndPicturesOfItsLibrary) {
     EXPECT_TRUE(soup.warnings.empty());
 }
 
-TEST(Materials, WhatIsMissingOrDamagedIsToldAndLeftOut) {
+TEST(Materials, WhatIsMissingOrDamagedIsReportedAndLeftOut) {
     const Folder folder("missing");
     put(folder / "m.obj", "mtllib none.mtl\n" + kTwoTriangles);
     mesh::PolygonSoup soup = read_model(folder / "m.obj");
@@ -148,7 +148,7 @@ ProjectModel contents(const stroke::Model& model) {
     return stored;
 }
 
-TEST(Materials, AProjectKeepsThemAndMakesTheSameGroundAgain) {
+TEST(Materials, AProjectKeepsThemAndMakesTheSameBaseColourAgain) {
     const Folder folder("project");
     put(folder / "m.obj", "mtllib m.mtl\n" + kTwoTriangles);
     put(folder / "m.mtl", "newmtl one\nmap_Kd p.png\nnewmtl two\nKd 0.25 0.5 1\n");

@@ -105,7 +105,7 @@ void keep(const fs::path& path, const std::function<void()>& ready) {
     for (;;) ::pause();
 }
 
-TEST(ProjectLock, OneProcessWritesAndTheOthersAreToldWhoDoes) {
+TEST(ProjectLock, OneProcessWritesAndTheOthersLearnWhichOne) {
     const Folder folder("lock_two");
     const fs::path path = folder / "work.tuft";
     Project::create(path, small_model());
@@ -162,7 +162,7 @@ TEST(ProjectLock, AWriterThatIsAboutToEndIsWaitedFor) {
     EXPECT_EQ(Project::open(path).n_strokes(), 9u);
 }
 
-TEST(ProjectLock, WhereItCannotBeTheReasonIsSaidAndReadingGoesOn) {
+TEST(ProjectLock, WhereItCannotBeTheReasonIsReportedAndReadingContinues) {
     const Folder folder("lock_none");
     const fs::path path = folder / "work.tuft";
     Project::create(path, small_model());

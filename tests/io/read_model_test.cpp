@@ -12,7 +12,7 @@ namespace {
 
 using namespace testing;
 
-TEST(ReadModel, ObjReadBackIsTheSameMeshInTheUnitAsked) {
+TEST(ReadModel, ObjReadBackIsTheSameMeshInTheGivenUnit) {
     const Folder folder("obj");
     const mesh::TriangleMesh mesh = cylinder();
     const ModelMaps maps = pattern_maps(64);
@@ -25,7 +25,7 @@ TEST(ReadModel, ObjReadBackIsTheSameMeshInTheUnitAsked) {
     EXPECT_EQ(folder.n_files(), exported_files(folder / "m.obj", maps).size());
 }
 
-TEST(ReadModel, FormatsAreToldByContentThenByExtension) {
+TEST(ReadModel, FormatsAreRecognisedByContentThenByExtension) {
     const Folder folder("formats");
     const mesh::TriangleMesh mesh = cylinder();
     export_model(folder / "m.glb", mesh, cylinder_atlas(mesh), pattern_maps(16));

@@ -175,7 +175,7 @@ std::vector<std::string> told(const std::string& inside) {
 }
 using Notes = std::vector<std::string>;
 
-TEST(Svg, WhatIsLeftOutIsSaidInALineEach) {
+TEST(Svg, WhatIsLeftOutIsReportedInALineEach) {
     EXPECT_EQ(told("<g/>"), Notes{});
     EXPECT_EQ(told("<text>Hello <tspan>there</tspan></text><image/><text display='none'>no</text><g "
                    "visibility='hidden'><text>no</text></g>"),
@@ -189,7 +189,7 @@ TEST(Svg, WhatIsLeftOutIsSaidInALineEach) {
               (Notes{"a.svg: 2 animations are not played", "a.svg: 1 script is not run"}));
 }
 
-TEST(Svg, EffectsThatABrushCannotPaintAreSaidWithTheirCounts) {
+TEST(Svg, EffectsThatABrushCannotPaintAreReportedWithTheirCounts) {
     const std::string line = "<path d='M0 0 H 50' stroke='black' ", square = "<rect width='20' height='20' ";
     EXPECT_EQ(told("<g clip-path='url(#a)'>" + line + "/>" + line + "style='clip-path:url(#a)'/></g>"),
               Notes{"a.svg: 2 clip paths are not applied: what they hide is painted"});

@@ -73,13 +73,13 @@ TEST(ExactGeodesics, AreStraightLinesOnWhatUnrollsToAPlane) {
             ASSERT_TRUE(stand.from(place(a)));
             for (int k = 0; k < 50; ++k) {
                 const Vec2 b{random.uniform(0, 1), random.uniform(0, 1)};
-                const auto way = stand.to(place(b));
-                EXPECT_NEAR(way.length, glm::length(b - a), 1e-6);
-                EXPECT_FALSE(way.bent);
-                EXPECT_NEAR(glm::length(way.leaves), 1, 1e-9);
-                EXPECT_NEAR(glm::length(way.arrives), 1, 1e-9);
+                const auto path = stand.to(place(b));
+                EXPECT_NEAR(path.length, glm::length(b - a), 1e-6);
+                EXPECT_FALSE(path.bent);
+                EXPECT_NEAR(glm::length(path.start_direction), 1, 1e-9);
+                EXPECT_NEAR(glm::length(path.end_direction), 1, 1e-9);
                 if (place == flat) {
-                    EXPECT_LT(glm::length(way.leaves - flat(b - a) / glm::length(b - a)), 1e-4);
+                    EXPECT_LT(glm::length(path.start_direction - flat(b - a) / glm::length(b - a)), 1e-4);
                 }
             }
         }
@@ -87,16 +87,16 @@ TEST(ExactGeodesics, AreStraightLinesOnWhatUnrollsToAPlane) {
 }
 
 TEST(ExactGeodesics, BendRoundTheCornerOfANotch) {
-    // A quarter of the sheet is missing: from one arm to the other the way bends where its corner
+    // A quarter of the sheet is missing: from one arm to the other the path bends where its corner
     // stands.
     Stand stand(sheet(8, flat, [](Vec2 p) { return p.x > 0.5 && p.y > 0.5; }));
     const Vec2 corner{0.5, 0.5};
     ASSERT_TRUE(stand.from(flat({0.9, 0.3})));
     for (const Vec2 p : {Vec2{0.45, 0.95}, Vec2{0.4, 0.9}, Vec2{0.49, 0.6}}) {
-        const auto way = stand.to(flat(p));
-        EXPECT_TRUE(way.bent);
-        EXPECT_NEAR(way.length, glm::length(corner - Vec2{0.9, 0.3}) + glm::length(p - corner), 1e-6);
-        EXPECT_LT(glm::length(way.arrives - flat(p - corner) / glm::length(p - corner)), 1e-5);
+        const auto path = stand.to(flat(p));
+        EXPECT_TRUE(path.bent);
+        EXPECT_NEAR(path.length, glm::length(corner - Vec2{0.9, 0.3}) + glm::length(p - corner), 1e-6);
+        EXPECT_LT(glm::length(path.end_direction - flat(p - corner) / glm::length(p - corner)), 1e-5);
     }
     const auto straight = stand.to(flat({0.1, 0.5}));
     EXPECT_FALSE(straight.bent);

@@ -39,7 +39,7 @@ TEST(GuessUnit, SenselessSizesFallBackToMillimetres) {
     EXPECT_EQ(guess(1e20, 1, 1).sentence.find('\n'), std::string::npos);
 }
 
-TEST(Inspect, TellsSizeAndNoDefectsOfASoundBox) {
+TEST(Inspect, ReportsSizeAndNoDefectsOfASoundBox) {
     const Surface s = build_surface(make_box(Vec3(0), Vec3(100, 200, 50)));
     const MeshSummary m = summarise(s, 1e-3);
     EXPECT_EQ(m.n_triangles, 12u);
@@ -55,7 +55,7 @@ TEST(Inspect, TellsSizeAndNoDefectsOfASoundBox) {
     EXPECT_THAT(lines, Contains("no defects"));
 }
 
-TEST(Inspect, TellsEveryDefectOnce) {
+TEST(Inspect, ReportsEveryDefectOnce) {
     PolygonSoup soup = make_sheet(4);
     soup.points.emplace_back(2, 1.5, 1);
     add_polygon(soup, {7, 12, 25});

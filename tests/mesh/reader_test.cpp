@@ -131,7 +131,7 @@ TEST(Obj, TextureCoordinatesStayOnTheirCorners) {
                       Vec2f(s.mesh.position(t, k).x, s.mesh.position(t, k).y));
 }
 
-TEST(Obj, FacesWithoutTextureCoordinatesAmongOthersAreTold) {
+TEST(Obj, FacesWithoutTextureCoordinatesAmongOthersAreReported) {
     const PolygonSoup soup =
         read_obj(bytes_of(kObjPoints + "vt 0.5 0.25\nf 1 3 4\nf 1/1 4/1 2/1\nf 5/1 6/9 8/1\n"), "a.obj");
     ASSERT_EQ(soup.corner_uvs.size(), 9u);
@@ -246,7 +246,7 @@ TEST(Ply, ColoursOfAllTypes) {
     EXPECT_THAT(colour("ushort", "65535 32896 0"), ElementsAre(255, 128, 0, 255));
 }
 
-TEST(Ply, RowsThatAreNotFiniteAreToldByLineOrRow) {
+TEST(Ply, RowsThatAreNotFiniteAreReportedByLineOrRow) {
     const PolygonSoup text = read_ply(bytes_of(replaced(kPlyText, "0 0 1\n1 0 1", "0 0 nan\n1 0 1")), "a.ply");
     ASSERT_EQ(text.warnings.size(), 1u);
     EXPECT_THAT(text.warnings[0], HasSubstr("(line 16), and with them 3 faces"));
@@ -379,7 +379,7 @@ TEST(Off, ColoursOfFacesAreGroups) {
     EXPECT_THAT(read_off(bytes_of(points + "3 0 1 2 1\n3 0 2 3 red\n"), "a.off").group_names, ElementsAre());
 }
 
-TEST(Stl, OddLengthsAreTold) {
+TEST(Stl, OddLengthsAreReported) {
     std::vector<char> bytes = binary_stl(make_box(), "");
     bytes.push_back('x');
     EXPECT_THAT(read_stl(bytes, "a.stl").warnings, ElementsAre("1 bytes behind the last triangle are not read"));

@@ -431,7 +431,7 @@ TEST(Repair, NothingLeftIsAnError) {
     EXPECT_THROW(build_surface(box), Error);
 }
 
-TEST(Repair, StopsWhenAsked) {
+TEST(Repair, StopsOnRequest) {
     RepairOptions options;
     options.progress = [](std::string_view phase, double) { return phase != "matching edges"; };
     EXPECT_THROW(build_surface(make_box(), options), Cancelled);

@@ -135,15 +135,15 @@ TEST(Light, NothingShadesAConvexBody) {
     Scene scene{m, query, material, make_studio(m.bounds, 0.3, 0, false, 1), 2e-6f};
     const LightCache cache(scene);
     for (std::uint32_t t = 500; t < m.n_triangles(); t += 1111) {
-        Sight s;
-        s.seen = Seen::object;
+        ViewHit s;
+        s.kind = HitKind::object;
         s.triangle = t;
         s.face = face_normal(m, t);
         s.normal = s.face;
         s.position = Vec3f(mesh::surface_point(m, t, 1.0 / 3, 1.0 / 3).position);
         Light sum;
         for (int i = 0; i < 16; ++i) {
-            const Light l = sample_light(scene, cache, s, share_samples(400), i, 3 * i, 5);
+            const Light l = sample_light(scene, cache, s, share_samples(400), {i, 3 * i, 5});
             sum.direct += l.direct / 16.0f;
             sum.around += l.around / 16.0f;
         }

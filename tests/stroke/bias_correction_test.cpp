@@ -143,7 +143,7 @@ TEST(BiasCorrection, StaysWithinItsBounds) {
 TEST(BiasCorrection, ComesBackFromItsFile) {
     const auto intended = random_strokes(5, 4);
     const BiasCorrection bias = learn_bias(intended, slanted(intended));
-    const BiasCorrection back = parse_bias(bias_toml(bias), "habit.toml");
+    const BiasCorrection back = parse_bias(bias_toml(bias), "bias.toml");
     ASSERT_EQ(back.pieces.size(), bias.pieces.size());
     const auto written = random_strokes(6, 3);
     const auto a = correct_bias(bias, written), b = correct_bias(back, written);

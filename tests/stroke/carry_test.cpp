@@ -34,7 +34,7 @@ double set_of(const BrushInHand& brush) {
     return sum;
 }
 
-TEST(Carry, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
+TEST(PersistentBrush, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
     const Model model = sheet();
     Document painting(model);
     const double capacity = painting.materials().brush(kBrush).capacity * ink::kFilmPerVolume;
@@ -56,7 +56,7 @@ TEST(Carry, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
     EXPECT_EQ(dry.ink_given, 0);
 }
 
-TEST(Carry, HairKeepsItsSetUntilItIsCombed) {
+TEST(PersistentBrush, HairKeepsItsSetUntilItIsCombed) {
     const Model model = sheet();
     Document painting(model);
     painting.paint(carried(0, "carbon", kBrush, 0.6 * painting.materials().brush(kBrush).length));
@@ -70,7 +70,7 @@ TEST(Carry, HairKeepsItsSetUntilItIsCombed) {
     EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), ink);
 }
 
-TEST(Carry, WetnessFollowsTheInkAlsoInAReplay) {
+TEST(PersistentBrush, WetnessFollowsTheInkAlsoInAReplay) {
     const Model model = sheet();
     const auto wetness = [](const Document& painting) { return painting.brushes().find(kBrush)->tuft.wetness; };
     Document painting(model);
@@ -87,7 +87,7 @@ TEST(Carry, WetnessFollowsTheInkAlsoInAReplay) {
     EXPECT_EQ(wetness(painting), 1);
 }
 
-TEST(Carry, ACombedFullBrushIsAFreshOne) {
+TEST(PersistentBrush, ACombedFullBrushIsAFreshOne) {
     const Model model = sheet();
     Document carry(model), each(model);
     carry.paint(carried(0));
@@ -103,7 +103,7 @@ TEST(Carry, ACombedFullBrushIsAFreshOne) {
                 1e-3);
 }
 
-TEST(Carry, AnotherInkIsDippedIntoUnlessItWasToldBefore) {
+TEST(PersistentBrush, AnotherInkIsDippedIntoUnlessLoadedBefore) {
     const Model model = sheet();
     Document painting(model);
     painting.paint(carried(0, "carbon"));
@@ -134,7 +134,7 @@ std::vector<JournalEntry> session() {
             carried(4, "cinnabar", "goat-small")};
 }
 
-TEST(Carry, ReplayIsTheSameToTheBitForAnyThreadCount) {
+TEST(PersistentBrush, ReplayIsTheSameToTheBitForAnyThreadCount) {
     const Model model = sheet();
     std::uint64_t hash = 0;
     for (const int threads : {1, 3}) {
@@ -153,7 +153,7 @@ TEST(Carry, ReplayIsTheSameToTheBitForAnyThreadCount) {
     set_thread_count(0);
 }
 
-TEST(Carry, UndoBringsTheBrushBackToo) {
+TEST(PersistentBrush, UndoBringsTheBrushBackToo) {
     const Model model = sheet();
     for (const std::size_t undo_bytes : {std::size_t{1} << 28, std::size_t{1}}) {
         Document painting(model, {.undo_bytes = undo_bytes});
@@ -186,7 +186,7 @@ TEST(Carry, UndoBringsTheBrushBackToo) {
     }
 }
 
-TEST(Carry, AReopenedPaintingTakesAFreshBrushAndSaysSo) {
+TEST(PersistentBrush, AReopenedPaintingTakesAFreshBrushAndSaysSo) {
     const Model model = sheet();
     Document first(model);
     first.paint(carried(0));
@@ -206,7 +206,7 @@ TEST(Carry, AReopenedPaintingTakesAFreshBrushAndSaysSo) {
     EXPECT_EQ(replayed.layers().canvas().hash(), second.layers().canvas().hash());
 }
 
-TEST(Carry, ACancelledStrokeLeavesTheBrushAsItWas) {
+TEST(PersistentBrush, ACancelledStrokeLeavesTheBrushAsItWas) {
     const Model model = sheet();
     Document painting(model);
     painting.paint(carried(0));
@@ -222,7 +222,7 @@ TEST(Carry, ACancelledStrokeLeavesTheBrushAsItWas) {
     EXPECT_EQ(painting.journal().entries().size(), 1u);
 }
 
-TEST(Steady, AStrokeInPiecesIsTheWholeStrokeAndReplays) {
+TEST(SmoothedSurface, AStrokeInPiecesIsTheWholeStrokeAndReplays) {
     const Model model = sheet();
     PaintStroke whole = line(kBrush, 4e-3);
     for (std::size_t i = 0; i < whole.trace.samples.size(); ++i)  // a shaky hand

@@ -179,7 +179,7 @@ PaintStroke leaning(std::uint64_t seed) {
     return s;
 }
 
-TEST(DryBrush, ALeaningTuftThatSwingsRoundLeavesNoFan) {
+TEST(DryBrush, ATiltedTuftThatTurnsRoundLeavesNoFan) {
     const Model model = sheet();
     double begin = 0, end = 0;
     for (const std::uint64_t seed : {21, 22, 23}) {
@@ -234,7 +234,7 @@ double loose_ink(const Document& p, int gap) {
     return all - most;
 }
 
-TEST(DryBrush, ALeaningTipThatComesToTouchPrintsNoSpeck) {
+TEST(DryBrush, ATiltedTipAtFirstContactLeavesNoSpeck) {
     // It touches beside the line that it then draws, pressed aside: 0.02 mm² by themselves, 0.7 mm off.
     const Model model = sheet();
     // At any rate of the hand's samples: they lie differently about the place where it touches.

@@ -80,7 +80,7 @@ TEST(DryBrush, ThreadsDoNotChangeABit) {
     set_thread_count(0);
 }
 
-TEST(DryBrush, StreaksLieWhereTheyLieAtAnySamplingRate) {
+TEST(DryBrush, StreaksDoNotDependOnTheSamplingRate) {
     const Model model = sheet();
     const DryStroke slow(model, 0.2, 5, {}, drag(5, 0.06, 100)), fast(model, 0.2, 5, {}, drag(5, 0.06, 800));
     // Another seed differs in more than 0.3; the corners of the press are rounded by a sample.

@@ -40,7 +40,7 @@ TEST(Fit, TheSameModelFitsAndSoDoesOneALittleOff) {
 }
 
 // The straight tuft of the stroke reaches 2 mm into the sheet for most of its way.
-TEST(Fit, ASurfaceThatMovedIsToldByItsDistance) {
+TEST(Fit, AMovedSurfaceIsReportedByItsDistance) {
     EXPECT_EQ(reason_on(lifted(3e-3), pressed()), "pressed 3.0 mm deeper");
     EXPECT_EQ(reason_on(lifted(-1.5e-3), pressed()), "pressed 1.5 mm less deep");
     EXPECT_EQ(reason_on(lifted(-12e-3), pressed()), "touches nothing, 10.0 mm away");
@@ -49,14 +49,14 @@ TEST(Fit, ASurfaceThatMovedIsToldByItsDistance) {
 }
 
 // A sheet that ends under the middle of the stroke, which goes 15 mm to both sides of it.
-TEST(Fit, APartThatIsGoneIsToldByItsShare) {
+TEST(Fit, AMissingPartIsReportedByItsFraction) {
     const Model half = sheet(make_frame({0.5 * kSide, 0, 0}, {0, 0, 1}));
     const std::string reason = reason_on(half, pressed());
     ASSERT_TRUE(reason.ends_with(" % of it touches nothing")) << reason;
     EXPECT_NEAR(std::stod(reason), 50, 3);  // a sample of the hand is 1 % of the way
 }
 
-TEST(Fit, AStrokeInTheAirIsNoMisfit) {
+TEST(Fit, AStrokeInTheAirIsNoMismatch) {
     PaintStroke above = pressed();
     for (StrokeSample& s : above.trace.samples) s.position.z += 0.2;
     EXPECT_EQ(reason_on(lifted(-5e-3), above), "");
@@ -133,7 +133,7 @@ TEST(Fit, AFlatStrokeOnTheSameModelOrAnotherMeshOfItFits) {
     }
 }
 
-TEST(Fit, AFlatStrokeTellsHowFarItsPlaceMoved) {
+TEST(Fit, AFlatStrokeReportsHowFarItsPlacementMoved) {
     for (const SurfaceMapping mapping : {SurfaceMapping::wrap, SurfaceMapping::drape, SurfaceMapping::project}) {
         EXPECT_EQ(mismatch_reason(fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, written(mapping))),
                   "lies 20.0 mm from where it lay");
@@ -159,7 +159,7 @@ TEST(Fit, AHoleUnderAStrokeIsMissingInk) {
 }
 
 // Projected onto a plane that leans by 60 degrees along it, a stroke is twice as long.
-TEST(Fit, AStrokeThatIsPulledLongIsToldByItsShare) {
+TEST(Fit, AStretchedStrokeIsReportedByItsFraction) {
     const Model steep = sheet(make_frame(Vec3(0), glm::normalize(Vec3(-std::sqrt(3.0), 0, 1))), kSmall);
     const StrokeFit fit = fit_on(*steep.mesh, written(SurfaceMapping::project));
     EXPECT_NEAR(fit.kept_now / fit.kept, 2, 0.02);
@@ -167,7 +167,7 @@ TEST(Fit, AStrokeThatIsPulledLongIsToldByItsShare) {
     EXPECT_NE(mismatch_reason(fit).find("stretched or squeezed"), std::string::npos) << mismatch_reason(fit);
 }
 
-TEST(Fit, TheTotalSaysWhatAllStrokesDo) {
+TEST(Fit, TheTotalIsThatOfAllStrokes) {
     const std::vector<StrokeFit> fits{
         fit_on(*sheet(make_frame({0, 0, -20e-3}, {0, 0, 1}), kSmall).mesh, written(SurfaceMapping::wrap)),
         fit_on(*sheet({}, kSmall).mesh, written(SurfaceMapping::wrap))};

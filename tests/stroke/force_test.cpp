@@ -80,7 +80,7 @@ TEST(Forces, PullBackAndTurnAsTheyMust) {
     EXPECT_TRUE(dragged);
 }
 
-TEST(Forces, TellWhenTheSurfaceIsNear) {
+TEST(Forces, IncludeTheForceOfProximity) {
     const Model model = sheet();
     Document painting(model, {.record_forces = true});
     const double length = painting.materials().brush("wolf-small").length;

@@ -125,7 +125,7 @@ TEST(HandFilter, AWholeTraceDoesNotLagAndKeepsItsEnds) {
     EXPECT_LT(glm::distance(steadied.samples.back().position, t.samples.back().position), 4 * kPixel);
 }
 
-TEST(HandFilter, TurningTheHandTurnsWhatComesOut) {
+TEST(HandFilter, CommutesWithRotations) {
     const Quat turn = glm::angleAxis(1.1, glm::normalize(Vec3(1, 2, -1)));
     HandFilter a, b;
     Random random(3);
@@ -214,7 +214,7 @@ TEST(String, ZeroLengthPassesEverythingThrough) {
     }
 }
 
-TEST(String, PressureStaysAtItsPlaceOnTheWay) {
+TEST(String, PressureStaysAtItsPositionOnThePath) {
     // A straight drag whose pressure grows along the way; once taut the tip must have, wherever
     // it is, the pressure the hand had there.
     StrokeSettings settings;

@@ -82,7 +82,7 @@ TEST(Layers, AHiddenOneAndOneWithoutOpacityContributeNothing) {
 }
 
 // What a change alters is told, so that only that is drawn anew.
-TEST(Layers, AChangeOfTheLookIsDirtyWhereTheLayerHasInk) {
+TEST(Layers, AChangeOfTheAppearanceIsDirtyWhereTheLayerHasInk) {
     Document p(model());
     p.paint(on(kFirstLayer, -3));
     const std::uint32_t gold = add(p, "gold");

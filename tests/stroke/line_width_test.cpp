@@ -86,7 +86,7 @@ PaintStroke circle(const std::string& brush, double width, double radius) {
     return stroke;
 }
 
-TEST(LineWidth, ALeanAgainstTheWayDoesNotTurnTheTuftOver) {
+TEST(LineWidth, ATiltAgainstTheMotionDoesNotTurnTheTuftOver) {
     // BaseColour that is not quite as the hand takes it: three and six degrees tip ahead, and to the sides.
     for (const char* brush : {"wolf-medium*0.168", "goat-medium", "mixed-small"})
         for (const Vec2& lean : {Vec2{-0.05, 0}, Vec2{-0.1, 0}, Vec2{-0.05, 0.05}, Vec2{0, -0.05}}) {
@@ -162,7 +162,7 @@ Model wall(double radius, bool inside) {
     return prepare_model(std::move(soup), options);
 }
 
-TEST(LineWidth, LinesOnCurvedWallsLieWhereTheyAreLaidBothWays) {
+TEST(LineWidth, LinesOnCurvedWallsLieWhereTheyAreDrapedInBothDirections) {
     // Slanting over the wall: the hand runs ahead to where the wall leans otherwise.
     for (const bool inside : {false, true}) {
         const Model model = wall(0.05, inside);

@@ -128,7 +128,7 @@ TEST(LongLines, ARingIsClosedAndFullAllRound) {
         EXPECT_NEAR(line.width[i], kWidth, kSides + kHeads * kWidth) << "at " << 5 * i << " mm";
 }
 
-TEST(LongLines, PiecesCoverTheLineOverlapAndAreCutWhereItIsStraight) {
+TEST(LongLines, PartsCoverTheLineOverlapAndAreCutWhereItIsStraight) {
     const StrokeSamples line = serpentine(6);
     const double whole = length_of(line), overlap = 0.004;
     const std::vector<StrokeSamples> clusters = cut_line(line, 0.1, overlap);

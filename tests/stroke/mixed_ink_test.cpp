@@ -69,7 +69,7 @@ TEST(MixedInk, TwoInksSideBySideLieSideBySideInTheStroke) {
     }
 }
 
-TEST(MixedInk, EachPigmentIsKeptStillAndWet) {
+TEST(MixedInk, EachPigmentIsConservedStillAndWet) {
     const Model model = sheet();
     for (const FilmModel film : {FilmModel::still, FilmModel::wet}) {
         Document painting(model);
@@ -109,7 +109,7 @@ TEST(MixedInk, ReplaysToTheBitOnAnyNumberOfThreads) {
     set_thread_count(0);
 }
 
-TEST(MixedInk, CaresWithASideComeBackFromTheirText) {
+TEST(MixedInk, BrushActionsWithASideComeBackFromTheirText) {
     const Preparation c = preparation_of("dip:cinnabar,depth=0.25,side=-0.5");
     EXPECT_EQ(std::get<BrushAction>(c).extent, (Extent{.depth = 0.25, .side = -0.5}));
     EXPECT_EQ(preparation_text(c), "dip:cinnabar,depth=0.25,side=-0.5");

@@ -58,7 +58,7 @@ double all_of(Document& painting, int plane) {
     return sum;
 }
 
-TEST(Palette, ItsTexelsLieWhereTheyAreSaidTo) {
+TEST(Palette, ItsTexelsAreAtTheirPositions) {
     const Model plate = make_palette();
     ASSERT_EQ(plate.atlas.size, kPaletteTexels);
     EXPECT_NEAR(plate.atlas.texel_size, kPaletteTexel, 1e-9);

@@ -269,7 +269,7 @@ TEST(Placement, SteadyHandKeepsItsHeightOnCurvedSurfaces) {
     }
 }
 
-TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
+TEST(Placement, TipLagCompensationIsAheadAndTurnsWithThePath) {
     // Straight: ahead by the length for the depth, once the tip has touched.
     std::vector<Vec2> points;
     for (int i = 0; i <= 100; ++i) points.push_back({1e-4 * i, 0});
@@ -314,7 +314,7 @@ TEST(Placement, LeadRunsAheadAndTurnsWithThePath) {
     EXPECT_EQ(led.samples[77].position, trace.samples[77].position);
 }
 
-TEST(Placement, RefusesWhatCannotBeLaid) {
+TEST(Placement, RefusesWhatCannotBeMapped) {
     const TriangleMesh sheet = make_sheet(0.2, 3);
     const SurfaceQuery query(sheet);
     StrokeSamples trace = make_trace({}, {{0, 0}});

@@ -23,10 +23,10 @@ std::vector<Vec2> star(double r) {
     return ring;
 }
 
-std::vector<StencilEdge> tape_round(const std::vector<Vec2>& ring) {
-    std::vector<StencilEdge> tape;
-    for (std::size_t i = 0; i < ring.size(); ++i) tape.push_back({ring[i], ring[(i + 1) % ring.size()]});
-    return tape;
+std::vector<StencilEdge> edges_round(const std::vector<Vec2>& ring) {
+    std::vector<StencilEdge> edges;
+    for (std::size_t i = 0; i < ring.size(); ++i) edges.push_back({ring[i], ring[(i + 1) % ring.size()]});
+    return edges;
 }
 
 bool within(const std::vector<Vec2>& ring, const Vec2& p) {
@@ -38,14 +38,14 @@ bool within(const std::vector<Vec2>& ring, const Vec2& p) {
     return inside;
 }
 
-TEST(Tape, SidesAreThePolygons) {
+TEST(SurfaceStencil, SidesAreThePolygons) {
     const std::vector<Vec2> ring = star(1);
-    const std::vector<StencilEdge> tape = tape_round(ring);
+    const std::vector<StencilEdge> edges = edges_round(ring);
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> place(-1.5, 1.5);
     for (int i = 0; i < 20'000; ++i) {
         const Vec2 p(place(random), place(random));
-        EXPECT_EQ(inside_stencil(tape, p) > 0, within(ring, p)) << p.x << ' ' << p.y;
+        EXPECT_EQ(inside_stencil(edges, p) > 0, within(ring, p)) << p.x << ' ' << p.y;
     }
     EXPECT_EQ(inside_stencil({}, {0, 0}), HUGE_VAL);
 }
@@ -58,17 +58,17 @@ PaintStroke over_a_star(const Frame& frame, double r) {
     s.trace.placement = {frame.origin, frame.t, -frame.b};
     for (int i = 0; i <= 200; ++i)
         s.trace.samples.push_back({.time = 0.005 * i, .position = {1e-4 * i - 0.01, 0, 0}, .pressure = 0.6});
-    s.trace.stencil = tape_round(star(r));
+    s.trace.stencil = edges_round(star(r));
     return s;
 }
 
-TEST(Tape, InkStaysWithinAndFillsWhatItFilled) {
+TEST(SurfaceStencil, InkStaysWithinAndFillsWhatItFilled) {
     for (const Frame& frame : {Frame{}, make_frame({0.1, -0.2, 0.05}, glm::normalize(Vec3{1, 2, -0.5}))}) {
         const Model model = sheet(frame);
-        PaintStroke taped = over_a_star(frame, 5e-3), free = taped;
+        PaintStroke with_stencil = over_a_star(frame, 5e-3), free = with_stencil;
         free.trace.stencil.clear();
         Document a(model), b(model);
-        a.paint(taped);
+        a.paint(with_stencil);
         b.paint(free);
         const double texel = model.texels.texel_size;
         int inside = 0, outside = 0;
@@ -77,12 +77,13 @@ TEST(Tape, InkStaysWithinAndFillsWhatItFilled) {
             for (int t = 0; q && t < atlas::kTileTexels; ++t) {
                 if (model.texels.tiles[slot].area[t] <= 0 || (*q)[t] < 0.5f) continue;
                 const Vec3 at = Vec3(model.texels.position(slot, t)) - frame.origin;
-                const double d = inside_stencil(taped.trace.stencil, {glm::dot(at, frame.t), -glm::dot(at, frame.b)});
+                const double d =
+                    inside_stencil(with_stencil.trace.stencil, {glm::dot(at, frame.t), -glm::dot(at, frame.b)});
                 const double film = p ? (*p)[t] : 0;
                 // A footprint is swept over the step from the one before, which is a texel.
                 if (d < -2 * texel) {
                     ++outside;
-                    EXPECT_EQ(film, 0) << "over the tape";
+                    EXPECT_EQ(film, 0) << "over the stencil";
                 } else if (d > texel) {
                     ++inside;
                     EXPECT_GT(film, 0.9 * (*q)[t]);
@@ -96,7 +97,7 @@ TEST(Tape, InkStaysWithinAndFillsWhatItFilled) {
 }
 
 // By squares of cells and runs of clusters comes out what every cell by every cluster does.
-TEST(Tape, EachCellIsCutByThePieceNearestToIt) {
+TEST(SurfaceStencil, EachCellIsCutByTheNearestEdge) {
     const Model model = sheet();
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> place(-8e-3, 8e-3), radius(2e-3, 6e-3);
@@ -108,7 +109,7 @@ TEST(Tape, EachCellIsCutByThePieceNearestToIt) {
                 const double a = 2 * std::numbers::pi * static_cast<double>(ring.size()) / 2000;
                 ring.push_back((ring.size() % 2 ? 5e-3 : 5.05e-3) * Vec2(std::cos(a), std::sin(a)));
             }
-        trace.stencil = tape_round(ring);
+        trace.stencil = edges_round(ring);
         footprint::Footprint f;
         f.cell = 1e-4;
         f.width = 61;
@@ -130,7 +131,7 @@ TEST(Tape, EachCellIsCutByThePieceNearestToIt) {
     }
 }
 
-TEST(Tape, IsKeptInTheJournal) {
+TEST(SurfaceStencil, IsKeptInTheJournal) {
     PaintStroke s = over_a_star({}, 1.0 / 3);
     EXPECT_EQ(written_and_read(s).get<PaintStroke>().trace.stencil, s.trace.stencil) << "to the bit";
     s.trace.stencil.clear();
@@ -141,7 +142,7 @@ TEST(Tape, IsKeptInTheJournal) {
 }
 
 // As a hostile file may have it: clusters go by the whole, not by each edge.
-TEST(Tape, TapeOfAnyLengthIsLaidInFewPieces) {
+TEST(SurfaceStencil, AStencilOfAnyLengthHasFewSegments) {
     const Model model = sheet();
     StrokeSamples trace{.placement = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
     for (const double length : {0.02, 1e5, 1e150, 1e308}) {

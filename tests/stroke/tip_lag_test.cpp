@@ -55,7 +55,7 @@ std::map<int, Span> columns_of(const Document& painting) {
     return columns;
 }
 
-TEST(TipLag, UnderALeaningHolderTheLineLiesOnItsPath) {
+TEST(TipLag, UnderATiltedHolderTheLineLiesOnItsPath) {
     const Model model = sheet();
     for (const std::string brush : {"mixed-medium", "goat-small"}) {
         for (const Vec2 tilt : {Vec2{0.6, 0}, Vec2{-0.6, 0}, Vec2{0, 0.6}, Vec2{0, -0.6}, Vec2{0.35, 0.35}}) {
@@ -79,7 +79,7 @@ TEST(TipLag, UnderALeaningHolderTheLineLiesOnItsPath) {
     }
 }
 
-TEST(TipLag, AnUprightHolderLeadsAsBeforeAndSidesMirror) {
+TEST(TipLag, AnUprightHolderHasTheMeasuredLagAndSidesMirror) {
     TiltedTipLag lead(brush::load_preset("goat-small"));
     const double depth = 0.3 * working_depth(brush::load_preset("goat-small"));
     EXPECT_EQ(lead.at(depth, {0.03, -0.03}), Vec2(0));
@@ -104,7 +104,7 @@ std::vector<Vec2> inked_cells(StrokeSamples trace, const std::string& brush) {
     return cells;
 }
 
-TEST(TipLag, AStrokeSetDownFineStaysOnItsWayInEveryDirection) {
+TEST(TipLag, AStrokeSetDownFineStaysOnItsPathInEveryDirection) {
     // Hair that touches ahead of the hand by a lean that nobody meant was pushed, and turned over after some
     // millimetres.
     for (const char* brush : {"wolf-medium", "goat-medium", "mixed-medium"})

@@ -196,7 +196,7 @@ TEST(WetInk, ADrippingTuftLeavesDripsOnAWallAndAFullOneDoesNot) {
     EXPECT_GT(lowest[0], -4e-3) << "half the width of the stroke";
 }
 
-TEST(WetInk, StillInkIsAsItAlwaysWas) {
+TEST(WetInk, StillInkIsUnchanged) {
     // With all that is wet left out of the settings, nothing flows and no time passes.
     const Model model = sheet();
     Document painting(model);

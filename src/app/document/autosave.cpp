@@ -99,7 +99,7 @@ std::string Autosave::start(const std::filesystem::path& path, const std::string
                                                    .atlas = model.atlas,
                                                    .substrate = ink::substrate_toml(painting.materials().substrate())},
                                                   [&](io::Project& fresh) {
-                                                      io::store_looks(fresh, painting);
+                                                      io::store_recolouring(fresh, painting);
                                                       for (const auto& preset : brushes_) fresh.put_brush(preset);
                                                       for (const auto& preset : inks_) fresh.put_ink(preset);
                                                       for (const auto& [key, attachment] : attached_)
@@ -151,7 +151,7 @@ void Autosave::prepare(stroke::Document& painting, const std::string& brush, con
 
 void Autosave::store_appearance(const stroke::Document& painting) {
     attempt([&] {
-        if (project_ && !viewing_) io::store_looks(*project_, painting);
+        if (project_ && !viewing_) io::store_recolouring(*project_, painting);
     });
 }
 

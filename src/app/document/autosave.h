@@ -10,73 +10,72 @@
 #include "stroke/document/document.h"
 #include "stroke/document/merge.h"
 
+/// \file
+/// Continuous saving of the work. Owned by the paint thread; created by `Opening` on its thread.
 namespace tuft::app {
 
-/// Keeps the work on disk: every finished stroke goes into the project file at once.
-/// What cannot be written (disk full, folder gone) waits in memory and is tried again with
-/// the next stroke. Where another program changed the file nothing is written on top of that:
-/// `overtaken`. Nothing here throws; `trouble` says what is wrong.
+/// Appends every finished stroke to the project file at once. Changes that cannot be written (disk full, folder
+/// missing) wait in memory; the next stroke tries again. Nothing is written over another program's changes: see
+/// `overtaken`. Methods do not throw; `trouble` returns the fault. One thread at a time.
 class Autosave {
   public:
-    /// Goes on with a project that is open already and holds the entries that these were made from.
+    /// Continues an open project. `on_disk`: marks of its entries.
     void adopt(io::Project project, std::vector<stroke::EntryMark> on_disk);
-    /// Looks at a project that another program works on: nothing is written until `start` gives the
-    /// work a file of its own.
+    /// Views a project that another program works on. Nothing is written until `start` creates a new file.
     void view(io::Project project, std::vector<stroke::EntryMark> on_disk);
     bool viewing() const { return viewing_; }
-    /// Takes the presets of another project, for strokes that come from it.
+    /// Copies the presets of another project, for strokes that come from it.
     void take_presets(const io::Project& project);
-    /// Writes everything to a new project at `path` and keeps that one from now on. On
-    /// failure the old one stays, the reason is returned, else "".
+    /// Writes everything to a new project at `path` and continues that one. Returns "", or the fault; then the old
+    /// project stays.
     std::string start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
                       stroke::Document& painting);
 
-    /// There is no file that can be written: all waits in memory, and `start` is tried again before each stroke.
-    /// `has_work`: there is something already that no file holds.
+    /// Keeps all changes in memory and tries `start` before each stroke, because no file can be written. `has_work`:
+    /// some work is in no file yet.
     void start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
                      const std::string& fault, bool has_work = false);
 
-    /// `start` in the place of the file there is, which rows alone cannot bring up to date.
+    /// Writes the current file anew, for changes that appended rows cannot express.
     void rewrite(const std::string& source, const FileFrame& frame, stroke::Document& painting);
 
-    /// The presets as a replay of the file will read them; call before a stroke uses them. Empty: none.
+    /// Stores the presets as a replay will read them. Call it before a stroke uses them. Empty: none.
     void prepare(stroke::Document& painting, const std::string& brush, const std::string& ink);
     void add(const stroke::JournalEntry& stroke);
-    /// Adds what an adopted file does not have yet: these entries, and presets.
+    /// Appends entries, and presets, that an adopted file does not have yet.
     void catch_up(std::span<const stroke::JournalEntry> entries);
-    /// Stores what the painting is shown as.
+    /// Stores the painting's recolouring and shown substrate.
     void store_appearance(const stroke::Document& painting);
-    /// Stores what goes along with the work (io/project/attachments.h), in the place of one of that kind and name; and
-    /// takes it out.
+    /// Stores an attachment (io/project/attachments.h), in place of one of the same kind and name; and removes it.
     void attach(const std::string& kind, const io::Attachment& attachment);
     void detach(const std::string& kind, const std::string& name);
     std::vector<io::Attachment> attachments(const std::string& kind) const;  ///< by name
     std::optional<io::Attachment> attachment(const std::string& kind, const std::string& name) const;
-    /// Takes over what another project carries.
+    /// Copies the attachments of another project.
     void take_attachments(const io::Project& project);
     void remove(std::uint64_t id);
     void set_hidden(std::uint64_t id, bool hidden);
-    /// A change could not be written: the file has another journal until `start` writes it anew.
+    /// True after a change that could not be written: the file has another journal until `start` writes it anew.
     bool behind() const { return behind_; }
-    /// Tries once more to write what waits.
+    /// Tries again to write all waiting changes.
     void retry(const std::string& source, const FileFrame& frame, stroke::Document& painting);
-    /// Some of the work is in memory only.
+    /// True while some of the work is in memory only.
     bool has_unsaved() const { return !viewing_ && (!pending_.empty() || behind_); }
 
-    /// Another program changed the file, or put another one in its place, since it was last read or
-    /// written here; looks, and costs microseconds.
+    /// Returns true when another program changed or replaced the file since it was last read or written here. Cost:
+    /// some microseconds.
     bool overtaken();
-    /// The file as it is now. Nothing where it cannot be opened; `trouble` says why.
+    /// Opens the file in its present state. Returns nothing where it cannot be opened; `trouble` has the fault.
     std::optional<io::Project> read_again();
-    /// The entries as they were last read or written here.
+    /// Marks of the entries as last read or written here.
     const std::vector<stroke::EntryMark>& on_disk() const { return on_disk_; }
-    /// Stores the texels, so that the next opening needs no replay. Not beside another journal.
+    /// Stores the texels, so that the next opening needs no replay. Skipped while the file has another journal.
     void store_canvas(const stroke::Document& painting);
 
     std::filesystem::path path() const { return project_ ? project_->path() : std::filesystem::path{}; }
-    std::vector<std::string> inks() const;  ///< names of those that the project holds
-    const std::string& trouble() const { return trouble_; }
-    std::size_t waiting() const { return pending_.size(); }
+    std::vector<std::string> inks() const;                   ///< names of the project's inks
+    const std::string& trouble() const { return trouble_; }  ///< last fault, one line; "": none
+    std::size_t waiting() const { return pending_.size(); }  ///< strokes in memory only
 
   private:
     template <class Action>
@@ -90,7 +89,7 @@ class Autosave {
         std::filesystem::path path;
         std::string source;
         FileFrame frame;
-        std::string fault;  ///< why it is not there yet
+        std::string fault;  ///< why it does not exist yet
     };
     std::optional<io::Project> project_;
     std::optional<Wanted> wanted_;

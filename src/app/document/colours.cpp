@@ -32,23 +32,25 @@ fs::path file_of(const std::string& name) {
     return saved_folder() / (stem + ".toml");
 }
 
-std::optional<ink::ColourMatch> find(const ColourWish& wish) {
+std::optional<ink::ColourMatch> find(const ColourRequest& request) {
     try {
-        return ink::match_on_canvas(wish.colour, ink::load_substrate(wish.substrate), wish.held, {.film = wish.film});
+        return ink::match_on_canvas(request.colour, ink::load_substrate(request.substrate), request.held,
+                                    {.film = request.film});
     } catch (const Error&) {
         // A project may have a substrate of its own.
-        return ink::match_on_canvas(wish.colour, ink::load_substrate("porcelain"), wish.held, {.film = wish.film});
+        return ink::match_on_canvas(request.colour, ink::load_substrate("porcelain"), request.held,
+                                    {.film = request.film});
     }
 }
 
 }  // namespace
 
-void MixFinder::want(ColourWish wish) {
+void MixFinder::request(ColourRequest request) {
     if (running_.valid()) {
-        next_ = std::move(wish);
+        next_ = std::move(request);
         return;
     }
-    running_ = std::async(std::launch::async, [wish = std::move(wish)] { return find(wish); });
+    running_ = std::async(std::launch::async, [request = std::move(request)] { return find(request); });
 }
 
 std::optional<ink::ColourMatch> MixFinder::poll() {
@@ -61,9 +63,9 @@ std::optional<ink::ColourMatch> MixFinder::poll() {
         // Without the shipped pigments there is no mix.
     }
     if (!next_) return match;
-    ColourWish wish = std::move(*next_);
+    ColourRequest next = std::move(*next_);
     next_.reset();
-    want(std::move(wish));
+    request(std::move(next));
     return std::nullopt;
 }
 

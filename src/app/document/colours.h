@@ -9,55 +9,57 @@
 #include "ink/composite/match.h"
 
 /// \file
-/// Colours that a person chooses, and the mixes of pigments found for them. The session holds one
-/// `ColourChoice`; `panels/colour.cpp` shows it.
+/// Chosen colours and the pigment mixtures found for them. The session holds one `ColourChoice`; panels/colour.cpp
+/// shows it. Window thread.
 namespace tuft::app {
 
-/// A colour that is wanted of an ink.
-struct ColourWish {
+/// A colour to match by an ink.
+struct ColourRequest {
     ink::Rgb colour{};                    ///< linear sRGB
     std::string substrate = "porcelain";  ///< preset name
-    double film = 0;                      ///< film units; 0: as many as it needs
-    std::vector<ink::Pigment> held;       ///< pigments of the work: see `ink::match_on_canvas`
+    double film = 0;                      ///< film units; 0: as the colour needs
+    std::vector<ink::Pigment> held;       ///< pigments on the canvas: see `ink::match_on_canvas`
 };
 
-/// Finds mixes on a thread of its own; only the newest wish counts.
+/// Matches colours on a thread of its own. Only the newest request counts. Window thread.
 class MixFinder {
   public:
-    void want(ColourWish wish);
-    /// The mix of the newest wish that is done, once.
+    void request(ColourRequest request);
+    /// Returns the finished match of the newest request, once.
     std::optional<ink::ColourMatch> poll();
     bool busy() const { return running_.valid() || next_.has_value(); }
 
   private:
     std::future<std::optional<ink::ColourMatch>> running_;
-    std::optional<ColourWish> next_;
+    std::optional<ColourRequest> next_;
 };
 
 enum class ColourSliders { rgb, hsv, lab };
 
+/// State of the colour window.
 struct ColourChoice {
-    bool shown = false;                                   ///< its window
+    bool shown = false;                                   ///< the window is open
     std::array<float, 3> wanted{0.753f, 0.188f, 0.125f};  ///< sRGB, 0–1
     ColourSliders sliders = ColourSliders::hsv;
     std::array<float, 3> hsv{0.017f, 0.833f, 0.753f};  ///< keeps the hue of greys
     double film = ink::kMixFilm;                       ///< film units
-    bool free_film = true;                             ///< as many as the colour needs, instead
+    bool free_film = true;                             ///< the film is as thick as the colour needs
     MixFinder finder;
-    std::optional<ink::ColourMatch> match;  ///< the newest mix found
-    bool take = false;                      ///< the mix that comes next goes into the brush
-    std::optional<ink::Ink> in_hand;        ///< chosen, and not yet part of the work
-    bool taken = false;                     ///< on its way into it
+    std::optional<ink::ColourMatch> match;  ///< newest match found
+    bool take = false;                      ///< the next match goes into the brush
+    std::optional<ink::Ink> in_hand;        ///< chosen, not yet part of the project
+    bool taken = false;                     ///< being added to the project
     std::string hex = "#c03020", name;      ///< as typed
-    std::vector<std::string> recent;        ///< painted with, `#rrggbb`, the newest first
-    std::vector<ink::Ink> saved;            ///< of the person, for every work
+    std::vector<std::string> recent;        ///< painted with, `#rrggbb`, newest first
+    std::vector<ink::Ink> saved;            ///< the user's own, for all projects
 };
 
-/// Colours painted with and inks saved, of earlier runs: under `state_folder()`. What cannot be read is left out.
+/// Loads recent colours and saved inks of earlier runs from `state_folder()`. Skips what cannot be read.
 void load_colours(ColourChoice& choice);
+/// Puts a colour first among the recent ones and saves the list.
 /// Puts a colour first among the recent ones.
 void remember_colour(ColourChoice& choice, const std::string& hex);
-/// Saves an ink under its name, for every work. Throws `Error` where it cannot be written.
+/// Saves an ink under its name for all projects. Throws `Error` where it cannot be written.
 void save_own_ink(ColourChoice& choice, ink::Ink ink);
 void forget_own_ink(ColourChoice& choice, const std::string& name);
 

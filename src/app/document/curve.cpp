@@ -75,7 +75,7 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
                                      .pressure = press,
                                      .tilt = hand.tilt};
         if (press > 0 && glm::length(ahead) > 1e-9)
-            sample.tip_lag = stroke::lead_of(hand.hold, press, hand.tilt, glm::normalize(ahead));
+            sample.tip_lag = stroke::lead_of(hand.holder, press, hand.tilt, glm::normalize(ahead));
         if (const auto on = query.closest_point(place.position, 0.01)) {
             sample.on = *on;
             sample.on_surface =
@@ -83,7 +83,7 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
         }
         samples.push_back(sample);
     }
-    return stroke::hold(query, samples, hand.hold);
+    return stroke::hold(query, samples, hand.holder);
 }
 
 }  // namespace

@@ -7,58 +7,59 @@
 #include "mesh/query/surface_query.h"
 #include "stroke/placement/placement.h"
 
-/// Lines and curves through control points on a model, painted by a hand of even pace.
+/// \file
+/// Lines and curves through control points on a model. Called by tools/curve_tool.h. Window thread.
 namespace tuft::app {
 
+/// A control point.
 struct CurvePoint {
     Vec3 position{0};       ///< metres, on the surface
-    Vec3 outward{0, 0, 1};  ///< unit, towards who placed it: the curve lies on what is seen from there
-    double pressure = 1;    ///< part of the hand's pressure
+    Vec3 outward{0, 0, 1};  ///< unit, towards the eye that placed it; the curve is projected against it
+    double pressure = 1;    ///< factor on the hand's pressure
 };
 
-/// How the hand goes along it.
+/// Course of the pressure along a curve.
 struct CurveSettings {
-    double taper_in = 0.12;  ///< part of the length in which it presses down
-    double taper_out = 0.3;  ///< part in which it lifts
+    double taper_in = 0.12;  ///< fraction of the length in which the pressure rises
+    double taper_out = 0.3;  ///< fraction of the length in which it falls
     double speed = 0.08;     ///< m/s
 };
 
-/// A place of a curve on the model.
+/// A point of a projected curve.
 struct CurveSample {
-    Vec3 position{0}, normal{0, 0, 1};  ///< metres; unit, out of the side that is seen
+    Vec3 position{0}, normal{0, 0, 1};  ///< metres; unit, towards the eye
     double along = 0;                   ///< metres from the start
-    double pressure = 1;
-    bool on = true;  ///< false: there is no surface
+    double pressure = 1;                ///< factor, as in `CurvePoint`
+    bool on = true;                     ///< false: the surface is missing there
 };
 
-/// The centripetal Catmull–Rom spline through the points (Barry and Goldman 1988; knots at the square
-/// root of the chords: no loops, no overshoot; two points give a straight line), each of its
-/// points moved against the direction `outward`, which is interpolated linearly, onto the first
-/// surface that faces it. [`per_span` points per span + 1]; empty below two points.
+/// Returns the centripetal Catmull–Rom spline through the points, projected onto the surface. Knots are at the square
+/// roots of the chords, so it has no loops and no overshoot; two points give a straight line. Each point moves against
+/// the linearly interpolated `outward` to the first surface that faces it. [`per_span` per span + 1]; empty below two
+/// points. Source: Barry and Goldman 1988.
 std::vector<CurveSample> project_curve(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points,
                                        int per_span = 64);
 
-/// The poses of a hand along it, one list for each piece that lies on the model. `hold`: with
-/// the tip lag of the brush, upright and leaned, so that the ink lies on the curve; `pressure` of the hand, 0–1; `tilt`
-/// radians to the right and down of whoever looks with `right` and `down`.
+/// How a curve is painted.
 struct CurveHand {
-    stroke::HolderOptions hold;
+    stroke::HolderOptions holder;  ///< with the tip lag of the brush, so that the ink is on the curve
     CurveSettings settings;
-    double pressure = 0.5;
-    Vec2 tilt{0};
-    Vec3 right{1, 0, 0}, down{0, -1, 0};
+    double pressure = 0.5;                ///< 0–1
+    Vec2 tilt{0};                         ///< radians, lean towards `right` and `down`
+    Vec3 right{1, 0, 0}, down{0, -1, 0};  ///< unit, of the view
 };
+/// Returns the poses along a curve, one list for each part that is on the model.
 std::vector<std::vector<brush::Pose>> curve_poses(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points,
                                                   const CurveHand& hand);
 
-/// The curve that is being made or was just painted.
+/// The curve being edited, or just painted.
 struct CurveInWork {
     std::vector<CurvePoint> points;
-    int over = -1, grabbed = -1;    ///< control point under the cursor, in the hand
+    int over = -1, grabbed = -1;    ///< index of the control point under the cursor, being dragged; −1: none
     bool changed = false;           ///< since it was painted
-    bool waits = false;             ///< for the painter to have painted it
-    std::uint64_t last_stroke = 0;  ///< of it in the journal; 0: not painted. While it is the journal's
-                                    ///< last one the points can still be moved
+    bool is_pending = false;        ///< the paint thread has not painted it yet
+    std::uint64_t last_stroke = 0;  ///< its last entry in the journal; 0: not painted. Its points can be moved while
+                                    ///< that is the journal's last entry
 };
 
 }  // namespace tuft::app

@@ -83,7 +83,7 @@ void Pictures::keep(const fs::path& file, int width, int height, std::vector<std
     wake_.notify_all();
 }
 
-void Pictures::rest() {
+void Pictures::pause() {
     const std::lock_guard lock(mutex_);
     stop_ = true;
     for (const Job& job : jobs_)

@@ -11,10 +11,12 @@
 #include <thread>
 #include <vector>
 
+/// \file
+/// Small pictures of models and projects, for the start page and file dialogs.
 namespace tuft::app {
 
-/// Small pictures of models and projects: read from the state folder, or drawn once in the
-/// background and kept there. The textures belong to the window's context.
+/// Reads pictures from the state folder, or draws them once on a thread of its own and stores them there. Methods are
+/// for the window thread; `texture` and `release` need its OpenGL context.
 class Pictures {
   public:
     static constexpr int kWidth = 240, kHeight = 160;
@@ -22,17 +24,17 @@ class Pictures {
     Pictures();
     ~Pictures();
 
-    /// Texture with the picture of this file, 0 while there is none. Asks for it at the
-    /// first call that is not made at rest.
+    /// Returns the texture with the picture of a file; 0 while there is none. The first call requests it, except while
+    /// paused.
     unsigned texture(const std::filesystem::path& file);
-    /// Keeps a picture (RGB, row 0 at the top) as that of a file; it is made smaller.
+    /// Stores a picture (RGB, row 0 at the top), scaled down, as that of a file.
     void keep(const std::filesystem::path& file, int width, int height, std::vector<std::uint8_t> rgb);
-    /// Drops what has been asked for, so that the machine is free for other work.
-    void rest();
-    /// Takes up work again; before it, nothing new is asked for.
-    void go_on() { stop_ = false; }
+    /// Drops pending requests and accepts no new ones, to free the processor for painting.
+    void pause();
+    /// Accepts requests again.
+    void resume() { stop_ = false; }
     bool busy() const;
-    /// Frees the textures; needs the context.
+    /// Frees the textures.
     void release();
 
   private:
@@ -44,7 +46,7 @@ class Pictures {
     struct Job {
         std::string file;
         int width = 0, height = 0;
-        std::vector<std::uint8_t> rgb;  ///< to be kept; empty: to be found or drawn
+        std::vector<std::uint8_t> rgb;  ///< to store; empty: to read or draw
     };
     void run();
     std::vector<std::uint8_t> make(const Job& job);

@@ -5,15 +5,16 @@
 #include <string>
 #include <vector>
 
-/// What the program remembers between runs: work in hand, recent projects, settings and
-/// small pictures, under $XDG_STATE_HOME/tuft (else ~/.local/state/tuft).
+/// \file
+/// State that the program retains between runs: unsaved work, recent projects, settings and small pictures, under
+/// $XDG_STATE_HOME/tuft (else ~/.local/state/tuft). Any thread.
 namespace tuft::app {
 
-/// The folder, made when it is not there; the system's temporary folder when it cannot be.
+/// Returns the folder and creates it when missing. Returns the system's temporary folder where that fails.
 std::filesystem::path state_folder();
 
-/// Says which project is being worked on. While the program runs it holds a lock on the
-/// note; a note without a lock was left by a program that was killed.
+/// A file that names the project being worked on. The program locks it while it runs. A file without a lock was left by
+/// a killed program.
 class SessionNote {
   public:
     SessionNote();
@@ -21,10 +22,10 @@ class SessionNote {
     SessionNote(const SessionNote&) = delete;
     SessionNote& operator=(const SessionNote&) = delete;
 
-    /// A fresh place for work that has no name yet.
+    /// Returns an unused path for work without a name.
     std::filesystem::path new_project(const std::string& name);
     void write(const std::filesystem::path& project, const std::string& source);
-    /// The work is safe under a name, or there is none: nothing will be offered.
+    /// Removes the file: the work is saved under a name, or there is none.
     void clear();
 
   private:
@@ -33,22 +34,22 @@ class SessionNote {
     int made_ = 0;
 };
 
-/// Work that a killed program left behind.
+/// Work of a killed program.
 struct LostWork {
     std::filesystem::path note, project;
     std::string source;
 };
 std::vector<LostWork> find_lost_work();
-/// Takes the note away; and the project too, when it lies in the state folder.
+/// Removes the note; with `remove_project` also the project, when it is in the state folder.
 void forget_lost_work(const LostWork& work, bool remove_project);
 
-/// Whether this project lies in the state folder, so has no name of its own yet.
+/// Returns true when the project is in the state folder, so that it has no name of its own yet.
 bool is_unnamed(const std::filesystem::path& project);
 
 std::vector<std::filesystem::path> recent_projects();
 void remember_project(const std::filesystem::path& project);
 
-/// Where the small picture of a file is kept.
+/// Returns the path of the stored small picture of a file.
 std::filesystem::path picture_path(const std::filesystem::path& file);
 
 }  // namespace tuft::app

@@ -10,7 +10,7 @@
 #include "stroke/document/document.h"
 
 /// \file
-/// Small pictures of the layers of a painting, each alone on the bare model, for the list of layers.
+/// Small pictures of single layers on the bare model, for the list of layers. Paint thread.
 namespace tuft::app {
 
 struct Thumbnail {
@@ -19,26 +19,26 @@ struct Thumbnail {
     std::vector<std::uint8_t> rgba;  ///< [4 width height], rows from the top; transparent beside the model
 };
 
-/// Draws them on the painter's thread: a ray per pixel finds the texel once for a view; what is painted costs
-/// some 15 µs for each tile of texels that is seen.
+/// Draws the thumbnails. One ray per pixel finds its texel, once per view. Cost: about 15 µs per visible tile of
+/// painted texels.
 class Thumbnails {
   public:
-    /// From where they are seen, and how large they are. All are drawn anew.
+    /// Sets view and size. All thumbnails are drawn again.
     void look_from(const stroke::Model& model, const render::GlCamera& camera);
-    /// These slots changed in some layer.
+    /// Marks slots that changed in some layer.
     void touch(std::span<const std::uint32_t> slots) { touched_.insert(slots.begin(), slots.end()); }
-    /// All are drawn anew.
+    /// Drops all thumbnails, so that they are drawn again.
     void forget() { pictures_.clear(); }
-    /// Whether there may be something to draw.
+    /// Returns true when there may be something to draw.
     bool waiting(const stroke::Document& painting) const;
-    /// The pictures that changed since the last call.
+    /// Returns the thumbnails that changed since the last call.
     std::vector<Thumbnail> draw(stroke::Document& painting);
 
   private:
     struct Pixel {
-        std::uint32_t at = 0;  ///< index of the pixel
+        std::uint32_t at = 0;  ///< index in the picture
         std::uint8_t texel = 0;
-        float light = 1;  ///< of the surface there
+        float light = 1;  ///< irradiance of the surface there
     };
 
     Thumbnail bare(const ink::Substrate& substrate, std::uint32_t layer) const;

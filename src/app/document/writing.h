@@ -9,66 +9,67 @@
 #include "stroke/drawing/drawing.h"
 #include "stroke/journal/recorded_stroke.h"
 
-/// A drawing or handwriting that waits to be placed on the model.
+/// \file
+/// A drawing or handwriting before it is placed on the model. Called by tools/writing_tool.h. Window thread.
 namespace tuft::app {
 
+/// A loaded drawing and how the user places it.
 struct Writing {
     std::filesystem::path file;
     std::vector<stroke::RecordedStroke> traces;  ///< flat, metres, in the frame of the file
-    std::vector<std::string> notes;              ///< what of the file is left out, one line each
+    std::vector<std::string> notes;              ///< skipped content of the file, one line each
     Vec2 centre{0};                              ///< metres, of the ink of all traces
-    double width = 0, height = 0;                ///< metres, likewise, as in the file
+    double width = 0, height = 0;                ///< metres, of the ink of all traces, as in the file
     double scale = 1;
-    double turn = 0;        ///< radians, clockwise as seen
-    bool mirrored = false;  ///< flipped from left to right
+    double turn = 0;        ///< radians, clockwise in the view
+    bool mirrored = false;  ///< from left to right
     stroke::SurfaceMapping mapping = stroke::SurfaceMapping::drape;
-    bool own_ink = false;   ///< brush and ink as the file names them
-    bool own_width = true;  ///< lines as wide as the drawing has them, where it has widths
+    bool own_ink = false;   ///< uses brush and ink that the file names
+    bool own_width = true;  ///< uses the line widths of the drawing, where it has any
 
     bool empty() const { return traces.empty(); }
 };
 
-/// Reads an InkML or SVG file. Throws `Error` also when nothing in it is flat.
+/// Reads an InkML or SVG file. Throws `Error`, also when nothing in it is flat.
 Writing read_writing(const std::filesystem::path& file);
 
-/// The placement of its middle at a point of the surface, seen with `right` to the right; `normal`
-/// points towards the eye, which is in the direction `eye` (unit) from there. Origin and turn are
-/// those of `tuft paint --place --place-turn --read-from`, to 0.001 mm and 0.01°, so that
-/// `place_words` give them exactly.
+/// Returns the placement with the drawing's centre at the surface point `at` (metres). `right`: unit, the view's right.
+/// `normal`: unit, towards the eye. `eye`: unit, direction to the eye. Origin and turn are rounded to 0.001 mm and
+/// 0.01° as in `tuft paint --place --place-turn --read-from`, so that `place_words` states them exactly.
 stroke::Placement place_writing(const Writing& writing, const mesh::SurfaceQuery& query, const Vec3& at,
                                 const Vec3& normal, const Vec3& right, const Vec3& eye);
 
-/// The scale at which it is painted: `writing.scale`, its width to 0.001 mm.
+/// Returns the scale at which the drawing is painted: `writing.scale` with the width rounded to 0.001 mm.
 double painted_scale(const Writing& writing);
 
-/// "--place 1.000,2.000,3.000 --place-width 60.000 --place-turn 5.00": the options of `tuft paint`
-/// that place it so.
+/// Returns the options of `tuft paint` for this placement: "--place 1.000,2.000,3.000 --place-width 60.000 --place-turn
+/// 5.00".
 std::string place_words(const Writing& writing, const stroke::Placement& placement);
 
-/// Whether its lines have widths.
+/// Returns true when the drawing has line widths.
 bool has_widths(const Writing& writing);
 
-/// What a person paints it with.
+/// Brush and pressure for a drawing.
 struct WritingHand {
-    std::string brush, ink;  ///< presets; with `Writing::own_ink` of what names none
-    double pressure = 1;     ///< factor of pressures that were made up, of lines without widths
+    std::string brush, ink;  ///< presets; with `Writing::own_ink` for traces that name none
+    double pressure = 1;     ///< factor on default pressures, for lines without widths
 };
 
-/// Its traces as journal entries at the placement, without the brushes' sizes and their pressures,
-/// which `stroke::choose_brushes` and `stroke::press_to_widths` find.
+/// A drawing's traces as journal entries at a placement. Brush sizes and pressures are not set yet: see
+/// `stroke::choose_brushes` and `stroke::press_to_widths`.
 struct PlacedWriting {
     std::vector<stroke::JournalEntry> entries;
     double scale = 1;
-    double extent = 0;  ///< metres, the larger side as painted
+    double extent = 0;  ///< metres, the larger side on the model
     stroke::BrushFit fit;
 };
 PlacedWriting placed_writing(const Writing& writing, const stroke::Placement& placement, const WritingHand& hand);
 
-/// How it would lie: one line for each piece of a trace on the surface, with its normals, of at
-/// most `most` samples in all.
+/// Returns the drawing's lines on the surface, for a preview: one for each part of a trace that is on the surface, at
+/// most `most` samples in total.
 struct PreviewPoint {
-    Vec3 position, normal;
-    bool seen = true;  ///< nothing of the model lies before it
+    Vec3 position, normal;  ///< metres; unit
+    bool seen = true;       ///< not occluded by the model
 };
 std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& query, const Writing& writing,
                                                      const stroke::Placement& placement, std::size_t most = 3000);

@@ -17,7 +17,7 @@ struct Shipped {
     Chord chord;
 };
 
-constexpr std::array<Shipped, static_cast<std::size_t>(Act::count)> kShipped{{
+constexpr std::array<Shipped, static_cast<std::size_t>(Action::count)> kShipped{{
     {"open", "Open", {GLFW_KEY_O, kControl}},
     {"save", "Save as", {GLFW_KEY_S, kControl}},
     {"export", "Export", {GLFW_KEY_E, kControl}},
@@ -85,11 +85,11 @@ int plain(int key) {
 
 }  // namespace
 
-const char* title_of(Act act) {
-    return kShipped[static_cast<std::size_t>(act)].title;
+const char* title_of(Action action) {
+    return kShipped[static_cast<std::size_t>(action)].title;
 }
-const char* word_of(Act act) {
-    return kShipped[static_cast<std::size_t>(act)].word;
+const char* word_of(Action action) {
+    return kShipped[static_cast<std::size_t>(action)].word;
 }
 
 std::string name_of(const Chord& chord) {
@@ -126,35 +126,35 @@ std::optional<Chord> chord_of(const std::string& name) {
 }
 
 KeyTable::KeyTable() {
-    for (std::size_t i = 0; i < kShipped.size(); ++i) chords_[static_cast<Act>(i)] = kShipped[i].chord;
+    for (std::size_t i = 0; i < kShipped.size(); ++i) chords_[static_cast<Action>(i)] = kShipped[i].chord;
 }
 
-std::optional<Act> KeyTable::find(const Chord& chord) const {
+std::optional<Action> KeyTable::find(const Chord& chord) const {
     const Chord wanted{plain(chord.key), chord.modifiers};
-    for (const auto& [act, own] : chords_)
-        if (own.key != 0 && own == wanted) return act;
+    for (const auto& [action, own] : chords_)
+        if (own.key != 0 && own == wanted) return action;
     // The usual second key for redo, unless somebody gave it away.
-    if (wanted == Chord{GLFW_KEY_Y, kControl}) return Act::redo;
+    if (wanted == Chord{GLFW_KEY_Y, kControl}) return Action::redo;
     return std::nullopt;
 }
 
-std::optional<Act> KeyTable::assign(Act act, const Chord& chord) {
+std::optional<Action> KeyTable::assign(Action action, const Chord& chord) {
     const Chord wanted{plain(chord.key), chord.modifiers};
-    std::optional<Act> other;
+    std::optional<Action> other;
     for (auto& [owner, own] : chords_)
-        if (owner != act && own == wanted && own.key != 0) {
+        if (owner != action && own == wanted && own.key != 0) {
             own = {};
             other = owner;
         }
-    chords_[act] = wanted;
+    chords_[action] = wanted;
     return other;
 }
 
 std::vector<std::pair<std::string, std::string>> KeyTable::changes() const {
     std::vector<std::pair<std::string, std::string>> out;
-    for (const auto& [act, chord] : chords_)
-        if (chord != kShipped[static_cast<std::size_t>(act)].chord)
-            out.emplace_back(word_of(act), chord.key ? name_of(chord) : "none");
+    for (const auto& [action, chord] : chords_)
+        if (chord != kShipped[static_cast<std::size_t>(action)].chord)
+            out.emplace_back(word_of(action), chord.key ? name_of(chord) : "none");
     return out;
 }
 
@@ -162,9 +162,9 @@ void KeyTable::restore(const std::string& word, const std::string& chord) {
     for (std::size_t i = 0; i < kShipped.size(); ++i)
         if (word == kShipped[i].word) {
             if (chord == "none")
-                chords_[static_cast<Act>(i)] = {};
+                chords_[static_cast<Action>(i)] = {};
             else if (const auto read = chord_of(chord))
-                chords_[static_cast<Act>(i)] = *read;
+                chords_[static_cast<Action>(i)] = *read;
         }
 }
 

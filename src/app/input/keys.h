@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
-/// Which key does what; a person can change it.
+/// \file
+/// Key bindings, which the user can change. Window thread.
 namespace tuft::app {
 
-enum class Act {
+/// Actions that a key can have.
+enum class Action {
     open,
     save,
     export_to,
@@ -51,35 +53,36 @@ enum class Act {
     count
 };
 
-/// A key with Ctrl, Shift and Alt (`Modifier` bits).
+/// A key with modifiers (`Modifier` bits).
 struct Chord {
     int key = 0;  ///< GLFW key code; 0: none
     unsigned modifiers = 0;
     bool operator==(const Chord&) const = default;
 };
 
-/// "Ctrl+Shift+Z", "Home", "["; and back, nothing for an unknown key.
+/// Converts between a chord and its name: "Ctrl+Shift+Z", "Home", "[". `chord_of` returns nothing for an unknown key.
 std::string name_of(const Chord& chord);
 std::optional<Chord> chord_of(const std::string& name);
 
-/// English name for people, and the word in the settings file.
-const char* title_of(Act act);
-const char* word_of(Act act);
+/// English title for the user, and the action's word in the settings file.
+const char* title_of(Action action);
+const char* word_of(Action action);
 
+/// Chord of each action. It begins with the shipped keys.
 class KeyTable {
   public:
-    KeyTable();  ///< as shipped
-    std::optional<Act> find(const Chord& chord) const;
-    Chord chord(Act act) const { return chords_.at(act); }
-    /// Gives an action a key; another one that had it goes without. Returns that other one.
-    std::optional<Act> assign(Act act, const Chord& chord);
+    KeyTable();
+    std::optional<Action> find(const Chord& chord) const;
+    Chord chord(Action action) const { return chords_.at(action); }
+    /// Gives an action a key. Another action with that key loses it and is returned.
+    std::optional<Action> assign(Action action, const Chord& chord);
     bool shipped() const { return chords_ == KeyTable().chords_; }
-    /// Lines "word chord" of what differs from the shipped keys; and back, unknown lines skipped.
+    /// Returns (word, chord) of the keys that differ from the shipped ones. `restore` reads one; it skips unknown ones.
     std::vector<std::pair<std::string, std::string>> changes() const;
     void restore(const std::string& word, const std::string& chord);
 
   private:
-    std::map<Act, Chord> chords_;
+    std::map<Action, Chord> chords_;
 };
 
 }  // namespace tuft::app

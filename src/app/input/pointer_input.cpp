@@ -64,11 +64,11 @@ std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, cons
 PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Preset& preset,
                            const PointerSettings& settings, TipLag lag)
     : surface_(surface),
-      hold_(stroke::holder_options(preset, surface.mesh())),
+      holder_(stroke::holder_options(preset, surface.mesh())),
       settings_(settings),
       reach_(std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()})) {
-    hold_.tip_lag = std::move(lag.upright);
-    hold_.leaned = std::move(lag.leaned);
+    holder_.tip_lag = std::move(lag.upright);
+    holder_.leaned = std::move(lag.tilted);
 }
 
 std::optional<AimedSurface> PointerInput::find_surface(const Aim& aim) const {
@@ -129,12 +129,12 @@ brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3&
         const Vec3 d = v - glm::dot(v, normal) * normal;
         return glm::length(d) > 1e-6 ? glm::normalize(d) : Vec3(0);
     };
-    const double tipped = kTips * (1 - smooth_step(gone_ / (kTipTurns * hold_.tip_lag_turn)));
+    const double tipped = kTips * (1 - smooth_step(gone_ / (kTipTurns * holder_.tip_lag_turn)));
     const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) +
                                    std::tan(tilt.y) * along(aim.view_up) + tipped * dragged_.string);
     const Frame f = make_frame(point, up);
     const Quat upright = glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n)));
-    const double height = hold_.tuft_length + (pressure > 0 ? -pressure * hold_.working_depth : hold_.hover);
+    const double height = holder_.tuft_length + (pressure > 0 ? -pressure * holder_.working_depth : holder_.hover);
     return {.position = point + ahead_of(aim, normal, pressure) + height * up,
             .rotation = aim.turn == 0 ? upright : glm::normalize(upright * glm::angleAxis(-aim.turn, Vec3(0, 0, 1))),
             .time = time};
@@ -143,13 +143,13 @@ brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3&
 // Where the holder is for ink at the point: ahead along the string, and under a lean aside.
 Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure) const {
     const double taut = glm::length(dragged_.string);
-    if (hold_.tip_lag.empty() || !(pressure > 0) || taut < 1e-9) return Vec3(0);
+    if (holder_.tip_lag.empty() || !(pressure > 0) || taut < 1e-9) return Vec3(0);
     const stroke::Axes axes = stroke::axes_across(normal, aim.view_right, -aim.view_up);
     const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
     if (glm::length(ahead) < 1e-9) return Vec3(0);
     const Vec2 lag =
-        taut * stroke::lead_of(hold_, pressure, {settings_.tilt.x, -settings_.tilt.y}, glm::normalize(ahead));
-    const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * hold_.tuft_length)));
+        taut * stroke::lead_of(holder_, pressure, {settings_.tilt.x, -settings_.tilt.y}, glm::normalize(ahead));
+    const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * holder_.tuft_length)));
     return lag.x * axes.right + lag.y * axes.down + spread * dragged_.string;
 }
 
@@ -157,9 +157,9 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
 void PointerInput::drag() {
     Vec3 way = point_ - dragged_.position;
     way -= glm::dot(way, normal_) * normal_;
-    if (const double length = glm::length(way); length > hold_.tip_lag_turn) way *= hold_.tip_lag_turn / length;
+    if (const double length = glm::length(way); length > holder_.tip_lag_turn) way *= holder_.tip_lag_turn / length;
     dragged_.position = point_ - way;
-    dragged_.string = way / hold_.tip_lag_turn;
+    dragged_.string = way / holder_.tip_lag_turn;
 }
 
 double PointerInput::goal_pressure(const Aim& aim) const {
@@ -170,7 +170,7 @@ double PointerInput::goal_pressure(const Aim& aim) const {
 }
 
 void PointerInput::touch_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards,
-                              std::vector<HandStep>& steps) {
+                              std::vector<StrokeStep>& steps) {
     down_ = true;
     goal_ = point_ = hit.position;
     normal_ = hit.normal;
@@ -179,13 +179,13 @@ void PointerInput::touch_down(const Aim& aim, const AimedSurface& hit, const Vec
     motion_.time = motion_.speed = motion_.rest = motion_.pressure = gone_ = 0;
     spread_ = 0;
     dragged_.string = towards;
-    dragged_.position = point_ - hold_.tip_lag_turn * dragged_.string;
-    steps.push_back({HandStep::Kind::begin, {}});
-    steps.push_back({HandStep::Kind::poses, {pose_at(aim, point_, normal_, 0, 0)}});
+    dragged_.position = point_ - holder_.tip_lag_turn * dragged_.string;
+    steps.push_back({StrokeStep::Kind::begin, {}});
+    steps.push_back({StrokeStep::Kind::poses, {pose_at(aim, point_, normal_, 0, 0)}});
 }
 
 // A clean stroke is asked for: nothing is touched until its direction is known.
-void PointerInput::wait(const Aim& aim, const AimedSurface& hit, std::vector<HandStep>& steps) {
+void PointerInput::wait(const Aim& aim, const AimedSurface& hit, std::vector<StrokeStep>& steps) {
     waiting_.push_back({aim, hit});
     aim_ = aim;
     goal_ = hit.position;
@@ -195,7 +195,7 @@ void PointerInput::wait(const Aim& aim, const AimedSurface& hit, std::vector<Han
 }
 
 // Presses the tuft down at the first place, then goes on to where the cursor is by now.
-void PointerInput::set_down(std::vector<HandStep>& steps) {
+void PointerInput::set_down(std::vector<StrokeStep>& steps) {
     const std::vector<Waiting> waiting = std::move(waiting_);
     waiting_.clear();
     const Waiting& first = waiting.front();
@@ -207,10 +207,10 @@ void PointerInput::set_down(std::vector<HandStep>& steps) {
                steps);
     motion_.start -= kSetDown;  // as if it had begun earlier: it lags no further behind
     motion_.speed = length / std::max(kFrame, last.aim.time - first.aim.time);
-    spread_ = kSpread * hold_.tuft_length * (1 - std::min(1.0, motion_.speed / settings_.fast));
+    spread_ = kSpread * holder_.tuft_length * (1 - std::min(1.0, motion_.speed / settings_.fast));
     const double pressure = (glm::length(dragged_.string) > 0 ? kTouch : 1.0) * goal_pressure(first.aim);
     const int n = static_cast<int>(std::ceil(kSetDown / kFrame));
-    HandStep step;
+    StrokeStep step;
     for (int i = 1; i <= n; ++i) {
         motion_.time = kSetDown * i / n;
         motion_.pressure = pressure * i / n;
@@ -253,8 +253,8 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
     goal_ = goal;
 }
 
-std::vector<HandStep> PointerInput::move(const Aim& aim) {
-    std::vector<HandStep> steps;
+std::vector<StrokeStep> PointerInput::move(const Aim& aim) {
+    std::vector<StrokeStep> steps;
     const auto hit = find_surface(aim);
     // A small movement of the cursor that goes far on the model crossed an edge of its outline.
     const double expected = drawing() && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
@@ -269,7 +269,7 @@ std::vector<HandStep> PointerInput::move(const Aim& aim) {
     if (!down_) {
         touch_down(aim, *hit, Vec3(0), steps);
     } else {
-        HandStep step;
+        StrokeStep step;
         // A tablet reports what changes: where it was silent, the pen was held still until shortly before.
         if (aim.pressure >= 0 && aim_.pressure >= 0 && aim.time - aim_.time > 2 * kReport) {
             Aim still = aim_;
@@ -294,7 +294,7 @@ void PointerInput::arrive(std::vector<brush::Pose>& poses) {
     const double seconds = std::clamp(2 * way / std::max(motion_.speed, 1e-6), kFrame, kSlowest),
                  start = motion_.pressure;
     const int n = static_cast<int>(std::ceil(seconds / kFrame));
-    const double flick = std::min(1.0, way / (kFlick * hold_.working_depth));
+    const double flick = std::min(1.0, way / (kFlick * holder_.working_depth));
     for (int i = 1; i <= n; ++i) {
         const double t = static_cast<double>(i) / n, left = (1 - t) * (1 - t);
         const Vec3 before = point_;
@@ -309,12 +309,12 @@ void PointerInput::arrive(std::vector<brush::Pose>& poses) {
     }
 }
 
-std::vector<HandStep> PointerInput::lift() {
-    std::vector<HandStep> steps;
+std::vector<StrokeStep> PointerInput::lift() {
+    std::vector<StrokeStep> steps;
     if (!waiting_.empty()) set_down(steps);
     if (!down_) return steps;
     constexpr int count = 12;
-    HandStep step;
+    StrokeStep step;
     if (is_clean(aim_)) arrive(step.poses);
     const double start = motion_.pressure;
     for (int i = 1; i <= count; ++i) {
@@ -324,7 +324,7 @@ std::vector<HandStep> PointerInput::lift() {
     }
     down_ = false;
     steps.push_back(std::move(step));
-    steps.push_back({HandStep::Kind::end, {}});
+    steps.push_back({StrokeStep::Kind::end, {}});
     return steps;
 }
 

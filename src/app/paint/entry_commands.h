@@ -4,7 +4,7 @@
 #include "app/work/commands.h"
 
 /// \file
-/// Commands that are one entry of the journal each.
+/// Commands that append one entry to the journal. Paint thread.
 namespace tuft::app {
 
 void act_on_brush(PaintContext& context, JournalEditor& journal, const ActOnBrush& command);

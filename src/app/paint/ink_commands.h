@@ -4,10 +4,10 @@
 #include "app/work/paint_context.h"
 
 /// \file
-/// Inks of the work's own, and how the work is shown. None of these paints.
+/// Commands for inks and for how the work is shown. None of them paints. Paint thread.
 namespace tuft::app {
 
-/// Makes an ink part of the work, under a name that is free.
+/// Adds an ink to the project, renamed where its name is taken.
 void add_ink(PaintContext& context, ink::Ink ink);
 void pick_ink(PaintContext& context, const PickInk& command);
 void recolour(PaintContext& context, const RecolourInk& command);

@@ -6,21 +6,23 @@
 #include "app/work/commands.h"
 #include "app/work/paint_context.h"
 
+/// \file
+/// Changes of the journal with undo. Paint thread.
 namespace tuft::app {
 
-/// Adds entries to the journal, goes back over it, and changes what is in it.
+/// Appends, undoes, redoes and edits entries, and repaints what changed.
 class JournalEditor {
   public:
     JournalEditor(PaintContext& context, StrokePainter& strokes) : context_(context), strokes_(strokes) {}
 
-    /// An entry that is done at once.
+    /// Appends an entry and applies it.
     void add(stroke::JournalEntry entry);
-    /// The step before is undone together with the last one.
+    /// Joins the last step with the one before it: one undo reverts both.
     void join_last() { context_.history.done.back().joined = true; }
     void undo();
     void redo();
     void edit(const EditStrokes& command);
-    /// Puts other entries in the place of the whole journal.
+    /// Replaces the whole journal.
     void restore(std::vector<stroke::JournalEntry> entries);
 
   private:

@@ -10,40 +10,43 @@
 #include "mesh/read/polygon_soup.h"
 #include "mesh/repair/inspect.h"
 
+/// \file
+/// Opening of models and projects in the background. Window thread.
 namespace tuft::app {
 
-/// What a model file holds, before it is given an atlas.
+/// Content of a model file, before it has an atlas.
 struct Inspected {
     std::filesystem::path path;
     mesh::PolygonSoup soup;
-    mesh::MeshSummary summary;         ///< lengths in metres by the guessed unit
+    mesh::MeshSummary summary;         ///< lengths in metres, by the guessed unit
     std::vector<std::string> defects;  ///< found and repaired, one line each
-    bool unit_fixed = false;           ///< the format says the unit
+    bool unit_fixed = false;           ///< the format defines the unit
 };
 
+/// Choices of the opening dialog.
 struct OpenOptions {
     FileFrame frame;  ///< of the model file
     std::uint32_t atlas_size = 2048;
     std::string substrate = "porcelain";
-    bool own_colours = true;  ///< the model's, where it brings any along
+    bool own_colours = true;  ///< shows the model's own colours, if any
 };
 
-/// What a project is opened for.
+/// Purpose of opening a project.
 enum class OpenAs {
-    work,  ///< to go on in its file; in a copy where that cannot be written
-    view,  ///< to look at it while another program works on it
-    copy,  ///< to go on in a copy
+    work,  ///< continues in its file, or in a copy where that is not writable
+    view,  ///< read-only, while another program works on it
+    copy,  ///< continues in a copy
 };
 
-/// A project that another program has.
+/// A project that another program holds.
 struct InUse {
     std::filesystem::path project;
     io::LockHolder holder;
 };
 
-/// Opening a model takes two steps, each on a thread of its own: `inspect` reads and checks
-/// the file; `prepare` unwraps it and makes it ready to be painted on. A project needs
-/// `load` only. One step at a time; starting one stops the one before.
+/// Opens a model in two steps: `inspect` reads and checks the file; `prepare` unwraps it and makes it ready for
+/// painting. A project needs `load` only. Each step runs on a thread of its own. One step at a time: a new one cancels
+/// the last.
 class Opening {
   public:
     Opening();
@@ -51,22 +54,22 @@ class Opening {
 
     void inspect(const std::filesystem::path& path);
     void prepare(Inspected inspected, const OpenOptions& options, const std::filesystem::path& project);
-    /// The same for a model that takes the place of another: paints the strokes of `former` on it.
+    /// Prepares a model that replaces another: paints the strokes of the project `former` on it.
     void revise(Inspected inspected, const OpenOptions& options, const std::filesystem::path& former,
                 const std::filesystem::path& project);
-    /// `session`: where a copy goes.
+    /// Loads a project. `session`: where a copy is created.
     void load(const std::filesystem::path& project, const std::filesystem::path& session, OpenAs as = OpenAs::work);
     void cancel();
 
     bool running() const { return job_ != nullptr; }
-    std::string phase() const;  ///< for a person, English
-    double fraction() const;    ///< of the whole
+    std::string phase() const;  ///< in English, for the status bar
+    double fraction() const;    ///< of the whole step, 0–1
 
-    /// Whether the step is done; results are taken once. The error is one line, "" if none.
+    /// The result of a step, returned once. `error`: one line, or "".
     struct Result {
         std::optional<Inspected> inspected;
         std::optional<PaintWork> work;
-        std::optional<InUse> in_use;  ///< and therefore not opened
+        std::optional<InUse> in_use;  ///< why it was not opened
         std::string error;
         bool done = false;
     };
@@ -79,14 +82,14 @@ class Opening {
 
     std::unique_ptr<Job> job_;
     std::filesystem::path loaded_;               ///< project of the last `load`
-    std::vector<std::unique_ptr<Job>> leaving_;  ///< cancelled, not ended yet
+    std::vector<std::unique_ptr<Job>> leaving_;  ///< cancelled, still running
 };
 
-/// Texel size in metres that an atlas of `size` texels per side gives a surface of that area
-/// (m²), with the usual three quarters of it used.
+/// Returns the texel size in metres that an atlas of `size` texels per side gives a surface of `area` m². It assumes
+/// the usual utilisation of 3/4.
 double expected_texel(double area, std::uint32_t size);
-/// Side of the atlas that is proposed for it: 2048, or 4096 where texels would be larger than
-/// 0.4 mm, a fine brush's line, and there is memory for it.
+/// Returns the proposed side of the atlas in texels: 2048; 4096 where texels would be larger than 0.4 mm, a fine
+/// brush's line, and memory suffices.
 std::uint32_t proposed_size(double area);
 
 }  // namespace tuft::app

@@ -6,14 +6,16 @@
 #include "io/project/project.h"
 #include "stroke/document/merge.h"
 
+/// \file
+/// Changes of the project by other programs. Paint thread.
 namespace tuft::app {
 
-/// Takes in what other programs do to the project meanwhile.
+/// Merges changes of other programs into the work.
 class OutsideChanges {
   public:
     explicit OutsideChanges(PaintContext& context) : context_(context) {}
 
-    /// Looks whether the file changed; while a stroke is in hand it waits. Costs microseconds when it did not.
+    /// Merges the file's changes, if any. Does nothing during a stroke. Cost without changes: some microseconds.
     void look();
 
   private:

@@ -7,7 +7,7 @@
 #include "app/paint/highlight_command.h"
 #include "app/paint/ink_commands.h"
 #include "app/paint/snapshot_commands.h"
-#include "app/work/overloaded.h"
+#include "core/overloaded.h"
 
 namespace tuft::app {
 namespace {

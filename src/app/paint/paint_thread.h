@@ -14,37 +14,38 @@
 #include "app/work/paint_context.h"
 #include "app/work/update.h"
 
+/// \file
+/// The thread that owns the document and paints. Drawing and simulation never wait for each other.
 namespace tuft::app {
 
-/// Paints on a thread of its own, so that drawing never waits for the simulation nor the simulation for drawing.
-/// From its making on, only that thread touches the document.
+/// Runs the paint thread. Only that thread accesses the document while this lives. Methods are for the window thread.
 class PaintThread {
   public:
     explicit PaintThread(PaintWork work);
-    /// Finishes as `finish` does.
+    /// Calls `finish`.
     ~PaintThread();
-    /// Does everything that was asked for first and saves it: in `PaintWork::spare` where its own file cannot be
-    /// written. Returns that path then; empty: all is in its own file, or it is lost, as `unsaved` says.
+    /// Executes all posted commands and saves; in `PaintWork::spare` where the project's file cannot be written.
+    /// Returns the path of the spare file then, else "". `unsaved` tells whether work was lost.
     std::filesystem::path finish();
     bool unsaved() const { return context_.work.autosave.has_unsaved(); }  ///< after `finish`
 
     void post(Command command) { queue_.post(std::move(command)); }
     Update take();
-    /// Nothing asked for is left to do.
+    /// True when no command waits or runs.
     bool idle() const { return queue_.idle(); }
-    /// Waits until it is so, but not longer than so many seconds.
+    /// Waits until `idle`, at most that many seconds.
     void wait_idle(double seconds) const { queue_.wait_idle(seconds); }
-    /// Stops a repainting in work; what was before stays.
+    /// Cancels running long work; the state before it stays.
     void stop_long_work() { context_.stop = true; }
 
     const stroke::Model& model() const { return *context_.work.model; }  ///< never changes
     const std::string& source() const { return context_.work.source; }
     const FileFrame& frame() const { return context_.work.frame; }  ///< of the model file
-    /// The texture as it was at the start; once.
+    /// Returns the initial texture, once.
     render::MapPixels take_pixels() { return std::move(context_.work.pixels); }
-    /// Reference images that the project carried when it was opened.
+    /// Reference images of the project when it was opened.
     const std::vector<io::Attachment>& carried_references() const { return carried_; }
-    /// Figures of the model's atlas; nullptr while they are measured, which the first call begins.
+    /// Returns figures of the model's atlas; nullptr while they are measured. The first call starts that.
     const atlas::AtlasReport* atlas_report();
 
   private:
@@ -61,7 +62,7 @@ class PaintThread {
     CommandQueue queue_;
     std::vector<io::Attachment> carried_;
     std::shared_future<atlas::AtlasReport> measured_;
-    std::filesystem::path spared_;  ///< the work is there at the end
+    std::filesystem::path spared_;  ///< the spare file, when it was used
     std::thread thread_;
 };
 

@@ -4,12 +4,12 @@
 #include "app/work/commands.h"
 
 /// \file
-/// Named states of the journal: taking, showing and restoring them.
+/// Commands that take, show and restore snapshots of the journal. Paint thread.
 namespace tuft::app {
 
 void take_snapshot(PaintContext& context, const TakeSnapshot& command);
 void rename_snapshot(PaintContext& context, const RenameSnapshot& command);
-/// Paints a snapshot beside the work and hands over its picture.
+/// Paints a snapshot on a second document and passes its texels to the window.
 void show_snapshot(PaintContext& context, const ShowSnapshot& command);
 void restore_snapshot(PaintContext& context, JournalEditor& journal, const RestoreSnapshot& command);
 

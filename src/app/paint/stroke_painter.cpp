@@ -55,7 +55,7 @@ void StrokePainter::extend(const ExtendStroke& command) {
         context_.work.document->extend(poses.subspan(i, std::min(kPosesAtOnce, poses.size() - i)));
         context_.publisher.publish_if_due();
     }
-    context_.publisher.set_done(command.asked);
+    context_.publisher.set_done(command.requested_at);
     context_.publisher.publish();
 }
 

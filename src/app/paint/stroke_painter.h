@@ -6,9 +6,11 @@
 #include "app/work/commands.h"
 #include "app/work/paint_context.h"
 
+/// \file
+/// Painting of strokes and drawings. Paint thread.
 namespace tuft::app {
 
-/// Paints the stroke in hand with its symmetric copies, and drawings that were placed.
+/// Paints the current stroke with its symmetric copies, and placed drawings.
 class StrokePainter {
   public:
     explicit StrokePainter(PaintContext& context) : context_(context) {}
@@ -16,9 +18,9 @@ class StrokePainter {
     void begin(const BeginStroke& command);
     void extend(const ExtendStroke& command);
     void end();
-    /// Drops the stroke in hand, if there is one.
+    /// Drops the current stroke, if any.
     void cancel();
-    /// A stroke that does not come leaves no entry of its loading, and what could be redone before it still can.
+    /// Removes the loading entries of a stroke that was never painted, and restores the redo list.
     void drop_loads();
     void paint_drawing(PaintDrawing& command);
 
@@ -29,8 +31,8 @@ class StrokePainter {
 
     PaintContext& context_;
     BeginStroke current_;
-    std::size_t loads_ = 0;                            ///< entries that loaded the brush for the stroke in work
-    std::vector<stroke::JournalEntry> undone_before_;  ///< what could be redone before them
+    std::size_t loads_ = 0;                            ///< entries that loaded the brush for the current stroke
+    std::vector<stroke::JournalEntry> undone_before_;  ///< redo list before them
     stroke::WidthTables widths_;
 };
 

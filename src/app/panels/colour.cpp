@@ -29,10 +29,10 @@ void wish(Session& s, bool take) {
     ColourChoice& c = s.colours.choice;
     c.hex = ink::to_hex(linear_of(c.wanted));
     c.take = take;
-    c.finder.want({.colour = linear_of(c.wanted),
-                   .substrate = s.colours.appearance.painted_on,
-                   .film = c.free_film ? 0 : c.film,
-                   .held = pigments_in_use(s.colours, s.journal.lines)});
+    c.finder.request({.colour = linear_of(c.wanted),
+                      .substrate = s.colours.appearance.painted_on,
+                      .film = c.free_film ? 0 : c.film,
+                      .held = pigments_in_use(s.colours, s.journal.lines)});
 }
 
 void keep_hsv(ColourChoice& c) {
@@ -86,25 +86,25 @@ void sliders(Session& s) {
     std::array<double, 3> v;
     if (c.sliders == ColourSliders::rgb) {
         for (std::size_t i = 0; i < 3; ++i) v[i] = 255.0 * static_cast<double>(c.wanted[i]);
-        changed |= ui.slider("Red", v[0], 0, 255, "%.0f");
-        changed |= ui.slider("Green", v[1], 0, 255, "%.0f");
-        changed |= ui.slider("Blue", v[2], 0, 255, "%.0f");
+        changed |= ui.slider("Red", v[0], {0, 255, "%.0f"});
+        changed |= ui.slider("Green", v[1], {0, 255, "%.0f"});
+        changed |= ui.slider("Blue", v[2], {0, 255, "%.0f"});
         for (std::size_t i = 0; i < 3; ++i) c.wanted[i] = static_cast<float>(v[i] / 255);
         if (changed) keep_hsv(c);
     } else if (c.sliders == ColourSliders::hsv) {
         v = {360.0 * static_cast<double>(c.hsv[0]), static_cast<double>(c.hsv[1]), static_cast<double>(c.hsv[2])};
-        changed |= ui.slider("Hue", v[0], 0, 360, "%.0f\xc2\xb0");
-        changed |= ui.slider("Saturation", v[1], 0, 1, "%.0f %%", nullptr, 0.01);
-        changed |= ui.slider("Value", v[2], 0, 1, "%.0f %%", nullptr, 0.01);
+        changed |= ui.slider("Hue", v[0], {0, 360, "%.0f\xc2\xb0"});
+        changed |= ui.slider("Saturation", v[1], {0, 1, "%.0f %%", 0.01});
+        changed |= ui.slider("Value", v[2], {0, 1, "%.0f %%", 0.01});
         c.hsv = {static_cast<float>(v[0] / 360), static_cast<float>(v[1]), static_cast<float>(v[2])};
         if (changed) ImGui::ColorConvertHSVtoRGB(c.hsv[0], c.hsv[1], c.hsv[2], c.wanted[0], c.wanted[1], c.wanted[2]);
     } else {
         const ink::Rgb linear = linear_of(c.wanted);
         v = ink::lab_of_rgb(
             {static_cast<double>(linear[0]), static_cast<double>(linear[1]), static_cast<double>(linear[2])});
-        changed |= ui.slider("Lightness", v[0], 0, 100, "%.0f");
-        changed |= ui.slider("Green - red", v[1], -110, 110, "%.0f");
-        changed |= ui.slider("Blue - yellow", v[2], -110, 110, "%.0f");
+        changed |= ui.slider("Lightness", v[0], {0, 100, "%.0f"});
+        changed |= ui.slider("Green - red", v[1], {-110, 110, "%.0f"});
+        changed |= ui.slider("Blue - yellow", v[2], {-110, 110, "%.0f"});
         if (changed) {
             const std::array<double, 3> rgb = ink::rgb_of_lab(v);
             const ink::Rgb inside =
@@ -230,8 +230,8 @@ void colour_panel(Session& s) {
     if (ui.toggle("As thick as it needs", c.free_film,
                   "Else the film has the thickness below; a thicker one reaches more colours"))
         wish(s, true);
-    if (!c.free_film && ui.slider("Film", c.film, 0.5, ink::kThickestMix, "%.0f \xce\xbcm",
-                                  "Thickness of the wet ink that a full brush leaves", 1 / kUnitUm))
+    if (!c.free_film && ui.slider("Film", c.film, {0.5, ink::kThickestMix, "%.0f \xce\xbcm", 1 / kUnitUm},
+                                  "Thickness of the wet ink that a full brush leaves"))
         wish(s, true);
     result(s);
     const bool in_brush = c.match && s.brush.ink == c.match->ink.name;

@@ -240,7 +240,7 @@ void settings_dialog(Session& s) {
         if (ui.choice("Moves the eye", s.preferences.space_mouse.moves_eye, "The cap is your head", 150))
             s.preferences.space_mouse.moves_eye = true, cap = true;
         cap |= ui.toggle("Keep the horizon level", s.preferences.space_mouse.level);
-        cap |= ui.slider("Cap speed", s.preferences.space_mouse.speed, 0.1, 4, "%.1f");
+        cap |= ui.slider("Cap speed", s.preferences.space_mouse.speed, {0.1, 4, "%.1f"});
     }
     if (cap) store_settings(s);
     if (ui.button("Keys...", "Look up and change what the keys do", 150)) s.dialogs.show_keys = true;

@@ -114,13 +114,11 @@ void care(Session& s) {
     ImGui::SameLine();
     if (ui.button("Comb", "Hair straight and together, the ink stays", half)) act(stroke::EntryKind::reshape);
     ui.slider(
-        "How deep", s.brush.dip_depth, 0.05, 1, "%.0f %%",
-        "Part of the hair, from the tip. Wipe the tip and dip it into another ink: it is darker than the belly then",
-        0.01);
-    ui.slider("Which side", s.brush.dip_side, -1, 1, "%.0f %%",
+        "How deep", s.brush.dip_depth, {0.05, 1, "%.0f %%", 0.01},
+        "Part of the hair, from the tip. Wipe the tip and dip it into another ink: it is darker than the belly then");
+    ui.slider("Which side", s.brush.dip_side, {-1, 1, "%.0f %%", 0.01},
               "Part of the hair's width that is dipped or wiped, from the right flank, or from the left when negative; "
-              "0: all of it. Wipe one side and dip it into another ink: the stroke shows both side by side",
-              0.01);
+              "0: all of it. Wipe one side and dip it into another ink: the stroke shows both side by side");
     if (s.reported.brush.colour) {
         const auto& c = *s.reported.brush.colour;
         ImGui::PushStyleColor(ImGuiCol_PlotHistogram, IM_COL32(c[0], c[1], c[2], 255));
@@ -142,7 +140,7 @@ void two_inks(Session& s) {
     ImGui::Dummy(ImVec2(size, size));
     ImGui::SameLine();
     ui.combo("Tip ink", s.brush.tip_ink, ink_names(s));
-    ui.slider("Tip", s.brush.tip_depth, 0.05, 0.9, "%.0f %%", "How far up the hair it goes", 0.01);
+    ui.slider("Tip", s.brush.tip_depth, {0.05, 0.9, "%.0f %%", 0.01}, "How far up the hair it goes");
 }
 
 }  // namespace
@@ -209,8 +207,8 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
         double others = 0;
         for (const ink::InkPart& other : edited.parts)
             if (&other != &part) others += other.fraction;
-        s.ui.slider(part.pigment.name.c_str(), part.fraction, 0, std::max(0.01, 1 - others), "%.0f %%",
-                    "Part of the wet ink; the rest is water", 0.01);
+        s.ui.slider(part.pigment.name.c_str(), part.fraction, {0, std::max(0.01, 1 - others), "%.0f %%", 0.01},
+                    "Part of the wet ink; the rest is water");
         released = released || ImGui::IsItemDeactivatedAfterEdit();
         held = held || ImGui::IsItemActive();
     }
@@ -237,7 +235,7 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
 
 void colours_panel(Session& s, float top, float bottom, float left) {
     Ui& ui = s.ui;
-    begin_side_panel(s.ui, "###colours", left, top, kToolWidth, bottom);
+    begin_side_panel(s.ui, "###colours", {left, top, bottom});
     ui.heading("Recolour");
     ui.note(ui.tr("Pigment amounts stay as they were painted; only what they look like changes."));
     std::set<std::string> used;

@@ -95,7 +95,7 @@ std::vector<std::uint64_t> ids_of(const Lines& lines) {
 Lines chosen_lines(const Session& s) {
     Lines lines;
     for (const StrokeLine& line : s.journal.lines)
-        if (s.journal.holds(line.id)) lines.push_back(&line);
+        if (s.journal.is_selected(line.id)) lines.push_back(&line);
     return lines;
 }
 
@@ -147,8 +147,8 @@ void edit_chosen(Session& s) {
     if (std::none_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); })) return;
     const bool on_model = std::any_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return !l->on_palette; });
     if (on_model &&
-        ui.choice("Move", s.journal.moves, "Then drag it over the model with the left button", 2 * half + 8))
-        s.journal.moves = !s.journal.moves;
+        ui.choice("Move", s.journal.move_on_drag, "Then drag it over the model with the left button", 2 * half + 8))
+        s.journal.move_on_drag = !s.journal.move_on_drag;
     std::string brush = common(lines, [](const StrokeLine&l) { return brush::sized_name(l.brush).base; }),
                 ink = common(lines, [](const StrokeLine&l) { return l.ink; });
     if (brush.empty()) brush = "Several brushes";
@@ -167,7 +167,8 @@ void context_menu(Session& s) {
     const bool strokes = std::any_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); });
     const bool grouped = std::any_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->group.id != 0; });
     if (ui.menu_item(hidden ? "Show" : "Hide")) post(s, {.hidden = !hidden}, lines);
-    if (ui.menu_item("Move", nullptr, s.journal.moves, strokes)) s.journal.moves = !s.journal.moves;
+    if (ui.menu_item("Move", nullptr, s.journal.move_on_drag, strokes))
+        s.journal.move_on_drag = !s.journal.move_on_drag;
     if (strokes && ui.begin_menu("Brush")) {
         for (const std::string& name : s.brush.presets)
             if (ui.menu_item(name.c_str())) post(s, {.brush = name}, lines);
@@ -183,7 +184,7 @@ void context_menu(Session& s) {
     if (ui.menu_item("Group", nullptr, false, lines.size() > 1)) post(s, {.group = ui.tr("Group")}, lines);
     if (ui.menu_item("Ungroup", nullptr, false, grouped)) post(s, {.group = ""}, lines);
     ImGui::Separator();
-    if (ui.menu_item("Delete", name_of(s.preferences.keys.chord(Act::delete_stroke)).c_str()))
+    if (ui.menu_item("Delete", name_of(s.preferences.keys.chord(Action::delete_stroke)).c_str()))
         post(s, {.remove = true}, lines);
     ui.in_menu = false;
     ImGui::EndPopup();
@@ -194,7 +195,7 @@ void choose_row(Session& s, const JournalRow& row) {
     JournalState& j = s.journal;
     std::set<std::uint64_t> ids;
     for (const std::size_t i : row.lines) ids.insert(s.journal.lines[i].id);
-    const bool all = std::all_of(ids.begin(), ids.end(), [&](std::uint64_t id) { return j.holds(id); });
+    const bool all = std::all_of(ids.begin(), ids.end(), [&](std::uint64_t id) { return j.is_selected(id); });
     const ImGuiIO& io = ImGui::GetIO();
     std::set<std::uint64_t> chosen = io.KeyCtrl || io.KeyShift ? j.selected : std::set<std::uint64_t>{};
     const auto anchor = std::find_if(s.journal.lines.begin(), s.journal.lines.end(),
@@ -256,7 +257,7 @@ void draw_row(Session& s, const JournalRow& row) {
     if (row.group) fold_arrow(s, row.group, newest.group.name, size);
     if (row.inside) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + s.ui.px(kIndent));
     const bool chosen =
-        std::all_of(lines.begin(), lines.end(), [&](const StrokeLine* l) { return s.journal.holds(l->id); });
+        std::all_of(lines.begin(), lines.end(), [&](const StrokeLine* l) { return s.journal.is_selected(l->id); });
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (ImGui::Selectable("##row", chosen, 0, ImVec2(0, size))) choose_row(s, row);
     if (ImGui::IsItemClicked(1) && !chosen) choose_row(s, row);
@@ -287,7 +288,7 @@ void draw_row(Session& s, const JournalRow& row) {
     else if (over && (title != text.title || below != text.below))
         ImGui::SetTooltip("%s\n%s", text.title.c_str(), text.below.c_str());
     // Below the row that was clicked last.
-    if (newest.id == s.journal.anchor && s.journal.holds(newest.id) && row.inside == s.journal.anchor_inside)
+    if (newest.id == s.journal.anchor && s.journal.is_selected(newest.id) && row.inside == s.journal.anchor_inside)
         edit_chosen(s);
     if (row.group) ImGui::PopID();
     ImGui::PopID();
@@ -298,7 +299,7 @@ void draw_rows(Session& s) {
     const float height = s.ui.px(kRowHeight) + ImGui::GetStyle().ItemSpacing.y;
     // Rows are of one height but for the one with the buttons below it.
     const auto edited = std::find_if(rows.begin(), rows.end(), [&](const JournalRow& row) {
-        return s.journal.holds(s.journal.anchor) && s.journal.lines[row.lines.back()].id == s.journal.anchor &&
+        return s.journal.is_selected(s.journal.anchor) && s.journal.lines[row.lines.back()].id == s.journal.anchor &&
                row.inside == s.journal.anchor_inside;
     });
     const auto clipped = [&](std::size_t from, std::size_t to) {
@@ -320,15 +321,15 @@ void draw_rows(Session& s) {
 
 void journal_panel(Session& s, float top, float bottom, float left) {
     Ui& ui = s.ui;
-    begin_side_panel(s.ui, "###journal", left, top, kJournalWidth, bottom);
+    begin_side_panel(s.ui, "###journal", {left, top, bottom, kJournalWidth});
     if (!s.panels.journal_fits &&
         ui.primary_button("Back to the tools", ImGui::GetContentRegionAvail().x / ui.settings().scale))
         s.panels.journal_over_tools = false;
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
-    if (ui.button("Undo", name_of(s.preferences.keys.chord(Act::undo)).c_str(), half, s.reported.document.can_undo))
+    if (ui.button("Undo", name_of(s.preferences.keys.chord(Action::undo)).c_str(), half, s.reported.document.can_undo))
         s.paint_thread->post(UndoStroke{});
     ImGui::SameLine();
-    if (ui.button("Redo", name_of(s.preferences.keys.chord(Act::redo)).c_str(), half, s.reported.document.can_redo))
+    if (ui.button("Redo", name_of(s.preferences.keys.chord(Action::redo)).c_str(), half, s.reported.document.can_redo))
         s.paint_thread->post(RedoStroke{});
     if (!s.reported.progress.busy.empty()) {
         ImGui::TextUnformatted(ui.tr(s.reported.progress.busy.c_str()));

@@ -25,22 +25,22 @@ void mouse_rows(Ui& ui, Keymap keymap) {
     }
 }
 
-void key_rows(Ui& ui, const KeyTable& keys, std::optional<Act>& to_assign) {
-    for (int i = 0; i < static_cast<int>(Act::count); ++i) {
-        const auto act = static_cast<Act>(i);
+void key_rows(Ui& ui, const KeyTable& keys, std::optional<Action>& to_assign) {
+    for (int i = 0; i < static_cast<int>(Action::count); ++i) {
+        const auto action = static_cast<Action>(i);
         ImGui::PushID(i);
         ImGui::AlignTextToFramePadding();
-        ImGui::TextUnformatted(ui.tr(title_of(act)));
+        ImGui::TextUnformatted(ui.tr(title_of(action)));
         ImGui::SameLine(ui.px(300));
-        const bool asked = to_assign == act;
-        const std::string name = asked                              ? ui.tr("press a key...")
-                                 : name_of(keys.chord(act)).empty() ? "\xe2\x80\x93"
-                                                                    : name_of(keys.chord(act));
+        const bool asked = to_assign == action;
+        const std::string name = asked                                 ? ui.tr("press a key...")
+                                 : name_of(keys.chord(action)).empty() ? "\xe2\x80\x93"
+                                                                       : name_of(keys.chord(action));
         if (asked) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));
         if (ImGui::Button((name + "##chord").c_str(), ImVec2(ui.px(150), 0)))
-            to_assign = asked ? std::nullopt : std::optional(act);
+            to_assign = asked ? std::nullopt : std::optional(action);
         if (asked) ImGui::PopStyleColor();
-        ui.mark(std::string("key ") + word_of(act));
+        ui.mark(std::string("key ") + word_of(action));
         ImGui::PopID();
     }
 }

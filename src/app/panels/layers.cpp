@@ -120,7 +120,7 @@ void details(Session& s, const Layer& layer, std::size_t place) {
     Ui& ui = s.ui;
     const auto& all = s.reported.document.layers.layers;
     if (s.layers.opacity < 0) s.layers.opacity = layer.opacity;
-    ui.slider("Opacity", s.layers.opacity, 0, 1, "%.0f %%", "Of the whole layer over those below", 0.01);
+    ui.slider("Opacity", s.layers.opacity, {0, 1, "%.0f %%", 0.01}, "Of the whole layer over those below");
     if (ImGui::IsItemDeactivatedAfterEdit() && s.layers.opacity != layer.opacity)
         change(s, layer, [&](Layer& l) { l.opacity = s.layers.opacity; });
     if (!ImGui::IsItemActive()) s.layers.opacity = -1;

@@ -85,9 +85,9 @@ void mask_section(Session& s) {
             c.kind = kinds[i].first;
     }
     if (c.kind == MaskKind::angle) {
-        ui.slider("Within", c.within, 0, 180 * kDegree, "%.0f\xc2\xb0",
-                  "Of the direction that the surface has where you click", kDegree);
-        ui.slider("Soft edge", c.soft, 0, 45 * kDegree, "%.0f\xc2\xb0", nullptr, kDegree);
+        ui.slider("Within", c.within, {0, 180 * kDegree, "%.0f\xc2\xb0", kDegree},
+                  "Of the direction that the surface has where you click");
+        ui.slider("Soft edge", c.soft, {0, 45 * kDegree, "%.0f\xc2\xb0", kDegree});
         ui.note(ui.tr("Click on the model: what faces as it does there."));
     } else if (c.kind == MaskKind::chart) {
         ui.note(ui.tr("Click on the model: the chart that lies there."));

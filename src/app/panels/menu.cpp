@@ -11,12 +11,12 @@ namespace {
 void file_menu(Session& s) {
     if (!s.ui.begin_menu("File")) return;
     const bool ready = s.paint_thread != nullptr;
-    if (s.ui.menu_item("Open...", name_of(s.preferences.keys.chord(Act::open)).c_str()))
+    if (s.ui.menu_item("Open...", name_of(s.preferences.keys.chord(Action::open)).c_str()))
         s.dialogs.file.show(FileDialog::Purpose::open, {});
-    if (s.ui.menu_item("Save as...", name_of(s.preferences.keys.chord(Act::save)).c_str(), false, ready))
+    if (s.ui.menu_item("Save as...", name_of(s.preferences.keys.chord(Action::save)).c_str(), false, ready))
         s.dialogs.file.show(FileDialog::Purpose::save,
                             project_name(s.paint_thread.get(), s.reported.file.project) + ".tuft");
-    if (s.ui.menu_item("Export...", name_of(s.preferences.keys.chord(Act::export_to)).c_str(), false, ready))
+    if (s.ui.menu_item("Export...", name_of(s.preferences.keys.chord(Action::export_to)).c_str(), false, ready))
         s.dialogs.show_export = true;
     if (s.ui.menu_item("Revised model...", nullptr, false, ready))
         s.dialogs.file.show(FileDialog::Purpose::revise, s.paint_thread->source());
@@ -24,17 +24,17 @@ void file_menu(Session& s) {
         open_previous(s);
     ImGui::Separator();
     if (s.ui.menu_item("Close model", nullptr, false, ready)) request_close(s, {CloseRequest::Then::close, {}});
-    if (s.ui.menu_item("Quit", name_of(s.preferences.keys.chord(Act::quit)).c_str())) request_close(s, {});
+    if (s.ui.menu_item("Quit", name_of(s.preferences.keys.chord(Action::quit)).c_str())) request_close(s, {});
     ImGui::EndMenu();
 }
 
 void edit_menu(Session& s) {
     if (!s.ui.begin_menu("Edit")) return;
-    if (s.ui.menu_item("Undo", name_of(s.preferences.keys.chord(Act::undo)).c_str(), false,
+    if (s.ui.menu_item("Undo", name_of(s.preferences.keys.chord(Action::undo)).c_str(), false,
                        s.reported.document.can_undo) &&
         s.paint_thread)
         s.paint_thread->post(UndoStroke{});
-    if (s.ui.menu_item("Redo", name_of(s.preferences.keys.chord(Act::redo)).c_str(), false,
+    if (s.ui.menu_item("Redo", name_of(s.preferences.keys.chord(Action::redo)).c_str(), false,
                        s.reported.document.can_redo) &&
         s.paint_thread)
         s.paint_thread->post(RedoStroke{});
@@ -48,37 +48,39 @@ void edit_menu(Session& s) {
 void view_menu(Session& s) {
     if (!s.ui.begin_menu("View")) return;
     Orbit& o = s.view.orbit;
-    if (s.ui.menu_item("Frame all", name_of(s.preferences.keys.chord(Act::frame_all)).c_str()) && s.paint_thread)
+    if (s.ui.menu_item("Frame all", name_of(s.preferences.keys.chord(Action::frame_all)).c_str()) && s.paint_thread)
         o.frame(s.paint_thread->model().mesh->bounds);
-    if (s.ui.menu_item("Front", name_of(s.preferences.keys.chord(Act::front)).c_str()))
+    if (s.ui.menu_item("Front", name_of(s.preferences.keys.chord(Action::front)).c_str()))
         o.look_from(StandardView::front);
-    if (s.ui.menu_item("Back", name_of(s.preferences.keys.chord(Act::back)).c_str())) o.look_from(StandardView::back);
-    if (s.ui.menu_item("Right", name_of(s.preferences.keys.chord(Act::right)).c_str()))
+    if (s.ui.menu_item("Back", name_of(s.preferences.keys.chord(Action::back)).c_str()))
+        o.look_from(StandardView::back);
+    if (s.ui.menu_item("Right", name_of(s.preferences.keys.chord(Action::right)).c_str()))
         o.look_from(StandardView::right);
-    if (s.ui.menu_item("Left", name_of(s.preferences.keys.chord(Act::left)).c_str())) o.look_from(StandardView::left);
-    if (s.ui.menu_item("Top", name_of(s.preferences.keys.chord(Act::top)).c_str())) o.look_from(StandardView::top);
-    if (s.ui.menu_item("Bottom", name_of(s.preferences.keys.chord(Act::bottom)).c_str()))
+    if (s.ui.menu_item("Left", name_of(s.preferences.keys.chord(Action::left)).c_str()))
+        o.look_from(StandardView::left);
+    if (s.ui.menu_item("Top", name_of(s.preferences.keys.chord(Action::top)).c_str())) o.look_from(StandardView::top);
+    if (s.ui.menu_item("Bottom", name_of(s.preferences.keys.chord(Action::bottom)).c_str()))
         o.look_from(StandardView::bottom);
     ImGui::Separator();
-    if (s.ui.menu_item("Parallel projection", name_of(s.preferences.keys.chord(Act::parallel)).c_str(), o.parallel))
+    if (s.ui.menu_item("Parallel projection", name_of(s.preferences.keys.chord(Action::parallel)).c_str(), o.parallel))
         o.set_parallel(!o.parallel);
-    if (s.ui.menu_item("Atlas beside the model", name_of(s.preferences.keys.chord(Act::atlas)).c_str(),
+    if (s.ui.menu_item("Atlas beside the model", name_of(s.preferences.keys.chord(Action::atlas)).c_str(),
                        s.view.atlas.shown))
         s.view.atlas.shown = !s.view.atlas.shown;
     if (!s.panels.journal_fits &&
         s.ui.menu_item("Journal and layers", nullptr, s.panels.journal_over_tools, s.paint_thread != nullptr))
         s.panels.journal_over_tools = !s.panels.journal_over_tools;
-    if (s.ui.menu_item("Palette", name_of(s.preferences.keys.chord(Act::palette)).c_str(), s.colours.palette.shown,
+    if (s.ui.menu_item("Palette", name_of(s.preferences.keys.chord(Action::palette)).c_str(), s.colours.palette.shown,
                        s.paint_thread != nullptr))
         show_palette(s.colours.palette, s.brush, s.status, !s.colours.palette.shown);
     if (s.ui.menu_item("Settings of the tools", nullptr, s.panels.show_tools, s.paint_thread != nullptr))
         s.panels.show_tools = !s.panels.show_tools, store_settings(s);
     if (s.ui.menu_item("Journal", nullptr, s.panels.show_journal, s.paint_thread != nullptr && s.panels.journal_fits))
         s.panels.show_journal = !s.panels.show_journal, store_settings(s);
-    if (s.ui.menu_item("Fold the panels", name_of(s.preferences.keys.chord(Act::panels)).c_str(), false,
+    if (s.ui.menu_item("Fold the panels", name_of(s.preferences.keys.chord(Action::panels)).c_str(), false,
                        s.paint_thread != nullptr))
         fold_panels(s);
-    if (s.ui.menu_item("See through the brush", name_of(s.preferences.keys.chord(Act::see_through)).c_str(),
+    if (s.ui.menu_item("See through the brush", name_of(s.preferences.keys.chord(Action::see_through)).c_str(),
                        s.view.see_through))
         s.view.see_through = !s.view.see_through;
     if (s.ui.menu_item("Side view of the tuft", nullptr, s.view.show_tuft_inset))
@@ -136,7 +138,7 @@ void menu_bar(Session& s) {
             if (s.ui.menu_item("The first minute, step by step", nullptr, s.panels.help.step >= 0,
                                s.paint_thread != nullptr))
                 start_guide(s.panels.help);
-            if (s.ui.menu_item("Keys and mouse", name_of(s.preferences.keys.chord(Act::keys)).c_str()))
+            if (s.ui.menu_item("Keys and mouse", name_of(s.preferences.keys.chord(Action::keys)).c_str()))
                 s.dialogs.show_keys = true;
             if (s.ui.menu_item("About tuft studio")) s.dialogs.show_about = true;
             ImGui::EndMenu();

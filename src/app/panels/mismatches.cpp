@@ -40,7 +40,8 @@ void mismatch_dialog(Session& s) {
         const std::string all = translated(ui, mismatch.reason), why = ui.fitted(all, room - ui.px(170));
         const float right = ImGui::CalcTextSize(why.c_str()).x + ui.px(6);
         ImGui::PushID(static_cast<int>(mismatch.stroke));
-        if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(), s.journal.holds(mismatch.stroke)))
+        if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(),
+                              s.journal.is_selected(mismatch.stroke)))
             select_entries(s.journal, s.paint_thread.get(), {mismatch.stroke});
         ImGui::PopID();
         ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - right);

@@ -83,7 +83,7 @@ void palette_panel(Session& s) {
     draw->PopClipRect();
     draw->AddRect(at, ImVec2(at.x + size.x, at.y + size.y), IM_COL32(128, 128, 128, 160), ui.px(8));
     if (p.tool == PaletteTool::pour)
-        ui.slider("Pool", p.radius, 0.003, 0.02, "%.0f mm", "How wide, to each side", kMillimetre);
+        ui.slider("Pool", p.radius, {0.003, 0.02, "%.0f mm", kMillimetre}, "How wide, to each side");
     else if (ui.button("Rinse the brush", "No ink left in it, hair straight and together", 0))
         s.paint_thread->post(
             ActOnBrush{.action = stroke::EntryKind::rinse, .brush = s.brush.preset, .ink = s.brush.ink});

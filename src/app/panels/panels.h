@@ -5,26 +5,27 @@
 #include "app/session/session.h"
 #include "app/session/settings_file.h"
 
-/// What is drawn round and over the model. Each function draws one panel and writes what
-/// the person changed into the session.
+/// \file
+/// The panels round and over the model. Each function draws one panel and writes the user's changes into the session.
+/// Window thread, between Dear ImGui's NewFrame and Render.
 namespace tuft::app {
 
-/// Heights and widths in pixels for a scale of 1.
+/// Sizes in pixels at scale 1.
 inline constexpr float kStripWidth = 58, kToolWidth = 226, kJournalWidth = 252, kStatusHeight = 30;
 
 void menu_bar(Session& s);
 /// The column of tools at the window's edge.
 void tool_strip(Session& s, float top, float bottom, float left);
-/// What the chosen tool, the brush and the ink are set to.
+/// Settings of the active tool, the brush and the ink.
 void tool_panel(Session& s, float top, float bottom, float left);
-/// In place of the tools: what is painted with which ink is shown as, and on which material.
+/// In place of the tools: recolouring of inks and the shown substrate.
 void colours_panel(Session& s, float top, float bottom, float left);
 void journal_panel(Session& s, float top, float bottom, float left);
 void layers_section(Session& s);
 void ink_section(Session& s);
-/// Chooses a colour by its hex code; the mix found for it comes into the hand.
+/// Chooses a colour by its hex code. Its match becomes the ink.
 void set_colour(Session& s, const std::string& hex);
-/// The colour wheel over the view, where it is shown.
+/// The colour window over the view, when shown.
 void colour_panel(Session& s);
 void mask_section(Session& s);
 void status_bar(Session& s, float top);
@@ -32,9 +33,9 @@ void welcome(Session& s);
 void open_dialog(Session& s);
 void opening_progress(Session& s);
 void recovery_dialog(Session& s);
-/// Another program has the project: look at it, or go on in a copy?
+/// Asks how to open a project that another program holds.
 void in_use_dialog(Session& s);
-/// Some work is in memory only: leave it?
+/// Asks before work in memory is left.
 void unsaved_work_dialog(Session& s);
 void export_dialog(Session& s);
 void settings_dialog(Session& s);
@@ -42,48 +43,53 @@ void keys_dialog(Session& s);
 void about_dialog(Ui& ui, DialogState& dialogs);
 /// The built-in manual.
 void manual_dialog(Ui& ui, HelpState& help, DialogState& dialogs, const KeyTable& keys);
-/// The guided first minute, a box over the view.
+/// The guide, a box over the view.
 void guide(Session& s);
-/// Reference images over the view; their list.
+/// Reference images over the view, and their list.
 void references_over_view(Session& s);
 void references_section(Session& s);
-/// The list of snapshots; what is done with the one that the work is compared with; the line between the two.
+/// The list of snapshots, the bar of a comparison, and the dividing line between work and snapshot.
 void snapshots_section(Session& s);
 void comparison_bar(Session& s);
 void swipe_line(Session& s);
-/// The palette over the view, where it is shown.
+/// The palette over the view, when shown.
 void palette_panel(Session& s);
-/// The tuft from the side with the surface under it, and what the hand feels.
+/// The tuft in side view with the surface below it, and the contact force.
 void tuft_inset(Session& s);
-/// Marks on the model: where the tuft touches, where symmetric copies would, the line being drawn.
+/// Marks on the model: contact of the tuft and of its symmetric copies, and the curve being edited.
 void view_marks(const Session& s, const render::GlCamera& camera);
 
-/// The export as the dialog says it.
+/// Returns the export command for the dialog's settings.
 ExportModel export_command(const ExportSettings& settings, const Orbit& seen_from, const std::filesystem::path& path);
-/// Marks on the atlas: its frame, figures, and where the cursor over the model is in it.
+/// Marks on the atlas: its frame, figures, and the cursor's UV.
 void atlas_marks(const Ui& ui, const AtlasView& atlas, PaintThread& work, const std::optional<Vec2>& cursor);
-/// Makes a mask under a name that is free, with the chosen one if that is asked for.
+/// Creates a mask under an unused name, combined with the active one by `MaskChoice::with`.
 void make_mask(Session& s, stroke::Mask mask);
-/// Strokes that do not touch the revised model.
+/// Strokes that do not fit the revised model.
 void mismatch_dialog(Session& s);
-/// The movement that takes a place of the surface with its normal to another.
+/// Returns the rigid motion that maps a surface point with its normal to another.
 RigidMove shift_between(const mesh::SurfacePoint& from, const mesh::SurfacePoint& to);
 
-/// Micrometres at the end of the height view's colours: 1, 2 or 5 times a power of ten.
+/// Returns the upper end of the height view's colour scale, micrometres: 1, 2 or 5 times a power of ten.
 double height_range(double max_height);
 
-/// A column of the window between two heights, `width` in units of the display scale; ends with ImGui::End.
-/// What is in it keeps its width when a scrollbar comes. A panel that does not scroll fits what it holds.
-void begin_side_panel(Ui& ui, const char* name, float left, float top, float width, float bottom, bool scrolls = true);
-/// At the view's edges: fold away or bring back the panels beside it.
+/// A column of the window.
+struct SidePanel {
+    float left = 0, top = 0, bottom = 0;  ///< pixels, top < bottom
+    float width = kToolWidth;             ///< at scale 1, > 0
+    bool scrolls = true;                  ///< false: its content always fits
+};
+/// Begins a column of the window; end it with ImGui::End. Its content keeps its width when a scrollbar appears.
+void begin_side_panel(Ui& ui, const char* name, const SidePanel& panel);
+/// Handles at the view's edges that hide or show the panels.
 void panel_handles(Session& s);
-/// sRGB colour (ImU32) of a full film of this ink on porcelain.
+/// Returns the sRGB colour (ImU32) of a full film of an ink on porcelain.
 unsigned ink_colour(const ColourState& colours, const std::string& ink);
 unsigned ink_colour(const ink::Ink& ink);
-/// Of the ink that the next stroke lays down.
+/// Returns the colour of the ink that the next stroke deposits.
 unsigned colour_in_tuft(const BrushSettings& brush, const ColourState& colours, const BrushStatus& painting);
 
-/// Modal window in the middle; true while it is drawn. Close it with `end_dialog`.
+/// Begins a modal window in the centre. Returns true while it is drawn; then call `end_dialog`.
 bool begin_dialog(Ui& ui, const char* title, float width);
 void end_dialog(Ui& ui);
 

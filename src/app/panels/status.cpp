@@ -29,7 +29,7 @@ struct ToolText {
 
 // What the left button does now.
 ToolText text_of_tool(const Session& s) {
-    if (s.journal.moves) return {"Move", "Drag the chosen ink over the model    Esc: leave it"};
+    if (s.journal.move_on_drag) return {"Move", "Drag the chosen ink over the model    Esc: leave it"};
     switch (s.tools.active) {
         case Tool::brush:
             return {"Brush", "Drag: paint    [ and ]: pressure    Shift: size"};

@@ -57,7 +57,7 @@ bool cell(Ui& ui, Icon icon, const char* name, const char* hint, bool chosen, fl
 
 void tool_strip(Session& s, float top, float bottom, float left) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(s.ui.px(4), s.ui.px(4)));
-    begin_side_panel(s.ui, "###strip", left, top, kStripWidth, bottom, false);
+    begin_side_panel(s.ui, "###strip", {left, top, bottom, kStripWidth, false});
     const float gap = s.ui.px(2), room = bottom - top - s.ui.px(8);
     const float height = std::min(s.ui.px(50), (room - 9 * gap) / 9 - s.ui.px(1));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, gap));

@@ -163,8 +163,8 @@ void brush_rack(Ui& ui, BrushSettings& brush, StatusMessage& status) {
     brush::SizedName sized = brush::sized_name(brush.preset);
     const double thick = 2 * preset_of(sized.base).radius;
     double now = thick * sized.factor;
-    if (ui.slider("Tuft size", now, thick * brush::kLeastSize, thick * brush::kMostSize, "%.1f mm",
-                  "How thick it is; its length goes with it", kMillimetre))
+    if (ui.slider("Tuft size", now, {thick * brush::kLeastSize, thick * brush::kMostSize, "%.1f mm", kMillimetre},
+                  "How thick it is; its length goes with it"))
         size_brush(brush, status, now / thick);
 }
 
@@ -215,10 +215,10 @@ void pen_curve(Ui& ui, ToolState& tools, int& handle) {
 
 void pointer_section(Ui& ui, ToolState& tools, PanelLayout& panels) {
     if (!ui.section("Hand")) return;
-    ui.slider("Pressure", tools.pointer.pressure, 0.02, 1, "%.2f",
+    ui.slider("Pressure", tools.pointer.pressure, {0.02, 1, "%.2f"},
               "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]");
-    ui.slider("Stabiliser", tools.pointer.string, 0, 0.03, "%.1f mm", "The brush follows on a string of this length",
-              kMillimetre);
+    ui.slider("Stabiliser", tools.pointer.string, {0, 0.03, "%.1f mm", kMillimetre},
+              "The brush follows on a string of this length");
     if (ui.button(panels.show_pointer_details ? "Less" : "More...", nullptr, 80))
         panels.show_pointer_details = !panels.show_pointer_details;
     if (!panels.show_pointer_details) return;
@@ -226,17 +226,17 @@ void pointer_section(Ui& ui, ToolState& tools, PanelLayout& panels) {
         "Clean ends", tools.pointer.clean_ends,
         "Strokes of a mouse begin where the button goes down and end where it comes up: the brush is set down in the "
         "stroke's direction and runs ahead of the cursor by what its tip lags behind. A pen has its pressure for that");
-    ui.slider("Speed lightens", tools.pointer.speed_effect, 0, 1, "%.2f",
+    ui.slider("Speed lightens", tools.pointer.speed_effect, {0, 1, "%.2f"},
               "As a hand does. Only for a mouse; a pen says its own pressure");
-    ui.slider("Rest deepens", tools.pointer.dwell_effect, 0, 1, "%.2f",
+    ui.slider("Rest deepens", tools.pointer.dwell_effect, {0, 1, "%.2f"},
               "A mouse that stays where it is sinks in slowly");
     ui.note(ui.tr("Pen: from its force to the brush's depth"));
     pen_curve(ui, tools, panels.pen_curve_handle);
     double right = tools.pointer.tilt.x, up = tools.pointer.tilt.y;
-    ui.slider("Lean sideways", right, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0",
-              "Of the holder, seen on the screen. Arrow keys", kDegree);
-    ui.slider("Lean away", up, -60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0",
-              "Of the holder, seen on the screen. Arrow keys", kDegree);
+    ui.slider("Lean sideways", right, {-60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", kDegree},
+              "Of the holder, seen on the screen. Arrow keys");
+    ui.slider("Lean away", up, {-60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", kDegree},
+              "Of the holder, seen on the screen. Arrow keys");
     tools.pointer.tilt = {right, up};
 }
 
@@ -249,7 +249,7 @@ void symmetry_section(Ui& ui, stroke::Symmetry& symmetry) {
     ImGui::SameLine();
     ui.toggle("Z", symmetry.mirror_z, "Mirror above and below");
     double n = symmetry.radial;
-    if (ui.slider("Radial copies", n, 1, 16, "%.0f",
+    if (ui.slider("Radial copies", n, {1, 16, "%.0f"},
                   "For plates and bowls; the axis stands upright through the middle"))
         symmetry.radial = static_cast<int>(std::lround(n));
 }
@@ -263,7 +263,7 @@ void section_section(Ui& ui, SectionView& section) {
         if (k) ImGui::SameLine();
         if (ui.choice(axes[k], section.axis == k)) section.axis = k;
     }
-    ui.slider("What stays", section.position, 0.02, 1, "%.2f");
+    ui.slider("What stays", section.position, {0.02, 1, "%.2f"});
 }
 
 void fill_section(Ui& ui, ToolState& tools) {
@@ -277,7 +277,7 @@ void fill_section(Ui& ui, ToolState& tools) {
         if (ui.choice(name, tools.fill.region == region, "What the ink is laid over where you click", third))
             tools.fill.region = region;
     }
-    if (ui.slider("Thickness", tools.fill.film, 0.05, 5, "%.1f \xce\xbcm", "Of the wet coat", 0.1))
+    if (ui.slider("Thickness", tools.fill.film, {0.05, 5, "%.1f \xce\xbcm", 0.1}, "Of the wet coat"))
         tools.fill.to_film = tools.fill.film;
 }
 
@@ -291,10 +291,11 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     ImGui::TextUnformatted(w.file.filename().c_str());
     for (const std::string& note : w.notes) ui.note(note.c_str());
     double width = w.width * w.scale;
-    if (w.width > 0 && ui.slider("Width", width, 0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm",
-                                 "Wheel over the model", kMillimetre))
+    if (w.width > 0 && ui.slider("Width", width, {0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm", kMillimetre},
+                                 "Wheel over the model"))
         w.scale = width / w.width;
-    ui.slider("Turn", w.turn, -180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", "Shift and wheel over the model", kDegree);
+    ui.slider("Turn", w.turn, {-180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", kDegree},
+              "Shift and wheel over the model");
     ui.toggle("Mirrored", w.mirrored);
     const std::tuple<stroke::SurfaceMapping, const char*, const char*> mappings[] = {
         {stroke::SurfaceMapping::drape, "Drape",
@@ -321,15 +322,16 @@ void curve_section(Session& s) {
     Ui& ui = s.ui;
     ui.heading("Along the line");
     CurveSettings& c = s.tools.curve_settings;
-    bool changed = ui.slider("Press down in", c.taper_in, 0, 0.9, "%.0f %%", "Part of its length", 0.01);
-    changed |= ui.slider("Lift in", c.taper_out, 0, 0.9, "%.0f %%", "Part of its length", 0.01);
-    changed |= ui.slider("Pace", c.speed, 0.01, 0.4, "%.0f mm/s", "Of the hand", kMillimetre);
+    bool changed = ui.slider("Press down in", c.taper_in, {0, 0.9, "%.0f %%", 0.01}, "Part of its length");
+    changed |= ui.slider("Lift in", c.taper_out, {0, 0.9, "%.0f %%", 0.01}, "Part of its length");
+    changed |= ui.slider("Pace", c.speed, {0.01, 0.4, "%.0f mm/s", kMillimetre}, "Of the hand");
     if (changed) s.tools.curve.changed = true;
 }
 
 }  // namespace
 
-void begin_side_panel(Ui& ui, const char* name, float left, float top, float width, float bottom, bool scrolls) {
+void begin_side_panel(Ui& ui, const char* name, const SidePanel& panel) {
+    const auto& [left, top, bottom, width, scrolls] = panel;
     const float pad = ImGui::GetStyle().WindowPadding.x, all = ui.px(width);
     ImGui::SetNextWindowPos(ImVec2(left, top));
     ImGui::SetNextWindowSize(ImVec2(all, bottom - top));
@@ -345,7 +347,7 @@ void begin_side_panel(Ui& ui, const char* name, float left, float top, float wid
 }
 
 void tool_panel(Session& s, float top, float bottom, float left) {
-    begin_side_panel(s.ui, "###tools", left, top, kToolWidth, bottom);
+    begin_side_panel(s.ui, "###tools", {left, top, bottom});
     curve_section(s);
     writing_section(s.ui, s.tools, s.dialogs.file);
     fill_section(s.ui, s.tools);

@@ -62,7 +62,7 @@ fs::path cards(Session& s, const std::vector<fs::path>& files, float width, std:
 
 void welcome(Session& s) {
     Ui& ui = s.ui;
-    if (!s.project.opening.running() && !s.project.inspected) s.project.start_page.pictures.go_on();
+    if (!s.project.opening.running() && !s.project.inspected) s.project.start_page.pictures.resume();
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float top = ImGui::GetFrameHeight() + ui.px(6);
     ImGui::SetNextWindowPos(ImVec2(0, top));

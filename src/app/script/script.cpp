@@ -325,7 +325,7 @@ double Script::patience(const Studio& studio) const {
 }
 
 void Script::after_frame(Studio& studio, int width, int height) {
-    if (fuzzer_) fuzzer_->hold_back(studio);
+    if (fuzzer_) fuzzer_->contain(studio);
     ++frames_;
     ++report_.frames;
     if (wanted_.picture.empty()) return;

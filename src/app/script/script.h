@@ -10,65 +10,67 @@
 #include "app/input/events.h"
 #include "app/script/ui_fuzzer.h"
 
+/// \file
+/// Scripts that drive the studio, for tests and documentation. Window thread.
 namespace tuft::app {
 
 class Studio;
 
-/// A place in the window: pixels, or parts of the model's view.
+/// A point of the window: pixels, or fractions of the model's view.
 struct ScriptPoint {
     double x = 0, y = 0;
-    bool relative_x = false, relative_y = false;  ///< in [0, 1] of the view
-    double pressure = -1;                         ///< of a pen; below 0: a mouse
+    bool relative_x = false, relative_y = false;  ///< the coordinate is a fraction of the view, 0–1
+    double pressure = -1;                         ///< 0–1 of a pen; negative: a mouse
 };
 
 /// One line of a script.
 struct ScriptCommand {
     int line = 0;
     std::string name;
-    std::vector<std::string> words;   ///< arguments, quotes taken off
+    std::vector<std::string> words;   ///< arguments without quotes
     std::vector<ScriptPoint> points;  ///< of `move`, `stroke`
 };
 
-/// Reads a script; the format is described in script_parse.cpp. Throws `Error` with file
-/// and line for an unknown command or a wrong argument.
+/// Reads a script; script_parse.cpp describes the format. Throws `Error` with file and line for an unknown command or
+/// an invalid argument.
 std::vector<ScriptCommand> parse_script(const std::filesystem::path& path);
 
-/// Plays a script as if a person did it.
+/// Plays a script as input events.
 class Script {
   public:
     explicit Script(const std::filesystem::path& path);
 
-    /// Before a frame: adds events. Throws `Error` where the script does not hold.
+    /// Adds the events before a frame. `now`: seconds on the window's clock. Throws `Error` where an expectation fails.
     void before_frame(Studio& studio, EventQueue& events, double now);
-    /// After a frame: pictures.
+    /// Writes pictures after a frame of that size in pixels.
     void after_frame(Studio& studio, int width, int height);
-    /// Seconds that the next frame may wait: none while there is something to play.
+    /// Returns the seconds that the next frame may wait: 0 while there are events to play.
     double patience(const Studio& studio) const;
-    /// Whether the script wants the graphics to be lost now.
+    /// Returns true once when the script asks for a loss of the graphics.
     bool take_loss() { return std::exchange(wanted_.loss, false); }
-    /// The size in pixels that the script wants the window to have now.
+    /// Returns the window size in pixels that the script asks for, once.
     std::optional<std::pair<int, int>> take_size() { return std::exchange(wanted_.size, std::nullopt); }
     bool finished() const { return next_ >= commands_.size() && pending_.empty() && wanted_.picture.empty(); }
 
   private:
-    /// Events come when their time has come.
+    /// Plays events at their times instead of as fast as possible.
     struct Pace {
         bool on = false;
         double start = 0, from = 0;  ///< seconds, on the window's and on the script's clock
     };
-    /// For what the last command needs.
+    /// Waiting for the condition of the last command.
     struct Wait {
         bool on = false;
         double since = -1;
-        ScriptPoint place;  ///< of the label that a click needs
+        ScriptPoint place;  ///< of the label to click
     };
-    /// From who plays the script.
+    /// Requests to the player of the script.
     struct Wanted {
         std::string picture;
         bool loss = false;
         std::optional<std::pair<int, int>> size;
     };
-    /// As things were at the last report.
+    /// State at the last report.
     struct ReportStart {
         std::size_t frames = 0;
         double start = 0, cpu = 0;
@@ -87,16 +89,16 @@ class Script {
     std::filesystem::path path_;
     std::vector<ScriptCommand> commands_;
     std::size_t next_ = 0;
-    std::deque<Event> pending_;  ///< to be played, by time on the script's clock
+    std::deque<Event> pending_;  ///< to be played, times on the script's clock
     double sample_ = 0.004;      ///< seconds between two samples of a stroke
-    double clock_ = 0;           ///< seconds, of the last event made
+    double clock_ = 0;           ///< seconds, of the last event generated
     Pace pace_;
     Wait wait_;
     Wanted wanted_;
     Event cursor_;
-    unsigned held_ = 0;               ///< modifiers
+    unsigned held_ = 0;               ///< modifiers that are pressed
     std::optional<UiFuzzer> fuzzer_;  ///< while `random` plays
-    std::size_t quits_ = 0;           ///< times that it would have ended the program
+    std::size_t quits_ = 0;           ///< times that the fuzzer quit the program
     std::size_t frames_ = 0;
     ReportStart report_;
 };

@@ -182,7 +182,7 @@ std::vector<Event> UiFuzzer::next(const Studio& studio) {
     return events;
 }
 
-void UiFuzzer::hold_back(Studio& studio) {
+void UiFuzzer::contain(Studio& studio) {
     Session& s = studio.session();
     if (std::exchange(s.project.closing.quit, false)) ++quits_;
     if (!s.dialogs.file.shown() || s.dialogs.file.reads()) return;

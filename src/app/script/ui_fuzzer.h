@@ -7,24 +7,25 @@
 #include "app/input/events.h"
 #include "core/random.h"
 
+/// \file
+/// Random input for robustness tests. Window thread.
 namespace tuft::app {
 
 class Studio;
 
-/// Does mostly the things that people do, and some that nobody should: strokes, turns, keys, buttons
-/// and entries wherever they are, dialogs, sizes of the window. Seeded, so that a run can be
-/// repeated as far as the same things are on the screen.
+/// Generates mostly plausible input and some that nobody intends: strokes, rotations, keys, buttons and list entries
+/// anywhere, dialogs, window sizes. A seed repeats a run as far as the screens are equal.
 class UiFuzzer {
   public:
     UiFuzzer(std::size_t count, std::uint64_t seed);
 
-    /// What it does next, a few dozen events; none when all are done.
+    /// Returns the next few dozen events; none at the end.
     std::vector<Event> next(const Studio& studio);
-    /// Seconds between two events.
+    /// Returns the seconds between two events.
     double pause() { return random_.uniform(0, 0.02); }
-    /// After a frame: the program does not end, and nothing is written outside the folder it runs in.
-    void hold_back(Studio& studio);
-    /// Times that it would have ended the program.
+    /// Contains the program after a frame: it does not quit, and writes only in its working folder.
+    void contain(Studio& studio);
+    /// Number of times that the program would have quit.
     std::size_t quits() const { return quits_; }
 
   private:
@@ -35,7 +36,7 @@ class UiFuzzer {
 
     std::size_t left_;
     Random random_;
-    std::filesystem::path home_;         ///< the folder it runs in
+    std::filesystem::path home_;         ///< working folder
     double width_ = 860, height_ = 520;  ///< pixels of the window
     Event at_;
     bool down_[3] = {};

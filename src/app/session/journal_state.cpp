@@ -28,7 +28,7 @@ std::vector<JournalRow> journal_rows(const std::vector<StrokeLine>& lines, const
 void select_entries(JournalState& j, PaintThread* work, std::set<std::uint64_t> ids) {
     if (j.selected.empty() && ids.empty()) return;
     j.selected = std::move(ids);
-    j.moves = false;
+    j.move_on_drag = false;
     j.from.reset();
     j.to.reset();
     if (work) work->post(HighlightStrokes{{j.selected.begin(), j.selected.end()}});

@@ -87,7 +87,7 @@ void open_path(Session& s, const fs::path& path) {
         e == ".png" || e == ".jpg" || e == ".jpeg" || e == ".tif" || e == ".tiff")
         return pin_reference(s.view.references, s.paint_thread.get(), s.status, path);
     if (has_unsaved_work(s)) return request_close(s, {CloseRequest::Then::open, path});
-    s.project.start_page.pictures.rest();
+    s.project.start_page.pictures.pause();
     s.project.in_use.reset();
     s.project.inspected.reset();
     s.project.is_sample = false;

@@ -6,15 +6,15 @@
 #include "app/session/session.h"
 
 /// \file
-/// Files that are taken into the work besides its model: drawings, inks, reference images. The status bar reports
-/// what fails.
+/// Opening and saving of files besides the model: drawings, inks, reference images. The status bar reports faults.
+/// Window thread.
 namespace tuft::app {
 
-/// Takes writing into the hand to be placed.
+/// Loads a drawing, to be placed on the model.
 void open_writing(Session& s, const std::filesystem::path& path);
-/// Takes an ink into the work.
+/// Adds an ink to the project.
 void open_ink(PaintThread* work, StatusMessage& status, const std::filesystem::path& path);
-/// Writes an ink to a file, under the file's name.
+/// Writes an ink to a file; the file's name becomes its name.
 void save_ink(const ColourState& colours, const std::string& name, StatusMessage& status,
               const std::filesystem::path& path);
 /// Pins an image over the view.

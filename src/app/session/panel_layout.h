@@ -2,16 +2,18 @@
 
 #include "app/session/help_state.h"
 
+/// \file
+/// Layout of the panels. Window thread.
 namespace tuft::app {
 
-/// Which panels stand beside the view, and what is unfolded in them.
+/// Which panels are shown, and which of their sections are open.
 struct PanelLayout {
     bool show_tools = true, show_journal = true;
-    bool journal_fits = true;           ///< beside the model
-    bool journal_over_tools = false;    ///< where it does not fit: in place of the tools
-    bool show_appearance = false;       ///< in place of the tools: other inks and another material
+    bool journal_fits = true;           ///< there is space for the journal beside the model
+    bool journal_over_tools = false;    ///< without that space: the journal replaces the tools
+    bool show_appearance = false;       ///< in place of the tools: recolouring and substrate
     bool show_pointer_details = false;  ///< all settings of the pointer
-    int pen_curve_handle = 1;           ///< of the pen's pressure curve: 0 lower end, 1 middle, 2 upper end
+    int pen_curve_handle = 1;           ///< selected handle of the pen curve: 0 lower end, 1 middle, 2 upper end
     HelpState help;
 };
 

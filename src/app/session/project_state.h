@@ -9,48 +9,51 @@
 #include "app/document/state_folder.h"
 #include "app/paint/opening.h"
 
+/// \file
+/// Opening, closing and recovery. Window thread.
 namespace tuft::app {
 
-/// A revised model takes the place of the one that strokes were painted on.
+/// A revised model replaces the one that the strokes were painted on.
 struct Revision {
     std::filesystem::path source;                    ///< project whose strokes the model being opened gets
-    std::filesystem::path previous;                  ///< project that the strokes of the open one came from
+    std::filesystem::path previous;                  ///< project whose strokes the open model got
     std::vector<stroke::StrokeMismatch> mismatches;  ///< strokes that no longer fit
-    std::vector<std::string> fit;                    ///< how all strokes lie on it, a sentence each
+    std::vector<std::string> fit;                    ///< how all strokes fit it, sentences
 };
 
 /// Work that an earlier run did not save.
 struct Recovery {
     SessionNote note;  ///< of this run
     std::vector<LostWork> lost;
-    bool confirm_delete = false;  ///< the first of them: asked once more
+    bool confirm_delete = false;  ///< deleting the first of them is to be confirmed
 };
 
-/// What follows once unsaved work is saved or given up.
+/// What to do once unsaved work is saved or given up.
 struct CloseRequest {
     enum class Then { quit, close, open } then = Then::quit;
-    std::filesystem::path file;  ///< to be opened
+    std::filesystem::path file;  ///< to open
 };
 
+/// State of closing.
 struct Closing {
-    std::optional<CloseRequest> request;  ///< waits for an answer, while some work is in memory only
-    std::string failure;                  ///< what became of work that could not be saved; "" if all was
+    std::optional<CloseRequest> request;  ///< waits for the user's answer while some work is in memory only
+    std::string failure;                  ///< where work went that could not be saved; "": all was saved
     bool quit = false;
 };
 
-/// What is offered while no model is open.
+/// Choices while no model is open.
 struct StartPage {
     std::vector<std::filesystem::path> samples, recent;
     Pictures pictures;
 };
 
-/// Opening and closing models and projects.
+/// State of opening and closing.
 struct ProjectState {
     Opening opening;
-    std::optional<Inspected> inspected;  ///< waits for the person's yes
-    OpenOptions options;                 ///< of the model that is opened next
-    bool is_sample = false;              ///< what is being opened; nothing is asked then
-    std::optional<InUse> in_use;         ///< a project that another program has: asked what to do
+    std::optional<Inspected> inspected;  ///< waits for the user's confirmation
+    OpenOptions options;                 ///< of the next model
+    bool is_sample = false;              ///< a shipped model is being opened, without questions
+    std::optional<InUse> in_use;         ///< a project that another program holds; the user is asked
     Revision revision;
     Recovery recovery;
     Closing closing;

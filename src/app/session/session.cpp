@@ -47,7 +47,7 @@ void take_lines(JournalState& journal, PaintThread& work, std::vector<StrokeLine
     // What is chosen may be gone, or lie elsewhere.
     std::set<std::uint64_t> there;
     for (const StrokeLine& line : journal.lines)
-        if (journal.holds(line.id)) there.insert(line.id);
+        if (journal.is_selected(line.id)) there.insert(line.id);
     select_entries(journal, &work, std::move(there));
 }
 

@@ -17,9 +17,11 @@
 #include "app/widgets/status_message.h"
 #include "app/widgets/ui.h"
 
+/// \file
+/// The state of the window. Window thread.
 namespace tuft::app {
 
-/// Everything the window knows, as plain data in parts; panels read and change them.
+/// All state of the window, as plain data in parts. Panels read and change it.
 struct Session {
     Ui ui;
     Preferences preferences;
@@ -28,8 +30,8 @@ struct Session {
     StatusMessage status;
 
     ProjectState project;
-    std::unique_ptr<PaintThread> paint_thread;  ///< of the open model; null: none is
-    PaintStatus reported;                       ///< by it at the last look
+    std::unique_ptr<PaintThread> paint_thread;  ///< of the open model; null: none
+    PaintStatus reported;                       ///< status of the paint thread at the last poll
 
     ViewState view;
     ToolState tools;
@@ -40,11 +42,11 @@ struct Session {
     JournalState journal;
 };
 
-/// Takes over what threads have finished.
+/// Takes the results of all background threads.
 void poll_session(Session& s);
-/// The paint thread's part of that.
+/// Takes the results of the paint thread.
 void poll_paint_thread(Session& s);
-/// Nothing runs in the background and nothing waits.
+/// Returns true when nothing runs or waits in the background.
 bool is_settled(const Session& s);
 
 }  // namespace tuft::app

@@ -8,21 +8,23 @@
 #include "stroke/gesture/symmetry.h"
 #include "stroke/journal/fill.h"
 
+/// \file
+/// The tools' state. Window thread.
 namespace tuft::app {
 
 enum class Tool { brush, line, curve, writing, eraser, fill, pick, mask };
 
-/// The tool in hand and what each tool is set to.
+/// The active tool and the settings of each tool.
 struct ToolState {
     Tool active = Tool::brush;
     PointerSettings pointer;
     bool pointer_down = false;  ///< a stroke is being drawn
-    double pen_pressure = -1;   ///< now; below 0: no pen
+    double pen_pressure = -1;   ///< present, 0–1; negative: no pen
     stroke::Symmetry symmetry;
     CurveInWork curve;
     CurveSettings curve_settings;
     Writing writing;
-    std::vector<std::vector<PreviewPoint>> writing_preview;  ///< where the writing would lie now
+    std::vector<std::vector<PreviewPoint>> writing_preview;  ///< lines of the drawing at the cursor
     stroke::Fill fill;
 };
 

@@ -25,8 +25,8 @@ bool close_top_dialog(Session& s) {
         d.show_about = false;
     else if (d.show_mismatches)
         d.show_mismatches = false;
-    else if (s.journal.moves)
-        s.journal.moves = false, s.journal.from.reset(), s.journal.to.reset();
+    else if (s.journal.move_on_drag)
+        s.journal.move_on_drag = false, s.journal.from.reset(), s.journal.to.reset();
     else if (d.show_settings)
         d.show_settings = false;
     else if (s.panels.show_appearance)

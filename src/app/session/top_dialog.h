@@ -2,12 +2,14 @@
 
 #include "app/session/session.h"
 
+/// \file
+/// Which dialog is on top. Window thread.
 namespace tuft::app {
 
-/// A dialog is open: what lies behind it takes no input.
+/// Returns true when a dialog is open, so that the view takes no input.
 bool is_dialog_open(const Session& s);
-/// Closes the dialog that lies on top, as its Cancel does; without one, ends a comparison or drops what is selected.
-/// False when there is nothing of that.
+/// Cancels the topmost dialog; without one, ends a comparison or clears the selection. Returns false when there was
+/// nothing to close.
 bool close_top_dialog(Session& s);
 
 }  // namespace tuft::app

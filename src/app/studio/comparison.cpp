@@ -51,7 +51,8 @@ void Comparison::draw(const render::GlView::Frame& of_work, int height) {
     if (!on() || !c.ready || !scene_) return;
     render::GlView::Frame f = of_work;
     f.solid = nullptr;
-    if (f.look.options.shading == render::Shading::triangles) f.look.options.shading = render::Shading::clay;
+    if (f.appearance.options.shading == render::Shading::triangles)
+        f.appearance.options.shading = render::Shading::clay;
     if (!c.swipe) f.x = c.x;
     view_->draw(*scene_, f);
     if (!c.swipe) return;

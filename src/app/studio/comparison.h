@@ -6,19 +6,21 @@
 #include "app/session/session.h"
 #include "render/gl/gl_view.h"
 
+/// \file
+/// Comparison of the work with a snapshot. Window thread.
 namespace tuft::app {
 
-/// The work beside one of its snapshots.
+/// Shows one snapshot beside or over the work.
 class Comparison {
   public:
     explicit Comparison(Session& session) : session_(session) {}
 
     bool on() const;
-    /// Takes its part of the view.
+    /// Takes its part of the view's area.
     void layout();
-    /// Before the work is drawn as `of_work`.
+    /// Draws the snapshot with the frame options of the work. Call it before the work is drawn.
     void draw(const render::GlView::Frame& of_work, int height);
-    /// Whether a press is one on the work, not on the snapshot beside or over it.
+    /// Returns true for a press on the work, false for one on the snapshot.
     bool on_work(const Event& e) const;
     void drop_graphics();
 
@@ -26,7 +28,7 @@ class Comparison {
     void take_picture();
 
     Session& session_;
-    std::unique_ptr<render::GlScene> scene_;  ///< the snapshot's
+    std::unique_ptr<render::GlScene> scene_;  ///< of the snapshot
     std::unique_ptr<render::GlView> view_;
 };
 

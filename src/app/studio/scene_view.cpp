@@ -110,7 +110,7 @@ void SceneView::update_tuft(const Event* cursor, double now) {
     if (s.view.tuft.pressed) {
         s.view.tuft.state = painting.tuft;
     } else if (s.tools.active != Tool::writing && s.tools.active != Tool::fill && s.tools.active != Tool::pick &&
-               s.tools.active != Tool::mask && !s.journal.moves && cursor && !is_dialog_open(s)) {
+               s.tools.active != Tool::mask && !s.journal.move_on_drag && cursor && !is_dialog_open(s)) {
         if (!preview_ || preview_brush_ != s.brush.preset) {
             preview_ = brush::make_tuft(brush::load_preset(s.brush.preset));
             preview_brush_ = s.brush.preset;
@@ -149,22 +149,22 @@ void SceneView::draw(unsigned framebuffer, int height, bool moving) {
                             .opacity = s.view.see_through    ? 0.25f
                                        : s.view.tuft.pressed ? 0.92f
                                                              : 0.72f};
-    f.look.options = {.shading = shadings[static_cast<std::size_t>(s.view.shading)],
-                      .roughness = s.colours.appearance.roughness,
-                      .section = section_plane(s.view, s.paint_thread->model().mesh->bounds)};
+    f.appearance.options = {.shading = shadings[static_cast<std::size_t>(s.view.shading)],
+                            .roughness = s.colours.appearance.roughness,
+                            .section = section_plane(s.view, s.paint_thread->model().mesh->bounds)};
     // Only where it is shown: more ink than before must not draw everything anew.
-    if (f.look.options.shading == render::Shading::height)
-        f.look.options.height_range = static_cast<float>(height_range(s.view.max_ink_height));
-    f.look.light = render::make_light(s.view.rig, f.camera);
-    f.look.low = dark ? Vec3f(0.27f) : Vec3f(0.62f);
-    f.look.high = dark ? Vec3f(0.40f, 0.405f, 0.415f) : Vec3f(0.80f, 0.805f, 0.815f);
+    if (f.appearance.options.shading == render::Shading::height)
+        f.appearance.options.height_range = static_cast<float>(height_range(s.view.max_ink_height));
+    f.appearance.light = render::make_light(s.view.rig, f.camera);
+    f.appearance.low = dark ? Vec3f(0.27f) : Vec3f(0.62f);
+    f.appearance.high = dark ? Vec3f(0.40f, 0.405f, 0.415f) : Vec3f(0.80f, 0.805f, 0.815f);
     f.moving = moving;
     f.framebuffer = framebuffer;
     f.x = s.view.area.x;
     f.y = height - s.view.area.y - s.view.area.height;
     comparison_.draw(f, height);
     view_->draw(*scene_, f);
-    draw_atlas(f.look.options, framebuffer, height);
+    draw_atlas(f.appearance.options, framebuffer, height);
 }
 
 void SceneView::draw_atlas(const render::DrawOptions& options, unsigned framebuffer, int height) {

@@ -10,6 +10,8 @@
 #include "brush/tuft/tuft.h"
 #include "render/gl/gl_view.h"
 
+/// \file
+/// The model's view. Window thread, with the OpenGL context current.
 namespace tuft::app {
 
 /// Draws the model, the tuft over it and the atlas beside it.
@@ -19,14 +21,14 @@ class SceneView {
 
     Comparison& comparison() { return comparison_; }
     const Comparison& comparison() const { return comparison_; }
-    /// Takes a model over that was just opened, and texels that changed.
+    /// Loads a newly opened model, and changed texels.
     void take_model();
     void take_texels();
-    /// Places the tuft as it is pressed, or as it would hover over the cursor; null: over nothing.
+    /// Updates the tuft: in contact, or hovering over the cursor (null: not over the model). `now`: seconds.
     void update_tuft(const Event* cursor, double now);
-    /// `moving`: the picture may be coarser.
+    /// Draws into a framebuffer of that height. `moving`: a coarser picture suffices.
     void draw(unsigned framebuffer, int height, bool moving);
-    /// The OpenGL context is gone, or goes; then there is a new one.
+    /// Frees all graphics objects before the OpenGL context is lost; creates them in the new one.
     void drop_graphics();
     void make_graphics();
 
@@ -38,8 +40,8 @@ class SceneView {
     Comparison comparison_;
     std::unique_ptr<render::GlScene> scene_;
     std::unique_ptr<render::GlView> view_;
-    ModelView shading_ = ModelView::glaze;  ///< that the scene has the colours of
-    std::optional<brush::Tuft> preview_;    ///< hovers
+    ModelView shading_ = ModelView::glaze;  ///< of the scene's present colours
+    std::optional<brush::Tuft> preview_;    ///< hovering tuft
     std::string preview_brush_;
 };
 

@@ -4,11 +4,13 @@
 
 #include "app/session/session.h"
 
+/// \file
+/// Settings by name, for scripts. Window thread.
 namespace tuft::app {
 
-/// Changes a setting by its name in scripts. Throws `Error` for a name or value that is unknown.
+/// Changes a setting. Throws `Error` for an unknown name or value.
 void set_by_name(Session& s, const std::string& name, const std::string& value);
-/// The number that a value begins with, 0 where it is a word. Throws `Error` for one that is not within a million.
+/// Returns the number at the start of a value, 0 for a word. Throws `Error` for one beyond ±10⁶.
 double number_of(const std::string& value);
 
 }  // namespace tuft::app

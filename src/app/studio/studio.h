@@ -10,10 +10,12 @@
 #include "app/studio/scene_view.h"
 #include "app/studio/studio_input.h"
 
+/// \file
+/// The studio: input, state and drawing of the window. Window thread.
 namespace tuft::app {
 
-/// The window's content. Needs a current OpenGL context and an ImGui context; the place
-/// where it draws is the framebuffer given to `frame`.
+/// The window's content. It needs a current OpenGL context and an ImGui context. It draws into the framebuffer given to
+/// `frame`.
 class Studio {
   public:
     Studio();
@@ -21,26 +23,25 @@ class Studio {
 
     Session& session() { return session_; }
     const Session& session() const { return session_; }
-    /// One turn: takes events, draws everything. `now` in seconds on the events' clock.
+    /// Handles the events of one frame and draws it. `now`: seconds on the events' clock.
     void frame(EventQueue& events, int width, int height, unsigned framebuffer, double now);
-    /// Seconds that the next frame may wait for an event: none while the picture moves, a while
-    /// during work that only shows its progress, long when nothing happens.
+    /// Returns the seconds that the next frame may wait for an event: 0 while the picture moves, longer during work
+    /// that only shows progress, longest when idle.
     double patience() const;
-    /// The OpenGL context is gone, or goes; then there is a new one.
+    /// Frees all graphics objects before the OpenGL context is lost; creates them in the new one.
     void drop_graphics();
     void make_graphics();
-    /// Ends the stroke in hand and saves everything; the project's picture is made once more where it is
-    /// older than the strokes.
+    /// Ends the current stroke and saves everything; also the project's picture where it is older than the strokes.
     void finish();
-    /// What the display asks for as a scale of text.
+    /// Sets the display's scale of text.
     void set_content_scale(float scale) { content_scale_ = scale; }
-    /// Changes a setting by its name in scripts. Throws `Error` for a name or value that is unknown.
+    /// Changes a setting by its name, for scripts. Throws `Error` for an unknown name or value.
     void set(const std::string& name, const std::string& value);
-    /// The last frame is on the screen at `now`.
+    /// Reports that the last frame was presented at `now`, seconds.
     void shown(double now) { input_.stroke().shown(now); }
-    /// Seconds from each sample of the hand to the moment when its ink was shown, since the last call.
+    /// Returns the seconds from each sample of a stroke until its ink was presented, since the last call.
     std::vector<double> take_delays() { return input_.stroke().take_delays(); }
-    /// Samples of the hand that went to the paint thread so far.
+    /// Number of samples of strokes sent to the paint thread so far.
     std::size_t samples() const { return input_.stroke().samples(); }
 
   private:
@@ -60,7 +61,7 @@ class Studio {
     float content_scale_ = 1;
     double now_ = 0, last_event_ = 0;
     std::size_t frames_ = 0, draw_every_ = 1;
-    unsigned framebuffer_ = 0;  ///< of the newest frame
+    unsigned framebuffer_ = 0;  ///< of the last frame
     int height_ = 0;
 };
 

@@ -68,7 +68,7 @@ void StudioInput::handle(const Event& e, double now) {
             return;
         case Event::Kind::cap_button:
             s.preferences.space_mouse.seen = true;
-            if (s.paint_thread && !is_dialog_open(s)) perform(e.button == 0 ? Act::frame_all : Act::frame_cursor);
+            if (s.paint_thread && !is_dialog_open(s)) perform(e.button == 0 ? Action::frame_all : Action::frame_cursor);
             return;
         case Event::Kind::hover_end:
             inside_ = false;
@@ -212,7 +212,8 @@ void StudioInput::key(const Event& e) {
         s.layers.list.focus = true;
         return;
     }
-    if (const auto act = s.preferences.keys.find({e.key, e.modifiers & (kShift | kControl | kAlt)})) perform(*act);
+    if (const auto action = s.preferences.keys.find({e.key, e.modifiers & (kShift | kControl | kAlt)}))
+        perform(*action);
 }
 
 void StudioInput::assign_key(const Event& e) {
@@ -225,35 +226,35 @@ void StudioInput::assign_key(const Event& e) {
     store_settings(s);
 }
 
-void StudioInput::perform(Act act) {
+void StudioInput::perform(Action action) {
     Session& s = session_;
-    if (act == Act::open) return s.dialogs.file.show(FileDialog::Purpose::open, {});
-    if (act == Act::quit) request_close(s, {});
-    if (act == Act::keys) s.dialogs.show_keys = !s.dialogs.show_keys;
-    if (!s.paint_thread || is_dialog_open(s) || perform_view(act) || perform_tool(act)) return;
-    switch (act) {
-        case Act::undo:
+    if (action == Action::open) return s.dialogs.file.show(FileDialog::Purpose::open, {});
+    if (action == Action::quit) request_close(s, {});
+    if (action == Action::keys) s.dialogs.show_keys = !s.dialogs.show_keys;
+    if (!s.paint_thread || is_dialog_open(s) || perform_view(action) || perform_tool(action)) return;
+    switch (action) {
+        case Action::undo:
             s.paint_thread->post(UndoStroke{});
             break;
-        case Act::redo:
+        case Action::redo:
             s.paint_thread->post(RedoStroke{});
             break;
-        case Act::delete_stroke:
+        case Action::delete_stroke:
             if (!s.journal.selected.empty())
                 s.paint_thread->post(
                     EditStrokes{.ids = {s.journal.selected.begin(), s.journal.selected.end()}, .remove = true});
             break;
-        case Act::save:
+        case Action::save:
             s.dialogs.file.show(FileDialog::Purpose::save,
                                 project_name(s.paint_thread.get(), s.reported.file.project) + ".tuft");
             break;
-        case Act::export_to:
+        case Action::export_to:
             s.dialogs.show_export = true;
             break;
-        case Act::palette:
+        case Action::palette:
             show_palette(s.colours.palette, s.brush, s.status, !s.colours.palette.shown);
             break;
-        case Act::panels:
+        case Action::panels:
             fold_panels(s);
             break;
         default:
@@ -262,26 +263,27 @@ void StudioInput::perform(Act act) {
 }
 
 // What changes how the model is seen; false for other acts.
-bool StudioInput::perform_view(Act act) {
-    static constexpr std::pair<Act, StandardView> kViews[] = {
-        {Act::front, StandardView::front}, {Act::back, StandardView::back}, {Act::right, StandardView::right},
-        {Act::left, StandardView::left},   {Act::top, StandardView::top},   {Act::bottom, StandardView::bottom}};
+bool StudioInput::perform_view(Action action) {
+    static constexpr std::pair<Action, StandardView> kViews[] = {
+        {Action::front, StandardView::front}, {Action::back, StandardView::back},
+        {Action::right, StandardView::right}, {Action::left, StandardView::left},
+        {Action::top, StandardView::top},     {Action::bottom, StandardView::bottom}};
     Session& s = session_;
     ViewState& view = s.view;
     for (const auto& [key, standard] : kViews)
-        if (act == key) return view.orbit.look_from(standard), true;
-    if (act == Act::frame_all)
+        if (action == key) return view.orbit.look_from(standard), true;
+    if (action == Action::frame_all)
         view.orbit.frame(s.paint_thread->model().mesh->bounds);
-    else if (act == Act::frame_cursor) {
+    else if (action == Action::frame_cursor) {
         if (const auto hit = aim_at(*s.paint_thread->model().query, aim_of(s, cursor_)))
             view.orbit.target = hit->position;
-    } else if (act == Act::parallel)
+    } else if (action == Action::parallel)
         view.orbit.set_parallel(!view.orbit.parallel);
-    else if (act == Act::atlas)
+    else if (action == Action::atlas)
         view.atlas.shown = !view.atlas.shown;
-    else if (act == Act::see_through)
+    else if (action == Action::see_through)
         view.see_through = !view.see_through;
-    else if (act == Act::next_shading)
+    else if (action == Action::next_shading)
         view.shading = static_cast<ModelView>((static_cast<int>(view.shading) + 1) % kModelViews);
     else
         return false;
@@ -289,30 +291,31 @@ bool StudioInput::perform_view(Act act) {
 }
 
 // What chooses a tool or sets the brush; false for other acts.
-bool StudioInput::perform_tool(Act act) {
-    static constexpr std::pair<Act, Tool> kTools[] = {
-        {Act::brush, Tool::brush},   {Act::line, Tool::line}, {Act::curve, Tool::curve}, {Act::writing, Tool::writing},
-        {Act::eraser, Tool::eraser}, {Act::fill, Tool::fill}, {Act::pick, Tool::pick},   {Act::mask, Tool::mask}};
-    static constexpr std::tuple<Act, double, double> kLeans[] = {
-        {Act::lean_left, -1, 0}, {Act::lean_right, 1, 0}, {Act::lean_away, 0, 1}, {Act::lean_near, 0, -1}};
+bool StudioInput::perform_tool(Action action) {
+    static constexpr std::pair<Action, Tool> kTools[] = {
+        {Action::brush, Tool::brush},     {Action::line, Tool::line},     {Action::curve, Tool::curve},
+        {Action::writing, Tool::writing}, {Action::eraser, Tool::eraser}, {Action::fill, Tool::fill},
+        {Action::pick, Tool::pick},       {Action::mask, Tool::mask}};
+    static constexpr std::tuple<Action, double, double> kLeans[] = {
+        {Action::lean_left, -1, 0}, {Action::lean_right, 1, 0}, {Action::lean_away, 0, 1}, {Action::lean_near, 0, -1}};
     Session& s = session_;
     PointerSettings& pointer = s.tools.pointer;
     for (const auto& [key, tool] : kTools)
-        if (act == key) return s.tools.active = tool, true;
+        if (action == key) return s.tools.active = tool, true;
     for (const auto& [key, x, y] : kLeans)
-        if (act == key)
+        if (action == key)
             return pointer.tilt = glm::clamp(pointer.tilt + Vec2(x, y) * 0.0872664626, -1.0471975512, 1.0471975512),
                    true;
     const double factor = brush::sized_name(s.brush.preset).factor;
-    if (act == Act::upright)
+    if (action == Action::upright)
         pointer.tilt = Vec2(0);
-    else if (act == Act::lighter)
+    else if (action == Action::lighter)
         pointer.pressure = std::max(0.02, pointer.pressure - 0.05);
-    else if (act == Act::heavier)
+    else if (action == Action::heavier)
         pointer.pressure = std::min(1.0, pointer.pressure + 0.05);
-    else if (act == Act::smaller)
+    else if (action == Action::smaller)
         size_brush(s.brush, s.status, factor / 1.1);
-    else if (act == Act::larger)
+    else if (action == Action::larger)
         size_brush(s.brush, s.status, factor * 1.1);
     else
         return false;

@@ -7,26 +7,28 @@
 #include "app/tools/stroke_input.h"
 #include "app/tools/writing_tool.h"
 
+/// \file
+/// Dispatch of input events. Window thread.
 namespace tuft::app {
 
-/// What the window does with a person's events: painting, looking round, keys.
+/// Passes input events to the view, the tools and the keys.
 class StudioInput {
   public:
     StudioInput(Session& session, const Comparison& comparison);
 
-    /// `now`: of the frame, seconds on the events' clock.
+    /// Handles one event. `now`: seconds, of the frame on the events' clock.
     void handle(const Event& e, double now);
-    /// Brings what follows the cursor up to date.
+    /// Updates everything that follows the cursor.
     void watch();
-    /// The model is another one: nothing is in the hand.
+    /// Forgets strokes and curves, because the model was replaced.
     void drop();
 
     StrokeInput& stroke() { return stroke_; }
     const StrokeInput& stroke() const { return stroke_; }
-    /// The cursor over the model's view; null where it is not.
+    /// Returns the cursor over the model's view; null where it is not.
     const Event* cursor() const { return inside_ ? &cursor_ : nullptr; }
     bool turning() const { return drag_ != Drag::none; }
-    /// The view was turned less than so many seconds ago, or is.
+    /// Returns true while the view is turned and for `seconds` after.
     bool turned_within(double seconds, double now) const { return turning() || now - last_turn_ < seconds; }
 
   private:
@@ -41,9 +43,9 @@ class StudioInput {
     void fly(const Event& e);
     void key(const Event& e);
     void assign_key(const Event& e);
-    void perform(Act act);
-    bool perform_view(Act act);
-    bool perform_tool(Act act);
+    void perform(Action action);
+    bool perform_view(Action action);
+    bool perform_tool(Action action);
 
     Session& session_;
     const Comparison& comparison_;

@@ -3,12 +3,12 @@
 #include "app/session/session.h"
 
 /// \file
-/// Pictures on their way to the graphics card.
+/// Uploads of pictures to the graphics card. Window thread, with the OpenGL context current.
 namespace tuft::app {
 
-/// The palette's, where it changed.
+/// Uploads the palette's picture when it changed.
 void upload_palette(PaletteState& palette);
-/// Those of the layers. While the view is `still` they are asked for anew from where the model is seen.
+/// Uploads changed thumbnails of layers. While the view is `still`, requests thumbnails from its direction.
 void upload_thumbnails(Session& s, bool still);
 
 }  // namespace tuft::app

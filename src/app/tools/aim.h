@@ -4,11 +4,13 @@
 #include "app/input/pointer_input.h"
 #include "app/session/session.h"
 
+/// \file
+/// From cursor positions to rays. Window thread.
 namespace tuft::app {
 
-/// The camera of the model's view; without a model that of a box of two metres.
+/// Returns the camera of the model's view; without a model that of a box of two metres.
 render::GlCamera camera_of(const Session& s);
-/// Where an event points over the open model.
+/// Returns the aim of an event over the open model.
 Aim aim_of(const Session& s, const Event& e);
 
 }  // namespace tuft::app

@@ -53,7 +53,7 @@ void CurveTool::press(const Event& e) {
     const auto point = point_of(e);
     if (!point) return;
     // A painted line or curve is done when a new one is begun.
-    if (session_.tools.active == Tool::line || curve.last_stroke || curve.waits) curve = {};
+    if (session_.tools.active == Tool::line || curve.last_stroke || curve.is_pending) curve = {};
     curve.points.push_back(*point);
     if (session_.tools.active == Tool::line) curve.points.push_back(*point);
     curve.grabbed = static_cast<int>(curve.points.size()) - 1;
@@ -136,14 +136,14 @@ void CurveTool::paint(double now) {
     const brush::Preset preset = brush::load_preset(s.brush.preset);
     const TipLag lag = tip_lag_.find(s.brush.preset, preset);
     const render::GlCamera c = camera_of(session_);
-    CurveHand hand{.hold = stroke::holder_options(preset, s.paint_thread->model().query->mesh()),
+    CurveHand hand{.holder = stroke::holder_options(preset, s.paint_thread->model().query->mesh()),
                    .settings = s.tools.curve_settings,
                    .pressure = s.tools.pointer.pressure,
                    .tilt = {s.tools.pointer.tilt.x, -s.tools.pointer.tilt.y},
                    .right = c.right,
                    .down = -c.up};
-    hand.hold.tip_lag = lag.upright;
-    hand.hold.leaned = lag.leaned;
+    hand.holder.tip_lag = lag.upright;
+    hand.holder.leaned = lag.tilted;
     const auto strokes = curve_poses(*s.paint_thread->model().query, curve.points, hand);
     if (strokes.empty()) return show_message(s.status, "The line does not lie on the model.");
     if (editable()) s.paint_thread->post(UndoStroke{});
@@ -155,15 +155,15 @@ void CurveTool::paint(double now) {
         s.paint_thread->post(EndStroke{});
     }
     curve.changed = false;
-    curve.waits = true;
+    curve.is_pending = true;
     curve.last_stroke = 0;
 }
 
 void CurveTool::watch(const Event* cursor) {
     Session& s = session_;
     CurveInWork& curve = s.tools.curve;
-    if (curve.waits && s.paint_thread->idle() && s.reported.progress.waiting == 0) {
-        curve.waits = false;
+    if (curve.is_pending && s.paint_thread->idle() && s.reported.progress.waiting == 0) {
+        curve.is_pending = false;
         curve.last_stroke = s.journal.lines.empty() ? 0 : s.journal.lines.back().id;
     }
     // Undone, or something was painted after it: it is history now.

@@ -6,9 +6,11 @@
 #include "app/session/session.h"
 #include "app/tools/tip_lag_cache.h"
 
+/// \file
+/// The tool for lines and curves. Window thread.
 namespace tuft::app {
 
-/// Lines and curves: setting, moving and painting their control points. `now`: seconds on the window's clock.
+/// Adds, moves and paints control points. `now`: seconds on the window's clock.
 class CurveTool {
   public:
     CurveTool(Session& session, TipLagCache& tip_lag) : session_(session), tip_lag_(tip_lag) {}
@@ -18,9 +20,9 @@ class CurveTool {
     void release(const Event& e, double now);
     /// Changes the pressure of the point under the cursor.
     void wheel(const Event& e, double now);
-    /// False where the key is none of the tool's.
+    /// Handles a key. Returns false for a key that is not one of the tool's.
     bool key(const Event& e, double now);
-    /// Looks whether the curve is painted, and over which point the cursor is; null: over none.
+    /// Updates whether the curve is painted, and which point is under the cursor (null: not over the model).
     void watch(const Event* cursor);
     void drop() { line_start_.reset(); }
 
@@ -32,7 +34,7 @@ class CurveTool {
 
     Session& session_;
     TipLagCache& tip_lag_;
-    std::optional<Event> line_start_;  ///< where a new control point was set
+    std::optional<Event> line_start_;  ///< press that set a new control point
 };
 
 }  // namespace tuft::app

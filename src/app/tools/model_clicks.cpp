@@ -77,7 +77,7 @@ void release_lasso(Session& s) {
 }
 
 bool press_move(Session& s, const Event& e) {
-    if (!s.journal.moves) return false;
+    if (!s.journal.move_on_drag) return false;
     s.journal.from = s.journal.to = aim_at(*s.paint_thread->model().query, aim_of(s, e));
     return true;
 }
@@ -94,7 +94,7 @@ void release_move(Session& s, const Event& e) {
             EditStrokes{.ids = {j.selected.begin(), j.selected.end()}, .move = shift_between(*j.from, *j.to)});
     j.from.reset();
     j.to.reset();
-    j.moves = false;
+    j.move_on_drag = false;
 }
 
 }  // namespace tuft::app

@@ -4,7 +4,7 @@
 #include "app/session/session.h"
 
 /// \file
-/// Tools that need a click or a drag over the model and do not paint: fill, eyedropper, masks, moving entries.
+/// Tools that click or drag over the model and do not paint: fill, eyedropper, masks, moving entries. Window thread.
 namespace tuft::app {
 
 void press_fill(Session& s, const Event& e);
@@ -12,7 +12,7 @@ void press_pick(Session& s, const Event& e);
 void press_mask(Session& s, const Event& e);
 void move_lasso(Session& s, const Event& e);
 void release_lasso(Session& s);
-/// Begins to move the selected entries; false where that was not asked for.
+/// Begins to move the selected entries. Returns false unless `JournalState::move_on_drag`.
 bool press_move(Session& s, const Event& e);
 void drag_move(Session& s, const Event& e);
 void release_move(Session& s, const Event& e);

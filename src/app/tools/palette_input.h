@@ -4,10 +4,13 @@
 #include "app/input/pointer_input.h"
 #include "app/session/colour_state.h"
 
+/// \file
+/// Input over the palette. Window thread.
 namespace tuft::app {
 
+/// Returns true when the event is over the palette's picture.
 bool in_palette(const PaletteState& palette, const Event& e);
-/// Where an event points over the plate, seen from straight above.
+/// Returns the aim of an event, straight down on the palette.
 Aim palette_aim(const PaletteState& palette, const Event& e);
 
 }  // namespace tuft::app

@@ -102,31 +102,31 @@ void StrokeInput::drop() {
     session_.tools.pointer_down = false;
 }
 
-void StrokeInput::post(std::vector<HandStep> steps, double time) {
+void StrokeInput::post(std::vector<StrokeStep> steps, double time) {
     Session& s = session_;
-    for (HandStep& step : steps) {
-        if (step.kind == HandStep::Kind::begin && on_plate_)
+    for (StrokeStep& step : steps) {
+        if (step.kind == StrokeStep::Kind::begin && on_plate_)
             s.paint_thread->post(BeginStroke{.brush = s.brush.preset,
                                              .ink = s.brush.ink,
                                              .carry = true,
                                              .as_it_is = true,
                                              .layer = stroke::kPaletteLayer,
                                              .wet = true});
-        else if (step.kind == HandStep::Kind::begin)
+        else if (step.kind == StrokeStep::Kind::begin)
             s.paint_thread->post(stroke_to_begin(s));
-        else if (step.kind == HandStep::Kind::end)
+        else if (step.kind == StrokeStep::Kind::end)
             s.paint_thread->post(EndStroke{});
         else {
             ++samples_;
-            asked_.push_back(time);
+            sent_at_.push_back(time);
             s.paint_thread->post(ExtendStroke{std::move(step.poses), time});
         }
     }
 }
 
 void StrokeInput::shown(double now) {
-    for (; !asked_.empty() && asked_.front() <= session_.reported.progress.done; asked_.pop_front())
-        delays_.push_back(now - asked_.front());
+    for (; !sent_at_.empty() && sent_at_.front() <= session_.reported.progress.done; sent_at_.pop_front())
+        delays_.push_back(now - sent_at_.front());
 }
 
 }  // namespace tuft::app

@@ -9,48 +9,50 @@
 #include "app/session/session.h"
 #include "app/tools/tip_lag_cache.h"
 
+/// \file
+/// Strokes drawn with a pointer. Window thread.
 namespace tuft::app {
 
-/// What a stroke is painted with, by hand or along a line.
+/// Returns the command that begins a stroke with the present brush, ink, layer and mask.
 BeginStroke stroke_to_begin(const Session& s);
 
-/// The stroke that a pointer draws on the model or on the palette.
+/// The stroke being drawn on the model or on the palette.
 class StrokeInput {
   public:
     StrokeInput(Session& session, TipLagCache& tip_lag) : session_(session), tip_lag_(tip_lag) {}
 
     bool drawing() const { return hand_.has_value(); }
     void press(const Event& e);
-    /// Stirs, pours or picks on the palette, as its tool says.
+    /// Stirs, pours or picks on the palette, by its tool.
     void press_palette(const Event& e);
     void move(const Event& e);
-    /// The view turned under the cursor, which stays where it is.
+    /// Moves the stroke after the view turned under the cursor.
     void follow_view(const Event& cursor);
     void release(const Event& e);
-    /// Takes the stroke back.
+    /// Cancels the stroke.
     void cancel();
-    /// Ends the stroke where it is.
+    /// Ends the stroke at its present point.
     void lift(double now);
-    /// The model is another one: there is no stroke.
+    /// Forgets the stroke, because the model was replaced.
     void drop();
 
-    /// The last frame is on the screen at `now`.
+    /// Reports that the last frame was presented at `now`, seconds.
     void shown(double now);
-    /// Seconds from each sample to the moment when its ink was shown, since the last call.
+    /// Returns the seconds from each sample until its ink was presented, of all samples since the last call.
     std::vector<double> take_delays() { return std::exchange(delays_, {}); }
-    std::size_t samples() const { return samples_; }  ///< that went to the paint thread so far
+    std::size_t samples() const { return samples_; }  ///< sent to the paint thread so far
 
   private:
     Aim aim(const Event& e) const;
     void start(const mesh::SurfaceQuery& surface, const brush::Preset& preset, bool on_plate);
-    void post(std::vector<HandStep> steps, double time);
+    void post(std::vector<StrokeStep> steps, double time);
 
     Session& session_;
     TipLagCache& tip_lag_;
     std::optional<PointerInput> hand_;
-    std::optional<stroke::Model> plate_;  ///< of the palette, once it was painted on
-    bool on_plate_ = false;               ///< the stroke is there
-    std::deque<double> asked_;            ///< when each sample was taken whose ink is not shown yet
+    std::optional<stroke::Model> plate_;  ///< of the palette, created with its first stroke
+    bool on_plate_ = false;               ///< the stroke is on the palette
+    std::deque<double> sent_at_;          ///< seconds, of samples whose ink is not presented yet
     std::vector<double> delays_;
     std::size_t samples_ = 0;
 };

@@ -7,12 +7,15 @@
 #include "app/input/pointer_input.h"
 #include "stroke/placement/tip_lag.h"
 
+/// \file
+/// Measured tip lag of the chosen brush. Window thread.
 namespace tuft::app {
 
-/// The tip lag of the brush in hand; measured anew where it is another one.
+/// Caches the tip lag of one brush.
 class TipLagCache {
   public:
-    /// What is returned may be used as long as this lives and no other brush is asked for.
+    /// Returns the tip lag of a brush; measures it when the brush changed. The result refers to this cache and is valid
+    /// until another brush is requested.
     TipLag find(const std::string& brush, const brush::Preset& preset);
 
   private:

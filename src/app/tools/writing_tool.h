@@ -5,25 +5,27 @@
 #include "app/input/events.h"
 #include "app/session/session.h"
 
+/// \file
+/// The tool for drawings and handwriting. Window thread.
 namespace tuft::app {
 
-/// Placing writing and drawings with the mouse. `cursor`: over the model; null where it is not.
+/// Places a drawing with the mouse. `cursor`: over the model; null where it is not.
 class WritingTool {
   public:
     explicit WritingTool(Session& session) : session_(session) {}
 
-    /// Shows where the writing would lie.
+    /// Updates the preview of the drawing at the cursor.
     void watch(const Event* cursor);
-    /// Scales it; with Shift, turns it.
+    /// Scales the drawing; with Shift, turns it.
     void wheel(const Event& e);
-    /// Paints it there.
+    /// Paints the drawing at the cursor.
     void place(const Event* cursor);
 
   private:
     std::optional<stroke::Placement> placement(const Event* cursor) const;
 
     Session& session_;
-    // What the preview was made for.
+    // Arguments of the last preview.
     stroke::Placement placement_;
     double scale_ = 0;
     render::GlCamera camera_;

@@ -5,36 +5,37 @@
 
 #include "app/input/events.h"
 
+/// \file
+/// Output of the program. Window thread.
 namespace tuft::app {
 
-/// Where the program shows itself: a window, or a picture in memory. Owns the OpenGL
-/// context, which is current on the thread that made it.
+/// A window, or a picture in memory. Owns the OpenGL context, which is current on the thread that created it.
 class Display {
   public:
     virtual ~Display() = default;
-    /// Takes what happened since the last call, waiting up to `wait` seconds for something.
+    /// Appends the events since the last call; waits up to `wait` seconds for one.
     virtual void poll(EventQueue& events, double wait) = 0;
     virtual void present() = 0;
-    /// What went wrong since the last call and is worth a message, "" if nothing.
+    /// Returns a fault since the last call for the status bar; else "".
     virtual std::string take_trouble() { return ""; }
     virtual bool closed() const = 0;
-    virtual void stay_open() {}  ///< after `closed`: it is not any more
-    /// The graphics driver was reset: everything in its memory is gone.
+    virtual void stay_open() {}  ///< resets `closed`
+    /// Returns true when the graphics driver was reset and all its memory is lost.
     virtual bool lost() const;
-    /// Makes a new OpenGL context, current on this thread, in place of the old one.
+    /// Creates a new OpenGL context, current on this thread, and destroys the old one.
     virtual void renew() = 0;
     virtual void set_title(const std::string&) {}
     virtual void resize(int width, int height) = 0;
     virtual int width() const = 0;
     virtual int height() const = 0;
     virtual unsigned framebuffer() const { return 0; }
-    virtual float scale() const { return 1; }  ///< of text, for displays with small pixels
+    virtual float scale() const { return 1; }  ///< of text, on displays with small pixels
     double now() const;                        ///< seconds since the start
 };
 
-/// Throws `Error` when there is no display or no OpenGL 3.3.
+/// Opens a window. Throws `Error` when there is no display or no OpenGL 3.3.
 std::unique_ptr<Display> open_window(int width, int height);
-/// The same without a display (EGL without a surface; else a window that is not shown).
+/// Opens a framebuffer without a display: EGL without a surface, else a hidden window. Throws `Error`.
 std::unique_ptr<Display> open_offscreen(int width, int height);
 
 }  // namespace tuft::app

@@ -7,17 +7,18 @@
 #include "atlas/atlas.h"
 #include "mesh/triangle_mesh.h"
 
-/// Colours of triangles that show how the atlas lies on the model, sRGB [n_triangles].
+/// \file
+/// Colours of triangles that visualise the atlas, sRGB [n_triangles]. Any thread.
 namespace tuft::app {
 
 using TriangleColours = std::vector<std::array<std::uint8_t, 4>>;
 
-/// A colour for each chart; neighbours in number differ.
+/// Returns one colour per chart; consecutive charts differ.
 TriangleColours chart_colours(const atlas::Atlas& atlas);
 
-/// Texels per metre in each triangle against the mean, √((Γ² + γ²) / 2) of the map from the
-/// surface to the atlas (Sander et al. 2001): grey where it is the mean, blue below, red above;
-/// full colour at a factor of 1.5.
+/// Returns colours for the texel density of each triangle over the mean, √((Γ² + γ²) / 2) with the singular values of
+/// the map from surface to atlas (Sander et al. 2001): grey at the mean, blue below, red above; saturated from a factor
+/// of 1.5.
 TriangleColours stretch_colours(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas);
 
 }  // namespace tuft::app

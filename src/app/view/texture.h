@@ -11,40 +11,40 @@
 #include "render/gl/gl_scene.h"
 #include "stroke/document/document.h"
 
+/// \file
+/// The shown texture of the model. Paint thread, except `TexelUpdate`, which is plain data.
 namespace tuft::app {
 
-/// Texels that changed, for the graphics card.
+/// Changed texels, for the graphics card.
 struct TexelUpdate {
-    std::optional<render::MapPixels> pixels;  ///< the whole texture, older than the tiles
+    std::optional<render::MapPixels> pixels;  ///< the whole texture; apply it before the tiles
     std::vector<render::TilePixels> tiles;
 };
 
-/// What the canvas looks like, kept up to date tile by tile: sRGB colour and the
-/// code of the height of its ink (`render::code_of_height`). Gutters are continued over the seams.
+/// The shown texture, updated tile by tile: sRGB colour and coded ink height (`render::code_of_height`). Gutters
+/// continue over seams.
 class Texture {
   public:
     Texture(const stroke::Document& painting, const ProgressFn& progress = {});
 
-    /// The whole atlas with its levels.
+    /// Returns the whole atlas with its mip levels.
     render::MapPixels pixels() const;
-    /// Whether the fourth channel is the liquid that is in and on the surface, in the same unit;
-    /// changes it everywhere.
+    /// Switches the fourth channel between ink height and liquid in and on the surface, in the same unit. Updates all.
     void show_wetness(bool on, const stroke::Document& painting);
-    /// Veils what the mask leaves out; null: nothing.
+    /// Dims the texels outside the mask; null: none.
     void show_veil(const stroke::MaskTexels* mask, const stroke::Document& painting);
-    /// Texels to be highlighted, by slot.
+    /// Highlighted texels, by slot.
     enum Mark : std::uint8_t { kNotMarked, kInked, kRim };
     using Marks = std::map<std::uint32_t, std::array<std::uint8_t, atlas::kTileTexels>>;
-    /// Highlights the inked texels, with a rim of two texels round them, in the place of what was highlighted before;
-    /// returns every tile that changed by it.
+    /// Replaces the highlighting: the inked texels, and a rim of two texels round them. Returns the changed tiles.
     std::vector<render::TilePixels> show_marks(Marks marks, const stroke::Document& painting);
-    /// What is highlighted, with its rim.
+    /// The highlighted texels with their rim.
     const Marks& marks() const { return marks_; }
-    /// Everything anew, for another look of the painting as a whole.
+    /// Updates all texels, after a change of the painting's appearance.
     void refresh_all(const stroke::Document& painting);
-    /// Brings slots up to date and returns every tile that changed by it.
+    /// Updates slots. Returns the changed tiles.
     std::vector<render::TilePixels> refresh(std::span<const std::uint32_t> slots, const stroke::Document& painting);
-    /// Side of `pixels()`: the atlas's, rounded up to whole tiles.
+    /// Side of `pixels()` in texels: the atlas's, rounded up to whole tiles.
     std::uint32_t padded_size() const { return padded_; }
 
   private:

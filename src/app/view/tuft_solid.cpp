@@ -13,19 +13,25 @@ namespace {
 
 const Vec3f kHair{0.21f, 0.14f, 0.085f}, kFerrule{0.32f, 0.22f, 0.11f}, kBamboo{0.42f, 0.30f, 0.15f};
 
-// A tube round the holder's axis between two heights above the ferrule's mouth.
-void add_tube(render::GlSolid& solid, const Vec3& mouth, const Vec3& up, double r0, double r1, double from, double to,
-              const Vec3f& colour) {
+// A tube round the holder's axis.
+struct Tube {
+    double from = 0, to = 0;                ///< metres above the ferrule's mouth
+    double from_radius = 0, to_radius = 0;  ///< metres
+    Vec3f colour{1};                        ///< linear
+};
+
+// `mouth`: origin in the ferrule's mouth, normal along the holder.
+void add_tube(render::GlSolid& solid, const Frame& mouth, const Tube& tube) {
     constexpr std::uint32_t sides = 24;
-    const Frame f = make_frame(mouth, up);
     const auto base = static_cast<std::uint32_t>(solid.positions.size());
     for (int ring = 0; ring < 2; ++ring)
         for (std::uint32_t i = 0; i < sides; ++i) {
             const double a = 2 * std::numbers::pi * i / sides;
-            const Vec3 out = std::cos(a) * f.t + std::sin(a) * f.b;
-            solid.positions.push_back(Vec3f(mouth + (ring ? r1 : r0) * out + (ring ? to : from) * up));
+            const Vec3 out = std::cos(a) * mouth.t + std::sin(a) * mouth.b;
+            const double radius = ring ? tube.to_radius : tube.from_radius, height = ring ? tube.to : tube.from;
+            solid.positions.push_back(Vec3f(mouth.origin + radius * out + height * mouth.n));
             solid.normals.push_back(Vec3f(out));
-            solid.colours.push_back(colour);
+            solid.colours.push_back(tube.colour);
         }
     for (std::uint32_t i = 0; i < sides; ++i) {
         const std::uint32_t j = (i + 1) % sides;
@@ -63,8 +69,9 @@ render::GlSolid solid_of(const brush::TuftState& tuft, unsigned ink) {
     const brush::Section& root = tuft.branches.front().sections.back();
     const double r = std::max(root.a, root.b);
     const Vec3 up = -root.tangent;
-    add_tube(solid, root.centre, up, 1.06 * r, 1.12 * r, 0, 2.2 * r, kFerrule);
-    add_tube(solid, root.centre, up, 0.95 * r, 0.85 * r, 2.2 * r, 16 * r, kBamboo);
+    const Frame mouth = make_frame(root.centre, up);
+    add_tube(solid, mouth, {0, 2.2 * r, 1.06 * r, 1.12 * r, kFerrule});
+    add_tube(solid, mouth, {2.2 * r, 16 * r, 0.95 * r, 0.85 * r, kBamboo});
     return solid;
 }
 

@@ -3,11 +3,13 @@
 #include "brush/tuft/tuft.h"
 #include "render/gl/gl_scene.h"
 
+/// \file
+/// The drawn tuft. Any thread.
 namespace tuft::app {
 
-/// Hair, as it is dipped into an ink of that colour (sRGB), and ferrule as triangles for drawing.
+/// Returns triangles of hair and ferrule. `ink`: sRGB colour (ImU32) that the hair was dipped into.
 render::GlSolid solid_of(const brush::TuftState& tuft, unsigned ink);
-/// Linear colour of hair at a place between the tip (0) and the root (1) of a tuft dipped into `ink`.
+/// Returns the linear colour of hair dipped into `ink` at a fraction from the tip (0) to the root (1).
 Vec3f hair_colour(double from_tip, unsigned ink);
 
 }  // namespace tuft::app

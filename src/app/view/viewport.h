@@ -3,35 +3,37 @@
 #include "core/geometry/types.h"
 #include "render/gl/gl_camera.h"
 
+/// \file
+/// The camera's orbit. Window thread.
 namespace tuft::app {
 
 enum class StandardView { front, back, right, left, top, bottom };
 
-/// Turntable camera: the world's z stays up, unless rolled.
+/// Turntable camera: the world's z is up, unless rolled.
 struct Orbit {
-    Vec3 target{0};                      ///< metres, looked at and turned about
+    Vec3 target{0};                      ///< metres, centre of view and of rotation
     double distance = 0.5;               ///< metres
     double azimuth = 0.5;                ///< radians; 0 looks along +y
     double elevation = 0.5;              ///< radians
     double roll = 0;                     ///< radians, of the head to the right
     double field_of_view = 0.55;         ///< radians over the shorter side of the picture
-    bool parallel = false;               ///< orthographic
-    bool parallel_until_turned = false;  ///< only for one of the standard views
+    bool parallel = false;               ///< orthographic projection
+    bool parallel_until_turned = false;  ///< `parallel` ends with the next rotation
 
-    /// Places the camera so that the whole box is seen.
+    /// Places the camera so that the whole box is visible.
     void frame(const Box& box);
-    /// Straight along an axis, in parallel projection until it is turned, as in Blender.
+    /// Looks along an axis, in parallel projection until the next rotation, as in Blender.
     void look_from(StandardView view);
-    /// Until it is set otherwise.
+    /// Sets the projection permanently.
     void set_parallel(bool on);
     void turn(double dx_pixels, double dy_pixels);
-    /// Moves the target in the picture plane, so that what is under the cursor stays there.
+    /// Moves the target in the picture plane, so that the point under the cursor stays there.
     void pan(double dx_pixels, double dy_pixels, int shorter_side);
-    /// Moves the model as a SpaceMouse's cap is held: `push` and `twist` as in `Event`. Pushed all the way
-    /// the model crosses the picture's shorter side in a second; twisted, it turns by 2 radians.
-    /// `level`: the horizon stays as it is.
+    /// Moves the model as a SpaceMouse's cap is deflected. `push` and `twist` as in `Event`: at full push the model
+    /// crosses the picture's shorter side in one second; at full twist it rotates by 2 radians. `level` retains the
+    /// horizon.
     void fly(const Vec3& push, const Vec3& twist, bool level);
-    /// Moves nearer (steps > 0); what lies at `towards` keeps its place in the picture.
+    /// Moves nearer (steps > 0). The point `towards` keeps its position in the picture.
     void zoom(double steps, const Vec3& towards);
     render::GlCamera camera(int width, int height, const Box& scene) const;
 };

@@ -78,7 +78,7 @@ bool FileDialog::suits(const fs::path& file) const {
 void FileDialog::show(Purpose purpose, const fs::path& start) {
     purpose_ = purpose;
     shown_ = true;
-    ask_replace_ = new_folder_.asked = false;
+    ask_replace_ = new_folder_.shown = false;
     listing_.filter[0] = 0;
     std::error_code ec;
     const std::vector<fs::path> recent = recent_folders();
@@ -186,7 +186,7 @@ void FileDialog::make_folder(Ui& ui) {
         fault_ = ec ? "The folder cannot be made: " + ec.message() : "There is a folder of that name.";
         return;
     }
-    new_folder_.asked = false;
+    new_folder_.shown = false;
     go(folder);
     name_.take_focus = true;
 }
@@ -204,11 +204,11 @@ void FileDialog::draw_top(Ui& ui) {
     ImGui::InputTextWithHint("##filter", ui.tr("filter"), listing_.filter, sizeof listing_.filter);
     ui.mark("filter");
     ImGui::SameLine();
-    if (ui.choice("New folder", new_folder_.asked, nullptr, 100)) {
-        new_folder_.asked = !new_folder_.asked;
+    if (ui.choice("New folder", new_folder_.shown, nullptr, 100)) {
+        new_folder_.shown = !new_folder_.shown;
         new_folder_.name[0] = 0;
     }
-    if (new_folder_.asked) make_folder(ui);
+    if (new_folder_.shown) make_folder(ui);
 }
 
 // True when a file was clicked twice.
@@ -315,7 +315,7 @@ void FileDialog::draw_preview(Ui& ui, Pictures& pictures, float width) {
                                   ui.px(1.2f));
             }
         } else if (e != ".toml" && entry->bytes <= kMostDrawn) {
-            pictures.go_on();
+            pictures.resume();
             if (const unsigned texture = pictures.texture(file))
                 draw->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at,
                                       ImVec2(at.x + width, at.y + height), ImVec2(0, 0), ImVec2(1, 1), IM_COL32_WHITE,

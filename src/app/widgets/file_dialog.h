@@ -9,9 +9,11 @@
 #include "app/widgets/file_list.h"
 #include "app/widgets/ui.h"
 
+/// \file
+/// The file dialog. Window thread.
 namespace tuft::app {
 
-/// Choosing a file to open, or a name to write to.
+/// Chooses a file to open, or a name to write to.
 class FileDialog {
   public:
     enum class Purpose { open, save, export_model, writing, revise, ink, save_ink, reference };
@@ -20,13 +22,12 @@ class FileDialog {
     bool shown() const { return shown_; }
     void close() { shown_ = false; }
     Purpose purpose() const { return purpose_; }
-    bool reads() const;  ///< a file that is there; else one to be written
+    bool reads() const;  ///< true: an existing file is chosen; false: a file to write
     const std::filesystem::path& folder() const { return folder_; }
-    /// Draws it; a path when one was chosen.
+    /// Draws the dialog. Returns the chosen path, once.
     std::optional<std::filesystem::path> draw(Ui& ui, Pictures& pictures);
 
-    /// Comes back with the name that was chosen last and the reason, where writing to `path` failed and that was
-    /// the one chosen here.
+    /// Opens again with the last choice and the reason, when writing to `path` failed and `path` was chosen here.
     void return_with(const std::filesystem::path& path, const std::string& fault);
 
   private:
@@ -48,7 +49,7 @@ class FileDialog {
     bool draw_name(Ui& ui);
     void load_sketch();
 
-    /// What the folder holds, and how it is listed.
+    /// Content of the folder and how it is listed.
     struct Listing {
         std::vector<FileEntry> entries;
         FileOrder order = FileOrder::name;
@@ -57,15 +58,15 @@ class FileDialog {
     };
     struct NameField {
         char text[512] = "";
-        std::string extension;     ///< that a name without one gets
-        bool take_focus = false;   ///< it is to have the keyboard
-        bool select_stem = false;  ///< the name up to the dot is to be selected
+        std::string extension;     ///< added to a name without one
+        bool take_focus = false;   ///< takes the keyboard in the next frame
+        bool select_stem = false;  ///< selects the name up to the dot in the next frame
     };
     struct NewFolder {
-        bool asked = false;  ///< for its name
+        bool shown = false;  ///< the field for its name
         char name[256] = "";
     };
-    /// Lines of a drawing, for its preview.
+    /// Lines of a drawing, for the preview.
     struct Sketch {
         std::string file;
         std::vector<std::vector<Vec2>> lines;  ///< in [0, 1], y down
@@ -79,10 +80,10 @@ class FileDialog {
     NewFolder new_folder_;
     Sketch sketch_;
     std::string fault_;
-    std::optional<Chosen> last_;  ///< what was chosen last
+    std::optional<Chosen> last_;  ///< last choice
 };
 
-/// Folders that files were chosen in, the newest first.
+/// Folders of recently chosen files, newest first.
 std::vector<std::filesystem::path> recent_folders();
 void remember_folder(const std::filesystem::path& folder);
 

@@ -96,8 +96,8 @@ std::string manual_text(const ManualPage& page, Language language, const KeyTabl
         if (close == std::string::npos) break;
         const std::string word = text.substr(open + 1, close - open - 1);
         std::string key = "?";
-        for (int i = 0; i < static_cast<int>(Act::count); ++i)
-            if (word == word_of(static_cast<Act>(i))) key = name_of(keys.chord(static_cast<Act>(i)));
+        for (int i = 0; i < static_cast<int>(Action::count); ++i)
+            if (word == word_of(static_cast<Action>(i))) key = name_of(keys.chord(static_cast<Action>(i)));
         text.replace(open, close + 1 - open, key.empty() ? "\xe2\x80\x93" : key);
     }
     return text;

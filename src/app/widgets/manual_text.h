@@ -6,17 +6,18 @@
 #include "app/input/keys.h"
 #include "app/widgets/ui.h"
 
-/// The built-in manual: short pages, in English; those in Chinese are in the catalogue (app/text).
+/// \file
+/// Text of the built-in manual in English. The Chinese translation is in the catalogue (app/text). Any thread.
 namespace tuft::app {
 
-/// A page; paragraphs end with a line break, points begin with "* ". {undo} and the like stand for the key of an
-/// action, by its word in the settings.
+/// A page. Paragraphs end with a line break, list items begin with "* ". {undo} and the like stand for the key of an
+/// action, by its word in the settings file.
 struct ManualPage {
     const char *title, *text;
 };
 std::span<const ManualPage> manual_pages();
 
-/// The page's text with the keys that are set now.
+/// Returns a page's text in a language, with the present keys filled in.
 std::string manual_text(const ManualPage& page, Language language, const KeyTable& keys);
 
 }  // namespace tuft::app

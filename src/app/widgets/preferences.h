@@ -3,22 +3,25 @@
 #include "app/input/keys.h"
 #include "app/widgets/ui.h"
 
+/// \file
+/// The user's preferences. Window thread.
 namespace tuft::app {
 
-/// Whose mouse buttons turn and move the view.
+/// Program whose mouse buttons rotate and move the view.
 enum class Keymap { blender, maya };
 
+/// Settings of a SpaceMouse.
 struct SpaceMouseSettings {
-    double speed = 1;
-    bool level = true;       ///< the horizon stays level
-    bool moves_eye = false;  ///< else the model goes where the cap goes
-    bool seen = false;       ///< one is connected
+    double speed = 1;        ///< factor
+    bool level = true;       ///< retains the horizon
+    bool moves_eye = false;  ///< the cap moves the camera; false: the model
+    bool seen = false;       ///< a device is connected
 };
 
-/// What a person sets once, for every model.
+/// Settings for all models.
 struct Preferences {
-    UiSettings ui;         ///< `Ui` takes them over between two frames
-    bool restyle = false;  ///< and has to do so
+    UiSettings ui;         ///< applied by `Ui` between two frames
+    bool restyle = false;  ///< `ui` changed and is to be applied
     Keymap keymap = Keymap::blender;
     KeyTable keys;
     SpaceMouseSettings space_mouse;

@@ -3,12 +3,14 @@
 #include <string>
 #include <utility>
 
+/// \file
+/// The status bar's message. Window thread.
 namespace tuft::app {
 
 /// The line of text in the status bar.
 struct StatusMessage {
     std::string text;
-    double seconds = 0;  ///< since it came
+    double seconds = 0;  ///< since it was set
 };
 
 inline void show_message(StatusMessage& status, std::string text) {

@@ -366,8 +366,8 @@ void draw_slider_ground(float lo, float hi, float value, float grab) {
 
 }  // namespace
 
-bool Ui::slider(const char* label, double& value, double lo, double hi, const char* format, const char* text,
-                double unit) {
+bool Ui::slider(const char* label, double& value, const SliderRange& range, const char* text) {
+    const auto& [lo, hi, format, unit] = range;
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(tr(label));
     hint(text);

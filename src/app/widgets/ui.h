@@ -11,81 +11,91 @@
 
 struct ImFont;
 
+/// \file
+/// Widgets of the studio on top of Dear ImGui. Window thread.
 namespace tuft::app {
 
 enum class Language { english, chinese };
 enum class Theme { dark, light };
 
+/// Settings of the interface.
 struct UiSettings {
     Language language = Language::english;
     Theme theme = Theme::dark;
-    float scale = 1;           ///< of all sizes
-    bool own_scale = false;    ///< chosen by the person; else it follows the display
+    float scale = 1;           ///< factor on all sizes
+    bool own_scale = false;    ///< set by the user; else it follows the display
     bool left_handed = false;  ///< tools on the right
 };
 
-/// The scale for a picture of that size on a display that asks for `content`: what it asks for, and at least as much
-/// as the picture is larger than 1920 × 1080, in quarters, 1 to 3.
+/// Returns the scale for a window of that size in pixels: the display's `content` scale, and at least the window's size
+/// over 1920 × 1080, in steps of 1/4, from 1 to 3.
 float scale_for(float content, int width, int height);
 
-/// A font with Chinese characters among these files, the best one first; "" when there is none.
+/// Returns the best font with Chinese characters among these files; "" when there is none.
 std::string find_chinese_font(const std::map<std::string, std::string>& path_by_name);
 
-/// Widgets in the house's look, with translated texts and hints. They are named by their
-/// English text; where each was drawn is kept, so that a script can find it.
+/// Range and display of a slider.
+struct SliderRange {
+    double lo = 0, hi = 1;        ///< in the value's unit, lo < hi
+    const char* format = "%.2f";  ///< printf format of the shown number
+    double unit = 1;              ///< value of a shown 1, > 0: 1e-3 shows metres in millimetres
+};
+
+/// Styled widgets with translated texts and hints. A widget is named by its English text. Its position is recorded, so
+/// that a script can find it.
 class Ui {
   public:
-    /// Makes fonts and colours. Returns what could not be had, "" if nothing.
+    /// Loads fonts and sets colours. Returns the fault, or "".
     std::string prepare(const UiSettings& settings);
     const UiSettings& settings() const { return settings_; }
 
-    /// The text in the chosen language.
+    /// Returns a text in the chosen language.
     const char* tr(const char* english) const;
-    /// Name of a brush or an ink for people: "mixed-medium*1.8" as "Mixed, medium × 1.8", the factor with two digits.
+    /// Returns the shown name of a brush or an ink: "mixed-medium*1.8" gives "Mixed, medium × 1.8", two digits.
     std::string title(const std::string& name) const;
-    /// The text, with "..." for its end where it is wider than so many pixels.
+    /// Returns the text shortened with "..." to at most `width` pixels.
     std::string fitted(const std::string& text, float width) const;
-    /// A sentence with numbers or a name in it, in the language of the interface.
+    /// Returns a sentence with numbers or a name in it, in the chosen language.
     std::string tr_sentence(const std::string& english) const;
-    /// Pixels of a length given for a scale of 1.
+    /// Converts a length at scale 1 to pixels.
     float px(float length) const { return length * settings_.scale; }
 
     void begin_frame();
-    bool enter = false;  ///< Enter was pressed: the primary button of the dialog takes it
+    bool enter = false;  ///< Enter was pressed; the dialog's primary button takes it
     bool in_dialog = false;
-    bool in_menu = false;  ///< what is drawn now is a menu over the rest: its names go before those below
-    bool modal = false;    ///< a dialog is open: what lies behind it says nothing
+    bool in_menu = false;  ///< a menu over the rest is drawn now; `find` prefers its widgets
+    bool modal = false;    ///< a dialog is open; widgets behind it show no hints
     bool button(const char* label, const char* hint = nullptr, float width = 0, bool enabled = true);
-    /// Pixels of a button's width: at least `least` at a scale of 1, and as much as the text needs.
+    /// Returns a button's width in pixels: at least `least` at scale 1, and enough for the text.
     float button_width(const char* label, float least) const;
     bool primary_button(const char* label, float width = 0, bool enabled = true);
     bool toggle(const char* label, bool& value, const char* hint = nullptr);
     bool choice(const char* label, bool chosen, const char* hint = nullptr, float width = 0);
-    bool slider(const char* label, double& value, double lo, double hi, const char* format, const char* hint = nullptr,
-                double unit = 1);
+    /// Returns true when the value changed. It is clamped to the range only then.
+    bool slider(const char* label, double& value, const SliderRange& range, const char* hint = nullptr);
     bool combo(const char* label, std::string& value, const std::vector<std::string>& names, float width = 0);
     bool menu_item(const char* label, const char* shortcut = nullptr, bool chosen = false, bool enabled = true);
     bool begin_menu(const char* label);
     void heading(const char* text);
-    /// A heading that a click folds and unfolds; true when what is under it is to be drawn. `open`: as shipped;
-    /// `value`: what is chosen there, already in the chosen language, at the heading's right end.
+    /// A heading that a click opens and closes. Returns true when its content is to be drawn. `open`: initial state.
+    /// `value`: text at the heading's right end, already translated.
     bool section(const char* title, bool open = true, const char* value = nullptr);
-    /// The triangle of such a heading with its middle at a place of the window, pixels.
+    /// Draws the triangle of such a heading, centred at a position of the window in pixels.
     void fold_arrow(float x, float y, bool open) const;
-    std::map<std::string, bool> sections;  ///< open or not, of those that were clicked
-    bool sections_changed = false;         ///< since the last look
+    std::map<std::string, bool> sections;  ///< open or not, of the sections that were clicked
+    bool sections_changed = false;         ///< since it was last reset
     void hint(const char* text);
     void wrapped(const std::string& text);
     /// Small grey text.
     void note(const std::string& text);
 
-    /// Remembers where the last item is, under a name.
+    /// Records the position of the last item under a name.
     void mark(const std::string& name);
     struct Place {
         double x = 0, y = 0;  ///< pixels, centre
-        bool on_top = false;  ///< in a menu that lies over the rest
+        bool on_top = false;  ///< in a menu over the rest
     };
-    /// Where the widget of that name was in the last frame; nullptr: it was not drawn.
+    /// Returns where the widget of that name was in the last frame; nullptr when it was not drawn.
     const Place* find(const std::string& name) const;
     std::vector<std::string> names() const;
 
@@ -104,11 +114,11 @@ class Ui {
     std::map<std::string, Place> places_;
 };
 
-/// Chinese for a sentence with numbers or a file name in it, as the catalogue has it with # for each number and * for
-/// the name; the English one when there is none.
+/// Returns the Chinese translation of a sentence with numbers or a file name; English where there is none. The
+/// catalogue has # for each number and * for the name.
 std::string chinese_sentence(const std::string& english);
 
-/// sRGB of the primary button, at rest and under the cursor; its text is white.
+/// sRGB of the primary button, normal and under the cursor. Its text is white.
 inline constexpr float kPrimary[3] = {0.16f, 0.40f, 0.78f}, kPrimaryHovered[3] = {0.17f, 0.43f, 0.82f};
 
 }  // namespace tuft::app

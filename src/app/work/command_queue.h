@@ -9,28 +9,30 @@
 
 #include "app/work/commands.h"
 
+/// \file
+/// Queue of commands from the window to the paint thread.
 namespace tuft::app {
 
-/// Commands on their way from the window to the paint thread.
+/// A thread-safe queue. The window posts, the paint thread waits.
 class CommandQueue {
   public:
     void post(Command command);
-    /// No command comes any more; those that wait are still handed out.
+    /// Ends posting. Waiting commands are still returned.
     void close();
 
-    /// Nothing waits and nothing is being done.
+    /// True when no command waits or runs.
     bool idle() const;
-    /// Waits until it is so, but not longer than so many seconds.
+    /// Waits until `idle`, at most that many seconds.
     void wait_idle(double seconds) const;
-    /// Commands not done yet, with the one in work.
+    /// Number of commands not finished yet, the running one included.
     std::size_t waiting() const;
-    /// Some command waits.
+    /// True when a command waits.
     bool pending() const;
-    /// Some command waits, or none comes any more: what can be interrupted ends.
+    /// True when a command waits or the queue is closed: interruptible work should end.
     bool interrupts() const;
 
-    /// The paint thread's side: the command before is done, the next one is due. `nothing` when none came within
-    /// `patience`, `closed` when none will come.
+    /// Marks the previous command as finished and returns the next one. Paint thread. `nothing`: none came within
+    /// `patience`. `closed`: none will come.
     enum class Next { command, nothing, closed };
     Next wait(Command& command, std::chrono::milliseconds patience);
 

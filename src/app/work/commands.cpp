@@ -1,6 +1,6 @@
 #include "app/work/commands.h"
 
-#include "app/work/overloaded.h"
+#include "core/overloaded.h"
 
 namespace tuft::app {
 

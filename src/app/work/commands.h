@@ -15,42 +15,42 @@
 #include "stroke/gesture/symmetry.h"
 
 /// \file
-/// What the window asks the paint thread to do: a struct for each command. They are done in order.
+/// Commands from the window to the paint thread, one struct each. They are executed in order.
 namespace tuft::app {
 
-/// In the place of a layer: the one added last, which may still be requested.
+/// Stands for the layer added last, whose command may not have run yet.
 inline constexpr std::uint32_t kNewestLayer = stroke::kPaletteLayer - 1;
 
 struct BeginStroke {
     std::string brush, ink;
     stroke::Symmetry symmetry;
-    bool carry = false;                         ///< goes on with the hair and ink of the stroke before
-    bool as_it_is = false;                      ///< with what is in the brush, whatever ink is chosen; where it is held
+    bool carry = false;                         ///< the brush keeps hair and ink of the stroke before
+    bool as_it_is = false;                      ///< as `carry`, without dipping, whatever ink is chosen
     std::uint32_t layer = stroke::kFirstLayer;  ///< or the palette
-    std::uint32_t mask = 0;                     ///< kept to; 0: none
-    bool erases = false;                        ///< takes ink off
-    bool wet = false;                           ///< ink that flows and mixes
-    std::string tip_ink;                        ///< every stroke begins with this one in the tip; empty: with one ink
-    double tip_depth = 0.3;                     ///< of it, part of the tuft's length
-    bool joined = false;                        ///< is undone together with the one before it
+    std::uint32_t mask = 0;                     ///< id; 0: none
+    bool erases = false;
+    bool wet = false;        ///< ink flows and mixes
+    std::string tip_ink;     ///< loaded into the tip before every stroke; empty: none
+    double tip_depth = 0.3;  ///< of that ink, fraction of the tuft's length
+    bool joined = false;     ///< is undone together with the step before
 };
-/// Dips, rinses, wipes or combs a brush, or lets the ink dry.
+/// Dips, rinses, wipes or reshapes a brush, or dries the ink.
 struct ActOnBrush {
     stroke::EntryKind action = stroke::EntryKind::dip;
     std::string brush, ink;
-    double seconds = 0;          ///< of drying; 0: until all is dry
+    double seconds = 0;          ///< of drying; 0: until dry
     stroke::Extent extent = {};  ///< of a dip or a wipe
 };
 struct ExtendStroke {
     std::vector<brush::Pose> poses;
-    double asked = 0;  ///< seconds on the window's clock, comes back in `Update::done`
+    double requested_at = 0;  ///< seconds on the window's clock, returned in `ProgressStatus::done`
 };
 struct EndStroke {};
-/// Paints a drawing that has been placed on the model; undone together.
+/// Paints a drawing placed on the model; one undo step.
 struct PaintDrawing {
     PlacedWriting drawing;
-    std::string name;  ///< its strokes are a group of this name, each symmetric copy another one; empty: no groups
-    stroke::Symmetry symmetry;  ///< the drawing reads the same way in each copy, also beyond a mirror plane
+    std::string name;           ///< of its group of strokes; each symmetric copy is another group; empty: no groups
+    stroke::Symmetry symmetry;  ///< copies of the drawing read in the same direction, also beyond a mirror plane
     std::uint32_t layer = stroke::kFirstLayer;
     std::uint32_t mask = 0;
     bool wet = false;
@@ -58,38 +58,38 @@ struct PaintDrawing {
 struct CancelStroke {};
 struct UndoStroke {};
 struct RedoStroke {};
-/// Lays ink over a part of the model.
+/// Fills a part of the model with ink.
 struct FillModel {
     std::string ink;
     stroke::Fill fill;
     std::uint32_t layer = stroke::kFirstLayer;
     std::uint32_t mask = 0;
 };
-/// The eyedropper: what lies at a place becomes an ink of its own.
+/// Eyedropper: makes an ink of the mixture at a point.
 struct PickInk {
-    Vec3 point{0};  ///< metres, frame of the model or the palette
+    Vec3 point{0};  ///< metres, model frame or palette frame
     bool on_palette = false;
 };
-/// Takes an ink in from outside.
+/// Adds a given ink to the project.
 struct TakeInk {
     ink::Ink ink;
 };
-/// Shows what is painted with one ink as if it were another one.
+/// Shows strokes of one ink with another one.
 struct RecolourInk {
     std::string name;
     ink::Ink wanted;
 };
-/// Shows the work on another material; nothing is painted anew.
+/// Shows the work on another substrate; nothing is painted again.
 struct PreviewSubstrate {
     std::string substrate;
 };
-/// Makes or ends a mask.
+/// Creates or removes a mask.
 struct ChangeMasks {
     stroke::MaskEdit edit;
-    std::uint32_t with = 0;  ///< a new one: another mask that it is taken together with; 0: none
-    stroke::MaskKind how = stroke::MaskKind::unite;  ///< or intersect
+    std::uint32_t with = 0;                          ///< id of a mask to combine the new one with; 0: none
+    stroke::MaskKind how = stroke::MaskKind::unite;  ///< unite or intersect
 };
-/// Veils what a mask leaves out; 0: nothing.
+/// Dims the surface outside a mask; 0: none.
 struct ShowMask {
     std::uint32_t id = 0;
 };
@@ -97,48 +97,48 @@ struct ShowMask {
 struct ChangeLayers {
     stroke::LayerEdit edit;
 };
-/// From where the layers' small pictures are seen, and how large they are.
+/// Sets view and size of the layers' thumbnails.
 struct LookFrom {
     render::GlCamera camera;
 };
-/// Hands over the whole texture anew.
+/// Sends the whole texture again.
 struct SendTexture {
-    bool wetness = false;  ///< its fourth channel: the liquid, not the ink's height
+    bool wetness = false;  ///< the fourth channel is liquid instead of height
 };
 struct SaveProject {
     std::filesystem::path path;
 };
-/// Tries once more to write what could not be written.
+/// Tries again to write waiting changes.
 struct RetrySaving {};
 struct ExportModel {
     std::filesystem::path path;
     bool height = true, orm = true;        ///< maps besides the base colour
-    bool pigments = false;                 ///< likewise, where the path is an .exr file
+    bool pigments = false;                 ///< also pigment maps, where the path is an .exr file
     std::uint32_t size = 0;                ///< texels per side; 0: as painted
-    int pictures = 0;                      ///< of the model beside it: none, one, or that many all round
+    int pictures = 0;                      ///< of the model: none, one, or that many round it
     int picture_width = 1280;              ///< pixels; 16 : 9
-    double azimuth = 0, elevation = 0.45;  ///< radians, from where they are seen
+    double azimuth = 0, elevation = 0.45;  ///< radians, of the pictures' view
 };
 /// p → to + rotation (p − from)
 struct RigidMove {
     Vec3 from{0}, to{0};  ///< metres
     Quat rotation{1, 0, 0, 0};
 };
-/// Changes entries that are already there, all at once and undone as one; the rest is painted again.
+/// Changes existing entries in one undo step, then repaints what depends on them.
 struct EditStrokes {
-    std::vector<std::uint64_t> ids = {};  ///< others than the journal's are left aside
+    std::vector<std::uint64_t> ids = {};  ///< unknown ids are ignored
     std::optional<bool> hidden = {};
-    std::optional<std::string> brush = {};  ///< name without a size: each stroke keeps its own factor
+    std::optional<std::string> brush = {};  ///< name without size; each stroke keeps its own size factor
     std::optional<std::string> ink = {};    ///< of strokes, dips and fills
     std::optional<RigidMove> move = {};
-    std::optional<std::string> group = {};  ///< makes them a group of that name; empty: takes them out of theirs
+    std::optional<std::string> group = {};  ///< name of their new group; empty: removes them from their groups
     bool remove = false;
 };
-/// Highlights the texels that these entries leave ink on; none: nothing.
+/// Highlights the texels with ink of these entries; none: nothing.
 struct HighlightStrokes {
     std::vector<std::uint64_t> ids;
 };
-/// Keeps something along with the work (io/project/attachments.h), or takes it out.
+/// Stores an attachment in the project (io/project/attachments.h), or removes it.
 struct AttachToProject {
     std::string kind;
     io::Attachment attachment;
@@ -146,18 +146,18 @@ struct AttachToProject {
 struct DetachFromProject {
     std::string kind, name;
 };
-/// Keeps the journal as it is now under a name.
+/// Stores the present journal under a name.
 struct TakeSnapshot {
     std::string name;
 };
 struct RenameSnapshot {
     std::string id, name;
 };
-/// Paints a snapshot beside the work and hands over its picture.
+/// Paints a snapshot on a second document and passes its texels to the window.
 struct ShowSnapshot {
     std::string id;
 };
-/// Puts a snapshot in the place of the journal; undone as one.
+/// Replaces the journal by a snapshot's; one undo step.
 struct RestoreSnapshot {
     std::string id;
 };
@@ -167,7 +167,7 @@ using Command =
                  SaveProject, RetrySaving, ExportModel, EditStrokes, HighlightStrokes, FillModel, ChangeLayers,
                  SendTexture, PickInk, TakeInk, RecolourInk, PreviewSubstrate, ChangeMasks, ShowMask, LookFrom>;
 
-/// The command changes the work. Who only looks at a project may not ask for it.
+/// Returns true when the command changes the work. It is refused while a project is only viewed.
 bool changes_work(const Command& command);
 
 }  // namespace tuft::app

@@ -6,14 +6,16 @@
 
 #include "stroke/document/document.h"
 
+/// \file
+/// Undo and redo. Paint thread.
 namespace tuft::app {
 
-/// An entry of the journal that was changed, or taken out.
+/// A changed or removed entry of the journal.
 struct EntryChange {
-    std::size_t at = 0;  ///< its place in the journal before
+    std::size_t at = 0;  ///< its former index in the journal
     stroke::JournalEntry before;
-    std::optional<stroke::JournalEntry> after;  ///< none: taken out
-    bool in_rows = false;                       ///< the file's rows can follow it; else it is written anew
+    std::optional<stroke::JournalEntry> after;  ///< none: removed
+    bool in_rows = false;                       ///< single rows of the file can express it; else it is written anew
 };
 
 /// The whole journal, before and after.
@@ -21,24 +23,24 @@ struct JournalChange {
     std::vector<stroke::JournalEntry> before, after;
 };
 
-/// What one undo takes back.
+/// One undo step; exactly one of the first three members is set.
 struct EditStep {
-    std::size_t made = 0;                  ///< entries at the journal's end
-    std::vector<EntryChange> changes;      ///< or these, in the journal's order
-    std::optional<JournalChange> journal;  ///< or this
-    bool joined = false;                   ///< and the step before it
+    std::size_t made = 0;              ///< number of entries appended
+    std::vector<EntryChange> changes;  ///< in the journal's order
+    std::optional<JournalChange> journal;
+    bool joined = false;  ///< the step before is undone with it
 };
 
-/// What undo and redo go through, the last step at the back.
+/// Steps to undo and to redo, the next one last.
 struct EditHistory {
     std::vector<EditStep> done, undone;
 
-    /// A step was made: nothing can be redone any more.
+    /// Adds a step and clears the redo list.
     void add(EditStep step) {
         done.push_back(std::move(step));
         undone.clear();
     }
-    /// A journal of so many entries, each one a step.
+    /// Starts with a journal of `entries` entries, each one a step.
     void reset(std::size_t entries) {
         done.assign(entries, EditStep{.made = 1});
         undone.clear();

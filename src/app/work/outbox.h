@@ -7,22 +7,24 @@
 #include "app/work/update.h"
 #include "core/system/progress.h"
 
+/// \file
+/// Updates from the paint thread to the window.
 namespace tuft::app {
 
-/// What the paint thread has for the window: one thread fills it, the other empties it.
+/// Collects changes for the window. Thread-safe: the paint thread fills it, the window thread takes.
 class Outbox {
   public:
-    /// Changes what the window will get: `how(Update&)`.
+    /// Calls `how(Update&)` on the pending update.
     template <class Fn>
     void change(const Fn& how) {
         const std::lock_guard lock(mutex_);
         how(update_);
     }
-    /// A line for the status bar.
+    /// Adds a message for the status bar.
     void report(std::string message);
-    /// Shows how far long work is, under its name.
+    /// Shows the progress of long work, 0–1.
     void show_progress(const std::string& name, double fraction);
-    /// Events since the last call, and the status as it is.
+    /// Returns the events since the last call and the present status.
     Update take();
 
   private:

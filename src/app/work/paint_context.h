@@ -10,9 +10,11 @@
 #include "app/work/paint_work.h"
 #include "app/work/publisher.h"
 
+/// \file
+/// State shared by the commands.
 namespace tuft::app {
 
-/// What commands work on, all of it on the paint thread.
+/// State of the paint thread. Only `stop` may be set from another thread.
 struct PaintContext {
     PaintContext(PaintWork open, Outbox& window);
 
@@ -20,16 +22,16 @@ struct PaintContext {
     EditHistory history;
     Outbox& outbox;
     Publisher publisher;
-    std::vector<ink::Ink> own_inks;  ///< of this work, beside the shipped ones
-    std::atomic<bool> stop{false};   ///< long work ends; what was before stays
+    std::vector<ink::Ink> own_inks;  ///< of this project, besides the shipped ones
+    std::atomic<bool> stop{false};   ///< cancels long work; the state before it stays
 
-    /// Shows long work under a name, until it is done or stopped.
+    /// Returns a callback that shows the progress of long work and cancels it on `stop`.
     ProgressFn progress(const std::string& name);
-    /// The layer itself where `kNewestLayer` stands for it.
+    /// Returns the layer; for `kNewestLayer` the one added last.
     std::uint32_t layer_of(std::uint32_t requested) const;
-    /// Gives a document the material and appearance of the work, and the presets that its entries and these use.
+    /// Gives a document the substrate and recolouring of the work, and the presets of its entries and of `entries`.
     void take_presets(stroke::Document& document, const std::vector<stroke::JournalEntry>& entries);
-    /// The same model with other strokes on it takes the place of the document.
+    /// Replaces the document by one of the same model.
     void replace_document(std::unique_ptr<stroke::Document> document);
 };
 

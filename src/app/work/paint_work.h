@@ -10,21 +10,23 @@
 #include "stroke/document/document.h"
 #include "stroke/document/fit.h"
 
+/// \file
+/// An open model and its painting. Created by `Opening`, then owned by the paint thread.
 namespace tuft::app {
 
-/// An open model with all that is painted on it.
+/// A model, its document and its file.
 struct PaintWork {
     std::unique_ptr<stroke::Model> model;
     std::unique_ptr<stroke::Document> document;
     std::unique_ptr<Texture> texture;
-    render::MapPixels pixels;  ///< what the texture shows at the start, for the graphics card
+    render::MapPixels pixels;  ///< initial content of the texture, for the graphics card
     Autosave autosave;
-    std::string source;
+    std::string source;                              ///< path of the model file
     FileFrame frame;                                 ///< of the model file
-    std::vector<stroke::StrokeMismatch> mismatches;  ///< of a revised model: strokes that do not fit it
-    std::vector<std::string> fit;                    ///< and how all of them lie on it, for people
-    std::filesystem::path spare;                     ///< a file for work that cannot be saved in its own at the end
-    std::string note;                                ///< for the person who opened it
+    std::vector<stroke::StrokeMismatch> mismatches;  ///< strokes that do not fit a revised model
+    std::vector<std::string> fit;                    ///< how all strokes fit it, lines for the user
+    std::filesystem::path spare;                     ///< where to save at the end if the project's file fails
+    std::string note;                                ///< message for the user after opening
 };
 
 }  // namespace tuft::app

@@ -11,33 +11,35 @@
 #include "app/work/outbox.h"
 #include "app/work/paint_work.h"
 
+/// \file
+/// From the document to the outbox.
 namespace tuft::app {
 
-/// Finds out what changed in the work and puts it into the outbox. On the paint thread, or before there is one.
+/// Finds the changes of the work and puts them into the outbox. Paint thread, or before it starts.
 class Publisher {
   public:
     Publisher(PaintWork& work, const EditHistory& history, Outbox& outbox);
 
-    /// Hands over tiles that changed and the status; with `journal_changed` the list of entries, too.
+    /// Sends changed tiles and the status; with `journal_changed` also the list of entries.
     void publish(bool journal_changed = false);
-    /// `publish`, unless the last time is no longer ago than the eye can tell.
+    /// Calls `publish`, at most once per frame of the window.
     void publish_if_due();
-    /// Hands over the whole texture anew.
+    /// Sends the whole texture.
     void send_texture();
     void send_tiles(std::vector<render::TilePixels> tiles);
     void publish_appearance();
     void publish_snapshots();
-    /// Hands over small pictures of layers that changed. `camera`: from where they are seen from now on.
+    /// Sends changed thumbnails of layers. `camera`: their view from now on.
     void draw_thumbnails();
     void look_from(const render::GlCamera& camera);
-    /// The document shall be shown otherwise as a whole.
+    /// Drops all thumbnails, because the document is shown differently.
     void forget_thumbnails() { thumbnails_.forget(); }
-    /// Another document took the place of the one before: all entries and the palette are handed over anew.
+    /// Sends all entries and the palette again, because the document was replaced.
     void forget_journal();
 
-    /// The brush painted with, and whether it is on the palette.
+    /// Sets the brush last painted with, and whether it is on the palette.
     void set_brush(const std::string& name, bool on_palette);
-    void set_done(double asked) { done_ = asked; }
+    void set_done(double requested_at) { done_ = requested_at; }
     void set_undo_seconds(double seconds) { undo_seconds_ = seconds; }
 
   private:

@@ -15,67 +15,67 @@
 #include "stroke/document/document.h"
 
 /// \file
-/// What the paint thread reports to the window.
+/// Updates from the paint thread to the window. Plain data.
 namespace tuft::app {
 
-/// A stroke for the list.
+/// A journal entry in the list.
 struct StrokeLine {
     std::uint64_t id = 0;
     stroke::EntryKind action = stroke::EntryKind::stroke;
     std::string brush, ink, label;
     stroke::EntryGroup group;
     bool hidden = false, erases = false, on_palette = false;
-    double length = 0;        ///< metres of the path
-    std::vector<Vec3f> path;  ///< x, y in [0, 1] (y down), z: pressure in [0, 1]
+    double length = 0;        ///< metres, of the path
+    std::vector<Vec3f> path;  ///< x, y in [0, 1], y down; z: pressure in [0, 1]
     bool flat = false;        ///< `path` is in the frame of a drawing
-    Vec2 path_centre{0};      ///< metres: of the path (0.5, 0.5) there
-    double path_span = 0;     ///< metres: of [0, 1]
+    Vec2 path_centre{0};      ///< metres, point of the drawing at (0.5, 0.5)
+    double path_span = 0;     ///< metres, length of [0, 1]
 };
 
-/// A place at the rim of highlighted ink.
+/// A point on the outline of highlighted ink.
 struct OutlinePoint {
     Vec3f position{0}, normal{0, 0, 1};  ///< metres; unit
 };
 
-/// How the work is shown, apart from how it was painted.
+/// How the work is shown, apart from the journal.
 struct Appearance {
-    std::map<std::string, ink::Ink> recolours;  ///< by the name of the ink painted with
-    std::string substrate, painted_on;
-    float roughness = 0.1f;  ///< of the bare surface, as shown
+    std::map<std::string, ink::Ink> recolours;  ///< by name of the ink in the journal
+    std::string substrate, painted_on;          ///< shown; of the journal
+    float roughness = 0.1f;                     ///< of the bare surface, as shown
 };
 
-/// The document as it is now.
+/// State of the document.
 struct DocumentStatus {
     stroke::LayerTable layers;
     stroke::MaskTable masks;
     bool can_undo = false, can_redo = false;
-    bool wet = false;         ///< some ink is
-    double undo_seconds = 0;  ///< that the last undo took
+    bool wet = false;         ///< some ink is wet
+    double undo_seconds = 0;  ///< duration of the last undo
 };
 
-/// The brush last painted with.
+/// State of the brush last painted with.
 struct BrushStatus {
-    brush::TuftState tuft;                              ///< of the stroke in work; no branches: none
-    bool on_palette = false;                            ///< `tuft` is there
-    double fullness = 1;                                ///< ink in it, of its capacity
+    brush::TuftState tuft;                              ///< during a stroke; else without branches
+    bool on_palette = false;                            ///< `tuft` is on the palette
+    double fullness = 1;                                ///< ink over capacity, 0–1
     std::optional<std::array<std::uint8_t, 3>> colour;  ///< sRGB of a full film of that ink
 };
 
-/// How far the thread is.
+/// Progress of the paint thread.
 struct ProgressStatus {
-    double done = 0;          ///< the latest `ExtendStroke::asked` that is painted
-    std::size_t waiting = 0;  ///< commands not done yet
-    std::string busy;         ///< long work being done, ""
-    double fraction = 0;      ///< of it
+    double done = 0;          ///< latest `ExtendStroke::requested_at` that is painted
+    std::size_t waiting = 0;  ///< commands not finished yet
+    std::string busy;         ///< name of running long work, or ""
+    double fraction = 0;      ///< of it, 0–1
 };
 
-/// The project file.
+/// State of the project file.
 struct FileStatus {
     std::filesystem::path project;
-    std::string trouble;      ///< why work is not being saved, ""
-    std::size_t unsaved = 0;  ///< strokes that wait in memory for that
-    bool behind = false;      ///< and so does a change of one
-    bool viewing = false;     ///< another program works on the project; it is only looked at
+    std::string trouble;      ///< why saving fails, or ""
+    std::size_t unsaved = 0;  ///< strokes in memory only
+    bool behind = false;      ///< some change of an entry is in memory only
+    bool viewing = false;     ///< read-only, because another program works on the project
 };
 
 struct PaintStatus {
@@ -85,27 +85,27 @@ struct PaintStatus {
     FileStatus file;
 };
 
-/// A project could not be saved.
+/// A failed save.
 struct SaveFailure {
     std::filesystem::path path;
     std::string reason;
 };
 
-/// What happened since the last look.
+/// Events since the last update.
 struct PaintEvents {
     TexelUpdate texels;
     std::optional<std::vector<StrokeLine>> strokes;
     std::vector<std::string> messages;
     std::optional<stroke::PalettePicture> palette;
-    std::vector<Thumbnail> thumbnails;              ///< of layers, those that changed
-    std::optional<std::vector<ink::Ink>> own_inks;  ///< of this work, beside the shipped ones
+    std::vector<Thumbnail> thumbnails;              ///< changed ones
+    std::optional<std::vector<ink::Ink>> own_inks;  ///< of this project, besides the shipped ones
     std::optional<Appearance> appearance;
     std::optional<std::vector<SnapshotLine>> snapshots;
     std::optional<SnapshotPicture> snapshot_picture;
-    std::optional<std::vector<OutlinePoint>> outline;  ///< of what was asked to be highlighted
-    std::string picked;                                ///< name of an ink just picked up or taken in
+    std::optional<std::vector<OutlinePoint>> outline;  ///< of the highlighted entries
+    std::string picked;                                ///< name of an ink just picked or added
     std::optional<SaveFailure> not_saved;
-    bool from_outside = false;  ///< another program had a part in the change
+    bool from_outside = false;  ///< another program contributed to the change
 };
 
 struct Update {
@@ -113,7 +113,7 @@ struct Update {
     PaintStatus status;
 };
 
-/// The list entry of a stroke.
+/// Returns the list line of an entry.
 StrokeLine stroke_line(const stroke::JournalEntry& stroke);
 
 }  // namespace tuft::app

@@ -222,7 +222,7 @@ ArapOptions trial_arap(const ChartOptions& options) {
     arap.iterations = 16;
     arap.tolerance = 1e-2;
     // For small strains L2 − 1 lies between half the energy and all of it.
-    arap.hopeless = 4 * (options.l2 - 1);
+    arap.abandon_energy = 4 * (options.l2 - 1);
     return arap;
 }
 

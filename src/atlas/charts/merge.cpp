@@ -232,7 +232,7 @@ class Merger {
             ArapOptions trial = trial_arap(options_);
             trial.on_step = [&] { part.advance(double(mesh.faces.size()) / trial.iterations); };
             bool vain = false;
-            trial.in_vain = [&](int steps) { return vain = in_vain(t.flat, parts, steps); };
+            trial.should_stop = [&](int steps) { return vain = should_stop(t.flat, parts, steps); };
             arap(mesh, t.flat.uv, trial, anew);
             if (vain) return;
             scale_to_area(mesh, t.flat.uv);
@@ -246,7 +246,7 @@ class Merger {
 
     /// Whether a chart of two parts that is being laid flat will have to be rejected: nearly all its
     /// motion is in the first steps.
-    bool in_vain(const FlatChart& chart, const std::array<Form, 2>& parts, int steps) const {
+    bool should_stop(const FlatChart& chart, const std::array<Form, 2>& parts, int steps) const {
         if (chart.mesh.faces.size() <= kDear) return false;
         if (misshapen(form_of(chart), parts, kOnTheWay)) return true;
         if (chart.mesh.faces.size() <= kLargeChart) return false;

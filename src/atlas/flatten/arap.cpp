@@ -173,16 +173,16 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
     for (int step = 0; step < options.iterations; ++step) {
         if (options.on_step) options.on_step();
         energy = fit_rotations(part, at, rhs) / area;
-        if (energy < options.enough) break;
+        if (energy < options.converged_energy) break;
         if (before >= 0 && before - energy < options.tolerance * energy) break;
         if (step >= 3) {
             // What is left after the remaining steps if each helps as much as the last one.
             const double left = energy * std::pow(energy / before, options.iterations - step);
-            if (left > options.hopeless) break;
+            if (left > options.abandon_energy) break;
         }
-        if (step > 0 && options.in_vain) {
+        if (step > 0 && options.should_stop) {
             hand_out();
-            if (options.in_vain(step)) break;
+            if (options.should_stop(step)) break;
         }
         before = energy;
         if (step == 0) {

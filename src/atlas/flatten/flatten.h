@@ -14,11 +14,11 @@ namespace tuft::atlas {
 /// Energies below are per area of the chart: the mean of (σ₁ − 1)² + (σ₂ − 1)².
 struct ArapOptions {
     int iterations = 40;
-    double tolerance = 1e-3;                 ///< stop when the energy falls by less than this fraction per step
-    double enough = 1e-12;                   ///< stop below this energy
-    double hopeless = 1e300;                 ///< stop when the predicted energy stays above this
-    std::function<void()> on_step;           ///< called before each iteration; may throw to stop
-    std::function<bool(int steps)> in_vain;  ///< called after each iteration with the current `uv`; true stops
+    double tolerance = 1e-3;                     ///< stop when the energy falls by less than this fraction per step
+    double converged_energy = 1e-12;             ///< stop below this energy
+    double abandon_energy = 1e300;               ///< stop when the predicted energy stays above this
+    std::function<void()> on_step;               ///< called before each iteration; may throw to stop
+    std::function<bool(int steps)> should_stop;  ///< called after each iteration with the current `uv`; true stops
 };
 
 /// Returns the least squares conformal map (Lévy et al. 2002) of a disk by CGAL, scaled to the chart's area. Empty

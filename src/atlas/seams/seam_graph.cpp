@@ -81,7 +81,7 @@ SeamGraph::SeamGraph(const Patch& patch, std::span<const std::uint8_t> seam) : p
     count_seams_at_vertices();
     std::vector<std::uint32_t> changed;
     for (std::uint32_t v = 0; v < patch.n_vertices; ++v)
-        if (degree_[v] <= 2) tidy(v, changed);
+        if (degree_[v] <= 2) simplify_at(v, changed);
 }
 
 void SeamGraph::number_edges(std::span<const std::uint8_t> seam) {
@@ -209,7 +209,7 @@ void SeamGraph::join(std::uint32_t a, std::uint32_t b, std::uint32_t vertex) {
 }
 
 /// Joins two chains that meet at a vertex and glues slits that end there.
-void SeamGraph::tidy(std::uint32_t vertex, std::vector<std::uint32_t>& changed) {
+void SeamGraph::simplify_at(std::uint32_t vertex, std::vector<std::uint32_t>& changed) {
     while (!stays_[vertex]) {
         std::array<std::uint32_t, 3> edges{};
         if (degree_[vertex] == 0 || degree_[vertex] > 2) return;
@@ -250,8 +250,8 @@ void SeamGraph::take_away(std::uint32_t chain, std::vector<std::uint32_t>& chang
     }
     ++version_[chain];
     const Ends ends = ends_[chain];
-    tidy(ends.a, changed);
-    if (ends.b != ends.a) tidy(ends.b, changed);
+    simplify_at(ends.a, changed);
+    if (ends.b != ends.a) simplify_at(ends.b, changed);
 }
 
 void SeamGraph::glue(std::uint32_t chain) {

@@ -81,7 +81,7 @@ class SeamGraph {
     double cost(std::uint32_t chain, const GluingLimits& limits) const;
     std::uint32_t chain_of(std::uint32_t edge) const;
     bool is_closed(std::uint32_t chain) const;
-    void tidy(std::uint32_t vertex, std::vector<std::uint32_t>& changed);
+    void simplify_at(std::uint32_t vertex, std::vector<std::uint32_t>& changed);
     void join(std::uint32_t a, std::uint32_t b, std::uint32_t vertex);
     void take_away(std::uint32_t chain, std::vector<std::uint32_t>& changed);
     int seam_edges_at(std::uint32_t vertex, std::array<std::uint32_t, 3>& edges) const;

@@ -29,7 +29,7 @@ constexpr double kLeastPlane = 0.02;                // of a unit cube's determin
 struct Crossing {
     TexelRef a, b;
     Vec3f ab{0}, ba{0};
-    float way = 0;  ///< from a over the seam to b
+    float path = 0;  ///< metres, from a over the seam to b
 };
 
 /// A texel over the seam as seen from one beside it; metres, in its tangent plane.
@@ -72,8 +72,16 @@ struct Beside {
     double along = 0, across = 0;  ///< metres; across: > 0 on the texel's own side
 };
 
-void find_beside(const TexelMap& map, std::uint32_t chart, const Vec2& uv, const Vec3& position, const Vec3& along,
-                 const Vec3& inwards, std::vector<Beside>& found) {
+/// One side of a point on a seam.
+struct SeamPlace {
+    std::uint32_t chart = kNone;
+    Vec2 uv{0};                 ///< texels
+    Vec3 position{0};           ///< metres
+    Vec3 along{0}, inwards{0};  ///< unit, along the seam and into the chart
+};
+
+void find_beside(const TexelMap& map, const SeamPlace& place, std::vector<Beside>& found) {
+    const auto& [chart, uv, position, along, inwards] = place;
     found.clear();
     const auto x0 = static_cast<std::int64_t>(std::ceil(uv.x - 0.5 - kSearch)),
                x1 = static_cast<std::int64_t>(std::floor(uv.x - 0.5 + kSearch));
@@ -116,9 +124,9 @@ void cross(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& m
     samples.clear();
     sample_seam(mesh, atlas, edge, kSpacing, samples);
     for (const SeamSample& s : samples) {
-        find_beside(map, atlas.triangle_chart[edge.triangle_a], s.a.uv, s.position, along, in_a, beside[0]);
+        find_beside(map, {atlas.triangle_chart[edge.triangle_a], s.a.uv, s.position, along, in_a}, beside[0]);
         if (beside[0].empty()) continue;
-        find_beside(map, atlas.triangle_chart[edge.triangle_b], s.b.uv, s.position, along, in_b, beside[1]);
+        find_beside(map, {atlas.triangle_chart[edge.triangle_b], s.b.uv, s.position, along, in_b}, beside[1]);
         for (const Beside& a : beside[0])
             for (const Beside& b : beside[1]) {
                 const double along_ab = b.along - a.along, across = a.across + b.across;
@@ -128,27 +136,27 @@ void cross(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& m
                     grid_neighbours(map, a.ref, b.ref))
                     continue;
                 const Vec3f ab(along_ab * along - across * in_a), ba(-along_ab * along - across * in_b);
-                const auto way = static_cast<float>(std::hypot(a.along, a.across) + std::hypot(b.along, b.across));
+                const auto path = static_cast<float>(std::hypot(a.along, a.across) + std::hypot(b.along, b.across));
                 if (before(a.ref, b.ref))
-                    found.push_back({a.ref, b.ref, ab, ba, way});
+                    found.push_back({a.ref, b.ref, ab, ba, path});
                 else
-                    found.push_back({b.ref, a.ref, ba, ab, way});
+                    found.push_back({b.ref, a.ref, ba, ab, path});
             }
     }
 }
 
-/// Keeps the shortest way of each pair, the first found of equal ones; in order of the pairs.
+/// Keeps the shortest path of each pair, the first found of equal ones; in order of the pairs.
 void keep_shortest(std::vector<Crossing>& crossings) {
     struct Key {
         std::uint64_t pair;
-        float way;
+        float path;
         std::uint32_t index;
     };
     std::vector<Key> keys(crossings.size());
     for (std::uint32_t i = 0; i < keys.size(); ++i)
-        keys[i] = {pair_key(crossings[i].a, crossings[i].b), crossings[i].way, i};
+        keys[i] = {pair_key(crossings[i].a, crossings[i].b), crossings[i].path, i};
     std::sort(keys.begin(), keys.end(), [](const Key& x, const Key& y) {
-        return std::tie(x.pair, x.way, x.index) < std::tie(y.pair, y.way, y.index);
+        return std::tie(x.pair, x.path, x.index) < std::tie(y.pair, y.path, y.index);
     });
     keys.erase(std::unique(keys.begin(), keys.end(), [](const Key& x, const Key& y) { return x.pair == y.pair; }),
                keys.end());

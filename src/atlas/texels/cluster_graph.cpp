@@ -189,14 +189,14 @@ void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const T
     }
 }
 
-/// Where a way from a cluster's centre ends: place in the centre's frame and that frame carried
+/// End of a path from a cluster centre: position in the frame of the centre, and that frame transported
 /// along.
-struct Way {
+struct ToBorder {
     Vec2 place{0};
     Frame frame;
 
     void step(const Vec3& p, const Vec3& n) {
-        // On a faceted or noisy surface the normals lean away from the way and the projection
+        // On a faceted or noisy surface the normals lean away from the path and the projection
         // along them is too short; no step is shorter than the straight line in space.
         const Vec2 step = log_map(frame, p, n);
         const double chord = glm::length(p - frame.origin), length = glm::length(step);
@@ -207,11 +207,11 @@ struct Way {
 };
 
 /// From the centre to the border in steps of a few texels straight over the atlas, so that
-/// bumps between are walked over; in one where the cluster has a gap on the way.
-Way way_to_border(const TexelMap& map, const TexelCluster& cluster, std::uint8_t texel, const Vec3& point,
-                  const Vec3& normal) {
-    Way way{.frame = frame_of(cluster)};
-    const Frame start = way.frame;
+/// bumps between are walked over; in one where the cluster has a gap on the path.
+ToBorder path_to_border(const TexelMap& map, const TexelCluster& cluster, std::uint8_t texel, const Vec3& point,
+                        const Vec3& normal) {
+    ToBorder path{.frame = frame_of(cluster)};
+    const Frame start = path.frame;
     const Vec2 from(cluster.centre_texel % kTile, cluster.centre_texel / kTile);
     const Vec2 to(texel % kTile, texel / kTile);
     const int n = static_cast<int>(std::ceil(glm::length(to - from) / kStep));
@@ -219,14 +219,14 @@ Way way_to_border(const TexelMap& map, const TexelCluster& cluster, std::uint8_t
         const Vec2 at = glm::round(from + (double(k) / n) * (to - from));
         const int t = static_cast<int>(at.y) * kTile + static_cast<int>(at.x);
         const Vec3 m = Vec3(map.normal(cluster.slot, t));
-        if (map.tiles[cluster.slot].cluster[t] != cluster.index || glm::dot(m, way.frame.n) < kLogMapMinCos) {
-            way = {.frame = start};
+        if (map.tiles[cluster.slot].cluster[t] != cluster.index || glm::dot(m, path.frame.n) < kLogMapMinCos) {
+            path = {.frame = start};
             break;
         }
-        way.step(Vec3(map.position(cluster.slot, t)), glm::normalize(m));
+        path.step(Vec3(map.position(cluster.slot, t)), glm::normalize(m));
     }
-    way.step(point, normal);
-    return way;
+    path.step(point, normal);
+    return path;
 }
 
 /// Direction of j's tangent in i's frame, both at one point, when j's side is unfolded into i's about
@@ -251,8 +251,8 @@ Sides sides_of(const TexelMap& map, const Meeting& m, const std::vector<TexelClu
 /// to the border and j's over the normals on both sides of it.
 ClusterEdge edge_of(const TexelMap& map, const Meeting& m, const Sides& sides,
                     const std::vector<TexelCluster>& clusters) {
-    const Way i = way_to_border(map, clusters[m.i], m.texel_i, m.point, sides.normal_i);
-    const Way j = way_to_border(map, clusters[m.j], m.texel_j, m.point, sides.normal_j);
+    const ToBorder i = path_to_border(map, clusters[m.i], m.texel_i, m.point, sides.normal_i);
+    const ToBorder j = path_to_border(map, clusters[m.j], m.texel_j, m.point, sides.normal_j);
     const Vec2 turn = unfolded(i.frame, j.frame, sides.fold);
     const Vec2 li = i.place, lj = j.place;
     return {m.j, static_cast<float>(li.x - (turn.x * lj.x - turn.y * lj.y)),
@@ -349,9 +349,9 @@ ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& at
     graph.clusters.resize(map.cluster_chart.size());
     const std::size_t n_slots = map.n_slots();
     parallel_for(n_slots, 64, [&](std::size_t begin, std::size_t end) {
-        TexelShape room;
+        TexelShape buffer;
         for (std::uint32_t slot = static_cast<std::uint32_t>(begin); slot < end; ++slot) {
-            const TexelShape& shape = shape_of(map, slot, room);
+            const TexelShape& shape = shape_of(map, slot, buffer);
             for (std::uint32_t i = map.cluster_start[slot]; i < map.cluster_start[slot + 1]; ++i)
                 graph.clusters[i] =
                     make_piece(map.tiles[slot], shape, slot, static_cast<std::uint8_t>(i - map.cluster_start[slot]),

@@ -81,14 +81,22 @@ Across across(const mesh::TriangleMesh& mesh, std::uint32_t triangle, int from, 
     return {(along - third.x * metres_per_texel) / third.y, height / std::abs(third.y)};
 }
 
+/// A side of an edge: a triangle and the corners that the edge goes between.
+struct EdgeSide {
+    std::uint32_t triangle;
+    int from, to;
+};
+
 /// Unfolds the other side over the edge; its corner `from` lies at the start of this border.
 /// The map between both pictures is that of the two triangles laid flat.
-void join_other(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle, int k, std::uint32_t other,
-                int from, int to, Border& border) {
+void join_other(const mesh::TriangleMesh& mesh, const Atlas& atlas, const EdgeSide& own, const EdgeSide& opposite,
+                Border& border) {
+    const auto [triangle, k, next] = own;
+    const auto [other, from, to] = opposite;
     const Vec2 p = corner(atlas, other, from), q = corner(atlas, other, to);
     const Vec2 r = corner(atlas, other, 3 - from - to);
     const double length = glm::length(q - p);
-    const double edge = glm::length(mesh.position(triangle, k) - mesh.position(triangle, (k + 1) % 3));
+    const double edge = glm::length(mesh.position(triangle, k) - mesh.position(triangle, next));
     if (!(length > 0) || !(border.length > 0) || !(edge > 0)) return;
     border.has_other = true;
     border.other_start = p;
@@ -100,7 +108,7 @@ void join_other(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_
     const Vec2 other_third{glm::dot(r - p, border.other_along), glm::dot(r - p, border.other_in)};
     border.in_scale = border.along_scale;
     if (!(std::abs(third.y) > 1e-6) || !(std::abs(other_third.y) > 1e-6)) return;
-    const Across here = across(mesh, triangle, k, (k + 1) % 3, third, edge / border.length);
+    const Across here = across(mesh, triangle, k, next, third, edge / border.length);
     const Across there = across(mesh, other, from, to, other_third, edge / length);
     const double in_scale = here.height / there.height;
     const double shear = (here.slant - there.slant * in_scale) * length / edge;
@@ -116,10 +124,11 @@ bool finite(const Border& b) {
 std::vector<Border> find_borders(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
     std::vector<Border> borders;
     for (const SeamEdge& e : find_seams(mesh, atlas)) {
+        const int next_a = (e.corner_a + 1) % 3, next_b = (e.corner_b + 1) % 3;
         Border a = make_border(atlas, e.triangle_a, e.corner_a);
-        join_other(mesh, atlas, e.triangle_a, e.corner_a, e.triangle_b, (e.corner_b + 1) % 3, e.corner_b, a);
+        join_other(mesh, atlas, {e.triangle_a, e.corner_a, next_a}, {e.triangle_b, next_b, e.corner_b}, a);
         Border b = make_border(atlas, e.triangle_b, e.corner_b);
-        join_other(mesh, atlas, e.triangle_b, e.corner_b, e.triangle_a, (e.corner_a + 1) % 3, e.corner_a, b);
+        join_other(mesh, atlas, {e.triangle_b, e.corner_b, next_b}, {e.triangle_a, next_a, e.corner_a}, b);
         borders.push_back(a);
         borders.push_back(b);
     }
@@ -139,11 +148,19 @@ struct Candidate {
     double fade;  ///< (1 − d²/r²)²
 };
 
-/// Adds the covered texels of `chart` round `centre` whose place beside the gutter texel at
-/// `target` is within `radius`; `place` takes them there, `reach` is the radius where they lie.
+/// Where to look for candidates; lengths in texels.
+struct CandidateSearch {
+    std::uint32_t chart = kNone;
+    Vec2 centre{0};     ///< on the chart
+    double reach = 0;   ///< radius round `centre`
+    Vec2 target{0};     ///< the gutter texel
+    double radius = 0;  ///< round `target`, of the mapped candidates
+};
+
+/// Adds the covered texels of the chart within `reach` of `centre` that `place` maps to within `radius` of `target`.
 template <class Place>
-void collect(const TexelMap& map, std::uint32_t chart, const Vec2& centre, double reach, const Vec2& target,
-             double radius, Place&& place, std::vector<Candidate>& found) {
+void collect(const TexelMap& map, const CandidateSearch& search, Place&& place, std::vector<Candidate>& found) {
+    const auto& [chart, centre, reach, target, radius] = search;
     const auto x0 = static_cast<std::int64_t>(std::floor(centre.x - reach));
     const auto x1 = static_cast<std::int64_t>(std::floor(centre.x + reach));
     const auto y0 = static_cast<std::int64_t>(std::floor(centre.y - reach));
@@ -225,13 +242,13 @@ void find_taps(const TexelMap& map, const std::vector<Border>& borders, const Ne
     for (const auto& [radius, stiffness] : kFits) {
         found.clear();
         collect(
-            map, chart, uv, radius, uv, radius, [](const Vec2& p) { return p; }, found);
+            map, {chart, uv, radius, uv, radius}, [](const Vec2& p) { return p; }, found);
         for (const std::uint32_t k : near.border) {
             if (k == kNone || borders[k].chart != chart || !borders[k].has_other) continue;
             const Border& border = borders[k];
             const double stretch = std::max({border.along_scale, border.in_scale, 1.0}) + std::abs(border.shear);
             collect(
-                map, border.other_chart, border.to_other(border.local(uv)), radius * stretch, uv, radius,
+                map, {border.other_chart, border.to_other(border.local(uv)), radius * stretch, uv, radius},
                 [&](const Vec2& p) { return border.to_atlas(border.from_other(p)); }, found);
         }
         std::stable_sort(found.begin(), found.end(),

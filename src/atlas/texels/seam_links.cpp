@@ -24,7 +24,7 @@ std::pair<std::uint32_t, SeamFace> held(const TexelMap& map, const BorderFace& f
     const TexelRef& low = first ? f.a : f.b;
     const std::int64_t dx = first ? b[0] - a[0] : a[0] - b[0];
     SeamFace out{low.texel, SeamFace::right, static_cast<float>(f.conductance)};
-    if (a[1] != b[1]) out.way = dx == 0 ? SeamFace::above : dx > 0 ? SeamFace::above_right : SeamFace::above_left;
+    if (a[1] != b[1]) out.direction = dx == 0 ? SeamFace::above : dx > 0 ? SeamFace::above_right : SeamFace::above_left;
     return {low.slot, out};
 }
 
@@ -49,7 +49,8 @@ SeamLinks build_seam_links(const mesh::TriangleMesh& mesh, const Atlas& atlas, c
                std::tie(y.first, y.second.texel, y.second.other_slot, y.second.other_texel);
     });
     std::sort(faces.begin(), faces.end(), [](const auto& x, const auto& y) {
-        return std::tie(x.first, x.second.texel, x.second.way) < std::tie(y.first, y.second.texel, y.second.way);
+        return std::tie(x.first, x.second.texel, x.second.direction) <
+               std::tie(y.first, y.second.texel, y.second.direction);
     });
     SeamLinks result;
     result.start.assign(map.n_slots() + 1, 0);

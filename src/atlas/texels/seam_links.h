@@ -24,9 +24,9 @@ struct SeamLink {
 /// A face between two texels of one chart beside a seam, as `BorderFace`: of `texel` and the one to the right, above,
 /// above right or above left of it.
 struct SeamFace {
-    enum Way : std::uint8_t { right, above, above_right, above_left };
+    enum Direction : std::uint8_t { right, above, above_right, above_left };
     std::uint8_t texel = 0;
-    Way way = right;
+    Direction direction = right;
     float conductance = 0;
 };
 

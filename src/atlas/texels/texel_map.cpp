@@ -332,14 +332,14 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, con
     std::vector<std::vector<std::uint32_t>> charts(n_slots);
     parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> ids;
-        TexelShape room{};
+        TexelShape buffer{};
         for (std::size_t band = begin; band < end; ++band) {
             draw_ids(atlas, bands, band, ids);
             for (std::uint32_t tx = 0; tx < side; ++tx) {
                 const std::uint32_t tile = static_cast<std::uint32_t>(band * side + tx);
                 const std::uint32_t slot = map.slot_of_tile[tile];
                 if (slot == kNone) continue;
-                TexelShape& shape = packed ? room : map.shapes[slot];
+                TexelShape& shape = packed ? buffer : map.shapes[slot];
                 charts[slot] = fill_tile(mesh, atlas, tile, side, ids.data(), shape, map.tiles[slot], map.reach[slot]);
                 if (!packed) continue;
                 boxes[slot].resize(charts[slot].size());

@@ -77,9 +77,9 @@ struct TexelMap {
     Vec3f normal(std::uint32_t slot, int texel) const;
 };
 
-/// Positions and normals of a tile: the map's own, or unpacked into the buffer `room`. About 0.1 µs
+/// Positions and normals of a tile: the map's own, or unpacked into the given buffer. About 0.1 µs
 /// when packed.
-const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& room);
+const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& buffer);
 
 /// Packs a tile whose clusters are known; `boxes` [n_clusters of the tile] are made to fit.
 PackedShape pack_shape(const TexelShape& shape, const TexelTile& tile, std::span<PackedBox> boxes);

@@ -116,38 +116,38 @@ PackedShape pack_shape(const TexelShape& shape, const TexelTile& tile, std::span
     return p;
 }
 
-const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& room) {
+const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& buffer) {
     if (map.packed.empty()) return map.shapes[slot];
     const PackedShape& p = map.packed[slot];
     const std::uint32_t first = map.cluster_start[slot];
     const std::size_t n = map.cluster_start[slot + 1] - first;
-    unpack_normals(p, room);
+    unpack_normals(p, buffer);
     if (n == 1) {
         const PackedBox& box = map.boxes[first];
-        unpack_axis(p.x.data(), box.lo.x, box.step, room.px.data());
-        unpack_axis(p.y.data(), box.lo.y, box.step, room.py.data());
-        unpack_axis(p.z.data(), box.lo.z, box.step, room.pz.data());
-        return room;
+        unpack_axis(p.x.data(), box.lo.x, box.step, buffer.px.data());
+        unpack_axis(p.y.data(), box.lo.y, box.step, buffer.py.data());
+        unpack_axis(p.z.data(), box.lo.z, box.step, buffer.pz.data());
+        return buffer;
     }
     const auto& cluster = map.tiles[slot].cluster;
     if (n > kFewPieces) {
         for (int t = 0; t < kTileTexels; ++t) {
             if (cluster[t] == kNoCluster) continue;
             const Vec3f at = unpack_position(p, map.boxes[first + cluster[t]], t);
-            room.px[t] = at.x;
-            room.py[t] = at.y;
-            room.pz[t] = at.z;
+            buffer.px[t] = at.x;
+            buffer.py[t] = at.y;
+            buffer.pz[t] = at.z;
         }
-        return room;
+        return buffer;
     }
     for (std::size_t k = 0; k < n; ++k) {
         const PackedBox& box = map.boxes[first + k];
         const auto which = static_cast<std::uint8_t>(k);
-        unpack_axis(p.x.data(), cluster.data(), which, box.lo.x, box.step, room.px.data());
-        unpack_axis(p.y.data(), cluster.data(), which, box.lo.y, box.step, room.py.data());
-        unpack_axis(p.z.data(), cluster.data(), which, box.lo.z, box.step, room.pz.data());
+        unpack_axis(p.x.data(), cluster.data(), which, box.lo.x, box.step, buffer.px.data());
+        unpack_axis(p.y.data(), cluster.data(), which, box.lo.y, box.step, buffer.py.data());
+        unpack_axis(p.z.data(), cluster.data(), which, box.lo.z, box.step, buffer.pz.data());
     }
-    return room;
+    return buffer;
 }
 
 Vec3f TexelMap::position(std::uint32_t slot, int texel) const {

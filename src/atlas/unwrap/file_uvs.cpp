@@ -260,13 +260,13 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
     const std::vector<Vec2f> read = atlas.corner_uvs;
     turn_mirrored(atlas, charts);
     if (atlas.pages > 1) snap_charts(mesh, atlas, charts);
-    std::size_t roomless = 0, flipped = 0;
+    std::size_t zero_area = 0, flipped = 0;
     for (std::size_t t = 0; t < n; ++t) {
         const double area = signed_area(atlas, t);
-        roomless += area == 0;
+        zero_area += area == 0;
         flipped += area < 0;
     }
-    if (roomless > 0) return fault(std::to_string(roomless) + " triangles have no room in them");
+    if (zero_area > 0) return fault(std::to_string(zero_area) + " triangles have no room in them");
     if (flipped > 0 && triangles_on_others(read) > 0) return fault(why_they_overlap(atlas, read, 0));
     if (flipped > 0) return fault(std::to_string(flipped) + " triangles are flipped");
 

@@ -14,7 +14,7 @@ namespace {
 /// Sums over triangles, made per block and added in block order.
 struct Sums {
     double area3 = 0, area_uv = 0, square = 0, angle = 0, ratio = 0, measured = 0, largest = 0;
-    std::size_t flips = 0, roomless = 0;
+    std::size_t flips = 0, zero_area = 0;
 
     void add(const Sums& s) {
         area3 += s.area3;
@@ -25,7 +25,7 @@ struct Sums {
         measured += s.measured;
         largest = std::max(largest, s.largest);
         flips += s.flips;
-        roomless += s.roomless;
+        zero_area += s.zero_area;
     }
 };
 
@@ -66,13 +66,13 @@ void measure_stretch(const mesh::TriangleMesh& mesh, const Atlas& atlas, AtlasRe
     const Sums sizes = sum_triangles(n, [&](std::size_t t, Sums& s) {
         const UvTriangle u = uv_triangle(mesh, atlas, t);
         if (!std::isfinite(u.area_uv) || u.area_uv == 0)
-            ++s.roomless;
+            ++s.zero_area;
         else if (u.area_uv < 0)
             ++s.flips;
         s.area3 += u.area3;
         if (std::isfinite(u.area_uv)) s.area_uv += std::abs(u.area_uv);
     });
-    report.roomless_triangles = sizes.roomless;
+    report.zero_area_triangles = sizes.zero_area;
     report.flips = sizes.flips;
     if (!(sizes.area_uv > 0) || !(sizes.area3 > 0)) return;
     const double scale = std::sqrt(sizes.area_uv / sizes.area3);  // UV units per metre

@@ -107,7 +107,7 @@ Packing pack_charts(const CutMesh& cut, const UnwrapOptions& options, bool quick
 
 /// Rounds the placed charts into the atlas; the triangles that found no room.
 std::vector<std::uint32_t> place_charts(const CutMesh& cut, const Packing& packing, Atlas& atlas) {
-    std::vector<std::uint32_t> roomless;
+    std::vector<std::uint32_t> zero_area;
     atlas.pages = packing.pages;
     const std::uint32_t per_side = atlas.pages_per_side();
     atlas.size = packing.size * per_side;
@@ -123,7 +123,7 @@ std::vector<std::uint32_t> place_charts(const CutMesh& cut, const Packing& packi
             uv[v] = (offset + p.scale * Vec2(p.c * q.x - p.s * q.y, p.s * q.x + p.c * q.y)) / double(atlas.size);
         }
         for (const std::uint32_t t : snap_to_floats(chart.mesh.faces, uv, atlas.size))
-            roomless.push_back(chart.mesh.triangles[t]);
+            zero_area.push_back(chart.mesh.triangles[t]);
         for (std::size_t t = 0; t < chart.mesh.faces.size(); ++t) {
             const std::uint32_t triangle = chart.mesh.triangles[t];
             atlas.triangle_chart[triangle] = c;
@@ -131,7 +131,7 @@ std::vector<std::uint32_t> place_charts(const CutMesh& cut, const Packing& packi
                 atlas.corner_uvs[3 * std::size_t{triangle} + k] = Vec2f(uv[chart.mesh.faces[t][k]]);
         }
     }
-    return roomless;
+    return zero_area;
 }
 
 /// Limits of charts for this atlas.
@@ -190,12 +190,12 @@ void lay_out(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, const
             watch.lap(out, "repair");
             continue;
         }
-        std::vector<std::uint32_t> roomless = place_charts(cut, packing, atlas);
+        std::vector<std::uint32_t> zero_area = place_charts(cut, packing, atlas);
         const Coverage coverage = cover(atlas.corner_uvs, atlas.triangle_chart, atlas.size);
         layout.use = double(coverage.covered) / (double(packing.size) * packing.size * packing.pages);
         report(options.progress, "check", 1);
         watch.lap(out, "check");
-        if (roomless.empty() && coverage.twice == 0) {
+        if (zero_area.empty() && coverage.twice == 0) {
             if (!quick) break;
             quick = false;
             const bool filled = options.size > 0 && (options.pages == 1 || options.texel_size == 0);
@@ -208,9 +208,9 @@ void lay_out(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, const
             }
             continue;
         }
-        if (!roomless.empty()) {
-            std::sort(roomless.begin(), roomless.end());
-            cut_out(mesh, cut, roomless, chart_options, options.progress);
+        if (!zero_area.empty()) {
+            std::sort(zero_area.begin(), zero_area.end());
+            cut_out(mesh, cut, zero_area, chart_options, options.progress);
         } else {
             cut_again(mesh, cut, coverage.charts_twice, chart_options, options.progress);
         }

@@ -301,14 +301,14 @@ void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::
         while (i + 2 < end && place(i + 1) < at) ++i;
         const double run = place(i + 1) - place(i), f = run > 0 ? std::clamp((at - place(i)) / run, 0.0, 1.0) : 0;
         float& width = track.width[static_cast<std::size_t>(k - track.first)];
-        if (track.passing >= 0 && at >= track.passed && at < front) {
-            const double g = (at - track.passed) / (front - track.passed);
-            width = static_cast<float>(std::lerp(track.passing, trail.cuts[widest].a, g));
+        if (track.front_width >= 0 && at >= track.front && at < front) {
+            const double g = (at - track.front) / (front - track.front);
+            width = static_cast<float>(std::lerp(track.front_width, trail.cuts[widest].a, g));
         } else if (width < 0 || at >= front)
             width = static_cast<float>(std::lerp(trail.cuts[i].a, trail.cuts[i + 1].a, f));
     }
-    track.passed = front;
-    track.passing = trail.cuts[widest].a;
+    track.front = front;
+    track.front_width = trail.cuts[widest].a;
     for (std::size_t k = begin; k < end && place(k) < front; ++k) {
         Cut& cut = trail.cuts[k];
         const double laid =

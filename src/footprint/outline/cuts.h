@@ -59,8 +59,8 @@ struct HairTracks {
     struct Track {
         long long first = 0;       ///< index of the position of width[0]
         std::vector<float> width;  ///< metres; negative: no hair yet
-        double passed = 0;         ///< mean position that the widest sections have reached, metres
-        double passing = -1;       ///< half-width there; negative: none yet
+        double front = 0;          ///< mean position that the widest sections have reached, metres
+        double front_width = -1;   ///< half-width there, metres; negative: none yet
     };
     std::vector<Track> tracks;  ///< two per branch: sub-spine, trunk
 };

@@ -110,20 +110,20 @@ double breaks_at(const brush::Bundles& bundles, const brush::Bristle& b, double 
 /// or leaves also across the hand's course.
 struct Laid {
     Lying lies;
-    Across across;
-    double lands = 0, over_course = 0;  ///< metres, of that
+    TransverseLength across;
+    double press_share = 0, over_course = 0;  ///< metres, of that
 
     Laid(const Trail& trail, std::size_t begin, std::size_t end, const HairInk& ink)
         : lies{trail.along[end - 1], trail.along[begin]},
-          across(trail, begin, end, ink.before, ink.way),
-          lands(ink.lands) {
+          across(trail, begin, end, ink.before, ink.direction),
+          press_share(ink.press_share) {
         const double size = glm::length(ink.course);
         for (std::size_t i = begin; i + 1 < end && size > 0; ++i) {
             const Vec2 run = trail.cuts[i + 1].centre - trail.cuts[i].centre;
             over_course += std::abs(run.x * ink.course.y - run.y * ink.course.x) / size;
         }
     }
-    double measure(double x) const { return std::max(across.at(x), lands * over_course); }
+    double measure(double x) const { return std::max(across.at(x), press_share * over_course); }
 };
 
 /// Where a bristle touches: with all that lies down of it where ink closes the gaps, with a part of it, here or there,
@@ -134,19 +134,20 @@ Lying touching(const brush::Bundles& bundles, const brush::Bristle& b, double we
     if (wet >= 1) return {-4, 4};
     // Water draws the ends to a point.
     const double end = static_cast<double>(b.end) + (1 - static_cast<double>(b.end)) * std::max(0.0, 2 * wet - 1);
-    const double way = 2 * kMark * std::max(1.0, (1 - kLessLanding * laid.lands) * 0.5 * wet / ((1 - wet) * (1 - wet)));
-    const double part = std::min({1.0, kLeastContact + 1.25 * wet * wet, way / std::max(laid.measure(x), 1e-9)});
+    const double limit =
+        2 * kMark * std::max(1.0, (1 - kLessLanding * laid.press_share) * 0.5 * wet / ((1 - wet) * (1 - wet)));
+    const double part = std::min({1.0, kLeastContact + 1.25 * wet * wet, limit / std::max(laid.measure(x), 1e-9)});
     const double rest = (1 - part) * std::max(0.0, end - lies.begin), behind = uniform(own_seed(bundles, b), 2);
     return {part < 1 ? lies.begin + (1 - behind * behind) * rest : -4, part < 1 ? end - behind * behind * rest : end};
 }
 
 /// How much what the hand presses or lifts sweeps the hair at x aside, 0–1: off the way of the tuft, or with it off the
 /// course.
-double swept_aside(const Across& across, double x, const HairInk& ink) {
-    const double course = std::max(ink.swings, across.off_way(x, ink.course));
-    const double off_course = std::max(std::min(course, across.off_itself(x)), course - kTrails);
-    const double off = std::max(across.off_way(x, ink.way), off_course);
-    return ink.lands * smooth_step((off - kTapers) / (kAside - kTapers));
+double swept_aside(const TransverseLength& across, double x, const HairInk& ink) {
+    const double course = std::max(ink.sine_to_course, across.sine_to(x, ink.course));
+    const double off_course = std::max(std::min(course, across.mean_sine(x)), course - kTrails);
+    const double off = std::max(across.sine_to(x, ink.direction), off_course);
+    return ink.press_share * smooth_step((off - kTapers) / (kAside - kTapers));
 }
 
 /// Bristles side by side into bands, in a section of half width `a` metres.
@@ -160,7 +161,7 @@ std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& 
     double bridge_before = 0;
     for (std::size_t i = 0; i < lower.size(); ++i) {
         const brush::Bristle& b = *lower[i].bristle;
-        const double aside = ink.lands > 0 ? swept_aside(laid.across, lower[i].x, ink) : 0;
+        const double aside = ink.press_share > 0 ? swept_aside(laid.across, lower[i].x, ink) : 0;
         const double wet = wet_of(b), own = breaks_at(bundles, b, ink.travel), breaks = own + aside * (1 - own);
         const double active = std::clamp((wet - std::min(breaks, 1 - kThinning)) / kThinning, 0.0, 1.0);
         if (!(active > 0)) continue;

@@ -36,13 +36,14 @@ struct HairInk {
     /// [bundles] film of a bundle over the film that closes the gaps between its hairs; ≥ 1: closed.
     std::span<const double> wet;
     double travel = 0;  ///< metres of the stroke so far: the phase of the bristles' rolling
-    Vec2 way{0};        ///< unit, direction of the tuft's motion in (u, v); zero: at rest
-    /// Previous stamp's, in this one's frame: give each hair's direction; empty: `way`.
+    Vec2 direction{0};  ///< unit, direction of the tuft's motion in (u, v); zero: at rest
+    /// Previous stamp's, in this one's frame: give each hair's direction; empty: `direction`.
     std::span<const Trail> before = {};
-    double lands = 0;  ///< 0–1: fraction of the hand's motion that is pressing or lifting
+    double press_share = 0;  ///< 0–1: fraction of the hand's motion that is pressing or lifting
     /// Direction of the hand's motion without pressing and lifting, any length, in (u, v); zero: at rest.
     Vec2 course{0};
-    double swings = 0;  ///< 0–1: sine of the angle between the tuft's motion over its last millimetre and `course`
+    /// 0–1: sine of the angle between the tuft's motion over its last millimetre and `course`.
+    double sine_to_course = 0;
 };
 
 /// Returns the film of a bundle over the film that closes its gaps,
@@ -69,13 +70,14 @@ struct HairMarks {
 /// Threads. The ink thread under a bristle breaks where its bundle's wetness falls below its need. The need varies
 /// between bristles, lower readiness first, and along the path: over 12 mm for a whole bundle and over 4 mm for one
 /// bristle. Dry hair touches with the fraction 0.1 + 1.25 wet² of its length on the surface, and with at most
-/// max(1, wet / (2 (1 − wet)²)) streaks across its motion (`Across`): drawn sideways it has ink for no wider path.
+/// max(1, wet / (2 (1 − wet)²)) streaks across its motion (`TransverseLength`): drawn sideways it has ink for no
+/// wider path.
 ///
 /// Off course. Hair leaves the hand's course when a press spreads it, when a lifted tuft closes, or when it swings
 /// round with a tilting tuft. Dry hair draws no line then. While the hand presses or lifts, a thread needs more
 /// wetness by
 ///
-///     lands S((max(sin ψ, min(sin φ, sin χ), sin φ − 0.25) − 0.08) / 0.27)
+///     press_share S((max(sin ψ, min(sin φ, sin χ), sin φ − 0.25) − 0.08) / 0.27)
 ///
 /// of what its need lacks to 1. ψ is the angle between the directions of hair and tuft. φ is the larger angle to
 /// the course of the hair's direction and of the tuft's motion over its last millimetre. χ is the angle between the
@@ -83,10 +85,10 @@ struct HairMarks {
 /// the course along itself, and hair draws together where the stroke ends: both continue to the end. While the hand
 /// presses or lifts, hair touches with at most
 ///
-///     max(1, (1 − 0.75 lands) wet / (2 (1 − wet)²))
+///     max(1, (1 − 0.75 press_share) wet / (2 (1 − wet)²))
 ///
-/// streaks across its motion and, weighted by `lands`, across the course: hair set down across the course prints no
-/// bars. Strokes begin and end ragged, along themselves.
+/// streaks across its motion and, weighted by `press_share`, across the course: hair set down across the course
+/// prints no bars. Strokes begin and end ragged, along themselves.
 HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> outlines, const brush::Bundles& bundles,
                      int branches, const HairInk& ink, const Frame& frame, std::uint32_t triangle, double cell);
 

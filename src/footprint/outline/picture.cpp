@@ -129,7 +129,7 @@ Count counter(Isa isa) {
 
 }  // namespace
 
-void Discs::make_room() {
+void Discs::reserve_one() {
     const std::size_t n = std::max<std::size_t>(64, 2 * x_.size());
     for (std::vector<float>* v : {&x_, &y_, &r_}) v->resize(n);
     found_.resize(n);
@@ -186,7 +186,7 @@ void BlockTally::count(const Footprint& footprint) {
     }
 }
 
-void BlockTally::look(Discs& discs, Isa isa) const {
+void BlockTally::find_coverage(Discs& discs, Isa isa) const {
     const std::size_t n = (discs.n_ + kLanes - 1) / kLanes * kLanes;
     for (std::size_t i = discs.n_; i < n; ++i) discs.x_[i] = discs.y_[i] = discs.r_[i] = 0;
     counter(std::min(isa, best_isa()))({to_left_.data(), width_, height_, cells_x_, cells_y_}, discs.x_.data(),

@@ -30,7 +30,7 @@ class Discs {
     void clear() { n_ = 0; }
     /// In cells; cell (0, 0) has its centre at 0.
     void add(const Vec2f& centre, float radius) {
-        if (n_ == x_.size()) make_room();
+        if (n_ == x_.size()) reserve_one();
         // Further ones lie in the outside anyway.
         const bool sound = std::abs(centre.x) < kFar && std::abs(centre.y) < kFar && radius < kFar;
         x_[n_] = sound ? centre.x : 0;
@@ -38,14 +38,14 @@ class Discs {
         r_[n_++] = sound ? radius : kFar;
     }
     std::size_t size() const { return n_; }
-    /// Returns the coverage of the cells in disc i, after `BlockTally::look`. May return mixed for a disc that is
-    /// full or empty.
+    /// Returns the coverage of the cells in disc i, after `BlockTally::find_coverage`. May return mixed for a disc that
+    /// is full or empty.
     Cover cover(std::size_t i) const;
 
   private:
     friend class BlockTally;
     static constexpr float kFar = 1e5f;  // cells
-    void make_room();
+    void reserve_one();
 
     std::size_t n_ = 0;
     std::vector<float> x_, y_, r_;      // [n and more, a multiple of 16]
@@ -61,7 +61,7 @@ class BlockTally {
     void count(const Footprint& footprint);
 
     /// Finds the coverage in each disc; outside the picture it is 0. Cost: 10 ns a disc.
-    void look(Discs& discs, Isa isa) const;
+    void find_coverage(Discs& discs, Isa isa) const;
 
   private:
     int width_ = 0, height_ = 0;            // blocks

@@ -51,13 +51,14 @@ void change_frame(std::vector<Trail>& trails, const Frame& from, const Frame& to
         }
 }
 
-Across::Across(const Trail& trail, std::size_t begin, std::size_t end, std::span<const Trail> before, const Vec2& way) {
+TransverseLength::TransverseLength(const Trail& trail, std::size_t begin, std::size_t end,
+                                   std::span<const Trail> before, const Vec2& direction) {
     const Trail* was = same_hair(trail, before);
     for (std::size_t i = begin; i + 1 < end; ++i) {
         const Vec2 run = trail.cuts[i + 1].centre - trail.cuts[i].centre;
         length_ += glm::length(run);
         if (!was) {
-            const double across = std::abs(run.x * way.y - run.y * way.x);
+            const double across = std::abs(run.x * direction.y - run.y * direction.x);
             for (double& m : measure_) m += across;
             continue;
         }
@@ -70,7 +71,7 @@ Across::Across(const Trail& trail, std::size_t begin, std::size_t end, std::span
         for (std::size_t k = 0; k < kPlaces; ++k) {
             const Vec2 went = middle + (2 * static_cast<double>(k) / (kPlaces - 1) - 1) * spread;
             measure_[k] += std::abs(run.x * went.y - run.y * went.x) / (glm::length(went) + kStill);
-            went_[k] += glm::length(run) * went;
+            displacement_[k] += glm::length(run) * went;
         }
     }
 }
@@ -87,14 +88,14 @@ T between(const std::array<T, N>& row, double x) {
 
 }  // namespace
 
-double Across::at(double x) const {
+double TransverseLength::at(double x) const {
     return between(measure_, x);
 }
 
-double Across::off_way(double x, const Vec2& way) const {
-    const Vec2 went = between(went_, x);
-    const double lengths = glm::length(went) * glm::length(way);
-    return lengths > 0 ? std::abs(went.x * way.y - went.y * way.x) / lengths : 0;
+double TransverseLength::sine_to(double x, const Vec2& direction) const {
+    const Vec2 went = between(displacement_, x);
+    const double lengths = glm::length(went) * glm::length(direction);
+    return lengths > 0 ? std::abs(went.x * direction.y - went.y * direction.x) / lengths : 0;
 }
 
 }  // namespace tuft::footprint

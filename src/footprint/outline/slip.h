@@ -18,23 +18,24 @@ void change_frame(std::vector<Trail>& trails, const Frame& from, const Frame& to
 /// Each part of the hair has its own displacement: that of the trail's middle plus that of a section that widens,
 /// narrows or rotates. Separating sub-spines, spreading hair and a rolling tuft draw hair sideways, whatever the
 /// hand does. Hair at rest measures 0.
-class Across {
+class TransverseLength {
   public:
     /// For cuts [begin, end) of a trail. `before`: the previous stamp's trails in the same frame. Where none
-    /// matches this trail, all hair moves along `way` (unit, or zero).
-    Across(const Trail& trail, std::size_t begin, std::size_t end, std::span<const Trail> before, const Vec2& way);
+    /// matches this trail, all hair moves along `direction` (unit, or zero).
+    TransverseLength(const Trail& trail, std::size_t begin, std::size_t end, std::span<const Trail> before,
+                     const Vec2& direction);
 
     /// Returns the length across the motion, metres, of hair at x in [−1, 1] along the sections' e.
     double at(double x) const;
-    /// Returns the sine of the angle between the mean displacement of that hair and `way`; 0 without either.
-    double off_way(double x, const Vec2& way) const;
+    /// Returns the sine of the angle between the mean displacement of that hair and `direction`; 0 without either.
+    double sine_to(double x, const Vec2& direction) const;
     /// Returns the mean sine of the angle between that hair and its displacement: 0 along itself, 1 across.
-    double off_itself(double x) const { return length_ > 0 ? at(x) / length_ : 0; }
+    double mean_sine(double x) const { return length_ > 0 ? at(x) / length_ : 0; }
 
   private:
     static constexpr std::size_t kPlaces = 17;
     std::array<double, kPlaces> measure_{};
-    std::array<Vec2, kPlaces> went_{};
+    std::array<Vec2, kPlaces> displacement_{};
     double length_ = 0;  // metres of hair
 };
 

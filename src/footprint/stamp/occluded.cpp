@@ -20,15 +20,15 @@ Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
     return glm::normalize(glm::cross(mesh.position(triangle, 1) - a, mesh.position(triangle, 2) - a));
 }
 
-/// Appearance for centres of clusters in a triangle: of those whose place in the atlas has a centre
-/// inside, or nearly, the one that puts it nearest to where it is counts.
-class Seating {
+/// Finds the triangle of each cluster centre. Of the triangles that contain the centre in the atlas, up to rounding,
+/// the one that maps it nearest to its position in space counts.
+class CentreLocator {
   public:
-    Seating(const Surface& surface, TriangleCache& triangle_cache) : surface_(surface), entries_(triangle_cache) {
+    CentreLocator(const Surface& surface, TriangleCache& triangle_cache) : surface_(surface), entries_(triangle_cache) {
         triangle_cache.clear();
     }
 
-    void look(std::uint32_t t) {
+    void add_triangle(std::uint32_t t) {
         const Vec2 a = atlas::corner_texels(surface_.atlas, t, 0);
         const Vec2 b = atlas::corner_texels(surface_.atlas, t, 1) - a;
         const Vec2 c = atlas::corner_texels(surface_.atlas, t, 2) - a;
@@ -49,7 +49,7 @@ class Seating {
                     const Vec2 d = Vec2(double(x) * atlas::kTile + cluster.centre_texel % atlas::kTile + 0.5,
                                         double(y) * atlas::kTile + cluster.centre_texel / atlas::kTile + 0.5) -
                                    a;
-                    sit(i, t, (d.x * c.y - d.y * c.x) / det, (b.x * d.y - b.y * d.x) / det);
+                    insert(i, t, (d.x * c.y - d.y * c.x) / det, (b.x * d.y - b.y * d.x) / det);
                 }
             }
     }
@@ -60,7 +60,7 @@ class Seating {
         return std::clamp(static_cast<std::int64_t>(std::floor(texels / atlas::kTile)), std::int64_t{0}, last);
     }
 
-    void sit(std::uint32_t cluster, std::uint32_t t, double w1, double w2) {
+    void insert(std::uint32_t cluster, std::uint32_t t, double w1, double w2) {
         const double w0 = 1 - w1 - w2;
         if (std::min({w0, w1, w2}) < -kBeside) return;
         const Vec3 off = w0 * surface_.mesh.position(t, 0) + w1 * surface_.mesh.position(t, 1) +
@@ -74,19 +74,19 @@ class Seating {
 
 struct OccludedClusters {
     const mesh::TriangleMesh& mesh;
-    const mesh::ExactGeodesics& ways;
+    const mesh::ExactGeodesics& geodesics;
     const Frame& from;
     Vec3 normal;  ///< of the triangle at its origin
 
     bool place(const atlas::TexelCluster& cluster, std::uint32_t triangle, PlanScratch::Node& n) const {
         if (triangle == kNone) return false;
-        const mesh::ExactGeodesics::Geodesic way = ways.to(triangle, Vec3(cluster.centre));
-        if (!std::isfinite(way.length)) return false;
-        const Vec2 leaves = atlas::carried_direction(from, way.leaves, normal);
+        const mesh::ExactGeodesics::Geodesic path = geodesics.to(triangle, Vec3(cluster.centre));
+        if (!std::isfinite(path.length)) return false;
+        const Vec2 leaves = atlas::carried_direction(from, path.start_direction, normal);
         const Vec2 arrives =
-            atlas::carried_direction(atlas::frame_of(cluster), way.arrives, face_normal(mesh, triangle));
-        n.u = static_cast<float>(way.length * leaves.x);
-        n.v = static_cast<float>(way.length * leaves.y);
+            atlas::carried_direction(atlas::frame_of(cluster), path.end_direction, face_normal(mesh, triangle));
+        n.u = static_cast<float>(path.length * leaves.x);
+        n.v = static_cast<float>(path.length * leaves.y);
         n.c = static_cast<float>(glm::dot(leaves, arrives));
         n.s = static_cast<float>(arrives.x * leaves.y - arrives.y * leaves.x);
         return true;
@@ -112,12 +112,12 @@ void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Fram
                       const Start& start, std::size_t occluded, PlanScratch& scratch) {
     const auto n_clusters = static_cast<double>(scratch.reached.size());
     if (occluded == 0 || static_cast<double>(occluded) < kFewFolds * n_clusters) return;
-    mesh::ExactGeodesics& ways = scratch.ways;
+    mesh::ExactGeodesics& geodesics = scratch.geodesics;
     const double radius = kBeyond * static_cast<double>(reach.radius);
-    if (!ways.spread(surface.mesh, triangle, from.origin, radius, kMostWindows)) return;
-    Seating seating(surface, scratch.triangle_cache);
-    for (std::size_t i = 0; i < ways.n_faces(); ++i) seating.look(ways.triangle(i));
-    const OccludedClusters occluded_clusters{surface.mesh, ways, from, face_normal(surface.mesh, triangle)};
+    if (!geodesics.spread(surface.mesh, triangle, from.origin, radius, kMostWindows)) return;
+    CentreLocator locator(surface, scratch.triangle_cache);
+    for (std::size_t i = 0; i < geodesics.n_faces(); ++i) locator.add_triangle(geodesics.triangle(i));
+    const OccludedClusters occluded_clusters{surface.mesh, geodesics, from, face_normal(surface.mesh, triangle)};
     const atlas::ClusterGraph& graph = surface.clusters;
     begin_walk(scratch, graph.n_clusters());
     std::vector<std::uint32_t> open{start.cluster};
@@ -130,7 +130,7 @@ void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Fram
         const bool placed = occluded_clusters.place(cluster, scratch.triangle_cache.of(index), n);
         const float distance = std::sqrt(n.u * n.u + n.v * n.v);
         if (index != start.cluster &&
-            (!placed || distance - kPieceSlack * cluster.radius > reach.radius || faces_away(reach, cluster)))
+            (!placed || distance - kClusterSlack * cluster.radius > reach.radius || faces_away(reach, cluster)))
             continue;
         if (in_picture(reach, cluster, n)) scratch.reached.push_back(index);
         for (std::uint32_t k = graph.edge_start[index]; k < graph.edge_start[index + 1]; ++k) {

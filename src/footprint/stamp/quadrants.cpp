@@ -87,7 +87,7 @@ bool add_quadrants(const ClusterFrame& frame, std::int32_t cluster, const atlas:
         cos[k] = at.cos;
     }
     // Cells a metre: the longer of the frame's axes.
-    const float scale = kPieceSlack * std::sqrt(std::max(glm::dot(frame.tu, frame.tu), glm::dot(frame.tv, frame.tv)));
+    const float scale = kClusterSlack * std::sqrt(std::max(glm::dot(frame.tu, frame.tu), glm::dot(frame.tv, frame.tv)));
     const float way = glm::length(drift.half_way);
     for (int k = 0; k < kQuadrants; ++k) {
         const float r = scale * std::sqrt(p.radius2[k]);

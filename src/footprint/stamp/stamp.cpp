@@ -99,11 +99,11 @@ void cover_of_clusters(const atlas::ClusterGraph& graph, const Footprint& footpr
         const PlanScratch::Node& at = scratch.nodes[i];
         scratch.apart.push_back(disagreement(footprint.frame, cluster, at));
         const Vec2f place = Vec2f{at.u, at.v} + half_way;
-        const float r = kPieceSlack * cluster.radius, swing = turn * (glm::length(place) + way + r);
+        const float r = kClusterSlack * cluster.radius, swing = turn * (glm::length(place) + way + r);
         const float reach = r + static_cast<float>(scratch.apart.back()) + way + swing;
         scratch.discs.add(place / cell - zero, reach / cell + 1.5f);
     }
-    scratch.tally.look(scratch.discs, isa);
+    scratch.tally.find_coverage(scratch.discs, isa);
 }
 
 /// Lists the reached clusters that the picture may cover, with what is known of its coverage
@@ -189,7 +189,7 @@ void sort_clusters(const Surface& surface, const Footprint& footprint, const Mot
     SweptDisplacement drift{Vec2f(footprint.lo / footprint.cell + 0.5), Vec2f(0.5 * motion.shift) / cell,
                             static_cast<float>(std::abs(motion.turn))};
     if (either) drift.extra = 1 + static_cast<float>(jobs.discrepancy * footprint.radius) / cell;
-    scratch.asked.clear();
+    scratch.queried.clear();
     scratch.discs.clear();
     for (const TileJob& job : jobs.tiles) {
         for (std::uint32_t k = job.first; k < job.first + job.count; ++k) {
@@ -198,12 +198,12 @@ void sort_clusters(const Surface& surface, const Footprint& footprint, const Mot
             if (f.partial_quadrants == 0 || f.first_row > 0 || f.last_row + 1 < atlas::kTile) continue;
             if (!surely_faces(surface.clusters.clusters[i], normal) || (either && !scratch.nodes[i].lit)) continue;
             if (add_quadrants(own ? f : jobs.stamp_frame, f.cluster, surface.texels, job.slot, drift, scratch.discs))
-                scratch.asked.push_back(k);
+                scratch.queried.push_back(k);
         }
     }
-    scratch.tally.look(scratch.discs, jobs.isa);
-    for (std::size_t n = 0; n < scratch.asked.size(); ++n)
-        sort_quadrants(scratch.discs, kQuadrants * n, jobs.frames[scratch.asked[n]]);
+    scratch.tally.find_coverage(scratch.discs, jobs.isa);
+    for (std::size_t n = 0; n < scratch.queried.size(); ++n)
+        sort_quadrants(scratch.discs, kQuadrants * n, jobs.frames[scratch.queried[n]]);
 }
 
 }  // namespace
@@ -245,8 +245,8 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     jobs.stamp_frame = picture_frame(footprint.frame, Vec2{0}, Vec2{1, 0}, footprint);
     const double texel_size = surface.texels.texel_size;
     const double wanted = motion.turn == 0 ? poses_wanted(footprint, motion, texel_size, options) : 0;
-    const bool passes_over = options.passes_over > 0 && wanted > 0;
-    const bool swept = passes_over || (options.prefix_sums > 0 && wanted >= options.prefix_sums);
+    const bool takes_max = options.max_weight > 0 && wanted > 0;
+    const bool swept = takes_max || (options.prefix_sums > 0 && wanted >= options.prefix_sums);
     if (!swept) jobs.sub_poses = spread_poses(footprint, motion, texel_size, options);
     list_clusters(surface.clusters, footprint, motion, scratch, jobs);
     if (jobs.discrepancy > std::min(options.enter, options.leave))
@@ -256,8 +256,8 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     jobs.reach_lo = reach.lo / float(footprint.cell) - to_cells - 2.0f;
     jobs.reach_hi = reach.hi / float(footprint.cell) - to_cells + 2.0f;
     if (swept) {
-        if (passes_over)
-            sweep_over(footprint, motion.shift, options.passes_over, jobs, scratch.sweep);
+        if (takes_max)
+            sweep_over(footprint, motion.shift, options.max_weight, jobs, scratch.sweep);
         else
             sweep(footprint, motion.shift, jobs, scratch.sweep);
         return jobs;

@@ -49,7 +49,7 @@ struct StampOptions {
     int max_sub_poses = 64;
     int prefix_sums = 12;  ///< number of sub-poses from which a straight motion is integrated by prefix sums
     /// 0–1: weight of the maximum over a straight motion, against the mean; for hairs finer than a texel.
-    float passes_over = 0;
+    float max_weight = 0;
     Isa isa = best_isa();
 };
 
@@ -149,10 +149,10 @@ struct PlanScratch {
     std::vector<std::uint32_t> reached;
     BlockTally tally;
     Discs discs;
-    std::vector<double> apart;         ///< metres, by reached cluster
-    std::vector<std::uint32_t> asked;  ///< frames whose quadrants are queried
+    std::vector<double> apart;           ///< metres, by reached cluster
+    std::vector<std::uint32_t> queried;  ///< frames whose quadrants are queried
     SweepScratch sweep;
-    mesh::ExactGeodesics ways;
+    mesh::ExactGeodesics geodesics;
     TriangleCache triangle_cache;
 };
 

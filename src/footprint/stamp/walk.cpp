@@ -251,7 +251,7 @@ struct Walk {
         const float r = kDetour * cluster.radius;
         const float du = std::max({std::min(reach.lo.x, 0.0f) - u, u - std::max(reach.hi.x, 0.0f), 0.0f});
         const float dv = std::max({std::min(reach.lo.y, 0.0f) - v, v - std::max(reach.hi.y, 0.0f), 0.0f});
-        const float far = reach.radius + (kPieceSlack + kAgree) * cluster.radius;
+        const float far = reach.radius + (kClusterSlack + kAgree) * cluster.radius;
         return du * du + dv * dv <= r * r && u * u + v * v <= far * far;
     }
 
@@ -270,14 +270,14 @@ struct Walk {
             const float distance = std::sqrt(n.u * n.u + n.v * n.v);
             // Its turn comes later where the neighbours see it further away than the first of them did.
             if (distance * distance > kLater * key && i != start) {
-                if (distance - kPieceSlack * cluster.radius > reach.radius)
+                if (distance - kClusterSlack * cluster.radius > reach.radius)
                     n.state = kOutside;
                 else
                     push(n, i, distance * distance);
                 continue;
             }
             n.state = kOutside;
-            if (distance - kPieceSlack * cluster.radius > reach.radius || faces_away(reach, cluster)) continue;
+            if (distance - kClusterSlack * cluster.radius > reach.radius || faces_away(reach, cluster)) continue;
             n.state = kFinal;
             if (in_picture(reach, cluster, n)) scratch.reached.push_back(i);
             for (std::uint32_t k = graph.edge_start[i]; k < graph.edge_start[i + 1]; ++k) {
@@ -318,7 +318,7 @@ bool faces_away(const Reach& reach, const atlas::TexelCluster& cluster) {
 }
 
 bool in_picture(const Reach& reach, const atlas::TexelCluster& cluster, const PlanScratch::Node& n) {
-    const float r = kPieceSlack * cluster.radius;
+    const float r = kClusterSlack * cluster.radius;
     const float du = std::max({reach.lo.x - n.u, n.u - reach.hi.x, 0.0f});
     const float dv = std::max({reach.lo.y - n.v, n.v - reach.hi.y, 0.0f});
     return du * du + dv * dv <= r * r;

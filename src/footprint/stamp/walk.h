@@ -9,7 +9,7 @@
 namespace tuft::footprint {
 
 /// Factor on a cluster's radius: the log map stretches it slightly.
-inline constexpr float kPieceSlack = 1.1f;
+inline constexpr float kClusterSlack = 1.1f;
 
 /// Extent of a stamp.
 struct Reach {

@@ -231,7 +231,7 @@ MixSearch::Mix MixSearch::tidied(Mix mix, const Lab& wanted) const {
 
 // Compass search in the logarithms of the amounts: far from a colour out of reach the three terms
 // are no straight functions of the amounts, and Levenberg–Marquardt stops short of the optimum.
-MixSearch::Mix MixSearch::polish(Mix mix, const Lab& wanted) const {
+MixSearch::Mix MixSearch::refine_mixture(Mix mix, const Lab& wanted) const {
     for (double step = 0.4; step > 1e-3; step *= 0.5)
         for (bool better = true; better;) {
             better = false;
@@ -308,7 +308,7 @@ ColourMatch MixSearch::nearest(const Rgb& wanted, std::size_t most_parts) const 
         std::stable_sort(mixes.begin(), mixes.end(), nearer);
     }
     if (mixes.front().error > kPolishFrom) {
-        for (std::size_t m = 0; m < std::min(kPolished, mixes.size()); ++m) mixes[m] = polish(mixes[m], goal);
+        for (std::size_t m = 0; m < std::min(kPolished, mixes.size()); ++m) mixes[m] = refine_mixture(mixes[m], goal);
         std::stable_sort(mixes.begin(), mixes.end(), nearer);
     }
     const Mix* best = &mixes.front();

@@ -87,7 +87,7 @@ class MixSearch {
     Lab lab(const Mix& mix) const;
     Mix refine(Mix mix, const Lab& wanted) const;
     Mix tidied(Mix mix, const Lab& wanted) const;
-    Mix polish(Mix mix, const Lab& wanted) const;
+    Mix refine_mixture(Mix mix, const Lab& wanted) const;
     std::vector<Mix> starts(const Lab& wanted, std::size_t most_parts) const;
     void sample_mixes();
 

@@ -47,7 +47,7 @@ int nearest_with_hair(const std::array<double, kNodes>& sums, int node) {
 }  // namespace
 
 NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::span<const HairSample> samples,
-                         const ContactCells& touch) {
+                         const ContactCells& contact) {
     const std::size_t cells = tuft.n_cells(), n = tuft.content.size();
     std::vector<double> weight(kNodes * n, 0);
     std::array<double, kNodes> sums{};
@@ -71,9 +71,9 @@ NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::sp
     for (int node = 0; node < kNodes; ++node) {
         const int from = sums[node] > 0 ? node : nearest_with_hair(sums, node);
         for (std::uint32_t i = 0; i < n; ++i) {
-            const double part = from >= 0           ? weight[static_cast<std::size_t>(from) * n + i] / sums[from]
-                                : touch.size() == n ? static_cast<double>(touch[i])
-                                                    : tuft.cell_capacity[i] / tuft.capacity;
+            const double part = from >= 0             ? weight[static_cast<std::size_t>(from) * n + i] / sums[from]
+                                : contact.size() == n ? static_cast<double>(contact[i])
+                                                      : tuft.cell_capacity[i] / tuft.capacity;
             if (part > 0) out.shares.push_back({i, static_cast<float>(part)});
         }
         out.begin[node + 1] = static_cast<std::uint32_t>(out.shares.size());
@@ -110,7 +110,7 @@ NodeMixes mixes_at(const Reservoir& tuft, const NodeContact& nodes) {
     return mixes;
 }
 
-void spend(Reservoir& tuft, const NodeContents& given, const NodeContact& nodes) {
+void withdraw_contents(Reservoir& tuft, const NodeContents& given, const NodeContact& nodes) {
     const std::size_t n = tuft.content.size();
     std::vector<double> asked(n);
     for (int p = 0; p < kPlanes; ++p) {
@@ -140,7 +140,7 @@ void spend(Reservoir& tuft, const NodeContents& given, const NodeContact& nodes)
 }
 
 NodeContents draw(Reservoir& tuft, const std::array<double, kNodes>& amounts, const NodeContact& nodes,
-                  const ContactCells& touch, bool from_afar) {
+                  const ContactCells& contact, bool from_afar) {
     NodeContents drawn{};
     std::array<double, kNodes> lacks = amounts;
     double lacking = 0;
@@ -164,13 +164,13 @@ NodeContents draw(Reservoir& tuft, const std::array<double, kNodes>& amounts, co
     double all = 0;
     for (const double amount : amounts) all += amount;
     if (!from_afar || !(lacking > kAlike * all)) return drawn;
-    const Content rest = take(tuft, lacking, touch);
+    const Content rest = take(tuft, lacking, contact);
     for (int node = 0; node < kNodes; ++node)
         for (int p = 0; p < kPlanes; ++p) drawn[node][p] += std::max(lacks[node], 0.0) / lacking * rest[p];
     return drawn;
 }
 
-void absorb(Reservoir& tuft, const NodeContents& lifted, const NodeContact& nodes, const ContactCells& touch) {
+void absorb(Reservoir& tuft, const NodeContents& lifted, const NodeContact& nodes, const ContactCells& contact) {
     Content beyond{};
     for (int node = 0; node < kNodes; ++node) {
         const double amount = sum_of(lifted[node]);
@@ -181,18 +181,19 @@ void absorb(Reservoir& tuft, const NodeContents& lifted, const NodeContact& node
         double lacking = amount;
         for (const NodeContact::Share& s : nodes.of(node)) {
             Content& cell = tuft.content[s.cell];
-            const double room = std::max(0.0, tuft.cell_capacity[s.cell] - sum_of(cell));
-            const double v = std::min({static_cast<double>(s.part) * amount, room, lacking});
+            const double free = std::max(0.0, tuft.cell_capacity[s.cell] - sum_of(cell));
+            const double v = std::min({static_cast<double>(s.part) * amount, free, lacking});
             if (!(v > 0)) continue;
             for (int p = 0; p < kPlanes; ++p) cell[p] += v / amount * lifted[node][p];
             lacking -= v;
         }
         for (int p = 0; p < kPlanes; ++p) beyond[p] += lacking / amount * lifted[node][p];
     }
-    absorb(tuft, beyond, touch);
+    absorb(tuft, beyond, contact);
 }
 
-void deal(NodeContents& to, int plane, double amount, const std::array<double, kNodes>& shares, const HatBasis& hats) {
+void distribute(NodeContents& to, int plane, double amount, const std::array<double, kNodes>& shares,
+                const HatBasis& hats) {
     double all = 0;
     for (int k = 0; k < hats.count; ++k) all += shares[k];
     for (int k = 0; k < hats.count; ++k)
@@ -204,7 +205,7 @@ void MixtureGiven::pigment(int plane, double amount, const std::array<double, kN
         strength_[k] += static_cast<double>(mixes_[plane][hats_.node[k]]);
         came_[k] += shares[k];
     }
-    deal(given_, plane, amount, shares, hats_);
+    distribute(given_, plane, amount, shares, hats_);
 }
 
 void MixtureGiven::water() {

@@ -43,9 +43,9 @@ using NodeMixes = std::array<std::array<float, kNodes>, Reservoir::kPlanes>;
 
 /// Computes the cells over each node. Each sample contributes to the four nodes round it by their hats, and to the
 /// two cells of its bundle whose centres it lies between. A node without hair takes the cells of the nearest node
-/// with hair. Without any sample all nodes have the cells of `touch`.
+/// with hair. Without any sample all nodes have the cells of `contact`.
 NodeContact node_contact(const Reservoir& tuft, const ContactGrid& grid, std::span<const HairSample> samples,
-                         const ContactCells& touch);
+                         const ContactCells& contact);
 
 /// Returns true when the mixture differs between cells by more than rounding.
 bool is_mixed(const Reservoir& tuft);
@@ -55,7 +55,8 @@ bool is_mixed(const Reservoir& tuft);
 NodeMixes mixes_at(const Reservoir& tuft, const NodeContact& nodes);
 
 /// Distributes an amount of a plane to a tile's nodes by their shares; evenly where all shares are 0.
-void deal(NodeContents& to, int plane, double amount, const std::array<double, kNodes>& shares, const HatBasis& hats);
+void distribute(NodeContents& to, int plane, double amount, const std::array<double, kNodes>& shares,
+                const HatBasis& hats);
 
 /// Records the ink that a stamp's mixture leaves on a tile: each pigment at the nodes of its origin, then the water
 /// mixed with it there.
@@ -78,15 +79,15 @@ class MixtureGiven {
 /// Withdraws the given amounts: each plane from the cells over its node in proportion to their contents, the
 /// shortfall from all cells that have it. While the tuft has enough of a plane, its total decreases by exactly the
 /// sum.
-void spend(Reservoir& tuft, const NodeContents& given, const NodeContact& nodes);
+void withdraw_contents(Reservoir& tuft, const NodeContents& given, const NodeContact& nodes);
 
 /// Withdraws ink for each node, `amounts` in film·m², from its cells, each with its own mixture. With `from_afar`
 /// the shortfall comes from all other cells, as in `take`. Returns the withdrawn amounts.
 NodeContents draw(Reservoir& tuft, const std::array<double, kNodes>& amounts, const NodeContact& nodes,
-                  const ContactCells& touch, bool from_afar = true);
+                  const ContactCells& contact, bool from_afar = true);
 
 /// Absorbs the ink lifted at each node into its cells. The excess is distributed as in `absorb` for the whole
 /// contact.
-void absorb(Reservoir& tuft, const NodeContents& lifted, const NodeContact& nodes, const ContactCells& touch);
+void absorb(Reservoir& tuft, const NodeContents& lifted, const NodeContact& nodes, const ContactCells& contact);
 
 }  // namespace tuft::ink

@@ -44,8 +44,8 @@ TUFT_CLONES void goals(float* __restrict goal, const float* __restrict coverage,
 TUFT_CLONES bool increments(float* __restrict film, const float* __restrict all, const float* __restrict goal,
                             float capacity, float rate, int n) {
     for (int t = 0; t < n; ++t) {
-        const float room = film[t] + capacity - all[t];
-        const float limit = goal[t] < room ? goal[t] : room;
+        const float free = film[t] + capacity - all[t];
+        const float limit = goal[t] < free ? goal[t] : free;
         const float lack = limit - film[t];
         film[t] = (lack > 0 ? lack : 0) * rate;
     }
@@ -97,8 +97,8 @@ TUFT_CLONES double lay_alone(float* __restrict w, const float* __restrict covera
         }
         for (int t = 0; t < kRow; ++t) {
             const float before = w[row + t], film = before * inverse_part;
-            const float room = film + law.capacity - before;
-            const float limit = goal[t] < room ? goal[t] : room;
+            const float free = film + law.capacity - before;
+            const float limit = goal[t] < free ? goal[t] : free;
             const float lack = limit - film;
             const float dw = (lack > 0 ? lack : 0) * law.rate;
             const float after = before + law.part * dw;

@@ -32,12 +32,12 @@ TUFT_CLONES void increments(float* __restrict out, float* __restrict sum, const 
     }
 }
 
-/// part = how much of the increments there is room for.
-TUFT_CLONES void within_room(float* __restrict part, const float* __restrict sum, const float* __restrict all,
-                             float capacity) {
+/// part = how much of the increments there is free for.
+TUFT_CLONES void fit_capacity(float* __restrict part, const float* __restrict sum, const float* __restrict all,
+                              float capacity) {
     for (int t = 0; t < kN; ++t) {
-        const float room = positive(capacity - all[t]);
-        part[t] = sum[t] > room ? room / sum[t] : 1;
+        const float free = positive(capacity - all[t]);
+        part[t] = sum[t] > free ? free / sum[t] : 1;
     }
 }
 
@@ -75,9 +75,9 @@ NodeMixes mixes_within(const Reservoir& tuft, const NodeContact& nodes, double t
     return mixes;
 }
 
-void deposit_mixed(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const HatBasis& hats,
-                   std::span<const float, kN> area, double ds, const DepositParams& params, const NodeMixes& mixes,
-                   NodeContents& given) {
+void deposit_mixed(Canvas& canvas, const StampedTile& tile, const HatBasis& hats, const DepositParams& params,
+                   const NodeMixes& mixes, NodeContents& given) {
+    const auto& [slot, coverage, area, ds] = tile;
     if (hats.count == 0 || !(params.target > 0) || !(ds > 0)) return;
     alignas(64) Texels goal, all{}, sum{}, part, film;
     alignas(64) std::array<Texels, kMaxPigments> mix, dw;
@@ -94,7 +94,7 @@ void deposit_mixed(Canvas& canvas, std::uint32_t slot, std::span<const float, kN
         increments(dw[p].data(), sum.data(), mix[p].data(), goal.data(), w ? w->data() : kNone.data(), rate);
     }
     if (std::none_of(sum.begin(), sum.end(), [](float v) { return v > 0; })) return;
-    within_room(part.data(), sum.data(), all.data(), params.capacity);
+    fit_capacity(part.data(), sum.data(), all.data(), params.capacity);
     std::array<double, kNodes> shares;
     MixtureGiven mixture(given, mixes, hats);
     for (int p = 0; p < kMaxPigments; ++p) {

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <span>
-
 #include "ink/exchange/contact_nodes.h"
 #include "ink/exchange/deposit.h"
+#include "ink/exchange/stamped_tile.h"
 
 /// \file
 /// Deposit from a tuft whose ink varies over the contact patch. Called by `stroke` instead of `deposit`.
@@ -22,8 +21,7 @@ NodeMixes mixes_within(const Reservoir& tuft, const NodeContact& nodes, double t
 /// largest amount of each pigment that any of them would leave, for any step size, and a mixture that changes from
 /// stamp to stamp does not accumulate. `params.mix` is ignored. Adds the stored ink and its water to `given`,
 /// film·m².
-void deposit_mixed(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
-                   const HatBasis& hats, std::span<const float, atlas::kTileTexels> area, double ds,
-                   const DepositParams& params, const NodeMixes& mixes, NodeContents& given);
+void deposit_mixed(Canvas& canvas, const StampedTile& tile, const HatBasis& hats, const DepositParams& params,
+                   const NodeMixes& mixes, NodeContents& given);
 
 }  // namespace tuft::ink

@@ -85,8 +85,8 @@ EraseStart erase_start(const Canvas& canvas, std::uint32_t slot) {
     return start;
 }
 
-Amounts erase(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, std::span<const float, kN> area,
-              double ds, const EraseStart& start, const EraseParams& params) {
+Amounts erase(Canvas& canvas, const StampedTile& tile, const EraseStart& start, const EraseParams& params) {
+    const auto& [slot, coverage, area, ds] = tile;
     Amounts gone;
     if (!canvas.touched(slot) || !(ds > 0) || !(params.strength > 0)) return gone;
     const Plane film = erase_start(canvas, slot).film;
@@ -109,7 +109,7 @@ Amounts erase(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> cov
 Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> area, const Coat& coat,
                  float capacity) {
     Amounts laid;
-    alignas(64) std::array<float, kN> all{}, dw, room;
+    alignas(64) std::array<float, kN> all{}, dw, part;
     for (int p = 0; p < kMaxPigments; ++p)
         if (const Plane* w = canvas.plane(slot, p)) add_scaled(all.data(), w->data(), 1);
     float strength[2] = {0, 0};
@@ -117,13 +117,13 @@ Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> 
     for (int t = 0; t < kN; ++t) {
         const float wanted = coat.film[t] * (strength[0] + coat.towards[t] * (strength[1] - strength[0]));
         const float left = capacity > all[t] ? capacity - all[t] : 0;
-        room[t] = wanted > left ? left / wanted : 1;
+        part[t] = wanted > left ? left / wanted : 1;
     }
     for (int p = 0; p < kMaxPigments; ++p) {
         if (!(coat.first[p] > 0 || coat.second[p] > 0)) continue;
         bool any = false;
         for (int t = 0; t < kN; ++t) {
-            dw[t] = room[t] * coat.film[t] * (coat.first[p] + coat.towards[t] * (coat.second[p] - coat.first[p]));
+            dw[t] = part[t] * coat.film[t] * (coat.first[p] + coat.towards[t] * (coat.second[p] - coat.first[p]));
             any = any || dw[t] > 0;
         }
         if (any) laid.pigment[p] += store_change(canvas.touch(slot, p).data(), dw.data(), 1, area.data());

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "ink/canvas/canvas.h"
+#include "ink/exchange/stamped_tile.h"
 
 /// \file
 /// Removal of ink from texels, and uniform coats over parts of a surface. Called by `stroke` for erasers and fills.
@@ -42,9 +43,7 @@ struct EraseParams {
 /// of all films, dry, open and soaked, and liquid are removed in proportion. Film never grows. Less than 1e-6 film
 /// units, which is invisible, is removed at once. Different threads may process different slots. The bits do not
 /// depend on the instruction set. Returns the removed amounts.
-Amounts erase(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
-              std::span<const float, atlas::kTileTexels> area, double ds, const EraseStart& start,
-              const EraseParams& params);
+Amounts erase(Canvas& canvas, const StampedTile& tile, const EraseStart& start, const EraseParams& params);
 
 /// A coat for one tile: texel t gets `film` [256] film units of wet ink with the mixture (1 − towards) · first +
 /// towards · second, fractions of the wet ink by plane.

@@ -31,14 +31,14 @@ double sum_of(const Content& c) {
 }
 
 void check_layout(const ReservoirLayout& l) {
-    double rooms = 0, before = 0;
+    double capacities = 0, before = 0;
     bool good = !l.bundles.empty() && !l.cell_ends.empty() && l.cell_capacities.size() == l.cell_ends.size();
     for (std::size_t c = 0; good && c < l.cell_ends.size(); ++c) {
         good = l.cell_ends[c] > before && l.cell_capacities[c] > 0;
         before = l.cell_ends[c];
-        rooms += l.cell_capacities[c];
+        capacities += l.cell_capacities[c];
     }
-    if (!good || std::abs(before - 1) > 1e-9 || std::abs(rooms - 1) > 1e-9)
+    if (!good || std::abs(before - 1) > 1e-9 || std::abs(capacities - 1) > 1e-9)
         throw Error("the hair of a tuft cannot be divided so for its ink");
 }
 
@@ -105,19 +105,19 @@ void flow_step(Reservoir& tuft, double seconds, std::span<const int> planes, std
         for (const int p : planes) tuft.content[i][p] += change[i][p];
 }
 
-/// Calls f(cell, part) for what a touch takes part in, in order.
+/// Calls f(cell, part) for each cell in contact, in order.
 template <class F>
-void each_touched(const Reservoir& tuft, std::span<const float> touch, F f) {
-    const bool all = touch.size() != tuft.content.size();
+void each_touched(const Reservoir& tuft, std::span<const float> contact, F f) {
+    const bool all = contact.size() != tuft.content.size();
     for (std::size_t i = 0; i < tuft.content.size(); ++i) {
-        const double part = all ? tuft.cell_capacity[i] / tuft.capacity : static_cast<double>(touch[i]);
+        const double part = all ? tuft.cell_capacity[i] / tuft.capacity : static_cast<double>(contact[i]);
         if (part > 0) f(i, part);
     }
 }
 
-Mix mix_over(const Reservoir& tuft, std::span<const float> touch) {
+Mix mix_over(const Reservoir& tuft, std::span<const float> contact) {
     Content sum{};
-    each_touched(tuft, touch, [&](std::size_t i, double part) {
+    each_touched(tuft, contact, [&](std::size_t i, double part) {
         const double scale = part / tuft.cell_capacity[i];
         for (int p = 0; p < kPlanes; ++p) sum[p] += scale * tuft.content[i][p];
     });
@@ -128,9 +128,9 @@ Mix mix_over(const Reservoir& tuft, std::span<const float> touch) {
     return parts;
 }
 
-double saturation_over(const Reservoir& tuft, std::span<const float> touch) {
+double saturation_over(const Reservoir& tuft, std::span<const float> contact) {
     double sum = 0, weight = 0;
-    each_touched(tuft, touch, [&](std::size_t i, double part) {
+    each_touched(tuft, contact, [&](std::size_t i, double part) {
         sum += part * tuft.saturation(i);
         weight += part;
     });
@@ -223,7 +223,7 @@ double rinse(Reservoir& tuft) {
     return left;
 }
 
-Content take(Reservoir& tuft, double amount, const ContactCells& touch) {
+Content take(Reservoir& tuft, double amount, const ContactCells& contact) {
     Content taken{};
     const double left = tuft.remaining();
     if (!(left > 0) || !(amount > 0)) return taken;
@@ -236,8 +236,8 @@ Content take(Reservoir& tuft, double amount, const ContactCells& touch) {
         }
     };
     double lacking = amount;
-    if (touch.size() == tuft.content.size()) {
-        each_touched(tuft, touch, [&](std::size_t i, double part) {
+    if (contact.size() == tuft.content.size()) {
+        each_touched(tuft, contact, [&](std::size_t i, double part) {
             const double q = sum_of(tuft.content[i]);
             if (!(q > 0)) return;
             const double want = std::min({q, part * amount, lacking});
@@ -253,14 +253,14 @@ Content take(Reservoir& tuft, double amount, const ContactCells& touch) {
     return taken;
 }
 
-double room_left(const Reservoir& tuft, const ContactCells& touch) {
+double free_capacity(const Reservoir& tuft, const ContactCells& contact) {
     double sum = 0;
-    each_touched(tuft, touch,
+    each_touched(tuft, contact,
                  [&](std::size_t i, double) { sum += std::max(0.0, tuft.cell_capacity[i] - sum_of(tuft.content[i])); });
     return sum;
 }
 
-void absorb(Reservoir& tuft, const Content& lifted, const ContactCells& touch) {
+void absorb(Reservoir& tuft, const Content& lifted, const ContactCells& contact) {
     const double amount = sum_of(lifted);
     if (!(amount > 0)) return;
     double lacking = amount;
@@ -268,27 +268,27 @@ void absorb(Reservoir& tuft, const Content& lifted, const ContactCells& touch) {
         for (int p = 0; p < kPlanes; ++p) tuft.content[i][p] += v / amount * lifted[p];
         lacking -= v;
     };
-    const auto room = [&](std::size_t i) { return std::max(0.0, tuft.cell_capacity[i] - sum_of(tuft.content[i])); };
-    each_touched(tuft, touch, [&](std::size_t i, double share) {
-        put(i, std::min({share * amount, room(i), lacking}));
+    const auto free_of = [&](std::size_t i) { return std::max(0.0, tuft.cell_capacity[i] - sum_of(tuft.content[i])); };
+    each_touched(tuft, contact, [&](std::size_t i, double share) {
+        put(i, std::min({share * amount, free_of(i), lacking}));
     });
     // Into all the hair that is not full, alike.
-    double rooms = 0;
-    for (std::size_t i = 0; i < tuft.content.size() && lacking > 0; ++i) rooms += room(i);
-    const double part = rooms > 0 ? std::min(1.0, lacking / rooms) : 0;
-    for (std::size_t i = 0; i < tuft.content.size() && part > 0; ++i) put(i, std::min(part * room(i), lacking));
+    double free = 0;
+    for (std::size_t i = 0; i < tuft.content.size() && lacking > 0; ++i) free += free_of(i);
+    const double part = free > 0 ? std::min(1.0, lacking / free) : 0;
+    for (std::size_t i = 0; i < tuft.content.size() && part > 0; ++i) put(i, std::min(part * free_of(i), lacking));
     if (lacking > 0) {
         const double beyond = lacking;
-        each_touched(tuft, touch, [&](std::size_t i, double share) { put(i, share * beyond); });
+        each_touched(tuft, contact, [&](std::size_t i, double share) { put(i, share * beyond); });
         if (!tuft.content.empty()) put(0, lacking);  // what rounding of the parts left
     }
 }
 
-Mix mix_at(const Reservoir& tuft, const ContactCells& touch) {
-    return mix_over(tuft, touch);
+Mix mix_at(const Reservoir& tuft, const ContactCells& contact) {
+    return mix_over(tuft, contact);
 }
-double saturation_at(const Reservoir& tuft, const ContactCells& touch) {
-    return saturation_over(tuft, touch);
+double saturation_at(const Reservoir& tuft, const ContactCells& contact) {
+    return saturation_over(tuft, contact);
 }
 
 void flow(Reservoir& tuft, double dt, FlowTo to) {
@@ -306,7 +306,7 @@ void flow(Reservoir& tuft, double dt, FlowTo to) {
     if (to == FlowTo::now) flow_step(tuft, std::exchange(tuft.unspent, 0), planes, change, total);
 }
 
-double shed(const Reservoir& tuft, const Drain& drain, double dt) {
+double drained_volume(const Reservoir& tuft, const Drain& drain, double dt) {
     const double free = (tuft.remaining() - tuft.capacity) / kFilmPerVolume;
     const double area = std::numbers::pi * drain.radius * drain.length;
     if (!(free > 0) || !(dt > 0) || !(area > 0)) return 0;
@@ -329,13 +329,13 @@ DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampCo
     out.transfer_length = static_cast<float>(std::lerp(1.0, kThreadWets, contact.by_hair) * ink.transfer_length);
     out.capacity = substrate.capacity;
     out.extinction = extinction_of(ink);
-    out.mix = mix_over(tuft, contact.touch);
+    out.mix = mix_over(tuft, contact.cells);
     const double left = tuft.remaining();
     if (!(left > 0)) {
         out.target = 0;
         return out;
     }
-    const double near = contact.touch.empty() ? left : tuft.capacity * saturation_over(tuft, contact.touch);
+    const double near = contact.cells.empty() ? left : tuft.capacity * saturation_over(tuft, contact.cells);
     const double k = std::clamp(contact.moment_factor, 0.0, 1.0);
     const double squeezed = kCapillarySupply + (1 - kCapillarySupply) * k;
     const double offered = ink.supply * squeezed * near / ink.supply_length;  // film·m² per metre

@@ -35,7 +35,7 @@ struct CellLink {
 
 /// Ink of the tuft in its cells, film·m² of wet ink. Plane p of a cell is the canvas' pigment plane p; the last
 /// plane is water. Invariants: all amounts are ≥ 0. No cell exceeds its capacity, except after `dip` with level > 1
-/// or an `absorb` beyond `room_left`.
+/// or an `absorb` beyond `free_capacity`.
 struct Reservoir {
     static constexpr int kPlanes = kMaxPigments + 1;
     using Content = std::array<double, kPlanes>;
@@ -78,7 +78,7 @@ inline constexpr double kMostLevel = 1.5;
 /// Depth and level of a dip.
 struct Dip {
     double depth = 1;  ///< as `Reach`
-    /// Saturation of the filled cells, at most kMostLevel; the excess over 1 runs off the hair (`shed`).
+    /// Saturation of the filled cells, at most kMostLevel; the excess over 1 runs off the hair (`drained_volume`).
     double level = 1;
     double side = 0;  ///< as `Reach`
 };
@@ -97,19 +97,19 @@ double rinse(Reservoir& tuft);
 
 /// Withdraws `amount` (film·m², at most `remaining`) from the touching cells, each with its own mixture. The
 /// shortfall comes from all others in proportion. Returns the withdrawn amounts by plane.
-Reservoir::Content take(Reservoir& tuft, double amount, const ContactCells& touch = {});
+Reservoir::Content take(Reservoir& tuft, double amount, const ContactCells& contact = {});
 
 /// Returns the free capacity of the touching cells, film·m²: the limit of absorption from the surface.
-double room_left(const Reservoir& tuft, const ContactCells& touch = {});
+double free_capacity(const Reservoir& tuft, const ContactCells& contact = {});
 
 /// Adds `lifted` (film·m² by plane) to the touching cells. The excess is distributed over the other cells in
 /// proportion to their free capacity. Nothing is lost: beyond the total capacity the touching cells hold it, so
-/// call `room_left` first.
-void absorb(Reservoir& tuft, const Reservoir::Content& lifted, const ContactCells& touch = {});
+/// call `free_capacity` first.
+void absorb(Reservoir& tuft, const Reservoir::Content& lifted, const ContactCells& contact = {});
 
 /// Returns the mixture and the saturation (0–1) at the surface: means over the touching cells.
-Mix mix_at(const Reservoir& tuft, const ContactCells& touch);
-double saturation_at(const Reservoir& tuft, const ContactCells& touch);
+Mix mix_at(const Reservoir& tuft, const ContactCells& contact);
+double saturation_at(const Reservoir& tuft, const ContactCells& contact);
 
 /// End time of `flow`: the last whole step, or the exact time.
 enum class FlowTo { whole_step, now };
@@ -137,7 +137,7 @@ struct Drain {
 ///     V(t) = V / √(1 + 2 c V² t),   c = 2 π R slope ρ g / (3 μ (π R L)³).
 ///
 /// Viscosity of the ink: 2 mPa s. Does not change the tuft.
-double shed(const Reservoir& tuft, const Drain& drain, double dt);
+double drained_volume(const Reservoir& tuft, const Drain& drain, double dt);
 
 /// Returns the ink of one stamp by the source paper's recurrence (variable stiffness brush), Q_i = η k_i (Z −
 /// Σ_{j<i} Q_j), with `remaining` = Z − ΣQ and k_i = |M_i| / M_max.
@@ -155,7 +155,7 @@ struct StampContact {
     double pending = 0;        ///< film·m² already deposited but not yet withdrawn from the tuft
     /// 0–1: fraction of contact by single hairs, which leave a film of their own thickness or none.
     double by_hair = 0;
-    std::span<const float> touch = {};  ///< as `ContactCells`; empty: the whole tuft alike
+    std::span<const float> cells = {};  ///< as `ContactCells`; empty: the whole tuft alike
 };
 
 /// Returns the deposit parameters of a stamp: its target film c. The tuft offers η k' Z / l ink per metre of

@@ -58,7 +58,7 @@ TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const f
         const float part = coverage[t] * exchange[t];
         const float x = part * smaller(w[t], film[t] - n);
         const float over = positive(w[t] - larger(goal[t], p.deposit.target)) * part * p.uptake;
-        const float lift = smaller(over, smaller(p.room, w[t] - x));
+        const float lift = smaller(over, smaller(p.free_capacity, w[t] - x));
         out.down[t] = n + x;
         out.up[t] = x + lift;
     }
@@ -205,18 +205,18 @@ double SurfaceLiquid::volume(int node) const {
     return sum_of(content[node]);
 }
 
-void withdraw(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch, const NodeContact& nodes) {
-    absorb(tuft, liquid.content, nodes, touch);
+void withdraw(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& contact, const NodeContact& nodes) {
+    absorb(tuft, liquid.content, nodes, contact);
     liquid.content = {};
 }
 
-void refresh(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch, const NodeContact& nodes,
-             const NodeAreas& areas, double dt, double pour) {
-    const double filled = std::min(1.0, saturation_at(tuft, touch) / kHalfFull), wet = filled * filled;
-    const double part = -std::expm1(-std::max(dt, 0.0) / kSkinTime);
+void refresh(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& contact, const NodeContact& nodes,
+             const NodeAreas& areas, const ContactStep& step) {
+    const double filled = std::min(1.0, saturation_at(tuft, contact) / kHalfFull), wet = filled * filled;
+    const double part = -std::expm1(-std::max(step.dt, 0.0) / kSkinTime);
     std::array<double, kNodes> want, lack;
     NodeContents back{};
-    for (int node = 0; node < kNodes; ++node) want[node] = (kSkinFilm * wet + pour) * areas[node];
+    for (int node = 0; node < kNodes; ++node) want[node] = (kSkinFilm * wet + step.pour) * areas[node];
     for (int across = 0; across < kAcross; ++across) pass_on(liquid, back, want, across);
     for (int node = 0; node < kNodes; ++node)
         for (int p = 0; p < Reservoir::kPlanes; ++p) {
@@ -224,7 +224,7 @@ void refresh(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch, 
             liquid.content[node][p] -= v;
             back[node][p] += v;
         }
-    absorb(tuft, back, nodes, touch);
+    absorb(tuft, back, nodes, contact);
     double all = 0;
     for (int node = 0; node < kNodes; ++node) {
         lack[node] = std::max(0.0, want[node] - liquid.volume(node));
@@ -233,26 +233,25 @@ void refresh(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& touch, 
     if (!(all > 0)) return;
     const double within = std::min(1.0, tuft.remaining() / all);
     for (double& amount : lack) amount *= within;
-    const NodeContents fresh = draw(tuft, lack, nodes, touch, filled >= 1 || pour > 0);
+    const NodeContents fresh = draw(tuft, lack, nodes, contact, filled >= 1 || step.pour > 0);
     for (int node = 0; node < kNodes; ++node)
         for (int p = 0; p < Reservoir::kPlanes; ++p) liquid.content[node][p] += fresh[node][p];
 }
 
-TransferParams transfer_params(const SurfaceLiquid& liquid, const Reservoir& tuft, const ContactCells& touch,
-                               const NodeAreas& areas, const DepositParams& deposit, double ds, double dt,
-                               double stress) {
+TransferParams transfer_params(const SurfaceLiquid& liquid, const Reservoir& tuft, const ContactCells& contact,
+                               const NodeAreas& areas, const DepositParams& deposit, const ContactStep& step) {
     TransferParams out;
     out.deposit = deposit;
     out.rub.fill(1);
-    const double way = ds / kExchangeLength + std::max(dt, 0.0) / kExchangeTime;
-    const double most = way * (kGentle + (1 - kGentle) * std::clamp(stress, 0.0, 1.0));
+    const double progress = step.ds / kExchangeLength + std::max(step.dt, 0.0) / kExchangeTime;
+    const double most = progress * (kGentle + (1 - kGentle) * std::clamp(step.stress, 0.0, 1.0));
     const std::array<double, kAlong> firm = firmness(areas);
     for (int node = 0; node < kNodes; ++node)
         out.exchange[node] = static_cast<float>(-std::expm1(-most * firm[node / kAcross]));
-    out.uptake = static_cast<float>(std::clamp(1 - saturation_at(tuft, touch), 0.0, 1.0));
+    out.uptake = static_cast<float>(std::clamp(1 - saturation_at(tuft, contact), 0.0, 1.0));
     double area = 0;
     for (const double a : areas) area += a;
-    out.room = static_cast<float>(area > 0 ? room_left(tuft, touch) / area : 0);
+    out.free_capacity = static_cast<float>(area > 0 ? free_capacity(tuft, contact) / area : 0);
     for (int node = 0; node < kNodes; ++node) {
         if (!(areas[node] > 0)) continue;
         for (int p = 0; p < Reservoir::kPlanes; ++p)
@@ -261,9 +260,9 @@ TransferParams transfer_params(const SurfaceLiquid& liquid, const Reservoir& tuf
     return out;
 }
 
-void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const TexelPlaces& places,
-              const HatBasis& hats, std::span<const float, kN> area, double ds, const TransferParams& params,
-              NodeContents& given) {
+void transfer(Canvas& canvas, const ContactTile& tile, const TransferParams& params, NodeContents& given) {
+    const auto& [slot, coverage, area, ds] = tile.stamp;
+    const HatBasis& hats = tile.hats;
     if (hats.count == 0) return;
     ask_for(canvas.liquid(slot, Liquid::film));
     ask_for(canvas.liquid(slot, Liquid::pores));
@@ -274,7 +273,7 @@ void transfer(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> cov
     alignas(64) Texels film, exchange, goal, total, pigments{}, part, up;
     interpolate(film, hats, over);
     interpolate(exchange, hats, params.exchange);
-    furrow_depth_at(part, places, params.rub);
+    furrow_depth_at(part, tile.places, params.rub);
     scale(exchange.data(), part.data());
     film_goals(goal, coverage, params.deposit);
     Plane& w = canvas.touch_liquid(slot, Liquid::film);

@@ -121,7 +121,7 @@ struct WetFilm::State : TileList {
         if (!canvas.wet()) workers.clear();
     }
 
-    void tell(std::uint32_t slot, const BeforeFn& before) {
+    void report_slot(std::uint32_t slot, const BeforeFn& before) {
         if (!before || reported[slot]) return;
         reported[slot] = 1;
         before(slot);
@@ -134,7 +134,7 @@ struct WetFilm::State : TileList {
         if (seeds.empty()) return false;
         if (!drips) drips = std::make_unique<Drips>(map, seams, ground().free);
         const std::vector<std::uint32_t> written =
-            drips->run(canvas, seeds, params, dt, [&](std::uint32_t slot) { tell(slot, before); });
+            drips->run(canvas, seeds, params, dt, [&](std::uint32_t slot) { report_slot(slot, before); });
         if (written.empty()) return false;
         look_at(canvas, written);
         return true;
@@ -330,7 +330,7 @@ struct WetFilm::State : TileList {
         give(tile.s, worker.spare[1]);
         std::array<std::uint8_t, kTexels> closing;
         ahead.fetch(kLines);
-        tile.outcome = local_step(tile.w->data(), tile.s->data(), work, g, step, seed, closing);
+        tile.outcome = local_step({tile.w->data(), tile.s->data(), closing}, work, g, step, seed);
         if (tile.outcome.closing) {
             if (!tile.closing) tile.closing = std::make_unique<std::array<std::uint8_t, kTexels>>();
             *tile.closing = closing;
@@ -506,16 +506,22 @@ struct WetFilm::State : TileList {
         report.tile_steps += tiles.size();
     }
 
-    /// A step over the faces of `part`, and what follows from where it spread.
-    void go(Canvas& canvas, const FilmParams& params, Part faces, const Step& rates, std::uint64_t number,
-            FilmReport& report, const BeforeFn& before) {
+    /// One step over some faces. `number` seeds its rounding.
+    struct FaceStep {
+        Part faces;
+        const Step& rates;
+        std::uint64_t number;
+    };
+    /// Takes a step, and adds the tiles into which it spread.
+    void step_faces(Canvas& canvas, const FilmParams& params, const FaceStep& face_step, FilmReport& report,
+                    const BeforeFn& before) {
         if (sources.empty()) prepare(canvas);
-        for (const Active& tile : list) tell(tile.slot, before);
-        part = faces;
+        for (const Active& tile : list) report_slot(tile.slot, before);
+        part = face_step.faces;
         if (part != Part::whole)
             for (const Active& tile : list)
                 if (beside_seam(tile.slot) && !split_geometry[tile.slot]) split_faces(tile.slot);
-        step(canvas, params, rates, number, report);
+        step(canvas, params, face_step.rates, face_step.number, report);
         const bool bedded = bed_flooded(canvas);
         if (changed()) spread(), sources.clear();
         if (bedded) sources.clear();
@@ -526,11 +532,12 @@ struct WetFilm::State : TileList {
         const std::uint64_t number = report.steps++;
         const auto inside = [&](int first, int last) {
             for (int i = first; i < last && !list.empty(); ++i)
-                go(canvas, params, Part::inside, chosen.part, number | (i + 1ull) << 40, report, before);
+                step_faces(canvas, params, {Part::inside, chosen.part, number | (i + 1ull) << 40}, report, before);
         };
         inside(0, chosen.parts / 2);
         if (!list.empty())
-            go(canvas, params, chosen.parts ? Part::outside : Part::whole, chosen.step, number, report, before);
+            step_faces(canvas, params, {chosen.parts ? Part::outside : Part::whole, chosen.step, number}, report,
+                       before);
         inside(chosen.parts / 2, chosen.parts);
     }
 };

@@ -97,14 +97,14 @@ struct Fluxes {
 /// Through the sixteen texels' parts of the faces between two rows of blocks. Returns the greatest
 /// conductance that was held back.
 TUFT_CLONES float through_faces(float* __restrict flux, const Row& from, const Row& to,
-                                const std::uint16_t* __restrict conductance, const std::uint16_t* __restrict room,
+                                const std::uint16_t* __restrict conductance, const std::uint16_t* __restrict flow_area,
                                 float most) {
     alignas(64) float any[kSide];
     for (int x = 0; x < kSide; ++x) {
         const float least = smaller(from.least[x], to.least[x]);
         const float flow = 0.5f * (from.flow[x] + to.flow[x]), drop = (from.mean[x] - to.mean[x]) / kBlock;
         const float k = (static_cast<float>(conductance[x]) * kConductanceUnit) * flow;
-        const float over = larger(k - most * static_cast<float>(room[x]), 0);
+        const float over = larger(k - most * static_cast<float>(flow_area[x]), 0);
         const float held_back = least > 0 ? smaller(over, kMostOfBlock) : 0, limit = kLeastPart * least;
         const float f = larger(smaller(held_back * drop, limit), -limit);
         flux[x] = least > 0 ? f : 0;
@@ -125,9 +125,9 @@ Fluxes fluxes_of(Means m, const Geometry& g, const Medium& p) {
         std::fill_n(row.flow.begin() + block * kBlock, kBlock, m.flow[at]);
     };
     std::array<Row, 2> across, along;
-    alignas(64) std::array<std::uint16_t, kSide> conductance, room;
-    const auto room_at = [&](int k, int l) {
-        return std::min(g.room[static_cast<std::size_t>(k)], g.room[static_cast<std::size_t>(l)]);
+    alignas(64) std::array<std::uint16_t, kSide> conductance, flow_area;
+    const auto flow_area_at = [&](int k, int l) {
+        return std::min(g.flow_area[static_cast<std::size_t>(k)], g.flow_area[static_cast<std::size_t>(l)]);
     };
     const auto fill_both = [&](int to, int line) {
         for (int block = 0; block < kBlocks; ++block) {
@@ -142,15 +142,15 @@ Fluxes fluxes_of(Means m, const Geometry& g, const Medium& p) {
         for (int row = 0; row < kSide; ++row) {
             const int k = field_at(before, row);
             conductance[row] = g.gx[static_cast<std::size_t>(Geometry::right_of(before, row))];
-            room[row] = room_at(k, k + 1);
+            flow_area[row] = flow_area_at(k, k + 1);
         }
         const auto at = static_cast<std::size_t>(face);
-        f.any |=
-            through_faces(f.across[at].data(), across[from], across[to], conductance.data(), room.data(), p.most) > 0;
+        f.any |= through_faces(f.across[at].data(), across[from], across[to], conductance.data(), flow_area.data(),
+                               p.most) > 0;
         for (int column = 0; column < kSide; ++column)
-            room[column] = room_at(field_at(column, before), field_at(column, before + 1));
+            flow_area[column] = flow_area_at(field_at(column, before), field_at(column, before + 1));
         f.any |= through_faces(f.along[at].data(), along[from], along[to],
-                               &g.gy[static_cast<std::size_t>((before + 1) * kSide)], room.data(), p.most) > 0;
+                               &g.gy[static_cast<std::size_t>((before + 1) * kSide)], flow_area.data(), p.most) > 0;
     }
     return f;
 }

@@ -9,14 +9,14 @@
 namespace tuft::ink::wet {
 namespace {
 
-constexpr int kWide = kSide + 4;         // two texels round the tile: metrics of the border need both sides
-constexpr double kMostConductance = 4;   // over the smaller of the two areas
-constexpr double kNoShear = 0.05;        // of √g g^12: less is left out; a blot gets 2.5 % longer or wider
-constexpr double kLeastDiagonal = 0.02;  // beside seams: less is left out, as it costs as much as more
-constexpr double kRoomAtSeams = 0.4;     // of the area
-constexpr double kLeastInBlock = 0.5;    // of the mean area
-constexpr double kGrainDepth = 0.4;      // of the mean
-constexpr double kFlocsRms = 0.437;      // of the octaves' sum
+constexpr int kWide = kSide + 4;          // two texels round the tile: metrics of the border need both sides
+constexpr double kMostConductance = 4;    // over the smaller of the two areas
+constexpr double kNoShear = 0.05;         // of √g g^12: less is left out; a blot gets 2.5 % longer or wider
+constexpr double kLeastDiagonal = 0.02;   // beside seams: less is left out, as it costs as much as more
+constexpr double kFlowAreaAtSeams = 0.4;  // of the area
+constexpr double kLeastInBlock = 0.5;     // of the mean area
+constexpr double kGrainDepth = 0.4;       // of the mean
+constexpr double kFlocsRms = 0.437;       // of the octaves' sum
 constexpr std::uint64_t kGrainSeed = 0x66696c6d;
 
 struct Spot {
@@ -27,7 +27,7 @@ struct Spot {
     double grain = 1, ease = 1;        // of the pin; of the flow, its root
     double m11 = 1, m12 = 0, m22 = 1;  // √g times the inverse metric
     bool border = false;               // beside a seam: its faces to other such texels are the seam's
-    std::array<double, 4> faces{};     // of a border, by `SeamFace::Way`
+    std::array<double, 4> faces{};     // of a border, by `SeamFace::Direction`
 };
 
 struct Neighbourhood {
@@ -120,13 +120,13 @@ void take_borders(Neighbourhood& n, const atlas::SeamLinks& seams, std::uint32_t
         const int column = x + texel % kSide + dx, row = y + texel / kSide + dy;
         return column < -2 || row < -2 || column > kSide + 1 || row > kSide + 1 ? nullptr : &n.at(column, row);
     };
-    constexpr std::array<std::array<int, 2>, 4> kWays{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
+    constexpr std::array<std::array<int, 2>, 4> kSteps{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
     for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i)
         if (Spot* s = spot(seams.links[i].texel, 0, 0)) s->border = true;
     for (std::uint32_t i = seams.face_start[slot]; i < seams.face_start[slot + 1]; ++i) {
         const atlas::SeamFace& f = seams.faces[i];
-        if (Spot* s = spot(f.texel, 0, 0)) s->border = true, s->faces[f.way] = static_cast<double>(f.conductance);
-        if (Spot* s = spot(f.texel, kWays[f.way][0], kWays[f.way][1])) s->border = true;
+        if (Spot* s = spot(f.texel, 0, 0)) s->border = true, s->faces[f.direction] = static_cast<double>(f.conductance);
+        if (Spot* s = spot(f.texel, kSteps[f.direction][0], kSteps[f.direction][1])) s->border = true;
     }
 }
 
@@ -162,12 +162,17 @@ Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, 
     return n;
 }
 
-/// Of a straight face; m11 or m22 of both its texels, the shear on its two sides.
-double straight(const Spot& a, const Spot& b, atlas::SeamFace::Way way, double m_a, double m_b, double shear_a,
-                double shear_b) {
+/// One side of a straight face: m11 or m22 of its texel, and the shear.
+struct FaceSide {
+    const Spot& spot;
+    double m = 0, shear = 0;
+};
+
+double straight(const FaceSide& side_a, const FaceSide& side_b, atlas::SeamFace::Direction direction) {
+    const Spot &a = side_a.spot, &b = side_b.spot;
     // Never quite closed: slopes are taken from one to the other all the same.
-    if (a.border && b.border) return std::max(a.faces[way], static_cast<double>(kConductanceUnit));
-    return 0.5 * (m_a + m_b) - 0.5 * (std::abs(shear_a) + std::abs(shear_b));
+    if (a.border && b.border) return std::max(a.faces[direction], static_cast<double>(kConductanceUnit));
+    return 0.5 * (side_a.m + side_b.m) - 0.5 * (std::abs(side_a.shear) + std::abs(side_b.shear));
 }
 
 double conductance(double g, const Spot& a, const Spot& b, double mean_area) {
@@ -229,8 +234,8 @@ Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams
             if (!s.valid) continue;
             g.valid[row + 1] |= 1u << (column + 1);
             g.grain[field_at(column, row)] = static_cast<float>(s.grain);
-            g.room[static_cast<std::size_t>(field_at(column, row))] = static_cast<std::uint16_t>(
-                std::min((s.border ? kRoomAtSeams : 1) * s.area / (mean * static_cast<double>(kRoomUnit)), 65535.0));
+            g.flow_area[static_cast<std::size_t>(field_at(column, row))] = static_cast<std::uint16_t>(std::min(
+                (s.border ? kFlowAreaAtSeams : 1) * s.area / (mean * static_cast<double>(kFlowAreaUnit)), 65535.0));
             if (row >= 0 && row < kSide && column >= 0 && column < kSide)
                 g.inverse[row * kSide + column] = static_cast<float>(mean / s.area);
         }
@@ -239,13 +244,13 @@ Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams
             const Spot& s = n.at(column, row);
             if (const Spot& right = n.at(column + 1, row); row >= 0 && together(s, right))
                 g.gx[Geometry::right_of(column, row)] =
-                    packed(conductance(straight(s, right, atlas::SeamFace::right, s.m11, right.m11,
-                                                shear(n, column, row), shear(n, column, row - 1)),
+                    packed(conductance(straight({s, s.m11, shear(n, column, row)},
+                                                {right, right.m11, shear(n, column, row - 1)}, atlas::SeamFace::right),
                                        s, right, mean));
             if (const Spot& up = n.at(column, row + 1); column >= 0 && together(s, up))
                 g.gy[(row + 1) * kSide + column] =
-                    packed(conductance(straight(s, up, atlas::SeamFace::above, s.m22, up.m22, shear(n, column, row),
-                                                shear(n, column - 1, row)),
+                    packed(conductance(straight({s, s.m22, shear(n, column, row)},
+                                                {up, up.m22, shear(n, column - 1, row)}, atlas::SeamFace::above),
                                        s, up, mean));
             const double m = diagonal(n, column, row);
             const double size = m > 0 ? conductance(m, s, n.at(column + 1, row + 1), mean)
@@ -271,7 +276,7 @@ Geometry without_faces(const Geometry& g) {
     out.valid = g.valid;
     out.stiffness = g.stiffness;
     out.grain = g.grain;
-    out.room = g.room;
+    out.flow_area = g.flow_area;
     out.blocks = g.blocks;
     if (g.gd) out.gd = std::make_unique<Geometry::Diagonals>();
     return out;

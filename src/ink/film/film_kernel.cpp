@@ -37,20 +37,20 @@ TUFT_INLINE float rate_of(float total, float grip) {
 /// One end of a face: what is there, and what of it counts.
 struct End {
     float w, s, t, rate, grain, above, free, carrying, z;
-    std::uint16_t room;
+    std::uint16_t flow_area;
 };
 /// Rows of them.
 struct Ends {
     const float *w, *s, *t, *rate, *grain, *above, *free, *carrying, *z;
-    const std::uint16_t* room;
+    const std::uint16_t* flow_area;
 
     TUFT_INLINE End at(int x) const {
-        return {w[x], s[x], t[x], rate[x], grain[x], above[x], free[x], carrying[x], z[x], room[x]};
+        return {w[x], s[x], t[x], rate[x], grain[x], above[x], free[x], carrying[x], z[x], flow_area[x]};
     }
 };
 TUFT_INLINE Ends ends(const Work& o, const Geometry& g, int k) {
     return {&o.w[k],     &o.s[k],    &o.total[k],    &o.rate[k], &g.grain[k],
-            &o.above[k], &o.free[k], &o.carrying[k], &o.z[k],    &g.room[static_cast<std::size_t>(k)]};
+            &o.above[k], &o.free[k], &o.carrying[k], &o.z[k],    &g.flow_area[static_cast<std::size_t>(k)]};
 }
 /// Fibres hold grains back from what seeps.
 TUFT_INLINE float passing_of(const Step& p) {
@@ -75,7 +75,7 @@ struct Law {
 
     /// At most so much of what a texel has leaves it through a face.
     static TUFT_INLINE float most_of(const End& e0, const End& e1, float share, const Step& p) {
-        return kHeld ? share * p.most * static_cast<float>(smaller_of(e0.room, e1.room)) : 0;
+        return kHeld ? share * p.most * static_cast<float>(smaller_of(e0.flow_area, e1.flow_area)) : 0;
     }
 
     /// Flux of liquid on the surface between two texels, film units · mean area.
@@ -328,11 +328,11 @@ TUFT_CLONES Settled settle(float* __restrict w, float* __restrict s, const Work&
             const int i = row * kSide + x, k = field_at(x, row);
             float w1 = sum_of(o.w[k], o.dw[i] * inverse[i], noise[i]),
                   s1 = sum_of(o.s[k], o.ds[i] * inverse[i], noise[i]);
-            const float room = positive(pores - s1);
-            float in = w1 * soak * (room * per_pores);
+            const float free = positive(pores - s1);
+            float in = w1 * soak * (free * per_pores);
             // In units of the last place of the larger one, so that both sums are exact.
             const float large = larger(w1, s1);
-            in = smaller(smaller((large + in) - large, room), w1);
+            in = smaller(smaller((large + in) - large, free), w1);
             w1 -= in;
             s1 += in;
             const float over = positive(s1 - pores);  // by rounding
@@ -435,7 +435,7 @@ TUFT_INLINE void seam_faces(SeamLanes& l, const Step& step) {
     for (int x = 0; x < kLanes; ++x) {
         const End e0 = end_of(l.w[0][x], l.s[0][x], l.grain[0][x], l.z[0][x], p),
                   e1 = end_of(l.w[1][x], l.s[1][x], l.grain[1][x], l.z[1][x], p);
-        const float g = l.weight[x], most = p.most_of_link * l.room[x], w = Here::film_flux(g, e0, e1, most, p);
+        const float g = l.weight[x], most = p.most_of_link * l.flow_area[x], w = Here::film_flux(g, e0, e1, most, p);
         float s = 0;
         if constexpr (kPores) s = Here::pore_flux(g, e0, e1, most, p);
         const float flux = w + p.passing * s;
@@ -504,8 +504,8 @@ void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std
     (seams ? carry_over_seams : carry_inside)(p, work, g, dither(seed));
 }
 
-Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step, std::uint64_t seed,
-                   std::array<std::uint8_t, kTexels>& closing) {
+Outcome local_step(const LocalFilms& films, const Work& work, const Geometry& g, const Step& step, std::uint64_t seed) {
+    float *w = films.w, *s = films.s;
     const Settled settled = settle(w, s, work, g.inverse.data(), dither(seed), step);
     Outcome out{.most_w = settled.most_w, .most_s = settled.most_s, .evaporated = settled.air};
     if (settled.least > 0) {
@@ -514,7 +514,7 @@ Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, cons
     }
     const auto wet = [w, s](int i) { return w[i] + s[i] > 0; };
     out.closing = any_closed(w, s, work);
-    for (int i = 0; out.closing && i < kTexels; ++i) closing[i] = work.total[field_of(i)] > 0 && !wet(i);
+    for (int i = 0; out.closing && i < kTexels; ++i) films.closing[i] = work.total[field_of(i)] > 0 && !wet(i);
     bool first = false, last = false, left = false, right = false;
     for (int i = 0; i < kSide; ++i) {
         first |= wet(i);

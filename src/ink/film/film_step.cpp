@@ -75,7 +75,7 @@ Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size
     step.flow = static_cast<float>(p.mobility * dt / area);
     step.levelling = static_cast<float>(levelling * dt / area);
     step.limit = static_cast<float>(kFlowPart / stiffness);
-    step.most = held ? static_cast<float>(kHeldPart / kFaces) * kRoomUnit : 0;
+    step.most = held ? static_cast<float>(kHeldPart / kFaces) * kFlowAreaUnit : 0;
     step.most_of_link = static_cast<float>(kHeldPartOfLinks);
     step.threshold = static_cast<float>(p.threshold);
     step.pin = static_cast<float>(p.pin);

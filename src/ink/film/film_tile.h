@@ -29,7 +29,7 @@ struct alignas(64) Field : std::array<float, kField> {};
 inline constexpr float kConductanceUnit = 0x1p-14f, kDiagonalUnit = 0x1p-13f;
 
 /// Room at faces, as `Geometry` holds it.
-inline constexpr float kRoomUnit = 0x1p-14f;
+inline constexpr float kFlowAreaUnit = 0x1p-14f;
 
 inline constexpr double kGrainLength = 1.2e-3;  ///< metres over which the pin of a place varies
 
@@ -61,9 +61,9 @@ struct alignas(64) Geometry {
     std::unique_ptr<Diagonals> gd;
     bool ups = false, downs = false;  ///< whether there are any > 0, < 0
     Field grain{};                    ///< pin of the place, over the mean
-    /// Of texels and those round them, over kRoomUnit: area over the mean, less beside seams, where links take their
-    /// part.
-    std::array<std::uint16_t, kField> room{};
+    /// Of texels and those round them, over kFlowAreaUnit: area over the mean, less beside seams, where links take
+    /// their part.
+    std::array<std::uint16_t, kField> flow_area{};
     std::uint16_t blocks = 0;  ///< bits: blocks of 4 × 4 texels, row by row, of one cluster, away from seams
 
     static constexpr int right_of(int column, int row) { return field_at(column, row) - kRow; }
@@ -168,10 +168,15 @@ struct Outcome {
 /// rounding to the nearest would favour, at each power of two, the side below it.
 const float* dither(std::uint64_t seed);
 
-/// w and s [256] become those of `work` with dw, ds, then soaking and evaporation; `closing` [256] is
-/// 1 where a texel that was wet is wet no more.
-Outcome local_step(float* w, float* s, const Work& work, const Geometry& g, const Step& step, std::uint64_t seed,
-                   std::array<std::uint8_t, kTexels>& closing);
+/// Results of `local_step` for one tile. The memory must outlive the call.
+struct LocalFilms {
+    float* w;                                    ///< [256] film units on the surface
+    float* s;                                    ///< [256] film units in the pores
+    std::array<std::uint8_t, kTexels>& closing;  ///< [256] 1 where a wet texel became dry
+};
+
+/// Adds dw and ds to the films of `work`, then soaks and evaporates. `seed` is that of the dither.
+Outcome local_step(const LocalFilms& films, const Work& work, const Geometry& g, const Step& step, std::uint64_t seed);
 /// The largest of [256], at least 0.
 float greatest(const float* plane);
 /// p [256] = work.p + what the faces bring, and dp if `seams`, over the area; never below 0.
@@ -182,8 +187,8 @@ void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std
 struct alignas(64) SeamLanes {
     using Lane = std::array<float, kSide>;
     Lane weight{};
-    Lane apart{};  ///< their distance, texels. What comes from upstream smears as over a whole texel
-    Lane room{};   ///< as `Geometry`'s, for one of a texel's links
+    Lane apart{};      ///< their distance, texels. What comes from upstream smears as over a whole texel
+    Lane flow_area{};  ///< as `Geometry`'s, for one of a texel's links
     std::array<Lane, 2> w{}, s{}, grain{}, z{};  ///< liquid, pin of the place, relief
     Lane through_w, through_s;
     Lane a, b;  ///< pigment: a p1 + b p2

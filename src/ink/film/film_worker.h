@@ -29,11 +29,12 @@ struct Crossing {
         texels.resize(n);
         beyond.resize(n * static_cast<std::size_t>(n_pigments));
     }
-    void add(const atlas::SeamLink& link, float room, const std::array<float, 2>& w, const std::array<float, 2>& s) {
+    void add(const atlas::SeamLink& link, float flow_area, const std::array<float, 2>& w,
+             const std::array<float, 2>& s) {
         SeamLanes& l = lanes[size / kSide];
         const std::size_t lane = size % kSide;
         l.weight[lane] = link.weight;
-        l.room[lane] = room;
+        l.flow_area[lane] = flow_area;
         l.apart[lane] = static_cast<float>(link.apart) / 64;
         for (int end = 0; end < 2; ++end) l.w[end][lane] = w[end], l.s[end][lane] = s[end];
         texels[size++] = link.texel;

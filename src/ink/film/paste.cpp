@@ -53,7 +53,7 @@ struct Volumes {
 
 TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const float* __restrict full,
                          const float* __restrict here, const float* __restrict before, float rate, float keep,
-                         float exchange, float room, float capacity) {
+                         float exchange, float free_capacity, float capacity) {
     for (int t = 0; t < kN; ++t) {
         const float f = coverage[t], w = here[t];
         float goal = before[t] + f * full[t];
@@ -63,7 +63,7 @@ TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const f
         const float lift = f * positive(w - keep * before[t] - full[t]) * rate;
         const float renewed = f * exchange * w;
         out.down[t] = lack + renewed;
-        out.up[t] = renewed + (lift < room ? lift : room);
+        out.up[t] = renewed + (lift < free_capacity ? lift : free_capacity);
     }
 }
 
@@ -220,9 +220,10 @@ bool bed_paste(Canvas& canvas, std::uint32_t slot, const Plane& height, std::spa
     return any;
 }
 
-void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, const TexelPlaces& places,
-               const HatBasis& hats, std::span<const float, kN> area, double ds, const PasteParams& params,
-               const NodeMixes& mixes, const Plane& before, NodeContents& given, NodeContents& taken) {
+void deposit_paste(Canvas& canvas, const ContactTile& tile, const PasteParams& params, const NodeMixes& mixes,
+                   const Plane& before, const PasteExchange& exchange) {
+    const auto& [slot, coverage, area, ds] = tile.stamp;
+    const HatBasis& hats = tile.hats;
     if (hats.count == 0 || !(ds > 0)) return;
     alignas(64) Texels full, strength{}, up, down, old;
     alignas(64) std::array<Texels, kMaxPigments> mix;
@@ -233,16 +234,17 @@ void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
         interpolate(mix[p], hats, mixes[p]);
         add(strength.data(), mix[p].data());
     }
-    furrow_depth_at(full, places, params.furrows);
+    furrow_depth_at(full, tile.places, params.furrows);
     for (int t = 0; t < kN; ++t) full[t] *= static_cast<float>(params.target) * strength[t];
     const Plane here = open_pigment(canvas, slot);
     Volumes v;
     volumes(v, coverage.data(), full.data(), here.data(), before.data(),
             static_cast<float>(-std::expm1(-ds / params.transfer_length)), static_cast<float>(1 - params.dig),
-            static_cast<float>(params.exchange), static_cast<float>(params.room), static_cast<float>(params.capacity));
+            static_cast<float>(params.exchange), static_cast<float>(params.free_capacity),
+            static_cast<float>(params.capacity));
     part_of(v.up.data(), here.data());
     std::array<double, kNodes> shares;
-    MixtureGiven mixture(given, mixes, hats);
+    MixtureGiven mixture(exchange.given, mixes, hats);
     for (int p = 0; p < kMaxPigments; ++p) {
         const Plane* there = canvas.plane(slot, p);
         if (!used[p] && !there) continue;
@@ -260,7 +262,7 @@ void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
         // What rounding makes of it: nothing may be given that does not come down.
         if (!used[p]) lifted = std::max(-stored, 0.0);
         const double laid = std::max(stored + lifted, 0.0);
-        deal(taken, p, laid - stored, shares, hats);
+        distribute(exchange.taken, p, laid - stored, shares, hats);
         integrate_hats(shares, hats, down.data(), area);
         mixture.pigment(p, laid, shares);
     }

@@ -6,6 +6,7 @@
 
 #include "ink/exchange/contact_nodes.h"
 #include "ink/exchange/deposit.h"
+#include "ink/exchange/stamped_tile.h"
 
 /// \file
 /// Thick paint that keeps its shape, and the furrows that hair leaves in it. Called by `stroke` for inks with a
@@ -53,25 +54,29 @@ struct PasteParams {
     double capacity = 1000;         ///< film units that stay on a texel
     double dig = 0.3;               ///< 0–1: fraction of the paste there that the hair removes
     double exchange = 0;            ///< 0–1: fraction of the paste that this contact renews
-    double room = 0;                ///< film units that the hair can take
+    double free_capacity = 0;       ///< film units that the hair can take
     FurrowDepths furrows{};
+};
+
+/// Where `deposit_paste` adds the exchanged paste, film·m² by node. The references must outlive the call.
+struct PasteExchange {
+    NodeContents& given;  ///< by the tuft
+    NodeContents& taken;  ///< by the tuft
 };
 
 /// Deposits paste by one contact on one tile. With f the coverage, rounded towards the patch's edge, φ the furrow
 /// profile at the texel, B the paste at the start of the stroke and W the paste now,
 ///
-///     n = ⟨B + f c φ − W⟩ r,   l = min(f ⟨W − (1 − dig) B − c φ⟩ r, room),   r = 1 − exp(−ds / s0)
+///     n = ⟨B + f c φ − W⟩ r,   l = min(f ⟨W − (1 − dig) B − c φ⟩ r, free_capacity),   r = 1 − exp(−ds / s0)
 ///     x = f R W                renewed, equal up and down
 ///     down = (n + x) of the tuft's mixture there,  up = (x + l) of the texel's
 ///
-/// The last hair that passes leaves its furrows, as far as it has room for the removed paste. Amounts are film
+/// The last hair that passes leaves its furrows, as far as its free capacity takes the removed paste. Amounts are film
 /// units of pigment. `mixes` includes water, which leaves with the pigments and is lost. Only the open film takes
-/// part. Adds film·m² to `given` and `taken` by node: their difference is what was stored, plane by plane.
+/// part. The difference of `exchange.given` and `exchange.taken` is what was stored, plane by plane.
 /// Different threads may process different slots; same bits on every instruction set.
-void lay_paste(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
-               const TexelPlaces& places, const HatBasis& hats, std::span<const float, atlas::kTileTexels> area,
-               double ds, const PasteParams& params, const NodeMixes& mixes, const Plane& before, NodeContents& given,
-               NodeContents& taken);
+void deposit_paste(Canvas& canvas, const ContactTile& tile, const PasteParams& params, const NodeMixes& mixes,
+                   const Plane& before, const PasteExchange& exchange);
 
 /// Pigment in the open film of a tile, film units: `before` of the above.
 Plane open_pigment(const Canvas& canvas, std::uint32_t slot);

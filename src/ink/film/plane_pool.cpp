@@ -19,7 +19,7 @@ struct Cell {
     Cell* next;
 };
 struct Block {
-    Block *next = nullptr, *before = nullptr;  ///< among those with room
+    Block *next = nullptr, *before = nullptr;  ///< among those with free planes
     Cell* free = nullptr;
     std::size_t used = 0, made = 0;  ///< cells given, and cells ever given: those beyond are untouched
 };
@@ -31,27 +31,27 @@ struct Pool {
     static_assert(sizeof(Block) <= kCell && kCell % 64 == 0);
 
     std::mutex mutex;
-    Block* with_room = nullptr;
+    Block* with_free = nullptr;
 
     void put_first(Block* b) {
         b->before = nullptr;
-        b->next = with_room;
-        if (with_room) with_room->before = b;
-        with_room = b;
+        b->next = with_free;
+        if (with_free) with_free->before = b;
+        with_free = b;
     }
     void take_out(Block* b) {
-        (b->before ? b->before->next : with_room) = b->next;
+        (b->before ? b->before->next : with_free) = b->next;
         if (b->next) b->next->before = b->before;
     }
     void* take() {
         const std::lock_guard lock(mutex);
-        if (!with_room) {
+        if (!with_free) {
             void* memory = std::aligned_alloc(kBlock, kBlock);
             if (!memory) throw std::bad_alloc();
             ::madvise(memory, kBlock, MADV_HUGEPAGE);  // a hint: refused, pages are small
             put_first(new (memory) Block);
         }
-        Block* b = with_room;
+        Block* b = with_free;
         void* cell = b->free;
         if (cell)
             b->free = b->free->next;
@@ -65,7 +65,7 @@ struct Pool {
         auto* b = reinterpret_cast<Block*>(reinterpret_cast<std::uintptr_t>(cell) & ~(kBlock - 1));
         b->free = new (cell) Cell{b->free};
         if (b->used-- == kCells) put_first(b);
-        if (b->used == 0 && (b->next || b->before)) {  // one block with room is kept
+        if (b->used == 0 && (b->next || b->before)) {  // one block with free planes stays
             take_out(b);
             std::free(b);
         }

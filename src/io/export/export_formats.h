@@ -8,22 +8,24 @@
 
 #include "mesh/triangle_mesh.h"
 
-/// What the writers of the single formats share; inside `io` only.
+/// \file
+/// Scene and helpers of the writers of glTF and OBJ. Inside `io` only. Any thread.
 namespace tuft::io {
 
-/// Vertices with one UV and one normal each: file formats that index all attributes
-/// together need them. In the order of first use by the triangles.
+/// Vertices with one UV and one normal each, for formats that index all attributes together. In the order of first use
+/// by the triangles.
 struct Wedges {
     std::vector<std::uint32_t> vertex;        ///< [n_wedges] of the mesh
-    std::vector<std::uint32_t> corner;        ///< [n_wedges] a corner that has its UV and normal
+    std::vector<std::uint32_t> corner;        ///< [n_wedges] first corner with its UV and normal
     std::vector<std::uint32_t> corner_wedge;  ///< [3 n_triangles]
 };
 
-/// Corners of a vertex with equal UV and normal, to the bit, share a wedge, where their triangles
-/// lie on one page (`triangle_page` [n_triangles], or empty: all do).
+/// Splits the vertices of a mesh into wedges. Corners of a vertex share a wedge when their UVs and normals are equal
+/// bit by bit and their triangles are on one page. `triangle_page`: [n_triangles], or empty: one page.
 Wedges split_wedges(const mesh::TriangleMesh& mesh, std::span<const Vec2f> corner_uvs,
                     std::span<const std::uint32_t> triangle_page = {});
 
+/// A map of the decoration as a PNG file.
 struct EncodedMap {
     std::string kind;  ///< base_colour, orm, normal
     std::string file;  ///< name in the folder
@@ -31,12 +33,13 @@ struct EncodedMap {
     std::vector<unsigned char> png;
 };
 
+/// What a writer gets. The references must outlive it.
 struct ExportScene {
     const mesh::TriangleMesh& mesh;
     const mesh::SourceScene& source;
     std::vector<std::uint8_t> decorated;  ///< [n_parts of source] gets the decorated material
     Wedges wedges;
-    /// Of decorated parts those of the triangle's own page, of others those of the file.
+    /// Decorated parts have the UVs of the triangle's page, other parts those of the file.
     std::span<const Vec2f> corner_uvs;
     std::string name;
     bool y_up = false;  ///< of OBJ coordinates
@@ -51,22 +54,22 @@ struct ExportScene {
     }
 };
 
-/// The triangles of each part, in their order.
+/// Returns the triangles of each part, ascending.
 std::vector<std::vector<std::uint32_t>> triangles_of_parts(const ExportScene& scene);
 
-/// What a user should know of the parts, one line each.
+/// Returns notes on the parts for the user, one line each.
 std::vector<std::string> notes_on_parts(const ExportScene& scene);
 
-/// GLB, or glTF with its files, by the extension; `path` lies in a staging folder.
+/// Writes GLB, or glTF with its files, by the extension. `path` lies in a staging folder. Throws `Error`.
 void write_gltf(const std::filesystem::path& path, const ExportScene& scene, std::span<const EncodedMap> maps);
-/// OBJ, MTL and pictures.
+/// Writes OBJ, MTL and pictures into the folder of `path`, a staging folder. Throws `Error`.
 void write_obj(const std::filesystem::path& path, const ExportScene& scene, std::span<const EncodedMap> maps);
 
-/// The stem of `path` with bytes that a URI or a line of an MTL file cannot hold replaced
-/// by '_': the files that a model refers to are named after it.
+/// Returns the stem of `path` with '_' for bytes that a URI or a line of an MTL file cannot hold. The files that a
+/// model refers to are named after it.
 std::string safe_stem(const std::filesystem::path& path);
 
-/// A whole file in the staging folder.
+/// Writes a whole file in the staging folder. Throws `Error`.
 void write_staged(const std::filesystem::path& path, const void* data, std::size_t size);
 
 }  // namespace tuft::io

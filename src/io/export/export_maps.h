@@ -7,16 +7,18 @@
 #include "ink/composite/composite.h"
 #include "stroke/document/document.h"
 
-/// Single maps of a decoration as picture files.
+/// \file
+/// Single maps of a decoration as picture files. Called by `cli` and by the studio's paint thread. Any thread; the
+/// document must not change meanwhile.
 namespace tuft::io {
 
-/// sRGB transfer curve over linear [0, 1] (IEC 61966-2-1), in 16 bits.
+/// Encodes linear values in [0, 1] by the sRGB transfer curve (IEC 61966-2-1), in 16 bits.
 ink::AtlasMap<std::uint16_t> srgb16(const ink::AtlasMap<float>& linear);
 
-/// Names that `write_map` knows: base-colour, normal, height, roughness, pigments, palette.
+/// Names of the maps that `write_map` writes: base-colour, normal, height, roughness, pigments, palette.
 const std::vector<std::string>& map_names();
 
-/// Writes one map of what is seen, a file for each page of the atlas (`page_path`).
+/// Writes one map of the visible layers, one file for each atlas page (`page_path`).
 ///
 /// | map | PNG | EXR |
 /// |---|---|---|
@@ -27,7 +29,7 @@ const std::vector<std::string>& map_names();
 /// | pigments | none | film units, a channel for each |
 /// | palette | sRGB 8 | none |
 ///
-/// Throws `Error` for a map that this format does not hold, and where there is nothing to write.
+/// Throws `Error` for a map that the format cannot hold, and where the map is empty.
 void write_map(const std::filesystem::path& path, const std::string& name, const stroke::Document& painting,
                const ink::ComposeOptions& compose, int bits = 8);
 

@@ -4,26 +4,27 @@
 #include <set>
 #include <vector>
 
-/// What of a glTF document is in use, and how the rest is left out. Inside `io` only.
+/// \file
+/// Removal of unused elements from a glTF document. Called by the glTF export. Inside `io` only. Any thread.
 namespace tuft::io {
 
-/// Indices of accessors, buffer views, materials, textures and images that something in the
-/// document refers to.
+/// Indices of the elements that something in the document refers to.
 struct References {
     std::set<std::size_t> accessors, views, materials, textures, images;
 };
+/// Returns the references of a document.
 References references_in(const nlohmann::json& document);
 
-/// Leaves out what was in use `before` and is no more, and turns all indices. A document with
-/// extensions in which tuft does not know the references keeps everything.
+/// Removes the elements that were referenced in `before` and no longer are, and renumbers all indices. A document with
+/// unknown extensions is left unchanged, because they may hold references.
 void prune(nlohmann::json& document, const References& before);
 
-/// Leaves out the animations of a node's morph targets.
+/// Removes the animations of a node's morph targets.
 void drop_morphs(nlohmann::json& document, std::size_t node);
 
-/// The bytes of the buffer views in their order, out of `source` and, from the next multiple of 4
-/// on, `added`; the views point to them afterwards. Views that overlap much, or lie outside, keep
-/// the whole buffer as it is.
+/// Returns a new buffer with the bytes of all buffer views in their order, and points the views to it. Their old
+/// offsets count through `source` and, from the next multiple of 4 on, through `added`. The whole buffer is copied
+/// unchanged where views overlap by much, lie outside or have extensions.
 std::vector<unsigned char> take_views(nlohmann::json& document, const std::vector<unsigned char>& source,
                                       const std::vector<unsigned char>& added);
 

@@ -9,8 +9,9 @@
 
 #include "ink/composite/composite.h"
 
-/// Picture files: PNG with 8 or 16 bits, OpenEXR, and reading them back. The codec
-/// (OpenImageIO, 250 shared objects, 0.25 s) is loaded when the first picture is.
+/// \file
+/// Reading and writing of picture files: PNG with 8 or 16 bits, OpenEXR; JPEG and TIFF are read only. Any thread. The
+/// codec (OpenImageIO, 250 shared objects, 0.25 s) is loaded with the first picture.
 namespace tuft::io {
 
 /// Picture in memory, row 0 at the top, channels interleaved.
@@ -18,9 +19,9 @@ template <class T>
 struct Image {
     int width = 0, height = 0, channels = 0;
     std::vector<T> pixels;                        ///< [width * height * channels]
-    std::vector<std::string> channel_names = {};  ///< of a file that was read
+    std::vector<std::string> channel_names = {};  ///< as in the file that was read; else empty
 
-    /// Same size and pixels.
+    /// Compares sizes and pixels, not channel names.
     bool operator==(const Image& o) const {
         return width == o.width && height == o.height && channels == o.channels && pixels == o.pixels;
     }
@@ -29,7 +30,7 @@ using Image8 = Image<std::uint8_t>;
 using Image16 = Image<std::uint16_t>;
 using ImageF = Image<float>;
 
-/// Pixels that belong to somebody else, read row by row.
+/// View of pixels that another object owns, read row by row.
 struct PixelView {
     enum class Type { u8, u16, f32 };
     Type type = Type::u8;
@@ -38,6 +39,7 @@ struct PixelView {
     std::ptrdiff_t row_bytes = 0;  ///< from a row to the one below it; may be negative
 };
 
+/// Returns a view of packed pixels, row 0 at the top.
 template <class T>
 PixelView view_of(int width, int height, int channels, const T* pixels) {
     static_assert(std::is_same_v<T, std::uint8_t> || std::is_same_v<T, std::uint16_t> || std::is_same_v<T, float>);
@@ -56,7 +58,7 @@ PixelView view_of(const Image<T>& image) {
     return view_of(image.width, image.height, image.channels, image.pixels.data());
 }
 
-/// An atlas map as a picture: its last row (v = 1) becomes the top one. No copy.
+/// Returns a view of an atlas map as a picture: the map's last row (v = 1) is the top row. No copy.
 template <class T>
 PixelView view_of(const ink::AtlasMap<T>& map) {
     PixelView view = view_of(static_cast<int>(map.size), static_cast<int>(map.size), map.channels, map.texels.data());
@@ -65,32 +67,31 @@ PixelView view_of(const ink::AtlasMap<T>& map) {
     return view;
 }
 
+/// Options of `write_image` and `png_bytes`.
 struct ImageOptions {
-    /// What the numbers mean; stored in the file. Nothing is converted.
+    /// The colour space of the numbers, stored in the file: sRGB, else linear. Nothing is converted.
     bool srgb = true;
     /// Names of the channels in an EXR file; empty: Y, or R, G, B, A.
     std::vector<std::string> channel_names;
-    /// Floats go into an EXR file as 16 bits (1 part in 2048, as renderers keep colour): half the
-    /// memory of who opens it, and far less than half of the file.
+    /// Stores floats in an EXR file in 16 bits, relative error 1/2048. It halves the reader's memory.
     bool half = false;
-    /// 0 (fast) – 9 (small), PNG only.
+    /// zlib level of PNG, 0 (fast) – 9 (small).
     int compression = 4;
 };
 
-/// Writes a picture atomically; the extension chooses the format: `.png` (u8, u16; floats
-/// become u16 of [0, 1]) or `.exr` (f32 or half; u8 and u16 become [0, 1]). 1–4 channels in PNG,
-/// alpha not premultiplied. Throws `Error` for another extension or a failed write.
+/// Writes a picture atomically. The extension chooses the format. `.png`: u8 or u16; floats in [0, 1] become u16; 1–4
+/// channels, alpha not premultiplied. `.exr`: f32 or half; u8 and u16 become [0, 1]. Throws `Error` for another
+/// extension or a failed write.
 void write_image(const std::filesystem::path& path, const PixelView& pixels, const ImageOptions& options = {});
 
-/// The bytes of a PNG file.
+/// Returns the bytes of a PNG file. Throws `Error`.
 std::vector<unsigned char> png_bytes(const PixelView& pixels, const ImageOptions& options = {});
 
-/// The same as `read_image8` from the bytes of a file; `name` is for messages.
+/// Decodes the bytes of a file as `read_image8` does. `name` is for messages.
 Image8 decode_image8(const std::vector<char>& bytes, const std::string& name, std::size_t max_pixels);
 
-/// Reads a PNG, EXR, JPEG or TIFF file into the asked type, colours as stored (no
-/// conversion but that of the number range). Throws `Error` for damaged files and for
-/// pictures of more than `max_pixels`, before memory is taken.
+/// Reads a PNG, EXR, JPEG or TIFF file into the given type. Colours are returned as stored; only the number range is
+/// converted. Throws `Error` for damaged files and, before memory is taken, for more than `max_pixels` pixels.
 Image8 read_image8(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
 Image16 read_image16(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
 ImageF read_image_float(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);

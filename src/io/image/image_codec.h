@@ -5,8 +5,9 @@
 
 #include "io/image/image.h"
 
-/// The wall between `io` and OpenImageIO: image.cpp opens the module `tuft_images` when the
-/// first picture is read or written and reaches it by these function pointers only.
+/// \file
+/// Interface between image.cpp and the module `tuft_images`, which links OpenImageIO. image.cpp loads the module with
+/// the first picture and calls it through these function pointers. The functions may run on any thread.
 namespace tuft::io {
 
 enum class ImageFormat { png, exr, jpeg, tiff };
@@ -21,7 +22,7 @@ struct DecodeRequest {
     ImageFormat format = ImageFormat::png;
     const void* bytes = nullptr;
     std::size_t size = 0;
-    PixelView::Type type = PixelView::Type::u8;  ///< wanted
+    PixelView::Type type = PixelView::Type::u8;  ///< of the result
     std::size_t max_pixels = 0;
 };
 
@@ -31,14 +32,13 @@ struct DecodedImage {
     std::vector<unsigned char> bytes;  ///< top row first
 };
 
-/// Both return what went wrong, or nothing; no exception crosses the wall.
+/// Both functions return the fault, or "". They do not throw.
 struct ImageCodec {
     std::string (*encode)(const EncodeRequest& request, std::vector<unsigned char>& out) = nullptr;
     std::string (*decode)(const DecodeRequest& request, DecodedImage& out) = nullptr;
 };
 
-/// Name under which the module offers a function without arguments that returns
-/// `const ImageCodec*`.
+/// Symbol of the module's function without arguments that returns `const ImageCodec*`.
 inline constexpr const char* kImageCodecSymbol = "tuft_image_codec";
 
 }  // namespace tuft::io

@@ -10,25 +10,26 @@
 #include "mesh/read/polygon_soup.h"
 
 /// \file
-/// What the readers of FBX, DAE, 3MF and X3D have in common: the scene as the file says it, and how a soup is made of
-/// it. Inside `io` only.
+/// Scene of one file, as the readers of FBX, DAE, 3MF and X3D fill it, and its conversion into a polygon soup. Inside
+/// `io` only. Any thread.
 namespace tuft::io {
 
+/// A material of the file.
 struct FileMaterial {
     std::string name;
     Vec3f colour{1};                                  ///< sRGB-encoded
     float alpha = 1, roughness = 0.5f, metallic = 0;  ///< [0, 1]
     std::string picture;                              ///< name in the file; empty: none
-    std::vector<char> picture_bytes;                  ///< of a picture inside the file; empty: it lies beside the model
+    std::vector<char> picture_bytes;                  ///< of an embedded picture; empty: it lies beside the model
 };
 
-/// Faces of one object and one material.
+/// Faces of one object that have one material.
 struct FilePart {
     std::string object;
     std::uint32_t material = kNone;  ///< index in `materials`
 };
 
-/// Metres, z up.
+/// Points in metres, z up.
 struct FileScene {
     std::vector<Vec3> points;
     std::vector<std::array<std::uint8_t, 4>> colours;  ///< [n_points], sRGB-encoded, or empty
@@ -43,12 +44,12 @@ struct FileScene {
     void add_polygon(std::uint32_t part, std::span<const std::uint32_t> points, std::span<const Vec2f> polygon_uvs);
 };
 
-/// Groups are parts, materials get their pictures from the bytes in the scene or from files in the folder of `model`.
-/// Indices must be in range. Throws `Error` where there is no face.
+/// Returns the soup of a scene. Parts become groups. Materials get their pictures from the scene's bytes or from files
+/// in the folder of `model`. Indices must be in range. Throws `Error` where there is no face.
 mesh::PolygonSoup soup_of(FileScene&& scene, const std::filesystem::path& model);
 
-/// The scene as bytes and back, between the importer's process (import_main.cpp) and this one. `unpack_scene` checks
-/// every count and index, and throws `Error` naming `file` where one is wrong.
+/// Serialises a scene, and reads it back: the importer's process (import_main.cpp) sends it to this one. `unpack_scene`
+/// checks all counts and indices. It throws `Error` naming `file` where one is wrong.
 std::vector<char> pack_scene(const FileScene& scene);
 FileScene unpack_scene(std::span<const char> bytes, const std::string& file);
 

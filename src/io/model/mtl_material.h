@@ -6,16 +6,18 @@
 #include <utility>
 #include <vector>
 
-/// Materials of MTL libraries as those of glTF, and back. Inside `io` only.
+/// \file
+/// Conversion between entries of MTL libraries and glTF materials. Called by the OBJ reader's scene and the OBJ export.
+/// Inside `io` only. Any thread.
 namespace tuft::io {
 
 /// One statement of an entry: its key and the rest of its line.
 using MtlStatement = std::pair<std::string, std::string>;
 
-/// The file name behind the options of a line such as `map_Kd -s 2 2 2 wood.png`.
+/// Returns the file name after the options of a line such as `map_Kd -s 2 2 2 wood.png`.
 std::string picture_name(std::string line);
 
-/// Texture index of the picture of that name, or -1 where it is not there or no picture.
+/// Returns the texture index of the picture with that name; −1 where it is missing or no picture.
 using TextureOf = std::function<int(const std::string& name)>;
 
 struct MtlAsGltf {
@@ -23,17 +25,25 @@ struct MtlAsGltf {
     nlohmann::json statements;  ///< as `SceneBuilder::keep_statements` takes them
 };
 
-/// `Kd` (taken as sRGB) and `map_Kd` become the base colour, `d` and `Tr` its alpha, `Pr` or else
-/// `Ns` the roughness by r = 1 - sqrt(Ns / 1000), `Pm` or else, with `illum 3`, `Ka` the metallic
-/// part (both as Blender has it), `Ke` and `map_Ke` emission, `norm` and a `bump` in colours the
-/// normal texture. A picture is not tinted by `Kd`.
+/// Returns the glTF material of an MTL entry:
+///
+/// | glTF | MTL |
+/// |---|---|
+/// | base colour | `map_Kd`, untinted, else `Kd` (taken as sRGB) |
+/// | alpha | `d` or `Tr` |
+/// | roughness | `Pr`, else 1 − √(Ns / 1000) |
+/// | metallic | `Pm`, else `Ka` with `illum 3` |
+/// | emission | `Ke`, `map_Ke` |
+/// | normal texture | `norm`, or a `bump` with colours |
+///
+/// Roughness and metallic by `Ns` and `Ka` follow Blender.
 MtlAsGltf gltf_of_mtl(const std::string& name, const std::vector<MtlStatement>& entry, const TextureOf& texture_of);
 
-/// File name of the picture of a texture, or "" where there is none.
+/// Returns the file name of a texture's picture; "" where there is none.
 using FileOfTexture = std::function<std::string(std::size_t texture)>;
 
-/// An entry of an MTL library, with its line ends: the statements where there are any, else the
-/// other way round from the glTF material.
+/// Returns an entry of an MTL library with its line ends. It is written from the statements, or from the glTF material
+/// where there are none.
 std::string mtl_entry(const std::string& name, const nlohmann::json& material, const nlohmann::json& statements,
                       const FileOfTexture& file_of_texture);
 

@@ -5,13 +5,15 @@
 
 #include "mesh/read/polygon_soup.h"
 
+/// \file
+/// Reader of 3MF. Called by read_model.cpp only. Any thread. Assimp 5.2 does not replace it: it ignores the unit, the
+/// names, all materials but an object's first, and the UVs of a triangle.
 namespace tuft::io {
 
-/// 3MF core specification 1.3 with the parts of its extensions that say where triangles lie and what colour they have:
-/// components and their transforms, objects in other parts of the package (production), base materials, colour groups
-/// and textures (materials). In metres by the file's unit, z up; a group for each object and material. Own reader,
-/// because Assimp 5.2 leaves aside the unit, the names, all materials but an object's first, and the UVs of a
-/// triangle. Throws `Error` naming file and fault. Inside `io` only.
+/// Returns the triangles of a 3MF file (core specification 1.3). Of its extensions it reads what gives positions and
+/// colours: components with their transforms, objects in other parts of the package (production), base materials,
+/// colour groups and textures (materials). Points are in metres by the file's unit, z up. Each object and material is a
+/// group. Throws `Error` naming file and fault.
 mesh::PolygonSoup read_3mf(const std::vector<char>& bytes, const std::filesystem::path& path);
 
 }  // namespace tuft::io

@@ -6,13 +6,17 @@
 #include "mesh/read/polygon_soup.h"
 
 /// \file
-/// Model formats that Assimp reads: FBX (binary and text) and DAE (COLLADA). Inside `io` only.
+/// Readers of FBX (binary and text) and DAE (COLLADA), by Assimp. Called by read_model.cpp only. Any thread.
+///
+/// Assimp crashes on damaged files. It therefore runs in a process of its own, `tuft-import` (import_main.cpp). That
+/// process opens no file and has limits of computing time and memory by the file's size. It costs 3 ms more than a
+/// call.
 namespace tuft::io {
 
-/// In metres, z up, by the file's unit and axes; every polygon of every node with its transforms, a group for each
-/// object and material, UVs of the set by which the base picture lies. Assimp works in a process of its own
-/// (import_main.cpp) that opens no file and has a limit of computing time and memory by the file's size: a file that
-/// makes it crash or hang is an `Error` in one line. 3 ms more than in this process.
+/// Returns all polygons of all nodes with the nodes' transforms applied. Points are in metres, z up, by the file's unit
+/// and axes. Each object and material is a group. UVs are those of the set that the base colour's picture uses. `path`
+/// gives the folder of pictures and is named in messages. Throws `Error` in one line where the file is damaged, or
+/// where the process crashes or exceeds a limit.
 mesh::PolygonSoup read_fbx(const std::vector<char>& bytes, const std::filesystem::path& path);
 mesh::PolygonSoup read_dae(const std::vector<char>& bytes, const std::filesystem::path& path);
 

@@ -5,31 +5,33 @@
 
 #include "mesh/read/polygon_soup.h"
 
+/// \file
+/// Reader of model files of all formats. Called by `cli` and by the studio. Any thread.
 namespace tuft::io {
 
-/// The formats that `read_model` reads, for messages.
+/// Names of the formats that `read_model` reads, for messages.
 inline constexpr const char* kModelFormats = "OBJ, PLY, STL, OFF, GLB, glTF, FBX, DAE, 3MF and X3D";
 
-/// Whether `path` has the extension of one of them, in any case.
+/// Returns true when `path` has the extension of one of these formats, in any case.
 bool is_model_file(const std::filesystem::path& path);
 
-/// Reads a model file of `kModelFormats`, recognised by their first bytes
-/// where the format has any, else by the extension. Throws `Error` naming file and fault.
+/// Reads a model file. Its format is recognised by its first bytes where the format has a signature, else by the
+/// extension. Throws `Error` naming file and fault.
 ///
-/// glTF: all triangle lists, strips and fans of the default scene (or of all nodes)
-/// with their node transforms, in metres, turned from y up to z up (x, −z, y), UVs of set 0
-/// with v up, materials as groups; points and lines are skipped with a warning. Buffers may
-/// lie in the file, in data URIs, or in files inside the model's folder.
+/// glTF: all triangle lists, strips and fans of the default scene, or of all nodes without one, with their node
+/// transforms. Points are in metres and rotated from y up to z up, (x, −z, y). UVs are those of set 0 with v up.
+/// Materials become groups. Points and lines are skipped with a warning. Buffers are read from the file, from data
+/// URIs and from files inside the model's folder.
 ///
-/// FBX, DAE, 3MF and X3D: all faces with the transforms of their nodes, in metres, z up, by the unit and the axes of
-/// the file (read_import.h, read_3mf.h, read_x3d.h).
+/// FBX, DAE, 3MF and X3D: all faces with their node transforms, in metres, z up, by the file's unit and axes
+/// (read_import.h, read_3mf.h, read_x3d.h).
 ///
-/// Colours of its own: base colour (factor, picture of UV set 0, COLOR_0) in glTF, `Kd` and `map_Kd`
-/// in OBJ, `TextureFile` in PLY, colours of facets and vertices (materials.h).
+/// Colours: in glTF the base colour (factor, picture of UV set 0, COLOR_0); in OBJ `Kd` and `map_Kd`; in PLY
+/// `TextureFile` and the colours of faces and vertices (materials.h).
 mesh::PolygonSoup read_model(const std::filesystem::path& path);
 
-/// Metres per unit where the file's format says it, else nothing: `read_model` gives glTF, FBX, DAE, 3MF and X3D in
-/// metres.
+/// Returns the metres per unit of what `read_model` returns, where the format defines them: 1 for glTF, FBX, DAE, 3MF
+/// and X3D; else nothing.
 std::optional<double> metres_per_unit_of(const std::filesystem::path& path);
 
 }  // namespace tuft::io

@@ -5,13 +5,16 @@
 
 #include "mesh/read/polygon_soup.h"
 
+/// \file
+/// Reader of X3D in XML (ISO/IEC 19776-1). Called by read_model.cpp only. Any thread. Assimp 5.2 does not replace it:
+/// it gives each vertex one UV, the last of its corners'.
 namespace tuft::io {
 
-/// X3D in XML (ISO/IEC 19776-1): sets of faces, triangles and quads, strips and fans, under Transform, Group, Switch
-/// and LOD, with DEF and USE; Material and ImageTexture, the latter from the model's folder only. Metres by the file's
-/// unit, turned from y up to z up; a group for each object and material. Inline files and shapes by formula (Box,
-/// Extrusion) are skipped with a warning. Own reader, because Assimp 5.2 gives each vertex one UV, the last of its
-/// corners'. Throws `Error` naming file and fault. Inside `io` only.
+/// Returns all faces of a file: sets of faces, triangles and quads, strips and fans, under Transform, Group, Switch and
+/// LOD, with DEF and USE. Points are in metres by the file's unit, rotated from y up to z up. Each object and material
+/// is a group. Material and ImageTexture are read, pictures from the model's folder only. Inline files and shapes by
+/// formula (Box, Extrusion) are skipped with a warning. `path` gives the folder and is named in messages. Throws
+/// `Error` naming file and fault.
 mesh::PolygonSoup read_x3d(const std::vector<char>& bytes, const std::filesystem::path& path);
 
 }  // namespace tuft::io

@@ -9,36 +9,38 @@
 #include "mesh/source_scene.h"
 #include "mesh/triangle_mesh.h"
 
-/// The document of a `mesh::SourceScene`: a glTF 2.0 JSON with one buffer. Made from a glTF file,
-/// or from names and materials where the file is of another format. Inside `io` only.
+/// \file
+/// The document of a `mesh::SourceScene`: glTF 2.0 JSON with one buffer. It comes from a glTF file, or is built from
+/// the names and materials of another format. Called by the model readers and by the export. Inside `io` only. Any
+/// thread.
 namespace tuft::io {
 
-/// Offset of the next element of a buffer of `size` bytes; glTF wants multiples of 4.
+/// Returns `size` rounded up to a multiple of 4, the offset of the next element in a glTF buffer.
 inline std::size_t aligned(std::size_t size) {
     return (size + 3) / 4 * 4;
 }
 
-/// "image/png", "image/jpeg" and so on by the first bytes; "" for anything else.
+/// Returns the MIME type by the first bytes: "image/png", "image/jpeg" …; "" for other content.
 std::string mime_type_of(std::span<const unsigned char> bytes);
 
-/// Puts the buffers and the pictures of a glTF file into one buffer. `json` is its JSON; a picture
-/// without bytes keeps its address. A file without nodes gets one for each mesh. The scene has no
-/// parts yet. Throws `Error` naming `name` where the JSON is not that of a glTF file.
+/// Returns the scene of a glTF file, its buffers and pictures in one buffer and without parts. `json` is the file's
+/// JSON. A picture without bytes retains its URI. A file without nodes gets one node for each mesh. Throws `Error`
+/// naming `name` where the JSON is no glTF.
 mesh::SourceScene pack_document(std::string_view json, std::span<const std::vector<unsigned char>> buffers,
                                 std::span<const std::vector<unsigned char>> pictures, const std::string& name);
 
 /// Builds the document of a file that is not glTF.
 class SceneBuilder {
   public:
-    /// Adds a picture in its own file format and returns the index of its texture.
+    /// Adds a picture in its own file format. Returns the index of its texture.
     int add_texture(const std::string& name, std::span<const unsigned char> bytes);
-    /// Adds a glTF material and returns its index.
+    /// Adds a glTF material. Returns its index.
     int add_material(nlohmann::json material);
-    /// Statements of an MTL library, one array by material: {"line"} or {"line", "texture"}, the
-    /// line of a picture without its name.
+    /// Stores the statements of an MTL entry with a material, one array for each: {"line"} or {"line", "texture"}. The
+    /// line of a picture is without the file name.
     void keep_statements(int material, nlohmann::json statements);
-    /// One node for each object, and one below it for each of its groups; `parts` get their nodes.
-    /// `root` names the node of parts without a name.
+    /// Returns the scene with one node for each object, and below it one for each of its groups. `parts` get their
+    /// nodes. `root` names the node of parts without a name. The builder is empty afterwards.
     mesh::SourceScene finish(std::vector<mesh::ScenePart> parts, const std::string& root);
 
   private:
@@ -46,16 +48,16 @@ class SceneBuilder {
     std::vector<unsigned char> buffer_;
 };
 
-/// The scene of a mesh whose file gave it none: a part for each group, with its colour or picture.
+/// Returns a scene for a mesh without one: a part for each group, with the group's colour or picture.
 mesh::SourceScene make_scene(const mesh::TriangleMesh& mesh, const std::string& root);
 
-/// The glTF material of a colour and a picture (texture index, or -1).
+/// Returns a glTF material with a base colour (sRGB-encoded, 0–1) and a picture (texture index; −1: none).
 nlohmann::json plain_material(const std::string& name, const Vec3f& srgb, int texture);
 
-/// The document, parsed. Throws `Error` where it is no JSON or nested too deeply.
+/// Returns the document of a scene, parsed. Throws `Error` where it is no JSON or nested too deeply.
 nlohmann::json parse_document(const mesh::SourceScene& scene);
 
-/// Key of the MTL statements in the document; not part of what is exported.
+/// Key of the MTL statements in the document. Exports leave it out.
 inline constexpr const char* kStatements = "tuft_mtl";
 
 }  // namespace tuft::io

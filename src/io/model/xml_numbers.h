@@ -7,21 +7,22 @@
 #include <string_view>
 
 /// \file
-/// Names and lists of numbers in XML files of models. Inside `io` only.
+/// Names and lists of numbers in XML files. Called by the readers of X3D and 3MF. Inside `io` only. Any thread.
 namespace tuft::io {
 
-/// The name of an element or attribute without its prefix.
+/// Returns the name of an element or attribute without its namespace prefix.
 inline std::string_view local_part(std::string_view name) {
     const std::size_t colon = name.find(':');
     return colon == name.npos ? name : name.substr(colon + 1);
 }
 
-/// Numbers with white space or commas between them, one after the other.
+/// Reads numbers separated by white space or commas. `text` must outlive it.
 class NumberList {
   public:
     explicit NumberList(std::string_view text) : at_(text.data()), end_(at_ + text.size()) {}
 
-    /// Nothing at the end, and at what is no number. One beyond what T holds is infinite, or the largest.
+    /// Returns the next number; nothing at the end or where the text is no number. A number beyond the range of T gives
+    /// infinity, or the largest T where T has none.
     template <class T>
     std::optional<T> next() {
         while (at_ < end_ && (*at_ == ' ' || *at_ == ',' || *at_ == '\n' || *at_ == '\t' || *at_ == '\r')) ++at_;
@@ -35,6 +36,7 @@ class NumberList {
                                                          : std::numeric_limits<T>::max();
         return value;
     }
+    /// Returns true when only white space is left.
     bool at_end() {
         while (at_ < end_ && static_cast<unsigned char>(*at_) <= ' ') ++at_;
         return at_ == end_;

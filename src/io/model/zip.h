@@ -6,19 +6,20 @@
 #include <vector>
 
 /// \file
-/// Reads ZIP archives, for 3MF. Inside `io` only.
+/// Reader of ZIP archives, for 3MF. Inside `io` only. One thread at a time.
 namespace tuft::io {
 
+/// An archive in memory. It reads at most 64 MiB plus 64 times the archive's size in total.
 class Zip {
   public:
-    /// Reads the directory; `bytes` must outlive this. Throws `Error` naming `file` where it is damaged, encrypted or
-    /// larger than 4 GiB (ZIP64).
+    /// Reads the directory. `bytes` must outlive this. Throws `Error` naming `file` where the archive is damaged,
+    /// encrypted or larger than 4 GiB (ZIP64).
     Zip(std::span<const char> bytes, std::string file);
 
     bool has(const std::string& name) const { return entries_.contains(name); }
     const auto& entries() const { return entries_; }
-    /// What is in an entry, stored or deflated. All that is read of an archive takes 64 MiB and 64 times its size at
-    /// most; more is an `Error`, and so is an entry that is not there.
+    /// Returns the content of an entry, stored or deflated. Throws `Error` where the entry is missing or damaged, or
+    /// the total exceeds the limit.
     std::vector<char> read(const std::string& name);
 
   private:
@@ -32,7 +33,7 @@ class Zip {
     std::span<const char> bytes_;
     std::string file_;
     std::map<std::string, Entry> entries_;
-    std::size_t budget_ = 0;
+    std::size_t budget_ = 0;  // bytes that may still be read
 };
 
 }  // namespace tuft::io

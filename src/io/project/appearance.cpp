@@ -10,7 +10,7 @@ void apply_recolouring(const Project& project, stroke::Document& painting) {
         painting.appearance().preview_substrate(ink::parse_substrate(toml, file + ": substrate shown"));
 }
 
-void store_looks(Project& project, const stroke::Document& painting) {
+void store_recolouring(Project& project, const stroke::Document& painting) {
     for (const auto& [name, ink] : painting.appearance().recolours()) project.put_recolour({name, ink::ink_toml(ink)});
     const std::string shown =
         painting.appearance().has_preview_substrate() ? ink::substrate_toml(painting.appearance().substrate()) : "";

@@ -151,7 +151,7 @@ void store_attachment(SQLite::Database& db, const std::string& kind, const Attac
     insert.bind(2, a.name);
     insert.bind(3, std::to_string(a.bytes.size()) + "\n" + a.about);
     insert.exec();
-    put_array_bytes(db, kind.c_str(), a.name.c_str(), a.bytes.data(), a.bytes.size(), 1,
+    put_array_bytes(db, {kind.c_str(), a.name.c_str()}, a.bytes.data(), {a.bytes.size(), 1},
                     {.element = 1, .lag = 1, .level = 1});
 }
 

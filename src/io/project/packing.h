@@ -4,24 +4,25 @@
 #include <string>
 #include <vector>
 
-/// Arrays of numbers as small blobs, every bit kept; inside `io` only.
+/// \file
+/// Lossless compression of number arrays for the table `arrays`. Inside `io` only. Any thread.
 namespace tuft::io {
 
-/// How the numbers of an array follow each other.
+/// Layout of an array.
 struct Packing {
     std::size_t element = 4;  ///< bytes per number: 1, 4 or 8
-    std::size_t lag = 1;      ///< a number is like the one `lag` places before (3 for xyz)
+    std::size_t lag = 1;      ///< numbers are predicted by the one `lag` positions before (3 for xyz)
     int level = 3;            ///< of zstd
 };
 
-/// Differences of the bit patterns, bytes of equal weight side by side, then zstd.
+/// Compresses the differences of the bit patterns: bytes of equal significance side by side, then zstd.
 std::vector<char> pack(const void* data, std::size_t count, const Packing& packing);
 
-/// Throws `Error` naming `what` when the blob does not unpack to `bytes` bytes by its head.
+/// Throws `Error` naming `what` when the blob's header does not announce `bytes` bytes.
 void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const std::string& what);
 
-/// Undoes `pack` into `out`, which has room for `count` numbers. Throws `Error` naming
-/// `what` when the blob is damaged or holds another number of bytes; never writes past.
+/// Decompresses a blob of `pack` into `out`, [count]. Throws `Error` naming `what` when the blob is damaged or does not
+/// hold `count` numbers. Never writes beyond `out`.
 void unpack(const void* blob, std::size_t blob_size, void* out, std::size_t count, const Packing& packing,
             const std::string& what);
 

@@ -8,20 +8,22 @@
 #include "core/error.h"
 #include "core/system/progress.h"
 
-/// Who may change a project: one process at a time.
+/// \file
+/// The lock of a project: one process at a time may change it. Called by `Project` and, before long work, by `cli`.
+/// Any thread.
 namespace tuft::io {
 
-/// The process that has a project, as its lock file says.
+/// The process that holds a project, as its lock file states.
 struct LockHolder {
-    std::string program;  ///< such as "tuft-studio"; empty: the file does not say
-    long process = 0;     ///< its id on `host`; 0: the file does not say
+    std::string program;  ///< such as "tuft-studio"; empty: not stated
+    long process = 0;     ///< its id on `host`; 0: not stated
     std::string host;     ///< empty: this machine
 };
 
-/// "tuft-studio (process 4242)", "tuft (process 17 on workbench)", "another program".
+/// Returns "tuft-studio (process 4242)", "tuft (process 17 on workbench)" or "another program".
 std::string name_of(const LockHolder& holder);
 
-/// Another process has the project. The message names it and says what to do.
+/// Another process holds the project. The message names the process and the remedy.
 class ProjectInUse : public Error {
   public:
     ProjectInUse(const std::filesystem::path& project, LockHolder holder);
@@ -31,17 +33,17 @@ class ProjectInUse : public Error {
     LockHolder holder_;
 };
 
-/// The right of this process to change a project; copies share it, and so do all locks that
-/// the process takes on the same project. It is an advisory lock (flock) on the hidden file
-/// .NAME.lock beside the project, links resolved, which holds program, process and host. The
-/// system lets go of it however the process ends; a file that a killed process left is taken
-/// over, and the last owner removes it. Programs that do not ask for it are noticed by
-/// `Project::changed_outside`.
+/// The right of this process to change a project. Copies share it; all locks of the process on one project are one
+/// lock.
+///
+/// It is an advisory lock (flock) on the hidden file .NAME.lock beside the project, symbolic links resolved. The file
+/// states program, process and host. The system releases the lock however the process ends. The file of a killed
+/// process is reused; the last owner removes it. `Project::changed_outside` detects programs that ignore the lock.
 class ProjectLock {
   public:
-    /// Takes the lock, also of a project that is not there yet. Waits up to `patience` for a
-    /// program that is about to end: not for the studio. Throws `ProjectInUse`; `Error` when
-    /// the folder cannot be written into, or its file system has no locks; `Cancelled`.
+    /// Takes the lock. The project need not exist. Waits at most `patience` for another program to end, except for the
+    /// studio. Throws `ProjectInUse`; `Error` when the folder is not writable or its file system has no locks;
+    /// `Cancelled`.
     explicit ProjectLock(const std::filesystem::path& project, std::chrono::milliseconds patience = {},
                          const ProgressFn& progress = {});
 

@@ -61,42 +61,41 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
 
 }  // namespace
 
-void put_array_bytes(SQLite::Database& db, const char* owner, const char* name, const void* data, std::size_t count,
-                     std::size_t size, const Packing& packing) {
-    if (count == 0) return;
-    const std::vector<char> blob = pack(data, count * size / packing.element, packing);
+void put_array_bytes(SQLite::Database& db, const ArrayKey& key, const void* data, const ArraySize& size,
+                     const Packing& packing) {
+    if (size.count == 0) return;
+    const std::vector<char> blob = pack(data, size.bytes() / packing.element, packing);
     SQLite::Statement insert(db, "INSERT INTO arrays(owner, name, count, data) VALUES(?, ?, ?, ?)");
-    insert.bind(1, owner);
-    insert.bind(2, name);
-    insert.bind(3, static_cast<std::int64_t>(count));
+    insert.bind(1, key.owner);
+    insert.bind(2, key.name);
+    insert.bind(3, static_cast<std::int64_t>(size.count));
     insert.bindNoCopy(4, blob.data(), static_cast<int>(blob.size()));
     insert.exec();
 }
 
-bool has_array(SQLite::Database& db, const std::filesystem::path& path, const char* owner, const char* name,
-               std::size_t count, std::size_t size) {
+bool has_array(SQLite::Database& db, const std::filesystem::path& path, const ArrayKey& key, const ArraySize& size) {
     SQLite::Statement select(db, "SELECT count, data FROM arrays WHERE owner = ? AND name = ?");
-    select.bind(1, owner);
-    select.bind(2, name);
+    select.bind(1, key.owner);
+    select.bind(2, key.name);
     if (!select.executeStep()) return false;
-    if (select.getColumn(0).getInt64() != static_cast<std::int64_t>(count))
-        damaged(path, std::string("array '") + name + "' has the wrong size");
+    if (select.getColumn(0).getInt64() != static_cast<std::int64_t>(size.count))
+        damaged(path, std::string("array '") + key.name + "' has the wrong size");
     const SQLite::Column blob = select.getColumn(1);
-    check_packed(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), count * size,
-                 path.string() + ": the project is damaged: array '" + name + "'");
-    check_memory(path, 2 * static_cast<std::uintmax_t>(count) * size);  // it, and it before its bytes are in order
+    check_packed(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), size.bytes(),
+                 path.string() + ": the project is damaged: array '" + key.name + "'");
+    check_memory(path, 2 * static_cast<std::uintmax_t>(size.bytes()));  // it, and it before its bytes are in order
     return true;
 }
 
-void get_array_bytes(SQLite::Database& db, const std::filesystem::path& path, const char* owner, const char* name,
-                     void* out, std::size_t count, std::size_t size, const Packing& packing) {
+void get_array_bytes(SQLite::Database& db, const std::filesystem::path& path, const ArrayKey& key, void* out,
+                     const ArraySize& size, const Packing& packing) {
     SQLite::Statement select(db, "SELECT data FROM arrays WHERE owner = ? AND name = ?");
-    select.bind(1, owner);
-    select.bind(2, name);
-    if (!select.executeStep()) damaged(path, std::string("array '") + name + "' is missing");
+    select.bind(1, key.owner);
+    select.bind(2, key.name);
+    if (!select.executeStep()) damaged(path, std::string("array '") + key.name + "' is missing");
     const SQLite::Column blob = select.getColumn(0);
-    unpack(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), out, count * size / packing.element, packing,
-           path.string() + ": the project is damaged: array '" + name + "'");
+    unpack(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), out, size.bytes() / packing.element, packing,
+           path.string() + ": the project is damaged: array '" + key.name + "'");
 }
 
 std::uint64_t hash_of(const mesh::TriangleMesh& mesh) {

@@ -53,8 +53,8 @@ void store_scene(SQLite::Database& db, const mesh::TriangleMesh& mesh) {
     put_text(db, "scene document", mesh.scene->document);
     const std::vector<unsigned char>& buffer = mesh.scene->buffer;
     for (std::size_t at = 0, i = 0; at < buffer.size(); at += kBufferPiece, ++i)
-        put_array_bytes(db, "mesh", piece_name(i).c_str(), &buffer[at], std::min(kBufferPiece, buffer.size() - at), 1,
-                        kSceneBytes);
+        put_array_bytes(db, {"mesh", piece_name(i).c_str()}, &buffer[at],
+                        {std::min(kBufferPiece, buffer.size() - at), 1}, kSceneBytes);
     put_array(db, "mesh", "triangle_parts", mesh.triangle_parts, kPartNumbers);
 }
 

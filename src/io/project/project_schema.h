@@ -11,27 +11,26 @@ class Database;
 class Column;
 }  // namespace SQLite
 
-/// What a project's database may hold, and how one that anybody may have made is opened.
-/// Included by project*.cpp only.
+/// \file
+/// Safe opening of untrusted project databases: schema check, restrictions, step budget. Included by project*.cpp only.
+/// One thread at a time per database.
 namespace tuft::io {
 
-/// Makes the tables that every project has; one of those that some have, where it is missing.
+/// Creates the tables that every project has. `create_table` creates one of the optional tables where it is missing.
 void create_tables(SQLite::Database& db);
 void create_table(SQLite::Database& db, const std::string& name);
 
-/// Throws `Error` where the database holds anything but the tables of a project, each as this
-/// program and all before it wrote it (white space aside), and the indices that SQLite makes for
-/// them: a view, a trigger, a virtual table, a column that is computed, a check of another kind.
+/// Throws `Error` where the schema holds an object other than the tables of a project and SQLite's own indices for
+/// them. Each table must be as this or an earlier version of the program wrote it, up to white space. Views, triggers,
+/// virtual tables, computed columns and other checks are refused.
 void check_schema(SQLite::Database& db, const std::filesystem::path& path);
 
-/// Has SQLite run nothing that the file brings: defensive mode, no trusted schema, no views, no
-/// triggers, no attached files, tight limits on what a statement may be. Call it before anything
-/// else is asked of the database.
+/// Restricts SQLite so that it runs no code of the file: defensive mode, no trusted schema, no views, no triggers, no
+/// attached files, tight limits on statements. Call it before any other use of the database.
 void restrain(SQLite::Database& db);
 
-/// Stops what the database does when somebody asks for it, or when a call takes more steps than
-/// any reading of a file of its size does (a damaged tree may have more ends than atoms in the
-/// world). The database must not outlive it.
+/// Stops a running call on request, or when it takes more steps than reading a file of its size can take. A damaged
+/// B-tree may otherwise have endlessly many leaves. The database must not outlive it.
 class Overseer {
   public:
     explicit Overseer(sqlite3* db);
@@ -40,10 +39,10 @@ class Overseer {
 
     void listen(ProgressFn progress) { progress_ = std::move(progress); }
     const ProgressFn& progress() const { return progress_; }
-    /// A new call begins; `bytes` is the size of the file; `hears`: whoever listens may stop it.
+    /// Begins a call. `bytes` is the size of the file. With `hears` the progress function may stop the call.
     void begin(std::uintmax_t bytes, bool hears);
-    bool spent() const { return spent_; }  ///< the last call was stopped for its length
-    /// Whether all pages of the file are in order: "ok", else what is not. Heard within a tenth of a second.
+    bool spent() const { return spent_; }  ///< true when the last call exceeded its budget
+    /// Checks all pages of the file. Returns "ok", else the fault. The progress function is called every 0.1 s.
     std::string check_pages(SQLite::Database& db);
 
   private:
@@ -51,15 +50,15 @@ class Overseer {
 
     sqlite3* db_;
     ProgressFn progress_;
-    std::uintmax_t left_ = 0;  ///< thousands of steps
+    std::uintmax_t left_ = 0;  ///< thousands of steps left
     bool hears_ = false, spent_ = false;
 };
 
-/// The text of a column; throws `Error` where it is longer than `most` bytes.
+/// Returns the text of a column. Throws `Error` where it is longer than `most` bytes.
 std::string text_of(const SQLite::Column& column, std::size_t most, const std::filesystem::path& path,
                     const char* what);
 
-/// Throws `Error` where so many bytes are not free.
+/// Throws `Error` where fewer than `bytes` bytes of memory are available.
 void check_memory(const std::filesystem::path& path, std::uintmax_t bytes);
 
 }  // namespace tuft::io

@@ -57,7 +57,7 @@ void raise_format_for(SQLite::Database& db, const stroke::JournalEntry& entry) {
         raise_format(db, kLayersFormat);
     if (stroke::on_palette(entry) || entry.as<stroke::WashPalette>()) raise_format(db, kPaletteFormat);
     if (t.flat && t.placement.mapping == stroke::SurfaceMapping::drape) raise_format(db, kDrapedFormat);
-    if (!t.stencil.empty()) raise_format(db, kTapedFormat);
+    if (!t.stencil.empty()) raise_format(db, kStencilFormat);
 }
 
 }  // namespace

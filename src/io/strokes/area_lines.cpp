@@ -368,12 +368,12 @@ std::vector<AreaLine> area_lines(std::span<const Ring> rings, FillRule rule) {
                     AreaLine line{.line = std::move(parts[i].line), .width = w};
                     if (length_of(line.line) < (level ? kFine : kShort) * w) continue;
                     if (parts[i].tail)
-                        line.tail = run_out(line.line, all[(i + 1) % all.size()].line, d, w, inside > 0, shape);
+                        line.taper_out = run_out(line.line, all[(i + 1) % all.size()].line, d, w, inside > 0, shape);
                     if (parts[i].head) {
                         Line before = all[(i + all.size() - 1) % all.size()].line;
                         std::reverse(before.begin(), before.end());
                         std::reverse(line.line.begin(), line.line.end());
-                        line.head = run_out(line.line, before, d, w, inside > 0, shape);
+                        line.taper_in = run_out(line.line, before, d, w, inside > 0, shape);
                         std::reverse(line.line.begin(), line.line.end());
                     }
                     shell.push_back(std::move(line));

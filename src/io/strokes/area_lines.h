@@ -7,31 +7,32 @@
 #include "io/strokes/shape.h"
 #include "stroke/journal/recorded_stroke.h"
 
-/// Areas of a drawing as lines of a brush, the way a painter fills a shape: along its outline,
-/// inside it.
+/// \file
+/// Brush lines that fill an area of a drawing, parallel to its outline as a painter fills a shape. Called by svg.cpp.
+/// Any thread.
 namespace tuft::io {
 
-/// A line and how wide it is to be drawn; metres.
+/// One line of the filling; lengths in metres.
 struct AreaLine {
     std::vector<Vec2> line;
-    double width = 0;
-    /// Lengths at its ends over which the width falls to nothing: into a point of the area.
-    double head = 0, tail = 0;
+    double width = 0;  ///< of the drawn line
+    /// Lengths at the start and the end over which the width falls to 0, into a corner of the area.
+    double taper_in = 0, taper_out = 0;
     std::vector<stroke::StencilEdge> stencil;  ///< of the outline, within three widths of the line
 };
 
-/// Lines that cover the shape within `rings`, the inner ones first.
-/// With w = 0.36 · 2 area / perimeter, about a third of a stem's width, at least 6 % of the root of
-/// the area, the curves at distances (0.22 + 0.33 k) w from the outline are drawn w wide and
-/// overlap. They reach past the outline by 28 % of w and so into square corners, as a painter's do
-/// who has it masked: `stencil edge` keeps them within. The outline they follow has the shape's bends to
-/// 0.02 w, the stencil edge all of them. Where a curve turns by more than some 100 degrees it is parted,
-/// and the parts of the outermost run on through the corner of the area and w/2 past it, as thin as
-/// that. Where the outline stays bare by more than w (stems narrower than the line), half the width
-/// is tried there, three times at most.
+/// Returns lines that cover the area of `rings`, innermost first.
 ///
-/// Empty for what has no area, more points than `Shape` takes, or more than `kMostEdges` edges at
-/// that width.
+/// Width w = 0.36 · 2 area / perimeter, about a third of a stem's width, and at least 6 % of √area. Line k runs at the
+/// distance (0.22 + 0.33 k) w from the outline and is drawn w wide, so neighbouring lines overlap. The outermost line
+/// extends past the outline by 28 % of w, into square corners; its `stencil` keeps the ink inside, as a painter's mask
+/// does. Lines follow the outline's bends to 0.02 w, the stencil follows all of them.
+///
+/// A line is split where it turns by more than about 100 degrees. The parts of the outermost one continue through the
+/// corner of the area and w/2 beyond, tapered. Where a part of the outline stays bare by more than w, because a stem is
+/// narrower than the line, it is filled with half the width; at most three times.
+///
+/// Returns nothing for rings without area, for more points than `Shape` takes and for more than `kMostEdges` edges.
 std::vector<AreaLine> area_lines(std::span<const Ring> rings, FillRule rule);
 
 inline constexpr std::size_t kMostEdges = 20'000;

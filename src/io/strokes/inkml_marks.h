@@ -12,37 +12,39 @@ namespace pugi {
 class xml_node;
 }
 
-/// The elements of an InkML file as text, and our own annotations among them (`tuft:...`).
+/// \file
+/// Elements of an InkML file as text, and our own annotations (`tuft:...`). Called by inkml.cpp only. One thread at a
+/// time per file.
 namespace tuft::io {
 
-/// The file, for telling where something is wrong.
+/// The text of a file, for errors with line numbers. The references must outlive it.
 struct InkmlText {
     std::string_view content;
-    const std::string& path;             ///< as it is named in errors
+    const std::string& path;             ///< as named in errors
     mutable std::ptrdiff_t counted = 0;  ///< offset up to which lines are counted
     mutable long counted_line = 1;       ///< line there
 
-    /// Line of the character at `offset`, from 1. Offsets that ascend cost one pass over the file in all.
+    /// Returns the line of the character at `offset`, from 1. Ascending offsets cost one pass over the file in total.
     long line_at(std::ptrdiff_t offset) const;
     /// Throws `Error` with the element's line.
     [[noreturn]] void fail(const pugi::xml_node& node, const std::string& what) const;
-    /// Throws `Error` when the attribute is no number.
+    /// Returns an attribute as a number. Throws `Error` when it is none.
     double number_of(const pugi::xml_node& node, const char* attribute) const;
 };
 
-/// The element's name without its namespace.
+/// Returns an element's name without its namespace.
 std::string_view local_name(const pugi::xml_node& node);
-/// The element's own text.
+/// Returns an element's own text.
 std::string text_of(const pugi::xml_node& node);
 std::string_view trimmed(std::string_view s);
-/// Whether a vector of that squared length was normalised already: doing so again would change its last bits.
+/// Returns true when a vector of that squared length is a unit vector. Normalising it again would change its last bits.
 inline bool is_unit(double squared_length) {
     return std::abs(squared_length - 1) <= 1e-14;
 }
-/// The whole of `s` as a finite number.
+/// Returns all of `s` as a finite number, else nothing.
 std::optional<double> to_number(std::string_view s);
 
-/// Own annotations in force at one place of the file.
+/// Own annotations that hold at one place of the file.
 struct InkmlMarks {
     stroke::Placement placement;
     bool placed = false;
@@ -53,10 +55,10 @@ struct InkmlMarks {
     bool erases = false, on_palette = false, keeps_clock = false;
 };
 
-/// Takes over what the annotations of `parent` say; throws `Error` for what means nothing.
+/// Adds the annotations of `parent` to `marks`. Throws `Error` for unknown types and invalid values.
 void apply_marks(const InkmlText& file, InkmlMarks& marks, const pugi::xml_node& parent);
 
-/// What is to be done before this trace, in the order written.
+/// Returns the brush actions before a trace, in the order written.
 std::vector<stroke::Preparation> preparations_of(const InkmlText& file, const pugi::xml_node& trace);
 
 }  // namespace tuft::io

@@ -5,20 +5,21 @@
 
 #include "core/geometry/types.h"
 
-/// Flat shapes: what closed rings enclose. Made and inset by the Clipper library (after Vatti
-/// 1992).
+/// \file
+/// Flat areas bounded by closed rings. Union and inset are by the Clipper library (after Vatti 1992). Called by
+/// area_lines.cpp. Any thread.
 namespace tuft::io {
 
-using Ring = std::vector<Vec2>;  ///< metres; the last point joins the first
+using Ring = std::vector<Vec2>;  ///< metres; closed: the last point is joined to the first
 
 enum class FillRule { nonzero, even_odd };  ///< SVG 1.1, 11.3
 
-/// Rings that neither cross themselves nor each other, area on the left where y points up (on the
-/// right where it points down). Places are kept to 2⁻³⁰ of the extent.
+/// Rings that cross neither themselves nor each other. The area is on their left where y points up, on their right
+/// where y points down. Coordinates are rounded to 2⁻³⁰ of the extent.
 class Shape {
   public:
-    /// What `rings` enclose by the rule. Empty where that is nothing, a place is not finite, or
-    /// there are more than `kMostPoints` points or crossings.
+    /// The area that `rings` enclose by the rule. Empty where there is none, where a point is not finite, and for more
+    /// than `kMostPoints` points or crossings.
     Shape(std::span<const Ring> rings, FillRule rule);
 
     const std::vector<Ring>& rings() const { return rings_; }
@@ -27,11 +28,11 @@ class Shape {
     double perimeter() const;  ///< metres, of all rings
     bool contains(const Vec2& p) const;
 
-    /// Rings without the points that lie within `tolerance` of the way past them (Douglas and
-    /// Peucker 1973).
+    /// Returns the shape without points that lie within `tolerance` metres of the simplified ring (Douglas and Peucker
+    /// 1973).
     Shape simplified(double tolerance) const;
 
-    /// What lies more than `d` inside, to `tolerance` of the distance.
+    /// Returns the part more than `d` metres inside. `tolerance`: largest error of the distance, metres.
     Shape inset(double d, double tolerance) const;
 
     static constexpr std::size_t kMostPoints = 20'000;

@@ -29,8 +29,8 @@ constexpr std::size_t kMostText = std::size_t{1} << 30;  // bytes of attributes 
 // A line of the drawing; metres.
 struct Drawn {
     SvgLine line;
-    double width = 0;           // of its stroke; 0: it has none
-    double head = 0, tail = 0;  // lengths over which it runs out into a point
+    double width = 0;                    // of its stroke; 0: it has none
+    double taper_in = 0, taper_out = 0;  // lengths over which it runs out into a point
     std::vector<stroke::StencilEdge> stencil = {};
 };
 
@@ -100,7 +100,7 @@ class Drawing {
         std::vector<Drawn> area;
         for (AreaLine& line : area_lines(rings, style.rule)) {
             n_points_ += line.line.size() + line.stencil.size();
-            area.push_back({std::move(line.line), line.width, line.head, line.tail, std::move(line.stencil)});
+            area.push_back({std::move(line.line), line.width, line.taper_in, line.taper_out, std::move(line.stencil)});
         }
         if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
         if (area.empty()) {  // a line, drawn as such unless it says that it has a stroke, which paints nothing
@@ -354,8 +354,8 @@ void give_width(stroke::RecordedStroke& trace, const Drawn& drawn, double full) 
     for (std::size_t i = 1; i < drawn.line.size(); ++i) whole += glm::distance(drawn.line[i - 1], drawn.line[i]);
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
         if (i > 0) along += glm::distance(trace.samples[i - 1].position, trace.samples[i].position);
-        const double in = drawn.head > 0 ? std::min(1.0, kFuller * along / drawn.head) : 1,
-                     out = drawn.tail > 0 ? std::min(1.0, kFuller * (whole - along) / drawn.tail) : 1;
+        const double in = drawn.taper_in > 0 ? std::min(1.0, kFuller * along / drawn.taper_in) : 1,
+                     out = drawn.taper_out > 0 ? std::min(1.0, kFuller * (whole - along) / drawn.taper_out) : 1;
         trace.samples[i].pressure = full * std::clamp(std::min(in, out), 0.0, 1.0);
     }
 }

@@ -8,32 +8,37 @@
 #include "io/strokes/inkml.h"
 #include "stroke/journal/recorded_stroke.h"
 
-/// Drawings: SVG 1.1 (W3C Recommendation, 16 August 2011).
+/// \file
+/// Drawings in SVG 1.1 (W3C Recommendation, 16 August 2011). Called by `cli` and by the studio. Any thread.
 namespace tuft::io {
 
-/// A drawing as flat traces, in the order of the file: `path` (all commands),
-/// `line`, `polyline`, `polygon`, `rect`, `circle`, `ellipse`, under the `transform`s of their groups,
-/// and once more wherever a `use` names them.
-/// Curves become chords that stay within `tolerance` of them; elliptical arcs after appendix F.6.5. What
-/// is not displayed, and what lies in `defs`, is left out. `stroke-width` (as an attribute, in a style, by a class
-/// of a style sheet, inherited, grown by transforms) becomes `StrokeSamples::line_width` where there is a `stroke`.
-/// What has a `fill` is filled by lines within stencil edge (`area_lines`, with `fill-rule`), under its stroke if it
-/// has one, whatever its colour; white is the background and fills nothing. What has neither is drawn along its
-/// outlines, and so is what has no area and no `stroke`; other styles are not looked at. Where a trace has a width,
-/// pressures say which part of it is drawn, 0.5 the whole. One user unit is what `width` and `viewBox` say, else 1/96
-/// inch. Pace and pressure are those of `parse_inkml` for traces that have none.
-///
-/// Throws `Error` with the file's name: not SVG, nothing to draw in it, a number that is none,
-/// absurd sizes.
+/// Options of `read_svg`.
 struct SvgOptions {
-    double tolerance = 2e-5;  ///< metres
-    InkmlOptions ink;         ///< pace, pressure, limits
+    double tolerance = 2e-5;  ///< metres, largest distance of a chord from its curve
+    InkmlOptions ink;         ///< speed, pressure and limits
 };
+
+/// Reads a drawing as flat traces, in the order of the file: `path` (all commands), `line`, `polyline`, `polygon`,
+/// `rect`, `circle`, `ellipse`, under the `transform`s of their groups and once for each `use`. Content of `defs` and
+/// elements that are not displayed are skipped. Curves become chords; elliptical arcs follow appendix F.6.5. One user
+/// unit is given by `width` and `viewBox`, else it is 1/96 inch.
+///
+/// An element with `stroke` is drawn along its outlines with `stroke-width` as `StrokeSamples::line_width`. The width
+/// may be an attribute, a style, a rule of a style sheet or inherited; transforms scale it. An element with `fill` is
+/// filled by lines with a stencil (`area_lines`, by `fill-rule`), before its stroke and whatever the colour. White is
+/// the background and is not filled. An element without either is drawn along its outlines, and so is one without area
+/// and `stroke`. Other styles are ignored.
+///
+/// In traces with a width the pressure is the fraction of the width to draw, 0.5 for all of it. Other traces have speed
+/// and pressure as by `parse_inkml`.
+///
+/// Throws `Error` with the file's name where the file is no SVG, has nothing to draw, has an invalid number or exceeds
+/// a limit.
 std::vector<stroke::RecordedStroke> read_svg(const std::filesystem::path& path, const SvgOptions& options = {});
 std::vector<stroke::RecordedStroke> parse_svg(std::string_view text, const std::string& source,
                                               const SvgOptions& options = {});
 
-/// Traces of an `.svg` drawing, or else of an InkML file.
+/// Reads the traces of an `.svg` drawing, else of an InkML file.
 std::vector<stroke::RecordedStroke> read_strokes(const std::filesystem::path& path, const InkmlOptions& options = {});
 
 }  // namespace tuft::io

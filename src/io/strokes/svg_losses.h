@@ -7,7 +7,7 @@
 #include <vector>
 
 /// \file
-/// What a drawing loses on its way from an SVG file to brush strokes, for telling a person.
+/// Report of the content that an SVG drawing loses on import. Called by svg.cpp only.
 namespace tuft::io {
 
 /// Kinds of loss, in the order in which they are reported.
@@ -37,19 +37,18 @@ enum class SvgLoss {
 };
 inline constexpr std::size_t kSvgLosses = static_cast<std::size_t>(SvgLoss::rule) + 1;
 
-/// Counts what is lost.
+/// Counts lost content by kind. One thread at a time.
 class SvgLosses {
   public:
     void add(SvgLoss loss) { ++counts_[static_cast<std::size_t>(loss)]; }
-    /// A colour that something is drawn in, as the file writes it.
+    /// Adds a colour of a drawn element, as the file writes it.
     void add_colour(const std::string& colour);
-    /// One line for each kind that was met, with its count; one more for the colours where they are
-    /// more than black.
+    /// Returns one line for each kind found, with its count, and one for the colours where any is not black.
     std::vector<std::string> lines() const;
 
   private:
     std::array<std::size_t, kSvgLosses> counts_{};
-    std::vector<std::string> colours_;  // in the order met
+    std::vector<std::string> colours_;  // in the order found
     std::set<std::string> known_;
 };
 

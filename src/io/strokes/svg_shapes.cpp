@@ -106,9 +106,10 @@ void SvgCurves::cubic(SvgLine& line, const Vec2& b, const Vec2& c, const Vec2& d
 }
 
 // Appendix F.6.5: from end points to centre and angles.
-void SvgCurves::arc(SvgLine& line, double rx, double ry, double turn, bool large, bool sweep, const Vec2& end) const {
+void SvgCurves::arc(SvgLine& line, const SvgArc& arc) const {
+    const auto [radii, turn, large, sweep, end] = arc;
     const Vec2 start = line.back();
-    rx = std::abs(rx), ry = std::abs(ry);
+    double rx = std::abs(radii.x), ry = std::abs(radii.y);
     if (rx == 0 || ry == 0 || start == end) return line.push_back(end);
     const double c = std::cos(turn), s = std::sin(turn);
     const Vec2 h = 0.5 * (start - end), p(c * h.x + s * h.y, -s * h.x + c * h.y);
@@ -190,7 +191,7 @@ void svg_path(const char* text, const std::string& source, const SvgCurves& curv
             case 'A': {
                 const double rx = in.number(), ry = in.number(), turn = in.number() * std::numbers::pi / 180;
                 const bool large = in.flag(), sweep = in.flag();
-                curves.arc(line, rx, ry, turn, large, sweep, point());
+                curves.arc(line, {{rx, ry}, turn, large, sweep, point()});
                 break;
             }
             case 'Z':
@@ -225,7 +226,7 @@ SvgLine svg_rectangle(const Vec2& corner, const Vec2& size, const Vec2& radii, c
     const double rx = std::clamp(radii.x, 0.0, 0.5 * w), ry = std::clamp(radii.y, 0.0, 0.5 * h);
     if (rx <= 0 || ry <= 0) return {{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}, {x, y}};
     SvgLine line{{x + rx, y}, {x + w - rx, y}};
-    const auto round = [&](const Vec2& end) { curves.arc(line, rx, ry, 0, false, true, end); };
+    const auto round = [&](const Vec2& end) { curves.arc(line, {.radii = {rx, ry}, .sweep = true, .end = end}); };
     round({x + w, y + ry}), line.emplace_back(x + w, y + h - ry);
     round({x + w - rx, y + h}), line.emplace_back(x + rx, y + h);
     round({x, y + h - ry}), line.emplace_back(x, y + ry);
@@ -236,8 +237,8 @@ SvgLine svg_rectangle(const Vec2& corner, const Vec2& size, const Vec2& radii, c
 SvgLine svg_ellipse(const Vec2& centre, const Vec2& radii, const SvgCurves& curves) {
     if (!(radii.x > 0 && radii.y > 0)) return {};
     SvgLine line{{centre.x + radii.x, centre.y}};
-    curves.arc(line, radii.x, radii.y, 0, false, true, {centre.x - radii.x, centre.y});
-    curves.arc(line, radii.x, radii.y, 0, false, true, {centre.x + radii.x, centre.y});
+    curves.arc(line, {.radii = radii, .sweep = true, .end = {centre.x - radii.x, centre.y}});
+    curves.arc(line, {.radii = radii, .sweep = true, .end = {centre.x + radii.x, centre.y}});
     return line;
 }
 

@@ -9,7 +9,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNarrowest = 1e-4;        // of an edge: vertices as flat as that throw no shadow
 constexpr double kSlack = 1e-9;            // of a distance, by which rounding may lie
-constexpr double kBeside = 1e-3;           // of an edge: how far beside a window a way may pass
+constexpr double kBeside = 1e-3;           // of an edge: how far beside a window a path may pass
 constexpr double kFarBeside = 0.1;         // the same where no window is nearer
 constexpr std::size_t kFewWindows = 2000;  // below which their number is no sign of too many
 constexpr double kDense = 4;               // over the mean of the area that there may be near the origin
@@ -106,7 +106,7 @@ ExactGeodesics::Corner ExactGeodesics::over(std::uint32_t face, int edge) {
 }
 
 /// Whether ways over vertices of the face are shorter to all of [from, to] of its edge.
-bool ExactGeodesics::outdone(const Face& face, int edge, double from, double to, const Source& source) const {
+bool ExactGeodesics::is_dominated(const Face& face, int edge, double from, double to, const Source& source) const {
     const auto far = [&](double x) { return source.before + glm::length(source.at - Vec2{x, 0}); };
     const double a = vertices_[face.vertex[edge]].distance, b = vertices_[face.vertex[after(edge)]].distance;
     if (far(to) * (1 - kSlack) > a + to || far(from) * (1 - kSlack) > b + face.length[edge] - from) return true;
@@ -118,12 +118,12 @@ bool ExactGeodesics::outdone(const Face& face, int edge, double from, double to,
 }
 
 /// Ways from `source` out of the face over the part [from, to] of its edge.
-void ExactGeodesics::leave(std::uint32_t face, int edge, double from, double to, const Source& source) {
+void ExactGeodesics::add_window(std::uint32_t face, int edge, double from, double to, const Source& source) {
     const double length = faces_[face].length[edge];
     from = std::clamp(from, 0.0, length);
     to = std::clamp(to, 0.0, length);
     if (!(to - from > kSlack * length) || !(source.at.y > 0)) return;
-    if (outdone(faces_[face], edge, from, to, source)) return;
+    if (is_dominated(faces_[face], edge, from, to, source)) return;
     const Corner to_face = over(face, edge);
     if (to_face.face == kNone) return;
     const double near = source.before + nearest_on(source.at, from, to);
@@ -135,26 +135,27 @@ void ExactGeodesics::leave(std::uint32_t face, int edge, double from, double to,
     enqueue(near, index, false);
 }
 
-/// A way reaches a corner of a face, coming on in direction `onward` (frame of the edge that begins
+/// A path reaches a corner of a face, coming on in direction `onward` (frame of the edge that begins
 /// there).
-void ExactGeodesics::reach(std::uint32_t face, int corner, double distance, const Vec2& onward, const Vec2& leaves) {
+void ExactGeodesics::reach(std::uint32_t face, int corner, double distance, const Vec2& onward,
+                           const Vec2& start_direction) {
     Vertex& vertex = vertices_[faces_[face].vertex[corner]];
     if (!(distance < vertex.distance * (1 - kSlack)) || distance > radius_) return;
     vertex.distance = distance;
-    vertex.leaves = leaves;
+    vertex.start_direction = start_direction;
     enqueue(distance, static_cast<std::uint32_t>(arrivals_.size()), true);
     arrivals_.push_back({face, corner, distance, onward});
 }
 
 /// From the edge that a window enters by to the two others. Of two windows that see the third
 /// corner, the one that is further from it need only go on to its own side.
-void ExactGeodesics::carry_on(std::uint32_t index) {
+void ExactGeodesics::propagate(std::uint32_t index) {
     const Window w = windows_[index];
     const int edge = w.edge, right_edge = after(edge), left_edge = before(edge);
     Face& face = faces_[w.face];
     const double right_length = face.length[right_edge], left_length = face.length[left_edge];
     const Vec2 b{face.length[edge], 0}, c = face.third[edge], s = w.source;
-    const double at = s.x + (c.x - s.x) * -s.y / (c.y - s.y);  // where the way to the third corner enters
+    const double at = s.x + (c.x - s.x) * -s.y / (c.y - s.y);  // where the path to the third corner enters
     bool left = at > w.from, right = at < w.to;
     if (left && right) {
         const double distance = w.before + glm::length(c - s);
@@ -167,17 +168,17 @@ void ExactGeodesics::carry_on(std::uint32_t index) {
         }
         const Vec2 onward = glm::normalize(c - s);
         reach(w.face, left_edge, distance, turned_back(onward, -c / left_length),
-              w.root == kNone ? turned(onward, w.turn) : vertices_[w.root].leaves);
+              w.root == kNone ? turned(onward, w.turn) : vertices_[w.root].start_direction);
     }
     if (right) {
         const Vec2 e = (c - b) / right_length;
         const double from = met(s, w.to, b, e), to = at > w.from ? right_length : met(s, w.from, b, e);
-        leave(w.face, right_edge, from, to, {turned_back(s - b, e), w.before, turned(e, w.turn), w.root});
+        add_window(w.face, right_edge, from, to, {turned_back(s - b, e), w.before, turned(e, w.turn), w.root});
     }
     if (left) {
         const Vec2 e = -c / left_length;
         const double from = at < w.to ? 0 : met(s, w.to, c, e), to = met(s, w.from, c, e);
-        leave(w.face, left_edge, from, to, {turned_back(s - c, e), w.before, turned(e, w.turn), w.root});
+        add_window(w.face, left_edge, from, to, {turned_back(s - c, e), w.before, turned(e, w.turn), w.root});
     }
 }
 
@@ -196,22 +197,22 @@ std::vector<ExactGeodesics::Corner>& ExactGeodesics::fan(std::vector<Corner>& co
 }
 
 /// Ways round a vertex through [from, to] of the edge opposite to it in one of its faces.
-void ExactGeodesics::leave_round(const Corner& at, double from, double to, double distance) {
+void ExactGeodesics::add_window_at_vertex(const Corner& at, double from, double to, double distance) {
     const int edge = after(at.corner);
     const double length = faces_[at.face].length[edge];
     if (to - from < kNarrowest * length) return;
     const std::uint32_t root = faces_[at.face].vertex[at.corner];
-    leave(at.face, edge, from, to, {faces_[at.face].third[edge], distance, Vec2{1, 0}, root});
-    const Vec2 leaves = vertices_[root].leaves;
+    add_window(at.face, edge, from, to, {faces_[at.face].third[edge], distance, Vec2{1, 0}, root});
+    const Vec2 start_direction = vertices_[root].start_direction;
     // Along the face's own edges.
     const auto along = [&](int k, double far) {
         const Vec2 v = glm::normalize(k == 0 ? Vec2{0} - faces_[at.face].third[edge]
                                              : Vec2{length, 0} - faces_[at.face].third[edge]);
         const int corner = k == 0 ? edge : after(edge);
         // From the frame of the opposite edge to that of the edge that begins at the corner.
-        if (corner == edge) return reach(at.face, corner, distance + far, v, leaves);
+        if (corner == edge) return reach(at.face, corner, distance + far, v, start_direction);
         const Vec2 e = glm::normalize(faces_[at.face].third[edge] - Vec2{length, 0});
-        reach(at.face, corner, distance + far, turned_back(v, e), leaves);
+        reach(at.face, corner, distance + far, turned_back(v, e), start_direction);
     };
     if (!(from > 0)) along(0, faces_[at.face].length[at.corner]);
     if (!(to < length)) along(1, faces_[at.face].length[before(at.corner)]);
@@ -268,12 +269,12 @@ void ExactGeodesics::bend(const Arrival& arrival) {
         const std::size_t last = n - 1 - j;  // of the counter-clockwise faces
         if (i > last || (i == last && !(from < to))) return;
         for (std::size_t k = i; k <= last; ++k)
-            leave_round(left_[k], k == i ? from : 0, k == last ? to : length(left_[k]), distance);
+            add_window_at_vertex(left_[k], k == i ? from : 0, k == last ? to : length(left_[k]), distance);
         return;
     }
-    for (std::size_t k = i; k < n; ++k) leave_round(left_[k], k == i ? from : 0, length(left_[k]), distance);
+    for (std::size_t k = i; k < n; ++k) add_window_at_vertex(left_[k], k == i ? from : 0, length(left_[k]), distance);
     for (std::size_t k = j; k < right_.size(); ++k)
-        leave_round(right_[k], 0, k == j ? to : length(right_[k]), distance);
+        add_window_at_vertex(right_[k], 0, k == j ? to : length(right_[k]), distance);
 }
 
 bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin, double radius,
@@ -288,17 +289,17 @@ bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, co
     const double base = faces_[start_].length[0];
     const double w2 = glm::dot(d, y) / third.y, w1 = (glm::dot(d, x) - w2 * third.x) / base;
     if (!std::isfinite(w1 + w2)) return false;
-    // Inside, and a little off the edges, where no way would begin.
+    // Inside, and a little off the edges, where no path would begin.
     Vec3 weights = glm::max(Vec3{1 - w1 - w2, w1, w2}, Vec3{1e-6});
     weights /= weights.x + weights.y + weights.z;
     origin_ = weights.y * Vec2{base, 0} + weights.z * third;
     Vec2 corner{0}, e{1, 0};  // of edge k in the frame of edge 0
     for (int k = 0; k < 3; ++k) {
-        const Vec2 way = corner - origin_;
-        const double distance = glm::length(way);
-        if (distance > 0) reach(start_, k, distance, turned_back(way / distance, e), way / distance);
+        const Vec2 to_corner = corner - origin_;
+        const double distance = glm::length(to_corner);
+        if (distance > 0) reach(start_, k, distance, turned_back(to_corner / distance, e), to_corner / distance);
         const double length = faces_[start_].length[k];
-        leave(start_, k, 0, length, {turned_back(origin_ - corner, e), 0, e, kNone});
+        add_window(start_, k, 0, length, {turned_back(origin_ - corner, e), 0, e, kNone});
         corner += length * e;
         const Vec2 next = k == 0 ? third : Vec2{0};
         e = glm::normalize(next - corner);
@@ -316,7 +317,8 @@ bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, co
         }
         const Window& w = windows_[next.index];
         // By what has been learnt of the vertices since.
-        if (!outdone(faces_[w.face], w.edge, w.from, w.to, {w.source, w.before, w.turn, w.root})) carry_on(next.index);
+        if (!is_dominated(faces_[w.face], w.edge, w.from, w.to, {w.source, w.before, w.turn, w.root}))
+            propagate(next.index);
         // Their number grows with the area.
         const double share = static_cast<double>(ring_ + 1) / kRings,
                      expected = static_cast<double>(most) * share * share;
@@ -327,17 +329,17 @@ bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, co
 }
 
 ExactGeodesics::Geodesic ExactGeodesics::to(std::uint32_t triangle, const Vec3& p) const {
-    Geodesic way;
+    Geodesic path;
     const std::uint32_t number = face_numbers_.find(triangle);
-    if (number == kNone) return way;
+    if (number == kNone) return path;
     const Face& face = faces_[number];
     const Vec3 a = mesh_->position(triangle, 0), x = glm::normalize(mesh_->position(triangle, 1) - a);
     const Vec3 n = glm::normalize(glm::cross(x, mesh_->position(triangle, 2) - a)), y = glm::cross(n, x);
     const Vec2 q{glm::dot(p - a, x), glm::dot(p - a, y)};
-    Vec2 leaves{0}, arrives{0};  // frames of edge 0 of the first and of this face
+    Vec2 start_direction{0}, end_direction{0};  // frames of edge 0 of the first and of this face
     if (number == start_) {
-        way.length = glm::length(q - origin_);
-        leaves = arrives = way.length > 0 ? (q - origin_) / way.length : Vec2{1, 0};
+        path.length = glm::length(q - origin_);
+        start_direction = end_direction = path.length > 0 ? (q - origin_) / path.length : Vec2{1, 0};
     }
     double beside = kFarBeside, length_beside = kInfinity;
     const Window* best = nullptr;
@@ -354,8 +356,8 @@ ExactGeodesics::Geodesic ExactGeodesics::to(std::uint32_t triangle, const Vec3& 
             const double cut = w.source.x + (at.x - w.source.x) * -w.source.y / (height - w.source.y);
             const double off = std::max({w.from - cut, cut - w.to, 0.0}) / face.length[k];
             const double length = w.before + glm::length(at - w.source);
-            if (off <= kBeside && length < way.length) {
-                way.length = length;
+            if (off <= kBeside && length < path.length) {
+                path.length = length;
                 best = &w;
             } else if (off > kBeside && off < beside) {
                 beside = off;
@@ -366,33 +368,34 @@ ExactGeodesics::Geodesic ExactGeodesics::to(std::uint32_t triangle, const Vec3& 
         corner += face.length[k] * e;
         e = glm::normalize((k == 0 ? face.third[0] : Vec2{0}) - corner);
     }
-    if (!best && fallback && length_beside < way.length) {
+    if (!best && fallback && length_beside < path.length) {
         best = fallback;
-        way.length = length_beside;
+        path.length = length_beside;
     }
     if (best) {
         const Vec2 from = corners[best->edge] + turned(best->source, edges[best->edge]);
-        arrives = glm::normalize(q - from);
-        way.bent = best->root != kNone;
-        leaves = way.bent ? vertices_[best->root].leaves : turned(turned_back(arrives, edges[best->edge]), best->turn);
+        end_direction = glm::normalize(q - from);
+        path.bent = best->root != kNone;
+        start_direction = path.bent ? vertices_[best->root].start_direction
+                                    : turned(turned_back(end_direction, edges[best->edge]), best->turn);
     }
     for (int k = 0; k < 3; ++k) {
         const Vertex& v = vertices_[face.vertex[k]];
         const Vec2 d = q - corners[k];
         const double length = v.distance + glm::length(d);
-        if (!(length < way.length * (1 - kSlack))) continue;
-        way.length = length;
-        way.bent = true;
-        leaves = v.leaves;
-        arrives = glm::length(d) > 0 ? glm::normalize(d) : leaves;
+        if (!(length < path.length * (1 - kSlack))) continue;
+        path.length = length;
+        path.bent = true;
+        start_direction = v.start_direction;
+        end_direction = glm::length(d) > 0 ? glm::normalize(d) : start_direction;
     }
-    if (!(way.length <= radius_)) return {};
-    way.arrives = arrives.x * x + arrives.y * y;
+    if (!(path.length <= radius_)) return {};
+    path.end_direction = end_direction.x * x + end_direction.y * y;
     const std::uint32_t t = faces_[start_].triangle;
     const Vec3 o = mesh_->position(t, 0), ox = glm::normalize(mesh_->position(t, 1) - o);
     const Vec3 oy = glm::cross(glm::normalize(glm::cross(ox, mesh_->position(t, 2) - o)), ox);
-    way.leaves = leaves.x * ox + leaves.y * oy;
-    return way;
+    path.start_direction = start_direction.x * ox + start_direction.y * oy;
+    return path;
 }
 
 }  // namespace tuft::mesh

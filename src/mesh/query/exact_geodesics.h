@@ -26,9 +26,9 @@ class ExactGeodesics {
 
     struct Geodesic {
         double length = std::numeric_limits<double>::infinity();  ///< metres; infinite: none within the radius
-        Vec3 leaves{0};                                           ///< unit, in the plane of the origin's triangle
-        Vec3 arrives{0};    ///< unit, in the plane of the point's triangle, away from the origin
-        bool bent = false;  ///< the path passes a vertex
+        Vec3 start_direction{0};                                  ///< unit, in the plane of the origin's triangle
+        Vec3 end_direction{0};  ///< unit, in the plane of the point's triangle, away from the origin
+        bool bent = false;      ///< the path passes a vertex
     };
     /// Returns the geodesic to the point p of a triangle; p may lie outside it by rounding.
     Geodesic to(std::uint32_t triangle, const Vec3& p) const;
@@ -54,7 +54,7 @@ class ExactGeodesics {
     };
     struct Vertex {
         double distance = std::numeric_limits<double>::infinity();
-        Vec2 leaves{0};  ///< unit, in the frame of edge 0 of the origin's triangle
+        Vec2 start_direction{0};  ///< unit, in the frame of edge 0 of the origin's triangle
     };
     /// Straight paths from `source` through the interval [from, to] of an edge into a face, in that edge's frame.
     struct Window {
@@ -96,12 +96,12 @@ class ExactGeodesics {
     std::uint32_t vertex_of(std::uint32_t vertex);
     Corner over(std::uint32_t face, int edge);
     void enqueue(double distance, std::uint32_t index, bool vertex);
-    bool outdone(const Face& face, int edge, double from, double to, const Source& source) const;
-    void leave(std::uint32_t face, int edge, double from, double to, const Source& source);
-    void carry_on(std::uint32_t window);
-    void reach(std::uint32_t face, int corner, double distance, const Vec2& onward, const Vec2& leaves);
+    bool is_dominated(const Face& face, int edge, double from, double to, const Source& source) const;
+    void add_window(std::uint32_t face, int edge, double from, double to, const Source& source);
+    void propagate(std::uint32_t window);
+    void reach(std::uint32_t face, int corner, double distance, const Vec2& onward, const Vec2& start_direction);
     void bend(const Arrival& arrival);
-    void leave_round(const Corner& at, double from, double to, double distance);
+    void add_window_at_vertex(const Corner& at, double from, double to, double distance);
     std::vector<Corner>& fan(std::vector<Corner>& corners, Corner at, bool counter_clockwise);
 
     const TriangleMesh* mesh_ = nullptr;

@@ -135,7 +135,7 @@ void draw_row(const Sheet& sheet, double top, double tilt, Side side, const char
         view.scale = sheet.scale;
         view.origin = {at.pose.position.x + foot, 0, 0};
         view.foot = {(k + 0.33) * sheet.column + 0.35 * sheet.scale * foot, ground};
-        draw_brush(sheet.canvas, at.tuft, at.state, at.pose, view, 2.5 * length);
+        draw_brush(sheet.canvas, {at.tuft, at.state, at.pose}, view, 2.5 * length);
         draw_scale(sheet, view, (k + 0.02) * sheet.column, (k + 0.98) * sheet.column);
         if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, view, plan);
         const double x = (k + 0.5) * sheet.column, y = ground + 152 * u;
@@ -157,7 +157,7 @@ void draw_tips(const Sheet& sheet, double top) {
     const double ground = top + 330 * u;
     fill_ground(sheet, top, top + 200 * u, top + 540 * u);
     for (int k = 0; k < 4; ++k) {
-        TuftLook look;
+        TuftAppearance appearance;
         Hand hand(sheet.preset, k == 1 ? 0.2 : 0, k == 0 ? 0.7 : 0, Side::broad);
         std::string name = "slanted tip, along one side";
         if (k == 2) {
@@ -166,7 +166,7 @@ void draw_tips(const Sheet& sheet, double top) {
             hand.now.tuft.preset.split_factor = 3;  // the paper's: shipped hair parts later, in bundles
             name = "split tip, short of ink";
         } else if (k == 3) {
-            look.dry = true;
+            appearance.dry = true;
             hand.now.tuft.wetness = 0;
             for (double& apart : hand.now.tuft.bundles.separation) apart = 1;
             name = "dry tip, in bundles";
@@ -191,12 +191,12 @@ void draw_tips(const Sheet& sheet, double top) {
         // A slanted holder stands aside from where its tip is.
         const double aside = view.scale * glm::dot(at.pose.axis(), view.right) * length;
         view.foot = {(k + 0.47) * column - 0.5 * aside, ground - 60 * u};
-        draw_brush(sheet.canvas, at.tuft, at.state, at.pose, view, 2.5 * length, look);
+        draw_brush(sheet.canvas, {at.tuft, at.state, at.pose}, view, 2.5 * length, appearance);
         BrushView plan = view;
         plan.foot.x = (k + 0.42) * column;
         const std::vector<Section>& sections = at.state.branches.front().sections;
         plan.origin.y = sections[sections.size() / 3].centre.y;
-        draw_patch(sheet.canvas, at.tuft, at.state, plan, top + 440 * u, look);
+        draw_patch(sheet.canvas, at.tuft, at.state, plan, top + 440 * u, appearance);
         sheet.centred(name, (k + 0.5) * column, top + 522 * u, 12, sheet.ink);
     }
     const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};

@@ -25,7 +25,7 @@ struct Strand {
 };
 
 /// Sections of every branch, refined, resting on the sheet.
-std::vector<Strand> strands_of(const TuftState& state, const TuftLook& look) {
+std::vector<Strand> strands_of(const TuftState& state, const TuftAppearance& appearance) {
     std::vector<Strand> out;
     const std::size_t count = state.branches.size(), middle = count / 2;
     const std::vector<Section>& carrier = state.branches[middle].sections;
@@ -51,13 +51,13 @@ std::vector<Strand> strands_of(const TuftState& state, const TuftLook& look) {
             Section& s = strand.sections[i];
             if (i + 1 == strand.trunk && !state.wide) widest = 0;
             widest = std::max(widest, s.a);
-            if (look.dry) {
+            if (appearance.dry) {
                 const double grow = widest / s.a;
                 s.a *= grow;
                 s.b /= grow;
             }
             const double half = std::hypot(s.a * s.e.z, s.b * s.m.z);
-            s.centre.z = std::max(s.centre.z, look.ground + half);
+            s.centre.z = std::max(s.centre.z, appearance.ground + half);
         }
         out.push_back(std::move(strand));
     }
@@ -125,10 +125,10 @@ void fill_silhouette(BrushCanvas& canvas, const Strand& strand, const BrushView&
 }
 
 void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, const BrushView& view,
-                    const TuftLook& look) {
-    const std::vector<Strand> strands = strands_of(state, look);
+                    const TuftAppearance& appearance) {
+    const std::vector<Strand> strands = strands_of(state, appearance);
     const int count = static_cast<int>(strands.size());
-    if (!look.dry)
+    if (!appearance.dry)
         for (const Strand& strand : strands) fill_silhouette(canvas, strand, view, linear_colour(78, 55, 40));
     const std::vector<Bristle>& bristles = tuft.bundles.bristles;
     std::vector<Placed> placed;
@@ -157,7 +157,7 @@ void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& stat
         const std::vector<Section>& fine = strands[k].sections;
         const double readiness = bristles[h].readiness, n = static_cast<double>(fine.size());
         // Hairs end at unequal lengths; water draws all of them to the point.
-        const double short_by = look.dry ? 0.16 * readiness : 0.3 * readiness * readiness * glm::length(p.whole);
+        const double short_by = appearance.dry ? 0.16 * readiness : 0.3 * readiness * readiness * glm::length(p.whole);
         const auto stop = static_cast<std::size_t>(short_by * n);
         line.clear();
         width.clear();
@@ -166,7 +166,7 @@ void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& stat
             const std::optional<Vec2> at = p.at(strands[k], k, i);
             if (!at) continue;
             line.push_back(view(point_of(fine[i], *at)));
-            width.push_back(0.5 + (look.dry ? 0.7 : 1.1) * std::min(1.0, 4 * static_cast<double>(i - stop) / n));
+            width.push_back(0.5 + (appearance.dry ? 0.7 : 1.1) * std::min(1.0, 4 * static_cast<double>(i - stop) / n));
             lit += glm::dot(at->x * fine[i].e + at->y * fine[i].m, light);
         }
         if (line.size() < 2) continue;
@@ -248,8 +248,9 @@ void fill_wide_ferrule(BrushCanvas& canvas, const Preset& p, const Pose& pose, c
 
 }  // namespace
 
-void draw_brush(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, const Pose& pose, const BrushView& view,
-                double length, const TuftLook& look) {
+void draw_brush(BrushCanvas& canvas, const PosedTuft& posed, const BrushView& view, double length,
+                const TuftAppearance& appearance) {
+    const auto& [tuft, state, pose] = posed;
     const Preset& p = tuft.preset;
     const double r = tuft.wide() ? std::max(1.3 * p.radius, 0.3 * p.width) : 1.12 * rest_radius(p, 0);
     const Turned handle{
@@ -261,16 +262,16 @@ void draw_brush(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, c
         out.from = std::max(ferrule.to, 0.6 * p.width);
         if (into_mouth) fill_turned(canvas, out, pose, view);
         if (into_mouth) fill_wide_ferrule(canvas, p, pose, view, out.from, r);
-        draw_tuft_hair(canvas, tuft, state, view, look);
+        draw_tuft_hair(canvas, tuft, state, view, appearance);
         if (!into_mouth) fill_wide_ferrule(canvas, p, pose, view, out.from, r);
         if (!into_mouth) fill_turned(canvas, out, pose, view);
     } else if (into_mouth) {
         fill_turned(canvas, handle, pose, view);
         fill_turned(canvas, ferrule, pose, view);
-        draw_tuft_hair(canvas, tuft, state, view, look);
+        draw_tuft_hair(canvas, tuft, state, view, appearance);
     } else {
         // The near rim hides the roots; the handle stands in the ferrule.
-        draw_tuft_hair(canvas, tuft, state, view, look);
+        draw_tuft_hair(canvas, tuft, state, view, appearance);
         fill_turned(canvas, ferrule, pose, view);
         Turned out = handle;
         out.from = ferrule.to;
@@ -328,14 +329,14 @@ std::vector<Section> touching(const std::vector<Section>& sections) {
 }  // namespace
 
 void draw_patch(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, const BrushView& view, double y,
-                const TuftLook& look) {
+                const TuftAppearance& appearance) {
     const Vec3 ink = linear_colour(24, 22, 24);
     const auto plan = [&](const Vec3& p) {
         return Vec2{view.foot.x + view.scale * (p.x - view.origin.x), y + view.scale * (p.y - view.origin.y)};
     };
-    if (look.dry) {
+    if (appearance.dry) {
         // The lines of the bristles that lie on the sheet.
-        TuftLook as_pressed = look;
+        TuftAppearance as_pressed = appearance;
         as_pressed.ground = -1;
         const std::vector<Strand> strands = strands_of(state, as_pressed);
         const double width = 0.6;

@@ -20,18 +20,25 @@ struct BrushView {
     Vec3 toward() const { return glm::cross(right, up); }  ///< the viewer
 };
 
-struct TuftLook {
+struct TuftAppearance {
     bool dry = false;   ///< dry hair: no point, open marks
     double ground = 0;  ///< metres, height of the sheet; hair pressed below it is drawn on it
 };
 
+/// A tuft, its state and its pose. The references must outlive the call.
+struct PosedTuft {
+    const brush::Tuft& tuft;
+    const brush::TuftState& state;
+    const brush::Pose& pose;
+};
+
 /// Draws the tuft hair by hair, with the holder of `length` metres. Nearer parts hide farther ones, so the
 /// ferrule's rim covers the roots seen from above.
-void draw_brush(BrushCanvas& canvas, const brush::Tuft& tuft, const brush::TuftState& state, const brush::Pose& pose,
-                const BrushView& view, double length, const TuftLook& look = {});
+void draw_brush(BrushCanvas& canvas, const PosedTuft& posed, const BrushView& view, double length,
+                const TuftAppearance& appearance = {});
 
 /// Draws the contact patch seen from above with x to the right; its middle line is y = `y` of the picture.
 void draw_patch(BrushCanvas& canvas, const brush::Tuft& tuft, const brush::TuftState& state, const BrushView& view,
-                double y, const TuftLook& look = {});
+                double y, const TuftAppearance& appearance = {});
 
 }  // namespace tuft::render

@@ -251,16 +251,17 @@ namespace {
 // few pixels more or less. So more is drawn than is asked for; outside it stays as it was.
 constexpr int kBlock = 8;
 
-struct Seen {
+struct VisibleCluster {
     double nearest = 0;  // metres from the eye
     std::uint32_t cluster = 0;
 
-    auto operator<=>(const Seen&) const = default;
+    auto operator<=>(const VisibleCluster&) const = default;
 };
 
 // Clusters that reach into a part of the picture, the nearest first: always in the same order.
-std::vector<Seen> clusters_in(const std::vector<Cluster>& clusters, const GlCamera& c, const PixelRect& part) {
-    std::vector<Seen> seen;
+std::vector<VisibleCluster> clusters_in(const std::vector<Cluster>& clusters, const GlCamera& c,
+                                        const PixelRect& part) {
+    std::vector<VisibleCluster> seen;
     for (std::uint32_t i = 0; i < clusters.size(); ++i) {
         const Cluster& cluster = clusters[i];
         double x0 = 1e30, y0 = 1e30, x1 = -1e30, y1 = -1e30, nearest = 1e30;
@@ -332,14 +333,14 @@ void GlScene::draw_model(const GlCamera& c, const GlLight& light, const DrawOpti
     if (options.shading == Shading::triangles) {
         glDrawElements(GL_TRIANGLES, s.n_indices, GL_UNSIGNED_INT, nullptr);
     } else {
-        const std::vector<Seen> seen = clusters_in(s.clusters, c, {0, 0, c.width, c.height});
+        const std::vector<VisibleCluster> seen = clusters_in(s.clusters, c, {0, 0, c.width, c.height});
         s.asked = still;
         if (still && s.queries.empty()) {
             s.queries.resize(s.clusters.size());
             glGenQueries(static_cast<GLsizei>(s.queries.size()), s.queries.data());
         }
         if (still) s.hidden.assign(s.clusters.size(), 1);
-        for (const Seen& one : seen) {
+        for (const VisibleCluster& one : seen) {
             const Cluster& cluster = s.clusters[one.cluster];
             // What is nearer is drawn already: where not a sample is seen now, none will be.
             if (still) glBeginQuery(GL_ANY_SAMPLES_PASSED, s.queries[one.cluster]), s.hidden[one.cluster] = 0;
@@ -367,7 +368,7 @@ void GlScene::redraw_model(const GlCamera& c, const GlLight& light, const DrawOp
     glScissor(x, y, part.x + part.width + kBlock - x, part.y + part.height + kBlock - y);
     std::vector<GLsizei> counts;
     std::vector<const void*> starts;
-    for (const Seen& one : clusters_in(s.clusters, c, part)) {
+    for (const VisibleCluster& one : clusters_in(s.clusters, c, part)) {
         const Cluster& cluster = s.clusters[one.cluster];
         const bool meets = std::ranges::any_of(changed, [&](const GlBox& box) {
             return glm::all(glm::lessThanEqual(box.lo, cluster.hi)) && glm::all(glm::lessThanEqual(cluster.lo, box.hi));

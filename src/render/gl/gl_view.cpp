@@ -70,7 +70,7 @@ struct GlView::State {
     GlTarget plain;   // the same, resolved
     GlTarget over;    // copy of a part of `smooth` with the tuft over it
     std::optional<GlCamera> camera;
-    GlLook look;
+    GlAppearance appearance;
     bool is_smooth = false, slow = false, warm = false;
     std::vector<GlBox> changed;
 };
@@ -92,7 +92,7 @@ void GlView::warm_up(GlScene& scene, const Frame& f) {
     const PixelRect middle{c.width / 2, c.height / 2, 1, 1};
     const GlBox everything{Vec3f(-1e30f), Vec3f(1e30f)};
     s.smooth.bind();
-    scene.redraw_model(c, f.look.light, f.look.options, middle, std::span(&everything, 1));
+    scene.redraw_model(c, f.appearance.light, f.appearance.options, middle, std::span(&everything, 1));
     const double depth = 1.1 * c.near, size = 0.01 * depth;
     const Vec3 at = c.eye + depth * c.forward;
     GlSolid solid{.positions = {Vec3f(at - size * c.right), Vec3f(at + size * c.right), Vec3f(at + size * c.up)},
@@ -102,7 +102,7 @@ void GlView::warm_up(GlScene& scene, const Frame& f) {
     s.over.resize(c.width, c.height, kSamples);
     s.smooth.copy_to(s.over, middle);
     s.over.bind();
-    scene.draw_solid(c, f.look.light, solid, 0.5f);
+    scene.draw_solid(c, f.appearance.light, solid, 0.5f);
     glFinish();
 }
 
@@ -112,10 +112,10 @@ void GlView::draw(GlScene& scene, const Frame& f) {
     const PixelRect all{0, 0, c.width, c.height};
     const auto paint = [&](GlTarget& target, bool still) {
         target.bind();
-        scene.draw_backdrop(c, f.look.low, f.look.high);
-        scene.draw_model(c, f.look.light, f.look.options, still);
+        scene.draw_backdrop(c, f.appearance.low, f.appearance.high);
+        scene.draw_model(c, f.appearance.light, f.appearance.options, still);
     };
-    const bool same = s.camera && *s.camera == c && s.look == f.look;
+    const bool same = s.camera && *s.camera == c && s.appearance == f.appearance;
     const bool spare = s.slow && f.moving;
     if (!same || (!s.is_smooth && !spare)) {
         const auto before = std::chrono::steady_clock::now();
@@ -131,14 +131,14 @@ void GlView::draw(GlScene& scene, const Frame& f) {
         if (!spare) s.slow = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count() > kSlow;
         s.is_smooth = !spare;
         s.camera = c;
-        s.look = f.look;
+        s.appearance = f.appearance;
         if (!spare && !std::exchange(s.warm, true)) warm_up(scene, f);
-    } else if (!s.changed.empty() && f.look.options.shading != Shading::triangles) {
+    } else if (!s.changed.empty() && f.appearance.options.shading != Shading::triangles) {
         std::vector<PixelRect> parts;
         for (const GlBox& box : s.changed) add(parts, part_of(c, box.lo, box.hi));
         for (const PixelRect& part : parts) {
             (s.is_smooth ? s.smooth : s.plain).bind();
-            scene.redraw_model(c, f.look.light, f.look.options, part, s.changed);
+            scene.redraw_model(c, f.appearance.light, f.appearance.options, part, s.changed);
             if (s.is_smooth) s.smooth.copy_to(s.plain, part);
         }
     }
@@ -152,7 +152,7 @@ void GlView::draw(GlScene& scene, const Frame& f) {
     s.over.resize(c.width, c.height, s.is_smooth ? kSamples : 0);
     under.copy_to(s.over, part);
     s.over.bind();
-    scene.draw_solid(c, f.look.light, *f.solid, f.opacity);
+    scene.draw_solid(c, f.appearance.light, *f.solid, f.opacity);
     s.over.resolve_to(f.framebuffer, part, f.x, f.y);
 }
 

@@ -10,12 +10,12 @@
 namespace tuft::render {
 
 /// Appearance of the model, without the camera.
-struct GlLook {
+struct GlAppearance {
     DrawOptions options;
     GlLight light;
     Vec3f low{0.25f}, high{0.4f};  ///< backdrop, sRGB-encoded
 
-    bool operator==(const GlLook&) const = default;
+    bool operator==(const GlAppearance&) const = default;
 };
 
 /// An antialiased view of a scene. The picture of the model is cached while the camera does not move. New ink is
@@ -35,7 +35,7 @@ class GlView {
 
     struct Frame {
         GlCamera camera;
-        GlLook look;
+        GlAppearance appearance;
         const GlSolid* solid = nullptr;  ///< drawn over the model, or nullptr
         float opacity = 1;               ///< of the solid
         bool moving = false;             ///< camera changes follow: fast, without smooth edges

@@ -43,12 +43,12 @@ LightSamples share_samples(int total) {
     return {{key, other, other}, std::max(1, total - key - 2 * other)};
 }
 
-Sight look(const Scene& scene, const Camera& camera, const Vec3f& direction) {
-    Sight s;
+ViewHit trace_view_ray(const Scene& scene, const Camera& camera, const Vec3f& direction) {
+    ViewHit s;
     const Vec3f eye(camera.eye);
     const mesh::RayHit hit = scene.query.trace(eye, direction, 0, kInfinity);
     if (hit.triangle != kNone) {
-        s.seen = Seen::object;
+        s.kind = HitKind::object;
         s.triangle = hit.triangle;
         s.b1 = hit.b1;
         s.b2 = hit.b2;
@@ -72,15 +72,16 @@ Sight look(const Scene& scene, const Camera& camera, const Vec3f& direction) {
         s.position = eye + (scene.studio.floor_z - eye.z) / direction.z * direction;
         const Vec2f from_centre =
             Vec2f{s.position.x, s.position.y} - Vec2f{scene.studio.centre.x, scene.studio.centre.y};
-        if (glm::length(from_centre) < 8 * scene.studio.radius) s.seen = Seen::floor;
+        if (glm::length(from_centre) < 8 * scene.studio.radius) s.kind = HitKind::floor;
     }
     return s;
 }
 
-Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at, const LightSamples& samples, int x,
-                   int y, std::uint64_t seed) {
+Light sample_light(const Scene& scene, const LightCache& cache, const ViewHit& at, const LightSamples& samples,
+                   const PixelSeed& pixel) {
+    const auto& [x, y, seed] = pixel;
     Light light;
-    const bool floor = at.seen == Seen::floor;
+    const bool floor = at.kind == HitKind::floor;
     const Vec3f start = at.position + scene.offset * at.face;
     for (std::size_t b = 0; b < samples.boxes.size(); ++b) {
         const Vec2f shift = lattice_shift(x, y, seed, b);
@@ -114,7 +115,7 @@ Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at,
     return light;
 }
 
-bool LightBuffer::find(float x, float y, const Sight& at, float pixel_size, Light& out) const {
+bool LightBuffer::find(float x, float y, const ViewHit& at, float pixel_size, Light& out) const {
     const float px = x - 0.5f, py = y - 0.5f;
     const int i0 = static_cast<int>(std::floor(px)), j0 = static_cast<int>(std::floor(py));
     Light sum;
@@ -122,8 +123,8 @@ bool LightBuffer::find(float x, float y, const Sight& at, float pixel_size, Ligh
     const auto add = [&](int i, int j, float weight) {
         if (i < 0 || j < 0 || i >= width || j >= height) return;
         const std::size_t k = static_cast<std::size_t>(j) * width + i;
-        const Sight& there = sights[k];
-        if (there.seen != at.seen) return;
+        const ViewHit& there = hits[k];
+        if (there.kind != at.kind) return;
         const float off = std::abs(glm::dot(at.face, there.position - at.position)) / (2 * pixel_size);
         const float cosine = glm::dot(at.normal, there.normal);
         if (off > 3 || cosine < 0.7f) return;
@@ -152,7 +153,7 @@ LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const
     buffer.width = camera.width;
     buffer.height = camera.height;
     const std::size_t n = static_cast<std::size_t>(camera.width) * camera.height;
-    buffer.sights.resize(n);
+    buffer.hits.resize(n);
     buffer.light.resize(n);
     std::vector<Vec2f> variance(n, Vec2f{0});
     constexpr int kBand = 32;  // rows between two reports
@@ -164,11 +165,12 @@ LightBuffer fill_light_buffer(const Scene& scene, const LightCache& cache, const
                 const std::size_t k = static_cast<std::size_t>(top) * camera.width + i;
                 const double x = static_cast<double>(k % camera.width) + 0.5;
                 const double y = static_cast<double>(k / camera.width) + 0.5;
-                Sight& s = buffer.sights[k];
-                s = look(scene, camera, Vec3f(ray_direction(camera, x, y)));
-                if (s.seen != Seen::backdrop)
-                    buffer.light[k] = sample_light(scene, cache, s, options.samples, static_cast<int>(k % camera.width),
-                                                   static_cast<int>(k / camera.width), options.seed);
+                ViewHit& s = buffer.hits[k];
+                s = trace_view_ray(scene, camera, Vec3f(ray_direction(camera, x, y)));
+                if (s.kind != HitKind::backdrop)
+                    buffer.light[k] = sample_light(
+                        scene, cache, s, options.samples,
+                        {static_cast<int>(k % camera.width), static_cast<int>(k / camera.width), options.seed});
             }
         });
     }

@@ -12,18 +12,18 @@
 /// shadows preserved. Called by picture.h.
 namespace tuft::render {
 
-enum class Seen : std::uint8_t { backdrop, floor, object };
+enum class HitKind : std::uint8_t { backdrop, floor, object };
 
 /// A surface seen through a picture position.
-struct Sight {
-    Seen seen = Seen::backdrop;
+struct ViewHit {
+    HitKind kind = HitKind::backdrop;
     std::uint32_t triangle = kNone;
     float b1 = 0, b2 = 0;
     Vec3f position{0};
     Vec3f normal{0, 0, 1};  ///< unit, smooth, towards the eye
     Vec3f face{0, 0, 1};    ///< unit, of the flat triangle, towards the eye
 };
-Sight look(const Scene& scene, const Camera& camera, const Vec3f& direction);
+ViewHit trace_view_ray(const Scene& scene, const Camera& camera, const Vec3f& direction);
 
 /// Light at a point: from the boxes, and from everything else. On the floor both are
 /// differences to the empty studio, so that they vanish where the object does nothing.
@@ -37,19 +37,25 @@ struct LightSamples {
 };
 LightSamples share_samples(int total);
 
-/// Monte Carlo estimate of the light at a sight in pixel (x, y).
-Light sample_light(const Scene& scene, const LightCache& cache, const Sight& at, const LightSamples& samples, int x,
-                   int y, std::uint64_t seed);
+/// A pixel and the seed of the picture: together they fix the random numbers of the pixel.
+struct PixelSeed {
+    int x = 0, y = 0;  ///< from the upper left
+    std::uint64_t seed = 0;
+};
+
+/// Returns a Monte Carlo estimate of the light at a sight of a pixel.
+Light sample_light(const Scene& scene, const LightCache& cache, const ViewHit& at, const LightSamples& samples,
+                   const PixelSeed& pixel);
 
 /// Per pixel, row-major from the top.
 struct LightBuffer {
     int width = 0, height = 0;
-    std::vector<Sight> sights;
+    std::vector<ViewHit> hits;
     std::vector<Light> light;
 
     /// Light for any sight seen through (x, y), from the pixels round it that show the same
     /// surface. False when none does.
-    bool find(float x, float y, const Sight& at, float pixel_size, Light& light) const;
+    bool find(float x, float y, const ViewHit& at, float pixel_size, Light& light) const;
 };
 
 struct LightBufferOptions {

@@ -56,7 +56,7 @@ Vec3f mirrored(const Shading& f, const Vec3f& p, const Vec3f& d, float roughness
     return dome_radiance(studio, d) + box_radiance(studio, p, d, roughness);
 }
 
-Vec3f shade_object(const Shading& f, const Sight& s, Light light, const Vec3f& view) {
+Vec3f shade_object(const Shading& f, const ViewHit& s, Light light, const Vec3f& view) {
     const Material m = f.scene.material.read(s.triangle, s.b1, s.b2);
     Vec3f n = s.normal;
     if (m.slope != Vec3f{0}) {
@@ -89,15 +89,15 @@ Vec3f shade_object(const Shading& f, const Sight& s, Light light, const Vec3f& v
 
 Vec3f shade(const Shading& f, float x, float y, std::uint64_t seed) {
     const Vec3f direction(ray_direction(f.camera, x, y));
-    const Sight s = look(f.scene, f.camera, direction);
+    const ViewHit s = trace_view_ray(f.scene, f.camera, direction);
     const Vec3f back = backdrop(x / static_cast<float>(f.camera.width), y / static_cast<float>(f.camera.height));
-    if (s.seen == Seen::backdrop) return back;
+    if (s.kind == HitKind::backdrop) return back;
     Light light;
     const float pixel = f.pixel_angle * glm::length(s.position - Vec3f(f.camera.eye));
     if (!f.buffer.find(x, y, s, pixel, light))
-        light = sample_light(f.scene, f.cache, s, share_samples(2 * f.options.light_samples), static_cast<int>(x),
-                             static_cast<int>(y), seed);
-    if (s.seen == Seen::object) return shade_object(f, s, light, -direction);
+        light = sample_light(f.scene, f.cache, s, share_samples(2 * f.options.light_samples),
+                             {static_cast<int>(x), static_cast<int>(y), seed});
+    if (s.kind == HitKind::object) return shade_object(f, s, light, -direction);
     const Vec3f open = f.cache.open_floor_light(s.position.x, s.position.y);
     return back * glm::max(1.0f + (light.direct + light.around) / open, 0.02f);
 }
@@ -107,20 +107,26 @@ Vec3f shown_codes(const Vec3f& light) {
     return {encode_srgb(light.x), encode_srgb(light.y), encode_srgb(light.z)};
 }
 
+/// Extremes of the colours of a pixel's rays.
+struct ColourRange {
+    Vec3f lo{kInfinity}, hi{-kInfinity};
+};
+
 /// The sum of rays [from, to) of a pixel under a tent filter of radius one pixel; clipped light, so that
-/// bright edges come out smooth. Widens `lo` and `hi` by what the rays show.
-Vec3f draw_rays(const Shading& f, int x, int y, std::uint64_t seed, int from, int to, Vec3f& lo, Vec3f& hi) {
-    const Vec2f shift = hash_point(seed, 0);
+/// bright edges come out smooth. Widens `range` by their colours.
+Vec3f draw_rays(const Shading& f, const PixelSeed& pixel, int from, int to, ColourRange& range) {
+    const Vec2f shift = hash_point(pixel.seed, 0);
     const auto tent = [](float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); };
     Vec3f sum{0};
     for (int n = from; n < to; ++n) {
         const Vec2f s = wrap(sobol_point(static_cast<std::uint32_t>(n)) + shift);
-        const float sx = static_cast<float>(x) + 0.5f + tent(s.x), sy = static_cast<float>(y) + 0.5f + tent(s.y);
-        const Vec3f c = shade(f, sx, sy, hash_bits(seed, static_cast<std::uint64_t>(n) + 1));
+        const float x = static_cast<float>(pixel.x) + 0.5f + tent(s.x),
+                    y = static_cast<float>(pixel.y) + 0.5f + tent(s.y);
+        const Vec3f c = shade(f, x, y, hash_bits(pixel.seed, static_cast<std::uint64_t>(n) + 1));
         const Vec3f shown{shoulder(c.x), shoulder(c.y), shoulder(c.z)};
         sum += shown;
-        lo = glm::min(lo, shown);
-        hi = glm::max(hi, shown);
+        range.lo = glm::min(range.lo, shown);
+        range.hi = glm::max(range.hi, shown);
     }
     return sum;
 }
@@ -131,14 +137,14 @@ Vec3f draw_rays(const Shading& f, int x, int y, std::uint64_t seed, int from, in
 Vec3f pixel_colour(const Shading& f, bool on_edge, int x, int y) {
     constexpr float kContrast = 8.0f / 255, kAgreement = 5.0f / 255;  // codes: the eye sees most where it is dark
     constexpr int kMostRays = 8;                                      // times edge_samples
-    const std::uint64_t seed = hash_bits(f.options.seed + 1, static_cast<std::uint64_t>(y) * f.camera.width + x);
-    Vec3f lo{kInfinity}, hi{-kInfinity};
+    const PixelSeed pixel{x, y, hash_bits(f.options.seed + 1, static_cast<std::uint64_t>(y) * f.camera.width + x)};
+    ColourRange range;
     int n = std::max(1, f.options.edge_samples / 4);
-    Vec3f sum = draw_rays(f, x, y, seed, 0, n, lo, hi);
-    if (!on_edge && glm::length(shown_codes(hi) - shown_codes(lo)) < kContrast)
+    Vec3f sum = draw_rays(f, pixel, 0, n, range);
+    if (!on_edge && glm::length(shown_codes(range.hi) - shown_codes(range.lo)) < kContrast)
         return shown_codes(sum / static_cast<float>(n));
     while (n < kMostRays * f.options.edge_samples) {
-        const Vec3f more = draw_rays(f, x, y, seed, n, 2 * n, lo, hi);
+        const Vec3f more = draw_rays(f, pixel, n, 2 * n, range);
         const Vec3f gap =
             glm::abs(shown_codes(sum / static_cast<float>(n)) - shown_codes(more / static_cast<float>(n)));
         sum += more;
@@ -191,13 +197,16 @@ Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& q
         throw Error("a picture of " + std::to_string(options.width) + "x" + std::to_string(options.height) +
                     " is too large; at most 40 million pixels");
     const MaterialReader material(mesh, appearance);
-    Scene scene{
-        mesh, query, material,
-        options.lights == Lights::raking
-            ? make_raking_studio(mesh.bounds, Vec3f(camera.right), Vec3f(camera.up), Vec3f(camera.forward),
-                                 options.light_azimuth, options.floor, options.exposure)
-            : make_studio(mesh.bounds, options.view.azimuth, options.light_azimuth, options.floor, options.exposure),
-        0};
+    Scene scene{mesh, query, material,
+                options.lights == Lights::raking ? make_raking_studio(mesh.bounds, {.right = Vec3f(camera.right),
+                                                                                    .up = Vec3f(camera.up),
+                                                                                    .forward = Vec3f(camera.forward),
+                                                                                    .turn = options.light_azimuth,
+                                                                                    .floor = options.floor,
+                                                                                    .exposure = options.exposure})
+                                                 : make_studio(mesh.bounds, options.view.azimuth, options.light_azimuth,
+                                                               options.floor, options.exposure),
+                0};
     scene.offset = 2e-5f * scene.studio.radius + 2e-7f * glm::length(scene.studio.centre);
     report(options.progress, "bounces", 0);
     const LightCache cache(scene);

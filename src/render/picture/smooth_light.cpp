@@ -12,9 +12,9 @@ float luma(const Vec3f& c) {
 }
 
 /// Part of the geometric weight between two pixels: 0 across edges, 1 on one smooth surface.
-float likeness(const Sight& a, const Sight& b, float reach) {
-    if (a.seen != b.seen) return 0;
-    if (a.seen == Seen::floor) return 1;
+float likeness(const ViewHit& a, const ViewHit& b, float reach) {
+    if (a.kind != b.kind) return 0;
+    if (a.kind == HitKind::floor) return 1;
     const float cosine = glm::dot(a.normal, b.normal);
     if (cosine < 0.8f) return 0;
     const Vec3f d = b.position - a.position;
@@ -27,10 +27,10 @@ float likeness(const Sight& a, const Sight& b, float reach) {
 /// Mean and variance of each part over the 7 × 7 pixels of the same surface.
 void local_variance(const LightBuffer& in, const Camera& camera, std::vector<Vec2f>& variance) {
     const float per_metre = static_cast<float>(2 * camera.tan_half_height / camera.height);
-    parallel_for(in.sights.size(), 2048, [&](std::size_t begin, std::size_t end) {
+    parallel_for(in.hits.size(), 2048, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            const Sight& s = in.sights[k];
-            if (s.seen == Seen::backdrop) continue;
+            const ViewHit& s = in.hits[k];
+            if (s.kind == HitKind::backdrop) continue;
             const int x = static_cast<int>(k % in.width), y = static_cast<int>(k / in.width);
             const float reach = 3 * per_metre * glm::length(s.position - Vec3f(camera.eye));
             float w_sum = 0;
@@ -38,7 +38,7 @@ void local_variance(const LightBuffer& in, const Camera& camera, std::vector<Vec
             for (int j = std::max(0, y - 3); j <= std::min(in.height - 1, y + 3); ++j)
                 for (int i = std::max(0, x - 3); i <= std::min(in.width - 1, x + 3); ++i) {
                     const std::size_t q = static_cast<std::size_t>(j) * in.width + i;
-                    const float w = likeness(s, in.sights[q], reach);
+                    const float w = likeness(s, in.hits[q], reach);
                     if (w <= 0) continue;
                     const Vec2f l{luma(in.light[q].direct), luma(in.light[q].around)};
                     w_sum += w;
@@ -63,10 +63,10 @@ void smooth_light(LightBuffer& buffer, std::vector<Vec2f>& variance, const Camer
     std::vector<Vec2f> out_variance(variance.size());
     for (int pass = 0; pass < kPasses; ++pass) {
         const int step = 1 << pass;
-        parallel_for(buffer.sights.size(), 2048, [&](std::size_t begin, std::size_t end) {
+        parallel_for(buffer.hits.size(), 2048, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
-                const Sight& s = buffer.sights[k];
-                if (s.seen == Seen::backdrop) continue;
+                const ViewHit& s = buffer.hits[k];
+                if (s.kind == HitKind::backdrop) continue;
                 const int x = static_cast<int>(k % buffer.width), y = static_cast<int>(k / buffer.width);
                 const float reach = (1 + step) * per_metre * glm::length(s.position - Vec3f(camera.eye));
                 const Vec2f centre{luma(buffer.light[k].direct), luma(buffer.light[k].around)};
@@ -81,7 +81,7 @@ void smooth_light(LightBuffer& buffer, std::vector<Vec2f>& variance, const Camer
                         if (i < 0 || i >= buffer.width) continue;
                         const std::size_t q = static_cast<std::size_t>(j) * buffer.width + i;
                         float w = kernel[std::abs(di)] * kernel[std::abs(dj)];
-                        if (q != k) w *= likeness(s, buffer.sights[q], reach);
+                        if (q != k) w *= likeness(s, buffer.hits[q], reach);
                         if (w <= 0) continue;
                         const Light& l = buffer.light[q];
                         const Vec2f gap = glm::abs(Vec2f{luma(l.direct), luma(l.around)} - centre) * tolerance;

@@ -55,8 +55,8 @@ Studio make_studio(const Box& bounds, double azimuth, double turn, bool floor, d
     return s;
 }
 
-Studio make_raking_studio(const Box& bounds, const Vec3f& right, const Vec3f& up, const Vec3f& forward, double turn,
-                          bool floor, double exposure) {
+Studio make_raking_studio(const Box& bounds, const RakingLight& light) {
+    const auto& [right, up, forward, turn, floor, exposure] = light;
     constexpr float kGrazing = 0.23f;         // sine of the lamp's height over a face that looks at the camera
     constexpr float kFar = 6, kLamp = 0.35f;  // radii
     Studio s;
@@ -75,8 +75,8 @@ Studio make_raking_studio(const Box& bounds, const Vec3f& right, const Vec3f& up
                           Vec3f{330.0f, 322.0f, 308.0f});
     for (int k = 1; k < 3; ++k)  // switched off
         s.boxes[k] = make_box(s.centre - kFar * s.radius * forward, s.centre, s.radius, s.radius, Vec3f{0});
-    const Vec3f light = open_light(s, s.centre, -forward);
-    s.scale = static_cast<float>(exposure) * 0.62f * 3 / (light.x + light.y + light.z);
+    const Vec3f received = open_light(s, s.centre, -forward);
+    s.scale = static_cast<float>(exposure) * 0.62f * 3 / (received.x + received.y + received.z);
     for (SoftBox& box : s.boxes) box.radiance *= s.scale;
     return s;
 }

@@ -35,11 +35,17 @@ struct Studio {
 /// Exposed so that a white matt face turned half up, half to the key light shows `white`.
 Studio make_studio(const Box& bounds, double azimuth, double turn, bool floor, double exposure);
 
-/// Studio with one small lamp that grazes what the camera sees, from its left (turned by `turn`
-/// clockwise about its axis), and little light from all round: it shows relief. `right`, `up` and
-/// `forward` are the camera's, unit. Exposed as above for a face that looks at the camera.
-Studio make_raking_studio(const Box& bounds, const Vec3f& right, const Vec3f& up, const Vec3f& forward, double turn,
-                          bool floor, double exposure);
+/// Camera and light of a studio with raking light.
+struct RakingLight {
+    Vec3f right{1, 0, 0}, up{0, 0, 1}, forward{0, 1, 0};  ///< unit, of the camera, world frame
+    double turn = 0;                                      ///< radians, of the lamp clockwise about `forward`
+    bool floor = true;
+    double exposure = 1;  ///< > 0, as in `make_studio`
+};
+
+/// Returns a studio that shows relief: one small lamp grazes the surfaces that the camera sees, from its left, and a
+/// dim dome surrounds them. Exposed as above for a face towards the camera.
+Studio make_raking_studio(const Box& bounds, const RakingLight& light);
 
 /// Radiance of the dome from a direction (unit).
 Vec3f dome_radiance(const Studio& studio, const Vec3f& direction);

@@ -27,7 +27,7 @@ footprint::Motion joined_motion(const Stamp& stamp, double texel) {
 
 footprint::StampOptions stamp_options(const footprint::StampOptions& base, const Stamp& stamp) {
     footprint::StampOptions options = base;
-    options.passes_over = stamp.separation;
+    options.max_weight = stamp.separation;
     return options;
 }
 

@@ -18,7 +18,7 @@ class MixedDeposit : public DepositModel {
         const ink::NodeMixes mixes = ink::mixes_within(
             reservoir, contact.hair.nodes(), static_cast<double>(stamp.ink.target), covered_area(stamp.footprint));
         const ink::NodeContents given = exposure_.deposit(stamp.ink, mixes, stamp.ds);
-        ink::spend(reservoir, given, contact.hair.nodes());
+        ink::withdraw_contents(reservoir, given, contact.hair.nodes());
         double sum = 0;
         for (const ink::Reservoir::Content& node : given)
             for (const double v : node) sum += v;

@@ -38,7 +38,7 @@ class PasteDeposit : public DepositModel {
         const ink::PasteParams params = paste_params(stamp, tuft, contact, area);
         const StampExposure::Exchanged exchanged = exposure_.plough(
             params, ink::mixes_within(reservoir, hair.nodes(), static_cast<double>(stamp.ink.target), patch), stamp.ds);
-        ink::spend(reservoir, exchanged.given, hair.nodes());
+        ink::withdraw_contents(reservoir, exchanged.given, hair.nodes());
         ink::absorb(reservoir, exchanged.taken, hair.nodes(), hair.cells());
         double sum = 0;
         for (int node = 0; node < ink::kNodes; ++node)
@@ -67,7 +67,7 @@ class PasteDeposit : public DepositModel {
             .capacity = static_cast<double>(stamp.ink.capacity),
             .dig = pressed(kDig),
             .exchange = -std::expm1(-stamp.ds / kMixLength),
-            .room = area > 0 ? ink::room_left(tuft.brush.reservoir, contact.hair.cells()) / area : 0};
+            .free_capacity = area > 0 ? ink::free_capacity(tuft.brush.reservoir, contact.hair.cells()) / area : 0};
         params.furrows = ink::furrow_depths(furrows_.advance(tuft, contact.hair, contact.motion.travel),
                                             {.width = stamp.grid.step.y * (ink::kAcross - 1),
                                              .film = target * ink::kFilmUnit,

@@ -60,7 +60,7 @@ void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const i
         const Stamp& stamp = batch_[stamps[k].stamp];
         if (mask) mask->apply(slot, exposure);
         if (!erased.empty()) {
-            erased[k] = ink::erase(target_.canvas(), slot, exposure, tile.area, stamp.ds, erase_starts_.at(slot),
+            erased[k] = ink::erase(target_.canvas(), {slot, exposure, tile.area, stamp.ds}, erase_starts_.at(slot),
                                    {.strength = stamp.erases});
             continue;
         }

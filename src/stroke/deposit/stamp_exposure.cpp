@@ -10,6 +10,12 @@ void add(ink::NodeContents& sum, const ink::NodeContents& part) {
         for (int p = 0; p < ink::Reservoir::kPlanes; ++p) sum[node][p] += part[node][p];
 }
 
+// `tile`: a StampExposure::Tile.
+template <class Tile>
+ink::StampedTile stamped(const Tile& tile, const StampTarget& target, double ds) {
+    return {tile.slot, tile.exposure, target.texels().tiles[tile.slot].area, ds};
+}
+
 }  // namespace
 
 StampExposure::StampExposure(StampTarget& target, const footprint::StampOptions& options)
@@ -83,15 +89,13 @@ ink::NodeContents StampExposure::exchange(const ink::TransferParams& params, dou
     return act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
         if (canvas.has_film(tile.slot, ink::kOpenFilm))
             ink::bed_paste(canvas, tile.slot, ink::paste_height(canvas, tile.slot), tile.exposure, loose);
-        ink::transfer(canvas, tile.slot, tile.exposure, tile.places, basis, target_.texels().tiles[tile.slot].area, ds,
-                      params, tile.given);
+        ink::transfer(canvas, {stamped(tile, target_, ds), tile.places, basis}, params, tile.given);
     });
 }
 
 ink::NodeContents StampExposure::deposit(const ink::DepositParams& params, const ink::NodeMixes& mixes, double ds) {
     return act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
-        ink::deposit_mixed(target_.canvas(), tile.slot, tile.exposure, basis, target_.texels().tiles[tile.slot].area,
-                           ds, params, mixes, tile.given);
+        ink::deposit_mixed(target_.canvas(), stamped(tile, target_, ds), basis, params, mixes, tile.given);
     });
 }
 
@@ -101,9 +105,8 @@ StampExposure::Exchanged StampExposure::plough(const ink::PasteParams& params, c
             pastes_.emplace(tile.slot, std::make_unique<ink::Plane>(ink::open_pigment(target_.canvas(), tile.slot)));
     Exchanged exchanged;
     exchanged.given = act_on_tiles([&](Tile& tile, const ink::HatBasis& basis) {
-        ink::lay_paste(target_.canvas(), tile.slot, tile.exposure, tile.places, basis,
-                       target_.texels().tiles[tile.slot].area, ds, params, mixes, *pastes_.at(tile.slot), tile.given,
-                       tile.taken);
+        ink::deposit_paste(target_.canvas(), {stamped(tile, target_, ds), tile.places, basis}, params, mixes,
+                           *pastes_.at(tile.slot), {tile.given, tile.taken});
     });
     for (const Tile& tile : tiles_) add(exchanged.taken, tile.taken);
     return exchanged;

@@ -132,7 +132,7 @@ void StrokeSession::set_ink(Stamp& stamp, double area) const {
         .area = area * static_cast<double>(deposit_->stamps_per_batch()),
         .pending = deposit_->pending(),
         .by_hair = static_cast<double>(stamp.separation),
-        .touch = hair_.cells()};
+        .cells = hair_.cells()};
     stamp.ink = ink::stamp_deposit(tuft_.brush.reservoir, tuft_.ink, touch, input_.substrate);
     stamp.ink.capacity = std::max(input_.substrate.capacity, static_cast<float>(ink::standing_film(tuft_.ink.yield)));
 }
