@@ -90,7 +90,7 @@ Image8 decode_image8(const std::vector<char>& bytes, const std::string& name, st
 
 /// Reads a PNG, EXR, JPEG or TIFF file into the asked type, colours as stored (no
 /// conversion but that of the number range). Throws `Error` for damaged files and for
-/// pictures of more than `max_pixels`, before memory is taken.
+/// pictures of more than `max_pixels` or than half of the free memory, before memory is taken.
 Image8 read_image8(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
 Image16 read_image16(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
 ImageF read_image_float(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
