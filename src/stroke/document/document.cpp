@@ -1,5 +1,7 @@
 #include "stroke/document/document.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -25,6 +27,8 @@ Document& Document::operator=(Document&&) noexcept = default;
 void Document::use_brush(const brush::Preset& preset) {
     brushes_[preset.name] = preset;
     held_.erase(preset.name);
+    tip_lags_.erase(preset.name);
+    tilted_tip_lags_.erase(preset.name);
 }
 void Document::use_ink(const ink::Ink& ink) {
     inks_[ink.name] = ink;
@@ -183,12 +187,29 @@ void check_width(const brush::Preset& preset, double texel) {
     constexpr double kWidest = 2048;  // texels
     const double width = 2 * preset.radius;
     if (width > kWidest * texel)
-        throw Error("the brush is " + std::to_string(1e3 * width) + " mm wide, " +
-                    std::to_string(static_cast<long long>(width / texel)) + " texels of this model, more than " +
-                    std::to_string(static_cast<int>(kWidest)) + ": use a larger texel size or a smaller brush");
+        throw Error(
+            fmt::format("the brush is {:.3g} mm wide, {:.0f} texels of this model, more than {:.0f}: use a larger "
+                        "texel size or a smaller brush",
+                        1e3 * width, width / texel, kWidest));
 }
 
 }  // namespace
+
+void Document::check_size(const JournalEntry& entry) {
+    const PaintStroke* stroke = entry.as<PaintStroke>();
+    if (!stroke || on_palette(entry)) return;
+    const brush::Preset& preset = brush(stroke->brush);
+    const double texel = model_->texels.texel_size;
+    check_width(preset, texel);
+    if (!stroke->trace.flat) return;
+    // On the surface the hand's path is longer or shorter than what was drawn; twice as short it is nowhere.
+    constexpr double kShorter = 2;
+    const ink::Ink& ink = stroke->erases() || stroke->ink.empty() ? ink::Ink{} : this->ink(stroke->ink);
+    std::vector<brush::Pose> drawn;
+    for (const StrokeSample& s : steady(stroke->trace, stroke->settings).samples)
+        drawn.push_back({.position = {s.position.x, s.position.y, 0}, .time = s.time});
+    check_path_length(drawn, {.step = kShorter * pose_spacing(*stroke, ink, texel), .lever = preset.length});
+}
 
 void Document::begin(JournalEntry entry) {
     check_layer(entry);
@@ -291,6 +312,7 @@ StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const P
     session_->set_progress(progress);
     session_->begin_with_set_down(path.set_down);
     try {
+        session_->check_length(poses);
         for (std::size_t i = 0; i < poses.size(); ++i)
             session_->advance(std::span(poses).subspan(i, 1),
                               static_cast<double>(i + 1) / static_cast<double>(poses.size()));

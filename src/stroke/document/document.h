@@ -84,7 +84,11 @@ class Document {
     /// fresh: its entry is kept in the journal as "each", so that a replay is the same.
     StrokeReport paint(JournalEntry entry, const ProgressFn& progress = {});
 
-    /// The same in pieces for poses in space: `begin`, any number of `extend`, `end`.
+    /// Throws the `Error` of `paint` for a stroke of the model whose brush is too wide for its texels, or which is at
+    /// least twice as long as one that is painted; before anything is painted, and without mapping it to the surface.
+    void check_size(const JournalEntry& entry);
+
+    /// `paint` in pieces for poses in space: `begin`, any number of `extend`, `end`.
     /// `entry` holds a `PaintStroke`, whose samples may be empty. `cancel` takes it back instead.
     void begin(JournalEntry entry);
     void extend(std::span<const brush::Pose> poses);

@@ -44,6 +44,13 @@ std::string size_fault(const std::vector<JournalEntry>& entries,
                        const std::function<double(const std::string& brush)>& length_of,
                        const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised);
 
+/// The same of new strokes, which have no former model: it is too small where its diagonal is less than a quarter of
+/// the drawing's, all flat strokes together where they are placed, and less than the length of a tuft that paints them.
+/// What is in space says by itself where it is, and counts for nothing.
+std::string size_fault(const std::vector<JournalEntry>& entries,
+                       const std::function<double(const std::string& brush)>& length_of,
+                       const mesh::SurfaceQuery& model);
+
 /// Compares the surfaces along the hair: at each sample of a stroke in space rays leave the
 /// ferrule's mouth along its axis, one tuft's length to both sides; flat strokes are laid on both
 /// models. `length_of` gives a brush's tuft length, `motion` how the model moved as a whole. Hidden

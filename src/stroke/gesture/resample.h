@@ -10,10 +10,10 @@
 namespace tuft::stroke {
 
 struct ResampleOptions {
-    double step = 1e-4;   ///< metres between two poses, in the measure below
-    double lever = 0.02;  ///< metres: what a turn by one radian counts as (the tuft's length)
-    double drift = 2e-3;  ///< m/s: what resting counts as, so that a dwell keeps its time
-    std::size_t max_poses = 4'000'000;
+    double step = 1e-4;                 ///< metres between two poses, in the measure below
+    double lever = 0.02;                ///< metres: what a turn by one radian counts as (the tuft's length)
+    double drift = 2e-3;                ///< m/s: what resting counts as, so that a dwell keeps its time
+    std::size_t max_poses = 1'000'000;  ///< some ten minutes of painting
 };
 
 /// Poses at even steps along the path of the hand, as samples arrive: the first one,
@@ -53,6 +53,10 @@ class Resampler {
     std::vector<std::uint32_t> merged_;  ///< for each sample pushed, which of those that differ it is
     std::vector<double> places_;         ///< of those that differ
 };
+
+/// Throws the `Error` of `Resampler` where the samples are farther apart than `max_poses` steps in all: before the
+/// first pose is taken, and never for a path that `Resampler` takes. Cost: linear.
+void check_path_length(std::span<const brush::Pose> poses, const ResampleOptions& options);
 
 /// All at once.
 std::vector<brush::Pose> resample(std::span<const brush::Pose> poses, const ResampleOptions& options = {});

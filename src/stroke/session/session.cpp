@@ -17,30 +17,30 @@ constexpr double kPrintTravel = 1e-4;  // metres that dry hair slides after it c
 // Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
 constexpr double kPasteSpacing = 1e-4, kPasteCell = 4e-5;
 
-bool is_paste(const SessionInput& in) {
-    return in.ink.yield > 0;
-}
-
-double spacing_of(const SessionInput& in) {
-    return std::max(in.stroke.settings.spacing * in.model.texels.texel_size, is_paste(in) ? kPasteSpacing : 0.0);
+bool is_paste(const ink::Ink& ink) {
+    return ink.yield > 0;
 }
 
 HairContactOptions hair_options(const SessionInput& in, bool mixed) {
     const double cell = 0.5 * in.model.texels.texel_size;
-    return {.cell = is_paste(in) ? std::max(cell, kPasteCell) : cell,
+    return {.cell = is_paste(in.ink) ? std::max(cell, kPasteCell) : cell,
             .always_closed = in.stroke.layer == kPaletteLayer,
-            .places_nodes = in.wet.film || mixed || is_paste(in),
+            .places_nodes = in.wet.film || mixed || is_paste(in.ink),
             .relief = static_cast<double>(in.substrate.relief)};
 }
 
 }  // namespace
 
+double pose_spacing(const PaintStroke& stroke, const ink::Ink& ink, double texel) {
+    return std::max(stroke.settings.spacing * texel, is_paste(ink) ? kPasteSpacing : 0.0);
+}
+
 StrokeSession::StrokeSession(SessionInput input)
     : input_(std::move(input)),
       mixed_(!input_.stroke.erases() && ink::is_mixed(input_.brush.reservoir)),
-      spacing_(spacing_of(input_)),
+      spacing_(pose_spacing(input_.stroke, input_.ink, input_.model.texels.texel_size)),
       tuft_{.brush = std::move(input_.brush), .ink = input_.ink, .state = {}},
-      path_{.steady = {}, .resampler = Resampler({.step = spacing_, .lever = tuft_.preset().length}), .poses = {}},
+      path_{.steady = {}, .resampler = Resampler(path_options()), .poses = {}},
       hair_(hair_options(input_, mixed_)),
       stencil_(*input_.model.query, input_.stroke.trace),
       target_(input_.model, input_.canvas, input_.substrate, input_.mask, input_.scratch),
@@ -51,12 +51,24 @@ StrokeSession::StrokeSession(SessionInput input)
     if (input_.stroke.settings.endless && !input_.stroke.erases()) refill_ = tuft_.brush.reservoir;
 }
 
+ResampleOptions StrokeSession::path_options() const {
+    return {.step = spacing_, .lever = tuft_.preset().length};
+}
+
+void StrokeSession::check_length(std::span<const brush::Pose> poses) const {
+    if (input_.stroke.trace.flat) return check_path_length(poses, path_options());
+    GestureFilter state;
+    std::vector<brush::Pose> held;
+    for (const brush::Pose& pose : poses) held.push_back(steady(state, pose, input_.stroke.settings));
+    check_path_length(held, path_options());
+}
+
 std::unique_ptr<DepositModel> StrokeSession::make_deposit() {
     DepositOptions options{.wet = input_.wet};
     options.stamp.mapping = input_.stroke.settings.footprint;
     options.progress = [this](std::string_view, double) { return !progress_ || progress_("painting", done_); };
     if (input_.stroke.erases()) return make_eraser(target_, options);
-    if (is_paste(input_)) return make_paste_deposit(target_, options);
+    if (is_paste(input_.ink)) return make_paste_deposit(target_, options);
     if (input_.wet.film) return make_wet_deposit(target_, options, mixed_);
     return mixed_ ? make_mixed_deposit(target_, options) : make_still_deposit(target_, options);
 }

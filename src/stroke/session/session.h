@@ -36,6 +36,9 @@ struct SessionResult {
     std::vector<ink::TileSnapshot> before;  ///< the tiles that it wrote to as they were, by slot
 };
 
+/// Metres between two poses of a stroke with this ink on a model of this texel size.
+double pose_spacing(const PaintStroke& stroke, const ink::Ink& ink, double texel);
+
 /// One stroke, from pen down to pen up:
 ///
 ///     sample → resample → contact → brush → footprint → deposit
@@ -51,6 +54,8 @@ class StrokeSession {
 
     /// Asked before every stamp whether to go on, and between the steps of long ones; a stop throws `Cancelled`.
     void set_progress(ProgressFn progress) { progress_ = std::move(progress); }
+    /// Throws `Error` where these poses, which are all of the stroke's, are a longer path than is painted.
+    void check_length(std::span<const brush::Pose> poses) const;
     /// Paints on. `done`: part of the stroke that is reported as done.
     void advance(std::span<const brush::Pose> poses, double done = 0);
     /// The first `poses` of those to come set the brush down; the stroke's own samples come after them.
@@ -88,6 +93,7 @@ class StrokeSession {
         std::vector<ForceRecord> poses;    // at every pose of the resampled path
         std::size_t before_first = 0;      // samples before the stroke's own
     };
+    ResampleOptions path_options() const;
     std::unique_ptr<DepositModel> make_deposit();
     std::vector<ForceRecord> forces_at_samples() const;
     void paint_poses();
