@@ -98,7 +98,7 @@ stroke::PaintStroke stroke_of(Bytes& bytes) {
     s.trace.placement.mapping = static_cast<stroke::SurfaceMapping>(bytes.below(3));
     s.trace.placement.origin = 0.02 * Vec3(bytes.real(), bytes.real(), bytes.real());
     if (more & 32) s.trace.placement.right = glm::normalize(Vec3(1, bytes.real(), bytes.real()));
-    const int n = 1 + bytes.below(20);
+    const int n = 1 + bytes.below(8);
     double time = 0;
     for (int i = 0; i < n; ++i) {
         stroke::StrokeSample sample;
