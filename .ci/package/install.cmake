@@ -20,5 +20,5 @@ foreach(module ${tuft_libraries})
     FILES_MATCHING PATTERN "*.h"
     PATTERN "gl_*.h" EXCLUDE PATTERN "entry_json.h" EXCLUDE PATTERN "presets.h" EXCLUDE PATTERN "rod_newton.h" EXCLUDE
     PATTERN "scene_document.h" EXCLUDE PATTERN "mtl_material.h" EXCLUDE PATTERN "gltf_prune.h" EXCLUDE PATTERN "gltf_file.h" EXCLUDE
-    PATTERN "xml_numbers.h" EXCLUDE)
+    PATTERN "xml_numbers.h" EXCLUDE PATTERN "json_number.h" EXCLUDE)
 endforeach()

@@ -130,6 +130,29 @@ TEST_F(Place, ADrawingFarLargerThanTheModelIsReported) {
     }
 }
 
+// The box is 107.7 mm across: a place read off a drawing may be out by 5 % of that. The drawing goes to the nearest
+// place of the surface, and the place inside has a warning of its own.
+TEST_F(Place, APlaceBesideTheModelIsToldWithItsDistance) {
+    write("box.obj", box(false));
+    write("lines.inkml", lines(0, 0, 10));
+    const auto told = [&](const std::string& place) {
+        const Ran ran = tuft("paint " + path("box.obj") + " --brush wolf-small --atlas-size 256 --strokes " +
+                             path("lines.inkml") + " --place " + place + " --json");
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        const json placed = json::parse(ran.out)["placed"];
+        EXPECT_NEAR(placed["at_mm"][1].get<double>(), -30, 1e-4) << "the front; single precision of metres";
+        return ran.err;
+    };
+    EXPECT_EQ(told("0,-30,0").find("the model"), std::string::npos);
+    EXPECT_EQ(told("0,-35.3,0").find("beside the model"), std::string::npos) << "4.9 %";
+    EXPECT_NE(told("0,-35.5,0").find("lies 5.5 mm beside the model"), std::string::npos) << "5.1 %";
+    EXPECT_NE(told("5,-1030,0")
+                  .find("warning: --place 5,-1030,0 lies 1000.0 mm beside the model; the drawing goes to "
+                        "the nearest place of its surface, 5.0,-30.0,0.0 mm"),
+              std::string::npos);
+    EXPECT_NE(told("0,-20,0").find("lies 10.00 mm inside the model"), std::string::npos);
+}
+
 TEST_F(Place, ADrawingWithoutPlaceFitsTheFront) {
     write("box.obj", box(false));
     write("device.inkml", lines(12000, 3000, 8000));  // a tablet's own units, read as millimetres

@@ -45,8 +45,12 @@ class Program : public testing::Test {
 
     /// `prefix` goes before the program, such as "ulimit -f 8;".
     Ran tuft(const std::string& arguments, const std::string& prefix = "") const {
-        const std::string command = "export TUFT_DATA='" + source_folder() + "'; " + prefix + " '" + tuft_program() +
-                                    "' " + arguments + " >'" + path(".out") + "' 2>'" + path(".err") + "'";
+        return run(tuft_program(), arguments, prefix);
+    }
+    /// The same of another program, such as a copy of it.
+    Ran run(const std::string& program, const std::string& arguments, const std::string& prefix = "") const {
+        const std::string command = "export TUFT_DATA='" + source_folder() + "'; " + prefix + " '" + program + "' " +
+                                    arguments + " >'" + path(".out") + "' 2>'" + path(".err") + "'";
         const int raw = std::system(("bash -c \"" + escaped(command) + "\"").c_str());
         Ran ran;
         ran.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);

@@ -14,6 +14,7 @@
 #include "ink/colour/pigments.h"
 #include "ink/colour/presets.h"
 #include "io/image/image.h"
+#include "io/model/file_scene.h"
 #include "io/model/read_3mf.h"
 #include "io/model/read_gltf.h"
 #include "io/model/read_import.h"
@@ -39,19 +40,24 @@ std::string text_of(Input input) {
 }
 
 /// A folder of this process alone, where files may be looked for and none are.
+class EmptyFolder {
+  public:
+    EmptyFolder() { std::filesystem::create_directories(path); }
+    ~EmptyFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+    EmptyFolder(const EmptyFolder&) = delete;
+    EmptyFolder& operator=(const EmptyFolder&) = delete;
+
+    const std::filesystem::path path =
+        std::filesystem::path(std::filesystem::is_directory("/dev/shm") ? "/dev/shm"
+                                                                        : std::filesystem::temp_directory_path()) /
+        ("tuft_fuzz_" + std::to_string(::getpid()));
+};
 const std::filesystem::path& empty_folder() {
-    static const std::filesystem::path folder = [] {
-        const std::filesystem::path base =
-            std::filesystem::is_directory("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path();
-        std::filesystem::path made = base / ("tuft_fuzz_" + std::to_string(::getpid()));
-        std::filesystem::create_directories(made);
-        std::atexit([] {
-            std::error_code ignored;
-            std::filesystem::remove_all(empty_folder(), ignored);
-        });
-        return made;
-    }();
-    return folder;
+    static const EmptyFolder folder;
+    return folder.path;
 }
 
 template <class V>
@@ -77,6 +83,14 @@ void check_surface(const mesh::Surface& surface) {
 template <mesh::PolygonSoup (*Read)(const std::vector<char>&, const std::filesystem::path&)>
 void run_mesh(Input input) {
     refusing([&] { check_surface(mesh::build_surface(Read(chars_of(input), empty_folder() / "input"))); });
+}
+
+/// What the importer of FBX and DAE hands over to this process.
+void run_scene(Input input) {
+    refusing([&] {
+        io::FileScene scene = io::unpack_scene(chars_of(input), "input");
+        check_surface(mesh::build_surface(io::soup_of(std::move(scene), empty_folder() / "input")));
+    });
 }
 
 void check_traces(const std::vector<stroke::RecordedStroke>& traces) {
@@ -105,8 +119,9 @@ void run_inkml(Input input) {
 }
 
 void run_svg(Input input) {
+    constexpr std::size_t kMostPoints = 4000;  // some filled shapes: each takes milliseconds
     std::vector<stroke::RecordedStroke> traces;
-    refusing([&] { traces = io::parse_svg(text_of(input), "input.svg", {.ink = {.max_samples = kMostSamples}}); });
+    refusing([&] { traces = io::parse_svg(text_of(input), "input.svg", {.ink = {.max_samples = kMostPoints}}); });
     check_traces(traces);
 }
 
@@ -151,7 +166,7 @@ void run_entry(Input input) {
 
 void run_image(Input input) {
     refusing([&] {
-        const io::Image8 image = io::decode_image8(chars_of(input), "input", std::size_t{1} << 20);
+        const io::Image8 image = io::decode_image8(chars_of(input), "input", std::size_t{1} << 14);
         promise(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
                                            static_cast<std::size_t>(image.channels),
                 "a picture has all its pixels");
@@ -185,6 +200,7 @@ constexpr Target kTargets[] = {
     {"gltf", run_mesh<io::read_gltf>, 1500, true},
     {"fbx", run_mesh<io::read_fbx>, 300, false},  // a process for each
     {"dae", run_mesh<io::read_dae>, 300, true},
+    {"scene", run_scene, 2000, false},
     {"3mf", run_mesh<io::read_3mf>, 1500, false},
     {"x3d", run_mesh<io::read_x3d>, 1500, true},
     {"svg", run_svg, 1000, true},

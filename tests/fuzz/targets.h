@@ -6,8 +6,8 @@
 /// \file
 /// What is fuzzed. Each target takes any bytes and hands them to one parser, or paints with them.
 /// It may throw nothing but `tuft::Error`, which it swallows; another exception, a signal or a
-/// broken promise (`promise`) is a finding. Targets keep no state, so that an input alone shows its
-/// finding again.
+/// broken promise (`promise`) is a finding. Targets keep no state but what is made of an input's bytes alone, so that
+/// an input by itself shows its finding again.
 namespace tuft::fuzz {
 
 struct Target {

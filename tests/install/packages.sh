@@ -47,6 +47,10 @@ quietly 'cd /root; tuft paint /usr/share/tuft/models/bowl.ply --strokes /usr/sha
   --atlas-size 512 --project bowl.tuft --export bowl.glb --preview bowl.png --size 320x240 --threads 2
   tuft inspect bowl.glb | grep -q "UVs: "; test -s bowl.png; tuft brush | grep -q wolf-medium'
 
+echo "== models by the importer"  # a program of its own, with libraries of its own
+cp "$(dirname "$0")"/../fuzz/corpus/fbx/box.fbx "$(dirname "$0")"/../fuzz/corpus/dae/box.dae "$root/root/"
+quietly 'cd /root; for model in box.fbx box.dae; do tuft inspect "$model" | grep "15 triangles"; done'
+
 echo "== tuft-studio"
 quietly 'apt-get -qq install -y --no-install-recommends /debs/tuft-studio_*.deb libgl1-mesa-dri'
 quietly 'cd /root; tuft-studio --version

@@ -3,12 +3,14 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/error.h"
 #include "core/random.h"
 #include "core/system/files.h"
 #include "io/export/export.h"
 #include "io/image/image.h"
+#include "io/model/json_number.h"
 #include "io/model/read_gltf.h"
 #include "sample_model.h"
 
@@ -291,6 +293,30 @@ TEST(Gltf, FaultsAreNamed) {
     j = triangle();
     j["meshes"] = json::array();
     EXPECT_NE(fault(j), "read without complaint");
+}
+
+TEST(Gltf, WholeNumbersAreTheOnesInTheFile) {
+    const auto taken = [](const char* text) -> std::optional<std::size_t> {
+        try {
+            return whole_number(json::parse(text), "n", std::size_t{7});
+        } catch (const json::exception&) {
+            return {};
+        }
+    };
+    EXPECT_EQ(taken("{}"), 7u);
+    EXPECT_EQ(taken("{\"n\": 18446744073709551615}"), 18446744073709551615u);
+    EXPECT_EQ(taken("{\"n\": 4.0}"), 4u);
+    EXPECT_EQ(taken("{\"n\": -0.0}"), 0u);
+    for (const char* none : {"-1", "18446744073709551616", "1e300", "-1e300", "0.5", "true", "null", "\"4\"", "[4]"}) {
+        EXPECT_EQ(taken(("{\"n\": " + std::string(none) + "}").c_str()), std::nullopt) << none;
+        json j = triangle();
+        j["bufferViews"][0]["byteOffset"] = json::parse(none);
+        // Where tinygltf takes it for a number that is not there, the document of the scene is refused.
+        EXPECT_NE(fault(j), "read without complaint") << none;
+    }
+    EXPECT_EQ(taken("[4]"), std::nullopt);
+    EXPECT_EQ(whole_number<std::int32_t>(json(-5)), -5);
+    EXPECT_THROW(whole_number<std::int32_t>(json(std::int64_t{1} << 31)), json::exception);
 }
 
 TEST(Gltf, BuffersOutsideTheFolderAreRefused) {

@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 
 #include "core/error.h"
 #include "core/random.h"
 #include "core/system/files.h"
+#include "io/image/exr_header.h"
 #include "sample_model.h"
 
 namespace tuft::io {
@@ -95,6 +98,36 @@ TEST(Image, AtlasMapsAreTurnedUpsideDown) {
     write_image(folder / "a.png", view_of(map));
     EXPECT_EQ(read_image8(folder / "a.png").pixels, (std::vector<std::uint8_t>{3, 4, 1, 2}))
         << "the row at v = 0 is the last one in the file";
+}
+
+// OpenEXR takes memory for an attribute and for the rows of a picture before it reads them.
+TEST(Image, SizesInTheHeadOfAnExrFileAreCheckedBeforeMemoryIsTaken) {
+    const Folder folder("exr_head");
+    write_image(folder / "a.exr", view_of(noise<float>(20, 17, 3, 1)));
+    const std::vector<char> sound = read_file(folder / "a.exr");
+    ASSERT_EQ(exr_header_fault(sound, 20 * 17), "");
+    EXPECT_NE(exr_header_fault(sound, 20 * 17 - 1).find("20 × 17 pixels"), std::string::npos);
+    const auto fault_with = [&](const std::string& name, const std::string& type, std::size_t at, std::uint32_t value) {
+        const std::string head = name + '\0' + type + '\0';
+        std::vector<char> bytes = sound;
+        const auto place = std::search(bytes.begin(), bytes.end(), head.begin(), head.end());
+        EXPECT_NE(place, bytes.end()) << name;
+        std::memcpy(&*place + head.size() + at, &value, sizeof value);
+        write_file(folder / "b.exr", bytes.data(), bytes.size());
+        try {
+            read_image_float(folder / "b.exr");
+        } catch (const Error& e) {
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    for (const std::uint32_t size : {0x7fffffffu, 0xffffffffu, static_cast<std::uint32_t>(sound.size())})
+        EXPECT_NE(fault_with("channels", "chlist", 0, size).find("an attribute of its header"), std::string::npos);
+    // After the attribute's size: xMin, yMin, xMax, yMax.
+    EXPECT_NE(fault_with("dataWindow", "box2i", 16, 0x7fffffff).find("pixels, which is too many"), std::string::npos);
+    EXPECT_NE(fault_with("dataWindow", "box2i", 4, 0x7fffffff).find("no pixels"), std::string::npos);
+    // The head ends before the first row.
+    for (std::size_t n = 0; n < 200; ++n) EXPECT_NE(exr_header_fault(std::span(sound).first(n), 1000), "") << n;
 }
 
 TEST(Image, BadFilesAreErrors) {

@@ -236,6 +236,43 @@ TEST(SizeFault, AModelSmallerThanATuftIsRefusedOnlyWhereTheFormerOneWasLarger) {
     EXPECT_EQ(fault(1 / 25.4, {}), "");
 }
 
+// The sheet's diagonal is 85 mm, the drawing 40 mm wide, the tuft 20 mm long: the sheet is less than a quarter of the
+// drawing from a size of 0.118 on, and shorter than the tuft from 0.236 on.
+TEST(SizeFault, ADrawingIsRefusedOnAModelThatIsSmallerThanTheTuftAndAQuarterOfTheDrawing) {
+    const Model model = sheet();
+    const auto fault = [&](double scale, const std::vector<JournalEntry>& entries) {
+        mesh::TriangleMesh scaled = *model.mesh;
+        scaled.bounds = {};
+        for (Vec3f& p : scaled.positions) p *= static_cast<float>(scale), scaled.bounds.add(Vec3(p));
+        return size_fault(
+            entries, [](const std::string& name) { return brush::load_preset(name).length; },
+            mesh::SurfaceQuery(scaled));
+    };
+    PaintStroke flat;
+    flat.brush = "wolf-small";
+    flat.trace.flat = true;
+    // Two strokes far from each other are one drawing.
+    const auto at = [&](double x) {
+        PaintStroke s = flat;
+        s.trace.placement = {.origin = {x, 0, 0}, .right = {0, 1, 0}, .down = {0, 0, -1}};
+        s.trace.samples = {{.position = {0, 0, 0}, .pressure = 0.5}, {.time = 1, .position = {1e-3, 0, 0}}};
+        return s;
+    };
+    const std::vector<JournalEntry> drawing{at(-0.02), at(0.02)};
+    ASSERT_EQ(brush::load_preset("wolf-small").length, 0.02);
+    EXPECT_EQ(fault(0.12, drawing), "");
+    EXPECT_NE(fault(0.115, drawing), "");
+    EXPECT_NE(fault(1e-3, drawing).find("it is 0.0849 mm across, the strokes 40 mm; the tuft of wolf-small is 20 mm"),
+              std::string::npos)
+        << fault(1e-3, drawing);
+    EXPECT_NE(fault(1e-3, {at(0)}).find("the strokes 1 mm"), std::string::npos);
+    EXPECT_EQ(fault(1e-3, {pressed()}), "") << "in space";
+    JournalEntry hidden = at(0);
+    hidden.hidden = true;
+    EXPECT_EQ(fault(1e-3, {hidden}), "");
+    EXPECT_EQ(fault(1e-3, {}), "");
+}
+
 TEST(ModelMotion, AnotherMeshAHoleOrAnotherShapeIsNoMotion) {
     const mesh::TriangleMesh former = crooked([](const Vec3& p) { return p; });
     const auto none = [&](const mesh::TriangleMesh& revised) {

@@ -342,6 +342,37 @@ TEST(Document, RefusesABrushOfThousandsOfTexelsBeforeItPaints) {
     EXPECT_EQ(painting.layers().canvas().total(small.texels, 0), 0);
 }
 
+TEST(Document, RefusesAStrokeOfMillionsOfStepsBeforeItPaints) {
+    const Model model = sheet();
+    Document painting(model);
+    PaintStroke far = line("wolf-small", 4e-3);
+    StrokeSample last = far.trace.samples.back();
+    last.time += 1;
+    last.position.x = 100;  // metres, at 0.06 mm a step; the first 30 mm of it lie on the sheet
+    far.trace.samples.push_back(last);
+    EXPECT_THROW(painting.paint(far), Error);
+    EXPECT_TRUE(painting.journal().empty());
+    EXPECT_EQ(painting.canvas().hash(), Document(model).canvas().hash());
+}
+
+// The way of the hand ahead of the ink is measured once for a brush. Another brush of the same name has another.
+TEST(Document, ABrushThatTakesAnothersPlaceIsMeasuredAnew) {
+    const Model model = sheet();
+    PaintStroke flat = line("wolf-small", 0);
+    flat.trace.flat = true;
+    for (StrokeSample& s : flat.trace.samples) s.position.z = 0, s.pressure = 0.5;
+    brush::Preset stiff = brush::load_preset("wolf-small");
+    stiff.length *= 0.7;
+    Document plain(model), used(model);
+    plain.use_brush(stiff);
+    plain.paint(flat);
+    used.paint(flat);
+    ASSERT_TRUE(used.undo());
+    used.use_brush(stiff);
+    used.paint(flat);
+    EXPECT_EQ(used.hash(), plain.hash());
+}
+
 TEST(Document, ASmoothMotionIsTheSameAtAnySamplingRate) {
     const Model model = sheet();
     Document fast(model);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/random.h"
 
 namespace tuft::stroke {
 namespace {
@@ -196,6 +197,42 @@ TEST(Resample, RefusesAPathOfAbsurdLength) {
     Pose a, b;
     b.position.x = 1e6;
     EXPECT_THROW(resample(std::vector<Pose>{a, b}, {.step = 1e-4, .max_poses = 1000}), Error);
+}
+
+// The chords tell it beforehand: exactly where the path is straight, never too early where it is not.
+TEST(Resample, ALengthIsRefusedBeforehandOnlyWhereResamplingRefusesIt) {
+    const ResampleOptions options{.step = 1e-4, .max_poses = 1000};
+    const auto refuses = [&](const std::vector<Pose>& poses, const auto& fn) {
+        try {
+            fn(poses, options);
+        } catch (const Error&) {
+            return true;
+        }
+        return false;
+    };
+    const auto check = [](const auto& poses, const ResampleOptions& o) { check_path_length(poses, o); };
+    const auto take = [](const auto& poses, const ResampleOptions& o) { resample(poses, o); };
+    Random random(7);
+    std::size_t both = 0;
+    for (int i = 0; i < 200; ++i) {
+        std::vector<Pose> poses(20);
+        const double reach = 0.0115 * random.uniform();  // 19 ways between places, at whose mean the limit is met
+        for (std::size_t k = 0; k < poses.size(); ++k) {
+            poses[k].position = {reach * random.uniform(), reach * random.uniform(), 0};
+            poses[k].time = 0.01 * (static_cast<double>(k) - random.uniform());
+        }
+        const bool beforehand = refuses(poses, check);
+        EXPECT_LE(beforehand, refuses(poses, take));
+        both += beforehand;
+    }
+    EXPECT_GT(both, 10u);
+    EXPECT_LT(both, 190u);
+    for (const double part : {0.99, 1.01}) {
+        std::vector<Pose> straight(2);
+        straight[1].position.x = part * options.step * static_cast<double>(options.max_poses);
+        EXPECT_EQ(refuses(straight, check), part > 1);
+        EXPECT_EQ(refuses(straight, take), part > 1);
+    }
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <span>
 #include <utility>
 
+#include "stroke/document/fit.h"
+
 namespace tuft::app {
 namespace {
 
@@ -135,6 +137,10 @@ void StrokePainter::paint_drawing(PaintDrawing& command) {
     const ProgressFn shown = context_.progress("Placing the drawing");
     shown("", 0);
     std::vector<stroke::JournalEntry> all = entries_of(command);
+    const auto length_of = [&](const std::string& brush) { return context_.work.document->brush(brush).length; };
+    if (const std::string fault = stroke::size_fault(all, length_of, *context_.work.model->query); !fault.empty())
+        throw Error("The model does not suit the drawing: " + fault);
+    for (const stroke::JournalEntry& entry : all) context_.work.document->check_size(entry);
     const std::size_t in_group = std::max<std::size_t>(1, command.drawing.entries.size());
     context_.history.undone.clear();
     context_.history.done.push_back({});

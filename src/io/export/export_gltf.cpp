@@ -11,6 +11,7 @@
 #include "ink/spectra/srgb.h"
 #include "io/export/export_formats.h"
 #include "io/export/gltf_prune.h"
+#include "io/model/json_number.h"
 #include "io/model/scene_document.h"
 
 /// Writes glTF: the document of the file, with new triangles and materials for the parts with ink.
@@ -333,7 +334,7 @@ class Writer {
 
     json mesh_of(const json& node) const {
         const auto meshes = document_.find("meshes");
-        const std::size_t index = node.value("mesh", std::numeric_limits<std::size_t>::max());
+        const std::size_t index = whole_number(node, "mesh", std::numeric_limits<std::size_t>::max());
         if (meshes == document_.end() || !meshes->is_array() || index >= meshes->size()) return json::object();
         return (*meshes)[index];
     }

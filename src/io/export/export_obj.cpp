@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "io/export/export_formats.h"
+#include "io/model/json_number.h"
 #include "io/model/mtl_material.h"
 #include "io/model/scene_document.h"
 
@@ -143,7 +144,7 @@ class OwnPictures {
     std::string file_of(std::size_t texture) {
         const json& source = item_of(document_, "textures", texture);
         const std::size_t image =
-            source.is_object() ? source.value("source", std::size_t{1} << 40) : std::size_t{1} << 40;
+            source.is_object() ? whole_number(source, "source", std::size_t{1} << 40) : std::size_t{1} << 40;
         const auto [it, is_new] = files_.try_emplace(image);
         if (is_new) it->second = write(item_of(document_, "images", image));
         return it->second;
@@ -152,10 +153,10 @@ class OwnPictures {
   private:
     std::string write(const json& image) {
         if (!image.is_object() || !image.contains("bufferView")) return {};
-        const json& view = item_of(document_, "bufferViews", image["bufferView"].get<std::size_t>());
+        const json& view = item_of(document_, "bufferViews", whole_number<std::size_t>(image["bufferView"]));
         if (!view.is_object()) return {};
-        const std::size_t at = view.value("byteOffset", std::size_t{0}),
-                          size = view.at("byteLength").get<std::size_t>();
+        const std::size_t at = whole_number(view, "byteOffset", std::size_t{0}),
+                          size = whole_number<std::size_t>(view.at("byteLength"));
         const std::vector<unsigned char>& buffer = scene_.source.buffer;
         if (at > buffer.size() || size > buffer.size() - at) return {};
         const std::string type = mime_type_of(std::span(buffer).subspan(at, size));

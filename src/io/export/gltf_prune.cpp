@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "io/model/json_number.h"
 #include "io/model/scene_document.h"
 
 namespace tuft::io {
@@ -177,8 +178,8 @@ std::vector<unsigned char> take_views(json& document, const std::vector<unsigned
     bool plain = found != document.end() && found->is_array();
     if (plain)
         for (const json& view : *found) {
-            const std::size_t at = view.value("byteOffset", std::size_t{0}),
-                              size = view.at("byteLength").get<std::size_t>();
+            const std::size_t at = whole_number(view, "byteOffset", std::size_t{0}),
+                              size = whole_number<std::size_t>(view.at("byteLength"));
             const bool inside = at <= end && size <= end - at && (at >= second || at + size <= source.size());
             plain = plain && inside && !view.contains("extensions");
             needed += inside ? aligned(size) : 0;
@@ -190,7 +191,8 @@ std::vector<unsigned char> take_views(json& document, const std::vector<unsigned
     }
     whole.reserve(needed);
     for (json& view : *found) {
-        const std::size_t at = view.value("byteOffset", std::size_t{0}), size = view["byteLength"].get<std::size_t>();
+        const std::size_t at = whole_number(view, "byteOffset", std::size_t{0}),
+                          size = whole_number<std::size_t>(view["byteLength"]);
         const unsigned char* from = at >= second ? added.data() + (at - second) : source.data() + at;
         whole.resize(aligned(whole.size()));
         view["byteOffset"] = whole.size();

@@ -2,12 +2,15 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 
 #include "core/error.h"
 #include "core/system/files.h"
+#include "io/image/exr_header.h"
 #include "io/image/image_codec.h"
+#include "stroke/surface/model.h"
 
 namespace fs = std::filesystem;
 
@@ -75,15 +78,25 @@ ImageFormat format_of(const std::vector<char>& bytes, const fs::path& path) {
     throw Error(path.string(), "is not a PNG, EXR, JPEG or TIFF picture");
 }
 
+/// Of pixels, which are copied once; any machine has room for small pictures.
+std::size_t most_bytes() {
+    constexpr std::size_t kNoMatter = std::size_t{64} << 20;
+    return std::max(kNoMatter, stroke::available_memory() / 2);
+}
+
 template <class T>
 Image<T> decode(const std::vector<char>& bytes, const fs::path& path, std::size_t max_pixels) {
     DecodedImage decoded;
-    const std::string fault = codec().decode({.format = format_of(bytes, path),
-                                              .bytes = bytes.data(),
-                                              .size = bytes.size(),
-                                              .type = view_of<T>(1, 1, 1, nullptr).type,
-                                              .max_pixels = max_pixels},
-                                             decoded);
+    const ImageFormat format = format_of(bytes, path);
+    std::string fault = format == ImageFormat::exr ? exr_header_fault(bytes, max_pixels) : "";
+    if (fault.empty())
+        fault = codec().decode({.format = format,
+                                .bytes = bytes.data(),
+                                .size = bytes.size(),
+                                .type = view_of<T>(1, 1, 1, nullptr).type,
+                                .max_pixels = max_pixels,
+                                .max_bytes = most_bytes()},
+                               decoded);
     if (!fault.empty()) throw Error(path.string(), "the picture cannot be read: " + fault);
     Image<T> image{.width = decoded.width,
                    .height = decoded.height,

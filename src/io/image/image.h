@@ -91,7 +91,8 @@ std::vector<unsigned char> png_bytes(const PixelView& pixels, const ImageOptions
 Image8 decode_image8(const std::vector<char>& bytes, const std::string& name, std::size_t max_pixels);
 
 /// Reads a PNG, EXR, JPEG or TIFF file into the given type. Colours are returned as stored; only the number range is
-/// converted. Throws `Error` for damaged files and, before memory is taken, for more than `max_pixels` pixels.
+/// converted. Throws `Error` for damaged files and, before memory is taken, for more than
+/// `max_pixels` pixels or than half of the free memory.
 Image8 read_image8(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
 Image16 read_image16(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);
 ImageF read_image_float(const std::filesystem::path& path, std::size_t max_pixels = std::size_t{1} << 29);

@@ -24,6 +24,7 @@ struct DecodeRequest {
     std::size_t size = 0;
     PixelView::Type type = PixelView::Type::u8;  ///< of the result
     std::size_t max_pixels = 0;
+    std::size_t max_bytes = 0;  ///< of the pixels as wanted
 };
 
 struct DecodedImage {

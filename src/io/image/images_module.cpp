@@ -90,7 +90,10 @@ std::string decode_checked(const DecodeRequest& request, DecodedImage& out) {
     out.channels = spec.nchannels;
     out.channel_names = spec.channelnames;
     const OIIO::TypeDesc type = type_of(request.type);
-    out.bytes.resize(std::size_t(spec.width) * spec.height * spec.nchannels * type.size());
+    const std::size_t bytes = std::size_t(spec.width) * spec.height * spec.nchannels * type.size();
+    if (bytes > request.max_bytes)
+        return "its pixels take " + std::to_string(bytes >> 20) + " MiB, more memory than there is";
+    out.bytes.resize(bytes);
     if (!input->read_image(0, 0, 0, spec.nchannels, type, out.bytes.data())) return input->geterror();
     return "";
 }

@@ -1,7 +1,8 @@
 /// \file
 /// `tuft-import`: reads one FBX or DAE file by Assimp. A program of its own, because Assimp crashes, hangs and takes
 /// memory without end on damaged files. It gets the file as standard input, opens no other, and writes a packed
-/// `io::FileScene`, or a line that begins with "fault: ", to standard output. read_import.cpp starts it.
+/// `io::FileScene`, or a line that begins with "fault: ", to standard output. read_import.cpp starts it, and limits its
+/// time and memory.
 
 #include <assimp/config.h>
 #include <assimp/material.h>
@@ -28,27 +29,11 @@ namespace {
 
 using Mat4 = glm::dmat4;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kSanitised = true;
-#elif defined(__has_feature)
-constexpr bool kSanitised = __has_feature(address_sanitizer);
-#else
-constexpr bool kSanitised = false;
-#endif
-
-void limit(int what, rlim_t most) {
-    const rlimit bounds{most, most};
-    setrlimit(static_cast<__rlimit_resource_t>(what), &bounds);
-}
-
-/// What the file may cost: seconds of computing, bytes of memory, and no file, thread or process but what there is.
-void limit_all(rlim_t seconds, rlim_t bytes) {
+/// No file, and no longer than the one who waits for it. What computing and memory it may take is set from outside.
+void restrain() {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_CPU, seconds);
-    limit(RLIMIT_NOFILE, 3);
-    if (!kSanitised) limit(RLIMIT_AS, bytes);  // its shadow memory is larger than any limit
-    limit(RLIMIT_FSIZE, bytes);
+    const rlimit streams{3, 3};
+    setrlimit(RLIMIT_NOFILE, &streams);
 }
 
 /// No file but the one in memory.
@@ -265,7 +250,11 @@ void import(const char* format) {
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
     const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, format);
-    if (!scene) throw std::runtime_error(std::string("cannot be read: ") + importer.GetErrorString());
+    if (!scene) {
+        const std::string words = importer.GetErrorString();
+        if (words.find("bad_alloc") != words.npos) throw std::bad_alloc();
+        throw std::runtime_error("cannot be read: " + words);
+    }
     const std::vector<char> packed = pack_scene(Walker(*scene, std::string_view(format) == "fbx").run());
     write_output({packed.data(), packed.size()});
 }
@@ -274,8 +263,8 @@ void import(const char* format) {
 }  // namespace tuft::io
 
 int main(int argc, char** argv) {
-    if (argc != 4) return 2;
-    tuft::io::limit_all(std::strtoull(argv[2], nullptr, 10), std::strtoull(argv[3], nullptr, 10));
+    if (argc != 2) return 2;
+    tuft::io::restrain();
     std::string fault;
     try {
         tuft::io::import(argv[1]);

@@ -3,14 +3,17 @@
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <optional>
 #include <string_view>
 #include <thread>
 
@@ -84,72 +87,134 @@ class MemoryFile {
     int fd_;
 };
 
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kSanitised = true;
+#elif defined(__has_feature)
+constexpr bool kSanitised = __has_feature(address_sanitizer);
+#else
+constexpr bool kSanitised = false;
+#endif
+
+/// What one file may cost.
+struct Cost {
+    rlim_t seconds = 0;  ///< of computing
+    rlim_t bytes = 0;    ///< of memory, and of what is handed over
+    /// Longer than a machine with so much else to do takes for it: the importer waits for something that never comes.
+    std::chrono::seconds patience() const { return std::chrono::seconds(10 * seconds); }
+};
+
+/// By the size of the file, and within what this process may take itself.
+Cost cost_of(std::size_t file_bytes) {
+    const auto own = [](__rlimit_resource what) {
+        rlimit bounds{};
+        return getrlimit(what, &bounds) == 0 ? bounds.rlim_cur : RLIM_INFINITY;
+    };
+    // A sound file of a million triangles has 40 MB and takes 3 s and 1 GB.
+    const rlim_t seconds = 20 + file_bytes / kMebibyte / 2, bytes = (rlim_t{1} << 30) + 64 * file_bytes;
+    return {.seconds = std::clamp<rlim_t>(own(RLIMIT_CPU) - 1, 1, seconds),
+            .bytes = std::min({bytes, own(RLIMIT_AS), own(RLIMIT_FSIZE)})};
+}
+
 /// A started importer; it is ended where this is left early.
 class Child {
   public:
-    Child(const char* format, std::size_t seconds, std::size_t memory, int input, int output) {
-        const std::string program = importer().string(), s = std::to_string(seconds), m = std::to_string(memory);
+    Child(const char* format, int input, int output) {
+        const std::string program = importer().string();
         std::string name = format;
-        char* const arguments[] = {const_cast<char*>(program.c_str()), name.data(), const_cast<char*>(s.c_str()),
-                                   const_cast<char*>(m.c_str()), nullptr};
+        char* const arguments[] = {const_cast<char*>(program.c_str()), name.data(), nullptr};
         posix_spawn_file_actions_t files;
         posix_spawn_file_actions_init(&files);
         posix_spawn_file_actions_adddup2(&files, input, 0);
         posix_spawn_file_actions_adddup2(&files, output, 1);
         posix_spawn_file_actions_addopen(&files, 2, "/dev/null", O_WRONLY, 0);
-        // A process group of its own: Ctrl-C reaches this process alone, which then ends the other.
+        // A process group of its own: Ctrl-C reaches this process alone, which then ends the other. What passes a limit
+        // ends it, though this process goes on.
+        sigset_t limits;
+        sigemptyset(&limits);
+        sigaddset(&limits, SIGXCPU);
+        sigaddset(&limits, SIGXFSZ);
         posix_spawnattr_t attributes;
         posix_spawnattr_init(&attributes);
-        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
         posix_spawnattr_setpgroup(&attributes, 0);
+        posix_spawnattr_setsigdefault(&attributes, &limits);
         const int failed = posix_spawn(&pid_, program.c_str(), &files, &attributes, arguments, environ);
         posix_spawnattr_destroy(&attributes);
         posix_spawn_file_actions_destroy(&files);
         if (failed) throw Error(program, std::string("cannot be started: ") + std::strerror(failed));
     }
-    ~Child() {
-        if (pid_ <= 0) return;
-        kill(pid_, SIGKILL);
-        waitpid(pid_, nullptr, 0);
-    }
+    ~Child() { end(); }
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
-    /// Its status as of `waitpid`. Throws `Cancelled` where the program is to stop.
-    int wait() {
+    void limit(const Cost& cost) const {
+        limit(RLIMIT_CORE, 0, 0);
+        limit(RLIMIT_CPU, cost.seconds, cost.seconds + 1);  // SIGXCPU, which tells why, before SIGKILL
+        limit(RLIMIT_FSIZE, cost.bytes, cost.bytes);
+        if (!kSanitised) limit(RLIMIT_AS, cost.bytes, cost.bytes);  // its shadow memory is larger than any limit
+    }
+
+    /// Its status as of `waitpid`; nothing where patience ends. Throws `Cancelled` where the program is to stop.
+    std::optional<int> wait(std::chrono::seconds patience) {
+        const auto latest = std::chrono::steady_clock::now() + patience;
         int status = 0;
         for (std::chrono::microseconds pause{500};; pause = std::min(2 * pause, std::chrono::microseconds{20'000})) {
             const pid_t ended = waitpid(pid_, &status, WNOHANG);
             if (ended == pid_) return pid_ = 0, status;
-            if (ended < 0 && errno != EINTR) return pid_ = 0, -1;
+            if (ended < 0 && errno != EINTR) return pid_ = 0, 0;  // SIGCHLD is ignored here: what it left tells
             check_interrupt();
+            if (std::chrono::steady_clock::now() > latest) return end(), std::nullopt;
             std::this_thread::sleep_for(pause);
         }
     }
 
   private:
+    void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) const {
+        const rlimit bounds{soft, hard};
+        if (prlimit(pid_, what, &bounds, nullptr) != 0 && errno != ESRCH)
+            throw Error(importer().string(), std::string("cannot be limited: ") + std::strerror(errno));
+    }
+    /// With what it started itself.
+    void end() {
+        if (pid_ <= 0) return;
+        kill(-pid_, SIGKILL);
+        waitpid(pid_, nullptr, 0);
+        pid_ = 0;
+    }
+
     pid_t pid_ = 0;
 };
 
+/// Why nothing was read, of an importer that did not end by itself or whose patience ended.
+std::string failure(std::optional<int> status, const Cost& cost) {
+    if (!status) return "is damaged: reading it does not come to an end";
+    switch (WTERMSIG(*status)) {
+        case SIGXCPU:
+            return "is damaged: reading it took more than " + std::to_string(cost.seconds) + " s";
+        case SIGXFSZ:
+            return "is damaged: reading it gave more than " + std::to_string(cost.bytes / kMebibyte) + " MiB";
+        case SIGKILL:
+            return "cannot be read: its reader was ended from outside; is memory short?";
+        default:
+            return "is damaged: reading it failed";
+    }
+}
+
 mesh::PolygonSoup read_import(const char* format, const std::vector<char>& bytes, const fs::path& path) {
     const std::string name = path.string();
-    // A sound file of a million triangles has 40 MB and takes 3 s and 1 GB.
-    const std::size_t seconds = 20 + bytes.size() / kMebibyte / 2;
-    const std::size_t memory = (std::size_t{1} << 30) + 64 * bytes.size();
+    const Cost cost = cost_of(bytes.size());
     const MemoryFile input, output;
     input.write_all(bytes);
-    const int status = Child(format, seconds, memory, input.fd(), output.fd()).wait();
-    if (status < 0 || WIFSIGNALED(status)) {
-        const int signal = status < 0 ? 0 : WTERMSIG(status);
-        throw Error(name, signal == SIGXCPU || signal == SIGKILL
-                              ? "is damaged: reading it took more than " + std::to_string(seconds) + " s"
-                              : "is damaged: reading it failed");
-    }
+    Child child(format, input.fd(), output.fd());
+    child.limit(cost);
+    const std::optional<int> status = child.wait(cost.patience());
+    if (!status || WIFSIGNALED(*status)) throw Error(name, failure(status, cost));
     const std::vector<char> result = output.read_all();
-    if (WEXITSTATUS(status) == 0) return soup_of(unpack_scene(result, name), path);
-    std::string_view fault(result.data(), result.size());
-    if (!fault.starts_with("fault: ")) throw Error(name, "is damaged: reading it failed");
-    throw Error(name, excerpt(fault.substr(7), 200));
+    constexpr std::string_view kFault = "fault: ";
+    const std::string_view words(result.data(), result.size());
+    if (words.starts_with(kFault)) throw Error(name, excerpt(words.substr(kFault.size()), 200));
+    if (WEXITSTATUS(*status) != 0) throw Error(name, "is damaged: reading it failed");
+    return soup_of(unpack_scene(result, name), path);
 }
 
 }  // namespace

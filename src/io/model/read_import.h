@@ -16,7 +16,8 @@ namespace tuft::io {
 /// Returns all polygons of all nodes with the nodes' transforms applied. Points are in metres, z up, by the file's unit
 /// and axes. Each object and material is a group. UVs are those of the set that the base colour's picture uses. `path`
 /// gives the folder of pictures and is named in messages. Throws `Error` in one line where the file is damaged, or
-/// where the process crashes or exceeds a limit.
+/// where the process crashes, hangs or exceeds a limit: of computing time, memory, output and waiting time, by the
+/// size of the file.
 mesh::PolygonSoup read_fbx(const std::vector<char>& bytes, const std::filesystem::path& path);
 mesh::PolygonSoup read_dae(const std::vector<char>& bytes, const std::filesystem::path& path);
 

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/text/nesting.h"
 #include "ink/spectra/srgb.h"
+#include "io/model/json_number.h"
 
 namespace tuft::io {
 namespace {
@@ -48,9 +49,9 @@ int add_view(json& document, std::vector<unsigned char>& buffer, std::span<const
 
 /// Moves a reference to buffer b to its place in the one buffer.
 void move_view(json& view, const std::vector<std::size_t>& starts, const std::string& name) {
-    const std::size_t buffer = view.value("buffer", std::size_t{0});
+    const std::size_t buffer = whole_number(view, "buffer", std::size_t{0});
     if (buffer >= starts.size()) throw Error(name, "a buffer view has no buffer");
-    view["byteOffset"] = view.value("byteOffset", std::size_t{0}) + starts[buffer];
+    view["byteOffset"] = whole_number(view, "byteOffset", std::size_t{0}) + starts[buffer];
     view["buffer"] = 0;
 }
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "io/model/json_number.h"
 #include "io/project/project_db.h"
 #include "stroke/journal/entry_json.h"
 
@@ -44,12 +45,12 @@ nlohmann::json snapshot_json(const stroke::JournalEntry& entry) {
 }
 
 stroke::EntryColumns columns_of(const nlohmann::json& j) {
-    stroke::EntryColumns columns{.id = j.at("id").get<std::uint64_t>(),
+    stroke::EntryColumns columns{.id = whole_number<std::uint64_t>(j.at("id")),
                                  .hidden = j.at("hidden").get<bool>(),
                                  .brush = j.at("brush").get<std::string>(),
                                  .ink = j.at("ink").get<std::string>(),
                                  .label = j.at("label").get<std::string>(),
-                                 .seed = j.at("seed").get<std::uint64_t>(),
+                                 .seed = whole_number<std::uint64_t>(j.at("seed")),
                                  .trace = {.flat = j.at("flat").get<bool>()}};
     const auto mapping = stroke::surface_mapping_named(j.at("laying").get<std::string>());
     const auto p = j.at("placement").get<std::array<double, 9>>();
@@ -124,7 +125,7 @@ std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, co
     try {
         for (const nlohmann::json& j : nlohmann::json::parse(text)) {
             stroke::EntryColumns columns = columns_of(j);
-            const auto count = j.at("samples").get<std::size_t>();
+            const auto count = whole_number<std::size_t>(j.at("samples"));
             if (count > n - at) throw Error("it has more samples than are stored");
             for (std::size_t k = 0; k < count; ++k, ++at) {
                 const auto field = [&](std::size_t f) { return numbers[f * n + at]; };

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text/nesting.h"
+#include "io/model/json_number.h"
 #include "io/model/materials.h"
 #include "io/project/project_db.h"
 
@@ -72,7 +73,7 @@ void load_materials(SQLite::Database& db, const std::filesystem::path& path, mes
                 if (!(value >= 0 && value <= 1)) damaged(path, "a material has no valid colour");
                 m.colour[c] = value;
             }
-            if (row.contains("picture")) m.picture = pictures.at(row["picture"].get<std::size_t>());
+            if (row.contains("picture")) m.picture = pictures.at(whole_number<std::size_t>(row["picture"]));
             mesh.materials.push_back(std::move(m));
         }
     } catch (const nlohmann::json::exception&) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text/nesting.h"
+#include "io/model/json_number.h"
 #include "io/model/scene_document.h"
 #include "io/project/project_db.h"
 
@@ -32,9 +33,9 @@ mesh::ScenePart part_of_json(const json& j) {
     j.at("object").get_to(part.object);
     j.at("group").get_to(part.group);
     j.at("material").get_to(part.material);
-    j.at("node").get_to(part.node);
-    j.at("primitive").get_to(part.primitive);
-    j.at("own_material").get_to(part.own_material);
+    part.node = whole_number<std::int32_t>(j.at("node"));
+    part.primitive = whole_number<std::int32_t>(j.at("primitive"));
+    part.own_material = whole_number<std::int32_t>(j.at("own_material"));
     j.at("transform").get_to(part.transform);
     return part;
 }

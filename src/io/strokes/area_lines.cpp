@@ -88,21 +88,65 @@ std::vector<stroke::StencilEdge> stencil_of(const Shape& shape) {
     return stencil;
 }
 
+/// The points of a line in runs, each within a circle, and the runs in twos within larger ones: whether any lies near
+/// an edge takes the logarithm of their number.
+class PointRuns {
+  public:
+    explicit PointRuns(const Line& points) : points_(points), last_level_(1) {
+        while (last_level_ * kRun < points.size()) last_level_ *= 2;
+        circles_.resize(2 * last_level_);
+        for (std::size_t k = 2 * last_level_ - 1; k > 0; --k) circles_[k] = circle_of(k);
+    }
+
+    bool any_within(const stroke::StencilEdge& e, double reach) const { return any_within(1, e, reach); }
+
+  private:
+    static constexpr std::size_t kRun = 8;
+    struct Circle {
+        Vec2 centre{0};
+        double radius = -1;  ///< below 0: without points
+    };
+
+    Circle circle_of(std::size_t k) const {
+        if (k < last_level_) {
+            const Circle &a = circles_[2 * k], &b = circles_[2 * k + 1];
+            if (b.radius < 0) return a;
+            const Vec2 centre = 0.5 * (a.centre + b.centre);
+            return {centre, 0.5 * glm::distance(a.centre, b.centre) + std::max(a.radius, b.radius)};
+        }
+        const std::size_t from = (k - last_level_) * kRun, to = std::min(from + kRun, points_.size());
+        if (from >= to) return {};
+        Circle circle{0.5 * (points_[from] + points_[to - 1]), 0};
+        for (std::size_t i = from; i < to; ++i)
+            circle.radius = std::max(circle.radius, glm::distance(circle.centre, points_[i]));
+        return circle;
+    }
+
+    bool any_within(std::size_t k, const stroke::StencilEdge& e, double reach) const {
+        constexpr double kRounding = 1 + 1e-9;  // of the distances, some 1e-16 of coordinates each
+        const Circle& circle = circles_[k];
+        if (circle.radius < 0 || segment_distance(e.from, e.to, circle.centre) > kRounding * (reach + circle.radius))
+            return false;
+        if (k < last_level_) return any_within(2 * k, e, reach) || any_within(2 * k + 1, e, reach);
+        const std::size_t from = (k - last_level_) * kRun, to = std::min(from + kRun, points_.size());
+        for (std::size_t i = from; i < to; ++i)
+            if (segment_distance(e.from, e.to, points_[i]) < reach) return true;
+        return false;
+    }
+
+    const Line& points_;
+    std::size_t last_level_;  // index of the first run's circle; those of circles k are 2 k and 2 k + 1
+    std::vector<Circle> circles_;
+};
+
 /// Gives each line the stencil edge beside it.
 void attach_stencils(const std::vector<stroke::StencilEdge>& stencil, std::vector<AreaLine>& lines) {
     for (AreaLine& line : lines) {
-        Vec2 low = line.line.front(), high = low;
-        for (const Vec2& p : line.line) low = glm::min(low, p), high = glm::max(high, p);
+        check_interrupt();
         const double reach = kStencilReach * line.width;
-        low -= reach, high += reach;
-        for (const stroke::StencilEdge& e : stencil) {
-            if (std::max(e.from.x, e.to.x) < low.x || std::max(e.from.y, e.to.y) < low.y ||
-                std::min(e.from.x, e.to.x) > high.x || std::min(e.from.y, e.to.y) > high.y)
-                continue;
-            if (std::any_of(line.line.begin(), line.line.end(),
-                            [&](const Vec2& p) { return segment_distance(e.from, e.to, p) < reach; }))
-                line.stencil.push_back(e);
-        }
+        const PointRuns points(line.line);
+        for (const stroke::StencilEdge& e : stencil)
+            if (points.any_within(e, reach)) line.stencil.push_back(e);
     }
 }
 

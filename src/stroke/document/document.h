@@ -73,6 +73,10 @@ class Document {
     /// that a replay is the same.
     StrokeReport paint(JournalEntry entry, const ProgressFn& progress = {});
 
+    /// Throws the `Error` of `paint` for a stroke of the model whose brush is too wide for its texels, or which is at
+    /// least twice as long as one that is painted; before anything is painted, and without mapping it to the surface.
+    void check_size(const JournalEntry& entry);
+
     /// The same in pieces for a hand in space: `begin`, any number of `extend`, then `end` or `cancel`, which takes the
     /// stroke back. `entry` holds a `PaintStroke`, whose samples may be empty.
     void begin(JournalEntry entry);

@@ -1,8 +1,13 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "contact/outside.h"
 #include "stroke/document/document.h"
 #include "stroke/gesture/hand.h"
+#include "stroke/gesture/resample.h"
+#include "stroke/journal/tables.h"
 #include "stroke/session/session.h"
 
 /// Strokes: the brush is taken up, led over the model by a session, and put down.
@@ -12,14 +17,31 @@ namespace {
 /// Each stamp of a tuft this wide takes a tenth of a second, and a stroke thousands of them.
 void check_width(const brush::Preset& preset, double texel) {
     constexpr double kWidest = 2048;  // texels
-    const double width = 2 * preset.radius;
+    const double width = std::max(preset.width, 2 * preset.radius);
     if (width > kWidest * texel)
-        throw Error("the brush is " + std::to_string(1e3 * width) + " mm wide, " +
-                    std::to_string(static_cast<long long>(width / texel)) + " texels of this model, more than " +
-                    std::to_string(static_cast<int>(kWidest)) + ": use a larger texel size or a smaller brush");
+        throw Error(
+            fmt::format("the brush is {:.3g} mm wide, {:.0f} texels of this model, more than {:.0f}: use a larger "
+                        "texel size or a smaller brush",
+                        1e3 * width, width / texel, kWidest));
 }
 
 }  // namespace
+
+void Document::check_size(const JournalEntry& entry) {
+    const PaintStroke* stroke = entry.as<PaintStroke>();
+    if (!stroke || on_palette(entry)) return;
+    const brush::Preset& preset = materials_.brush(stroke->brush);
+    const double texel = model_.texels.texel_size;
+    check_width(preset, texel);
+    if (!stroke->trace.flat) return;
+    // On the surface the hand's path is longer or shorter than what was drawn; twice as short it is nowhere.
+    constexpr double kShorter = 2;
+    const ink::Ink ink = stroke->erases() || stroke->ink.empty() ? ink::Ink{} : materials_.ink(stroke->ink);
+    std::vector<brush::Pose> drawn;
+    for (const StrokeSample& s : steady(stroke->trace, stroke->settings).samples)
+        drawn.push_back({.position = {s.position.x, s.position.y, 0}, .time = s.time});
+    check_path_length(drawn, {.step = kShorter * pose_spacing(*stroke, ink, texel), .lever = preset.length});
+}
 
 void Document::begin(JournalEntry entry) {
     check_layer(entry);
@@ -119,6 +141,7 @@ StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const P
     session_->set_progress(progress);
     session_->begin_with_set_down(path.set_down);
     try {
+        session_->check_length(poses);
         for (std::size_t i = 0; i < poses.size(); ++i)
             session_->advance(std::span(poses).subspan(i, 1),
                               static_cast<double>(i + 1) / static_cast<double>(poses.size()));

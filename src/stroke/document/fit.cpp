@@ -125,6 +125,28 @@ StrokeFit fit_flat(const JournalEntry& entry, const mesh::SurfaceQuery& former, 
     return fit;
 }
 
+/// The brush of one of these whose tuft is longer than `most`, and that length.
+std::optional<std::pair<std::string, double>> longer_than(double most, const std::vector<JournalEntry>& entries,
+                                                          const std::function<double(const std::string&)>& length_of) {
+    for (const JournalEntry& entry : entries) {
+        if (!is_compared(entry)) continue;
+        if (const double length = length_of(brush_of(entry)); length > most) return {{brush_of(entry), length}};
+    }
+    return {};
+}
+
+/// Bounds of the flat strokes where they are placed, before they are mapped to the surface.
+Box placed_bounds(const std::vector<JournalEntry>& entries) {
+    Box bounds;
+    for (const JournalEntry& entry : entries) {
+        if (!is_compared(entry) || !samples_of(entry).flat) continue;
+        const Placement& p = samples_of(entry).placement;
+        for (const StrokeSample& s : samples_of(entry).samples)
+            bounds.add(p.origin + s.position.x * p.right + s.position.y * p.down);
+    }
+    return bounds;
+}
+
 }  // namespace
 
 std::string size_fault(const std::vector<JournalEntry>& entries,
@@ -132,15 +154,25 @@ std::string size_fault(const std::vector<JournalEntry>& entries,
                        const mesh::SurfaceQuery& revised) {
     const double before = former.mesh().bounds.diagonal(), now = revised.mesh().bounds.diagonal();
     if (now >= kTooSmall * before) return "";
-    for (const JournalEntry& entry : entries) {
-        if (!is_compared(entry)) continue;
-        if (const double length = length_of(brush_of(entry)); now < length)
-            return fmt::format(
-                "it is {:.3g} mm across, the former model {:.3g} mm; the tuft of {} is {:.3g} mm long, and no stroke "
-                "fits; is its unit another one?",
-                1e3 * now, 1e3 * before, brush_of(entry), 1e3 * length);
-    }
-    return "";
+    const auto longer = longer_than(now, entries, length_of);
+    if (!longer) return "";
+    return fmt::format(
+        "it is {:.3g} mm across, the former model {:.3g} mm; the tuft of {} is {:.3g} mm long, and no stroke "
+        "fits; is its unit another one?",
+        1e3 * now, 1e3 * before, longer->first, 1e3 * longer->second);
+}
+
+std::string size_fault(const std::vector<JournalEntry>& entries,
+                       const std::function<double(const std::string&)>& length_of, const mesh::SurfaceQuery& model) {
+    const Box drawing = placed_bounds(entries);
+    const double across = model.mesh().bounds.diagonal();
+    if (drawing.empty() || across >= kTooSmall * drawing.diagonal()) return "";
+    const auto longer = longer_than(across, entries, length_of);
+    if (!longer) return "";
+    return fmt::format(
+        "it is {:.3g} mm across, the strokes {:.3g} mm; the tuft of {} is {:.3g} mm long, and most of them meet no "
+        "surface; is its unit another one?",
+        1e3 * across, 1e3 * drawing.diagonal(), longer->first, 1e3 * longer->second);
 }
 
 std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,

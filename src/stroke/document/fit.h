@@ -47,6 +47,13 @@ std::string size_fault(const std::vector<JournalEntry>& entries,
                        const std::function<double(const std::string& brush)>& length_of,
                        const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised);
 
+/// The same of new strokes, which have no former model: it is too small where its diagonal is less than a quarter of
+/// the drawing's, all flat strokes together where they are placed, and less than the length of a tuft that paints them.
+/// What is in space says by itself where it is, and counts for nothing.
+std::string size_fault(const std::vector<JournalEntry>& entries,
+                       const std::function<double(const std::string& brush)>& length_of,
+                       const mesh::SurfaceQuery& model);
+
 /// Compares two models along strokes. At each sample of a stroke in space, rays from the ferrule's mouth along its
 /// axis, one tuft length to both sides, find the surfaces; flat strokes are mapped onto both models. `length_of`
 /// returns the tuft length of a brush, metres; `motion` is that of the whole model. Hidden strokes and those on the

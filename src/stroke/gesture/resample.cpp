@@ -1,5 +1,7 @@
 #include "stroke/gesture/resample.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -122,14 +124,27 @@ Pose beyond(const Pose& a, const Pose& b) {
     return {2.0 * b.position - a.position, turned(b.rotation, half_turn(a.rotation, b.rotation)), 2 * b.time - a.time};
 }
 
+[[noreturn]] void refuse_length(const ResampleOptions& o) {
+    throw Error(fmt::format("the stroke is too long for this model: more than {} steps of {:.3g} mm", o.max_poses,
+                            1e3 * o.step));
+}
+
 }  // namespace
+
+void check_path_length(std::span<const Pose> poses, const ResampleOptions& options) {
+    double length = 0;  // of the chords; no curve between their ends is shorter
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+        Pose next = poses[i];
+        next.time = std::max(next.time, poses[i - 1].time);
+        length += pose_distance(poses[i - 1], next, options);
+    }
+    if (length > options.step * static_cast<double>(options.max_poses + 1)) refuse_length(options);
+}
 
 Resampler::Resampler(const ResampleOptions& options) : options_(options) {}
 
 void Resampler::emit(const Pose& pose, std::vector<Pose>& out) {
-    if (++emitted_ > options_.max_poses)
-        throw Error("the stroke is too long: more than " + std::to_string(options_.max_poses) + " steps of " +
-                    std::to_string(options_.step * 1e3) + " mm");
+    if (++emitted_ > options_.max_poses) refuse_length(options_);
     out.push_back(pose);
 }
 

@@ -16,7 +16,7 @@ struct ResampleOptions {
     double step = 1e-4;   ///< metres between two poses, in the measure below
     double lever = 0.02;  ///< metres that a rotation by 1 rad counts (the tuft's length)
     double drift = 2e-3;  ///< m/s that time counts, so that a dwell gets poses, too
-    std::size_t max_poses = 4'000'000;
+    std::size_t max_poses = 1'000'000;  ///< some ten minutes of painting
 };
 
 /// Resamples the path of a hand as its samples arrive: a pose at the first sample, one at every multiple of `step` of
@@ -54,6 +54,10 @@ class Resampler {
     std::vector<std::uint32_t> merged_;  ///< [samples] index into `places_`
     std::vector<double> places_;         ///< of samples that differ from the one before
 };
+
+/// Throws the `Error` of `Resampler` where the samples are farther apart than `max_poses` steps in all: before the
+/// first pose is taken, and never for a path that `Resampler` takes. Cost: linear.
+void check_path_length(std::span<const brush::Pose> poses, const ResampleOptions& options);
 
 /// Resamples a whole path.
 std::vector<brush::Pose> resample(std::span<const brush::Pose> poses, const ResampleOptions& options = {});

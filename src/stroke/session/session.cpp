@@ -17,28 +17,28 @@ constexpr double kPrintTravel = 1e-4;  // metres that dry hair slides after it c
 // Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
 constexpr double kPasteSpacing = 1e-4, kPasteCell = 4e-5;
 
-bool is_paste(const SessionInput& in) {
-    return in.ink.yield > 0;
-}
-
-double spacing_of(const SessionInput& in) {
-    return std::max(in.stroke.settings.spacing * in.model.texels.texel_size, is_paste(in) ? kPasteSpacing : 0.0);
+bool is_paste(const ink::Ink& ink) {
+    return ink.yield > 0;
 }
 
 HairContactOptions hair_options(const SessionInput& in, bool mixed) {
     const double cell = 0.5 * in.model.texels.texel_size;
-    return {.cell = is_paste(in) ? std::max(cell, kPasteCell) : cell,
+    return {.cell = is_paste(in.ink) ? std::max(cell, kPasteCell) : cell,
             .always_closed = in.stroke.layer == kPaletteLayer,
-            .places_nodes = in.wet.film || mixed || is_paste(in),
+            .places_nodes = in.wet.film || mixed || is_paste(in.ink),
             .relief = static_cast<double>(in.substrate.relief)};
 }
 
 }  // namespace
 
+double pose_spacing(const PaintStroke& stroke, const ink::Ink& ink, double texel) {
+    return std::max(stroke.settings.spacing * texel, is_paste(ink) ? kPasteSpacing : 0.0);
+}
+
 StrokeSession::StrokeSession(SessionInput input)
     : input_(std::move(input)),
       tuft_{.brush = std::move(input_.brush), .ink = input_.ink, .state = {}},
-      path_(spacing_of(input_), tuft_.preset().length),
+      path_(path_options()),
       hair_(hair_options(input_, holds_mixed_ink())),
       stencil_(*input_.model.query, input_.stroke.trace),
       target_(input_.model, input_.canvas, input_.substrate, input_.mask, input_.scratch),
@@ -47,6 +47,18 @@ StrokeSession::StrokeSession(SessionInput input)
     report_.nearest = std::numeric_limits<double>::infinity();
     report_.dryness.full_at_start = tuft_.brush.reservoir.fullness();
     if (input_.stroke.settings.endless && !input_.stroke.erases()) refill_ = tuft_.brush.reservoir;
+}
+
+ResampleOptions StrokeSession::path_options() const {
+    return {.step = pose_spacing(input_.stroke, input_.ink, input_.model.texels.texel_size), .lever = tuft_.preset().length};
+}
+
+void StrokeSession::check_length(std::span<const brush::Pose> poses) const {
+    if (input_.stroke.trace.flat) return check_path_length(poses, path_options());
+    GestureFilter state;
+    std::vector<brush::Pose> held;
+    for (const brush::Pose& pose : poses) held.push_back(steady(state, pose, input_.stroke.settings));
+    check_path_length(held, path_options());
 }
 
 bool StrokeSession::holds_mixed_ink() const {
@@ -59,7 +71,7 @@ std::unique_ptr<DepositModel> StrokeSession::make_deposit() {
     options.stamp.mapping = input_.stroke.settings.footprint;
     options.progress = [this](std::string_view, double) { return progress_.go_on(); };
     if (input_.stroke.erases()) return make_eraser(target_, options);
-    if (is_paste(input_)) return make_paste_deposit(target_, options);
+    if (is_paste(input_.ink)) return make_paste_deposit(target_, options);
     if (input_.wet.film) return make_wet_deposit(target_, options, mixed);
     return mixed ? make_mixed_deposit(target_, options) : make_still_deposit(target_, options);
 }

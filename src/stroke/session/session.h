@@ -39,6 +39,9 @@ struct SessionResult {
     std::vector<ink::TileSnapshot> before;  ///< tiles that it wrote to, before the stroke, ascending by slot
 };
 
+/// Metres between two poses of a stroke with this ink on a model of this texel size.
+double pose_spacing(const PaintStroke& stroke, const ink::Ink& ink, double texel);
+
 /// Paints one stroke:
 ///
 ///     sample → resample → contact → brush → footprint → deposit
@@ -54,6 +57,8 @@ class StrokeSession {
 
     /// Called before every stamp, and between steps of long ones; false stops by `Cancelled`.
     void set_progress(ProgressFn progress) { progress_.ask = std::move(progress); }
+    /// Throws `Error` where these poses, which are all of the stroke's, are a longer path than is painted.
+    void check_length(std::span<const brush::Pose> poses) const;
     /// Paints the next poses. `done`: part of the stroke to be reported, 0–1.
     void advance(std::span<const brush::Pose> poses, double done = 0);
     /// Declares that the first `poses` set the brush down; the stroke's own samples come after them.
@@ -74,7 +79,7 @@ class StrokeSession {
   private:
     /// From samples to even poses.
     struct Path {
-        Path(double step, double lever) : spacing(step), resampler({.step = step, .lever = lever}) {}
+        explicit Path(const ResampleOptions& options) : spacing(options.step), resampler(options) {}
 
         double spacing;  // metres between poses
         GestureFilter steady;
@@ -101,6 +106,7 @@ class StrokeSession {
         bool go_on() const { return !ask || ask("painting", done); }
     };
     bool holds_mixed_ink() const;
+    ResampleOptions path_options() const;
     std::unique_ptr<DepositModel> make_deposit();
     std::vector<ForceRecord> forces_at_samples() const;
     void paint_poses();

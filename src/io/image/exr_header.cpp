@@ -1,0 +1,86 @@
+#include "io/image/exr_header.h"
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace tuft::io {
+namespace {
+
+constexpr std::size_t kMagicAndVersion = 8;
+constexpr std::uint32_t kMultipart = 0x1000;  // flag of the version
+
+class Walker {
+  public:
+    Walker(std::span<const char> file, std::size_t max_pixels) : rest_(file), max_pixels_(max_pixels) {}
+
+    std::string run() {
+        if (rest_.size() < kMagicAndVersion) return kCutShort;
+        rest_ = rest_.subspan(4);
+        const bool many = (number() & kMultipart) != 0;
+        for (;;) {
+            if (rest_.empty()) return kCutShort;
+            if (many && rest_.front() == '\0') return "";  // no more parts
+            while (!rest_.empty() && rest_.front() != '\0')
+                if (std::string fault = attribute(); !fault.empty()) return fault;
+            if (rest_.empty()) return kCutShort;
+            rest_ = rest_.subspan(1);
+            if (!many) return "";
+        }
+    }
+
+  private:
+    static constexpr const char* kCutShort = "its header is cut short";
+
+    /// Little-endian; four bytes are there.
+    std::uint32_t number() {
+        std::uint32_t value = 0;
+        for (std::size_t i = 4; i > 0; --i) value = value << 8 | static_cast<unsigned char>(rest_[i - 1]);
+        rest_ = rest_.subspan(4);
+        return value;
+    }
+
+    std::optional<std::string_view> word() {
+        const std::string_view all(rest_.data(), rest_.size());
+        const std::size_t end = all.find('\0');
+        if (end == all.npos) return {};
+        rest_ = rest_.subspan(end + 1);
+        return all.substr(0, end);
+    }
+
+    std::string attribute() {
+        const auto name = word();
+        const auto type = name ? word() : name;
+        if (!type || rest_.size() < 4) return kCutShort;
+        const std::uint32_t size = number();
+        if (size > rest_.size())
+            return "an attribute of its header would take " + std::to_string(size) + " bytes, but " +
+                   std::to_string(rest_.size()) + " are left of the file";
+        const std::span<const char> after = rest_.subspan(size);
+        std::string fault = *name == "dataWindow" && size == 16 ? window() : "";
+        rest_ = after;
+        return fault;
+    }
+
+    /// First and last column and row: xMin, yMin, xMax, yMax.
+    std::string window() {
+        std::int64_t corners[4];
+        for (std::int64_t& corner : corners) corner = static_cast<std::int32_t>(number());
+        const std::int64_t width = corners[2] - corners[0] + 1, height = corners[3] - corners[1] + 1;
+        if (width <= 0 || height <= 0) return "it has no pixels";
+        if (static_cast<std::size_t>(width) > max_pixels_ / static_cast<std::size_t>(height))
+            return "it has " + std::to_string(width) + " × " + std::to_string(height) + " pixels, which is too many";
+        return "";
+    }
+
+    std::span<const char> rest_;
+    std::size_t max_pixels_;
+};
+
+}  // namespace
+
+std::string exr_header_fault(std::span<const char> file, std::size_t max_pixels) {
+    return Walker(file, max_pixels).run();
+}
+
+}  // namespace tuft::io
