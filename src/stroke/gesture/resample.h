@@ -13,9 +13,9 @@
 namespace tuft::stroke {
 
 struct ResampleOptions {
-    double step = 1e-4;   ///< metres between two poses, in the measure below
-    double lever = 0.02;  ///< metres that a rotation by 1 rad counts (the tuft's length)
-    double drift = 2e-3;  ///< m/s that time counts, so that a dwell gets poses, too
+    double step = 1e-4;                 ///< metres between two poses, in the measure below
+    double lever = 0.02;                ///< metres that a rotation by 1 rad counts (the tuft's length)
+    double drift = 2e-3;                ///< m/s that time counts, so that a dwell gets poses, too
     std::size_t max_poses = 1'000'000;  ///< some ten minutes of painting
 };
 

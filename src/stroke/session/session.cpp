@@ -50,7 +50,8 @@ StrokeSession::StrokeSession(SessionInput input)
 }
 
 ResampleOptions StrokeSession::path_options() const {
-    return {.step = pose_spacing(input_.stroke, input_.ink, input_.model.texels.texel_size), .lever = tuft_.preset().length};
+    return {.step = pose_spacing(input_.stroke, input_.ink, input_.model.texels.texel_size),
+            .lever = tuft_.preset().length};
 }
 
 void StrokeSession::check_length(std::span<const brush::Pose> poses) const {
