@@ -174,12 +174,14 @@ double footprint_texels(int texels) {
 
 // The whole path: a brush as thick as makes lines of about `texels` across, dragged along
 // the way; hand samples at 1 kHz and a stamp per texel.
-stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting, int texels) {
-    brush::Preset preset = brush::load_preset("mixed-medium");
-    const double scale = texels * model.atlas.texel_size / (2 * preset.radius);
+stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting, int texels,
+                         const char* brush = "mixed-medium") {
+    brush::Preset preset = brush::load_preset(brush);
+    const double scale = texels * model.atlas.texel_size / std::max(preset.width, 2 * preset.radius);
     preset.name = "bench";
     preset.length *= scale;
     preset.radius *= scale;
+    preset.width *= scale;
     preset.stiffness *= std::pow(scale, 4);
     preset.capacity = 1e-4;
     painting.use(preset);
@@ -207,9 +209,9 @@ stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting,
 
 // With `wiped` of its ink gone the tuft no longer closes: every one of its bristles is drawn and
 // inked by itself.
-double stamps_per_second(const stroke::Model& model, int texels, double wiped = 0) {
+double stamps_per_second(const stroke::Model& model, int texels, double wiped = 0, const char* brush = "mixed-medium") {
     stroke::Document painting(model);
-    stroke::PaintStroke s = drag(model, painting, texels);
+    stroke::PaintStroke s = drag(model, painting, texels, brush);
     const stroke::BrushAction wipe{
         .kind = stroke::BrushActionKind::wipe, .brush = s.brush, .ink = s.ink, .extent = {.amount = wiped}};
     if (wiped > 0) s.settings.dip = stroke::DipMode::carry;
@@ -272,11 +274,11 @@ struct RodTimes {
 };
 
 // Press, drag and lift on a plane, 1 kHz, friction on; some runs.
-RodTimes rod_microseconds() {
-    constexpr int kRuns = 5, kSolves = 3000;
+RodTimes rod_microseconds(const brush::Preset& preset, int runs) {
+    constexpr int kSolves = 3000;
     std::vector<double> times, means;
-    for (int run = 0; run < kRuns; ++run) {
-        brush::Tuft tuft = brush::make_tuft(brush::load_preset("mixed-medium"));
+    for (int run = 0; run < runs; ++run) {
+        brush::Tuft tuft = brush::make_tuft(preset);
         const double length = tuft.preset.length;
         const brush::ContactPlane plane;
         double sum = 0;
@@ -363,7 +365,15 @@ int run(const Bench& a) {
     nlohmann::json j;
     j["machine"] = cpu_name();
     j["threads"] = 1;
-    const RodTimes rod = rod_microseconds();
+    const RodTimes rod = rod_microseconds(brush::load_preset("mixed-medium"), 5);
+    brush::Preset flat_brush = brush::load_preset("flat-12");
+    flat_brush.segments = 12;
+    const RodTimes flat = rod_microseconds(flat_brush, 2);
+    j["flat_microseconds"] = {{"mean", flat.mean},
+                              {"median", flat.median},
+                              {"p99", flat.p99},
+                              {"segments", flat_brush.segments},
+                              {"spines", flat_brush.spines}};
     j["rod_microseconds"] = {
         {"mean", rod.mean}, {"mean_spread", rod.spread}, {"median", rod.median}, {"p99", rod.p99}, {"segments", 16}};
     const double square = microseconds_per_square(1, "porcelain");
@@ -391,6 +401,7 @@ int run(const Bench& a) {
             }
             m["stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels);
             m["bristle_stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels, 0.75);
+            m["flat_stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels, 0, "flat-12");
         }
         const FilmFigures film = measure_film(c.model);
         m["ns_per_texel"]["film_step"] = film.step_ns;
@@ -403,8 +414,8 @@ int run(const Bench& a) {
         j["models"][c.name] = m;
         if (!j.contains("microseconds_per_stamp")) {
             for (const char* key :
-                 {"microseconds_per_stamp", "stamps_per_second", "bristle_stamps_per_second", "ns_per_texel",
-                  "atlas_seconds", "texel_map_seconds", "cluster_graph_seconds", "first_ink_ms"})
+                 {"microseconds_per_stamp", "stamps_per_second", "bristle_stamps_per_second", "flat_stamps_per_second",
+                  "ns_per_texel", "atlas_seconds", "texel_map_seconds", "cluster_graph_seconds", "first_ink_ms"})
                 j[key] = m[key];
             j["model"] = on;
         }
@@ -421,6 +432,8 @@ int run(const Bench& a) {
                j["isa"].get<std::string>());
     fmt::print("rod solve, 16 segments: mean {:.1f} +- {:.1f} us, median {:.1f} us, 99 % {:.1f} us\n", rod.mean,
                rod.spread, rod.median, rod.p99);
+    fmt::print("five coupled spines of a flat, 12 segments: mean {:.0f} us, median {:.0f} us, 99 % {:.0f} us\n",
+               flat.mean, flat.median, flat.p99);
     fmt::print("colour of 64 x 64 texels, 4 pigments, {} bands: {:.0f} us with one film, {:.0f} us with three\n",
                ink::kBands, square, j["composite_microseconds"]["three_films"].get<double>());
     for (const auto& [name, m] : j["models"].items()) {
@@ -439,9 +452,10 @@ int run(const Bench& a) {
         for (const char* texels : {"64", "128", "256"})
             fmt::print(
                 "  {:>3} texels wide: deposit {:>7.1f} us a stamp; whole path {:>8.0f} stamps/s; dry, by 500 bristles "
-                "{:>6.0f}\n",
+                "{:>6.0f}; a flat {:>6.0f}\n",
                 texels, m["microseconds_per_stamp"][texels].get<double>(), m["stamps_per_second"][texels].get<double>(),
-                m["bristle_stamps_per_second"][texels].get<double>());
+                m["bristle_stamps_per_second"][texels].get<double>(),
+                m["flat_stamps_per_second"][texels].get<double>());
     }
     fmt::print("peak memory {:.0f} MiB, at the end {:.0f} MiB\n", j["peak_mb"].get<double>(),
                j["resident_mb"].get<double>());
