@@ -283,15 +283,13 @@ TEST(Chain, ReleasedItKeepsTheSmallerOfItsBendAndAlpha) {
     model->step({pose, {}, 0.01, 1});
     const std::vector<double> left = bends_of(model->nodes(), pose.axis());
     const std::vector<double> length = spine_segments(p.segments, 0.25 + 0.75 * p.hardness);
-    double s = 0;
     int limited = 0;
     for (std::size_t j = 0; j < length.size(); ++j) {
         const double part = j > 0 ? 0.5 * (length[j - 1] + length[j]) : 0.5 * length[0];
-        const double alpha = 0.05 * part * yield_moment(profile_of(p), s) / bending_stiffness(profile_of(p), s);
+        const double alpha = 0.05 * part * std::numbers::pi / 2;
         // A cubic spring is met by halves until nodes move less than 1e-7 lengths.
         EXPECT_NEAR(left[j], std::min(held[j], alpha), 2e-6) << j;
         limited += held[j] > alpha ? 1 : 0;
-        s += length[j];
     }
     EXPECT_GT(limited, 3);
     EXPECT_LT(limited, p.segments);

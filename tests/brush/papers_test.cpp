@@ -130,6 +130,21 @@ TEST_P(Papers, HaveUnitFramesAndFiniteSectionsThatTouchWhereThereIsForce) {
     EXPECT_TRUE(touched);
 }
 
+TEST_P(Papers, HairHeldOnTheSheetStaysInTouchWhereItsForceHasRelaxed) {
+    Preset p = preset();
+    p.plastic_share = 1;  // a held bend of the chain ends without force
+    Tuft tuft = make_tuft(p);
+    const ContactPlane sheet;
+    TuftState state;
+    for (int i = 0; i <= 200; ++i) {
+        const double f = std::min(1.0, i / 40.0);
+        const Pose pose{{0.004 * f, 0, p.length * (1 - 0.1 * f)}, {1, 0, 0, 0}, 0.01 * i};
+        state = step(tuft, pose, {&sheet, 1}, 0.01);
+        if (i > 40) ASSERT_TRUE(state.touching) << i;
+    }
+    EXPECT_GE(state.normal_force, 0);
+}
+
 TEST_P(Papers, ReshapeStraightensTheHairAtItsPlace) {
     Tuft tuft = make_tuft(preset());
     const ContactPlane sheet;

@@ -19,7 +19,7 @@ TEST(ComparisonPicture, HasAColourForEachMethodAndTheMeasuredDots) {
                           {},
                           {{-f * 5e-3, 0}, {-f * 2e-3, 5e-3}, {0, 10e-3}}});
     }
-    const BrushPicture picture = draw_comparison(models, measured, 1000);
+    const BrushPicture picture = draw_comparison(models, measured, 2000);
     ASSERT_EQ(picture.rgb.size(), std::size_t(3) * picture.width * picture.height);
     // Colours of the methods as in the legend; the dots are red.
     const std::array<std::array<int, 3>, 6> colours = {
@@ -31,7 +31,7 @@ TEST(ComparisonPicture, HasAColourForEachMethodAndTheMeasuredDots) {
             if (off(0) < 3 && off(1) < 3 && off(2) < 3)
                 ++seen[i / 3 / static_cast<std::size_t>(picture.width) > static_cast<std::size_t>(picture.height) / 2];
         }
-        EXPECT_GT(seen[0], 40);  // a line of 2 pixels over a part of a plot of 435
+        EXPECT_GT(seen[0], 40);  // a line of 4 pixels over a part of a plot of 870
         EXPECT_GT(seen[1], 20);
     }
 }

@@ -77,7 +77,7 @@ class ChainModel final : public SpineModel {
     ChainOptions options_;
     ChainSpine chain_;
     std::vector<double> at_, radius_, minor_;  ///< [n+1] m: arc length, rest radius, minor radius of the last step
-    std::vector<double> yield_;                ///< [n] radians
+    std::vector<double> flat_;                 ///< [n] radians, of a joint of hair bent evenly from upright to flat
     std::vector<OneSpine> spines_;
     std::array<std::vector<double>, 2> lateral_;  ///< [n+1] m, d of the last step: along e, against it
     std::vector<Vec2> rest_;                      ///< [n] ρ of the last step
@@ -87,16 +87,14 @@ class ChainModel final : public SpineModel {
 
 ChainModel::ChainModel(const Preset& preset, const ChainOptions& options) : preset_(preset), options_(options) {
     const std::vector<double> lengths = spine_segments(preset.segments, 0.25 + 0.75 * preset.hardness);
-    const Profile profile = profile_of(preset);
-    chain_ = make_chain_spine(profile, lengths, options.exponent);
+    chain_ = make_chain_spine(profile_of(preset), lengths, options.exponent);
     double s = 0;
     for (std::size_t i = 0; i <= lengths.size(); ++i) {
         at_.push_back(s * preset.length);
         radius_.push_back(rest_radius(preset, s));
         if (i == lengths.size()) break;
         const double width = i > 0 ? 0.5 * (lengths[i - 1] + lengths[i]) : 0.5 * lengths[0];
-        // Curvature where yielding starts, M_e/B, over the joint's part of the hair.
-        yield_.push_back(preset.yield > 0 ? width * yield_moment(profile, s) / bending_stiffness(profile, s) : 0);
+        flat_.push_back(width * kFlatCurvature);
         s += lengths[i];
     }
     spines_.resize(options.spines == 2 ? 2 : 1);
@@ -111,13 +109,13 @@ void ChainModel::straighten(const Pose& pose) {
     pose_ = pose;
     wide_ = {1, 0, 0};
     minor_ = radius_;
-    rest_.assign(yield_.size(), Vec2{0});
+    rest_.assign(flat_.size(), Vec2{0});
     for (std::vector<double>& side : lateral_) {
         side = radius_;
         for (double& d : side) d *= 1 - options_.effective_radius;
     }
     for (OneSpine& spine : spines_) {
-        spine.bend.assign(yield_.size(), Vec2{0});
+        spine.bend.assign(flat_.size(), Vec2{0});
         spine.pressure.assign(radius_.size(), 0);
         spine.node.clear();
         const Vec3 root = pose.position + pose.rotation * spine.offset;
@@ -192,8 +190,8 @@ ChainPore ChainModel::pore_of(const OneSpine& spine, std::span<const Vec3> carri
 std::vector<Vec2> ChainModel::plastic_part(const OneSpine& spine, double wetness) const {
     const double share = options_.plastic_angle * preset_.plastic_share * std::lerp(kDryPlastic, 1.0, wetness);
     std::vector<Vec2> rest;
-    for (std::size_t j = 0; j < yield_.size(); ++j) {
-        const double size = glm::length(spine.bend[j]), most = share * yield_[j];
+    for (std::size_t j = 0; j < flat_.size(); ++j) {
+        const double size = glm::length(spine.bend[j]), most = share * flat_[j];
         rest.push_back(size > most ? most / size * spine.bend[j] : spine.bend[j]);
     }
     return rest;

@@ -14,8 +14,10 @@
 /// 1. Spine (chain_solver.h): bends w of least energy, z >= r_sp. r_sp = kEffectiveRadius · minor radius of the last
 ///    step [p: "fractions"; ½ X], 0 at the tip, which ends in a point [X]. N of the friction are the constraint forces
 ///    of the last step [Van Laerhoven: "a constant, approximated at each time step"].
-/// 2. Plasticity: ρ = min(|w'|, α) w'/|w'| [sign R], α = plastic_share · yield angle of the joint, 0.3 of it dry [X].
-///    ρ follows the last step, so a held bend relaxes step by step, as in print.
+/// 2. Plasticity: ρ = min(|w'|, α) w'/|w'| [sign R], α = plastic_share of the bend that hair lying flat has on the
+/// mean,
+///    0.3 of it dry [X]. ρ follows the last step, so a held bend relaxes step by step, as in print: a bend below α ends
+///    without force.
 /// 3. Pores: p·Δx_tip <= l_p, p the projected tip, l_p = l_0 + z cot α_tip [R: the way to touch], l_0 = 0.05 mm [X],
 ///    while the tip points down and slants more than 1° [X].
 /// 4. Lateral nodes (chain_lateral.h) of every second node: s(θ) = σ r k/k_ref with k the curvature there and k_ref
@@ -27,8 +29,8 @@
 /// Two spines (`spines` 2) each have half of the hair, at the centroids of the two halves of the ferrule, and drive
 /// one side of a lattice (lattice.h), which carries the sections. A preset's tuft is round and has one.
 ///
-/// B(ξ), μ, κ_f, C_η, yield and k_c are the preset's. Energy: `lost` holds the friction and what the change of bend
-/// costs; what ρ takes away between steps is in no term, so the balance with the hand's work is not kept.
+/// B(ξ), μ, κ_f, C_η, plastic_share and k_c are the preset's. Energy: `lost` holds the friction and what the change of
+/// bend costs; what ρ takes away between steps is in no term, so the balance with the hand's work is not kept.
 namespace tuft::brush {
 
 struct ChainOptions {

@@ -22,6 +22,7 @@ constexpr double kLeastBend = 1e-5;   ///< radians below which the curvature of 
 constexpr double kLeastShift = 1e-7;  ///< of the Hessian's diagonal, relative to the joint
 constexpr double kSettled = 1e-7;     ///< lengths a node still moves
 constexpr double kGivesWay = 1e-10;   ///< compliance of constraints that contradict each other
+constexpr double kHold = 100;         ///< σ over 1 + the largest multiplier
 constexpr double kArmijo = 1e-4;
 
 Mat3 cross_matrix(const Vec3& v) {
@@ -300,8 +301,17 @@ MatrixXd Sqp::hessian(const Evaluation& e, std::span<const Vec2> bend) const {
 }
 
 VectorXd Sqp::step_of(const Evaluation& e, std::span<const Vec2> bend) {
-    const MatrixXd h = hessian(e, bend);
-    const VectorXd g = gradient(e, bend);
+    MatrixXd h = hessian(e, bend);
+    VectorXd g = gradient(e, bend);
+    const MatrixXd rows = constraint_rows(e);
+    // Hair under pressure is stable only where its constraints hold it. ½ σ (room + aδ)² of the active ones changes no
+    // step that keeps them, and makes the Hessian definite beside them.
+    const double hold = constraints_ > 0 ? kHold * (1 + multiplier_.maxCoeff()) : 0;
+    for (Index i = 0; i < rows.rows(); ++i) {
+        if (multiplier_[i] <= 0) continue;
+        h += hold * rows.row(i).transpose() * rows.row(i);
+        g += hold * e.room[i] * rows.row(i).transpose();
+    }
     Eigen::LLT<MatrixXd> factor;
     while (true) {
         MatrixXd shifted = h;
@@ -314,7 +324,6 @@ VectorXd Sqp::step_of(const Evaluation& e, std::span<const Vec2> bend) {
     VectorXd free = -factor.solve(g);
     if (constraints_ == 0) return free;
     // Dual: min ½ λᵀ(A H⁻¹ Aᵀ)λ + λᵀ(room + A free), λ >= 0; step = free + H⁻¹ Aᵀ λ.
-    const MatrixXd rows = constraint_rows(e);
     const MatrixXd answer = factor.solve(rows.transpose());
     MatrixXd dual = rows * answer;
     dual.diagonal().array() += kGivesWay;

@@ -31,11 +31,25 @@ void feel(Tuft& tuft, TuftState& state, double dt) {
     state.device_force = tuft.device_force;
 }
 
+/// Whether a section of the whole tuft cuts its plane: the papers paint with what lies below the surface, also where
+/// their hair has come to rest without force.
+bool reaches(const TuftState& state, std::span<const ContactPlane> planes) {
+    for (const Branch& branch : state.branches) {
+        for (std::size_t k = 0; k < branch.sections.size() && !planes.empty(); ++k) {
+            const Section& s = branch.sections[k];
+            const ContactPlane& plane = planes.size() == 1 ? planes[0] : planes[std::min(k, planes.size() - 1)];
+            const double reach = std::hypot(s.a * glm::dot(s.e, plane.normal), s.b * glm::dot(s.m, plane.normal));
+            if (height_over(plane, s.centre) < reach) return true;
+        }
+    }
+    return false;
+}
+
 /// Bends the tuft by its model of the papers, and takes its nodes over into the spine.
 TuftState step_model(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt) {
     const double length = tuft.preset.length;
     TuftState state = tuft.model->step({pose, planes, std::isfinite(dt) ? std::max(0.0, dt) : 0, tuft.wetness});
-    state.touching = state.normal_force > 0;
+    state.touching = state.normal_force > 0 || reaches(state, planes);
     rod::Memory& m = tuft.trunk().memory;
     m.clamp = clamp_of(tuft.preset, pose);
     const std::vector<Vec3> nodes = tuft.model->nodes();

@@ -9,6 +9,7 @@
 #include "brush/tuft/tuft_surface.h"
 #include "core/ease.h"
 #include "core/random.h"
+#include "footprint/outline/outline.h"
 
 namespace tuft::render {
 
@@ -235,6 +236,12 @@ void fill_wide_ferrule(BrushCanvas& canvas, const Preset& p, const Pose& pose, c
         return pose.position + pose.rotation * Vec3{flat.x, flat.y, 0} + (top ? height : 0) * up;
     };
     const Vec3 dark = linear_colour(28, 28, 32), light = linear_colour(165, 165, 174);
+    // What lies behind the sides, so that no paper shows between two.
+    for (int k = 0; k < kSides / 2; ++k) {
+        const int other = kSides - 1 - k;
+        const Vec2 slice[] = {view(at(k, false)), view(at(other, false)), view(at(other, true)), view(at(k, true))};
+        fill_polygon(canvas, slice, glm::mix(dark, light, 0.5));
+    }
     for (int k = 0; k < kSides; ++k) {
         const Vec3 p0 = at(k, false), p1 = at(k + 1, false), q0 = at(k, true), q1 = at(k + 1, true);
         const Vec3 out = glm::cross(p1 - p0, q0 - p0);
@@ -354,6 +361,15 @@ void draw_patch(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, c
                 if (s.centre.z + s.a * at->x * s.e.z - under <= 1e-4) line.push_back(plan(point_of(s, *at)));
             }
             stroke_line(canvas, line, {&width, 1}, ink, 0.85);
+        }
+        return;
+    }
+    if (state.wide) {
+        // The patch as it is painted: strips, and the skin between those that ink joins.
+        for (const footprint::Outline& outline : footprint::outline(state, Frame{})) {
+            std::vector<Vec2> points;
+            for (const Vec2& q : footprint::curve_points(outline)) points.push_back(plan({q, 0}));
+            fill_polygon(canvas, points, ink);
         }
         return;
     }
