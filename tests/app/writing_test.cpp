@@ -150,6 +150,17 @@ TEST_F(WritingOnModel, HandwritingWithBrushesAndPlacesOfItsOwnIsTheSame) {
     expect_same(studio, by_program("vase.ply", w, studio.words, ""));
 }
 
+// A model in a mistaken unit. The tuft of wolf-large*4 is 180 mm long, the cylinder is 165 mm across, the drawing 800
+// mm wide.
+TEST_F(WritingOnModel, OneThatNoTuftCanPaintIsRefusedBeforeItsFirstStroke) {
+    Writing w = cross();
+    const WritingHand hand{"wolf-large*4", "carbon"};
+    w.scale = 20;
+    EXPECT_TRUE(by_studio("cylinder.ply", w, {0, -1, 0.03}, {0, 1, 0}, {1, 0, 0}, hand).journal.empty());
+    w.scale = 1;
+    EXPECT_EQ(by_studio("cylinder.ply", w, {0, -1, 0.03}, {0, 1, 0}, {1, 0, 0}, hand).journal.size(), 2u);
+}
+
 TEST_F(WritingOnModel, StraightThroughThePictureItIsTheSame) {
     Writing w = roundel(0.05);
     w.mapping = stroke::SurfaceMapping::project;

@@ -364,11 +364,11 @@ TEST(Document, ABrushThatTakesAnothersPlaceIsMeasuredAnew) {
     brush::Preset stiff = brush::load_preset("wolf-small");
     stiff.length *= 0.7;
     Document plain(model), used(model);
-    plain.use_brush(stiff);
+    plain.use(stiff);
     plain.paint(flat);
     used.paint(flat);
     ASSERT_TRUE(used.undo());
-    used.use_brush(stiff);
+    used.use(stiff);
     used.paint(flat);
     EXPECT_EQ(used.hash(), plain.hash());
 }

@@ -132,7 +132,8 @@ void Solver::freeze_friction(const std::vector<Vec3>& x, const std::vector<Vec3>
     Hair hair;
     for (std::size_t p = 1; p < fine.size(); ++p) {
         frozen.friction[p].cap = 0;
-        if (!anchored[p] || normal[p] <= 0) continue;
+        // A wall that is no more has no weight and no node; its contact in the last solve is not carried on.
+        if (!anchored[p] || normal[p] <= 0 || frozen.weight[p] <= 0) continue;
         const PointPlace& at = place(p);
         const Vec3& tangent = tangents[at.s > 0 ? at.node : at.node - 1];
         const Vec3 at_point = point(x, p), plane = normal_at(p, x);
