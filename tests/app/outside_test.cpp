@@ -36,7 +36,7 @@ class OutsideTest : public testing::Test {
         work.document = std::make_unique<stroke::Document>(*work.model);
         work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
         work.spare = folder_ / "spare.tuft";
-        ASSERT_EQ(work.autosave.start(path_, "sheet.ply", {}, *work.document), "");
+        ASSERT_TRUE(work.autosave.start(path_, "sheet.ply", {}, *work.document).empty());
         painter_ = std::make_unique<PaintThread>(std::move(work));
     }
     void TearDown() override {
@@ -54,7 +54,7 @@ class OutsideTest : public testing::Test {
     void look() {
         Update u = painter_->take();
         if (u.events.strokes) lines_ = std::move(*u.events.strokes);
-        for (const std::string& m : u.events.messages) messages_ += m + '\n';
+        for (const Message& m : u.events.messages) messages_ += m.text() + '\n';
         last_ = std::move(u);
     }
     void rest() {
@@ -105,7 +105,7 @@ TEST_F(OutsideTest, AChangeBesideIsSeenByItselfAndThePaintingGoesOnAfterIt) {
     })) << messages_;
     EXPECT_EQ(lines_.size(), 2u);
     stroke(0.01);
-    EXPECT_EQ(last_.status.file.trouble, "");
+    EXPECT_TRUE(last_.status.file.trouble.empty());
     painter_.reset();
     expect_file(3, path_);
 }
@@ -159,7 +159,7 @@ TEST_F(OutsideTest, WhereAnotherModelIsPutInItsPlaceTheWorkGoesOnInACopy) {
         const stroke::Model other = test::shipped_model("sphere.ply", 256);
         stroke::Document painting(other);
         Autosave autosave;
-        ASSERT_EQ(autosave.start(folder_ / "other.tuft", "sphere.ply", {}, painting), "");
+        ASSERT_TRUE(autosave.start(folder_ / "other.tuft", "sphere.ply", {}, painting).empty());
     }
     const auto size = fs::file_size(folder_ / "other.tuft");
     fs::rename(folder_ / "other.tuft", path_);

@@ -103,6 +103,15 @@ TEST_F(EarlierFiles, OptionsOfEarlierVersionsAreTaken) {
     ASSERT_EQ(tuft(paint + path("a.tuft") + " --laying wrap --habit " + path("now.toml")).status, 0);
     ASSERT_EQ(tuft(paint + path("b.tuft") + " --mapping wrap --bias " + path("now.toml")).status, 0);
     EXPECT_EQ(read(colours_of(path("a.tuft"), "a.png")), read(colours_of(path("b.tuft"), "b.png")));
+    // A fresh brush for the second stroke would leave other texels.
+    const auto dipped = [&](const std::string& word_of_dip) {
+        const std::string project = path(word_of_dip + ".tuft");
+        EXPECT_EQ(tuft(paint + project + " --dip " + word_of_dip).status, 0) << word_of_dip;
+        EXPECT_EQ(tuft("paint " + project + " --strokes " + word + " --dip " + word_of_dip + " --quiet").status, 0);
+        return read(colours_of(project, word_of_dip + ".png"));
+    };
+    EXPECT_EQ(dipped("carry"), dipped("persistent"));
+    EXPECT_NE(dipped("each"), dipped("persistent"));
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ inline Document dry_stroke(const Model& model, double left, std::uint64_t seed, 
     if (s.trace.samples.empty()) s = drag(seed);
     if (left < 1) {
         painting.paint(wipe(1 - left, seed));
-        s.settings.dip = DipMode::carry;
+        s.settings.dip = DipMode::persistent;
     }
     painting.paint(s);
     return painting;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "io/project/project.h"
 #include "stroke/document/document.h"
 #include "stroke/document/merge.h"
@@ -27,14 +28,14 @@ class Autosave {
     /// Takes the presets of another project, for strokes that come from it.
     void take_presets(const io::Project& project);
     /// Writes everything to a new project at `path` and keeps that one from now on. On
-    /// failure the old one stays, the reason is returned, else "".
-    std::string start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
-                      stroke::Document& painting);
+    /// failure the old one stays and the reason is returned, else an empty one.
+    Message start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
+                  stroke::Document& painting);
 
     /// There is no file that can be written: all waits in memory, and `start` is tried again before each stroke.
     /// `has_work`: there is something already that no file holds.
     void start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
-                     const std::string& fault, bool has_work = false);
+                     const Message& fault, bool has_work = false);
 
     /// `start` in the place of the file there is, which rows alone cannot bring up to date.
     void rewrite(const std::string& source, const FileFrame& frame, stroke::Document& painting);
@@ -75,7 +76,7 @@ class Autosave {
 
     std::filesystem::path path() const { return project_ ? project_->path() : std::filesystem::path{}; }
     std::vector<std::string> inks() const;  ///< names of those that the project holds
-    const std::string& trouble() const { return trouble_; }
+    const Message& trouble() const { return trouble_; }
     std::size_t waiting() const { return pending_.size(); }
 
   private:
@@ -90,7 +91,7 @@ class Autosave {
         std::filesystem::path path;
         std::string source;
         FileFrame frame;
-        std::string fault;  ///< why it is not there yet
+        Message fault;  ///< why it is not there yet
     };
     std::optional<io::Project> project_;
     std::optional<Wanted> wanted_;
@@ -98,7 +99,7 @@ class Autosave {
     std::vector<stroke::EntryMark> on_disk_;
     std::map<std::string, std::string> brushes_, inks_;                       ///< TOML by name
     std::map<std::pair<std::string, std::string>, io::Attachment> attached_;  ///< by kind and name
-    std::string trouble_;
+    Message trouble_;
     bool behind_ = false, overtaken_ = false, viewing_ = false;
 };
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/input/events.h"
+#include "core/message.h"
 
 namespace tuft::app {
 
@@ -21,7 +22,7 @@ class SpaceMouse {
     /// The cap is held out of its rest.
     virtual bool held() const = 0;
     /// What is worth a message: the device or its daemon came or went; "" if nothing.
-    virtual std::string take_trouble() = 0;
+    virtual Message take_trouble() = 0;
 };
 
 /// `wake` is called on the listening thread whenever something came. nullptr in a program that was

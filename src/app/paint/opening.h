@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/paint/paint_thread.h"
+#include "core/message.h"
 #include "mesh/read/polygon_soup.h"
 #include "mesh/repair/inspect.h"
 
@@ -16,9 +17,9 @@ namespace tuft::app {
 struct Inspected {
     std::filesystem::path path;
     mesh::PolygonSoup soup;
-    mesh::MeshSummary summary;         ///< lengths in metres by the guessed unit
-    std::vector<std::string> defects;  ///< found and repaired, one line each
-    bool unit_fixed = false;           ///< the format says the unit
+    mesh::MeshSummary summary;     ///< lengths in metres by the guessed unit
+    std::vector<Message> defects;  ///< found and repaired, one line each
+    bool unit_fixed = false;       ///< the format says the unit
 };
 
 struct OpenOptions {
@@ -62,12 +63,12 @@ class Opening {
     std::string phase() const;  ///< for a person, English
     double fraction() const;    ///< of the whole
 
-    /// Whether the step is done; results are taken once. The error is one line, "" if none.
+    /// Whether the step is done; results are taken once. The error is empty if there was none.
     struct Result {
         std::optional<Inspected> inspected;
         std::optional<PaintWork> work;
         std::optional<InUse> in_use;  ///< and therefore not opened
-        std::string error;
+        Message error;
         bool done = false;
     };
     Result poll();

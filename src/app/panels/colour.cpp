@@ -191,10 +191,10 @@ void save(Session& s) {
         stroke::check_name(c.name, "ink");
         own.name = c.name;
         save_own_ink(c, std::move(own));
-        show_message(s.status, "Saved as " + c.name);
+        show_message(s.status, Message("Saved as {}", c.name));
         c.name.clear();
     } catch (const Error& error) {
-        show_message(s.status, error.what());
+        show_message(s.status, error.message());
     }
 }
 

@@ -10,18 +10,84 @@
 namespace tuft::app {
 
 /// Heights and widths in pixels for a scale of 1.
-inline constexpr float kStripWidth = 58, kToolWidth = 226, kJournalWidth = 252, kStatusHeight = 30;
+inline constexpr float kStripWidth = 58, kToolWidth = 226, kJournalWidth = 252, kStatusHeight = 30, kOptionsHeight = 62;
 
-void menu_bar(Session& s);
+/// What each panel reads and changes.
+struct MenuParts {
+    Ui& ui;
+    PanelLayout& panels;
+    DialogState& dialogs;
+    ViewState& view;
+    PaletteState& palette;
+    BrushSettings& brush;
+    StatusMessage& status;
+    const KeyTable& keys;
+    PaintThread* work;  ///< nullptr: no model is open
+    const PaintStatus& reported;
+    bool has_former_model;  ///< the open one was revised from it
+};
+struct HistoryParts {
+    Ui& ui;
+    PaintThread& work;
+    const PaintStatus& reported;
+    const KeyTable& keys;
+};
+struct LayerParts {
+    Ui& ui;
+    LayerState& layers;
+    PaintThread& work;
+    const stroke::LayerTable& table;
+    StatusMessage& status;
+};
+struct JournalParts {
+    Ui& ui;
+    JournalState& journal;
+    PaintThread& work;
+    const ColourState& colours;
+    const std::vector<std::string>& brushes;  ///< names of the shipped ones
+    const KeyTable& keys;
+    Orbit& orbit;
+};
+struct InkParts {
+    Ui& ui;
+    BrushSettings& brush;
+    ColourState& colours;
+    PaintThread& work;
+    const PaintStatus& reported;
+    FileDialog& files;
+};
+struct OptionParts {
+    Ui& ui;
+    ToolState& tools;
+    BrushSettings& brush;
+    StatusMessage& status;
+};
+struct MarkParts {
+    const Ui& ui;
+    const ViewState& view;
+    const ToolState& tools;
+    const JournalState& journal;
+    const MaskState& masks;
+    const stroke::Model& model;
+};
+
+/// What a menu asks for beyond its parts.
+enum class MenuChoice { none, close_model, quit, former_model, fold_panels, store_settings, other_language };
+MenuChoice menu_bar(const MenuParts& s);
+/// The settings that a hand needs all the time, in rows over the view: size, pressure, and those of the tool.
+void tool_options(const OptionParts& s, float left, float top, float width);
 /// The column of tools at the window's edge.
 void tool_strip(Session& s, float top, float bottom, float left);
 /// What the chosen tool, the brush and the ink are set to.
 void tool_panel(Session& s, float top, float bottom, float left);
 /// In place of the tools: what is painted with which ink is shown as, and on which material.
 void colours_panel(Session& s, float top, float bottom, float left);
-void journal_panel(Session& s, float top, float bottom, float left);
-void layers_section(Session& s);
-void ink_section(Session& s);
+/// Undo and redo, and how far long work is.
+void history_buttons(const HistoryParts& s);
+void layers_section(const LayerParts& s);
+void journal_section(const JournalParts& s);
+/// `compact`: in as little room as it can be read in. Returns the pixels that this saves.
+float ink_section(const InkParts& s, bool compact);
 /// Chooses a colour by its hex code; the mix found for it comes into the hand.
 void set_colour(Session& s, const std::string& hex);
 /// The colour wheel over the view, where it is shown.
@@ -56,7 +122,7 @@ void palette_panel(Session& s);
 /// The tuft from the side with the surface under it, and what the hand feels.
 void tuft_inset(Session& s);
 /// Marks on the model: where the tuft touches, where symmetric copies would, the line being drawn.
-void view_marks(const Session& s, const render::GlCamera& camera);
+void view_marks(const MarkParts& s, const render::GlCamera& camera);
 
 /// The export as the dialog says it.
 ExportModel export_command(const ExportSettings& settings, const Orbit& seen_from, const std::filesystem::path& path);

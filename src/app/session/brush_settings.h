@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/widgets/status_message.h"
+#include "brush/preset/preset.h"
 #include "core/geometry/types.h"
 
 namespace tuft::app {
@@ -27,6 +28,8 @@ struct BrushSettings {
     double dip_side = 0;     ///< of the tuft's width, from the right flank (> 0) or the left; 0: all
 };
 
+/// A shipped brush, read once.
+const brush::Preset& shipped_brush(const std::string& name);
 /// Metres: how wide a line a model's first brush shall draw, and the brush of that hair that does at a pressure.
 double first_line_width(const Box& box);
 std::string first_brush(const std::vector<std::string>& brushes, const std::string& hair_of, double pressure,

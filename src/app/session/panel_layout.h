@@ -7,11 +7,11 @@ namespace tuft::app {
 /// Which panels stand beside the view, and what is unfolded in them.
 struct PanelLayout {
     bool show_tools = true, show_journal = true;
-    bool journal_fits = true;           ///< beside the model
-    bool journal_over_tools = false;    ///< where it does not fit: in place of the tools
-    bool show_appearance = false;       ///< in place of the tools: other inks and another material
-    bool show_pointer_details = false;  ///< all settings of the pointer
-    int pen_curve_handle = 1;           ///< of the pen's pressure curve: 0 lower end, 1 middle, 2 upper end
+    bool journal_fits = true;         ///< beside the model
+    bool journal_over_tools = false;  ///< where it does not fit: in place of the tools
+    bool show_appearance = false;     ///< in place of the tools: other inks and another material
+    bool compact_tools = false;       ///< there is little room for them
+    int pen_curve_handle = 1;         ///< of the pen's pressure curve: 0 lower end, 1 middle, 2 upper end
     HelpState help;
 };
 

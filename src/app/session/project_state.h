@@ -8,6 +8,7 @@
 #include "app/document/pictures.h"
 #include "app/document/state_folder.h"
 #include "app/paint/opening.h"
+#include "core/message.h"
 
 namespace tuft::app {
 
@@ -16,7 +17,7 @@ struct Revision {
     std::filesystem::path source;                    ///< project whose strokes the model being opened gets
     std::filesystem::path previous;                  ///< project that the strokes of the open one came from
     std::vector<stroke::StrokeMismatch> mismatches;  ///< strokes that no longer fit
-    std::vector<std::string> fit;                    ///< how all strokes lie on it, a sentence each
+    std::vector<Message> fit;                        ///< how all strokes lie on it, a sentence each
 };
 
 /// Work that an earlier run did not save.
@@ -34,7 +35,7 @@ struct CloseRequest {
 
 struct Closing {
     std::optional<CloseRequest> request;  ///< waits for an answer, while some work is in memory only
-    std::string failure;                  ///< what became of work that could not be saved; "" if all was
+    Message failure;                      ///< what became of work that could not be saved; empty if all was
     bool quit = false;
 };
 

@@ -26,7 +26,7 @@ void take_picked(Session& s, const std::string& name) {
                       100 * part.fraction / std::max(1e-9, ink->strength()), part.pigment.name.c_str());
         parts += text;
     }
-    show_message(s.status, name + ": " + parts);
+    show_message(s.status, Message("{}: {}", name, parts));
 }
 
 // The work lies in this file now.
@@ -73,7 +73,7 @@ void take_events(Session& s, PaintEvents& e) {
     if (e.appearance) s.colours.appearance = std::move(*e.appearance);
     if (!e.picked.empty()) take_picked(s, e.picked);
     if (e.not_saved) s.dialogs.file.return_with(e.not_saved->path, e.not_saved->reason);
-    for (std::string& message : e.messages) show_message(s.status, std::move(message));
+    for (Message& message : e.messages) show_message(s.status, std::move(message));
 }
 
 }  // namespace

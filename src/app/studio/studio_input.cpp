@@ -220,7 +220,7 @@ void StudioInput::assign_key(const Event& e) {
     const bool modifier = e.key >= GLFW_KEY_LEFT_SHIFT && e.key <= GLFW_KEY_RIGHT_SUPER;
     if (modifier || name_of(Chord{e.key, e.modifiers}).empty()) return;
     if (const auto other = s.preferences.keys.assign(*s.dialogs.key_to_assign, {e.key, e.modifiers}))
-        show_message(s.status, std::string(s.ui.tr(title_of(*other))) + s.ui.tr(" has no key now."));
+        show_message(s.status, Message("{} has no key now.", title_of(*other)));
     s.dialogs.key_to_assign.reset();
     store_settings(s);
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/input/events.h"
+#include "core/message.h"
 
 namespace tuft::app {
 
@@ -16,7 +17,7 @@ class Display {
     virtual void poll(EventQueue& events, double wait) = 0;
     virtual void present() = 0;
     /// What went wrong since the last call and is worth a message, "" if nothing.
-    virtual std::string take_trouble() { return ""; }
+    virtual Message take_trouble() { return {}; }
     virtual bool closed() const = 0;
     virtual void stay_open() {}  ///< after `closed`: it is not any more
     /// The graphics driver was reset: everything in its memory is gone.

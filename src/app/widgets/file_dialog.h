@@ -8,6 +8,7 @@
 #include "app/document/pictures.h"
 #include "app/widgets/file_list.h"
 #include "app/widgets/ui.h"
+#include "core/message.h"
 
 namespace tuft::app {
 
@@ -27,7 +28,7 @@ class FileDialog {
 
     /// Comes back with the name that was chosen last and the reason, where writing to `path` failed and that was
     /// the one chosen here.
-    void return_with(const std::filesystem::path& path, const std::string& fault);
+    void return_with(const std::filesystem::path& path, const Message& fault);
 
   private:
     struct Chosen {
@@ -37,7 +38,7 @@ class FileDialog {
     void read_folder();
     void go(const std::filesystem::path& folder);
     void choose_name(const std::string& name);
-    void refuse(const std::string& why);
+    void refuse(const Message& why);
     void make_folder(Ui& ui);
     bool suits(const std::filesystem::path& file) const;
     std::optional<std::filesystem::path> accept();
@@ -78,7 +79,7 @@ class FileDialog {
     NameField name_;
     NewFolder new_folder_;
     Sketch sketch_;
-    std::string fault_;
+    Message fault_;
     std::optional<Chosen> last_;  ///< what was chosen last
 };
 

@@ -1,17 +1,18 @@
 #pragma once
 
-#include <string>
 #include <utility>
+
+#include "core/message.h"
 
 namespace tuft::app {
 
 /// The line of text in the status bar.
 struct StatusMessage {
-    std::string text;
+    Message text;
     double seconds = 0;  ///< since it came
 };
 
-inline void show_message(StatusMessage& status, std::string text) {
+inline void show_message(StatusMessage& status, Message text) {
     status = {std::move(text), 0};
 }
 

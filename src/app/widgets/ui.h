@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/types.h"
+#include "core/message.h"
 
 struct ImFont;
 
@@ -35,8 +36,8 @@ std::string find_chinese_font(const std::map<std::string, std::string>& path_by_
 /// English text; where each was drawn is kept, so that a script can find it.
 class Ui {
   public:
-    /// Makes fonts and colours. Returns what could not be had, "" if nothing.
-    std::string prepare(const UiSettings& settings);
+    /// Makes fonts and colours. Returns what could not be had, empty if nothing.
+    Message prepare(const UiSettings& settings);
     const UiSettings& settings() const { return settings_; }
 
     /// The text in the chosen language.
@@ -45,8 +46,8 @@ class Ui {
     std::string title(const std::string& name) const;
     /// The text, with "..." for its end where it is wider than so many pixels.
     std::string fitted(const std::string& text, float width) const;
-    /// A sentence with numbers or a name in it, in the language of the interface.
-    std::string tr_sentence(const std::string& english) const;
+    /// A message, in the language of the interface.
+    std::string sentence(const Message& message) const;
     /// Pixels of a length given for a scale of 1.
     float px(float length) const { return length * settings_.scale; }
 
@@ -63,6 +64,9 @@ class Ui {
     bool choice(const char* label, bool chosen, const char* hint = nullptr, float width = 0);
     bool slider(const char* label, double& value, double lo, double hi, const char* format, const char* hint = nullptr,
                 double unit = 1);
+    /// A slider with its name in it, so many pixels wide.
+    bool named_slider(const char* label, double& value, double lo, double hi, const char* format, const char* hint,
+                      double unit, float width);
     bool combo(const char* label, std::string& value, const std::vector<std::string>& names, float width = 0);
     bool menu_item(const char* label, const char* shortcut = nullptr, bool chosen = false, bool enabled = true);
     bool begin_menu(const char* label);
@@ -98,15 +102,13 @@ class Ui {
 
   private:
     std::string id(const char* label) const;
+    bool bare_slider(const char* label, double& value, double lo, double hi, const char* format, double unit,
+                     float width);
     void style();
 
     UiSettings settings_;
     std::map<std::string, Place> places_;
 };
-
-/// Chinese for a sentence with numbers or a file name in it, as the catalogue has it with # for each number and * for
-/// the name; the English one when there is none.
-std::string chinese_sentence(const std::string& english);
 
 /// sRGB of the primary button, at rest and under the cursor; its text is white.
 inline constexpr float kPrimary[3] = {0.16f, 0.40f, 0.78f}, kPrimaryHovered[3] = {0.17f, 0.43f, 0.82f};

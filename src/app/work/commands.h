@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kNewestLayer = stroke::kPaletteLayer - 1;
 struct BeginStroke {
     std::string brush, ink;
     stroke::Symmetry symmetry;
-    bool carry = false;                         ///< goes on with the hair and ink of the stroke before
+    bool persistent = false;                    ///< goes on with the hair and ink of the stroke before
     bool as_it_is = false;                      ///< with what is in the brush, whatever ink is chosen; where it is held
     std::uint32_t layer = stroke::kFirstLayer;  ///< or the palette
     std::uint32_t mask = 0;                     ///< kept to; 0: none

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/work/update.h"
+#include "core/message.h"
 #include "core/system/progress.h"
 
 namespace tuft::app {
@@ -19,7 +20,7 @@ class Outbox {
         how(update_);
     }
     /// A line for the status bar.
-    void report(std::string message);
+    void report(Message message);
     /// Shows how far long work is, under its name.
     void show_progress(const std::string& name, double fraction);
     /// Events since the last call, and the status as it is.

@@ -7,6 +7,7 @@
 
 #include "app/document/autosave.h"
 #include "app/view/texture.h"
+#include "core/message.h"
 #include "stroke/document/document.h"
 #include "stroke/document/fit.h"
 
@@ -22,9 +23,9 @@ struct PaintWork {
     std::string source;
     FileFrame frame;                                 ///< of the model file
     std::vector<stroke::StrokeMismatch> mismatches;  ///< of a revised model: strokes that do not fit it
-    std::vector<std::string> fit;                    ///< and how all of them lie on it, for people
+    std::vector<Message> fit;                        ///< and how all of them lie on it, for people
     std::filesystem::path spare;                     ///< a file for work that cannot be saved in its own at the end
-    std::string note;                                ///< for the person who opened it
+    Message note;                                    ///< for the person who opened it
 };
 
 }  // namespace tuft::app

@@ -12,6 +12,7 @@
 #include "app/document/snapshots.h"
 #include "app/document/thumbnails.h"
 #include "app/view/texture.h"
+#include "core/message.h"
 #include "stroke/document/document.h"
 
 /// \file
@@ -72,7 +73,7 @@ struct ProgressStatus {
 /// The project file.
 struct FileStatus {
     std::filesystem::path project;
-    std::string trouble;      ///< why work is not being saved, ""
+    Message trouble;          ///< why work is not being saved; empty: it is
     std::size_t unsaved = 0;  ///< strokes that wait in memory for that
     bool behind = false;      ///< and so does a change of one
     bool viewing = false;     ///< another program works on the project; it is only looked at
@@ -88,14 +89,14 @@ struct PaintStatus {
 /// A project could not be saved.
 struct SaveFailure {
     std::filesystem::path path;
-    std::string reason;
+    Message reason;
 };
 
 /// What happened since the last look.
 struct PaintEvents {
     TexelUpdate texels;
     std::optional<std::vector<StrokeLine>> strokes;
-    std::vector<std::string> messages;
+    std::vector<Message> messages;
     std::optional<stroke::PalettePicture> palette;
     std::vector<Thumbnail> thumbnails;              ///< of layers, those that changed
     std::optional<std::vector<ink::Ink>> own_inks;  ///< of this work, beside the shipped ones

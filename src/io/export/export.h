@@ -7,6 +7,7 @@
 
 #include "atlas/atlas.h"
 #include "atlas/texels/texel_map.h"
+#include "core/message.h"
 #include "core/system/progress.h"
 #include "core/text/units.h"
 #include "ink/composite/composite.h"
@@ -81,9 +82,8 @@ std::vector<std::uint8_t> painted_parts(const ink::Stack& stack, const mesh::Tri
 /// replaced only when all new ones are complete. Throws `Error` for an unknown
 /// extension or unit, a folder that does not exist or is full, more than 4 GiB in GLB.
 /// Returns what a user should know of it, one line each.
-std::vector<std::string> export_model(const std::filesystem::path& path, const mesh::TriangleMesh& mesh,
-                                      const atlas::Atlas& atlas, const ModelMaps& maps,
-                                      const ExportOptions& options = {});
+std::vector<Message> export_model(const std::filesystem::path& path, const mesh::TriangleMesh& mesh,
+                                  const atlas::Atlas& atlas, const ModelMaps& maps, const ExportOptions& options = {});
 
 /// Names of the files `export_model` writes for `path` with these maps, but for pictures of the file's own
 /// materials.

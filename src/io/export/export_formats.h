@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "mesh/triangle_mesh.h"
 
 /// What the writers of the single formats share; inside `io` only.
@@ -55,7 +56,7 @@ struct ExportScene {
 std::vector<std::vector<std::uint32_t>> triangles_of_parts(const ExportScene& scene);
 
 /// What a user should know of the parts, one line each.
-std::vector<std::string> notes_on_parts(const ExportScene& scene);
+std::vector<Message> notes_on_parts(const ExportScene& scene);
 
 /// GLB, or glTF with its files, by the extension; `path` lies in a staging folder.
 void write_gltf(const std::filesystem::path& path, const ExportScene& scene, std::span<const EncodedMap> maps);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "mesh/read/polygon_soup.h"
 
 /// The colours that a model's file gives its faces: MTL libraries and pictures beside it.
@@ -24,7 +25,7 @@ bool lies_within(const std::filesystem::path& folder, const std::filesystem::pat
 /// The picture of that name in the folder, looked for as `read_materials` says; null with a warning where it is not
 /// there or cannot be read.
 std::shared_ptr<const mesh::Picture> read_picture_beside(const std::filesystem::path& folder, const std::string& name,
-                                                         std::vector<std::string>& warnings);
+                                                         std::vector<Message>& warnings);
 
 /// Fills `soup.materials` from the libraries and pictures its reader has named, which are looked
 /// for in the folder of `model` only: a name that leads elsewhere is looked for there by its last

@@ -44,7 +44,7 @@ const fs::path& importer() {
             if (access(place.c_str(), X_OK) == 0) return place;
             tried += (tried.empty() ? "" : ", ") + place.string();
         }
-        throw Error(std::string(kProgram) + ", which reads FBX and DAE, is not there (looked for " + tried + ")");
+        throw Error(Message("{}, which reads FBX and DAE, is not there (looked for {})", std::string(kProgram), tried));
     }();
     return found;
 }
@@ -53,7 +53,7 @@ const fs::path& importer() {
 class MemoryFile {
   public:
     MemoryFile() : fd_(memfd_create("tuft", MFD_CLOEXEC)) {
-        if (fd_ < 0) throw Error(std::string("no memory for a file: ") + std::strerror(errno));
+        if (fd_ < 0) throw Error(Message("no memory for a file: {}", std::strerror(errno)));
     }
     ~MemoryFile() { close(fd_); }
     MemoryFile(const MemoryFile&) = delete;
@@ -63,7 +63,7 @@ class MemoryFile {
     void write_all(const std::vector<char>& bytes) const {
         for (std::size_t at = 0; at < bytes.size();) {
             const ssize_t n = write(fd_, bytes.data() + at, bytes.size() - at);
-            if (n <= 0) throw Error("no memory for a file of " + std::to_string(bytes.size()) + " bytes");
+            if (n <= 0) throw Error(Message("no memory for a file of {} bytes", bytes.size()));
             at += static_cast<std::size_t>(n);
         }
     }
@@ -105,7 +105,7 @@ class Child {
         const int failed = posix_spawn(&pid_, program.c_str(), &files, &attributes, arguments, environ);
         posix_spawnattr_destroy(&attributes);
         posix_spawn_file_actions_destroy(&files);
-        if (failed) throw Error(program, std::string("cannot be started: ") + std::strerror(failed));
+        if (failed) throw Error(program, Message("cannot be started: {}", std::strerror(failed)));
     }
     ~Child() {
         if (pid_ <= 0) return;
@@ -142,8 +142,8 @@ mesh::PolygonSoup read_import(const char* format, const std::vector<char>& bytes
     if (status < 0 || WIFSIGNALED(status)) {
         const int signal = status < 0 ? 0 : WTERMSIG(status);
         throw Error(name, signal == SIGXCPU || signal == SIGKILL
-                              ? "is damaged: reading it took more than " + std::to_string(seconds) + " s"
-                              : "is damaged: reading it failed");
+                              ? Message("is damaged: reading it took more than {} s", seconds)
+                              : Message("is damaged: reading it failed"));
     }
     const std::vector<char> result = output.read_all();
     if (WEXITSTATUS(status) == 0) return soup_of(unpack_scene(result, name), path);

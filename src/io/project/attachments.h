@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "stroke/journal/journal.h"
 
 /// What a project carries besides the model and its journal: reference images, named states of the journal.
@@ -26,6 +27,6 @@ struct Attachment {
 /// Entries of a journal as compressed bytes, and back, every number to the bit. `unpack_entries` throws `Error` naming
 /// `what` for bytes that are damaged, before it takes memory for them.
 std::vector<char> pack_entries(std::span<const stroke::JournalEntry> entries);
-std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, const std::string& what);
+std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, const Message& what);
 
 }  // namespace tuft::io

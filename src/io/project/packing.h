@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
+
 /// Arrays of numbers as small blobs, every bit kept; inside `io` only.
 namespace tuft::io {
 
@@ -18,11 +20,11 @@ struct Packing {
 std::vector<char> pack(const void* data, std::size_t count, const Packing& packing);
 
 /// Throws `Error` naming `what` when the blob does not unpack to `bytes` bytes by its head.
-void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const std::string& what);
+void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const Message& what);
 
 /// Undoes `pack` into `out`, which has room for `count` numbers. Throws `Error` naming
 /// `what` when the blob is damaged or holds another number of bytes; never writes past.
 void unpack(const void* blob, std::size_t blob_size, void* out, std::size_t count, const Packing& packing,
-            const std::string& what);
+            const Message& what);
 
 }  // namespace tuft::io

@@ -18,8 +18,8 @@ inline constexpr std::int64_t kMaxTriangles = std::int64_t{1} << 28;
 inline constexpr std::int64_t kMaxSamples = std::int64_t{1} << 25;  ///< in one stroke
 inline constexpr std::int64_t kMaxEntries = 1'000'000;              ///< of a journal
 
-[[noreturn]] inline void damaged(const std::filesystem::path& path, const std::string& what) {
-    throw Error(path.string(), "the project is damaged: " + what);
+[[noreturn]] inline void damaged(const std::filesystem::path& path, const Message& what) {
+    throw Error(path.string(), Message("the project is damaged: {}", what));
 }
 
 /// Stores an array of `count` elements of `size` bytes, made of numbers of

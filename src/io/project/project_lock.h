@@ -19,7 +19,7 @@ struct LockHolder {
 };
 
 /// "tuft-studio (process 4242)", "tuft (process 17 on workbench)", "another program".
-std::string name_of(const LockHolder& holder);
+Message name_of(const LockHolder& holder);
 
 /// Another process has the project. The message names it and says what to do.
 class ProjectInUse : public Error {

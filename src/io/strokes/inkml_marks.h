@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/message.h"
 #include "stroke/journal/recorded_stroke.h"
 
 namespace pugi {
@@ -25,7 +26,7 @@ struct InkmlText {
     /// Line of the character at `offset`, from 1. Offsets that ascend cost one pass over the file in all.
     long line_at(std::ptrdiff_t offset) const;
     /// Throws `Error` with the element's line.
-    [[noreturn]] void fail(const pugi::xml_node& node, const std::string& what) const;
+    [[noreturn]] void fail(const pugi::xml_node& node, const Message& what) const;
     /// Throws `Error` when the attribute is no number.
     double number_of(const pugi::xml_node& node, const char* attribute) const;
 };

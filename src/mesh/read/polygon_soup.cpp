@@ -46,9 +46,8 @@ bool is_polygon_file(const std::filesystem::path& path) {
 PolygonSoup read_polygon_file(const std::filesystem::path& path) {
     const std::string extension = path.extension().string();
     if (!is_polygon_file(path))
-        throw Error(path.string(), in_quotes(extension) +
-                                       " is not a known kind of model; use .obj, "
-                                       ".ply, .stl, .off or .glb");
+        throw Error(path.string(), Message("{} is not a known kind of model; use .obj, .ply, .stl, .off or .glb",
+                                           in_quotes(extension)));
     const std::vector<char> bytes = read_file(path);
     if (same_word(extension, ".obj")) return read_obj(bytes, path);
     if (same_word(extension, ".ply")) return read_ply(bytes, path);

@@ -90,7 +90,7 @@ brush::Preset Document::preset_of(const std::string& name, brush::SpineMethod sp
 BrushInHand Document::take_up(const BrushStart& start) {
     const brush::Preset preset = preset_of(start.brush, start.spine);
     const ink::Mix mix = mix_of(start.ink);
-    const BrushInHand* last = start.dip == DipMode::carry ? held(start.brush) : nullptr;
+    const BrushInHand* last = start.dip == DipMode::persistent ? held(start.brush) : nullptr;
     if (last && last->tuft.preset.spine == preset.spine) return *last;
     BrushInHand fresh{brush::make_tuft(preset, start.seed), {}, start.ink, start.ink};
     fresh.reservoir = empty_reservoir(fresh.tuft);
@@ -183,9 +183,10 @@ void check_width(const brush::Preset& preset, double texel) {
     constexpr double kWidest = 2048;  // texels
     const double width = 2 * preset.radius;
     if (width > kWidest * texel)
-        throw Error("the brush is " + std::to_string(1e3 * width) + " mm wide, " +
-                    std::to_string(static_cast<long long>(width / texel)) + " texels of this model, more than " +
-                    std::to_string(static_cast<int>(kWidest)) + ": use a larger texel size or a smaller brush");
+        throw Error(
+            Message("the brush is {} mm wide, {} texels of this model, more than {}: use a larger texel size or a "
+                    "smaller brush",
+                    1e3 * width, static_cast<long long>(width / texel), static_cast<int>(kWidest)));
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ class Document {
     /// samples, before anything is changed.
     ///
     /// With `settings.dip` "each" the entry begins with a clean, straight, full brush. With
-    /// "carry" it begins with hair and ink as the last entry with that brush left them; it is
+    /// "persistent" it begins with hair and ink as the last entry with that brush left them; it is
     /// washed and dipped anew where a stroke names another ink than the stroke before and the
     /// brush was not dipped into that one. A brush that this painting does not hold yet is
     /// fresh: its entry is kept in the journal as "each", so that a replay is the same.

@@ -14,7 +14,7 @@ ink::Canvas& Document::canvas(std::uint32_t layer) {
             canvas.add_pigment(canvas_.pigments()[p]);
         return canvas;
     }
-    if (!layers_.find(layer)) throw Error("there is no layer " + std::to_string(layer));
+    if (!layers_.find(layer)) throw Error(Message("there is no layer {}", layer));
     if (layer == kFirstLayer) return canvas_;
     ink::Canvas& canvas = upper_.at(layer);
     for (std::size_t p = canvas.pigments().size(); p < canvas_.pigments().size(); ++p)
@@ -51,7 +51,7 @@ ink::Stack Document::stack() const {
 
 void Document::show_only(std::vector<std::uint32_t> layers) {
     for (const std::uint32_t layer : layers)
-        if (!layers_.find(layer)) throw Error("there is no layer " + std::to_string(layer));
+        if (!layers_.find(layer)) throw Error(Message("there is no layer {}", layer));
     shown_ = std::move(layers);
     for (const Layer& layer : layers_.layers) touch_look(layer.id);
 }
@@ -94,9 +94,9 @@ void Document::check_layer(const JournalEntry& entry) const {
     if (on_palette(entry)) return;
     const std::uint32_t id = layer_of(entry), mask = mask_of(entry);
     const Layer* layer = layers_.find(id);
-    if (!layer) throw Error("there is no layer " + std::to_string(id) + " to paint on");
-    if (mask && !masks_.find(mask)) throw Error("there is no mask " + std::to_string(mask));
-    if (layer->locked) throw Error("layer '" + layer->name + "' is locked; unlock it or paint on another one");
+    if (!layer) throw Error(Message("there is no layer {} to paint on", id));
+    if (mask && !masks_.find(mask)) throw Error(Message("there is no mask {}", mask));
+    if (layer->locked) throw Error(Message("layer '{}' is locked; unlock it or paint on another one", layer->name));
 }
 
 void Document::edit_layers(std::uint64_t entry_id, const LayerEdit& edit) {

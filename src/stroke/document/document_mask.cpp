@@ -5,7 +5,7 @@ namespace tuft::stroke {
 
 const MaskTexels& Document::mask(std::uint32_t id) {
     const Mask* mask = masks_.find(id);
-    if (!mask) throw Error("there is no mask " + std::to_string(id));
+    if (!mask) throw Error(Message("there is no mask {}", id));
     const auto found = mask_texels_.find(id);
     if (found != mask_texels_.end()) return found->second;
     return mask_texels_.emplace(id, evaluate(*mask, masks_, *model_)).first->second;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "mesh/query/surface_query.h"
 #include "stroke/document/document.h"
 #include "stroke/journal/model_motion.h"
@@ -40,9 +41,9 @@ struct StrokeFit {
 /// where its bounding box has a diagonal less than a quarter of the former one's and less than the length of a tuft
 /// that painted: each stamp would reach the whole model, a thousand times the work of the former one, and nothing would
 /// fit. Hidden strokes and the palette's are left out.
-std::string size_fault(const std::vector<JournalEntry>& entries,
-                       const std::function<double(const std::string& brush)>& length_of,
-                       const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised);
+Message size_fault(const std::vector<JournalEntry>& entries,
+                   const std::function<double(const std::string& brush)>& length_of, const mesh::SurfaceQuery& former,
+                   const mesh::SurfaceQuery& revised);
 
 /// Compares the surfaces along the hair: at each sample of a stroke in space rays leave the
 /// ferrule's mouth along its axis, one tuft's length to both sides; flat strokes are laid on both
@@ -61,12 +62,12 @@ std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
 /// mm and by more than
 ///   1 % of its path: as wide as a fine brush's line, more than a mesh of other triangles moves it;
 /// - more than a tenth of its path longer or shorter by more than a quarter.
-std::string mismatch_reason(const StrokeFit& fit);
+Message mismatch_reason(const StrokeFit& fit);
 
 /// A stroke that does not fit another model any more.
 struct StrokeMismatch {
     std::uint64_t stroke = 0;
-    std::string reason;  ///< English, for people
+    Message reason;  ///< for people
 };
 /// Of a replay on the other model (its reports) and its fits, in the journal's order: strokes that
 /// touch nothing any more, and those for which `mismatch_reason` has one.
@@ -84,6 +85,6 @@ FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMi
 
 /// In a sentence: "12 of 40 strokes no longer fit: they lie 20.0 mm from where they lay (31.2 mm at
 /// most), 4 % of their ink is missing, 0 % of it is stretched or squeezed by more than a quarter".
-std::string describe(const FitTotal& total);
+Message describe(const FitTotal& total);
 
 }  // namespace tuft::stroke

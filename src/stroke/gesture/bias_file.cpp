@@ -28,7 +28,7 @@ void add_row(std::string& out, const char* key, const std::array<Vec2, N>& v, do
     add_row(out, key, &v[0].x, 2 * N, unit);
 }
 
-[[noreturn]] void fail(const toml::node& node, const std::string& source, const std::string& what) {
+[[noreturn]] void fail(const toml::node& node, const std::string& source, const Message& what) {
     throw Error(source, static_cast<long>(node.source().begin.line), what);
 }
 
@@ -76,7 +76,7 @@ BiasPiece read_piece(const toml::table& table, const std::string& source) {
         } else if (name == "tilt_change_deg") {
             read_row(node, source, name, p.tilt_change, kDegree, -360, 360);
         } else {
-            fail(node, source, "unknown key '" + name + "' in a piece of a bias correction");
+            fail(node, source, Message("unknown key '{}' in a piece of a bias correction", name));
         }
     }
     return p;
@@ -123,7 +123,7 @@ BiasCorrection parse_bias(std::string_view text, const std::string& source) {
             for (const toml::node& piece : *node.as_array())
                 bias.pieces.push_back(read_piece(*piece.as_table(), source));
         } else {
-            fail(node, source, "unknown key '" + std::string(key.str()) + "' in a bias correction");
+            fail(node, source, Message("unknown key '{}' in a bias correction", std::string(key.str())));
         }
     }
     return bias;

@@ -128,8 +128,8 @@ Resampler::Resampler(const ResampleOptions& options) : options_(options) {}
 
 void Resampler::emit(const Pose& pose, std::vector<Pose>& out) {
     if (++emitted_ > options_.max_poses)
-        throw Error("the stroke is too long: more than " + std::to_string(options_.max_poses) + " steps of " +
-                    std::to_string(options_.step * 1e3) + " mm");
+        throw Error(
+            Message("the stroke is too long: more than {} steps of {} mm", options_.max_poses, options_.step * 1e3));
     out.push_back(pose);
 }
 

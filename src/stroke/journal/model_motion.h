@@ -1,9 +1,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "core/geometry/types.h"
+#include "core/message.h"
 #include "mesh/query/surface_query.h"
 
 /// Whether a revised model is the former one, moved as a whole.
@@ -31,7 +31,7 @@ struct ModelMotion {
 std::optional<ModelMotion> find_motion(const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised);
 
 /// In words: "shifted by (20.0, 0.0, 0.0) mm", "1.200 times as large", "turned by 90 degrees".
-std::string describe(const ModelMotion& motion);
+Message describe(const ModelMotion& motion);
 
 /// How far the middle of the former model went, metres.
 Vec3 shift_of(const ModelMotion& motion);

@@ -11,8 +11,8 @@
 namespace tuft::stroke {
 
 enum class DipMode {
-    each,   ///< every stroke with a fresh full brush
-    carry,  ///< with the hair and ink that the last one with it left
+    each,        ///< every stroke with a fresh full brush
+    persistent,  ///< with the hair and ink that the last one with it left
 };
 
 /// Pressure of flat strokes whose device gave none, see hand_pressure.h.
@@ -45,10 +45,10 @@ struct StrokeSettings {
 };
 
 /// The words that files and the command line have for them; back throws `Error` for another word.
-std::string name_of(DipMode dip);        ///< each, carry
-std::string name_of(PressureFrom from);  ///< none, speed, dwell, speed+dwell
-std::string name_of(FilmModel film);     ///< still, wet
-DipMode dip_mode_of(const std::string& name);
+std::string name_of(DipMode dip);              ///< each, persistent
+std::string name_of(PressureFrom from);        ///< none, speed, dwell, speed+dwell
+std::string name_of(FilmModel film);           ///< still, wet
+DipMode dip_mode_of(const std::string& name);  ///< takes "carry" too, the earlier word for persistent
 PressureFrom pressure_from(const std::string& name);
 FilmModel film_model_of(const std::string& name);
 brush::SpineMethod spine_method_of(const std::string& name);       ///< rod, table
