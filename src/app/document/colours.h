@@ -38,6 +38,7 @@ enum class ColourSliders { rgb, hsv, lab };
 
 struct ColourChoice {
     bool shown = false;                                   ///< its window
+    float wheel_height = 0, room_for_wheel = 1e4f;        ///< pixels, of its wheel in the last frame
     std::array<float, 3> wanted{0.753f, 0.188f, 0.125f};  ///< sRGB, 0–1
     ColourSliders sliders = ColourSliders::hsv;
     std::array<float, 3> hsv{0.017f, 0.833f, 0.753f};  ///< keeps the hue of greys
@@ -53,6 +54,8 @@ struct ColourChoice {
     std::vector<ink::Ink> saved;            ///< of the person, for every work
 };
 
+/// The key of a pigment's title in the catalogues: "iron-red" of "iron red".
+std::string pigment_key(std::string name);
 /// Colours painted with and inks saved, of earlier runs: under `state_folder()`. What cannot be read is left out.
 void load_colours(ColourChoice& choice);
 /// Puts a colour first among the recent ones.

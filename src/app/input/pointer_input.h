@@ -53,6 +53,7 @@ struct AimedSurface {
     Vec3 normal{0, 0, 1};  ///< unit, towards who looks
     double distance = 0;   ///< metres from the eye
     bool bridged = false;  ///< over a gap or groove
+    bool back = false;     ///< the surface shows its back there
 };
 
 /// Part of a stroke, for the painter.
@@ -66,7 +67,8 @@ struct HandStep {
 /// pressure from a pen, or from speed and rest (a fast mouse presses less, a resting one
 /// more, as a hand does); a soft landing and a soft lift. It goes over gaps and grooves narrower than
 /// the tuft, such as shut lines, without dipping into them. Where the cursor leaves the model or
-/// jumps over an edge of its outline, the brush lifts and begins a new stroke behind it.
+/// jumps over an edge of its outline, the brush lifts and begins a new stroke behind it. It stays on the side of the
+/// surface on which it was set down: a wall that shows its back through a hole is not gone to.
 ///
 /// With `clean_ends`, a hand without pressure makes strokes whose ink begins where the button went down
 /// and ends where it came up. The brush is set down once the cursor has gone three pixels, rested, or
@@ -127,6 +129,7 @@ class PointerInput {
     double reach_;         ///< metres round the aim in which gaps are felt
     double bridged_ = -1;  ///< `time_` when the goal was last over a gap; below 0: never
     bool down_ = false;
+    std::optional<bool> on_back_;   ///< of the surface, where it was set down
     Aim aim_;                       ///< the last one
     std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
     DraggedPoint dragged_;

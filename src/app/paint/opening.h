@@ -26,7 +26,8 @@ struct OpenOptions {
     FileFrame frame;  ///< of the model file
     std::uint32_t atlas_size = 2048;
     std::string substrate = "porcelain";
-    bool own_colours = true;  ///< the model's, where it brings any along
+    bool own_colours = true;    ///< the model's, where it brings any along
+    bool turned_round = false;  ///< all faces, of a model that is inside out
 };
 
 /// What a project is opened for.

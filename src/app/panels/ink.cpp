@@ -36,7 +36,7 @@ std::string recipe_text(const Ui& ui, const ColourState& colours, const std::str
     for (const ink::InkPart& part : ink->parts) {
         char line[96];
         std::snprintf(line, sizeof line, "\n%.0f %%  %s", 100 * part.fraction / ink->strength(),
-                      ui.tr(part.pigment.name.c_str()));
+                      ui.tr(pigment_key(part.pigment.name).c_str()));
         text += line;
     }
     return text;
@@ -271,7 +271,7 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
         double others = 0;
         for (const ink::InkPart& other : edited.parts)
             if (&other != &part) others += other.fraction;
-        s.ui.slider(part.pigment.name.c_str(), part.fraction, 0, std::max(0.01, 1 - others), "%.0f %%",
+        s.ui.slider(pigment_key(part.pigment.name).c_str(), part.fraction, 0, std::max(0.01, 1 - others), "%.0f %%",
                     "Part of the wet ink; the rest is water", 0.01);
         released = released || ImGui::IsItemDeactivatedAfterEdit();
         held = held || ImGui::IsItemActive();

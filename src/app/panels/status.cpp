@@ -224,7 +224,7 @@ void tuft_inset(Session& s) {
     if (!s.view.show_tuft_inset || !s.paint_thread || s.view.tuft.state.branches.empty()) return;
     Ui& ui = s.ui;
     const float width = ui.px(190), height = ui.px(206), pad = ui.px(10);
-    if (static_cast<float>(s.view.area.width) < 2.5f * width || static_cast<float>(s.view.area.height) < 2 * height)
+    if (static_cast<float>(s.view.area.width) < 3 * width || static_cast<float>(s.view.area.height) < 2 * height)
         return;  // the model needs the room
     ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.view.area.x) + pad,
                                    static_cast<float>(s.view.area.y + s.view.area.height) - height - pad));

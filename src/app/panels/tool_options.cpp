@@ -17,6 +17,7 @@ namespace {
 
 // Places of a row: three of one width, whatever stands in them, so that a hand finds them again.
 constexpr int kPlaces = 3;
+constexpr float kRoomForName = 175;  // pixels at a scale of 1, that a place needs for letters of the usual size
 
 struct Row {
     float width = 0;  ///< pixels, of a place
@@ -130,6 +131,8 @@ void tool_options(const OptionParts& s, float left, float top, float width) {
                                             ImGui::GetColorU32(ImGuiCol_Border));
     Row row{.gap = ui.px(6)};
     row.width = std::floor((std::min(ImGui::GetContentRegionAvail().x, ui.px(960)) + row.gap) / kPlaces - row.gap);
+    // In a narrow view the letters are smaller, so that name and number stand side by side.
+    ImGui::SetWindowFontScale(std::clamp(row.width / ui.px(kRoomForName), 0.75f, 1.0f));
     const Tool tool = s.tools.active;
     if (tool == Tool::fill) {
         fill_row(ui, s.tools.fill, row);

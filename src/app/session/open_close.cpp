@@ -74,6 +74,7 @@ void take_inspected(ProjectState& project, Inspected inspected, const PaintThrea
     if (!revises) {
         const double factor = metres_per(frame.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
         project.options.atlas_size = proposed_size(m.area * factor * factor);
+        project.options.turned_round = false;
         frame.y_up = false;
     }
     project.inspected = std::move(inspected);
@@ -177,7 +178,8 @@ void revise_with(Session& s, const fs::path& path) {
     const OpenOptions same{.frame = s.paint_thread->frame(),
                            .atlas_size = s.paint_thread->model().atlas.size,
                            .substrate = s.project.options.substrate,
-                           .own_colours = s.project.options.own_colours};
+                           .own_colours = s.project.options.own_colours,
+                           .turned_round = s.project.options.turned_round};
     const fs::path former = s.reported.file.project;
     open_path(s, path);
     s.project.options = same;

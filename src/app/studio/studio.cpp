@@ -28,7 +28,7 @@ constexpr double kStillAfter = 0.4;  // seconds after the last event
 constexpr double kProgressEvery = 0.05, kInkEvery = 0.008, kStillEvery = 0.015;  // seconds between frames
 // Seconds, and part of a frame's time, that the newest ink is waited for.
 constexpr double kInkWait = 0.02, kInkPart = 0.2;
-constexpr float kLeastView = 240;   // pixels at scale 1, of the model's view beside both panels
+constexpr float kLeastView = 340;   // pixels at scale 1, of the model's view beside both panels
 constexpr double kPictureWait = 3;  // seconds that leaving waits at most for the newest ink on it
 
 }  // namespace

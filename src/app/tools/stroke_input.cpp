@@ -33,7 +33,13 @@ void StrokeInput::press(const Event& e) {
         show_message(s.status, error.message());
         return;
     }
-    post(hand_->move(aim_of(s, e)), e.time);
+    const Aim aim = aim_of(s, e);
+    if (const auto hit = hand_->find_surface(aim); hit && hit->back)
+        show_message(
+            s.status,
+            "The surface shows its back here and may take no ink. If all of the model does, open it again with "
+            "its faces turned round.");
+    post(hand_->move(aim), e.time);
 }
 
 void StrokeInput::press_palette(const Event& e) {

@@ -22,14 +22,15 @@ std::string beginning(const std::string& text, const LabelRoom& room, const std:
     return text.substr(0, end) + "..." + tail;
 }
 
-// As much of the end as fits.
+// As much of the end as fits, whole words where there are some.
 std::string ending(const std::string& text, const LabelRoom& room) {
     std::size_t begin = 0;
     while (begin < text.size() && room.width_of("..." + text.substr(begin)) > room.width) {
         do ++begin;
         while (begin < text.size() && is_inside_character(text[begin]));
     }
-    return "..." + text.substr(begin);
+    const std::size_t word = begin == 0 ? 0 : text.find(' ', begin - 1);
+    return "..." + text.substr(word == text.npos ? begin : begin == 0 ? 0 : word + 1);
 }
 
 // Words in lines, each as long as it can be; what is left goes into the last line.

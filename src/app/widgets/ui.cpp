@@ -230,7 +230,7 @@ void Ui::hint(const char* text) {
 }
 
 float Ui::button_width(const char* label, float least) const {
-    return std::max(px(least), ImGui::CalcTextSize(tr(label)).x + 2 * ImGui::GetStyle().FramePadding.x);
+    return std::max(px(least), ImGui::CalcTextSize(tr(label), nullptr, true).x + 2 * ImGui::GetStyle().FramePadding.x);
 }
 
 void Ui::buttons_at_right(std::initializer_list<std::pair<const char*, float>> buttons) const {
