@@ -128,6 +128,19 @@ TEST_F(Panels, AFoldedPanelLeavesItsRoomToTheModel) {
     EXPECT_TRUE(after.contains("Brush")) << "tools stay to be chosen";
 }
 
+TEST_F(Panels, EscapeClosesAMenuBeforeItDropsWhatIsChosen) {
+    const Ran ran = studio(kBowl + kTwoStrokes +
+                               "click \"stroke 2\"\nwait-ready\nwait 0.2\nexpect label Hide\nright-click \"stroke 2\"\n"
+                               "wait 0.2\nexpect label Ungroup\nkey escape\nwait 0.2\nplaces\nexpect label Hide\nkey "
+                               "escape\nwait 0.2\nplaces\n",
+                           "--headless --size 1280x720");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const std::size_t half = ran.out.find("\n", ran.out.size() / 2);
+    EXPECT_EQ(ran.out.find(" Ungroup\n"), std::string::npos) << "the menu is gone";
+    EXPECT_TRUE(places(ran.out.substr(0, half)).contains("Hide"));
+    EXPECT_EQ(ran.out.rfind(" Hide\n"), ran.out.find(" Hide\n")) << "then the choice is dropped";
+}
+
 // Typed over what is selected: the stem, not the extension.
 TEST_F(Panels, SavingAsTakesANewNameByTypingItAndKeepsTheExtension) {
     const Ran ran = studio(kBowl + "key ctrl+s\nwait 0.2\ntype fired\nkey enter\nwait-ready\nexpect kept\n");

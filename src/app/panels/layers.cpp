@@ -82,6 +82,7 @@ void context_menu(const LayerParts& s, const Layer& layer, std::size_t place) {
     Ui& ui = s.ui;
     const auto& all = s.table.layers;
     if (!ImGui::BeginPopupContextItem("menu")) return;
+    ui.in_menu = true;
     s.layers.active = layer.id;
     if (ui.menu_item("Rename", "F2")) begin_renaming(s, layer);
     if (ui.menu_item("Duplicate", nullptr, false, all.size() < stroke::kMaxLayers)) duplicate(s, layer);
@@ -100,6 +101,7 @@ void context_menu(const LayerParts& s, const Layer& layer, std::size_t place) {
         change(s, stroke::moved(s.table, layer.id, static_cast<std::uint32_t>(place - 1)));
     ImGui::Separator();
     if (ui.menu_item("Remove layer", nullptr, false, all.size() > 1)) change(s, stroke::removed(layer.id));
+    ui.in_menu = false;
     ImGui::EndPopup();
 }
 
@@ -137,14 +139,15 @@ void details(const LayerParts& s, const Layer& layer, std::size_t place) {
         if (ui.choice(name, layer.blend == blend, kBlendHint, third))
             change(s, layer, [b = blend](Layer& l) { l.blend = b; });
     }
-    if (ui.button("Duplicate", "A copy right above it", third, all.size() < stroke::kMaxLayers)) duplicate(s, layer);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(4), ImGui::GetStyle().ItemSpacing.y));
+    if (ui.button("Duplicate", "A copy right above it", 0, all.size() < stroke::kMaxLayers)) duplicate(s, layer);
     ImGui::SameLine();
-    if (ui.button("Merge down", "Lays its films on the layer below; it looks the same", third, place > 0))
-        merge(s, layer);
+    if (ui.button("Merge down", "Lays its films on the layer below; it looks the same", 0, place > 0)) merge(s, layer);
     ImGui::SameLine();
-    if (ui.button("Remove", "With its strokes; Undo brings them back", 0, all.size() > 1))
+    const float rest = ImGui::GetContentRegionAvail().x / ui.settings().scale;
+    if (ui.button("Remove", "With its strokes; Undo brings them back", rest, all.size() > 1))
         change(s, stroke::removed(layer.id));
-    ImGui::PopStyleVar();
+    ImGui::PopStyleVar(2);
     bool locked = layer.locked;
     if (ui.toggle("Locked", locked, "Takes no strokes")) change(s, layer, [locked](Layer& l) { l.locked = locked; });
 }

@@ -3,6 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -198,6 +199,8 @@ void StudioInput::key(const Event& e) {
     if (ImGui::GetIO().WantTextInput && !escape) return;
     if (escape && stroke_.drawing()) return stroke_.cancel();
     if (stroke_.drawing()) return;
+    // A menu or a list that is open lies over all else.
+    if (escape && ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return ImGui::ClosePopupToLevel(0, true);
     if (escape && !s.masks.lasso.empty()) return s.masks.lasso.clear();
     if (escape && close_top_dialog(s)) return;
     if (ImGui::GetIO().WantTextInput) return;
