@@ -119,7 +119,7 @@ TEST_F(OutsideTest, AStrokeThatMeetsAChangeIsPaintedAfterIt) {
         EXPECT_TRUE(comes([&] {
             return lines_.size() == 1u + 2u * static_cast<unsigned>(i) && last_.status.file.unsaved == 0 &&
                    last_.status.file.trouble.empty();
-        })) << last_.status.file.trouble;
+        })) << last_.status.file.trouble.text();
     }
     painter_->post(UndoStroke{});
     rest();
@@ -148,7 +148,7 @@ TEST_F(OutsideTest, AFilePutInThePlaceOfTheProjectIsTakenIn) {
     fs::rename(folder_ / "other.tuft", path_);
     stroke(0.01);
     EXPECT_TRUE(comes([&] { return lines_.size() == 3 && last_.status.file.trouble.empty(); }))
-        << last_.status.file.trouble;
+        << last_.status.file.trouble.text();
     painter_.reset();
     expect_file(3, path_);
 }
@@ -166,7 +166,7 @@ TEST_F(OutsideTest, WhereAnotherModelIsPutInItsPlaceTheWorkGoesOnInACopy) {
     stroke(0.01);
     EXPECT_TRUE(comes([&] {
         return last_.status.file.project == folder_ / "spare.tuft" && last_.status.file.trouble.empty();
-    })) << last_.status.file.trouble;
+    })) << last_.status.file.trouble.text();
     painter_.reset();
     expect_file(2, folder_ / "spare.tuft");
     EXPECT_EQ(fs::file_size(path_), size) << "theirs is as it was";
@@ -178,7 +178,7 @@ TEST_F(OutsideTest, AtTheEndWorkThatItsOwnFileCannotTakeIsInTheSpareOne) {
     fs::rename(folder_ / "place", folder_ / "elsewhere");
     stroke(0.01);
     EXPECT_EQ(last_.status.file.unsaved, 1u);
-    EXPECT_NE(last_.status.file.trouble.find("is not there any more"), std::string::npos) << last_.status.file.trouble;
+    EXPECT_NE(last_.status.file.trouble.text().find("is not there any more"), std::string::npos)
     EXPECT_EQ(painter_->finish(), folder_ / "spare.tuft");
     expect_file(2, folder_ / "spare.tuft");
 }

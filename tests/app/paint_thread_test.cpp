@@ -44,7 +44,7 @@ class PainterTest : public testing::Test {
         Update u = painter_->take();
         if (u.events.strokes) lines_ = std::move(*u.events.strokes);
         for (const Message& message : u.events.messages) messages_.push_back(message.text());
-        trouble_ = u.status.file.trouble;
+        trouble_ = u.status.file.trouble.text();
         busy_ = u.status.progress.busy;
     }
     void rest() {
