@@ -178,7 +178,7 @@ TEST_F(OutsideTest, AtTheEndWorkThatItsOwnFileCannotTakeIsInTheSpareOne) {
     fs::rename(folder_ / "place", folder_ / "elsewhere");
     stroke(0.01);
     EXPECT_EQ(last_.status.file.unsaved, 1u);
-    EXPECT_NE(last_.status.file.trouble.text().find("is not there any more"), std::string::npos)
+    EXPECT_NE(last_.status.file.trouble.text().find("is not there any more"), std::string::npos);
     EXPECT_EQ(painter_->finish(), folder_ / "spare.tuft");
     expect_file(2, folder_ / "spare.tuft");
 }
