@@ -15,8 +15,6 @@
 namespace tuft::app {
 namespace {
 
-constexpr std::size_t kColumns = 4;  // of the grid of inks
-
 void swatch(ImDrawList* draw, ImVec2 centre, float radius, unsigned colour) {
     draw->AddCircleFilled(centre, radius, colour, 32);
     draw->AddCircle(centre, radius, IM_COL32(128, 128, 128, 160), 32);
@@ -50,16 +48,24 @@ struct Swatch {
 };
 
 struct SwatchSize {
+    std::size_t columns = 4, lines = 2;  // of the grid; of a name
     float width = 0, height = 0, radius = 0, letters = 0;
-    std::size_t lines = 1;
+
+    float height_of(std::size_t n, float gap) const {
+        return static_cast<float>((n + columns - 1) / columns) * (height + gap);
+    }
 };
 
-SwatchSize swatch_size(const Ui& ui, bool compact) {
-    const float letters = 0.70f * ImGui::GetFontSize(), gap = ui.px(2);
-    const float radius = ui.px(compact ? 8.0f : 10.0f);
-    const std::size_t lines = compact ? 1 : 2;
-    const float width = (ImGui::GetContentRegionAvail().x + gap) / kColumns - gap;
-    return {width, 2 * radius + ui.px(4) + static_cast<float>(lines) * letters, radius, letters, lines};
+SwatchSize swatch_size(const Ui& ui, ToolRoom room) {
+    SwatchSize size;
+    size.columns = room == ToolRoom::tight ? 6 : 4;
+    size.lines = room == ToolRoom::full ? 2 : room == ToolRoom::compact ? 1 : 0;
+    size.letters = 0.70f * ImGui::GetFontSize();
+    size.radius = ui.px(room == ToolRoom::full ? 10.0f : 8.0f);
+    const float gap = ui.px(2);
+    size.width = (ImGui::GetContentRegionAvail().x + gap) / static_cast<float>(size.columns) - gap;
+    size.height = 2 * size.radius + ui.px(4) + static_cast<float>(size.lines) * size.letters;
+    return size;
 }
 
 // A swatch with its name under it; true when it was pressed.
@@ -71,7 +77,7 @@ bool named_swatch(Ui& ui, const Swatch& shown, const std::string& label, const S
     swatch(draw, centre, size.radius, shown.colour);
     if (shown.chosen) draw->AddCircle(centre, size.radius + ui.px(2), ui.accent, 32, ui.px(2));
     float y = at.y + 2 * size.radius + ui.px(3);
-    std::istringstream lines(label);
+    std::istringstream lines(size.lines > 0 ? label : "");
     for (std::string line; std::getline(lines, line); y += size.letters) {
         const float length = ImGui::GetFont()->CalcTextSizeA(size.letters, 1e9f, 0, line.c_str()).x;
         draw->AddText(ImGui::GetFont(), size.letters, ImVec2(std::round(centre.x - 0.5f * length), std::round(y)),
@@ -101,20 +107,21 @@ void choose_own(const InkParts& s, const std::string& name) {
     if (at != saved.end()) take_mix(s.colours, s.brush, *at);
 }
 
-// Returns the pixels that being compact saves.
-float swatches(const InkParts& s, bool compact) {
-    const SwatchSize size = swatch_size(s.ui, compact);
+Savings swatches(const InkParts& s, ToolRoom room) {
+    const SwatchSize size = swatch_size(s.ui, room), full = swatch_size(s.ui, ToolRoom::full),
+                     compact = swatch_size(s.ui, ToolRoom::compact), tight = swatch_size(s.ui, ToolRoom::tight);
     const std::vector<Swatch> all = list_swatches(s);
     std::vector<std::string> titles;
     for (const Swatch& one : all) titles.push_back(one.title);
     const auto width_of = [&](const std::string& text) {
         return ImGui::GetFont()->CalcTextSizeA(size.letters, 1e9f, 0, text.c_str()).x;
     };
-    const std::vector<std::string> labels = tell_apart(titles, {size.lines, size.width, width_of});
+    const std::vector<std::string> labels =
+        tell_apart(titles, {std::max<std::size_t>(1, size.lines), size.width, width_of});
     const float gap = s.ui.px(2);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, s.ui.px(2)));
     for (std::size_t i = 0; i < all.size(); ++i) {
-        if (i % kColumns) ImGui::SameLine(0, gap);
+        if (i % size.columns) ImGui::SameLine(0, gap);
         const bool own = i >= ink_names(s.colours).size() && all[i].id != all[i].title;
         if (named_swatch(s.ui, all[i], labels[i], size)) {
             if (own)
@@ -131,8 +138,8 @@ float swatches(const InkParts& s, bool compact) {
         }
     }
     ImGui::PopStyleVar();
-    const auto rows = static_cast<float>((all.size() + kColumns - 1) / kColumns);
-    return rows * (swatch_size(s.ui, false).height - swatch_size(s.ui, true).height);
+    const float whole = full.height_of(all.size(), gap);
+    return {whole - compact.height_of(all.size(), gap), whole - tight.height_of(all.size(), gap)};
 }
 
 // Width of a button of which n fill the row, at a scale of 1.
@@ -219,10 +226,10 @@ void wet_row(const InkParts& s) {
 
 }  // namespace
 
-float ink_section(const InkParts& s, bool compact) {
+Savings ink_section(const InkParts& s, ToolRoom room) {
     Ui& ui = s.ui;
-    if (!ui.section("Ink", true, ui.tr(s.brush.ink.c_str()))) return 0;
-    const float saves = swatches(s, compact);
+    if (!ui.section("Ink", true, ui.tr(s.brush.ink.c_str()))) return {};
+    const Savings saves = swatches(s, room);
     push_narrow_buttons(ui);
     if (ui.choice("Colour...", s.colours.choice.shown,
                   "Any colour, on a wheel or as a hex code: the nearest mix of pigments is found for it", 0))

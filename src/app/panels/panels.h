@@ -86,8 +86,11 @@ void colours_panel(Session& s, float top, float bottom, float left);
 void history_buttons(const HistoryParts& s);
 void layers_section(const LayerParts& s);
 void journal_section(const JournalParts& s);
-/// `compact`: in as little room as it can be read in. Returns the pixels that this saves.
-float ink_section(const InkParts& s, bool compact);
+/// Pixels that a section saves in less room.
+struct Savings {
+    float compact = 0, tight = 0;
+};
+Savings ink_section(const InkParts& s, ToolRoom room);
 /// Chooses a colour by its hex code; the mix found for it comes into the hand.
 void set_colour(Session& s, const std::string& hex);
 /// The colour wheel over the view, where it is shown.

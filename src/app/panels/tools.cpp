@@ -13,7 +13,8 @@
 namespace tuft::app {
 namespace {
 
-constexpr float kRackHeight = 54, kCompactRackHeight = 40;  // pixels of a brush at a scale of 1
+// Pixels of a brush at a scale of 1, by the room that there is.
+constexpr float kRackHeights[] = {54, 40, 30};
 
 // Sorts of hair as they look, sRGB; a brush of another sort is grey.
 unsigned hair_colour(const std::string& sort) {
@@ -76,9 +77,9 @@ void brush_cell(Ui& ui, BrushSettings& brush, const std::string& name, const std
 }
 
 // All brushes hang in rows, a group for each sort of hair from small to large, its name under it; sorts with a single
-// brush are a group together. Returns the pixels that being compact saves.
-float brush_rack(Ui& ui, BrushSettings& brush, bool compact) {
-    if (!ui.section("Brush", true, ui.tr(brush::sized_name(brush.preset).base.c_str()))) return 0;
+// brush are a group together.
+Savings brush_rack(Ui& ui, BrushSettings& brush, ToolRoom room) {
+    if (!ui.section("Brush", true, ui.tr(brush::sized_name(brush.preset).base.c_str()))) return {};
     std::map<std::string, std::vector<std::string>> by_sort;
     for (const std::string& name : brush.presets) by_sort[name.substr(0, name.find('-'))].push_back(name);
     std::vector<std::pair<std::string, std::vector<std::string>>> groups;
@@ -93,8 +94,9 @@ float brush_rack(Ui& ui, BrushSettings& brush, bool compact) {
     const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = ui.px(8),
                 letters = 0.8f * ImGui::GetFontSize();
     // Tufts are thin: as many fit in a row as have room for one each.
-    const float cell = std::min(ui.px(26), (all - 3 * gap) / 10),
-                height = ui.px(compact ? kCompactRackHeight : kRackHeight), row = height + 1.2f * letters;
+    const float cell = std::min(ui.px(26), (all - 3 * gap) / 10), height = ui.px(kRackHeights[static_cast<int>(room)]);
+    const bool named = room != ToolRoom::tight;
+    const float row = height + (named ? 1.2f * letters : 0);
     float x = 0, y = ImGui::GetCursorPosY(), rows = 1;
     for (auto& [sort, names] : groups) {
         std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
@@ -108,15 +110,18 @@ float brush_rack(Ui& ui, BrushSettings& brush, bool compact) {
             ImGui::SetCursorPos(ImVec2(left + x + cell * static_cast<float>(i), y));
             brush_cell(ui, brush, names[i], names[i].substr(0, names[i].find('-')), {cell, height});
         }
-        ImGui::SetCursorPos(ImVec2(left + x, y + height));
-        const ImVec2 at = ImGui::GetCursorScreenPos();
-        const float middle = std::min(at.x + 0.5f * (width - text), at.x + all - x - text);
-        ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), letters, ImVec2(middle, at.y), ui.faint, title);
+        const float here = x;
         x += taken + gap;
+        if (!named) continue;
+        ImGui::SetCursorPos(ImVec2(left + here, y + height));
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float middle = std::min(at.x + 0.5f * (width - text), at.x + all - here - text);
+        ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), letters, ImVec2(middle, at.y), ui.faint, title);
     }
     ImGui::SetCursorPos(ImVec2(left, y + row));
     ImGui::Dummy(ImVec2(0, 0));
-    return rows * ui.px(kRackHeight - kCompactRackHeight);
+    return {rows * ui.px(kRackHeights[0] - kRackHeights[1]),
+            rows * (ui.px(kRackHeights[0] - kRackHeights[2]) + 1.2f * letters)};
 }
 
 // The curve from a pen's pressure to the brush's depth; its ends and its middle can be dragged. The dot
@@ -205,14 +210,16 @@ void section_section(Ui& ui, SectionView& section) {
 
 void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     if (tools.active != Tool::writing) return;
-    ui.heading("Place");
-    if (ui.button("Writing or drawing...", "InkML or SVG", ImGui::GetContentRegionAvail().x / ui.settings().scale))
-        files.show(FileDialog::Purpose::writing, data_folder() / "samples" / "strokes");
-    if (tools.writing.empty()) return;
     Writing& w = tools.writing;
+    const float all = ImGui::GetContentRegionAvail().x, inside = all - 2 * ImGui::GetStyle().FramePadding.x;
+    // The button is named by what is in hand.
     const std::string name = w.file.filename().string();
-    ImGui::TextUnformatted(ui.fitted(name, ImGui::GetContentRegionAvail().x).c_str());
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", name.c_str());
+    const std::string title = w.empty() ? ui.tr("Writing or drawing...") : ui.fitted(name, inside);
+    if (ImGui::Button((title + "##writing").c_str(), ImVec2(all, 0)))
+        files.show(FileDialog::Purpose::writing, data_folder() / "samples" / "strokes");
+    ui.mark("Writing or drawing...");
+    ui.hint(w.empty() ? "InkML or SVG" : "Another one, InkML or SVG");
+    if (w.empty()) return;
     for (const std::string& note : w.notes) ui.note(note.c_str());
     ui.toggle("Mirrored", w.mirrored);
     const bool names =
@@ -240,19 +247,23 @@ void begin_side_panel(Ui& ui, const char* name, float left, float top, float wid
 
 void tool_panel(Session& s, float top, float bottom, float left) {
     begin_side_panel(s.ui, "###tools", left, top, kToolWidth, bottom);
-    const bool compact = s.panels.compact_tools;
-    float saves = 0;
+    const ToolRoom room = s.panels.tool_room;
+    Savings saves;
+    const auto add = [&saves](const Savings& more) { saves.compact += more.compact, saves.tight += more.tight; };
     writing_section(s.ui, s.tools, s.dialogs.file);
     mask_section(s);
     const bool brushes = s.tools.active != Tool::fill && s.tools.active != Tool::pick && s.tools.active != Tool::mask;
-    if (brushes) saves += brush_rack(s.ui, s.brush, compact);
+    if (brushes) add(brush_rack(s.ui, s.brush, room));
     if (s.tools.active != Tool::mask && s.tools.active != Tool::eraser)
-        saves += ink_section({s.ui, s.brush, s.colours, *s.paint_thread, s.reported, s.dialogs.file}, compact);
+        add(ink_section({s.ui, s.brush, s.colours, *s.paint_thread, s.reported, s.dialogs.file}, room));
     if (brushes) pointer_section(s.ui, s.tools, s.panels);
     if (brushes) symmetry_section(s.ui, s.tools.symmetry);
     section_section(s.ui, s.view.section);
-    const float height = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y;
-    s.panels.compact_tools = height + (compact ? saves : 0) > bottom - top;
+    const float height = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y, there = bottom - top;
+    const float full = height + (room == ToolRoom::compact ? saves.compact : room == ToolRoom::tight ? saves.tight : 0);
+    s.panels.tool_room = full <= there                   ? ToolRoom::full
+                         : full - saves.compact <= there ? ToolRoom::compact
+                                                         : ToolRoom::tight;
     ImGui::End();
 }
 
