@@ -282,16 +282,16 @@ TEST_F(StudioProgram, KeysCanBeChangedAndStayChanged) {
 }
 
 TEST_F(StudioProgram, LayersArePaintedHiddenAndUndoneLikeStrokes) {
-    const Ran ran =
-        studio(kBowl +
-               "set wet on\nset carry on\nstroke 46%,58% 50%,61%\nwait-ready\nclick \"Add a layer\"\nwait-ready\nwait "
-               "0.1\nset layer \"Layer 2\"\nset ink cinnabar\n"
-               "stroke 44%,57% 47%,60%\nwait-ready\nexpect strokes 3\nclick \"show Layer 2\"\nwait-ready\nexpect "
-               "strokes 4\nundo\nundo\nredo\nwait-ready\n"
-               "expect strokes 3\nset shading wetness\nwait-ready\nset shading glaze\nexpect kept\nsave "
-               "work.tuft\nwait-ready\nsave more.tuft\nwait-ready\nset ink carbon\nset tip-ink gamboge\nset two-inks "
-               "on\nset mirror x\n"
-               "stroke 52%,57% 56%,60%\nwait-ready\nexport more.inkml\nwait-ready\nexpect message Exported\n");
+    const Ran ran = studio(
+        kBowl +
+        "set wet on\nset persistent on\nstroke 46%,58% 50%,61%\nwait-ready\nclick \"Add a layer\"\nwait-ready\nwait "
+        "0.1\nset layer \"Layer 2\"\nset ink cinnabar\n"
+        "stroke 44%,57% 47%,60%\nwait-ready\nexpect strokes 3\nclick \"show Layer 2\"\nwait-ready\nexpect "
+        "strokes 4\nundo\nundo\nredo\nwait-ready\n"
+        "expect strokes 3\nset shading wetness\nwait-ready\nset shading glaze\nexpect kept\nsave "
+        "work.tuft\nwait-ready\nsave more.tuft\nwait-ready\nset ink carbon\nset tip-ink gamboge\nset two-inks "
+        "on\nset mirror x\n"
+        "stroke 52%,57% 56%,60%\nwait-ready\nexport more.inkml\nwait-ready\nexpect message Exported\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = io::Project::open(path("work.tuft")).strokes();
     ASSERT_EQ(strokes.size(), 3u);
@@ -332,7 +332,7 @@ TEST_F(StudioProgram, AMixturePickedUpIsAnInkOfTheProject) {
 TEST_F(StudioProgram, ABrushDippedOnOneSideReplays) {
     const Ran ran =
         studio(kBowl +
-                   "set ink gamboge\nset pressure 0.8\nset carry on\nwait 0.1\nset dip-side 0.5\nclick "
+                   "set ink gamboge\nset pressure 0.8\nset persistent on\nwait 0.1\nset dip-side 0.5\nclick "
                    "Wipe\nwait-ready\nset ink cinnabar\nclick Dip\nwait-ready\n"
                    "expect strokes 2\nstroke 44%,52% 47%,60% 52%,62%\nwait-ready\nsave work.tuft\nwait-ready\n",
                "--headless --size 1280x1400");
