@@ -129,7 +129,7 @@ void loop(app::Display& display, const Options& options) {
             studio.make_graphics();
         }
         if (const auto size = script ? script->take_size() : std::nullopt) display.resize(size->first, size->second);
-        if (std::string trouble = display.take_trouble(); !trouble.empty())
+        if (Message trouble = display.take_trouble(); !trouble.empty())
             app::show_message(session.status, std::move(trouble));
         studio.set_content_scale(display.scale());  // another one on another monitor
         const double now = display.now();

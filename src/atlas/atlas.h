@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "core/system/progress.h"
 #include "mesh/triangle_mesh.h"
 
@@ -111,8 +112,8 @@ AtlasReport measure(const mesh::TriangleMesh& mesh, const Atlas& atlas);
 
 /// The UVs of a model's file.
 struct UvCheck {
-    Atlas atlas;        ///< with `size` texels per page, unchanged: mirrored charts stay mirrored
-    std::string fault;  ///< why `UvPolicy::keep` rejects them; empty when it accepts them
+    Atlas atlas;    ///< with `size` texels per page, unchanged: mirrored charts stay mirrored
+    Message fault;  ///< why `UvPolicy::keep` rejects them; empty when it accepts them
 };
 
 /// Checks the UVs of the file without changing them, for `measure`. Precondition: `mesh` has UVs. UVs outside all

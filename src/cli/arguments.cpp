@@ -251,10 +251,17 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         ->check(CLI::IsMember({"surface", "plane"}));
     p->add_option("--contact", paint.contact, "exact closest points, or weighted distance to vertices")
         ->check(CLI::IsMember({"exact", "vertices"}));
-    p->add_option("--dip", paint.dip,
-                  "dip a fresh brush for each stroke, carry hair and ink on until the next dip, or paint "
-                  "with a brush that never runs dry (endless)")
-        ->check(CLI::IsMember({"each", "carry", "endless"}));
+    p->add_option(
+         "--dip", paint.dip,
+         "each: a fresh full brush for each stroke; persistent: hair and ink stay as the stroke before left them, "
+         "until the next dip; endless: a brush that never runs dry")
+        ->transform(CLI::Validator(
+            [](std::string& word) {
+                if (word == "carry") word = "persistent";  // of earlier versions
+                return std::string();
+            },
+            ""))
+        ->check(CLI::IsMember({"each", "persistent", "endless"}));
     p->add_option("--film", paint.film,
                   "still: ink stays where it is put; wet: it flows, soaks in, dries and is picked up")
         ->check(CLI::IsMember({"still", "wet"}));

@@ -214,7 +214,7 @@ double stamps_per_second(const stroke::Model& model, int texels, double wiped = 
     stroke::PaintStroke s = drag(model, painting, texels, brush);
     const stroke::BrushAction wipe{
         .kind = stroke::BrushActionKind::wipe, .brush = s.brush, .ink = s.ink, .extent = {.amount = wiped}};
-    if (wiped > 0) s.settings.dip = stroke::DipMode::carry;
+    if (wiped > 0) s.settings.dip = stroke::DipMode::persistent;
     std::vector<double> runs;
     for (int repeat = 0; repeat < 5; ++repeat) {
         if (wiped > 0) painting.paint(wipe);

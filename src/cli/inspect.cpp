@@ -275,10 +275,10 @@ int run(const Inspect& a) {
                          {"has_colours", s.has_colours},
                          {"pictures", s.pictures},
                          {"groups", s.group_names},
-                         {"defects", mesh::describe_defects(s.report)},
+                         {"defects", texts(mesh::describe_defects(s.report))},
                          {"mesh", to_json(s.report)}};
         j["has_uvs"] = s.has_uvs;
-        j["uv_fault"] = s.has_uvs && !uvs.fault.empty() ? nlohmann::json(uvs.fault) : nlohmann::json();
+        j["uv_fault"] = s.has_uvs && !uvs.fault.empty() ? nlohmann::json(uvs.fault.text()) : nlohmann::json();
         j["uv_notes"] = notes;
         j["atlas"] = s.has_uvs ? to_json(uvs.atlas, quality) : nlohmann::json();
         print_json(j);
@@ -300,7 +300,7 @@ int run(const Inspect& a) {
     if (uvs.fault.empty())
         fmt::print("     --keep-uv keeps them\n");
     else
-        fmt::print("     they cannot be kept: {}\n", uvs.fault);
+        fmt::print("     they cannot be kept: {}\n", uvs.fault.text());
     for (const std::string& note : notes) fmt::print("     {}\n", note);
     return 0;
 }

@@ -26,7 +26,7 @@ double number_of(const LayerWork& a) {
 stroke::LayerEdit edit_of(const LayerWork& a, const stroke::LayerTable& table) {
     if (a.what == "add") return stroke::add_on_top(table, a.name);
     const stroke::Layer* found = table.find(a.name);
-    if (!found) throw Error(a.project.string(), "has no layer '" + a.name + "'");
+    if (!found) throw Error(a.project.string(), Message("has no layer '{}'", a.name));
     if (a.what == "remove") return stroke::removed(found->id);
     if (a.what == "merge") return stroke::merged_down(table, found->id);
     if (a.what == "duplicate")

@@ -71,7 +71,7 @@ stroke::Mask mask_of(const MaskWork& a, const stroke::MaskTable& table, const io
     if (!a.invert.empty()) of = {a.invert};
     for (const std::string& name : of) {
         const stroke::Mask* part = table.find(name);
-        if (!part) throw Error(a.project.string(), "has no mask '" + name + "'");
+        if (!part) throw Error(a.project.string(), Message("has no mask '{}'", name));
         mask.of.push_back(part->id);
     }
     return mask;
@@ -88,7 +88,7 @@ int run(const MaskWork& a) {
     edit.remove = a.remove;
     if (a.remove) {
         const stroke::Mask* mask = table.find(a.name);
-        if (!mask) throw Error(a.project.string(), "has no mask '" + a.name + "'");
+        if (!mask) throw Error(a.project.string(), Message("has no mask '{}'", a.name));
         edit.mask.id = mask->id;
     } else {
         edit.mask = mask_of(a, table, project);

@@ -164,8 +164,8 @@ int run(const Paint& a) {
     const double prepared = seconds_since(start);
     find_presets(painting, strokes);
     const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
-    if (const std::string fault = stroke::size_fault(strokes, length_of, *model.query); !fault.empty())
-        throw Error(a.model.string(), fault + " (see --unit, --place-width, --brush)");
+    if (const Message fault = stroke::size_fault(strokes, length_of, *model.query); !fault.empty())
+        throw Error(a.model.string(), Message("{} (see --unit, --place-width, --brush)", fault));
     for (const stroke::JournalEntry& s : strokes) painting.check_size(s);
     std::optional<io::Project> project;
     if (in_place) {

@@ -69,9 +69,10 @@ Fit find_fit(const Replay& a, const OpenProject& project, stroke::Document& pain
 
 void note_fit(const Fit& fit, Console& console) {
     for (const stroke::StrokeMismatch& m : fit.mismatches)
-        console.note(fmt::format("warning: stroke {} no longer fits: {}", m.stroke, m.reason));
-    if (fit.motion) console.note("warning: the revised model is the former one " + stroke::describe(*fit.motion));
-    if (!fit.mismatches.empty() && !fit.fits.empty()) console.note("warning: " + stroke::describe(fit.total));
+        console.note(fmt::format("warning: stroke {} no longer fits: {}", m.stroke, m.reason.text()));
+    if (fit.motion)
+        console.note("warning: the revised model is the former one " + stroke::describe(*fit.motion).text());
+    if (!fit.mismatches.empty() && !fit.fits.empty()) console.note("warning: " + stroke::describe(fit.total).text());
 }
 
 nlohmann::json to_json(const stroke::StrokeFit& f) {
@@ -164,8 +165,8 @@ int run(const Replay& a) {
     find_presets(painting, strokes);
     if (!a.model.empty()) {
         const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
-        const std::string fault = stroke::size_fault(strokes, length_of, *project->model.query, *model.query);
-        if (!fault.empty()) throw Error(a.model.string(), fault + " (see --unit)");
+        const Message fault = stroke::size_fault(strokes, length_of, *project->model.query, *model.query);
+        if (!fault.empty()) throw Error(a.model.string(), Message("{} (see --unit)", fault));
     }
     const std::vector<stroke::StrokeReport> reports = painting.replay(strokes, console.progress());
     console.clear();
@@ -186,7 +187,7 @@ int run(const Replay& a) {
     if (a.common.json) {
         nlohmann::json list = nlohmann::json::array();
         for (const stroke::StrokeMismatch& m : fit.mismatches)
-            list.push_back({{"stroke", m.stroke}, {"reason", m.reason}});
+            list.push_back({{"stroke", m.stroke}, {"reason", m.reason.text()}});
         nlohmann::json j{{"project", a.project.string()},
                          {"strokes", reports.size()},
                          {"missed", missed},

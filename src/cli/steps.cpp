@@ -86,7 +86,7 @@ Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
     if (s.plain) mesh::drop_colours(read.soup);
     try {
         Loaded loaded{stroke::prepare_model(std::move(read.soup), options), read.frame};
-        for (const std::string& warning : loaded.model.repairs.warnings) console.note("warning: " + warning);
+        for (const Message& warning : loaded.model.repairs.warnings) console.note("warning: " + warning.text());
         if (!loaded.model.ground.empty())
             console.note("ink lies on the colours that the model brings along (--plain leaves them aside)");
         return loaded;
@@ -120,9 +120,9 @@ void check_output(const fs::path& path) {
     std::error_code ec;
     if (fs::is_directory(path, ec)) throw Error(path.string(), "is a folder, not a file to write");
     if (!fs::is_directory(folder, ec))
-        throw Error(path.string(), "the output folder '" + folder.string() + "' does not exist");
+        throw Error(path.string(), Message("the output folder '{}' does not exist", folder.string()));
     if (::access(folder.c_str(), W_OK) != 0)
-        throw Error(path.string(), "the output folder '" + folder.string() + "' cannot be written to");
+        throw Error(path.string(), Message("the output folder '{}' cannot be written to", folder.string()));
 }
 
 void check_extension(const fs::path& path, const std::vector<std::string>& allowed) {
@@ -230,12 +230,12 @@ void write_outputs(const Outputs& o, const stroke::Document& painting, Console& 
     if (!o.exported.empty()) {
         const io::ModelMaps maps =
             io::make_maps(shown.stack(), model.texels, shown.substrate(), shown.compose_options());
-        const std::vector<std::string> notes =
+        const std::vector<Message> notes =
             io::export_model(o.exported, *model.mesh, model.atlas, maps,
                              {.frame = o.frame,
                               .painted = io::painted_parts(shown.stack(), *model.mesh, model.atlas, model.texels),
                               .progress = console.progress()});
-        for (const std::string& note : notes) console.note(note);
+        for (const Message& note : notes) console.note(note.text());
     }
     if (!o.preview.empty())
         write_picture(o.preview, draw_picture({.model = model, .painting = &painting, .view = o.view}, console));
@@ -326,8 +326,8 @@ void apply_recolouring(const io::Project& project, stroke::Document& painting, c
             throw UsageError("--recolour: '" + text + "' is not INK=NAME, INK=FILE.toml or INK=#rrggbb");
         const std::string name = text.substr(0, equals);
         if (!used.contains(name))
-            throw Error("nothing is painted with ink '" + name +
-                        "'; there are: " + fmt::format("{}", fmt::join(used, ", ")));
+            throw Error(Message("nothing is painted with ink '{}'; there are: {}", name,
+                                fmt::format("{}", fmt::join(used, ", "))));
         painting.appearance().recolour(name,
                                        ink::ink_named(text.substr(equals + 1), painting.appearance().substrate()));
         for (const std::string& other : used)
@@ -374,7 +374,7 @@ nlohmann::json to_json(const mesh::RepairReport& r) {
             {"holes", r.holes},
             {"border_edges", r.border_edges},
             {"closed", r.closed},
-            {"warnings", r.warnings}};
+            {"warnings", texts(r.warnings)}};
 }
 
 nlohmann::json to_json(const atlas::Atlas& a, const atlas::AtlasReport& r) {

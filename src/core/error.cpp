@@ -1,6 +1,7 @@
 #include "core/error.h"
 
 #include <algorithm>
+#include <new>
 #include <numeric>
 #include <vector>
 
@@ -35,6 +36,16 @@ std::string nearest_name(std::string_view name, std::span<const std::string> can
         }
     }
     return best;
+}
+
+Message did_you_mean(const std::string& name) {
+    return name.empty() ? Message() : Message(", did you mean '{}'?", name);
+}
+
+Message message_of(const std::exception& error) {
+    if (const auto* own = dynamic_cast<const Error*>(&error)) return own->message();
+    if (dynamic_cast<const std::bad_alloc*>(&error)) return "there is not enough memory";
+    return Message(std::string(error.what()));
 }
 
 }  // namespace tuft

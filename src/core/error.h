@@ -4,21 +4,28 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
+
+#include "core/message.h"
 
 /// \file
 /// Errors that a user can cause. A function throws one where the bad value enters. The text is one line: what is
 /// wrong and what to do. Only `cli` and `app` catch them. A broken invariant is an `assert`.
 namespace tuft {
 
-/// The input or the machine does not allow the work: the program exits with 1.
+/// The input or the machine does not allow the work: the program exits with 1. `what` is the message in English.
 class Error : public std::runtime_error {
   public:
-    explicit Error(const std::string& what) : std::runtime_error(what) {}
+    explicit Error(Message message) : std::runtime_error(message.text()), message_(std::move(message)) {}
     /// "FILE: what".
-    Error(const std::string& file, const std::string& what) : std::runtime_error(file + ": " + what) {}
+    Error(const std::string& file, const Message& what) : Error(Message("{}: {}", file, what)) {}
     /// "FILE:LINE: what"; lines count from 1.
-    Error(const std::string& file, long line, const std::string& what)
-        : std::runtime_error(file + ":" + std::to_string(line) + ": " + what) {}
+    Error(const std::string& file, long line, const Message& what) : Error(Message("{}:{}: {}", file, line, what)) {}
+
+    const Message& message() const { return message_; }
+
+  private:
+    Message message_;
 };
 
 /// The command line is wrong: the program exits with 2.
@@ -36,5 +43,10 @@ class Cancelled : public std::exception {
 /// Returns the candidate with the smallest edit distance to `name`. Returns "" when no candidate is within half of
 /// the name's length. Used for "unknown brush 'wolff', did you mean 'wolf'?".
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
+/// Returns ", did you mean 'NAME'?" for the end of a sentence, "" without a name.
+Message did_you_mean(const std::string& name);
+
+/// Returns what a person is told of an exception of any kind.
+Message message_of(const std::exception& error);
 
 }  // namespace tuft

@@ -34,7 +34,7 @@ class AutosaveTest : public testing::Test {
         folder_ = std::filesystem::path(testing::TempDir()) / ("tuft_keeper_" + std::to_string(getpid()));
         std::filesystem::create_directories(folder_);
         path_ = folder_ / "work.tuft";
-        ASSERT_EQ(autosave_.start(path_, "sheet.ply", {}, painting_), "");
+        ASSERT_TRUE(autosave_.start(path_, "sheet.ply", {}, painting_).empty());
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
@@ -57,26 +57,26 @@ class AutosaveTest : public testing::Test {
 
 TEST_F(AutosaveTest, AFullDiskLosesNothingOnceThereIsSpace) {
     paint(0);
-    EXPECT_EQ(autosave_.trouble(), "");
+    EXPECT_TRUE(autosave_.trouble().empty());
 
     {
         const FullDisk disk(std::filesystem::file_size(path_));
         for (int i = 1; i <= 6; ++i) paint(0.002 * i);
     }
-    EXPECT_NE(autosave_.trouble(), "");
+    EXPECT_FALSE(autosave_.trouble().empty());
     EXPECT_GE(autosave_.waiting(), 1u);
 
     paint(0.02);
-    EXPECT_EQ(autosave_.trouble(), "");
+    EXPECT_TRUE(autosave_.trouble().empty());
     EXPECT_EQ(autosave_.waiting(), 0u);
     EXPECT_EQ(io::Project::open(path_).strokes().size(), painting_.journal().entries().size());
 }
 
 TEST_F(AutosaveTest, AFailedSaveKeepsTheFormerProject) {
-    EXPECT_NE(autosave_.start(folder_ / "no such folder" / "x.tuft", "sheet.ply", {}, painting_), "");
+    EXPECT_FALSE(autosave_.start(folder_ / "no such folder" / "x.tuft", "sheet.ply", {}, painting_).empty());
     EXPECT_EQ(autosave_.path(), path_);
     paint(0);
-    EXPECT_EQ(autosave_.trouble(), "");
+    EXPECT_TRUE(autosave_.trouble().empty());
     EXPECT_EQ(io::Project::open(path_).strokes().size(), 1u);
 }
 
@@ -85,8 +85,8 @@ TEST_F(AutosaveTest, AFailedSaveKeepsTheFormerProject) {
 TEST_F(AutosaveTest, WorkThatHasNoFileYetWaitsForOne) {
     Autosave autosave;
     const auto file = folder_ / "later" / "work.tuft";
-    const std::string fault = autosave.start(file, "sheet.ply", {}, painting_);
-    ASSERT_NE(fault, "");
+    const Message fault = autosave.start(file, "sheet.ply", {}, painting_);
+    ASSERT_FALSE(fault.empty());
     autosave.start_later(file, "sheet.ply", {}, fault);
     std::swap(autosave, autosave_);
     for (int i = 0; i < 3; ++i) paint(0.002 * i);
@@ -99,7 +99,7 @@ TEST_F(AutosaveTest, WorkThatHasNoFileYetWaitsForOne) {
 
     std::filesystem::create_directories(file.parent_path());
     paint(0.02);
-    EXPECT_EQ(autosave_.trouble(), "");
+    EXPECT_TRUE(autosave_.trouble().empty());
     EXPECT_EQ(autosave_.waiting(), 0u);
     EXPECT_EQ(autosave_.path(), file);
     const auto kept = io::Project::open(file).strokes();
@@ -118,12 +118,12 @@ TEST_F(AutosaveTest, AChangeThatCannotBeWrittenKeepsTexelsAway) {
     }
     EXPECT_TRUE(autosave_.behind());
     paint(0.02);
-    EXPECT_NE(autosave_.trouble(), "") << "one stroke too many is in the file";
+    EXPECT_FALSE(autosave_.trouble().empty()) << "one stroke too many is in the file";
     autosave_.store_canvas(painting_);
     EXPECT_FALSE(io::Project::open(path_).load_canvas(model_.texels.n_slots()));
     autosave_.rewrite("sheet.ply", {}, painting_);
     EXPECT_FALSE(autosave_.behind());
-    EXPECT_EQ(autosave_.trouble(), "");
+    EXPECT_TRUE(autosave_.trouble().empty());
     EXPECT_EQ(io::Project::open(path_).strokes().size(), 3u);
     EXPECT_TRUE(io::Project::open(path_).load_canvas(model_.texels.n_slots()));
 }
@@ -136,8 +136,8 @@ TEST_F(AutosaveTest, AFileWrittenAnewOnAFullDiskKeepsItsStrokes) {
     {
         // Room for the model, and for the strokes but for two pages of the file.
         const FullDisk disk(std::filesystem::file_size(path_) - 8192);
-        fault = autosave_.start(path_, "sheet.ply", {}, painting_);
-        elsewhere = autosave_.start(folder_ / "other.tuft", "sheet.ply", {}, painting_);
+        fault = autosave_.start(path_, "sheet.ply", {}, painting_).text();
+        elsewhere = autosave_.start(folder_ / "other.tuft", "sheet.ply", {}, painting_).text();
     }
     EXPECT_NE(fault.find("work.tuft"), std::string::npos) << fault;
     EXPECT_EQ(fault.find(".part"), std::string::npos) << fault;
@@ -157,7 +157,7 @@ TEST_F(AutosaveTest, AttachmentsAreInEachOfItsFiles) {
     autosave_.attach(io::kReferences, other);
     autosave_.attach(io::kSnapshots, image);
     autosave_.detach(io::kReferences, "0002");
-    EXPECT_EQ(autosave_.start(folder_ / "named.tuft", "sheet.ply", {}, painting_), "");
+    EXPECT_TRUE(autosave_.start(folder_ / "named.tuft", "sheet.ply", {}, painting_).empty());
     for (const auto& file : {path_, folder_ / "named.tuft"}) {
         EXPECT_EQ(io::Project::open(file).attachments(io::kReferences), std::vector<io::Attachment>{image}) << file;
         EXPECT_EQ(io::Project::open(file).attachments(io::kSnapshots), std::vector<io::Attachment>{image}) << file;
@@ -169,10 +169,10 @@ TEST_F(AutosaveTest, AttachmentsAreInEachOfItsFiles) {
         const FullDisk disk(std::filesystem::file_size(folder_ / "named.tuft"));
         autosave_.attach(io::kReferences, {"0003", "{}", noise});
     }
-    EXPECT_NE(autosave_.trouble(), "");
+    EXPECT_FALSE(autosave_.trouble().empty());
     EXPECT_TRUE(autosave_.behind());
     autosave_.rewrite("sheet.ply", {}, painting_);
-    EXPECT_EQ(autosave_.trouble(), "");
+    EXPECT_TRUE(autosave_.trouble().empty());
     EXPECT_EQ(io::Project::open(folder_ / "named.tuft").attachments(io::kReferences).size(), 2u);
 }
 

@@ -357,5 +357,54 @@ TEST(Orbit, RayAndPicturePointAreInverse) {
     }
 }
 
+// A shell with a hole in its front, 30 mm across, and a far wall whose back is seen through it, 60 mm behind: a scan.
+// A hand that draws over the hole does not reach through it.
+TEST(HandOverAHole, StaysOnTheSideOfTheSurfaceWhereItWasSetDown) {
+    mesh::PolygonSoup soup;
+    soup.polygon_start.push_back(0);
+    const auto add = [&](double x0, double x1, double y0, double y1, double z, bool faces_up) {
+        const auto first = static_cast<std::uint32_t>(soup.points.size());
+        soup.points.insert(soup.points.end(), {{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}});
+        for (const std::uint32_t k :
+             faces_up ? std::array<std::uint32_t, 4>{0, 1, 2, 3} : std::array<std::uint32_t, 4>{3, 2, 1, 0})
+            soup.corners.push_back(first + k);
+        soup.polygon_start.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+    };
+    add(-0.10, -0.015, -0.1, 0.1, 0, true);
+    add(0.015, 0.10, -0.1, 0.1, 0, true);
+    add(-0.1, 0.1, -0.1, 0.1, -0.06, false);
+    mesh::RepairOptions metres;
+    metres.metres_per_unit = 1;
+    const mesh::TriangleMesh mesh = mesh::build_surface(soup, metres).mesh;
+    const mesh::SurfaceQuery query(mesh);
+    const auto strokes_from = [&](double from, double to) {
+        PointerInput hand(query, brush::load_preset("wolf-medium"), {});
+        std::vector<StrokeStep> steps;
+        constexpr int kSamples = 200;
+        for (int i = 0; i <= kSamples; ++i) {
+            const Aim aim{.ray = {{from + (to - from) * i / kSamples, 0, 0.5}, {0, 0, -1}},
+                          .view_up = {0, 1, 0},
+                          .metres_per_pixel = 1e-4,
+                          .time = 0.004 * i};
+            for (StrokeStep& step : hand.move(aim)) steps.push_back(std::move(step));
+        }
+        for (StrokeStep& step : hand.lift()) steps.push_back(std::move(step));
+        return steps;
+    };
+    int begun = 0;
+    double lowest = 1;
+    for (const StrokeStep& step : strokes_from(-0.06, 0.06)) {
+        begun += step.kind == StrokeStep::Kind::begin;
+        for (const brush::Pose& pose : step.poses) lowest = std::min(lowest, pose.position.z);
+    }
+    EXPECT_EQ(begun, 2) << "before the hole and behind it";
+    EXPECT_GT(lowest, 0) << "the mouth of the ferrule stays above the front";
+    // Who begins on the far wall means it.
+    double on_wall = 1;
+    for (const StrokeStep& step : strokes_from(-0.01, 0.01))
+        for (const brush::Pose& pose : step.poses) on_wall = std::min(on_wall, pose.position.z);
+    EXPECT_LT(on_wall, -0.01);
+}
+
 }  // namespace
 }  // namespace tuft::app

@@ -36,7 +36,7 @@ class OutsideChangesTest : public testing::Test {
         work.document = std::make_unique<stroke::Document>(*work.model);
         work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
         work.spare = folder_ / "spare.tuft";
-        ASSERT_EQ(work.autosave.start(path_, "sheet.ply", {}, *work.document), "");
+        ASSERT_TRUE(work.autosave.start(path_, "sheet.ply", {}, *work.document).empty());
         painter_ = std::make_unique<PaintThread>(std::move(work));
     }
     void TearDown() override {
@@ -54,7 +54,7 @@ class OutsideChangesTest : public testing::Test {
     void look() {
         Update u = painter_->take();
         if (u.events.strokes) lines_ = std::move(*u.events.strokes);
-        for (const std::string& m : u.events.messages) messages_ += m + '\n';
+        for (const Message& m : u.events.messages) messages_ += m.text() + '\n';
         last_ = std::move(u);
     }
     void rest() {
@@ -105,7 +105,7 @@ TEST_F(OutsideChangesTest, AChangeIsNoticedWithoutAStrokeAndPaintingContinuesAft
     })) << messages_;
     EXPECT_EQ(lines_.size(), 2u);
     stroke(0.01);
-    EXPECT_EQ(last_.status.file.trouble, "");
+    EXPECT_TRUE(last_.status.file.trouble.empty());
     painter_.reset();
     expect_file(3, path_);
 }
@@ -119,7 +119,7 @@ TEST_F(OutsideChangesTest, AStrokeThatMeetsAChangeIsPaintedAfterIt) {
         EXPECT_TRUE(comes([&] {
             return lines_.size() == 1u + 2u * static_cast<unsigned>(i) && last_.status.file.unsaved == 0 &&
                    last_.status.file.trouble.empty();
-        })) << last_.status.file.trouble;
+        })) << last_.status.file.trouble.text();
     }
     painter_->post(UndoStroke{});
     rest();
@@ -148,7 +148,7 @@ TEST_F(OutsideChangesTest, AFilePutInThePlaceOfTheProjectIsTakenIn) {
     fs::rename(folder_ / "other.tuft", path_);
     stroke(0.01);
     EXPECT_TRUE(comes([&] { return lines_.size() == 3 && last_.status.file.trouble.empty(); }))
-        << last_.status.file.trouble;
+        << last_.status.file.trouble.text();
     painter_.reset();
     expect_file(3, path_);
 }
@@ -159,14 +159,14 @@ TEST_F(OutsideChangesTest, WhereAnotherModelIsPutInItsPlaceTheWorkGoesOnInACopy)
         const stroke::Model other = test::shipped_model("sphere.ply", 256);
         stroke::Document painting(other);
         Autosave autosave;
-        ASSERT_EQ(autosave.start(folder_ / "other.tuft", "sphere.ply", {}, painting), "");
+        ASSERT_TRUE(autosave.start(folder_ / "other.tuft", "sphere.ply", {}, painting).empty());
     }
     const auto size = fs::file_size(folder_ / "other.tuft");
     fs::rename(folder_ / "other.tuft", path_);
     stroke(0.01);
     EXPECT_TRUE(comes([&] {
         return last_.status.file.project == folder_ / "spare.tuft" && last_.status.file.trouble.empty();
-    })) << last_.status.file.trouble;
+    })) << last_.status.file.trouble.text();
     painter_.reset();
     expect_file(2, folder_ / "spare.tuft");
     EXPECT_EQ(fs::file_size(path_), size) << "theirs is as it was";
@@ -178,7 +178,7 @@ TEST_F(OutsideChangesTest, AtTheEndWorkThatItsOwnFileCannotTakeIsInTheSpareOne) 
     fs::rename(folder_ / "place", folder_ / "elsewhere");
     stroke(0.01);
     EXPECT_EQ(last_.status.file.unsaved, 1u);
-    EXPECT_NE(last_.status.file.trouble.find("is not there any more"), std::string::npos) << last_.status.file.trouble;
+    EXPECT_NE(last_.status.file.trouble.text().find("is not there any more"), std::string::npos);
     EXPECT_EQ(painter_->finish(), folder_ / "spare.tuft");
     expect_file(2, folder_ / "spare.tuft");
 }

@@ -24,7 +24,7 @@ class PaintThreadTest : public testing::Test {
         work.model = std::make_unique<stroke::Model>(test::shipped_model("sheet.ply", 256));
         work.document = std::make_unique<stroke::Document>(*work.model);
         work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
-        ASSERT_EQ(work.autosave.start(folder_ / "work.tuft", "sheet.ply", {}, *work.document), "");
+        ASSERT_TRUE(work.autosave.start(folder_ / "work.tuft", "sheet.ply", {}, *work.document).empty());
         painter_ = std::make_unique<PaintThread>(std::move(work));
         preset_ = brush::load_preset("wolf-small");
     }
@@ -34,7 +34,7 @@ class PaintThreadTest : public testing::Test {
     }
 
     void begin(const std::string& tip_ink = "", double y = 0, const std::string& ink = "carbon") {
-        painter_->post(BeginStroke{.brush = "wolf-small", .ink = ink, .carry = false, .tip_ink = tip_ink});
+        painter_->post(BeginStroke{.brush = "wolf-small", .ink = ink, .persistent = false, .tip_ink = tip_ink});
         painter_->post(ExtendStroke{test::poses_above(painter_->model(), preset_, 0.02, y)});
     }
     void stroke(double y, const std::string& ink = "carbon") {
@@ -44,8 +44,8 @@ class PaintThreadTest : public testing::Test {
     void look() {
         Update u = painter_->take();
         if (u.events.strokes) lines_ = std::move(*u.events.strokes);
-        messages_.insert(messages_.end(), u.events.messages.begin(), u.events.messages.end());
-        trouble_ = u.status.file.trouble;
+        for (const Message& message : u.events.messages) messages_.push_back(message.text());
+        trouble_ = u.status.file.trouble.text();
         busy_ = u.status.progress.busy;
     }
     void rest() {

@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 #include <map>
+#include <ostream>
+#include <set>
 
 #include "io/project/project.h"
 #include "studio_program.h"
@@ -26,26 +28,70 @@ class Panels : public StudioProgram {
     }
 };
 
-// A label is on the screen only where it is not scrolled away.
-TEST_F(Panels, NothingNeededForPaintingScrollsAt1280Times720) {
-    std::string script = kBowl;
-    for (const char* tool : {"brush", "line", "curve", "eraser"}) {
-        script += "set tool " + std::string(tool) + "\nwait 0.1\n";
-        for (const char* label : {"Brush", "Mask", "Palette", "goat-small", "wolf-large", "Tuft size", "Pressure",
-                                  "Stabiliser", "fold Symmetry", "Undo", "Add a layer"})
-            script += "expect label \"" + std::string(label) + "\"\n";
-        if (tool != std::string("eraser"))
-            script += "expect label carbon\nexpect label \"Wet ink\"\nexpect label \"Don't reload\"\n";
+struct Setting {
+    const char* language;
+    double scale;
+};
+void PrintTo(const Setting& s, std::ostream* out) {
+    *out << s.language << " at " << s.scale;
+}
+
+class PanelsAt1280Times720 : public Panels, public testing::WithParamInterface<Setting> {};
+
+// With all that a stroke can be given: wet ink, another ink in the tip, a tool with settings of its own, a drawing.
+TEST_P(PanelsAt1280Times720, NothingNeededForPaintingScrolls) {
+    const Setting setting = GetParam();
+    std::ofstream(path("two.svg")) << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path fill='none' "
+                                      "stroke='black' stroke-width='1' d='M1 1 l7 7'/></svg>";
+    std::string script = kBowl + "set language " + setting.language + "\nset scale " + std::to_string(setting.scale) +
+                         "\nset wet on\nset two-inks on\nopen " + path("two.svg") + "\nwait-ready\nwait 0.2\n";
+    const auto expect = [&](std::initializer_list<const char*> labels) {
+        for (const char* label : labels) script += "expect label \"" + std::string(label) + "\"\n";
+    };
+    for (const char* tool : {"brush", "line", "curve", "eraser", "writing"}) {
+        const std::string name = tool;
+        script += "set tool " + name + "\nwait 0.2\n";
+        expect({"Brush", "Mask", "Palette", "goat-small", "wolf-large", "Tuft size", "Pressure", "Stabiliser"});
+        if (setting.scale == 1) expect({"fold Symmetry", "fold Look inside", "Undo", "Add a layer"});
+        if (name == "line" || name == "curve") expect({"Press down in", "Lift in", "Pace"});
+        if (name == "writing") expect({"Writing or drawing...", "Width", "Turn", "Drape", "Wrap", "Mirrored"});
+        if (name == "brush" || name == "eraser") expect({"Speed lightens", "Rest deepens", "Clean ends"});
+        if (name != "eraser")
+            expect({"carbon", "water", "Colour...", "Wet ink", "1 min", "Dry", "Don't reload", "Another ink in the tip",
+                    "Tip ink", "Tip"});
     }
-    const Ran ran = studio(script, "--headless --size 1280x720");
+    script += "set tool brush\nset persistent on\nwait 0.2\n";
+    expect({"Dip", "Wipe", "Rinse", "Comb", "How deep", "Which side", "Pressure"});
+    const Ran ran = studio(script + "places\n", "--headless --size 1280x720");
     EXPECT_EQ(ran.status, 0) << ran.err;
+    if (setting.scale > 1) return;
+    auto found = places(ran.out);
+    EXPECT_LT(found["fold Look inside"].second, 680) << "the status bar begins at 690: all of it is on the screen";
+}
+INSTANTIATE_TEST_SUITE_P(, PanelsAt1280Times720,
+                         testing::Values(Setting{"english", 1}, Setting{"chinese", 1}, Setting{"english", 1.25},
+                                         Setting{"chinese", 1.25}, Setting{"english", 1.5}, Setting{"chinese", 1.5}));
+
+// The model stays where it is on the screen when another tool is taken: a handle is at the middle of the view's edge.
+TEST_F(Panels, LeaveTheViewItsPlaceWhateverTheTool) {
+    std::set<std::pair<double, double>> middles;
+    for (const char* tool : {"brush", "line", "writing", "fill", "mask"}) {
+        const Ran ran = studio(kBowl + "set tool " + tool + "\nwait 0.2\nplaces\n", "--headless --size 1280x720");
+        ASSERT_EQ(ran.status, 0) << ran.err;
+        middles.insert(places(ran.out).at("Fold the tools"));
+    }
+    EXPECT_EQ(middles.size(), 1u);
 }
 
 TEST_F(Panels, AScrollbarShiftsNoColumn) {
-    const auto at = [&](const std::string& size) {
-        return places(studio(kBowl + "set wet on\nset carry on\nwait 0.2\nplaces\n", "--headless --size " + size).out);
+    const auto at = [&](const std::string& height) {
+        const Ran ran = studio(kBowl + "resize 1280 " + height + "\nset wet on\nset persistent on\nwait 0.2\nplaces\n",
+                               "--headless --size 1280x720");
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return places(ran.out);
     };
-    auto high = at("1280x1400"), low = at("1280x420");
+    // In both the tools have as little room as there is a layout for.
+    auto high = at("500"), low = at("300");
     ASSERT_TRUE(high.contains("Which side"));
     ASSERT_FALSE(low.contains("Which side")) << "it would not scroll";
     for (const char* label : {"goat-small", "wolf-large", "Tuft size", "carbon", "titanium-white"}) {
@@ -83,6 +129,19 @@ TEST_F(Panels, AHiddenPanelGivesItsSpaceToTheModel) {
     EXPECT_GT(after.at("Fold the journal").first, 1260);
     EXPECT_LT(after.at("Fold the tools").first, 80);
     EXPECT_TRUE(after.contains("Brush")) << "tools stay to be chosen";
+}
+
+TEST_F(Panels, EscapeClosesAMenuBeforeItDropsWhatIsChosen) {
+    const Ran ran = studio(kBowl + kTwoStrokes +
+                               "click \"stroke 2\"\nwait-ready\nwait 0.2\nexpect label Hide\nright-click \"stroke 2\"\n"
+                               "wait 0.2\nexpect label Ungroup\nkey escape\nwait 0.2\nplaces\nexpect label Hide\nkey "
+                               "escape\nwait 0.2\nplaces\n",
+                           "--headless --size 1280x720");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const std::size_t half = ran.out.find("\n", ran.out.size() / 2);
+    EXPECT_EQ(ran.out.find(" Ungroup\n"), std::string::npos) << "the menu is gone";
+    EXPECT_TRUE(places(ran.out.substr(0, half)).contains("Hide"));
+    EXPECT_EQ(ran.out.rfind(" Hide\n"), ran.out.find(" Hide\n")) << "then the choice is dropped";
 }
 
 // Typed over what is selected: the stem, not the extension.

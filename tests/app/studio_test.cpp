@@ -261,10 +261,12 @@ TEST_F(StudioProgram, ARevisedModelGetsTheStrokesAndNamesThoseThatDoNotFit) {
 }
 
 TEST_F(StudioProgram, LostGraphicsAreMadeAnewWithAllTheirInk) {
-    const Ran ran = studio(kBowl + kTwoStrokes +
-                           "wait 0.1\nmove 5%,5%\nwait 0.1\nscreenshot before.png\nlose-graphics\nwait 0.1\nexpect "
-                           "message graphics\nwait-ready\nwait 0.1\n"
-                           "screenshot after.png\nstroke 50%,59% 53%,57%\nwait-ready\nexpect strokes 3\nexpect kept\n");
+    const Ran ran =
+        studio(kBowl + kTwoStrokes +
+                   "wait 0.1\nmove 5%,5%\nwait 0.1\nscreenshot before.png\nlose-graphics\nwait 0.1\nexpect "
+                   "message graphics\nwait-ready\nwait 0.1\n"
+                   "screenshot after.png\nstroke 50%,59% 53%,57%\nwait-ready\nexpect strokes 3\nexpect kept\n",
+               "--headless --size 1280x720");  // where the line is long enough for the message
     ASSERT_EQ(ran.status, 0) << ran.err;
     const io::Image8 before = io::read_image8(path("before.png"), 1 << 24),
                      after = io::read_image8(path("after.png"), 1 << 24);
@@ -282,16 +284,16 @@ TEST_F(StudioProgram, KeysCanBeChangedAndStayChanged) {
 }
 
 TEST_F(StudioProgram, LayersArePaintedHiddenAndUndoneLikeStrokes) {
-    const Ran ran =
-        studio(kBowl +
-               "set wet on\nset carry on\nstroke 46%,58% 50%,61%\nwait-ready\nclick \"Add a layer\"\nwait-ready\nwait "
-               "0.1\nset layer \"Layer 2\"\nset ink cinnabar\n"
-               "stroke 44%,57% 47%,60%\nwait-ready\nexpect strokes 3\nclick \"show Layer 2\"\nwait-ready\nexpect "
-               "strokes 4\nundo\nundo\nredo\nwait-ready\n"
-               "expect strokes 3\nset shading wetness\nwait-ready\nset shading glaze\nexpect kept\nsave "
-               "work.tuft\nwait-ready\nsave more.tuft\nwait-ready\nset ink carbon\nset tip-ink gamboge\nset two-inks "
-               "on\nset mirror x\n"
-               "stroke 52%,57% 56%,60%\nwait-ready\nexport more.inkml\nwait-ready\nexpect message Exported\n");
+    const Ran ran = studio(
+        kBowl +
+        "set wet on\nset persistent on\nstroke 46%,58% 50%,61%\nwait-ready\nclick \"Add a layer\"\nwait-ready\nwait "
+        "0.1\nset layer \"Layer 2\"\nset ink cinnabar\n"
+        "stroke 44%,57% 47%,60%\nwait-ready\nexpect strokes 3\nclick \"show Layer 2\"\nwait-ready\nexpect "
+        "strokes 4\nundo\nundo\nredo\nwait-ready\n"
+        "expect strokes 3\nset shading wetness\nwait-ready\nset shading glaze\nexpect kept\nsave "
+        "work.tuft\nwait-ready\nsave more.tuft\nwait-ready\nset ink carbon\nset tip-ink gamboge\nset two-inks "
+        "on\nset mirror x\n"
+        "stroke 52%,57% 56%,60%\nwait-ready\nexport more.inkml\nwait-ready\nexpect message Exported\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto strokes = io::Project::open(path("work.tuft")).strokes();
     ASSERT_EQ(strokes.size(), 3u);
@@ -308,10 +310,10 @@ TEST_F(StudioProgram, LayersArePaintedHiddenAndUndoneLikeStrokes) {
 
 TEST_F(StudioProgram, AMixturePickedUpIsAnInkOfTheProject) {
     const Ran ran = studio(kBowl +
-                           "set ink gamboge\nset tip-ink cinnabar\nset two-inks on\nset pressure 0.8\nstroke 44%,52% "
-                           "47%,60% 52%,62%\nwait-ready\nexpect strokes 4\n"
+                           "set ink gamboge\nset tip-ink cinnabar\nset two-inks on\nset pressure 0.8\nstroke 44%,54% "
+                           "47%,62% 52%,64%\nwait-ready\nexpect strokes 4\n"
                            "undo\nwait-ready\nexpect strokes 0\nredo\nwait-ready\nexpect strokes 4\nset tool "
-                           "pick\nmove 47%,60%\npress\nrelease\nwait-ready\nwait 0.1\n"
+                           "pick\nmove 47%,62%\npress\nrelease\nwait-ready\nwait 0.1\n"
                            "expect message mixture\nset two-inks off\nset wet on\nstroke 55%,57% "
                            "60%,58%\nwait-ready\nsave work.tuft\nwait-ready\nexpect kept\n");
     ASSERT_EQ(ran.status, 0) << ran.err;
@@ -332,7 +334,7 @@ TEST_F(StudioProgram, AMixturePickedUpIsAnInkOfTheProject) {
 TEST_F(StudioProgram, ABrushDippedOnOneSideReplays) {
     const Ran ran =
         studio(kBowl +
-                   "set ink gamboge\nset pressure 0.8\nset carry on\nwait 0.1\nset dip-side 0.5\nclick "
+                   "set ink gamboge\nset pressure 0.8\nset persistent on\nwait 0.1\nset dip-side 0.5\nclick "
                    "Wipe\nwait-ready\nset ink cinnabar\nclick Dip\nwait-ready\n"
                    "expect strokes 2\nstroke 44%,52% 47%,60% 52%,62%\nwait-ready\nsave work.tuft\nwait-ready\n",
                "--headless --size 1280x1400");

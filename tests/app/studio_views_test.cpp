@@ -138,8 +138,8 @@ TEST_F(Views, ASnapshotIsComparedSideBySideAndByASwipe) {
 TEST_F(Views, AStrokeInAnInkOfOnesOwnComesBackAfterItWasTheOnlyOne) {
     const Ran ran =
         studio(kBowl +
-               "set ink gamboge\nset tip-ink cinnabar\nset two-inks on\nset pressure 0.8\nstroke 44%,52% 47%,60% "
-               "52%,62%\nwait-ready\nset tool pick\nmove 47%,60%\npress\nrelease\nwait-ready\nwait 0.1\n"
+               "set ink gamboge\nset tip-ink cinnabar\nset two-inks on\nset pressure 0.8\nstroke 44%,54% 47%,62% "
+               "52%,64%\nwait-ready\nset tool pick\nmove 47%,62%\npress\nrelease\nwait-ready\nwait 0.1\n"
                "expect message mixture\nset two-inks off\nstroke 55%,57% 60%,58%\nwait-ready\nexpect strokes 5\nclick "
                "\"stroke 5\"\nwait-ready\nclick Delete\nwait-ready\nexpect strokes 4\nclick \"stroke "
                "1\"\nwait-ready\nclick Hide\nwait-ready\n"

@@ -68,7 +68,7 @@ class WritingOnModel : public ::testing::Test {
         work.document = std::make_unique<stroke::Document>(*work.model);
         work.texture = std::make_unique<Texture>(*work.document, ProgressFn{});
         work.source = source_folder() + "/models/" + name;
-        EXPECT_EQ(work.autosave.start(project, work.source, {}, *work.document), "");
+        EXPECT_TRUE(work.autosave.start(project, work.source, {}, *work.document).empty());
         const mesh::SurfaceQuery& query = *work.model->query;
         const auto at = query.ray(from, along);
         EXPECT_TRUE(at);

@@ -215,7 +215,7 @@ TEST(FileUvs, KeepTheNumbersOfTheirPages) {
         ASSERT_NEAR(back[c].y, m.corner_uvs[c].y, 8e-6);
     }
     const UvCheck check = check_file_uvs(m, 64);
-    EXPECT_EQ(check.fault, "");
+    EXPECT_TRUE(check.fault.empty()) << check.fault.text();
     EXPECT_EQ(check.atlas.udims, u.atlas.udims);
     EXPECT_EQ(check.atlas.page_size(), 64u);
     UnwrapOptions options;  // without being asked they are not kept
@@ -243,12 +243,12 @@ TEST(FileUvs, OnNoPageAreRefused) {
         m.corner_uvs = good;
         m.corner_uvs[5].y = hostile;
         EXPECT_NE(refusal(m).find("UDIM"), std::string::npos) << hostile;
-        EXPECT_NE(check_file_uvs(m, 64).fault, "");
+        EXPECT_FALSE(check_file_uvs(m, 64).fault.empty());
     }
     m.corner_uvs = good;
     m.corner_uvs[7].x = NAN;
     EXPECT_NE(refusal(m).find("not finite"), std::string::npos);
-    EXPECT_NE(check_file_uvs(m, 64).fault, "");
+    EXPECT_FALSE(check_file_uvs(m, 64).fault.empty());
 }
 
 TEST(FileUvs, OnTooManyPagesAreRefused) {

@@ -229,7 +229,7 @@ TEST_F(Commands, APersistentBrushReplaysTheSame) {
     write("s.inkml", ink.substr(0, at) + trace + trace + told + ink.substr(end));
     const std::string common =
         "paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --json";
-    const Ran carried = tuft(common + " --dip carry --project " + path("p.tuft"));
+    const Ran carried = tuft(common + " --dip persistent --project " + path("p.tuft"));
     ASSERT_EQ(carried.status, 0) << carried.err;
     const json j = json::parse(carried.out);
     ASSERT_EQ(j["strokes"].size(), 3u);

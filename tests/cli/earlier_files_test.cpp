@@ -103,6 +103,24 @@ TEST_F(EarlierFiles, OptionsOfEarlierVersionsAreTaken) {
     ASSERT_EQ(tuft(paint + path("a.tuft") + " --laying wrap --habit " + path("now.toml")).status, 0);
     ASSERT_EQ(tuft(paint + path("b.tuft") + " --mapping wrap --bias " + path("now.toml")).status, 0);
     EXPECT_EQ(read(colours_of(path("a.tuft"), "a.png")), read(colours_of(path("b.tuft"), "b.png")));
+    // A fresh brush for each of three strokes side by side would leave other texels.
+    std::string three = read(word);
+    const std::string end = "</trace>";
+    three.insert(three.find(end) + end.size(),
+                 "<trace>-12 6 0.2 0, 0 6 0.6 0.2, 12 6 0.2 0.4</trace><trace>-12 -6 0.2 0, 0 -6 0.6 0.2, 12 -6 0.2 "
+                 "0.4</trace>");
+    const std::string side_by_side = write("three.inkml", three);
+    const auto dipped = [&](const std::string& word_of_dip) {
+        const std::string project = path(word_of_dip + ".tuft");
+        EXPECT_EQ(tuft("paint " + before("tile.obj") + " --strokes " + side_by_side +
+                       " --texel-size 0.4 --quiet --project " + project + " --dip " + word_of_dip)
+                      .status,
+                  0)
+            << word_of_dip;
+        return read(colours_of(project, word_of_dip + ".png"));
+    };
+    EXPECT_EQ(dipped("carry"), dipped("persistent"));
+    EXPECT_NE(dipped("each"), dipped("persistent"));
 }
 
 }  // namespace

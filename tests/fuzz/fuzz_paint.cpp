@@ -82,7 +82,7 @@ stroke::PaintStroke stroke_of(Bytes& bytes) {
     s.settings.spine = flags & 1 ? brush::SpineMethod::table : brush::SpineMethod::rod;
     s.settings.footprint = flags & 2 ? footprint::Mapping::plane : footprint::Mapping::log;
     s.settings.contact = flags & 4 ? contact::Method::vertices : contact::Method::exact;
-    s.settings.dip = flags & 8 ? stroke::DipMode::carry : stroke::DipMode::each;
+    s.settings.dip = flags & 8 ? stroke::DipMode::persistent : stroke::DipMode::each;
     s.settings.film = flags & 16 ? stroke::FilmModel::wet : stroke::FilmModel::still;
     s.settings.smooth = flags & 64 ? 1 : 0;
     s.settings.pressure = flags & 128 ? stroke::PressureFrom::speed_dwell : stroke::PressureFrom::none;

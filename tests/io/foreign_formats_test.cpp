@@ -232,8 +232,8 @@ TEST(ForeignFormats, AnX3dHasItsSetsStripsFansAndUnit) {
     EXPECT_EQ(soup.n_polygons(), 2u + 1u + 1u + 2u);
     EXPECT_THAT(soup.group_names, Contains("plate / red"));
     EXPECT_THAT(soup.group_names, Contains("chosen"));
-    EXPECT_THAT(soup.warnings, Contains(HasSubstr("Sphere")));
-    EXPECT_THAT(soup.warnings, Contains(HasSubstr("Inline")));
+    EXPECT_THAT(texts(soup.warnings), Contains(HasSubstr("Sphere")));
+    EXPECT_THAT(texts(soup.warnings), Contains(HasSubstr("Inline")));
 }
 
 // A path in a file leads nowhere but into its folder.
@@ -245,7 +245,7 @@ TEST(ForeignFormats, NeverReadAPictureOutsideTheirFolder) {
     std::string x3d = replaced(text_of(corpus("x3d/sets.x3d")), "../outside.png", "../secret.png");
     for (const fs::path& path : {folder.write("in/a.dae", dae), folder.write("in/a.x3d", x3d)}) {
         const mesh::PolygonSoup soup = read_model(path);
-        EXPECT_THAT(soup.warnings, Contains(HasSubstr("secret.png"))) << path;
+        EXPECT_THAT(texts(soup.warnings), Contains(HasSubstr("secret.png"))) << path;
         for (const mesh::Material& m : soup.materials) EXPECT_EQ(m.picture, nullptr) << path;
     }
 }

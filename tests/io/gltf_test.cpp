@@ -260,7 +260,7 @@ TEST(Gltf, NoMessageHoldsAWholeDataUri) {
         j["images"][0]["uri"] = uri;
         std::string told;
         try {
-            for (const std::string& warning : read(j).warnings) told += warning;
+            for (const std::string& warning : texts(read(j).warnings)) told += warning;
         } catch (const Error& e) {
             told = e.what();
         }

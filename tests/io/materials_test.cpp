@@ -60,7 +60,7 @@ TEST(Materials, WhatIsMissingOrDamagedIsReportedAndLeftOut) {
     mesh::PolygonSoup soup = read_model(folder / "m.obj");
     EXPECT_TRUE(soup.materials.empty());
     ASSERT_EQ(soup.warnings.size(), 1u);
-    EXPECT_NE(soup.warnings[0].find("none.mtl"), std::string::npos);
+    EXPECT_NE(soup.warnings[0].text().find("none.mtl"), std::string::npos);
 
     put(folder / "m.obj", "mtllib m.mtl\n" + kTwoTriangles);
     put(folder / "m.mtl", "newmtl one\nmap_Kd gone.png\nnewmtl two\nmap_Kd text.png\nKd 1 0 0\n");

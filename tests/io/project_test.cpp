@@ -325,7 +325,7 @@ TEST(Project, EntriesOfEveryKindComeBack) {
     const Folder folder("project_kinds");
     std::vector<stroke::JournalEntry> entries{sample_stroke(1)};
     stroke::PaintStroke& stroke = entries[0].get<stroke::PaintStroke>();
-    stroke.settings.dip = stroke::DipMode::carry;
+    stroke.settings.dip = stroke::DipMode::persistent;
     stroke.settings.stabilise = 1.0 / 3;
     stroke.settings.pressure = stroke::PressureFrom::speed;
     for (const auto kind : {stroke::BrushActionKind::rinse, stroke::BrushActionKind::dip,
@@ -334,7 +334,7 @@ TEST(Project, EntriesOfEveryKindComeBack) {
                                    .brush = "wolf-small",
                                    .ink = "cinnabar",
                                    .seed = 5,
-                                   .dip = stroke::DipMode::carry,
+                                   .dip = stroke::DipMode::persistent,
                                    .spine = brush::SpineMethod::table};
         if (kind == stroke::BrushActionKind::wipe) action.extent = {.depth = 1.0 / 3, .amount = 0.1, .side = -0.25};
         entries.emplace_back(action);

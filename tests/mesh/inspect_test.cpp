@@ -67,7 +67,7 @@ TEST(Inspect, ReportsEveryDefectOnce) {
     add_polygon(soup, {27, 5, 6});
     soup.warnings = {"from the reader"};
     const Surface s = build_surface(soup, {.metres_per_unit = 1e-3});
-    EXPECT_THAT(describe_defects(s.report),
+    EXPECT_THAT(texts(describe_defects(s.report)),
                 ElementsAre("1 vertex lay on another one: welded", "1 vertex is used by no face: dropped",
                             "1 face without an area: dropped", HasSubstr("there twice"),
                             "1 edge with more than two faces: split", "1 face showed its back: turned round",

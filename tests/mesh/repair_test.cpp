@@ -40,7 +40,7 @@ void reverse(PolygonSoup& soup, std::size_t p) {
 TEST(Repair, SoundMeshIsLeftAlone) {
     const PolygonSoup torus = make_torus(20, 10);
     const Surface s = repaired(torus);
-    EXPECT_THAT(describe_defects(s.report), ElementsAre());
+    EXPECT_THAT(texts(describe_defects(s.report)), ElementsAre());
     ASSERT_EQ(s.mesh.n_vertices(), torus.points.size());
     for (std::size_t v = 0; v < torus.points.size(); ++v) EXPECT_EQ(s.mesh.positions[v], Vec3f(torus.points[v]));
     for (std::size_t c = 0; c < torus.corners.size(); ++c) EXPECT_EQ(s.mesh.triangles[c / 3][c % 3], torus.corners[c]);
@@ -289,7 +289,7 @@ TEST(Repair, MoebiusStripIsCutOpen) {
             add_polygon(strip, {a, c, d, b});
         }
     const Surface s = repaired(strip);
-    EXPECT_THAT(s.report.warnings, ElementsAre(HasSubstr("one side")));
+    EXPECT_THAT(texts(s.report.warnings), ElementsAre(HasSubstr("one side")));
     EXPECT_EQ(s.mesh.n_triangles(), 4u * kSteps);
     EXPECT_EQ(s.report.components, 1u);
     EXPECT_EQ(s.report.non_manifold_vertices_split, 0u);
@@ -357,8 +357,9 @@ TEST(Repair, PartsAreKeptAndOneWithoutAFaceLeftIsNamed) {
         EXPECT_EQ(s.mesh.triangle_groups[t], t < 12 ? 0u : 1u);
     }
     EXPECT_EQ(s.mesh.scene->parts[2].object, "wheel");
-    EXPECT_THAT(s.report.warnings, ElementsAre("1 part of the file has no face left ('double'): all of its 6 faces are "
-                                               "without an area or lie on faces of other parts"));
+    EXPECT_THAT(texts(s.report.warnings),
+                ElementsAre("1 part of the file has no face left ('double'): all of its 6 faces are "
+                            "without an area or lie on faces of other parts"));
     cubes.polygon_parts[5] = 3;
     EXPECT_THROW(build_surface(cubes), Error);
 }

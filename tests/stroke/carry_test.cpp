@@ -16,13 +16,13 @@ PaintStroke carried(int row, const std::string& ink = "carbon", const std::strin
                     double depth = 4e-3) {
     PaintStroke s = line(brush, depth, make_frame({0, 0.004 * row - 0.012, 0}, {0, 0, 1}, {1, 0, 0}));
     s.ink = ink;
-    s.settings.dip = DipMode::carry;
+    s.settings.dip = DipMode::persistent;
     s.settings.spacing = 3;  // coarse is enough here, and quick
     return s;
 }
 
 BrushAction action(BrushActionKind what, const std::string& ink = {}, const std::string& brush = kBrush) {
-    return {.kind = what, .brush = brush, .ink = ink, .dip = DipMode::carry};
+    return {.kind = what, .brush = brush, .ink = ink, .dip = DipMode::persistent};
 }
 
 // How far the hair has yielded, radians.
@@ -193,7 +193,7 @@ TEST(PersistentBrush, AReopenedPaintingTakesAFreshBrushAndSaysSo) {
     EXPECT_EQ(first.journal().entries()[0].get<PaintStroke>().settings.dip, DipMode::each)
         << "nothing to carry on from";
     first.paint(carried(1));
-    EXPECT_EQ(first.journal().entries()[1].get<PaintStroke>().settings.dip, DipMode::carry);
+    EXPECT_EQ(first.journal().entries()[1].get<PaintStroke>().settings.dip, DipMode::persistent);
     Document second(model);
     second.adopt(first.journal().entries(), {{kFirstLayer, first.layers().canvas()}},
                  first.journal().entries().back().id);

@@ -21,7 +21,7 @@ PaintStroke dab(int i, const std::string& ink) {
     s.trace.flat = false;
     s.brush = kBrush;
     s.ink = ink;
-    s.settings.dip = DipMode::carry;
+    s.settings.dip = DipMode::persistent;
     s.settings.film = i % 4 ? FilmModel::still : FilmModel::wet;
     s.settings.spacing = 6;
     const Vec3 way{2e-3 * std::cos(turn), 2e-3 * std::sin(turn), 0};
@@ -39,7 +39,7 @@ PaintStroke dab(int i, const std::string& ink) {
 }
 
 BrushAction care(BrushActionKind kind, const std::string& ink, const Extent& extent) {
-    return {.kind = kind, .brush = kBrush, .ink = ink, .extent = extent, .dip = DipMode::carry};
+    return {.kind = kind, .brush = kBrush, .ink = ink, .extent = extent, .dip = DipMode::persistent};
 }
 
 TEST(Conservation, AThousandStrokesKeepEachPigment) {

@@ -98,7 +98,7 @@ TEST(BrushesInHand, PuttingDownAndTakingThatBackChangesNothing) {
                            .name = "wolf-small",
                            .ink = "carbon",
                            .mix = {1},
-                           .dip = DipMode::carry};
+                           .dip = DipMode::persistent};
     BrushBackup before = brushes.put_down(start.name, brushes.take_up(start));
     BrushInHand wiped = brushes.take_up(start);
     ink::wipe(wiped.reservoir, 0.5, {});

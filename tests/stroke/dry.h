@@ -29,7 +29,7 @@ struct DryStroke : Document {
         if (s.trace.samples.empty()) s = drag(seed);
         if (left < 1) {
             paint(wipe(1 - left, seed));
-            s.settings.dip = DipMode::carry;
+            s.settings.dip = DipMode::persistent;
         }
         paint(s);
     }

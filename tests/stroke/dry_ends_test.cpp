@@ -65,7 +65,7 @@ TEST(DryBrush, ALiftedTuftLeavesWithItsTip) {
             BrushAction wiped = wipe(0.6, seed);
             PaintStroke s = drawn_and_lifted(seed, hand.lift, hand.on);
             wiped.brush = s.brush;
-            s.settings.dip = DipMode::carry;
+            s.settings.dip = DipMode::persistent;
             Document painting(model);
             painting.paint(wiped);
             painting.paint(s);
@@ -105,7 +105,7 @@ TEST(DryBrush, AStrokeThatIsLiftedOnceEndsOnce) {
         }
         BrushAction wiped = wipe(0.84, seed);
         wiped.brush = s.brush;
-        s.settings.dip = DipMode::carry;
+        s.settings.dip = DipMode::persistent;
         s.settings.spacing = 1;
         Document painting(model);
         painting.paint(wiped);
@@ -251,7 +251,7 @@ TEST(DryBrush, ATiltedTipAtFirstContactLeavesNoSpeck) {
                                        .pressure = press,
                                        .tilt = {0, 0.7}});
         }
-        s.settings.dip = DipMode::carry;
+        s.settings.dip = DipMode::persistent;
         Document painting(model);
         BrushAction care = wipe(0.72, s.seed);
         care.brush = s.brush;

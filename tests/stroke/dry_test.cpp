@@ -204,7 +204,7 @@ TEST(DryBrush, TuftAndTexelsKeepTheInk) {
     painting.paint(wipe(0.8, 6));
     const double start = painting.brushes().find(kBrush)->reservoir.remaining();
     PaintStroke s = drag(6);
-    s.settings.dip = DipMode::carry;
+    s.settings.dip = DipMode::persistent;
     const StrokeReport r = painting.paint(s);
     EXPECT_NEAR(r.ink_given + painting.brushes().find(kBrush)->reservoir.remaining(), start, 1e-12 * start);
     // Texels are floats: 1e-6 of the sum, for each pigment by itself.
@@ -310,7 +310,7 @@ TEST(DryBrush, EdgesOfAHalfDryStrokeHaveNoTeeth) {
         wiped.brush = s.brush;
         s.seed = seed;
         s.settings.spacing = 1;
-        s.settings.dip = DipMode::carry;
+        s.settings.dip = DipMode::persistent;
         Document painting(model);
         painting.paint(wiped);
         painting.paint(s);
@@ -347,7 +347,7 @@ TEST(DryBrush, PaintingDriesTheTuft) {
     for (int i = 0; i < 12; ++i) {
         PaintStroke s = drag(7 + i);
         for (StrokeSample& sample : s.trace.samples) sample.position.y += 5e-3 * (i - 5.5);  // each on bare ground
-        s.settings.dip = DipMode::carry;
+        s.settings.dip = DipMode::persistent;
         const StrokeReport r = painting.paint(s);
         const BrushInHand* held = painting.brushes().find(kBrush);
         ASSERT_NE(held, nullptr);
@@ -382,7 +382,7 @@ TEST(DryBrush, AShallowDipIsDarkAtTheTipAndReplays) {
     painting.paint(rinse);
     BrushAction dip = wipe(1, 9);
     dip.kind = BrushActionKind::dip;
-    dip.dip = DipMode::carry;
+    dip.dip = DipMode::persistent;
     dip.ink = "cinnabar";
     dip.extent = {.depth = 1, .amount = 0.7};
     painting.paint(dip);
@@ -396,7 +396,7 @@ TEST(DryBrush, AShallowDipIsDarkAtTheTipAndReplays) {
     EXPECT_NEAR(tuft.saturation(0), 0.7, 1e-12) << "the belly is as it was";
     PaintStroke s = drag(9);
     s.ink = "cinnabar";
-    s.settings.dip = DipMode::carry;
+    s.settings.dip = DipMode::persistent;
     painting.paint(s);
     Document again(model);
     again.replay(painting.journal().entries());

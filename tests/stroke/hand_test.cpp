@@ -308,7 +308,7 @@ TEST(Pressure, ATraceBecomesLightWhereItIsFastAndEndsLifted) {
 
 TEST(StrokeSettings, OfAHandComeBackAndNonsenseIsRefused) {
     PaintStroke entry;
-    entry.settings.dip = DipMode::carry;
+    entry.settings.dip = DipMode::persistent;
     entry.settings.pressure = PressureFrom::speed_dwell;
     entry.settings.smooth = 1.5;
     entry.settings.stabilise = 2.5e-3;

@@ -13,7 +13,7 @@ namespace {
 const std::string kBrush = "wolf-medium";
 
 BrushAction care(BrushActionKind kind, const std::string& ink, const Extent& extent) {
-    return {.kind = kind, .brush = kBrush, .ink = ink, .extent = extent, .dip = DipMode::carry};
+    return {.kind = kind, .brush = kBrush, .ink = ink, .extent = extent, .dip = DipMode::persistent};
 }
 
 /// A brush with cinnabar in its right flank and gamboge in the left.
@@ -30,7 +30,7 @@ PaintStroke drawn(FilmModel film, double y = 0, bool along_y = true) {
     PaintStroke s = line(kBrush, 6e-3, make_frame({y, 0, 0}, {0, 0, 1}, along));
     for (StrokeSample& p : s.trace.samples) p.rotation = Quat{1, 0, 0, 0};
     s.ink = "cinnabar";
-    s.settings.dip = DipMode::carry;
+    s.settings.dip = DipMode::persistent;
     s.settings.film = film;
     s.settings.spacing = 3;
     return s;

@@ -30,7 +30,7 @@ PaintStroke through(const Vec3& at, std::uint32_t layer, const std::string& ink,
     PaintStroke s = line(kBrush, 8e-3, make_frame(at, {0, 0, 1}, way));
     s.ink = ink;
     s.layer = layer;
-    s.settings.dip = DipMode::carry;
+    s.settings.dip = DipMode::persistent;
     s.settings.film = FilmModel::wet;
     s.settings.spacing = 3;  // coarse is enough here, and quick
     return s;

@@ -15,7 +15,7 @@ PaintStroke wet_line(const std::string& ink, bool along_y = false, double offset
     PaintStroke s = line(kBrush, 4e-3, make_frame(centre, {0, 0, 1}, along));
     s.ink = ink;
     s.settings.film = FilmModel::wet;
-    s.settings.dip = DipMode::carry;
+    s.settings.dip = DipMode::persistent;
     s.settings.spacing = 3;  // coarse is enough here, and quick
     return s;
 }

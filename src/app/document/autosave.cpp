@@ -11,12 +11,12 @@ template <class Action>
 void Autosave::attempt(const Action& action) {
     try {
         action();
-        if (!behind_ && !wanted_ && pending_.empty()) trouble_.clear();
+        if (!behind_ && !wanted_ && pending_.empty()) trouble_ = {};
     } catch (const io::ChangedOutside& error) {
         overtaken_ = true;
-        trouble_ = error.what();
+        trouble_ = message_of(error);
     } catch (const std::exception& error) {
-        trouble_ = error.what();
+        trouble_ = message_of(error);
     }
 }
 
@@ -32,12 +32,12 @@ void Autosave::change(const Action& action) {
 
 void Autosave::rewrite(const std::string& source, const FileFrame& frame, stroke::Document& painting) {
     behind_ = true;
-    if (std::string fault = start(wanted_ ? wanted_->path : path(), source, frame, painting); !fault.empty())
+    if (Message fault = start(wanted_ ? wanted_->path : path(), source, frame, painting); !fault.empty())
         trouble_ = std::move(fault);
 }
 
 void Autosave::start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
-                           const std::string& fault, bool has_work) {
+                           const Message& fault, bool has_work) {
     wanted_ = {path, source, frame, fault};
     trouble_ = fault;
     project_.reset();
@@ -85,11 +85,11 @@ std::optional<io::Project> Autosave::read_again() {
     return file;
 }
 
-std::string Autosave::start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
-                            stroke::Document& painting) {
+Message Autosave::start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
+                        stroke::Document& painting) {
     std::error_code ec;
     if (project_ && std::filesystem::equivalent(path, this->path(), ec) && overtaken() && !viewing_)
-        return io::ChangedOutside(path).what();
+        return io::ChangedOutside(path).message();
     try {
         const stroke::Model& model = painting.model();
         io::Project project = io::Project::create(path,
@@ -113,18 +113,18 @@ std::string Autosave::start(const std::filesystem::path& path, const std::string
         on_disk_ = stroke::marks_of(painting.journal().entries());
         wanted_.reset();
         pending_.clear();
-        trouble_.clear();
+        trouble_ = {};
         behind_ = overtaken_ = viewing_ = false;
-        return "";
+        return {};
     } catch (const std::exception& error) {
-        return error.what();
+        return message_of(error);
     }
 }
 
 void Autosave::prepare(stroke::Document& painting, const std::string& brush, const std::string& ink) {
     if (wanted_) {
         const Wanted wanted = *wanted_;
-        if (std::string fault = start(wanted.path, wanted.source, wanted.frame, painting); !fault.empty())
+        if (Message fault = start(wanted.path, wanted.source, wanted.frame, painting); !fault.empty())
             wanted_->fault = trouble_ = std::move(fault);
     }
     if (!brush.empty() && !brushes_.contains(brush)) {
@@ -162,7 +162,7 @@ std::vector<std::string> Autosave::inks() const {
 }
 
 void Autosave::flush() {
-    if (!project_) throw Error(wanted_ ? wanted_->fault : "there is no project file");
+    if (!project_) throw Error(wanted_ ? wanted_->fault : Message("there is no project file"));
     for (const auto& preset : brushes_) project_->put_brush(preset);
     for (const auto& preset : inks_) project_->put_ink(preset);
     append(pending_);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "io/project/project.h"
 #include "stroke/document/document.h"
 #include "stroke/document/merge.h"
@@ -26,15 +27,15 @@ class Autosave {
     bool viewing() const { return viewing_; }
     /// Copies the presets of another project, for strokes that come from it.
     void take_presets(const io::Project& project);
-    /// Writes everything to a new project at `path` and continues that one. Returns "", or the fault; then the old
-    /// project stays.
-    std::string start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
-                      stroke::Document& painting);
+    /// Writes everything to a new project at `path` and continues that one. Returns an empty message, or the fault;
+    /// then the old project stays.
+    Message start(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
+                  stroke::Document& painting);
 
     /// Keeps all changes in memory and tries `start` before each stroke, because no file can be written. `has_work`:
     /// some work is in no file yet.
     void start_later(const std::filesystem::path& path, const std::string& source, const FileFrame& frame,
-                     const std::string& fault, bool has_work = false);
+                     const Message& fault, bool has_work = false);
 
     /// Writes the current file anew, for changes that appended rows cannot express.
     void rewrite(const std::string& source, const FileFrame& frame, stroke::Document& painting);
@@ -74,7 +75,7 @@ class Autosave {
 
     std::filesystem::path path() const { return project_ ? project_->path() : std::filesystem::path{}; }
     std::vector<std::string> inks() const;                   ///< names of the project's inks
-    const std::string& trouble() const { return trouble_; }  ///< last fault, one line; "": none
+    const Message& trouble() const { return trouble_; }      ///< last fault, one line; "": none
     std::size_t waiting() const { return pending_.size(); }  ///< strokes in memory only
 
   private:
@@ -89,7 +90,7 @@ class Autosave {
         std::filesystem::path path;
         std::string source;
         FileFrame frame;
-        std::string fault;  ///< why it does not exist yet
+        Message fault;  ///< why it does not exist yet
     };
     std::optional<io::Project> project_;
     std::optional<Wanted> wanted_;
@@ -97,7 +98,7 @@ class Autosave {
     std::vector<stroke::EntryMark> on_disk_;
     std::map<std::string, std::string> brushes_, inks_;                       ///< TOML by name
     std::map<std::pair<std::string, std::string>, io::Attachment> attached_;  ///< by kind and name
-    std::string trouble_;
+    Message trouble_;
     bool behind_ = false, overtaken_ = false, viewing_ = false;
 };
 

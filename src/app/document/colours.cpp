@@ -69,6 +69,11 @@ std::optional<ink::ColourMatch> MixFinder::poll() {
     return std::nullopt;
 }
 
+std::string pigment_key(std::string name) {
+    std::replace(name.begin(), name.end(), ' ', '-');
+    return name;
+}
+
 void load_colours(ColourChoice& choice) {
     std::ifstream in(recent_path());
     for (std::string hex; choice.recent.size() < kRecentColours && in >> hex;)

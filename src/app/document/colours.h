@@ -39,6 +39,7 @@ enum class ColourSliders { rgb, hsv, lab };
 /// State of the colour window.
 struct ColourChoice {
     bool shown = false;                                   ///< the window is open
+    float wheel_height = 0, room_for_wheel = 1e4f;        ///< pixels, of its wheel in the last frame
     std::array<float, 3> wanted{0.753f, 0.188f, 0.125f};  ///< sRGB, 0–1
     ColourSliders sliders = ColourSliders::hsv;
     std::array<float, 3> hsv{0.017f, 0.833f, 0.753f};  ///< keeps the hue of greys
@@ -54,6 +55,8 @@ struct ColourChoice {
     std::vector<ink::Ink> saved;            ///< the user's own, for all projects
 };
 
+/// Returns the key of a pigment's title in the catalogues: "iron-red" of "iron red".
+std::string pigment_key(std::string name);
 /// Loads recent colours and saved inks of earlier runs from `state_folder()`. Skips what cannot be read.
 void load_colours(ColourChoice& choice);
 /// Puts a colour first among the recent ones and saves the list.

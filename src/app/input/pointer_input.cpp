@@ -106,7 +106,8 @@ std::optional<AimedSurface> PointerInput::find_surface(const Aim& aim) const {
                      glm::dot(normal, -aim.ray.direction) > kSlanting * glm::length(normal);
     if (gap) return AimedSurface{aim.ray.origin + level * aim.ray.direction, glm::normalize(normal), level, true};
     if (!hit) return std::nullopt;
-    return AimedSurface{hit->position, facing(*hit), hit->distance, false};
+    return AimedSurface{hit->position, facing(*hit), hit->distance, false,
+                        glm::dot(hit->normal, aim.ray.direction) > 0};
 }
 
 // The smoothed point cuts the corners of a curved surface: it is brought back. Over a gap the nearest
@@ -255,7 +256,11 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
 
 std::vector<StrokeStep> PointerInput::move(const Aim& aim) {
     std::vector<StrokeStep> steps;
-    const auto hit = find_surface(aim);
+    auto hit = find_surface(aim);
+    if (hit && !hit->bridged) {
+        if (!on_back_) on_back_ = hit->back;
+        if (hit->back != *on_back_) hit.reset();
+    }
     // A small movement of the cursor that goes far on the model crossed an edge of its outline.
     const double expected = drawing() && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
                                                    glm::distance(aim.ray.direction, aim_.ray.direction) * hit->distance

@@ -56,6 +56,7 @@ struct AimedSurface {
     Vec3 normal{0, 0, 1};  ///< unit, towards the eye
     double distance = 0;   ///< metres from the eye
     bool bridged = false;  ///< over a gap or groove
+    bool back = false;     ///< the surface shows its back there
 };
 
 /// Part of a stroke, for the paint thread.
@@ -70,7 +71,8 @@ struct StrokeStep {
 /// Position: the cursor's point on the surface, smoothed, or pulled on a string. Pressure: a pen's, or by speed and
 /// dwell (a fast mouse presses less, a resting one more). The brush lands and lifts gradually. It crosses gaps and
 /// grooves narrower than the tuft, such as shut lines, without dipping into them. Where the cursor leaves the model or
-/// jumps over an edge of its outline, the brush lifts and begins a new stroke behind it.
+/// jumps over an edge of its outline, the brush lifts and begins a new stroke behind it. It stays on the side of the
+/// surface on which it was set down: a wall that shows its back through a hole is not gone to.
 ///
 /// With `clean_ends` a stroke without pen pressure has ink from where the button went down to where it came up. The
 /// direction of the stroke must be known first: the brush is set down once the cursor has moved three pixels, rested,
@@ -130,6 +132,7 @@ class PointerInput {
     double reach_;         ///< metres, radius in which gaps are bridged
     double bridged_ = -1;  ///< `time_` when the goal was last over a gap; negative: never
     bool down_ = false;
+    std::optional<bool> on_back_;   ///< of the surface, where it was set down
     Aim aim_;                       ///< the last one
     std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
     DraggedPoint dragged_;

@@ -58,9 +58,9 @@ class Daemon : public SpaceMouse {
         const std::scoped_lock lock(mutex_);
         return cap_.push != Vec3(0) || cap_.twist != Vec3(0);
     }
-    std::string take_trouble() override {
+    Message take_trouble() override {
         const std::scoped_lock lock(mutex_);
-        return std::exchange(trouble_, "");
+        return std::exchange(trouble_, {});
     }
 
   private:
@@ -78,7 +78,7 @@ class Daemon : public SpaceMouse {
         way_.twist += seconds * cap_.twist;
         way_seconds_ += seconds;
     }
-    void put(const Cap& cap, std::string trouble) {
+    void put(const Cap& cap, Message trouble) {
         {
             const std::scoped_lock lock(mutex_);
             advance();
@@ -146,7 +146,7 @@ class Daemon : public SpaceMouse {
     double way_seconds_ = 0;
     Clock::time_point since_ = Clock::now();
     std::vector<int> buttons_;
-    std::string trouble_;
+    Message trouble_;
     std::thread thread_;
 };
 

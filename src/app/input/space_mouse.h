@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/input/events.h"
+#include "core/message.h"
 
 /// \file
 /// Six-degree-of-freedom input devices.
@@ -22,7 +23,7 @@ class SpaceMouse {
     /// True while the cap is deflected.
     virtual bool held() const = 0;
     /// Returns a message when the device or its daemon appeared or vanished; else "".
-    virtual std::string take_trouble() = 0;
+    virtual Message take_trouble() = 0;
 };
 
 /// Opens the device. `wake` is called on the listening thread whenever a report arrives. At most one exists at a time:

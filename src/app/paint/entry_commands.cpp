@@ -9,7 +9,7 @@ void act_on_brush(PaintContext& context, JournalEditor& journal, const ActOnBrus
     stroke::BrushAction action{.kind = stroke::brush_action_of(command.action),
                                .brush = command.brush,
                                .extent = command.extent,
-                               .dip = stroke::DipMode::carry};
+                               .dip = stroke::DipMode::persistent};
     // A brush that is not held yet begins full of the chosen ink.
     if (action.kind == stroke::BrushActionKind::dip || !context.work.document->brushes().find(command.brush))
         action.ink = command.ink;

@@ -32,8 +32,9 @@ void export_strokes(PaintContext& context, const std::filesystem::path& path) {
     const stroke::RecordedJournal written = stroke::record(context.work.document->journal().entries());
     if (written.strokes.empty()) throw Error("There are no strokes to export yet.");
     io::write_inkml(path, written.strokes, path.stem().string());
-    context.outbox.report("Exported " + path.string() +
-                          (written.left_out > 0 ? "; changes of layers and masks are not in a stroke file" : ""));
+    context.outbox.report(Message(
+        written.left_out > 0 ? "Exported {}; changes of layers and masks are not in a stroke file" : "Exported {}",
+        path.string()));
     context.publisher.publish();
 }
 
@@ -95,20 +96,21 @@ void export_model(PaintContext& context, const ExportModel& command) {
     if (const fs::path e = command.path.extension(); e == ".png" || e == ".exr") {
         export_maps(command, *painting, compose);
         if (command.pictures > 0) draw_pictures(context, command, *painting);
-        context.outbox.report("Exported " + command.path.string());
+        context.outbox.report(Message("Exported {}", command.path.string()));
         return context.publisher.publish();
     }
     io::ModelMaps maps =
         io::make_maps(painting->appearance().stack(), m.texels, painting->appearance().substrate(), compose);
     if (!command.height) maps.height = {};
     if (!command.orm) maps.orm = {};
-    const std::vector<std::string> notes =
+    const std::vector<Message> notes =
         io::export_model(command.path, *m.mesh, m.atlas, maps,
                          {.frame = context.work.frame,
                           .painted = io::painted_parts(painting->appearance().stack(), *m.mesh, m.atlas, m.texels),
                           .progress = context.progress("Exporting")});
     if (command.pictures > 0) draw_pictures(context, command, *painting);
-    context.outbox.report("Exported " + command.path.string() + (notes.empty() ? "" : "; " + notes.front()));
+    context.outbox.report(notes.empty() ? Message("Exported {}", command.path.string())
+                                        : Message("Exported {}; {}", command.path.string(), notes.front()));
     context.publisher.publish();
 }
 

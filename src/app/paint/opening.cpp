@@ -104,20 +104,20 @@ void carry_strokes(const fs::path& former, PaintWork& work, const ProgressFn& pr
     const mesh::TriangleMesh mesh = project.model().mesh;
     const auto length_of = [&](const std::string& brush) { return work.document->materials().brush(brush).length; };
     const mesh::SurfaceQuery before(mesh);
-    const std::string fault = stroke::size_fault(strokes, length_of, before, *work.model->query);
+    const Message fault = stroke::size_fault(strokes, length_of, before, *work.model->query);
     if (!fault.empty()) throw Error(fault);
     const std::vector<stroke::StrokeReport> reports = work.document->replay(strokes, progress);
     const std::optional<stroke::ModelMotion> motion = stroke::find_motion(before, *work.model->query);
     const std::vector<stroke::StrokeFit> fits =
         stroke::compare_fit(strokes, length_of, before, *work.model->query, motion);
     work.mismatches = stroke::find_mismatches(reports, fits);
-    work.fit = {stroke::describe(stroke::total_of(fits, work.mismatches)) + "."};
-    if (motion) work.fit.push_back("The revised model is the former one " + stroke::describe(*motion) + ".");
+    work.fit = {Message("{}.", stroke::describe(stroke::total_of(fits, work.mismatches)))};
+    if (motion) work.fit.push_back(Message("The revised model is the former one {}.", stroke::describe(*motion)));
 }
 
 // In a file from now on, or in memory until there can be one.
 void keep(PaintWork& work, const fs::path& file) {
-    const std::string fault = work.autosave.start(file, work.source, work.frame, *work.document);
+    const Message fault = work.autosave.start(file, work.source, work.frame, *work.document);
     if (!fault.empty())
         work.autosave.start_later(file, work.source, work.frame, fault, !work.document->journal().empty());
 }
@@ -134,6 +134,7 @@ PaintWork prepare_model(Inspected in, const OpenOptions& options, const fs::path
     work.source = in.path.string();
     work.frame = options.frame;
     if (!options.own_colours) mesh::drop_colours(in.soup);
+    if (options.turned_round) mesh::turn_round(in.soup);
     work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
     work.document =
         std::make_unique<stroke::Document>(*work.model, stroke::DocumentOptions{.substrate = options.substrate});
@@ -145,14 +146,14 @@ PaintWork prepare_model(Inspected in, const OpenOptions& options, const fs::path
 }
 
 // To be written if that is wanted and possible; else to be read, and `why` says why.
-io::Project open_project(const fs::path& path, OpenAs as, const ProgressFn& progress, std::string& why) {
+io::Project open_project(const fs::path& path, OpenAs as, const ProgressFn& progress, Message& why) {
     if (as == OpenAs::work) {
         try {
             return io::Project::open(path, {.access = io::Access::write, .progress = progress});
         } catch (const io::ProjectInUse&) {
             throw;
         } catch (const Error& error) {
-            why = error.what();
+            why = error.message();
         }
     }
     return io::Project::open(path, {.access = io::Access::read, .progress = progress});
@@ -161,7 +162,7 @@ io::Project open_project(const fs::path& path, OpenAs as, const ProgressFn& prog
 PaintWork load_project(const fs::path& path, const fs::path& session, OpenAs as, const ProgressFn& progress) {
     PaintWork work;
     report(progress, "reading", 0);
-    std::string why;
+    Message why;
     io::Project project = open_project(path, as, progress, why);
     io::ProjectModel stored = project.model();
     work.source = stored.source;
@@ -186,7 +187,8 @@ PaintWork load_project(const fs::path& path, const fs::path& session, OpenAs as,
         work.autosave.take_presets(project);
         work.autosave.take_attachments(project);
         keep(work, session);
-        work.note = why.empty() ? "This is a copy; it has no name yet." : "This is a copy that has no name yet: " + why;
+        work.note = why.empty() ? Message("This is a copy; it has no name yet.")
+                                : Message("This is a copy that has no name yet: {}", why);
     }
     return work;
 }
@@ -221,7 +223,7 @@ void Opening::start(Step step) {
         } catch (const std::bad_alloc&) {
             job->result.error = "there is not enough memory for this model";
         } catch (const std::exception& error) {
-            job->result.error = error.what();
+            job->result.error = message_of(error);
         }
         job->done = true;
     });

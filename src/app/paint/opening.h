@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/paint/paint_thread.h"
+#include "core/message.h"
 #include "mesh/read/polygon_soup.h"
 #include "mesh/repair/inspect.h"
 
@@ -18,9 +19,9 @@ namespace tuft::app {
 struct Inspected {
     std::filesystem::path path;
     mesh::PolygonSoup soup;
-    mesh::MeshSummary summary;         ///< lengths in metres, by the guessed unit
-    std::vector<std::string> defects;  ///< found and repaired, one line each
-    bool unit_fixed = false;           ///< the format defines the unit
+    mesh::MeshSummary summary;     ///< lengths in metres, by the guessed unit
+    std::vector<Message> defects;  ///< found and repaired, one line each
+    bool unit_fixed = false;       ///< the format defines the unit
 };
 
 /// Choices of the opening dialog.
@@ -28,7 +29,8 @@ struct OpenOptions {
     FileFrame frame;  ///< of the model file
     std::uint32_t atlas_size = 2048;
     std::string substrate = "porcelain";
-    bool own_colours = true;  ///< shows the model's own colours, if any
+    bool own_colours = true;    ///< shows the model's own colours, if any
+    bool turned_round = false;  ///< turns all faces round, of a model that is inside out
 };
 
 /// Purpose of opening a project.
@@ -65,12 +67,12 @@ class Opening {
     std::string phase() const;  ///< in English, for the status bar
     double fraction() const;    ///< of the whole step, 0–1
 
-    /// The result of a step, returned once. `error`: one line, or "".
+    /// The result of a step, returned once. `error`: one line, or empty.
     struct Result {
         std::optional<Inspected> inspected;
         std::optional<PaintWork> work;
         std::optional<InUse> in_use;  ///< why it was not opened
-        std::string error;
+        Message error;
         bool done = false;
     };
     Result poll();

@@ -26,8 +26,8 @@ Preset named(Preset preset, const std::string& name) {
 bool goes_on(const stroke::JournalEntry& entry) {
     const stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>();
     const stroke::BrushAction* action = entry.as<stroke::BrushAction>();
-    return (stroke && stroke->settings.dip == stroke::DipMode::carry) ||
-           (action && action->dip == stroke::DipMode::carry);
+    return (stroke && stroke->settings.dip == stroke::DipMode::persistent) ||
+           (action && action->dip == stroke::DipMode::persistent);
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ void OutsideChanges::look() {
     try {
         take();
     } catch (const std::exception& error) {
-        context_.outbox.report(error.what());
+        context_.outbox.report(message_of(error));
         context_.publisher.publish(true);
     }
 }
@@ -72,8 +72,10 @@ void OutsideChanges::take() {
     else if (!viewing)
         autosave.catch_up(std::span(now).subspan(std::min(theirs.size(), now.size())));
     if (merged.news > 0 && !viewing)
-        context_.outbox.report("Another program changed this project; " + std::to_string(merged.news) +
-                               (merged.news == 1 ? " change of it is taken in." : " changes of it are taken in."));
+        context_.outbox.report(Message(merged.news == 1
+                                           ? "Another program changed this project; {} change of it is taken in."
+                                           : "Another program changed this project; {} changes of it are taken in.",
+                                       merged.news));
     context_.publisher.publish(true);
     context_.publisher.publish_snapshots();
     context_.publisher.publish_appearance();
@@ -150,15 +152,16 @@ bool OutsideChanges::follow(const io::Project& file, std::span<const stroke::Jou
 void OutsideChanges::leave_file() {
     const std::string name = context_.work.autosave.path().filename().string();
     const bool viewing = context_.work.autosave.viewing();
-    const std::string fault = context_.work.autosave.start(context_.work.spare, context_.work.source,
-                                                           context_.work.frame, *context_.work.document);
+    const Message fault = context_.work.autosave.start(context_.work.spare, context_.work.source, context_.work.frame,
+                                                       *context_.work.document);
     if (!fault.empty())
         context_.work.autosave.start_later(context_.work.spare, context_.work.source, context_.work.frame, fault,
                                            !context_.work.document->journal().empty());
     context_.outbox.report(
         viewing
-            ? "Another program put another model into " + name + "; this is a copy of what was in it."
-            : "Another program put another model into " + name + "; your work goes on in a copy that has no name yet.");
+            ? Message("Another program put another model into {}; this is a copy of what was in it.", name)
+            : Message("Another program put another model into {}; your work goes on in a copy that has no name yet.",
+                      name));
     context_.publisher.publish();
 }
 

@@ -69,7 +69,7 @@ void PaintThread::run() {
         } catch (const std::exception& error) {
             context_.work.document->cancel();
             strokes_.drop_loads();
-            outbox_.report(error.what());
+            outbox_.report(message_of(error));
             context_.publisher.publish(true);
         }
         if (!queue_.pending()) context_.publisher.draw_thumbnails();
@@ -92,8 +92,8 @@ void PaintThread::finish_file() {
 
 void PaintThread::save(const SaveProject& command) {
     PaintWork& work = context_.work;
-    const std::string fault = work.autosave.start(command.path, work.source, work.frame, *work.document);
-    outbox_.report(fault.empty() ? "Saved as " + command.path.string() : fault);
+    const Message fault = work.autosave.start(command.path, work.source, work.frame, *work.document);
+    outbox_.report(fault.empty() ? Message("Saved as {}", command.path.string()) : fault);
     context_.publisher.publish();
     if (fault.empty()) return;
     outbox_.change([&](Update& update) { update.events.not_saved = {command.path, fault}; });

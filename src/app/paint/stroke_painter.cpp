@@ -24,7 +24,7 @@ void StrokePainter::begin(const BeginStroke& command) {
     if (!command.tip_ink.empty()) undone_before_ = context_.work.document->journal().undone();
     load_tip(command, loads_);
     stroke::PaintStroke stroke{.trace = {.flat = false}, .brush = command.brush, .ink = current_.ink};
-    if (command.carry || loads_ > 0) stroke.settings.dip = stroke::DipMode::carry;
+    if (command.persistent || loads_ > 0) stroke.settings.dip = stroke::DipMode::persistent;
     if (command.wet) stroke.settings.film = stroke::FilmModel::wet;
     stroke.layer = current_.layer = context_.layer_of(command.layer);
     stroke.mask = command.mask;
@@ -35,14 +35,18 @@ void StrokePainter::begin(const BeginStroke& command) {
 // A brush with another ink in its tip is loaded before every stroke: dipped, the tip wiped, the tip
 // dipped into the other ink. Counts the entries that this makes.
 void StrokePainter::load_tip(const BeginStroke& command, std::size_t& made) {
-    if (command.tip_ink.empty() || command.carry || command.erases) return;
+    if (command.tip_ink.empty() || command.persistent || command.erases) return;
     context_.work.autosave.prepare(*context_.work.document, command.brush, command.tip_ink);
     const stroke::BrushActionKind dip = stroke::BrushActionKind::dip, wipe = stroke::BrushActionKind::wipe;
     const stroke::Extent tip{.depth = command.tip_depth};
     const stroke::BrushAction steps[] = {
         {.kind = dip, .brush = command.brush, .ink = command.ink},
-        {.kind = wipe, .brush = command.brush, .extent = tip, .dip = stroke::DipMode::carry},
-        {.kind = dip, .brush = command.brush, .ink = command.tip_ink, .extent = tip, .dip = stroke::DipMode::carry}};
+        {.kind = wipe, .brush = command.brush, .extent = tip, .dip = stroke::DipMode::persistent},
+        {.kind = dip,
+         .brush = command.brush,
+         .ink = command.tip_ink,
+         .extent = tip,
+         .dip = stroke::DipMode::persistent}};
     for (const stroke::BrushAction& step : steps) {
         context_.work.document->paint(step);
         context_.work.autosave.add(context_.work.document->journal().entries().back());
@@ -137,9 +141,11 @@ void StrokePainter::paint_drawing(PaintDrawing& command) {
     const ProgressFn shown = context_.progress("Placing the drawing");
     shown("", 0);
     std::vector<stroke::JournalEntry> all = entries_of(command);
-    const auto length_of = [&](const std::string& brush) { return context_.work.document->materials().brush(brush).length; };
-    if (const std::string fault = stroke::size_fault(all, length_of, *context_.work.model->query); !fault.empty())
-        throw Error("The model does not suit the drawing: " + fault);
+    const auto length_of = [&](const std::string& brush) {
+        return context_.work.document->materials().brush(brush).length;
+    };
+    if (const Message fault = stroke::size_fault(all, length_of, *context_.work.model->query); !fault.empty())
+        throw Error(Message("The model does not suit the drawing: {}", fault));
     for (const stroke::JournalEntry& entry : all) context_.work.document->check_size(entry);
     const std::size_t in_group = std::max<std::size_t>(1, command.drawing.entries.size());
     context_.history.undone.clear();

@@ -46,7 +46,10 @@ void keep_hsv(ColourChoice& c) {
 
 void wheel(Session& s) {
     ColourChoice& c = s.colours.choice;
-    const float side = ImGui::GetContentRegionAvail().x;
+    // As large as what is below leaves room for.
+    const float all = ImGui::GetContentRegionAvail().x, side = std::clamp(c.room_for_wheel, 0.4f * all, all);
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 0.5f * (all - side));
+    const float top = ImGui::GetCursorPosY();
     ImGui::SetNextItemWidth(side);
     constexpr ImGuiColorEditFlags flags = ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_NoSidePreview |
                                           ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel |
@@ -57,6 +60,7 @@ void wheel(Session& s) {
         wish(s, true);
     }
     s.ui.mark("Colour wheel");
+    c.wheel_height = ImGui::GetCursorPosY() - top;
 }
 
 void hex_field(Session& s) {
@@ -66,7 +70,7 @@ void hex_field(Session& s) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(s.ui.tr("Hex"));
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(s.ui.px(74));
+    ImGui::SetNextItemWidth(s.ui.px(78));
     const bool entered = ImGui::InputText("##hex", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue);
     s.ui.mark("Hex");
     if (ImGui::IsItemActive() || entered) c.hex = text;
@@ -75,7 +79,7 @@ void hex_field(Session& s) {
         {ColourSliders::rgb, "RGB"}, {ColourSliders::hsv, "HSV"}, {ColourSliders::lab, "Lab"}};
     for (const auto& [mode, name] : modes) {
         ImGui::SameLine(0, s.ui.px(4));
-        if (s.ui.choice(name, c.sliders == mode, nullptr, 38)) c.sliders = mode;
+        if (s.ui.choice(name, c.sliders == mode, nullptr, 36)) c.sliders = mode;
     }
 }
 
@@ -142,7 +146,7 @@ void result(Session& s) {
     std::string recipe;
     for (const ink::InkPart& part : c.match->ink.parts) {
         std::snprintf(text, sizeof text, "%s%.3g %% %s", recipe.empty() ? "" : ", ", 100 * part.fraction,
-                      ui.tr(part.pigment.name.c_str()));
+                      ui.tr(pigment_key(part.pigment.name).c_str()));
         recipe += text;
     }
     if (const double water = 1 - c.match->ink.strength(); water > 5e-4) {
@@ -181,7 +185,7 @@ void save(Session& s) {
     std::snprintf(name, sizeof name, "%s", c.name.c_str());
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - s.ui.button_width("Save ink", 84) -
                             ImGui::GetStyle().ItemSpacing.x);
-    if (ImGui::InputTextWithHint("##ink name", s.ui.tr("Name of the ink in hand"), name, sizeof name)) c.name = name;
+    if (ImGui::InputTextWithHint("##ink name", s.ui.tr("Name this ink"), name, sizeof name)) c.name = name;
     s.ui.mark("Ink name");
     ImGui::SameLine();
     if (!s.ui.button("Save ink", "Keeps the ink in hand for every work, among your own", 84, ink && !c.name.empty()))
@@ -191,10 +195,10 @@ void save(Session& s) {
         stroke::check_name(c.name, "ink");
         own.name = c.name;
         save_own_ink(c, std::move(own));
-        show_message(s.status, "Saved as " + c.name);
+        show_message(s.status, Message("Saved as {}", c.name));
         c.name.clear();
     } catch (const Error& error) {
-        show_message(s.status, error.what());
+        show_message(s.status, error.message());
     }
 }
 
@@ -241,6 +245,8 @@ void colour_panel(Session& s) {
     save(s);
     recent(s);
     if (ui.button("Close the wheel", nullptr, 0)) c.shown = false;
+    const float below = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y - c.wheel_height;
+    c.room_for_wheel = static_cast<float>(s.view.area.height) - 2 * pad - below;
     ImGui::End();
 }
 

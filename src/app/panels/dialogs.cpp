@@ -116,10 +116,12 @@ void open_dialog(Session& s) {
         ImGui::SameLine();
         ui.toggle("in its own colours", s.project.options.own_colours);
     }
+    if (!m.report.closed)
+        ui.toggle("Faces turned round", s.project.options.turned_round,
+                  "For a model that is inside out: ink goes onto the front of its faces");
     ui.heading("Checked and repaired");
     if (in.defects.empty()) ui.note(ui.tr("The mesh is sound; nothing had to be repaired."));
-    for (const std::string& line : in.defects) ui.wrapped("\xc2\xb7 " + ui.tr_sentence(line));
-    for (const std::string& line : m.report.warnings) ui.wrapped("\xc2\xb7 " + line);
+    for (const Message& line : in.defects) ui.wrapped("\xc2\xb7 " + ui.sentence(line));
     const std::size_t memory = stroke::atlas_memory(s.project.options.atlas_size);
     const bool fits = memory < stroke::available_memory();
     if (!fits) ui.wrapped(ui.tr("This many texels need more memory than is free."));

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include "app/panels/panels.h"
+#include "app/widgets/labels.h"
 #include "ink/composite/composite.h"
 #include "ink/composite/recolour.h"
 #include "ink/spectra/kubelka_munk.h"
@@ -18,101 +20,161 @@ void swatch(ImDrawList* draw, ImVec2 centre, float radius, unsigned colour) {
     draw->AddCircle(centre, radius, IM_COL32(128, 128, 128, 160), 32);
 }
 
-std::vector<std::string> ink_names(const Session& s) {
-    std::vector<std::string> names = s.colours.shipped;
-    for (const ink::Ink& ink : s.colours.own) names.push_back(ink.name);
+std::vector<std::string> ink_names(const ColourState& colours) {
+    std::vector<std::string> names = colours.shipped;
+    for (const ink::Ink& ink : colours.own) names.push_back(ink.name);
     return names;
 }
 
 // What an ink is made of, for people.
-std::string recipe_text(const Session& s, const std::string& name) {
-    std::string text = s.ui.tr(name.c_str());
-    const ink::Ink* ink = find_ink(s.colours, name);
+std::string recipe_text(const Ui& ui, const ColourState& colours, const std::string& name) {
+    std::string text = ui.tr(name.c_str());
+    const ink::Ink* ink = find_ink(colours, name);
     if (!ink || ink->parts.size() < 2) return text;
     for (const ink::InkPart& part : ink->parts) {
         char line[96];
         std::snprintf(line, sizeof line, "\n%.0f %%  %s", 100 * part.fraction / ink->strength(),
-                      s.ui.tr(part.pigment.name.c_str()));
+                      ui.tr(pigment_key(part.pigment.name).c_str()));
         text += line;
     }
     return text;
 }
 
+// A swatch of the grid: `id` of its button, the name that is shown, and its colour.
+struct Swatch {
+    std::string id, title;
+    unsigned colour = 0;
+    bool chosen = false;
+};
+
+struct SwatchSize {
+    std::size_t columns = 4, lines = 2;  // of the grid; of a name
+    float width = 0, height = 0, radius = 0, letters = 0;
+
+    float height_of(std::size_t n, float gap) const {
+        return static_cast<float>((n + columns - 1) / columns) * (height + gap);
+    }
+};
+
+SwatchSize swatch_size(const Ui& ui, ToolRoom room) {
+    SwatchSize size;
+    size.columns = room == ToolRoom::tight ? 6 : 4;
+    size.lines = room == ToolRoom::full ? 2 : room == ToolRoom::compact ? 1 : 0;
+    size.letters = 0.70f * ImGui::GetFontSize();
+    size.radius = ui.px(room == ToolRoom::full ? 10.0f : 8.0f);
+    const float gap = ui.px(2);
+    size.width = (ImGui::GetContentRegionAvail().x + gap) / static_cast<float>(size.columns) - gap;
+    size.height = 2 * size.radius + ui.px(4) + static_cast<float>(size.lines) * size.letters;
+    return size;
+}
+
 // A swatch with its name under it; true when it was pressed.
-bool named_swatch(Session& s, const std::string& id, const std::string& title, unsigned colour, bool chosen,
-                  float width) {
-    const float height = s.ui.px(40), radius = s.ui.px(11);
+bool named_swatch(Ui& ui, const Swatch& shown, const std::string& label, const SwatchSize& size) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const bool pressed = ImGui::InvisibleButton(("ink " + id).c_str(), ImVec2(width, height));
+    const bool pressed = ImGui::InvisibleButton(("ink " + shown.id).c_str(), ImVec2(size.width, size.height));
     ImDrawList* draw = ImGui::GetWindowDrawList();
-    const ImVec2 centre(at.x + 0.5f * width, at.y + radius + s.ui.px(3));
-    swatch(draw, centre, radius, colour);
-    if (chosen) draw->AddCircle(centre, radius + s.ui.px(2.5f), s.ui.accent, 32, s.ui.px(2));
-    const float size = 0.72f * ImGui::GetFontSize(), part = size / ImGui::GetFontSize();
-    const std::string text = s.ui.fitted(title, width / part);
-    const float length = part * ImGui::CalcTextSize(text.c_str()).x;
-    draw->AddText(ImGui::GetFont(), size,
-                  ImVec2(std::round(centre.x - 0.5f * length), std::round(at.y + height - size - s.ui.px(1))),
-                  chosen ? s.ui.strong : s.ui.faint, text.c_str());
+    const ImVec2 centre(at.x + 0.5f * size.width, at.y + size.radius + ui.px(2));
+    swatch(draw, centre, size.radius, shown.colour);
+    if (shown.chosen) draw->AddCircle(centre, size.radius + ui.px(2), ui.accent, 32, ui.px(2));
+    float y = at.y + 2 * size.radius + ui.px(3);
+    std::istringstream lines(size.lines > 0 ? label : "");
+    for (std::string line; std::getline(lines, line); y += size.letters) {
+        const float length = ImGui::GetFont()->CalcTextSizeA(size.letters, 1e9f, 0, line.c_str()).x;
+        draw->AddText(ImGui::GetFont(), size.letters, ImVec2(std::round(centre.x - 0.5f * length), std::round(y)),
+                      shown.chosen ? ui.strong : ui.faint, line.c_str());
+    }
     return pressed;
 }
 
-void swatches(Session& s) {
-    constexpr std::size_t columns = 5;
-    const float gap = s.ui.px(2), width = (ImGui::GetContentRegionAvail().x + gap) / columns - gap;
-    std::vector<std::string> names = ink_names(s);
+// The inks of this work, then the person's own, but for those that are part of it already.
+std::vector<Swatch> list_swatches(const InkParts& s) {
+    std::vector<Swatch> all;
+    std::vector<std::string> names = ink_names(s.colours);
     if (s.colours.choice.in_hand &&
         std::find(names.begin(), names.end(), s.colours.choice.in_hand->name) == names.end())
         names.push_back(s.colours.choice.in_hand->name);
+    for (const std::string& name : names)
+        all.push_back({name, s.ui.tr(name.c_str()), ink_colour(s.colours, name), name == s.brush.ink});
+    for (const ink::Ink& own : s.colours.choice.saved)
+        if (std::find(names.begin(), names.end(), own.name) == names.end())
+            all.push_back({"own " + own.name, own.name, ink_colour(own), false});
+    return all;
+}
+
+void choose_own(const InkParts& s, const std::string& name) {
+    const std::vector<ink::Ink>& saved = s.colours.choice.saved;
+    const auto at = std::find_if(saved.begin(), saved.end(), [&](const ink::Ink& i) { return i.name == name; });
+    if (at != saved.end()) take_mix(s.colours, s.brush, *at);
+}
+
+Savings swatches(const InkParts& s, ToolRoom room) {
+    const SwatchSize size = swatch_size(s.ui, room), full = swatch_size(s.ui, ToolRoom::full),
+                     compact = swatch_size(s.ui, ToolRoom::compact), tight = swatch_size(s.ui, ToolRoom::tight);
+    const std::vector<Swatch> all = list_swatches(s);
+    std::vector<std::string> titles;
+    for (const Swatch& one : all) titles.push_back(one.title);
+    const auto width_of = [&](const std::string& text) {
+        return ImGui::GetFont()->CalcTextSizeA(size.letters, 1e9f, 0, text.c_str()).x;
+    };
+    const std::vector<std::string> labels =
+        tell_apart(titles, {std::max<std::size_t>(1, size.lines), size.width, width_of});
+    const float gap = s.ui.px(2);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, s.ui.px(2)));
-    std::size_t i = 0;
-    for (const std::string& name : names) {
-        if (i++ % columns) ImGui::SameLine(0, gap);
-        if (named_swatch(s, name, s.ui.tr(name.c_str()), ink_colour(s.colours, name), name == s.brush.ink, width))
-            s.brush.ink = name;
-        s.ui.mark(name);
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", recipe_text(s, name).c_str());
-    }
-    // The person's own, but for those that are part of this work already.
-    for (std::size_t k = 0; k < s.colours.choice.saved.size(); ++k) {
-        const ink::Ink& own = s.colours.choice.saved[k];
-        if (std::find(names.begin(), names.end(), own.name) != names.end()) continue;
-        if (i++ % columns) ImGui::SameLine(0, gap);
-        if (named_swatch(s, "own " + own.name, own.name, ink_colour(own), false, width))
-            take_mix(s.colours, s.brush, own);
-        s.ui.mark("own " + own.name);
-        if (ImGui::BeginPopupContextItem()) {
-            const std::string name = own.name;
-            if (s.ui.menu_item("Forget this ink")) forget_own_ink(s.colours.choice, name);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (i % size.columns) ImGui::SameLine(0, gap);
+        const bool own = i >= ink_names(s.colours).size() && all[i].id != all[i].title;
+        if (named_swatch(s.ui, all[i], labels[i], size)) {
+            if (own)
+                choose_own(s, all[i].title);
+            else
+                s.brush.ink = all[i].id;
+        }
+        s.ui.mark(all[i].id);
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s", (own ? all[i].title : recipe_text(s.ui, s.colours, all[i].id)).c_str());
+        if (own && ImGui::BeginPopupContextItem()) {
+            if (s.ui.menu_item("Forget this ink")) forget_own_ink(s.colours.choice, all[i].title);
             ImGui::EndPopup();
-            if (k >= s.colours.choice.saved.size() || s.colours.choice.saved[k].name != name) break;
         }
     }
     ImGui::PopStyleVar();
+    const float whole = full.height_of(all.size(), gap);
+    return {whole - compact.height_of(all.size(), gap), whole - tight.height_of(all.size(), gap)};
 }
 
-float part_of_row(Session& s, int n) {
+// Width of a button of which n fill the row, at a scale of 1.
+float part_of_row(const Ui& ui, int n) {
     return (ImGui::GetContentRegionAvail().x - static_cast<float>(n - 1) * ImGui::GetStyle().ItemSpacing.x) /
-           static_cast<float>(n) / s.ui.settings().scale;
+           static_cast<float>(n) / ui.settings().scale;
+}
+
+// Buttons whose words fill them, so that several stand in a row.
+void push_narrow_buttons(const Ui& ui) {
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(4), ImGui::GetStyle().ItemSpacing.y));
 }
 
 // What is done with a brush between strokes.
-void care(Session& s) {
+void care(const InkParts& s) {
     Ui& ui = s.ui;
-    const float half = part_of_row(s, 2);
     const auto act = [&](stroke::EntryKind action, double depth = 1, double side = 0) {
-        bring_in_colour(s.colours, s.brush.ink, s.paint_thread.get());
-        s.paint_thread->post(ActOnBrush{
+        bring_in_colour(s.colours, s.brush.ink, &s.work);
+        s.work.post(ActOnBrush{
             .action = action, .brush = s.brush.preset, .ink = s.brush.ink, .extent = {.depth = depth, .side = side}});
     };
-    if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", half))
+    push_narrow_buttons(ui);
+    const float quarter = part_of_row(ui, 4);
+    if (ui.button("Dip", "Fills the brush with the chosen ink; what is in it stays and mixes", quarter))
         act(stroke::EntryKind::dip, s.brush.dip_depth, s.brush.dip_side);
     ImGui::SameLine();
-    if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", half))
+    if (ui.button("Wipe", "On a rag: the ink goes, as far as the brush is dipped", quarter))
         act(stroke::EntryKind::wipe, s.brush.dip_depth, s.brush.dip_side);
-    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", half)) act(stroke::EntryKind::rinse);
     ImGui::SameLine();
-    if (ui.button("Comb", "Hair straight and together, the ink stays", half)) act(stroke::EntryKind::reshape);
+    if (ui.button("Rinse", "Washes it: no ink left, hair straight and together", quarter))
+        act(stroke::EntryKind::rinse);
+    ImGui::SameLine();
+    if (ui.button("Comb", "Hair straight and together, the ink stays", 0)) act(stroke::EntryKind::reshape);
+    ImGui::PopStyleVar(2);
     ui.slider(
         "How deep", s.brush.dip_depth, {0.05, 1, "%.0f %%", 0.01},
         "Part of the hair, from the tip. Wipe the tip and dip it into another ink: it is darker than the belly then");
@@ -128,7 +190,7 @@ void care(Session& s) {
     ui.hint("Ink left in the brush");
 }
 
-void two_inks(Session& s) {
+void two_inks(const InkParts& s) {
     Ui& ui = s.ui;
     ui.toggle("Another ink in the tip", s.brush.two_inks,
               "Every stroke begins with the chosen ink in the belly and another one in the tip: petals, leaves");
@@ -139,44 +201,51 @@ void two_inks(Session& s) {
            ink_colour(s.colours, s.brush.tip_ink));
     ImGui::Dummy(ImVec2(size, size));
     ImGui::SameLine();
-    ui.combo("Tip ink", s.brush.tip_ink, ink_names(s));
+    ui.combo("Tip ink", s.brush.tip_ink, ink_names(s.colours));
     ui.slider("Tip", s.brush.tip_depth, {0.05, 0.9, "%.0f %%", 0.01}, "How far up the hair it goes");
+}
+
+// Whether ink flows, and what is done with wet one; all in a row.
+void wet_row(const InkParts& s) {
+    Ui& ui = s.ui;
+    ui.toggle("Wet ink", s.brush.wet,
+              "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
+    if (!s.brush.wet && !s.reported.document.wet) return;
+    push_narrow_buttons(ui);
+    ImGui::SameLine();
+    const float half = part_of_row(ui, 2);
+    if (ui.button("1 min", "Lets wet ink flow and dry for a minute", half))
+        s.work.post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush.preset, .seconds = 60});
+    ImGui::SameLine();
+    if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(ui, 1)))
+        s.work.post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush.preset});
+    ImGui::PopStyleVar(2);
 }
 
 }  // namespace
 
-void ink_section(Session& s) {
+Savings ink_section(const InkParts& s, ToolRoom room) {
     Ui& ui = s.ui;
-    if (!ui.section("Ink", true, ui.tr(s.brush.ink.c_str()))) return;
-    swatches(s);
-    ImGui::PushStyleVar(
-        ImGuiStyleVar_FramePadding,
-        ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons, which fill the row
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(4), ImGui::GetStyle().ItemSpacing.y));
+    if (!ui.section("Ink", true, ui.tr(s.brush.ink.c_str()))) return {};
+    const Savings saves = swatches(s, room);
+    push_narrow_buttons(ui);
     if (ui.choice("Colour...", s.colours.choice.shown,
                   "Any colour, on a wheel or as a hex code: the nearest mix of pigments is found for it", 0))
         s.colours.choice.shown = !s.colours.choice.shown;
     ImGui::SameLine();
-    if (ui.button("Load...", "An ink from a file", 0)) s.dialogs.file.show(FileDialog::Purpose::ink, {});
+    if (ui.button("Load...", "An ink from a file", 0)) s.files.show(FileDialog::Purpose::ink, {});
     ImGui::SameLine();
-    if (ui.button("Save ink...", "Writes the ink in hand to a file, for other work", part_of_row(s, 1)))
-        s.dialogs.file.show(FileDialog::Purpose::save_ink, s.brush.ink + ".toml");
+    if (ui.button("Save ink...", "Writes the ink in hand to a file, for other work", part_of_row(ui, 1)))
+        s.files.show(FileDialog::Purpose::save_ink, s.brush.ink + ".toml");
     ImGui::PopStyleVar(2);
-    ui.toggle("Wet ink", s.brush.wet,
-              "It flows, soaks in and mixes with wet ink under the brush, which picks it up; it dries as you say");
-    if (s.brush.wet || s.reported.document.wet) {
-        if (ui.button("Wait a minute", "Lets wet ink flow and dry for a minute", 0))
-            s.paint_thread->post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush.preset, .seconds = 60});
-        ImGui::SameLine();
-        if (ui.button("Dry", "Waits until all ink is dry; what is painted then lies over it", part_of_row(s, 1)))
-            s.paint_thread->post(ActOnBrush{.action = stroke::EntryKind::dry, .brush = s.brush.preset});
-    }
+    wet_row(s);
     ui.toggle("Don't reload", s.brush.persistent,
               "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
     if (s.brush.persistent)
         care(s);
     else
         two_inks(s);
+    return saves;
 }
 
 unsigned ink_colour(const ink::Ink& ink) {
@@ -207,8 +276,8 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
         double others = 0;
         for (const ink::InkPart& other : edited.parts)
             if (&other != &part) others += other.fraction;
-        s.ui.slider(part.pigment.name.c_str(), part.fraction, {0, std::max(0.01, 1 - others), "%.0f %%", 0.01},
-                    "Part of the wet ink; the rest is water");
+        s.ui.slider(pigment_key(part.pigment.name).c_str(), part.fraction,
+                    {0, std::max(0.01, 1 - others), "%.0f %%", 0.01}, "Part of the wet ink; the rest is water");
         released = released || ImGui::IsItemDeactivatedAfterEdit();
         held = held || ImGui::IsItemActive();
     }
@@ -222,7 +291,7 @@ void recipe_sliders(Session& s, const std::string& name, const ink::Ink& shown) 
             if (!there) edited.parts.push_back({ink::load_pigment(more), std::min(0.1, std::max(0.0, room))});
             released = true;
         } catch (const Error& error) {
-            show_message(s.status, error.what());
+            show_message(s.status, error.message());
         }
     }
     if (released)
@@ -241,7 +310,7 @@ void colours_panel(Session& s, float top, float bottom, float left) {
     std::set<std::string> used;
     for (const StrokeLine& line : s.journal.lines)
         if (!line.ink.empty() && !line.erases) used.insert(line.ink);
-    const std::vector<std::string> names = ink_names(s);
+    const std::vector<std::string> names = ink_names(s.colours);
     if (used.empty()) ui.note(ui.tr("Nothing is painted yet."));
     for (const std::string& name : used) {
         const auto other = s.colours.appearance.recolours.find(name);
@@ -258,10 +327,10 @@ void colours_panel(Session& s, float top, float bottom, float left) {
         ImGui::AlignTextToFramePadding();
         ImGui::Text("%s %s", ui.tr(name.c_str()), ui.tr("as"));
         std::string wanted = shown->name;
-        if (ui.combo(("As " + name).c_str(), wanted, names, part_of_row(s, 1) - 80) && find_ink(s.colours, wanted))
+        if (ui.combo(("As " + name).c_str(), wanted, names, part_of_row(s.ui, 1) - 80) && find_ink(s.colours, wanted))
             s.paint_thread->post(RecolourInk{name, *find_ink(s.colours, wanted)});
         ImGui::SameLine();
-        if (ui.choice("Recipe", s.colours.edited == name, "Its pigments", part_of_row(s, 1))) {
+        if (ui.choice("Recipe", s.colours.edited == name, "Its pigments", part_of_row(s.ui, 1))) {
             s.colours.edited = s.colours.edited == name ? "" : name;
             s.colours.recipe = *shown;
         }
@@ -280,7 +349,7 @@ void colours_panel(Session& s, float top, float bottom, float left) {
     if (material != s.colours.appearance.painted_on)
         ImGui::TextDisabled("%s %s", ui.tr("painted on"), ui.tr(s.colours.appearance.painted_on.c_str()));
     ImGui::Dummy(ImVec2(0, ui.px(4)));
-    if (ui.primary_button("Back to the tools", part_of_row(s, 1))) s.panels.show_appearance = false;
+    if (ui.primary_button("Back to the tools", part_of_row(s.ui, 1))) s.panels.show_appearance = false;
     ImGui::End();
 }
 

@@ -18,13 +18,13 @@ bool is_stroke(const StrokeLine& line) {
     return line.action == stroke::EntryKind::stroke;
 }
 
-unsigned colour_of(const Session& s, const StrokeLine& line) {
+unsigned colour_of(const JournalParts& s, const StrokeLine& line) {
     return (ink_colour(s.colours, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
 }
 
 // The way of a stroke; `place` puts a point of it on the screen.
 template <class Place>
-void draw_path(const Session& s, const StrokeLine& line, float size, const Place& place) {
+void draw_path(const JournalParts& s, const StrokeLine& line, float size, const Place& place) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const unsigned colour = colour_of(s, line);
     for (std::size_t i = 1; i < line.path.size(); ++i) {
@@ -42,7 +42,7 @@ void draw_sheet(ImVec2 at, float size, bool hidden) {
     draw->AddRect(at, ImVec2(at.x + size, at.y + size), IM_COL32(128, 128, 128, 110), 3);
 }
 
-void draw_entry(const Session& s, const StrokeLine& line, ImVec2 at, float size) {
+void draw_entry(const JournalParts& s, const StrokeLine& line, ImVec2 at, float size) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImVec2 middle(at.x + 0.5f * size, at.y + 0.5f * size);
     if (!is_stroke(line)) {
@@ -61,7 +61,7 @@ void draw_entry(const Session& s, const StrokeLine& line, ImVec2 at, float size)
 }
 
 // A drawing in its own frame, all strokes in one picture; other groups by their first stroke.
-void draw_group(const Session& s, const Lines& lines, ImVec2 at, float size) {
+void draw_group(const JournalParts& s, const Lines& lines, ImVec2 at, float size) {
     const float shift = s.ui.px(2);
     const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
     draw_sheet(ImVec2(at.x + shift, at.y - shift), size - shift, hidden);
@@ -92,7 +92,7 @@ std::vector<std::uint64_t> ids_of(const Lines& lines) {
     return ids;
 }
 
-Lines chosen_lines(const Session& s) {
+Lines chosen_lines(const JournalParts& s) {
     Lines lines;
     for (const StrokeLine& line : s.journal.lines)
         if (s.journal.is_selected(line.id)) lines.push_back(&line);
@@ -111,33 +111,33 @@ std::string common(const Lines& lines, const Of& of) {
     return value;
 }
 
-void post(Session& s, EditStrokes edit, const Lines& lines) {
+void post(const JournalParts& s, EditStrokes edit, const Lines& lines) {
     edit.ids = ids_of(lines);
-    s.paint_thread->post(std::move(edit));
+    s.work.post(std::move(edit));
 }
 
-std::vector<std::string> all_inks(const Session& s) {
+std::vector<std::string> all_inks(const JournalParts& s) {
     std::vector<std::string> names = s.colours.shipped;
     for (const ink::Ink& own : s.colours.own) names.push_back(own.name);
     return names;
 }
 
-void look_at_outline(Session& s) {
+void look_at_outline(const JournalParts& s) {
     Box box;
     for (const OutlinePoint& p : s.journal.outline) box.add(Vec3(p.position));
     if (s.journal.outline.empty()) return;
     const Vec3 margin(0.15 * box.diagonal() + 1e-3);
-    s.view.orbit.frame({box.lo - margin, box.hi + margin});
+    s.orbit.frame({box.lo - margin, box.hi + margin});
 }
 
 // What can be done with the chosen entries; what is left of the row below them.
-void edit_chosen(Session& s) {
+void edit_chosen(const JournalParts& s) {
     Ui& ui = s.ui;
     const Lines lines = chosen_lines(s);
     if (lines.empty()) return;
     const bool hidden = std::all_of(lines.begin(), lines.end(), [](const StrokeLine* l) { return l->hidden; });
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
-    if (lines.size() > 1) ui.note(ui.tr_sentence(std::to_string(lines.size()) + " entries chosen"));
+    if (lines.size() > 1) ui.note(ui.sentence(Message("{} entries chosen", lines.size())));
     if (ui.button(hidden ? "Show" : "Hide",
                   hidden ? "Paints it again in its place" : "The other strokes are painted again without it", half))
         post(s, {.hidden = !hidden}, lines);
@@ -153,12 +153,12 @@ void edit_chosen(Session& s) {
                 ink = common(lines, [](const StrokeLine&l) { return l.ink; });
     if (brush.empty()) brush = "Several brushes";
     if (ink.empty()) ink = "Several inks";
-    if (ui.combo("Change brush", brush, s.brush.presets)) post(s, {.brush = brush}, lines);
+    if (ui.combo("Change brush", brush, s.brushes)) post(s, {.brush = brush}, lines);
     if (ui.combo("Change ink", ink, all_inks(s))) post(s, {.ink = ink}, lines);
 }
 
 // The same as a menu at the cursor.
-void context_menu(Session& s) {
+void context_menu(const JournalParts& s) {
     Ui& ui = s.ui;
     if (!ImGui::BeginPopupContextItem("entry menu")) return;
     ui.in_menu = true;
@@ -170,7 +170,7 @@ void context_menu(Session& s) {
     if (ui.menu_item("Move", nullptr, s.journal.move_on_drag, strokes))
         s.journal.move_on_drag = !s.journal.move_on_drag;
     if (strokes && ui.begin_menu("Brush")) {
-        for (const std::string& name : s.brush.presets)
+        for (const std::string& name : s.brushes)
             if (ui.menu_item(name.c_str())) post(s, {.brush = name}, lines);
         ImGui::EndMenu();
     }
@@ -184,14 +184,13 @@ void context_menu(Session& s) {
     if (ui.menu_item("Group", nullptr, false, lines.size() > 1)) post(s, {.group = ui.tr("Group")}, lines);
     if (ui.menu_item("Ungroup", nullptr, false, grouped)) post(s, {.group = ""}, lines);
     ImGui::Separator();
-    if (ui.menu_item("Delete", name_of(s.preferences.keys.chord(Action::delete_stroke)).c_str()))
-        post(s, {.remove = true}, lines);
+    if (ui.menu_item("Delete", name_of(s.keys.chord(Action::delete_stroke)).c_str())) post(s, {.remove = true}, lines);
     ui.in_menu = false;
     ImGui::EndPopup();
 }
 
 // A click chooses the row alone; with Ctrl it is added or taken out, with Shift all from the last one on.
-void choose_row(Session& s, const JournalRow& row) {
+void choose_row(const JournalParts& s, const JournalRow& row) {
     JournalState& j = s.journal;
     std::set<std::uint64_t> ids;
     for (const std::size_t i : row.lines) ids.insert(s.journal.lines[i].id);
@@ -213,14 +212,14 @@ void choose_row(Session& s, const JournalRow& row) {
         j.anchor = s.journal.lines[row.lines.back()].id;
         j.anchor_inside = row.inside;
     }
-    select_entries(s.journal, s.paint_thread.get(), std::move(chosen));
+    select_entries(s.journal, &s.work, std::move(chosen));
 }
 
 struct RowText {
     std::string title, below;
 };
 
-RowText text_of(const Session& s, const StrokeLine& line, std::size_t number) {
+RowText text_of(const JournalParts& s, const StrokeLine& line, std::size_t number) {
     static const char* actions[] = {"", "Dip", "Rinse", "Comb", "Dry", "Layer", "Mask", "Fill", "Wipe", "Wash"};
     std::string title = std::to_string(number) + "   ";
     char length[32];
@@ -237,7 +236,7 @@ RowText text_of(const Session& s, const StrokeLine& line, std::size_t number) {
 }
 
 // The triangle before a group, which opens and closes it.
-void fold_arrow(Session& s, std::uint64_t group, const std::string& name, float size) {
+void fold_arrow(const JournalParts& s, std::uint64_t group, const std::string& name, float size) {
     const bool open = s.journal.open_groups.contains(group);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (ImGui::InvisibleButton("##open", ImVec2(s.ui.px(kIndent), size)))
@@ -247,7 +246,7 @@ void fold_arrow(Session& s, std::uint64_t group, const std::string& name, float 
     ImGui::SameLine(0, 0);
 }
 
-void draw_row(Session& s, const JournalRow& row) {
+void draw_row(const JournalParts& s, const JournalRow& row) {
     const float size = s.ui.px(kRowHeight);
     Lines lines;
     for (const std::size_t i : row.lines) lines.push_back(&s.journal.lines[i]);
@@ -271,7 +270,7 @@ void draw_row(Session& s, const JournalRow& row) {
         draw_group(s, lines, at, size);
         const auto n = static_cast<std::size_t>(
             std::count_if(lines.begin(), lines.end(), [](const StrokeLine* l) { return is_stroke(*l); }));
-        text = {newest.group.name, s.ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke" : " strokes"))};
+        text = {newest.group.name, s.ui.sentence(Message(n == 1 ? "{} stroke" : "{} strokes", n))};
     } else {
         draw_entry(s, newest, at, size);
         text = text_of(s, newest, row.lines.front() + 1);
@@ -294,7 +293,7 @@ void draw_row(Session& s, const JournalRow& row) {
     ImGui::PopID();
 }
 
-void draw_rows(Session& s) {
+void draw_rows(const JournalParts& s) {
     const std::vector<JournalRow> rows = journal_rows(s.journal.lines, s.journal.open_groups);
     const float height = s.ui.px(kRowHeight) + ImGui::GetStyle().ItemSpacing.y;
     // Rows are of one height but for the one with the buttons below it.
@@ -319,26 +318,22 @@ void draw_rows(Session& s) {
 
 }  // namespace
 
-void journal_panel(Session& s, float top, float bottom, float left) {
+void history_buttons(const HistoryParts& s) {
     Ui& ui = s.ui;
-    begin_side_panel(s.ui, "###journal", {left, top, bottom, kJournalWidth});
-    if (!s.panels.journal_fits &&
-        ui.primary_button("Back to the tools", ImGui::GetContentRegionAvail().x / ui.settings().scale))
-        s.panels.journal_over_tools = false;
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2 / ui.settings().scale;
-    if (ui.button("Undo", name_of(s.preferences.keys.chord(Action::undo)).c_str(), half, s.reported.document.can_undo))
-        s.paint_thread->post(UndoStroke{});
+    if (ui.button("Undo", name_of(s.keys.chord(Action::undo)).c_str(), half, s.reported.document.can_undo))
+        s.work.post(UndoStroke{});
     ImGui::SameLine();
-    if (ui.button("Redo", name_of(s.preferences.keys.chord(Action::redo)).c_str(), half, s.reported.document.can_redo))
-        s.paint_thread->post(RedoStroke{});
-    if (!s.reported.progress.busy.empty()) {
-        ImGui::TextUnformatted(ui.tr(s.reported.progress.busy.c_str()));
-        ImGui::ProgressBar(static_cast<float>(s.reported.progress.fraction), ImVec2(-1, ui.px(16)), "");
-        if (ui.button("Stop")) s.paint_thread->stop_long_work();
-    }
-    layers_section(s);
-    references_section(s);
-    snapshots_section(s);
+    if (ui.button("Redo", name_of(s.keys.chord(Action::redo)).c_str(), half, s.reported.document.can_redo))
+        s.work.post(RedoStroke{});
+    if (s.reported.progress.busy.empty()) return;
+    ImGui::TextUnformatted(ui.tr(s.reported.progress.busy.c_str()));
+    ImGui::ProgressBar(static_cast<float>(s.reported.progress.fraction), ImVec2(-1, ui.px(16)), "");
+    if (ui.button("Stop")) s.work.stop_long_work();
+}
+
+void journal_section(const JournalParts& s) {
+    Ui& ui = s.ui;
     ui.heading("Journal");
     if (s.journal.lines.empty())
         ui.note(ui.tr("Every stroke you paint is listed here, and can be hidden, changed or taken out later."));
@@ -348,7 +343,6 @@ void journal_panel(Session& s, float top, float bottom, float left) {
     ImGui::BeginChild("strokes", ImVec2(width + ImGui::GetStyle().ScrollbarSize + ui.px(2), 0));
     draw_rows(s);
     ImGui::EndChild();
-    ImGui::End();
 }
 
 }  // namespace tuft::app

@@ -12,24 +12,30 @@ namespace {
 
 using stroke::Layer;
 
-void change(Session& s, const stroke::LayerEdit& edit) {
-    s.paint_thread->post(ChangeLayers{edit});
+void change(const LayerParts& s, const stroke::LayerEdit& edit) {
+    s.work.post(ChangeLayers{edit});
 }
 
 // A name that no layer has yet.
-std::string fresh_name(const Session& s) {
-    for (std::size_t n = s.reported.document.layers.layers.size() + 1;; ++n) {
+std::string fresh_name(const LayerParts& s) {
+    for (std::size_t n = s.table.layers.size() + 1;; ++n) {
         const std::string name = std::string(s.ui.tr("Layer")) + " " + std::to_string(n);
-        if (!s.reported.document.layers.find(std::string_view(name))) return name;
+        if (!s.table.find(std::string_view(name))) return name;
     }
+}
+
+// A name that `fresh_name` or the document gave, in the language of the interface; else as the person wrote it.
+std::string title_of(const Ui& ui, const std::string& name) {
+    constexpr std::string_view kGiven = "Layer ";
+    const bool given = name.starts_with(kGiven) && name.find_first_not_of("0123456789", kGiven.size()) == name.npos;
+    return given ? std::string(ui.tr("Layer")) + " " + name.substr(kGiven.size()) : name;
 }
 
 // The layer as it is, changed in one respect.
 template <class Fn>
-void change(Session& s, Layer layer, Fn&& how) {
+void change(const LayerParts& s, Layer layer, Fn&& how) {
     how(layer);
-    if (const Layer* now = s.reported.document.layers.find(layer.id); now && !(*now == layer))
-        change(s, stroke::changed(s.reported.document.layers, layer));
+    if (const Layer* now = s.table.find(layer.id); now && !(*now == layer)) change(s, stroke::changed(s.table, layer));
 }
 
 constexpr std::pair<ink::Blend, const char*> kBlends[] = {
@@ -38,27 +44,26 @@ constexpr const char* kBlendHint =
     "Normal: paint that covers and lets through. Glazing: only absorbs, as colour in clear varnish. Multiply: a filter "
     "of its colour";
 
-void duplicate(Session& s, const Layer& layer) {
-    change(s, stroke::duplicated(s.reported.document.layers, layer.id,
-                                 stroke::free_name(s.reported.document.layers, layer.name + " copy")));
+void duplicate(const LayerParts& s, const Layer& layer) {
+    change(s, stroke::duplicated(s.table, layer.id, stroke::free_name(s.table, layer.name + " copy")));
 }
 
-void merge(Session& s, const Layer& layer) {
+void merge(const LayerParts& s, const Layer& layer) {
     try {
-        const stroke::LayerEdit edit = stroke::merged_down(s.reported.document.layers, layer.id);
+        const stroke::LayerEdit edit = stroke::merged_down(s.table, layer.id);
         change(s, edit);
         s.layers.active = edit.other;
     } catch (const Error& error) {
-        show_message(s.status, error.what());
+        show_message(s.status, error.message());
     }
 }
 
-void begin_renaming(Session& s, const Layer& layer) {
+void begin_renaming(const LayerParts& s, const Layer& layer) {
     s.layers.list.renamed = layer.id;
     s.layers.list.focus = true;
 }
 
-void name_field(Session& s, const Layer& layer) {
+void name_field(const LayerParts& s, const Layer& layer) {
     char name[stroke::kMaxNameBytes + 1];
     std::snprintf(name, sizeof name, "%s", layer.name.c_str());
     ImGui::SetNextItemWidth(-1);
@@ -73,10 +78,11 @@ void name_field(Session& s, const Layer& layer) {
     if (layer.name != name && name[0]) change(s, layer, [&](Layer& l) { l.name = name; });
 }
 
-void context_menu(Session& s, const Layer& layer, std::size_t place) {
+void context_menu(const LayerParts& s, const Layer& layer, std::size_t place) {
     Ui& ui = s.ui;
-    const auto& all = s.reported.document.layers.layers;
+    const auto& all = s.table.layers;
     if (!ImGui::BeginPopupContextItem("menu")) return;
+    ui.in_menu = true;
     s.layers.active = layer.id;
     if (ui.menu_item("Rename", "F2")) begin_renaming(s, layer);
     if (ui.menu_item("Duplicate", nullptr, false, all.size() < stroke::kMaxLayers)) duplicate(s, layer);
@@ -90,35 +96,36 @@ void context_menu(Session& s, const Layer& layer, std::size_t place) {
     if (ui.menu_item("Locked", nullptr, layer.locked)) change(s, layer, [](Layer& l) { l.locked = !l.locked; });
     ImGui::Separator();
     if (ui.menu_item("Higher", nullptr, false, place + 1 < all.size()))
-        change(s, stroke::moved(s.reported.document.layers, layer.id, static_cast<std::uint32_t>(place + 1)));
+        change(s, stroke::moved(s.table, layer.id, static_cast<std::uint32_t>(place + 1)));
     if (ui.menu_item("Lower", nullptr, false, place > 0))
-        change(s, stroke::moved(s.reported.document.layers, layer.id, static_cast<std::uint32_t>(place - 1)));
+        change(s, stroke::moved(s.table, layer.id, static_cast<std::uint32_t>(place - 1)));
     ImGui::Separator();
     if (ui.menu_item("Remove layer", nullptr, false, all.size() > 1)) change(s, stroke::removed(layer.id));
+    ui.in_menu = false;
     ImGui::EndPopup();
 }
 
 // A row is dragged onto another one and takes its place; the others make room.
-void drag(Session& s, const Layer& layer, std::size_t place) {
+void drag(const LayerParts& s, const Layer& layer, std::size_t place) {
     if (ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceNoHoldToOpenOthers)) {
         ImGui::SetDragDropPayload("layer", &layer.id, sizeof layer.id);
-        ImGui::TextUnformatted(s.ui.tr_sentence(layer.name).c_str());
+        ImGui::TextUnformatted(title_of(s.ui, layer.name).c_str());
         ImGui::EndDragDropSource();
     }
     if (!ImGui::BeginDragDropTarget()) return;
     if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload("layer")) {
         std::uint32_t id = 0;
         std::memcpy(&id, payload->Data, sizeof id);
-        if (id != layer.id && s.reported.document.layers.find(id))
-            change(s, stroke::moved(s.reported.document.layers, id, static_cast<std::uint32_t>(place)));
+        if (id != layer.id && s.table.find(id))
+            change(s, stroke::moved(s.table, id, static_cast<std::uint32_t>(place)));
     }
     ImGui::EndDragDropTarget();
 }
 
 // Opacity and blend of the chosen layer, and what is done with it most.
-void details(Session& s, const Layer& layer, std::size_t place) {
+void details(const LayerParts& s, const Layer& layer, std::size_t place) {
     Ui& ui = s.ui;
-    const auto& all = s.reported.document.layers.layers;
+    const auto& all = s.table.layers;
     if (s.layers.opacity < 0) s.layers.opacity = layer.opacity;
     ui.slider("Opacity", s.layers.opacity, {0, 1, "%.0f %%", 0.01}, "Of the whole layer over those below");
     if (ImGui::IsItemDeactivatedAfterEdit() && s.layers.opacity != layer.opacity)
@@ -132,20 +139,21 @@ void details(Session& s, const Layer& layer, std::size_t place) {
         if (ui.choice(name, layer.blend == blend, kBlendHint, third))
             change(s, layer, [b = blend](Layer& l) { l.blend = b; });
     }
-    if (ui.button("Duplicate", "A copy right above it", third, all.size() < stroke::kMaxLayers)) duplicate(s, layer);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(4), ImGui::GetStyle().ItemSpacing.y));
+    if (ui.button("Duplicate", "A copy right above it", 0, all.size() < stroke::kMaxLayers)) duplicate(s, layer);
     ImGui::SameLine();
-    if (ui.button("Merge down", "Lays its films on the layer below; it looks the same", third, place > 0))
-        merge(s, layer);
+    if (ui.button("Merge down", "Lays its films on the layer below; it looks the same", 0, place > 0)) merge(s, layer);
     ImGui::SameLine();
-    if (ui.button("Remove", "With its strokes; Undo brings them back", 0, all.size() > 1))
+    const float rest = ImGui::GetContentRegionAvail().x / ui.settings().scale;
+    if (ui.button("Remove", "With its strokes; Undo brings them back", rest, all.size() > 1))
         change(s, stroke::removed(layer.id));
-    ImGui::PopStyleVar();
+    ImGui::PopStyleVar(2);
     bool locked = layer.locked;
     if (ui.toggle("Locked", locked, "Takes no strokes")) change(s, layer, [locked](Layer& l) { l.locked = locked; });
 }
 
-std::string row_text(const Session& s, const Layer& layer) {
-    std::string text = s.ui.tr_sentence(layer.name), more;
+std::string row_text(const LayerParts& s, const Layer& layer) {
+    std::string text = title_of(s.ui, layer.name), more;
     const auto add = [&](const std::string& word) { more += (more.empty() ? "" : ", ") + word; };
     if (layer.blend != ink::Blend::normal) add(s.ui.tr(layer.blend == ink::Blend::glaze ? "Glazing" : "Multiply"));
     if (layer.opacity < 1) add(std::to_string(std::lround(100 * layer.opacity)) + " %");
@@ -153,7 +161,7 @@ std::string row_text(const Session& s, const Layer& layer) {
     return more.empty() ? text : text + "\n" + more;
 }
 
-void row(Session& s, const Layer& layer, std::size_t place) {
+void row(const LayerParts& s, const Layer& layer, std::size_t place) {
     Ui& ui = s.ui;
     const float height = ui.px(36), middle = 0.5f * (height - ImGui::GetFrameHeight());
     const float top = ImGui::GetCursorPosY();
@@ -198,9 +206,9 @@ void row(Session& s, const Layer& layer, std::size_t place) {
 
 }  // namespace
 
-void layers_section(Session& s) {
+void layers_section(const LayerParts& s) {
     Ui& ui = s.ui;
-    const auto& all = s.reported.document.layers.layers;
+    const auto& all = s.table.layers;
     if (all.empty()) return;
     ui.heading("Layers");
     for (std::size_t i = all.size(); i-- > 0;) {
@@ -212,7 +220,7 @@ void layers_section(Session& s) {
     }
     if (ui.button("Add a layer", "Strokes on it can be shown, faded and moved apart from the others", 0,
                   all.size() < stroke::kMaxLayers))
-        add_layer(s.layers, *s.paint_thread, s.reported.document.layers, fresh_name(s));
+        add_layer(s.layers, s.work, s.table, fresh_name(s));
 }
 
 }  // namespace tuft::app

@@ -8,80 +8,68 @@
 namespace tuft::app {
 namespace {
 
-void file_menu(Session& s) {
+void file_menu(const MenuParts& s, MenuChoice& chosen) {
     if (!s.ui.begin_menu("File")) return;
-    const bool ready = s.paint_thread != nullptr;
-    if (s.ui.menu_item("Open...", name_of(s.preferences.keys.chord(Action::open)).c_str()))
+    const bool ready = s.work != nullptr;
+    if (s.ui.menu_item("Open...", name_of(s.keys.chord(Action::open)).c_str()))
         s.dialogs.file.show(FileDialog::Purpose::open, {});
-    if (s.ui.menu_item("Save as...", name_of(s.preferences.keys.chord(Action::save)).c_str(), false, ready))
-        s.dialogs.file.show(FileDialog::Purpose::save,
-                            project_name(s.paint_thread.get(), s.reported.file.project) + ".tuft");
-    if (s.ui.menu_item("Export...", name_of(s.preferences.keys.chord(Action::export_to)).c_str(), false, ready))
+    if (s.ui.menu_item("Save as...", name_of(s.keys.chord(Action::save)).c_str(), false, ready))
+        s.dialogs.file.show(FileDialog::Purpose::save, project_name(s.work, s.reported.file.project) + ".tuft");
+    if (s.ui.menu_item("Export...", name_of(s.keys.chord(Action::export_to)).c_str(), false, ready))
         s.dialogs.show_export = true;
     if (s.ui.menu_item("Revised model...", nullptr, false, ready))
-        s.dialogs.file.show(FileDialog::Purpose::revise, s.paint_thread->source());
-    if (!s.project.revision.previous.empty() && s.ui.menu_item("Back to the former model", nullptr, false, ready))
-        open_previous(s);
+        s.dialogs.file.show(FileDialog::Purpose::revise, s.work->source());
+    if (s.has_former_model && s.ui.menu_item("Back to the former model", nullptr, false, ready))
+        chosen = MenuChoice::former_model;
     ImGui::Separator();
-    if (s.ui.menu_item("Close model", nullptr, false, ready)) request_close(s, {CloseRequest::Then::close, {}});
-    if (s.ui.menu_item("Quit", name_of(s.preferences.keys.chord(Action::quit)).c_str())) request_close(s, {});
+    if (s.ui.menu_item("Close model", nullptr, false, ready)) chosen = MenuChoice::close_model;
+    if (s.ui.menu_item("Quit", name_of(s.keys.chord(Action::quit)).c_str())) chosen = MenuChoice::quit;
     ImGui::EndMenu();
 }
 
-void edit_menu(Session& s) {
+void edit_menu(const MenuParts& s) {
     if (!s.ui.begin_menu("Edit")) return;
-    if (s.ui.menu_item("Undo", name_of(s.preferences.keys.chord(Action::undo)).c_str(), false,
-                       s.reported.document.can_undo) &&
-        s.paint_thread)
-        s.paint_thread->post(UndoStroke{});
-    if (s.ui.menu_item("Redo", name_of(s.preferences.keys.chord(Action::redo)).c_str(), false,
-                       s.reported.document.can_redo) &&
-        s.paint_thread)
-        s.paint_thread->post(RedoStroke{});
+    if (s.ui.menu_item("Undo", name_of(s.keys.chord(Action::undo)).c_str(), false, s.reported.document.can_undo) &&
+        s.work)
+        s.work->post(UndoStroke{});
+    if (s.ui.menu_item("Redo", name_of(s.keys.chord(Action::redo)).c_str(), false, s.reported.document.can_redo) &&
+        s.work)
+        s.work->post(RedoStroke{});
     ImGui::Separator();
-    if (s.ui.menu_item("Recolour...", nullptr, false, s.paint_thread != nullptr)) s.panels.show_appearance = true;
+    if (s.ui.menu_item("Recolour...", nullptr, false, s.work != nullptr)) s.panels.show_appearance = true;
     s.ui.hint("Shows what is painted in other inks, or on another material, without painting it anew");
     if (s.ui.menu_item("Settings...")) s.dialogs.show_settings = true;
     ImGui::EndMenu();
 }
 
-void view_menu(Session& s) {
+void view_menu(const MenuParts& s, MenuChoice& chosen) {
     if (!s.ui.begin_menu("View")) return;
     Orbit& o = s.view.orbit;
-    if (s.ui.menu_item("Frame all", name_of(s.preferences.keys.chord(Action::frame_all)).c_str()) && s.paint_thread)
-        o.frame(s.paint_thread->model().mesh->bounds);
-    if (s.ui.menu_item("Front", name_of(s.preferences.keys.chord(Action::front)).c_str()))
-        o.look_from(StandardView::front);
-    if (s.ui.menu_item("Back", name_of(s.preferences.keys.chord(Action::back)).c_str()))
-        o.look_from(StandardView::back);
-    if (s.ui.menu_item("Right", name_of(s.preferences.keys.chord(Action::right)).c_str()))
-        o.look_from(StandardView::right);
-    if (s.ui.menu_item("Left", name_of(s.preferences.keys.chord(Action::left)).c_str()))
-        o.look_from(StandardView::left);
-    if (s.ui.menu_item("Top", name_of(s.preferences.keys.chord(Action::top)).c_str())) o.look_from(StandardView::top);
-    if (s.ui.menu_item("Bottom", name_of(s.preferences.keys.chord(Action::bottom)).c_str()))
-        o.look_from(StandardView::bottom);
+    if (s.ui.menu_item("Frame all", name_of(s.keys.chord(Action::frame_all)).c_str()) && s.work)
+        o.frame(s.work->model().mesh->bounds);
+    if (s.ui.menu_item("Front", name_of(s.keys.chord(Action::front)).c_str())) o.look_from(StandardView::front);
+    if (s.ui.menu_item("Back", name_of(s.keys.chord(Action::back)).c_str())) o.look_from(StandardView::back);
+    if (s.ui.menu_item("Right", name_of(s.keys.chord(Action::right)).c_str())) o.look_from(StandardView::right);
+    if (s.ui.menu_item("Left", name_of(s.keys.chord(Action::left)).c_str())) o.look_from(StandardView::left);
+    if (s.ui.menu_item("Top", name_of(s.keys.chord(Action::top)).c_str())) o.look_from(StandardView::top);
+    if (s.ui.menu_item("Bottom", name_of(s.keys.chord(Action::bottom)).c_str())) o.look_from(StandardView::bottom);
     ImGui::Separator();
-    if (s.ui.menu_item("Parallel projection", name_of(s.preferences.keys.chord(Action::parallel)).c_str(), o.parallel))
+    if (s.ui.menu_item("Parallel projection", name_of(s.keys.chord(Action::parallel)).c_str(), o.parallel))
         o.set_parallel(!o.parallel);
-    if (s.ui.menu_item("Atlas beside the model", name_of(s.preferences.keys.chord(Action::atlas)).c_str(),
-                       s.view.atlas.shown))
+    if (s.ui.menu_item("Atlas beside the model", name_of(s.keys.chord(Action::atlas)).c_str(), s.view.atlas.shown))
         s.view.atlas.shown = !s.view.atlas.shown;
     if (!s.panels.journal_fits &&
-        s.ui.menu_item("Journal and layers", nullptr, s.panels.journal_over_tools, s.paint_thread != nullptr))
+        s.ui.menu_item("Journal and layers", nullptr, s.panels.journal_over_tools, s.work != nullptr))
         s.panels.journal_over_tools = !s.panels.journal_over_tools;
-    if (s.ui.menu_item("Palette", name_of(s.preferences.keys.chord(Action::palette)).c_str(), s.colours.palette.shown,
-                       s.paint_thread != nullptr))
-        show_palette(s.colours.palette, s.brush, s.status, !s.colours.palette.shown);
-    if (s.ui.menu_item("Settings of the tools", nullptr, s.panels.show_tools, s.paint_thread != nullptr))
-        s.panels.show_tools = !s.panels.show_tools, store_settings(s);
-    if (s.ui.menu_item("Journal", nullptr, s.panels.show_journal, s.paint_thread != nullptr && s.panels.journal_fits))
-        s.panels.show_journal = !s.panels.show_journal, store_settings(s);
-    if (s.ui.menu_item("Fold the panels", name_of(s.preferences.keys.chord(Action::panels)).c_str(), false,
-                       s.paint_thread != nullptr))
-        fold_panels(s);
-    if (s.ui.menu_item("See through the brush", name_of(s.preferences.keys.chord(Action::see_through)).c_str(),
-                       s.view.see_through))
+    if (s.ui.menu_item("Palette", name_of(s.keys.chord(Action::palette)).c_str(), s.palette.shown, s.work != nullptr))
+        show_palette(s.palette, s.brush, s.status, !s.palette.shown);
+    if (s.ui.menu_item("Settings of the tools", nullptr, s.panels.show_tools, s.work != nullptr))
+        s.panels.show_tools = !s.panels.show_tools, chosen = MenuChoice::store_settings;
+    if (s.ui.menu_item("Journal", nullptr, s.panels.show_journal, s.work != nullptr && s.panels.journal_fits))
+        s.panels.show_journal = !s.panels.show_journal, chosen = MenuChoice::store_settings;
+    if (s.ui.menu_item("Fold the panels", name_of(s.keys.chord(Action::panels)).c_str(), false, s.work != nullptr))
+        chosen = MenuChoice::fold_panels;
+    if (s.ui.menu_item("See through the brush", name_of(s.keys.chord(Action::see_through)).c_str(), s.view.see_through))
         s.view.see_through = !s.view.see_through;
     if (s.ui.menu_item("Side view of the tuft", nullptr, s.view.show_tuft_inset))
         s.view.show_tuft_inset = !s.view.show_tuft_inset;
@@ -89,9 +77,9 @@ void view_menu(Session& s) {
 }
 
 // Changes to the other language; its name is in that language.
-void language_button(Session& s) {
+void language_button(const MenuParts& s, MenuChoice& chosen) {
     Ui& ui = s.ui;
-    const bool english = s.preferences.ui.language == Language::english;
+    const bool english = ui.settings().language == Language::english;
     // Without a font for them the characters are drawn.
     const float height = 0.8f * ImGui::GetFontSize(), width = ui.px(64);
     const bool drawn = english && !ui.has_chinese;
@@ -100,9 +88,7 @@ void language_button(Session& s) {
                       : english ? "\xe4\xb8\xad\xe6\x96\x87##language"
                                 : "English##language",
                       ImVec2(width, 0))) {
-        s.preferences.ui.language = english ? Language::chinese : Language::english;
-        s.preferences.restyle = true;
-        store_settings(s);
+        chosen = MenuChoice::other_language;
     }
     ui.mark("Language button");
     if (drawn)
@@ -111,7 +97,7 @@ void language_button(Session& s) {
                       height, ui.strong);
 }
 
-void shading_combo(Session& s) {
+void shading_combo(const MenuParts& s) {
     static const std::vector<std::string> names{"Glaze",   "Clay",       "Flat colour", "Ink height",
                                                 "Wetness", "Texel grid", "Charts",      "Stretch"};
     std::string name = names[static_cast<std::size_t>(s.view.shading)];
@@ -127,25 +113,25 @@ void shading_combo(Session& s) {
 
 }  // namespace
 
-void menu_bar(Session& s) {
+MenuChoice menu_bar(const MenuParts& s) {
+    MenuChoice chosen = MenuChoice::none;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(8), s.ui.px(6)));
     if (ImGui::BeginMainMenuBar()) {
-        file_menu(s);
+        file_menu(s, chosen);
         edit_menu(s);
-        view_menu(s);
+        view_menu(s, chosen);
         if (s.ui.begin_menu("Help")) {
             if (s.ui.menu_item("Manual")) s.panels.help.manual = true;
-            if (s.ui.menu_item("The first minute, step by step", nullptr, s.panels.help.step >= 0,
-                               s.paint_thread != nullptr))
+            if (s.ui.menu_item("The first minute, step by step", nullptr, s.panels.help.step >= 0, s.work != nullptr))
                 start_guide(s.panels.help);
-            if (s.ui.menu_item("Keys and mouse", name_of(s.preferences.keys.chord(Action::keys)).c_str()))
+            if (s.ui.menu_item("Keys and mouse", name_of(s.keys.chord(Action::keys)).c_str()))
                 s.dialogs.show_keys = true;
             if (s.ui.menu_item("About tuft studio")) s.dialogs.show_about = true;
             ImGui::EndMenu();
         }
-        if (s.paint_thread) {
-            const std::string name = project_name(s.paint_thread.get(), s.reported.file.project) +
-                                     (s.reported.file.viewing ? s.ui.tr(" (a view)") : "");
+        if (s.work) {
+            const std::string name =
+                project_name(s.work, s.reported.file.project) + (s.reported.file.viewing ? s.ui.tr(" (a view)") : "");
             const float width = ImGui::GetWindowWidth();
             const float text = ImGui::CalcTextSize(name.c_str()).x,
                         x = std::max(0.5f * (width - text), ImGui::GetCursorPosX() + s.ui.px(8));
@@ -154,15 +140,16 @@ void menu_bar(Session& s) {
                 ImGui::TextUnformatted(name.c_str());
             }
         }
-        ImGui::SetCursorPosX(ImGui::GetWindowWidth() - s.ui.px((s.paint_thread ? 130 + 140 + 16 : 0) + 64 + 12));
+        ImGui::SetCursorPosX(ImGui::GetWindowWidth() - s.ui.px((s.work ? 130 + 140 + 16 : 0) + 64 + 12));
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(s.ui.px(8), s.ui.px(2)));
         ImGui::SetCursorPosY(ImGui::GetCursorPosY() + s.ui.px(3));
-        if (s.paint_thread) shading_combo(s);
-        language_button(s);
+        if (s.work) shading_combo(s);
+        language_button(s, chosen);
         ImGui::PopStyleVar();
         ImGui::EndMainMenuBar();
     }
     ImGui::PopStyleVar();
+    return chosen;
 }
 
 }  // namespace tuft::app

@@ -6,27 +6,12 @@
 
 namespace tuft::app {
 
-namespace {
-
-// Each of the reasons by itself.
-std::string translated(const Ui& ui, const std::string& reasons) {
-    std::string out;
-    for (std::size_t begin = 0; begin < reasons.size();) {
-        const std::size_t end = std::min(reasons.find("; ", begin), reasons.size());
-        out += (out.empty() ? "" : "; ") + ui.tr_sentence(reasons.substr(begin, end - begin));
-        begin = end + 2;
-    }
-    return out;
-}
-
-}  // namespace
-
 void mismatch_dialog(Session& s) {
     if (!s.dialogs.show_mismatches || !s.paint_thread) return;
     if (!begin_dialog(s.ui, "Strokes that no longer fit", 640)) return end_dialog(s.ui);
     Ui& ui = s.ui;
     ui.wrapped(ui.tr("These strokes do not lie on the revised model as they did. They stay in the journal."));
-    for (const std::string& sentence : s.project.revision.fit) ui.note(ui.tr_sentence(sentence));
+    for (const Message& line : s.project.revision.fit) ui.note(ui.sentence(line));
     const float rows = std::min(8.0f, static_cast<float>(s.project.revision.mismatches.size()));
     ImGui::BeginChild("mismatches", ImVec2(0, rows * ImGui::GetTextLineHeightWithSpacing() + ui.px(6)));
     for (const stroke::StrokeMismatch& mismatch : s.project.revision.mismatches) {
@@ -37,7 +22,7 @@ void mismatch_dialog(Session& s) {
         std::snprintf(text, sizeof text, "%td   %s \xc2\xb7 %s", line - s.journal.lines.begin() + 1,
                       ui.title(line->brush).c_str(), ui.tr(line->ink.c_str()));
         const float room = ImGui::GetContentRegionAvail().x;
-        const std::string all = translated(ui, mismatch.reason), why = ui.fitted(all, room - ui.px(170));
+        const std::string all = ui.sentence(mismatch.reason), why = ui.fitted(all, room - ui.px(170));
         const float right = ImGui::CalcTextSize(why.c_str()).x + ui.px(6);
         ImGui::PushID(static_cast<int>(mismatch.stroke));
         if (ImGui::Selectable(ui.fitted(text, room - right - ui.px(12)).c_str(),

@@ -11,18 +11,87 @@
 namespace tuft::app {
 
 /// Sizes in pixels at scale 1.
-inline constexpr float kStripWidth = 58, kToolWidth = 226, kJournalWidth = 252, kStatusHeight = 30;
+inline constexpr float kStripWidth = 58, kToolWidth = 226, kJournalWidth = 252, kStatusHeight = 30, kOptionsHeight = 62;
 
-void menu_bar(Session& s);
+/// What each panel reads and changes.
+struct MenuParts {
+    Ui& ui;
+    PanelLayout& panels;
+    DialogState& dialogs;
+    ViewState& view;
+    PaletteState& palette;
+    BrushSettings& brush;
+    StatusMessage& status;
+    const KeyTable& keys;
+    PaintThread* work;  ///< nullptr: no model is open
+    const PaintStatus& reported;
+    bool has_former_model;  ///< the open one was revised from it
+};
+struct HistoryParts {
+    Ui& ui;
+    PaintThread& work;
+    const PaintStatus& reported;
+    const KeyTable& keys;
+};
+struct LayerParts {
+    Ui& ui;
+    LayerState& layers;
+    PaintThread& work;
+    const stroke::LayerTable& table;
+    StatusMessage& status;
+};
+struct JournalParts {
+    Ui& ui;
+    JournalState& journal;
+    PaintThread& work;
+    const ColourState& colours;
+    const std::vector<std::string>& brushes;  ///< names of the shipped ones
+    const KeyTable& keys;
+    Orbit& orbit;
+};
+struct InkParts {
+    Ui& ui;
+    BrushSettings& brush;
+    ColourState& colours;
+    PaintThread& work;
+    const PaintStatus& reported;
+    FileDialog& files;
+};
+struct OptionParts {
+    Ui& ui;
+    ToolState& tools;
+    BrushSettings& brush;
+    StatusMessage& status;
+};
+struct MarkParts {
+    const Ui& ui;
+    const ViewState& view;
+    const ToolState& tools;
+    const JournalState& journal;
+    const MaskState& masks;
+    const stroke::Model& model;
+};
+
+/// What a menu asks for beyond its parts.
+enum class MenuChoice { none, close_model, quit, former_model, fold_panels, store_settings, other_language };
+MenuChoice menu_bar(const MenuParts& s);
+/// The settings that a hand needs all the time, in rows over the view: size, pressure, and those of the tool.
+void tool_options(const OptionParts& s, float left, float top, float width);
 /// The column of tools at the window's edge.
 void tool_strip(Session& s, float top, float bottom, float left);
 /// Settings of the active tool, the brush and the ink.
 void tool_panel(Session& s, float top, float bottom, float left);
 /// In place of the tools: recolouring of inks and the shown substrate.
 void colours_panel(Session& s, float top, float bottom, float left);
-void journal_panel(Session& s, float top, float bottom, float left);
-void layers_section(Session& s);
-void ink_section(Session& s);
+/// Undo and redo, and how far long work is.
+void history_buttons(const HistoryParts& s);
+void layers_section(const LayerParts& s);
+void journal_section(const JournalParts& s);
+/// Pixels that a section saves in less room.
+struct Savings {
+    float compact = 0, tight = 0;
+};
+Savings ink_section(const InkParts& s, ToolRoom room);
 /// Chooses a colour by its hex code. Its match becomes the ink.
 void set_colour(Session& s, const std::string& hex);
 /// The colour window over the view, when shown.
@@ -57,7 +126,7 @@ void palette_panel(Session& s);
 /// The tuft in side view with the surface below it, and the contact force.
 void tuft_inset(Session& s);
 /// Marks on the model: contact of the tuft and of its symmetric copies, and the curve being edited.
-void view_marks(const Session& s, const render::GlCamera& camera);
+void view_marks(const MarkParts& s, const render::GlCamera& camera);
 
 /// Returns the export command for the dialog's settings.
 ExportModel export_command(const ExportSettings& settings, const Orbit& seen_from, const std::filesystem::path& path);

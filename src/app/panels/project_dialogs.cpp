@@ -11,8 +11,8 @@ void in_use_dialog(Session& s) {
         return;
     }
     Ui& ui = s.ui;
-    ui.wrapped(s.project.in_use->project.filename().string() + ": " + io::name_of(s.project.in_use->holder) +
-               ui.tr(" is working on it."));
+    ui.wrapped(ui.sentence(Message("{}: {} is working on it.", s.project.in_use->project.filename().string(),
+                                   io::name_of(s.project.in_use->holder))));
     ui.wrapped(
         ui.tr("Close it there to go on with it here. A view shows what is painted there, stroke by stroke; a copy goes "
               "on by itself."));
@@ -38,11 +38,10 @@ void unsaved_work_dialog(Session& s) {
     Ui& ui = s.ui;
     const std::size_t n = s.reported.file.unsaved;
     if (n > 0)
-        ui.wrapped(
-            ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory" : " strokes wait in memory")) + ":");
+        ui.wrapped(ui.sentence(Message(n == 1 ? "{} stroke waits in memory" : "{} strokes wait in memory", n)) + ":");
     else
         ui.wrapped(ui.tr("The last change waits in memory:"));
-    ui.wrapped(s.reported.file.trouble);
+    ui.wrapped(ui.sentence(s.reported.file.trouble));
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Go back", 90}, {"Leave all the same", 140}, {"Save as...", 110}, {"Try again", 110}});
     const bool back = ui.button("Go back", nullptr, 90);

@@ -60,7 +60,7 @@ unsigned reference_texture(Session& s, ReferenceImage& r) {
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     } catch (const std::exception& error) {
         r.broken = true;
-        show_message(s.status, error.what());
+        show_message(s.status, message_of(error));
     }
     return r.texture;
 }

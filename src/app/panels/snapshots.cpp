@@ -68,8 +68,7 @@ void snapshots_section(Session& s) {
     for (const SnapshotLine& line : all.lines) {
         ImGui::PushID(line.id.c_str());
         const bool chosen = all.chosen == line.id;
-        const std::string count =
-            ui.tr_sentence(std::to_string(line.strokes) + (line.strokes == 1 ? " stroke" : " strokes"));
+        const std::string count = ui.sentence(Message(line.strokes == 1 ? "{} stroke" : "{} strokes", line.strokes));
         const float right = ImGui::CalcTextSize(count.c_str()).x, room = ImGui::GetContentRegionAvail().x,
                     x = ImGui::GetCursorPosX();
         if (ImGui::Selectable(ui.fitted(line.name, room - right - ui.px(10)).c_str(), chosen))

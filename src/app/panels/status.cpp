@@ -63,6 +63,72 @@ void put(const Session& s, const std::string& text, unsigned colour, float end) 
     ImGui::PopStyleColor();
 }
 
+struct Notice {
+    std::string text;
+    unsigned colour = 0;
+};
+
+// What went wrong, or what was just done; "": nothing.
+Notice notice_of(const Session& s) {
+    const Ui& ui = s.ui;
+    if (!s.reported.file.trouble.empty()) {
+        const std::size_t n = s.reported.file.unsaved;
+        std::string waits;
+        if (n > 0)
+            waits = " (" + ui.sentence(Message(n == 1 ? "{} stroke waits in memory" : "{} strokes wait in memory", n)) +
+                    ")";
+        const unsigned red =
+            ui.settings().theme == Theme::dark ? IM_COL32(255, 140, 107, 255) : IM_COL32(184, 26, 5, 255);
+        return {ui.tr("Not kept on disk") + waits + ": " + ui.sentence(s.reported.file.trouble), red};
+    }
+    // As long as it takes to read it.
+    const std::string text = ui.sentence(s.status.text);
+    if (s.status.seconds > std::max(12.0, 0.12 * static_cast<double>(text.size()))) return {};
+    return {text, ui.strong};
+}
+
+// A notice that is longer than the line: in a box over the view's lower edge, all of it.
+void notice_box(const Session& s, const Notice& notice) {
+    const Ui& ui = s.ui;
+    const float pad = ui.px(10), room = std::min(static_cast<float>(s.view.area.width) - 2 * pad, ui.px(620));
+    const float bottom = static_cast<float>(s.view.area.y + s.view.area.height) - pad;
+    const float wrap = room - 2 * ImGui::GetStyle().WindowPadding.x;
+    ImGui::SetNextWindowPos(
+        ImVec2(static_cast<float>(s.view.area.x) + 0.5f * static_cast<float>(s.view.area.width), bottom), 0,
+        ImVec2(0.5f, 1));
+    ImGui::SetNextWindowBgAlpha(0.95f);
+    ImGui::Begin("###notice", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::PushStyleColor(ImGuiCol_Text, notice.colour);
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);
+    ImGui::TextUnformatted(notice.text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+    ImGui::End();
+}
+
+// How the view is moved, and what the atlas is.
+void put_hints(const Session& s) {
+    const Ui& ui = s.ui;
+    char text[160] = "";
+    if (s.paint_thread) {
+        const stroke::Model& m = s.paint_thread->model();
+        std::snprintf(text, sizeof text, ui.tr("%u \xc3\x97 %u   %.2f mm/texel"), m.atlas.size, m.atlas.size,
+                      m.atlas.texel_size * 1e3);
+    }
+    const float x = ImGui::GetIO().DisplaySize.x - ImGui::CalcTextSize(text).x - ui.px(14);
+    put(s,
+        ui.tr(s.preferences.keymap == Keymap::blender
+                  ? "Middle or right: turn    Shift + middle: move    Wheel: nearer    F1: keys"
+                  : "Alt + left: turn    Alt + middle: move    Alt + right: nearer    F1: keys"),
+        ui.faint, x - ui.px(16));
+    if (ImGui::GetItemRectMax().x + ui.px(12) >= x) return;
+    ImGui::SameLine(x);
+    ImGui::TextDisabled("%s", text);
+}
+
 }  // namespace
 
 void status_bar(Session& s, float top) {
@@ -81,39 +147,16 @@ void status_bar(Session& s, float top) {
     const ToolText tool = text_of_tool(s);
     ImGui::TextUnformatted(ui.tr(tool.name));
     put(s, ui.tr(tool.hint), ui.faint, end);
-    if (!s.reported.file.trouble.empty()) {
-        const std::size_t n = s.reported.file.unsaved;
-        const std::string waits = n == 0
-                                      ? ""
-                                      : " (" +
-                                            ui.tr_sentence(std::to_string(n) + (n == 1 ? " stroke waits in memory"
-                                                                                       : " strokes wait in memory")) +
-                                            ")";
-        const unsigned red =
-            ui.settings().theme == Theme::dark ? IM_COL32(255, 140, 107, 255) : IM_COL32(184, 26, 5, 255);
-        put(s, ui.tr("Not kept on disk") + waits + ": " + s.reported.file.trouble, red, end);
-    } else if (!s.status.text.empty() && s.status.seconds < 12) {
-        put(s, ui.tr_sentence(s.status.text), ui.strong, end);
-    } else {
-        char text[160] = "";
-        if (s.paint_thread) {
-            const stroke::Model& m = s.paint_thread->model();
-            std::snprintf(text, sizeof text, ui.tr("%u \xc3\x97 %u   %.2f mm/texel"), m.atlas.size, m.atlas.size,
-                          m.atlas.texel_size * 1e3);
-        }
-        const float x = screen.x - ImGui::CalcTextSize(text).x - ui.px(14);
-        put(s,
-            ui.tr(s.preferences.keymap == Keymap::blender
-                      ? "Middle or right: turn    Shift + middle: move    Wheel: nearer    F1: keys"
-                      : "Alt + left: turn    Alt + middle: move    Alt + right: nearer    F1: keys"),
-            ui.faint, x - ui.px(16));
-        if (ImGui::GetItemRectMax().x + ui.px(12) < x) {
-            ImGui::SameLine(x);
-            ImGui::TextDisabled("%s", text);
-        }
-    }
+    const Notice notice = notice_of(s);
+    const float room = end - ImGui::GetItemRectMax().x - ui.px(16);
+    const bool fits = ImGui::CalcTextSize(notice.text.c_str()).x <= room;
+    if (notice.text.empty() || !fits)
+        put_hints(s);
+    else
+        put(s, notice.text, notice.colour, end);
     ImGui::End();
     ImGui::PopStyleVar(3);
+    if (!fits) notice_box(s, notice);
 }
 
 namespace {
@@ -181,7 +224,7 @@ void tuft_inset(Session& s) {
     if (!s.view.show_tuft_inset || !s.paint_thread || s.view.tuft.state.branches.empty()) return;
     Ui& ui = s.ui;
     const float width = ui.px(190), height = ui.px(206), pad = ui.px(10);
-    if (static_cast<float>(s.view.area.width) < 2.5f * width || static_cast<float>(s.view.area.height) < 2 * height)
+    if (static_cast<float>(s.view.area.width) < 3 * width || static_cast<float>(s.view.area.height) < 2 * height)
         return;  // the model needs the room
     ImGui::SetNextWindowPos(ImVec2(static_cast<float>(s.view.area.x) + pad,
                                    static_cast<float>(s.view.area.y + s.view.area.height) - height - pad));

@@ -13,7 +13,8 @@
 namespace tuft::app {
 namespace {
 
-constexpr float kRackHeight = 54;
+// Pixels of a brush at a scale of 1, by the room that there is.
+constexpr float kRackHeights[] = {54, 40, 30};
 
 // Sorts of hair as they look, sRGB; a brush of another sort is grey.
 unsigned hair_colour(const std::string& sort) {
@@ -89,17 +90,10 @@ void draw_tuft_icon(const Ui& ui, const brush::Preset& preset, unsigned hair, Im
     draw->AddRectFilled(ImVec2(x - r, at.y + 0.05f * height), ImVec2(x + r, top), IM_COL32(122, 78, 38, 255), 1.5f);
 }
 
-const brush::Preset& preset_of(const std::string& name) {
-    static std::map<std::string, brush::Preset> known;
-    auto at = known.find(name);
-    if (at == known.end()) at = known.emplace(name, brush::load_preset(name)).first;
-    return at->second;
-}
-
-void brush_cell(Ui& ui, BrushSettings& brush, const std::string& name, const std::string& sort, float width) {
+void brush_cell(Ui& ui, BrushSettings& brush, const std::string& name, const std::string& sort, ImVec2 size) {
+    const auto [width, height] = size;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool chosen = name == brush::sized_name(brush.preset).base;
-    const float height = ui.px(kRackHeight);
     if (ImGui::InvisibleButton(name.c_str(), ImVec2(width, height))) brush.preset = name;
     ui.mark(name);
     const bool over = ImGui::IsItemHovered();
@@ -108,7 +102,7 @@ void brush_cell(Ui& ui, BrushSettings& brush, const std::string& name, const std
     if (chosen || over)
         draw->AddRectFilled(at, end, ImGui::GetColorU32(chosen ? ImGuiCol_Header : ImGuiCol_FrameBgHovered), ui.px(4));
     if (chosen) draw->AddRect(at, end, ui.accent, ui.px(4), 0, ui.px(2));
-    const brush::Preset& preset = preset_of(name);
+    const brush::Preset& preset = shipped_brush(name);
     draw_tuft_icon(ui, preset, hair_colour(sort), at, width, height);
     if (!over) return;
     char text[256];
@@ -123,15 +117,15 @@ void brush_cell(Ui& ui, BrushSettings& brush, const std::string& name, const std
 
 // All brushes hang in rows, a group for each sort of hair from small to large, its name under it; sorts with a single
 // brush are a group together.
-void brush_rack(Ui& ui, BrushSettings& brush, StatusMessage& status) {
-    if (!ui.section("Brush", true, ui.tr(brush::sized_name(brush.preset).base.c_str()))) return;
+Savings brush_rack(Ui& ui, BrushSettings& brush, ToolRoom room) {
+    if (!ui.section("Brush", true, ui.tr(brush::sized_name(brush.preset).base.c_str()))) return {};
     std::map<std::string, std::vector<std::string>> by_sort;
     for (const std::string& name : brush.presets) by_sort[name.substr(0, name.find('-'))].push_back(name);
     std::vector<std::pair<std::string, std::vector<std::string>>> groups;
     std::vector<std::string> single, wide;
     for (auto& [sort, names] : by_sort) {
         if (names.size() == 1)
-            (preset_of(names.front()).spines > 1 ? wide : single).push_back(names.front());
+            (shipped_brush(names.front()).spines > 1 ? wide : single).push_back(names.front());
         else
             groups.emplace_back(sort, names);
     }
@@ -140,32 +134,34 @@ void brush_rack(Ui& ui, BrushSettings& brush, StatusMessage& status) {
     const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = ui.px(8),
                 letters = 0.8f * ImGui::GetFontSize();
     // Tufts are thin: as many fit in a row as have room for one each.
-    const float cell = std::min(ui.px(26), (all - 3 * gap) / 10), row = ui.px(kRackHeight) + 1.2f * letters;
-    float x = 0, y = ImGui::GetCursorPosY();
+    const float cell = std::min(ui.px(26), (all - 3 * gap) / 10), height = ui.px(kRackHeights[static_cast<int>(room)]);
+    const bool named = room != ToolRoom::tight;
+    const float row = height + (named ? 1.2f * letters : 0);
+    float x = 0, y = ImGui::GetCursorPosY(), rows = 1;
     for (auto& [sort, names] : groups) {
-        std::sort(names.begin(), names.end(),
-                  [](const std::string& a, const std::string& b) { return preset_of(a).length < preset_of(b).length; });
+        std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
+            return shipped_brush(a).length < shipped_brush(b).length;
+        });
         const char* title = ui.tr(sort.c_str());
         const float text = ImGui::GetFont()->CalcTextSizeA(letters, 1e9f, 0, title).x;
         const float width = cell * static_cast<float>(names.size()), taken = std::max(width, text);
-        if (x > 0 && x + width > all + 1) x = 0, y += row;
+        if (x > 0 && x + width > all + 1) x = 0, y += row, ++rows;
         for (std::size_t i = 0; i < names.size(); ++i) {
             ImGui::SetCursorPos(ImVec2(left + x + cell * static_cast<float>(i), y));
-            brush_cell(ui, brush, names[i], names[i].substr(0, names[i].find('-')), cell);
+            brush_cell(ui, brush, names[i], names[i].substr(0, names[i].find('-')), {cell, height});
         }
-        ImGui::SetCursorPos(ImVec2(left + x, y + ui.px(kRackHeight)));
-        const ImVec2 at = ImGui::GetCursorScreenPos();
-        const float middle = std::min(at.x + 0.5f * (width - text), at.x + all - x - text);
-        ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), letters, ImVec2(middle, at.y), ui.faint, title);
+        const float here = x;
         x += taken + gap;
+        if (!named) continue;
+        ImGui::SetCursorPos(ImVec2(left + here, y + height));
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float middle = std::min(at.x + 0.5f * (width - text), at.x + all - here - text);
+        ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), letters, ImVec2(middle, at.y), ui.faint, title);
     }
     ImGui::SetCursorPos(ImVec2(left, y + row));
-    brush::SizedName sized = brush::sized_name(brush.preset);
-    const double thick = 2 * preset_of(sized.base).radius;
-    double now = thick * sized.factor;
-    if (ui.slider("Tuft size", now, {thick * brush::kLeastSize, thick * brush::kMostSize, "%.1f mm", kMillimetre},
-                  "How thick it is; its length goes with it"))
-        size_brush(brush, status, now / thick);
+    ImGui::Dummy(ImVec2(0, 0));
+    return {rows * ui.px(kRackHeights[0] - kRackHeights[1]),
+            rows * (ui.px(kRackHeights[0] - kRackHeights[2]) + 1.2f * letters)};
 }
 
 // The curve from a pen's pressure to the brush's depth; its ends and its middle can be dragged. The dot
@@ -213,31 +209,17 @@ void pen_curve(Ui& ui, ToolState& tools, int& handle) {
     }
 }
 
+// The pen's force, and how the holder leans.
 void pointer_section(Ui& ui, ToolState& tools, PanelLayout& panels) {
-    if (!ui.section("Hand")) return;
-    ui.slider("Pressure", tools.pointer.pressure, {0.02, 1, "%.2f"},
-              "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]");
-    ui.slider("Stabiliser", tools.pointer.string, {0, 0.03, "%.1f mm", kMillimetre},
-              "The brush follows on a string of this length");
-    if (ui.button(panels.show_pointer_details ? "Less" : "More...", nullptr, 80))
-        panels.show_pointer_details = !panels.show_pointer_details;
-    if (!panels.show_pointer_details) return;
-    ui.toggle(
-        "Clean ends", tools.pointer.clean_ends,
-        "Strokes of a mouse begin where the button goes down and end where it comes up: the brush is set down in the "
-        "stroke's direction and runs ahead of the cursor by what its tip lags behind. A pen has its pressure for that");
-    ui.slider("Speed lightens", tools.pointer.speed_effect, {0, 1, "%.2f"},
-              "As a hand does. Only for a mouse; a pen says its own pressure");
-    ui.slider("Rest deepens", tools.pointer.dwell_effect, {0, 1, "%.2f"},
-              "A mouse that stays where it is sinks in slowly");
-    ui.note(ui.tr("Pen: from its force to the brush's depth"));
-    pen_curve(ui, tools, panels.pen_curve_handle);
+    if (!ui.section("Pen and holder", false)) return;
     double right = tools.pointer.tilt.x, up = tools.pointer.tilt.y;
     ui.slider("Lean sideways", right, {-60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", kDegree},
               "Of the holder, seen on the screen. Arrow keys");
     ui.slider("Lean away", up, {-60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", kDegree},
               "Of the holder, seen on the screen. Arrow keys");
     tools.pointer.tilt = {right, up};
+    ui.note(ui.tr("Pen: from its force to the brush's depth"));
+    pen_curve(ui, tools, panels.pen_curve_handle);
 }
 
 void symmetry_section(Ui& ui, stroke::Symmetry& symmetry) {
@@ -266,66 +248,24 @@ void section_section(Ui& ui, SectionView& section) {
     ui.slider("What stays", section.position, {0.02, 1, "%.2f"});
 }
 
-void fill_section(Ui& ui, ToolState& tools) {
-    if (tools.active != Tool::fill) return;
-    ui.heading("Fill");
-    static constexpr std::pair<stroke::Region, const char*> regions[] = {
-        {stroke::Region::all, "All"}, {stroke::Region::part, "Part"}, {stroke::Region::chart, "Chart"}};
-    const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
-    for (const auto& [region, name] : regions) {
-        if (region != stroke::Region::all) ImGui::SameLine();
-        if (ui.choice(name, tools.fill.region == region, "What the ink is laid over where you click", third))
-            tools.fill.region = region;
-    }
-    if (ui.slider("Thickness", tools.fill.film, {0.05, 5, "%.1f \xce\xbcm", 0.1}, "Of the wet coat"))
-        tools.fill.to_film = tools.fill.film;
-}
-
 void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     if (tools.active != Tool::writing) return;
-    ui.heading("Place");
-    if (ui.button("Writing or drawing...", "InkML or SVG", 0))
-        files.show(FileDialog::Purpose::writing, data_folder() / "samples" / "strokes");
-    if (tools.writing.empty()) return;
     Writing& w = tools.writing;
-    ImGui::TextUnformatted(w.file.filename().c_str());
+    const float all = ImGui::GetContentRegionAvail().x, inside = all - 2 * ImGui::GetStyle().FramePadding.x;
+    // The button is named by what is in hand.
+    const std::string name = w.file.filename().string();
+    const std::string title = w.empty() ? ui.tr("Writing or drawing...") : ui.fitted(name, inside);
+    if (ImGui::Button((title + "##writing").c_str(), ImVec2(all, 0)))
+        files.show(FileDialog::Purpose::writing, data_folder() / "samples" / "strokes");
+    ui.mark("Writing or drawing...");
+    ui.hint(w.empty() ? "InkML or SVG" : "Another one, InkML or SVG");
+    if (w.empty()) return;
     for (const std::string& note : w.notes) ui.note(note.c_str());
-    double width = w.width * w.scale;
-    if (w.width > 0 && ui.slider("Width", width, {0.05 * w.width, std::max(4 * w.width, 0.3), "%.1f mm", kMillimetre},
-                                 "Wheel over the model"))
-        w.scale = width / w.width;
-    ui.slider("Turn", w.turn, {-180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", kDegree},
-              "Shift and wheel over the model");
     ui.toggle("Mirrored", w.mirrored);
-    const std::tuple<stroke::SurfaceMapping, const char*, const char*> mappings[] = {
-        {stroke::SurfaceMapping::drape, "Drape",
-         "Bent round the surface; bridges small grooves, panel gaps and scan noise"},
-        {stroke::SurfaceMapping::wrap, "Wrap", "Bent round the surface, into each of its grooves"},
-        {stroke::SurfaceMapping::project, "Project##mapping", "Straight, as seen from before the place"}};
-    const float third = (ImGui::GetContentRegionAvail().x / ui.settings().scale - 16) / 3;
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        ImVec2(ui.px(2), ImGui::GetStyle().FramePadding.y));  // the words fill the buttons
-    for (const auto& [mapping, name, hint] : mappings) {
-        if (mapping != stroke::SurfaceMapping::drape) ImGui::SameLine();
-        if (ui.choice(name, w.mapping == mapping, hint, third)) w.mapping = mapping;
-    }
-    ImGui::PopStyleVar();
     const bool names =
         std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });
     if (names) ui.toggle("Its brush and ink", w.own_ink, "As the file names them; strokes scale with the drawing");
     if (has_widths(w)) ui.toggle("Its line widths", w.own_width, "The brush is taken in the size that draws them");
-}
-
-// How the hand goes along lines and curves.
-void curve_section(Session& s) {
-    if (s.tools.active != Tool::line && s.tools.active != Tool::curve) return;
-    Ui& ui = s.ui;
-    ui.heading("Along the line");
-    CurveSettings& c = s.tools.curve_settings;
-    bool changed = ui.slider("Press down in", c.taper_in, {0, 0.9, "%.0f %%", 0.01}, "Part of its length");
-    changed |= ui.slider("Lift in", c.taper_out, {0, 0.9, "%.0f %%", 0.01}, "Part of its length");
-    changed |= ui.slider("Pace", c.speed, {0.01, 0.4, "%.0f mm/s", kMillimetre}, "Of the hand");
-    if (changed) s.tools.curve.changed = true;
 }
 
 }  // namespace
@@ -348,16 +288,23 @@ void begin_side_panel(Ui& ui, const char* name, const SidePanel& panel) {
 
 void tool_panel(Session& s, float top, float bottom, float left) {
     begin_side_panel(s.ui, "###tools", {left, top, bottom});
-    curve_section(s);
+    const ToolRoom room = s.panels.tool_room;
+    Savings saves;
+    const auto add = [&saves](const Savings& more) { saves.compact += more.compact, saves.tight += more.tight; };
     writing_section(s.ui, s.tools, s.dialogs.file);
-    fill_section(s.ui, s.tools);
     mask_section(s);
     const bool brushes = s.tools.active != Tool::fill && s.tools.active != Tool::pick && s.tools.active != Tool::mask;
-    if (brushes) brush_rack(s.ui, s.brush, s.status);
-    if (s.tools.active != Tool::mask && s.tools.active != Tool::eraser) ink_section(s);
+    if (brushes) add(brush_rack(s.ui, s.brush, room));
+    if (s.tools.active != Tool::mask && s.tools.active != Tool::eraser)
+        add(ink_section({s.ui, s.brush, s.colours, *s.paint_thread, s.reported, s.dialogs.file}, room));
     if (brushes) pointer_section(s.ui, s.tools, s.panels);
     if (brushes) symmetry_section(s.ui, s.tools.symmetry);
     section_section(s.ui, s.view.section);
+    const float height = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y, there = bottom - top;
+    const float full = height + (room == ToolRoom::compact ? saves.compact : room == ToolRoom::tight ? saves.tight : 0);
+    s.panels.tool_room = full <= there                   ? ToolRoom::full
+                         : full - saves.compact <= there ? ToolRoom::compact
+                                                         : ToolRoom::tight;
     ImGui::End();
 }
 

@@ -12,14 +12,14 @@
 namespace tuft::app {
 namespace {
 
-ImVec2 on_screen(const Session& s, const render::GlCamera& c, const Vec3& p) {
+ImVec2 on_screen(const MarkParts& s, const render::GlCamera& c, const Vec3& p) {
     const Vec3 at = render::picture_point(c, p);
     return {static_cast<float>(at.x + s.view.area.x), static_cast<float>(at.y + s.view.area.y)};
 }
 
 // Outline of the hair that presses on the surface, laid onto it.
-void contact_outline(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
-    const mesh::SurfaceQuery& query = *s.paint_thread->model().query;
+void contact_outline(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
+    const mesh::SurfaceQuery& query = *s.model.query;
     for (const brush::Branch& branch : s.view.tuft.state.branches) {
         std::vector<ImVec2> left, right;
         for (const brush::Section& section : branch.sections) {
@@ -39,11 +39,11 @@ void contact_outline(const Session& s, const render::GlCamera& c, ImDrawList* dr
 }
 
 // Ring on the surface below a hovering tuft, as wide as its belly.
-void hover_ring(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+void hover_ring(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     const brush::Section &tip = s.view.tuft.state.branches.front().sections.front(),
                          &root = s.view.tuft.state.branches.front().sections.back();
     const Vec3 axis = glm::normalize(tip.centre - root.centre);
-    const auto hit = s.paint_thread->model().query->ray(root.centre, axis, 0, 0.2);
+    const auto hit = s.model.query->ray(root.centre, axis, 0, 0.2);
     if (!hit) return;
     const Frame f = make_frame(hit->position, hit->normal);
     const double radius = 0.5 * std::max(root.a, root.b);
@@ -59,12 +59,12 @@ void hover_ring(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
 }
 
 // Where the symmetric copies of the brush would touch: a dot on the surface, faint where it is not seen.
-void copy_dots(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+void copy_dots(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     const std::vector<stroke::PoseMap> copies = stroke::symmetry_copies(s.tools.symmetry);
     if (copies.empty()) return;
     const brush::Section &tip = s.view.tuft.state.branches.front().sections.front(),
                          &root = s.view.tuft.state.branches.front().sections.back();
-    const mesh::SurfaceQuery& query = *s.paint_thread->model().query;
+    const mesh::SurfaceQuery& query = *s.model.query;
     for (const stroke::PoseMap& map : copies) {
         const Vec3 from = map.point(root.centre), to = map.point(tip.centre), way = glm::normalize(to - from);
         const auto ahead = query.ray(from, way, 0, 2 * glm::distance(from, to));
@@ -78,7 +78,7 @@ void copy_dots(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     }
 }
 
-void axis_cross(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+void axis_cross(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     const float size = s.ui.px(26);
     const ImVec2 origin(static_cast<float>(s.view.area.x + s.view.area.width) - s.ui.px(44),
                         static_cast<float>(s.view.area.y) + s.ui.px(44));
@@ -104,7 +104,7 @@ void axis_cross(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
     }
 }
 
-void lasso_marks(const Session& s, ImDrawList* draw) {
+void lasso_marks(const MarkParts& s, ImDrawList* draw) {
     if (s.masks.lasso.empty()) return;
     std::vector<ImVec2> line;
     for (const Vec2& p : s.masks.lasso) line.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
@@ -115,7 +115,7 @@ void lasso_marks(const Session& s, ImDrawList* draw) {
 }
 
 // A bar of a round length for the scale at the model's middle.
-void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+void scale_bar(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     const double pixel = render::metres_per_pixel(c, s.view.orbit.target);
     const double want = 110.0 * static_cast<double>(s.ui.settings().scale) * pixel * 1e3;  // mm
     const double power = std::pow(10, std::floor(std::log10(want)));
@@ -140,10 +140,10 @@ void scale_bar(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
 }
 
 // Control points and the curve through them, as it lies on the model.
-void curve_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+void curve_marks(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     const auto& points = s.tools.curve.points;
     if (points.empty()) return;
-    const std::vector<CurveSample> places = project_curve(*s.paint_thread->model().query, points, 32);
+    const std::vector<CurveSample> places = project_curve(*s.model.query, points, 32);
     for (const auto& [colour, width] :
          {std::pair{IM_COL32(20, 20, 24, 170), 4.0f}, std::pair{IM_COL32(255, 196, 64, 255), 1.8f}})
         for (std::size_t i = 1; i < places.size(); ++i)
@@ -160,7 +160,7 @@ void curve_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) 
 }
 
 // Where the writing would lie, as far as it is seen.
-void writing_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+void writing_marks(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     if (s.tools.active != Tool::writing) return;
     for (const auto& line : s.tools.writing_preview)
         for (std::size_t i = 1; i < line.size(); ++i)
@@ -170,13 +170,13 @@ void writing_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw
 }
 
 // Where the chosen ink would lie while it is moved: dots round it.
-void shift_marks(const Session& s, const render::GlCamera& c, ImDrawList* draw) {
+void shift_marks(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     const JournalState& j = s.journal;
     if (!j.from || !j.to) return;
-    const mesh::SurfaceQuery& query = *s.paint_thread->model().query;
+    const mesh::SurfaceQuery& query = *s.model.query;
     const RigidMove m = shift_between(*j.from, *j.to);
-    const Vec4f section = section_plane(s.view, s.paint_thread->model().mesh->bounds);
-    const double tolerance = 2e-3 * s.paint_thread->model().mesh->bounds.diagonal();
+    const Vec4f section = section_plane(s.view, s.model.mesh->bounds);
+    const double tolerance = 2e-3 * s.model.mesh->bounds.diagonal();
     for (const OutlinePoint& p : j.outline) {
         const auto on = query.closest_point(m.to + m.rotation * (Vec3(p.position) - m.from));
         if (on && is_seen(query, c, section, on->position, tolerance))
@@ -190,7 +190,7 @@ struct Stop {
 };
 
 // Colours from left to right with a text at each end, in the lower right above the scale.
-void legend(const Session& s, ImDrawList* draw, std::span<const Stop> stops, const char* low, const char* high) {
+void legend(const MarkParts& s, ImDrawList* draw, std::span<const Stop> stops, const char* low, const char* high) {
     const float width = s.ui.px(190), height = s.ui.px(10);
     // In a narrow view the tuft's inset takes the room below.
     const bool narrow = static_cast<float>(s.view.area.width) < s.ui.px(460);
@@ -210,7 +210,7 @@ void legend(const Session& s, ImDrawList* draw, std::span<const Stop> stops, con
     draw->AddText(ImVec2(at.x + width - ImGui::CalcTextSize(high).x, at.y + height + s.ui.px(4)), text, high);
 }
 
-void legends(const Session& s, ImDrawList* draw) {
+void legends(const MarkParts& s, ImDrawList* draw) {
     if (s.view.shading == ModelView::height || s.view.shading == ModelView::wetness) {
         // As `ramp` in mesh.frag.
         static constexpr Stop stops[] = {{IM_COL32(33, 31, 77, 255), 0},
@@ -240,7 +240,7 @@ double height_range(double max_height) {
     return most <= power ? power : most <= 2 * power ? 2 * power : most <= 5 * power ? 5 * power : 10 * power;
 }
 
-void view_marks(const Session& s, const render::GlCamera& c) {
+void view_marks(const MarkParts& s, const render::GlCamera& c) {
     ImDrawList* draw = ImGui::GetBackgroundDrawList();
     draw->PushClipRect(ImVec2(static_cast<float>(s.view.area.x), static_cast<float>(s.view.area.y)),
                        ImVec2(static_cast<float>(s.view.area.x + s.view.area.width),

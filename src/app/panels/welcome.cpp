@@ -83,7 +83,7 @@ void welcome(Session& s) {
     if (!s.status.text.empty()) {
         ImGui::SameLine();
         ImGui::AlignTextToFramePadding();
-        ui.wrapped(ui.tr_sentence(s.status.text));
+        ui.wrapped(ui.sentence(s.status.text));
     }
     fs::path chosen;
     const float width_all = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;

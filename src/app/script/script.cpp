@@ -51,7 +51,7 @@ int button_of(const ScriptCommand& c) {
 
 Script::Script(const std::filesystem::path& path) : path_(path), commands_(parse_script(path)) {}
 
-void Script::fail(const ScriptCommand& command, const std::string& why) const {
+void Script::fail(const ScriptCommand& command, const Message& why) const {
     throw Error(path_.string(), command.line, why);
 }
 
@@ -75,11 +75,11 @@ void Script::press_key(const std::string& chord, int line) {
     std::string rest = chord;
     for (std::size_t plus; (plus = rest.find('+')) != std::string::npos && plus > 0; rest = rest.substr(plus + 1)) {
         const unsigned m = modifier_of(rest.substr(0, plus));
-        if (!m) throw Error(path_.string(), line, "unknown key '" + chord + "'");
+        if (!m) throw Error(path_.string(), line, Message("unknown key '{}'", chord));
         modifiers |= m;
     }
     const int code = key_code(rest);
-    if (code < 0) throw Error(path_.string(), line, "unknown key '" + chord + "'");
+    if (code < 0) throw Error(path_.string(), line, Message("unknown key '{}'", chord));
     add({.kind = Event::Kind::key_down, .key = code, .modifiers = modifiers}, 0.03);
     add({.kind = Event::Kind::key_up, .key = code}, 0.03);
 }
@@ -91,7 +91,7 @@ void Script::hold(const std::string& chord, int line) {
     std::istringstream names(chord == "none" ? "" : chord);
     for (std::string name; std::getline(names, name, '+');) {
         const unsigned m = modifier_of(name);
-        if (!m) throw Error(path_.string(), line, "'" + name + "' cannot be held; ctrl, shift, alt or none");
+        if (!m) throw Error(path_.string(), line, Message("'{}' cannot be held; ctrl, shift, alt or none", name));
         wanted |= m;
     }
     const unsigned before = held_;
@@ -162,19 +162,20 @@ void Script::expect(Studio& studio, const ScriptCommand& c) const {
     const std::string value = c.words.size() > 1 ? c.words[1] : "";
     if (what == "strokes") {
         if (s.journal.lines.size() != static_cast<std::size_t>(std::atoi(value.c_str())))
-            fail(c, "there are " + std::to_string(s.journal.lines.size()) + " strokes, not " + value);
+            fail(c, Message("there are {} strokes, not {}", s.journal.lines.size(), value));
     } else if (what == "model" || what == "no-model") {
         if ((s.paint_thread != nullptr) != (what == "model"))
-            fail(c, s.paint_thread ? "a model is open" : "no model is open: " + s.status.text);
+            fail(c, s.paint_thread ? Message("a model is open") : Message("no model is open: {}", s.status.text));
     } else if (what == "kept") {
         if (!s.reported.file.trouble.empty()) fail(c, s.reported.file.trouble);
     } else if (what == "message") {
-        if (s.status.text.find(value) == std::string::npos && s.reported.file.trouble.find(value) == std::string::npos)
-            fail(c, "the message is '" + s.status.text + "'");
+        if (s.status.text.text().find(value) == std::string::npos &&
+            s.reported.file.trouble.text().find(value) == std::string::npos)
+            fail(c, Message("the message is '{}'", s.status.text));
     } else if (what == "label") {
-        if (!s.ui.find(value)) fail(c, "'" + value + "' is not on the screen");
+        if (!s.ui.find(value)) fail(c, Message("'{}' is not on the screen", value));
     } else {
-        fail(c, "unknown expectation '" + what + "'");
+        fail(c, Message("unknown expectation '{}'", what));
     }
 }
 
@@ -225,7 +226,7 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
     } else if (c.name == "click" || c.name == "right-click") {
         const Ui::Place* place = s.ui.find(word);
         if (!place && waited < kLabelWait) return false;
-        if (!place) fail(c, "'" + word + "' is not on the screen");
+        if (!place) fail(c, Message("'{}' is not on the screen", word));
         // Panels that are being laid out anew move: a place counts once it has stayed.
         if (waited == 0 || place->x != wait_.place.x || place->y != wait_.place.y) {
             wait_.place = {place->x, place->y};

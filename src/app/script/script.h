@@ -9,6 +9,7 @@
 
 #include "app/input/events.h"
 #include "app/script/ui_fuzzer.h"
+#include "core/message.h"
 
 /// \file
 /// Scripts that drive the studio, for tests and documentation. Window thread.
@@ -84,7 +85,7 @@ class Script {
     void click(double x, double y, int button = 0);
     void add(Event event, double after);
     void report(Studio& studio, double now);
-    [[noreturn]] void fail(const ScriptCommand& command, const std::string& why) const;
+    [[noreturn]] void fail(const ScriptCommand& command, const Message& why) const;
 
     std::filesystem::path path_;
     std::vector<ScriptCommand> commands_;

@@ -29,9 +29,9 @@
 ///   shading, light, parallel, azimuth, elevation, zoom,
 ///                           layer, export-size, export-pictures,
 ///                           export-picture-width, pressure, writing-width (mm), writing-turn (degrees, anticlockwise),
-///                           writing-mirror, writing-mapping, string, radial, mirror, carry, tool, language, theme,
-///                           scale, left-handed, keymap, section, section-axis, see-through, atlas, draw-every (frames
-///                           of which one is drawn, for tests)
+///                           writing-mirror, writing-mapping, string, radial, mirror, persistent, tool, language,
+///                           theme, scale, left-handed, keymap, section, section-axis, see-through, atlas, draw-every
+///                           (frames of which one is drawn, for tests)
 ///   undo  redo  save FILE  export FILE  close
 ///   screenshot FILE.png
 ///   expect strokes N | expect model | expect no-model | expect kept | expect message TEXT | expect label LABEL
@@ -108,7 +108,7 @@ ScriptPoint parse_point(const std::string& word, const std::string& file, int li
         bool unused = false;
         if (std::getline(in, p)) point.pressure = number(p, unused);
     } catch (const std::exception&) {
-        throw Error(file, line, "'" + word + "' is not a place; write X,Y or X%,Y%");
+        throw Error(file, line, Message("'{}' is not a place; write X,Y or X%,Y%", word));
     }
     return point;
 }
@@ -124,7 +124,7 @@ void check_numbers(const ScriptCommand& c, const std::string& file) {
             if (number(text, relative, kMostCount); !relative) continue;
         } catch (const std::exception&) {
         }
-        throw Error(file, c.line, "'" + word + "' is not a number for '" + c.name + "'");
+        throw Error(file, c.line, Message("'{}' is not a number for '{}'", word, c.name));
     }
 }
 
@@ -147,13 +147,11 @@ std::vector<ScriptCommand> parse_script(const std::filesystem::path& path) {
             names.reserve(kCommands.size());
             for (const auto& [name, counts] : kCommands) names.push_back(name);
             const std::string near = nearest_name(c.name, names);
-            throw Error(path.string(), number,
-                        "unknown command '" + c.name + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
+            throw Error(path.string(), number, Message("unknown command '{}'{}", c.name, did_you_mean(near)));
         }
         const int n = static_cast<int>(c.words.size());
         if (n < known->second.first || n > known->second.second)
-            throw Error(path.string(), number,
-                        "'" + c.name + "' needs " + std::to_string(known->second.first) + " word(s) after it");
+            throw Error(path.string(), number, Message("'{}' needs {} word(s) after it", c.name, known->second.first));
         if (c.name == "move" || c.name == "stroke")
             for (const std::string& word : c.words) c.points.push_back(parse_point(word, path.string(), number));
         check_numbers(c, path.string());

@@ -65,6 +65,13 @@ double line_width(const std::string& name, double pressure) {
 
 }  // namespace
 
+const brush::Preset& shipped_brush(const std::string& name) {
+    static std::map<std::string, brush::Preset> known;
+    auto at = known.find(name);
+    if (at == known.end()) at = known.emplace(name, brush::load_preset(name)).first;
+    return at->second;
+}
+
 double first_line_width(const Box& box) {
     std::array<double, 3> side{box.size().x, box.size().y, box.size().z};
     std::sort(side.begin(), side.end());
@@ -123,7 +130,7 @@ void size_brush(BrushSettings& brush, StatusMessage& status, double factor) {
         brush::load_preset(sized);
         brush.preset = sized;
     } catch (const Error& error) {
-        show_message(status, error.what());  // not every brush has every size
+        show_message(status, error.message());  // not every brush has every size
     }
 }
 

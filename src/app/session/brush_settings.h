@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/widgets/status_message.h"
+#include "brush/preset/preset.h"
 #include "core/geometry/types.h"
 
 /// \file
@@ -29,6 +30,8 @@ struct BrushSettings {
     double dip_side = 0;     ///< of Dip and Wipe, fraction of the width from the right flank (> 0) or the left; 0: all
 };
 
+/// Returns a shipped brush, read once.
+const brush::Preset& shipped_brush(const std::string& name);
 /// Returns the line width in metres for the first brush on a model, and the brush of the same hair as `hair_of` that
 /// draws it at `pressure`.
 double first_line_width(const Box& box);

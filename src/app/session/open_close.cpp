@@ -26,16 +26,17 @@ std::unique_ptr<PaintThread> start_paint_thread(SessionNote& note, PaintWork wor
 // Saves what is in work and ends the paint thread. Returns the file that the work is in.
 fs::path finish_work(Session& s) {
     fs::path project = s.reported.file.project;
-    std::string& failure = s.project.closing.failure;
-    failure.clear();
+    Message& failure = s.project.closing.failure;
+    failure = {};
     if (const fs::path spare = s.paint_thread->finish(); !spare.empty()) {
-        failure = project.string() + " could not be written; the work is in " + spare.string() +
-                  " and is offered at the next start";
+        failure = Message("{} could not be written; the work is in {} and is offered at the next start",
+                          project.string(), spare.string());
         s.project.recovery.note.write(spare, s.paint_thread->source());
         remember_project(spare);
         project = spare;
     } else if (s.paint_thread->unsaved()) {
-        failure = project.string() + " could not be written, and nothing else either: the last strokes are lost";
+        failure =
+            Message("{} could not be written, and nothing else either: the last strokes are lost", project.string());
     }
     s.paint_thread.reset();
     return project;
@@ -73,6 +74,7 @@ void take_inspected(ProjectState& project, Inspected inspected, const PaintThrea
     if (!revises) {
         const double factor = metres_per(frame.unit).value_or(m.metres_per_unit) / m.metres_per_unit;
         project.options.atlas_size = proposed_size(m.area * factor * factor);
+        project.options.turned_round = false;
         frame.y_up = false;
     }
     project.inspected = std::move(inspected);
@@ -133,7 +135,7 @@ void take_work(Session& s, PaintWork work) {
     // Unnamed work that is left for other work is offered again at the next start.
     if (s.paint_thread && !s.journal.lines.empty() && is_unnamed(s.reported.file.project))
         remember_project(s.reported.file.project);
-    std::string note = std::move(work.note);
+    Message note = std::move(work.note);
     close_model(s);
     if (!s.project.closing.failure.empty()) note = s.project.closing.failure;
     s.paint_thread = start_paint_thread(s.project.recovery.note, std::move(work));
@@ -147,9 +149,10 @@ void take_work(Session& s, PaintWork work) {
     HelpState& help = s.panels.help;
     if (help.by_itself && !help.seen && help.step < 0) start_guide(help);
     s.tools.symmetry.centre = s.paint_thread->model().mesh->bounds.centre();
-    show_message(s.status, source.empty()
-                               ? note
-                               : "The strokes are painted on the revised model; the former project is as it was.");
+    show_message(s.status,
+                 source.empty()
+                     ? note
+                     : Message("The strokes are painted on the revised model; the former project is as it was."));
     revision = std::move(next);
     s.dialogs.show_mismatches = !revision.mismatches.empty();
 }
@@ -171,11 +174,12 @@ bool poll_opening(Session& s) {
 void revise_with(Session& s, const fs::path& path) {
     if (!s.paint_thread) return;
     if (!s.reported.file.trouble.empty())
-        return show_message(s.status, s.ui.tr("The project must be on disk first: ") + s.reported.file.trouble);
+        return show_message(s.status, Message("The project must be on disk first: {}", s.reported.file.trouble));
     const OpenOptions same{.frame = s.paint_thread->frame(),
                            .atlas_size = s.paint_thread->model().atlas.size,
                            .substrate = s.project.options.substrate,
-                           .own_colours = s.project.options.own_colours};
+                           .own_colours = s.project.options.own_colours,
+                           .turned_round = s.project.options.turned_round};
     const fs::path former = s.reported.file.project;
     open_path(s, path);
     s.project.options = same;

@@ -15,14 +15,14 @@ void open_writing(Session& s, const fs::path& path) {
         s.tools.writing = read_writing(path);
         std::string lost;
         for (const std::string& note : s.tools.writing.notes) lost += (lost.empty() ? "" : "; ") + note;
-        if (!lost.empty()) show_message(s.status, path.filename().string() + ": " + lost);
+        if (!lost.empty()) show_message(s.status, Message("{}: {}", path.filename().string(), lost));
         s.tools.active = Tool::writing;
         const double size = s.paint_thread->model().mesh->bounds.diagonal();
         // A drawing far too large or small for the model comes at a third of it.
         const double own = std::max(s.tools.writing.width, s.tools.writing.height);
         if (own > 0 && (own > size || own < 0.02 * size)) s.tools.writing.scale = 0.33 * size / own;
     } catch (const Error& error) {
-        show_message(s.status, error.what());
+        show_message(s.status, error.message());
     }
 }
 
@@ -33,7 +33,7 @@ void open_ink(PaintThread* work, StatusMessage& status, const fs::path& path) {
         if (ink.name.empty()) ink.name = path.stem().string();
         work->post(TakeInk{std::move(ink)});
     } catch (const Error& error) {
-        show_message(status, error.what());
+        show_message(status, error.message());
     }
 }
 
@@ -45,9 +45,9 @@ void save_ink(const ColourState& colours, const std::string& name, StatusMessage
     try {
         const std::string text = ink::ink_toml(named);
         write_file(path, text.data(), text.size());
-        show_message(status, "Saved as " + path.string());
+        show_message(status, Message("Saved as {}", path.string()));
     } catch (const Error& error) {
-        show_message(status, error.what());
+        show_message(status, error.message());
     }
 }
 
@@ -69,7 +69,7 @@ void pin_reference(References& all, PaintThread* work, StatusMessage& status, co
         work->post(AttachToProject{io::kReferences, to_attachment(image)});
         all.images.push_back(std::move(image));
     } catch (const Error& error) {
-        show_message(status, error.what());
+        show_message(status, error.message());
     }
 }
 

@@ -8,6 +8,7 @@
 #include "app/document/pictures.h"
 #include "app/document/state_folder.h"
 #include "app/paint/opening.h"
+#include "core/message.h"
 
 /// \file
 /// Opening, closing and recovery. Window thread.
@@ -18,7 +19,7 @@ struct Revision {
     std::filesystem::path source;                    ///< project whose strokes the model being opened gets
     std::filesystem::path previous;                  ///< project whose strokes the open model got
     std::vector<stroke::StrokeMismatch> mismatches;  ///< strokes that no longer fit
-    std::vector<std::string> fit;                    ///< how all strokes fit it, sentences
+    std::vector<Message> fit;                        ///< how all strokes fit it, sentences
 };
 
 /// Work that an earlier run did not save.
@@ -37,7 +38,7 @@ struct CloseRequest {
 /// State of closing.
 struct Closing {
     std::optional<CloseRequest> request;  ///< waits for the user's answer while some work is in memory only
-    std::string failure;                  ///< where work went that could not be saved; "": all was saved
+    Message failure;                      ///< where work went that could not be saved; empty: all was saved
     bool quit = false;
 };
 

@@ -1,7 +1,7 @@
 #include "app/session/session.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 #include <iterator>
 #include <set>
 #include <utility>
@@ -19,14 +19,11 @@ void take_picked(Session& s, const std::string& name) {
     if (s.tools.active == Tool::pick) s.tools.active = Tool::brush;
     const ink::Ink* ink = find_ink(s.colours, name);
     if (!ink) return;
-    std::string parts;
-    for (const ink::InkPart& part : ink->parts) {
-        char text[96];
-        std::snprintf(text, sizeof text, "%s%.0f %% %s", parts.empty() ? "" : ", ",
-                      100 * part.fraction / std::max(1e-9, ink->strength()), part.pigment.name.c_str());
-        parts += text;
-    }
-    show_message(s.status, name + ": " + parts);
+    std::vector<Message> parts;
+    for (const ink::InkPart& part : ink->parts)
+        parts.emplace_back("{} % {}", std::lround(100 * part.fraction / std::max(1e-9, ink->strength())),
+                           pigment_key(part.pigment.name).c_str());
+    show_message(s.status, Message("{}: {}", name, join(parts)));
 }
 
 // The work lies in this file now.
@@ -73,7 +70,7 @@ void take_events(Session& s, PaintEvents& e) {
     if (e.appearance) s.colours.appearance = std::move(*e.appearance);
     if (!e.picked.empty()) take_picked(s, e.picked);
     if (e.not_saved) s.dialogs.file.return_with(e.not_saved->path, e.not_saved->reason);
-    for (std::string& message : e.messages) show_message(s.status, std::move(message));
+    for (Message& message : e.messages) show_message(s.status, std::move(message));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ double number_of(const std::string& value) {
     char* end = nullptr;
     const double number = std::strtod(value.c_str(), &end);
     const bool whole = !value.empty() && end == value.c_str() + value.size();
-    if (whole && !(std::abs(number) <= kMost)) throw Error("'" + value + "' is not a number within a million");
+    if (whole && !(std::abs(number) <= kMost)) throw Error(Message("'{}' is not a number within a million", value));
     return std::isfinite(number) ? number : 0;
 }
 
@@ -25,7 +25,7 @@ void set_by_name(Session& s, const std::string& name, const std::string& value) 
         const auto at = std::find(names.begin(), names.end(), value);
         if (at != names.end()) return static_cast<int>(at - names.begin());
         const std::string near = nearest_name(value, names);
-        throw Error("unknown " + name + " '" + value + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
+        throw Error(Message("unknown {} '{}'{}", name, value, did_you_mean(near)));
     };
     if (name == "brush")
         s.brush.preset = s.brush.presets[static_cast<std::size_t>(one_of(s.brush.presets))];
@@ -75,13 +75,13 @@ void set_by_name(Session& s, const std::string& name, const std::string& value) 
         s.dialogs.export_settings.picture = std::clamp(static_cast<int>(number), 0, 360);
     else if (name == "layer") {
         const stroke::Layer* layer = s.reported.document.layers.find(std::string_view(value));
-        if (!layer) throw Error("there is no layer '" + value + "'");
+        if (!layer) throw Error(Message("there is no layer '{}'", value));
         s.layers.active = layer->id;
     } else if (name == "texels")
         s.project.options.atlas_size = static_cast<std::uint32_t>(std::clamp(number, 64.0, 16384.0));
     else if (name == "pressure")
         s.tools.pointer.pressure = std::clamp(number, 0.02, 1.0);
-    else if (name == "carry")
+    else if (name == "persistent" || name == "carry")
         s.brush.persistent = on;
     else if (name == "wet")
         s.brush.wet = on;
@@ -134,7 +134,7 @@ void set_by_name(Session& s, const std::string& name, const std::string& value) 
     else if (name == "panels")
         s.panels.show_tools = s.panels.show_journal = on;
     else
-        throw Error("unknown setting '" + name + "'");
+        throw Error(Message("unknown setting '{}'", name));
 }
 
 }  // namespace tuft::app

@@ -28,7 +28,7 @@ constexpr double kStillAfter = 0.4;  // seconds after the last event
 constexpr double kProgressEvery = 0.05, kInkEvery = 0.008, kStillEvery = 0.015;  // seconds between frames
 // Seconds, and part of a frame's time, that the newest ink is waited for.
 constexpr double kInkWait = 0.02, kInkPart = 0.2;
-constexpr float kLeastView = 240;   // pixels at scale 1, of the model's view beside both panels
+constexpr float kLeastView = 340;   // pixels at scale 1, of the model's view beside both panels
 constexpr double kPictureWait = 3;  // seconds that leaving waits at most for the newest ink on it
 
 }  // namespace
@@ -46,7 +46,7 @@ Studio::Studio() : scene_(session_), input_(session_, scene_.comparison()), pict
     s.project.recovery.lost = find_lost_work();
     load_colours(s.colours.choice);
     load_settings(s);
-    if (const std::string missing = s.ui.prepare(s.preferences.ui); !missing.empty()) show_message(s.status, missing);
+    if (const Message missing = s.ui.prepare(s.preferences.ui); !missing.empty()) show_message(s.status, missing);
 }
 
 Studio::~Studio() {
@@ -114,8 +114,9 @@ void Studio::layout(int width, int height) {
                                    : 0);
     const int journal = s.panels.journal_fits && s.panels.show_journal ? whole : 0;
     const int left = s.preferences.ui.left_handed ? journal : tools;
-    s.view.area = {left, static_cast<int>(top), std::max(16, width - tools - journal),
-                   std::max(16, height - static_cast<int>(top) - static_cast<int>(s.ui.px(kStatusHeight)))};
+    const int below = static_cast<int>(top) + (s.paint_thread ? static_cast<int>(s.ui.px(kOptionsHeight)) : 0);
+    s.view.area = {left, below, std::max(16, width - tools - journal),
+                   std::max(16, height - below - static_cast<int>(s.ui.px(kStatusHeight)))};
     s.view.atlas.area = {};
     scene_.comparison().layout();
     if (!s.view.atlas.shown || !s.paint_thread || scene_.comparison().on()) return;
@@ -127,7 +128,8 @@ void Studio::layout(int width, int height) {
 
 void Studio::draw_panels() {
     Session& s = session_;
-    menu_bar(s);
+    take_menu(menu_bar({s.ui, s.panels, s.dialogs, s.view, s.colours.palette, s.brush, s.status, s.preferences.keys,
+                        s.paint_thread.get(), s.reported, !s.project.revision.previous.empty()}));
     s.ui.modal = is_dialog_open(s);
     ImGui::BeginDisabled(s.ui.modal);
     if (s.paint_thread)
@@ -138,20 +140,67 @@ void Studio::draw_panels() {
     draw_dialogs();
 }
 
+void Studio::take_menu(MenuChoice choice) {
+    Session& s = session_;
+    switch (choice) {
+        case MenuChoice::none:
+            return;
+        case MenuChoice::close_model:
+            return request_close(s, {CloseRequest::Then::close, {}});
+        case MenuChoice::quit:
+            return request_close(s, {});
+        case MenuChoice::former_model:
+            return open_previous(s);
+        case MenuChoice::fold_panels:
+            return fold_panels(s);
+        case MenuChoice::store_settings:
+            return store_settings(s);
+        case MenuChoice::other_language: {
+            UiSettings& ui = s.preferences.ui;
+            ui.language = ui.language == Language::english ? Language::chinese : Language::english;
+            s.preferences.restyle = true;
+            return store_settings(s);
+        }
+    }
+}
+
+void Studio::draw_journal(float top, float bottom, float left) {
+    Session& s = session_;
+    Ui& ui = s.ui;
+    PaintThread& work = *s.paint_thread;
+    begin_side_panel(ui, "###journal", {left, top, bottom, kJournalWidth});
+    if (!s.panels.journal_fits &&
+        ui.primary_button("Back to the tools", ImGui::GetContentRegionAvail().x / ui.settings().scale))
+        s.panels.journal_over_tools = false;
+    history_buttons({ui, work, s.reported, s.preferences.keys});
+    layers_section({ui, s.layers, work, s.reported.document.layers, s.status});
+    references_section(s);
+    snapshots_section(s);
+    journal_section({ui, s.journal, work, s.colours, s.brush.presets, s.preferences.keys, s.view.orbit});
+    ImGui::End();
+}
+
 void Studio::draw_side_panels() {
     Session& s = session_;
-    const auto top = static_cast<float>(s.view.area.y), bottom = static_cast<float>(s.view.area.y + s.view.area.height);
+    const float options = s.ui.px(kOptionsHeight);
+    const auto top = static_cast<float>(s.view.area.y) - options,
+               bottom = static_cast<float>(s.view.area.y + s.view.area.height);
     const auto right = static_cast<float>(s.view.atlas.shown ? s.view.atlas.area.x + s.view.atlas.area.width
                                                              : s.view.area.x + s.view.area.width);
     const bool swapped = !s.panels.journal_fits && s.panels.journal_over_tools && !s.panels.show_appearance;
     const float strip = s.ui.px(kStripWidth), screen = ImGui::GetIO().DisplaySize.x;
-    tool_strip(s, top, bottom, s.preferences.ui.left_handed ? screen - strip : 0);
-    if (s.panels.show_appearance || s.panels.show_tools || swapped)
-        (s.panels.show_appearance ? colours_panel
-         : swapped                ? journal_panel
-                                  : tool_panel)(s, top, bottom, s.preferences.ui.left_handed ? right : strip);
-    if (s.panels.journal_fits && s.panels.show_journal)
-        journal_panel(s, top, bottom, s.preferences.ui.left_handed ? 0 : right);
+    const bool left_handed = s.preferences.ui.left_handed;
+    tool_strip(s, top, bottom, left_handed ? screen - strip : 0);
+    const float beside = left_handed ? right : strip;
+    if (s.panels.show_appearance)
+        colours_panel(s, top, bottom, beside);
+    else if (swapped)
+        draw_journal(top, bottom, beside);
+    else if (s.panels.show_tools)
+        tool_panel(s, top, bottom, beside);
+    if (s.panels.journal_fits && s.panels.show_journal) draw_journal(top, bottom, left_handed ? 0 : right);
+    const auto left = static_cast<float>(s.journal.snapshots.width > 0 ? s.journal.snapshots.x : s.view.area.x);
+    tool_options({s.ui, s.tools, s.brush, s.status}, left, top, right - left);
     status_bar(s, bottom);
     panel_handles(s);
     tuft_inset(s);
@@ -164,7 +213,7 @@ void Studio::draw_side_panels() {
     swipe_line(s);
     comparison_bar(s);
     guide(s);
-    view_marks(s, camera_of(s));
+    view_marks({s.ui, s.view, s.tools, s.journal, s.masks, s.paint_thread->model()}, camera_of(s));
     atlas_marks(s.ui, s.view.atlas, *s.paint_thread, atlas_cursor(s, input_.cursor()));
 }
 
@@ -243,7 +292,7 @@ void Studio::restyle(int width, int height) {
     }
     if (std::exchange(s.ui.sections_changed, false)) store_settings(s);
     if (!std::exchange(p.restyle, false)) return;
-    if (const std::string missing = s.ui.prepare(p.ui); !missing.empty()) show_message(s.status, missing);
+    if (const Message missing = s.ui.prepare(p.ui); !missing.empty()) show_message(s.status, missing);
     if (p.ui.language != s.ui.settings().language) {  // there is no font for it
         p.ui.language = s.ui.settings().language;
         store_settings(s);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/input/events.h"
+#include "app/panels/panels.h"
 #include "app/session/session.h"
 #include "app/studio/project_picture.h"
 #include "app/studio/scene_view.h"
@@ -48,6 +49,8 @@ class Studio {
     void restyle(int width, int height);
     void layout(int width, int height);
     void draw_panels();
+    void take_menu(MenuChoice choice);
+    void draw_journal(float top, float bottom, float left);
     void draw_side_panels();
     void draw_dialogs();
     void take_file(const std::filesystem::path& path);

@@ -3,6 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -198,6 +199,8 @@ void StudioInput::key(const Event& e) {
     if (ImGui::GetIO().WantTextInput && !escape) return;
     if (escape && stroke_.drawing()) return stroke_.cancel();
     if (stroke_.drawing()) return;
+    // A menu or a list that is open lies over all else.
+    if (escape && ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return ImGui::ClosePopupToLevel(0, true);
     if (escape && !s.masks.lasso.empty()) return s.masks.lasso.clear();
     if (escape && close_top_dialog(s)) return;
     if (ImGui::GetIO().WantTextInput) return;
@@ -221,7 +224,7 @@ void StudioInput::assign_key(const Event& e) {
     const bool modifier = e.key >= GLFW_KEY_LEFT_SHIFT && e.key <= GLFW_KEY_RIGHT_SUPER;
     if (modifier || name_of(Chord{e.key, e.modifiers}).empty()) return;
     if (const auto other = s.preferences.keys.assign(*s.dialogs.key_to_assign, {e.key, e.modifiers}))
-        show_message(s.status, std::string(s.ui.tr(title_of(*other))) + s.ui.tr(" has no key now."));
+        show_message(s.status, Message("{} has no key now.", title_of(*other)));
     s.dialogs.key_to_assign.reset();
     store_settings(s);
 }

@@ -15,7 +15,7 @@ BeginStroke stroke_to_begin(const Session& s) {
     return {.brush = s.brush.preset,
             .ink = s.brush.ink,
             .symmetry = s.tools.symmetry,
-            .carry = s.brush.persistent,
+            .persistent = s.brush.persistent,
             .as_it_is = s.brush.persistent && s.colours.palette.shown,
             .layer = s.layers.active,
             .mask = s.masks.active,
@@ -30,10 +30,16 @@ void StrokeInput::press(const Event& e) {
     try {
         start(*s.paint_thread->model().query, brush::load_preset(s.brush.preset), false);
     } catch (const Error& error) {
-        show_message(s.status, error.what());
+        show_message(s.status, error.message());
         return;
     }
-    post(hand_->move(aim_of(s, e)), e.time);
+    const Aim aim = aim_of(s, e);
+    if (const auto hit = hand_->find_surface(aim); hit && hit->back)
+        show_message(
+            s.status,
+            "The surface shows its back here and may take no ink. If all of the model does, open it again with "
+            "its faces turned round.");
+    post(hand_->move(aim), e.time);
 }
 
 void StrokeInput::press_palette(const Event& e) {
@@ -54,7 +60,7 @@ void StrokeInput::press_palette(const Event& e) {
         if (!plate_) plate_ = stroke::make_palette();
         start(*plate_->query, brush::load_preset(s.brush.preset), true);
     } catch (const Error& error) {
-        show_message(s.status, error.what());
+        show_message(s.status, error.message());
         return;
     }
     s.brush.erases = false;
@@ -108,7 +114,7 @@ void StrokeInput::post(std::vector<StrokeStep> steps, double time) {
         if (step.kind == StrokeStep::Kind::begin && on_plate_)
             s.paint_thread->post(BeginStroke{.brush = s.brush.preset,
                                              .ink = s.brush.ink,
-                                             .carry = true,
+                                             .persistent = true,
                                              .as_it_is = true,
                                              .layer = stroke::kPaletteLayer,
                                              .wet = true});

@@ -66,7 +66,7 @@ void WritingTool::place(const Event* cursor) {
     if (!at) return;
     // Pressures that are made up stay as they are while the slider is where it is at first.
     const WritingHand hand{s.brush.preset, s.brush.ink, s.tools.pointer.pressure / PointerSettings{}.pressure};
-    show_message(s.status, s.ui.tr("Placed:") + (" " + place_words(s.tools.writing, *at)));
+    show_message(s.status, Message("Placed: {}", place_words(s.tools.writing, *at)));
     s.paint_thread->post(PaintDrawing{placed_writing(s.tools.writing, *at, hand),
                                       stroke::group_name(s.tools.writing.file), s.tools.symmetry, s.layers.active,
                                       s.masks.active, s.brush.wet});

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/input/events.h"
+#include "core/message.h"
 
 /// \file
 /// Output of the program. Window thread.
@@ -17,7 +18,7 @@ class Display {
     virtual void poll(EventQueue& events, double wait) = 0;
     virtual void present() = 0;
     /// Returns a fault since the last call for the status bar; else "".
-    virtual std::string take_trouble() { return ""; }
+    virtual Message take_trouble() { return {}; }
     virtual bool closed() const = 0;
     virtual void stay_open() {}  ///< resets `closed`
     /// Returns true when the graphics driver was reset and all its memory is lost.

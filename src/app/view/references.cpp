@@ -44,8 +44,8 @@ ReferenceImage read_reference(const fs::path& file) {
     if (!fs::is_regular_file(file, ec)) throw Error(file.string(), "is not there, or is no file");
     const std::uintmax_t size = fs::file_size(file, ec);
     if (ec || size > kMostReferenceBytes)
-        throw Error(file.string(), "is larger than " + std::to_string(kMostReferenceBytes >> 20) +
-                                       " MB; scale the image down to pin it");
+        throw Error(file.string(),
+                    Message("is larger than {} MB; scale the image down to pin it", kMostReferenceBytes >> 20));
     std::ifstream in(file, std::ios::binary);
     ReferenceImage r{.name = stroke::group_name(file)};
     r.bytes.assign(std::istreambuf_iterator<char>(in), {});

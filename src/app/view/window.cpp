@@ -103,7 +103,7 @@ class Window : public Display {
         events.insert(events.end(), std::make_move_iterator(fresh_.begin()), std::make_move_iterator(fresh_.end()));
         show_cursor();
     }
-    std::string take_trouble() override { return std::exchange(trouble_, ""); }
+    Message take_trouble() override { return std::exchange(trouble_, {}); }
     void present() override { glfwSwapBuffers(window_); }
     bool closed() const override { return glfwWindowShouldClose(window_); }
     void stay_open() override { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
@@ -133,7 +133,7 @@ class Window : public Display {
         if (!space_mouse_) return;
         EventQueue events;
         space_mouse_->merge(events, last_poll_);
-        if (std::string trouble = space_mouse_->take_trouble(); !trouble.empty()) trouble_ = std::move(trouble);
+        if (Message trouble = space_mouse_->take_trouble(); !trouble.empty()) trouble_ = std::move(trouble);
         if (glfwGetWindowAttrib(window_, GLFW_FOCUSED)) fresh_.insert(fresh_.end(), events.begin(), events.end());
     }
     // Picture pixels per window coordinate.
@@ -206,7 +206,7 @@ class Window : public Display {
     std::unique_ptr<Pen> pen_;
     std::unique_ptr<SpaceMouse> space_mouse_;
     EventQueue fresh_;
-    std::string trouble_;
+    Message trouble_;
     double last_poll_ = 0;
     std::array<GLFWcursor*, std::size(kCursors)> cursors_{};
 };

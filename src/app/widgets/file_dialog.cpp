@@ -91,7 +91,7 @@ void FileDialog::show(Purpose purpose, const fs::path& start) {
     go(is_folder ? full : full.parent_path());
 }
 
-void FileDialog::return_with(const fs::path& path, const std::string& fault) {
+void FileDialog::return_with(const fs::path& path, const Message& fault) {
     if (!last_ || last_->path != path) return;
     const Chosen last = *last_;
     show(last.purpose, last.path);
@@ -104,7 +104,7 @@ void FileDialog::choose_name(const std::string& name) {
 }
 
 // The name stays to be mended, and the keyboard with it.
-void FileDialog::refuse(const std::string& why) {
+void FileDialog::refuse(const Message& why) {
     fault_ = why;
     name_.take_focus = name_.select_stem = true;
 }
@@ -115,9 +115,10 @@ void FileDialog::go(const fs::path& folder) {
 }
 
 void FileDialog::read_folder() {
+    std::string fault;
     listing_.entries = list_folder(
-        folder_, [this](const fs::path& file) { return suits(file); }, fault_);
-    if (!fault_.empty()) fault_ = "This folder cannot be read: " + fault_;
+        folder_, [this](const fs::path& file) { return suits(file); }, fault);
+    fault_ = fault.empty() ? Message() : Message("This folder cannot be read: {}", fault);
     sort_entries(listing_.entries, listing_.order, listing_.downward);
 }
 
@@ -140,7 +141,7 @@ std::optional<fs::path> FileDialog::accept() {
         if (fs::is_directory(path, ec)) return refuse("There is a folder of that name."), std::nullopt;
         if (fs::exists(path, ec) && !ask_replace_) {
             ask_replace_ = true;
-            fault_.clear();
+            fault_ = {};
             return std::nullopt;
         }
     }
@@ -183,7 +184,8 @@ void FileDialog::make_folder(Ui& ui) {
     std::error_code ec;
     const fs::path folder = folder_ / new_folder_.name;
     if (!fs::create_directory(folder, ec)) {
-        fault_ = ec ? "The folder cannot be made: " + ec.message() : "There is a folder of that name.";
+        fault_ =
+            ec ? Message("The folder cannot be made: {}", ec.message()) : Message("There is a folder of that name.");
         return;
     }
     new_folder_.shown = false;
@@ -386,7 +388,7 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
     ImGui::EndChild();
     ImGui::Separator();
     if (has_message) {
-        const std::string why = ui.tr_sentence(ask_replace_ ? "Replace it?" : fault_);
+        const std::string why = ui.sentence(ask_replace_ ? Message("Replace it?") : fault_);
         ImGui::TextColored(
             ui.settings().theme == Theme::dark ? ImVec4(1, 0.62f, 0.45f, 1) : ImVec4(0.72f, 0.10f, 0.02f, 1), "%s",
             ui.fitted(why, ImGui::GetContentRegionAvail().x).c_str());

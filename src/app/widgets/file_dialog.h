@@ -8,6 +8,7 @@
 #include "app/document/pictures.h"
 #include "app/widgets/file_list.h"
 #include "app/widgets/ui.h"
+#include "core/message.h"
 
 /// \file
 /// The file dialog. Window thread.
@@ -28,7 +29,7 @@ class FileDialog {
     std::optional<std::filesystem::path> draw(Ui& ui, Pictures& pictures);
 
     /// Opens again with the last choice and the reason, when writing to `path` failed and `path` was chosen here.
-    void return_with(const std::filesystem::path& path, const std::string& fault);
+    void return_with(const std::filesystem::path& path, const Message& fault);
 
   private:
     struct Chosen {
@@ -38,7 +39,7 @@ class FileDialog {
     void read_folder();
     void go(const std::filesystem::path& folder);
     void choose_name(const std::string& name);
-    void refuse(const std::string& why);
+    void refuse(const Message& why);
     void make_folder(Ui& ui);
     bool suits(const std::filesystem::path& file) const;
     std::optional<std::filesystem::path> accept();
@@ -79,7 +80,7 @@ class FileDialog {
     NameField name_;
     NewFolder new_folder_;
     Sketch sketch_;
-    std::string fault_;
+    Message fault_;
     std::optional<Chosen> last_;  ///< last choice
 };
 

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <string>
 #include <utility>
+
+#include "core/message.h"
 
 /// \file
 /// The status bar's message. Window thread.
@@ -9,11 +10,11 @@ namespace tuft::app {
 
 /// The line of text in the status bar.
 struct StatusMessage {
-    std::string text;
+    Message text;
     double seconds = 0;  ///< since it was set
 };
 
-inline void show_message(StatusMessage& status, std::string text) {
+inline void show_message(StatusMessage& status, Message text) {
     status = {std::move(text), 0};
 }
 

@@ -8,8 +8,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <optional>
-#include <regex>
 #include <utility>
 
 #include "app/text/texts.h"
@@ -74,11 +72,11 @@ std::string find_chinese_font(const std::map<std::string, std::string>& fonts) {
     return {};
 }
 
-std::string Ui::prepare(const UiSettings& settings) {
+Message Ui::prepare(const UiSettings& settings) {
     settings_ = settings;
     ImGuiIO& io = ImGui::GetIO();
     io.Fonts->Clear();
-    std::string missing;
+    Message missing;
     has_chinese = false;
     const std::map<std::string, std::string> fonts = list_fonts();
     const std::string latin =
@@ -192,59 +190,8 @@ std::string Ui::fitted(const std::string& text, float width) const {
     return shorter();
 }
 
-namespace {
-
-// Sentences about a file, which stands in the place of the star.
-constexpr const char* kFrames[] = {
-    "Saved as *",
-    "Exported *; changes of layers and masks are not in a stroke file",
-    "Exported *",
-    "Another program put another model into *; this is a copy of what was in it.",
-    "Another program put another model into *; your work goes on in a copy that has no name yet.",
-    "* could not be written, and nothing else either: the last strokes are lost",
-};
-
-// What stands in the place of the star.
-std::optional<std::string> name_in(const std::string& frame, const std::string& text) {
-    const std::size_t star = frame.find('*'), after = frame.size() - star - 1;
-    if (text.size() < frame.size() || !text.starts_with(frame.substr(0, star)) ||
-        !text.ends_with(frame.substr(star + 1)))
-        return std::nullopt;
-    return text.substr(star, text.size() - star - after);
-}
-
-// The text with # in the place of each row of digits, or of each number with sign, point and exponent (`whole`).
-std::pair<std::string, std::vector<std::string>> without_numbers(const std::string& text, bool whole) {
-    static const std::regex kDigits("[0-9]+"), kNumber("-?[0-9]+(\\.[0-9]+)?(e[-+][0-9]+)?");
-    const std::regex& number = whole ? kNumber : kDigits;
-    std::vector<std::string> numbers;
-    for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it) numbers.push_back(it->str());
-    return {std::regex_replace(text, number, "#"), numbers};
-}
-
-}  // namespace
-
-std::string chinese_sentence(const std::string& english) {
-    if (const char* text = chinese_text(english.c_str())) return text;
-    for (const char* frame : kFrames)
-        if (const std::optional<std::string> name = name_in(frame, english)) {
-            std::string text = chinese_text(frame);
-            return text.replace(text.find('*'), 1, *name);
-        }
-    for (const bool whole : {false, true}) {
-        const auto [pattern, numbers] = without_numbers(english, whole);
-        const char* text = chinese_text(pattern.c_str());
-        if (!text) continue;
-        std::string out;
-        std::size_t n = 0;
-        for (const char* c = text; *c; ++c) *c == '#' && n < numbers.size() ? out += numbers[n++] : out += *c;
-        return out;
-    }
-    return english;
-}
-
-std::string Ui::tr_sentence(const std::string& english) const {
-    return settings_.language == Language::english ? english : chinese_sentence(english);
+std::string Ui::sentence(const Message& message) const {
+    return message.text([this](const char* english) { return tr(english); });
 }
 
 std::string Ui::id(const char* label) const {
@@ -283,7 +230,7 @@ void Ui::hint(const char* text) {
 }
 
 float Ui::button_width(const char* label, float least) const {
-    return std::max(px(least), ImGui::CalcTextSize(tr(label)).x + 2 * ImGui::GetStyle().FramePadding.x);
+    return std::max(px(least), ImGui::CalcTextSize(tr(label), nullptr, true).x + 2 * ImGui::GetStyle().FramePadding.x);
 }
 
 void Ui::buttons_at_right(std::initializer_list<std::pair<const char*, float>> buttons) const {
@@ -346,10 +293,10 @@ void draw_arrow(ImDrawList* draw, ImVec2 c, float r, bool open, unsigned colour)
 
 // What lies behind a slider: filled from zero, or from its lower end, to the value, so that the number on it can be
 // read wherever the value stands. ImGui draws the number and, as narrow as it is here, the grab.
-void draw_slider_ground(float lo, float hi, float value, float grab) {
+void draw_slider_ground(float lo, float hi, float value, float grab, float width) {
     constexpr float pad = 2;  // pixels that ImGui leaves beside the grab
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const ImVec2 end(at.x + ImGui::GetContentRegionAvail().x, at.y + ImGui::GetFrameHeight());
+    const ImVec2 end(at.x + width, at.y + ImGui::GetFrameHeight());
     const float round = ImGui::GetStyle().FrameRounding;
     const auto place = [&](float v) {
         return at.x + pad + 0.5f * grab +
@@ -366,18 +313,13 @@ void draw_slider_ground(float lo, float hi, float value, float grab) {
 
 }  // namespace
 
-bool Ui::slider(const char* label, double& value, const SliderRange& range, const char* text) {
+bool Ui::bare_slider(const char* label, double& value, const SliderRange& range, float width) {
     const auto& [lo, hi, format, unit] = range;
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(tr(label));
-    hint(text);
-    const ImGuiStyle& style = ImGui::GetStyle();
-    ImGui::SameLine(std::max(px(112), style.WindowPadding.x + ImGui::CalcTextSize(tr(label)).x + style.ItemSpacing.x));
     auto v = static_cast<float>(value / unit);
-    ImGui::SetNextItemWidth(-1);
+    ImGui::SetNextItemWidth(width);
     const std::string name = std::string("##") + label;
     const auto least = static_cast<float>(lo / unit), most = static_cast<float>(hi / unit);
-    draw_slider_ground(least, most, v, px(4));
+    draw_slider_ground(least, most, v, px(4), width);
     ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, px(4));
     for (const int ground : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive})
         ImGui::PushStyleColor(ground, IM_COL32_BLACK_TRANS);
@@ -385,8 +327,31 @@ bool Ui::slider(const char* label, double& value, const SliderRange& range, cons
     ImGui::PopStyleColor(3);
     ImGui::PopStyleVar();
     mark(label);
-    hint(text);
     if (changed) value = v * unit;
+    return changed;
+}
+
+bool Ui::slider(const char* label, double& value, const SliderRange& range, const char* text) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(tr(label));
+    hint(text);
+    const ImGuiStyle& style = ImGui::GetStyle();
+    ImGui::SameLine(std::max(px(112), style.WindowPadding.x + ImGui::CalcTextSize(tr(label)).x + style.ItemSpacing.x));
+    const bool changed = bare_slider(label, value, range, ImGui::GetContentRegionAvail().x);
+    hint(text);
+    return changed;
+}
+
+bool Ui::named_slider(const char* label, double& value, const SliderRange& range, const char* text, float width) {
+    const auto& [lo, hi, format, unit] = range;
+    // The number goes last: where the name does not fit beside it, the name is cut.
+    char number[48];
+    std::snprintf(number, sizeof number, format, value / unit);
+    const float room = width - ImGui::CalcTextSize(number).x - 2 * ImGui::GetStyle().FramePadding.x - px(6);
+    std::string shown = fitted(tr(label), room);
+    for (std::size_t at = 0; (at = shown.find('%', at)) != std::string::npos; at += 2) shown.insert(at, 1, '%');
+    const bool changed = bare_slider(label, value, {lo, hi, (shown + "  " + format).c_str(), unit}, width);
+    hint(text);
     return changed;
 }
 

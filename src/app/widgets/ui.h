@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/types.h"
+#include "core/message.h"
 
 struct ImFont;
 
@@ -45,8 +46,8 @@ struct SliderRange {
 /// that a script can find it.
 class Ui {
   public:
-    /// Loads fonts and sets colours. Returns the fault, or "".
-    std::string prepare(const UiSettings& settings);
+    /// Loads fonts and sets colours. Returns the fault, or an empty message.
+    Message prepare(const UiSettings& settings);
     const UiSettings& settings() const { return settings_; }
 
     /// Returns a text in the chosen language.
@@ -55,8 +56,8 @@ class Ui {
     std::string title(const std::string& name) const;
     /// Returns the text shortened with "..." to at most `width` pixels.
     std::string fitted(const std::string& text, float width) const;
-    /// Returns a sentence with numbers or a name in it, in the chosen language.
-    std::string tr_sentence(const std::string& english) const;
+    /// Returns a message in the chosen language.
+    std::string sentence(const Message& message) const;
     /// Converts a length at scale 1 to pixels.
     float px(float length) const { return length * settings_.scale; }
 
@@ -73,6 +74,8 @@ class Ui {
     bool choice(const char* label, bool chosen, const char* hint = nullptr, float width = 0);
     /// Returns true when the value changed. It is clamped to the range only then.
     bool slider(const char* label, double& value, const SliderRange& range, const char* hint = nullptr);
+    /// As `slider`, with its name in it and `width` pixels wide.
+    bool named_slider(const char* label, double& value, const SliderRange& range, const char* hint, float width);
     bool combo(const char* label, std::string& value, const std::vector<std::string>& names, float width = 0);
     bool menu_item(const char* label, const char* shortcut = nullptr, bool chosen = false, bool enabled = true);
     bool begin_menu(const char* label);
@@ -108,15 +111,12 @@ class Ui {
 
   private:
     std::string id(const char* label) const;
+    bool bare_slider(const char* label, double& value, const SliderRange& range, float width);
     void style();
 
     UiSettings settings_;
     std::map<std::string, Place> places_;
 };
-
-/// Returns the Chinese translation of a sentence with numbers or a file name; English where there is none. The
-/// catalogue has # for each number and * for the name.
-std::string chinese_sentence(const std::string& english);
 
 /// sRGB of the primary button, normal and under the cursor. Its text is white.
 inline constexpr float kPrimary[3] = {0.16f, 0.40f, 0.78f}, kPrimaryHovered[3] = {0.17f, 0.43f, 0.82f};

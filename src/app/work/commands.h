@@ -24,8 +24,8 @@ inline constexpr std::uint32_t kNewestLayer = stroke::kPaletteLayer - 1;
 struct BeginStroke {
     std::string brush, ink;
     stroke::Symmetry symmetry;
-    bool carry = false;                         ///< the brush keeps hair and ink of the stroke before
-    bool as_it_is = false;                      ///< as `carry`, without dipping, whatever ink is chosen
+    bool persistent = false;                    ///< the brush keeps hair and ink of the stroke before
+    bool as_it_is = false;                      ///< as `persistent`, without dipping, whatever ink is chosen
     std::uint32_t layer = stroke::kFirstLayer;  ///< or the palette
     std::uint32_t mask = 0;                     ///< id; 0: none
     bool erases = false;

@@ -2,7 +2,7 @@
 
 namespace tuft::app {
 
-void Outbox::report(std::string message) {
+void Outbox::report(Message message) {
     change([&](Update& update) { update.events.messages.push_back(std::move(message)); });
 }
 

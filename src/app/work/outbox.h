@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/work/update.h"
+#include "core/message.h"
 #include "core/system/progress.h"
 
 /// \file
@@ -21,7 +22,7 @@ class Outbox {
         how(update_);
     }
     /// Adds a message for the status bar.
-    void report(std::string message);
+    void report(Message message);
     /// Shows the progress of long work, 0–1.
     void show_progress(const std::string& name, double fraction);
     /// Returns the events since the last call and the present status.

@@ -7,6 +7,7 @@
 
 #include "app/document/autosave.h"
 #include "app/view/texture.h"
+#include "core/message.h"
 #include "stroke/document/document.h"
 #include "stroke/document/fit.h"
 
@@ -24,9 +25,9 @@ struct PaintWork {
     std::string source;                              ///< path of the model file
     FileFrame frame;                                 ///< of the model file
     std::vector<stroke::StrokeMismatch> mismatches;  ///< strokes that do not fit a revised model
-    std::vector<std::string> fit;                    ///< how all strokes fit it, lines for the user
+    std::vector<Message> fit;                        ///< how all strokes fit it, lines for the user
     std::filesystem::path spare;                     ///< where to save at the end if the project's file fails
-    std::string note;                                ///< message for the user after opening
+    Message note;                                    ///< message for the user after opening
 };
 
 }  // namespace tuft::app

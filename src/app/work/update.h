@@ -12,6 +12,7 @@
 #include "app/document/snapshots.h"
 #include "app/document/thumbnails.h"
 #include "app/view/texture.h"
+#include "core/message.h"
 #include "stroke/document/document.h"
 
 /// \file
@@ -72,7 +73,7 @@ struct ProgressStatus {
 /// State of the project file.
 struct FileStatus {
     std::filesystem::path project;
-    std::string trouble;      ///< why saving fails, or ""
+    Message trouble;          ///< why saving fails, or empty
     std::size_t unsaved = 0;  ///< strokes in memory only
     bool behind = false;      ///< some change of an entry is in memory only
     bool viewing = false;     ///< read-only, because another program works on the project
@@ -88,14 +89,14 @@ struct PaintStatus {
 /// A failed save.
 struct SaveFailure {
     std::filesystem::path path;
-    std::string reason;
+    Message reason;
 };
 
 /// Events since the last update.
 struct PaintEvents {
     TexelUpdate texels;
     std::optional<std::vector<StrokeLine>> strokes;
-    std::vector<std::string> messages;
+    std::vector<Message> messages;
     std::optional<stroke::PalettePicture> palette;
     std::vector<Thumbnail> thumbnails;              ///< changed ones
     std::optional<std::vector<ink::Ink>> own_inks;  ///< of this project, besides the shipped ones

@@ -288,7 +288,7 @@ double mean_texel_size(const TexelMap& map) {
 void check_sizes(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
     const std::size_t n = mesh.n_triangles();
     if (atlas.size == 0 || atlas.size > 16384)
-        throw Error("atlas size " + std::to_string(atlas.size) + " is not between 1 and 16384");
+        throw Error(Message("atlas size {} is not between 1 and 16384", atlas.size));
     if (atlas.corner_uvs.size() != 3 * n || atlas.triangle_chart.size() != n || mesh.corner_normals.size() != 3 * n)
         throw Error("the atlas was made for another mesh");
 }

@@ -26,7 +26,7 @@ bool on_a_page(const Corners& uv, const Atlas& atlas, double k) {
 
 }  // namespace
 
-std::string fault_of(const Atlas& atlas) {
+Message fault_of(const Atlas& atlas) {
     for (const Vec2f& uv : atlas.corner_uvs) {
         if (!is_finite(uv)) return "some UVs are not finite";
         if (std::min(uv.x, uv.y) < 0 || std::max(uv.x, uv.y) > 1) return "some UVs lie off the page";
@@ -39,11 +39,11 @@ std::string fault_of(const Atlas& atlas) {
         const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
         mirrored += a.x * b.y - a.y * b.x < 0;
     }
-    if (mirrored > 0) return std::to_string(mirrored) + " triangles lie mirrored in it";
+    if (mirrored > 0) return Message("{} triangles lie mirrored in it", mirrored);
     const Coverage coverage = cover(atlas.corner_uvs, {}, atlas.size);
     if (coverage.covered == 0) return "no triangle has room in it";
-    if (coverage.twice > 0) return "triangles overlap in " + std::to_string(coverage.twice) + " of its texels";
-    return "";
+    if (coverage.twice > 0) return Message("triangles overlap in {} of its texels", coverage.twice);
+    return {};
 }
 
 }  // namespace tuft::atlas

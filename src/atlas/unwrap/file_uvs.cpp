@@ -101,10 +101,10 @@ std::size_t triangles_on_others(std::span<const Vec2f> uvs) {
 
 /// Why UVs of which some lie upon others cannot be kept; `read`: as they were before mirrored
 /// charts were turned over.
-std::string why_they_overlap(const Atlas& atlas, std::vector<Vec2f> read, std::size_t texels) {
+Message why_they_overlap(const Atlas& atlas, std::vector<Vec2f> read, std::size_t texels) {
     if (const std::size_t n = triangles_on_others(read); n > 0)
-        return std::to_string(n) + " triangles lie where others do, as halves of a symmetric model that share " +
-               "their part of the texture";
+        return Message(
+            "{} triangles lie where others do, as halves of a symmetric model that share their part of the texture", n);
     std::size_t turned = 0;
     for (std::size_t c = 0; c < read.size(); c += 3) {
         const Vec2 a(read[c + 1] - read[c]), b(read[c + 2] - read[c]);
@@ -114,7 +114,7 @@ std::string why_they_overlap(const Atlas& atlas, std::vector<Vec2f> read, std::s
     }
     if (turned > 0 && cover(read, {}, atlas.size).twice == 0)
         return "charts lie mirrored between others, which they would overlap turned over";
-    return "they overlap in " + std::to_string(texels) + " texels";
+    return Message("they overlap in {} texels", texels);
 }
 
 /// Finds the charts that the UVs make and numbers them in the atlas.
@@ -142,7 +142,7 @@ std::optional<Tile> tile_of(const Bounds& b) {
 }
 
 /// Moves the pages together into the square of an atlas, in the order of their numbers.
-std::string lay_pages(Atlas& atlas, const Charts& charts) {
+Message lay_pages(Atlas& atlas, const Charts& charts) {
     std::vector<Tile> tiles;
     std::vector<std::uint32_t> numbers;
     for (const auto& chart : charts) {
@@ -160,8 +160,7 @@ std::string lay_pages(Atlas& atlas, const Charts& charts) {
     std::sort(numbers.begin(), numbers.end());
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
     if (numbers.size() > kMostPages)
-        return "they lie on " + std::to_string(numbers.size()) + " UDIM pages, more than the " +
-               std::to_string(kMostPages) + " allowed";
+        return Message("they lie on {} UDIM pages, more than the {} allowed", numbers.size(), kMostPages);
     atlas.pages = static_cast<std::uint32_t>(numbers.size());
     const std::uint32_t k = atlas.pages_per_side();
     for (std::uint32_t p = 0; p < atlas.pages; ++p)
@@ -178,7 +177,7 @@ std::string lay_pages(Atlas& atlas, const Charts& charts) {
             atlas.corner_uvs[c] = Vec2f((uv + to) / double(k));
         });
     }
-    return "";
+    return {};
 }
 
 /// Gives slivers that rounding took the module of some back.
@@ -204,7 +203,7 @@ void snap_charts(const mesh::TriangleMesh& mesh, Atlas& atlas, const Charts& cha
 }
 
 /// Sets the texels of a page and their size; returns what is wrong with that.
-std::string give_size(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, Atlas& atlas) {
+Message give_size(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, Atlas& atlas) {
     double area_uv = 0;
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t) area_uv += std::abs(signed_area(atlas, t));
     const std::uint32_t k = atlas.pages_per_side();
@@ -214,17 +213,15 @@ std::string give_size(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
     if (options.size == 0) size = std::max(1.0, std::ceil(side / options.texel_size));
     if (size * k > options.max_size) {
         const std::string all = std::to_string(static_cast<long long>(std::min(size, 1e15)));
-        const std::string most = ", more than the " + std::to_string(options.max_size) + " allowed";
         if (options.size > 0)
-            return std::to_string(atlas.pages) + " pages of " + all +
-                   " texels are together more than fit a square of " + std::to_string(options.max_size) +
-                   " texels; use smaller pages";
-        return "a texel of " + std::to_string(options.texel_size * 1e3) + " mm needs an atlas of " + all +
-               " texels with them" + most;
+            return Message("{} pages of {} texels are together more than fit a square of {} texels; use smaller pages",
+                           atlas.pages, all, options.max_size);
+        return Message("a texel of {} mm needs an atlas of {} texels with them, more than the {} allowed",
+                       options.texel_size * 1e3, all, options.max_size);
     }
     atlas.size = static_cast<std::uint32_t>(size) * k;
     atlas.texel_size = side / size;
-    return "";
+    return {};
 }
 
 }  // namespace
@@ -233,7 +230,7 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
     FileUvs found;
     Atlas& atlas = found.atlas;
     const std::size_t n = mesh.n_triangles();
-    const auto fault = [&](std::string what) {
+    const auto fault = [&](Message what) {
         found.fault = std::move(what);
         found.atlas = {};
         return found;
@@ -253,10 +250,10 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
 
     const Charts charts = find_charts(mesh, atlas);
     if (!on_one)
-        if (std::string what = lay_pages(atlas, charts); !what.empty()) return fault(std::move(what));
+        if (Message what = lay_pages(atlas, charts); !what.empty()) return fault(std::move(what));
     atlas.gutter = options.gutter;
     atlas.from_file = true;
-    if (std::string what = give_size(mesh, options, atlas); !what.empty()) return fault(std::move(what));
+    if (Message what = give_size(mesh, options, atlas); !what.empty()) return fault(std::move(what));
     const std::vector<Vec2f> read = atlas.corner_uvs;
     turn_mirrored(atlas, charts);
     if (atlas.pages > 1) snap_charts(mesh, atlas, charts);
@@ -266,9 +263,9 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
         zero_area += area == 0;
         flipped += area < 0;
     }
-    if (zero_area > 0) return fault(std::to_string(zero_area) + " triangles have no room in them");
+    if (zero_area > 0) return fault(Message("{} triangles have no room in them", zero_area));
     if (flipped > 0 && triangles_on_others(read) > 0) return fault(why_they_overlap(atlas, read, 0));
-    if (flipped > 0) return fault(std::to_string(flipped) + " triangles are flipped");
+    if (flipped > 0) return fault(Message("{} triangles are flipped", flipped));
 
     const Coverage coverage = cover(atlas.corner_uvs, {}, atlas.size);
     if (coverage.twice > 0) return fault(why_they_overlap(atlas, read, coverage.twice));
@@ -276,8 +273,7 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
     const int gap = smallest_gap(seam, atlas);
     const int least = std::min<int>(options.uvs == UvPolicy::keep ? 1 : 2, int(options.gutter));
     if (gap < least)
-        return fault("charts are less than " + std::to_string(least) + " texels apart at a size of " +
-                     std::to_string(atlas.page_size()));
+        return fault(Message("charts are less than {} texels apart at a size of {}", least, atlas.page_size()));
     return found;
 }
 

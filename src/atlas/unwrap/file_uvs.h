@@ -3,6 +3,7 @@
 #include <string>
 
 #include "atlas/atlas.h"
+#include "core/message.h"
 
 /// \file
 /// UVs of a model's file as an atlas. Called by `unwrap`.
@@ -10,7 +11,7 @@ namespace tuft::atlas {
 
 struct FileUvs {
     Atlas atlas;
-    std::string fault;  ///< why they cannot serve as an atlas; empty when they can
+    Message fault;  ///< why they cannot serve as an atlas; empty when they can
 };
 
 /// Returns the UVs of the file as an atlas, or the fault that prevents it. Sound UVs are finite and lie in [0, 1]

@@ -51,15 +51,13 @@ double mean_texel_size(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
 [[noreturn]] void refuse_texel_size(const UnwrapOptions& options, double size) {
     char millimetres[32];
     std::snprintf(millimetres, sizeof millimetres, "%.3g", options.texel_size * 1e3);
-    throw Error("a texel of " + std::string(millimetres) + " mm needs an atlas of " +
-                std::to_string(static_cast<long long>(size)) + " texels, more than the " +
-                std::to_string(options.max_size) + " allowed; use larger texels");
+    throw Error(Message("a texel of {} mm needs an atlas of {} texels, more than the {} allowed; use larger texels",
+                        std::string(millimetres), static_cast<long long>(size), options.max_size));
 }
 
 [[noreturn]] void refuse_size(const UnwrapOptions& options, const CutMesh& cut, double size) {
-    throw Error("an atlas of " + std::to_string(options.size) + " texels cannot hold " +
-                std::to_string(cut.charts.size()) + " charts with gutters of " + std::to_string(options.gutter) +
-                "; it needs at least " + std::to_string(static_cast<long long>(size)));
+    throw Error(Message("an atlas of {} texels cannot hold {} charts with gutters of {}; it needs at least {}",
+                        options.size, cut.charts.size(), options.gutter, static_cast<long long>(size)));
 }
 
 /// Whether the layout is as large as the user allows; charts too large for a page are not
@@ -75,14 +73,12 @@ void check_packing(const CutMesh& cut, const UnwrapOptions& options, const Packi
         Atlas atlas;
         atlas.pages = packing.pages;
         if (packing.size * std::size_t{atlas.pages_per_side()} <= options.max_size) return;
-        throw Error(std::to_string(packing.pages) + " pages of " + std::to_string(packing.size) +
-                    " texels are more than fit a square of " + std::to_string(options.max_size) +
-                    " texels; use larger texels");
+        throw Error(Message("{} pages of {} texels are more than fit a square of {} texels; use larger texels",
+                            packing.pages, packing.size, options.max_size));
     }
     if (options.texel_size > 0)
-        throw Error("a texel of " + std::to_string(options.texel_size * 1e3) + " mm needs more than " +
-                    std::to_string(options.pages) + " pages of " + std::to_string(options.size) +
-                    " texels; allow more or use larger texels");
+        throw Error(Message("a texel of {} mm needs more than {} pages of {} texels; allow more or use larger texels",
+                            options.texel_size * 1e3, options.pages, options.size));
     refuse_size(options, cut, 2.0 * options.size);
 }
 
@@ -263,10 +259,9 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
 void check_options(const mesh::TriangleMesh& mesh, const UnwrapOptions& options) {
     if (mesh.n_triangles() == 0) throw Error("the mesh has no triangles to unwrap");
     if (options.size > options.max_size)
-        throw Error("an atlas of " + std::to_string(options.size) + " texels is larger than the " +
-                    std::to_string(options.max_size) + " allowed");
+        throw Error(Message("an atlas of {} texels is larger than the {} allowed", options.size, options.max_size));
     if (options.pages == 0 || options.pages > 100)
-        throw Error("an atlas has 1 to 100 pages, not " + std::to_string(options.pages));
+        throw Error(Message("an atlas has 1 to 100 pages, not {}", options.pages));
     if (options.pages > 1) {
         if (!(options.texel_size >= 0) || !std::isfinite(options.texel_size))
             throw Error("the texel size must be above 0");
@@ -319,7 +314,8 @@ Unwrapped unwrap(const mesh::TriangleMesh& mesh, const UnwrapOptions& given) {
         const FileUvs found = read_file_uvs(mesh, file);
         if (found.fault.empty()) return {found.atlas, measure(mesh, found.atlas)};
         if (options.uvs == UvPolicy::keep)
-            throw Error("the model's UVs cannot be kept: " + found.fault + "; leave out --keep-uv to make new ones");
+            throw Error(
+                Message("the model's UVs cannot be kept: {}; leave out --keep-uv to make new ones", found.fault));
     }
     Unwrapped out = make_atlas(mesh, options);
     auto seconds = std::move(out.report.seconds);

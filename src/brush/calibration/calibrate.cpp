@@ -211,7 +211,7 @@ Vertex descend(const Vertex& begin, double size, int budget, const Cost& cost) {
 
 Calibration calibrate(const Preset& start, std::span<const SweepRow> measured, const CalibrateOptions& options) {
     if (measured.size() < 4) {
-        throw Error("calibration needs at least 4 measured depths, there are " + std::to_string(measured.size()));
+        throw Error(Message("calibration needs at least 4 measured depths, there are {}", measured.size()));
     }
     check_preset(start, start.name);
     Calibration out;

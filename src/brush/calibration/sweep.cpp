@@ -195,9 +195,8 @@ std::vector<SweepRow> read_sweep(const std::string& path) {
             }
             for (int k = 0; k < 4; ++k) {
                 if (column[k] < 0) {
-                    throw Error(
-                        path, number,
-                        std::string("no column '") + names[k] + "'; needed are z_mm,width_mm,drag_mm,offset_mm");
+                    throw Error(path, number,
+                                Message("no column '{}'; needed are z_mm,width_mm,drag_mm,offset_mm", names[k]));
                 }
             }
             continue;
@@ -207,7 +206,7 @@ std::vector<SweepRow> read_sweep(const std::string& path) {
             const std::string text = i < static_cast<int>(cells.size()) ? cells[i] : "";
             const double v = std::strtod(text.c_str(), &rest);
             if (text.empty() || *rest != 0 || !std::isfinite(v) || v < -1e4 || v > 1e4) {
-                throw Error(path, number, "'" + text + "' is not a length in millimetres");
+                throw Error(path, number, Message("'{}' is not a length in millimetres", text));
             }
             return v;
         };

@@ -94,15 +94,15 @@ constexpr std::array kWholeFields = {
     WholeField{"hair", "bristles", &Preset::bristles, 1, 4000},
 };
 
-std::string whole_note(const WholeField& f) {
-    return std::string(f.key) + " must be a whole number from " + std::to_string(f.lo) + " to " + std::to_string(f.hi);
+Message whole_note(const WholeField& f) {
+    return Message("{} must be a whole number from {} to {}", std::string(f.key), f.lo, f.hi);
 }
 
 long line_of(const toml::node& node) {
     return static_cast<long>(node.source().begin.line);
 }
 
-[[noreturn]] void fail(const std::string& source, long line, const std::string& what) {
+[[noreturn]] void fail(const std::string& source, long line, const Message& what) {
     if (line > 0) throw Error(source, line, what);
     throw Error(source, what);
 }
@@ -123,18 +123,18 @@ std::vector<std::string> known_keys() {
 
 [[noreturn]] void unknown_key(const std::string& source, const toml::node& node, const std::string& key) {
     const std::string near = nearest_name(key, known_keys());
-    fail(source, line_of(node), "unknown key '" + key + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
+    fail(source, line_of(node), Message("unknown key '{}'{}", key, did_you_mean(near)));
 }
 
 std::string text_of(const toml::node& node, const std::string& source, const std::string& key) {
     const std::optional<std::string> v = node.value<std::string>();
-    if (!v || !node.is_string()) fail(source, line_of(node), "'" + key + "' must be a text in quotes");
+    if (!v || !node.is_string()) fail(source, line_of(node), Message("'{}' must be a text in quotes", key));
     return *v;
 }
 
 double number_of(const toml::node& node, const std::string& source, const std::string& key) {
     const std::optional<double> v = node.value<double>();
-    if (!v || !node.is_number()) fail(source, line_of(node), "'" + key + "' must be a number");
+    if (!v || !node.is_number()) fail(source, line_of(node), Message("'{}' must be a number", key));
     return *v;
 }
 
@@ -148,7 +148,7 @@ SpineMethod spine_of(const toml::node& node, const std::string& source, const st
                                                                : ", ") +
                  '"' + kSpineWords[i] + '"';
     }
-    fail(source, line_of(node), "'" + key + "' must be " + known + ", not \"" + v + "\"");
+    fail(source, line_of(node), Message("'{}' must be {}, not \"{}\"", key, known, v));
 }
 
 /// Key that took the place of one in earlier files.
@@ -176,7 +176,7 @@ void read_value(Preset& p, const std::string& table, const std::string& written,
         const double v = number_of(node, source, full);
         if (!(v >= f.lo && v <= f.hi)) {
             fail(source, line_of(node),
-                 "'" + full + "' is " + number(v) + ", outside " + number(f.lo) + " to " + number(f.hi));
+                 Message("'{}' is {}, outside {} to {}", full, number(v), number(f.lo), number(f.hi)));
         }
         p.*f.member = v * f.unit + 0.0;  // no negative zero, whose text has no sign in TOML
         return;
@@ -195,8 +195,8 @@ void check_preset(const Preset& p, const std::string& source) {
         const double v = p.*f.member / f.unit;
         const double slack = 1e-9 * (std::abs(f.lo) + std::abs(f.hi));
         if (!(v >= f.lo - slack && v <= f.hi + slack)) {
-            throw Error(source, "'" + std::string(f.table) + "." + f.key + "' is " + number(v) + ", outside " +
-                                    number(f.lo) + " to " + number(f.hi));
+            throw Error(source, Message("'{}.{}' is {}, outside {} to {}", std::string(f.table), f.key, number(v),
+                                        number(f.lo), number(f.hi)));
         }
     }
     for (const WholeField& f : kWholeFields)
@@ -280,12 +280,12 @@ SizedName sized_name(const std::string& name) {
     const std::size_t star = name.rfind('*');
     if (star == std::string::npos) return {name, 1};
     SizedName out{name.substr(0, star), 0};
-    if (out.base.empty() || out.base.find('*') != std::string::npos) throw Error("unknown brush '" + name + "'");
+    if (out.base.empty() || out.base.find('*') != std::string::npos) throw Error(Message("unknown brush '{}'", name));
     const char* end = name.data() + name.size();
     const auto [at, error] = std::from_chars(name.data() + star + 1, end, out.factor);
     if (error != std::errc{} || at != end || !(out.factor >= kLeastSize && out.factor <= kMostSize))
-        throw Error("brush '" + name + "': a size from " + number(kLeastSize) + " to " + number(kMostSize) +
-                    " must follow the *");
+        throw Error(
+            Message("brush '{}': a size from {} to {} must follow the *", name, number(kLeastSize), number(kMostSize)));
     return out;
 }
 
@@ -325,9 +325,9 @@ Preset load_preset(const std::string& name_or_path) {
             }
             const std::string near = nearest_name(name, candidates);
             if (names.empty()) {
-                throw Error("unknown brush '" + name + "': no presets in " + preset_folder().string());
+                throw Error(Message("unknown brush '{}': no presets in {}", name, preset_folder().string()));
             }
-            throw Error("unknown brush '" + name + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
+            throw Error(Message("unknown brush '{}'{}", name, did_you_mean(near)));
         }
         path = preset_folder() / (name + ".toml");
     }

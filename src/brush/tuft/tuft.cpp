@@ -192,13 +192,13 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     const Preset& p = tuft.preset;
     const std::size_t expected = expected_planes(tuft);
     if (planes.size() > 1 && planes.size() != expected) {
-        throw Error("brush: " + std::to_string(planes.size()) + " contact planes for " + std::to_string(expected) +
-                    " nodes; give one per node, one for all, or none");
+        throw Error(Message("brush: {} contact planes for {} nodes; give one per node, one for all, or none",
+                            planes.size(), expected));
     }
     std::size_t sides = 0;
     for (const Spine& spine : tuft.spines) sides += 2 * spine.rest_radius.size();
     if (!walls.empty() && walls.size() != sides) {
-        throw Error("brush: " + std::to_string(walls.size()) + " walls for " + std::to_string(sides) + " side nodes");
+        throw Error(Message("brush: {} walls for {} side nodes", walls.size(), sides));
     }
     if (!std::isfinite(glm::dot(pose.position, pose.position)) || std::abs(glm::length(pose.rotation) - 1) > 1e-3) {
         throw Error("brush: the pose is not a place and a unit rotation");

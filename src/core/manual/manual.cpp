@@ -197,7 +197,7 @@ void write_manual(const Manual& manual, const fs::path& folder) {
         write(fs::path("bash") / program, bash_completion(manual.program));
         write(fs::path("zsh") / ("_" + program), zsh_completion(manual.program));
     } catch (const fs::filesystem_error& error) {
-        throw Error(folder.string(), "the manual cannot be written there: " + error.code().message());
+        throw Error(folder.string(), Message("the manual cannot be written there: {}", error.code().message()));
     }
 }
 

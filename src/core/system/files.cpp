@@ -21,11 +21,10 @@ std::vector<char> read_file(const fs::path& path, std::size_t max_bytes) {
     if (fs::is_directory(status)) throw Error(path.string(), "is a folder, not a file");
     if (!fs::is_regular_file(status)) throw Error(path.string(), "is not a regular file");
     const std::uintmax_t size = fs::file_size(path, ec);
-    if (ec) throw Error(path.string(), "cannot be read: " + ec.message());
+    if (ec) throw Error(path.string(), Message("cannot be read: {}", ec.message()));
     if (size == 0) throw Error(path.string(), "the file is empty");
     if (size > max_bytes)
-        throw Error(path.string(), "is too large (" + std::to_string(size >> 20) + " MiB; the limit is " +
-                                       std::to_string(max_bytes >> 20) + " MiB)");
+        throw Error(path.string(), Message("is too large ({} MiB; the limit is {} MiB)", size >> 20, max_bytes >> 20));
     std::vector<char> bytes(size);
     std::ifstream file(path, std::ios::binary);
     if (!file) throw Error(path.string(), "cannot be opened for reading");
@@ -38,7 +37,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     std::error_code ec;
     if (!fs::is_directory(folder, ec))
-        throw Error(path.string(), "the output folder '" + folder.string() + "' does not exist");
+        throw Error(path.string(), Message("the output folder '{}' does not exist", folder.string()));
     // Writers choose their format by the extension, so it stays at the end.
     const fs::path temporary =
         folder / ("." + path.stem().string() + ".part" + std::to_string(::getpid()) + path.extension().string());
@@ -50,7 +49,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
         fs::rename(temporary, path);
     } catch (const fs::filesystem_error& e) {
         fs::remove(temporary, ec);
-        throw Error(path.string(), "cannot be written: " + e.code().message());
+        throw Error(path.string(), Message("cannot be written: {}", e.code().message()));
     } catch (...) {
         fs::remove(temporary, ec);
         throw;

@@ -51,12 +51,11 @@ void check_toml_nesting(std::string_view text, const std::string& source) {
             while (i + 1 < text.size() && text[i + 1] != '\n' && text[i + 1] != '\r') ++i;
         } else if (c == '.') {
             if (++dots >= kDeepestToml)
-                throw Error(source, line, "a key has more than " + std::to_string(kDeepestToml) + " parts");
+                throw Error(source, line, Message("a key has more than {} parts", kDeepestToml));
         } else if (c == '[' || c == '{') {
             dots = 0;
             if (++depth > kDeepestToml)
-                throw Error(source, line,
-                            "arrays and tables are nested more than " + std::to_string(kDeepestToml) + " deep");
+                throw Error(source, line, Message("arrays and tables are nested more than {} deep", kDeepestToml));
         } else if (c == ']' || c == '}') {
             dots = 0;
             depth = std::max(0, depth - 1);
@@ -81,7 +80,7 @@ void check_json_nesting(std::string_view text, const std::string& source) {
             quoted = true;
         } else if (c == '{' || c == '[') {
             if (++depth > kDeepestJson)
-                throw Error(source, "its JSON is nested more than " + std::to_string(kDeepestJson) + " deep");
+                throw Error(source, Message("its JSON is nested more than {} deep", kDeepestJson));
         } else if (c == '}' || c == ']') {
             --depth;
         }

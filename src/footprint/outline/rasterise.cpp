@@ -122,8 +122,8 @@ Footprint disc(const Frame& frame, std::uint32_t triangle, double radius, double
     result.cell = cell;
     const double half = std::ceil(radius / cell) + 2;
     if (!(half >= 2 && 2 * half <= kMaxCells))
-        throw Error("a disc of " + std::to_string(1e3 * radius) + " mm does not fit into " + std::to_string(kMaxCells) +
-                    " texels: use a larger texel size");
+        throw Error(
+            Message("a disc of {} mm does not fit into {} texels: use a larger texel size", 1e3 * radius, kMaxCells));
     result.width = result.height = static_cast<int>(2 * half);
     result.lo = Vec2{-half * cell};
     result.radius = radius + cell;
@@ -155,8 +155,7 @@ Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::
     if (!(lo.x <= hi.x && lo.y <= hi.y)) return result;
     const double side = std::max(hi.x - lo.x, hi.y - lo.y);
     if (!std::isfinite(side / cell))
-        throw Error("a footprint " + std::to_string(1e3 * side) + " mm wide has no picture with cells of " +
-                    std::to_string(1e3 * cell) + " mm");
+        throw Error(Message("a footprint {} mm wide has no picture with cells of {} mm", 1e3 * side, 1e3 * cell));
     while (side > (kMaxCells - 4) * cell) cell *= 2;  // two cells of border on each side
     const Vec2 first = glm::floor(lo / cell) - 1.0, last = glm::floor(hi / cell) + 2.0;
     const Vec2 size = last - first;

@@ -78,8 +78,8 @@ int Canvas::add_pigment(const Pigment& pigment) {
     for (std::size_t i = 0; i < pigments_.size(); ++i)
         if (pigments_[i].name == pigment.name) return static_cast<int>(i);
     if (pigments_.size() == kMaxPigments)
-        throw Error("pigment '" + pigment.name + "' is one too many: a decoration holds at most " +
-                    std::to_string(kMaxPigments) + " pigments");
+        throw Error(Message("pigment '{}' is one too many: a decoration holds at most {} pigments", pigment.name,
+                            kMaxPigments));
     pigments_.push_back(pigment);
     return static_cast<int>(pigments_.size()) - 1;
 }

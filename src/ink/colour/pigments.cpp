@@ -70,7 +70,7 @@ Pigment read_part(const preset::Reader& in) {
     if (!in.has("preset")) return read_pigment(in);
     const std::string name = in.text("preset", std::nullopt);
     for (const char* key : {"name", "K", "S", "wavelengths"})
-        if (in.has(key)) in.fail(in.line_of(key), "'" + std::string(key) + "' comes from the preset '" + name + "'");
+        if (in.has(key)) in.fail(in.line_of(key), Message("'{}' comes from the preset '{}'", std::string(key), name));
     return load_pigment(name);
 }
 
@@ -142,11 +142,11 @@ Ink parse_ink(std::string_view text, const std::string& source) {
         InkPart p{read_part(part_in), part_in.number("fraction", 1e-4, 1, 1.0)};
         for (const InkPart& other : ink.parts)
             if (other.pigment.name == p.pigment.name)
-                part_in.fail(part_in.line(), "pigment '" + p.pigment.name + "' is listed twice");
+                part_in.fail(part_in.line(), Message("pigment '{}' is listed twice", p.pigment.name));
         ink.parts.push_back(std::move(p));
     }
     if (ink.strength() > 1 + 1e-9)
-        in.fail(in.line(), "the fractions sum to " + shortest(ink.strength()) + "; at most 1 is possible");
+        in.fail(in.line(), Message("the fractions sum to {}; at most 1 is possible", shortest(ink.strength())));
     return ink;
 }
 
@@ -170,7 +170,7 @@ Pigment parse_pigment(std::string_view text, const std::string& source) {
     const preset::Reader in(table, source);
     in.only(kPigmentKeys);
     for (const char* key : {"fraction", "preset"})
-        if (in.has(key)) in.fail(in.line_of(key), "'" + std::string(key) + "' belongs into an ink");
+        if (in.has(key)) in.fail(in.line_of(key), Message("'{}' belongs into an ink", std::string(key)));
     return read_pigment(in);
 }
 

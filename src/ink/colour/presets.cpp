@@ -25,15 +25,14 @@ void Reader::only(std::initializer_list<std::string_view> keys) const {
         if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
         const std::vector<std::string> known(keys.begin(), keys.end());
         const std::string near = nearest_name(key.str(), known);
-        fail(key.source().begin.line,
-             "unknown key '" + std::string(key.str()) + "'" + (near.empty() ? "" : ", did you mean '" + near + "'?"));
+        fail(key.source().begin.line, Message("unknown key '{}'{}", std::string(key.str()), did_you_mean(near)));
     }
 }
 
 double Reader::number(std::string_view key, double lo, double hi, std::optional<double> fallback) const {
     const toml::node* node = table_.get(key);
     if (!node) {
-        if (!fallback) fail(line(), "'" + std::string(key) + "' is missing");
+        if (!fallback) fail(line(), Message("'{}' is missing", std::string(key)));
         return *fallback;
     }
     return in_range(*node, key, lo, hi);
@@ -41,7 +40,7 @@ double Reader::number(std::string_view key, double lo, double hi, std::optional<
 
 Rgb Reader::rgb(std::string_view key, double lo, double hi) const {
     const toml::array& values = array(key);
-    if (values.size() != 3) fail(line_of(key), "'" + std::string(key) + "' must be 3 numbers (red, green, blue)");
+    if (values.size() != 3) fail(line_of(key), Message("'{}' must be 3 numbers (red, green, blue)", std::string(key)));
     Rgb result;
     for (std::size_t b = 0; b < 3; ++b) result[b] = static_cast<float>(in_range(*values.get(b), key, lo, hi));
     return result;
@@ -50,9 +49,8 @@ Rgb Reader::rgb(std::string_view key, double lo, double hi) const {
 std::vector<float> Reader::numbers(std::string_view key, std::size_t min, std::size_t max, double lo, double hi) const {
     const toml::array& values = array(key);
     if (values.size() < min || values.size() > max)
-        fail(line_of(key), "'" + std::string(key) + "' must be " + std::to_string(min) +
-                               (min == max ? "" : " to " + std::to_string(max)) + " numbers, not " +
-                               std::to_string(values.size()));
+        fail(line_of(key), min == max ? Message("'{}' must be {} numbers, not {}", key, min, values.size())
+                                      : Message("'{}' must be {} to {} numbers, not {}", key, min, max, values.size()));
     std::vector<float> result;
     for (const toml::node& node : values) result.push_back(static_cast<float>(in_range(node, key, lo, hi)));
     return result;
@@ -61,15 +59,15 @@ std::vector<float> Reader::numbers(std::string_view key, std::size_t min, std::s
 std::string Reader::text(std::string_view key, std::optional<std::string> fallback) const {
     const toml::node* node = table_.get(key);
     if (!node) {
-        if (!fallback) fail(line(), "'" + std::string(key) + "' is missing");
+        if (!fallback) fail(line(), Message("'{}' is missing", std::string(key)));
         return *fallback;
     }
     const auto value = node->value<std::string>();
-    if (!value || !node->is_string()) fail(node->source().begin.line, "'" + std::string(key) + "' must be text");
+    if (!value || !node->is_string()) fail(node->source().begin.line, Message("'{}' must be text", std::string(key)));
     return *value;
 }
 
-void Reader::fail(long at, const std::string& what) const {
+void Reader::fail(long at, const Message& what) const {
     throw Error(source_, at, what);
 }
 
@@ -80,7 +78,7 @@ long Reader::line_of(std::string_view key) const {
 
 double Reader::in_range(const toml::node& node, std::string_view key, double lo, double hi) const {
     const auto value = node.value<double>();
-    if (!value || !node.is_number()) fail(node.source().begin.line, "'" + std::string(key) + "' must be a number");
+    if (!value || !node.is_number()) fail(node.source().begin.line, Message("'{}' must be a number", std::string(key)));
     if (!(*value >= lo && *value <= hi)) {
         std::ostringstream range;
         range << "'" << key << "' must lie in [" << lo << ", " << hi << "], not be " << *value;
@@ -91,8 +89,8 @@ double Reader::in_range(const toml::node& node, std::string_view key, double lo,
 
 const toml::array& Reader::array(std::string_view key) const {
     const toml::node* node = table_.get(key);
-    if (!node) fail(line(), "'" + std::string(key) + "' is missing");
-    if (!node->as_array()) fail(line_of(key), "'" + std::string(key) + "' must be a list of numbers");
+    if (!node) fail(line(), Message("'{}' is missing", std::string(key)));
+    if (!node->as_array()) fail(line_of(key), Message("'{}' must be a list of numbers", std::string(key)));
     return *node->as_array();
 }
 
@@ -122,8 +120,8 @@ Text load(std::string_view name, const char* folder, const char* kind) {
             const std::string near = nearest_name(name, known);
             std::string all;
             for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
-            throw Error("unknown " + std::string(kind) + " '" + std::string(name) + "'" +
-                        (near.empty() ? "; there are: " + all : ", did you mean '" + near + "'?"));
+            throw Error(Message("unknown {} '{}'{}", kind, name,
+                                near.empty() ? Message("; there are: {}", all) : did_you_mean(near)));
         }
         path = data_folder() / "models" / folder / (std::string(name) + ".toml");
     }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/message.h"
 #include "ink/spectra/spectrum.h"
 
 /// \file
@@ -27,7 +28,7 @@ class Reader {
     /// A list of `min` to `max` numbers.
     std::vector<float> numbers(std::string_view key, std::size_t min, std::size_t max, double lo, double hi) const;
     std::string text(std::string_view key, std::optional<std::string> fallback) const;
-    [[noreturn]] void fail(long line, const std::string& what) const;
+    [[noreturn]] void fail(long line, const Message& what) const;
     long line() const { return table_.source().begin.line; }
     long line_of(std::string_view key) const;
 

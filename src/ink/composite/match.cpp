@@ -99,10 +99,10 @@ MixSearch::MixSearch(std::vector<Pigment> pigments, const Substrate& substrate, 
     : pigments_(std::move(pigments)), substrate_(substrate), bare_(bare_bands(substrate)), film_(film) {
     if (pigments_.empty()) throw Error("a mix needs at least one pigment to choose from");
     if (pigments_.size() > kMostCandidates)
-        throw Error("a mix is chosen from at most " + std::to_string(kMostCandidates) + " pigments");
+        throw Error(Message("a mix is chosen from at most {} pigments", kMostCandidates));
     if (!(film > 0 && film <= kThickestMix))
-        throw Error("the film of a mix is more than 0 and at most " + std::to_string(static_cast<int>(kThickestMix)) +
-                    " film units");
+        throw Error(
+            Message("the film of a mix is more than 0 and at most {} film units", static_cast<int>(kThickestMix)));
     for (const Pigment& p : pigments_) {
         double sum = 0;
         for (int b = 0; b < kBands; ++b) sum += static_cast<double>(p.k[b] + p.s[b]) / kBands;
@@ -384,7 +384,7 @@ ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::
 Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> held) {
     if (name.empty() || name[0] != '#') return load_ink(name);
     const std::optional<Rgb> wanted = colour_of_hex(name);
-    if (!wanted) throw Error("'" + std::string(name) + "' is no colour; write #rrggbb, such as #c03020");
+    if (!wanted) throw Error(Message("'{}' is no colour; write #rrggbb, such as #c03020", std::string(name)));
     Ink ink = match_on_canvas(*wanted, substrate, held, {.film = 0}).ink;
     ink.name = name;
     return ink;

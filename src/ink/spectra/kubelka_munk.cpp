@@ -54,8 +54,7 @@ Coefficients mixture(std::span<const Coefficients> parts, std::span<const double
 
 Coefficients from_white_and_black(double r_white, double r_black) {
     const auto refuse = [&] {
-        throw Error("no film has reflectance " + std::to_string(r_white) + " over white and " +
-                    std::to_string(r_black) + " over black");
+        throw Error(Message("no film has reflectance {} over white and {} over black", r_white, r_black));
     };
     if (!(r_black > 0 && r_black <= r_white && r_white < 1)) refuse();
     const double a = 0.5 * (r_white + (r_black - r_white + 1) / r_black);

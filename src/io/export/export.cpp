@@ -155,7 +155,7 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
     const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
     std::error_code ec;
     if (!fs::is_directory(parent, ec))
-        throw Error(path.string(), "the output folder '" + parent.string() + "' does not exist");
+        throw Error(path.string(), Message("the output folder '{}' does not exist", parent.string()));
     const fs::path folder = parent / ("." + path.stem().string() + ".part" + std::to_string(::getpid()));
     const Unfinished unfinished(folder);
     struct Cleanup {
@@ -166,7 +166,7 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
         }
     };
     fs::remove_all(folder, ec);
-    if (!fs::create_directory(folder, ec)) throw Error(path.string(), "cannot be written: " + ec.message());
+    if (!fs::create_directory(folder, ec)) throw Error(path.string(), Message("cannot be written: {}", ec.message()));
     const Cleanup cleanup{folder};
     write(folder);
     // The model comes last, so that it never points to files that are not there yet.
@@ -177,7 +177,7 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
     });
     for (const fs::path& file : files) {
         fs::rename(file, parent / file.filename(), ec);
-        if (ec) throw Error((parent / file.filename()).string(), "cannot be written: " + ec.message());
+        if (ec) throw Error((parent / file.filename()).string(), Message("cannot be written: {}", ec.message()));
     }
 }
 
@@ -212,13 +212,13 @@ std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps
     return files;
 }
 
-std::vector<std::string> export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
-                                      const ModelMaps& maps, const ExportOptions& options) {
+std::vector<Message> export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
+                                  const ModelMaps& maps, const ExportOptions& options) {
     const std::string extension = path.extension().string();
     if (extension != ".glb" && extension != ".gltf" && extension != ".obj")
-        throw Error(path.string(), "models are written as .glb, .gltf or .obj, not as '" + extension + "'");
+        throw Error(path.string(), Message("models are written as .glb, .gltf or .obj, not as '{}'", extension));
     const auto metres = metres_per(options.frame.unit);
-    if (!metres) throw Error("unknown unit '" + options.frame.unit + "'; there are um, mm, cm, m, in and ft");
+    if (!metres) throw Error(Message("unknown unit '{}'; there are um, mm, cm, m, in and ft", options.frame.unit));
     mesh::SourceScene of_groups;
     if (!mesh.scene || mesh.scene->document.empty()) of_groups = make_scene(mesh, safe_stem(path));
     const mesh::SourceScene& source = of_groups.document.empty() ? *mesh.scene : of_groups;

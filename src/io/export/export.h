@@ -7,6 +7,7 @@
 
 #include "atlas/atlas.h"
 #include "atlas/texels/texel_map.h"
+#include "core/message.h"
 #include "core/system/progress.h"
 #include "core/text/units.h"
 #include "ink/composite/composite.h"
@@ -81,9 +82,8 @@ std::vector<std::uint8_t> painted_parts(const ink::Stack& stack, const mesh::Tri
 /// The picture's top row is v = 1 in OBJ and v = 0 in glTF. Existing files are replaced only when all new ones are
 /// complete; after a failure no new file remains. Throws `Error` for an unknown extension or unit, for a missing or
 /// full folder and for more than 4 GiB in GLB. Returns notes for the user, one line each.
-std::vector<std::string> export_model(const std::filesystem::path& path, const mesh::TriangleMesh& mesh,
-                                      const atlas::Atlas& atlas, const ModelMaps& maps,
-                                      const ExportOptions& options = {});
+std::vector<Message> export_model(const std::filesystem::path& path, const mesh::TriangleMesh& mesh,
+                                  const atlas::Atlas& atlas, const ModelMaps& maps, const ExportOptions& options = {});
 
 /// Returns the paths that `export_model` writes for `path` with these maps, except pictures of the file's own
 /// materials.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "mesh/triangle_mesh.h"
 
 /// \file
@@ -58,7 +59,7 @@ struct ExportScene {
 std::vector<std::vector<std::uint32_t>> triangles_of_parts(const ExportScene& scene);
 
 /// Returns notes on the parts for the user, one line each.
-std::vector<std::string> notes_on_parts(const ExportScene& scene);
+std::vector<Message> notes_on_parts(const ExportScene& scene);
 
 /// Writes GLB, or glTF with its files, by the extension. `path` lies in a staging folder. Throws `Error`.
 void write_gltf(const std::filesystem::path& path, const ExportScene& scene, std::span<const EncodedMap> maps);

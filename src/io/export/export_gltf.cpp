@@ -299,7 +299,7 @@ class Writer {
         json& nodes = list("nodes");
         if (index < 0 || static_cast<std::size_t>(index) >= nodes.size() ||
             !nodes[static_cast<std::size_t>(index)].is_object())
-            throw Error("the scene of the model has no node " + std::to_string(index));
+            throw Error(Message("the scene of the model has no node {}", index));
         const bool as_read = std::all_of(parts.begin(), parts.end(), [&](std::size_t i) {
             const bool in_document = scene_.source.parts[i].primitive >= 0;
             return triangles[i].empty() || (in_document && !scene_.decorated[i]);

@@ -62,13 +62,13 @@ std::vector<std::vector<std::uint32_t>> triangles_of_parts(const ExportScene& sc
     return of_part;
 }
 
-std::vector<std::string> notes_on_parts(const ExportScene& scene) {
-    std::vector<std::string> notes;
+std::vector<Message> notes_on_parts(const ExportScene& scene) {
+    std::vector<Message> notes;
     const auto kept = static_cast<std::size_t>(std::count(scene.decorated.begin(), scene.decorated.end(), 0));
     if (kept > 0)
-        notes.push_back(std::to_string(scene.decorated.size() - kept) + " of " +
-                        std::to_string(scene.decorated.size()) +
-                        " parts get the material 'decorated'; the others carry no ink and keep their own");
+        notes.push_back(
+            Message("{} of {} parts get the material 'decorated'; the others carry no ink and keep their own",
+                    scene.decorated.size() - kept, scene.decorated.size()));
     const nlohmann::json document = parse_document(scene.source);
     const auto materials = document.find("materials");
     if (materials == document.end() || !materials->is_array()) return notes;
@@ -78,8 +78,9 @@ std::vector<std::string> notes_on_parts(const ExportScene& scene) {
         if (!scene.decorated[i] || part.own_material < 0 || own >= materials->size()) continue;
         const auto mode = (*materials)[own].find("alphaMode");
         if (mode != (*materials)[own].end() && *mode != "OPAQUE")
-            notes.push_back("warning: part '" + name_of_part(part) +
-                            "' is transparent in its file; with ink on it, it is written opaque");
+            notes.push_back(
+                Message("warning: part '{}' is transparent in its file; with ink on it, it is written opaque",
+                        name_of_part(part)));
     }
     return notes;
 }

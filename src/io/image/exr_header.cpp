@@ -14,23 +14,23 @@ class Walker {
   public:
     Walker(std::span<const char> file, std::size_t max_pixels) : rest_(file), max_pixels_(max_pixels) {}
 
-    std::string run() {
-        if (rest_.size() < kMagicAndVersion) return kCutShort;
+    Message run() {
+        if (rest_.size() < kMagicAndVersion) return cut_short();
         rest_ = rest_.subspan(4);
         const bool many = (number() & kMultipart) != 0;
         for (;;) {
-            if (rest_.empty()) return kCutShort;
-            if (many && rest_.front() == '\0') return "";  // no more parts
+            if (rest_.empty()) return cut_short();
+            if (many && rest_.front() == '\0') return {};  // no more parts
             while (!rest_.empty() && rest_.front() != '\0')
-                if (std::string fault = attribute(); !fault.empty()) return fault;
-            if (rest_.empty()) return kCutShort;
+                if (Message fault = attribute(); !fault.empty()) return fault;
+            if (rest_.empty()) return cut_short();
             rest_ = rest_.subspan(1);
-            if (!many) return "";
+            if (!many) return {};
         }
     }
 
   private:
-    static constexpr const char* kCutShort = "its header is cut short";
+    static Message cut_short() { return Message("its header is cut short"); }
 
     /// Little-endian; four bytes are there.
     std::uint32_t number() {
@@ -48,29 +48,29 @@ class Walker {
         return all.substr(0, end);
     }
 
-    std::string attribute() {
+    Message attribute() {
         const auto name = word();
         const auto type = name ? word() : name;
-        if (!type || rest_.size() < 4) return kCutShort;
+        if (!type || rest_.size() < 4) return cut_short();
         const std::uint32_t size = number();
         if (size > rest_.size())
-            return "an attribute of its header would take " + std::to_string(size) + " bytes, but " +
-                   std::to_string(rest_.size()) + " are left of the file";
+            return Message("an attribute of its header would take {} bytes, but {} are left of the file", size,
+                           rest_.size());
         const std::span<const char> after = rest_.subspan(size);
-        std::string fault = *name == "dataWindow" && size == 16 ? window() : "";
+        Message fault = *name == "dataWindow" && size == 16 ? window() : Message();
         rest_ = after;
         return fault;
     }
 
     /// First and last column and row: xMin, yMin, xMax, yMax.
-    std::string window() {
+    Message window() {
         std::int64_t corners[4];
         for (std::int64_t& corner : corners) corner = static_cast<std::int32_t>(number());
         const std::int64_t width = corners[2] - corners[0] + 1, height = corners[3] - corners[1] + 1;
-        if (width <= 0 || height <= 0) return "it has no pixels";
+        if (width <= 0 || height <= 0) return Message("it has no pixels");
         if (static_cast<std::size_t>(width) > max_pixels_ / static_cast<std::size_t>(height))
-            return "it has " + std::to_string(width) + " × " + std::to_string(height) + " pixels, which is too many";
-        return "";
+            return Message("it has {} × {} pixels, which is too many", width, height);
+        return {};
     }
 
     std::span<const char> rest_;
@@ -79,7 +79,7 @@ class Walker {
 
 }  // namespace
 
-std::string exr_header_fault(std::span<const char> file, std::size_t max_pixels) {
+Message exr_header_fault(std::span<const char> file, std::size_t max_pixels) {
     return Walker(file, max_pixels).run();
 }
 

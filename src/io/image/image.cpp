@@ -44,8 +44,7 @@ const ImageCodec& load_codec() {
         if (void* entry = dlsym(module, kImageCodecSymbol)) return *reinterpret_cast<Entry>(entry)();
         fault = "it has no " + std::string(kImageCodecSymbol);
     }
-    throw Error("the picture library cannot be loaded" + (fault.empty() ? "" : ": " + fault) + " (looked for " + tried +
-                ")");
+    throw Error(Message("the picture library cannot be loaded: {} (looked for {})", fault, tried));
 }
 
 const ImageCodec& codec() {
@@ -58,8 +57,7 @@ std::vector<unsigned char> encode(ImageFormat format, const PixelView& pixels, c
     if (pixels.width <= 0 || pixels.height <= 0 || pixels.channels <= 0 || !pixels.first)
         throw Error(name, "the picture is empty");
     if (format == ImageFormat::png && pixels.channels > 4)
-        throw Error(name,
-                    "a PNG file has 1 to 4 channels, not " + std::to_string(pixels.channels) + "; write an EXR file");
+        throw Error(name, Message("a PNG file has 1 to 4 channels, not {}; write an EXR file", pixels.channels));
     assert(options.channel_names.empty() || options.channel_names.size() == static_cast<std::size_t>(pixels.channels));
     std::vector<unsigned char> bytes;
     const std::string fault = codec().encode({.format = format, .pixels = pixels, .options = &options}, bytes);
@@ -88,7 +86,7 @@ template <class T>
 Image<T> decode(const std::vector<char>& bytes, const fs::path& path, std::size_t max_pixels) {
     DecodedImage decoded;
     const ImageFormat format = format_of(bytes, path);
-    std::string fault = format == ImageFormat::exr ? exr_header_fault(bytes, max_pixels) : "";
+    Message fault = format == ImageFormat::exr ? exr_header_fault(bytes, max_pixels) : Message();
     if (fault.empty())
         fault = codec().decode({.format = format,
                                 .bytes = bytes.data(),
@@ -97,7 +95,7 @@ Image<T> decode(const std::vector<char>& bytes, const fs::path& path, std::size_
                                 .max_pixels = max_pixels,
                                 .max_bytes = most_bytes()},
                                decoded);
-    if (!fault.empty()) throw Error(path.string(), "the picture cannot be read: " + fault);
+    if (!fault.empty()) throw Error(path.string(), Message("the picture cannot be read: {}", fault));
     Image<T> image{.width = decoded.width,
                    .height = decoded.height,
                    .channels = decoded.channels,
@@ -113,7 +111,7 @@ Image<T> decode(const std::vector<char>& bytes, const fs::path& path, std::size_
 void write_image(const fs::path& path, const PixelView& pixels, const ImageOptions& options) {
     const std::string extension = path.extension().string();
     if (extension != ".png" && extension != ".exr")
-        throw Error(path.string(), "pictures are written as .png or .exr, not as '" + extension + "'");
+        throw Error(path.string(), Message("pictures are written as .png or .exr, not as '{}'", extension));
     const std::vector<unsigned char> bytes =
         encode(extension == ".png" ? ImageFormat::png : ImageFormat::exr, pixels, options, path.string());
     write_file(path, bytes.data(), bytes.size());

@@ -19,7 +19,7 @@ namespace {
 /// Makes materials of what the file says, each picture once.
 class Materials {
   public:
-    Materials(const FileScene& scene, fs::path folder, std::vector<std::string>& warnings)
+    Materials(const FileScene& scene, fs::path folder, std::vector<Message>& warnings)
         : scene_(scene), folder_(std::move(folder)), warnings_(warnings) {}
 
     mesh::Material colours(std::uint32_t index) {
@@ -61,14 +61,14 @@ class Materials {
             it->second = m.picture_bytes.empty() ? read_picture_beside(folder_, name, warnings_)
                                                  : decode_picture(fs::path(name).filename().string(), m.picture_bytes);
         } catch (const std::exception& e) {
-            warnings_.push_back(std::string(e.what()) + "; its faces go without");
+            warnings_.push_back(Message("{}; its faces go without", message_of(e)));
         }
         return it->second;
     }
 
     const FileScene& scene_;
     fs::path folder_;
-    std::vector<std::string>& warnings_;
+    std::vector<Message>& warnings_;
     std::map<std::string, std::shared_ptr<const mesh::Picture>> pictures_;
     std::map<const mesh::Picture*, int> textures_;
 };

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "mesh/read/polygon_soup.h"
 
 /// \file
@@ -39,7 +40,7 @@ struct FileScene {
     std::vector<Vec2f> uvs;                            ///< [n_corners], v up, NaN where there is none; or empty
     std::vector<FilePart> parts;
     std::vector<FileMaterial> materials;
-    std::vector<std::string> warnings;
+    std::vector<Message> warnings;
 
     void add_polygon(std::uint32_t part, std::span<const std::uint32_t> points, std::span<const Vec2f> polygon_uvs);
 };

@@ -127,7 +127,7 @@ std::vector<char> pack_scene(const FileScene& s) {
         out.list(m.picture_bytes);
     }
     out.value(std::uint64_t{s.warnings.size()});
-    for (const std::string& warning : s.warnings) out.list(warning);
+    for (const Message& warning : s.warnings) out.list(warning.text());
     return std::move(out.bytes);
 }
 
@@ -162,7 +162,11 @@ FileScene unpack_scene(std::span<const char> bytes, const std::string& file) {
         in.list(m.picture_bytes);
     }
     in.value(n);
-    for (std::uint64_t i = 0; i < n; ++i) in.list(s.warnings.emplace_back());
+    for (std::uint64_t i = 0; i < n; ++i) {
+        std::string warning;
+        in.list(warning);
+        s.warnings.emplace_back(std::move(warning));
+    }
     check(s, in);
     return s;
 }

@@ -34,12 +34,10 @@ void check_container(const std::vector<char>& bytes, const std::string& name) {
         return;
     }
     if (bytes.size() < 20) throw Error(name, "the GLB file is cut short");
-    if (u32(&bytes[4]) != 2)
-        throw Error(name, "is glTF version " + std::to_string(u32(&bytes[4])) + "; tuft reads version 2");
+    if (u32(&bytes[4]) != 2) throw Error(name, Message("is glTF version {}; tuft reads version 2", u32(&bytes[4])));
     const std::size_t length = u32(&bytes[8]);
     if (length > bytes.size())
-        throw Error(name, "the GLB file is cut short: it has " + std::to_string(bytes.size()) + " of " +
-                              std::to_string(length) + " bytes");
+        throw Error(name, Message("the GLB file is cut short: it has {} of {} bytes", bytes.size(), length));
     std::size_t at = 12;
     for (int chunk = 0; at + 8 <= length; ++chunk) {
         const std::size_t size = u32(&bytes[at]);
@@ -66,10 +64,10 @@ struct Sandbox {
         missing = file;
         return false;
     }
-    std::string fault() const {
+    Message fault() const {
         // The library looks in the working folder next, which is outside as a rule.
-        if (!missing.empty()) return "it refers to '" + short_uri(missing) + "', which is not there";
-        return "it refers to '" + short_uri(refused) + "', which is outside its folder";
+        if (!missing.empty()) return Message("it refers to '{}', which is not there", short_uri(missing));
+        return Message("it refers to '{}', which is outside its folder", short_uri(refused));
     }
 };
 
@@ -163,15 +161,15 @@ constexpr std::array<Extension, 14> kExtensions{{
 }};
 
 /// Why a required extension is refused; empty: it is not.
-std::string refusal_of(const std::string& name) {
+Message refusal_of(const std::string& name) {
     if (name.starts_with("KHR_materials_")) return {};
     for (const Extension& known : kExtensions)
         if (name == known.name)
             return known.advice
-                       ? "it requires the glTF extension " + name + ", which tuft does not read: " + known.advice
-                       : std::string();
-    return "it requires the glTF extension '" + name.substr(0, 60) +
-           "', which tuft does not know; export it without that extension";
+                       ? Message("it requires the glTF extension {}, which tuft does not read: {}", name, known.advice)
+                       : Message();
+    return Message("it requires the glTF extension '{}', which tuft does not know; export it without that extension",
+                   name.substr(0, 60));
 }
 
 void check_extensions(std::string_view text, const std::string& file) {
@@ -184,7 +182,7 @@ void check_extensions(std::string_view text, const std::string& file) {
     const nlohmann::json head = nlohmann::json::parse(text.begin(), text.end(), only_required, false);
     if (!head.is_object() || !head.contains("extensionsRequired") || !head["extensionsRequired"].is_array()) return;
     for (const nlohmann::json& name : head["extensionsRequired"]) {
-        const std::string why = name.is_string() ? refusal_of(name.get<std::string>()) : "";
+        const Message why = name.is_string() ? refusal_of(name.get<std::string>()) : Message();
         if (!why.empty()) throw Error(file, why);
     }
 }
@@ -243,15 +241,16 @@ GltfFile open_gltf(const std::vector<char>& bytes, const fs::path& path) {
         err = e.what();
     }
     if (!ok) {
-        if (!sandbox.refused.empty() || !sandbox.missing.empty()) err = sandbox.fault();
+        if (!sandbox.refused.empty() || !sandbox.missing.empty()) throw Error(name, sandbox.fault());
         err = one_line(std::move(err));
         // The JSON library's messages begin with its name for the error, and end with what it read last.
         if (const auto end = err.find("] "); err.starts_with("[json.exception") && end != err.npos)
-            err = "its JSON cannot be read: " + excerpt(err.substr(end + 2, err.find("; last read") - end - 2), 200);
-        throw Error(name, err.empty() ? "is not a glTF file that can be read" : err);
+            throw Error(name, Message("its JSON cannot be read: {}",
+                                      excerpt(err.substr(end + 2, err.find("; last read") - end - 2), 200)));
+        throw Error(name, err.empty() ? Message("is not a glTF file that can be read") : Message(err));
     }
     if (model.asset.version.starts_with("1."))
-        throw Error(name, "is glTF version " + model.asset.version + "; tuft reads version 2");
+        throw Error(name, Message("is glTF version {}; tuft reads version 2", model.asset.version));
     take_pictures_of_buffers(model, file.pictures);
     file.json = json_of(bytes);
     return file;

@@ -101,7 +101,7 @@ class Walker {
         }
         if (out_.colours.size() < out_.points.size() && any_colour_)
             out_.colours.resize(out_.points.size(), {255, 255, 255, 255});
-        if (lines_ > 0) out_.warnings.push_back(std::to_string(lines_) + " points and lines were skipped");
+        if (lines_ > 0) out_.warnings.push_back(Message("{} points and lines were skipped", lines_));
         return std::move(out_);
     }
 

@@ -71,15 +71,15 @@ void read_library(const fs::path& file, std::map<std::string, MtlEntry>& entries
 /// Each picture is read once, and reported once when that fails.
 class Pictures {
   public:
-    Pictures(fs::path folder, std::vector<std::string>& warnings) : folder_(std::move(folder)), warnings_(warnings) {}
+    Pictures(fs::path folder, std::vector<Message>& warnings) : folder_(std::move(folder)), warnings_(warnings) {}
 
     std::shared_ptr<const mesh::Picture> get(const std::string& name) {
         const std::optional<fs::path> file = find_beside(folder_, name);
         const auto [it, is_new] = read_.try_emplace(file ? file->string() : name);
         if (is_new && file) it->second = read(*file);
         if (is_new && !file)
-            warnings_.push_back("the picture " + mesh::in_quotes(name) +
-                                " is not in the model's folder; its faces go without");
+            warnings_.push_back(
+                Message("the picture {} is not in the model's folder; its faces go without", mesh::in_quotes(name)));
         return it->second;
     }
 
@@ -88,13 +88,13 @@ class Pictures {
         try {
             return decode_picture(file.filename().string(), read_file(file, kMaxPictureBytes));
         } catch (const std::exception& e) {
-            warnings_.push_back(std::string(e.what()) + "; its faces go without");
+            warnings_.push_back(Message("{}; its faces go without", message_of(e)));
             return nullptr;
         }
     }
 
     fs::path folder_;
-    std::vector<std::string>& warnings_;
+    std::vector<Message>& warnings_;
     std::map<std::string, std::shared_ptr<const mesh::Picture>> read_;
 };
 
@@ -104,13 +104,14 @@ std::map<std::string, MtlEntry> read_libraries(mesh::PolygonSoup& soup, const fs
     for (const std::string& name : soup.material_libraries) {
         const std::optional<fs::path> file = find_beside(folder, name);
         if (!file) {
-            soup.warnings.push_back("the material library " + mesh::in_quotes(name) + " is not in the model's folder");
+            soup.warnings.push_back(
+                Message("the material library {} is not in the model's folder", mesh::in_quotes(name)));
             continue;
         }
         try {
             read_library(*file, entries);
         } catch (const std::exception& e) {
-            soup.warnings.push_back(e.what());
+            soup.warnings.push_back(message_of(e));
         }
     }
     return entries;
@@ -179,7 +180,7 @@ std::shared_ptr<const mesh::Picture> decode_picture(std::string name, std::vecto
 }
 
 std::shared_ptr<const mesh::Picture> read_picture_beside(const fs::path& folder, const std::string& name,
-                                                         std::vector<std::string>& warnings) {
+                                                         std::vector<Message>& warnings) {
     return Pictures(folder, warnings).get(name);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "mesh/read/polygon_soup.h"
 
 /// \file
@@ -26,7 +27,7 @@ bool lies_within(const std::filesystem::path& folder, const std::filesystem::pat
 /// Returns the picture of that name in the folder, found as by `read_materials`. Null with a warning where it is
 /// missing or cannot be read.
 std::shared_ptr<const mesh::Picture> read_picture_beside(const std::filesystem::path& folder, const std::string& name,
-                                                         std::vector<std::string>& warnings);
+                                                         std::vector<Message>& warnings);
 
 /// Fills `soup.materials` from the libraries and pictures that its reader has named. They are read from the folder of
 /// `model` only. Of a path that leads elsewhere only the file name counts: exporters write paths of their own machine.

@@ -89,13 +89,14 @@ class Reader {
             if (local_part(item.name()) == "item") add_copy(root_, item, Mat4(1.0), 0, "");
         }
         if (left_out_ > 0)
-            out_.warnings.push_back("composite materials and multiple properties are not read; " +
-                                    std::to_string(left_out_) + " groups of them were left out");
+            out_.warnings.push_back(
+                Message("composite materials and multiple properties are not read; {} groups of them were left out",
+                        left_out_));
         return std::move(out_);
     }
 
   private:
-    [[noreturn]] void fail(const std::string& what) const { throw Error(file_, what); }
+    [[noreturn]] void fail(const Message& what) const { throw Error(file_, what); }
 
     std::string root_part() {
         root_.clear();
@@ -117,14 +118,14 @@ class Reader {
     const Part& part(const std::string& name) {
         const auto [it, is_new] = parts_.try_emplace(name);
         if (!is_new) return it->second;
-        if (parts_.size() > kMostParts) fail("has more than " + std::to_string(kMostParts) + " parts with objects");
+        if (parts_.size() > kMostParts) fail(Message("has more than {} parts with objects", kMostParts));
         Part& made = it->second;
         const std::vector<char> bytes = zip_.read(name);
         made.document = std::make_unique<pugi::xml_document>();
         const auto parsed = made.document->load_buffer(bytes.data(), bytes.size());
-        if (!parsed) fail(mesh::in_quotes(name) + " is not well-formed XML: " + parsed.description());
+        if (!parsed) fail(Message("{} is not well-formed XML: {}", mesh::in_quotes(name), parsed.description()));
         const xml_node model = made.document->document_element();
-        if (local_part(model.name()) != "model") fail(mesh::in_quotes(name) + " is no 3MF model");
+        if (local_part(model.name()) != "model") fail(Message("{} is no 3MF model", mesh::in_quotes(name)));
         made.metres = metres_of(attribute(model, "unit"));
         const xml_node resources = child(model, "resources");
         std::map<std::string, std::string> pictures;  // texture2d by id
@@ -180,8 +181,8 @@ class Reader {
         if (const auto found = colours_.find(text); found != colours_.end()) return found->second;
         if (colours_.size() == kMostColours) {
             if (!many_colours_)
-                out_.warnings.push_back("more than " + std::to_string(kMostColours) +
-                                        " colours of faces, too many to be groups; the others go without");
+                out_.warnings.push_back(Message(
+                    "more than {} colours of faces, too many to be groups; the others go without", kMostColours));
             many_colours_ = true;
             return kNone;
         }
@@ -196,8 +197,8 @@ class Reader {
         FileMaterial m{.name = std::filesystem::path(name).stem().string(), .picture = name};
         if (zip_.has(name)) m.picture_bytes = zip_.read(name);
         if (m.picture_bytes.empty()) {
-            out_.warnings.push_back("the picture " + mesh::in_quotes(name) +
-                                    " is not in the package; its faces go without");
+            out_.warnings.push_back(
+                Message("the picture {} is not in the package; its faces go without", mesh::in_quotes(name)));
             m.picture.clear();
         }
         out_.materials.push_back(std::move(m));
@@ -227,7 +228,7 @@ class Reader {
         const Part& in = part(where);
         const std::string id(attribute(node, "objectid"));
         const auto found = in.objects.find(id);
-        if (found == in.objects.end()) fail("object " + mesh::in_quotes(id) + " is not in the file");
+        if (found == in.objects.end()) fail(Message("object {} is not in the file", mesh::in_quotes(id)));
         const xml_node& object = found->second;
         const Mat4 world = parent * transform_of(node);
         std::string name(attribute(object, "name"));
@@ -287,7 +288,7 @@ class Reader {
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::size_t v = index_of(t, keys[k], n_points);
                 if (v >= n_points)
-                    fail("a triangle of object " + mesh::in_quotes(name) + " has a vertex that is not there");
+                    fail(Message("a triangle of object {} has a vertex that is not there", mesh::in_quotes(name)));
                 const std::size_t at = mirrored ? 2 - k : k;
                 corners[at] = base + static_cast<std::uint32_t>(v);
                 const std::size_t p = index_of(t, property_keys[k], first);

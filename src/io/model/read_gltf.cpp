@@ -66,9 +66,7 @@ struct Rows {
 };
 
 Rows rows_of(const tinygltf::Model& model, int index, int type, const std::string& name) {
-    const auto fail = [&](const std::string& what) {
-        throw Error(name, "accessor " + std::to_string(index) + " " + what);
-    };
+    const auto fail = [&](const Message& what) { throw Error(name, Message("accessor {} {}", index, what)); };
     const tinygltf::Accessor* accessor = element(model.accessors, index);
     if (!accessor) fail("does not exist");
     if (accessor->type != type) fail("has the wrong type");
@@ -168,7 +166,7 @@ class Gatherer {
             const Visit visit = stack.back();
             stack.pop_back();
             const tinygltf::Node* node = element(model_.nodes, visit.node);
-            if (!node) throw Error(name_, "node " + std::to_string(visit.node) + " does not exist");
+            if (!node) throw Error(name_, Message("node {} does not exist", visit.node));
             if (seen[visit.node] || visit.depth > kMaxNodeDepth) throw Error(name_, "its nodes do not form a tree");
             seen[visit.node] = true;
             const Mat4 world = visit.parent * local_transform(*node);
@@ -180,7 +178,8 @@ class Gatherer {
             for (std::size_t m = 0; m < model_.meshes.size(); ++m)
                 add_mesh(static_cast<int>(m), static_cast<int>(m), Mat4(1.0));
         if (soup_.n_polygons() == 0)
-            throw Error(name_, "has no triangles" + (soup_.warnings.empty() ? "" : ": " + soup_.warnings.front()));
+            throw Error(name_, soup_.warnings.empty() ? Message("has no triangles")
+                                                      : Message("has no triangles: {}", soup_.warnings.front()));
         if (!any_uv_) soup_.corner_uvs.clear();
         if (!any_colour_) soup_.point_colours.clear();
         drop_plain_materials(soup_);
@@ -210,7 +209,7 @@ class Gatherer {
 
     void add_mesh(int index, int node, const Mat4& world) {
         const tinygltf::Mesh* mesh = element(model_.meshes, index);
-        if (!mesh) throw Error(name_, "mesh " + std::to_string(index) + " does not exist");
+        if (!mesh) throw Error(name_, Message("mesh {} does not exist", index));
         const tinygltf::Node* at = element(model_.nodes, node);
         for (std::size_t p = 0; p < mesh->primitives.size(); ++p) {
             const tinygltf::Primitive& primitive = mesh->primitives[p];
@@ -266,11 +265,11 @@ class Gatherer {
         const std::vector<unsigned char>* bytes = element(file_.pictures, index);
         try {
             if (!image || !bytes || bytes->empty())
-                soup_.warnings.push_back("the picture '" + name + "' is not there; its faces go without");
+                soup_.warnings.push_back(Message("the picture '{}' is not there; its faces go without", name));
             else
                 it->second = decode_picture(name, {bytes->begin(), bytes->end()});
         } catch (const std::exception& e) {
-            soup_.warnings.push_back(std::string(e.what()) + "; its faces go without");
+            soup_.warnings.push_back(Message("{}; its faces go without", message_of(e)));
         }
         return it->second;
     }
@@ -279,12 +278,12 @@ class Gatherer {
         const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
         if (mode != TINYGLTF_MODE_TRIANGLES && mode != TINYGLTF_MODE_TRIANGLE_STRIP &&
             mode != TINYGLTF_MODE_TRIANGLE_FAN) {
-            soup_.warnings.push_back("points and lines of mesh '" + mesh.name + "' were skipped");
+            soup_.warnings.push_back(Message("points and lines of mesh '{}' were skipped", mesh.name));
             return;
         }
         const auto position = primitive.attributes.find("POSITION");
         if (position == primitive.attributes.end()) {
-            soup_.warnings.push_back("a part of mesh '" + mesh.name + "' without positions was skipped");
+            soup_.warnings.push_back(Message("a part of mesh '{}' without positions was skipped", mesh.name));
             return;
         }
         const Rows points = rows_of(model_, position->second, TINYGLTF_TYPE_VEC3, name_);
@@ -301,8 +300,8 @@ class Gatherer {
         const auto index_at = [&](std::size_t i) {
             const double index = indexed ? indices.number(i, 0) : static_cast<double>(i);
             if (!(index >= 0 && index < static_cast<double>(points.count)))
-                throw Error(name_, "index " + std::to_string(static_cast<long long>(index)) + " of mesh '" + mesh.name +
-                                       "' is out of range (there are " + std::to_string(points.count) + " vertices)");
+                throw Error(name_, Message("index {} of mesh '{}' is out of range (there are {} vertices)",
+                                           static_cast<long long>(index), mesh.name, points.count));
             return static_cast<std::uint32_t>(index);
         };
         const bool list = mode == TINYGLTF_MODE_TRIANGLES;
@@ -326,8 +325,9 @@ class Gatherer {
         }
         if (dropped > 0)
             soup_.warnings.push_back(
-                std::to_string(dropped) + " triangles of mesh '" + mesh.name +
-                "' were dropped: their vertices are no finite numbers or lie more than 10 km away");
+                Message("{} triangles of mesh '{}' were dropped: their vertices are no finite numbers or lie more than "
+                        "10 km away",
+                        dropped, mesh.name));
     }
 
     std::uint32_t add_points(const Rows& points, const Mat4& world) {
@@ -375,14 +375,14 @@ class Gatherer {
         std::string name = "TEXCOORD_" + std::to_string(out.place.set);
         auto found = primitive.attributes.find(name);
         if (found == primitive.attributes.end() && out.place.set != 0) {
-            soup_.warnings.push_back("mesh '" + mesh.name + "' has no " + name +
-                                     ", by which the picture of material '" + material->name +
-                                     "' lies; it lies by TEXCOORD_0 instead");
+            soup_.warnings.push_back(Message(
+                "mesh '{}' has no {}, by which the picture of material '{}' lies; it lies by TEXCOORD_0 instead",
+                mesh.name, name, material->name));
             found = primitive.attributes.find(name = "TEXCOORD_0");
         }
         if (found == primitive.attributes.end()) return out;
         out.rows = rows_of(model_, found->second, TINYGLTF_TYPE_VEC2, name_);
-        if (out.rows.count != n_points) throw Error(name_, name + " and POSITION differ in count");
+        if (out.rows.count != n_points) throw Error(name_, Message("{} and POSITION differ in count", name));
         any_uv_ = true;
         return out;
     }

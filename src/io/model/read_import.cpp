@@ -47,7 +47,7 @@ const fs::path& importer() {
             if (access(place.c_str(), X_OK) == 0) return place;
             tried += (tried.empty() ? "" : ", ") + place.string();
         }
-        throw Error(std::string(kProgram) + ", which reads FBX and DAE, is not there (looked for " + tried + ")");
+        throw Error(Message("{}, which reads FBX and DAE, is not there (looked for {})", std::string(kProgram), tried));
     }();
     return found;
 }
@@ -56,7 +56,7 @@ const fs::path& importer() {
 class MemoryFile {
   public:
     MemoryFile() : fd_(memfd_create("tuft", MFD_CLOEXEC)) {
-        if (fd_ < 0) throw Error(std::string("no memory for a file: ") + std::strerror(errno));
+        if (fd_ < 0) throw Error(Message("no memory for a file: {}", std::strerror(errno)));
     }
     ~MemoryFile() { close(fd_); }
     MemoryFile(const MemoryFile&) = delete;
@@ -66,7 +66,7 @@ class MemoryFile {
     void write_all(const std::vector<char>& bytes) const {
         for (std::size_t at = 0; at < bytes.size();) {
             const ssize_t n = write(fd_, bytes.data() + at, bytes.size() - at);
-            if (n <= 0) throw Error("no memory for a file of " + std::to_string(bytes.size()) + " bytes");
+            if (n <= 0) throw Error(Message("no memory for a file of {} bytes", bytes.size()));
             at += static_cast<std::size_t>(n);
         }
     }
@@ -141,7 +141,7 @@ class Child {
         const int failed = posix_spawn(&pid_, program.c_str(), &files, &attributes, arguments, environ);
         posix_spawnattr_destroy(&attributes);
         posix_spawn_file_actions_destroy(&files);
-        if (failed) throw Error(program, std::string("cannot be started: ") + std::strerror(failed));
+        if (failed) throw Error(program, Message("cannot be started: {}", std::strerror(failed)));
     }
     ~Child() { end(); }
     Child(const Child&) = delete;
@@ -172,7 +172,7 @@ class Child {
     void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) const {
         const rlimit bounds{soft, hard};
         if (prlimit(pid_, what, &bounds, nullptr) != 0 && errno != ESRCH)
-            throw Error(importer().string(), std::string("cannot be limited: ") + std::strerror(errno));
+            throw Error(importer().string(), Message("cannot be limited: {}", std::strerror(errno)));
     }
     /// With what it started itself.
     void end() {
@@ -186,13 +186,13 @@ class Child {
 };
 
 /// Why nothing was read, of an importer that did not end by itself or whose patience ended.
-std::string failure(std::optional<int> status, const Cost& cost) {
+Message failure(std::optional<int> status, const Cost& cost) {
     if (!status) return "is damaged: reading it does not come to an end";
     switch (WTERMSIG(*status)) {
         case SIGXCPU:
-            return "is damaged: reading it took more than " + std::to_string(cost.seconds) + " s";
+            return Message("is damaged: reading it took more than {} s", cost.seconds);
         case SIGXFSZ:
-            return "is damaged: reading it gave more than " + std::to_string(cost.bytes / kMebibyte) + " MiB";
+            return Message("is damaged: reading it gave more than {} MiB", cost.bytes / kMebibyte);
         case SIGKILL:
             return "cannot be read: its reader was ended from outside; is memory short?";
         default:

@@ -92,7 +92,8 @@ mesh::PolygonSoup read_model(const std::filesystem::path& path) {
     const std::vector<char> bytes = read_file(path);
     std::optional<Format> format = by_content({bytes.data(), std::min<std::size_t>(bytes.size(), 16)});
     if (!format) format = by_extension(path);
-    if (!format) throw Error(path.string(), "is no model format tuft knows; it reads " + std::string(kModelFormats));
+    if (!format)
+        throw Error(path.string(), Message("is no model format tuft knows; it reads {}", std::string(kModelFormats)));
     if (bytes.size() >= 2 &&
         (std::memcmp(bytes.data(), "\xff\xfe", 2) == 0 || std::memcmp(bytes.data(), "\xfe\xff", 2) == 0))
         throw Error(path.string(), "is text in UTF-16; save it as UTF-8 or ASCII");

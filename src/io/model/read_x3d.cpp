@@ -112,7 +112,8 @@ class Reader {
         frame[3][3] = 1;
         index(root);
         visit(root.child("Scene"), frame, "", 0);
-        for (const std::string& kind : skipped_) out_.warnings.push_back("<" + kind + "> is not read and was skipped");
+        for (const std::string& kind : skipped_)
+            out_.warnings.push_back(Message("<{}> is not read and was skipped", kind));
         if (!out_.colours.empty()) out_.colours.resize(out_.points.size(), {255, 255, 255, 255});
         return std::move(out_);
     }
@@ -297,8 +298,7 @@ class Reader {
             for (std::size_t k = 0; k < face.size(); ++k) {
                 const std::size_t c = turned ? face.size() - 1 - k : k;
                 if (static_cast<std::size_t>(face[c]) >= n)
-                    throw Error(file_, "a face uses point " + std::to_string(face[c]) + ", but there are only " +
-                                           std::to_string(n));
+                    throw Error(file_, Message("a face uses point {}, but there are only {}", face[c], n));
                 corners.push_back(base + static_cast<std::uint32_t>(face[c]));
                 const auto uv = has_uvs ? 2 * static_cast<std::size_t>(at[c]) : g.uvs.size();
                 if (has_uvs)
@@ -339,7 +339,7 @@ class Reader {
 mesh::PolygonSoup read_x3d(const std::vector<char>& bytes, const std::filesystem::path& path) {
     pugi::xml_document document;
     const auto parsed = document.load_buffer(bytes.data(), bytes.size());
-    if (!parsed) throw Error(path.string(), std::string("not well-formed XML: ") + parsed.description());
+    if (!parsed) throw Error(path.string(), Message("not well-formed XML: {}", parsed.description()));
     return soup_of(Reader(document, path.string()).run(), path);
 }
 

@@ -19,7 +19,7 @@ constexpr std::uint32_t kEnd = 0x06054b50, kCentral = 0x02014b50, kLocal = 0x040
 
 }  // namespace
 
-void Zip::fail(const std::string& what) const {
+void Zip::fail(const Message& what) const {
     throw Error(file_, what);
 }
 
@@ -60,29 +60,29 @@ Zip::Zip(std::span<const char> bytes, std::string file)
 
 std::vector<char> Zip::read(const std::string& name) {
     const auto it = entries_.find(name);
-    if (it == entries_.end()) fail("the archive has no '" + excerpt(name) + "'");
+    if (it == entries_.end()) fail(Message("the archive has no '{}'", excerpt(name)));
     const Entry& entry = it->second;
     const std::string what = "'" + excerpt(name) + "' in the archive ";
-    if (number(entry.offset, 4) != kLocal) fail(what + "is damaged");
+    if (number(entry.offset, 4) != kLocal) fail(Message("{}is damaged", what));
     const std::size_t begin = entry.offset + kLocalSize + number(entry.offset + 26, 2) + number(entry.offset + 28, 2);
-    if (begin > bytes_.size() || bytes_.size() - begin < entry.packed) fail(what + "is cut short");
-    if (entry.size > budget_) fail(what + "is larger than its archive allows");
+    if (begin > bytes_.size() || bytes_.size() - begin < entry.packed) fail(Message("{}is cut short", what));
+    if (entry.size > budget_) fail(Message("{}is larger than its archive allows", what));
     budget_ -= entry.size;
     const std::span packed = bytes_.subspan(begin, entry.packed);
     if (entry.method == 0) return {packed.begin(), packed.end()};
-    if (entry.method != 8) fail(what + "is packed in a way that tuft does not read");
+    if (entry.method != 8) fail(Message("{}is packed in a way that tuft does not read", what));
     // A byte of DEFLATE gives 1032 at most.
-    if (entry.size / 1032 > entry.packed) fail(what + "is damaged");
+    if (entry.size / 1032 > entry.packed) fail(Message("{}is damaged", what));
     std::vector<char> out(entry.size);
     z_stream stream{};
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
     stream.avail_in = static_cast<uInt>(packed.size());
     stream.next_out = reinterpret_cast<Bytef*>(out.data());
     stream.avail_out = static_cast<uInt>(out.size());
-    if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) fail(what + "cannot be unpacked");
+    if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) fail(Message("{}cannot be unpacked", what));
     const int result = inflate(&stream, Z_FINISH);
     inflateEnd(&stream);
-    if (result != Z_STREAM_END || stream.total_out != entry.size) fail(what + "is damaged");
+    if (result != Z_STREAM_END || stream.total_out != entry.size) fail(Message("{}is damaged", what));
     return out;
 }
 

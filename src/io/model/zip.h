@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
+
 /// \file
 /// Reader of ZIP archives, for 3MF. Inside `io` only. One thread at a time.
 namespace tuft::io {
@@ -27,7 +29,7 @@ class Zip {
         std::size_t offset = 0, packed = 0, size = 0;
         int method = 0;
     };
-    [[noreturn]] void fail(const std::string& what) const;
+    [[noreturn]] void fail(const Message& what) const;
     std::uint32_t number(std::size_t at, int n_bytes) const;
 
     std::span<const char> bytes_;

@@ -102,14 +102,14 @@ std::vector<char> pack_entries(std::span<const stroke::JournalEntry> entries) {
     return out;
 }
 
-std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, const std::string& what) {
+std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, const Message& what) {
     SnapshotHead head, expected;
-    if (bytes.size() < sizeof head) throw Error(what + " is damaged: it ends too soon");
+    if (bytes.size() < sizeof head) throw Error(Message("{} is damaged: it ends too soon", what));
     std::memcpy(&head, bytes.data(), sizeof head);
     const std::size_t rest = bytes.size() - sizeof head;
     if (std::memcmp(head.magic, expected.magic, sizeof head.magic) != 0 || head.packed_text > rest ||
         head.text > kMostEntryText || head.numbers > kMostNumbers || head.numbers % kSampleNumbers != 0)
-        throw Error(what + " is damaged: its head makes no sense");
+        throw Error(Message("{} is damaged: its head makes no sense", what));
     const char *text_blob = bytes.data() + sizeof head, *blob = text_blob + head.packed_text;
     check_packed(text_blob, head.packed_text, head.text, what);
     check_packed(blob, rest - head.packed_text, head.numbers * sizeof(double), what);
@@ -118,7 +118,7 @@ std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, co
     unpack(text_blob, head.packed_text, text.data(), text.size(), kTextPacking, what);
     unpack(blob, rest - head.packed_text, numbers.data(), numbers.size(), kNumberPacking, what);
     if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }))
-        throw Error(what + " has numbers that are not finite");
+        throw Error(Message("{} has numbers that are not finite", what));
     const std::size_t n = numbers.size() / kSampleNumbers;
     std::vector<stroke::JournalEntry> entries;
     std::size_t at = 0;
@@ -138,9 +138,9 @@ std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, co
             entries.push_back(stroke::entry_of(std::move(columns), j.at("entry").get<std::string>()));
         }
     } catch (const nlohmann::json::exception&) {
-        throw Error(what + " is damaged: an entry cannot be read");
+        throw Error(Message("{} is damaged: an entry cannot be read", what));
     } catch (const Error& error) {
-        throw Error(what + " is damaged: " + error.what());
+        throw Error(Message("{} is damaged: {}", what, error.message()));
     }
     return entries;
 }
@@ -177,10 +177,10 @@ std::vector<Attachment> load_attachments(SQLite::Database& db, const std::filesy
         const std::size_t line = about.find('\n');
         const std::uint64_t bytes = std::strtoull(about.c_str(), nullptr, 10);
         if (line == std::string::npos || about.size() > kMostAbout || bytes > kMostAttachmentBytes)
-            damaged(path, "what is said of a " + kind + " cannot be read");
+            damaged(path, Message("what is said of a {} cannot be read", kind));
         Attachment& a = found.emplace_back(Attachment{select.getColumn(0).getString(), about.substr(line + 1)});
         a.bytes = get_array<char>(db, path, kind.c_str(), a.name.c_str(), {.element = 1, .lag = 1, .level = 1}, bytes);
-        if (a.bytes.size() != bytes) damaged(path, "a " + kind + " is not there");
+        if (a.bytes.size() != bytes) damaged(path, Message("a {} is not there", kind));
     }
     return found;
 }

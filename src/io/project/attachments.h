@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "stroke/journal/journal.h"
 
 /// \file
@@ -28,6 +29,6 @@ struct Attachment {
 /// Compresses journal entries, and reads them back bit by bit. Any thread. `unpack_entries` checks sizes before it
 /// takes memory. It throws `Error` naming `what` for damaged bytes.
 std::vector<char> pack_entries(std::span<const stroke::JournalEntry> entries);
-std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, const std::string& what);
+std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, const Message& what);
 
 }  // namespace tuft::io

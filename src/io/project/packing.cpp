@@ -33,7 +33,7 @@ void spread(const void* data, std::size_t begin, std::size_t end, std::size_t la
 }
 
 void check(std::size_t result) {
-    if (ZSTD_isError(result)) throw Error(std::string("compression failed: ") + ZSTD_getErrorName(result));
+    if (ZSTD_isError(result)) throw Error(Message("compression failed: {}", ZSTD_getErrorName(result)));
 }
 
 /// Compresses what it is given piece by piece.
@@ -105,17 +105,17 @@ std::vector<char> pack(const void* data, std::size_t count, const Packing& packi
     return compressor.finish();
 }
 
-void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const std::string& what) {
-    if (ZSTD_getFrameContentSize(blob, blob_size) != bytes) throw Error(what + " is damaged");
+void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const Message& what) {
+    if (ZSTD_getFrameContentSize(blob, blob_size) != bytes) throw Error(Message("{} is damaged", what));
 }
 
 void unpack(const void* blob, std::size_t blob_size, void* out, std::size_t count, const Packing& packing,
-            const std::string& what) {
+            const Message& what) {
     const std::size_t expected = count * packing.element;
     check_packed(blob, blob_size, expected, what);
     std::vector<unsigned char> planes(expected);
     const std::size_t size = ZSTD_decompress(planes.data(), planes.size(), blob, blob_size);
-    if (ZSTD_isError(size) || size != expected) throw Error(what + " is damaged");
+    if (ZSTD_isError(size) || size != expected) throw Error(Message("{} is damaged", what));
     if (packing.element == 1) gather<std::uint8_t>(planes.data(), count, packing.lag, out);
     if (packing.element == 4) gather<std::uint32_t>(planes.data(), count, packing.lag, out);
     if (packing.element == 8) gather<std::uint64_t>(planes.data(), count, packing.lag, out);

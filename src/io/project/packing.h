@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
+
 /// \file
 /// Lossless compression of number arrays for the table `arrays`. Inside `io` only. Any thread.
 namespace tuft::io {
@@ -19,11 +21,11 @@ struct Packing {
 std::vector<char> pack(const void* data, std::size_t count, const Packing& packing);
 
 /// Throws `Error` naming `what` when the blob's header does not announce `bytes` bytes.
-void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const std::string& what);
+void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const Message& what);
 
 /// Decompresses a blob of `pack` into `out`, [count]. Throws `Error` naming `what` when the blob is damaged or does not
 /// hold `count` numbers. Never writes beyond `out`.
 void unpack(const void* blob, std::size_t blob_size, void* out, std::size_t count, const Packing& packing,
-            const std::string& what);
+            const Message& what);
 
 }  // namespace tuft::io

@@ -82,30 +82,30 @@ constexpr int kBusyMilliseconds = 2000;
 constexpr std::size_t kMostMeta = 1000, kMostName = 4096, kMostPreset = std::size_t{1} << 20;  // bytes
 constexpr std::size_t kMostPresets = 10'000;
 
-/// Whether the project was moved away under our hands, which SQLite calls many names; "" when it is there.
-std::string why_gone(const std::filesystem::path& path) {
+/// Whether the project was moved away under our hands, which SQLite calls many names; empty when it is there.
+Message why_gone(const std::filesystem::path& path) {
     const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
     if (::access(folder.c_str(), F_OK) != 0) return "its folder is not there any more; was it moved?";
-    return ::access(path.c_str(), F_OK) != 0 ? "is not there any more; was it moved?" : "";
+    return ::access(path.c_str(), F_OK) != 0 ? Message("is not there any more; was it moved?") : Message();
 }
 
 /// Where SQLite only says that a file could not be opened; it writes beside the project too.
-std::string why_not_opened(const std::filesystem::path& path) {
+Message why_not_opened(const std::filesystem::path& path) {
     const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
     if (::access(path.c_str(), R_OK) != 0) return "may not be read; change its permissions";
     if (::access(folder.c_str(), W_OK) != 0) return "cannot be changed: nothing may be written into its folder";
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) return std::string("cannot be opened: ") + std::strerror(errno);
+    if (file < 0) return Message("cannot be opened: {}", std::strerror(errno));
     ::close(file);
-    return "cannot be opened together with its '" + path.filename().string() +
-           "-journal' file; is that a folder, or somebody else's?";
+    return Message("cannot be opened together with its '{}-journal' file; is that a folder, or somebody else's?",
+                   path.filename().string());
 }
 
 /// What SQLite says, in words for people.
 [[noreturn]] void rethrow(const SQLite::Exception& e, const std::filesystem::path& path) {
     const std::string name = path.string();
     const int code = e.getErrorCode();
-    if (const std::string gone = why_gone(path);
+    if (const Message gone = why_gone(path);
         !gone.empty() && (code == SQLITE_READONLY || code == SQLITE_IOERR || code == SQLITE_CANTOPEN))
         throw Error(name, gone);
     switch (code) {
@@ -117,7 +117,7 @@ std::string why_not_opened(const std::filesystem::path& path) {
         case SQLITE_LOCKED:
             throw Error(name, "is in use by another program");
         case SQLITE_IOERR:
-            throw Error(name, std::string("cannot be read or written: ") + e.what());
+            throw Error(name, Message("cannot be read or written: {}", e.what()));
         case SQLITE_CANTOPEN:
             throw Error(name, why_not_opened(path));
         case SQLITE_INTERRUPT:
@@ -125,9 +125,9 @@ std::string why_not_opened(const std::filesystem::path& path) {
         case SQLITE_NOMEM:
             throw Error(name, "does not fit into memory");
         case SQLITE_CONSTRAINT:
-            throw Error(name, std::string("refuses the change: ") + e.what());
+            throw Error(name, Message("refuses the change: {}", e.what()));
         default:
-            throw Error(name, std::string("the project is damaged: ") + e.what());
+            throw Error(name, Message("the project is damaged: {}", e.what()));
     }
 }
 
@@ -202,8 +202,7 @@ std::vector<PresetText> get_presets(SQLite::Database& db, const fs::path& path, 
     s.bind(1, kind);
     std::vector<PresetText> presets;
     while (s.executeStep()) {
-        if (presets.size() >= kMostPresets)
-            damaged(path, std::string("it has too many presets of the kind '") + kind + "'");
+        if (presets.size() >= kMostPresets) damaged(path, Message("it has too many presets of the kind '{}'", kind));
         presets.emplace_back(text_of(s.getColumn(0), kMostName, path, "the name of a preset"),
                              text_of(s.getColumn(1), kMostPreset, path, "a preset"));
     }
@@ -350,9 +349,9 @@ Project Project::open(const fs::path& path, const OpenOptions& options) {
     if (!header.sqlite) throw Error(path.string(), "is not a tuft project");
     if (header.application != kApplicationId) throw Error(path.string(), "is a database, but not a tuft project");
     if (header.version > kProjectFormat)
-        throw Error(path.string(), "was written by a newer tuft (format " + std::to_string(header.version) +
-                                       ", this one reads up to " + std::to_string(kProjectFormat) +
-                                       "); update tuft to open it");
+        throw Error(path.string(),
+                    Message("was written by a newer tuft (format {}, this one reads up to {}); update tuft to open it",
+                            header.version, kProjectFormat));
     if (!header.own_kind) damaged(path, "it is kept in another way than tuft keeps projects");
     std::optional<ProjectLock> lock;
     if (options.access == Access::write) {
@@ -488,7 +487,7 @@ void Project::set_hidden(std::uint64_t stroke_id, bool hidden) {
         SQLite::Statement s(db, "UPDATE strokes SET hidden = ? WHERE id = ?");
         s.bind(1, hidden ? 1 : 0);
         s.bind(2, static_cast<std::int64_t>(stroke_id));
-        if (s.exec() != 1) throw Error(state_->path.string(), "has no stroke " + std::to_string(stroke_id));
+        if (s.exec() != 1) throw Error(state_->path.string(), Message("has no stroke {}", stroke_id));
     });
 }
 
@@ -497,7 +496,7 @@ void Project::remove(std::uint64_t stroke_id) {
         forget_texels_after(db, stroke_id);
         SQLite::Statement s(db, "DELETE FROM strokes WHERE id = ?");
         s.bind(1, static_cast<std::int64_t>(stroke_id));
-        if (s.exec() != 1) throw Error(state_->path.string(), "has no stroke " + std::to_string(stroke_id));
+        if (s.exec() != 1) throw Error(state_->path.string(), Message("has no stroke {}", stroke_id));
     });
 }
 

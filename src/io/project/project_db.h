@@ -21,8 +21,8 @@ inline constexpr std::int64_t kMaxSamples = std::int64_t{1} << 25;  ///< in one 
 inline constexpr std::int64_t kMaxEntries = 1'000'000;              ///< of a journal
 
 /// Throws the `Error` of a damaged project.
-[[noreturn]] inline void damaged(const std::filesystem::path& path, const std::string& what) {
-    throw Error(path.string(), "the project is damaged: " + what);
+[[noreturn]] inline void damaged(const std::filesystem::path& path, const Message& what) {
+    throw Error(path.string(), Message("the project is damaged: {}", what));
 }
 
 /// Key of a row of the table `arrays`. The texts must outlive it.

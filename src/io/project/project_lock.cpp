@@ -71,16 +71,16 @@ bool same_file(int file, int folder, const std::string& name) {
 
 }  // namespace
 
-std::string name_of(const LockHolder& holder) {
+Message name_of(const LockHolder& holder) {
     if (holder.program.empty()) return "another program";
-    std::string name = holder.program;
-    if (holder.process > 0)
-        name += " (process " + std::to_string(holder.process) + (holder.host.empty() ? "" : " on " + holder.host) + ")";
-    return name;
+    if (holder.process <= 0) return holder.program;
+    if (holder.host.empty()) return Message("{} (process {})", holder.program, holder.process);
+    return Message("{} (process {} on {})", holder.program, holder.process, holder.host);
 }
 
 ProjectInUse::ProjectInUse(const fs::path& project, LockHolder holder)
-    : Error(project.string(), name_of(holder) + " is working on it; close it there, or work on a copy of the file"),
+    : Error(project.string(),
+            Message("{} is working on it; close it there, or work on a copy of the file", name_of(holder))),
       holder_(std::move(holder)) {}
 
 /// The lock file, locked. Its folder stays open, so that it is found again when the folder is moved.
@@ -89,9 +89,10 @@ class ProjectLock::File {
     explicit File(const fs::path& project, const fs::path& real) : name_("." + real.filename().string() + ".lock") {
         folder_ = ::open(real.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (folder_ < 0) {
-            const std::string why =
-                errno == ENOENT ? "' does not exist" : std::string("' cannot be opened: ") + std::strerror(errno);
-            throw Error(project.string(), "its folder '" + real.parent_path().string() + why);
+            const std::string where = real.parent_path().string();
+            throw Error(project.string(),
+                        errno == ENOENT ? Message("its folder '{}' does not exist", where)
+                                        : Message("its folder '{}' cannot be opened: {}", where, std::strerror(errno)));
         }
         try {
             while (!take(project)) {
@@ -122,20 +123,22 @@ class ProjectLock::File {
                 throw Error(project.string(), "cannot be changed: nothing may be written into its folder");
             if (errno == ENOSPC || errno == EDQUOT)
                 throw Error(project.string(), "cannot be changed: the disk is full");
-            throw Error(project.string(), "its lock file '" + name_ + "' cannot be opened: " + std::strerror(errno));
+            throw Error(project.string(),
+                        Message("its lock file '{}' cannot be opened: {}", name_, std::strerror(errno)));
         }
         if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
             if (errno == EINTR) return closed_again();
             if (errno == EWOULDBLOCK) throw ProjectInUse(project, read_holder(file_));
-            throw Error(project.string(), std::string("cannot be locked against other programs where it lies (") +
-                                              std::strerror(errno) +
-                                              "); copy it to a disk of this machine and work there");
+            throw Error(project.string(), Message("cannot be locked against other programs where it lies ({}); copy it "
+                                                  "to a disk of this machine and work there",
+                                                  std::strerror(errno)));
         }
         if (!same_file(file_, folder_, name_)) return closed_again();
         if (!foreign) return true;
         // Nobody's any more, but not to be written: a new one takes its place.
         if (::unlinkat(folder_, name_.c_str(), 0) != 0)
-            throw Error(project.string(), "its lock file '" + name_ + "' is another person's and cannot be removed");
+            throw Error(project.string(),
+                        Message("its lock file '{}' is another person's and cannot be removed", name_));
         return closed_again();
     }
     bool closed_again() {

@@ -21,7 +21,7 @@ struct LockHolder {
 };
 
 /// Returns "tuft-studio (process 4242)", "tuft (process 17 on workbench)" or "another program".
-std::string name_of(const LockHolder& holder);
+Message name_of(const LockHolder& holder);
 
 /// Another process holds the project. The message names the process and the remedy.
 class ProjectInUse : public Error {

@@ -29,7 +29,7 @@ std::vector<char> get_bytes(SQLite::Database& db, const std::filesystem::path& p
     select.bind(1, name);
     if (!select.executeStep()) return {};
     const std::int64_t count = select.getColumn(0).getInt64();
-    if (count < 0 || static_cast<std::uint64_t>(count) > most) damaged(path, "array '" + name + "' is too large");
+    if (count < 0 || static_cast<std::uint64_t>(count) > most) damaged(path, Message("array '{}' is too large", name));
     return get_array<char>(db, path, "mesh", name.c_str(), kBytes, static_cast<std::size_t>(count));
 }
 

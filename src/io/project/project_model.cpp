@@ -55,8 +55,8 @@ void check(const ProjectModel& model, const std::filesystem::path& path) {
     for (const std::uint32_t udim : model.atlas.udims)
         if (udim < 1001 || udim > 2000) damaged(path, "a page of the atlas has no valid number");
     if (!metres_per(model.frame.unit)) damaged(path, "the model's unit is unknown");
-    if (const std::string fault = atlas::fault_of(model.atlas); !fault.empty())
-        damaged(path, "its atlas cannot be painted on: " + fault);
+    if (const Message fault = atlas::fault_of(model.atlas); !fault.empty())
+        damaged(path, Message("its atlas cannot be painted on: {}", fault));
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ bool has_array(SQLite::Database& db, const std::filesystem::path& path, const Ar
     select.bind(2, key.name);
     if (!select.executeStep()) return false;
     if (select.getColumn(0).getInt64() != static_cast<std::int64_t>(size.count))
-        damaged(path, std::string("array '") + key.name + "' has the wrong size");
+        damaged(path, Message("array '{}' has the wrong size", key.name));
     const SQLite::Column blob = select.getColumn(1);
     check_packed(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), size.bytes(),
                  path.string() + ": the project is damaged: array '" + key.name + "'");
@@ -92,7 +92,7 @@ void get_array_bytes(SQLite::Database& db, const std::filesystem::path& path, co
     SQLite::Statement select(db, "SELECT data FROM arrays WHERE owner = ? AND name = ?");
     select.bind(1, key.owner);
     select.bind(2, key.name);
-    if (!select.executeStep()) damaged(path, std::string("array '") + key.name + "' is missing");
+    if (!select.executeStep()) damaged(path, Message("array '{}' is missing", key.name));
     const SQLite::Column blob = select.getColumn(0);
     unpack(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()), out, size.bytes() / packing.element, packing,
            path.string() + ": the project is damaged: array '" + key.name + "'");

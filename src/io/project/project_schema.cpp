@@ -105,13 +105,13 @@ void check_schema(SQLite::Database& db, const std::filesystem::path& path) {
         else if (good)
             good = type == "table" && on == name && squeezed(text(3)) == squeezed(sql_of(*table));
         if (!good)
-            damaged(path, "it holds the " + type.substr(0, 20) + " '" + name.substr(0, 60) +
-                              "' as no tuft project does, and is not opened");
+            damaged(path, Message("it holds the {} '{}' as no tuft project does, and is not opened", type.substr(0, 20),
+                                  name.substr(0, 60)));
         if (type == "table") found.insert(name);
     }
     for (const Table& table : kTables)
         if (table.always && !found.contains(table.name))
-            damaged(path, std::string("its table '") + table.name + "' is missing");
+            damaged(path, Message("its table '{}' is missing", table.name));
 }
 
 void restrain(SQLite::Database& db) {
@@ -198,14 +198,14 @@ std::string Overseer::check_pages(SQLite::Database& db) {
 std::string text_of(const SQLite::Column& column, std::size_t most, const std::filesystem::path& path,
                     const char* what) {
     if (column.getBytes() < 0 || static_cast<std::size_t>(column.getBytes()) > most)
-        damaged(path, std::string(what) + " is too long");
+        damaged(path, Message("{} is too long", std::string(what)));
     return column.getString();
 }
 
 void check_memory(const std::filesystem::path& path, std::uintmax_t bytes) {
     constexpr std::uintmax_t kNoMatter = std::uintmax_t{64} << 20;
     if (bytes < kNoMatter || bytes < stroke::available_memory()) return;
-    throw Error(path.string(), "does not fit into memory: what is in it takes " + std::to_string(bytes >> 20) + " MiB");
+    throw Error(path.string(), Message("does not fit into memory: what is in it takes {} MiB", bytes >> 20));
 }
 
 }  // namespace tuft::io

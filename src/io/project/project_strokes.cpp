@@ -74,7 +74,7 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
         try {
             stroke::check_samples(t);
         } catch (const Error& error) {
-            throw Error(path.string(), "stroke " + std::to_string(entry.id) + " is not stored: " + error.what());
+            throw Error(path.string(), Message("stroke {} is not stored: {}", entry.id, error.message()));
         }
         const std::vector<char> blob = pack(columns.data(), columns.size(), kSamples);
         insert.bind(1, static_cast<std::int64_t>(entry.id));
@@ -98,9 +98,7 @@ void store_strokes(SQLite::Database& db, const std::filesystem::path& path,
 std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::filesystem::path& path,
                                                const ProgressFn& progress) {
     const std::int64_t n = db.execAndGet("SELECT count(*) FROM strokes").getInt64();
-    if (n > kMaxEntries)
-        damaged(path, "it has " + std::to_string(n) + " strokes, more than the " + std::to_string(kMaxEntries) +
-                          " that are read");
+    if (n > kMaxEntries) damaged(path, Message("it has {} strokes, more than the {} that are read", n, kMaxEntries));
     check_memory(path, static_cast<std::uintmax_t>(n) * sizeof(stroke::JournalEntry));
     SQLite::Statement select(db,
                              "SELECT id, brush, ink, seed, label, settings, hidden, flat, laying, placement, "
@@ -112,7 +110,7 @@ std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::
         stroke::EntryColumns columns;
         stroke::StrokeSamples& t = columns.trace;
         columns.id = static_cast<std::uint64_t>(select.getColumn(0).getInt64());
-        const std::string what = path.string() + ": the project is damaged: stroke " + std::to_string(columns.id);
+        const Message what("{}: the project is damaged: stroke {}", path.string(), columns.id);
         const auto text = [&](int column, std::size_t most, const char* of_what) {
             return text_of(select.getColumn(column), most, path, of_what);
         };
@@ -124,17 +122,17 @@ std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::
         columns.hidden = select.getColumn(6).getInt() != 0;
         t.flat = select.getColumn(7).getInt() != 0;
         const auto mapping = stroke::surface_mapping_named(text(8, kMostWord, "the mapping of a stroke"));
-        if (!mapping) throw Error(what + " is mapped onto the model in a way that is not known");
+        if (!mapping) throw Error(Message("{} is mapped onto the model in a way that is not known", what));
         t.placement.mapping = *mapping;
         const SQLite::Column placement = select.getColumn(9);
         std::array<double, 9> p{};
-        if (placement.getBytes() != static_cast<int>(sizeof p)) throw Error(what + " has no valid placement");
+        if (placement.getBytes() != static_cast<int>(sizeof p)) throw Error(Message("{} has no valid placement", what));
         std::memcpy(p.data(), placement.getBlob(), sizeof p);
         t.placement.origin = {p[0], p[1], p[2]};
         t.placement.right = {p[3], p[4], p[5]};
         t.placement.down = {p[6], p[7], p[8]};
         const std::int64_t count = select.getColumn(10).getInt64();
-        if (count < 0 || count > kMaxSamples) throw Error(what + " has an impossible number of samples");
+        if (count < 0 || count > kMaxSamples) throw Error(Message("{} has an impossible number of samples", what));
         const SQLite::Column blob = select.getColumn(11);
         const auto size = static_cast<std::size_t>(blob.getBytes());
         const std::size_t numbers = kFields * static_cast<std::size_t>(count);
@@ -150,7 +148,7 @@ std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::
         try {
             stroke::check_samples(stroke::samples_of(entry));
         } catch (const Error& error) {
-            throw Error(what + ": " + error.what());
+            throw Error(Message("{}: {}", what, error.message()));
         }
         entries.push_back(std::move(entry));
     }

@@ -75,7 +75,7 @@ class LayerRows {
                 damaged(path, "a tile lies outside the atlas");
             ink::TileSnapshot snapshot{
                 .slot = static_cast<std::uint32_t>(slot), .planes = static_cast<std::uint8_t>(planes), .amounts = {}};
-            const std::string what = path.string() + ": the project is damaged: tile " + std::to_string(slot);
+            const Message what("{}: the project is damaged: tile {}", path.string(), slot);
             append(snapshot, tile.getColumn(2), snapshot.planes, what);
             if (films) load_films(snapshot, what);
             bytes += sizeof(float) * snapshot.amounts.size();
@@ -103,15 +103,14 @@ class LayerRows {
         s.reset();
     }
 
-    static void append(ink::TileSnapshot& tile, const SQLite::Column& blob, std::uint8_t planes,
-                       const std::string& what) {
+    static void append(ink::TileSnapshot& tile, const SQLite::Column& blob, std::uint8_t planes, const Message& what) {
         const std::size_t count = std::popcount(planes) * atlas::kTileTexels;
         tile.amounts.resize(tile.amounts.size() + count);
         unpack(blob.getBlob(), static_cast<std::size_t>(blob.getBytes()),
                tile.amounts.data() + tile.amounts.size() - count, count, kTiles, what);
     }
 
-    void load_films(ink::TileSnapshot& tile, const std::string& what) {
+    void load_films(ink::TileSnapshot& tile, const Message& what) {
         SQLite::Statement& s =
             statement(film_, first() ? "SELECT film, planes, amounts FROM films WHERE slot = ? ORDER BY film"
                                      : "SELECT film, planes, amounts FROM layer_films WHERE slot = ? AND layer = ? "
@@ -121,7 +120,7 @@ class LayerRows {
         while (s.executeStep()) {
             const std::int64_t film = s.getColumn(0).getInt64(), planes = s.getColumn(1).getInt64();
             if (film < 0 || film > ink::kFilms || planes <= 0 || planes > 255)
-                throw Error(what + " has a film that cannot be");
+                throw Error(Message("{} has a film that cannot be", what));
             tile.under.push_back({static_cast<std::uint8_t>(film), static_cast<std::uint8_t>(planes)});
             append(tile, s.getColumn(2), tile.under.back().planes, what);
         }

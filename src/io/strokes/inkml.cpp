@@ -62,7 +62,7 @@ class Reader : InkmlText {
     std::vector<RecordedStroke> run() {
         const auto parsed = document_.load_buffer(content.data(), content.size());
         if (!parsed)
-            throw Error(path, line_at(parsed.offset), std::string("not well-formed XML: ") + parsed.description());
+            throw Error(path, line_at(parsed.offset), Message("not well-formed XML: {}", parsed.description()));
         const xml_node ink = document_.document_element();
         if (local_name(ink) != "ink") fail(ink, "not InkML: the outermost element is not <ink>");
         collect_ids(ink, 0);
@@ -98,7 +98,7 @@ class Reader : InkmlText {
         const auto it = ids_.find(id);
         if (it != ids_.end()) return it->second;
         if (id.rfind("Default", 0) == 0) return {};
-        fail(node, std::string(attribute) + " refers to '" + id + "', which is not in the file");
+        fail(node, Message("{} refers to '{}', which is not in the file", std::string(attribute), id));
     }
 
     // --- formats -------------------------------------------------------------
@@ -315,9 +315,8 @@ class Reader : InkmlText {
             for (int k = 0; k < 3; ++k)
                 if (std::abs(s.position[k]) > options_.max_extent)
                     throw Error(path, line,
-                                "a coordinate lies more than " +
-                                    std::to_string(static_cast<long>(options_.max_extent)) +
-                                    " m away; declare the unit of X and Y");
+                                Message("a coordinate lies more than {} m away; declare the unit of X and Y",
+                                        static_cast<long>(options_.max_extent)));
             s.time = get(t);
             s.pressure = get(p);
             s.tilt = {get(tx), get(ty)};
@@ -358,7 +357,7 @@ class Reader : InkmlText {
             try {
                 stroke::check_samples(d.trace);
             } catch (const Error& error) {
-                throw Error(path, d.line, error.what());
+                throw Error(path, d.line, error.message());
             }
         }
     }

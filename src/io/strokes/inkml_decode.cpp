@@ -36,7 +36,7 @@ class Decoder {
         InkmlRows rows;
         rows.n_channels = format_.channels.size();
         for (skip_space(); at_ < text_.size(); skip_space()) {
-            if (rows.n_rows() >= max_rows_) fail("more samples than " + std::to_string(max_rows_) + "; split the file");
+            if (rows.n_rows() >= max_rows_) fail(Message("more samples than {}; split the file", max_rows_));
             point(rows);
             if (at_ < text_.size()) ++at_;  // the comma
         }
@@ -44,7 +44,7 @@ class Decoder {
     }
 
   private:
-    [[noreturn]] void fail(const std::string& what) const { throw Error(source_, line_, what); }
+    [[noreturn]] void fail(const Message& what) const { throw Error(source_, line_, what); }
 
     char peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
 
@@ -62,16 +62,15 @@ class Decoder {
         std::size_t n = 0;
         for (skip_space(); at_ < text_.size() && peek() != ','; skip_space(), ++n) {
             if (n == format_.channels.size())
-                fail("a point has more than the " + std::to_string(n) + " values of its trace format");
+                fail(Message("a point has more than the {} values of its trace format", n));
             value(history_[n]);
         }
-        if (n < format_.n_regular)
-            fail("a point has " + std::to_string(n) + " values, its trace format " + std::to_string(format_.n_regular));
+        if (n < format_.n_regular) fail(Message("a point has {} values, its trace format {}", n, format_.n_regular));
         for (std::size_t k = 0; k < history_.size(); ++k) {
             const InkmlChannel& channel = format_.channels[k];
             const History& h = history_[k];
             const double si = h.reported ? (h.value - channel.offset) * channel.scale : channel.fallback;
-            if (!std::isfinite(si)) fail("channel " + channel.name + " has a value that is not finite");
+            if (!std::isfinite(si)) fail(Message("channel {} has a value that is not finite", channel.name));
             rows.values.push_back(si);
         }
     }

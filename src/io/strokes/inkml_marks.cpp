@@ -24,11 +24,11 @@ Vec3 vector_of(const InkmlText& file, const xml_node& node, std::string_view tex
         text = trimmed(text);
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
         if (error != std::errc{} || !std::isfinite(x))
-            file.fail(node, std::string(node.attribute("type").value()) + " needs three numbers");
+            file.fail(node, Message("{} needs three numbers", std::string(node.attribute("type").value())));
         text.remove_prefix(static_cast<std::size_t>(end - text.data()));
     }
     if (!trimmed(text).empty() && trimmed(text) != unit)
-        file.fail(node, std::string(node.attribute("type").value()) + " needs three numbers, millimetres");
+        file.fail(node, Message("{} needs three numbers, millimetres", std::string(node.attribute("type").value())));
     return {v[0], v[1], v[2]};
 }
 
@@ -36,7 +36,8 @@ Vec3 vector_of(const InkmlText& file, const xml_node& node, std::string_view tex
 Vec3 point_of(const InkmlText& file, const xml_node& node, std::string_view text) {
     const bool metres = trimmed(text).ends_with('m') && !trimmed(text).ends_with("mm");
     const Vec3 p = metres ? vector_of(file, node, text, "m") : kMillimetre * vector_of(file, node, text, "mm");
-    if (!within(p)) file.fail(node, std::string(node.attribute("type").value()) + " lies more than 10 km away");
+    if (!within(p))
+        file.fail(node, Message("{} lies more than 10 km away", std::string(node.attribute("type").value())));
     return p;
 }
 
@@ -51,7 +52,7 @@ std::string name_of(const InkmlText& file, const xml_node& node, std::string_vie
     try {
         stroke::check_name(text, of_what);
     } catch (const Error& e) {
-        file.fail(node, e.what());
+        file.fail(node, e.message());
     }
     return std::string(text);
 }
@@ -60,7 +61,7 @@ stroke::StrokeSettings settings_of(const InkmlText& file, const xml_node& node, 
     try {
         return stroke::settings_from_json(std::string(text));
     } catch (const Error& e) {
-        file.fail(node, e.what());
+        file.fail(node, e.message());
     }
 }
 
@@ -92,7 +93,7 @@ stroke::Fill fill_of(const InkmlText& file, const xml_node& node) {
         stroke::check_fill(fill);
     } catch (const Error& e) {
         if (std::string(e.what()).starts_with(file.path)) throw;
-        file.fail(node, e.what());
+        file.fail(node, e.message());
     }
     return fill;
 }
@@ -102,11 +103,11 @@ double seconds_of(const InkmlText& file, const xml_node& node, std::string_view 
     double x = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
     if (!text.empty() && (error != std::errc() || end != text.data() + text.size()))
-        file.fail(node, "'" + std::string(text) + "' is no number of seconds");
+        file.fail(node, Message("'{}' is no number of seconds", std::string(text)));
     try {
         stroke::check_seconds(x);
     } catch (const Error& e) {
-        file.fail(node, e.what());
+        file.fail(node, e.message());
     }
     return x;
 }
@@ -118,7 +119,7 @@ stroke::Extent extent_of(const InkmlText& file, const xml_node& node, stroke::Br
         if (text.empty()) return;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
         if (error != std::errc{} || end != text.data() + text.size())
-            file.fail(node, std::string(name) + " of a dip or wipe is a number, not '" + std::string(text) + "'");
+            file.fail(node, Message("{} of a dip or wipe is a number, not '{}'", std::string(name), std::string(text)));
     };
     read("depth", extent.depth);
     read("amount", extent.amount);
@@ -126,7 +127,7 @@ stroke::Extent extent_of(const InkmlText& file, const xml_node& node, stroke::Br
     try {
         stroke::check_extent(extent, kind);
     } catch (const Error& e) {
-        file.fail(node, e.what());
+        file.fail(node, e.message());
     }
     return extent;
 }
@@ -177,13 +178,13 @@ long InkmlText::line_at(std::ptrdiff_t offset) const {
     return counted_line;
 }
 
-void InkmlText::fail(const pugi::xml_node& node, const std::string& what) const {
+void InkmlText::fail(const pugi::xml_node& node, const Message& what) const {
     throw Error(path, line_at(node.offset_debug()), what);
 }
 
 double InkmlText::number_of(const pugi::xml_node& node, const char* attribute) const {
     const auto x = to_number(node.attribute(attribute).value());
-    if (!x) fail(node, std::string("attribute ") + attribute + " is not a number");
+    if (!x) fail(node, Message("attribute {} is not a number", attribute));
     return *x;
 }
 
@@ -221,7 +222,7 @@ void apply_marks(const InkmlText& file, InkmlMarks& marks, const xml_node& paren
         if (type.rfind("tuft:", 0) != 0) continue;
         type.remove_prefix(5);
         if (is_care(type) && local_name(parent) != "trace")
-            file.fail(node, "tuft:" + std::string(type) + " belongs on the trace before which it is done");
+            file.fail(node, Message("tuft:{} belongs on the trace before which it is done", std::string(type)));
         const std::string whole = text_of(node);
         const std::string_view text = trimmed(whole);
         if (type == "brush")

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/message.h"
 #include "stroke/journal/recorded_stroke.h"
 
 namespace pugi {
@@ -27,7 +28,7 @@ struct InkmlText {
     /// Returns the line of the character at `offset`, from 1. Ascending offsets cost one pass over the file in total.
     long line_at(std::ptrdiff_t offset) const;
     /// Throws `Error` with the element's line.
-    [[noreturn]] void fail(const pugi::xml_node& node, const std::string& what) const;
+    [[noreturn]] void fail(const pugi::xml_node& node, const Message& what) const;
     /// Returns an attribute as a number. Throws `Error` when it is none.
     double number_of(const pugi::xml_node& node, const char* attribute) const;
 };

@@ -366,7 +366,7 @@ std::vector<stroke::RecordedStroke> parse_svg(std::string_view text, const std::
                                               const SvgOptions& options) {
     pugi::xml_document document;
     const auto parsed = document.load_buffer(text.data(), text.size());
-    if (!parsed) throw Error(source, std::string("not well formed: ") + parsed.description());
+    if (!parsed) throw Error(source, Message("not well formed: {}", parsed.description()));
     const pugi::xml_node svg = document.document_element();
     if (Drawing::local(svg.name()) != "svg") throw Error(source, "not an SVG drawing");
     Drawing drawing(source, options);
@@ -375,8 +375,9 @@ std::vector<stroke::RecordedStroke> parse_svg(std::string_view text, const std::
     drawing.walk(svg, drawing.frame(svg), {}, 0);
     const std::vector<std::string> losses = drawing.left_out();
     if (drawing.lines().empty())
-        throw Error(source, "nothing is drawn in this file; " +
-                                (losses.empty() ? "text must be turned into paths first" : losses.front()));
+        throw Error(source, Message("nothing is drawn in this file; {}",
+                                    losses.empty() ? Message("text must be turned into paths first")
+                                                   : Message(losses.front())));
     if (options.ink.note)
         for (const std::string& loss : losses) options.ink.note(source + ": " + loss);
     std::ostringstream ink;

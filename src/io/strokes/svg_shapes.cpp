@@ -26,8 +26,9 @@ double SvgReader::number() {
     double value = 0;
     const auto [next, fault] = std::from_chars(at_, end_, value);
     if (fault != std::errc() || !std::isfinite(value) || std::abs(value) > 1e9)
-        throw Error(source_, "'" + std::string(at_, std::min<std::size_t>(12, static_cast<std::size_t>(end_ - at_))) +
-                                 "' is not a number of a drawing");
+        throw Error(source_,
+                    Message("'{}' is not a number of a drawing",
+                            std::string(at_, std::min<std::size_t>(12, static_cast<std::size_t>(end_ - at_)))));
     at_ = next;
     return value;
 }
@@ -58,7 +59,7 @@ SvgMatrix svg_transform(const char* text, const std::string& source) {
     SvgMatrix m(1);
     while (!in.done()) {
         const std::string name = in.word();
-        if (in.peek() != '(') throw Error(source, "'" + name + "' is not a transform");
+        if (in.peek() != '(') throw Error(source, Message("'{}' is not a transform", name));
         in.take();
         std::vector<double> v;
         while (in.number_next()) v.push_back(in.number());
@@ -80,7 +81,7 @@ SvgMatrix svg_transform(const char* text, const std::string& source) {
         else if (name == "skewY")
             m = m * SvgMatrix(1, std::tan(at(0) * std::numbers::pi / 180), 0, 0, 1, 0, 0, 0, 1);
         else
-            throw Error(source, "'" + name + "' is not a transform");
+            throw Error(source, Message("'{}' is not a transform", name));
     }
     return m;
 }
@@ -201,7 +202,7 @@ void svg_path(const char* text, const std::string& source, const SvgCurves& curv
                 before = 'Z';
                 continue;
             default:
-                throw Error(source, std::string("a path has the unknown command '") + command + "'");
+                throw Error(source, Message("a path has the unknown command '{}'", command));
         }
         at = line.back();
         before = c;

@@ -131,8 +131,9 @@ RTCPointQuery make_query(const Vec3& p, double radius) {
 void check(RTCDevice device, const char* what) {
     const RTCError code = rtcGetDeviceError(device);
     if (code == RTC_ERROR_NONE) return;
-    throw Error(std::string("cannot build the search tree of the mesh (") + what +
-                "): " + (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "Embree error " + std::to_string(code)));
+    throw Error(Message("cannot build the search tree of the mesh ({}): {}", what,
+                        code == RTC_ERROR_OUT_OF_MEMORY ? Message("out of memory")
+                                                        : Message("Embree error {}", static_cast<int>(code))));
 }
 
 RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) {

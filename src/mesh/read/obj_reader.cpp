@@ -25,9 +25,8 @@ class ObjReader {
         }
         const std::size_t n = builder_.soup.points.size();
         if (highest_ > n)
-            throw Error(
-                file_, highest_line_,
-                "the face uses vertex " + std::to_string(highest_) + ", but the file has only " + std::to_string(n));
+            throw Error(file_, highest_line_,
+                        Message("the face uses vertex {}, but the file has only {}", highest_, n));
         if (free_form_.count)
             builder_.soup.warnings.push_back(
                 free_form_.text("lines of free-form curves or surfaces are not read", "line"));
@@ -134,9 +133,11 @@ void ObjReader::report_empty(PolygonSoup& soup) const {
         if (has_faces_.contains(name) || name == "default") continue;
         if (++n <= kMostNames) names += (n > 1 ? ", " : "") + in_quotes(name);
     }
+    if (n > kMostNames) names += ", ...";
     if (n > 0)
-        soup.warnings.push_back(std::to_string(n) + (n == 1 ? " group has" : " groups have") + " no faces and " +
-                                (n == 1 ? "is" : "are") + " left out: " + names + (n > kMostNames ? ", ..." : ""));
+        soup.warnings.push_back(Message(
+            n == 1 ? "{} group has no faces and is left out: {}" : "{} groups have no faces and are left out: {}", n,
+            names));
 }
 
 void ObjReader::read_vertex() {
@@ -155,8 +156,7 @@ void ObjReader::read_vertex() {
 std::uint32_t ObjReader::point_index(std::int64_t written) {
     const auto n = static_cast<std::int64_t>(builder_.soup.points.size());
     if (written < 0 && written >= -n) return static_cast<std::uint32_t>(n + written);
-    if (written <= 0 || written >= kNone)
-        text_.fail("the face uses vertex " + std::to_string(written) + ", which does not exist");
+    if (written <= 0 || written >= kNone) text_.fail(Message("the face uses vertex {}, which does not exist", written));
     if (written > n && static_cast<std::size_t>(written) > highest_) {
         highest_ = static_cast<std::size_t>(written);
         highest_line_ = text_.line();
@@ -170,13 +170,13 @@ void ObjReader::read_corner() {
     const char* end = token.data() + token.size();
     std::int64_t position = 0, uv = 0;
     auto [p, ec] = std::from_chars(token.data(), end, position);
-    if (ec != std::errc()) text_.fail(in_quotes(token) + " is not a vertex number");
+    if (ec != std::errc()) text_.fail(Message("{} is not a vertex number", in_quotes(token)));
     if (p != end && *p == '/' && p + 1 != end && p[1] != '/') {
         const auto second = std::from_chars(p + 1, end, uv);
         p = second.ptr;
     }
     if (p != end && *p != '/' && *p != '#')
-        text_.fail(in_quotes(token) + " is not a face corner such as 1, 1/2 or 1/2/3");
+        text_.fail(Message("{} is not a face corner such as 1, 1/2 or 1/2/3", in_quotes(token)));
     corners_.push_back(point_index(position));
     const auto n = static_cast<std::int64_t>(uvs_.size());
     const std::int64_t i = uv < 0 ? n + uv : uv - 1;

@@ -40,7 +40,7 @@ OffKind read_kind(TextCursor& text) {
     kind.has_colour = take("C");
     kind.has_normal = take("N");
     if (!same_word(word, "OFF"))
-        text.fail(in_quotes(whole) + " is not a three-dimensional OFF head such as OFF or COFF");
+        text.fail(Message("{} is not a three-dimensional OFF head such as OFF or COFF", in_quotes(whole)));
     ahead = text;
     if (same_word(ahead.word(), "BINARY")) {
         text.word();
@@ -91,9 +91,8 @@ void OffReader::check_counts(std::int64_t points, std::int64_t faces, std::size_
                              std::size_t face_size) const {
     const auto limit = [&](std::size_t size) { return static_cast<std::int64_t>(left / size); };
     if (points < 0 || faces < 0 || points > limit(point_size) || faces > limit(face_size))
-        text_.fail("promises " + std::to_string(points) + " vertices and " + std::to_string(faces) +
-                   " faces, more than the file can hold; it is cut off or "
-                   "damaged");
+        text_.fail(Message("promises {} vertices and {} faces, more than the file can hold; it is cut off or damaged",
+                           points, faces));
 }
 
 PolygonSoup OffReader::read_text() {
@@ -175,7 +174,7 @@ void OffReader::read_text_face() {
     const long line = text_.line();
     const std::int64_t n = text_.integer("the number of corners");
     if (n < 0 || n > static_cast<std::int64_t>(text_.left()))
-        text_.fail("a face cannot have " + std::to_string(n) + " corners here");
+        text_.fail(Message("a face cannot have {} corners here", n));
     corners_.clear();
     for (std::int64_t k = 0; k < n; ++k) corners_.push_back(point_index(text_.integer("a corner")));
     const std::uint32_t group = face_colour();
@@ -224,11 +223,11 @@ PolygonSoup OffReader::read_binary() {
     }
     for (std::int32_t i = 0; i < faces; ++i) {
         const std::uint32_t n = word();
-        if (n > left() / 4) throw Error(file_, "face " + std::to_string(i + 1) + " is cut off");
+        if (n > left() / 4) throw Error(file_, Message("face {} is cut off", i + 1));
         corners_.clear();
         for (std::uint32_t k = 0; k < n; ++k) corners_.push_back(point_index(static_cast<std::int32_t>(word())));
         const std::uint32_t n_colour = word();
-        if (n_colour > left() / 4) throw Error(file_, "face " + std::to_string(i + 1) + " is cut off");
+        if (n_colour > left() / 4) throw Error(file_, Message("face {} is cut off", i + 1));
         std::array<double, 4> rgba{};
         for (std::uint32_t k = 0; k < n_colour; ++k) {
             const double value = real();

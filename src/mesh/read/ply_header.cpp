@@ -29,7 +29,7 @@ PlyType parse_type(TextCursor& text) {
                                {"float", "float32", PlyType::kFloat32}, {"double", "float64", PlyType::kFloat64}};
     for (const Name& n : kNames)
         if (name == n.old_name || name == n.new_name) return n.type;
-    text.fail(in_quotes(name) + " is not a PLY type such as float or uchar");
+    text.fail(Message("{} is not a PLY type such as float or uchar", in_quotes(name)));
 }
 
 PlyFormat parse_format(TextCursor& text) {
@@ -37,7 +37,7 @@ PlyFormat parse_format(TextCursor& text) {
     if (name == "ascii") return PlyFormat::kAscii;
     if (name == "binary_little_endian") return PlyFormat::kLittleEndian;
     if (name == "binary_big_endian") return PlyFormat::kBigEndian;
-    text.fail(in_quotes(name) + " is not a PLY format");
+    text.fail(Message("{} is not a PLY format", in_quotes(name)));
 }
 
 PlyElement parse_element(TextCursor& text) {
@@ -45,7 +45,7 @@ PlyElement parse_element(TextCursor& text) {
     element.line = text.line();
     element.name = lower(text.word());
     const std::int64_t count = text.integer("the number of rows");
-    if (count < 0) text.fail("an element cannot have " + std::to_string(count) + " rows");
+    if (count < 0) text.fail(Message("an element cannot have {} rows", count));
     element.count = static_cast<std::uint64_t>(count);
     return element;
 }
@@ -147,7 +147,7 @@ PlyHeader read_ply_header(const std::vector<char>& bytes, const std::string& fil
             header.body_line = text.line() + 1;
             return header;
         } else if (key != "obj_info") {
-            text.fail(in_quotes(key) + " is not a PLY keyword; the head may be damaged");
+            text.fail(Message("{} is not a PLY keyword; the head may be damaged", in_quotes(key)));
         }
         text.next_line();
     }

@@ -79,9 +79,10 @@ class PlyBody {
     std::size_t list_size(const PlyProperty& property) {
         const double n = value(property.count_type);
         const std::size_t each = is_text() ? 2 : size_of(property.type);
-        if (!(n >= 0) || n != std::floor(n)) fail("the list '" + property.name + "' has an impossible length");
+        if (!(n >= 0) || n != std::floor(n)) fail(Message("the list '{}' has an impossible length", property.name));
         const std::size_t most = left() / each;
-        if (n > static_cast<double>(most)) fail("the list '" + property.name + "' is longer than the rest of the file");
+        if (n > static_cast<double>(most))
+            fail(Message("the list '{}' is longer than the rest of the file", property.name));
         return static_cast<std::size_t>(n);
     }
 
@@ -96,13 +97,13 @@ class PlyBody {
         at_ += n;
     }
 
-    [[noreturn]] void fail(const std::string& what) const {
+    [[noreturn]] void fail(const Message& what) const {
         if (is_text()) throw Error(file_, line(), what);
-        throw Error(file_, element_->name + " row " + std::to_string(row_) + ": " + what);
+        throw Error(file_, Message("{} row {}: {}", element_->name, row_, what));
     }
     [[noreturn]] void fail_short() const {
-        fail("the file ends in row " + std::to_string(row_) + " of " + std::to_string(element_->count) +
-             " of element '" + element_->name + "'; it is cut off");
+        fail(Message("the file ends in row {} of {} of element '{}'; it is cut off", row_, element_->count,
+                     element_->name));
     }
 
   private:
@@ -117,9 +118,9 @@ class PlyBody {
             return text_.number("a value");
         } catch (const Error&) {
             // The cursor counts lines of the body, the message is to count those of the file.
-            fail(text_.at_end()
-                     ? "the file is cut off in this row"
-                     : "the row of element '" + element_->name + "' holds too few values or one that is not a number");
+            fail(text_.at_end() ? Message("the file is cut off in this row")
+                                : Message("the row of element '{}' holds too few values or one that is not a number",
+                                          element_->name));
         }
     }
 
@@ -202,9 +203,8 @@ void PlyReader::read_element(const PlyElement& element) {
     if (row == 0 || element.count == 0) return;
     if (element.count > body_.left() / row)
         throw Error(file_, element.line,
-                    "element '" + element.name + "' promises " + std::to_string(element.count) +
-                        " rows, but the file holds at most " + std::to_string(body_.left() / row) +
-                        "; it is cut off or damaged");
+                    Message("element '{}' promises {} rows, but the file holds at most {}; it is cut off or damaged",
+                            element.name, element.count, body_.left() / row));
     if (element.name == "vertex") return read_vertices(element);
     const int list = element.find({"vertex_indices", "vertex_index"});
     if (list >= 0 && element.properties[static_cast<std::size_t>(list)].is_list) {
@@ -276,10 +276,9 @@ void PlyReader::read_vertices(const PlyElement& element) {
 
 std::uint32_t PlyReader::point_index(double written) const {
     if (!(written >= 0) || written >= static_cast<double>(n_points_) || written != std::floor(written))
-        body_.fail(
-            "the face uses vertex " +
-            std::to_string(static_cast<long long>(std::isfinite(written) ? std::clamp(written, -1e15, 1e15) : -1.0)) +
-            ", but the file has only " + std::to_string(n_points_) + " (counted from 0)");
+        body_.fail(Message("the face uses vertex {}, but the file has only {} (counted from 0)",
+                           static_cast<long long>(std::isfinite(written) ? std::clamp(written, -1e15, 1e15) : -1.0),
+                           n_points_));
     return static_cast<std::uint32_t>(written);
 }
 

@@ -31,6 +31,15 @@ std::vector<Vec2f> uvs_of_points(const PolygonSoup& soup) {
 
 }  // namespace
 
+void turn_round(PolygonSoup& soup) {
+    for (std::size_t i = 0; i < soup.n_polygons(); ++i) {
+        const auto from = static_cast<std::ptrdiff_t>(soup.polygon_start[i]),
+                   to = static_cast<std::ptrdiff_t>(soup.polygon_start[i + 1]);
+        std::reverse(soup.corners.begin() + from, soup.corners.begin() + to);
+        if (!soup.corner_uvs.empty()) std::reverse(soup.corner_uvs.begin() + from, soup.corner_uvs.begin() + to);
+    }
+}
+
 void drop_colours(PolygonSoup& soup) {
     soup.materials.clear();
     soup.point_colours.clear();
@@ -46,9 +55,8 @@ bool is_polygon_file(const std::filesystem::path& path) {
 PolygonSoup read_polygon_file(const std::filesystem::path& path) {
     const std::string extension = path.extension().string();
     if (!is_polygon_file(path))
-        throw Error(path.string(), in_quotes(extension) +
-                                       " is not a known kind of model; use .obj, "
-                                       ".ply, .stl, .off or .glb");
+        throw Error(path.string(), Message("{} is not a known kind of model; use .obj, .ply, .stl, .off or .glb",
+                                           in_quotes(extension)));
     const std::vector<char> bytes = read_file(path);
     if (same_word(extension, ".obj")) return read_obj(bytes, path);
     if (same_word(extension, ".ply")) return read_ply(bytes, path);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/types.h"
+#include "core/message.h"
 #include "mesh/material.h"
 #include "mesh/source_scene.h"
 
@@ -33,11 +34,13 @@ struct PolygonSoup {
     /// gives the part of each face. All faces of a part belong to one group.
     std::shared_ptr<SourceScene> scene;
     std::vector<std::uint32_t> polygon_parts;
-    std::vector<std::string> warnings;  ///< one line each: what the reader dropped, and the line numbers
+    std::vector<Message> warnings;  ///< one line each: what the reader dropped, and the line numbers
 
     std::size_t n_polygons() const { return polygon_start.empty() ? 0 : polygon_start.size() - 1; }
 };
 
+/// Turns every polygon round, so that its back becomes its front.
+void turn_round(PolygonSoup& soup);
 /// Removes all colours and materials.
 void drop_colours(PolygonSoup& soup);
 

@@ -15,10 +15,11 @@ constexpr std::size_t kMaxCorners = 0xfffffff0u;  // offsets are 32-bit
 
 }  // namespace
 
-std::string Tally::text(const std::string& what, const char* unit) const {
-    std::string out = std::to_string(count) + " " + what + " (" + unit + " ";
-    for (std::size_t i = 0; i < places.size(); ++i) out += (i ? ", " : "") + std::to_string(places[i]);
-    return out + (count > places.size() ? ", ...)" : ")");
+Message Tally::text(const char* what, const char* unit) const {
+    std::string list;
+    for (const long place : places) list += (list.empty() ? "" : ", ") + std::to_string(place);
+    if (count > places.size()) list += ", ...";
+    return Message("{} {} ({} {})", count, what, unit, list);
 }
 
 void SoupBuilder::add_point(const Vec3& p, long place) {
@@ -129,8 +130,8 @@ void SoupBuilder::drop_bad_points() {
     soup.polygon_groups.resize(out);
     if (!soup.corner_uvs.empty()) soup.corner_uvs.resize(out_corner);
     soup.warnings.push_back(
-        bad_rows_.text("vertices are no finite numbers or lie beyond 1e10 and were dropped", unit_) +
-        ", and with them " + std::to_string(dropped) + " faces");
+        Message("{}, and with them {} faces",
+                bad_rows_.text("vertices are no finite numbers or lie beyond 1e10 and were dropped", unit_), dropped));
 }
 
 PolygonSoup SoupBuilder::finish() {
@@ -142,11 +143,10 @@ PolygonSoup SoupBuilder::finish() {
     if (bad_uvs_.count)
         soup.warnings.push_back(bad_uvs_.text("faces have texture coordinates that are not finite", unit_));
     if (no_uv_.count)
-        soup.warnings.push_back(std::to_string(no_uv_.count) + " faces have no texture coordinates while others do");
+        soup.warnings.push_back(Message("{} faces have no texture coordinates while others do", no_uv_.count));
     if (soup.n_polygons() == 0) {
         if (had_polygons) throw Error(file_, "every face uses a vertex that is no finite number or lies beyond 1e10");
-        if (n_points > 0)
-            throw Error(file_, "has " + std::to_string(n_points) + " vertices but no faces; a surface is needed");
+        if (n_points > 0) throw Error(file_, Message("has {} vertices but no faces; a surface is needed", n_points));
         throw Error(file_, "has no vertices and no faces");
     }
     finish_groups();

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/message.h"
 #include "mesh/read/polygon_soup.h"
 
 /// \file
@@ -22,7 +23,7 @@ struct Tally {
         ++count;
     }
     /// "N WHAT (line 3, 8, ...)" with `unit` = "line" or "row".
-    std::string text(const std::string& what, const char* unit) const;
+    Message text(const char* what, const char* unit) const;
 };
 
 class SoupBuilder {

@@ -62,21 +62,22 @@ class FacetColours {
 };
 
 PolygonSoup read_binary(const std::vector<char>& bytes, const std::string& file) {
-    if (bytes.size() < kHead)
-        throw Error(file, "is too short to be an STL file (" + std::to_string(bytes.size()) + " bytes)");
+    if (bytes.size() < kHead) throw Error(file, Message("is too short to be an STL file ({} bytes)", bytes.size()));
     const std::size_t promised = count_in_head(bytes);
     const std::size_t held = (bytes.size() - kHead) / kTriangle;
     SoupBuilder builder(file, "triangle");
     std::size_t n = promised;
     if (promised == 0 && held > 0 && (bytes.size() - kHead) % kTriangle == 0) {
-        builder.soup.warnings.push_back("the head says 0 triangles, the file holds " + std::to_string(held));
+        builder.soup.warnings.push_back(Message("the head says 0 triangles, the file holds {}", held));
         n = held;
     } else if (promised > held) {
-        throw Error(file, "the head promises " + std::to_string(promised) + " triangles, but the file holds only " +
-                              std::to_string(held) + "; it is cut off or not an STL file");
+        throw Error(
+            file,
+            Message("the head promises {} triangles, but the file holds only {}; it is cut off or not an STL file",
+                    promised, held));
     } else if (kHead + promised * kTriangle != bytes.size()) {
-        builder.soup.warnings.push_back(std::to_string(bytes.size() - kHead - promised * kTriangle) +
-                                        " bytes behind the last triangle are not read");
+        builder.soup.warnings.push_back(
+            Message("{} bytes behind the last triangle are not read", bytes.size() - kHead - promised * kTriangle));
     }
     builder.soup.points.reserve(3 * n);
     builder.soup.corners.reserve(3 * n);
@@ -129,7 +130,7 @@ PolygonSoup read_text(const std::vector<char>& bytes, const std::string& file) {
         } else if (same_word(key, "endsolid")) {
             in_solid = false;
         } else if (!same_word(key, "facet") && !same_word(key, "endfacet")) {
-            text.fail(in_quotes(key) + " is not an STL keyword");
+            text.fail(Message("{} is not an STL keyword", in_quotes(key)));
         }
     }
     if (in_loop || in_solid) text.fail("the file ends inside a solid; it is cut off (no endsolid)");

@@ -29,7 +29,7 @@ TextCursor::TextCursor(std::span<const char> text, std::string file, Syntax synt
     if (text.size() >= 3 && std::string_view(at_, 3) == "\xEF\xBB\xBF") at_ += 3;
 }
 
-void TextCursor::fail(const std::string& what) const {
+void TextCursor::fail(const Message& what) const {
     throw Error(file_, line_, what);
 }
 
@@ -106,7 +106,7 @@ std::string_view TextCursor::rest() {
 }
 
 double TextCursor::number(const char* what) {
-    if (!more()) fail(std::string("the line ends where ") + what + " should be");
+    if (!more()) fail(Message("the line ends where {} should be", what));
     const char* begin = at_;
     const char* p = *begin == '+' ? begin + 1 : begin;
     double value = 0;
@@ -118,7 +118,7 @@ double TextCursor::number(const char* what) {
         // Old Windows programs write 1.#QNAN, -1.#IND and 1.#INF.
         if (ec == std::errc() && token.find(".#") != token.npos) return std::numeric_limits<double>::quiet_NaN();
         const bool comment_follows = ec == std::errc() && *stop == syntax_.comment;
-        if (!comment_follows) fail(in_quotes(token) + " is not a number (" + what + " was expected)");
+        if (!comment_follows) fail(Message("{} is not a number ({} was expected)", in_quotes(token), what));
         at_ = stop;
     }
     const std::string_view spelled(begin, static_cast<std::size_t>(stop - begin));
@@ -133,7 +133,7 @@ double TextCursor::number(const char* what) {
 std::int64_t TextCursor::integer(const char* what) {
     const double value = number(what);
     if (!(std::abs(value) <= 9e15) || value != std::floor(value))
-        fail(std::string("a whole number was expected for ") + what);
+        fail(Message("a whole number was expected for {}", what));
     return static_cast<std::int64_t>(value);
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/message.h"
+
 /// \file
 /// Tokeniser for text model files. It reads token by token and line by line, and knows the line number for
 /// messages. Used by the readers of `mesh`.
@@ -49,7 +51,7 @@ class TextCursor {
     std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
     const char* position() const { return at_; }
     /// Throws `Error` with file and line.
-    [[noreturn]] void fail(const std::string& what) const;
+    [[noreturn]] void fail(const Message& what) const;
 
   private:
     void skip_blanks();

@@ -125,25 +125,27 @@ MeshSummary summarise(const Surface& surface, double metres_per_unit) {
     return s;
 }
 
-std::vector<std::string> describe_defects(const RepairReport& r) {
-    std::vector<std::string> lines;
+std::vector<Message> describe_defects(const RepairReport& r) {
+    std::vector<Message> lines;
     const auto tell = [&](std::size_t n, const char* one, const char* many) {
-        if (n) lines.push_back(count_text(n, one, many));
+        if (n) lines.push_back(Message(n == 1 ? one : many, n));
     };
     // Triangles without shared vertices are the way of STL, not a defect.
     if (!r.loose_triangles)
-        tell(r.vertices_welded, "vertex lay on another one: welded", "vertices lay on others: welded");
-    tell(r.crack_vertices_welded, "vertex lay next to another one across a crack: welded",
-         "vertices lay next to others across cracks: welded");
-    tell(r.unused_vertices_dropped, "vertex is used by no face: dropped", "vertices are used by no face: dropped");
-    tell(r.degenerate_faces_dropped, "face without an area: dropped", "faces without an area: dropped");
-    tell(r.degenerate_faces_repaired, "face with a corner on its opposite side: mended by a flip",
-         "faces with a corner on their opposite side: mended by flips");
-    tell(r.duplicate_faces_dropped, "face is there twice: dropped", "faces are there twice: dropped");
-    tell(r.non_manifold_edges_split, "edge with more than two faces: split", "edges with more than two faces: split");
-    tell(r.non_manifold_vertices_split, "vertex where separate surfaces touch: split",
-         "vertices where separate surfaces touch: split");
-    tell(r.faces_flipped, "face showed its back: turned round", "faces showed their backs: turned round");
+        tell(r.vertices_welded, "{} vertex lay on another one: welded", "{} vertices lay on others: welded");
+    tell(r.crack_vertices_welded, "{} vertex lay next to another one across a crack: welded",
+         "{} vertices lay next to others across cracks: welded");
+    tell(r.unused_vertices_dropped, "{} vertex is used by no face: dropped",
+         "{} vertices are used by no face: dropped");
+    tell(r.degenerate_faces_dropped, "{} face without an area: dropped", "{} faces without an area: dropped");
+    tell(r.degenerate_faces_repaired, "{} face with a corner on its opposite side: mended by a flip",
+         "{} faces with a corner on their opposite side: mended by flips");
+    tell(r.duplicate_faces_dropped, "{} face is there twice: dropped", "{} faces are there twice: dropped");
+    tell(r.non_manifold_edges_split, "{} edge with more than two faces: split",
+         "{} edges with more than two faces: split");
+    tell(r.non_manifold_vertices_split, "{} vertex where separate surfaces touch: split",
+         "{} vertices where separate surfaces touch: split");
+    tell(r.faces_flipped, "{} face showed its back: turned round", "{} faces showed their backs: turned round");
     lines.insert(lines.end(), r.warnings.begin(), r.warnings.end());
     return lines;
 }
@@ -174,9 +176,9 @@ std::vector<std::string> describe(const MeshSummary& s) {
     lines.push_back("unit: " + s.unit.sentence);
     if (std::abs(s.unit.metres_per_unit / s.metres_per_unit - 1) > 1e-9)
         lines.push_back("warning: it was loaded with another unit; check --unit");
-    const std::vector<std::string> defects = describe_defects(r);
+    const std::vector<Message> defects = describe_defects(r);
     if (defects.empty()) lines.push_back("no defects");
-    for (const std::string& d : defects) lines.push_back("repaired: " + d);
+    for (const Message& d : defects) lines.push_back("repaired: " + d.text());
     return lines;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "mesh/repair/repair.h"
 
 /// \file
@@ -45,7 +46,7 @@ MeshSummary summarise(const Surface& surface, double metres_per_unit);
 
 /// Returns the defects of the file and their repairs, one line each; empty for a sound mesh. Holes and several
 /// components are no defects: `describe` reports them.
-std::vector<std::string> describe_defects(const RepairReport& report);
+std::vector<Message> describe_defects(const RepairReport& report);
 
 /// Returns the whole summary for people, one line each, lengths in millimetres.
 std::vector<std::string> describe(const MeshSummary& summary);

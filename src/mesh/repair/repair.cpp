@@ -33,8 +33,7 @@ void check_soup(const PolygonSoup& soup) {
     for (const std::uint32_t part : soup.polygon_parts)
         if (part >= soup.scene->parts.size()) throw Error("a polygon is in a part that does not exist");
     for (const std::uint32_t c : soup.corners)
-        if (c >= soup.points.size())
-            throw Error("a polygon uses point " + std::to_string(c) + " of " + std::to_string(soup.points.size()));
+        if (c >= soup.points.size()) throw Error(Message("a polygon uses point {} of {}", c, soup.points.size()));
 }
 
 void check_size(const Box& bounds) {
@@ -134,10 +133,12 @@ void Repair::report_lost_parts(const TriangleMesh& mesh) {
         names += (n > 1 ? ", " : "") + in_quotes(name);
     }
     if (n == 0) return;
-    report_.warnings.push_back(std::to_string(n) + (n == 1 ? " part" : " parts") + " of the file " +
-                               (n == 1 ? "has" : "have") + " no face left (" + names + (n > kMostNames ? ", ..." : "") +
-                               "): all of " + (n == 1 ? "its " : "their ") + std::to_string(n_faces) +
-                               " faces are without an area or lie on faces of other parts");
+    if (n > kMostNames) names += ", ...";
+    report_.warnings.push_back(Message(n == 1 ? "{} part of the file has no face left ({}): all of its {} faces are "
+                                                "without an area or lie on faces of other parts"
+                                              : "{} parts of the file have no face left ({}): all of their {} faces "
+                                                "are without an area or lie on faces of other parts",
+                                       n, names, n_faces));
 }
 
 void Repair::weld() {
@@ -258,9 +259,7 @@ void Repair::make_manifold() {
     report_.faces_flipped += sides.faces_flipped;
     if (sides.edges_cut)
         report_.warnings.push_back(
-            "a part has only one side (like a Möbius strip); it was cut "
-            "open along " +
-            std::to_string(sides.edges_cut) + " edges");
+            Message("a part has only one side (like a Möbius strip); it was cut open along {} edges", sides.edges_cut));
     report_.non_manifold_vertices_split += split_vertices(mesh_);
     if (pairs_.needs_settling || sides.edges_cut) settle(mesh_);
 }

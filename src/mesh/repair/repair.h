@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "core/system/progress.h"
 #include "mesh/read/polygon_soup.h"
 #include "mesh/triangle_mesh.h"
@@ -40,7 +41,7 @@ struct RepairReport {
     std::size_t holes = 0;  ///< border loops
     std::size_t border_edges = 0;
     bool closed = false;
-    std::vector<std::string> warnings;  ///< from the reader and from the repair, one line each
+    std::vector<Message> warnings;  ///< from the reader and from the repair, one line each
 };
 
 struct Surface {

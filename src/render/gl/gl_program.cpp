@@ -18,7 +18,7 @@ GLuint compile(GLenum kind, const std::string& name) {
     if (ok) return shader;
     char log[1024] = "";
     glGetShaderInfoLog(shader, sizeof log, nullptr, log);
-    throw Error("shader " + name + " does not compile: " + log);
+    throw Error(Message("shader {} does not compile: {}", name, log));
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ GLuint make_program(std::string_view name) {
     if (ok) return program;
     char log[1024] = "";
     glGetProgramInfoLog(program, sizeof log, nullptr, log);
-    throw Error("shader program " + std::string(name) + " does not link: " + log);
+    throw Error(Message("shader program {} does not link: {}", std::string(name), log));
 }
 
 }  // namespace tuft::render

@@ -40,8 +40,7 @@ void GlTarget::resize(int width, int height, int samples) {
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw Error("the graphics driver has no room for a picture of " + std::to_string(width) + " x " +
-                    std::to_string(height) + " pixels");
+        throw Error(Message("the graphics driver has no room for a picture of {} x {} pixels", width, height));
 }
 
 void GlTarget::bind() {

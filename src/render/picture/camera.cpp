@@ -14,8 +14,7 @@ namespace {
 void check(const View& view, int width, int height) {
     constexpr int kMaxSide = 16384;
     if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
-        throw Error("picture size " + std::to_string(width) + "x" + std::to_string(height) +
-                    " is not within 1x1 to 16384x16384");
+        throw Error(Message("picture size {}x{} is not within 1x1 to 16384x16384", width, height));
     if (!(view.field_of_view > 0.001 && view.field_of_view < 3))
         throw Error("the field of view must be between 0.06 and 171 degrees");
     if (!std::isfinite(view.azimuth) || !(std::abs(view.elevation) <= std::numbers::pi / 2 + 1e-9))

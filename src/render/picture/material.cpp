@@ -33,8 +33,7 @@ float into_unit(float v) {
 
 void check_map(std::size_t have, std::uint32_t size, const char* name) {
     if (have && have != std::size_t{size} * size)
-        throw Error("the " + std::string(name) + " map has " + std::to_string(have) + " texels instead of " +
-                    std::to_string(size) + " x " + std::to_string(size));
+        throw Error(Message("the {} map has {} texels instead of {} x {}", std::string(name), have, size, size));
 }
 
 }  // namespace
@@ -55,8 +54,8 @@ MaterialReader::MaterialReader(const mesh::TriangleMesh& mesh, const Appearance&
     check_map(maps.roughness.size(), maps.size, "roughness");
     check_map(maps.height.size(), maps.size, "height");
     if (maps.size && maps.corner_uvs.size() != 3 * mesh.n_triangles())
-        throw Error("the texture has " + std::to_string(maps.corner_uvs.size()) + " corner coordinates for a mesh of " +
-                    std::to_string(mesh.n_triangles()) + " triangles");
+        throw Error(Message("the texture has {} corner coordinates for a mesh of {} triangles", maps.corner_uvs.size(),
+                            mesh.n_triangles()));
     const bool porcelain = appearance.finish == Finish::porcelain;
     body_ = appearance.body_colour.value_or(porcelain ? Vec3f{0.86f, 0.857f, 0.845f} : Vec3f{0.37f, 0.275f, 0.21f});
     roughness_ = porcelain ? 0.02f : 0.6f;

@@ -194,8 +194,8 @@ Image render_picture(const mesh::TriangleMesh& mesh, const mesh::SurfaceQuery& q
     constexpr std::int64_t kMostPixels = std::int64_t{40} << 20;  // about 5 GB of buffers
     const Camera camera = make_camera(options.view, options.width, options.height, mesh.positions);
     if (std::int64_t{options.width} * options.height > kMostPixels)
-        throw Error("a picture of " + std::to_string(options.width) + "x" + std::to_string(options.height) +
-                    " is too large; at most 40 million pixels");
+        throw Error(
+            Message("a picture of {}x{} is too large; at most 40 million pixels", options.width, options.height));
     const MaterialReader material(mesh, appearance);
     Scene scene{mesh, query, material,
                 options.lights == Lights::raking ? make_raking_studio(mesh.bounds, {.right = Vec3f(camera.right),

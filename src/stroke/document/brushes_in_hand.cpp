@@ -10,7 +10,7 @@ const BrushInHand* BrushesInHand::find(const std::string& name) const {
 }
 
 BrushInHand BrushesInHand::take_up(const BrushStart& start) const {
-    const BrushInHand* last = start.dip == DipMode::carry ? find(start.name) : nullptr;
+    const BrushInHand* last = start.dip == DipMode::persistent ? find(start.name) : nullptr;
     if (last && last->tuft.preset.spine == start.preset.spine) return *last;
     BrushInHand fresh{brush::make_tuft(start.preset, start.seed), {}, start.ink, start.ink};
     fresh.reservoir = empty_reservoir(fresh.tuft);

@@ -35,8 +35,8 @@ class BrushesInHand {
   public:
     /// Returns the brush as the last entry with it left it; null when it is not held.
     const BrushInHand* find(const std::string& name) const;
-    /// Returns the brush that an entry begins with: with `DipMode::carry` the one held, if its spine is bent by the
-    /// same method; else a fresh one, full of the ink.
+    /// Returns the brush that an entry begins with: with `DipMode::persistent` the one held, if its spine is bent by
+    /// the same method; else a fresh one, full of the ink.
     BrushInHand take_up(const BrushStart& start) const;
     /// The same for a stroke. The brush is washed and dipped anew where the stroke names another ink than the stroke
     /// before and the brush was not dipped into that one.

@@ -35,9 +35,9 @@ void Document::check_layer(const JournalEntry& entry) const {
     if (on_palette(entry)) return;
     const std::uint32_t id = layer_of(entry), mask = mask_of(entry);
     const Layer* layer = layers_.table().find(id);
-    if (!layer) throw Error("there is no layer " + std::to_string(id) + " to paint on");
-    if (mask && !masks_.table().find(mask)) throw Error("there is no mask " + std::to_string(mask));
-    if (layer->locked) throw Error("layer '" + layer->name + "' is locked; unlock it or paint on another one");
+    if (!layer) throw Error(Message("there is no layer {} to paint on", id));
+    if (mask && !masks_.table().find(mask)) throw Error(Message("there is no mask {}", mask));
+    if (layer->locked) throw Error(Message("layer '{}' is locked; unlock it or paint on another one", layer->name));
 }
 
 // A brush that is not held is fresh; the entry says so, for replays that hold it.

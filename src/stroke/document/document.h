@@ -68,9 +68,9 @@ class Document {
     /// brush, ink, layer or mask, a locked layer, a stroke without samples. Throws `Cancelled` when `progress` stops
     /// it; then nothing has changed either.
     ///
-    /// With `DipMode::each` an entry begins with a clean, straight, full brush, with `DipMode::carry` with the brush in
-    /// hand (`BrushesInHand::take_up_for_stroke`). A brush that is not held is fresh: its entry is stored as "each", so
-    /// that a replay is the same.
+    /// With `DipMode::each` an entry begins with a clean, straight, full brush, with `DipMode::persistent` with the
+    /// brush in hand (`BrushesInHand::take_up_for_stroke`). A brush that is not held is fresh: its entry is stored as
+    /// "each", so that a replay is the same.
     StrokeReport paint(JournalEntry entry, const ProgressFn& progress = {});
 
     /// Throws the `Error` of `paint` for a stroke of the model whose brush is too wide for its texels, or which is at

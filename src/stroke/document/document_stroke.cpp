@@ -19,10 +19,10 @@ void check_width(const brush::Preset& preset, double texel) {
     constexpr double kWidest = 2048;  // texels
     const double width = std::max(preset.width, 2 * preset.radius);
     if (width > kWidest * texel)
-        throw Error(
-            fmt::format("the brush is {:.3g} mm wide, {:.0f} texels of this model, more than {:.0f}: use a larger "
-                        "texel size or a smaller brush",
-                        1e3 * width, width / texel, kWidest));
+        throw Error(Message(
+            "the brush is {} mm wide, {} texels of this model, more than {}: use a larger texel size or a "
+            "smaller brush",
+            fmt::format("{:.3g}", 1e3 * width), fmt::format("{:.0f}", width / texel), fmt::format("{:.0f}", kWidest)));
 }
 
 }  // namespace

@@ -27,6 +27,14 @@ bool is_compared(const JournalEntry& entry) {
     return entry.as<PaintStroke>() && !entry.hidden && !on_palette(entry);
 }
 
+std::string tenths(double value) {
+    return fmt::format("{:.1f}", value);
+}
+
+std::string millimetres(double metres) {
+    return fmt::format("{:.3g}", 1e3 * metres);
+}
+
 double median(std::vector<double> values) {
     if (values.empty()) return 0;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -149,30 +157,29 @@ Box placed_bounds(const std::vector<JournalEntry>& entries) {
 
 }  // namespace
 
-std::string size_fault(const std::vector<JournalEntry>& entries,
-                       const std::function<double(const std::string&)>& length_of, const mesh::SurfaceQuery& former,
-                       const mesh::SurfaceQuery& revised) {
+Message size_fault(const std::vector<JournalEntry>& entries, const std::function<double(const std::string&)>& length_of,
+                   const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised) {
     const double before = former.mesh().bounds.diagonal(), now = revised.mesh().bounds.diagonal();
-    if (now >= kTooSmall * before) return "";
+    if (now >= kTooSmall * before) return {};
     const auto longer = longer_than(now, entries, length_of);
-    if (!longer) return "";
-    return fmt::format(
-        "it is {:.3g} mm across, the former model {:.3g} mm; the tuft of {} is {:.3g} mm long, and no stroke "
-        "fits; is its unit another one?",
-        1e3 * now, 1e3 * before, longer->first, 1e3 * longer->second);
+    if (!longer) return {};
+    return Message(
+        "it is {} mm across, the former model {} mm; the tuft of {} is {} mm long, and no stroke fits; is its unit "
+        "another one?",
+        millimetres(now), millimetres(before), longer->first, millimetres(longer->second));
 }
 
-std::string size_fault(const std::vector<JournalEntry>& entries,
-                       const std::function<double(const std::string&)>& length_of, const mesh::SurfaceQuery& model) {
+Message size_fault(const std::vector<JournalEntry>& entries, const std::function<double(const std::string&)>& length_of,
+                   const mesh::SurfaceQuery& model) {
     const Box drawing = placed_bounds(entries);
     const double across = model.mesh().bounds.diagonal();
-    if (drawing.empty() || across >= kTooSmall * drawing.diagonal()) return "";
+    if (drawing.empty() || across >= kTooSmall * drawing.diagonal()) return {};
     const auto longer = longer_than(across, entries, length_of);
-    if (!longer) return "";
-    return fmt::format(
-        "it is {:.3g} mm across, the strokes {:.3g} mm; the tuft of {} is {:.3g} mm long, and most of them meet no "
-        "surface; is its unit another one?",
-        1e3 * across, 1e3 * drawing.diagonal(), longer->first, 1e3 * longer->second);
+    if (!longer) return {};
+    return Message(
+        "it is {} mm across, the strokes {} mm; the tuft of {} is {} mm long, and most of them meet no surface; is its "
+        "unit another one?",
+        millimetres(across), millimetres(drawing.diagonal()), longer->first, millimetres(longer->second));
 }
 
 std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
@@ -195,30 +202,30 @@ std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
     return fits;
 }
 
-std::string mismatch_reason(const StrokeFit& fit) {
-    if (fit.way <= 0) return "";
+Message mismatch_reason(const StrokeFit& fit) {
+    if (fit.way <= 0) return {};
     const auto percent = [&](double part) { return static_cast<int>(std::lround(100 * part / fit.way)); };
     const double far = std::max(kLeastMove, kMovePart * fit.way);
-    std::vector<std::string> reasons;
+    std::vector<Message> reasons;
     // A place in space is the hand's: it moves along the hair only, which the depth shows.
     if (fit.flat && fit.moved > far)
-        reasons.push_back(fmt::format("lies {:.1f} mm from where it lay", 1e3 * fit.moved));
+        reasons.push_back(Message("lies {} mm from where it lay", tenths(1e3 * fit.moved)));
     if (fit.slid && *fit.slid > far)
-        reasons.push_back(fmt::format("lies {:.1f} mm from its place on the model", 1e3 * *fit.slid));
+        reasons.push_back(Message("lies {} mm from its place on the model", tenths(1e3 * *fit.slid)));
     const bool sank = std::abs(fit.deeper) > std::max(kLeastChange, kDepthPart * fit.depth);
     // A surface that sank loses the light ends of a stroke too: that it sank says more.
     const double least = (sank ? kMost : kPart) * fit.way;
     if (fit.lost > least && fit.lost >= fit.buried)
-        reasons.push_back(fmt::format("{} % of it touches nothing", percent(fit.lost)));
+        reasons.push_back(Message("{} % of it touches nothing", percent(fit.lost)));
     else if (fit.buried > least)
-        reasons.push_back(fmt::format("{} % of it lies inside the model", percent(fit.buried)));
+        reasons.push_back(Message("{} % of it lies inside the model", percent(fit.buried)));
     else if (sank)
-        reasons.push_back(
-            fmt::format("pressed {:.1f} mm {}", 1e3 * std::abs(fit.deeper), fit.deeper > 0 ? "deeper" : "less deep"));
+        reasons.push_back(Message(fit.deeper > 0 ? "pressed {} mm deeper" : "pressed {} mm less deep",
+                                  tenths(1e3 * std::abs(fit.deeper))));
     if (fit.stretched > kPart * fit.way)
         reasons.push_back(
-            fmt::format("{} % of it is stretched or squeezed by more than a quarter", percent(fit.stretched)));
-    return fmt::format("{}", fmt::join(reasons, "; "));
+            Message("{} % of it is stretched or squeezed by more than a quarter", percent(fit.stretched)));
+    return join(reasons);
 }
 
 std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& reports,
@@ -227,11 +234,11 @@ std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& rep
     for (const StrokeReport& report : reports) {
         const auto fit =
             std::find_if(fits.begin(), fits.end(), [&](const StrokeFit& f) { return f.stroke == report.stroke_id; });
-        std::string reason;
+        Message reason;
         if (fit != fits.end() && (report.touched() || !fit->reached))
             reason = mismatch_reason(*fit);
         else if (!report.touched())
-            reason = fmt::format("touches nothing, {:.1f} mm away", 1e3 * report.nearest);
+            reason = Message("touches nothing, {} mm away", tenths(1e3 * report.nearest));
         if (!reason.empty()) found.push_back({report.stroke_id, std::move(reason)});
     }
     return found;
@@ -256,14 +263,14 @@ FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMi
     return total;
 }
 
-std::string describe(const FitTotal& t) {
-    const std::string on_model =
-        t.slid ? fmt::format(" and {:.1f} mm from their places on the model", 1e3 * *t.slid) : "";
-    return fmt::format(
-        "{} of {} strokes no longer fit: they lie {:.1f} mm from where they lay ({:.1f} mm at "
-        "most){}, {:.0f} % of their ink is missing, {:.0f} % of it is "
-        "stretched or squeezed by more than a quarter",
-        t.mismatches, t.strokes, 1e3 * t.moved, 1e3 * t.moved_most, on_model, 100 * t.missing, 100 * t.stretched);
+Message describe(const FitTotal& t) {
+    const Message on_model =
+        t.slid ? Message(" and {} mm from their places on the model", tenths(1e3 * *t.slid)) : Message();
+    return Message(
+        "{} of {} strokes no longer fit: they lie {} mm from where they lay ({} mm at most){}, {} % of their ink is "
+        "missing, {} % of it is stretched or squeezed by more than a quarter",
+        t.mismatches, t.strokes, tenths(1e3 * t.moved), tenths(1e3 * t.moved_most), on_model,
+        std::lround(100 * t.missing), std::lround(100 * t.stretched));
 }
 
 }  // namespace tuft::stroke

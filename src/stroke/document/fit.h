@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "mesh/query/surface_query.h"
 #include "stroke/document/document.h"
 #include "stroke/journal/model_motion.h"
@@ -39,20 +40,19 @@ struct StrokeFit {
     double missing() const { return way > 0 ? (lost + buried) / way : 0; }
 };
 
-/// Returns why a revised model is too small to be painted on, as a sentence for people; "" where it is not. Too small:
-/// the diagonal of its box is less than a quarter of the former one and less than the length of a tuft that painted.
-/// Each stamp would then reach the whole model, a thousand times the work, and nothing would fit. `length_of` returns
-/// the tuft length of a brush, metres. Hidden strokes and those on the palette do not count.
-std::string size_fault(const std::vector<JournalEntry>& entries,
-                       const std::function<double(const std::string& brush)>& length_of,
-                       const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised);
+/// Returns why a revised model is too small to be painted on, as a sentence for people; empty where it is not. Too
+/// small: the diagonal of its box is less than a quarter of the former one and less than the length of a tuft that
+/// painted. Each stamp would then reach the whole model, a thousand times the work, and nothing would fit. `length_of`
+/// returns the tuft length of a brush, metres. Hidden strokes and those on the palette do not count.
+Message size_fault(const std::vector<JournalEntry>& entries,
+                   const std::function<double(const std::string& brush)>& length_of, const mesh::SurfaceQuery& former,
+                   const mesh::SurfaceQuery& revised);
 
 /// The same of new strokes, which have no former model: it is too small where its diagonal is less than a quarter of
 /// the drawing's, all flat strokes together where they are placed, and less than the length of a tuft that paints them.
 /// What is in space says by itself where it is, and counts for nothing.
-std::string size_fault(const std::vector<JournalEntry>& entries,
-                       const std::function<double(const std::string& brush)>& length_of,
-                       const mesh::SurfaceQuery& model);
+Message size_fault(const std::vector<JournalEntry>& entries,
+                   const std::function<double(const std::string& brush)>& length_of, const mesh::SurfaceQuery& model);
 
 /// Compares two models along strokes. At each sample of a stroke in space, rays from the ferrule's mouth along its
 /// axis, one tuft length to both sides, find the surfaces; flat strokes are mapped onto both models. `length_of`
@@ -63,18 +63,18 @@ std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
                                    const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
                                    const std::optional<ModelMotion>& motion = {});
 
-/// Returns why a stroke no longer fits, as a sentence for people; "" where it fits. It does not fit if
+/// Returns why a stroke no longer fits, as a sentence for people; empty where it fits. It does not fit if
 /// - more than 10 % of its path have no ink, or
 /// - in space, its depth changed by more than half and by more than 0.2 mm, or
 /// - it moved (flat, or relative to a model moved as a whole) by more than 1 mm and by more than 1 % of its path: the
 ///   width of a fine brush's line, and more than another triangulation moves it, or
 /// - more than 10 % of its path are longer or shorter by more than a quarter.
-std::string mismatch_reason(const StrokeFit& fit);
+Message mismatch_reason(const StrokeFit& fit);
 
 /// A stroke that does not fit a revised model.
 struct StrokeMismatch {
     std::uint64_t stroke = 0;  ///< id of its entry
-    std::string reason;        ///< English, for people
+    Message reason;            ///< for people
 };
 /// Returns the mismatches of a replay on the revised model, in the journal's order: strokes that touched nothing, and
 /// those with a `mismatch_reason`.
@@ -92,6 +92,6 @@ FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMi
 
 /// Returns the fit as a sentence: "12 of 40 strokes no longer fit: they lie 20.0 mm from where they lay (31.2 mm at
 /// most), 4 % of their ink is missing, 0 % of it is stretched or squeezed by more than a quarter".
-std::string describe(const FitTotal& total);
+Message describe(const FitTotal& total);
 
 }  // namespace tuft::stroke

@@ -12,7 +12,7 @@ namespace tuft::stroke {
 
 const Layer& LayerStack::layer(std::uint32_t id) const {
     const Layer* layer = table_.find(id);
-    if (!layer) throw Error("there is no layer " + std::to_string(id));
+    if (!layer) throw Error(Message("there is no layer {}", id));
     return *layer;
 }
 

@@ -8,7 +8,7 @@ namespace tuft::stroke {
 
 const MaskTexels& MaskSet::texels(std::uint32_t id) const {
     const Mask* mask = table_.find(id);
-    if (!mask) throw Error("there is no mask " + std::to_string(id));
+    if (!mask) throw Error(Message("there is no mask {}", id));
     const auto found = texels_.find(id);
     if (found != texels_.end()) return found->second;
     return texels_.emplace(id, evaluate(*mask, table_, *model_)).first->second;

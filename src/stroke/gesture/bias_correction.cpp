@@ -252,8 +252,8 @@ glm::dmat2 fit_linear(std::span<const Pair> pairs) {
 
 BiasCorrection learn_bias(std::span<const RecordedStroke> intended, std::span<const RecordedStroke> written) {
     if (intended.size() != written.size())
-        throw Error("a bias correction is learned from pairs, but " + std::to_string(intended.size()) +
-                    " strokes are intended and " + std::to_string(written.size()) + " written");
+        throw Error(Message("a bias correction is learned from pairs, but {} strokes are intended and {} written",
+                            intended.size(), written.size()));
     if (written.empty()) throw Error("there are no strokes to learn a bias from");
     for (const auto& traces : {intended, written})
         for (const RecordedStroke& t : traces)

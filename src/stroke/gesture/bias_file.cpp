@@ -35,7 +35,7 @@ struct Field {
     const std::string& source;  ///< name of the file
     std::string key;
 
-    [[noreturn]] void fail(const std::string& what) const {
+    [[noreturn]] void fail(const Message& what) const {
         throw Error(source, static_cast<long>(node.source().begin.line), what);
     }
 };
@@ -47,14 +47,15 @@ struct Range {
 void read_number(const Field& field, double& out, const Range& range) {
     const auto v = field.node.value<double>();
     if (!field.node.is_number() || !v || !(*v >= range.lo && *v <= range.hi))
-        field.fail(fmt::format("'{}' has a value that is no number from {} to {}", field.key, range.lo, range.hi));
+        field.fail(Message("'{}' has a value that is no number from {} to {}", field.key, fmt::format("{}", range.lo),
+                           fmt::format("{}", range.hi)));
     out = *v * range.unit;
 }
 
 void read_row(const Field& field, std::span<double> out, const Range& range) {
     const toml::array* row = field.node.as_array();
     if (!row || row->size() != out.size())
-        field.fail(fmt::format("'{}' must be a row of {} numbers", field.key, out.size()));
+        field.fail(Message("'{}' must be a row of {} numbers", field.key, out.size()));
     for (std::size_t i = 0; i < out.size(); ++i) read_number({*row->get(i), field.source, field.key}, out[i], range);
 }
 
@@ -87,7 +88,7 @@ BiasPiece read_piece(const toml::table& table, const std::string& source) {
         } else if (name == "tilt_change_deg") {
             read_row(field, p.tilt_change, {.lo = -360, .hi = 360, .unit = kDegree});
         } else {
-            field.fail("unknown key '" + name + "' in a piece of a bias correction");
+            field.fail(Message("unknown key '{}' in a piece of a bias correction", name));
         }
     }
     return p;
@@ -135,7 +136,7 @@ BiasCorrection parse_bias(std::string_view text, const std::string& source) {
             for (const toml::node& piece : *node.as_array())
                 bias.pieces.push_back(read_piece(*piece.as_table(), source));
         } else {
-            field.fail("unknown key '" + field.key + "' in a bias correction");
+            field.fail(Message("unknown key '{}' in a bias correction", field.key));
         }
     }
     return bias;

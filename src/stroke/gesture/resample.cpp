@@ -125,8 +125,8 @@ Pose beyond(const Pose& a, const Pose& b) {
 }
 
 [[noreturn]] void refuse_length(const ResampleOptions& o) {
-    throw Error(fmt::format("the stroke is too long for this model: more than {} steps of {:.3g} mm", o.max_poses,
-                            1e3 * o.step));
+    throw Error(Message("the stroke is too long for this model: more than {} steps of {} mm", o.max_poses,
+                        fmt::format("{:.3g}", 1e3 * o.step)));
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ void append_entries(std::vector<JournalEntry>& entries, std::vector<RecordedStro
         const DipMode dip = settings.dip;
         for (const Preparation& preparation : preparations_of(recorded, entries, options)) {
             entries.emplace_back().content = prepared(preparation, recorded, settings);
-            if (std::holds_alternative<BrushAction>(preparation)) settings.dip = DipMode::carry;
+            if (std::holds_alternative<BrushAction>(preparation)) settings.dip = DipMode::persistent;
         }
         if (recorded.samples.empty()) continue;
         if (recorded.settings) settings.dip = dip;

@@ -66,9 +66,9 @@ std::string name_of(EntryKind kind) {
 EntryKind entry_kind_of(const std::string& name) {
     const auto at = std::find(std::begin(kEntryKinds), std::end(kEntryKinds), name);
     if (at != std::end(kEntryKinds)) return static_cast<EntryKind>(at - std::begin(kEntryKinds));
-    throw Error(
-        "'" + excerpt(name) +
-        "' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe and wash");
+    throw Error(Message(
+        "'{}' is no action of a brush; there are stroke, dip, rinse, reshape, dry, layer, mask, fill, wipe and wash",
+        excerpt(name)));
 }
 
 EntryKind entry_kind_of(BrushActionKind kind) {
@@ -89,7 +89,7 @@ BrushActionKind brush_action_of(EntryKind kind) {
     for (const BrushActionKind action :
          {BrushActionKind::dip, BrushActionKind::wipe, BrushActionKind::rinse, BrushActionKind::reshape})
         if (entry_kind_of(action) == kind) return action;
-    throw Error("'" + name_of(kind) + "' is nothing that is done with a brush alone");
+    throw Error(Message("'{}' is nothing that is done with a brush alone", name_of(kind)));
 }
 
 bool has_brush(EntryKind kind) {
@@ -152,7 +152,7 @@ std::vector<std::string> inks_of(const JournalEntry& entry) {
 
 void check_seconds(double seconds) {
     if (!(seconds >= 0 && seconds <= kLongestWait))
-        throw Error("ink dries for 0 to " + std::to_string(static_cast<int>(kLongestWait)) + " seconds");
+        throw Error(Message("ink dries for 0 to {} seconds", static_cast<int>(kLongestWait)));
 }
 
 void check_extent(const Extent& e, BrushActionKind kind) {

@@ -22,7 +22,7 @@ json parsed(const std::string& text) {
     try {
         return json::parse(text);
     } catch (const json::exception&) {
-        throw Error("the settings of a stroke cannot be read: " + excerpt(text, 80));
+        throw Error(Message("the settings of a stroke cannot be read: {}", excerpt(text, 80)));
     }
 }
 
@@ -54,7 +54,7 @@ std::uint32_t table_id_of(const json& j, const char* key, std::uint32_t otherwis
     const auto value = j.find(key);
     if (value == j.end()) return otherwise;
     if (!value->is_number_unsigned() || value->get<std::uint64_t>() >= kPaletteLayer)
-        throw Error(std::string("the ") + key + " of a journal's entry cannot be read");
+        throw Error(Message("the {} of a journal's entry cannot be read", key));
     return value->get<std::uint32_t>();
 }
 
@@ -63,7 +63,7 @@ std::uint32_t layer_in(const json& j) {
     const auto on = j.find("on");
     if (on == j.end()) return layer;
     if (*on != "palette" && *on != "model")
-        throw Error("a stroke is on the palette or the model, not on " + excerpt(on->dump(), 40));
+        throw Error(Message("a stroke is on the palette or the model, not on {}", excerpt(on->dump(), 40)));
     return *on == "palette" ? kPaletteLayer : layer;
 }
 
@@ -71,7 +71,7 @@ Tool tool_in(const json& j) {
     const auto tool = j.find("tool");
     if (tool == j.end()) return Tool::brush;
     if (*tool != "eraser" && *tool != "brush")
-        throw Error("the tool of a stroke is brush or eraser, not " + excerpt(tool->dump(), 40));
+        throw Error(Message("the tool of a stroke is brush or eraser, not {}", excerpt(tool->dump(), 40)));
     return *tool == "eraser" ? Tool::eraser : Tool::brush;
 }
 

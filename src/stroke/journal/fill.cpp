@@ -22,7 +22,7 @@ Word word_of(const std::string& name, const char* const (&words)[N], const char*
         if (name == words[i]) return static_cast<Word>(i);
         all += std::string(i ? ", " : "") + words[i];
     }
-    throw Error("'" + name + "' is no " + what + "; there are " + all);
+    throw Error(Message("'{}' is no {}; there are {}", name, what, all));
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ Fill fill_of(const nlohmann::json& j) {
             f.to = vector_of(j.at("to"));
         }
     } catch (const nlohmann::json::exception&) {
-        throw Error("a fill cannot be read: " + j.dump().substr(0, 80));
+        throw Error(Message("a fill cannot be read: {}", j.dump().substr(0, 80)));
     }
     check_fill(f);
     return f;

@@ -14,7 +14,7 @@ constexpr const char* kChanges[] = {"add", "change", "remove", "duplicate", "mer
 template <class Table>
 auto place_of(Table& table, std::uint32_t id) {
     const auto at = std::find_if(table.layers.begin(), table.layers.end(), [id](const Layer& l) { return l.id == id; });
-    if (at == table.layers.end()) throw Error("there is no layer " + std::to_string(id));
+    if (at == table.layers.end()) throw Error(Message("there is no layer {}", id));
     return at;
 }
 
@@ -22,27 +22,27 @@ void check_layer(const LayerTable& table, const Layer& layer) {
     check_name(layer.name, "layer");
     if (!(layer.opacity >= 0 && layer.opacity <= 1)) throw Error("the opacity of a layer is 0 to 1");
     const Layer* same = table.find(layer.name);
-    if (same && same->id != layer.id) throw Error("there is a layer '" + layer.name + "' already");
+    if (same && same->id != layer.id) throw Error(Message("there is a layer '{}' already", layer.name));
 }
 
 }  // namespace
 
 void check_name(std::string_view name, const char* of_what) {
-    const std::string what = std::string("the name of a ") + of_what;
-    if (name.empty()) throw Error(what + " is empty");
-    if (name.size() > kMaxNameBytes) throw Error(what + " is longer than " + std::to_string(kMaxNameBytes) + " bytes");
+    const Message what("the name of a {}", of_what);
+    if (name.empty()) throw Error(Message("{} is empty", what));
+    if (name.size() > kMaxNameBytes) throw Error(Message("{} is longer than {} bytes", what, kMaxNameBytes));
     int following = 0;  // bytes of a UTF-8 sequence still to come
     for (const char c : name) {
         const auto b = static_cast<unsigned char>(c);
         const bool continues = (b & 0xc0) == 0x80;
         if (continues != (following > 0) || b < 0x20 || b == 0x7f || b > 0xf4)
-            throw Error(what + " is no readable text");
+            throw Error(Message("{} is no readable text", what));
         if (continues)
             --following;
         else
             following = b >= 0xf0 ? 3 : b >= 0xe0 ? 2 : b >= 0xc0 ? 1 : 0;
     }
-    if (following > 0) throw Error(what + " is no readable text");
+    if (following > 0) throw Error(Message("{} is no readable text", what));
 }
 
 const Layer* LayerTable::find(std::uint32_t id) const {
@@ -68,12 +68,11 @@ void apply(LayerTable& table, const LayerEdit& edit) {
     check_layer(table, edit.layer);
     if (edit.what == LayerChange::add || edit.what == LayerChange::duplicate) {
         if (edit.what == LayerChange::duplicate) place_of(table, edit.other);
-        if (layers.size() >= kMaxLayers)
-            throw Error("a painting has at most " + std::to_string(kMaxLayers) + " layers");
+        if (layers.size() >= kMaxLayers) throw Error(Message("a painting has at most {} layers", kMaxLayers));
         Layer layer = edit.layer;
         if (layer.id == 0) layer.id = table.next_id;
         if (layer.id < table.next_id || layer.id >= kPaletteLayer)
-            throw Error("layer " + std::to_string(layer.id) + " cannot be added again");
+            throw Error(Message("layer {} cannot be added again", layer.id));
         if (edit.place > layers.size()) throw Error("a layer's place is beyond the highest one");
         table.next_id = layer.id + 1;
         layers.insert(layers.begin() + edit.place, std::move(layer));
@@ -92,13 +91,13 @@ LayerEdit add_on_top(const LayerTable& table, const std::string& name) {
 
 LayerEdit changed(const LayerTable& table, const Layer& layer) {
     const Layer* at = table.find(layer.id);
-    if (!at) throw Error("there is no layer " + std::to_string(layer.id));
+    if (!at) throw Error(Message("there is no layer {}", layer.id));
     return {LayerChange::change, layer, static_cast<std::uint32_t>(at - table.layers.data())};
 }
 
 LayerEdit moved(const LayerTable& table, std::uint32_t id, std::uint32_t place) {
     const Layer* at = table.find(id);
-    if (!at) throw Error("there is no layer " + std::to_string(id));
+    if (!at) throw Error(Message("there is no layer {}", id));
     return {LayerChange::change, *at, place};
 }
 
@@ -119,21 +118,27 @@ LayerEdit duplicated(const LayerTable& table, std::uint32_t id, const std::strin
 LayerEdit merged_down(const LayerTable& table, std::uint32_t id) {
     const Layer& upper = *place_of(table, id);
     if (&upper == table.layers.data())
-        throw Error("layer '" + upper.name + "' is the lowest: there is none to merge it into");
+        throw Error(Message("layer '{}' is the lowest: there is none to merge it into", upper.name));
     const Layer& lower = *(&upper - 1);
     for (const Layer* layer : {&upper, &lower}) {
-        const std::string what = "layer '" + layer->name + "' is ";
-        if (!layer->visible) throw Error(what + "hidden; show it before layers are merged");
-        if (layer->locked) throw Error(what + "locked; unlock it before layers are merged");
+        if (!layer->visible)
+            throw Error(Message("layer '{}' is hidden; show it before layers are merged", layer->name));
+        if (layer->locked)
+            throw Error(Message("layer '{}' is locked; unlock it before layers are merged", layer->name));
         if (layer->opacity < 1)
-            throw Error(what + "faded, which one layer of ink cannot show; give it opacity 1 before layers are merged");
+            throw Error(Message(
+                "layer '{}' is faded, which one layer of ink cannot show; give it opacity 1 before layers are merged",
+                layer->name));
         if (layer->blend == ink::Blend::multiply)
-            throw Error(what +
-                        "multiplied, which one layer of ink cannot show; blend it normally before layers are merged");
+            throw Error(
+                Message("layer '{}' is multiplied, which one layer of ink cannot show; blend it normally before layers "
+                        "are merged",
+                        layer->name));
     }
     if (upper.blend != lower.blend)
-        throw Error("layers '" + upper.name + "' and '" + lower.name +
-                    "' blend differently; make both normal or both glaze before they are merged");
+        throw Error(
+            Message("layers '{}' and '{}' blend differently; make both normal or both glaze before they are merged",
+                    upper.name, lower.name));
     return {LayerChange::merge, Layer{.id = id}, 0, lower.id};
 }
 
@@ -158,7 +163,7 @@ nlohmann::json json_of(const LayerEdit& edit) {
 
 std::uint32_t number_of(const nlohmann::json& json, const char* name) {
     if (!json.is_number_unsigned() || json.get<std::uint64_t>() >= kNone)
-        throw Error(std::string(name) + " is no whole number in range");
+        throw Error(Message("{} is no whole number in range", std::string(name)));
     return static_cast<std::uint32_t>(json.get<std::uint64_t>());
 }
 
@@ -167,7 +172,7 @@ LayerEdit layer_edit_of(const nlohmann::json& j) {
     try {
         const std::string what = j.at("what").get<std::string>();
         const auto at = std::find(std::begin(kChanges), std::end(kChanges), what);
-        if (at == std::end(kChanges)) throw Error("'" + what + "' is no change of a layer");
+        if (at == std::end(kChanges)) throw Error(Message("'{}' is no change of a layer", what));
         edit.what = static_cast<LayerChange>(at - std::begin(kChanges));
         const auto whole = [&j](const char* key) {
             return number_of(j.at(key), (std::string("the ") + key + " of a layer").c_str());
@@ -177,7 +182,7 @@ LayerEdit layer_edit_of(const nlohmann::json& j) {
         if (edit.what == LayerChange::remove || edit.what == LayerChange::merge) return edit;
         const std::string blend = j.value("blend", "normal");
         const std::optional<ink::Blend> known = ink::blend_of(blend);
-        if (!known) throw Error("'" + blend + "' is no blend of a layer");
+        if (!known) throw Error(Message("'{}' is no blend of a layer", blend));
         edit.layer.blend = *known;
         edit.layer.name = j.at("name").get<std::string>();
         edit.layer.visible = j.at("visible").get<bool>();
@@ -185,7 +190,7 @@ LayerEdit layer_edit_of(const nlohmann::json& j) {
         edit.layer.locked = j.at("locked").get<bool>();
         edit.place = whole("place");
     } catch (const nlohmann::json::exception&) {
-        throw Error("a change of the layers cannot be read: " + j.dump().substr(0, 80));
+        throw Error(Message("a change of the layers cannot be read: {}", j.dump().substr(0, 80)));
     }
     return edit;
 }

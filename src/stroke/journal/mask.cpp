@@ -23,7 +23,7 @@ void check_view(const LassoView& v) {
 
 void check_mask(const MaskTable& table, const Mask& m) {
     check_name(m.name, "mask");
-    if (table.find(m.name)) throw Error("there is a mask '" + m.name + "' already");
+    if (table.find(m.name)) throw Error(Message("there is a mask '{}' already", m.name));
     if (m.points.size() + m.polygon.size() + m.groups.size() + m.of.size() > kMaxPoints)
         throw Error("a mask has too many points");
     for (const Vec3& p : m.points)
@@ -44,9 +44,9 @@ void check_mask(const MaskTable& table, const Mask& m) {
     }
     const bool of_masks = m.kind == MaskKind::invert || m.kind == MaskKind::intersect || m.kind == MaskKind::unite;
     if (of_masks && (m.of.empty() || (m.kind == MaskKind::invert && m.of.size() != 1)))
-        throw Error("a mask made of masks needs " + std::string(m.kind == MaskKind::invert ? "one" : "some"));
+        throw Error(m.kind == MaskKind::invert ? "a mask made of a mask needs one" : "a mask made of masks needs some");
     for (const std::uint32_t id : m.of)
-        if (!table.find(id)) throw Error("there is no mask " + std::to_string(id));
+        if (!table.find(id)) throw Error(Message("there is no mask {}", id));
 }
 
 }  // namespace
@@ -58,7 +58,8 @@ std::string name_of(MaskKind kind) {
 MaskKind mask_kind_of(const std::string& name) {
     for (int i = 0; i <= static_cast<int>(MaskKind::unite); ++i)
         if (name == kMaskKinds[i]) return static_cast<MaskKind>(i);
-    throw Error("'" + name + "' is no kind of mask; there are group, angle, chart, lasso, invert, intersect and unite");
+    throw Error(
+        Message("'{}' is no kind of mask; there are group, angle, chart, lasso, invert, intersect and unite", name));
 }
 
 const Mask* MaskTable::find(std::uint32_t id) const {
@@ -74,10 +75,10 @@ const Mask* MaskTable::find(std::string_view name) const {
 void apply(MaskTable& table, const MaskEdit& edit) {
     if (edit.remove) {
         const Mask* at = table.find(edit.mask.id);
-        if (!at) throw Error("there is no mask " + std::to_string(edit.mask.id));
+        if (!at) throw Error(Message("there is no mask {}", edit.mask.id));
         for (const Mask& m : table.masks)
             if (std::find(m.of.begin(), m.of.end(), edit.mask.id) != m.of.end())
-                throw Error("mask '" + at->name + "' is part of mask '" + m.name + "'");
+                throw Error(Message("mask '{}' is part of mask '{}'", at->name, m.name));
         table.masks.erase(table.masks.begin() + (at - table.masks.data()));
         return;
     }
@@ -85,8 +86,7 @@ void apply(MaskTable& table, const MaskEdit& edit) {
     check_mask(table, edit.mask);
     Mask mask = edit.mask;
     if (mask.id == 0) mask.id = table.next_id;
-    if (mask.id < table.next_id || mask.id == kNone)
-        throw Error("mask " + std::to_string(mask.id) + " cannot be added again");
+    if (mask.id < table.next_id || mask.id == kNone) throw Error(Message("mask {} cannot be added again", mask.id));
     table.next_id = mask.id + 1;
     table.masks.push_back(std::move(mask));
 }
@@ -119,7 +119,7 @@ MaskEdit mask_edit_of(const nlohmann::json& j) {
     Mask& m = edit.mask;
     try {
         const std::string what = j.at("what").get<std::string>();
-        if (what != "add" && what != "remove") throw Error("'" + what + "' is no change of a mask");
+        if (what != "add" && what != "remove") throw Error(Message("'{}' is no change of a mask", what));
         edit.remove = what == "remove";
         m.id = number_of(j.at("id"), "the id of a mask");
         if (edit.remove) return edit;
@@ -145,8 +145,8 @@ MaskEdit mask_edit_of(const nlohmann::json& j) {
         for (const nlohmann::json& id : j.value("of", nlohmann::json::array()))
             m.of.push_back(number_of(id, "the id of a mask"));
     } catch (const nlohmann::json::exception&) {
-        throw Error("a mask cannot be read: " +
-                    j.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace).substr(0, 80));
+        throw Error(Message("a mask cannot be read: {}",
+                            j.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace).substr(0, 80)));
     }
     return edit;
 }

@@ -124,20 +124,22 @@ double turn_of(const ModelMotion& motion) {
     return 2 * std::acos(std::min(1.0, std::abs(motion.rotation.w)));
 }
 
-std::string describe(const ModelMotion& motion) {
-    std::vector<std::string> parts;
+Message describe(const ModelMotion& motion) {
+    std::vector<Message> parts;
     const Vec3 shift = shift_of(motion) / kMillimetre;
     // Another size about the origin moves the middle too: the size says that.
     const Vec3 by_size = (motion.scale - 1) * (motion.rotation * motion.from) / kMillimetre +
                          (motion.rotation * motion.from - motion.from) / kMillimetre;
     const bool about_origin = glm::length(shift - by_size) < 0.05;
-    if (turn_of(motion) > 1e-6) parts.push_back(fmt::format("turned by {:.0f} degrees", turn_of(motion) / kDegree));
-    if (motion.scale != 1) parts.push_back(fmt::format("{:.4g} times as large", motion.scale));
+    if (turn_of(motion) > 1e-6)
+        parts.push_back(Message("turned by {} degrees", fmt::format("{:.0f}", turn_of(motion) / kDegree)));
+    if (motion.scale != 1) parts.push_back(Message("{} times as large", fmt::format("{:.4g}", motion.scale)));
     if (parts.empty() || !about_origin)
-        parts.push_back(fmt::format("shifted by ({:.1f}, {:.1f}, {:.1f}) mm", shift.x, shift.y, shift.z));
-    std::string text = parts.front();
-    for (std::size_t i = 1; i < parts.size(); ++i) text += (i + 1 == parts.size() ? " and " : ", ") + parts[i];
-    return text;
+        parts.push_back(
+            Message("shifted by ({}) mm", fmt::format("{:.1f}, {:.1f}, {:.1f}", shift.x, shift.y, shift.z)));
+    if (parts.size() == 1) return parts[0];
+    if (parts.size() == 2) return Message("{} and {}", parts[0], parts[1]);
+    return Message("{}, {} and {}", parts[0], parts[1], parts[2]);
 }
 
 }  // namespace tuft::stroke

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "core/geometry/types.h"
+#include "core/message.h"
 #include "mesh/query/surface_query.h"
 
 /// \file
@@ -32,7 +32,7 @@ struct ModelMotion {
 std::optional<ModelMotion> find_motion(const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised);
 
 /// Returns the motion in words: "shifted by (20.0, 0.0, 0.0) mm", "1.200 times as large", "turned by 90 degrees".
-std::string describe(const ModelMotion& motion);
+Message describe(const ModelMotion& motion);
 
 /// Returns the displacement of the former model's centre, metres.
 Vec3 shift_of(const ModelMotion& motion);

@@ -34,7 +34,7 @@ Preparation preparation_named(EntryKind kind, const std::string& text) {
     if (kind == EntryKind::dry) return Dry{};
     if (kind == EntryKind::wash) return WashPalette{};
     if (kind == EntryKind::fill) return Fill{};
-    if (kind == EntryKind::stroke || keeps_texels(kind)) throw Error("'" + text + "' is no care of a brush");
+    if (kind == EntryKind::stroke || keeps_texels(kind)) throw Error(Message("'{}' is no care of a brush", text));
     return BrushAction{.kind = brush_action_of(kind)};
 }
 
@@ -48,7 +48,7 @@ Preparation preparation_of(const std::string& text) {
     BrushAction* action = std::get_if<BrushAction>(&preparation);
     const bool dips = action && action->kind == BrushActionKind::dip,
                wipes = action && action->kind == BrushActionKind::wipe;
-    if (colon + 1 < head.size() && !dips) throw Error("'" + text + "': only a dip names an ink");
+    if (colon + 1 < head.size() && !dips) throw Error(Message("'{}': only a dip names an ink", text));
     if (colon < head.size() && dips) action->ink = head.substr(colon + 1);
     while (end < text.size()) {
         const std::size_t next = std::min(text.find(',', end + 1), text.size());
@@ -61,11 +61,11 @@ Preparation preparation_of(const std::string& text) {
                         : name == "side"   ? &action->extent.side
                                            : nullptr;
         if (!value || equal == std::string::npos)
-            throw Error("'" + part + "' in '" + text +
-                        "' is none of depth=PART, amount=PART and side=PART of a dip or wipe");
+            throw Error(
+                Message("'{}' in '{}' is none of depth=PART, amount=PART and side=PART of a dip or wipe", part, text));
         const char* last = part.data() + part.size();
         const auto [rest, error] = std::from_chars(part.data() + equal + 1, last, *value);
-        if (error != std::errc{} || rest != last) throw Error("'" + part + "' in '" + text + "' is no number");
+        if (error != std::errc{} || rest != last) throw Error(Message("'{}' in '{}' is no number", part, text));
         end = next;
     }
     if (action) check_extent(action->extent, action->kind);

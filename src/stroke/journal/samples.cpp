@@ -17,7 +17,7 @@ constexpr double kMostTilt = 1.6;          // radians: a holder lies flat
 }  // namespace
 
 void check_samples(const StrokeSamples& stroke) {
-    const auto refuse = [](const char* what) { throw Error(std::string(what) + " is no number, or out of range"); };
+    const auto refuse = [](const char* what) { throw Error(Message("{} is no number, or out of range", what)); };
     const auto is_direction = [](const Vec3& v) {
         return within(v, kLongestDirection) && glm::length(v) > 1 / kLongestDirection;
     };

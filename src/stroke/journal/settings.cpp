@@ -18,7 +18,7 @@ constexpr double kStrongestFilter = 100;
 // In the order of the enumerators.
 constexpr const char* kFootprints[] = {"surface", "plane"};
 constexpr const char* kContacts[] = {"exact", "vertices"};
-constexpr const char* kDips[] = {"each", "carry"};
+constexpr const char* kDips[] = {"each", "persistent"};
 constexpr const char* kPressures[] = {"none", "speed", "dwell", "speed+dwell"};
 constexpr const char* kFilms[] = {"still", "wet"};
 
@@ -34,7 +34,7 @@ Enum enumerator(const char* const (&words)[N], const std::string& name, const ch
         if (name == words[i]) return static_cast<Enum>(i);
         all += std::string(i == 0 ? "'" : i + 1 == N ? " or '" : ", '") + words[i] + "'";
     }
-    throw Error(std::string(what) + " is " + all + ", not '" + excerpt(name) + "'");
+    throw Error(Message("{} is {}, not '{}'", what, all, excerpt(name)));
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ std::string name_of(FilmModel film) {
     return word(kFilms, film);
 }
 DipMode dip_mode_of(const std::string& name) {
-    return enumerator<DipMode>(kDips, name, "dip");
+    return name == "carry" ? DipMode::persistent : enumerator<DipMode>(kDips, name, "dip");
 }
 PressureFrom pressure_from(const std::string& name) {
     return enumerator<PressureFrom>(kPressures, name, "pressure");
@@ -104,7 +104,7 @@ StrokeSettings settings_of(const nlohmann::json& j) {
         if (down.size() != 3) throw Error("the direction of weight of a stroke is no three numbers");
         s.down = {down[0], down[1], down[2]};
     } catch (const nlohmann::json::exception&) {
-        throw Error("the settings of a stroke cannot be read: " + excerpt(j.dump(), 80));
+        throw Error(Message("the settings of a stroke cannot be read: {}", excerpt(j.dump(), 80)));
     }
     check_settings(s);
     return s;
@@ -126,7 +126,7 @@ StrokeSettings settings_from_json(const std::string& text) {
     try {
         return settings_of(nlohmann::json::parse(text));
     } catch (const nlohmann::json::exception&) {
-        throw Error("the settings of a stroke cannot be read: " + excerpt(text, 80));
+        throw Error(Message("the settings of a stroke cannot be read: {}", excerpt(text, 80)));
     }
 }
 

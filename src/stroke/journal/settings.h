@@ -11,8 +11,8 @@
 namespace tuft::stroke {
 
 enum class DipMode {
-    each,   ///< a fresh full brush for every stroke
-    carry,  ///< the hair and ink that the last entry with the brush left
+    each,        ///< a fresh full brush for every stroke
+    persistent,  ///< the hair and ink that the last entry with the brush left
 };
 
 /// Pressure of flat strokes whose device measured none (gesture/hand_pressure.h).
@@ -41,10 +41,10 @@ struct StrokeSettings {
 };
 
 /// Words of files and of the command line, and back. The functions back throw `Error` for any other word.
-std::string name_of(DipMode dip);        ///< each, carry
-std::string name_of(PressureFrom from);  ///< none, speed, dwell, speed+dwell
-std::string name_of(FilmModel film);     ///< still, wet
-DipMode dip_mode_of(const std::string& name);
+std::string name_of(DipMode dip);              ///< each, persistent
+std::string name_of(PressureFrom from);        ///< none, speed, dwell, speed+dwell
+std::string name_of(FilmModel film);           ///< still, wet
+DipMode dip_mode_of(const std::string& name);  ///< takes "carry" too, the earlier word for persistent
 PressureFrom pressure_from(const std::string& name);
 FilmModel film_model_of(const std::string& name);
 brush::SpineMethod spine_method_of(const std::string& name);       ///< brush::kSpineWords

@@ -90,7 +90,7 @@ void keep_to_named_masks(std::vector<JournalEntry>& entries, const MaskTable& ta
         const std::string& wanted = target->names->mask.empty() ? name : target->names->mask;
         if (wanted.empty()) continue;
         const Mask* mask = table.find(wanted);
-        if (!mask) throw Error("there is no mask '" + wanted + "'; make it with 'tuft mask'");
+        if (!mask) throw Error(Message("there is no mask '{}'; make it with 'tuft mask'", wanted));
         *target->mask = mask->id;
     }
 }

@@ -68,8 +68,7 @@ MaskTexels by_group(const Mask& mask, const Model& model) {
         const auto at = std::find(mesh.group_names.begin(), mesh.group_names.end(), name);
         if (at == mesh.group_names.end() || mesh.triangle_groups.empty()) {
             const std::string near = nearest_name(name, mesh.group_names);
-            throw Error("the mesh has no group '" + name + "'" +
-                        (near.empty() ? "" : "; did you mean '" + near + "'?"));
+            throw Error(Message("the mesh has no group '{}'{}", name, did_you_mean(near)));
         }
         wanted[static_cast<std::size_t>(at - mesh.group_names.begin())] = 1;
     }
@@ -189,7 +188,7 @@ MaskTexels evaluate(const Mask& mask, const MaskTable& table, const Model& model
         open.pop_back();
         if (!needed.insert(id).second) continue;
         const Mask* part = table.find(id);
-        if (!part) throw Error("there is no mask " + std::to_string(id));
+        if (!part) throw Error(Message("there is no mask {}", id));
         open.insert(open.end(), part->of.begin(), part->of.end());
     }
     Parts done;

@@ -21,9 +21,10 @@ void check_memory(std::uint32_t size, atlas::TexelStore texels, std::size_t limi
     if (limit == 0) limit = available_memory();
     const std::size_t needed = atlas_memory(size, texels);
     if (needed > limit)
-        throw Error("an atlas of " + std::to_string(size) + " x " + std::to_string(size) + " texels needs " +
-                    std::to_string(needed >> 20) + " MiB, but only " + std::to_string(limit >> 20) +
-                    " MiB are free; choose a smaller --atlas-size or a larger --texel-size");
+        throw Error(
+            Message("an atlas of {} x {} texels needs {} MiB, but only {} MiB are free; choose a smaller --atlas-size "
+                    "or a larger --texel-size",
+                    size, size, needed >> 20, limit >> 20));
 }
 
 void finish(Model& model, atlas::TexelStore texels, const ProgressFn& progress) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+/// \file
+/// Names in little room.
+namespace tuft::app {
+
+struct LabelRoom {
+    std::size_t lines = 1;
+    float width = 0;                                    ///< of a line
+    std::function<float(const std::string&)> width_of;  ///< of a text without line breaks
+};
+
+/// Shortens names to labels of at most so many lines, broken at spaces. A line that is too wide ends with "...".
+/// Labels that would be the same keep the ends of their names instead of the beginnings, or get a number: labels of
+/// different names are different. UTF-8.
+std::vector<std::string> tell_apart(const std::vector<std::string>& names, const LabelRoom& room);
+
+}  // namespace tuft::app
