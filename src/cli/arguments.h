@@ -68,6 +68,8 @@ struct Paint {
     std::string pressure = "none";     ///< none | speed | dwell | speed+dwell, for strokes without any
     double smooth = 0;                 ///< strength of the hand's filter; 0: off
     double stabilise_mm = 0;           ///< length of the string; 0: off
+    double roll_deg = 0;               ///< of the holder about its own axis, added to what flat strokes say
+    bool roll_follow = false;          ///< a ferrule's broad side turns across the path of flat strokes
     std::filesystem::path bias;        ///< bias to correct, or empty
     std::vector<double> place_mm;      ///< x,y,z of the placement for flat strokes, or empty
     std::string on;                    ///< side of the model (stroke::side_name) for flat strokes, or empty

@@ -46,6 +46,8 @@ struct CurveHand {
     CurveSettings settings;
     double pressure = 0.5;
     Vec2 tilt{0};
+    double roll = 0;           ///< radians, of the ferrule, as of flat samples
+    bool roll_follow = false;  ///< its broad side turns across the curve (stroke/gesture/roll.h); `roll` is added
     Vec3 right{1, 0, 0}, down{0, -1, 0};
 };
 std::vector<std::vector<brush::Pose>> curve_poses(const mesh::SurfaceQuery& query, std::span<const CurvePoint> points,

@@ -34,6 +34,8 @@ enum class Act {
     lean_away,
     lean_near,
     upright,
+    roll_anticlockwise,
+    roll_clockwise,
     frame_all,
     frame_cursor,
     front,

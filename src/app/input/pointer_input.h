@@ -7,6 +7,7 @@
 #include "brush/preset/preset.h"
 #include "mesh/query/surface_query.h"
 #include "render/gl/gl_camera.h"
+#include "stroke/gesture/roll.h"
 #include "stroke/placement/placement.h"
 
 namespace tuft::app {
@@ -20,10 +21,13 @@ struct PointerSettings {
     double smoothing = 0.03;     ///< seconds of the low-pass on position
     double string = 0;           ///< metres of the string on which the brush is drawn behind the cursor
     double pen_least = 0,
-           pen_full = 1;     ///< a pen's pressure where the brush begins to sink, and where it is at its deepest
-    double pen_gamma = 1;    ///< exponent in between
-    Vec2 tilt{0};            ///< radians, lean of the holder to the right and upwards in the view
-    bool clean_ends = true;  ///< of strokes without a pen: see `PointerInput`
+           pen_full = 1;       ///< a pen's pressure where the brush begins to sink, and where it is at its deepest
+    double pen_gamma = 1;      ///< exponent in between
+    Vec2 tilt{0};              ///< radians, lean of the holder to the right and upwards in the view
+    double roll = 0;           ///< radians, of a wide ferrule about the holder's axis, anticlockwise seen from its end;
+                               ///< 0: its broad side lies across the view
+    bool roll_follow = false;  ///< its broad side turns across the path (stroke/gesture/roll.h); `roll` is added
+    bool clean_ends = true;    ///< of strokes without a pen: see `PointerInput`
 };
 
 /// Part of the working depth, 0–1, for a pen's pressure: ((p − least) / (full − least)) ^ gamma, cut.
@@ -111,6 +115,8 @@ class PointerInput {
 
     bool is_clean(const Aim& aim) const { return settings_.clean_ends && aim.pressure < 0; }
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
+    Quat rotation_at(const Aim& aim, const Vec3& up) const;
+    void turn_holder(const Aim& aim, const Vec3& way);
     Vec3 ahead_of(const Aim& aim, const Vec3& normal, double pressure) const;
     void touch_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards, std::vector<HandStep>& steps);
     void wait(const Aim& aim, const AimedSurface& hit, std::vector<HandStep>& steps);
@@ -124,8 +130,10 @@ class PointerInput {
     const mesh::SurfaceQuery& surface_;
     stroke::HolderOptions hold_;
     PointerSettings settings_;
-    double reach_;         ///< metres round the aim in which gaps are felt
-    double bridged_ = -1;  ///< `time_` when the goal was last over a gap; below 0: never
+    bool wide_;                      ///< the ferrule
+    stroke::RollFollower follower_;  ///< of a stroke whose holder follows it
+    double reach_;                   ///< metres round the aim in which gaps are felt
+    double bridged_ = -1;            ///< `time_` when the goal was last over a gap; below 0: never
     bool down_ = false;
     Aim aim_;                       ///< the last one
     std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known

@@ -36,6 +36,8 @@ std::string first_brush(const std::vector<std::string>& brushes, const std::stri
 void choose_brush(BrushSettings& brush, const PaintThread& work, std::span<const StrokeLine> lines, double pressure);
 /// Stores the brush in hand for the next time with this model, where a person chose it. Without a model: nothing.
 void remember_brush(BrushSettings& brush, const PaintThread* work);
+/// Whether the brush in hand has a ferrule that is wider than thick (brush/tuft/ferrule.h).
+bool has_wide_ferrule(const BrushSettings& brush);
 /// Takes the brush in hand in another size, times that of its make, within what there is.
 void size_brush(BrushSettings& brush, StatusMessage& status, double factor);
 

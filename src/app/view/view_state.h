@@ -36,6 +36,9 @@ struct TuftView {
     brush::TuftState state;
     double depth = 0;      ///< metres of the unbent tip below the surface
     bool pressed = false;  ///< else it hovers
+    brush::Pose pose;      ///< of its ferrule while it hovers
+    /// Of the ferrule's mouth, in its frame, metres; empty: round.
+    std::vector<Vec2> mouth;
 };
 
 /// How the model is looked at.

@@ -17,6 +17,9 @@ struct Packing {
 /// Differences of the bit patterns, bytes of equal weight side by side, then zstd.
 std::vector<char> pack(const void* data, std::size_t count, const Packing& packing);
 
+/// Bytes that the blob unpacks to by its head; 0 where it does not say.
+std::size_t packed_bytes(const void* blob, std::size_t blob_size);
+
 /// Throws `Error` naming `what` when the blob does not unpack to `bytes` bytes by its head.
 void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const std::string& what);
 

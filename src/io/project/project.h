@@ -24,7 +24,8 @@
 /// its atlas, the presets used, the journal and a picture of the texels.
 namespace tuft::io {
 
-inline constexpr int kProjectFormat = 7;  ///< highest format version this program reads
+inline constexpr int kProjectFormat = 8;  ///< highest format version this program reads
+inline constexpr int kRolledFormat = 8;   ///< of projects with strokes whose holder rolls
 inline constexpr int kTapedFormat = 7;    ///< of projects with strokes that keep to stencil edge
 inline constexpr int kColoursFormat = 6;  ///< of projects with colours of the model
 inline constexpr int kDrapedFormat = 5;   ///< of projects with draped strokes

@@ -33,7 +33,8 @@ struct InkmlOptions {
 /// traces; explicit values, first (') and second (") differences, `*` and `?`, booleans and
 /// hexadecimal numbers. Channels: X, Y, Z (lengths); P, or F in newtons; T (ms unless
 /// declared, rebased to the start of the trace); OTx and OTy (tilt towards +x and +y),
-/// or OA and OE (azimuth from +x towards +y, elevation), in degrees unless declared rad;
+/// or OA and OE (azimuth from +x towards +y, elevation), and OR (rotation about
+/// the pen's own axis, anticlockwise seen from its end: the roll), in degrees unless declared rad;
 /// QW, QX, QY, QZ: rotation of the ferrule (own channels). Others are skipped.
 ///
 /// A trace is in space when it has Z or a quaternion, else flat: then `y` grows downwards
@@ -76,7 +77,7 @@ enum class Digits {
               ///< bit; directions and rotations must be of unit length to 1e-14, tilts within 85
               ///< degrees and pressures within 0–1, as the reader has them
     rounded,  ///< for people: millimetres, milliseconds, degrees. Positions agree to 1e-9 m (flat:
-              ///< 5e-7 m), times to 1e-6 s, pressures to 1e-5, tilts to 1e-4 rad, rotations to 1e-9
+              ///< 5e-7 m), times to 1e-6 s, pressures to 1e-5, tilts and rolls to 1e-4 rad, rotations to 1e-9
 };
 
 /// InkML text with explicit values: traces that share a placement, brush, ink and settings form

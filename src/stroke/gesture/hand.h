@@ -5,7 +5,7 @@
 #include "stroke/journal/settings.h"
 
 /// What a stroke's settings do to the hand before it meets the model: filter, then string,
-/// then pressure from motion. The journal keeps the hand as it was.
+/// then roll from motion (roll.h), then pressure from motion. The journal keeps the hand as it was.
 namespace tuft::stroke {
 
 /// A flat trace, all at once: the filter runs to its end and back again, so that nothing lags

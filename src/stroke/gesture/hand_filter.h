@@ -62,10 +62,11 @@ struct HandFilter {
     OneEuro<Vec3> position;
     OneEuro<double> pressure;
     OneEuro<Vec2> tilt;
+    OneEuro<double> roll;
     OneEuroTurn rotation;
 };
 
-/// The next sample, steadied in position, pressure, tilt and rotation; its time stays.
+/// The next sample, steadied in position, pressure, tilt, roll and rotation; its time stays.
 /// Pressure 0 stays 0: the hand is off.
 StrokeSample smooth(HandFilter& state, const StrokeSample& sample, const HandFilterOptions& options = {});
 brush::Pose smooth(HandFilter& state, const brush::Pose& pose, const HandFilterOptions& options = {});
@@ -81,11 +82,12 @@ struct String {
         double travel = 0;  ///< metres the hand had gone
         double pressure = 0;
         Vec2 tilt{0};
+        double roll = 0;
     };
     std::deque<Grip> past;  ///< what the tip has still to come through
 };
 
-/// Moves the tip; `length` in metres. The answer has the tip's place, and the pressure and tilt
+/// Moves the tip; `length` in metres. The answer has the tip's place, and the pressure, tilt and roll
 /// that the hand had |hand − tip| of travel before, so that they stay at their place on the
 /// path. A string of length 0 passes everything through as it is.
 StrokeSample pull(String& state, const StrokeSample& hand, double length);

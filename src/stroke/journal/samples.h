@@ -38,8 +38,12 @@ struct StrokeSample {
                                 ///< Spatial: the ferrule's mouth, model frame
     double pressure = 0;        ///< flat: 0–1 of the brush's working depth; 0 lifts off
     Vec2 tilt{0};               ///< flat: lean of the holder, radians: towards +x, towards +y (down)
+    double roll = 0;            ///< flat: of the ferrule about its own axis, radians, anticlockwise seen from the
+                                ///< handle's end; 0: its broad side, x, lies along +x
     Quat rotation{1, 0, 0, 0};  ///< spatial: of the ferrule (see brush::Pose)
 };
+
+inline constexpr double kMostRoll = 1e6;  ///< radians; devices that count turns are kept
 
 /// Part of a line of stencil edge stuck on the surface, in the frame of flat samples, metres. What may be painted lies
 /// to the side of `inward`, (from.y − to.y, to.x − from.x).
@@ -63,8 +67,8 @@ struct StrokeSamples {
 };
 
 /// Throws `Error` for samples, a placement or stencil edge that no hand can have made: numbers that are not finite,
-/// places beyond `kFarthest`, times beyond three years, pressures and tilts out of range, rotations and directions that
-/// are none.
+/// places beyond `kFarthest`, times beyond three years, pressures, tilts and rolls out of range, rotations and
+/// directions that are none.
 void check_samples(const StrokeSamples& stroke);
 
 }  // namespace tuft::stroke

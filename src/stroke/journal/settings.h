@@ -38,8 +38,10 @@ struct StrokeSettings {
     double smooth = 0;                           ///< strength of the hand's filter; 0: off, 1: its
                                                  ///< defaults
     FilmModel film = FilmModel::still;
-    Vec3 down{0, 0, -1};   ///< towards the ground, for wet ink; zero: no weight
-    double stabilise = 0;  ///< metres of the string that pulls the tip; 0: off
+    Vec3 down{0, 0, -1};       ///< towards the ground, for wet ink; zero: no weight
+    double stabilise = 0;      ///< metres of the string that pulls the tip; 0: off
+    double roll = 0;           ///< radians, added to that of flat samples (see StrokeSample)
+    bool roll_follow = false;  ///< of flat samples: the ferrule's broad side turns across the path, see roll.h
 
     bool operator==(const StrokeSettings&) const = default;
 };

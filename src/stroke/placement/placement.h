@@ -25,6 +25,7 @@ struct SurfaceSample {
     double time = 0;         ///< seconds
     double pressure = 0;     ///< 0–1 of the working depth
     Vec2 tilt{0};            ///< radians, towards right, towards down
+    double roll = 0;         ///< radians, see `StrokeSample`
     Vec2 tip_lag{0};         ///< metres to the right and down, in the plane of the surface there, that the
                              ///< hand is ahead of the ink
 };
@@ -102,12 +103,12 @@ double working_depth(const brush::Preset& preset);
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh);
 
 /// The ferrule over each mapped sample. The holder's axis is the surface normal leaned by the
-/// tilt, up ∝ normal + tan(tilt.x) right + tan(tilt.y) down; the unbent tip lies
-/// `tip_depths` below the sample, ahead of it by the tip_lag:
-/// where the ink is to lie, the hand does what it would do over the plane there.
-/// Normal and height are those of a steady hand (`level_surface` over `steady` of path). It follows ridges and valleys,
-/// and passes over grooves narrower than half of the radius. On a surface of curvature κ along the path the height is κ
-/// steady² / 200 off at most.
+/// tilt, up ∝ normal + tan(tilt.x) right + tan(tilt.y) down; the broad side of the ferrule is x = cos(roll) r +
+/// sin(roll) (up × r), with r the direction of `right` across up; the unbent tip lies `tip_depths` below the sample,
+/// ahead of it by the tip_lag: where the ink is to lie, the hand does what it would do over the plane there. Normal and
+/// height are those of a steady hand (`level_surface` over `steady` of path). It follows ridges and valleys, and passes
+/// over grooves narrower than half of the radius. On a surface of curvature κ along the path the height is κ steady² /
+/// 200 off at most.
 std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
                               const HolderOptions& options);
 
