@@ -286,6 +286,25 @@ TEST_F(Commands, AHandWithoutPressureGetsItWhenAsked) {
     EXPECT_EQ(tuft("paint a.ply --strokes b.inkml --stabilise -1").status, 2);
 }
 
+TEST_F(Commands, AWideFerruleRollsAsToldAndReplaysTheSame) {
+    write("plain.inkml", plain_pen(0, true));
+    const auto hash = [&](const std::string& more) {
+        const Ran ran = tuft("paint " + model("sheet.ply") + " --place 0,0,0 --strokes " + path("plain.inkml") +
+                             " --brush flat-12*0.3 --atlas-size 256 --json --project " + path("p.tuft") + " " + more);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        const std::string painted = json::parse(ran.out)["canvas_hash"];
+        EXPECT_EQ(json::parse(tuft("replay " + path("p.tuft") + " --json").out)["canvas_hash"], painted) << more;
+        return painted;
+    };
+    const std::string plain = hash("");
+    EXPECT_EQ(hash("--roll 0"), plain);
+    EXPECT_NE(hash("--roll 60"), plain);
+    EXPECT_NE(hash("--roll-follow"), plain);
+    EXPECT_NE(hash("--roll 60 --roll-follow"), hash("--roll-follow"));
+    EXPECT_EQ(tuft("paint a.ply --strokes b.inkml --roll 400").status, 2);
+    EXPECT_EQ(tuft("paint a.ply --strokes b.inkml --roll east").status, 2);
+}
+
 TEST_F(Commands, AWritersBiasIsLearnedAndCorrected) {
     write("meant.inkml", plain_pen(0, true, 0.5));
     write("written.inkml", plain_pen(-0.3, true, 0.4));

@@ -78,6 +78,7 @@ void expect_equal(const stroke::JournalEntry& a, const stroke::JournalEntry& b) 
         EXPECT_EQ(p.position, q.position);
         EXPECT_EQ(p.pressure, q.pressure);
         EXPECT_EQ(p.tilt, q.tilt);
+        EXPECT_EQ(p.roll, q.roll);
         EXPECT_EQ(p.rotation, q.rotation);
     }
 }
@@ -220,6 +221,28 @@ TEST(Project, StrokesComeBackToTheBitInOrder) {
     bad.get<stroke::PaintStroke>().trace.samples[3].position.y = NAN;
     EXPECT_THROW(project.append(bad), Error);
     EXPECT_EQ(project.n_strokes(), changed.size());
+}
+
+TEST(Project, RollsComeBackToTheBitAndRaiseTheFormat) {
+    const Folder folder("project_rolls");
+    stroke::JournalEntry plain = sample_stroke(1), rolled = sample_stroke(10), follows = sample_stroke(12);
+    for (std::size_t i = 0; auto& s : rolled.get<stroke::PaintStroke>().trace.samples) s.roll = std::sin(double(i++));
+    follows.get<stroke::PaintStroke>().settings.roll_follow = true;
+    follows.get<stroke::PaintStroke>().settings.roll = 1.0 / 3;
+    Project project = Project::create(folder / "a.tuft", sample_model());
+    project.append(plain);
+    EXPECT_LT(project.format(), kRolledFormat) << "older programs read what they understand";
+    project.append(rolled);
+    EXPECT_EQ(project.format(), kRolledFormat);
+    project.append(follows);
+    const auto back = Project::open(folder / "a.tuft", {.access = Access::read}).strokes();
+    expect_equal(back[0], plain);
+    expect_equal(back[1], rolled);
+    expect_equal(back[2], follows);
+    EXPECT_EQ(back[2].as<stroke::PaintStroke>()->settings, follows.as<stroke::PaintStroke>()->settings);
+    Project settings = Project::create(folder / "b.tuft", sample_model());
+    settings.append(follows);
+    EXPECT_EQ(settings.format(), kRolledFormat);
 }
 
 TEST(Project, StoredTexelsAreForgottenWhenAStrokeUnderThemChanges) {

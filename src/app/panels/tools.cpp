@@ -213,12 +213,21 @@ void pen_curve(Ui& ui, ToolState& tools, int& handle) {
     }
 }
 
-void pointer_section(Ui& ui, ToolState& tools, PanelLayout& panels) {
+// How a wide ferrule is turned about the holder's axis.
+void roll_controls(Ui& ui, PointerSettings& pointer) {
+    ui.slider("Roll", pointer.roll, {-180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", kDegree},
+              "Of the holder about itself: at 0 the broad side lies across the screen. Alt and wheel, Shift and arrow "
+              "keys; a pen that can turn adds its own");
+    ui.toggle("Follow the stroke", pointer.roll_follow, "The broad side turns across the stroke as it goes on");
+}
+
+void pointer_section(Ui& ui, ToolState& tools, PanelLayout& panels, bool wide) {
     if (!ui.section("Hand")) return;
     ui.slider("Pressure", tools.pointer.pressure, {0.02, 1, "%.2f"},
               "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]");
     ui.slider("Stabiliser", tools.pointer.string, {0, 0.03, "%.1f mm", kMillimetre},
               "The brush follows on a string of this length");
+    if (wide) roll_controls(ui, tools.pointer);
     if (ui.button(panels.show_pointer_details ? "Less" : "More...", nullptr, 80))
         panels.show_pointer_details = !panels.show_pointer_details;
     if (!panels.show_pointer_details) return;
@@ -355,7 +364,7 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     const bool brushes = s.tools.active != Tool::fill && s.tools.active != Tool::pick && s.tools.active != Tool::mask;
     if (brushes) brush_rack(s.ui, s.brush, s.status);
     if (s.tools.active != Tool::mask && s.tools.active != Tool::eraser) ink_section(s);
-    if (brushes) pointer_section(s.ui, s.tools, s.panels);
+    if (brushes) pointer_section(s.ui, s.tools, s.panels, has_wide_ferrule(s.brush));
     if (brushes) symmetry_section(s.ui, s.tools.symmetry);
     section_section(s.ui, s.view.section);
     ImGui::End();

@@ -29,7 +29,8 @@
 ///   shading, light, parallel, azimuth, elevation, zoom,
 ///                           layer, export-size, export-pictures,
 ///                           export-picture-width, pressure, writing-width (mm), writing-turn (degrees, anticlockwise),
-///                           writing-mirror, writing-mapping, string, radial, mirror, carry, tool, language, theme,
+///                           writing-mirror, writing-mapping, roll (degrees, anticlockwise), roll-follow,
+///                           string, radial, mirror, carry, tool, language, theme,
 ///                           scale, left-handed, keymap, section, section-axis, see-through, atlas, draw-every (frames
 ///                           of which one is drawn, for tests)
 ///   undo  redo  save FILE  export FILE  close
