@@ -163,7 +163,7 @@ int run(const Paint& a) {
         if (s.group.id != 0) s.group.id += first_group - 1;
     const double prepared = seconds_since(start);
     find_presets(painting, strokes);
-    const auto length_of = [&](const std::string& brush) { return painting.brush(brush).length; };
+    const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
     if (const std::string fault = stroke::size_fault(strokes, length_of, *model.query); !fault.empty())
         throw Error(a.model.string(), fault + " (see --unit, --place-width, --brush)");
     for (const stroke::JournalEntry& s : strokes) painting.check_size(s);

@@ -137,7 +137,9 @@ void StrokePainter::paint_drawing(PaintDrawing& command) {
     const ProgressFn shown = context_.progress("Placing the drawing");
     shown("", 0);
     std::vector<stroke::JournalEntry> all = entries_of(command);
-    const auto length_of = [&](const std::string& brush) { return context_.work.document->brush(brush).length; };
+    const auto length_of = [&](const std::string& brush) {
+        return context_.work.document->materials().brush(brush).length;
+    };
     if (const std::string fault = stroke::size_fault(all, length_of, *context_.work.model->query); !fault.empty())
         throw Error("The model does not suit the drawing: " + fault);
     for (const stroke::JournalEntry& entry : all) context_.work.document->check_size(entry);
