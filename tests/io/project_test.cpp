@@ -383,7 +383,7 @@ TEST(Project, EntriesOfEveryKindComeBack) {
         kinds.insert(back[i].content.index());
     }
     EXPECT_EQ(kinds.size(), std::variant_size_v<stroke::EntryContent>) << "a kind without an entry here";
-    EXPECT_EQ(back[0].get<stroke::PaintStroke>().settings, stroke.settings);
+    EXPECT_EQ(back[0].get<stroke::PaintStroke>().settings, entries[0].get<stroke::PaintStroke>().settings);
     EXPECT_EQ(back[4].get<stroke::BrushAction>().extent, entries[4].get<stroke::BrushAction>().extent);
     EXPECT_EQ(back[5].get<stroke::Dry>().down, entries[5].get<stroke::Dry>().down);
     EXPECT_EQ(back[7].get<stroke::Fill>(), entries[7].get<stroke::Fill>());
