@@ -297,6 +297,13 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     p->add_option("--stabilise", paint.stabilise_mm, "pull the tip on a string of so many millimetres")
         ->check(number_in(0.0, 1000.0))
         ->type_name("MM");
+    p->add_option("--roll", paint.roll_deg,
+                  "turn the holder about its own axis, anticlockwise as seen from its end; at 0 a wide ferrule lies "
+                  "along the width of flat strokes")
+        ->check(number_in(-360.0, 360.0))
+        ->type_name("DEG");
+    p->add_flag("--roll-follow", paint.roll_follow,
+                "turn the broad side of the ferrule across the path as flat strokes go on; --roll is added");
     p->add_option("--bias,--habit", paint.bias, "correct a writer's bias (.toml, made by 'tuft bias')");
     p->add_option_function<std::string>(
          "--place",

@@ -71,6 +71,8 @@ struct Paint {
     std::string pressure = "none";       ///< none | speed | dwell | speed+dwell, for strokes without pressure
     double smooth = 0;                   ///< strength of the hand's filter; 0: off
     double stabilise_mm = 0;             ///< length of the stabiliser's string; 0: off
+    double roll_deg = 0;                 ///< roll of the holder, added to that of flat strokes
+    bool roll_follow = false;            ///< the broad side of a ferrule turns across the path of flat strokes
     std::filesystem::path bias;          ///< file of the writer's bias to correct, or empty
     std::vector<double> place_mm;        ///< [3] position of flat strokes, or empty
     std::string on;                      ///< side of the model (stroke::side_name) for flat strokes, or empty

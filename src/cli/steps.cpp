@@ -143,6 +143,8 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
     settings.dip = settings.endless ? stroke::DipMode::each : stroke::dip_mode_of(a.dip);
     settings.smooth = a.smooth;
     settings.stabilise = a.stabilise_mm * kMillimetre;
+    settings.roll = a.roll_deg * kDegree;
+    settings.roll_follow = a.roll_follow;
     settings.film = stroke::film_model_of(a.film);
     settings.down = {a.down[0], a.down[1], a.down[2]};
     stroke::EntryOptions options{.settings = settings,

@@ -255,6 +255,49 @@ TEST_F(PointerOnSheet, LeanTurnsTheHolderAboutTheTip) {
     EXPECT_NEAR(up.y, 0, 1e-9);
 }
 
+/// Direction of the broad side, radians anticlockwise from the right as seen from above.
+double broad_side(const brush::Pose& pose) {
+    const Vec3 x = pose.rotation * Vec3(1, 0, 0);
+    return std::atan2(x.y, x.x);
+}
+
+TEST_F(PointerOnSheet, AWideFerruleLiesAcrossTheViewTurnedByRollAndPen) {
+    const brush::Preset flat = brush::load_preset("flat-12");
+    for (const double roll : {0.0, 0.6, -2.0})
+        for (const double turn : {0.0, 0.5}) {
+            const PointerInput hand(*query_, flat, {.roll = roll});
+            Aim aim = above(0, 0, 0, 0.5);
+            aim.turn = turn;
+            const auto pose = hand.hover(aim);
+            ASSERT_TRUE(pose);
+            EXPECT_NEAR(broad_side(*pose), roll - turn, 1e-12);
+            // The view is turned by a right angle: so is the brush.
+            aim.view_right = {0, 1, 0};
+            aim.view_up = {-1, 0, 0};
+            EXPECT_NEAR(
+                std::remainder(broad_side(*hand.hover(aim)) - roll + turn - std::numbers::pi / 2, 2 * std::numbers::pi),
+                0, 1e-12);
+        }
+}
+
+TEST_F(PointerOnSheet, AWideFerruleFollowsItsStrokeByTheClosedForm) {
+    PointerInput hand(*query_, brush::load_preset("flat-12"), {.roll = 0.2, .roll_follow = true, .clean_ends = false});
+    const Vec2 ahead = glm::normalize(Vec2(1, 2));
+    std::vector<brush::Pose> poses;
+    for (int i = 0; i < 200; ++i)
+        for (const StrokeStep& step : hand.move(above(1e-4 * i * ahead.x, 1e-4 * i * ahead.y, 0.004 * i)))
+            poses.insert(poses.end(), step.poses.begin(), step.poses.end());
+    ASSERT_GT(poses.size(), 150u);
+    const auto place = [&](const brush::Pose& p) { return Vec2(p.position); };
+    const double across = std::atan2(-ahead.x, ahead.y);  // of y along the motion
+    for (const brush::Pose& pose : poses) {
+        const double s = glm::distance(place(pose), place(poses.front()));
+        const double left = 2 * std::atan(std::tan(0.5 * across) * std::exp(-s / stroke::kRollLag));
+        // The upright holder is over the ink to the place on the sheet, some 1e-9 m of λ.
+        EXPECT_NEAR(broad_side(pose), across - left + 0.2, 1e-5);
+    }
+}
+
 TEST_F(PointerOnSheet, ATurnOfThePenTurnsTheTuftAboutItsHolder) {
     const PointerInput hand(*query_, preset_, {});
     Aim aim = above(0, 0, 0, 0.5);

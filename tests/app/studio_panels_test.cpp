@@ -144,6 +144,16 @@ TEST_F(Panels, EscapeClosesAMenuBeforeItDropsWhatIsChosen) {
     EXPECT_EQ(ran.out.rfind(" Hide\n"), ran.out.find(" Hide\n")) << "then the choice is dropped";
 }
 
+TEST_F(Panels, AWideFerruleCanBeRolledAndARoundOneSaysNothingOfIt) {
+    const Ran ran = studio(kBowl +
+                               "set brush wolf-small\nwait 0.2\nplaces\nset brush flat-12\nwait 0.2\nexpect label "
+                               "Roll\nclick \"Follow the stroke\"\nmove 50%,50%\nkey shift+left\nhold alt\nscroll "
+                               "2\nhold none\nwait 0.1\n",
+                           "--headless --size 1280x720");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_FALSE(places(ran.out).contains("Roll"));
+}
+
 // Typed over what is selected: the stem, not the extension.
 TEST_F(Panels, SavingAsTakesANewNameByTypingItAndKeepsTheExtension) {
     const Ran ran = studio(kBowl + "key ctrl+s\nwait 0.2\ntype fired\nkey enter\nwait-ready\nexpect kept\n");

@@ -79,6 +79,23 @@ TEST(Ferrule, StripsShareTheMouthEqually) {
     }
 }
 
+TEST(Ferrule, ItsOutlineIsTheMouth) {
+    for (const char* name : {"flat-12", "filbert-12", "fan-30", "sword-8"}) {
+        const Preset p = load_preset(name);
+        const std::vector<Vec2> outline = mouth_outline(p);
+        double widest = 0, thickest = 0;
+        for (const Vec2& at : outline) {
+            const double x = std::abs(at.x) / (0.5 * p.width), y = std::abs(at.y) / p.radius;
+            EXPECT_NEAR(std::pow(x, p.corner) + std::pow(y, p.corner), 1, 1e-12) << name;  // rounding
+            widest = std::max(widest, at.x);
+            thickest = std::max(thickest, at.y);
+        }
+        EXPECT_DOUBLE_EQ(widest, 0.5 * p.width);
+        EXPECT_DOUBLE_EQ(thickest, p.radius);
+    }
+    EXPECT_TRUE(mouth_outline(load_preset("wolf-medium")).empty());
+}
+
 /// Resting sections keep the area of their strip, also in a fan that spreads.
 TEST(Ferrule, RestingSectionsKeepTheirArea) {
     for (const char* name : {"flat-12", "fan-30", "filbert-12"}) {

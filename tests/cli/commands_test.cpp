@@ -286,6 +286,26 @@ TEST_F(Commands, AHandWithoutPressureGetsItWhenAsked) {
     EXPECT_EQ(tuft("paint a.ply --strokes b.inkml --stabilise -1").status, 2);
 }
 
+TEST_F(Commands, AWideFerruleRollsAsToldAndReplaysTheSame) {
+    write("short.inkml",
+          "<ink><traceFormat><channel name='X'/><channel name='Y'/><channel name='P' max='1'/><channel name='T'/>"
+          "</traceFormat><trace>0 0 0.5 0, 2 0 0.5 40, 4 0 0.5 80, 6 1 0.5 120</trace></ink>");
+    const auto hash = [&](const std::string& more) {
+        const Ran ran = tuft("paint " + model("sheet.ply") + " --place 0,0,0 --strokes " + path("short.inkml") +
+                             " --brush flat-12*0.3 --atlas-size 512 --json --project " + path("p.tuft") + " " + more);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        const std::string painted = json::parse(ran.out)["canvas_hash"];
+        EXPECT_EQ(json::parse(tuft("replay " + path("p.tuft") + " --json").out)["canvas_hash"], painted) << more;
+        return painted;
+    };
+    const std::string plain = hash("--roll 0"), turned = hash("--roll 60"), follows = hash("--roll-follow");
+    EXPECT_NE(turned, plain);
+    EXPECT_NE(follows, plain);
+    EXPECT_NE(follows, turned);
+    EXPECT_EQ(tuft("paint a.ply --strokes b.inkml --roll 400").status, 2);
+    EXPECT_EQ(tuft("paint a.ply --strokes b.inkml --roll east").status, 2);
+}
+
 TEST_F(Commands, AWritersBiasIsLearnedAndCorrected) {
     write("meant.inkml", plain_pen(0, true, 0.5));
     write("written.inkml", plain_pen(-0.3, true, 0.4));

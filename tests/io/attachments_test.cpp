@@ -43,8 +43,8 @@ std::vector<stroke::JournalEntry> journal() {
     return entries;
 }
 
-TEST(PackedEntries, ComeBackToTheBit) {
-    const std::vector<stroke::JournalEntry> before = journal(), after = unpack_entries(pack_entries(before), "it");
+void expect_comes_back(const std::vector<stroke::JournalEntry>& before) {
+    const std::vector<stroke::JournalEntry> after = unpack_entries(pack_entries(before), "it");
     ASSERT_EQ(after.size(), before.size());
     for (std::size_t i = 0; i < before.size(); ++i) {
         const stroke::JournalEntry &a = before[i], &b = after[i];
@@ -63,8 +63,16 @@ TEST(PackedEntries, ComeBackToTheBit) {
             EXPECT_EQ(s.samples[k].position, t.samples[k].position);
             EXPECT_EQ(s.samples[k].rotation, t.samples[k].rotation);
             EXPECT_EQ(s.samples[k].tilt, t.samples[k].tilt);
+            EXPECT_EQ(s.samples[k].roll, t.samples[k].roll);
         }
     }
+}
+
+TEST(PackedEntries, ComeBackToTheBit) {
+    std::vector<stroke::JournalEntry> entries = journal();
+    expect_comes_back(entries);
+    std::get<stroke::PaintStroke>(entries[1].content).trace.samples[7].roll = 1.0 / 3;
+    expect_comes_back(entries);
     EXPECT_TRUE(unpack_entries(pack_entries({}), "it").empty());
 }
 

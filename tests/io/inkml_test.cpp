@@ -190,6 +190,24 @@ TEST(Inkml, TiltAzimuthAndQuaternionsAgree) {
     EXPECT_NEAR(glm::length(turned[0].samples[0].rotation * Vec3(1, 0, 0) - Vec3(0, 1, 0)), 0, 1e-12);
 }
 
+TEST(Inkml, TheRotationOfAPenIsTheRollOfTheHolder) {
+    const std::string head = "<traceFormat><channel name='X'/><channel name='Y'/>";
+    const auto degrees = parse(head + "<channel name='OR'/></traceFormat><trace>0 0 30, 1 0 350</trace>");
+    EXPECT_DOUBLE_EQ(degrees[0].samples[0].roll, 30 * kDegree);
+    EXPECT_DOUBLE_EQ(degrees[0].samples[1].roll, 350 * kDegree);
+    const auto radians = parse(head + "<channel name='OR' units='rad'/></traceFormat><trace>0 0 -0.25</trace>");
+    EXPECT_EQ(radians[0].samples[0].roll, -0.25);
+    EXPECT_NE(inkml_text(radians).find("<channel name=\"OR\" type=\"double\" units=\"rad\"/>"), std::string::npos);
+    EXPECT_NE(inkml_text(radians, {}, Digits::rounded).find("units=\"deg\""), std::string::npos);
+    // In space the ferrule turns about its own axis, z up.
+    const auto space = parse(head + "<channel name='Z'/><channel name='OR'/></traceFormat><trace>1 2 3 90</trace>");
+    EXPECT_NEAR(glm::distance(space[0].samples[0].rotation * Vec3(1, 0, 0), Vec3(0, 1, 0)), 0, 1e-15);
+    EXPECT_EQ(space[0].samples[0].roll, 0);
+    // A file says nothing of it where the holder does not roll.
+    EXPECT_EQ(inkml_text(parse(head + "</traceFormat><trace>0 0, 1 1</trace>")).find("OR"), std::string::npos);
+    EXPECT_THROW(parse(head + "<channel name='OR' units='rad'/></traceFormat><trace>0 0 1e9</trace>"), Error);
+}
+
 TEST(Inkml, AnnotationsInheritThroughGroupsAndBrushes) {
     const auto t = parse(R"(
       <annotation type="tuft:ink">carbon</annotation>
@@ -377,6 +395,7 @@ TEST(Inkml, AnyNumberComesBackToTheBit) {
             s.position = {number(1000), number(1000), t.flat ? 0 : number(1000)};
             s.pressure = std::abs(number(1));
             if (t.flat && k % 3 == 1) s.tilt = {number(1.4), number(1.4)};
+            if (t.flat && k % 6 == 4) s.roll = number(7);
             if (!t.flat) s.rotation = glm::normalize(Quat(1, number(2), number(2), number(2)));
             t.samples.push_back(s);
         }
@@ -402,6 +421,7 @@ TEST(Inkml, AnyNumberComesBackToTheBit) {
             EXPECT_EQ(bits(s.pressure), bits(r.pressure)) << k << " " << i;
             for (int c = 0; c < 3; ++c) EXPECT_EQ(bits(s.position[c]), bits(r.position[c])) << k << " " << i;
             for (int c = 0; c < 2; ++c) EXPECT_EQ(bits(s.tilt[c]), bits(r.tilt[c])) << k << " " << i;
+            EXPECT_EQ(bits(s.roll), bits(r.roll)) << k << " " << i;
             for (int c = 0; c < 4; ++c) EXPECT_EQ(bits(s.rotation[c]), bits(r.rotation[c])) << k << " " << i;
         }
     }

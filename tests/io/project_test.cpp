@@ -78,6 +78,7 @@ void expect_equal(const stroke::JournalEntry& a, const stroke::JournalEntry& b) 
         EXPECT_EQ(p.position, q.position);
         EXPECT_EQ(p.pressure, q.pressure);
         EXPECT_EQ(p.tilt, q.tilt);
+        EXPECT_EQ(p.roll, q.roll);
         EXPECT_EQ(p.rotation, q.rotation);
     }
 }
@@ -222,6 +223,28 @@ TEST(Project, StrokesComeBackToTheBitInOrder) {
     EXPECT_EQ(project.n_strokes(), changed.size());
 }
 
+TEST(Project, RollsComeBackToTheBitAndRaiseTheFormat) {
+    const Folder folder("project_rolls");
+    stroke::JournalEntry plain = sample_stroke(1), rolled = sample_stroke(10), follows = sample_stroke(12);
+    for (std::size_t i = 0; auto& s : rolled.get<stroke::PaintStroke>().trace.samples) s.roll = std::sin(double(i++));
+    follows.get<stroke::PaintStroke>().settings.roll_follow = true;
+    follows.get<stroke::PaintStroke>().settings.roll = 1.0 / 3;
+    Project project = Project::create(folder / "a.tuft", sample_model());
+    project.append(plain);
+    EXPECT_LT(project.format(), kRolledFormat) << "older programs read what they understand";
+    project.append(rolled);
+    EXPECT_EQ(project.format(), kRolledFormat);
+    project.append(follows);
+    const auto back = Project::open(folder / "a.tuft", {.access = Access::read}).strokes();
+    expect_equal(back[0], plain);
+    expect_equal(back[1], rolled);
+    expect_equal(back[2], follows);
+    EXPECT_EQ(back[2].as<stroke::PaintStroke>()->settings, follows.as<stroke::PaintStroke>()->settings);
+    Project settings = Project::create(folder / "b.tuft", sample_model());
+    settings.append(follows);
+    EXPECT_EQ(settings.format(), kRolledFormat);
+}
+
 TEST(Project, StoredTexelsAreForgottenWhenAStrokeUnderThemChanges) {
     const Folder folder("project_forgotten");
     ink::Canvas canvas(20);
@@ -360,7 +383,7 @@ TEST(Project, EntriesOfEveryKindComeBack) {
         kinds.insert(back[i].content.index());
     }
     EXPECT_EQ(kinds.size(), std::variant_size_v<stroke::EntryContent>) << "a kind without an entry here";
-    EXPECT_EQ(back[0].get<stroke::PaintStroke>().settings, stroke.settings);
+    EXPECT_EQ(back[0].get<stroke::PaintStroke>().settings, entries[0].get<stroke::PaintStroke>().settings);
     EXPECT_EQ(back[4].get<stroke::BrushAction>().extent, entries[4].get<stroke::BrushAction>().extent);
     EXPECT_EQ(back[5].get<stroke::Dry>().down, entries[5].get<stroke::Dry>().down);
     EXPECT_EQ(back[7].get<stroke::Fill>(), entries[7].get<stroke::Fill>());

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/ease.h"
+#include "stroke/gesture/roll.h"
 #include "stroke/placement/surface_mapping.h"
 #include "stroke/placement/tip_lag.h"
 
@@ -57,6 +58,7 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
                  step = std::max(hand.settings.speed * kSample, length / kMostSamples);
     const auto n = static_cast<std::size_t>(std::max(2.0, std::ceil(length / step)));
     std::vector<stroke::SurfaceSample> samples;
+    stroke::RollFollower follower;
     for (std::size_t i = 0; i <= n; ++i) {
         const double part = static_cast<double>(i) / static_cast<double>(n), s = curve.front().along + part * length;
         const double press = hand.pressure * at_length(curve, s).pressure *
@@ -73,7 +75,12 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
                                      .down = axes.down,
                                      .time = part * length / hand.settings.speed,
                                      .pressure = press,
-                                     .tilt = hand.tilt};
+                                     .tilt = hand.tilt,
+                                     .roll = hand.roll};
+        if (hand.roll_follow) {
+            const Vec3 gone = samples.empty() ? Vec3(0) : place.position - samples.back().position;
+            sample.roll += stroke::follow_stroke(follower, 0, {glm::dot(gone, axes.right), glm::dot(gone, axes.down)});
+        }
         if (press > 0 && glm::length(ahead) > 1e-9)
             sample.tip_lag = stroke::lead_of(hand.holder, press, hand.tilt, glm::normalize(ahead));
         if (const auto on = query.closest_point(place.position, 0.01)) {

@@ -46,6 +46,8 @@ struct CurveHand {
     CurveSettings settings;
     double pressure = 0.5;                ///< 0–1
     Vec2 tilt{0};                         ///< radians, lean towards `right` and `down`
+    double roll = 0;                      ///< radians, of the ferrule, as of flat samples
+    bool roll_follow = false;             ///< the broad side turns across the curve (roll.h); `roll` is added
     Vec3 right{1, 0, 0}, down{0, -1, 0};  ///< unit, of the view
 };
 /// Returns the poses along a curve, one list for each part that is on the model.

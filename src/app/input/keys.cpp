@@ -43,6 +43,8 @@ constexpr std::array<Shipped, static_cast<std::size_t>(Action::count)> kShipped{
     {"lean-away", "Lean away", {GLFW_KEY_UP, 0}},
     {"lean-near", "Lean nearer", {GLFW_KEY_DOWN, 0}},
     {"upright", "Hold it upright", {GLFW_KEY_BACKSLASH, 0}},
+    {"roll-anticlockwise", "Roll anticlockwise", {GLFW_KEY_LEFT, kShift}},
+    {"roll-clockwise", "Roll clockwise", {GLFW_KEY_RIGHT, kShift}},
     {"frame-all", "Frame all", {GLFW_KEY_HOME, 0}},
     {"frame-cursor", "Frame the cursor", {GLFW_KEY_PERIOD, 0}},
     {"front", "Front", {GLFW_KEY_1, 0}},

@@ -36,6 +36,8 @@ enum class Action {
     lean_away,
     lean_near,
     upright,
+    roll_anticlockwise,
+    roll_clockwise,
     frame_all,
     frame_cursor,
     front,

@@ -66,6 +66,7 @@ PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Prese
     : surface_(surface),
       holder_(stroke::holder_options(preset, surface.mesh())),
       settings_(settings),
+      wide_(preset.spines > 1),
       reach_(std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()})) {
     holder_.tip_lag = std::move(lag.upright);
     holder_.leaned = std::move(lag.tilted);
@@ -133,12 +134,32 @@ brush::Pose PointerInput::pose_at(const Aim& aim, const Vec3& point, const Vec3&
     const double tipped = kTips * (1 - smooth_step(gone_ / (kTipTurns * holder_.tip_lag_turn)));
     const Vec3 up = glm::normalize(normal + std::tan(tilt.x) * along(aim.view_right) +
                                    std::tan(tilt.y) * along(aim.view_up) + tipped * dragged_.string);
-    const Frame f = make_frame(point, up);
-    const Quat upright = glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n)));
     const double height = holder_.tuft_length + (pressure > 0 ? -pressure * holder_.working_depth : holder_.hover);
     return {.position = point + ahead_of(aim, normal, pressure) + height * up,
-            .rotation = aim.turn == 0 ? upright : glm::normalize(upright * glm::angleAxis(-aim.turn, Vec3(0, 0, 1))),
+            .rotation = rotation_at(aim, up),
             .time = time};
+}
+
+// A wide ferrule has its broad side across the view; a round one lies as it may.
+Quat PointerInput::rotation_at(const Aim& aim, const Vec3& up) const {
+    const auto turned = [](const Quat& q, double roll) {
+        return roll == 0 ? q : glm::normalize(q * glm::angleAxis(roll, Vec3(0, 0, 1)));
+    };
+    if (!wide_) {
+        const Frame f = make_frame(Vec3(0), up);
+        return turned(glm::normalize(glm::quat_cast(Mat3(f.t, f.b, f.n))), -aim.turn);
+    }
+    const Vec3 x = stroke::axes_across(up, aim.view_right, -aim.view_up).right;
+    const bool follows = settings_.roll_follow && follower_.started;
+    return turned(glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up))),
+                  settings_.roll + (follows ? follower_.roll : -aim.turn));
+}
+
+// The holder has gone on: it turns as the pen does, and after its stroke.
+void PointerInput::turn_holder(const Aim& aim, const Vec3& way) {
+    if (!wide_ || !settings_.roll_follow) return;
+    const stroke::Axes axes = stroke::axes_across(normal_, aim.view_right, -aim.view_up);
+    stroke::follow_stroke(follower_, -aim.turn, {glm::dot(way, axes.right), glm::dot(way, axes.down)});
 }
 
 // Where the holder is for ink at the point: ahead along the string, and under a lean aside.
@@ -179,6 +200,8 @@ void PointerInput::touch_down(const Aim& aim, const AimedSurface& hit, const Vec
     motion_.start = aim.time;
     motion_.time = motion_.speed = motion_.rest = motion_.pressure = gone_ = 0;
     spread_ = 0;
+    follower_ = {};
+    turn_holder(aim, Vec3(0));
     dragged_.string = towards;
     dragged_.position = point_ - holder_.tip_lag_turn * dragged_.string;
     steps.push_back({StrokeStep::Kind::begin, {}});
@@ -243,6 +266,7 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
         normal_ = glm::normalize(normal_ + part(dt, std::max(0.01, settings_.smoothing)) * (normal - normal_));
         onto_surface();
         if (is_clean(aim)) drag();
+        turn_holder(aim, point_ - before);
         gone_ += glm::distance(before, point_);
         const double v = glm::distance(before, point_) / dt;
         motion_.speed += part(dt, 0.05) * (v - motion_.speed);
@@ -307,6 +331,7 @@ void PointerInput::arrive(std::vector<brush::Pose>& poses) {
         normal_ = glm::normalize(normal_ + t * (goal_normal_ - normal_));
         onto_surface();
         drag();
+        turn_holder(aim_, point_ - before);
         gone_ += glm::distance(before, point_);
         motion_.pressure = start * (1 - kFlickLift * flick * (1 - left));
         motion_.time += seconds / n;
@@ -328,6 +353,7 @@ std::vector<StrokeStep> PointerInput::lift() {
         step.poses.push_back(pose_at(aim_, point_, normal_, i == count ? 0.0 : start * (1 - s), motion_.time));
     }
     down_ = false;
+    follower_ = {};
     steps.push_back(std::move(step));
     steps.push_back({StrokeStep::Kind::end, {}});
     return steps;

@@ -7,6 +7,7 @@
 #include "brush/preset/preset.h"
 #include "mesh/query/surface_query.h"
 #include "render/gl/gl_camera.h"
+#include "stroke/gesture/roll.h"
 #include "stroke/placement/placement.h"
 
 /// \file
@@ -25,6 +26,9 @@ struct PointerSettings {
     double pen_least = 0, pen_full = 1;  ///< pen pressures of depth 0 and of the full depth
     double pen_gamma = 1;                ///< exponent in between
     Vec2 tilt{0};                        ///< radians, lean of the holder to the right and upwards in the view
+    double roll = 0;                     ///< radians, of a wide ferrule about the holder's axis, anticlockwise seen
+                                         ///< from the handle's end; 0: its broad side is across the view
+    bool roll_follow = false;            ///< the broad side turns across the path (roll.h); `roll` is added
     bool clean_ends = true;              ///< for strokes without a pen: see `PointerInput`
 };
 
@@ -116,6 +120,8 @@ class PointerInput {
 
     bool is_clean(const Aim& aim) const { return settings_.clean_ends && aim.pressure < 0; }
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
+    Quat rotation_at(const Aim& aim, const Vec3& up) const;
+    void turn_holder(const Aim& aim, const Vec3& way);
     Vec3 ahead_of(const Aim& aim, const Vec3& normal, double pressure) const;
     void touch_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards, std::vector<StrokeStep>& steps);
     void wait(const Aim& aim, const AimedSurface& hit, std::vector<StrokeStep>& steps);
@@ -129,8 +135,10 @@ class PointerInput {
     const mesh::SurfaceQuery& surface_;
     stroke::HolderOptions holder_;
     PointerSettings settings_;
-    double reach_;         ///< metres, radius in which gaps are bridged
-    double bridged_ = -1;  ///< `time_` when the goal was last over a gap; negative: never
+    bool wide_;                      ///< the ferrule is wider than thick
+    stroke::RollFollower follower_;  ///< of the stroke, with `roll_follow`
+    double reach_;                   ///< metres, radius in which gaps are bridged
+    double bridged_ = -1;            ///< `time_` when the goal was last over a gap; negative: never
     bool down_ = false;
     std::optional<bool> on_back_;   ///< of the surface, where it was set down
     Aim aim_;                       ///< the last one

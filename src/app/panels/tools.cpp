@@ -209,8 +209,17 @@ void pen_curve(Ui& ui, ToolState& tools, int& handle) {
     }
 }
 
-// The pen's force, and how the holder leans.
-void pointer_section(Ui& ui, ToolState& tools, PanelLayout& panels) {
+// How a wide ferrule is turned about the holder's axis.
+void roll_controls(Ui& ui, PointerSettings& pointer) {
+    ui.slider("Roll", pointer.roll, {-180 * kDegree, 180 * kDegree, "%.0f\xc2\xb0", kDegree},
+              "Of the holder about itself: at 0 the broad side lies across the screen. Alt and wheel, Shift and arrow "
+              "keys; a pen that can turn adds its own");
+    ui.toggle("Follow the stroke", pointer.roll_follow, "The broad side turns across the stroke as it goes on");
+}
+
+// The roll of a wide ferrule, the pen's force, and how the holder leans.
+void pointer_section(Ui& ui, ToolState& tools, PanelLayout& panels, bool wide) {
+    if (wide) roll_controls(ui, tools.pointer);
     if (!ui.section("Pen and holder", false)) return;
     double right = tools.pointer.tilt.x, up = tools.pointer.tilt.y;
     ui.slider("Lean sideways", right, {-60 * kDegree, 60 * kDegree, "%.0f\xc2\xb0", kDegree},
@@ -297,7 +306,7 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     if (brushes) add(brush_rack(s.ui, s.brush, room));
     if (s.tools.active != Tool::mask && s.tools.active != Tool::eraser)
         add(ink_section({s.ui, s.brush, s.colours, *s.paint_thread, s.reported, s.dialogs.file}, room));
-    if (brushes) pointer_section(s.ui, s.tools, s.panels);
+    if (brushes) pointer_section(s.ui, s.tools, s.panels, has_wide_ferrule(s.brush));
     if (brushes) symmetry_section(s.ui, s.tools.symmetry);
     section_section(s.ui, s.view.section);
     const float height = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y, there = bottom - top;

@@ -8,6 +8,7 @@
 
 #include "app/panels/panels.h"
 #include "app/view/visibility.h"
+#include "stroke/placement/surface_mapping.h"
 
 namespace tuft::app {
 namespace {
@@ -38,20 +39,31 @@ void contact_outline(const MarkParts& s, const render::GlCamera& c, ImDrawList* 
     }
 }
 
-// Ring on the surface below a hovering tuft, as wide as its belly.
+// Ring on the surface below a hovering tuft, as wide as its belly; of a wide ferrule the outline of its mouth.
 void hover_ring(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) {
     const brush::Section &tip = s.view.tuft.state.branches.front().sections.front(),
                          &root = s.view.tuft.state.branches.front().sections.back();
-    const Vec3 axis = glm::normalize(tip.centre - root.centre);
-    const auto hit = s.model.query->ray(root.centre, axis, 0, 0.2);
+    const TuftView& tuft = s.view.tuft;
+    const bool wide = !tuft.mouth.empty();
+    const Vec3 from = wide ? tuft.pose.position : root.centre,
+               axis = wide ? tuft.pose.axis() : glm::normalize(tip.centre - root.centre);
+    const auto hit = s.model.query->ray(from, axis, 0, 0.2);
     if (!hit) return;
-    const Frame f = make_frame(hit->position, hit->normal);
-    const double radius = 0.5 * std::max(root.a, root.b);
-    std::vector<ImVec2> ring;
-    for (int i = 0; i < 40; ++i) {
-        const double a = 2 * std::numbers::pi * i / 40;
-        ring.push_back(on_screen(s, c, f.origin + radius * (std::cos(a) * f.t + std::sin(a) * f.b)));
+    Frame f = make_frame(hit->position, hit->normal);
+    if (wide) {
+        const stroke::Axes axes =
+            stroke::axes_across(f.n, tuft.pose.rotation * Vec3(1, 0, 0), tuft.pose.rotation * Vec3(0, 1, 0));
+        f.t = axes.right;
+        f.b = axes.down;
     }
+    const double radius = 0.5 * std::max(root.a, root.b);
+    std::vector<Vec2> outline = tuft.mouth;
+    for (int i = 0; i < 40 && !wide; ++i) {
+        const double a = 2 * std::numbers::pi * i / 40;
+        outline.push_back(radius * Vec2(std::cos(a), std::sin(a)));
+    }
+    std::vector<ImVec2> ring;
+    for (const Vec2& p : outline) ring.push_back(on_screen(s, c, f.origin + p.x * f.t + p.y * f.b));
     draw->AddPolyline(ring.data(), static_cast<int>(ring.size()), IM_COL32(255, 255, 255, 190), ImDrawFlags_Closed,
                       s.ui.px(3));
     draw->AddPolyline(ring.data(), static_cast<int>(ring.size()), IM_COL32(30, 30, 30, 220), ImDrawFlags_Closed,

@@ -29,9 +29,10 @@
 ///   shading, light, parallel, azimuth, elevation, zoom,
 ///                           layer, export-size, export-pictures,
 ///                           export-picture-width, pressure, writing-width (mm), writing-turn (degrees, anticlockwise),
-///                           writing-mirror, writing-mapping, string, radial, mirror, persistent, tool, language,
-///                           theme, scale, left-handed, keymap, section, section-axis, see-through, atlas, draw-every
-///                           (frames of which one is drawn, for tests)
+///                           writing-mirror, writing-mapping, roll (degrees, anticlockwise), roll-follow,
+///                           string, radial, mirror, persistent, tool, language, theme,
+///                           scale, left-handed, keymap, section, section-axis, see-through, atlas, draw-every (frames
+///                           of which one is drawn, for tests)
 ///   undo  redo  save FILE  export FILE  close
 ///   screenshot FILE.png
 ///   expect strokes N | expect model | expect no-model | expect kept | expect message TEXT | expect label LABEL

@@ -124,6 +124,14 @@ void remember_brush(BrushSettings& brush, const PaintThread* work) {
     }
 }
 
+bool has_wide_ferrule(const BrushSettings& brush) {
+    try {
+        return brush::load_preset(brush.preset).spines > 1;
+    } catch (const Error&) {
+        return false;  // a file that is gone
+    }
+}
+
 void size_brush(BrushSettings& brush, StatusMessage& status, double factor) {
     const std::string sized = brush::name_of({brush::sized_name(brush.preset).base, std::round(1e3 * factor) / 1e3});
     try {

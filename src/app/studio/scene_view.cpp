@@ -12,6 +12,7 @@
 #include "app/tools/aim.h"
 #include "app/view/model_colours.h"
 #include "app/view/tuft_solid.h"
+#include "brush/tuft/ferrule.h"
 
 namespace tuft::app {
 namespace {
@@ -118,7 +119,11 @@ void SceneView::update_tuft(const Event* cursor, double now) {
         Event at = *cursor;
         at.time = now;
         const PointerInput hand(*s.paint_thread->model().query, preview_->preset, s.tools.pointer);
-        if (const auto pose = hand.hover(aim_of(s, at))) s.view.tuft.state = brush::step(*preview_, *pose, {}, 0.01);
+        if (const auto pose = hand.hover(aim_of(s, at))) {
+            s.view.tuft.state = brush::step(*preview_, *pose, {}, 0.01);
+            s.view.tuft.pose = *pose;
+            s.view.tuft.mouth = brush::mouth_outline(preview_->preset);
+        }
     }
     if (s.view.tuft.state.branches.empty() || !s.view.tuft.pressed) return;
     const brush::Section& root = s.view.tuft.state.branches.front().sections.back();

@@ -101,6 +101,10 @@ void set_by_name(Session& s, const std::string& name, const std::string& value) 
         s.masks.choice.kind = stroke::mask_kind_of(value);
     else if (name == "mask-within")
         s.masks.choice.within = std::clamp(number, 0.0, 180.0) * kDegree;
+    else if (name == "roll")
+        s.tools.pointer.roll = std::clamp(number, -180.0, 180.0) * kDegree;
+    else if (name == "roll-follow")
+        s.tools.pointer.roll_follow = on;
     else if (name == "string")
         s.tools.pointer.string = std::max(0.0, number) * kMillimetre;
     else if (name == "radial")

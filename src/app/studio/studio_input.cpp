@@ -18,11 +18,18 @@
 #include "app/tools/model_clicks.h"
 #include "app/tools/palette_input.h"
 #include "brush/preset/preset.h"
+#include "core/text/units.h"
 
 namespace tuft::app {
 namespace {
 
 constexpr double kTurnPixels = 1.0;
+constexpr double kRollStep = 5 * kDegree;  // of a key, and of a step of the wheel
+
+/// Turns the holder of a wide ferrule by so many steps, anticlockwise.
+void roll_holder(PointerSettings& pointer, double steps) {
+    pointer.roll = std::remainder(pointer.roll + steps * kRollStep, 360 * kDegree);
+}
 
 }  // namespace
 
@@ -93,6 +100,7 @@ void StudioInput::scroll(const Event& e) {
     if (s.tools.curve.over >= 0) return curve_.wheel(e, now_);
     if (s.tools.active == Tool::writing && !s.tools.writing.empty() && !(e.modifiers & (kAlt | kControl)))
         return writing_.wheel(e);
+    if ((e.modifiers & kAlt) && has_wide_ferrule(s.brush)) return roll_holder(s.tools.pointer, e.steps);
     last_turn_ = now_;
     Orbit& orbit = s.view.orbit;
     if (e.modifiers & kControl) {
@@ -309,6 +317,8 @@ bool StudioInput::perform_tool(Action action) {
         if (action == key)
             return pointer.tilt = glm::clamp(pointer.tilt + Vec2(x, y) * 0.0872664626, -1.0471975512, 1.0471975512),
                    true;
+    if (action == Action::roll_anticlockwise || action == Action::roll_clockwise)
+        return roll_holder(pointer, action == Action::roll_anticlockwise ? 1 : -1), true;
     const double factor = brush::sized_name(s.brush.preset).factor;
     if (action == Action::upright)
         pointer.tilt = Vec2(0);

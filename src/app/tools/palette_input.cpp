@@ -21,7 +21,10 @@ Aim palette_aim(const PaletteState& p, const Event& e) {
             .metres_per_pixel = stroke::kPaletteWidth / width,
             .time = e.time,
             .pressure = e.pressure};
-    if (e.pressure >= 0) aim.tilt = Vec2(e.tilt.x, -e.tilt.y);
+    if (e.pressure >= 0) {
+        aim.tilt = Vec2(e.tilt.x, -e.tilt.y);
+        aim.turn = e.turn;
+    }
     return aim;
 }
 

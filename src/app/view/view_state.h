@@ -38,6 +38,9 @@ struct TuftView {
     brush::TuftState state;
     double depth = 0;      ///< metres of the unbent tip below the surface
     bool pressed = false;  ///< in contact; else hovering
+    brush::Pose pose;      ///< of the ferrule while it hovers
+    /// Outline of the ferrule's mouth, ferrule frame, metres; empty: round.
+    std::vector<Vec2> mouth;
 };
 
 /// How the model is viewed.

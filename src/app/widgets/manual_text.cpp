@@ -30,6 +30,8 @@ constexpr ManualPage kPages[] = {
      "smaller.\n"
      "* {lighter} and {heavier} press less and more, {smaller} and {larger} change the size.\n"
      "* Arrow keys lean the holder, {upright} holds it upright.\n"
+     "* A flat brush turns about its holder by Alt and wheel, {roll-anticlockwise} and {roll-clockwise}; \"Follow the "
+     "stroke\" keeps its broad side across.\n"
      "* A pen gives its own pressure and tilt; \"Pen and holder\" shows the curve between its force and the depth "
      "of the brush.\n"
      "* \"Stabiliser\" draws the brush behind the cursor on a string, for long calm lines.\n"

@@ -25,6 +25,18 @@ double mouth_height(const Preset& p, double s) {
     return std::pow(std::max(0.0, 1 - std::pow(std::abs(s), p.corner)), 1 / p.corner);
 }
 
+std::vector<Vec2> mouth_outline(const Preset& p) {
+    constexpr int kPoints = 64;  // a point at each end of both axes
+    std::vector<Vec2> out;
+    if (p.spines <= 1) return out;
+    const auto power = [&](double x) { return std::copysign(std::pow(std::abs(x), 2 / p.corner), x); };
+    for (int i = 0; i < kPoints; ++i) {
+        const double t = 2 * std::numbers::pi * i / kPoints;
+        out.push_back({0.5 * p.width * power(std::cos(t)), p.radius * power(std::sin(t))});
+    }
+    return out;
+}
+
 std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
     if (p.spines <= 1) return {FerruleSpine{.pitch = 2 * p.radius, .thick = 2 * p.radius}};
     const double a = 0.5 * p.width;

@@ -36,6 +36,10 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& preset);
 /// Returns the half-thickness of the mouth over b at s = x/a: (1 − |s|^q)^{1/q}.
 double mouth_height(const Preset& preset, double s);
 
+/// Returns the outline of a wide ferrule's mouth, anticlockwise from +x, closed by its first point; none for a round
+/// tuft. Ferrule frame, metres.
+std::vector<Vec2> mouth_outline(const Preset& preset);
+
 /// Returns by how much a strip has widened at `along` metres from the mouth: 1 without splay.
 double widening(const Preset& preset, double along);
 

@@ -10,21 +10,23 @@
 
 #include "io/model/json_number.h"
 #include "io/project/project_db.h"
+#include "io/project/sample_columns.h"
 #include "stroke/journal/entry_json.h"
 
 namespace tuft::io {
 namespace {
 
-constexpr std::size_t kSampleNumbers = 11;  // numbers per sample
 constexpr Packing kTextPacking{.element = 1, .lag = 1, .level = 6}, kNumberPacking{.element = 8, .lag = 1, .level = 6};
 constexpr std::size_t kMostEntryText = std::size_t{1} << 28, kMostNumbers = std::size_t{1} << 28;
 
+constexpr char kRolledMark = '2';
+
 // At the head of the bytes: sizes of what follows.
 struct SnapshotHead {
-    char magic[8] = {'T', 'U', 'F', 'T', 'S', 'N', 'A', '1'};
-    std::uint64_t text = 0;         ///< bytes of the entries' JSON
-    std::uint64_t packed_text = 0;  ///< bytes that it is packed into, which follow
-    std::uint64_t numbers = 0;      ///< of all samples; packed, they fill the rest
+    char magic[8] = {'T', 'U', 'F', 'T', 'S', 'N', 'A', '1'};  ///< '2' at its end: with a column of rolls
+    std::uint64_t text = 0;                                    ///< bytes of the entries' JSON
+    std::uint64_t packed_text = 0;                             ///< bytes that it is packed into, which follow
+    std::uint64_t numbers = 0;                                 ///< of all samples; packed, they fill the rest
 };
 
 nlohmann::json snapshot_json(const stroke::JournalEntry& entry) {
@@ -72,26 +74,22 @@ std::vector<char> pack_entries(std::span<const stroke::JournalEntry> entries) {
     nlohmann::json all = nlohmann::json::array();
     std::vector<double> numbers;
     std::size_t n = 0;
+    bool rolled = false;
     for (const stroke::JournalEntry& s : entries) {
         all.push_back(snapshot_json(s));
         n += stroke::samples_of(s).samples.size();
+        rolled = rolled || has_roll(stroke::samples_of(s).samples);
     }
-    // All times, then all x, ...: columns of like numbers compress well.
-    numbers.resize(kSampleNumbers * n);
+    numbers.resize((rolled ? kRolledColumns : kSampleColumns) * n);
     std::size_t i = 0;
     for (const stroke::JournalEntry& s : entries)
-        for (const stroke::StrokeSample& t : stroke::samples_of(s).samples) {
-            const double fields[kSampleNumbers] = {t.time,       t.position.x, t.position.y, t.position.z,
-                                                   t.pressure,   t.tilt.x,     t.tilt.y,     t.rotation.w,
-                                                   t.rotation.x, t.rotation.y, t.rotation.z};
-            for (std::size_t f = 0; f < kSampleNumbers; ++f) numbers[f * n + i] = fields[f];
-            ++i;
-        }
+        for (const stroke::StrokeSample& t : stroke::samples_of(s).samples) put_sample(t, numbers, n, i++);
     // Labels of files may be no readable text.
     const std::string text = all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     const std::vector<char> packed_text = pack(text.data(), text.size(), kTextPacking),
                             packed = pack(numbers.data(), numbers.size(), kNumberPacking);
     SnapshotHead head;
+    if (rolled) head.magic[7] = kRolledMark;
     head.text = text.size();
     head.packed_text = packed_text.size();
     head.numbers = numbers.size();
@@ -107,8 +105,11 @@ std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, co
     if (bytes.size() < sizeof head) throw Error(Message("{} is damaged: it ends too soon", what));
     std::memcpy(&head, bytes.data(), sizeof head);
     const std::size_t rest = bytes.size() - sizeof head;
+    const bool rolled = head.magic[7] == kRolledMark;
+    if (rolled) expected.magic[7] = kRolledMark;
+    const std::size_t columns_per_sample = rolled ? kRolledColumns : kSampleColumns;
     if (std::memcmp(head.magic, expected.magic, sizeof head.magic) != 0 || head.packed_text > rest ||
-        head.text > kMostEntryText || head.numbers > kMostNumbers || head.numbers % kSampleNumbers != 0)
+        head.text > kMostEntryText || head.numbers > kMostNumbers || head.numbers % columns_per_sample != 0)
         throw Error(Message("{} is damaged: its head makes no sense", what));
     const char *text_blob = bytes.data() + sizeof head, *blob = text_blob + head.packed_text;
     check_packed(text_blob, head.packed_text, head.text, what);
@@ -119,7 +120,7 @@ std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, co
     unpack(blob, rest - head.packed_text, numbers.data(), numbers.size(), kNumberPacking, what);
     if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }))
         throw Error(Message("{} has numbers that are not finite", what));
-    const std::size_t n = numbers.size() / kSampleNumbers;
+    const std::size_t n = numbers.size() / columns_per_sample;
     std::vector<stroke::JournalEntry> entries;
     std::size_t at = 0;
     try {
@@ -127,14 +128,7 @@ std::vector<stroke::JournalEntry> unpack_entries(std::span<const char> bytes, co
             stroke::EntryColumns columns = columns_of(j);
             const auto count = whole_number<std::size_t>(j.at("samples"));
             if (count > n - at) throw Error("it has more samples than are stored");
-            for (std::size_t k = 0; k < count; ++k, ++at) {
-                const auto field = [&](std::size_t f) { return numbers[f * n + at]; };
-                columns.trace.samples.push_back({.time = field(0),
-                                                 .position = {field(1), field(2), field(3)},
-                                                 .pressure = field(4),
-                                                 .tilt = {field(5), field(6)},
-                                                 .rotation = Quat(field(7), field(8), field(9), field(10))});
-            }
+            for (std::size_t k = 0; k < count; ++k, ++at) columns.trace.samples.push_back(get_sample(numbers, n, at));
             entries.push_back(stroke::entry_of(std::move(columns), j.at("entry").get<std::string>()));
         }
     } catch (const nlohmann::json::exception&) {

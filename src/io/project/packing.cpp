@@ -105,6 +105,11 @@ std::vector<char> pack(const void* data, std::size_t count, const Packing& packi
     return compressor.finish();
 }
 
+std::size_t packed_bytes(const void* blob, std::size_t blob_size) {
+    const auto bytes = ZSTD_getFrameContentSize(blob, blob_size);
+    return bytes == ZSTD_CONTENTSIZE_UNKNOWN || bytes == ZSTD_CONTENTSIZE_ERROR ? 0 : bytes;
+}
+
 void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const Message& what) {
     if (ZSTD_getFrameContentSize(blob, blob_size) != bytes) throw Error(Message("{} is damaged", what));
 }

@@ -20,6 +20,9 @@ struct Packing {
 /// Compresses the differences of the bit patterns: bytes of equal significance side by side, then zstd.
 std::vector<char> pack(const void* data, std::size_t count, const Packing& packing);
 
+/// Returns the number of bytes that the blob's header announces; 0 where it announces none.
+std::size_t packed_bytes(const void* blob, std::size_t blob_size);
+
 /// Throws `Error` naming `what` when the blob's header does not announce `bytes` bytes.
 void check_packed(const void* blob, std::size_t blob_size, std::size_t bytes, const Message& what);
 

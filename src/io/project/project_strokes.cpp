@@ -5,42 +5,27 @@
 #include <utility>
 
 #include "io/project/project_db.h"
+#include "io/project/sample_columns.h"
 #include "stroke/journal/entry_json.h"
 
 namespace tuft::io {
 namespace {
 
-constexpr std::size_t kFields = 11;  // per sample
 constexpr std::size_t kMostWord = 4096, kMostLabel = std::size_t{1} << 20,
                       kMostSettings = std::size_t{1} << 25;      // bytes
 constexpr std::uintmax_t kLookEvery = std::uintmax_t{64} << 20;  // bytes of samples between two looks at what is free
 constexpr Packing kSamples{.element = 8, .lag = 1, .level = 6};
 
-/// All times, then all x, ...: columns of like numbers compress well.
 std::vector<double> columns_of(const std::vector<stroke::StrokeSample>& samples) {
     const std::size_t n = samples.size();
-    std::vector<double> out(kFields * n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const stroke::StrokeSample& s = samples[i];
-        const std::array<double, kFields> fields{s.time,       s.position.x, s.position.y, s.position.z,
-                                                 s.pressure,   s.tilt.x,     s.tilt.y,     s.rotation.w,
-                                                 s.rotation.x, s.rotation.y, s.rotation.z};
-        for (std::size_t f = 0; f < kFields; ++f) out[f * n + i] = fields[f];
-    }
+    std::vector<double> out((has_roll(samples) ? kRolledColumns : kSampleColumns) * n);
+    for (std::size_t i = 0; i < n; ++i) put_sample(samples[i], out, n, i);
     return out;
 }
 
-std::vector<stroke::StrokeSample> samples_of(const std::vector<double>& columns) {
-    const std::size_t n = columns.size() / kFields;
+std::vector<stroke::StrokeSample> samples_of(const std::vector<double>& columns, std::size_t n) {
     std::vector<stroke::StrokeSample> samples(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const auto field = [&](std::size_t f) { return columns[f * n + i]; };
-        samples[i] = {.time = field(0),
-                      .position = {field(1), field(2), field(3)},
-                      .pressure = field(4),
-                      .tilt = {field(5), field(6)},
-                      .rotation = Quat(field(7), field(8), field(9), field(10))};
-    }
+    for (std::size_t i = 0; i < n; ++i) samples[i] = get_sample(columns, n, i);
     return samples;
 }
 
@@ -58,6 +43,8 @@ void raise_format_for(SQLite::Database& db, const stroke::JournalEntry& entry) {
     if (stroke::on_palette(entry) || entry.as<stroke::WashPalette>()) raise_format(db, kPaletteFormat);
     if (t.flat && t.placement.mapping == stroke::SurfaceMapping::drape) raise_format(db, kDrapedFormat);
     if (!t.stencil.empty()) raise_format(db, kStencilFormat);
+    if (has_roll(t.samples) || (stroke && (stroke->settings.roll != 0 || stroke->settings.roll_follow)))
+        raise_format(db, kRolledFormat);
 }
 
 }  // namespace
@@ -135,7 +122,9 @@ std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::
         if (count < 0 || count > kMaxSamples) throw Error(Message("{} has an impossible number of samples", what));
         const SQLite::Column blob = select.getColumn(11);
         const auto size = static_cast<std::size_t>(blob.getBytes());
-        const std::size_t numbers = kFields * static_cast<std::size_t>(count);
+        const auto n_samples = static_cast<std::size_t>(count);
+        const bool rolled = packed_bytes(blob.getBlob(), size) > kSampleColumns * n_samples * sizeof(double);
+        const std::size_t numbers = (rolled ? kRolledColumns : kSampleColumns) * n_samples;
         check_packed(blob.getBlob(), size, numbers * sizeof(double), what);
         // Its columns, and them as they are unpacked, go again.
         bytes += sizeof(stroke::StrokeSample) * static_cast<std::uintmax_t>(count);
@@ -143,7 +132,7 @@ std::vector<stroke::JournalEntry> load_strokes(SQLite::Database& db, const std::
             check_memory(path, bytes - std::exchange(checked, bytes) + now);
         std::vector<double> fields(numbers);
         unpack(blob.getBlob(), size, fields.data(), numbers, kSamples, what);
-        t.samples = samples_of(fields);
+        t.samples = samples_of(fields, n_samples);
         stroke::JournalEntry entry = stroke::entry_of(std::move(columns), json);
         try {
             stroke::check_samples(stroke::samples_of(entry));

@@ -149,7 +149,7 @@ class Reader : InkmlText {
                 c.offset = lo, c.scale = 1 / (hi - lo);
         } else if (c.name == "F") {
             c.scale = (unit == "mN" ? 1e-3 : 1.0) / options_.full_force;
-        } else if (c.name == "OTx" || c.name == "OTy" || c.name == "OA" || c.name == "OE") {
+        } else if (c.name == "OTx" || c.name == "OTy" || c.name == "OA" || c.name == "OE" || c.name == "OR") {
             c.scale = unit == "rad" ? 1 : kDegree;
             if (c.name == "OE") c.fallback = 90 * kDegree;
         } else if (c.name == "QW") {
@@ -283,6 +283,7 @@ class Reader : InkmlText {
         const InkmlFormat& f = state.format;
         const int x = f.find("X"), y = f.find("Y"), z = f.find("Z"), t = f.find("T");
         const int tx = f.find("OTx"), ty = f.find("OTy"), oa = f.find("OA"), oe = f.find("OE");
+        const int roll = f.find("OR");
         const int q[4] = {f.find("QW"), f.find("QX"), f.find("QY"), f.find("QZ")};
         const int p = f.find("P") >= 0 ? f.find("P") : f.find("F");
         const bool turned = q[0] >= 0 && q[1] >= 0 && q[2] >= 0 && q[3] >= 0;
@@ -324,6 +325,7 @@ class Reader : InkmlText {
                 const double lean = std::clamp(90 * kDegree - get(oe), 0.0, 85 * kDegree);
                 s.tilt = {std::atan(std::tan(lean) * std::cos(get(oa))), std::atan(std::tan(lean) * std::sin(get(oa)))};
             }
+            s.roll = get(roll);
             for (int k = 0; k < 2; ++k) s.tilt[k] = std::clamp(s.tilt[k], -85 * kDegree, 85 * kDegree);
             if (turned) {
                 s.rotation = Quat(get(q[0]), get(q[1]), get(q[2]), get(q[3]));
@@ -333,6 +335,8 @@ class Reader : InkmlText {
             } else if (!d.trace.flat) {
                 const Vec3 up = glm::normalize(Vec3(std::tan(s.tilt.x), std::tan(s.tilt.y), 1));
                 s.rotation = Quat(Vec3(0, 0, 1), up);
+                if (s.roll != 0) s.rotation = glm::normalize(s.rotation * glm::angleAxis(s.roll, Vec3(0, 0, 1)));
+                s.roll = 0;  // the rotation has it
             }
             d.trace.samples.push_back(s);
         }

@@ -43,6 +43,7 @@ struct InkmlOptions {
 /// | T | time, ms unless declared, from the start of the trace |
 /// | OTx, OTy | tilt towards +x and +y, degrees unless declared rad |
 /// | OA, OE | azimuth from +x towards +y, and elevation, degrees unless declared rad |
+/// | OR | roll: rotation about the pen's own axis, anticlockwise seen from its end, degrees unless declared rad |
 /// | QW, QX, QY, QZ | rotation of the ferrule, a unit quaternion (own channels) |
 ///
 /// A trace with Z or a quaternion is in space. Any other is flat: its y points down and it needs a placement.
@@ -86,7 +87,7 @@ enum class Digits {
     /// directions and rotations of unit length to 1e-14, tilts within 85 degrees, pressures within 0–1.
     exact,
     /// Millimetres, milliseconds, degrees, for people. Errors at most: positions 1e-9 m (flat: 5e-7 m), times 1e-6 s,
-    /// pressures 1e-5, tilts 1e-4 rad, rotations 1e-9.
+    /// pressures 1e-5, tilts and rolls 1e-4 rad, rotations 1e-9.
     rounded,
 };
 

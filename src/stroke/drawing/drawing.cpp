@@ -58,7 +58,7 @@ void transform_samples(StrokeSamples& trace, const Vec2& centre, double scale, b
         for (Vec2* end : {&edge.from, &edge.to}) *end = scale * (*end - centre);
     trace.line_width *= scale;
     if (!mirrored) return;
-    for (StrokeSample& sample : trace.samples) sample.position.x *= -1, sample.tilt.x *= -1;
+    for (StrokeSample& sample : trace.samples) sample.position.x *= -1, sample.tilt.x *= -1, sample.roll *= -1;
     for (StencilEdge& edge : trace.stencil) edge = {Vec2(-edge.to.x, edge.to.y), Vec2(-edge.from.x, edge.from.y)};
 }
 

@@ -9,6 +9,7 @@
 #include "core/ease.h"
 #include "core/system/interrupt.h"
 #include "stroke/drawing/plane_ink.h"
+#include "stroke/gesture/roll.h"
 #include "stroke/gesture/tractrix.h"
 
 namespace tuft::stroke {
@@ -65,6 +66,7 @@ std::vector<StrokeSample> evenly(const std::vector<StrokeSample>& s, double apar
             next.time = std::lerp(s[i - 1].time, s[i].time, f);
             next.pressure = std::lerp(s[i - 1].pressure, s[i].pressure, f);
             next.tilt = glm::mix(s[i - 1].tilt, s[i].tilt, f);
+            next.roll = mix_roll(s[i - 1].roll, s[i].roll, f);
             out.push_back(next);
         }
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "stroke/gesture/roll.h"
 #include "stroke/gesture/tractrix.h"
 
 namespace tuft::stroke {
@@ -21,6 +22,7 @@ StrokeSample mix(const StrokeSample& a, const StrokeSample& b, double part) {
     out.time = std::lerp(a.time, b.time, part);
     out.pressure = std::lerp(a.pressure, b.pressure, part);
     out.tilt = glm::mix(a.tilt, b.tilt, part);
+    out.roll = mix_roll(a.roll, b.roll, part);
     return out;
 }
 

@@ -83,7 +83,7 @@ PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, cons
     for (std::size_t i = 0; i < led.samples.size(); ++i) {
         const StrokeSample& s = led.samples[i];
         poses.push_back(pose_holder({s.position.x, -s.position.y, 0}, 0,
-                                    {.depth = depths[i], .tilt = s.tilt, .time = s.time}, options));
+                                    {.depth = depths[i], .tilt = s.tilt, .roll = s.roll, .time = s.time}, options));
     }
     brush::Tuft tuft = brush::make_tuft(preset);
     const brush::ContactPlane plane;

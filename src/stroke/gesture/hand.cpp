@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "stroke/gesture/roll.h"
+
 namespace tuft::stroke {
 namespace {
 
@@ -41,7 +43,7 @@ StrokeSamples steady(StrokeSamples trace, const StrokeSettings& settings) {
         for (StrokeSample& s : samples) s = pull(string, s, settings.stabilise);
         let_go(string, samples.back().time, speed, kCatchUpSpacing, samples);
     }
-    return press(std::move(trace), {.from = settings.pressure});
+    return press(roll_holder(std::move(trace), settings), {.from = settings.pressure});
 }
 
 brush::Pose steady(GestureFilter& state, const brush::Pose& pose, const StrokeSettings& settings) {

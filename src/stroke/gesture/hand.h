@@ -5,8 +5,8 @@
 #include "stroke/journal/settings.h"
 
 /// \file
-/// Samples of a stroke as its settings change them: filter, then string, then pressure from motion. Called before a
-/// stroke meets the model; the journal stores the samples unchanged.
+/// Samples of a stroke as its settings change them: filter, then string, then roll from motion (roll.h), then pressure
+/// from motion. Called before a stroke meets the model; the journal stores the samples unchanged.
 namespace tuft::stroke {
 
 /// Steadies a whole flat trace. The filter runs forwards and backwards, so that nothing lags and both ends stay. At the

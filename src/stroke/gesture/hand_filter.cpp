@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "stroke/gesture/roll.h"
 #include "stroke/gesture/tractrix.h"
 
 namespace tuft::stroke {
@@ -60,7 +61,7 @@ String::Grip grip_at(String& state, double travel) {
     if (past.size() == 1 || past[0].travel >= travel) return past.front();
     const double w = (travel - past[0].travel) / (past[1].travel - past[0].travel);
     return {travel, past[0].pressure + w * (past[1].pressure - past[0].pressure),
-            past[0].tilt + w * (past[1].tilt - past[0].tilt)};
+            past[0].tilt + w * (past[1].tilt - past[0].tilt), mix_roll(past[0].roll, past[1].roll, w)};
 }
 
 }  // namespace
@@ -118,6 +119,7 @@ StrokeSample smooth(HandFilter& s, const StrokeSample& sample, const HandFilterO
     StrokeSample out = sample;
     out.position = filter(s.position, sample.position, sample.time, o.position);
     out.tilt = filter(s.tilt, sample.tilt, sample.time, o.tilt);
+    out.roll = filter(s.roll, mix_roll(s.roll.raw, sample.roll, 1), sample.time, o.tilt);  // past ±π it goes on
     out.rotation = filter(s.rotation, sample.rotation, sample.time, o.tilt);
     out.pressure = filter(s.pressure, sample.pressure, sample.time, o.pressure);
     if (!(sample.pressure > 0)) out.pressure = sample.pressure;
@@ -139,12 +141,13 @@ StrokeSample pull(String& s, const StrokeSample& hand, double length) {
     s.travel += glm::length(hand.position - s.hand);
     s.tip = drag_string(s.tip, s.hand, hand.position, length);
     s.hand = hand.position;
-    s.past.push_back({s.travel, hand.pressure, hand.tilt});
+    s.past.push_back({s.travel, hand.pressure, hand.tilt, hand.roll});
     const String::Grip grip = grip_at(s, s.travel - glm::distance(s.tip, s.hand));
     StrokeSample out = hand;
     out.position = s.tip;
     out.pressure = grip.pressure;
     out.tilt = grip.tilt;
+    out.roll = grip.roll;
     return out;
 }
 
@@ -162,6 +165,7 @@ void let_go(String& s, double time, double speed, double spacing, std::vector<St
                        .position = s.tip,
                        .pressure = grip.pressure,
                        .tilt = grip.tilt,
+                       .roll = grip.roll,
                        .rotation = {1, 0, 0, 0}});
     }
 }

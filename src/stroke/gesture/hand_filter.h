@@ -64,11 +64,12 @@ struct HandFilter {
     OneEuro<Vec3> position;
     OneEuro<double> pressure;
     OneEuro<Vec2> tilt;
+    OneEuro<double> roll;
     OneEuroTurn rotation;
 };
 
-/// Returns the next sample with position, pressure, tilt and rotation filtered. Its time stays, and a pressure of 0
-/// stays 0: pen up.
+/// Returns the next sample with position, pressure, tilt, roll and rotation filtered. Its time stays, and a pressure of
+/// 0 stays 0: pen up.
 StrokeSample smooth(HandFilter& state, const StrokeSample& sample, const HandFilterOptions& options = {});
 brush::Pose smooth(HandFilter& state, const brush::Pose& pose, const HandFilterOptions& options = {});
 
@@ -83,11 +84,12 @@ struct String {
         double travel = 0;  ///< metres of the hand's path
         double pressure = 0;
         Vec2 tilt{0};
+        double roll = 0;
     };
     std::deque<Grip> past;  ///< pressures and tilts between tip and hand
 };
 
-/// Moves the tip; `length` in metres. Returns the tip's position with the pressure and tilt that the hand had
+/// Moves the tip; `length` in metres. Returns the tip's position with the pressure, tilt and roll that the hand had
 /// |hand − tip| of its path before, so that they stay at their place. A string of length 0 changes nothing.
 StrokeSample pull(String& state, const StrokeSample& hand, double length);
 

@@ -29,6 +29,7 @@ void check_samples(const StrokeSamples& stroke) {
         if (!(std::abs(s.time) <= kLongestStroke)) refuse("a sample's time");
         if (!(std::abs(s.pressure) <= kMostPressure)) refuse("a sample's pressure");
         if (!within(s.tilt, kMostTilt)) refuse("a sample's tilt");
+        if (!(std::abs(s.roll) <= kMostRoll)) refuse("a sample's roll");
         const double square = glm::dot(s.rotation, s.rotation);
         if (!(square > 1e-6 && square < 1e6)) refuse("a sample's rotation");
     }

@@ -39,8 +39,12 @@ struct StrokeSample {
     Vec3 position{0};           ///< metres. Flat: x right, y down, z unused. In space: the ferrule's mouth, model frame
     double pressure = 0;        ///< flat: part of the brush's working depth, 0–1; 0: pen up
     Vec2 tilt{0};               ///< flat: lean of the holder towards +x and towards +y (down), radians
+    double roll = 0;            ///< flat: of the ferrule about its own axis, radians, anticlockwise seen from the
+                                ///< handle's end; 0: its broad side, x, is along +x
     Quat rotation{1, 0, 0, 0};  ///< in space: of the ferrule (`brush::Pose`)
 };
+
+inline constexpr double kMostRoll = 1e6;  ///< radians; whole turns that a device counts are retained
 
 /// A straight part of a stencil's edge, metres, frame of flat samples. The part that may be painted lies towards
 /// (from.y − to.y, to.x − from.x).
@@ -64,8 +68,8 @@ struct StrokeSamples {
 };
 
 /// Throws `Error` for samples, a placement or a stencil that no hand can have made: numbers that are not finite, points
-/// beyond `kFarthest`, times beyond three years, pressures and tilts out of range, rotations and directions of length
-/// 0.
+/// beyond `kFarthest`, times beyond three years, pressures, tilts and rolls out of range, rotations and directions of
+/// length 0.
 void check_samples(const StrokeSamples& stroke);
 
 }  // namespace tuft::stroke

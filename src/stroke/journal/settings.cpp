@@ -1,5 +1,6 @@
 #include "stroke/journal/settings.h"
 
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/text/nesting.h"
 #include "core/text/text.h"
 #include "stroke/journal/entry_json.h"
+#include "stroke/journal/samples.h"
 
 namespace tuft::stroke {
 namespace {
@@ -80,6 +82,8 @@ nlohmann::json json_of(const StrokeSettings& s) {
                         {"film", name_of(s.film)},
                         {"down", {s.down.x, s.down.y, s.down.z}}};
     if (s.endless) j["endless"] = true;  // left out by default: entries stay as older versions wrote them
+    if (s.roll != 0) j["roll"] = s.roll;
+    if (s.roll_follow) j["roll_follow"] = true;
     return j;
 }
 
@@ -99,6 +103,8 @@ StrokeSettings settings_of(const nlohmann::json& j) {
         read("pressure", s.pressure, pressure_from);
         s.smooth = j.value("smooth", s.smooth);
         s.stabilise = j.value("stabilise", s.stabilise);
+        s.roll = j.value("roll", s.roll);
+        s.roll_follow = j.value("roll_follow", s.roll_follow);
         read("film", s.film, film_model_of);
         const auto down = j.value("down", std::vector<double>{s.down.x, s.down.y, s.down.z});
         if (down.size() != 3) throw Error("the direction of weight of a stroke is no three numbers");
@@ -115,6 +121,7 @@ void check_settings(const StrokeSettings& s) {
     if (!(glm::length(s.down) < 1e9)) throw Error("the direction of weight is no direction");
     if (!(s.smooth >= 0 && s.smooth <= kStrongestFilter)) throw Error("smooth is out of range");
     if (!(s.stabilise >= 0 && s.stabilise <= kLongestString)) throw Error("stabilise is out of range");
+    if (!(std::abs(s.roll) <= kMostRoll)) throw Error("roll is out of range");
 }
 
 std::string to_json(const StrokeSettings& s) {

@@ -34,8 +34,10 @@ struct StrokeSettings {
     PressureFrom pressure = PressureFrom::none;  ///< of flat samples; none: as sampled
     double smooth = 0;                           ///< strength of the filter (`hand_filter_options`); 0: off
     FilmModel film = FilmModel::still;
-    Vec3 down{0, 0, -1};   ///< direction of gravity, for wet ink, any length; zero: no weight
-    double stabilise = 0;  ///< length of the string that pulls the tip, metres; 0: off
+    Vec3 down{0, 0, -1};       ///< direction of gravity, for wet ink, any length; zero: no weight
+    double stabilise = 0;      ///< length of the string that pulls the tip, metres; 0: off
+    double roll = 0;           ///< radians, added to that of flat samples (see StrokeSample)
+    bool roll_follow = false;  ///< flat: the ferrule's broad side turns across the path, see roll.h
 
     bool operator==(const StrokeSettings&) const = default;
 };

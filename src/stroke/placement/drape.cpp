@@ -130,6 +130,7 @@ SurfaceTrace map_draped(const SurfaceQuery& query, const StrokeSamples& trace) {
         out.time = hand.time;
         out.pressure = hand.pressure;
         out.tilt = hand.tilt;
+        out.roll = hand.roll;
         const double up = clearance(query, out.position, out.normal, drape.radius());
         if (const auto hit = exact_ray(query, out.position + up * out.normal, -out.normal, up + drape.radius())) {
             out.on = *hit;

@@ -13,6 +13,7 @@ struct HolderPose {
     Vec3 down{0, -1, 0};   ///< unit, along the surface: second axis of the tilt
     double depth = 0;      ///< metres of the unbent tip below the surface; negative above it
     Vec2 tilt{0};          ///< radians, towards right, towards down
+    double roll = 0;       ///< radians, anticlockwise about the holder's axis: of the ferrule's x from `right`
     double time = 0;       ///< seconds
 };
 

@@ -50,7 +50,8 @@ brush::Pose pose_holder(const Vec3& place, double height, const HolderPose& held
     const double lean = std::min(glm::length(held.tilt), options.max_tilt);
     const Vec2 tilt = lean > 0 ? held.tilt * (lean / glm::length(held.tilt)) : Vec2{0};
     const Vec3 up = glm::normalize(held.normal + std::tan(tilt.x) * held.right + std::tan(tilt.y) * held.down);
-    const Vec3 x = into_plane(held.right, up);
+    const Vec3 level = into_plane(held.right, up);
+    const Vec3 x = held.roll == 0 ? level : std::cos(held.roll) * level + std::sin(held.roll) * glm::cross(up, level);
     brush::Pose pose;
     pose.position = place + (height - held.depth) * held.normal + options.tuft_length * up;
     pose.rotation = glm::normalize(glm::quat_cast(Mat3(x, glm::cross(up, x), up)));
@@ -75,7 +76,8 @@ std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const S
         if (const double tip_lag = glm::length(s.tip_lag); along[i] < tip_lag)
             height += (1 - along[i] / tip_lag) * rise(query, s.position, ahead, ground.normal, options.steady);
         poses.push_back(pose_holder(s.position + ahead, height,
-                                    {ground.normal, axes.right, axes.down, depths[i], s.tilt, s.time}, options));
+                                    {ground.normal, axes.right, axes.down, depths[i], s.tilt, s.roll, s.time},
+                                    options));
     }
     return poses;
 }

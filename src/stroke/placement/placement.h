@@ -26,6 +26,7 @@ struct SurfaceSample {
     double time = 0;         ///< seconds
     double pressure = 0;     ///< part of the working depth, 0–1
     Vec2 tilt{0};            ///< radians, towards right, towards down
+    double roll = 0;         ///< radians, see `StrokeSample`
     Vec2 tip_lag{0};         ///< metres to the right and down, in the tangent plane, by which the hand leads the ink
 };
 
@@ -100,6 +101,10 @@ HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMe
 /// Returns the ferrule's pose over each mapped sample. The holder's axis is the normal leaned by the tilt,
 ///
 ///     up ∝ normal + tan(tilt.x) right + tan(tilt.y) down.
+///
+/// The broad side of the ferrule is turned about that axis by the roll,
+///
+///     x = cos(roll) r + sin(roll) (up × r),    r: unit, the direction of `right` orthogonal to up.
 ///
 /// The unbent tip lies `tip_depths` below the sample and leads it by the tip lag in the tangent plane. Normal and
 /// height are levelled (`level_surface` over `steady` of path): the holder follows ridges and valleys and passes over

@@ -66,7 +66,7 @@ void check(const StrokeSamples& trace) {
         throw Error("the placement of a stroke has directions that are zero or parallel");
     for (const StrokeSample& s : trace.samples)
         if (!finite(s.position) || !std::isfinite(s.time) || !std::isfinite(s.pressure) || !std::isfinite(s.tilt.x) ||
-            !std::isfinite(s.tilt.y))
+            !std::isfinite(s.tilt.y) || !std::isfinite(s.roll))
             throw Error("a stroke has a sample that is not finite");
 }
 
@@ -208,6 +208,7 @@ SurfaceSample hand_data(const StrokeSample& s) {
     mapped.time = s.time;
     mapped.pressure = std::clamp(s.pressure, 0.0, 1.0);
     mapped.tilt = s.tilt;
+    mapped.roll = s.roll;
     return mapped;
 }
 
