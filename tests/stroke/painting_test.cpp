@@ -352,7 +352,7 @@ TEST(Document, RefusesAStrokeOfMillionsOfStepsBeforeItPaints) {
     far.trace.samples.push_back(last);
     EXPECT_THROW(painting.paint(far), Error);
     EXPECT_TRUE(painting.journal().empty());
-    EXPECT_EQ(painting.canvas().hash(), Document(model).canvas().hash());
+    EXPECT_EQ(painting.layers().canvas().hash(), Document(model).layers().canvas().hash());
 }
 
 // The way of the hand ahead of the ink is measured once for a brush. Another brush of the same name has another.
@@ -364,13 +364,13 @@ TEST(Document, ABrushThatTakesAnothersPlaceIsMeasuredAnew) {
     brush::Preset stiff = brush::load_preset("wolf-small");
     stiff.length *= 0.7;
     Document plain(model), used(model);
-    plain.use_brush(stiff);
+    plain.use(stiff);
     plain.paint(flat);
     used.paint(flat);
     ASSERT_TRUE(used.undo());
-    used.use_brush(stiff);
+    used.use(stiff);
     used.paint(flat);
-    EXPECT_EQ(used.hash(), plain.hash());
+    EXPECT_EQ(used.layers().hash(), plain.layers().hash());
 }
 
 TEST(Document, ASmoothMotionIsTheSameAtAnySamplingRate) {
