@@ -167,8 +167,8 @@ std::vector<std::string> export_painted(const fs::path& path, const stroke::Mode
                                         bool flat = true) {
     const ink::Stack stack(canvas);
     const ModelMaps maps = pattern_maps(model.atlas.size, flat);
-    return export_model(path, *model.mesh, model.atlas, maps,
-                        {.painted = painted_parts(stack, *model.mesh, model.atlas, model.texels)});
+    return texts(export_model(path, *model.mesh, model.atlas, maps,
+                              {.painted = painted_parts(stack, *model.mesh, model.atlas, model.texels)}));
 }
 
 json glb_json(const fs::path& path) {

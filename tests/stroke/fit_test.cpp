@@ -249,8 +249,9 @@ TEST(SizeFault, ADrawingIsRefusedOnAModelThatIsSmallerThanTheTuftAndAQuarterOfTh
         scaled.bounds = {};
         for (Vec3f& p : scaled.positions) p *= static_cast<float>(scale), scaled.bounds.add(Vec3(p));
         return size_fault(
-            entries, [](const std::string& name) { return brush::load_preset(name).length; },
-            mesh::SurfaceQuery(scaled));
+                   entries, [](const std::string& name) { return brush::load_preset(name).length; },
+                   mesh::SurfaceQuery(scaled))
+            .text();
     };
     PaintStroke flat;
     flat.brush = "wolf-small";

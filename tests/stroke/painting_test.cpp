@@ -352,7 +352,7 @@ TEST(Document, RefusesAStrokeOfMillionsOfStepsBeforeItPaints) {
     far.trace.samples.push_back(last);
     EXPECT_THROW(painting.paint(far), Error);
     EXPECT_TRUE(painting.journal().empty());
-    EXPECT_EQ(painting.canvas().hash(), Document(model).canvas().hash());
+    EXPECT_EQ(painting.layers().canvas().hash(), Document(model).layers().canvas().hash());
 }
 
 // The way of the hand ahead of the ink is measured once for a brush. Another brush of the same name has another.
@@ -370,7 +370,7 @@ TEST(Document, ABrushThatTakesAnothersPlaceIsMeasuredAnew) {
     ASSERT_TRUE(used.undo());
     used.use(stiff);
     used.paint(flat);
-    EXPECT_EQ(used.hash(), plain.hash());
+    EXPECT_EQ(used.layers().hash(), plain.layers().hash());
 }
 
 TEST(Document, ASmoothMotionIsTheSameAtAnySamplingRate) {

@@ -28,11 +28,11 @@ TEST_P(SpineModels, PaintWithEveryShippedBrushAndReplayToTheSameBits) {
         set_thread_count(4);
         Document again(model);
         again.replay(painting.journal().entries());
-        EXPECT_EQ(again.canvas().hash(), painting.canvas().hash()) << name;
+        EXPECT_EQ(again.layers().canvas().hash(), painting.layers().canvas().hash()) << name;
         Document other(model);
         stroke.settings.spine = brush::SpineMethod::rod;
         other.paint(stroke);
-        EXPECT_NE(other.canvas().hash(), painting.canvas().hash()) << name << " was bent by the rod";
+        EXPECT_NE(other.layers().canvas().hash(), painting.layers().canvas().hash()) << name << " was bent by the rod";
     }
     set_thread_count(0);
 }
@@ -50,8 +50,8 @@ TEST_P(SpineModels, DrawAFlatLineWhereItsPathIs) {
     Document painting(model);
     painting.paint(stroke);
     double sum = 0, aside = 0;
-    for (const std::uint32_t slot : painting.canvas().touched_slots()) {
-        const ink::Plane* plane = painting.canvas().plane(slot, 0);
+    for (const std::uint32_t slot : painting.layers().canvas().touched_slots()) {
+        const ink::Plane* plane = painting.layers().canvas().plane(slot, 0);
         for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
             if (model.texels.tiles[slot].area[t] <= 0) continue;
             sum += (*plane)[t];
