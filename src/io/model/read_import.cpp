@@ -171,8 +171,11 @@ class Child {
   private:
     void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) const {
         const rlimit bounds{soft, hard};
-        if (prlimit(pid_, what, &bounds, nullptr) != 0 && errno != ESRCH)
-            throw Error(importer().string(), Message("cannot be limited: {}", std::strerror(errno)));
+        if (prlimit(pid_, what, &bounds, nullptr) == 0 || errno == ESRCH) return;
+        const int failed = errno;
+        rlimit own{};  // that it has set itself by now: a lower one cannot be raised, and needs not
+        if (failed == EPERM && prlimit(pid_, what, nullptr, &own) == 0 && own.rlim_max < hard) return;
+        throw Error(importer().string(), Message("cannot be limited: {}", std::strerror(failed)));
     }
     /// With what it started itself.
     void end() {
