@@ -5,6 +5,7 @@
 #include <string>
 
 #include "brush/tuft/tuft.h"
+#include "core/error.h"
 
 /// Laws that every brush model of the papers keeps as the spine of a tuft.
 namespace tuft::brush {
@@ -162,6 +163,10 @@ TEST_P(Papers, ReshapeStraightensTheHairAtItsPlace) {
 
 TEST_P(Papers, EveryShippedBrushBendsAndStaysFinite) {
     for (const std::string& name : list_presets()) {
+        if (load_preset(name).spines > 1) {  // the papers' tufts have one spine: said, not bent as something else
+            EXPECT_THROW(make_tuft(preset(name)), Error) << name;
+            continue;
+        }
         const Painted out = paint(make_tuft(preset(name)), 1, 40);
         for (const Vec3& x : out.nodes) ASSERT_TRUE(std::isfinite(glm::length(x))) << name;
         EXPECT_GT(out.force.z, 0) << name;
