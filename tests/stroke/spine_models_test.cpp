@@ -17,7 +17,6 @@ TEST_P(SpineModels, PaintWithEveryBrushOfOneSpineAndReplayToTheSameBits) {
     const Model model = sheet({}, 384);
     for (const std::string& name : brush::list_presets()) {
         const brush::Preset preset = brush::load_preset(name);
-        if (preset.spines > 1) continue;  // of one spine
         PaintStroke stroke = line(name, 0.15 * preset.length, {}, 0.06, 100);
         stroke.settings.spine = GetParam();
         set_thread_count(1);

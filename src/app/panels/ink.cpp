@@ -201,8 +201,10 @@ void two_inks(const InkParts& s) {
            ink_colour(s.colours, s.brush.tip_ink));
     ImGui::Dummy(ImVec2(size, size));
     ImGui::SameLine();
-    ui.combo("Tip ink", s.brush.tip_ink, ink_names(s.colours));
-    ui.slider("Tip", s.brush.tip_depth, {0.05, 0.9, "%.0f %%", 0.01}, "How far up the hair it goes");
+    const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+    ui.combo("Tip ink", s.brush.tip_ink, ink_names(s.colours), half / ui.px(1));
+    ImGui::SameLine();
+    ui.named_slider("Tip", s.brush.tip_depth, {0.05, 0.9, "%.0f %%", 0.01}, "How far up the hair it goes", half);
 }
 
 // Whether ink flows, and what is done with wet one; all in a row.

@@ -131,11 +131,13 @@ Savings brush_rack(Ui& ui, BrushSettings& brush, ToolRoom room) {
     }
     if (!wide.empty()) groups.emplace_back("flat", wide);
     if (!single.empty()) groups.emplace_back("other", single);
-    const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = ui.px(8),
-                letters = 0.8f * ImGui::GetFontSize();
-    // Tufts are thin: as many fit in a row as have room for one each.
-    const float cell = std::min(ui.px(26), (all - 3 * gap) / 10), height = ui.px(kRackHeights[static_cast<int>(room)]);
     const bool named = room != ToolRoom::tight;
+    const float all = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX(), gap = named ? ui.px(8) : 0,
+                letters = 0.8f * ImGui::GetFontSize();
+    // Tufts are thin: as many fit in a row as have room for one each. Where there is little, they stand group by group
+    // without a gap.
+    const float cell = std::min(ui.px(26), (all - 3 * gap) / (named ? 10.0f : 11.0f)),
+                height = ui.px(kRackHeights[static_cast<int>(room)]);
     const float row = height + (named ? 1.2f * letters : 0);
     float x = 0, y = ImGui::GetCursorPosY(), rows = 1;
     for (auto& [sort, names] : groups) {
@@ -145,14 +147,16 @@ Savings brush_rack(Ui& ui, BrushSettings& brush, ToolRoom room) {
         const char* title = ui.tr(sort.c_str());
         const float text = ImGui::GetFont()->CalcTextSizeA(letters, 1e9f, 0, title).x;
         const float width = cell * static_cast<float>(names.size()), taken = std::max(width, text);
-        if (x > 0 && x + width > all + 1) x = 0, y += row, ++rows;
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            ImGui::SetCursorPos(ImVec2(left + x + cell * static_cast<float>(i), y));
-            brush_cell(ui, brush, names[i], names[i].substr(0, names[i].find('-')), {cell, height});
-        }
+        if (named && x > 0 && x + width > all + 1) x = 0, y += row, ++rows;
         const float here = x;
-        x += taken + gap;
+        for (const std::string& name : names) {
+            if (x + cell > all + 1) x = 0, y += row, ++rows;
+            ImGui::SetCursorPos(ImVec2(left + x, y));
+            brush_cell(ui, brush, name, name.substr(0, name.find('-')), {cell, height});
+            x += cell;
+        }
         if (!named) continue;
+        x = here + taken + gap;
         ImGui::SetCursorPos(ImVec2(left + here, y + height));
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float middle = std::min(at.x + 0.5f * (width - text), at.x + all - here - text);
