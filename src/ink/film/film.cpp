@@ -83,9 +83,6 @@ FilmParams film_params(const Substrate& substrate, const Vec3& down) {
     return p;
 }
 
-/// The faces that a step goes over: all; or those among tiles beside seams, and all others.
-enum class Part : std::uint8_t { whole, inside, outside };
-
 struct WetFilm::State : TileList {
     std::vector<std::uint8_t> reported;
     /// [n_slots] of what is dry, film units: found once in an advance, null where it is plain.
@@ -506,12 +503,6 @@ struct WetFilm::State : TileList {
         report.tile_steps += tiles.size();
     }
 
-    /// One step over some faces. `number` seeds its rounding.
-    struct FaceStep {
-        Part faces;
-        const Step& rates;
-        std::uint64_t number;
-    };
     /// Takes a step, and adds the tiles into which it spread.
     void step_faces(Canvas& canvas, const FilmParams& params, const FaceStep& face_step, FilmReport& report,
                     const BeforeFn& before) {

@@ -115,6 +115,16 @@ struct Step {
     float ridge = 0;   ///< film units that stay on relief
 };
 
+/// The faces that a step goes over: all; or those among tiles beside seams, and all others.
+enum class Part : std::uint8_t { whole, inside, outside };
+
+/// One step over some faces. `number` seeds its rounding.
+struct FaceStep {
+    Part faces = Part::whole;
+    const Step& rates;
+    std::uint64_t number = 0;
+};
+
 /// Through faces, the carriers of pigments: flux = a p(one end) + b p(other end).
 struct alignas(64) Faces {
     Field a, b;
