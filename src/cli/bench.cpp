@@ -177,7 +177,7 @@ double footprint_texels(int texels) {
 stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting, int texels,
                          const char* brush = "mixed-medium") {
     brush::Preset preset = brush::load_preset(brush);
-    const double scale = texels * model.atlas.texel_size / std::max(preset.width, 2 * preset.radius);
+    const double scale = texels * model.atlas.texel_size / brush::tuft_width(preset);
     preset.name = "bench";
     preset.length *= scale;
     preset.radius *= scale;

@@ -28,8 +28,10 @@ void list_brushes(bool json) {
     }
     for (const std::string& name : names) {
         const brush::Preset p = brush::load_preset(name);
-        fmt::print("{:<16} {:>4.0f} mm long, {:>4.1f} mm thick  {}\n", name, p.length / kMillimetre,
-                   2 * p.radius / kMillimetre, p.note);
+        const std::string width =
+            p.spines > 1 ? fmt::format("{:>2.0f} x {:.1f} mm", p.width / kMillimetre, 2 * p.radius / kMillimetre)
+                         : fmt::format("{:>8.1f} mm", 2 * p.radius / kMillimetre);
+        fmt::print("{:<16} {:>4.0f} mm long, {:<11} thick  {}\n", name, p.length / kMillimetre, width, p.note);
     }
 }
 

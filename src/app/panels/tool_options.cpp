@@ -29,11 +29,11 @@ struct Row {
 void brush_row(const OptionParts& s, const Row& row) {
     Ui& ui = s.ui;
     const brush::SizedName sized = brush::sized_name(s.brush.preset);
-    const double thick = 2 * shipped_brush(sized.base).radius;
-    double now = thick * sized.factor;
-    if (ui.named_slider("Tuft size", now, {thick * brush::kLeastSize, thick * brush::kMostSize, "%.1f mm", kMillimetre},
-                        "How thick it is; its length goes with it", row.width))
-        size_brush(s.brush, s.status, now / thick);
+    const double whole = brush::tuft_width(shipped_brush(sized.base));
+    double now = whole * sized.factor;
+    if (ui.named_slider("Tuft size", now, {whole * brush::kLeastSize, whole * brush::kMostSize, "%.1f mm", kMillimetre},
+                        "How wide it is; its length goes with it", row.width))
+        size_brush(s.brush, s.status, now / whole);
     ImGui::SameLine(0, row.gap);
     ui.named_slider("Pressure", s.tools.pointer.pressure, {0.02, 1, "%.2f"},
                     "How deep the brush is pressed at rest: part of half the hair's length. Keys [ and ]", row.width);

@@ -102,6 +102,11 @@ struct Preset {
     SpineMethod spine = SpineMethod::rod;
 };
 
+/// Returns how wide the tuft is, metres: the ferrule's width, or the thickness of a round tuft.
+inline double tuft_width(const Preset& preset) {
+    return preset.spines > 1 ? preset.width : 2 * preset.radius;
+}
+
 /// Returns a preset scaled by `factor` that draws the same strokes at that size. Lengths scale by `factor`, B0 by
 /// its fourth power and adhesion (N/m) by `factor`, so forces scale by its square and shapes are similar. Capacity
 /// scales by its square, like the area that a stroke covers. The device force is unchanged. Throws `Error` when a

@@ -138,7 +138,8 @@ void draw_row(const Sheet& sheet, double top, double tilt, Side side, const char
         draw_brush(sheet.canvas, {at.tuft, at.state, at.pose}, view, 2.5 * length);
         draw_scale(sheet, view, (k + 0.02) * sheet.column, (k + 0.98) * sheet.column);
         if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, view, plan);
-        const double x = (k + 0.5) * sheet.column, y = ground + 152 * u;
+        // Under the patch of a wide tuft, which is as wide as the tuft.
+        const double x = (k + 0.5) * sheet.column, y = ground + (sheet.preset.spines > 1 ? 161 : 152) * u;
         sheet.centred(
             lifted ? "lifted" : label("%.1f mm", at.depth / kMillimetre) + label("   %.2f N", at.state.normal_force), x,
             y, 12, sheet.ink);

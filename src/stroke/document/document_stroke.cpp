@@ -17,7 +17,7 @@ namespace {
 /// Each stamp of a tuft this wide takes a tenth of a second, and a stroke thousands of them.
 void check_width(const brush::Preset& preset, double texel) {
     constexpr double kWidest = 2048;  // texels
-    const double width = std::max(preset.width, 2 * preset.radius);
+    const double width = brush::tuft_width(preset);
     if (width > kWidest * texel)
         throw Error(Message(
             "the brush is {} mm wide, {} texels of this model, more than {}: use a larger texel size or a "
