@@ -46,7 +46,7 @@ std::string nearest_name(std::string_view name, std::span<const std::string> can
 /// Returns ", did you mean 'NAME'?" for the end of a sentence, "" without a name.
 Message did_you_mean(const std::string& name);
 
-/// Returns what a person is told of an exception of any kind.
+/// Returns the message for a person of an exception of any kind.
 Message message_of(const std::exception& error);
 
 }  // namespace tuft

@@ -25,7 +25,7 @@ class PaintThread {
     /// Calls `finish`.
     ~PaintThread();
     /// Executes all posted commands and saves; in `PaintWork::spare` where the project's file cannot be written.
-    /// Returns the path of the spare file then, else "". `unsaved` tells whether work was lost.
+    /// Returns the path of the spare file then, else "". `unsaved` says whether work was lost.
     std::filesystem::path finish();
     bool unsaved() const { return context_.work.autosave.has_unsaved(); }  ///< after `finish`
 

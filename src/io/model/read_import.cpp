@@ -149,7 +149,7 @@ class Child {
 
     void limit(const Cost& cost) const {
         limit(RLIMIT_CORE, 0, 0);
-        limit(RLIMIT_CPU, cost.seconds, cost.seconds + 1);  // SIGXCPU, which tells why, before SIGKILL
+        limit(RLIMIT_CPU, cost.seconds, cost.seconds + 1);  // SIGXCPU, which gives the reason, before SIGKILL
         limit(RLIMIT_FSIZE, cost.bytes, cost.bytes);
         if (!kSanitised) limit(RLIMIT_AS, cost.bytes, cost.bytes);  // its shadow memory is larger than any limit
     }
@@ -161,7 +161,7 @@ class Child {
         for (std::chrono::microseconds pause{500};; pause = std::min(2 * pause, std::chrono::microseconds{20'000})) {
             const pid_t ended = waitpid(pid_, &status, WNOHANG);
             if (ended == pid_) return pid_ = 0, status;
-            if (ended < 0 && errno != EINTR) return pid_ = 0, 0;  // SIGCHLD is ignored here: what it left tells
+            if (ended < 0 && errno != EINTR) return pid_ = 0, 0;  // SIGCHLD is ignored here: its output decides
             check_interrupt();
             if (std::chrono::steady_clock::now() > latest) return end(), std::nullopt;
             std::this_thread::sleep_for(pause);
