@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "contact/outside.h"
+#include "contact/node_contact.h"
 #include "core/error.h"
 #include "core/text/units.h"
 #include "stroke/drawing/drawing.h"

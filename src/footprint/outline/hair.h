@@ -31,6 +31,21 @@ struct HairContactPoint {
 std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles,
                                                   int branches);
 
+/// Hair that touches the surface.
+struct TouchingHair {
+    std::span<const Trail> trails;      ///< touching parts of the branches, in the stamp's (u, v)
+    std::span<const Outline> outlines;  ///< of the trails; bound the marks
+    const brush::Bundles& bundles;
+    int branches = 1;  ///< of the tuft; more than 1: split
+};
+
+/// Plane and resolution of a picture of the contact patch; see `Footprint`.
+struct PicturePlane {
+    const Frame& frame;              ///< world; n out of the surface, origin on it
+    std::uint32_t triangle = kNone;  ///< of the mesh under the origin
+    double cell = 0;                 ///< metres, > 0
+};
+
 /// Wetness and motion of the touching hair.
 struct HairInk {
     /// [bundles] film of a bundle over the film that closes the gaps between its hairs; ≥ 1: closed.
@@ -89,7 +104,6 @@ struct HairMarks {
 ///
 /// streaks across its motion and, weighted by `press_share`, across the course: hair set down across the course
 /// prints no bars. Strokes begin and end ragged, along themselves.
-HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> outlines, const brush::Bundles& bundles,
-                     int branches, const HairInk& ink, const Frame& frame, std::uint32_t triangle, double cell);
+HairMarks draw_hair_marks(const TouchingHair& hair, const HairInk& ink, const PicturePlane& plane);
 
 }  // namespace tuft::footprint

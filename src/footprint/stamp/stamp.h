@@ -59,17 +59,19 @@ inline constexpr std::uint8_t kAllQuadrants = 0xf;
 /// Log map of the texels of one cluster into the footprint's picture: d = p − origin, (fu, fv) = (u0, v0) + (tu,
 /// tv)·d + ½ (a − g) (tu, tv)·m, in cells.
 struct ClusterFrame {
-    Vec3f origin{0}, normal{0}, tu{0}, tv{0};
-    float u0 = 0, v0 = 0;
-    std::int32_t cluster = 0;  ///< as in `TexelTile::cluster`
-    std::uint8_t first_row = 0, last_row = 0;
+    Vec3f origin{0};                           ///< metres, world
+    Vec3f normal{0};                           ///< unit, world
+    Vec3f tu{0}, tv{0};                        ///< cells a metre, world: axes of the picture
+    float u0 = 0, v0 = 0;                      ///< cells, of `origin` in the picture
+    std::int32_t cluster = 0;                  ///< as in `TexelTile::cluster`
+    std::uint8_t first_row = 0, last_row = 0;  ///< of the tile, that hold texels of the cluster
     std::uint8_t full_quadrants = 0;  ///< quadrants in which the picture covers all of the cluster in all poses
     std::uint8_t partial_quadrants = kAllQuadrants;  ///< other quadrants in which it may cover some of it
 };
 
 /// The frames of one tile that a stamp may touch.
 struct TileJob {
-    std::uint32_t slot = kNone;
+    std::uint32_t slot = kNone;          ///< of the tile in the texel map
     std::uint32_t first = 0, count = 0;  ///< in `StampJobs::frames`
 };
 
@@ -98,18 +100,24 @@ struct StampJobs {
     bool empty() const { return tiles.empty(); }
 };
 
-/// Scratch memory of `sweep`.
+/// Scratch memory of `sweep`. A strip is 64 values of each line of the sheared picture.
 struct SweepScratch {
-    /// Lines of the picture, by their start, from which the motion over one position is computed.
+    /// Lines of a strip whose maximum is that of the motion over one position: those between which its ends lie, and
+    /// two runs of lines that cover those between the ends. All but `after_*` are offsets of lines in the strip.
     struct SweptLines {
-        std::size_t back = 0, on = 0, first = 0, last = 0;
-        float after_back = 0, after_on = 0;
+        std::size_t back = 0, on = 0;        ///< line before the motion's beginning, and before its end
+        std::size_t first = 0, last = 0;     ///< first line of each run
+        float after_back = 0, after_on = 0;  ///< 0–1, position of the ends between their line and the next
     };
-    std::vector<SweptLines> swept_lines;
-    std::vector<const std::uint8_t*> rows;
-    std::vector<std::uint8_t> turned, strip;
-    std::vector<float> parts, lines, sums, passed;
-    Footprint swept;
+    std::vector<SweptLines> swept_lines;    ///< by line of the result
+    std::vector<const std::uint8_t*> rows;  ///< by line: its first cell in the strip
+    std::vector<std::uint8_t> transposed;   ///< the picture by columns
+    std::vector<std::uint8_t> strip;        ///< cells of lines that leave the picture; rounded results
+    std::vector<float> parts;               ///< 0–1, by line: position of the strip between two cells
+    std::vector<float> lines;               ///< values of the strip, with empty lines before and after
+    std::vector<float> sums;                ///< their prefix sums, or the maxima of runs of lines
+    std::vector<float> maxima;              ///< of the motion, by line of the result
+    Footprint swept;                        ///< the result
 };
 
 /// Cache of the triangles that contain cluster centres, since the last `clear`.
@@ -136,21 +144,24 @@ class TriangleCache {
 
 /// Scratch memory of the cluster search; one per thread, reusable for any stamp.
 struct PlanScratch {
+    /// A cluster in the search.
     struct Node {
-        std::uint32_t epoch = 0;
-        std::uint8_t state = 0;
-        float u = 0, v = 0, c = 1, s = 0, key = 0;
-        float stretch = 1;  ///< of the map across the radial direction
-        bool lit = true;    ///< reached by a straight path from the origin
+        std::uint32_t epoch = 0;  ///< of the search that wrote the node; another: the node is unvisited
+        std::uint8_t state = 0;   ///< see walk.h: open, final or outside
+        float u = 0, v = 0;       ///< metres, of the cluster's centre in the stamp's plane
+        float c = 1, s = 0;       ///< cosine and sine of the rotation of its frame there
+        float key = 0;            ///< m², squared length of the shortest path found, by which the heap is ordered
+        float stretch = 1;        ///< of the map across the radial direction
+        bool lit = true;          ///< reached by a straight path from the origin
     };
-    std::uint32_t epoch = 0;
-    std::vector<Node> nodes;
-    std::vector<std::pair<float, std::uint32_t>> heap;
-    std::vector<std::uint32_t> reached;
-    BlockTally tally;
-    Discs discs;
-    std::vector<double> apart;           ///< metres, by reached cluster
-    std::vector<std::uint32_t> queried;  ///< frames whose quadrants are queried
+    std::uint32_t epoch = 0;                            ///< of the search in work
+    std::vector<Node> nodes;                            ///< by cluster
+    std::vector<std::pair<float, std::uint32_t>> heap;  ///< keys and clusters
+    std::vector<std::uint32_t> reached;                 ///< clusters that the picture reaches, ascending
+    BlockTally tally;                                   ///< of the picture
+    Discs discs;                                        ///< of clusters, then of quadrants
+    std::vector<double> disagreement;                   ///< metres, by reached cluster, between the two mappings
+    std::vector<std::uint32_t> queried;                 ///< frames whose quadrants are queried
     SweepScratch sweep;
     mesh::ExactGeodesics geodesics;
     TriangleCache triangle_cache;
@@ -158,8 +169,8 @@ struct PlanScratch {
 
 /// Buffer for an unpacked tile; one per thread.
 struct Unpacked {
-    std::uint32_t slot = kNone;
-    atlas::TexelShape shape;
+    std::uint32_t slot = kNone;  ///< of the tile unpacked last; kNone: none
+    atlas::TexelShape shape;     ///< its texels
 };
 
 /// Plans a stamp: finds the clusters within the footprint that are connected to the contact point and do not face

@@ -366,7 +366,7 @@ void draw_patch(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, c
     }
     if (state.wide) {
         // The patch as it is painted: strips, and the skin between those that ink joins.
-        for (const footprint::Outline& outline : footprint::outline(state, Frame{})) {
+        for (const footprint::Outline& outline : footprint::outlines_of(state, Frame{})) {
             std::vector<Vec2> points;
             for (const Vec2& q : footprint::curve_points(outline)) points.push_back(plan({q, 0}));
             fill_polygon(canvas, points, ink);

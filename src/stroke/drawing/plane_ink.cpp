@@ -96,7 +96,7 @@ PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, cons
         time = pose.time;
         first = false;
         if (!state.touching) continue;
-        std::vector<footprint::Trail> trails = footprint::trails(state, plane_frame, {}, preset.length, kSkinFilm);
+        std::vector<footprint::Trail> trails = footprint::find_trails(state, plane_frame, {}, preset.length, kSkinFilm);
         footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft, plane), plane_frame, kSkinFilm);
         outlines.clear();
         for (const footprint::Trail& trail : trails)
