@@ -111,9 +111,16 @@ Vec3 inwards_of(const mesh::TriangleMesh& mesh, std::uint32_t triangle, int corn
     return length > 0 ? in / length : Vec3{0};
 }
 
-/// All pairs over one edge of the mesh.
-void cross(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, const SeamEdge& edge,
-           std::vector<SeamSample>& samples, std::array<std::vector<Beside>, 2>& beside, std::vector<Crossing>& found) {
+/// Scratch memory of `find_crossings`; one per thread.
+struct CrossingScratch {
+    std::vector<SeamSample> samples;
+    std::array<std::vector<Beside>, 2> beside;
+};
+
+/// Adds all pairs of texels over one edge of the mesh.
+void find_crossings(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, const SeamEdge& edge,
+                    CrossingScratch& scratch, std::vector<Crossing>& found) {
+    auto& [samples, beside] = scratch;
     const Vec3 from = mesh.position(edge.triangle_a, edge.corner_a),
                to = mesh.position(edge.triangle_a, (edge.corner_a + 1) % 3);
     const double length = glm::length(to - from);
@@ -384,12 +391,11 @@ BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atla
     constexpr std::size_t kChunk = 64;
     std::vector<std::vector<Crossing>> by_chunk((seams.size() + kChunk - 1) / kChunk);
     parallel_for(by_chunk.size(), 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<SeamSample> samples;
-        std::array<std::vector<Beside>, 2> beside;
+        CrossingScratch scratch;
         for (std::size_t chunk = begin; chunk < end; ++chunk) {
             const std::size_t last = std::min(seams.size(), (chunk + 1) * kChunk);
             for (std::size_t e = chunk * kChunk; e < last; ++e)
-                cross(mesh, atlas, map, seams[e], samples, beside, by_chunk[chunk]);
+                find_crossings(mesh, atlas, map, seams[e], scratch, by_chunk[chunk]);
             keep_shortest(by_chunk[chunk]);
             by_chunk[chunk].shrink_to_fit();
         }

@@ -92,7 +92,7 @@ void set_distance(Meeting& m, const std::vector<TexelCluster>& clusters) {
     m.distance2 = glm::dot(d, d);
 }
 
-/// Where the meeting of m's pair is to be kept, if it is nearer to the middle than any so far.
+/// Returns where to store the meeting of m's pair; null unless it is nearer to the middle than any so far.
 Meeting* place_of_best(std::vector<Meeting>& meetings, const Meeting& m) {
     for (Meeting& other : meetings)
         if (other.i == m.i && other.j == m.j) return m.key() < other.key() ? &other : nullptr;
@@ -112,8 +112,9 @@ Vec3 border_point(const Vec3& pa, const Vec3& na, const Vec3& pb, const Vec3& nb
     return glm::length(step) < reach ? middle + step : middle;
 }
 
-void meet_inside_charts(const TexelMap& map, const std::vector<TexelCluster>& clusters, std::uint32_t slot,
-                        std::vector<Meeting>& found) {
+/// Adds the meetings of a tile's texels inside their charts.
+void find_inner_meetings(const TexelMap& map, const std::vector<TexelCluster>& clusters, std::uint32_t slot,
+                         std::vector<Meeting>& found) {
     static constexpr std::array<std::array<int, 2>, 4> kForward{{{1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
     const TexelTile& tile = map.tiles[slot];
     const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kTile;
@@ -157,9 +158,18 @@ Vec3 edge_direction(const mesh::TriangleMesh& mesh, const SeamEdge& edge) {
     return length > 0 ? along / length : Vec3{0};
 }
 
-void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                     const std::vector<TexelCluster>& clusters, const SeamEdge& edge, std::vector<SeamSample>& samples,
-                     Meetings& meetings) {
+/// Model and clusters between which meetings are looked for.
+struct ClusteredModel {
+    const mesh::TriangleMesh& mesh;
+    const Atlas& atlas;
+    const TexelMap& map;
+    const std::vector<TexelCluster>& clusters;
+};
+
+/// Adds the meetings over one edge of a seam. `samples` is scratch memory.
+void find_seam_meetings(const ClusteredModel& model, const SeamEdge& edge, std::vector<SeamSample>& samples,
+                        Meetings& meetings) {
+    const auto& [mesh, atlas, map, clusters] = model;
     samples.clear();
     sample_seam(mesh, atlas, edge, kSeamSpacing, samples);
     for (const SeamSample& s : samples) {
@@ -367,7 +377,7 @@ ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& at
             const std::size_t last = std::min(n_slots, (k + 1) * kSlots);
             for (std::size_t slot = k * kSlots; slot < last; ++slot) {
                 found.clear();
-                meet_inside_charts(map, graph.clusters, static_cast<std::uint32_t>(slot), found);
+                find_inner_meetings(map, graph.clusters, static_cast<std::uint32_t>(slot), found);
                 by_slots[k].found.insert(by_slots[k].found.end(), found.begin(), found.end());
             }
         }
@@ -382,7 +392,7 @@ ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& at
         for (std::size_t chunk = begin; chunk < end; ++chunk) {
             const std::size_t last = std::min(seams.size(), (chunk + 1) * kChunk);
             for (std::size_t e = chunk * kChunk; e < last; ++e)
-                meet_over_seams(mesh, atlas, map, graph.clusters, seams[e], samples, by_chunk[chunk]);
+                find_seam_meetings({mesh, atlas, map, graph.clusters}, seams[e], samples, by_chunk[chunk]);
         }
     });
     Meetings all;

@@ -128,34 +128,43 @@ struct Falling {
     static TUFT_INLINE float unpack(std::int16_t g) { return positive(-(static_cast<float>(g) * kDiagonalUnit)); }
 };
 
-/// A face: what flows, and in `a`, `b` what it carries.
+/// Flow through a face: on the surface and, where the law has pores, in them; and the pigment that it carries by unit
+/// of each end's concentration.
+struct FaceFlow {
+    float film, pores, a, b;
+};
+
 template <class Law, class Kind>
-TUFT_INLINE void face(float g, const End& e0, const End& e1, float& w, float& s, float& a, float& b, const Step& p) {
+TUFT_INLINE FaceFlow face_flow(float g, const End& e0, const End& e1, const Step& p) {
     const float most = Law::most_of(e0, e1, Kind::share, p);
-    const float fw = Law::film_flux(g, e0, e1, most, p);
-    float flux = fw;
+    FaceFlow out{Law::film_flux(g, e0, e1, most, p), 0, 0, 0};
+    float flux = out.film;
     if constexpr (Law::pores) {
-        const float fs = Law::pore_flux(g, e0, e1, most, p);
-        s = fs;
-        flux = fw + p.passing * fs;
+        out.pores = Law::pore_flux(g, e0, e1, most, p);
+        flux = out.film + p.passing * out.pores;
     }
     const Carriers c = carriers(g, flux, e0, e1, p);
-    w = fw;
-    a = c.a * e0.rate;
-    b = c.b * e1.rate;
+    out.a = c.a * e0.rate;
+    out.b = c.b * e1.rate;
+    return out;
 }
 
-/// Sixteen faces from texel k to k + `on`; what flows into o.through.
+/// Sixteen faces between two rows of texels, from texel k on; their flows go into o.through.
 template <class Law, class Kind, class Packed>
-TUFT_INLINE void faces(Work& o, Faces& f, int k, int at, const Packed* g, const Ends& from, const Ends& to,
-                       const Step& p) {
-    float *w = &o.through[0][at], *s = &o.through[1][at], *a = &f.a[k], *b = &f.b[k];
+TUFT_INLINE void faces(Work& o, Faces& f, int k, const Packed* g, const std::array<Ends, 2>& rows, const Step& p) {
+    float *w = &o.through[0][k], *s = &o.through[1][k], *a = &f.a[k], *b = &f.b[k];
+    const Ends from = rows[0], to = rows[1];
 #pragma GCC ivdep
-    for (int x = 0; x < kLanes; ++x)
-        face<Law, Kind>(Kind::unpack(g[x]), from.at(x), to.at(x), w[x], s[x], a[x], b[x], p);
+    for (int x = 0; x < kLanes; ++x) {
+        const FaceFlow flow = face_flow<Law, Kind>(Kind::unpack(g[x]), from.at(x), to.at(x), p);
+        w[x] = flow.film;
+        if constexpr (Law::pores) s[x] = flow.pores;
+        a[x] = flow.a;
+        b[x] = flow.b;
+    }
 }
 
-/// All faces' upper sides of a row, and what comes into its texels through their four sides.
+/// Faces at the upper sides of a row, and the sum of the flows into its texels through their four sides.
 template <class Law, bool kFirst>
 TUFT_INLINE void row_of_faces(Work& o, int row, const Geometry& g, float* below_w, float* below_s, const Step& p) {
     const int k = field_at(0, row);
@@ -166,23 +175,24 @@ TUFT_INLINE void row_of_faces(Work& o, int row, const Geometry& g, float* below_
     float *dw = o.dw.data() + row * kSide, *ds = o.ds.data() + row * kSide;
 #pragma GCC ivdep
     for (int x = 0; x < kLanes; ++x) {
-        float w = 0, s = 0;
-        face<Law, Straight>(Straight::unpack(conductance[x]), from.at(x), to.at(x), w, s, a[x], b[x], p);
-        if constexpr (!kFirst) dw[x] = (x_w[x - 1] - x_w[x]) + (below_w[x] - w);
-        below_w[x] = w;
+        const FaceFlow flow = face_flow<Law, Straight>(Straight::unpack(conductance[x]), from.at(x), to.at(x), p);
+        a[x] = flow.a;
+        b[x] = flow.b;
+        if constexpr (!kFirst) dw[x] = (x_w[x - 1] - x_w[x]) + (below_w[x] - flow.film);
+        below_w[x] = flow.film;
         if constexpr (Law::pores) {
-            if constexpr (!kFirst) ds[x] = (x_s[x - 1] - x_s[x]) + (below_s[x] - s);
-            below_s[x] = s;
+            if constexpr (!kFirst) ds[x] = (x_s[x - 1] - x_s[x]) + (below_s[x] - flow.pores);
+            below_s[x] = flow.pores;
         }
     }
 }
 
-/// What comes through the faces of one kind of diagonal: into texel k from k + `from`, out of it at k + `to`.
+/// Adds the flows through the faces of one kind of diagonal: into texel k from k + `first`, out of it at k + `second`.
 template <class Law, class Kind>
 TUFT_INLINE void diagonals(Work& o, Faces& f, const Geometry& g, int first, int second, const Step& p) {
     for (int k = 0; k < kSquares; k += kLanes)
-        faces<Law, Kind>(o, f, k, k, &(*g.gd)[static_cast<std::size_t>(k)], ends(o, g, k + first),
-                         ends(o, g, k + second), p);
+        faces<Law, Kind>(o, f, k, &(*g.gd)[static_cast<std::size_t>(k)],
+                         {ends(o, g, k + first), ends(o, g, k + second)}, p);
     for (int row = 0; row < kSide; ++row) {
         const int k = field_at(0, row);
         const float *w = &o.through[0][k], *s = &o.through[1][k];
@@ -200,8 +210,8 @@ template <class Law>
 TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& step) {
     const Step p = step;  // where nothing that is written could change it
     for (int k = 0; k < kSide * kRow; k += kLanes)
-        faces<Law, Straight>(o, o.x, kRow + k, kRow + k, &g.gx[static_cast<std::size_t>(k)], ends(o, g, kRow + k),
-                             ends(o, g, kRow + k + 1), p);
+        faces<Law, Straight>(o, o.x, kRow + k, &g.gx[static_cast<std::size_t>(k)],
+                             {ends(o, g, kRow + k), ends(o, g, kRow + k + 1)}, p);
     alignas(64) float below_w[kLanes], below_s[kLanes] = {};
     row_of_faces<Law, true>(o, -1, g, below_w, below_s, p);
     for (int row = 0; row < kSide; ++row) row_of_faces<Law, false>(o, row, g, below_w, below_s, p);

@@ -47,13 +47,29 @@ TUFT_CLONES void where_dry(float* __restrict height, const float* __restrict fil
     }
 }
 
+/// Paste that each texel gets and gives, film units.
 struct Volumes {
     alignas(64) Texels down, up;
 };
 
-TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const float* __restrict full,
-                         const float* __restrict here, const float* __restrict before, float rate, float keep,
-                         float exchange, float free_capacity, float capacity) {
+/// Planes, [256], and rates that an exchange of paste reads.
+struct PasteExchangeInput {
+    const float* coverage;    ///< 0–1
+    const float* full;        ///< film units that the tuft leaves where it covers all
+    const float* here;        ///< film units, now
+    const float* before;      ///< film units, before the stroke
+    float rate = 0;           ///< 0–1, share of the lack that this step makes up
+    float keep = 1;           ///< 0–1, share of the earlier paste that is not dug up
+    float exchange = 0;       ///< 0–1, share that is renewed from the tuft
+    float free_capacity = 0;  ///< film units that the tuft can take up
+    float capacity = 0;       ///< film units that the surface holds
+};
+
+TUFT_CLONES void exchange_volumes(Volumes& out, const PasteExchangeInput& in) {
+    const float* __restrict coverage = in.coverage, * __restrict full = in.full;
+    const float* __restrict here = in.here, * __restrict before = in.before;
+    const float rate = in.rate, keep = in.keep, exchange = in.exchange;
+    const float free_capacity = in.free_capacity, capacity = in.capacity;
     for (int t = 0; t < kN; ++t) {
         const float f = coverage[t], w = here[t];
         float goal = before[t] + f * full[t];
@@ -75,9 +91,19 @@ TUFT_CLONES void part_of(float* __restrict up, const float* __restrict here) {
     }
 }
 
-/// What goes up of a plane, what of the mixture comes down, and the plane after both.
-TUFT_CLONES void move(float* __restrict w, float* __restrict up, float* __restrict down, const float* __restrict part,
-                      const float* __restrict volume, const float* __restrict mix, const float* __restrict strength) {
+/// Planes that the exchange of one pigment reads, [256].
+struct PasteMixture {
+    const float* part;      ///< 0–1, share of a texel's paste that goes up
+    const float* volume;    ///< film units of paste that come down
+    const float* mix;       ///< the pigment's amount in a film unit of the paste, times `strength`
+    const float* strength;  ///< of the paste; 0: none
+};
+
+/// Moves `up` of a plane to the tuft and `down` of the mixture to the plane.
+TUFT_CLONES void exchange_pigment(float* __restrict w, float* __restrict up, float* __restrict down,
+                                  const PasteMixture& in) {
+    const float* __restrict part = in.part, * __restrict volume = in.volume;
+    const float* __restrict mix = in.mix, * __restrict strength = in.strength;
     for (int t = 0; t < kN; ++t) {
         up[t] = w[t] * part[t];
         down[t] = strength[t] > 0 ? volume[t] * mix[t] / strength[t] : 0;
@@ -238,10 +264,15 @@ void deposit_paste(Canvas& canvas, const ContactTile& tile, const PasteParams& p
     for (int t = 0; t < kN; ++t) full[t] *= static_cast<float>(params.target) * strength[t];
     const Plane here = open_pigment(canvas, slot);
     Volumes v;
-    volumes(v, coverage.data(), full.data(), here.data(), before.data(),
-            static_cast<float>(-std::expm1(-ds / params.transfer_length)), static_cast<float>(1 - params.dig),
-            static_cast<float>(params.exchange), static_cast<float>(params.free_capacity),
-            static_cast<float>(params.capacity));
+    exchange_volumes(v, {.coverage = coverage.data(),
+                         .full = full.data(),
+                         .here = here.data(),
+                         .before = before.data(),
+                         .rate = static_cast<float>(-std::expm1(-ds / params.transfer_length)),
+                         .keep = static_cast<float>(1 - params.dig),
+                         .exchange = static_cast<float>(params.exchange),
+                         .free_capacity = static_cast<float>(params.free_capacity),
+                         .capacity = static_cast<float>(params.capacity)});
     part_of(v.up.data(), here.data());
     std::array<double, kNodes> shares;
     MixtureGiven mixture(exchange.given, mixes, hats);
@@ -251,7 +282,8 @@ void deposit_paste(Canvas& canvas, const ContactTile& tile, const PasteParams& p
         if (!used[p]) mix[p].fill(0);
         Plane& w = canvas.touch(slot, p);
         old = w;
-        move(w.data(), up.data(), down.data(), v.up.data(), v.down.data(), mix[p].data(), strength.data());
+        exchange_pigment(w.data(), up.data(), down.data(),
+                         {v.up.data(), v.down.data(), mix[p].data(), strength.data()});
         const double stored = change_sum(w.data(), old.data(), area.data());
         double lifted = 0;
         if (there)

@@ -35,20 +35,27 @@ inline float positive(float a) {
     return a > 0 ? a : 0;
 }
 
-/// From one end to the other, n film units; antisymmetric.
-inline float flux(float za, float ta, float sa, float pa, float zb, float tb, float sb, float pb, float n) {
-    const float drop = za - zb;
-    const float from_a = tb > 0 ? sa : pa, from_b = ta > 0 ? sb : pb;
+/// A texel at one end of a face, film units: surface, film, and what of it may leave to wet and to dry texels.
+struct PoolEnd {
+    float surface, level, slack, spread;
+};
+
+/// Flux from a to b, film units, times n; antisymmetric.
+inline float flux(const PoolEnd& a, const PoolEnd& b, float n) {
+    const float drop = a.surface - b.surface;
+    const float from_a = b.level > 0 ? a.slack : a.spread, from_b = a.level > 0 ? b.slack : b.spread;
     return kPart * n * (smaller(from_a, positive(drop)) - smaller(from_b, positive(-drop)));
 }
 
-TUFT_CLONES void face_fluxes(float* __restrict out, const Halo& z, const Halo& t, const Halo& s, const Halo& p,
-                             const Halo& n, const Halo& area, int to) {
+/// Fluxes from each texel to that `to` further on in the halo.
+TUFT_CLONES void face_fluxes(float* __restrict out, const Tile& tile, int to) {
+    const Halo &z = tile.surface, &l = tile.level, &s = tile.slack, &p = tile.spread, &n = tile.nearness,
+               &area = tile.size;
     for (int y = -1; y < kSide; ++y)
         for (int x = -1; x < kSide; ++x) {
             const int a = halo_at(x, y), b = a + to;
-            out[a] =
-                flux(z[a], t[a], s[a], p[a], z[b], t[b], s[b], p[b], smaller(n[a], n[b]) * smaller(area[a], area[b]));
+            out[a] = flux({z[a], l[a], s[a], p[a]}, {z[b], l[b], s[b], p[b]},
+                          smaller(n[a], n[b]) * smaller(area[a], area[b]));
         }
 }
 
@@ -171,17 +178,14 @@ class Pool {
             fill(tile.slack, tile, from(slack_));
             fill(tile.spread, tile, from(spread_));
             fill(tile.level, tile, [](const Tile& t) -> const Texels& { return t.film; });
-            face_fluxes(tile.faces[0].data(), tile.surface, tile.level, tile.slack, tile.spread, tile.nearness,
-                        tile.size, 1);
-            face_fluxes(tile.faces[1].data(), tile.surface, tile.level, tile.slack, tile.spread, tile.nearness,
-                        tile.size, kHaloRow);
+            face_fluxes(tile.faces[0].data(), tile, 1);
+            face_fluxes(tile.faces[1].data(), tile, kHaloRow);
             tile.over.clear();
             for (const auto& [place, link] : tile.links) {
                 const int a = link.texel, b = link.other_texel;
                 const float n = smaller(tile.near[a], tiles_[place].near[b]) * smaller(link.weight, 1) *
                                 smaller(tile.area[a], tiles_[place].area[b]);
-                tile.over.push_back(flux(surface_[i][a], tile.film[a], slack_[i][a], spread_[i][a], surface_[place][b],
-                                         tiles_[place].film[b], slack_[place][b], spread_[place][b], n));
+                tile.over.push_back(flux(end_at(i, a), end_at(place, b), n));
             }
         });
         for (int p = 0; p < kMaxPigments; ++p) {
@@ -203,6 +207,10 @@ class Pool {
     std::vector<Texels> surface_, slack_, spread_;
 
   private:
+    PoolEnd end_at(std::size_t tile, int texel) const {
+        return {surface_[tile][texel], tiles_[tile].film[texel], slack_[tile][texel], spread_[tile][texel]};
+    }
+
     void carry(int p) {
         each([&](std::size_t i) {  // parts of the film
             const Tile& tile = tiles_[i];
