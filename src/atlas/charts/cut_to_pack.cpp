@@ -15,12 +15,12 @@ namespace tuft::atlas {
 namespace {
 
 constexpr int kMostCuts = 9;
-constexpr double kLeastOfUse = 0.98;     // that is left when a cut is made for the sake of the next
-constexpr double kBeyond = 1.03;         // of the goal, once charts are cut: a short search errs by this
-constexpr double kAsLong = 0.85;         // of the longest chart's length
-constexpr std::size_t kCandidates = 6;   // largest charts that are tried
-constexpr std::size_t kMostCharts = 48;  // with more, small ones fill the gaps
-constexpr std::size_t kDear = 200000;    // triangles of a chart that is left as it is
+constexpr double kLeastOfUse = 0.98;            // that is left when a cut is made for the sake of the next
+constexpr double kBeyond = 1.03;                // of the goal, once charts are cut: a short search errs by this
+constexpr double kAsLong = 0.85;                // of the longest chart's length
+constexpr std::size_t kCandidates = 6;          // largest charts that are tried
+constexpr std::size_t kMostCharts = 48;         // with more, small ones fill the gaps
+constexpr std::size_t kMostTriangles = 200000;  // triangles of a chart that is left as it is
 
 std::vector<Vec2> border_of(const FlatChart& chart) {
     std::vector<Vec2> border;
@@ -85,7 +85,7 @@ std::optional<FlatChart> part_of(const Whole& of, std::span<const std::uint32_t>
 
 std::optional<Halves> halve(const mesh::TriangleMesh& mesh, const CutMesh& cut, const FlatChart& chart, double gap) {
     const ChartMesh& m = chart.mesh;
-    if (m.faces.size() < 2 || m.faces.size() > kDear) return std::nullopt;
+    if (m.faces.size() < 2 || m.faces.size() > kMostTriangles) return std::nullopt;
     const Rectangle box = smallest_rectangle(chart_hull(chart));
     double lo = std::numeric_limits<double>::infinity();
     for (const Vec2& p : chart.uv) lo = std::min(lo, box.c * p.x + box.s * p.y);

@@ -75,6 +75,13 @@ class SeamGraph {
     struct Ends {
         std::uint32_t a, b;
     };
+    /// A chain that may be glued; ordered by cost, then by number.
+    struct GlueEntry {
+        double cost;
+        std::uint32_t chain, version;
+        bool operator<(const GlueEntry& o) const { return cost != o.cost ? cost < o.cost : chain < o.chain; }
+    };
+    std::vector<GlueEntry> all_glue_entries(const GluingLimits& limits);
     void number_edges(std::span<const std::uint8_t> seam);
     void number_charts(std::span<const std::uint8_t> seam);
     void count_seams_at_vertices();

@@ -23,8 +23,8 @@ Vec3f normal(const TexelShape& shape, int t) {
     return {shape.nx[t], shape.ny[t], shape.nz[t]};
 }
 
-TexelCluster make_piece(const TexelTile& tile, const TexelShape& shape, std::uint32_t slot, std::uint8_t index,
-                        std::uint32_t chart) {
+TexelCluster make_cluster(const TexelTile& tile, const TexelShape& shape, std::uint32_t slot, std::uint8_t index,
+                          std::uint32_t chart) {
     TexelCluster cluster{.slot = slot, .chart = chart, .index = index};
     Vec3 mean{0};
     int n = 0, first = kTile, last = 0;
@@ -244,7 +244,7 @@ ToBorder path_to_border(const TexelMap& map, const TexelCluster& cluster, std::u
 Vec2 unfolded(const Frame& i, const Frame& j, const Vec3& fold) {
     const Vec2 a{glm::dot(fold, i.t), glm::dot(fold, i.b)}, b{glm::dot(fold, j.t), glm::dot(fold, j.b)};
     const double lengths = glm::length(a) * glm::length(b);
-    if (!(lengths > 0.1)) return carried_direction(i, j.t, j.n);
+    if (!(lengths > 0.1)) return transport_direction(i, j.t, j.n);
     return Vec2{a.x * b.x + a.y * b.y, a.y * b.x - a.x * b.y} / lengths;
 }
 
@@ -275,7 +275,7 @@ ClusterEdge inverse(const ClusterEdge& e, std::uint32_t from) {
 }
 
 /// Adds the parts in order, and empties them.
-void gather(std::vector<Meetings>& parts, Meetings& all) {
+void append_meetings(std::vector<Meetings>& parts, Meetings& all) {
     std::size_t n = all.found.size();
     for (const Meetings& part : parts) n += part.found.size();
     all.found.reserve(n);
@@ -364,8 +364,8 @@ ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& at
             const TexelShape& shape = shape_of(map, slot, buffer);
             for (std::uint32_t i = map.cluster_start[slot]; i < map.cluster_start[slot + 1]; ++i)
                 graph.clusters[i] =
-                    make_piece(map.tiles[slot], shape, slot, static_cast<std::uint8_t>(i - map.cluster_start[slot]),
-                               map.cluster_chart[i]);
+                    make_cluster(map.tiles[slot], shape, slot, static_cast<std::uint8_t>(i - map.cluster_start[slot]),
+                                 map.cluster_chart[i]);
         }
     });
 
@@ -396,8 +396,8 @@ ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& at
         }
     });
     Meetings all;
-    gather(by_slots, all);
-    gather(by_chunk, all);
+    append_meetings(by_slots, all);
+    append_meetings(by_chunk, all);
     store_edges(map, all, graph);
     find_open_borders(mesh, atlas, map, graph.clusters);
     report(progress, "cluster graph", 1);

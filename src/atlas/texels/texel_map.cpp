@@ -12,7 +12,7 @@ namespace tuft::atlas {
 namespace {
 
 constexpr std::int64_t kSnap = 4096;  // sub-texel steps; 16384 texels × 4096 squared fits 64 bits
-const float kPieceCos = std::cos(35.0f * 0.0174532925f);
+const float kClusterCos = std::cos(35.0f * 0.0174532925f);
 const float kBendCos = std::cos(30.0f * 0.0174532925f);
 
 /// A triangle in the atlas on the snapped grid, counter-clockwise.
@@ -250,7 +250,7 @@ bool bends(const TexelShape& shape, const std::array<std::uint32_t, kTileTexels>
 std::vector<std::uint32_t> split_into_clusters(const TexelShape& shape, TexelTile& tile,
                                                const std::array<std::uint32_t, kTileTexels>& chart, float reach) {
     const int side = bends(shape, chart) ? kTile / 2 : kTile;
-    for (const float min_cos : {kPieceCos, -2.0f}) {
+    for (const float min_cos : {kClusterCos, -2.0f}) {
         std::vector<std::uint32_t> charts;
         tile.cluster.fill(kNoCluster);
         bool all = true;
@@ -325,19 +325,9 @@ void check_sizes(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
         throw Error("the atlas was made for another mesh");
 }
 
-}  // namespace
-
-TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, const ProgressFn& progress,
-                         TexelStore store) {
-    check_sizes(mesh, atlas);
-    report(progress, "texel map", 0);
-    TexelMap map;
-    map.size = atlas.size;
-    map.tiles_per_side = (atlas.size + kTile - 1) / kTile;
-    map.texel_size = atlas.texel_size;
+/// Gives each tile that a triangle covers a slot.
+void number_slots(const Atlas& atlas, const Bands& bands, TexelMap& map) {
     const std::uint32_t side = map.tiles_per_side;
-    Bands bands = sort_into_bands(mesh, atlas, side);
-
     std::vector<std::uint8_t> occupied(std::size_t{side} * side, 0);
     parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t band = begin; band < end; ++band) {
@@ -352,16 +342,20 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, con
         map.slot_of_tile[i] = static_cast<std::uint32_t>(map.tile_of_slot.size());
         map.tile_of_slot.push_back(static_cast<std::uint32_t>(i));
     }
-    report(progress, "texel map", 0.2);
+}
 
-    const std::size_t n_slots = map.tile_of_slot.size();
-    const bool packed = is_packed(store, atlas.size);
-    map.tiles.resize(n_slots);
-    map.shapes.resize(packed ? 0 : n_slots);
-    map.packed.resize(packed ? n_slots : 0);
-    map.reach.assign(n_slots, 0);
-    std::vector<std::vector<PackedBox>> boxes(packed ? n_slots : 0);
-    std::vector<std::vector<std::uint32_t>> charts(n_slots);
+/// Clusters of the tiles, by slot.
+struct FilledTiles {
+    std::vector<std::vector<std::uint32_t>> charts;  // of each cluster
+    std::vector<std::vector<PackedBox>> boxes;       // of each cluster of a packed tile
+};
+
+FilledTiles fill_tiles(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Bands& bands, TexelMap& map) {
+    const std::uint32_t side = map.tiles_per_side;
+    const bool packed = !map.packed.empty();
+    FilledTiles filled;
+    filled.charts.resize(map.tiles.size());
+    filled.boxes.resize(map.packed.size());
     parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> ids;
         TexelShape buffer{};
@@ -371,25 +365,50 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, con
                 const std::uint32_t slot = map.slot_of_tile[band * side + tx];
                 if (slot == kNone) continue;
                 TexelShape& shape = packed ? buffer : map.shapes[slot];
-                TileClusters filled = fill_tile(mesh, atlas, {tx, band, ids.data()}, shape, map.tiles[slot]);
-                charts[slot] = std::move(filled.chart);
-                map.reach[slot] = filled.reach;
+                TileClusters clusters = fill_tile(mesh, atlas, {tx, band, ids.data()}, shape, map.tiles[slot]);
+                filled.charts[slot] = std::move(clusters.chart);
+                map.reach[slot] = clusters.reach;
                 if (!packed) continue;
-                boxes[slot].resize(charts[slot].size());
-                map.packed[slot] = pack_shape(shape, map.tiles[slot], boxes[slot]);
+                filled.boxes[slot].resize(filled.charts[slot].size());
+                map.packed[slot] = pack_shape(shape, map.tiles[slot], filled.boxes[slot]);
             }
         }
     });
+    return filled;
+}
+
+}  // namespace
+
+TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, const ProgressFn& progress,
+                         TexelStore store) {
+    check_sizes(mesh, atlas);
+    report(progress, "texel map", 0);
+    TexelMap map;
+    map.size = atlas.size;
+    map.tiles_per_side = (atlas.size + kTile - 1) / kTile;
+    map.texel_size = atlas.texel_size;
+    const std::uint32_t side = map.tiles_per_side;
+    Bands bands = sort_into_bands(mesh, atlas, side);
+
+    number_slots(atlas, bands, map);
+    report(progress, "texel map", 0.2);
+
+    const std::size_t n_slots = map.tile_of_slot.size();
+    const bool packed = is_packed(store, atlas.size);
+    map.tiles.resize(n_slots);
+    map.shapes.resize(packed ? 0 : n_slots);
+    map.packed.resize(packed ? n_slots : 0);
+    map.reach.assign(n_slots, 0);
+    FilledTiles filled = fill_tiles(mesh, atlas, bands, map);
     if (!(map.texel_size > 0)) map.texel_size = mean_texel_size(map);
     map.cluster_start.assign(1, 0);
-    for (const auto& c : charts) {
+    for (const auto& c : filled.charts) {
         map.cluster_chart.insert(map.cluster_chart.end(), c.begin(), c.end());
         map.cluster_start.push_back(static_cast<std::uint32_t>(map.cluster_chart.size()));
     }
-    for (const auto& b : boxes) map.boxes.insert(map.boxes.end(), b.begin(), b.end());
+    for (const auto& b : filled.boxes) map.boxes.insert(map.boxes.end(), b.begin(), b.end());
     bands = {};
-    charts.clear();
-    boxes.clear();
+    filled = {};
     release_free_memory();
     for (const BorderCell& c : build_border_cells(mesh, atlas, map, true).cells)
         map.tiles[c.texel.slot].area[c.texel.texel] = static_cast<float>(c.area);

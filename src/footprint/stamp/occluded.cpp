@@ -82,9 +82,9 @@ struct OccludedClusters {
         if (triangle == kNone) return false;
         const mesh::ExactGeodesics::Geodesic path = geodesics.to(triangle, Vec3(cluster.centre));
         if (!std::isfinite(path.length)) return false;
-        const Vec2 leaves = atlas::carried_direction(from, path.start_direction, normal);
+        const Vec2 leaves = atlas::transport_direction(from, path.start_direction, normal);
         const Vec2 arrives =
-            atlas::carried_direction(atlas::frame_of(cluster), path.end_direction, face_normal(mesh, triangle));
+            atlas::transport_direction(atlas::frame_of(cluster), path.end_direction, face_normal(mesh, triangle));
         n.u = static_cast<float>(path.length * leaves.x);
         n.v = static_cast<float>(path.length * leaves.y);
         n.c = static_cast<float>(glm::dot(leaves, arrives));

@@ -221,7 +221,7 @@ Start start_of(const Surface& surface, const Footprint& footprint, const atlas::
     frame.t = parallel_transport(footprint.frame.t, footprint.frame.n, frame.n);
     frame.b = glm::cross(frame.n, frame.t);
     start.place = Vec2f(atlas::log_map(frame, Vec3(cluster.centre), Vec3(cluster.normal)));
-    start.turn = Vec2f(atlas::carried_direction(frame, Vec3(cluster.tangent), Vec3(cluster.normal)));
+    start.turn = Vec2f(atlas::transport_direction(frame, Vec3(cluster.tangent), Vec3(cluster.normal)));
     return start;
 }
 

@@ -116,9 +116,9 @@ Amounts erase(Canvas& canvas, const StampedTile& tile, const EraseStart& start, 
     return gone;
 }
 
-Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> area, const Coat& coat,
+Amounts add_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> area, const Coat& coat,
                  float capacity) {
-    Amounts laid;
+    Amounts added;
     alignas(64) std::array<float, kN> all{}, dw, part;
     for (int p = 0; p < kMaxPigments; ++p)
         if (const Plane* w = canvas.plane(slot, p)) add_scaled(all.data(), w->data(), 1);
@@ -136,9 +136,9 @@ Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> 
             dw[t] = part[t] * coat.film[t] * (coat.first[p] + coat.towards[t] * (coat.second[p] - coat.first[p]));
             any = any || dw[t] > 0;
         }
-        if (any) laid.pigment[p] += store_change(canvas.touch(slot, p).data(), dw.data(), 1, area.data());
+        if (any) added.pigment[p] += store_change(canvas.touch(slot, p).data(), dw.data(), 1, area.data());
     }
-    return laid;
+    return added;
 }
 
 }  // namespace tuft::ink

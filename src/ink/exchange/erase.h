@@ -53,7 +53,7 @@ struct Coat {
 };
 
 /// Adds a coat to the open film, up to `capacity` film units in all per texel. Returns the added pigments, film·m².
-Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> area, const Coat& coat,
+Amounts add_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> area, const Coat& coat,
                  float capacity);
 
 }  // namespace tuft::ink

@@ -127,8 +127,8 @@ TUFT_CLONES double move_pigment(float* __restrict p, float* __restrict up, const
     return changes.sum();
 }
 
-/// Planes lie here and there: all of a tile's are on their way while the first sums are made.
-void ask_for(const Plane* plane) {
+/// Planes lie here and there: all of a tile's are fetched while the first sums are made.
+void prefetch(const Plane* plane) {
     if (!plane) return;
     for (int t = 0; t < kN; t += 64 / static_cast<int>(sizeof(float))) __builtin_prefetch(plane->data() + t);
 }
@@ -275,9 +275,9 @@ void transfer(Canvas& canvas, const ContactTile& tile, const TransferParams& par
     const auto& [slot, coverage, area, ds] = tile.stamp;
     const HatBasis& hats = tile.hats;
     if (hats.count == 0) return;
-    ask_for(canvas.liquid(slot, Liquid::film));
-    ask_for(canvas.liquid(slot, Liquid::pores));
-    for (int p = 0; p < kMaxPigments; ++p) ask_for(canvas.plane(slot, p));
+    prefetch(canvas.liquid(slot, Liquid::film));
+    prefetch(canvas.liquid(slot, Liquid::pores));
+    for (int p = 0; p < kMaxPigments; ++p) prefetch(canvas.plane(slot, p));
     std::array<float, kNodes> over{};  // film units of all planes
     for (int k = 0; k < hats.count; ++k)
         for (int p = 0; p < Reservoir::kPlanes; ++p) over[hats.node[k]] += params.film[p][hats.node[k]];

@@ -12,15 +12,15 @@ namespace tuft::ink {
 namespace {
 
 constexpr int kN = atlas::kTileTexels;
-constexpr int kModes = 64;           // the finest waves are a thirtieth of the width
-constexpr double kTension = 0.03;    // N/m, of oil and of water with binder
-constexpr double kDensity = 1500;    // kg/m³ of heavy paint
-constexpr double kGravity = 9.81;    // m/s²
-constexpr double kTine = 0.35;       // half width of a furrow over the mean distance of bundles
-constexpr double kRimWidth = 1.5;    // of what is pushed out, over the film's thickness
-constexpr double kHeld = 0.02;       // of its height: finer waves than those held so far are rounded off
-constexpr double kLeastFilm = 0.15;  // of the mean: hair never scrapes to the ground
-constexpr double kRub = 0.6;         // of what bundles rub goes by where they lie, the rest is the liquid's
+constexpr int kModes = 64;             // the finest waves are a thirtieth of the width
+constexpr double kTension = 0.03;      // N/m, of oil and of water with binder
+constexpr double kDensity = 1500;      // kg/m³ of heavy paint
+constexpr double kGravity = 9.81;      // m/s²
+constexpr double kFurrowWidth = 0.35;  // half width of a furrow over the mean distance of bundles
+constexpr double kRimWidth = 1.5;      // of what is pushed out, over the film's thickness
+constexpr double kRounded = 0.02;      // of its height: waves below that are rounded off
+constexpr double kLeastFilm = 0.15;    // of the mean: hair never scrapes to the surface
+constexpr double kRub = 0.6;           // of what bundles rub goes by where they lie, the rest is the liquid's
 
 constexpr double kWear = 1e-3;                      // part of what hair slides over that comes off
 constexpr double kPunch = 2 + 3.14159265358979324;  // what bears over what shears, under a flat punch
@@ -133,11 +133,11 @@ std::array<double, 2 * (kFirmnessSamples - 1)> make_wave() {
 }
 
 /// How much of the firmest bundle lies at each place, 0–1.
-std::array<double, kFirmnessSamples> pushed_by(std::span<const BundleFirmness> bundles) {
+std::array<double, kFirmnessSamples> push_share(std::span<const BundleFirmness> bundles) {
     std::array<double, kFirmnessSamples> out;
     double firm = 0;
     for (const BundleFirmness& bundle : bundles) firm += bundle.weight;
-    const double half = firm > 0 ? kTine / firm : 1;  // of the width: firm bundles lie 1 / firm apart
+    const double half = firm > 0 ? kFurrowWidth / firm : 1;  // of the width: firm bundles lie 1 / firm apart
     for (int i = 0; i < kFirmnessSamples; ++i) {
         double pushed = 0;
         for (const BundleFirmness& bundle : bundles)
@@ -148,8 +148,8 @@ std::array<double, kFirmnessSamples> pushed_by(std::span<const BundleFirmness> b
 }
 
 /// Furrows and rims before they level, over the mean.
-std::array<double, kFirmnessSamples> ploughed(std::span<const BundleFirmness> bundles, const FurrowOptions& o) {
-    std::array<double, kFirmnessSamples> film = pushed_by(bundles);
+std::array<double, kFirmnessSamples> plough(std::span<const BundleFirmness> bundles, const FurrowOptions& o) {
+    std::array<double, kFirmnessSamples> film = push_share(bundles);
     const double rim = std::max(kRimWidth * o.film / o.width, 1.5 / kFirmnessSamples);
     for (int i = 0; i < kFirmnessSamples; ++i) {
         const double u = double(i) / (kFirmnessSamples - 1);
@@ -164,7 +164,7 @@ FurrowDepths furrow_depths(std::span<const BundleFirmness> bundles, const Furrow
     FurrowDepths out;
     out.fill(1);
     if (!(o.yield > 0) || !(o.width > 0) || !(o.film > 0)) return out;
-    const std::array<double, kFirmnessSamples> film = ploughed(bundles, o);
+    const std::array<double, kFirmnessSamples> film = plough(bundles, o);
     constexpr int kLast = kFirmnessSamples - 1;
     static const std::array<double, 2 * kLast> wave = make_wave();
     double mean = 0;
@@ -176,15 +176,15 @@ FurrowDepths furrow_depths(std::span<const BundleFirmness> bundles, const Furrow
             a += (i == 0 || i == kLast ? 1.0 : 2.0) * film[i] * wave[n * i % (2 * kLast)] / kLast;
         const double k = 3.14159265358979324 * n / o.width;
         const double most = o.yield / (kTension * k * k * k * o.film) / o.film;  // over the mean film
-        const double held = std::clamp(a / mean, -most, most);
-        for (int i = 0; i < kFirmnessSamples; ++i) levelled[i] += held * wave[n * i % (2 * kLast)];
+        const double amplitude = std::clamp(a / mean, -most, most);
+        for (int i = 0; i < kFirmnessSamples; ++i) levelled[i] += amplitude * wave[n * i % (2 * kLast)];
     }
     for (int i = 0; i < kFirmnessSamples; ++i) out[i] = static_cast<float>(std::max(1 + levelled[i], 0.0));
     return out;
 }
 
 FurrowDepths rub_of(std::span<const BundleFirmness> bundles) {
-    const std::array<double, kFirmnessSamples> lies = pushed_by(bundles);
+    const std::array<double, kFirmnessSamples> lies = push_share(bundles);
     double mean = 0;
     for (const double l : lies) mean += l / kFirmnessSamples;
     FurrowDepths out;
@@ -198,7 +198,7 @@ double standing_film(double yield) {
 }
 
 double levelling_length(double yield, double film) {
-    return yield > 0 && film > 0 ? std::cbrt(kTension * kHeld * film * film / yield) : 0;
+    return yield > 0 && film > 0 ? std::cbrt(kTension * kRounded * film * film / yield) : 0;
 }
 
 Plane open_pigment(const Canvas& canvas, std::uint32_t slot) {
@@ -293,10 +293,10 @@ void deposit_paste(Canvas& canvas, const ContactTile& tile, const PasteParams& p
         for (int k = 0; k < hats.count; ++k) lifted += shares[k];
         // What rounding makes of it: nothing may be given that does not come down.
         if (!used[p]) lifted = std::max(-stored, 0.0);
-        const double laid = std::max(stored + lifted, 0.0);
-        distribute(exchange.taken, p, laid - stored, shares, hats);
+        const double given = std::max(stored + lifted, 0.0);
+        distribute(exchange.taken, p, given - stored, shares, hats);
         integrate_hats(shares, hats, down.data(), area);
-        mixture.pigment(p, laid, shares);
+        mixture.pigment(p, given, shares);
     }
     mixture.water();
 }

@@ -20,7 +20,7 @@ using Texels = std::array<float, kN>;
 struct Tile : HaloTile {
     alignas(64) Texels relief, near, film;           ///< film units of height, 0–1, film units
     alignas(64) Texels area, inverse;                ///< m² and 1 / m², of texels; 0 outside of charts
-    alignas(64) Halo surface, level, slack, spread;  ///< of a step: z + T, T, ⟨T − hold⟩, ⟨T − pin⟩
+    alignas(64) Halo surface, level, slack, spread;  ///< of a step: z + T, T, ⟨T − ridge_film⟩, ⟨T − pin⟩
     alignas(64) Halo nearness, size;                 ///< n, area
     alignas(64) std::array<Halo, 2> faces;           ///< flux to the right and upwards of a texel
     alignas(64) std::array<Texels, kMaxPigments> loose, fixed;  ///< of the open film: what settles, and what lay there
@@ -70,7 +70,7 @@ TUFT_CLONES void film_after(float* __restrict film, const float* __restrict righ
 }
 
 /// What a face brings of a pigment whose part of the film is c at its ends.
-inline float carried(float f, float c_from, float c_to) {
+inline float pigment_flow(float f, float c_from, float c_to) {
     return f > 0 ? f * c_from : f * c_to;
 }
 
@@ -79,17 +79,17 @@ TUFT_CLONES void pigment_after(float* __restrict p, const float* __restrict righ
     for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x) {
             const int k = halo_at(x, y), below = k - kHaloRow, above = k + kHaloRow;
-            const float d = (carried(right[k - 1], c[k - 1], c[k]) - carried(right[k], c[k], c[k + 1])) +
-                            (carried(up[below], c[below], c[k]) - carried(up[k], c[k], c[above]));
+            const float d = (pigment_flow(right[k - 1], c[k - 1], c[k]) - pigment_flow(right[k], c[k], c[k + 1])) +
+                            (pigment_flow(up[below], c[below], c[k]) - pigment_flow(up[k], c[k], c[above]));
             const int t = y * kSide + x;
             p[t] = positive(p[t] + d * inverse[t]);
         }
 }
 
-TUFT_CLONES void prepare(Tile& tile, Texels& surface, Texels& slack, Texels& spread, float hold, float pin) {
+TUFT_CLONES void prepare(Tile& tile, Texels& surface, Texels& slack, Texels& spread, float ridge_film, float pin) {
     for (int t = 0; t < kN; ++t) {
         surface[t] = tile.relief[t] + tile.film[t];
-        slack[t] = positive(tile.film[t] - hold);
+        slack[t] = positive(tile.film[t] - ridge_film);
         spread[t] = positive(tile.film[t] - pin);
     }
 }
@@ -165,7 +165,7 @@ class Pool {
 
     void step() {
         each([&](std::size_t i) {
-            prepare(tiles_[i], surface_[i], slack_[i], spread_[i], static_cast<float>(o_.hold),
+            prepare(tiles_[i], surface_[i], slack_[i], spread_[i], static_cast<float>(o_.ridge_film),
                     static_cast<float>(o_.pin));
         });
         each([&](std::size_t i) {
@@ -191,7 +191,7 @@ class Pool {
         for (int p = 0; p < kMaxPigments; ++p) {
             const bool any =
                 std::any_of(tiles_.begin(), tiles_.end(), [p](const Tile& t) { return t.pigments >> p & 1; });
-            if (any) carry(p);
+            if (any) transport(p);
         }
         each([&](std::size_t i) {
             Tile& tile = tiles_[i];
@@ -211,7 +211,7 @@ class Pool {
         return {surface_[tile][texel], tiles_[tile].film[texel], slack_[tile][texel], spread_[tile][texel]};
     }
 
-    void carry(int p) {
+    void transport(int p) {
         each([&](std::size_t i) {  // parts of the film
             const Tile& tile = tiles_[i];
             for (int t = 0; t < kN; ++t) slack_[i][t] = tile.film[t] > 0 ? tile.loose[p][t] / tile.film[t] : 0;
@@ -225,8 +225,9 @@ class Pool {
             for (std::size_t k = 0; k < tile.over.size(); ++k) {
                 const auto& [place, link] = tile.links[k];
                 float& here = tile.loose[p][link.texel];
-                here = positive(here - carried(tile.over[k], slack_[i][link.texel], slack_[place][link.other_texel]) *
-                                           tile.inverse[link.texel]);
+                here =
+                    positive(here - pigment_flow(tile.over[k], slack_[i][link.texel], slack_[place][link.other_texel]) *
+                                        tile.inverse[link.texel]);
             }
         });
     }

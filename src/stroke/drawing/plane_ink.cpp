@@ -78,7 +78,7 @@ PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, cons
                    double cell) {
     const Frame plane_frame;
     std::vector<brush::Pose> poses;
-    const StrokeSamples led = lift_off(lead_hand(trace, options), options);
+    const StrokeSamples led = lift_off(compensate_tip_lag(trace, options), options);
     const std::vector<double> depths = tip_depths<StrokeSample>(led.samples, options);
     for (std::size_t i = 0; i < led.samples.size(); ++i) {
         const StrokeSample& s = led.samples[i];
