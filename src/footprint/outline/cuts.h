@@ -48,7 +48,7 @@ struct Trail {
 
 /// Part of a trail.
 struct TrailPart {
-    const Trail& trail;
+    const Trail& trail;              ///< of which it is a part
     std::size_t begin = 0, end = 0;  ///< cuts [begin, end)
 };
 
@@ -62,6 +62,7 @@ std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame,
 /// and lifting neither spreads nor closes it. The track is the hair's, not the hand's: lifted hair straightens and
 /// advances to its point below the hand.
 struct HairTracks {
+    /// Widths of one branch.
     struct Track {
         long long first = 0;       ///< index of the position of width[0]
         std::vector<float> width;  ///< metres; negative: no hair yet

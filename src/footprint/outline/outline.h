@@ -23,6 +23,7 @@ struct Outline {
     std::vector<Vec2> control;
 };
 
+/// Options of `outlines_of` a tuft.
 struct OutlineOptions {
     double film = 0.1e-3;  ///< metres, thickness of the ink film on wet hair; added to every section
     int points = 20;       ///< cut points on each side

@@ -28,9 +28,9 @@ enum class Mapping : std::uint8_t {
 /// A model and its texels; the references must outlive it.
 struct Surface {
     const mesh::TriangleMesh& mesh;
-    const atlas::Atlas& atlas;
-    const atlas::TexelMap& texels;
-    const atlas::ClusterGraph& clusters;
+    const atlas::Atlas& atlas;            ///< of the mesh
+    const atlas::TexelMap& texels;        ///< of the atlas
+    const atlas::ClusterGraph& clusters;  ///< of the texels
 };
 
 /// Motion of the footprint since the previous stamp, in its frame: a rotation by `turn` about the origin, then a
@@ -43,14 +43,14 @@ struct Motion {
 /// Options of `plan_stamp` and `choose_mode`.
 struct StampOptions {
     Mapping mapping = Mapping::log;
-    double enter = 0.015;   ///< discrepancy over radius above which each cluster gets a frame
-    double leave = 0.010;   ///< discrepancy over radius below which one frame serves all again
-    double sub_pose = 1.0;  ///< largest displacement of any point between sub-poses, texels
-    int max_sub_poses = 64;
-    int prefix_sums = 12;  ///< number of sub-poses from which a straight motion is integrated by prefix sums
+    double enter = 0.015;    ///< discrepancy over radius above which each cluster gets a frame
+    double leave = 0.010;    ///< discrepancy over radius below which one frame serves all again
+    double sub_pose = 1.0;   ///< largest displacement of any point between sub-poses, texels
+    int max_sub_poses = 64;  ///< of a stamp; longer motions have poses further apart
+    int prefix_sums = 12;    ///< number of sub-poses from which a straight motion is integrated by prefix sums
     /// 0–1: weight of the maximum over a straight motion, against the mean; for hairs finer than a texel.
     float max_weight = 0;
-    Isa isa = best_isa();
+    Isa isa = best_isa();  ///< of the kernels; no bit depends on it
 };
 
 /// Quadrants of a tile, one bit each: rows 0–7 with columns 0–7, then 8–15; rows 8–15 likewise.
@@ -78,7 +78,8 @@ struct TileJob {
 /// A pose of the picture within the stamp: cell coordinates (fu, fv) of a texel map to (xu fu + xv fv + du, yu fu +
 /// yv fv + dv) of the packed picture.
 struct SubPose {
-    float xu = 1, xv = 0, yu = 0, yv = 1, du = 0, dv = 0;
+    float xu = 1, xv = 0, yu = 0, yv = 1;  ///< rotation and shear
+    float du = 0, dv = 0;                  ///< cells
 };
 
 /// A planned stamp: its picture packed for the kernel and the tiles it may touch.

@@ -13,9 +13,9 @@ inline constexpr float kClusterSlack = 1.1f;
 
 /// Extent of a stamp.
 struct Reach {
-    Vec3f origin{0}, normal{0};
-    float radius = 0;    ///< metres, motion included
-    Vec2f lo{0}, hi{0};  ///< of the picture, motion included, metres
+    Vec3f origin{0}, normal{0};  ///< metres, unit, world; of the stamp's frame
+    float radius = 0;            ///< metres, motion included
+    Vec2f lo{0}, hi{0};          ///< of the picture, motion included, metres
 };
 
 /// Start of the search.

@@ -114,6 +114,7 @@ struct GutterPlan {
 /// Built once for a model; `atlas.gutter` texels wide. About 0.3 s.
 GutterPlan plan_gutter(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, const atlas::TexelMap& map);
 
+/// Options of the maps.
 struct ComposeOptions {
     std::uint32_t gutter = 4;  ///< texels round the charts that are filled with the nearest texel's value
     /// If given, the gutter continues over the seams, so that bilinear lookups on both sides of a seam agree. Must

@@ -30,12 +30,14 @@ inline constexpr double kWorthThickness = 0.5;
 /// leaves it), in [0, 1]. Equals what `shade_films` shows for the amounts film · fraction.
 Rgb colour_on(const Ink& ink, const Substrate& substrate, double film = 0);
 
+/// Options of `match_colour`.
 struct MatchOptions {
     /// X, film units; 0: as many as the colour needs, up to `kThickestMix` and to what stays on the substrate.
     double film = kMixFilm;
     std::size_t most_parts = 4;  ///< pigments in the mix, 1 to 4
 };
 
+/// Result of `match_colour`.
 struct ColourMatch {
     Ink ink;             ///< with `film` = X; its name is the wanted colour, `#rrggbb`
     Rgb wanted{};        ///< linear sRGB

@@ -45,8 +45,9 @@ struct FilmParams {
 /// the direction of gravity.
 FilmParams film_params(const Substrate& substrate, const Vec3& down = Vec3{0});
 
+/// Work of `WetFilm::advance`.
 struct FilmReport {
-    std::size_t steps = 0;
+    std::size_t steps = 0;       ///< number of steps
     std::size_t tile_steps = 0;  ///< tiles stepped, over all steps
     double evaporated = 0;       ///< evaporated liquid, film·m²
 };

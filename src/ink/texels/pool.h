@@ -13,6 +13,7 @@
 /// `stroke` at the end of a stroke.
 namespace tuft::ink {
 
+/// Options of `pool`.
 struct PoolOptions {
     double ridge_film = 0.4;  ///< film units held by the ridges
     double pin = 1.5;         ///< film units needed to wet dry texels

@@ -15,6 +15,7 @@
 
 namespace tuft::stroke {
 
+/// Options of the footprints of a stroke.
 struct HairContactOptions {
     double cell = 1e-4;          ///< metres, of footprints
     bool always_closed = false;  ///< ink on the surface, such as a pool, fills the gaps of dry hair
