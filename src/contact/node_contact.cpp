@@ -31,11 +31,6 @@ Vec3 corner_normal(const mesh::TriangleMesh& mesh, std::uint32_t t, int k, int l
     return size > 1e-9 ? n / size : n;
 }
 
-Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t t) {
-    const Vec3 from = mesh.position(t, 0);
-    return glm::normalize(glm::cross(mesh.position(t, 1) - from, mesh.position(t, 2) - from));
-}
-
 /// A point of a sharp convex edge and the normal of the face beyond it.
 struct SharpEdge {
     Vec3 origin{0}, beyond{0};

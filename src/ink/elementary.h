@@ -4,9 +4,20 @@
 #include <cstdint>
 
 /// \file
-/// Elementary functions that vectorise and give the same bits on every instruction set, unlike those of the C
+/// Elementary functions of texels that vectorise and give the same bits on every instruction set, unlike those of the C
 /// library. Used by the kernels of `ink`.
 namespace tuft::ink {
+
+[[gnu::always_inline]] inline float larger(float a, float b) {
+    return a > b ? a : b;
+}
+[[gnu::always_inline]] inline float smaller(float a, float b) {
+    return a < b ? a : b;
+}
+/// ⟨a⟩: a where it is positive, else 0.
+[[gnu::always_inline]] inline float positive(float a) {
+    return a > 0 ? a : 0;
+}
 
 /// exp(-x) for x ≥ 0, 1.5e-7 relative: 2^-n by exponent bits, Taylor polynomial on the rest.
 inline float exp_minus(float x) {

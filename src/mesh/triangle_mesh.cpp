@@ -20,6 +20,11 @@ SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t triangle, dou
     return s;
 }
 
+Vec3 face_normal(const TriangleMesh& mesh, std::size_t triangle) {
+    const Vec3 from = mesh.position(triangle, 0);
+    return glm::normalize(glm::cross(mesh.position(triangle, 1) - from, mesh.position(triangle, 2) - from));
+}
+
 double surface_area(const TriangleMesh& mesh) {
     double sum = 0;
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {

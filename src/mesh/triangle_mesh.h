@@ -60,6 +60,9 @@ struct SurfacePoint {
 /// Returns the point of `triangle` with the given weights; `distance` is 0.
 SurfacePoint surface_point(const TriangleMesh& mesh, std::uint32_t triangle, double b1, double b2);
 
+/// Returns the unit normal of the flat triangle.
+Vec3 face_normal(const TriangleMesh& mesh, std::size_t triangle);
+
 /// Returns the sum of triangle areas, m².
 double surface_area(const TriangleMesh& mesh);
 

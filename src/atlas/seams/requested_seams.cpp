@@ -7,7 +7,7 @@
 namespace tuft::atlas {
 namespace {
 
-Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t t) {
+Vec3 unit_normal_or_zero(const mesh::TriangleMesh& mesh, std::uint32_t t) {
     const Vec3 a = mesh.position(t, 0);
     const Vec3 n = glm::cross(mesh.position(t, 1) - a, mesh.position(t, 2) - a);
     const double length = glm::length(n);
@@ -27,7 +27,7 @@ void cut_requested_seams(const mesh::TriangleMesh& mesh, const RequestedSeams& s
         if (g == kNone || g < h) continue;
         const std::uint32_t s = h / 3, t = g / 3;
         bool cut = groups && mesh.triangle_groups[s] != mesh.triangle_groups[t];
-        if (!cut && sharp) cut = glm::dot(face_normal(mesh, s), face_normal(mesh, t)) < least_cos;
+        if (!cut && sharp) cut = glm::dot(unit_normal_or_zero(mesh, s), unit_normal_or_zero(mesh, t)) < least_cos;
         if (cut) twin[h] = twin[g] = kNone;
     }
 }

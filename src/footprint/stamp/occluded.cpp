@@ -15,11 +15,6 @@ constexpr double kBeyond = 1.1;                // of the reach: clusters that be
 constexpr std::size_t kMostWindows = 120'000;  // some 20 ms
 constexpr double kBeside = 1e-3;               // of a triangle: rounding of positions in the atlas
 
-Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
-    const Vec3 a = mesh.position(triangle, 0);
-    return glm::normalize(glm::cross(mesh.position(triangle, 1) - a, mesh.position(triangle, 2) - a));
-}
-
 /// Finds the triangle of each cluster centre. Of the triangles that contain the centre in the atlas, up to rounding,
 /// the one that maps it nearest to its position in space counts.
 class CentreLocator {

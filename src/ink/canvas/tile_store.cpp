@@ -1,6 +1,6 @@
 #include "ink/canvas/tile_store.h"
 
-#include "ink/simd.h"
+#include "core/simd.h"
 
 namespace tuft::ink {
 namespace {
@@ -25,6 +25,14 @@ TUFT_CLONES double store_change(float* __restrict w, const float* __restrict dw,
     double total = 0;
     for (const double s : sum) total += s;
     return total;
+}
+
+TUFT_CLONES void add_plane(float* __restrict sum, const float* __restrict w) {
+    for (int t = 0; t < atlas::kTileTexels; ++t) sum[t] += w[t];
+}
+
+TUFT_CLONES void add_scaled_plane(float* __restrict sum, const float* __restrict w, float factor) {
+    for (int t = 0; t < atlas::kTileTexels; ++t) sum[t] += factor * w[t];
 }
 
 }  // namespace tuft::ink

@@ -12,4 +12,8 @@ namespace tuft::ink {
 double store_change(float* __restrict w, const float* __restrict dw, float part, const float* __restrict area,
                     int n = atlas::kTileTexels);
 
+/// sum += w, and sum += factor · w, over the texels of a tile.
+void add_plane(float* __restrict sum, const float* __restrict w);
+void add_scaled_plane(float* __restrict sum, const float* __restrict w, float factor);
+
 }  // namespace tuft::ink

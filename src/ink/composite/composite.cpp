@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/simd.h"
+#include "ink/canvas/tile_store.h"
 #include "ink/elementary.h"
-#include "ink/simd.h"
 #include "ink/spectra/kubelka_munk.h"
 
 namespace tuft::ink {
@@ -14,10 +15,6 @@ constexpr int kN = atlas::kTileTexels;
 using Texels = std::array<float, kN>;
 
 constexpr float kWetRoughness = 0.05f;  ///< glTF roughness of a film of water
-
-TUFT_CLONES void add_scaled(float* __restrict sum, const float* __restrict w, float factor) {
-    for (int t = 0; t < kN; ++t) sum[t] += factor * w[t];
-}
 
 /// `layer` and `over` of kubelka_munk.h for K X and S X per texel, put over R in `r`.
 TUFT_CLONES void film_over(float* __restrict r, const float* __restrict k, const float* __restrict s) {
@@ -122,8 +119,8 @@ void add_film(Reflectances& r, TileAppearance& appearance, const TileFilm& film,
         s.fill(0);
         for (std::size_t p = 0; p < pigments.size(); ++p) {
             if (!film.pigments[p]) continue;
-            add_scaled(k.data(), film.pigments[p]->data(), pigments[p].k[b]);
-            if (!absorbs_only) add_scaled(s.data(), film.pigments[p]->data(), pigments[p].s[b]);
+            add_scaled_plane(k.data(), film.pigments[p]->data(), pigments[p].k[b]);
+            if (!absorbs_only) add_scaled_plane(s.data(), film.pigments[p]->data(), pigments[p].s[b]);
         }
         if (whole) {
             film_over(r[b].data(), k.data(), s.data());
@@ -137,9 +134,9 @@ void add_film(Reflectances& r, TileAppearance& appearance, const TileFilm& film,
     for (std::size_t p = 0; p < pigments.size(); ++p) {
         if (!film.pigments[p]) continue;
         const float* w = film.pigments[p]->data();
-        add_scaled(height.data(), w, pigments[p].height * 1e6f);
-        add_scaled(rough.data(), w, pigments[p].roughness);
-        add_scaled(thickness.data(), w, 1.0f);
+        add_scaled_plane(height.data(), w, pigments[p].height * 1e6f);
+        add_scaled_plane(rough.data(), w, pigments[p].roughness);
+        add_scaled_plane(thickness.data(), w, 1.0f);
     }
     for (int t = 0; t < kN; ++t) appearance.height[t] += height[t] * part[t];
     blend_roughness(appearance.roughness.data(), rough.data(), thickness.data(), part.data());
@@ -220,8 +217,8 @@ std::array<Texels, 3> linear_colour(const BaseColour::Tile& tile) {
 void add_lost_colour(TileAppearance& appearance, const TileBaseColour& base_colour) {
     alignas(64) Texels colour{}, bare{}, all, own;
     for (int c = 0; c < 3; ++c) {
-        add_scaled(colour.data(), appearance.colour[c].data(), 1);
-        add_scaled(bare.data(), base_colour.bare[c].data(), 1);
+        add_scaled_plane(colour.data(), appearance.colour[c].data(), 1);
+        add_scaled_plane(bare.data(), base_colour.bare[c].data(), 1);
     }
     part_left(all.data(), colour.data(), bare.data());
     for (int c = 0; c < 3; ++c) {
@@ -238,9 +235,9 @@ void reflect_base(Reflectances& r, TileBaseColour& base_colour, const BaseColour
     for (Texels& bare : base_colour.bare) bare.fill(0);
     for (int b = 0; b < r.bands; ++b) {
         r[b].fill(0);
-        for (int c = 0; c < 3; ++c) add_scaled(r[b].data(), colour[c].data(), primary_bands()[c][b]);
+        for (int c = 0; c < 3; ++c) add_scaled_plane(r[b].data(), colour[c].data(), primary_bands()[c][b]);
         cut_to_unit(r[b].data());
-        for (int c = 0; c < 3; ++c) add_scaled(base_colour.bare[c].data(), r[b].data(), band_weights()[c][b]);
+        for (int c = 0; c < 3; ++c) add_scaled_plane(base_colour.bare[c].data(), r[b].data(), band_weights()[c][b]);
         below_interface(r[b].data(), static_cast<float>(kInterface.k2) * substrate.interface);
     }
     into_gamut(base_colour.bare[0].data(), base_colour.bare[1].data(), base_colour.bare[2].data());
@@ -262,7 +259,7 @@ void finish_appearance(Reflectances& r, TileAppearance& appearance, const Plane*
     for (int c = 0; c < 3; ++c) appearance.colour[c].fill(0);
     for (int b = 0; b < r.bands; ++b) {
         if (water || substrate.interface > 0) under_interface(r[b].data(), wet.data(), substrate.interface, k2);
-        for (int c = 0; c < 3; ++c) add_scaled(appearance.colour[c].data(), r[b].data(), band_weights()[c][b]);
+        for (int c = 0; c < 3; ++c) add_scaled_plane(appearance.colour[c].data(), r[b].data(), band_weights()[c][b]);
     }
     into_gamut(appearance.colour[0].data(), appearance.colour[1].data(), appearance.colour[2].data());
 }
@@ -335,7 +332,7 @@ TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrat
         if (!layer.water) continue;
         if (!water) sum.fill(0);
         water = &sum;
-        add_scaled(sum.data(), layer.water->data(), view.opacity);
+        add_scaled_plane(sum.data(), layer.water->data(), view.opacity);
     }
     finish_appearance(r, appearance, water, substrate);
     if (tile) add_lost_colour(appearance, base_colour);

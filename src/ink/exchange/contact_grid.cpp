@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ink/simd.h"
+#include "core/simd.h"
 
 namespace tuft::ink {
 namespace {

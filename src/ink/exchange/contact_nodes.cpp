@@ -11,12 +11,6 @@ using Content = Reservoir::Content;
 constexpr int kPlanes = Reservoir::kPlanes;
 constexpr double kAlike = 1e-6;  // of a mixture: float parts of it do not differ by less
 
-double sum_of(const Content& c) {
-    double sum = 0;
-    for (const double v : c) sum += v;
-    return sum;
-}
-
 /// Cells of a bundle round a place along the hair, with their weights.
 struct Between {
     std::size_t cell = 0;  ///< and the one after it

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <cstring>
 
+#include "core/simd.h"
 #include "ink/canvas/tile_store.h"
 #include "ink/elementary.h"
-#include "ink/simd.h"
 #include "ink/spectra/colorimetry.h"
 
 namespace tuft::ink {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ink/simd.h"
+#include "core/simd.h"
+#include "ink/canvas/tile_store.h"
+#include "ink/elementary.h"
 
 namespace tuft::ink {
 namespace {
@@ -14,14 +16,6 @@ constexpr int kWater = kMaxPigments;
 constexpr double kMostGiven = 0.8;  // of a pigment in one stamp: areas on the surface may exceed the patch's
 
 using Texels = std::array<float, kN>;
-
-inline float positive(float a) {
-    return a > 0 ? a : 0;
-}
-
-TUFT_CLONES void add(float* __restrict sum, const float* __restrict w) {
-    for (int t = 0; t < kN; ++t) sum[t] += w[t];
-}
 
 /// out = ⟨mix · goal − w⟩ · rate, and its sum over the pigments.
 TUFT_CLONES void increments(float* __restrict out, float* __restrict sum, const float* __restrict mix,
@@ -86,7 +80,7 @@ void deposit_mixed(Canvas& canvas, const StampedTile& tile, const HatBasis& hats
     std::array<bool, kMaxPigments> used{};
     for (int p = 0; p < kMaxPigments; ++p) {
         const Plane* w = canvas.plane(slot, p);
-        if (w) add(all.data(), w->data());
+        if (w) add_plane(all.data(), w->data());
         for (int k = 0; k < hats.count; ++k) used[p] = used[p] || mixes[p][hats.node[k]] > 0;
         if (!used[p]) continue;
         interpolate(mix[p], hats, mixes[p]);

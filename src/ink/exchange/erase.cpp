@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/simd.h"
 #include "ink/canvas/tile_store.h"
 #include "ink/elementary.h"
 #include "ink/exchange/deposit.h"
-#include "ink/simd.h"
 
 namespace tuft::ink {
 namespace {
@@ -14,10 +14,6 @@ namespace {
 constexpr int kN = atlas::kTileTexels;
 constexpr int kLanes = 16;
 constexpr float kNothing = 1e-6f;  // film units
-
-TUFT_CLONES void add_scaled(float* __restrict sum, const float* __restrict w, float factor) {
-    for (int t = 0; t < kN; ++t) sum[t] += factor * w[t];
-}
 
 /// Planes that erasing reads, [256]; see `EraseStart`.
 struct ErasedPlanes {
@@ -86,11 +82,11 @@ EraseStart erase_start(const Canvas& canvas, std::uint32_t slot) {
     for (int film = 0; film < kFilms; ++film)
         for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
             if (const Plane* w = canvas.film_plane(slot, film, p)) {
-                add_scaled(start.film.data(), w->data(), 1);
-                add_scaled(start.hides.data(), w->data(), extinction_of(canvas.pigments()[p]));
+                add_scaled_plane(start.film.data(), w->data(), 1);
+                add_scaled_plane(start.hides.data(), w->data(), extinction_of(canvas.pigments()[p]));
             }
     for (const Liquid where : {Liquid::film, Liquid::pores})
-        if (const Plane* w = canvas.liquid(slot, where)) add_scaled(start.film.data(), w->data(), 1);
+        if (const Plane* w = canvas.liquid(slot, where)) add_scaled_plane(start.film.data(), w->data(), 1);
     return start;
 }
 
@@ -101,7 +97,7 @@ Amounts erase(Canvas& canvas, const StampedTile& tile, const EraseStart& start, 
     const Plane film = erase_start(canvas, slot).film;
     alignas(64) std::array<float, kN> factor, liquid{};
     for (const Liquid where : {Liquid::film, Liquid::pores})
-        if (const Plane* w = canvas.liquid(slot, where)) add_scaled(liquid.data(), w->data(), 1);
+        if (const Plane* w = canvas.liquid(slot, where)) add_scaled_plane(liquid.data(), w->data(), 1);
     const auto rate = static_cast<float>(-std::expm1(-params.strength * ds / params.transfer_length));
     remaining_fraction(factor.data(),
                        {film.data(), start.film.data(), start.hides.data(), coverage.data(), liquid.data()}, rate);
@@ -121,7 +117,7 @@ Amounts add_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> 
     Amounts added;
     alignas(64) std::array<float, kN> all{}, dw, part;
     for (int p = 0; p < kMaxPigments; ++p)
-        if (const Plane* w = canvas.plane(slot, p)) add_scaled(all.data(), w->data(), 1);
+        if (const Plane* w = canvas.plane(slot, p)) add_scaled_plane(all.data(), w->data(), 1);
     float strength[2] = {0, 0};
     for (int p = 0; p < kMaxPigments; ++p) strength[0] += coat.first[p], strength[1] += coat.second[p];
     for (int t = 0; t < kN; ++t) {

@@ -24,12 +24,6 @@ constexpr std::size_t kMostSteps = 1000;             // of flow at once: 5 s, af
 using Content = Reservoir::Content;
 constexpr int kPlanes = Reservoir::kPlanes;
 
-double sum_of(const Content& c) {
-    double sum = 0;
-    for (const double v : c) sum += v;
-    return sum;
-}
-
 void check_layout(const ReservoirLayout& l) {
     double capacities = 0, before = 0;
     bool good = !l.bundles.empty() && !l.cell_ends.empty() && l.cell_capacities.size() == l.cell_ends.size();
@@ -138,6 +132,12 @@ double saturation_over(const Reservoir& tuft, std::span<const float> contact) {
 }
 
 }  // namespace
+
+double sum_of(const Reservoir::Content& content) {
+    double sum = 0;
+    for (const double v : content) sum += v;
+    return sum;
+}
 
 double Reservoir::remaining() const {
     double sum = 0;

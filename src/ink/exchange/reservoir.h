@@ -60,6 +60,9 @@ struct Reservoir {
     Mix mix() const;
 };
 
+/// Returns the wet ink of a content, film·m²: all planes together.
+double sum_of(const Reservoir::Content& content);
+
 /// Contact fractions of the cells, [bundles * cells], sum 1; empty: all alike.
 using ContactCells = std::vector<float>;
 

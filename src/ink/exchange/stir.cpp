@@ -8,12 +8,6 @@ namespace {
 
 constexpr double kStirring = 3e-3;  // metres of slip after which bundles have shared what lies between them
 
-double sum_of(const Reservoir::Content& c) {
-    double sum = 0;
-    for (const double v : c) sum += v;
-    return sum;
-}
-
 }  // namespace
 
 void stir(Reservoir& tuft, std::span<const Vec2> turned, double radius) {

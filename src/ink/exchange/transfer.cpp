@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ink/simd.h"
+#include "core/simd.h"
+#include "ink/canvas/tile_store.h"
+#include "ink/elementary.h"
 
 namespace tuft::ink {
 namespace {
@@ -19,22 +21,6 @@ constexpr double kGentle = 0.3;                                // of the exchang
 constexpr double kMostGiven = 0.999;  // of the liquid: rounding may not take more than there is
 
 using Texels = std::array<float, kN>;
-
-double sum_of(const Reservoir::Content& c) {
-    double sum = 0;
-    for (const double v : c) sum += v;
-    return sum;
-}
-
-inline float larger(float a, float b) {
-    return a > b ? a : b;
-}
-inline float smaller(float a, float b) {
-    return a < b ? a : b;
-}
-inline float positive(float a) {
-    return a > 0 ? a : 0;
-}
 
 /// a = a b, 1 at most.
 TUFT_CLONES void scale(float* __restrict a, const float* __restrict b) {
@@ -73,10 +59,6 @@ TUFT_CLONES void exchange_volumes(Volumes& out, const ExchangePlanes& in, const 
         out.down[t] = n + x;
         out.up[t] = x + lift;
     }
-}
-
-TUFT_CLONES void add(float* __restrict sum, const float* __restrict p) {
-    for (int t = 0; t < kN; ++t) sum[t] += p[t];
 }
 
 /// up becomes the part of the open film's pigments that goes with the liquid.
@@ -300,7 +282,7 @@ void transfer(Canvas& canvas, const ContactTile& tile, const TransferParams& par
     integrate_hats(booked.taken[kWater], hats, v.up.data(), area);
     booked.stored[kWater] = move_liquid(w.data(), v.up.data(), v.down.data(), area.data());
     for (int p = 0; p < kMaxPigments; ++p)
-        if (const Plane* here = canvas.plane(slot, p)) add(pigments.data(), here->data());
+        if (const Plane* here = canvas.plane(slot, p)) add_plane(pigments.data(), here->data());
     lifted_part(v.up.data(), total.data(), pigments.data());
     for (int p = 0; p < kMaxPigments; ++p) {
         float most = 0;

@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "core/simd.h"
 #include "ink/film/film_tile.h"
-#include "ink/simd.h"
 
 namespace tuft::ink::wet {
 namespace {

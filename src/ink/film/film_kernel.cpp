@@ -5,8 +5,9 @@
 #include <limits>
 
 #include "core/random.h"
+#include "core/simd.h"
+#include "ink/elementary.h"
 #include "ink/film/film_tile.h"
-#include "ink/simd.h"
 
 // Loops over rows of sixteen that vectorise; faces that are none have conductance 0.
 #define TUFT_INLINE inline __attribute__((always_inline))
@@ -18,17 +19,8 @@ constexpr int kLanes = kSide;
 constexpr float kLeast = 1e-30f;  // film units: no division by zero in lanes that are dry
 constexpr float kMostNear = 8;    // of what smears between two texels, over that of whole texels side by side
 
-TUFT_INLINE float larger(float a, float b) {
-    return a > b ? a : b;
-}
-TUFT_INLINE float smaller(float a, float b) {
-    return a < b ? a : b;
-}
 TUFT_INLINE std::uint16_t smaller_of(std::uint16_t a, std::uint16_t b) {
     return a < b ? a : b;
-}
-TUFT_INLINE float positive(float a) {
-    return a > 0 ? a : 0;
 }
 TUFT_INLINE float rate_of(float total, float grip) {
     return total > 0 ? 1 / larger(larger(total, grip), kLeast) : 0;

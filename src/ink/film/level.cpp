@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/simd.h"
 #include "core/system/parallel.h"
 #include "ink/film/paste.h"
-#include "ink/simd.h"
 #include "ink/texels/halo.h"
 
 namespace tuft::ink {

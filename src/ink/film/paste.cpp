@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/simd.h"
+#include "ink/canvas/tile_store.h"
+#include "ink/elementary.h"
 #include "ink/film/film_tile.h"
-#include "ink/simd.h"
 #include "ink/texels/drying.h"
 #include "ink/texels/pool.h"
 
@@ -26,18 +28,6 @@ constexpr double kWear = 1e-3;                      // part of what hair slides 
 constexpr double kPunch = 2 + 3.14159265358979324;  // what bears over what shears, under a flat punch
 
 using Texels = std::array<float, kN>;
-
-inline float positive(float a) {
-    return a > 0 ? a : 0;
-}
-
-TUFT_CLONES void add(float* __restrict sum, const float* __restrict w) {
-    for (int t = 0; t < kN; ++t) sum[t] += w[t];
-}
-
-TUFT_CLONES void add_scaled(float* __restrict sum, const float* __restrict w, float scale) {
-    for (int t = 0; t < kN; ++t) sum[t] += w[t] * scale;
-}
 
 /// Leaves the height where it counts as paste's.
 TUFT_CLONES void where_dry(float* __restrict height, const float* __restrict film, const float* __restrict pores) {
@@ -205,7 +195,7 @@ Plane open_pigment(const Canvas& canvas, std::uint32_t slot) {
     Plane sum;
     sum.fill(0);
     for (int p = 0; p < kMaxPigments; ++p)
-        if (const Plane* w = canvas.plane(slot, p)) add(sum.data(), w->data());
+        if (const Plane* w = canvas.plane(slot, p)) add_plane(sum.data(), w->data());
     return sum;
 }
 
@@ -220,7 +210,7 @@ Plane paste_height(const Canvas& canvas, std::uint32_t slot) {
     height.fill(0);
     for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
         if (const Plane* w = canvas.plane(slot, p))
-            add_scaled(height.data(), w->data(), 1e6f * canvas.pigments()[p].height);
+            add_scaled_plane(height.data(), w->data(), 1e6f * canvas.pigments()[p].height);
     if (!(wet::greatest(height.data()) > static_cast<float>(kPlain))) {
         height.fill(0);
         return height;
@@ -258,7 +248,7 @@ void deposit_paste(Canvas& canvas, const ContactTile& tile, const PasteParams& p
         for (int k = 0; k < hats.count; ++k) used[p] = used[p] || mixes[p][hats.node[k]] > 0;
         if (!used[p]) continue;
         interpolate(mix[p], hats, mixes[p]);
-        add(strength.data(), mix[p].data());
+        add_plane(strength.data(), mix[p].data());
     }
     furrow_depth_at(full, tile.places, params.furrows);
     for (int t = 0; t < kN; ++t) full[t] *= static_cast<float>(params.target) * strength[t];

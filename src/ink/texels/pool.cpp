@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/simd.h"
 #include "core/system/parallel.h"
-#include "ink/simd.h"
+#include "ink/elementary.h"
 #include "ink/texels/halo.h"
 
 namespace tuft::ink {
@@ -27,13 +28,6 @@ struct Tile : HaloTile {
     std::vector<float> over;                                    ///< flux out over each link
     unsigned pigments = 0;                                      ///< of which there is loose ink
 };
-
-inline float smaller(float a, float b) {
-    return a < b ? a : b;
-}
-inline float positive(float a) {
-    return a > 0 ? a : 0;
-}
 
 /// A texel at one end of a face, film units: surface, film, and what of it may leave to wet and to dry texels.
 struct PoolEnd {

@@ -107,11 +107,6 @@ Vec3 any_across(const Vec3& normal) {
 }
 
 /// The triangle's unit normal as its corners go round.
-Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t t) {
-    const Vec3 a = mesh.position(t, 0);
-    return glm::normalize(glm::cross(mesh.position(t, 1) - a, mesh.position(t, 2) - a));
-}
-
 }  // namespace
 
 double clearance(const SurfaceQuery& query, const Vec3& p, const Vec3& normal, double most) {
