@@ -335,13 +335,8 @@ double resident_megabytes() {
     return 0;
 }
 
-}  // namespace
-
-int run(const Bench& a) {
-    Console console(a.common.quiet);
-    set_thread_count(1);
-    const std::uint32_t size = a.surface.atlas_size > 0 ? a.surface.atlas_size : a.quick ? 2048 : 4096;
-    const footprint::Isa isa = std::min(isa_of(a.isa), footprint::best_isa());
+/// Models to measure on.
+std::vector<Case> make_cases(const Bench& a, std::uint32_t size, Console& console) {
     std::vector<Case> cases;
     const auto add = [&](std::string name, mesh::PolygonSoup soup) {
         stroke::ModelOptions options = model_options(a.surface, console);
@@ -361,7 +356,11 @@ int run(const Bench& a) {
         add("sphere-100k", sphere(158));
         if (!a.quick) add("sphere-1M", sphere(500));
     }
+    return cases;
+}
 
+/// Figures that need no model.
+nlohmann::json measure_parts() {
     nlohmann::json j;
     j["machine"] = cpu_name();
     j["threads"] = 1;
@@ -376,89 +375,113 @@ int run(const Bench& a) {
                               {"spines", flat_brush.spines}};
     j["rod_microseconds"] = {
         {"mean", rod.mean}, {"mean_spread", rod.spread}, {"median", rod.median}, {"p99", rod.p99}, {"segments", 16}};
-    const double square = microseconds_per_square(1, "porcelain");
-    j["composite_microseconds"] = {{"one_film", square},
+    j["composite_microseconds"] = {{"one_film", microseconds_per_square(1, "porcelain")},
                                    {"three_films", microseconds_per_square(3, "porcelain")},
                                    {"texels", 64 * 64},
                                    {"pigments", 4},
                                    {"bands", ink::kBands}};
+    return j;
+}
+
+/// Figures of one model; `square`: microseconds of the colour of 64 × 64 texels.
+nlohmann::json measure_model(Case& c, footprint::Isa isa, double square, Console& console) {
+    nlohmann::json m{{"triangles", c.model.mesh->n_triangles()},
+                     {"atlas_size", c.model.atlas.size},
+                     {"texel_store", c.model.texels.packed.empty() ? "float" : "packed"}};
+    static constexpr std::array kOneInk{"carbon"};
+    static constexpr std::array kPigments{"carbon", "gamboge", "cinnabar"};
+    for (const int texels : {64, 128, 256}) {
+        report(console.progress(), "measuring", texels / 256.0);
+        const double us = microseconds_per_stamp(c.model, texels, 160, isa, kOneInk);
+        m["microseconds_per_stamp"][std::to_string(texels)] = us;
+        if (texels == 256) {
+            const double three = microseconds_per_stamp(c.model, texels, 160, isa, kPigments);
+            m["ns_per_texel"] = {{"one_ink", us * 1e3 / footprint_texels(texels)},
+                                 {"pigments", three * 1e3 / footprint_texels(texels)},
+                                 {"composite", square * 1e3 / (64 * 64)}};
+        }
+        m["stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels);
+        m["bristle_stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels, 0.75);
+        m["flat_stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels, 0, "flat-12");
+    }
+    const FilmFigures film = measure_film(c.model);
+    m["ns_per_texel"]["film_step"] = film.step_ns;
+    m["ns_per_texel"]["transfer"] = film.transfer_ns;
+    if (film.steps_per_second > 0) m["film_steps_per_second"] = film.steps_per_second;
+    m["atlas_seconds"] = c.atlas_seconds;
+    m["texel_map_seconds"] = c.map_seconds;
+    m["cluster_graph_seconds"] = c.graph_seconds;
+    m["first_ink_ms"] = first_ink_milliseconds(c.model, 64);
+    return m;
+}
+
+void print_model(const std::string& name, const nlohmann::json& m) {
+    const auto size = m["atlas_size"].get<std::uint32_t>();
+    fmt::print("{} ({} triangles, atlas {} x {}, made in {:.1f} s, texel map {:.2f} s, cluster graph {:.2f} s)\n", name,
+               m["triangles"].get<std::size_t>(), size, size, m["atlas_seconds"].get<double>(),
+               m["texel_map_seconds"].get<double>(), m["cluster_graph_seconds"].get<double>());
+    fmt::print(
+        "  first ink {:.1f} ms after the first touch; {:.1f} ns a texel with one ink, {:.1f} with three pigments\n",
+        m["first_ink_ms"].get<double>(), m["ns_per_texel"]["one_ink"].get<double>(),
+        m["ns_per_texel"]["pigments"].get<double>());
+    fmt::print("  wet ink with four pigments: {:.1f} ns a texel and step, {:.1f} both ways under the brush",
+               m["ns_per_texel"]["film_step"].get<double>(), m["ns_per_texel"]["transfer"].get<double>());
+    if (m.contains("film_steps_per_second"))
+        fmt::print("; all of it wet {:.1f} steps/s on two threads", m["film_steps_per_second"].get<double>());
+    fmt::print("\n");
+    for (const char* texels : {"64", "128", "256"})
+        fmt::print(
+            "  {:>3} texels wide: deposit {:>7.1f} us a stamp; whole path {:>8.0f} stamps/s; dry, by 500 bristles "
+            "{:>6.0f}; a flat {:>6.0f}\n",
+            texels, m["microseconds_per_stamp"][texels].get<double>(), m["stamps_per_second"][texels].get<double>(),
+            m["bristle_stamps_per_second"][texels].get<double>(), m["flat_stamps_per_second"][texels].get<double>());
+}
+
+void print_figures(const nlohmann::json& j) {
+    const auto& rod = j["rod_microseconds"];
+    const auto& flat = j["flat_microseconds"];
+    fmt::print("{}, one thread (preparing: all), {}, CPU time, medians\n", j["machine"].get<std::string>(),
+               j["isa"].get<std::string>());
+    fmt::print("rod solve, 16 segments: mean {:.1f} +- {:.1f} us, median {:.1f} us, 99 % {:.1f} us\n",
+               rod["mean"].get<double>(), rod["mean_spread"].get<double>(), rod["median"].get<double>(),
+               rod["p99"].get<double>());
+    fmt::print("five coupled spines of a flat, 12 segments: mean {:.0f} us, median {:.0f} us, 99 % {:.0f} us\n",
+               flat["mean"].get<double>(), flat["median"].get<double>(), flat["p99"].get<double>());
+    fmt::print("colour of 64 x 64 texels, 4 pigments, {} bands: {:.0f} us with one film, {:.0f} us with three\n",
+               ink::kBands, j["composite_microseconds"]["one_film"].get<double>(),
+               j["composite_microseconds"]["three_films"].get<double>());
+    for (const auto& [name, m] : j["models"].items()) print_model(name, m);
+    fmt::print("peak memory {:.0f} MiB, at the end {:.0f} MiB\n", j["peak_mb"].get<double>(),
+               j["resident_mb"].get<double>());
+}
+
+}  // namespace
+
+int run(const Bench& a) {
+    Console console(a.common.quiet);
+    set_thread_count(1);
+    const std::uint32_t size = a.surface.atlas_size > 0 ? a.surface.atlas_size : a.quick ? 2048 : 4096;
+    const footprint::Isa isa = std::min(isa_of(a.isa), footprint::best_isa());
+    std::vector<Case> cases = make_cases(a, size, console);
+    nlohmann::json j = measure_parts();
     for (Case& c : cases) {
-        const std::string on = fmt::format("{} at {} x {}", c.name, size, size);
-        nlohmann::json m{{"triangles", c.model.mesh->n_triangles()},
-                         {"atlas_size", size},
-                         {"texel_store", c.model.texels.packed.empty() ? "float" : "packed"}};
-        static constexpr std::array kOneInk{"carbon"};
-        static constexpr std::array kPigments{"carbon", "gamboge", "cinnabar"};
-        for (const int texels : {64, 128, 256}) {
-            report(console.progress(), "measuring", texels / 256.0);
-            const double us = microseconds_per_stamp(c.model, texels, 160, isa, kOneInk);
-            m["microseconds_per_stamp"][std::to_string(texels)] = us;
-            if (texels == 256) {
-                const double three = microseconds_per_stamp(c.model, texels, 160, isa, kPigments);
-                m["ns_per_texel"] = {{"one_ink", us * 1e3 / footprint_texels(texels)},
-                                     {"pigments", three * 1e3 / footprint_texels(texels)},
-                                     {"composite", square * 1e3 / (64 * 64)}};
-            }
-            m["stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels);
-            m["bristle_stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels, 0.75);
-            m["flat_stamps_per_second"][std::to_string(texels)] = stamps_per_second(c.model, texels, 0, "flat-12");
-        }
-        const FilmFigures film = measure_film(c.model);
-        m["ns_per_texel"]["film_step"] = film.step_ns;
-        m["ns_per_texel"]["transfer"] = film.transfer_ns;
-        if (film.steps_per_second > 0) m["film_steps_per_second"] = film.steps_per_second;
-        m["atlas_seconds"] = c.atlas_seconds;
-        m["texel_map_seconds"] = c.map_seconds;
-        m["cluster_graph_seconds"] = c.graph_seconds;
-        m["first_ink_ms"] = first_ink_milliseconds(c.model, 64);
-        j["models"][c.name] = m;
-        if (!j.contains("microseconds_per_stamp")) {
-            for (const char* key :
-                 {"microseconds_per_stamp", "stamps_per_second", "bristle_stamps_per_second", "flat_stamps_per_second",
-                  "ns_per_texel", "atlas_seconds", "texel_map_seconds", "cluster_graph_seconds", "first_ink_ms"})
-                j[key] = m[key];
-            j["model"] = on;
-        }
+        const nlohmann::json& m = j["models"][c.name] =
+            measure_model(c, isa, j["composite_microseconds"]["one_film"].get<double>(), console);
+        if (j.contains("microseconds_per_stamp")) continue;
+        for (const char* key :
+             {"microseconds_per_stamp", "stamps_per_second", "bristle_stamps_per_second", "flat_stamps_per_second",
+              "ns_per_texel", "atlas_seconds", "texel_map_seconds", "cluster_graph_seconds", "first_ink_ms"})
+            j[key] = m[key];
+        j["model"] = fmt::format("{} at {} x {}", c.name, size, size);
     }
     j["peak_mb"] = peak_megabytes();
     j["resident_mb"] = resident_megabytes();
     j["isa"] = isa == footprint::Isa::avx512 ? "avx512" : isa == footprint::Isa::avx2 ? "avx2" : "baseline";
     console.clear();
-    if (a.common.json) {
+    if (a.common.json)
         print_json(j);
-        return 0;
-    }
-    fmt::print("{}, one thread (preparing: all), {}, CPU time, medians\n", j["machine"].get<std::string>(),
-               j["isa"].get<std::string>());
-    fmt::print("rod solve, 16 segments: mean {:.1f} +- {:.1f} us, median {:.1f} us, 99 % {:.1f} us\n", rod.mean,
-               rod.spread, rod.median, rod.p99);
-    fmt::print("five coupled spines of a flat, 12 segments: mean {:.0f} us, median {:.0f} us, 99 % {:.0f} us\n",
-               flat.mean, flat.median, flat.p99);
-    fmt::print("colour of 64 x 64 texels, 4 pigments, {} bands: {:.0f} us with one film, {:.0f} us with three\n",
-               ink::kBands, square, j["composite_microseconds"]["three_films"].get<double>());
-    for (const auto& [name, m] : j["models"].items()) {
-        fmt::print("{} ({} triangles, atlas {} x {}, made in {:.1f} s, texel map {:.2f} s, cluster graph {:.2f} s)\n",
-                   name, m["triangles"].get<std::size_t>(), size, size, m["atlas_seconds"].get<double>(),
-                   m["texel_map_seconds"].get<double>(), m["cluster_graph_seconds"].get<double>());
-        fmt::print(
-            "  first ink {:.1f} ms after the first touch; {:.1f} ns a texel with one ink, {:.1f} with three pigments\n",
-            m["first_ink_ms"].get<double>(), m["ns_per_texel"]["one_ink"].get<double>(),
-            m["ns_per_texel"]["pigments"].get<double>());
-        fmt::print("  wet ink with four pigments: {:.1f} ns a texel and step, {:.1f} both ways under the brush",
-                   m["ns_per_texel"]["film_step"].get<double>(), m["ns_per_texel"]["transfer"].get<double>());
-        if (m.contains("film_steps_per_second"))
-            fmt::print("; all of it wet {:.1f} steps/s on two threads", m["film_steps_per_second"].get<double>());
-        fmt::print("\n");
-        for (const char* texels : {"64", "128", "256"})
-            fmt::print(
-                "  {:>3} texels wide: deposit {:>7.1f} us a stamp; whole path {:>8.0f} stamps/s; dry, by 500 bristles "
-                "{:>6.0f}; a flat {:>6.0f}\n",
-                texels, m["microseconds_per_stamp"][texels].get<double>(), m["stamps_per_second"][texels].get<double>(),
-                m["bristle_stamps_per_second"][texels].get<double>(),
-                m["flat_stamps_per_second"][texels].get<double>());
-    }
-    fmt::print("peak memory {:.0f} MiB, at the end {:.0f} MiB\n", j["peak_mb"].get<double>(),
-               j["resident_mb"].get<double>());
+    else
+        print_figures(j);
     return 0;
 }
 
