@@ -11,13 +11,13 @@
 
 #include "brush/preset/preset.h"
 #include "fuzz_paint.h"
+#include "importer.h"
 #include "ink/colour/pigments.h"
 #include "ink/colour/presets.h"
 #include "io/image/image.h"
 #include "io/model/file_scene.h"
 #include "io/model/read_3mf.h"
 #include "io/model/read_gltf.h"
-#include "io/model/read_import.h"
 #include "io/model/read_x3d.h"
 #include "io/project/project.h"
 #include "io/strokes/inkml.h"
@@ -84,6 +84,17 @@ template <mesh::PolygonSoup (*Read)(const std::vector<char>&, const std::filesys
 void run_mesh(Input input) {
     refusing([&] { check_surface(mesh::build_surface(Read(chars_of(input), empty_folder() / "input"))); });
 }
+
+/// The importer of FBX and DAE, then what `read_import` makes of it.
+template <const char* Format>
+void run_import(Input input) {
+    const std::vector<char> packed = import_in_child(Format, input);
+    if (packed.empty()) return;
+    refusing([&] {
+        check_surface(mesh::build_surface(io::soup_of(io::unpack_scene(packed, "input"), empty_folder() / "input")));
+    });
+}
+constexpr char kFbx[] = "fbx", kDae[] = "dae";
 
 /// What the importer of FBX and DAE hands over to this process.
 void run_scene(Input input) {
@@ -198,8 +209,8 @@ constexpr Target kTargets[] = {
     {"obj", run_mesh<mesh::read_obj>, 3000, true},
     {"off", run_mesh<mesh::read_off>, 3000, true},
     {"gltf", run_mesh<io::read_gltf>, 1500, true},
-    {"fbx", run_mesh<io::read_fbx>, 300, false},  // a process for each
-    {"dae", run_mesh<io::read_dae>, 300, true},
+    {"fbx", run_import<kFbx>, 1500, false},
+    {"dae", run_import<kDae>, 1500, true},
     {"scene", run_scene, 2000, false},
     {"3mf", run_mesh<io::read_3mf>, 1500, false},
     {"x3d", run_mesh<io::read_x3d>, 1500, true},
