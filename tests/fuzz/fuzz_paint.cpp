@@ -5,9 +5,9 @@
 #include <iterator>
 #include <map>
 #include <memory>
-#include <string>
 #include <vector>
 
+#include "core/random.h"
 #include "core/system/parallel.h"
 #include "ink/colour/presets.h"
 #include "mesh/read/polygon_soup.h"
@@ -20,13 +20,14 @@ namespace {
 constexpr const char* kInks[] = {"carbon", "cinnabar", "water", "titanium-white-paste"};
 constexpr const char* kBrushes[] = {"wolf-small",  "goat-small*0.3", "mixed-small*0.5", "wolf-medium*0.2",
                                     "flat-12*0.3", "filbert-12*0.3", "sword-8*0.3",     "robot-2020"};
+constexpr int kOwnShape = 250;
 constexpr std::uint8_t kCompensated = 1;  // seed of strokes that compensate their tip lag
 // Sizes of what a hand does, metres: a stroke takes a step for each texel of its path.
 constexpr double kReaches[] = {2.5e-4, 2.5e-4, 2.5e-4, 1e-3, 4e-3, 1.5e-2};
 constexpr double kSpacings[] = {1, 4, 16, 1000};  // texels
 
-/// A tile, a roof, a block or two tiles with a gap, some 20 mm large, each corner moved by up to
-/// half of it.
+/// A tile, a roof, a block or two tiles with a gap, some 20 mm large, each corner moved by up to half of it: in one of
+/// eight ways, rarely in a way of its own. A model takes longer to make than a stroke.
 mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
     static const std::vector<Vec3> kCorners{{-10, -10, 0}, {10, -10, 0}, {10, 10, 0}, {-10, 10, 0},
                                             {-10, -10, 8}, {10, -10, 8}, {10, 10, 8}, {-10, 10, 8}};
@@ -36,11 +37,13 @@ mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
         {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
         {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 2, 3}}};
     mesh::PolygonSoup soup;
-    const int shape = bytes.below(4), reach = bytes.below(3);
+    const int shape = bytes.below(4), reach = bytes.below(3), variant = bytes.byte();
+    Random known(static_cast<std::uint64_t>(variant & 7));
     for (const Vec3& corner : kCorners) {
         Vec3 p = corner;
         if (reach > 0)
-            for (int k = 0; k < 3; ++k) p[k] += (reach == 1 ? 0.5 : 10) * bytes.real();
+            for (int k = 0; k < 3; ++k)
+                p[k] += (reach == 1 ? 0.5 : 10) * (variant < kOwnShape ? 2 * known.uniform() - 1 : bytes.real());
         soup.points.push_back(p);
     }
     soup.polygon_start.push_back(0);
@@ -51,26 +54,34 @@ mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
     return soup;
 }
 
-/// Models that were made before, by the bytes that they are made of: a run takes a third of its time for one.
+/// Models that were made before, by what they are made of.
 class Models {
   public:
     const stroke::Model& get(Bytes& bytes) {
-        const Bytes before = bytes;
         stroke::ModelOptions options;
-        options.unwrap.size = 48 + 16 * static_cast<std::uint32_t>(bytes.below(4));
+        options.unwrap.size = 48 + 16 * static_cast<std::uint32_t>(bytes.below(2));
+        options.unwrap.cutting = atlas::Cutting::never;
         mesh::PolygonSoup soup = tiny_mesh(bytes);
-        std::unique_ptr<const stroke::Model>& model = made_[before.until(bytes)];
+        std::unique_ptr<const stroke::Model>& model = made_[key_of(options.unwrap.size, soup)];
         if (!model) model = std::make_unique<const stroke::Model>(stroke::prepare_model(std::move(soup), options));
         return *model;
     }
     void drop_some() {
-        constexpr std::size_t kMost = 100;
+        constexpr std::size_t kMost = 300;
         std::erase_if(made_, [](const auto& one) { return !one.second; });  // refused
         if (made_.size() > kMost) made_.clear();
     }
 
   private:
-    std::map<std::string, std::unique_ptr<const stroke::Model>> made_;
+    using Key = std::vector<double>;
+    static Key key_of(std::uint32_t size, const mesh::PolygonSoup& soup) {
+        Key key{static_cast<double>(size)};
+        for (const Vec3& p : soup.points) key.insert(key.end(), {p.x, p.y, p.z});
+        key.insert(key.end(), soup.corners.begin(), soup.corners.end());
+        return key;
+    }
+
+    std::map<Key, std::unique_ptr<const stroke::Model>> made_;
 };
 
 /// Gives a painting its brushes and inks, which are read once: a measured pigment takes longer than a stroke. The
@@ -207,7 +218,7 @@ void check_ink(const ink::Canvas& canvas) {
 void run_paint(std::span<const std::uint8_t> input) {
     static Models models;
     models.drop_some();
-    set_thread_count(1);
+    if (thread_count() != 1) set_thread_count(1);  // what is so small is made faster by one
     Bytes bytes(input);
     const bool twice = bytes.below(4) == 0;
     refusing([&] {

@@ -76,8 +76,8 @@ void import_one(const char* format) {
             std::memcpy(s.output, packed.data(), packed.size());
             s.out = packed.size();
         }
-    } catch (const std::exception&) {
-        s.stage = Stage::done;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "refused: %s\n", error.what());
     }
     s.stage = Stage::done;
 }

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -130,7 +131,7 @@ void run_inkml(Input input) {
 }
 
 void run_svg(Input input) {
-    constexpr std::size_t kMostPoints = 4000;  // some filled shapes: each takes milliseconds
+    constexpr std::size_t kMostPoints = 1000;  // a filled shape: it takes milliseconds
     std::vector<stroke::RecordedStroke> traces;
     refusing([&] { traces = io::parse_svg(text_of(input), "input.svg", {.ink = {.max_samples = kMostPoints}}); });
     check_traces(traces);
@@ -176,6 +177,9 @@ void run_entry(Input input) {
 }
 
 void run_image(Input input) {
+    // OpenEXR takes and clears 64 MB for each file: of those, one of four is read, by its length.
+    constexpr std::uint8_t kExr[] = {0x76, 0x2f, 0x31, 0x01};
+    if (input.size() % 8 < 6 && input.size() > 4 && std::equal(kExr, kExr + 4, input.begin())) return;
     refusing([&] {
         const io::Image8 image = io::decode_image8(chars_of(input), "input", std::size_t{1} << 14);
         promise(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *

@@ -274,7 +274,7 @@ void draw_row(const JournalParts& s, const JournalRow& row) {
     const bool chosen =
         std::all_of(lines.begin(), lines.end(), [&](const StrokeLine* l) { return s.journal.is_selected(l->id); });
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    if (s.ui.row("##row", chosen, size)) choose_row(s, row);
+    if (s.ui.entry("##row", chosen, size)) choose_row(s, row);
     if (ImGui::IsItemClicked(1) && !chosen) choose_row(s, row);
     const std::string name =
         row.group ? "group " + newest.group.name : "stroke " + std::to_string(row.lines.front() + 1);

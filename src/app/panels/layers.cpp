@@ -191,7 +191,7 @@ void row(const LayerParts& s, const Layer& layer, std::size_t place) {
         return;
     }
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    if (ui.row("##row", chosen, height)) {
+    if (ui.entry("##row", chosen, height)) {
         if (ImGui::IsMouseDoubleClicked(0))
             begin_renaming(s, layer);
         else {
