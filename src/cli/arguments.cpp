@@ -83,16 +83,20 @@ void add_store(CLI::App* app, Surface& s) {
         ->check(CLI::IsMember({"auto", "float", "packed"}));
 }
 
-void add_frame(CLI::App* app, std::string& unit, std::string& up, const std::string& what) {
-    app->add_option("--unit", unit, what)->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
-    app->add_option("--up", up,
+void add_reading(CLI::App* app, FileReading& reading, const std::string& what) {
+    app->add_option("--unit", reading.unit, what)->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+    app->add_option("--up", reading.up,
                     "axis of the model file that points up: z, or y, as many modellers write it; points "
                     "on the command line are with z up: (x, y, z) of a file with y up is (x, -z, y)")
         ->check(CLI::IsMember({"z", "y"}));
+    app->add_option("--sides", reading.sides,
+                    "front of the open parts of the model file, onto which ink goes: outward (default; a part that is "
+                    "inside out is turned round), file (as the file has it), turned (the other side)")
+        ->check(CLI::IsMember({"outward", "file", "turned"}));
 }
 
 void add_surface(CLI::App* app, Surface& s) {
-    add_frame(app, s.unit, s.up, "unit of the model file (default: a guess from its size)");
+    add_reading(app, s, "unit of the model file (default: a guess from its size)");
     app->add_option("--atlas-size", s.atlas_size, "texels along the side of the atlas")
         ->check(number_in(1, kMostTexels, "POSITIVE"));
     app->add_option("--texel-size", s.texel_size_mm, "size of a texel in millimetres")
@@ -372,7 +376,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     Inspect inspect;
     auto* i = app.add_subcommand("inspect", "say what is in a mesh or a project, and what is wrong with it");
     i->add_option("FILE", inspect.file, "mesh or project")->required();
-    add_frame(i, inspect.unit, inspect.up, "unit of the model file (default: a guess from its size)");
+    add_reading(i, inspect, "unit of the model file (default: a guess from its size)");
     auto* spot =
         add_point(i, "--at", inspect.at_mm, "say which pigments lie at this point of a project, in millimetres");
     i->add_option("--save-ink", inspect.save_ink, "write them as an ink (.toml), for --ink")->needs(spot);
@@ -479,7 +483,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     d->add_option("FILE", render.file, "mesh or project")->required();
     d->add_option("-o,--output", render.output, "picture (.png); with --turntable a number is added")->required();
     d->add_option("--turntable", render.turntable, "draw N pictures all round")->check(number_in(1, 3600));
-    add_frame(d, render.unit, render.up, "unit of a model file (default: a guess from its size)");
+    add_reading(d, render, "unit of a model file (default: a guess from its size)");
     add_recolouring(d, render.recolouring);
     d->add_option("--material", render.material, "porcelain, clay, ... (default: the project's)");
     add_view(d, render.view);

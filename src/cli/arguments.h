@@ -18,9 +18,15 @@ inline Vec3 vector_of(const std::vector<double>& v) {
     return {v[0], v[1], v[2]};
 }
 
+/// How a model file is read. Empty: the project's, else the default.
+struct FileReading {
+    std::string unit;   ///< um … ft
+    std::string up;     ///< y or z
+    std::string sides;  ///< as `mesh::open_sides_of`
+};
+
 /// Options of all commands that read a model.
-struct Surface {
-    std::string unit, up;          ///< of the model file; empty: the project's, else the default
+struct Surface : FileReading {
     std::uint32_t atlas_size = 0;  ///< texels per side; 0: from texel_size_mm, else the default
     double texel_size_mm = 0;      ///< 0: from atlas_size
     std::uint32_t pages = 0;       ///< most pages (UDIM); 0: the default
@@ -89,9 +95,8 @@ struct Paint {
 };
 
 /// `tuft inspect FILE`
-struct Inspect {
+struct Inspect : FileReading {
     std::filesystem::path file;
-    std::string unit, up;            ///< empty: guess; z
     std::vector<double> at_mm;       ///< [3] point of a project, or empty
     std::filesystem::path save_ink;  ///< ink preset to write with the mixture at that point, or empty
     bool palette = false;            ///< `at_mm` is on the palette
@@ -164,10 +169,9 @@ struct MaskWork {
 };
 
 /// `tuft render FILE -o OUTPUT`
-struct Render {
+struct Render : FileReading {
     std::filesystem::path file, output;
     int turntable = 0;     ///< number of pictures round the model; 0: one picture
-    std::string unit, up;  ///< of a model file; empty: the default
     std::string material;  ///< empty: the project's substrate, else porcelain
     Recolouring recolouring;
     View view;
@@ -204,8 +208,8 @@ struct InkWork {
 struct Bench {
     std::filesystem::path model;  ///< empty: models that the benchmark generates
     bool quick = false;
-    Surface surface{.atlas_size = 0};  ///< size 0: 4096, or 2048 when quick
-    std::string isa = "best";          ///< best | avx512 | avx2 | baseline
+    Surface surface;           ///< size 0: 4096, or 2048 when quick
+    std::string isa = "best";  ///< best | avx512 | avx2 | baseline
     Common common;
 };
 

@@ -244,6 +244,7 @@ int run(const Inspect& a) {
     const auto fixed = io::metres_per_unit_of(a.file);
     options.metres_per_unit = fixed.value_or(metres_per(a.unit.empty() ? guess.unit : a.unit).value_or(kMillimetre));
     options.y_up = a.up == "y" && !fixed;
+    if (!a.sides.empty()) options.sides = mesh::open_sides_of(a.sides);
     options.progress = console.progress();
     mesh::Surface surface;
     try {

@@ -250,7 +250,7 @@ int run(const Render& a) {
         show_layers(*painting, a.view.layers);
         apply_recolouring(project->file, *painting, a.recolouring, console);
     } else {
-        bare = load_bare(a.file, a.unit, a.up, console).model;
+        bare = load_bare(a.file, a, console).model;
         if (mesh::has_colours(*bare.mesh) && a.material.empty()) {
             stroke::ModelOptions options;
             options.unwrap.size = 4096;

@@ -58,13 +58,12 @@ struct Read {
     FileFrame frame;
 };
 
-Read read_file(const fs::path& path, const std::string& unit, const std::string& up, mesh::RepairOptions& repair,
-               Console& console) {
+Read read_file(const fs::path& path, const FileReading& how, mesh::RepairOptions& repair, Console& console) {
     report(repair.progress, "reading", 0);
-    Read read{io::read_model(path), frame_of(unit, up)};
+    Read read{io::read_model(path), frame_of(how.unit, how.up)};
     report(repair.progress, "reading", 1);
     const auto fixed = io::metres_per_unit_of(path);
-    if (unit.empty() && !fixed) {
+    if (how.unit.empty() && !fixed) {
         Box bounds;
         for (const Vec3& p : read.soup.points) bounds.add(p);
         const mesh::UnitGuess guess = mesh::guess_unit(bounds);
@@ -73,7 +72,16 @@ Read read_file(const fs::path& path, const std::string& unit, const std::string&
     }
     repair.metres_per_unit = fixed.value_or(metres_per(read.frame.unit).value_or(kMillimetre));
     repair.y_up = read.frame.y_up && !fixed;  // the reader has turned it
+    if (!how.sides.empty()) repair.sides = mesh::open_sides_of(how.sides);
     return read;
+}
+
+/// A model that changed its sides on reading is not what its file says.
+void tell_sides(const mesh::RepairReport& repairs, Console& console) {
+    if (repairs.parts_turned == 0) return;
+    mesh::RepairReport turned;
+    turned.parts_turned = repairs.parts_turned;
+    console.note(mesh::describe_defects(turned).front().text() + " (--sides file keeps them)");
 }
 
 }  // namespace
@@ -81,11 +89,12 @@ Read read_file(const fs::path& path, const std::string& unit, const std::string&
 Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
     stroke::ModelOptions options = model_options(s, console);
     options.repair.progress = options.progress;
-    Read read = read_file(path, s.unit, s.up, options.repair, console);
+    Read read = read_file(path, s, options.repair, console);
     options.repair.progress = nullptr;
     if (s.plain) mesh::drop_colours(read.soup);
     try {
         Loaded loaded{stroke::prepare_model(std::move(read.soup), options), read.frame};
+        tell_sides(loaded.model.repairs, console);
         for (const Message& warning : loaded.model.repairs.warnings) console.note("warning: " + warning.text());
         if (!loaded.model.base_colour.empty())
             console.note("ink lies on the colours that the model brings along (--plain leaves them aside)");
@@ -97,15 +106,16 @@ Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
     }
 }
 
-Loaded load_bare(const fs::path& path, const std::string& unit, const std::string& up, Console& console) {
+Loaded load_bare(const fs::path& path, const FileReading& how, Console& console) {
     mesh::RepairOptions options;
     options.progress = console.progress();
-    Read read = read_file(path, unit, up, options, console);
+    Read read = read_file(path, how, options, console);
     stroke::Model model;
     try {
         mesh::Surface surface = mesh::build_surface(std::move(read.soup), options);
         model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(surface.mesh));
         model.repairs = std::move(surface.report);
+        tell_sides(model.repairs, console);
     } catch (const Error& error) {
         const std::string what = error.what();
         if (what.starts_with(path.string())) throw;
@@ -161,8 +171,9 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
     for (const fs::path& file : a.strokes) {
         const std::size_t first = strokes.size();
         std::vector<stroke::RecordedStroke> traces =
-            io::read_strokes(file, {.actions = true, .note = [&](const std::string& line) {
-                                        if (reported.insert(line).second) console.note(line);
+            io::read_strokes(file, {.actions = true, .note = [&](const Message& line) {
+                                        const std::string text = file.string() + ": " + line.text();
+                                        if (reported.insert(text).second) console.note(text);
                                     }});
         if (bias) traces = stroke::correct_bias(*bias, std::move(traces));
         stroke::append_entries(strokes, std::move(traces), options);

@@ -34,7 +34,7 @@ struct Loaded {
 Loaded load_model(const std::filesystem::path& path, const Surface& surface, Console& console);
 
 /// Reads and repairs a model file, without an atlas and without surface queries.
-Loaded load_bare(const std::filesystem::path& path, const std::string& unit, const std::string& up, Console& console);
+Loaded load_bare(const std::filesystem::path& path, const FileReading& how, Console& console);
 
 /// Throws `Error` when a file cannot be written there because its folder is missing or not writable. Call it before
 /// long work. Empty paths are skipped.

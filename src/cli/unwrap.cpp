@@ -19,7 +19,7 @@ int run(const Unwrap& a) {
     check_output(a.output);
     check_output(a.picture);
     Console console(a.common.quiet);
-    const auto [model, frame] = load_bare(a.model, a.surface.unit, a.surface.up, console);
+    const auto [model, frame] = load_bare(a.model, a.surface, console);
     atlas::UnwrapOptions options = model_options(a.surface, console).unwrap;
     options.progress = console.progress();
     atlas::Unwrapped unwrapped;

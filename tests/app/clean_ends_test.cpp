@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -226,6 +227,46 @@ TEST(CleanEnds, HoldOnBowlsAndCars) {
                     line, glm::distance(a, b),
                     std::string(brush) + " at " + std::to_string(pace) + ", direction " + std::to_string(angle));
             }
+}
+
+/// The longest part of a line from `a` to `b` without ink, pixels.
+double longest_gap(const std::vector<Vec2>& ink, const Vec2& a, const Vec2& b) {
+    const double length = glm::distance(a, b);
+    std::vector<double> along{0, length};
+    for (const Vec2& p : ink) along.push_back(std::clamp(glm::dot(p - a, (b - a) / length), 0.0, length));
+    std::sort(along.begin(), along.end());
+    double gap = 0;
+    for (std::size_t i = 1; i < along.size(); ++i) gap = std::max(gap, along[i] - along[i - 1]);
+    return gap;
+}
+
+// From the inside of a bowl to its outside, seen from above its rim: one stroke for the eye. It was none: hair hooked
+// over the rim, and the holder turned by a right angle on the lip.
+TEST(CleanEnds, AStrokeOverARimHasNoGapAndNoClaw) {
+    const stroke::Model bowl = test::shipped_model("bowl.ply", 2048);
+    const Box& box = bowl.mesh->bounds;
+    for (const auto& [elevation, below] : {std::pair{0.35, 60.0}, {0.55, 60.0}, {0.9, 15.0}}) {
+        const View view{.middle = {box.centre().x, box.lo.y, box.hi.z},
+                        .up = {0, std::sin(elevation), std::cos(elevation)}};
+        for (const char* brush : {"wolf-small", "wolf-medium", "goat-medium"})
+            for (const auto& [pace, eased] : {std::pair{150.0, true}, {800.0, false}})
+                for (const double aside : {0.0, 1.0}) {
+                    const Vec2 a{-60 * aside, 60}, b{below * aside, -below};
+                    const Painted painting(bowl, brush, drawn(view, {a, b}, pace, eased));
+                    const std::vector<Vec2> ink = inked(painting, view);
+                    const std::string what = std::string(brush) + " at " + std::to_string(pace) + ", aside " +
+                                             std::to_string(aside) + ", from " + std::to_string(elevation);
+                    // Pixels: two events of a fast mouse are 13 apart, and one is on each side of the rim.
+                    EXPECT_LT(longest_gap(ink, a, b), 8) << what;
+                    double aside_most = 0;
+                    for (const Vec2& p : ink) {
+                        const Vec2 along = glm::normalize(b - a), d = p - a;
+                        aside_most = std::max(aside_most, std::abs(along.x * d.y - along.y * d.x));
+                    }
+                    // The line is up to 16 wide, and may lie a third of that beside the cursor behind the rim.
+                    EXPECT_LT(aside_most, 11) << what;
+                }
+    }
 }
 
 TEST(CleanEnds, StrokesReplayToTheBit) {

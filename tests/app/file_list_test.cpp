@@ -46,17 +46,17 @@ TEST(FileList, AFolderIsReadWithoutHiddenFilesPipesAndWhatDoesNotSuit) {
     fs::create_directories(folder / "inner");
     for (const char* name : {"a.ply", "b.txt", ".c.ply"}) std::ofstream(folder / name) << "12345";
     ASSERT_EQ(mkfifo((folder / "pipe.ply").c_str(), 0600), 0);
-    std::string fault = "left over";
+    Message fault = "left over";
     std::vector<FileEntry> entries = list_folder(
         folder, [](const fs::path& p) { return p.extension() == ".ply"; }, fault);
     sort_entries(entries, FileOrder::name, false);
     EXPECT_EQ(names(entries), "inner a.ply ");
-    EXPECT_EQ(fault, "");
+    EXPECT_TRUE(fault.empty()) << fault.text();
     EXPECT_EQ(entries.back().bytes, 5u);
     EXPECT_EQ(date_text(entries.back().changed).size(), 16u);
     list_folder(
         folder / "missing", [](const fs::path&) { return true; }, fault);
-    EXPECT_NE(fault, "");
+    EXPECT_FALSE(fault.empty());
     fs::remove_all(folder);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/input/pointer_input.h"
+#include "app/tools/tip_lag_cache.h"
 #include "app/view/viewport.h"
 #include "models.h"
 #include "paths.h"
@@ -442,11 +443,36 @@ TEST(HandOverAHole, StaysOnTheSideOfTheSurfaceWhereItWasSetDown) {
     }
     EXPECT_EQ(begun, 2) << "before the hole and behind it";
     EXPECT_GT(lowest, 0) << "the mouth of the ferrule stays above the front";
-    // Who begins on the far wall means it.
-    double on_wall = 1;
-    for (const StrokeStep& step : strokes_from(-0.01, 0.01))
-        for (const brush::Pose& pose : step.poses) on_wall = std::min(on_wall, pose.position.z);
-    EXPECT_LT(on_wall, -0.01);
+    EXPECT_TRUE(strokes_from(-0.01, 0.01).empty()) << "who begins in the hole touches nothing";
+    lowest = 1;
+    begun = 0;
+    for (const StrokeStep& step : strokes_from(-0.01, 0.06)) {
+        begun += step.kind == StrokeStep::Kind::begin;
+        for (const brush::Pose& pose : step.poses) lowest = std::min(lowest, pose.position.z);
+    }
+    EXPECT_EQ(begun, 1) << "and who goes on to the front begins there";
+    EXPECT_GT(lowest, 0);
+}
+
+// A brush file is written anew under its name while the program runs.
+TEST(TipLagCache, TwoBrushesOfOneNameHaveALagEach) {
+    const brush::Preset one = brush::load_preset("wolf-small");
+    brush::Preset other = brush::scaled(one, 2);
+    other.name = one.name;
+    TipLagCache cache;
+    const double first = cache.find(one).upright.back().length, second = cache.find(other).upright.back().length;
+    EXPECT_NEAR(second, 2 * first, 0.02 * second) << "similar tufts bend alike: the lag is a length";
+    EXPECT_EQ(cache.find(one).upright.back().length, first);
+}
+
+TEST_F(PointerOnSheet, TheBackOfASheetIsPaintedOn) {
+    PointerInput hand(*query_, preset_, {});
+    const Vec3 c = mesh_->bounds.centre();
+    std::size_t n = 0;
+    for (int i = 0; i < 50; ++i)
+        n += hand.move({.ray = {c + Vec3(1e-3 * i, 0, -0.5), {0, 0, 1}}, .view_up = {0, 1, 0}, .time = 0.004 * i})
+                 .size();
+    EXPECT_GT(n, 10u);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -23,6 +24,7 @@
 #include "brush/preset/preset.h"
 #include "core/error.h"
 #include "core/system/files.h"
+#include "core/system/system_message.h"
 #include "ink/colour/pigments.h"
 #include "io/model/read_model.h"
 #include "io/project/project.h"
@@ -262,6 +264,12 @@ TEST(UiText, ErrorsOfFilesAreSaidInChineseAndKeepTheNameOfTheFile) {
         error_of([&] { io::Project::open(written("e.tuft", "no project"), {.access = io::Access::read}); }),
         error_of([&] { io::read_strokes(written("f.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>"), {}); }),
         error_of([&] { write_file(folder + "/none/x.ply", "x", 1); }),
+        error_of([&] { io::read_strokes(written("g.svg", "<svg xmlns='http://www.w3.org/2000/svg'><g></svg>"), {}); }),
+        error_of([&] { throw Error(folder, Message("cannot be read: {}", system_message(EACCES))); }),
+        error_of([&] {
+            throw Error(folder, Message("cannot be read: {}",
+                                        system_message(std::error_code(ENOSPC, std::generic_category()))));
+        }),
     };
     for (const Message& error : errors) {
         const std::string text = chinese(error);
@@ -269,6 +277,13 @@ TEST(UiText, ErrorsOfFilesAreSaidInChineseAndKeepTheNameOfTheFile) {
         ASSERT_EQ(at, 0u) << text;
         EXPECT_FALSE(has_english(text.substr(text.find("\xef\xbc\x9a")))) << text << " | " << error.text();
     }
+    std::vector<Message> notes;
+    io::read_strokes(written("h.svg",
+                             "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0L9 9' stroke='#900000' "
+                             "stroke-dasharray='1'/><image/><image/><text>a</text></svg>"),
+                     {.note = [&](const Message& note) { notes.push_back(note); }});
+    EXPECT_EQ(notes.size(), 4u);
+    for (const Message& note : notes) EXPECT_FALSE(has_english(chinese(note))) << chinese(note);
     std::filesystem::remove_all(folder);
     EXPECT_FALSE(
         has_english(chinese(Message("layer '{}' is locked; unlock it or paint on another one", std::string("2")))));
@@ -278,7 +293,7 @@ TEST(UiText, ErrorsOfFilesAreSaidInChineseAndKeepTheNameOfTheFile) {
 // Literals that become messages: the arguments of what throws, reports or makes one. The command line's own stay
 // English.
 TEST(UiText, EveryMessageHasAChineseOne) {
-    const std::regex call(R"(\b(Message|Error|fail|damaged|refuse|fault|show_message|outbox_?\.report)[({]\s*)");
+    const std::regex call(R"(\b(Message|Error|fail|damaged|refuse|fault|say|show_message|outbox_?\.report)[({]\s*)");
     const std::regex word("[a-z]{2}"), comment(R"((^|[^:"])//[^\n]*)");
     const auto in_window = [](const std::string& path) {
         for (const char* other : {"/src/cli", "/src/render", "/app/script", "/set_by_name.cpp", "/app/main.cpp",

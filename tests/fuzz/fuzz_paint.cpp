@@ -1,11 +1,14 @@
 #include "fuzz_paint.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <memory>
-#include <string>
 #include <vector>
 
+#include "core/random.h"
+#include "core/system/parallel.h"
 #include "ink/colour/presets.h"
 #include "mesh/read/polygon_soup.h"
 #include "promise.h"
@@ -15,10 +18,16 @@ namespace tuft::fuzz {
 namespace {
 
 constexpr const char* kInks[] = {"carbon", "cinnabar", "water", "titanium-white-paste"};
+constexpr const char* kBrushes[] = {"wolf-small",  "goat-small*0.3", "mixed-small*0.5", "wolf-medium*0.2",
+                                    "flat-12*0.3", "filbert-12*0.3", "sword-8*0.3",     "robot-2020"};
+constexpr int kOwnShape = 250;
 constexpr std::uint8_t kCompensated = 1;  // seed of strokes that compensate their tip lag
+// Sizes of what a hand does, metres: a stroke takes a step for each texel of its path.
+constexpr double kReaches[] = {2.5e-4, 2.5e-4, 2.5e-4, 1e-3, 4e-3, 1.5e-2};
+constexpr double kSpacings[] = {1, 4, 16, 1000};  // texels
 
-/// A tile, a roof, a block or two tiles with a gap, some 20 mm large, each corner moved by up to
-/// half of it.
+/// A tile, a roof, a block or two tiles with a gap, some 20 mm large, each corner moved by up to half of it: in one of
+/// eight ways, rarely in a way of its own. A model takes longer to make than a stroke.
 mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
     static const std::vector<Vec3> kCorners{{-10, -10, 0}, {10, -10, 0}, {10, 10, 0}, {-10, 10, 0},
                                             {-10, -10, 8}, {10, -10, 8}, {10, 10, 8}, {-10, 10, 8}};
@@ -28,11 +37,13 @@ mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
         {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
         {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 2, 3}}};
     mesh::PolygonSoup soup;
-    const int shape = bytes.below(4), reach = bytes.below(3);
+    const int shape = bytes.below(4), reach = bytes.below(3), variant = bytes.byte();
+    Random known(static_cast<std::uint64_t>(variant & 7));
     for (const Vec3& corner : kCorners) {
         Vec3 p = corner;
         if (reach > 0)
-            for (int k = 0; k < 3; ++k) p[k] += (reach == 1 ? 0.5 : 10) * bytes.real();
+            for (int k = 0; k < 3; ++k)
+                p[k] += (reach == 1 ? 0.5 : 10) * (variant < kOwnShape ? 2 * known.uniform() - 1 : bytes.real());
         soup.points.push_back(p);
     }
     soup.polygon_start.push_back(0);
@@ -43,30 +54,52 @@ mesh::PolygonSoup tiny_mesh(Bytes& bytes) {
     return soup;
 }
 
-/// Models that were made before, by the bytes that they are made of: a run takes a third of its time for one.
+/// Models that were made before, by what they are made of.
 class Models {
   public:
     const stroke::Model& get(Bytes& bytes) {
-        const Bytes before = bytes;
         stroke::ModelOptions options;
-        options.unwrap.size = 48 + 16 * static_cast<std::uint32_t>(bytes.below(4));
+        options.unwrap.size = 48 + 16 * static_cast<std::uint32_t>(bytes.below(2));
+        options.unwrap.cutting = atlas::Cutting::never;
         mesh::PolygonSoup soup = tiny_mesh(bytes);
-        std::unique_ptr<const stroke::Model>& model = made_[before.until(bytes)];
+        std::unique_ptr<const stroke::Model>& model = made_[key_of(options.unwrap.size, soup)];
         if (!model) model = std::make_unique<const stroke::Model>(stroke::prepare_model(std::move(soup), options));
         return *model;
     }
     void drop_some() {
-        constexpr std::size_t kMost = 100;
+        constexpr std::size_t kMost = 300;
         std::erase_if(made_, [](const auto& one) { return !one.second; });  // refused
         if (made_.size() > kMost) made_.clear();
     }
 
   private:
-    std::map<std::string, std::unique_ptr<const stroke::Model>> made_;
+    using Key = std::vector<double>;
+    static Key key_of(std::uint32_t size, const mesh::PolygonSoup& soup) {
+        Key key{static_cast<double>(size)};
+        for (const Vec3& p : soup.points) key.insert(key.end(), {p.x, p.y, p.z});
+        key.insert(key.end(), soup.corners.begin(), soup.corners.end());
+        return key;
+    }
+
+    std::map<Key, std::unique_ptr<const stroke::Model>> made_;
 };
 
-/// Gives a painting its inks, which are read once: a measured pigment takes longer than a stroke.
-void use_inks(stroke::Document& painting) {
+/// Gives a painting its brushes and inks, which are read once: a measured pigment takes longer than a stroke. The
+/// brushes have less hair than they should, in fewer parts.
+void use_presets(stroke::Document& painting) {
+    static const std::vector<brush::Preset> brushes = [] {
+        std::vector<brush::Preset> all;
+        for (const char* name : kBrushes) {
+            brush::Preset p = brush::load_preset(name);
+            p.segments = 6;
+            p.bundles = 6;
+            p.bristles = 40;
+            p.spines = std::min(p.spines, 3);
+            all.push_back(p);
+        }
+        return all;
+    }();
+    for (const brush::Preset& brush : brushes) painting.use(brush);
     static const std::vector<ink::Ink> inks = [] {
         std::vector<ink::Ink> all;
         for (const char* name : kInks) all.push_back(ink::load_ink(name));
@@ -75,11 +108,20 @@ void use_inks(stroke::Document& painting) {
     for (const ink::Ink& ink : inks) painting.use(ink);
 }
 
+/// A table, and most models of the papers, take longer to make than a stroke: rarely.
+brush::SpineMethod spine_of(bool other, int kind) {
+    using brush::SpineMethod;
+    static constexpr SpineMethod kOthers[] = {SpineMethod::rod, SpineMethod::macro, SpineMethod::chain,
+                                              SpineMethod::truss};
+    return !other ? SpineMethod::rod : (kind & 31) == 31 ? SpineMethod::table : kOthers[kind & 3];
+}
+
 stroke::PaintStroke stroke_of(Bytes& bytes) {
-    static constexpr const char* kBrushes[] = {"wolf-small", "goat-small*0.3", "mixed-small*0.5", "wolf-medium*0.2"};
     stroke::PaintStroke s;
-    const int flags = bytes.byte(), more = bytes.byte();
-    s.settings.spine = flags & 1 ? brush::SpineMethod::table : brush::SpineMethod::rod;
+    const int flags = bytes.byte(), more = bytes.byte(), size = bytes.byte(), kind = bytes.byte();
+    const double reach = kReaches[size % std::size(kReaches)];
+    s.settings.spacing = kSpacings[size >> 6];
+    s.settings.spine = spine_of(flags & 1, kind);
     s.settings.footprint = flags & 2 ? footprint::Mapping::plane : footprint::Mapping::log;
     s.settings.contact = flags & 4 ? contact::Method::vertices : contact::Method::exact;
     s.settings.dip = flags & 8 ? stroke::DipMode::persistent : stroke::DipMode::each;
@@ -87,7 +129,11 @@ stroke::PaintStroke stroke_of(Bytes& bytes) {
     s.settings.smooth = flags & 64 ? 1 : 0;
     s.settings.pressure = flags & 128 ? stroke::PressureFrom::speed_dwell : stroke::PressureFrom::none;
     s.settings.down = Vec3(bytes.real(), bytes.real(), bytes.real());
-    s.brush = kBrushes[more & 3];
+    s.brush = kBrushes[(more & 3) | (kind >> 3 & 4)];
+    s.layer = kind & 0x40 ? 2 : stroke::kFirstLayer;
+    s.mask = kind & 0x80 ? 1 : 0;
+    if (size & 32) s.settings.stabilise = reach;
+    if (size & 16) s.settings.roll_follow = true, s.settings.roll = bytes.real();
     s.ink = kInks[more >> 2 & 3];
     s.trace.flat = !(more & 16);
     if ((more & 0xe0) == 0xe0) s.tool = stroke::Tool::eraser;
@@ -101,16 +147,29 @@ stroke::PaintStroke stroke_of(Bytes& bytes) {
     for (int i = 0; i < n; ++i) {
         stroke::StrokeSample sample;
         sample.time = time += 0.01 * (1 + bytes.real());
-        sample.position = 0.015 * Vec3(bytes.real(), bytes.real(), 0);
+        sample.position = reach * Vec3(bytes.real(), bytes.real(), 0);
         sample.pressure = 0.5 + 0.5 * bytes.real();
         if (more & 64) sample.tilt = Vec2(bytes.real(), bytes.real());
         if (!s.trace.flat) {
-            sample.position.z = 0.02 + 0.015 * bytes.real();
-            sample.rotation = glm::normalize(Quat(1, bytes.real(), bytes.real(), bytes.real()));
+            sample.position.z = 0.02 + reach * bytes.real();
+            const double turn = 40 * reach;  // a radian is as long as the tuft
+            sample.rotation = glm::normalize(Quat(1, turn * bytes.real(), turn * bytes.real(), turn * bytes.real()));
         }
         s.trace.samples.push_back(sample);
     }
     return s;
+}
+
+stroke::LayerEdit layer_edit_of(Bytes& bytes) {
+    stroke::LayerEdit edit{.what = static_cast<stroke::LayerChange>(bytes.below(5))};
+    edit.layer = {.id = static_cast<std::uint32_t>(bytes.below(4)),
+                  .name = bytes.below(2) ? "a" : "b",
+                  .visible = bytes.below(4) > 0,
+                  .opacity = std::abs(bytes.real()),
+                  .blend = static_cast<ink::Blend>(bytes.below(3))};
+    edit.place = static_cast<std::uint32_t>(bytes.below(3));
+    edit.other = static_cast<std::uint32_t>(bytes.below(4));
+    return edit;
 }
 
 stroke::JournalEntry entry_of(Bytes& bytes) {
@@ -119,8 +178,22 @@ stroke::JournalEntry entry_of(Bytes& bytes) {
     const int what = bytes.below(16);
     const stroke::PaintStroke s = stroke_of(bytes);
     if (what == 4) return stroke::Dry{.seconds = 0.5 + std::abs(bytes.real()), .down = s.settings.down};
-    if (what == 5) return stroke::Fill{.ink = s.ink, .film = 2 * std::abs(bytes.real())};
-    if (what > 5) return s;
+    if (what == 5)
+        return stroke::Fill{.ink = s.ink,
+                            .layer = s.layer,
+                            .mask = s.mask,
+                            .film = 2 * std::abs(bytes.real()),
+                            .gradient = static_cast<stroke::Gradient>(bytes.below(3)),
+                            .to_film = 2 * std::abs(bytes.real()),
+                            .to_ink = kInks[s.seed % std::size(kInks)],
+                            .from = s.trace.placement.origin,
+                            .to = 0.01 * s.settings.down,
+                            .region = static_cast<stroke::Region>(bytes.below(3)),
+                            .at = s.trace.placement.origin};
+    if (what == 6) return layer_edit_of(bytes);
+    if (what == 7)
+        return stroke::MaskEdit{.mask = {.name = "m", .direction = s.settings.down, .within = 1, .soft = 0.5}};
+    if (what > 7) return s;
     stroke::BrushAction action{.kind = kActions[what],
                                .brush = s.brush,
                                .ink = s.ink,
@@ -145,15 +218,18 @@ void check_ink(const ink::Canvas& canvas) {
 void run_paint(std::span<const std::uint8_t> input) {
     static Models models;
     models.drop_some();
+    if (thread_count() != 1) set_thread_count(1);  // what is so small is made faster by one
     Bytes bytes(input);
+    const bool twice = bytes.below(4) == 0;
     refusing([&] {
         const stroke::Model& model = models.get(bytes);
         stroke::Document painting(model);
-        use_inks(painting);
+        use_presets(painting);
         for (int i = 0; i < 3 && !bytes.empty(); ++i) refusing([&] { painting.paint(entry_of(bytes)); });
         check_ink(painting.layers().canvas());
+        if (!twice) return;
         stroke::Document again(model);
-        use_inks(again);
+        use_presets(again);
         again.replay(painting.journal().entries());
         promise(again.layers().hash() == painting.layers().hash(), "a replay gives the same bits");
     });

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <span>
-#include <string>
 
 #include "core/error.h"
 
@@ -43,10 +42,6 @@ class Bytes {
         return (static_cast<int>(byte()) * 256 + low - 32768) / 32768.0;
     }
     int below(int n) { return byte() % n; }
-    /// The bytes from here to where `later`, a copy that was read on, is.
-    std::string until(const Bytes& later) const {
-        return {data_.begin(), data_.end() - static_cast<std::ptrdiff_t>(later.data_.size())};
-    }
 
   private:
     std::span<const std::uint8_t> data_;

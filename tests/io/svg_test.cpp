@@ -168,7 +168,7 @@ TEST(Svg, LinesHaveTheWidthOfTheirStroke) {
 std::vector<std::string> told(const std::string& inside) {
     std::vector<std::string> notes;
     SvgOptions options;
-    options.ink.note = [&](const std::string& line) { notes.push_back(line); };
+    options.ink.note = [&](const Message& line) { notes.push_back(line.text()); };
     parse_svg("<svg xmlns:xlink='http://www.w3.org/1999/xlink'><path d='M0 0L9 9' stroke='black'/>" + inside + "</svg>",
               "a.svg", options);
     return notes;
@@ -179,55 +179,52 @@ TEST(Svg, WhatIsLeftOutIsReportedInALineEach) {
     EXPECT_EQ(told("<g/>"), Notes{});
     EXPECT_EQ(told("<text>Hello <tspan>there</tspan></text><image/><text display='none'>no</text><g "
                    "visibility='hidden'><text>no</text></g>"),
-              (Notes{"a.svg: 1 text is left out: turn text into paths first", "a.svg: 1 image is left out"}));
-    EXPECT_EQ(told("<switch><foreignObject/><g/></switch><foreignObject/>"),
-              Notes{"a.svg: 1 foreignObject is left out"});
+              (Notes{"1 text is left out: turn text into paths first", "1 image is left out"}));
+    EXPECT_EQ(told("<switch><foreignObject/><g/></switch><foreignObject/>"), Notes{"1 foreignObject is left out"});
     EXPECT_EQ(told("<use href='#gone'/><use xlink:href='#lost' x='3'/><use href='other.svg#a'/>"),
-              (Notes{"a.svg: 2 uses draw nothing: the file has no elements of the ids that they name",
-                     "a.svg: 1 use of another file is left out: put its element into this file"}));
+              (Notes{"2 uses draw nothing: the file has no elements of the ids that they name",
+                     "1 use of another file is left out: put its element into this file"}));
     EXPECT_EQ(told("<script/><path d='M0 0H9' stroke='#000'><animate/><set/></path>"),
-              (Notes{"a.svg: 2 animations are not played", "a.svg: 1 script is not run"}));
+              (Notes{"2 animations are not played", "1 script is not run"}));
 }
 
 TEST(Svg, EffectsThatABrushCannotPaintAreReportedWithTheirCounts) {
     const std::string line = "<path d='M0 0 H 50' stroke='black' ", square = "<rect width='20' height='20' ";
     EXPECT_EQ(told("<g clip-path='url(#a)'>" + line + "/>" + line + "style='clip-path:url(#a)'/></g>"),
-              Notes{"a.svg: 2 clip paths are not applied: what they hide is painted"});
+              Notes{"2 clip paths are not applied: what they hide is painted"});
     EXPECT_EQ(told(line + "mask='url(#m)'/>" + line + "mask='none'/>"),
-              Notes{"a.svg: 1 mask is not applied: what it hides is painted"});
-    EXPECT_EQ(told(line + "filter='url(#f)'/>"), Notes{"a.svg: 1 filter is not applied"});
+              Notes{"1 mask is not applied: what it hides is painted"});
+    EXPECT_EQ(told(line + "filter='url(#f)'/>"), Notes{"1 filter is not applied"});
     EXPECT_EQ(told("<g stroke-dasharray='3 2'>" + line + "/>" + line + "/>" + line + "stroke-dasharray='none'/>" +
                    line + "stroke-dasharray='0'/></g>"),
-              Notes{"a.svg: 2 dashed lines are painted whole"});
-    EXPECT_EQ(told(line + "marker-end='url(#arrow)'/>"), Notes{"a.svg: 1 line loses its markers, such as arrow heads"});
+              Notes{"2 dashed lines are painted whole"});
+    EXPECT_EQ(told(line + "marker-end='url(#arrow)'/>"), Notes{"1 line loses its markers, such as arrow heads"});
     EXPECT_EQ(
         told("<g opacity='.5'>" + line + "/></g>" + line + "style='stroke-opacity:40%'/>" + line + "opacity='1'/>"),
-        Notes{"a.svg: 2 opacities are not applied: the ink is painted in full"});
+        Notes{"2 opacities are not applied: the ink is painted in full"});
     EXPECT_EQ(told("<defs><linearGradient id='g'/><radialGradient id='r'/><pattern id='p'/></defs>" + square +
                    "fill='url(#g)'/>" + square + "style='fill:url(\"#r\")'/>" + square + "fill='url(#p) red'/>" +
                    square + "fill='url(#gone)'/>" + square + "fill='url(#gone) black'/>"),
-              (Notes{"a.svg: 1 area or line has a paint that the file does not hold and is not painted",
-                     "a.svg: 2 gradients are painted as one even ink", "a.svg: 1 pattern is painted as one even ink"}));
-    EXPECT_EQ(
-        told("<style>g > path {fill:red} @media print {.b{fill:red} .c{fill:red}} .x{}</style>"),
-        Notes{"a.svg: 2 rules of style sheets are passed over: only element names, .class and #id are understood"});
+              (Notes{"1 area or line has a paint that the file does not hold and is not painted",
+                     "2 gradients are painted as one even ink", "1 pattern is painted as one even ink"}));
+    EXPECT_EQ(told("<style>g > path {fill:red} @media print {.b{fill:red} .c{fill:red}} .x{}</style>"),
+              Notes{"2 rules of style sheets are passed over: only element names, .class and #id are understood"});
     EXPECT_EQ(told(line + "style='transform:scale(2)'/>"),
-              Notes{"a.svg: 1 transform in a style is not applied: write it as an attribute"});
+              Notes{"1 transform in a style is not applied: write it as an attribute"});
 }
 
 TEST(Svg, ColoursThatBecomeOneInkAreNamed) {
     const auto square = [](const std::string& fill) { return "<rect width='20' height='20' fill='" + fill + "'/>"; };
     EXPECT_EQ(told(square("black") + square("#000") + square("rgb(0, 0, 0)")), Notes{});
     EXPECT_EQ(told(square("#E30613") + square("#e30613") + "<path d='M0 0H9' fill='none' stroke='navy'/>"),
-              Notes{"a.svg: 3 colours are painted in one ink: black, #e30613, navy"});
+              Notes{"3 colours are painted in one ink: black, #e30613, navy"});
     EXPECT_EQ(told(square("white") + square("#FFF") + square("none")),
-              Notes{"a.svg: 2 white areas and lines are left bare: white is the background, and what they cover stays "
+              Notes{"2 white areas and lines are left bare: white is the background, and what they cover stays "
                     "painted"});
     std::string many;
     for (int i = 0; i < 9; ++i) many += square("#00000" + std::to_string(i + 1));
-    EXPECT_EQ(
-        told(many),
-        Notes{"a.svg: 10 colours are painted in one ink: black, #000001, #000002, #000003, #000004, #000005, ..."});
+    EXPECT_EQ(told(many),
+              Notes{"10 colours are painted in one ink: black, #000001, #000002, #000003, #000004, #000005, ..."});
 }
 
 TEST(Svg, WhatIsNotToBeSeenIsNotPainted) {

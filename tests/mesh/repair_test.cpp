@@ -12,6 +12,7 @@
 namespace tuft::mesh {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -258,6 +259,127 @@ TEST(Repair, ClosedPartsFaceOutwardOpenPartsKeepTheirMajority) {
     const Surface open = repaired(sheet);
     EXPECT_EQ(open.report.faces_flipped, 12u);
     EXPECT_LT(open.mesh.corner_normals[0].z, -0.99);
+}
+
+/// The polygons that `keep` says of their middles.
+template <class Keep>
+PolygonSoup kept(const PolygonSoup& soup, Keep keep) {
+    PolygonSoup out;
+    out.points = soup.points;
+    for (std::size_t p = 0; p < soup.n_polygons(); ++p) {
+        std::vector<std::uint32_t> corners(soup.corners.begin() + soup.polygon_start[p],
+                                           soup.corners.begin() + soup.polygon_start[p + 1]);
+        Vec3 middle(0);
+        for (const std::uint32_t c : corners) middle += soup.points[c] / static_cast<double>(corners.size());
+        if (keep(middle)) add_polygon(out, corners);
+    }
+    return out;
+}
+
+PolygonSoup inverted(PolygonSoup soup) {
+    for (std::size_t p = 0; p < soup.n_polygons(); ++p) reverse(soup, p);
+    return soup;
+}
+
+/// Mean of (point − centre) · normal over the triangles: > 0 where they face outward.
+double outwardness(const TriangleMesh& mesh, const Vec3& centre) {
+    double sum = 0;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
+        const Vec3 a = mesh.position(t, 0);
+        sum += glm::dot(a - centre, glm::cross(mesh.position(t, 1) - a, mesh.position(t, 2) - a));
+    }
+    return sum;
+}
+
+PolygonSoup make_ball() {  // 24 by 16 quads
+    PolygonSoup ball;
+    constexpr std::uint32_t kAround = 24, kUp = 17;
+    for (std::uint32_t j = 0; j < kUp; ++j)
+        for (std::uint32_t i = 0; i < kAround; ++i) {
+            const double u = 6.283185307179586 * i / kAround, v = 3.141592653589793 * (j + 0.01) / (kUp - 0.98);
+            ball.points.emplace_back(std::sin(v) * std::cos(u), std::sin(v) * std::sin(u), -std::cos(v));
+        }
+    for (std::uint32_t j = 0; j + 1 < kUp; ++j)
+        for (std::uint32_t i = 0; i < kAround; ++i) {
+            const std::uint32_t a = kAround * j + i, b = kAround * j + (i + 1) % kAround;
+            add_polygon(ball, {a, b, b + kAround, a + kAround});
+        }
+    return ball;
+}
+
+TEST(Repair, OpenPartsThatAreInsideOutAreTurnedRound) {
+    const PolygonSoup jar = kept(make_ball(), [](const Vec3& p) { return p.z < 0.8; });
+    const Surface sound = repaired(jar), turned = repaired(inverted(jar));
+    EXPECT_GT(outwardness(sound.mesh, Vec3(0)), 0);
+    EXPECT_EQ(sound.report.parts_turned, 0u);
+    EXPECT_GT(outwardness(turned.mesh, Vec3(0)), 0);
+    EXPECT_EQ(turned.report.parts_turned, 1u);
+    EXPECT_EQ(turned.report.faces_flipped, 0u);
+    EXPECT_THAT(texts(describe_defects(turned.report)), Contains("1 open part was inside out: turned round"));
+    // One face of the file shows its back among the others: that is told apart.
+    PolygonSoup one = inverted(jar);
+    reverse(one, 5);
+    EXPECT_EQ(repaired(one).report.faces_flipped, 2u);
+    EXPECT_GT(outwardness(repaired(one).mesh, Vec3(0)), 0);
+}
+
+TEST(Repair, SidesOfOpenPartsAreKeptOrTurnedOnDemand) {
+    const PolygonSoup jar = inverted(kept(make_ball(), [](const Vec3& p) { return p.z < 0.8; }));
+    const Surface file = build_surface(jar, {.metres_per_unit = 1, .sides = OpenSides::file});
+    const Surface turned = build_surface(jar, {.metres_per_unit = 1, .sides = OpenSides::turned});
+    EXPECT_LT(outwardness(file.mesh, Vec3(0)), 0);
+    EXPECT_GT(outwardness(turned.mesh, Vec3(0)), 0);
+    EXPECT_EQ(file.report.parts_turned + turned.report.parts_turned, 0u) << "nothing that a person must be told";
+    EXPECT_THROW(open_sides_of("inside"), Error);
+}
+
+TEST(Repair, WhatMayBeMeantToBePaintedInsideKeepsItsSides) {
+    const PolygonSoup ball = make_ball();
+    const PolygonSoup cup = kept(ball, [](const Vec3&p) { return p.z < 0; }), sheet = make_sheet(4);
+    for (const PolygonSoup& soup : {cup, inverted(cup), sheet, inverted(sheet)})
+        EXPECT_EQ(repaired(soup).report.parts_turned, 0u);
+    EXPECT_LT(outwardness(repaired(inverted(cup)).mesh, Vec3(0)), 0);
+    // A shell with a lining: the lining faces inward, and sees nothing at its back.
+    PolygonSoup lined = kept(ball, [](const Vec3& p) { return p.z < 0.8; });
+    const PolygonSoup lining = inverted(lined);
+    const auto base = static_cast<std::uint32_t>(lined.points.size());
+    for (const Vec3& p : lining.points) lined.points.push_back(0.95 * p);
+    for (std::size_t p = 0; p < lining.n_polygons(); ++p) {
+        std::vector<std::uint32_t> corners(lining.corners.begin() + lining.polygon_start[p],
+                                           lining.corners.begin() + lining.polygon_start[p + 1]);
+        for (std::uint32_t& c : corners) c += base;
+        add_polygon(lined, corners);
+    }
+    EXPECT_EQ(repaired(lined).report.parts_turned, 0u);
+    EXPECT_EQ(repaired(inverted(lined)).report.parts_turned, 2u);
+}
+
+// As of a car: panels that do not touch, and a flat one outside, of which alone nobody could say.
+TEST(Repair, ABodyOfPanelsIsTurnedAsOne) {
+    PolygonSoup body;
+    const auto add_panel = [&](const PolygonSoup& ball, const Vec3& side) {
+        PolygonSoup panel = kept(ball, [&](const Vec3& p) {
+            return glm::dot(p, side) > 0.999 * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        });
+        const auto base = static_cast<std::uint32_t>(body.points.size());
+        for (const Vec3& p : panel.points) body.points.push_back(p + 0.02 * side);
+        for (std::size_t p = 0; p < panel.n_polygons(); ++p) {
+            std::vector<std::uint32_t> corners(panel.corners.begin() + panel.polygon_start[p],
+                                               panel.corners.begin() + panel.polygon_start[p + 1]);
+            for (std::uint32_t& c : corners) c += base;
+            add_polygon(body, corners);
+        }
+    };
+    for (const Vec3& side : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)})
+        add_panel(make_ball(), side);
+    const auto base = static_cast<std::uint32_t>(body.points.size());
+    for (const Vec2& p : {Vec2(0, 0), Vec2(0.3, 0), Vec2(0.3, 0.3), Vec2(0, 0.3)})
+        body.points.emplace_back(3, p.x, p.y);
+    add_polygon(body, {base, base + 1, base + 2, base + 3});
+    const Surface sound = repaired(body), turned = repaired(inverted(body));
+    EXPECT_EQ(sound.report.parts_turned, 0u);
+    EXPECT_EQ(turned.report.parts_turned, 6u);
+    EXPECT_GT(outwardness(turned.mesh, Vec3(0)), 0);
 }
 
 TEST(Repair, CavityOfAHollowBodyKeepsFacingIntoIt) {

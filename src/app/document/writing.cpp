@@ -45,11 +45,7 @@ bool belongs_to_brush(const stroke::Preparation& preparation) {
 
 Writing read_writing(const std::filesystem::path& file) {
     Writing out{.file = file};
-    const std::string prefix = file.string() + ": ";
-    const auto note = [&](const std::string& line) {
-        out.notes.push_back(line.starts_with(prefix) ? line.substr(prefix.size()) : line);
-    };
-    out.traces = io::read_strokes(file, {.note = note});
+    out.traces = io::read_strokes(file, {.note = [&](const Message& line) { out.notes.push_back(line); }});
     std::erase_if(out.traces,
                   [](const stroke::RecordedStroke& t) { return !t.flat || t.on_palette || t.samples.empty(); });
     if (out.traces.empty())

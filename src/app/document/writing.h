@@ -17,7 +17,7 @@ namespace tuft::app {
 struct Writing {
     std::filesystem::path file;
     std::vector<stroke::RecordedStroke> traces;  ///< flat, metres, in the frame of the file
-    std::vector<std::string> notes;              ///< skipped content of the file, one line each
+    std::vector<Message> notes;                  ///< skipped content of the file, one line each
     Vec2 centre{0};                              ///< metres, of the ink of all traces
     double width = 0, height = 0;                ///< metres, of the ink of all traces, as in the file
     double scale = 1;

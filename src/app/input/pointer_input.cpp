@@ -39,9 +39,17 @@ constexpr double kSlowest = 0.2;     // seconds in which it arrives at its end, 
 constexpr double kFlick = 1.5;       // of the working depth: a way to the end on which the brush lifts by the next part
 constexpr double kFlickLift = 0.75;  // of its pressure; the rest goes at the end
 constexpr double kSlanting = 0.35;   // cosine to the line of sight under which a gap and an edge look alike
+// Behind an edge hair that was pressed onto the rim would hook over it: the stroke goes on lightly, by this part of its
+// pressure's way, and is pressed down over this part of the tuft's length.
+constexpr double kLightly = 0.2, kOverAnEdge = 0.08;
+constexpr double kSameGround = 1.5;  // radii round the aim in which a place belongs to the ground that a holder levels
 
 double part(double dt, double constant) {
     return 1.0 - std::exp(-dt / std::max(constant, 1e-6));
+}
+
+Vec3 facing(const mesh::SurfacePoint& p, const Aim& aim) {
+    return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal;
 }
 
 }  // namespace
@@ -61,6 +69,25 @@ std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, cons
     return std::nullopt;
 }
 
+// Of even directions over the place, by the cosine, the part that meets a back: all inside of a closed body, none over
+// a sheet, 0.36 in half a pipe.
+bool is_through_a_hole(const mesh::SurfaceQuery& surface, const mesh::SurfacePoint& hit, const Aim& aim) {
+    if (glm::dot(hit.normal, aim.ray.direction) <= 0) return false;
+    constexpr int kRays = 64;
+    constexpr double kSurrounded = 0.4, kGoldenAngle = 2.399963229728653;
+    const Vec3 normal = facing(hit, aim);
+    const Vec3 from = hit.position + 1e-5 * surface.mesh().bounds.diagonal() * normal;
+    const Frame f = make_frame(from, normal);
+    int backs = 0;
+    for (int i = 0; i < kRays; ++i) {
+        const double out = (i + 0.5) / kRays, turn = kGoldenAngle * i;
+        const Vec3 way = std::sqrt(out) * (std::cos(turn) * f.t + std::sin(turn) * f.b) + std::sqrt(1 - out) * f.n;
+        const auto met = surface.ray(from, way);
+        if (met && glm::dot(met->normal, way) > 0) ++backs;
+    }
+    return backs > kSurrounded * kRays;
+}
+
 PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Preset& preset,
                            const PointerSettings& settings, TipLag lag)
     : surface_(surface),
@@ -72,12 +99,8 @@ PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Prese
     holder_.tip_lag_change = std::move(lag.tilted);
 }
 
-std::optional<AimedSurface> PointerInput::find_surface(const Aim& aim) const {
-    const auto facing = [&](const mesh::SurfacePoint& p) {
-        return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal;
-    };
-    const auto hit = aim_at(surface_, aim);
-    const double nothing = std::numeric_limits<double>::infinity(), centre = hit ? hit->distance : nothing;
+// The level of what lies round a gap under the aim; nothing where there is none. `centre`: metres to the aim's own hit.
+std::optional<AimedSurface> PointerInput::find_gap(const Aim& aim, double centre) const {
     struct Pair {
         double depth;
         Vec3 normal;
@@ -92,30 +115,67 @@ std::optional<AimedSurface> PointerInput::find_surface(const Aim& aim) const {
         const auto a = aim_at(surface_, one), b = aim_at(surface_, other);
         if (!a || !b) continue;
         // On one ground, flat or evenly bent: each lies as far out of the other's plane. Else it is a rim or a step.
-        const Vec3 na = facing(*a), nb = facing(*b), way = b->position - a->position;
+        const Vec3 na = facing(*a, aim), nb = facing(*b, aim), way = b->position - a->position;
         const double out_a = glm::dot(na, way), out_b = glm::dot(nb, way);
         if (std::abs(out_a + out_b) < kShallow * reach_ && std::abs(out_a) < kBent * reach_)
             pairs.push_back({0.5 * (a->distance + b->distance), na + nb});
     }
+    if (pairs.size() < kAgreeing) return std::nullopt;
     std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.depth < b.depth; });
-    const double level = pairs.size() < kAgreeing ? nothing : pairs[pairs.size() / 2].depth;
+    const double level = pairs[pairs.size() / 2].depth;
     Vec3 normal(0);
     std::size_t agree = 0;
     for (const Pair& pair : pairs)
         if (std::abs(pair.depth - level) < kShallow * reach_) normal += pair.normal, ++agree;
     const bool gap = agree >= kAgreeing && level < centre - kShallow * reach_ &&
                      glm::dot(normal, -aim.ray.direction) > kSlanting * glm::length(normal);
-    if (gap) return AimedSurface{aim.ray.origin + level * aim.ray.direction, glm::normalize(normal), level, true};
+    if (!gap) return std::nullopt;
+    return AimedSurface{.position = aim.ray.origin + level * aim.ray.direction,
+                        .normal = glm::normalize(normal),
+                        .distance = level,
+                        .bridged = true};
+}
+
+std::optional<AimedSurface> PointerInput::find_surface(const Aim& aim) const {
+    const auto hit = aim_at(surface_, aim);
+    if (const auto gap = find_gap(aim, hit ? hit->distance : std::numeric_limits<double>::infinity())) return gap;
     if (!hit) return std::nullopt;
-    return AimedSurface{hit->position, facing(*hit), hit->distance, false,
-                        glm::dot(hit->normal, aim.ray.direction) > 0};
+    AimedSurface found{.position = hit->position, .normal = levelled_normal(aim, *hit), .distance = hit->distance};
+    found.back = glm::dot(hit->normal, aim.ray.direction) > 0;
+    found.inside = is_through_a_hole(surface_, *hit, aim);
+    return found;
+}
+
+// The mean over what is seen of the ground within the radius that a holder levels (stroke/placement/levelling.h): on a
+// lip a few millimetres wide it is that of the wall beside it, and it turns gradually over an edge.
+Vec3 PointerInput::levelled_normal(const Aim& aim, const mesh::SurfacePoint& hit) const {
+    const double furthest = kSameGround * holder_.steady;
+    Vec3 mean = facing(hit, aim);
+    const Vec3 own = mean;
+    for (int i = 0; i < 2 * kPairs && furthest > 0; ++i)
+        for (const double part : {0.5, 1.0}) {
+            const double angle = std::numbers::pi * i / kPairs;
+            Aim beside = aim;
+            beside.ray.origin +=
+                part * holder_.steady * (std::cos(angle) * aim.view_right + std::sin(angle) * aim.view_up);
+            const auto at = aim_at(surface_, beside);
+            const double away = at ? glm::distance(at->position, hit.position) / furthest : 1;
+            if (away < 1) mean += part * (1 - away * away) * facing(*at, aim);
+        }
+    return glm::length(mean) > 1e-6 ? glm::normalize(mean) : own;
 }
 
 // The smoothed point cuts the corners of a curved surface: it is brought back. Over a gap the nearest
 // place is an edge beside it; there it stays where it is.
 void PointerInput::onto_surface() {
-    const auto on = surface_.closest_point(point_, 5e-3);
-    if (!on) return;
+    constexpr double kFurthest = 5e-3;
+    const auto is_met = [&](const mesh::SurfacePoint& p) {
+        return (glm::dot(p.normal, normal_) < 0) == on_back_.value_or(false);
+    };
+    auto on = surface_.closest_point(point_, kFurthest);
+    // In a thin wall its other side may be nearer.
+    if (on && !is_met(*on)) on = surface_.ray(point_ + kFurthest * normal_, -normal_, 0, 2 * kFurthest);
+    if (!on || !is_met(*on)) return;
     const Vec3 way = on->position - point_;
     const bool sideways = glm::length(way - glm::dot(way, normal_) * normal_) > 0.5 * glm::length(way);
     if (bridged_ >= 0 && motion_.time - bridged_ < 5 * settings_.smoothing + 2 * kFrame && sideways) return;
@@ -185,10 +245,12 @@ void PointerInput::drag() {
 }
 
 double PointerInput::goal_pressure(const Aim& aim) const {
-    if (aim.pressure >= 0) return pen_depth(settings_, aim.pressure);
+    const double way = kLightly + gone_ / (kOverAnEdge * holder_.tuft_length);
+    const double landed = over_edge_ ? smooth_step(way / (1 + kLightly)) : 1;
+    if (aim.pressure >= 0) return landed * pen_depth(settings_, aim.pressure);
     const double slow = 1.0 - settings_.speed_effect * std::min(1.0, motion_.speed / settings_.fast);
     const double rested = settings_.dwell_effect * std::min(1.0, motion_.rest / settings_.dwell);
-    return std::clamp(settings_.pressure * slow + rested, 0.02, 1.0);
+    return landed * std::clamp(settings_.pressure * slow + rested, 0.02, 1.0);
 }
 
 void PointerInput::touch_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards,
@@ -231,7 +293,7 @@ void PointerInput::set_down(std::vector<StrokeStep>& steps) {
                steps);
     motion_.start -= kSetDown;  // as if it had begun earlier: it lags no further behind
     motion_.speed = length / std::max(kFrame, last.aim.time - first.aim.time);
-    spread_ = kSpread * holder_.tuft_length * (1 - std::min(1.0, motion_.speed / settings_.fast));
+    if (!over_edge_) spread_ = kSpread * holder_.tuft_length * (1 - std::min(1.0, motion_.speed / settings_.fast));
     const double pressure = (glm::length(dragged_.string) > 0 ? kTouch : 1.0) * goal_pressure(first.aim);
     const int n = static_cast<int>(std::ceil(kSetDown / kFrame));
     StrokeStep step;
@@ -282,14 +344,17 @@ std::vector<StrokeStep> PointerInput::move(const Aim& aim) {
     std::vector<StrokeStep> steps;
     auto hit = find_surface(aim);
     if (hit && !hit->bridged) {
-        if (!on_back_) on_back_ = hit->back;
-        if (hit->back != *on_back_) hit.reset();
+        if (!on_back_ && !hit->inside) on_back_ = hit->back;
+        if (!on_back_ || hit->back != *on_back_) hit.reset();
     }
     // A small movement of the cursor that goes far on the model crossed an edge of its outline.
     const double expected = drawing() && hit ? glm::distance(aim.ray.origin, aim_.ray.origin) +
                                                    glm::distance(aim.ray.direction, aim_.ray.direction) * hit->distance
                                              : 0;
-    if (drawing() && (!hit || glm::distance(hit->position, goal_) > kJump + kGrazing * expected)) steps = lift();
+    if (drawing() && (!hit || glm::distance(hit->position, goal_) > kJump + kGrazing * expected)) {
+        steps = lift();
+        over_edge_ = true;
+    }
     if (!hit) return steps;
     if (!down_ && is_clean(aim)) {
         wait(aim, *hit, steps);
@@ -361,7 +426,7 @@ std::vector<StrokeStep> PointerInput::lift() {
 
 std::optional<brush::Pose> PointerInput::hover(const Aim& aim) const {
     const auto hit = find_surface(aim);
-    if (!hit) return std::nullopt;
+    if (!hit || hit->inside) return std::nullopt;
     return pose_at(aim, hit->position, hit->normal, 0, aim.time);
 }
 

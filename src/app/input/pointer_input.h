@@ -57,10 +57,11 @@ struct TipLag {
 /// Surface point that an aim hits.
 struct AimedSurface {
     Vec3 position{0};      ///< metres
-    Vec3 normal{0, 0, 1};  ///< unit, towards the eye
+    Vec3 normal{0, 0, 1};  ///< unit, towards the eye, levelled as far as the holder does (`HolderOptions::steady`)
     double distance = 0;   ///< metres from the eye
     bool bridged = false;  ///< over a gap or groove
     bool back = false;     ///< the surface shows its back there
+    bool inside = false;   ///< it does so to the inside of a body: it is seen through a hole
 };
 
 /// Part of a stroke, for the paint thread.
@@ -75,8 +76,9 @@ struct StrokeStep {
 /// Position: the cursor's point on the surface, smoothed, or pulled on a string. Pressure: a pen's, or by speed and
 /// dwell (a fast mouse presses less, a resting one more). The brush lands and lifts gradually. It crosses gaps and
 /// grooves narrower than the tuft, such as shut lines, without dipping into them. Where the cursor leaves the model or
-/// jumps over an edge of its outline, the brush lifts and begins a new stroke behind it. It stays on the side of the
-/// surface on which it was set down: a wall that shows its back through a hole is not gone to.
+/// jumps over an edge of its outline, the brush lifts and begins a new stroke behind it, lightly at first. It stays on
+/// the side of the surface on which it was set down: a wall that shows its back through a hole is not gone to, and
+/// nothing is set down there. The back of a sheet is painted on.
 ///
 /// With `clean_ends` a stroke without pen pressure has ink from where the button went down to where it came up. The
 /// direction of the stroke must be known first: the brush is set down once the cursor has moved three pixels, rested,
@@ -118,6 +120,8 @@ class PointerInput {
         double speed = 0;                      ///< m/s
     };
 
+    std::optional<AimedSurface> find_gap(const Aim& aim, double centre) const;
+    Vec3 levelled_normal(const Aim& aim, const mesh::SurfacePoint& hit) const;
     bool is_clean(const Aim& aim) const { return settings_.clean_ends && aim.pressure < 0; }
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
     Quat rotation_at(const Aim& aim, const Vec3& up) const;
@@ -141,6 +145,7 @@ class PointerInput {
     double bridged_ = -1;            ///< `time_` when the goal was last over a gap; negative: never
     bool down_ = false;
     std::optional<bool> on_back_;   ///< of the surface, where it was set down
+    bool over_edge_ = false;        ///< the cursor crossed an edge of the outline since it was pressed
     Aim aim_;                       ///< the last one
     std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
     DraggedPoint dragged_;
@@ -152,5 +157,9 @@ class PointerInput {
 
 /// Returns the first surface point on the aim's ray that its section does not hide.
 std::optional<mesh::SurfacePoint> aim_at(const mesh::SurfaceQuery& surface, const Aim& aim);
+
+/// Whether an aim hits the back of a surface from inside of a body, through a hole: nothing is set down there. The back
+/// of an open sheet is none. Cost: 64 rays.
+bool is_through_a_hole(const mesh::SurfaceQuery& surface, const mesh::SurfacePoint& hit, const Aim& aim);
 
 }  // namespace tuft::app

@@ -134,7 +134,8 @@ PaintWork prepare_model(Inspected in, const OpenOptions& options, const fs::path
     work.source = in.path.string();
     work.frame = options.frame;
     if (!options.own_colours) mesh::drop_colours(in.soup);
-    if (options.turned_round) mesh::turn_round(in.soup);
+    if (options.turned_round)
+        prepare.repair.sides = in.summary.report.parts_turned > 0 ? mesh::OpenSides::file : mesh::OpenSides::turned;
     work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
     work.document =
         std::make_unique<stroke::Document>(*work.model, stroke::DocumentOptions{.substrate = options.substrate});

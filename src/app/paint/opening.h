@@ -30,7 +30,7 @@ struct OpenOptions {
     std::uint32_t atlas_size = 2048;
     std::string substrate = "porcelain";
     bool own_colours = true;    ///< shows the model's own colours, if any
-    bool turned_round = false;  ///< turns all faces round, of a model that is inside out
+    bool turned_round = false;  ///< the other side of open parts is their front than reading chose
 };
 
 /// Purpose of opening a project.

@@ -116,7 +116,10 @@ void open_dialog(Session& s) {
         ImGui::SameLine();
         ui.toggle("in its own colours", s.project.options.own_colours);
     }
-    if (!m.report.closed)
+    if (m.report.parts_turned > 0)
+        ui.toggle("Sides as in the file", s.project.options.turned_round,
+                  "It was inside out, and was turned round: ink goes onto the front of its faces");
+    else if (!m.report.closed)
         ui.toggle("Faces turned round", s.project.options.turned_round,
                   "For a model that is inside out: ink goes onto the front of its faces");
     ui.heading("Checked and repaired");

@@ -219,6 +219,22 @@ struct RowText {
     std::string title, below;
 };
 
+const char* layer_change(stroke::LayerChange change) {
+    switch (change) {
+        case stroke::LayerChange::add:
+            return "New layer";
+        case stroke::LayerChange::change:
+            return "Layer changed";
+        case stroke::LayerChange::remove:
+            return "Layer removed";
+        case stroke::LayerChange::duplicate:
+            return "Layer duplicated";
+        case stroke::LayerChange::merge:
+            return "Layers merged";
+    }
+    return "Layer";
+}
+
 RowText text_of(const JournalParts& s, const StrokeLine& line, std::size_t number) {
     static const char* actions[] = {"", "Dip", "Rinse", "Comb", "Dry", "Layer", "Mask", "Fill", "Wipe", "Wash"};
     std::string title = std::to_string(number) + "   ";
@@ -227,7 +243,7 @@ RowText text_of(const JournalParts& s, const StrokeLine& line, std::size_t numbe
     if (line.on_palette)
         title += s.ui.tr("Palette");
     else if (!is_stroke(line))
-        title += s.ui.tr(actions[static_cast<int>(line.action)]);
+        title += s.ui.tr(line.change ? layer_change(*line.change) : actions[static_cast<int>(line.action)]);
     else
         title += length + (line.erases ? std::string("   ") + s.ui.tr("erased") : std::string());
     if (stroke::keeps_texels(line.action)) return {title, line.label};
@@ -258,7 +274,7 @@ void draw_row(const JournalParts& s, const JournalRow& row) {
     const bool chosen =
         std::all_of(lines.begin(), lines.end(), [&](const StrokeLine* l) { return s.journal.is_selected(l->id); });
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    if (ImGui::Selectable("##row", chosen, 0, ImVec2(0, size))) choose_row(s, row);
+    if (s.ui.entry("##row", chosen, size)) choose_row(s, row);
     if (ImGui::IsItemClicked(1) && !chosen) choose_row(s, row);
     const std::string name =
         row.group ? "group " + newest.group.name : "stroke " + std::to_string(row.lines.front() + 1);

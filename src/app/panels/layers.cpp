@@ -113,11 +113,22 @@ void drag(const LayerParts& s, const Layer& layer, std::size_t place) {
         ImGui::EndDragDropSource();
     }
     if (!ImGui::BeginDragDropTarget()) return;
-    if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload("layer")) {
+    constexpr ImGuiDragDropFlags kOwnMark =
+        ImGuiDragDropFlags_AcceptBeforeDelivery | ImGuiDragDropFlags_AcceptNoDrawDefaultRect;
+    if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload("layer", kOwnMark)) {
         std::uint32_t id = 0;
         std::memcpy(&id, payload->Data, sizeof id);
-        if (id != layer.id && s.table.find(id))
-            change(s, stroke::moved(s.table, id, static_cast<std::uint32_t>(place)));
+        const auto& all = s.table.layers;
+        const auto dragged = std::find_if(all.begin(), all.end(), [id](const Layer& l) { return l.id == id; });
+        if (id != layer.id && dragged != all.end()) {
+            // A line where the layer will be: over this row when it comes from below, else under it.
+            const bool from_below = dragged - all.begin() < static_cast<std::ptrdiff_t>(place);
+            const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
+            const float y = from_below ? lo.y : hi.y;
+            ImGui::GetWindowDrawList()->AddLine(ImVec2(lo.x, y), ImVec2(hi.x, y),
+                                                ImGui::GetColorU32(ImGuiCol_CheckMark), s.ui.px(3));
+            if (payload->IsDelivery()) change(s, stroke::moved(s.table, id, static_cast<std::uint32_t>(place)));
+        }
     }
     ImGui::EndDragDropTarget();
 }
@@ -180,7 +191,7 @@ void row(const LayerParts& s, const Layer& layer, std::size_t place) {
         return;
     }
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    if (ImGui::Selectable("##row", chosen, ImGuiSelectableFlags_AllowDoubleClick, ImVec2(0, height))) {
+    if (ui.entry("##row", chosen, height)) {
         if (ImGui::IsMouseDoubleClicked(0))
             begin_renaming(s, layer);
         else {

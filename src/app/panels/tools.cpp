@@ -273,7 +273,7 @@ void writing_section(Ui& ui, ToolState& tools, FileDialog& files) {
     ui.mark("Writing or drawing...");
     ui.hint(w.empty() ? "InkML or SVG" : "Another one, InkML or SVG");
     if (w.empty()) return;
-    for (const std::string& note : w.notes) ui.note(note.c_str());
+    for (const Message& note : w.notes) ui.note(ui.sentence(note));
     ui.toggle("Mirrored", w.mirrored);
     const bool names =
         std::any_of(w.traces.begin(), w.traces.end(), [](const auto& t) { return !t.brush.empty() || !t.ink.empty(); });

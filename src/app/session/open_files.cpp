@@ -13,9 +13,8 @@ void open_writing(Session& s, const fs::path& path) {
     try {
         show_message(s.status, "");
         s.tools.writing = read_writing(path);
-        std::string lost;
-        for (const std::string& note : s.tools.writing.notes) lost += (lost.empty() ? "" : "; ") + note;
-        if (!lost.empty()) show_message(s.status, Message("{}: {}", path.filename().string(), lost));
+        if (const auto& lost = s.tools.writing.notes; !lost.empty())
+            show_message(s.status, Message("{}: {}", path.filename().string(), join(lost)));
         s.tools.active = Tool::writing;
         const double size = s.paint_thread->model().mesh->bounds.diagonal();
         // A drawing far too large or small for the model comes at a third of it.

@@ -110,6 +110,7 @@ void SceneView::update_tuft(const Event* cursor, double now) {
     s.view.tuft.pressed = !painting.tuft.branches.empty() && !painting.on_palette;
     if (s.view.tuft.pressed) {
         s.view.tuft.state = painting.tuft;
+        preview_brush_.clear();  // its file may be another by the next stroke
     } else if (s.tools.active != Tool::writing && s.tools.active != Tool::fill && s.tools.active != Tool::pick &&
                s.tools.active != Tool::mask && !s.journal.move_on_drag && cursor && !is_dialog_open(s)) {
         if (!preview_ || preview_brush_ != s.brush.preset) {

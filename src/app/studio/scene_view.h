@@ -42,7 +42,7 @@ class SceneView {
     std::unique_ptr<render::GlView> view_;
     ModelView shading_ = ModelView::glaze;  ///< of the scene's present colours
     std::optional<brush::Tuft> preview_;    ///< hovering tuft
-    std::string preview_brush_;
+    std::string preview_brush_;             ///< its name; empty: to be read again
 };
 
 }  // namespace tuft::app

@@ -35,8 +35,9 @@ int CurveTool::point_at(const Event& e) const {
 
 std::optional<CurvePoint> CurveTool::point_of(const Event& e) const {
     const Aim aim = aim_of(session_, e);
-    const auto hit = aim_at(*session_.paint_thread->model().query, aim);
-    if (!hit) return std::nullopt;
+    const mesh::SurfaceQuery& query = *session_.paint_thread->model().query;
+    const auto hit = aim_at(query, aim);
+    if (!hit || is_through_a_hole(query, *hit, aim)) return std::nullopt;
     return CurvePoint{.position = hit->position, .outward = -aim.ray.direction};
 }
 
@@ -134,7 +135,7 @@ void CurveTool::paint(double now) {
     CurveInWork& curve = s.tools.curve;
     if (curve.points.size() < 2) return;
     const brush::Preset preset = brush::load_preset(s.brush.preset);
-    const TipLag lag = tip_lag_.find(s.brush.preset, preset);
+    const TipLag lag = tip_lag_.find(preset);
     const render::GlCamera c = camera_of(session_);
     CurveHand hand{.holder = stroke::holder_options(preset, s.paint_thread->model().query->mesh()),
                    .settings = s.tools.curve_settings,

@@ -37,8 +37,11 @@ void StrokeInput::press(const Event& e) {
     if (const auto hit = hand_->find_surface(aim); hit && hit->back)
         show_message(
             s.status,
-            "The surface shows its back here and may take no ink. If all of the model does, open it again with "
-            "its faces turned round.");
+            hit->inside
+                ? Message("There is a hole here; the back of a surface, which shows through it, takes no ink. If all "
+                          "of the model shows its back, open it again with its faces turned round.")
+                : Message("The surface shows its back here and may take no ink. If all of the model does, open it "
+                          "again with its faces turned round."));
     post(hand_->move(aim), e.time);
 }
 
@@ -69,7 +72,7 @@ void StrokeInput::press_palette(const Event& e) {
 
 void StrokeInput::start(const mesh::SurfaceQuery& surface, const brush::Preset& preset, bool on_plate) {
     Session& s = session_;
-    hand_.emplace(surface, preset, s.tools.pointer, tip_lag_.find(s.brush.preset, preset));
+    hand_.emplace(surface, preset, s.tools.pointer, tip_lag_.find(preset));
     s.tools.pointer_down = true;
     on_plate_ = on_plate;
 }

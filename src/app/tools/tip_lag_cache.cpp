@@ -1,12 +1,14 @@
 #include "app/tools/tip_lag_cache.h"
 
+#include <utility>
+
 namespace tuft::app {
 
-TipLag TipLagCache::find(const std::string& brush, const brush::Preset& preset) {
-    if (brush_ != brush) {
+TipLag TipLagCache::find(const brush::Preset& preset) {
+    if (std::string content = brush::preset_toml(preset); measured_ != content) {
         upright_ = stroke::measure_tip_lag(preset);
         tilted_.emplace(preset);
-        brush_ = brush;
+        measured_ = std::move(content);
     }
     return {upright_, [this](double depth, const Vec2& lean) { return tilted_->at(depth, lean); }};
 }

@@ -14,14 +14,14 @@ namespace tuft::app {
 /// Caches the tip lag of one brush.
 class TipLagCache {
   public:
-    /// Returns the tip lag of a brush; measures it when the brush changed. The result refers to this cache and is valid
-    /// until another brush is requested.
-    TipLag find(const std::string& brush, const brush::Preset& preset);
+    /// Returns the tip lag of a brush; measures it when any value of its preset changed: a file may be written anew
+    /// under its name. The result refers to this cache and is valid until another brush is requested.
+    TipLag find(const brush::Preset& preset);
 
   private:
     std::vector<stroke::TipLag> upright_;
     std::optional<stroke::TiltedTipLag> tilted_;
-    std::string brush_;
+    std::string measured_;  ///< the preset that it is of, as TOML
 };
 
 }  // namespace tuft::app

@@ -21,7 +21,7 @@ std::optional<stroke::Placement> WritingTool::placement(const Event* cursor) con
     if (s.tools.active != Tool::writing || s.tools.writing.empty() || !cursor || is_dialog_open(s)) return std::nullopt;
     const Aim aim = aim_of(s, *cursor);
     const auto hit = aim_at(*s.paint_thread->model().query, aim);
-    if (!hit) return std::nullopt;
+    if (!hit || is_through_a_hole(*s.paint_thread->model().query, *hit, aim)) return std::nullopt;
     const Vec3 normal = glm::dot(hit->normal, aim.ray.direction) < 0 ? hit->normal : -hit->normal;
     return place_writing(s.tools.writing, *s.paint_thread->model().query, hit->position, normal, aim.view_right,
                          glm::cross(aim.view_right, aim.view_up));

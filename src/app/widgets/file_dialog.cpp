@@ -16,6 +16,7 @@
 #include "app/document/writing.h"
 #include "core/error.h"
 #include "core/system/files.h"
+#include "core/system/system_message.h"
 #include "io/model/read_model.h"
 
 namespace fs = std::filesystem;
@@ -115,7 +116,7 @@ void FileDialog::go(const fs::path& folder) {
 }
 
 void FileDialog::read_folder() {
-    std::string fault;
+    Message fault;
     listing_.entries = list_folder(
         folder_, [this](const fs::path& file) { return suits(file); }, fault);
     fault_ = fault.empty() ? Message() : Message("This folder cannot be read: {}", fault);
@@ -184,8 +185,8 @@ void FileDialog::make_folder(Ui& ui) {
     std::error_code ec;
     const fs::path folder = folder_ / new_folder_.name;
     if (!fs::create_directory(folder, ec)) {
-        fault_ =
-            ec ? Message("The folder cannot be made: {}", ec.message()) : Message("There is a folder of that name.");
+        fault_ = ec ? Message("The folder cannot be made: {}", system_message(ec))
+                    : Message("There is a folder of that name.");
         return;
     }
     new_folder_.shown = false;

@@ -8,6 +8,8 @@
 #include <ctime>
 #include <tuple>
 
+#include "core/system/system_message.h"
+
 namespace fs = std::filesystem;
 
 namespace tuft::app {
@@ -19,7 +21,7 @@ std::string lower(std::string text) {
 }
 
 std::vector<FileEntry> list_folder(const fs::path& folder, const std::function<bool(const fs::path&)>& suits,
-                                   std::string& fault) {
+                                   Message& fault) {
     std::vector<FileEntry> entries;
     std::error_code ec;
     for (fs::directory_iterator it(folder, fs::directory_options::skip_permission_denied, ec), end; !ec && it != end;
@@ -32,7 +34,7 @@ std::vector<FileEntry> list_folder(const fs::path& folder, const std::function<b
         entries.push_back({name, is_folder, is_folder ? 0 : static_cast<std::uintmax_t>(about.st_size),
                            static_cast<std::int64_t>(about.st_mtime)});
     }
-    fault = ec ? ec.message() : "";
+    fault = ec ? system_message(ec) : Message();
     return entries;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
+
 /// \file
 /// Folder listings for the file dialog. Any thread.
 namespace tuft::app {
@@ -23,7 +25,7 @@ struct FileEntry {
 /// Returns the folders and the files for which `suits` is true, without hidden ones. `fault`: why the folder cannot be
 /// read; "" when it can.
 std::vector<FileEntry> list_folder(const std::filesystem::path& folder,
-                                   const std::function<bool(const std::filesystem::path&)>& suits, std::string& fault);
+                                   const std::function<bool(const std::filesystem::path&)>& suits, Message& fault);
 
 /// Sorts folders first, by name; then files by `order`, equal ones by name.
 void sort_entries(std::vector<FileEntry>& entries, FileOrder order, bool downward);

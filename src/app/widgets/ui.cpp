@@ -279,6 +279,13 @@ bool Ui::choice(const char* label, bool chosen, const char* text, float width) {
     return pressed;
 }
 
+bool Ui::entry(const char* label, bool chosen, float height) {
+    if (chosen) ImGui::PushStyleColor(ImGuiCol_HeaderHovered, ImGui::GetStyleColorVec4(ImGuiCol_Header));
+    const bool pressed = ImGui::Selectable(label, chosen, ImGuiSelectableFlags_AllowDoubleClick, ImVec2(0, height));
+    if (chosen) ImGui::PopStyleColor();
+    return pressed;
+}
+
 namespace {
 
 // The triangle of what can be folded: down when it is open, to the right else.

@@ -72,6 +72,8 @@ class Ui {
     bool primary_button(const char* label, float width = 0, bool enabled = true);
     bool toggle(const char* label, bool& value, const char* hint = nullptr);
     bool choice(const char* label, bool chosen, const char* hint = nullptr, float width = 0);
+    /// A row of a list. A chosen one stays coloured under the cursor. `height`: pixels, 0: of one line.
+    bool entry(const char* label, bool chosen, float height = 0);
     /// Returns true when the value changed. It is clamped to the range only then.
     bool slider(const char* label, double& value, const SliderRange& range, const char* hint = nullptr);
     /// As `slider`, with its name in it and `width` pixels wide.

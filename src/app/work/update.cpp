@@ -15,6 +15,7 @@ StrokeLine stroke_line(const stroke::JournalEntry& entry) {
                     .hidden = entry.hidden,
                     .erases = stroke && stroke->erases(),
                     .on_palette = stroke::on_palette(entry)};
+    if (const auto* edit = entry.as<stroke::LayerEdit>()) line.change = edit->what;
     const bool flat = stroke::samples_of(entry).flat;
     const std::vector<stroke::StrokeSample>& samples = stroke::samples_of(entry).samples;
     if (samples.empty()) return line;

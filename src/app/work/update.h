@@ -23,6 +23,7 @@ namespace tuft::app {
 struct StrokeLine {
     std::uint64_t id = 0;
     stroke::EntryKind action = stroke::EntryKind::stroke;
+    std::optional<stroke::LayerChange> change;  ///< of a layer
     std::string brush, ink, label;
     stroke::EntryGroup group;
     bool hidden = false, erases = false, on_palette = false;

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/system/interrupt.h"
+#include "core/system/system_message.h"
 
 namespace fs = std::filesystem;
 
@@ -21,7 +22,7 @@ std::vector<char> read_file(const fs::path& path, std::size_t max_bytes) {
     if (fs::is_directory(status)) throw Error(path.string(), "is a folder, not a file");
     if (!fs::is_regular_file(status)) throw Error(path.string(), "is not a regular file");
     const std::uintmax_t size = fs::file_size(path, ec);
-    if (ec) throw Error(path.string(), Message("cannot be read: {}", ec.message()));
+    if (ec) throw Error(path.string(), Message("cannot be read: {}", system_message(ec)));
     if (size == 0) throw Error(path.string(), "the file is empty");
     if (size > max_bytes)
         throw Error(path.string(), Message("is too large ({} MiB; the limit is {} MiB)", size >> 20, max_bytes >> 20));
@@ -49,7 +50,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
         fs::rename(temporary, path);
     } catch (const fs::filesystem_error& e) {
         fs::remove(temporary, ec);
-        throw Error(path.string(), Message("cannot be written: {}", e.code().message()));
+        throw Error(path.string(), Message("cannot be written: {}", system_message(e.code())));
     } catch (...) {
         fs::remove(temporary, ec);
         throw;

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/system/interrupt.h"
 #include "core/system/parallel.h"
+#include "core/system/system_message.h"
 #include "core/text/units.h"
 #include "io/export/export_formats.h"
 #include "io/image/image.h"
@@ -166,7 +167,8 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
         }
     };
     fs::remove_all(folder, ec);
-    if (!fs::create_directory(folder, ec)) throw Error(path.string(), Message("cannot be written: {}", ec.message()));
+    if (!fs::create_directory(folder, ec))
+        throw Error(path.string(), Message("cannot be written: {}", system_message(ec)));
     const Cleanup cleanup{folder};
     write(folder);
     // The model comes last, so that it never points to files that are not there yet.
@@ -177,7 +179,7 @@ void write_together(const fs::path& path, const std::function<void(const fs::pat
     });
     for (const fs::path& file : files) {
         fs::rename(file, parent / file.filename(), ec);
-        if (ec) throw Error((parent / file.filename()).string(), Message("cannot be written: {}", ec.message()));
+        if (ec) throw Error((parent / file.filename()).string(), Message("cannot be written: {}", system_message(ec)));
     }
 }
 

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/system/interrupt.h"
 #include "io/model/file_scene.h"
+#include "io/model/xml_fault.h"
 #include "io/model/xml_numbers.h"
 #include "io/model/zip.h"
 #include "mesh/read/text_cursor.h"
@@ -123,7 +124,7 @@ class Reader {
         const std::vector<char> bytes = zip_.read(name);
         made.document = std::make_unique<pugi::xml_document>();
         const auto parsed = made.document->load_buffer(bytes.data(), bytes.size());
-        if (!parsed) fail(Message("{} is not well-formed XML: {}", mesh::in_quotes(name), parsed.description()));
+        if (!parsed) fail(Message("{} is not well-formed XML: {}", mesh::in_quotes(name), xml_fault(parsed)));
         const xml_node model = made.document->document_element();
         if (local_part(model.name()) != "model") fail(Message("{} is no 3MF model", mesh::in_quotes(name)));
         made.metres = metres_of(attribute(model, "unit"));

@@ -20,6 +20,7 @@
 #include "core/error.h"
 #include "core/system/files.h"
 #include "core/system/interrupt.h"
+#include "core/system/system_message.h"
 #include "core/text/text.h"
 #include "io/model/file_scene.h"
 
@@ -56,7 +57,7 @@ const fs::path& importer() {
 class MemoryFile {
   public:
     MemoryFile() : fd_(memfd_create("tuft", MFD_CLOEXEC)) {
-        if (fd_ < 0) throw Error(Message("no memory for a file: {}", std::strerror(errno)));
+        if (fd_ < 0) throw Error(Message("no memory for a file: {}", system_message(errno)));
     }
     ~MemoryFile() { close(fd_); }
     MemoryFile(const MemoryFile&) = delete;
@@ -141,7 +142,7 @@ class Child {
         const int failed = posix_spawn(&pid_, program.c_str(), &files, &attributes, arguments, environ);
         posix_spawnattr_destroy(&attributes);
         posix_spawn_file_actions_destroy(&files);
-        if (failed) throw Error(program, Message("cannot be started: {}", std::strerror(failed)));
+        if (failed) throw Error(program, Message("cannot be started: {}", system_message(failed)));
     }
     ~Child() { end(); }
     Child(const Child&) = delete;
@@ -175,7 +176,7 @@ class Child {
         const int failed = errno;
         rlimit own{};  // that it has set itself by now: a lower one cannot be raised, and needs not
         if (failed == EPERM && prlimit(pid_, what, nullptr, &own) == 0 && own.rlim_max < hard) return;
-        throw Error(importer().string(), Message("cannot be limited: {}", std::strerror(failed)));
+        throw Error(importer().string(), Message("cannot be limited: {}", system_message(failed)));
     }
     /// With what it started itself.
     void end() {

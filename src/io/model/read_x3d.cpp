@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/system/interrupt.h"
 #include "io/model/file_scene.h"
+#include "io/model/xml_fault.h"
 #include "io/model/xml_numbers.h"
 #include "mesh/read/text_cursor.h"
 
@@ -339,7 +340,7 @@ class Reader {
 mesh::PolygonSoup read_x3d(const std::vector<char>& bytes, const std::filesystem::path& path) {
     pugi::xml_document document;
     const auto parsed = document.load_buffer(bytes.data(), bytes.size());
-    if (!parsed) throw Error(path.string(), Message("not well-formed XML: {}", parsed.description()));
+    if (!parsed) throw Error(path.string(), Message("not well-formed XML: {}", xml_fault(parsed)));
     return soup_of(Reader(document, path.string()).run(), path);
 }
 

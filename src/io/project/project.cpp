@@ -14,6 +14,7 @@
 
 #include "core/system/files.h"
 #include "core/system/memory.h"
+#include "core/system/system_message.h"
 #include "io/project/project_db.h"
 
 namespace fs = std::filesystem;
@@ -95,7 +96,7 @@ Message why_not_opened(const std::filesystem::path& path) {
     if (::access(path.c_str(), R_OK) != 0) return "may not be read; change its permissions";
     if (::access(folder.c_str(), W_OK) != 0) return "cannot be changed: nothing may be written into its folder";
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) return Message("cannot be opened: {}", std::strerror(errno));
+    if (file < 0) return Message("cannot be opened: {}", system_message(errno));
     ::close(file);
     return Message("cannot be opened together with its '{}-journal' file; is that a folder, or somebody else's?",
                    path.filename().string());

@@ -13,6 +13,8 @@
 #include <sstream>
 #include <thread>
 
+#include "core/system/system_message.h"
+
 namespace fs = std::filesystem;
 
 namespace tuft::io {
@@ -90,9 +92,9 @@ class ProjectLock::File {
         folder_ = ::open(real.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (folder_ < 0) {
             const std::string where = real.parent_path().string();
-            throw Error(project.string(),
-                        errno == ENOENT ? Message("its folder '{}' does not exist", where)
-                                        : Message("its folder '{}' cannot be opened: {}", where, std::strerror(errno)));
+            throw Error(project.string(), errno == ENOENT ? Message("its folder '{}' does not exist", where)
+                                                          : Message("its folder '{}' cannot be opened: {}", where,
+                                                                    system_message(errno)));
         }
         try {
             while (!take(project)) {
@@ -124,14 +126,14 @@ class ProjectLock::File {
             if (errno == ENOSPC || errno == EDQUOT)
                 throw Error(project.string(), "cannot be changed: the disk is full");
             throw Error(project.string(),
-                        Message("its lock file '{}' cannot be opened: {}", name_, std::strerror(errno)));
+                        Message("its lock file '{}' cannot be opened: {}", name_, system_message(errno)));
         }
         if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
             if (errno == EINTR) return closed_again();
             if (errno == EWOULDBLOCK) throw ProjectInUse(project, read_holder(file_));
             throw Error(project.string(), Message("cannot be locked against other programs where it lies ({}); copy it "
                                                   "to a disk of this machine and work there",
-                                                  std::strerror(errno)));
+                                                  system_message(errno)));
         }
         if (!same_file(file_, folder_, name_)) return closed_again();
         if (!foreign) return true;

@@ -12,6 +12,7 @@
 #include "core/system/files.h"
 #include "core/system/interrupt.h"
 #include "core/text/units.h"
+#include "io/model/xml_fault.h"
 #include "io/strokes/inkml_decode.h"
 #include "io/strokes/inkml_marks.h"
 #include "stroke/journal/journal.h"
@@ -61,8 +62,7 @@ class Reader : InkmlText {
 
     std::vector<RecordedStroke> run() {
         const auto parsed = document_.load_buffer(content.data(), content.size());
-        if (!parsed)
-            throw Error(path, line_at(parsed.offset), Message("not well-formed XML: {}", parsed.description()));
+        if (!parsed) throw Error(path, line_at(parsed.offset), Message("not well-formed XML: {}", xml_fault(parsed)));
         const xml_node ink = document_.document_element();
         if (local_name(ink) != "ink") fail(ink, "not InkML: the outermost element is not <ink>");
         collect_ids(ink, 0);

@@ -24,7 +24,7 @@ struct InkmlOptions {
     std::size_t max_bytes = std::size_t{1} << 30;
     std::size_t max_samples = 10'000'000;
     bool actions = false;  ///< also returns traces without points, which hold brush actions only
-    std::function<void(const std::string&)> note = {};  ///< called with one line for each kind of skipped content
+    std::function<void(const Message&)> note = {};  ///< called with one line for each kind of skipped content
 };
 
 /// Reads the pen-down traces of a file, in order.

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/system/files.h"
 #include "core/system/interrupt.h"
+#include "io/model/xml_fault.h"
 #include "io/strokes/area_lines.h"
 #include "io/strokes/svg_losses.h"
 #include "io/strokes/svg_shapes.h"
@@ -154,7 +155,7 @@ class Drawing {
 
     const std::vector<Drawn>& lines() const { return lines_; }
     /// What a person would miss, one line each.
-    std::vector<std::string> left_out() const { return losses_.lines(); }
+    std::vector<Message> left_out() const { return losses_.lines(); }
     static std::string local(const char* name) {
         const char* colon = std::strchr(name, ':');
         return colon ? colon + 1 : name;
@@ -366,20 +367,19 @@ std::vector<stroke::RecordedStroke> parse_svg(std::string_view text, const std::
                                               const SvgOptions& options) {
     pugi::xml_document document;
     const auto parsed = document.load_buffer(text.data(), text.size());
-    if (!parsed) throw Error(source, Message("not well formed: {}", parsed.description()));
+    if (!parsed) throw Error(source, Message("not well formed: {}", xml_fault(parsed)));
     const pugi::xml_node svg = document.document_element();
     if (Drawing::local(svg.name()) != "svg") throw Error(source, "not an SVG drawing");
     Drawing drawing(source, options);
     drawing.index(svg);
     drawing.read_sheets(svg, 0);
     drawing.walk(svg, drawing.frame(svg), {}, 0);
-    const std::vector<std::string> losses = drawing.left_out();
+    const std::vector<Message> losses = drawing.left_out();
     if (drawing.lines().empty())
         throw Error(source, Message("nothing is drawn in this file; {}",
-                                    losses.empty() ? Message("text must be turned into paths first")
-                                                   : Message(losses.front())));
+                                    losses.empty() ? Message("text must be turned into paths first") : losses.front()));
     if (options.ink.note)
-        for (const std::string& loss : losses) options.ink.note(source + ": " + loss);
+        for (const Message& loss : losses) options.ink.note(loss);
     std::ostringstream ink;
     ink.precision(12);
     ink << "<ink xmlns='http://www.w3.org/2003/InkML'>";

@@ -7,51 +7,71 @@
 namespace tuft::io {
 namespace {
 
-/// What is said of one and of several; "{}" is the count.
-struct LossText {
-    SvgLoss loss;
-    const char *one, *several;
-};
-
-constexpr LossText kTexts[] = {
-    {SvgLoss::text, "1 text is left out: turn text into paths first",
-     "{} texts are left out: turn text into paths first"},
-    {SvgLoss::image, "1 image is left out", "{} images are left out"},
-    {SvgLoss::foreign, "1 foreignObject is left out", "{} foreignObjects are left out"},
-    {SvgLoss::missing_use, "1 use draws nothing: the file has no element of the id that it names",
-     "{} uses draw nothing: the file has no elements of the ids that they name"},
-    {SvgLoss::outside_use, "1 use of another file is left out: put its element into this file",
-     "{} uses of other files are left out: put their elements into this file"},
-    {SvgLoss::missing_paint, "1 area or line has a paint that the file does not hold and is not painted",
-     "{} areas or lines have a paint that the file does not hold and are not painted"},
-    {SvgLoss::clip, "1 clip path is not applied: what it hides is painted",
-     "{} clip paths are not applied: what they hide is painted"},
-    {SvgLoss::mask, "1 mask is not applied: what it hides is painted",
-     "{} masks are not applied: what they hide is painted"},
-    {SvgLoss::filter, "1 filter is not applied", "{} filters are not applied"},
-    {SvgLoss::gradient, "1 gradient is painted as one even ink", "{} gradients are painted as one even ink"},
-    {SvgLoss::pattern, "1 pattern is painted as one even ink", "{} patterns are painted as one even ink"},
-    {SvgLoss::dash, "1 dashed line is painted whole", "{} dashed lines are painted whole"},
-    {SvgLoss::marker, "1 line loses its markers, such as arrow heads",
-     "{} lines lose their markers, such as arrow heads"},
-    {SvgLoss::opacity, "1 opacity is not applied: the ink is painted in full",
-     "{} opacities are not applied: the ink is painted in full"},
-    {SvgLoss::blend, "1 blend mode is not applied", "{} blend modes are not applied"},
-    {SvgLoss::scaled_width, "1 line that shall keep its width (vector-effect) grows with its transform",
-     "{} lines that shall keep their width (vector-effect) grow with their transforms"},
-    {SvgLoss::white, "1 white area or line is left bare: white is the background, and what it covers stays painted",
-     "{} white areas and lines are left bare: white is the background, and what they cover stays "
-     "painted"},
-    {SvgLoss::frame, "1 svg element within the drawing is drawn without a frame of its own",
-     "{} svg elements within the drawing are drawn without frames of their own"},
-    {SvgLoss::transform, "1 transform in a style is not applied: write it as an attribute",
-     "{} transforms in styles are not applied: write them as attributes"},
-    {SvgLoss::animation, "1 animation is not played", "{} animations are not played"},
-    {SvgLoss::script, "1 script is not run", "{} scripts are not run"},
-    {SvgLoss::rule, "1 rule of a style sheet is passed over: only element names, .class and #id are understood",
-     "{} rules of style sheets are passed over: only element names, .class and #id are understood"},
-};
-static_assert(std::size(kTexts) == kSvgLosses);
+/// What is said of so many of a kind.
+Message loss_text(SvgLoss loss, std::size_t n) {
+    const auto say = [n](const char* one, const char* several) { return n == 1 ? Message(one) : Message(several, n); };
+    switch (loss) {
+        case SvgLoss::text:
+            return say("1 text is left out: turn text into paths first",
+                       "{} texts are left out: turn text into paths first");
+        case SvgLoss::image:
+            return say("1 image is left out", "{} images are left out");
+        case SvgLoss::foreign:
+            return say("1 foreignObject is left out", "{} foreignObjects are left out");
+        case SvgLoss::missing_use:
+            return say("1 use draws nothing: the file has no element of the id that it names",
+                       "{} uses draw nothing: the file has no elements of the ids that they name");
+        case SvgLoss::outside_use:
+            return say("1 use of another file is left out: put its element into this file",
+                       "{} uses of other files are left out: put their elements into this file");
+        case SvgLoss::missing_paint:
+            return say("1 area or line has a paint that the file does not hold and is not painted",
+                       "{} areas or lines have a paint that the file does not hold and are not painted");
+        case SvgLoss::clip:
+            return say("1 clip path is not applied: what it hides is painted",
+                       "{} clip paths are not applied: what they hide is painted");
+        case SvgLoss::mask:
+            return say("1 mask is not applied: what it hides is painted",
+                       "{} masks are not applied: what they hide is painted");
+        case SvgLoss::filter:
+            return say("1 filter is not applied", "{} filters are not applied");
+        case SvgLoss::gradient:
+            return say("1 gradient is painted as one even ink", "{} gradients are painted as one even ink");
+        case SvgLoss::pattern:
+            return say("1 pattern is painted as one even ink", "{} patterns are painted as one even ink");
+        case SvgLoss::dash:
+            return say("1 dashed line is painted whole", "{} dashed lines are painted whole");
+        case SvgLoss::marker:
+            return say("1 line loses its markers, such as arrow heads",
+                       "{} lines lose their markers, such as arrow heads");
+        case SvgLoss::opacity:
+            return say("1 opacity is not applied: the ink is painted in full",
+                       "{} opacities are not applied: the ink is painted in full");
+        case SvgLoss::blend:
+            return say("1 blend mode is not applied", "{} blend modes are not applied");
+        case SvgLoss::scaled_width:
+            return say("1 line that shall keep its width (vector-effect) grows with its transform",
+                       "{} lines that shall keep their width (vector-effect) grow with their transforms");
+        case SvgLoss::white:
+            return say(
+                "1 white area or line is left bare: white is the background, and what it covers stays painted",
+                "{} white areas and lines are left bare: white is the background, and what they cover stays painted");
+        case SvgLoss::frame:
+            return say("1 svg element within the drawing is drawn without a frame of its own",
+                       "{} svg elements within the drawing are drawn without frames of their own");
+        case SvgLoss::transform:
+            return say("1 transform in a style is not applied: write it as an attribute",
+                       "{} transforms in styles are not applied: write them as attributes");
+        case SvgLoss::animation:
+            return say("1 animation is not played", "{} animations are not played");
+        case SvgLoss::script:
+            return say("1 script is not run", "{} scripts are not run");
+        case SvgLoss::rule:
+            return say("1 rule of a style sheet is passed over: only element names, .class and #id are understood",
+                       "{} rules of style sheets are passed over: only element names, .class and #id are understood");
+    }
+    return {};
+}
 
 bool is_black(const std::string& colour) {
     static constexpr const char* names[] = {"black",     "#000",       "#000000",     "#000f",
@@ -66,22 +86,17 @@ void SvgLosses::add_colour(const std::string& colour) {
     if (known_.insert(name).second) colours_.push_back(name);
 }
 
-std::vector<std::string> SvgLosses::lines() const {
-    std::vector<std::string> out;
-    for (const LossText& text : kTexts) {
-        const std::size_t n = counts_[static_cast<std::size_t>(text.loss)];
-        if (n == 1)
-            out.emplace_back(text.one);
-        else if (n > 1)
-            out.push_back(fmt::format(fmt::runtime(text.several), n));
-    }
+std::vector<Message> SvgLosses::lines() const {
+    std::vector<Message> out;
+    for (std::size_t i = 0; i < kSvgLosses; ++i)
+        if (counts_[i] > 0) out.push_back(loss_text(static_cast<SvgLoss>(i), counts_[i]));
     if (colours_.empty() || (colours_.size() == 1 && colours_.front() == "black")) return out;
     constexpr std::size_t kNamed = 6;
     const std::vector<std::string> named(
         colours_.begin(), colours_.begin() + static_cast<std::ptrdiff_t>(std::min(kNamed, colours_.size())));
-    out.push_back(fmt::format("{} painted in one ink: {}{}",
-                              colours_.size() == 1 ? "1 colour is" : fmt::format("{} colours are", colours_.size()),
-                              fmt::join(named, ", "), colours_.size() > kNamed ? ", ..." : ""));
+    const std::string names = fmt::format("{}{}", fmt::join(named, ", "), colours_.size() > kNamed ? ", ..." : "");
+    out.push_back(colours_.size() == 1 ? Message("1 colour is painted in one ink: {}", names)
+                                       : Message("{} colours are painted in one ink: {}", colours_.size(), names));
     return out;
 }
 

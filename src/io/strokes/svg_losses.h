@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
+
 /// \file
 /// Report of the content that an SVG drawing loses on import. Called by svg.cpp only.
 namespace tuft::io {
@@ -44,7 +46,7 @@ class SvgLosses {
     /// Adds a colour of a drawn element, as the file writes it.
     void add_colour(const std::string& colour);
     /// Returns one line for each kind found, with its count, and one for the colours where any is not black.
-    std::vector<std::string> lines() const;
+    std::vector<Message> lines() const;
 
   private:
     std::array<std::size_t, kSvgLosses> counts_{};

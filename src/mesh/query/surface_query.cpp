@@ -1,7 +1,6 @@
 #include "mesh/query/surface_query.h"
 
 #include <embree3/rtcore.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cassert>
@@ -11,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/geometry/bounds.h"
+#include "mesh/ray_tree.h"
 
 namespace tuft::mesh {
 namespace {
@@ -128,14 +128,6 @@ RTCPointQuery make_query(const Vec3& p, double radius) {
     return query;
 }
 
-void check(RTCDevice device, const char* what) {
-    const RTCError code = rtcGetDeviceError(device);
-    if (code == RTC_ERROR_NONE) return;
-    throw Error(Message("cannot build the search tree of the mesh ({}): {}", what,
-                        code == RTC_ERROR_OUT_OF_MEMORY ? Message("out of memory")
-                                                        : Message("Embree error {}", static_cast<int>(code))));
-}
-
 RTCRay make_ray(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max) {
     RTCRay ray{};
     ray.org_x = origin.x;
@@ -161,47 +153,12 @@ bool is_ray(const Vec3f& origin, const Vec3f& direction, float t_min, float t_ma
 
 struct SurfaceQuery::State {
     const TriangleMesh* mesh = nullptr;
-    RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
+    RayTree tree;
 
-    State() = default;
-    State(const State&) = delete;
-    State& operator=(const State&) = delete;
-    ~State() {
-        if (scene) rtcReleaseScene(scene);
-        if (device) rtcReleaseDevice(device);
-    }
+    explicit State(const TriangleMesh& m) : mesh(&m), tree(m.positions, m.triangles) {}
 };
 
-SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : state_(std::make_unique<State>()) {
-    state_->mesh = &mesh;
-    // One builder thread, so that the tree, and with it the choice between equal ray hits, never
-    // varies. Embree's own "threads=1" would hold the whole process to one thread for ever.
-    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-    state_->device = rtcNewDevice("set_affinity=0");
-    if (!state_->device) throw Error("Embree does not start on this machine");
-    state_->scene = rtcNewScene(state_->device);
-    rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);
-    const RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    // Embree reads 16 bytes at every vertex, for which its own buffers are padded and ours are not; triangles
-    // it reads where they are.
-    if (!mesh.triangles.empty()) {
-        void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f),
-                                                 mesh.n_vertices());
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
-                                   3 * sizeof(std::uint32_t), mesh.n_triangles());
-        if (!vertices) {
-            rtcReleaseGeometry(geometry);
-            throw Error("cannot build the search tree of the mesh: out of memory");
-        }
-        std::memcpy(vertices, mesh.positions.data(), mesh.n_vertices() * sizeof(Vec3f));
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(state_->scene, geometry);
-    }
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(state_->scene);
-    check(state_->device, "tree");
-}
+SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : state_(std::make_unique<State>(mesh)) {}
 
 SurfaceQuery::~SurfaceQuery() = default;
 SurfaceQuery::SurfaceQuery(SurfaceQuery&&) noexcept = default;
@@ -218,7 +175,7 @@ std::optional<SurfacePoint> SurfaceQuery::closest_point(const Vec3& p, double ma
     RTCPointQuery query = make_query(p, max_distance * (1 + 1e-6) + best.slack);
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
-    rtcPointQuery(state_->scene, &query, &context, visit_triangle, &best);
+    rtcPointQuery(state_->tree.scene(), &query, &context, visit_triangle, &best);
     if (best.triangle == kNone) return std::nullopt;
     SurfacePoint s = surface_point(*state_->mesh, best.triangle, best.b1, best.b2);
     s.distance = std::sqrt(best.distance2);
@@ -236,7 +193,7 @@ std::vector<NearVertex> SurfaceQuery::nearest_vertices(const Vec3& p, int k, dou
     RTCPointQuery query = make_query(p, max_distance * (1 + 1e-6) + best.slack);
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
-    rtcPointQuery(state_->scene, &query, &context, visit_vertices, &best);
+    rtcPointQuery(state_->tree.scene(), &query, &context, visit_vertices, &best);
     for (NearVertex& v : best.found) {
         const double size = glm::length(v.normal);
         v.normal = size > 0 ? v.normal / size : Vec3{0, 0, 1};
@@ -264,7 +221,7 @@ RayHit SurfaceQuery::trace(const Vec3f& origin, const Vec3f& direction, float t_
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcIntersect1(state_->scene, &context, &rayhit);
+    rtcIntersect1(state_->tree.scene(), &context, &rayhit);
     if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     return {rayhit.hit.primID, rayhit.hit.u, rayhit.hit.v, rayhit.ray.tfar};
 }
@@ -274,7 +231,7 @@ bool SurfaceQuery::blocked(const Vec3f& origin, const Vec3f& direction, float t_
     RTCRay ray = make_ray(origin, direction, t_min, t_max);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcOccluded1(state_->scene, &context, &ray);
+    rtcOccluded1(state_->tree.scene(), &context, &ray);
     return ray.tfar < 0;
 }
 

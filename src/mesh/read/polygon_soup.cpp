@@ -31,15 +31,6 @@ std::vector<Vec2f> uvs_of_points(const PolygonSoup& soup) {
 
 }  // namespace
 
-void turn_round(PolygonSoup& soup) {
-    for (std::size_t i = 0; i < soup.n_polygons(); ++i) {
-        const auto from = static_cast<std::ptrdiff_t>(soup.polygon_start[i]),
-                   to = static_cast<std::ptrdiff_t>(soup.polygon_start[i + 1]);
-        std::reverse(soup.corners.begin() + from, soup.corners.begin() + to);
-        if (!soup.corner_uvs.empty()) std::reverse(soup.corner_uvs.begin() + from, soup.corner_uvs.begin() + to);
-    }
-}
-
 void drop_colours(PolygonSoup& soup) {
     soup.materials.clear();
     soup.point_colours.clear();

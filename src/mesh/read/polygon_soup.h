@@ -39,8 +39,6 @@ struct PolygonSoup {
     std::size_t n_polygons() const { return polygon_start.empty() ? 0 : polygon_start.size() - 1; }
 };
 
-/// Turns every polygon round, so that its back becomes its front.
-void turn_round(PolygonSoup& soup);
 /// Removes all colours and materials.
 void drop_colours(PolygonSoup& soup);
 

@@ -8,6 +8,7 @@
 
 #include "core/geometry/types.h"
 #include "mesh/half_edge.h"
+#include "mesh/repair/repair.h"
 
 /// \file
 /// From loose triangles to a manifold: pairs half-edges (mesh/half_edge.h), orients triangles and splits vertices. Used
@@ -59,14 +60,20 @@ struct PairingReport {
 PairingReport pair_half_edges(RawMesh& mesh);
 
 struct OrientationReport {
-    std::size_t faces_flipped = 0;
-    std::size_t edges_cut = 0;  ///< of one-sided components (Möbius), which cannot be oriented
+    std::size_t faces_flipped = 0;  ///< of closed components, and against the majority of open ones
+    std::size_t parts_turned = 0;   ///< open components that were inside out
+    std::size_t edges_cut = 0;      ///< of one-sided components (Möbius), which cannot be oriented
 };
 
 /// Flips triangles until neighbours agree. In each component the majority retains its orientation. A closed
 /// component gets outward normals (positive signed volume). Exception: a cavity retains its orientation if the file
 /// has it inside another closed component and oriented consistently inward.
-OrientationReport orient(RawMesh& mesh);
+///
+/// With `OpenSides::outward` an open component is turned where its back sees 2.5 times as much of the open as its front
+/// or more (exposure.h), and at least 5 %. So the outside of a shell becomes its front, however many doors and windows
+/// it is made of; sheets, and cups as shallow as a hemisphere, whose inside may be meant, stay as the file has them.
+/// Where nine tenths of the area for which that is known were turned, the rest is turned as well.
+OrientationReport orient(RawMesh& mesh, OpenSides sides);
 
 /// Gives every fan of triangles round a vertex a vertex of its own. Returns the number of vertices with more than
 /// one fan, not counting those on split edges. Precondition: oriented.

@@ -146,6 +146,7 @@ std::vector<Message> describe_defects(const RepairReport& r) {
     tell(r.non_manifold_vertices_split, "{} vertex where separate surfaces touch: split",
          "{} vertices where separate surfaces touch: split");
     tell(r.faces_flipped, "{} face showed its back: turned round", "{} faces showed their backs: turned round");
+    tell(r.parts_turned, "{} open part was inside out: turned round", "{} open parts were inside out: turned round");
     lines.insert(lines.end(), r.warnings.begin(), r.warnings.end());
     return lines;
 }

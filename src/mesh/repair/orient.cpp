@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
+#include "mesh/repair/exposure.h"
 #include "mesh/repair/half_edges.h"
 
 namespace tuft::mesh {
@@ -103,6 +106,54 @@ bool is_cavity(const RawMesh& mesh, const std::vector<Component>& components, st
     return inside;
 }
 
+double area_of(const RawMesh& mesh, const Component& c) {
+    double area = 0;
+    for (const std::uint32_t t : c.faces) {
+        const std::array<Vec3, 3> p = points_of(mesh, t);
+        area += 0.5 * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+    }
+    return area;
+}
+
+/// Whether a component with these exposures is inside out; nothing where that cannot be told.
+std::optional<bool> is_inside_out(const Exposure& seen) {
+    constexpr double kFarMore = 2.5, kLeast = 0.05;
+    if (std::max(seen.front, seen.back) < kLeast) return std::nullopt;
+    if (seen.back >= kFarMore * seen.front) return true;
+    if (seen.front >= kFarMore * seen.back) return false;
+    return std::nullopt;
+}
+
+/// Which open components are inside out, given the faces that are turned to agree with their majority.
+std::vector<bool> find_inside_out(const RawMesh& mesh, const std::vector<Component>& components,
+                                  const std::vector<bool>& turned) {
+    constexpr std::size_t kMostRays = 1'000'000;
+    constexpr double kNearlyAll = 0.9;
+    std::vector<bool> inside_out(components.size(), false);
+    const auto n_open = static_cast<std::size_t>(
+        std::count_if(components.begin(), components.end(), [](const Component& c) { return !c.closed; }));
+    if (n_open == 0) return inside_out;
+    const ExposureProbe probe(mesh);
+    const int rays = static_cast<int>(std::clamp<std::size_t>(kMostRays / n_open, 32, 1024));
+    std::vector<std::size_t> unknown;
+    double known_area = 0, turned_area = 0;
+    for (std::size_t i = 0; i < components.size(); ++i) {
+        if (components[i].closed) continue;
+        const std::optional<bool> known = is_inside_out(probe.of(components[i].faces, turned, rays));
+        if (!known) {
+            unknown.push_back(i);
+            continue;
+        }
+        const double area = area_of(mesh, components[i]);
+        known_area += area;
+        if (*known) turned_area += area;
+        inside_out[i] = *known;
+    }
+    if (known_area > 0 && turned_area >= kNearlyAll * known_area)
+        for (const std::size_t i : unknown) inside_out[i] = true;
+    return inside_out;
+}
+
 /// Which components are to be turned as a whole, given the sides relative to their first face.
 std::vector<bool> choose_sides(const RawMesh& mesh, const std::vector<Component>& components) {
     std::vector<bool> flip(components.size());
@@ -134,7 +185,7 @@ void turn(RawMesh& mesh, const std::vector<bool>& turned) {
 
 }  // namespace
 
-OrientationReport orient(RawMesh& mesh) {
+OrientationReport orient(RawMesh& mesh, OpenSides sides) {
     OrientationReport report;
     const std::size_t n = mesh.triangles.size();
     std::vector<bool> reached(n, false), turned(n, false), face_cut(n, false);
@@ -152,7 +203,18 @@ OrientationReport orient(RawMesh& mesh) {
             turned[t] = turned[t] != flip[i];
             if (turned[t]) ++report.faces_flipped;
         }
-    if (report.faces_flipped) turn(mesh, turned);
+    bool any = report.faces_flipped > 0;
+    if (sides != OpenSides::file) {
+        std::vector<bool> inside_out(components.size(), true);
+        if (sides == OpenSides::outward) inside_out = find_inside_out(mesh, components, turned);
+        for (std::size_t i = 0; i < components.size(); ++i) {
+            if (components[i].closed || !inside_out[i]) continue;
+            any = true;
+            if (sides == OpenSides::outward) ++report.parts_turned;
+            for (const std::uint32_t t : components[i].faces) turned[t] = !turned[t];
+        }
+    }
+    if (any) turn(mesh, turned);
     return report;
 }
 

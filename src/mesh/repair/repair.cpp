@@ -255,8 +255,10 @@ bool Repair::close_cracks() {
 
 /// From paired triangles to a manifold whose numbering says so.
 void Repair::make_manifold() {
-    const OrientationReport sides = orient(mesh_);
+    const OrientationReport sides = orient(mesh_, options_.sides);
+    options_.sides = OpenSides::file;  // chosen once
     report_.faces_flipped += sides.faces_flipped;
+    report_.parts_turned += sides.parts_turned;
     if (sides.edges_cut)
         report_.warnings.push_back(
             Message("a part has only one side (like a Möbius strip); it was cut open along {} edges", sides.edges_cut));
@@ -348,6 +350,13 @@ Surface Repair::run() {
 }
 
 }  // namespace
+
+OpenSides open_sides_of(const std::string& name) {
+    if (name == "outward") return OpenSides::outward;
+    if (name == "file") return OpenSides::file;
+    if (name == "turned") return OpenSides::turned;
+    throw Error(Message("'{}' is no side of a surface: outward, file or turned", name));
+}
 
 Surface build_surface(PolygonSoup soup, const RepairOptions& options) {
     if (!(options.metres_per_unit > 0 && options.metres_per_unit <= 1e6))

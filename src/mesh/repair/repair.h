@@ -14,10 +14,22 @@
 /// load.
 namespace tuft::mesh {
 
+/// Which side of an open part is its front. Closed parts face outward always.
+enum class OpenSides {
+    outward,  ///< the side that sees far more of the open than the other, where there is one (`orient`); else the
+              ///< file's
+    file,     ///< the file's
+    turned,   ///< the other one
+};
+
+/// Words of the command line: outward, file, turned. Back throws `Error` for any other word.
+OpenSides open_sides_of(const std::string& name);
+
 struct RepairOptions {
     double metres_per_unit = 1e-3;                      ///< the file's unit; millimetres by default
     bool y_up = false;                                  ///< y is up in the file: points are rotated to (x, −z, y)
     double crease_angle = 40.0 * 0.017453292519943295;  ///< radians; normals split above it
+    OpenSides sides = OpenSides::outward;
     ProgressFn progress = nullptr;
 };
 
@@ -36,7 +48,8 @@ struct RepairReport {
     std::size_t duplicate_faces_dropped = 0;
     std::size_t non_manifold_edges_split = 0;
     std::size_t non_manifold_vertices_split = 0;
-    std::size_t faces_flipped = 0;  ///< to orient a component consistently
+    std::size_t faces_flipped = 0;  ///< to orient a component consistently, and a closed one outward
+    std::size_t parts_turned = 0;   ///< open components that were inside out (`OpenSides::outward`)
     std::size_t components = 0;
     std::size_t holes = 0;  ///< border loops
     std::size_t border_edges = 0;
@@ -50,8 +63,8 @@ struct Surface {
 };
 
 /// Welds, triangulates, drops, splits and orients the polygons of a soup. The result is a clean mesh as plain
-/// arrays; OpenMesh stays inside. Closed components are oriented outward. Deterministic. Throws `Error` only when
-/// no triangle with an area is left. Cost: about 2 s and 0.5 GB per million triangles.
+/// arrays; OpenMesh stays inside. Closed components are oriented outward, open ones as `OpenSides` says. Deterministic.
+/// Throws `Error` only when no triangle with an area is left. Cost: about 2 s and 0.5 GB per million triangles.
 Surface build_surface(PolygonSoup soup, const RepairOptions& options = {});
 
 }  // namespace tuft::mesh
