@@ -24,18 +24,25 @@ std::span<const ContactPlane> part_of(std::span<const ContactPlane> all, std::si
     return all.size() > 1 ? all.subspan(first, count) : all;
 }
 
+/// Tangents and broad axes of the nodes of a spine, unit, root first.
+struct NodeAxes {
+    std::vector<Vec3> along, broad;
+
+    explicit NodeAxes(const rod::Memory& memory) : along(node_tangents(memory)), broad(broad_axes(memory, along)) {}
+};
+
 /// Obstacles of one spine (root first) from its planes (tip first). The tuft's reach depends on the direction.
-std::vector<rod::Obstacle> obstacles_of_wide(const Preset& p, const Spine& spine,
+std::vector<rod::Obstacle> obstacles_of_wide(const Preset& p, const Spine& spine, const NodeAxes& axes,
                                              std::span<const ContactPlane> planes) {
     const std::size_t count = spine.rest_radius.size();
     std::vector<rod::Obstacle> out;
     if (planes.empty()) return out;
-    const std::vector<Vec3> t = node_tangents(spine.memory), x = broad_axes(spine.memory, t);
     out.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const ContactPlane& plane = planes.size() == 1 ? planes[0] : planes[count - 1 - i];
-        out[i] = {plane.origin / p.length, plane.normal, rest_reach(spine, i, x[i], t[i], plane.normal) / p.length,
-                  plane.beyond_origin / p.length, plane.beyond_normal};
+        const double reach = rest_reach(spine, i, axes.broad[i], axes.along[i], plane.normal);
+        out[i] = {plane.origin / p.length, plane.normal, reach / p.length, plane.beyond_origin / p.length,
+                  plane.beyond_normal};
     }
     return out;
 }
@@ -46,7 +53,6 @@ std::vector<double> spread_half_widths(const Spine& spine) {
     std::vector<double> out;
     const std::size_t count = spine.rest_radius.size();
     if (spine.flank.size() != 2 * count || spine.side.size() != 2 * count) return out;
-    const std::vector<Vec3> t = node_tangents(spine.memory), x = broad_axes(spine.memory, t);
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t k = 2 * (count - 1 - i);
         const Vec3 across = spine.side[k] - spine.side[k + 1];
@@ -78,7 +84,7 @@ struct Coupled {
             const std::size_t count = spine.rest_radius.size();
             laws.push_back(law_of(p, tuft.wetness, 1 / spine.share, dt));
             laws.back().max_iterations = std::min(laws.back().max_iterations, most_iterations);
-            obstacles.push_back(obstacles_of_wide(p, spine, part_of(planes, first, count)));
+            obstacles.push_back(obstacles_of_wide(p, spine, NodeAxes(spine.memory), part_of(planes, first, count)));
             walls.push_back(flank_walls(p, spine, pose.rotation, part_of(beside, 2 * first, 2 * count), tuft.wetness));
             first += count;
         }
