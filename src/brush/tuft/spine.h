@@ -21,11 +21,12 @@ struct Passed {
     std::vector<Vec3> slip;  ///< [n+1] as in rod::Result; or none
 };
 
-/// Displacements to the neighbouring spines at the nodes, metres, root first; empty on an outer side. A spine's
-/// sections end halfway to them.
-struct Neighbours {
-    std::vector<Vec3> before, after;
+/// A neighbouring spine at the nodes, root first. A spine's sections end where both touch.
+struct Neighbour {
+    std::vector<Vec3> apart;   ///< m, displacement to it
+    std::vector<double> part;  ///< own half-width over the distance of both at rest
 };
+using Neighbours = std::vector<Neighbour>;
 
 rod::Clamp clamp_of(const Preset& preset, const Pose& pose);
 

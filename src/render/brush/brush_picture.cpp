@@ -40,7 +40,7 @@ struct Hand {
     Hand(const Preset& p, double tilt, double slant, Side side) {
         now.tuft = make_tuft(p, 3);
         now.pose.rotation = glm::angleAxis(-tilt, Vec3{0, 1, 0}) * glm::angleAxis(slant, Vec3{1, 0, 0});
-        if (now.tuft.wide() && side == Side::broad)
+        if (has_broad_side(now.tuft.preset) && side == Side::broad)
             now.pose.rotation = now.pose.rotation * glm::angleAxis(0.5 * std::numbers::pi, Vec3{0, 0, 1});
         lowest = p.length * -now.pose.axis().z;
         now.pose.position = {0, 0, lowest};
@@ -227,7 +227,7 @@ BrushPicture draw_tuft(const Preset& preset, int width) {
     const Vec2 band[] = {{0, 0}, {sheet.width, 0}, {sheet.width, head}, {0, head}};
     fill_polygon(canvas, band, linear_colour(246, 243, 236));
     sheet.text(preset.name + label(", hair %.0f mm long", preset.length / kMillimetre) +
-                   (preset.spines > 1 ? label(", %.0f mm wide", preset.width / kMillimetre) : "") +
+                   (has_broad_side(preset) ? label(", %.0f mm wide", preset.width / kMillimetre) : "") +
                    label(", %.1f mm thick", 2 * preset.radius / kMillimetre),
                {24 * unit, 36 * unit}, 18, sheet.ink);
     return {width, height, to_srgb(canvas)};
