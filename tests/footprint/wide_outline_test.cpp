@@ -172,6 +172,47 @@ TEST(WideOutline, FilbertHasARoundToe) {
     for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(rim.hi[i], rim.hi[n - 1 - i], 3 * kCell);
 }
 
+/// Width of the stripe of a sword after a long way, straight or on a circle of 60 mm, metres. Its blade goes along the
+/// way where its point touches, or keeps its direction.
+double stripe_of_sword(bool circle, bool follows) {
+    constexpr double kRadius = 60e-3, kStep = 2e-4, kDepth = 0.15;
+    const brush::Preset p = brush::load_preset("sword-8");
+    brush::Tuft tuft = brush::make_tuft(p, 7);
+    brush::TuftState state;
+    const brush::ContactPlane ground;
+    double behind = 0, widest = 0;
+    for (int i = 0; i < 1800; ++i) {
+        const double along = kStep * i, turn = circle ? along / kRadius : 0;
+        brush::Pose pose;
+        pose.position = {circle ? kRadius * std::sin(turn) : along, circle ? kRadius * (1 - std::cos(turn)) : 0,
+                         p.length * (1 - kDepth * std::min(1.0, i / 150.0))};
+        pose.rotation = glm::angleAxis(follows ? turn - behind : 0, Vec3{0, 0, 1});
+        state = brush::step(tuft, pose, std::span(&ground, 1), 2e-3);
+        const Vec3& point = state.branches.back().sections.front().centre;
+        if (circle && state.touching)
+            behind = std::remainder(turn - std::atan2(point.x, kRadius - point.y), 2 * std::numbers::pi);
+        if (i < 1200 || i % 20 != 0) continue;
+        Extent across;
+        for (const Outline& o : outline(state, kFlat)) {
+            for (const Vec2& q : curve_points(o, 6)) {
+                const double at = circle ? std::hypot(q.x, q.y - kRadius) : q.y;
+                across.lo = std::min(across.lo, at);
+                across.hi = std::max(across.hi, at);
+            }
+        }
+        widest = std::max(widest, across.width());
+    }
+    return widest;
+}
+
+/// A sword whose blade follows a curve of 60 mm draws the stripe that it draws straight on, within 3 %; one that keeps
+/// its direction draws its breadth.
+TEST(WideOutline, ABladeThatFollowsACurveKeepsItsStripe) {
+    const double straight = stripe_of_sword(false, true);
+    EXPECT_NEAR(stripe_of_sword(true, true) / straight, 1, 0.03);
+    EXPECT_GT(stripe_of_sword(true, false), 3 * straight);
+}
+
 /// Spines that are not joined keep outlines of their own; joined ones get one more between two.
 TEST(WideOutline, OutlinesFollowTheOpenings) {
     brush::TuftState tuft = dragged("flat-12");
