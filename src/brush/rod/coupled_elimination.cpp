@@ -276,14 +276,14 @@ class BlockElimination {
             for (int i = 0; i < 2; ++i) gain.z[2 * k + i][moves_ + steps_] += s.ws.derivatives.gradient[2 * j + i];
         }
         if (!factorise(gain.upper, gain.inverse, steps_)) return false;
-        if (j > 0) lay_inboard(j, gain);
+        if (j > 0) couple_inboard(j, gain);
         forward(gain.upper, gain.inverse, steps_, moves_ + steps_ + 1, gain.z);
-        if (j > 0) move_inboard(j, gain);
+        if (j > 0) reduce_inboard(j, gain);
         return true;
     }
 
     /// Completes the rows of segment j by what couples it to the nodes and segments inboard.
-    void lay_inboard(int j, Gain& gain) {
+    void couple_inboard(int j, Gain& gain) {
         for (int k = 0; k < k_; ++k) {
             const Solver& s = solvers_[k];
             if (j >= s.n()) continue;
@@ -300,7 +300,7 @@ class BlockElimination {
     }
 
     /// The model over the moves of the nodes inboard of segment j and over the steps of the segments there.
-    void move_inboard(int j, const Gain& gain) {
+    void reduce_inboard(int j, const Gain& gain) {
         Outboard& out = scratch_.out;
         const int columns = moves_ + steps_ + 1;
         square(gain.z, steps_, moves_ + steps_, columns, scratch_.gram);

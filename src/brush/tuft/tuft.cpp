@@ -142,16 +142,19 @@ void add_spine(const Preset& p, const Spine& spine, Solved solved, const Vec3& l
 TuftState bend_trunk(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
                      std::span<const ContactPlane> walls) {
     const Preset& p = tuft.preset;
-    const rod::Clamp clamp = clamp_of(p, pose);
     const std::size_t own = tuft.trunk().rest_radius.size();
-    const std::span<const ContactPlane> main_planes = planes.size() > 1 ? planes.first(own) : planes;
+    SpineStep step{.preset = p,
+                   .clamp = clamp_of(p, pose),
+                   .rotation = pose.rotation,
+                   .planes = planes.size() > 1 ? planes.first(own) : planes,
+                   .wetness = tuft.wetness,
+                   .dt = dt};
+    // The table knows no walls.
+    if (p.spine != SpineMethod::table) step.walls = walls;
     Passed passed;
-    if (p.spine == SpineMethod::rod)
-        passed = approach(p, tuft.trunk(), tuft.pose, pose, main_planes, walls, tuft.wetness, dt);
-    Solved solved =
-        p.spine == SpineMethod::table
-            ? stand_spine(p, tuft.table, tuft.trunk(), clamp, pose.rotation, main_planes, tuft.wetness)
-            : solve_spine(p, tuft.trunk(), clamp, pose.rotation, main_planes, tuft.wetness, 1, dt, walls, passed);
+    if (p.spine == SpineMethod::rod) passed = follow_ferrule(step, tuft.trunk(), tuft.pose, pose);
+    Solved solved = p.spine == SpineMethod::table ? bend_by_table(step, tuft.table, tuft.trunk())
+                                                  : solve_spine(step, tuft.trunk(), passed);
     TuftState state;
     add_spine(p, tuft.trunk(), std::move(solved), Vec3{0}, state);
     return state;

@@ -107,12 +107,12 @@ struct Coupled {
             rods.push_back(
                 {&spine.rod, &spine.memory, spine_clamp(p, spine, pose), obstacles[k], &laws[k], {}, walls[k]});
         }
-        lay_pairs(tuft);
+        make_pairs(tuft);
         return rod::solve_coupled(rods, pairs, coupling_of(p, tuft.wetness));
     }
 
   private:
-    void lay_pairs(Tuft& tuft) {
+    void make_pairs(Tuft& tuft) {
         const double length = tuft.preset.length;
         pairs.clear();
         for (Beside& beside : tuft.beside) {
@@ -327,9 +327,14 @@ SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPla
             }
         }
         const std::size_t count = spine.rest_radius.size();
-        out.spines.push_back(with_sections(p, spine, std::move(result.rods[k]), node[k], to.rotation,
-                                           coupled.obstacles[k], tuft.wetness, 1 / spine.share,
-                                           part_of(walls, 2 * first, 2 * count), neighbours));
+        const SpineStep step{.preset = p,
+                             .clamp = spine.memory.clamp,
+                             .rotation = to.rotation,
+                             .walls = part_of(walls, 2 * first, 2 * count),
+                             .wetness = tuft.wetness,
+                             .share = 1 / spine.share};
+        out.spines.push_back(
+            finish_spine(step, spine, {std::move(result.rods[k]), node[k], coupled.obstacles[k]}, neighbours));
         first += count;
     }
     for (std::size_t k = 0; k < tuft.beside.size(); ++k) {
