@@ -76,5 +76,42 @@ TEST(Conservation, AThousandStrokesKeepEachPigment) {
     }
 }
 
+/// A flat that is dipped whole in one ink and with one corner in another lays both down at once; of each, what is on
+/// the sheet and in the hair is what the dips brought.
+TEST(Conservation, ADoubleLoadedFlatKeepsBothInks) {
+    const std::string flat = "flat-12";
+    const Model model = sheet();
+    Document painting(model, {.substrate = "porcelain", .undo_bytes = 1});
+    const auto in_hair = [&](int p) { return painting.brushes().find(flat)->reservoir.pigment(p); };
+    for (int k = 0; k < 2; ++k)
+        painting.paint(BrushAction{.kind = BrushActionKind::dip,
+                                   .brush = flat,
+                                   .ink = kInks[k],
+                                   .extent = {.side = k == 0 ? 0.0 : 0.5},
+                                   .dip = DipMode::persistent});
+    const std::array supplied{in_hair(0), in_hair(1)};
+    ASSERT_GT(supplied[0], 0);
+    PaintStroke s;
+    s.trace.flat = false;
+    s.brush = flat;
+    s.ink = kInks[0];
+    s.settings.dip = DipMode::persistent;
+    s.settings.film = FilmModel::still;
+    const double length = brush::load_preset(flat).length;
+    for (int k = 0; k <= 40; ++k) {
+        StrokeSample p;
+        p.time = 0.01 * k;
+        p.position = {0, 6e-3 - 3e-4 * k, length + 0.5e-3 - 5e-3 * std::sin(std::numbers::pi * k / 40)};
+        s.trace.samples.push_back(p);
+    }
+    EXPECT_TRUE(painting.paint(s).touched());
+    for (int p = 0; p < 2; ++p) {
+        const double on_sheet = painting.layers().canvas().total(model.texels, p);
+        // Texels are of single precision: 6e-8 of each, thousands of them alike in sign at most.
+        if (supplied[p] > 0) EXPECT_NEAR((on_sheet + in_hair(p)) / supplied[p], 1, 1e-6) << kInks[p];
+        EXPECT_GT(on_sheet, 0) << kInks[p];
+    }
+}
+
 }  // namespace
 }  // namespace tuft::stroke

@@ -40,14 +40,17 @@ TEST(Symmetry, MirroringTwiceIsNothing) {
     EXPECT_NEAR(std::abs(glm::dot(back.rotation, kPose.rotation)), 1, 1e-14);
 }
 
-// A ferrule that is rolled by r over a plane lies rolled by −r in the mirror, as its broad side goes: ±x.
+// A ferrule that is rolled by r over a plane lies in the mirror as its image: the end of its broad side where the hair
+// is long, +x, where that of the image is. Only y, in which every tuft is symmetric, points the other way.
 TEST(Symmetry, TheBroadSideIsMirrored) {
     for (const double roll : {0.0, 0.4, -1.9}) {
         const auto turned = [](double r) { return Quat(std::cos(0.5 * r), 0, 0, std::sin(0.5 * r)); };
-        const brush::Pose copy =
-            symmetry_copies({.mirror_x = true})[0].pose({.position = {1, 2, 3}, .rotation = turned(roll)});
-        EXPECT_NEAR(glm::distance(copy.rotation * Vec3(1, 0, 0), turned(-roll) * Vec3(1, 0, 0)), 0, 1e-15);
-        EXPECT_NEAR(glm::distance(copy.rotation * Vec3(0, 1, 0), turned(-roll) * Vec3(0, 1, 0)), 0, 1e-15);
+        const PoseMap mirror = symmetry_copies({.mirror_x = true})[0];
+        const brush::Pose copy = mirror.pose({.position = {1, 2, 3}, .rotation = turned(roll)});
+        const Vec3 x = mirror.linear * (turned(roll) * Vec3(1, 0, 0)),
+                   y = mirror.linear * (turned(roll) * Vec3(0, 1, 0));
+        EXPECT_NEAR(glm::distance(copy.rotation * Vec3(1, 0, 0), x), 0, 1e-15);
+        EXPECT_NEAR(glm::distance(copy.rotation * Vec3(0, 1, 0), -y), 0, 1e-15);
     }
 }
 

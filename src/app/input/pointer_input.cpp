@@ -93,7 +93,7 @@ PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Prese
     : surface_(surface),
       holder_(stroke::holder_options(preset, surface.mesh())),
       settings_(settings),
-      wide_(preset.spines > 1),
+      wide_(brush::has_broad_side(preset)),
       reach_(std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()})) {
     holder_.tip_lag = std::move(lag.upright);
     holder_.tip_lag_change = std::move(lag.tilted);

@@ -60,7 +60,7 @@ void draw_wide_tuft_icon(const Ui& ui, const brush::Preset& preset, unsigned hai
 
 // The tuft's outline, ferrule above, tip below.
 void draw_tuft_icon(const Ui& ui, const brush::Preset& preset, unsigned hair, ImVec2 at, float width, float height) {
-    if (preset.spines > 1) return draw_wide_tuft_icon(ui, preset, hair, at, width, height);
+    if (brush::has_broad_side(preset)) return draw_wide_tuft_icon(ui, preset, hair, at, width, height);
     ImDrawList* draw = ImGui::GetWindowDrawList();
     constexpr double longest = 0.048;  // metres that fill the icon
     const auto scale = static_cast<float>(height * 0.74f / longest);
@@ -106,7 +106,7 @@ void brush_cell(Ui& ui, BrushSettings& brush, const std::string& name, const std
     draw_tuft_icon(ui, preset, hair_colour(sort), at, width, height);
     if (!over) return;
     char text[256];
-    if (preset.spines > 1)
+    if (brush::has_broad_side(preset))
         std::snprintf(text, sizeof text, ui.tr("%.0f mm long, %.0f mm wide, %.1f mm thick"), preset.length * 1e3,
                       preset.width * 1e3, 2 * preset.radius * 1e3);
     else
@@ -125,7 +125,7 @@ Savings brush_rack(Ui& ui, BrushSettings& brush, ToolRoom room) {
     std::vector<std::string> single, wide;
     for (auto& [sort, names] : by_sort) {
         if (names.size() == 1)
-            (shipped_brush(names.front()).spines > 1 ? wide : single).push_back(names.front());
+            (brush::has_broad_side(shipped_brush(names.front())) ? wide : single).push_back(names.front());
         else
             groups.emplace_back(sort, names);
     }

@@ -126,7 +126,7 @@ void remember_brush(BrushSettings& brush, const PaintThread* work) {
 
 bool has_wide_ferrule(const BrushSettings& brush) {
     try {
-        return brush::load_preset(brush.preset).spines > 1;
+        return brush::has_broad_side(brush::load_preset(brush.preset));
     } catch (const Error&) {
         return false;  // a file that is gone
     }

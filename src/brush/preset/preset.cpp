@@ -204,8 +204,13 @@ void check_preset(const Preset& p, const std::string& source) {
     if (p.radius > 0.5 * p.length) {
         throw Error(source, "'shape.radius_mm' must not exceed half of 'shape.length_mm'");
     }
-    if (p.spines > 1 && p.width < 2 * p.radius) {
+    if (p.width > 0 && p.width < 2 * p.radius) {
         throw Error(source, "'ferrule.width_mm' must be at least the thickness, 2 'shape.radius_mm'");
+    }
+    if (p.spines > 1 && p.width == 0) {
+        if (p.spines < 4) throw Error(source, "a round ferrule holds 1 spine, or 4 to 9 in a ring ('ferrule.spines')");
+        if (p.slant > 0 || p.splay > 0)
+            throw Error(source, "'ferrule.slant_mm' and 'ferrule.splay_deg' need 'ferrule.width_mm'");
     }
     if (p.spines == 1 && p.width > 0) throw Error(source, "'ferrule.width_mm' needs 'ferrule.spines' above 1");
     if (p.toe > 0 && p.slant > 0) throw Error(source, "'ferrule.toe_mm' and 'ferrule.slant_mm' exclude each other");

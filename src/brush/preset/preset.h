@@ -38,8 +38,8 @@ struct Preset {
     int segments = 16;         ///< spine segments, 12–24
 
     // Ferrule (tuft/ferrule.h). One spine is a round tuft; with more, `radius` is half the thickness.
-    int spines = 1;                 ///< K, 1–9, side by side over the width
-    double width = 0;               ///< m, of the ferrule's mouth; 0 for a round tuft
+    int spines = 1;                 ///< K, 1–9: in a row over the width, or in a ring where that is 0
+    double width = 0;               ///< m, of the ferrule's mouth; 0: round
     double corner = 16;             ///< exponent q of the mouth's shape: 2 an ellipse … 16 a rectangle
     double toe = 0;                 ///< m, by which the hair at both edges is shorter (filbert)
     double slant = 0;               ///< m, by which the hair at the edge −x is shorter than at +x (sword)
@@ -102,9 +102,14 @@ struct Preset {
     SpineMethod spine = SpineMethod::rod;
 };
 
+/// Whether the ferrule has a broad side; else it is round.
+inline bool has_broad_side(const Preset& preset) {
+    return preset.width > 0;
+}
+
 /// Returns how wide the tuft is, metres: the ferrule's width, or the thickness of a round tuft.
 inline double tuft_width(const Preset& preset) {
-    return preset.spines > 1 ? preset.width : 2 * preset.radius;
+    return has_broad_side(preset) ? preset.width : 2 * preset.radius;
 }
 
 /// Returns a preset scaled by `factor` that draws the same strokes at that size. Lengths scale by `factor`, B0 by

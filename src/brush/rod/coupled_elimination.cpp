@@ -34,55 +34,56 @@ constexpr int kMaxMoves = 3 * kMaxCoupled, kMaxSteps = 2 * kMaxCoupled;
 /// the right-hand side; rounded up to whole vectors.
 constexpr int kMaxColumns = (kMaxMoves + kMaxSteps + 1 + 7) / 8 * 8;
 
-/// Rows of segment j of all rods as it was eliminated: with U = L Lᵀ, Z = L⁻¹ [X | in | g].
+/// Rows of segment j of all rods as it was eliminated: with U = Rᵀ R, Z = R⁻ᵀ [X | in | g].
 struct Gain {
-    double lower[kMaxSteps][kMaxSteps];
+    double upper[kMaxSteps][kMaxSteps];  ///< R
+    double inverse[kMaxSteps];           ///< 1 / its diagonal
     double z[kMaxSteps][kMaxColumns];
 };
 
-/// Cholesky factor of the lower half of `a` in place; false where it is not positive definite.
-bool factorise(double (&a)[kMaxSteps][kMaxSteps], int n) {
-    for (int i = 0; i < n; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            double sum = a[i][j];
-            for (int k = 0; k < j; ++k) sum -= a[i][k] * a[j][k];
-            if (j < i) {
-                a[i][j] = sum / a[j][j];
-            } else {
-                if (!(sum > 0)) return false;
-                a[i][i] = std::sqrt(sum);
-            }
+/// Cholesky factor of the upper half of `a` in place; false where it is not positive definite. Sums run along the rows:
+/// the same bits for any width of vectors.
+TUFT_CLONES bool factorise(double (&a)[kMaxSteps][kMaxSteps], double (&inverse)[kMaxSteps], int n) {
+    for (int j = 0; j < n; ++j) {
+        const double* __restrict row = a[j];
+        if (!(row[j] > 0)) return false;
+        const double f = 1 / std::sqrt(row[j]);
+        for (int i = j; i < n; ++i) a[j][i] *= f;
+        inverse[j] = f;
+        for (int k = j + 1; k < n; ++k) {
+            const double g = row[k];
+            double* __restrict other = a[k];
+            for (int i = k; i < n; ++i) other[i] -= g * row[i];
         }
     }
     return true;
 }
 
-/// z ← L⁻¹ z. Sums run along the columns: the same bits for any width of vectors.
-TUFT_CLONES void forward(const double (&lower)[kMaxSteps][kMaxSteps], int n, int columns,
-                         double (&z)[kMaxSteps][kMaxColumns]) {
+/// z ← R⁻ᵀ z.
+TUFT_CLONES void forward(const double (&upper)[kMaxSteps][kMaxSteps], const double (&inverse)[kMaxSteps], int n,
+                         int columns, double (&z)[kMaxSteps][kMaxColumns]) {
     for (int i = 0; i < n; ++i) {
         double* __restrict row = z[i];
-        for (int j = 0; j < i; ++j) {
-            const double f = lower[i][j];
-            const double* __restrict other = z[j];
-            for (int c = 0; c < columns; ++c) row[c] -= f * other[c];
+        for (int c = 0; c < columns; ++c) row[c] *= inverse[i];
+        for (int j = i + 1; j < n; ++j) {
+            const double f = upper[i][j];
+            double* __restrict other = z[j];
+            for (int c = 0; c < columns; ++c) other[c] -= f * row[c];
         }
-        const double f = 1 / lower[i][i];
-        for (int c = 0; c < columns; ++c) row[c] *= f;
     }
 }
 
-/// gram ← Zᵀ Z, rows [0, rows).
+/// gram ← Zᵀ Z, rows [0, rows), of each the columns from its diagonal on.
 TUFT_CLONES void square(const double (&z)[kMaxSteps][kMaxColumns], int n, int rows, int columns,
                         double (&gram)[kMaxColumns][kMaxColumns]) {
     for (int r = 0; r < rows; ++r) {
         double* __restrict out = gram[r];
-        for (int c = 0; c < columns; ++c) out[c] = 0;
+        const int from = r / 4 * 4;
+        for (int c = from; c < columns; ++c) out[c] = 0;
         for (int i = 0; i < n; ++i) {
             const double f = z[i][r];
-            if (f == 0) continue;
             const double* __restrict row = z[i];
-            for (int c = 0; c < columns; ++c) out[c] += f * row[c];
+            for (int c = from; c < columns; ++c) out[c] += f * row[c];
         }
     }
 }
@@ -139,7 +140,7 @@ class BlockElimination {
         double x[kMaxMoves]{}, v[kMaxSteps]{}, u[kMaxSteps]{};
         for (int j = 0; j < n_; ++j) {
             const Gain& gain = scratch_.gain[j];
-            // L Lᵀ u = −L [Z_x x + Z_in v + z_g].
+            // R u = −[Z_x x + Z_in v + z_g].
             for (int i = 0; i < steps_; ++i) {
                 double sum = gain.z[i][moves_ + steps_];
                 for (int c = 0; j > 0 && c < moves_; ++c) sum += gain.z[i][c] * x[c];
@@ -147,8 +148,8 @@ class BlockElimination {
                 u[i] = -sum;
             }
             for (int i = steps_; i-- > 0;) {
-                for (int k = i + 1; k < steps_; ++k) u[i] -= gain.lower[k][i] * u[k];
-                u[i] /= gain.lower[i][i];
+                for (int k = i + 1; k < steps_; ++k) u[i] -= gain.upper[i][k] * u[k];
+                u[i] *= gain.inverse[i];
             }
             std::size_t first = 0;
             for (int k = 0; k < k_; ++k) {
@@ -229,7 +230,7 @@ class BlockElimination {
         Gain& gain = scratch_.gain[j];
         // Rows of U: own + R + AᵀPA + QA + (QA)ᵀ; of Xᵀ: AᵀP + Q.
         for (int i = 0; i < steps_; ++i) {
-            std::copy(out.r[i], out.r[i] + steps_, gain.lower[i]);
+            std::copy(out.r[i], out.r[i] + steps_, gain.upper[i]);
             std::copy(out.q[i], out.q[i] + moves_, gain.z[i]);
             std::fill(gain.z[i] + moves_, gain.z[i] + moves_ + steps_, 0.0);
             gain.z[i][moves_ + steps_] = out.r1[i];
@@ -252,36 +253,37 @@ class BlockElimination {
             }
         }
         for (int i = 0; i < steps_; ++i) {
-            for (int k = 0; k <= i; ++k) {
-                const Arm& arm = arms_[k / 2];
-                const double* row = pa[i] + 3 * (k / 2);
-                gain.lower[i][k] +=
-                    row[0] * arm(0, k % 2) + row[1] * arm(1, k % 2) + row[2] * arm(2, k % 2) + qa[i][k] + qa[k][i];
+            for (int k = i / 2; k < k_; ++k) {
+                const Arm& arm = arms_[k];
+                const double* row = pa[i] + 3 * k;
+                for (int c = 0; c < 2; ++c)
+                    gain.upper[i][2 * k + c] += row[0] * arm(0, c) + row[1] * arm(1, c) + row[2] * arm(2, c) +
+                                                qa[i][2 * k + c] + qa[2 * k + c][i];
             }
             for (int c = 0; c < moves_; ++c) gain.z[i][c] += pa[i][c];
         }
         for (int k = 0; k < k_; ++k) {
             const Solver& s = solvers_[k];
             if (j >= s.n()) {
-                gain.lower[2 * k][2 * k] = gain.lower[2 * k + 1][2 * k + 1] = 1;
+                gain.upper[2 * k][2 * k] = gain.upper[2 * k + 1][2 * k + 1] = 1;
                 continue;
             }
             const Mat2& m = s.ws.derivatives.segment[j].own;
             const double damped = damping_ > 0 ? damping_of(s, j) : 0;
-            gain.lower[2 * k][2 * k] += m.m[0][0] + damped;
-            gain.lower[2 * k + 1][2 * k] += m.m[1][0];
-            gain.lower[2 * k + 1][2 * k + 1] += m.m[1][1] + damped;
+            gain.upper[2 * k][2 * k] += m.m[0][0] + damped;
+            gain.upper[2 * k][2 * k + 1] += m.m[1][0];
+            gain.upper[2 * k + 1][2 * k + 1] += m.m[1][1] + damped;
             for (int i = 0; i < 2; ++i) gain.z[2 * k + i][moves_ + steps_] += s.ws.derivatives.gradient[2 * j + i];
         }
-        if (!factorise(gain.lower, steps_)) return false;
-        if (j > 0) lay_inboard(j, gain);
-        forward(gain.lower, steps_, moves_ + steps_ + 1, gain.z);
-        if (j > 0) move_inboard(j, gain);
+        if (!factorise(gain.upper, gain.inverse, steps_)) return false;
+        if (j > 0) couple_inboard(j, gain);
+        forward(gain.upper, gain.inverse, steps_, moves_ + steps_ + 1, gain.z);
+        if (j > 0) reduce_inboard(j, gain);
         return true;
     }
 
     /// Completes the rows of segment j by what couples it to the nodes and segments inboard.
-    void lay_inboard(int j, Gain& gain) {
+    void couple_inboard(int j, Gain& gain) {
         for (int k = 0; k < k_; ++k) {
             const Solver& s = solvers_[k];
             if (j >= s.n()) continue;
@@ -298,18 +300,21 @@ class BlockElimination {
     }
 
     /// The model over the moves of the nodes inboard of segment j and over the steps of the segments there.
-    void move_inboard(int j, const Gain& gain) {
+    void reduce_inboard(int j, const Gain& gain) {
         Outboard& out = scratch_.out;
         const int columns = moves_ + steps_ + 1;
         square(gain.z, steps_, moves_ + steps_, columns, scratch_.gram);
         const auto& gram = scratch_.gram;
         for (int i = 0; i < moves_; ++i) {
-            for (int c = 0; c < moves_; ++c) out.p[i][c] -= gram[i][c];
+            for (int c = i; c < moves_; ++c) {
+                out.p[i][c] -= gram[i][c];
+                out.p[c][i] = out.p[i][c];
+            }
+            for (int c = 0; c < steps_; ++c) out.q[c][i] = -gram[i][moves_ + c];
             out.p1[i] -= gram[i][columns - 1];
         }
         for (int i = 0; i < steps_; ++i) {
-            for (int c = 0; c < moves_; ++c) out.q[i][c] = -gram[moves_ + i][c];
-            for (int c = 0; c < steps_; ++c) out.r[i][c] = -gram[moves_ + i][moves_ + c];
+            for (int c = i; c < steps_; ++c) out.r[i][c] = out.r[c][i] = -gram[moves_ + i][moves_ + c];
             out.r1[i] = -gram[moves_ + i][columns - 1];
         }
         for (int k = 0; k < k_; ++k) {

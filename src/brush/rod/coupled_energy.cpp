@@ -84,7 +84,7 @@ void CoupledSystem::freeze_pairs() {
                 const double past = std::abs(glm::dot(y[i] - x[i], node.across)) / f.pair->depth[i];
                 node.faces = 1 - smooth_step((past - kFaces) / (1 - kFaces));
             }
-            const double normal = f.normal[i];
+            const double normal = f.lagged[i];
             node.cap = std::isfinite(law_.friction) ? law_.friction * normal : law_.friction;
         }
     }

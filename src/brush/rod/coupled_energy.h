@@ -34,6 +34,7 @@ struct FrozenPair {
     std::vector<FrozenNode> node;  ///< [m+1]
     std::vector<Sym3> curvature;  ///< [m+1] ∂²U/∂d² of the last evaluation, times the weight; without shear along t
     std::vector<double> normal;       ///< [m+1] k_n ⟨g₀ − g⟩ there
+    std::vector<double> lagged;       ///< [m+1] the same of the pass before, or of the last solve: it bounds friction
     std::vector<SegmentShear> shear;  ///< [m] there, or empty
 
     int segments() const { return nodes - 1; }

@@ -16,6 +16,8 @@ constexpr double kSettled = 1e-3;  ///< change of t and m between passes, radian
 struct Work {
     std::vector<Solver> solvers;
     std::vector<FrozenPair> pairs;
+    std::vector<double> miss;  ///< of the pairs' lagged normal forces in the pass before
+    double relaxation = 1;     ///< of those forces
 };
 
 FrozenPair frozen_pair(const CoupledPair& pair, std::span<const CoupledRod> rods) {
@@ -29,8 +31,19 @@ FrozenPair frozen_pair(const CoupledPair& pair, std::span<const CoupledRod> rods
     out.curvature.resize(n);
     pair.memory->slip.resize(n, Vec2{0});
     pair.memory->normal.resize(n, 0);
-    out.normal = pair.memory->normal;
+    pair.memory->growth.resize(n, 0);
+    out.normal = out.lagged = pair.memory->normal;
     return out;
+}
+
+/// Starts the lagged normal forces from those of the last solve, changed on as they changed there.
+void start_pairs(Work& w) {
+    double part = 2;
+    for (const Solver& s : w.solvers) part = std::min(part, s.stands() ? 0 : s.onward());
+    for (FrozenPair& f : w.pairs) {
+        for (std::size_t i = 0; i < f.lagged.size(); ++i)
+            f.lagged[i] = std::max(0.0, f.normal[i] + part * f.pair->memory->growth[i]);
+    }
 }
 
 /// Starts all rods from their shapes carried on as they changed in the last solve, if Π of all is lower there.
@@ -78,6 +91,30 @@ bool settled(std::span<const FrozenNode> before, std::span<const FrozenNode> now
     return change <= pass_tolerance * sum + 1e-12;
 }
 
+/// Moves the lagged normal forces of all pairs towards those of the pass, by Aitken's rule from the second pass on.
+void relax_pairs(Work& w, int pass) {
+    double along = 0, before = 0;
+    std::size_t at = 0;
+    for (const FrozenPair& f : w.pairs) {
+        for (std::size_t i = 0; i < f.normal.size(); ++i, ++at) {
+            const double miss = f.normal[i] - f.lagged[i];
+            if (pass == 1) {
+                w.miss.push_back(miss);
+                continue;
+            }
+            along += miss * w.miss[at];
+            before += w.miss[at] * w.miss[at];
+            w.miss[at] = miss;
+        }
+    }
+    // As for the normal forces of one rod, see Solver::relax.
+    const double ratio = before > 0 ? along / before : 0;
+    if (pass > 1) w.relaxation = std::clamp(w.relaxation / std::max(1 - ratio, 0.2), 0.2, 1.5);
+    at = 0;
+    for (FrozenPair& f : w.pairs)
+        for (double& n : f.lagged) n = std::max(0.0, n + w.relaxation * w.miss[at++]);
+}
+
 /// A spring of stiffness k on the shift u that slid where it passed `cap`: its slip moves on.
 void slide(double k, double cap, double weight, double u, double& slip, CoupledResult& out) {
     const double strain = u - slip, most = cap / k, size = std::abs(strain);
@@ -100,7 +137,11 @@ PairState finish_pair(const FrozenPair& f, const CouplingLaw& law, const Work& w
         const double touching = f.pair->touching[i], spread = f.pair->spread.empty() ? touching : f.pair->spread[i];
         const PairEnergy u = pair_energy(f.pair->law_at(law, i), touching, spread, distance);
         out.energy += f.weight[i] * frozen.faces * u.value;
-        memory.normal[i] = frozen.faces * u.normal;
+        const double normal = frozen.faces * u.normal;
+        // As for a contact's force, see ContactMemory.
+        memory.growth[i] =
+            normal > 0 && memory.normal[i] > 0 ? 0.5 * (memory.growth[i] + normal - memory.normal[i]) : 0;
+        memory.normal[i] = normal;
         state.distance.push_back(distance);
         state.gap.push_back(distance - touching);
         state.faces.push_back(frozen.faces);
@@ -131,6 +172,7 @@ void begin(std::span<const CoupledRod> rods, std::span<const CoupledPair> pairs,
         w.solvers.back().begin(r.load, buffers[k].before);
     }
     for (const CoupledPair& pair : pairs) w.pairs.push_back(frozen_pair(pair, rods));
+    start_pairs(w);
 }
 
 }  // namespace
@@ -155,6 +197,7 @@ CoupledResult solve_coupled(std::span<const CoupledRod> rods, std::span<const Co
             if (!s.fine.empty() && !s.take_normal_forces(passes)) at_rest = false;
         }
         const std::vector<FrozenNode> before = nodes_of(w.pairs);
+        relax_pairs(w, passes);
         system.freeze_pairs();
         converged = at_rest && settled(before, nodes_of(w.pairs), limits.pass_tolerance);
         if (converged || passes >= limits.max_passes || iterations >= limits.max_iterations) break;

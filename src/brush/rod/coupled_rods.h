@@ -58,6 +58,7 @@ struct CouplingLaw {
 struct PairMemory {
     std::vector<Vec2> slip;      ///< u_p of segment i, and v_p of node i
     std::vector<double> normal;  ///< k_n ⟨g₀ − g⟩ of the last solve
+    std::vector<double> growth;  ///< its change over the last solves, for the first guess
 };
 
 /// Two neighbours. Node i of both faces the other for i ≤ m, m the smaller number of segments.

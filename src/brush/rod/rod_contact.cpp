@@ -9,17 +9,30 @@ namespace tuft::brush::rod {
 
 namespace {
 
-/// Spring that slips at `cap` along a displacement of metric length q; G d is the metric's slope.
-void add_slider(double cap, double k, const Vec3& gd, const Sym3& g, double q, double& energy, Vec3& slope,
-                Sym3& curvature) {
-    if (q * k <= cap) {
-        energy += 0.5 * k * q * q;
-        slope += k * gd;
-        curvature += k * g;
+/// Displacement in a metric G.
+struct MetricLength {
+    double q = 0;  ///< √(d·G d)
+    Vec3 gd{0};    ///< G d
+    Sym3 g;        ///< G
+};
+
+/// Potential with its derivatives over a point's position.
+struct PointPotential {
+    double& energy;
+    Vec3& slope;
+    Sym3& curvature;
+};
+
+/// Adds a spring of stiffness k that slips at `cap`.
+void add_slider(double cap, double k, const MetricLength& d, const PointPotential& to) {
+    if (d.q * k <= cap) {
+        to.energy += 0.5 * k * d.q * d.q;
+        to.slope += k * d.gd;
+        to.curvature += k * d.g;
     } else {
-        energy += cap * (q - 0.5 * cap / k);
-        slope += cap / q * gd;
-        curvature += cap / q * (g + -1 / (q * q) * outer(gd));
+        to.energy += cap * (d.q - 0.5 * cap / k);
+        to.slope += cap / d.q * d.gd;
+        to.curvature += cap / d.q * (d.g + -1 / (d.q * d.q) * outer(d.gd));
     }
 }
 
@@ -30,10 +43,11 @@ void add_friction(const Friction& f, const Vec3& normal, const Vec3& x, double& 
     const double a2 = f.across * f.across, l2 = f.along * f.along;
     const Sym3 g = a2 * (Sym3{1, 0, 0, 1, 0, 1} + -1.0 * outer(normal)) + (l2 - a2) * outer(f.grain);
     const Vec3 gd = g * d;
-    add_slider(f.cap, f.stick, gd, g, std::sqrt(std::max(0.0, glm::dot(d, gd))), energy, slope, curvature);
+    const PointPotential to{energy, slope, curvature};
+    add_slider(f.cap, f.stick, {std::sqrt(std::max(0.0, glm::dot(d, gd))), gd, g}, to);
     const double pushed = glm::dot(d, f.grain);
     if (f.pore_cap > 0 && pushed > 0) {
-        add_slider(f.pore_cap, f.stick, pushed * f.grain, outer(f.grain), pushed, energy, slope, curvature);
+        add_slider(f.pore_cap, f.stick, {pushed, pushed * f.grain, outer(f.grain)}, to);
     }
 }
 
@@ -123,8 +137,18 @@ struct Piece {
     double weight = 0, radius = 0, give = 0;
 };
 
-/// Hair over a crease, moved back along itself by `s` to where it stands.
-struct Standing {
+/// A piece of hair at a crease.
+struct HairAtCrease {
+    const Law& law;
+    const Crease& crease;
+    const Obstacle& obstacle;
+    const Piece& piece;
+    Vec3 x{0};        ///< where it is
+    Vec3 inwards{0};  ///< unit, its direction to the root
+};
+
+/// Hair over a crease, shortened along itself by `s`.
+struct Shortened {
     double s = 0;
     Vec3 x{0};
     Distance at_surface;
@@ -132,10 +156,10 @@ struct Standing {
     double miss = 0;         // s / give less the force along the hair
 };
 
-Standing stand_back(const Law& law, const Crease& crease, const Obstacle& o, const Piece& piece, const Vec3& x,
-                    const Vec3& inwards, double s) {
-    Standing out{.s = s, .x = x + s * inwards};
-    out.at_surface = distance_of(o, crease, law.edge, out.x);
+Shortened shortened_by(const HairAtCrease& hair, double s) {
+    const auto& [law, crease, obstacle, piece, x, inwards] = hair;
+    Shortened out{.s = s, .x = x + s * inwards};
+    out.at_surface = distance_of(obstacle, crease, law.edge, out.x);
     const double depth = piece.radius - out.at_surface.z;
     out.push = normal_force(law, piece.weight, piece.radius, depth, 0);
     out.pull = adhesion(law, piece.weight, -depth);
@@ -148,14 +172,13 @@ Standing stand_back(const Law& law, const Crease& crease, const Obstacle& o, con
 
 /// The largest s at which s²/(2 give) + contact(r - z(x + s i)) is stationary: where the hair, coming
 /// from its root, meets the surface. Bracketed from outside, then false position (Illinois).
-Standing stand_back(const Law& law, const Crease& crease, const Obstacle& o, const Piece& piece, const Vec3& x,
-                    const Vec3& inwards) {
-    const auto at = [&](double s) { return stand_back(law, crease, o, piece, x, inwards, s); };
-    Standing low = at(0);
-    if (piece.give <= 0 || low.push.force <= 0) return low;
+Shortened shorten_to_surface(const HairAtCrease& hair) {
+    const auto at = [&](double s) { return shortened_by(hair, s); };
+    Shortened low = at(0);
+    if (hair.piece.give <= 0 || low.push.force <= 0) return low;
     constexpr int kSteps = 12;
-    const double step = 3 * law.end_compliance / kSteps;
-    Standing high = at(kSteps * step);
+    const double step = 3 * hair.law.end_compliance / kSteps;
+    Shortened high = at(kSteps * step);
     if (high.miss <= 0) return high;
     for (int k = kSteps; k-- > 0;) {
         low = at(k * step);
@@ -164,7 +187,7 @@ Standing stand_back(const Law& law, const Crease& crease, const Obstacle& o, con
     }
     if (low.miss >= 0) return low;
     double at_low = low.miss, at_high = high.miss;
-    Standing mid = low;
+    Shortened mid = low;
     for (int i = 0; i < 60 && high.s - low.s > 1e-15; ++i) {
         mid = at((low.s * at_high - high.s * at_low) / (at_high - at_low));
         if (std::abs(mid.miss) < 1e-12 * (1 + mid.push.force)) break;
@@ -183,7 +206,7 @@ Standing stand_back(const Law& law, const Crease& crease, const Obstacle& o, con
 
 /// Adds the potential of a piece over an edge where it stands. With i the direction inwards, y = x + s i
 /// and ψ(y) the contact's: E = s²/(2 give) + ψ, E_x = ψ', E_i = s ψ'.
-double add_piece(int p, const Piece& piece, const Standing& st, Evaluation& out) {
+double add_piece(int p, const Piece& piece, const Shortened& st, Evaluation& out) {
     const Stencil& at = piece.at;
     const Vec3 inwards = at.inwards(out.node);
     const double force = st.push.force - st.pull.force;
@@ -218,7 +241,7 @@ bool over_edge(const Frozen& frozen, int p) {
 /// contact point as the hair moves over it: there the length of each is taken in pieces.
 constexpr int kPieces = 4;
 
-/// Calls f(piece, where it stands) for the pieces of contact point p.
+/// Calls f(piece, its hair shortened to the surface) for the pieces of contact point p.
 template <class F>
 void for_clusters(const Frozen& frozen, int p, const std::vector<Vec3>& node, const F& f) {
     const int per = frozen.law->points_per_segment, n = frozen.rod->segments();
@@ -233,7 +256,8 @@ void for_clusters(const Frozen& frozen, int p, const std::vector<Vec3>& node, co
         const Obstacle &o = frozen.obstacles[p], &other = frozen.obstacles[offset < 0 ? p - 1 : p + 1];
         piece.radius = o.radius + std::abs(offset) * (other.radius - o.radius);
         piece.give = frozen.give[p] * frozen.weight[p] / piece.weight;
-        f(piece, stand_back(*frozen.law, frozen.crease[p], o, piece, piece.at.at(node), piece.at.inwards(node)));
+        f(piece,
+          shorten_to_surface({*frozen.law, frozen.crease[p], o, piece, piece.at.at(node), piece.at.inwards(node)}));
     }
 }
 
@@ -256,7 +280,7 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     };
     if (over_edge(frozen, p)) {
         double energy = 0;
-        for_clusters(frozen, p, out.node, [&](const Piece& piece, const Standing& standing) {
+        for_clusters(frozen, p, out.node, [&](const Piece& piece, const Shortened& standing) {
             energy += add_piece(p, piece, standing, out);
         });
         out.contact += energy;
@@ -306,7 +330,7 @@ Obstacle met_by(const Frozen& frozen, int p, const std::vector<Vec3>& node) {
     // The mean over its pieces, by their forces.
     double total = 0;
     Vec3 normal{0}, origin{0};
-    for_clusters(frozen, p, node, [&](const Piece&, const Standing& st) {
+    for_clusters(frozen, p, node, [&](const Piece&, const Shortened& st) {
         total += st.push.force;
         normal += st.push.force * st.at_surface.slope;
         origin += st.push.force * (st.x - st.at_surface.z * st.at_surface.slope);

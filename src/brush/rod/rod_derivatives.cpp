@@ -9,19 +9,23 @@ namespace {
 
 using Joint = Derivatives::Joint;
 
-/// Of the joint between inner segment a and outer b, with their sides.
-void lay_joint(const JointForce& jf, const Vec3& a, const Vec3& a1, const Vec3& a2, const Vec3& b, const Vec3& b1,
-               const Vec3& b2, Joint& out) {
+/// Unit tangent of a segment and its two normals.
+struct SegmentAxes {
+    Vec3 tangent{0, 0, -1}, side{1, 0, 0}, second{0, 1, 0};
+};
+
+/// Of the joint between an inner segment a and an outer one b.
+void compute_joint(const JointForce& jf, const SegmentAxes& a, const SegmentAxes& b, Joint& out) {
     const AngleFunctions& f = jf.angle;
-    const double c = glm::dot(a, b);
-    out.p[0] = glm::dot(a1, b);
-    out.p[1] = glm::dot(a2, b);
-    out.q[0] = glm::dot(b1, a);
-    out.q[1] = glm::dot(b2, a);
-    out.r[0][0] = glm::dot(a1, b1);
-    out.r[0][1] = glm::dot(a1, b2);
-    out.r[1][0] = glm::dot(a2, b1);
-    out.r[1][1] = glm::dot(a2, b2);
+    const double c = glm::dot(a.tangent, b.tangent);
+    out.p[0] = glm::dot(a.side, b.tangent);
+    out.p[1] = glm::dot(a.second, b.tangent);
+    out.q[0] = glm::dot(b.side, a.tangent);
+    out.q[1] = glm::dot(b.second, a.tangent);
+    out.r[0][0] = glm::dot(a.side, b.side);
+    out.r[0][1] = glm::dot(a.side, b.second);
+    out.r[1][0] = glm::dot(a.second, b.side);
+    out.r[1][1] = glm::dot(a.second, b.second);
     for (int i = 0; i < 2; ++i) {
         for (int k = 0; k < 2; ++k) {
             out.ja[i][k] = -f.chi * out.p[i] * out.p[k] - (i == k ? f.phi * c : 0);
@@ -88,20 +92,19 @@ void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& a
     out.gradient.assign(2 * n, 0);
     out.second.resize(n);
     out.joint.resize(n);
-    Vec3 a = frozen.clamp.tangent, side = frozen.clamp.side, second = glm::cross(a, side);
+    const Clamp& clamp = frozen.clamp;
+    SegmentAxes inner{clamp.tangent, clamp.side, glm::cross(clamp.tangent, clamp.side)};
     for (int j = 0; j < n; ++j) {
-        const Vec3 &b = shape.tangent[j], &b1 = shape.side[j];
-        out.second[j] = glm::cross(b, b1);
+        const SegmentAxes outer_axes{shape.tangent[j], shape.side[j], glm::cross(shape.tangent[j], shape.side[j])};
+        out.second[j] = outer_axes.second;
         Joint& joint = out.joint[j];
-        lay_joint(at.joint[j], a, side, second, b, b1, out.second[j], joint);
+        compute_joint(at.joint[j], inner, outer_axes, joint);
         const Vec2& m = at.joint[j].moment;
         for (int i = 0; i < 2; ++i) {
             out.gradient[2 * j + i] += joint.jb[0][i] * m.x + joint.jb[1][i] * m.y;
             if (j > 0) out.gradient[2 * (j - 1) + i] += joint.ja[0][i] * m.x + joint.ja[1][i] * m.y;
         }
-        a = b;
-        side = b1;
-        second = out.second[j];
+        inner = outer_axes;
     }
     // Forces outboard of a segment, seen through its lever arm.
     Vec3 slope{0};

@@ -28,14 +28,19 @@ struct Section {
     Vec3 m{0, 1, 0};         ///< unit, in the bending plane
     double a = 0;            ///< semi-axis along e, metres
     double b = 0;            ///< semi-axis along m, metres; a b = r² (area is kept)
-    double moment = 0;       ///< bending moment, N·m
-    double pressure = 0;     ///< contact force per length on the node, N/m
+    /// Cosine and sine of ψ: the broad side of a strip's hair is at ω = ψ of the outline, its thickness a quarter turn
+    /// on.
+    Vec2 turn{1, 0};
+    double moment = 0;    ///< bending moment, N·m
+    double pressure = 0;  ///< contact force per length on the node, N/m
 };
 
 /// One spine with its sections, tip first (index 0) and root last.
 struct Branch {
     std::vector<Section> sections;
     double ink_share = 1;  ///< of the tuft's ink; shares sum to one
+    /// Corners of the hair's section where that is a strip, convex, over the semi-axes at ψ and across; else empty.
+    std::vector<Vec2> strip;
 };
 
 /// Energy of the whole spine, joules; sub-spines follow it. The hand's work against `TuftState::force` and `moment`
@@ -50,19 +55,26 @@ struct TuftEnergy {
     double stored() const { return bend + contact + aside; }
 };
 
-/// State of the tuft at one time: one branch, the sub-spines after bifurcation, or the spines of a wide ferrule.
+/// Gap between two neighbouring branches.
+struct Opening {
+    int first = 0, second = 1;  ///< branches
+    /// By how much it is wider than ink bridges, metres; at most 0 where they are joined. Beyond the end of the shorter
+    /// one: as at its tip. [sections of the first], tip first
+    std::vector<double> width;
+};
+
+/// State of the tuft at one time: one branch, the sub-spines after bifurcation, or the spines of a ferrule.
 struct TuftState {
     std::vector<Branch> branches;
-    /// The branches are the spines of a wide ferrule, from −x to +x; else one trunk, or its sub-spines.
+    /// The branches are the spines of a ferrule, in the order of `Tuft::spines`; else one trunk, or its sub-spines.
     bool wide = false;
-    /// [branch] of its sections, tip first: by how much the gap to the next branch is wider than ink bridges, metres;
-    /// at most 0 where they are joined. Beyond the end of the shorter one: as at its tip. [K−1] or none
-    std::vector<std::vector<double>> openings;
-    Vec3 force{0};            ///< of the surface on the tuft, newtons, world
-    Vec3 device_force{0};     ///< that force filtered by the hair's mass, newtons, world
-    Vec3 moment{0};           ///< of `force` about the root, N·m, world
-    double root_moment = 0;   ///< bending moment at the ferrule, N·m
-    double normal_force = 0;  ///< newtons
+    bool strips = false;            ///< they stand in a row: the hair of each fills a rectangle, not a disc
+    std::vector<Opening> openings;  ///< of neighbouring spines, or none
+    Vec3 force{0};                  ///< of the surface on the tuft, newtons, world
+    Vec3 device_force{0};           ///< that force filtered by the hair's mass, newtons, world
+    Vec3 moment{0};                 ///< of `force` about the root, N·m, world
+    double root_moment = 0;         ///< bending moment at the ferrule, N·m
+    double normal_force = 0;        ///< newtons
     TuftEnergy energy;
     bool touching = false;
     bool converged = true;  ///< false: the solver stopped at its limit with its best state

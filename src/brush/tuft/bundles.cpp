@@ -65,6 +65,24 @@ double with_area_below(double part) {
     return table[k] + (at - k) * (table[k + 1] - table[k]);
 }
 
+/// The unit disc of which equal parts of the square |x|, |y| ≤ 1 make equal parts (Shirley and Chiu 1997).
+Vec2 disc_of_square(const Vec2& at) {
+    if (at.x == 0 && at.y == 0) return at;
+    const bool wide = std::abs(at.x) > std::abs(at.y);
+    const double r = wide ? at.x : at.y, w = wide ? 0.25 * pi * at.y / at.x : 0.5 * pi - 0.25 * pi * at.x / at.y;
+    return r * Vec2{std::cos(w), std::sin(w)};
+}
+
+/// Position in the ring's middle disc, or in one of the sectors round it.
+BranchPlace in_ring(const Vec2& place, int around) {
+    const double r2 = glm::dot(place, place), inner2 = 1.0 / (around + 1);
+    if (r2 < inner2) return {0, place / std::sqrt(inner2)};
+    const double turn = 2 * pi / around, at = std::atan2(place.y, place.x) / turn, sector = std::round(at);
+    const double out = 2 * std::min(1.0, (r2 - inner2) / (1 - inner2)) - 1;
+    const int k = static_cast<int>(sector);
+    return {1 + (k + around) % around, disc_of_square({out, 2 * (at - sector)})};
+}
+
 /// Readiness by rank, so that it is spread evenly: hairs side by side are much alike.
 void rank_readiness(Bundles& bundles) {
     const std::size_t n = bundles.bristles.size();
@@ -87,14 +105,17 @@ void rank_readiness(Bundles& bundles) {
 Bundles make_bundles(const Preset& p, std::uint64_t seed) {
     Bundles out;
     out.seed = seed;
-    if (p.spines > 1) {
+    const bool broad = has_broad_side(p);
+    if (broad) {
         for (const FerruleSpine& spine : ferrule_spines(p)) out.strips.push_back({spine.from, spine.to});
+    } else if (p.spines > 1) {
+        out.around = p.spines - 1;
     }
     const auto place = [&](std::uint64_t salt, std::size_t i, std::size_t count, double shake) {
-        return p.spines > 1 ? in_mouth(hash_bits(seed, salt), i) : spiral(hash_bits(seed, salt), i, count, shake);
+        return broad ? in_mouth(hash_bits(seed, salt), i) : spiral(hash_bits(seed, salt), i, count, shake);
     };
     // Distances are compared in metres.
-    const Vec2 size = p.spines > 1 ? Vec2{0.5 * p.width / p.radius, 1} : Vec2{1};
+    const Vec2 size = broad ? Vec2{0.5 * p.width / p.radius, 1} : Vec2{1};
     const auto n = static_cast<std::size_t>(std::max(p.bundles, 1));
     for (std::size_t k = 0; k < n; ++k) {
         out.place.push_back(n == 1 ? Vec2{0} : place(1, k, n, 0.7));
@@ -114,7 +135,7 @@ Bundles make_bundles(const Preset& p, std::uint64_t seed) {
         b.place = Vec2f(at);
         // The tip is made by the middle hairs; the outer ones end before it.
         const double shorter = uniform(hash_bits(seed, 5), i);
-        b.end = static_cast<float>(1 - 0.3 * shorter * shorter * (p.spines > 1 ? std::abs(at.y) : glm::length(at)));
+        b.end = static_cast<float>(1 - 0.3 * shorter * shorter * (broad ? std::abs(at.y) : glm::length(at)));
         b.bundle = static_cast<std::uint16_t>(best);
         out.bristles.push_back(b);
     }
@@ -153,6 +174,7 @@ BranchPlace in_branch(const Bundles& bundles, const Vec2& place, int count) {
         const double x = 2 * (place.x - strips[k].from) / (strips[k].to - strips[k].from) - 1;
         return {static_cast<int>(k), kSquare * Vec2{std::clamp(x, -1.0, 1.0), place.y}};
     }
+    if (bundles.around > 0) return in_ring(place, bundles.around);
     if (count <= 1) return {0, place};
     const double at = count * area_below(place.x);
     const int branch = std::clamp(static_cast<int>(at), 0, count - 1);

@@ -30,6 +30,7 @@ struct Bundles {
     /// Of a wide ferrule, from −x to +x. Places are then over its half-width and half-thickness, x along the broad
     /// side.
     std::vector<HairStrip> strips;
+    int around = 0;           ///< of a ring of spines, the number round the middle one; 0: no ring
     std::vector<Vec2> place;  ///< [n] position in the section, unit disc
     /// [n] seeded, about 1: film that the bundle leaves on the surface, relative to the mean.
     std::vector<double> holds;
@@ -61,7 +62,8 @@ Vec2 place_of(const Bundles& bundles, const Bristle& bristle);
 /// Position in a branch of a position in the whole section. The section is cut into `count` strips of equal area from
 /// −e to +e, and each strip is mapped to a disc. Order and fractions of the hair are preserved. For one branch it is
 /// the identity. A strip of a wide ferrule is mapped to the rectangle of equal area about the disc's middle,
-/// half-widths √π/2: side by side the rectangles of neighbours leave no gap.
+/// half-widths √π/2: side by side the rectangles of neighbours leave no gap. A sector of a ring is mapped to a disc of
+/// equal area too, its outer rim towards +x (Shirley and Chiu 1997).
 struct BranchPlace {
     int branch = 0;
     Vec2 place{0};

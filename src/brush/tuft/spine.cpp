@@ -129,12 +129,11 @@ Spine make_spine(const Preset& p, const rod::Rod& rod, const rod::Clamp& clamp, 
     return spine;
 }
 
-Solved with_sections(const Preset& p, Spine& spine, rod::Result result, std::span<const Vec3> node, const Quat& turn,
-                     std::span<const rod::Obstacle> obstacles, double wetness, double share,
-                     std::span<const ContactPlane> walls, const Neighbours& neighbours) {
-    Solved out{std::move(result), {}};
-    const std::span<const rod::Obstacle> met = out.result.met.empty() ? obstacles : out.result.met;
-    SectionOutput sections = make_sections({p, spine, out.result, met, node, turn, wetness, share, walls, neighbours});
+Solved finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, const Neighbours& neighbours) {
+    Solved out{std::move(rod.result), {}};
+    const std::span<const rod::Obstacle> met = out.result.met.empty() ? rod.obstacles : out.result.met;
+    SectionOutput sections = make_sections({step.preset, spine, out.result, met, rod.node, step.rotation, step.wetness,
+                                            step.share, step.walls, neighbours});
     spine.side = std::move(sections.sides);
     spine.flank = std::move(sections.flank);
     spine.wide = sections.wide;
@@ -147,18 +146,17 @@ Solved with_sections(const Preset& p, Spine& spine, rod::Result result, std::spa
     return out;
 }
 
-Solved solve_spine(const Preset& p, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
-                   std::span<const ContactPlane> planes, double wetness, double share, double dt,
-                   std::span<const ContactPlane> walls, const Passed& passed) {
-    const rod::Law law = law_of(p, wetness, share, dt);
-    const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
-    rod::Result result =
-        rod::solve(spine.rod, spine.memory, clamp, obstacles, law, {}, flank_walls(p, spine, turn, walls, wetness));
+Solved solve_spine(const SpineStep& step, Spine& spine, const Passed& passed) {
+    const Preset& p = step.preset;
+    const rod::Law law = law_of(p, step.wetness, step.share, step.dt);
+    const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, step.planes);
+    rod::Result result = rod::solve(spine.rod, spine.memory, step.clamp, obstacles, law, {},
+                                    flank_walls(p, spine, step.rotation, step.walls, step.wetness));
     spine.pressed = result.contact_energy;
     result.dissipation += passed.dissipation;
     for (std::size_t i = 0; i < passed.slip.size(); ++i) result.slip[i] += passed.slip[i];
     const std::vector<Vec3> node = rod::curve_nodes(spine.rod, spine.memory.node);
-    return with_sections(p, spine, std::move(result), node, turn, obstacles, wetness, share, walls);
+    return finish_spine(step, spine, {std::move(result), node, obstacles});
 }
 
 namespace {
@@ -184,9 +182,10 @@ int parts_of_way(const Preset& p, const Pose& from, const Pose& to, double bend)
     return std::clamp(static_cast<int>(std::ceil(moved / largest)), 1, kMaxParts);
 }
 
-Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to, std::span<const ContactPlane> planes,
-                std::span<const ContactPlane> walls, double wetness, double& dt) {
-    rod::Law law = law_of(p, wetness, 1, 0);
+Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pose& to) {
+    const Preset& p = step.preset;
+    const std::span<const ContactPlane> planes = step.planes;
+    rod::Law law = law_of(p, step.wetness, 1, 0);
     Passed passed;
     if (planes.empty()) return passed;
     const auto upright = [&](const Pose& pose) { return Upright{.tip = pose.position + p.length * pose.axis()}; };
@@ -194,15 +193,15 @@ Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
         std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
     const int parts = parts_of_way(p, from, to, bend);
     law.max_iterations = std::max(30, law.max_iterations / parts);
-    dt /= parts;
-    set_time(p, dt, law);
+    step.dt /= parts;
+    set_time(p, step.dt, law);
     Pose last = from;
     for (int k = 1; k < parts; ++k) {
         const Pose pose = between(from, to, static_cast<double>(k) / parts);
         turn_with_spread(p, spine, last, pose, planes);
         break_symmetry(p, spine, last, pose, planes, upright(pose));
         const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes),
-                                         law, {}, flank_walls(p, spine, pose.rotation, walls, wetness));
+                                         law, {}, flank_walls(p, spine, pose.rotation, step.walls, step.wetness));
         spine.pressed = r.contact_energy;
         passed.dissipation += r.dissipation;
         passed.slip.resize(r.slip.size(), Vec3{0});
@@ -214,10 +213,11 @@ Passed approach(const Preset& p, Spine& spine, const Pose& from, const Pose& to,
     return passed;
 }
 
-Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
-                   std::span<const ContactPlane> planes, double wetness) {
-    const rod::Law law = law_of(p, wetness, 1, 0);
-    const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, planes);
+Solved bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spine) {
+    const Preset& p = step.preset;
+    const rod::Clamp& clamp = step.clamp;
+    const rod::Law law = law_of(p, step.wetness, 1, 0);
+    const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, step.planes);
     rod::Memory& m = spine.memory;
     const Vec3 root_before = m.clamp.position;
     const Vec3 tip_before = rod::nodes(spine.rod, m).back();
@@ -228,7 +228,7 @@ Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const
     r.moment.assign(n, 0);
     r.normal_force.assign(n + 1, 0);
     r.contact_force.assign(n + 1, Vec3{0});
-    const auto lay = [&](const TableRow& row, const Vec3& side) {
+    const auto take_shape = [&](const TableRow& row, const Vec3& side) {
         for (std::size_t i = 0; i <= n; ++i) {
             const Vec2 b = row.nodes[n - i] / p.length;
             m.node[i] = clamp.position + b.x * clamp.tangent + b.y * side;
@@ -244,17 +244,17 @@ Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const
         side = glm::normalize(side + 0.03 * glm::cross(clamp.tangent, side));
     }
     if (obstacles.empty()) {
-        lay(table.rows.front(), side);
-        return with_sections(p, spine, std::move(r), m.node, turn, obstacles, wetness, 1);
+        take_shape(table.rows.front(), side);
+        return finish_spine(step, spine, {std::move(r), m.node, obstacles});
     }
     const rod::Obstacle& o = obstacles.back();
     const double root = glm::dot(clamp.position - o.origin, o.normal);
-    const double moment = standing_moment(table, [&](const TableRow& row) {
+    const double moment = touching_moment(table, [&](const TableRow& row) {
         const Vec2 tip = row.nodes.front() / p.length;
         return root + tip.x * glm::dot(clamp.tangent, o.normal) + tip.y * glm::dot(side, o.normal);
     });
     const TableRow row = look_up(table, moment);
-    lay(row, side);
+    take_shape(row, side);
     if (moment > 0) {
         const double unit = p.stiffness / p.length;
         for (std::size_t j = 0; j < n; ++j) r.moment[j] = row.moments[n - j] / unit;
@@ -277,7 +277,7 @@ Solved stand_spine(const Preset& p, const QueryTable& table, Spine& spine, const
         }
         for (double& f : r.normal_force) f *= sum > 0 ? reaction / sum : 0;
     }
-    return with_sections(p, spine, std::move(r), m.node, turn, obstacles, wetness, 1);
+    return finish_spine(step, spine, {std::move(r), m.node, obstacles});
 }
 
 }  // namespace tuft::brush

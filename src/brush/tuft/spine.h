@@ -21,11 +21,12 @@ struct Passed {
     std::vector<Vec3> slip;  ///< [n+1] as in rod::Result; or none
 };
 
-/// Displacements to the neighbouring spines at the nodes, metres, root first; empty on an outer side. A spine's
-/// sections end halfway to them.
-struct Neighbours {
-    std::vector<Vec3> before, after;
+/// A neighbouring spine at the nodes, root first. A spine's sections end where both touch.
+struct Neighbour {
+    std::vector<Vec3> apart;   ///< m, displacement to it
+    std::vector<double> part;  ///< own half-width over the distance of both at rest
 };
+using Neighbours = std::vector<Neighbour>;
 
 rod::Clamp clamp_of(const Preset& preset, const Pose& pose);
 
@@ -47,29 +48,41 @@ struct Upright {
 void break_symmetry(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
                     std::span<const ContactPlane> planes, const Upright& upright);
 
+/// What one spine meets in a step.
+struct SpineStep {
+    const Preset& preset;
+    rod::Clamp clamp;                      ///< of its root at the end of the step
+    Quat rotation{1, 0, 0, 0};             ///< of the ferrule
+    std::span<const ContactPlane> planes;  ///< of its nodes, tip first; or one for all; or none
+    std::span<const ContactPlane> walls;   ///< beside its side nodes, tip first, two to a node; or none
+    double wetness = 1;                    ///< 0 dry … 1 wet
+    double share = 1;                      ///< number of equal spines that share the hair
+    double dt = 0;                         ///< s
+};
+
+/// The rod of a spine after a step.
+struct SolvedRod {
+    rod::Result result;                        ///< units of L and B0
+    std::span<const Vec3> node;                ///< [n+1] positions of the hair, units of L
+    std::span<const rod::Obstacle> obstacles;  ///< [n+1] units of L, or none
+};
+
 /// Makes the sections of a solved spine.
-Solved with_sections(const Preset& preset, Spine& spine, rod::Result result, std::span<const Vec3> node,
-                     const Quat& turn, std::span<const rod::Obstacle> obstacles, double wetness, double share,
-                     std::span<const ContactPlane> walls = {}, const Neighbours& neighbours = {});
+Solved finish_spine(const SpineStep& step, Spine& spine, SolvedRod rod, const Neighbours& neighbours = {});
 
 /// Returns a straight spine with its root at ξ0 of the hair and `share` of the hair.
 Spine make_spine(const Preset& preset, const rod::Rod& rod, const rod::Clamp& clamp, double xi0, double share);
 
 /// Moves the spine from pose `from` to just before `to` in small steps, and turns upright hair behind the motion.
-/// `dt`: on entry seconds of the whole motion, on return seconds of the remaining part.
-Passed approach(const Preset& preset, Spine& spine, const Pose& from, const Pose& to,
-                std::span<const ContactPlane> planes, std::span<const ContactPlane> walls, double wetness, double& dt);
+/// `step.dt`: on entry seconds of the whole motion, on return seconds of the remaining part.
+Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pose& to);
 
-/// Solves the spine with the rod solver over `dt` seconds. `turn` is the ferrule's rotation; `planes` and `walls`
-/// come tip first. Adds `passed`, the earlier part of this step, to the result.
-Solved solve_spine(const Preset& preset, Spine& spine, const rod::Clamp& clamp, const Quat& turn,
-                   std::span<const ContactPlane> planes, double wetness, double share, double dt,
-                   std::span<const ContactPlane> walls = {}, const Passed& passed = {});
+/// Solves the spine with the rod solver. Adds `passed`, the earlier part of this step, to the result.
+Solved solve_spine(const SpineStep& step, Spine& spine, const Passed& passed = {});
 
 /// Solves the spine with the query table. It is bent in the plane of the holder and the tip's last position, so
 /// that the tip follows the hand as a tractrix, by the moment that places the tip on the plane.
-Solved stand_spine(const Preset& preset, const QueryTable& table, Spine& spine, const rod::Clamp& clamp,
-                   const Quat& turn, std::span<const ContactPlane> planes, double wetness);
+Solved bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spine);
 
 /// Returns SP = ξ k (1 − Z_i/Z) of the bifurcation rule. k is the root moment over that of a tuft lying flat.
 double split_measure(const Preset& preset, double ink_left, double root_moment);

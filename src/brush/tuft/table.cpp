@@ -113,14 +113,20 @@ QueryTable make_table(const Preset& p, int rows) {
 
 namespace {
 
-/// Cubic between rows k and k+1 of even spacing, slopes by central differences.
-template <class T>
-T cubic(const T& before, const T& lo, const T& hi, const T& after, double t, bool first, bool last) {
-    const T m0 = first ? hi - lo : (hi - before) * 0.5;
-    const T m1 = last ? hi - lo : (after - lo) * 0.5;
-    const double t2 = t * t, t3 = t2 * t;
-    return (2 * t3 - 3 * t2 + 1) * lo + (t3 - 2 * t2 + t) * m0 + (3 * t2 - 2 * t3) * hi + (t3 - t2) * m1;
-}
+/// Place between rows k and k+1 of even spacing.
+struct BetweenRows {
+    double t = 0;                      ///< part of the way, 0–1
+    bool first = false, last = false;  ///< no row comes before k; none after k+1
+
+    /// Cubic through the values of rows k−1 to k+2, slopes by central differences.
+    template <class T>
+    T cubic(const T& before, const T& lo, const T& hi, const T& after) const {
+        const T m0 = first ? hi - lo : (hi - before) * 0.5;
+        const T m1 = last ? hi - lo : (after - lo) * 0.5;
+        const double t2 = t * t, t3 = t2 * t;
+        return (2 * t3 - 3 * t2 + 1) * lo + (t3 - 2 * t2 + t) * m0 + (3 * t2 - 2 * t3) * hi + (t3 - t2) * m1;
+    }
+};
 
 }  // namespace
 
@@ -129,16 +135,16 @@ TableRow look_up(const QueryTable& table, double moment) {
     const double last = rows.back().moment;
     const double at = std::clamp(moment / last, 0.0, 1.0) * static_cast<double>(rows.size() - 1);
     const std::size_t k = std::min(static_cast<std::size_t>(at), rows.size() - 2);
-    const double t = at - static_cast<double>(k);
-    const bool first = k == 0, end = k + 2 == rows.size();
-    const TableRow &r0 = rows[first ? k : k - 1], &r1 = rows[k], &r2 = rows[k + 1], &r3 = rows[end ? k + 1 : k + 2];
+    const BetweenRows place{at - static_cast<double>(k), k == 0, k + 2 == rows.size()};
+    const TableRow &r0 = rows[place.first ? k : k - 1], &r1 = rows[k], &r2 = rows[k + 1],
+                   &r3 = rows[place.last ? k + 1 : k + 2];
     TableRow out;
-    out.moment = cubic(r0.moment, r1.moment, r2.moment, r3.moment, t, first, end);
-    out.load = cubic(r0.load, r1.load, r2.load, r3.load, t, first, end);
+    out.moment = place.cubic(r0.moment, r1.moment, r2.moment, r3.moment);
+    out.load = place.cubic(r0.load, r1.load, r2.load, r3.load);
     for (std::size_t i = 0; i < r1.nodes.size(); ++i) {
-        out.nodes.push_back(cubic(r0.nodes[i], r1.nodes[i], r2.nodes[i], r3.nodes[i], t, first, end));
-        out.angles.push_back(cubic(r0.angles[i], r1.angles[i], r2.angles[i], r3.angles[i], t, first, end));
-        out.moments.push_back(cubic(r0.moments[i], r1.moments[i], r2.moments[i], r3.moments[i], t, first, end));
+        out.nodes.push_back(place.cubic(r0.nodes[i], r1.nodes[i], r2.nodes[i], r3.nodes[i]));
+        out.angles.push_back(place.cubic(r0.angles[i], r1.angles[i], r2.angles[i], r3.angles[i]));
+        out.moments.push_back(place.cubic(r0.moments[i], r1.moments[i], r2.moments[i], r3.moments[i]));
     }
     return out;
 }
@@ -180,11 +186,11 @@ FixedShape fixed_shape_at_angle(const QueryTable& table, double root_height, dou
         const Vec2& tip = row.nodes.front();
         return root_height - tip.x * std::sin(holder_angle) + tip.y * std::cos(holder_angle);
     };
-    const double moment = standing_moment(table, height);
+    const double moment = touching_moment(table, height);
     return stand(table, look_up(table, moment), root_height, holder_angle, mu, lambda);
 }
 
-double standing_moment(const QueryTable& table, const std::function<double(const TableRow&)>& tip_height) {
+double touching_moment(const QueryTable& table, const std::function<double(const TableRow&)>& tip_height) {
     if (tip_height(table.rows.front()) >= 0) return 0;
     std::size_t k = 1;
     while (k < table.rows.size() && tip_height(table.rows[k]) < 0) ++k;

@@ -35,7 +35,7 @@ QueryTable make_table(const Preset& preset, int rows = 64);
 TableRow look_up(const QueryTable& table, double moment);
 
 /// Returns the smallest moment whose shape has `tip_height` >= 0. Returns the table's largest moment when none has.
-double standing_moment(const QueryTable& table, const std::function<double(const TableRow&)>& tip_height);
+double touching_moment(const QueryTable& table, const std::function<double(const TableRow&)>& tip_height);
 
 /// Shape of the tuft on a plane. Lengths in metres, angles in radians.
 struct FixedShape {

@@ -142,16 +142,19 @@ void add_spine(const Preset& p, const Spine& spine, Solved solved, const Vec3& l
 TuftState bend_trunk(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> planes, double dt,
                      std::span<const ContactPlane> walls) {
     const Preset& p = tuft.preset;
-    const rod::Clamp clamp = clamp_of(p, pose);
     const std::size_t own = tuft.trunk().rest_radius.size();
-    const std::span<const ContactPlane> main_planes = planes.size() > 1 ? planes.first(own) : planes;
+    SpineStep step{.preset = p,
+                   .clamp = clamp_of(p, pose),
+                   .rotation = pose.rotation,
+                   .planes = planes.size() > 1 ? planes.first(own) : planes,
+                   .wetness = tuft.wetness,
+                   .dt = dt};
+    // The table knows no walls.
+    if (p.spine != SpineMethod::table) step.walls = walls;
     Passed passed;
-    if (p.spine == SpineMethod::rod)
-        passed = approach(p, tuft.trunk(), tuft.pose, pose, main_planes, walls, tuft.wetness, dt);
-    Solved solved =
-        p.spine == SpineMethod::table
-            ? stand_spine(p, tuft.table, tuft.trunk(), clamp, pose.rotation, main_planes, tuft.wetness)
-            : solve_spine(p, tuft.trunk(), clamp, pose.rotation, main_planes, tuft.wetness, 1, dt, walls, passed);
+    if (p.spine == SpineMethod::rod) passed = follow_ferrule(step, tuft.trunk(), tuft.pose, pose);
+    Solved solved = p.spine == SpineMethod::table ? bend_by_table(step, tuft.table, tuft.trunk())
+                                                  : solve_spine(step, tuft.trunk(), passed);
     TuftState state;
     add_spine(p, tuft.trunk(), std::move(solved), Vec3{0}, state);
     return state;
@@ -162,25 +165,26 @@ TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> 
                     std::span<const ContactPlane> walls) {
     const Preset& p = tuft.preset;
     SolvedSpines solved = solve_spines(tuft, pose, planes, walls, dt);
-    TuftState state{.wide = true};
+    TuftState state{.wide = true, .strips = has_broad_side(p)};
     double lost = solved.dissipation;
     for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
         Spine& spine = tuft.spines[k];
         lost -= solved.spines[k].result.dissipation;
         solved.spines[k].branch.ink_share = spine.share;
+        solved.spines[k].branch.strip = spine.strip;
         add_spine(p, spine, std::move(solved.spines[k]), pose.rotation * spine.root, state);
     }
     // What hair lost on the way to the last part of this step, and between the spines.
     state.energy.lost += lost * p.stiffness / p.length;
     state.energy.contact += solved.coupling_energy * p.stiffness / p.length;
     const double bridged = std::max(tuft.wetness * solved.film_range, p.hair_diameter);
-    for (std::size_t k = 0; k < tuft.beside.size(); ++k) {
+    for (const Beside& beside : tuft.beside) {
         // Beyond the end of the shorter one its tip says whether the skin goes on.
-        const std::vector<double>& gap = tuft.beside[k].gap;
-        std::vector<double> opening(tuft.spines[k].rest_radius.size());
-        for (std::size_t i = 0; i < opening.size(); ++i)
-            opening[opening.size() - 1 - i] = gap[std::min(i, gap.size() - 1)] - bridged;
-        state.openings.push_back(std::move(opening));
+        const std::vector<double>& gap = beside.gap;
+        std::vector<double> width(tuft.spines[beside.first].rest_radius.size());
+        for (std::size_t i = 0; i < width.size(); ++i)
+            width[width.size() - 1 - i] = gap[std::min(i, gap.size() - 1)] - bridged;
+        state.openings.push_back({beside.first, beside.second, std::move(width)});
     }
     return state;
 }

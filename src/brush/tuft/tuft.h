@@ -36,13 +36,15 @@ struct Spine {
     std::vector<double> rest_radius;  ///< [n+1] m; √(a b) where the section is no circle
     /// [n+1] m, half-widths at rest along the ferrule's broad side and across it; empty: a circle of `rest_radius`.
     std::vector<Vec2> rest_section;
+    std::vector<Vec2> strip;  ///< corners of its part of the mouth, see ferrule.h; empty: a disc
     Vec3 root{0};             ///< m, ferrule frame
     double lean = 0;          ///< rad, of the clamp towards +x of the ferrule
     double share = 1;         ///< of the hair
-    std::vector<Vec3> broad;  ///< [n+1] unit, ferrule frame: its x carried along the bent spine, or empty
-    Vec3 wide{1, 0, 0};       ///< unit, ferrule frame: direction e at the root of the last step
-    double root_width = 0;    ///< m, half-width at the root of a sub-spine; 0: that of the ferrule
-    Vec2 one_sided{0};        ///< mean direction of splayed hair, across the clamp; see upright_hair.h
+    /// [n+1] unit, ferrule frame: its x and y carried along the bent spine; or empty.
+    std::vector<Vec3> broad, across;
+    Vec3 wide{1, 0, 0};     ///< unit, ferrule frame: direction e at the root of the last step
+    double root_width = 0;  ///< m, half-width at the root of a sub-spine; 0: that of the ferrule
+    Vec2 one_sided{0};      ///< mean direction of splayed hair, across the clamp; see upright_hair.h
     /// Side nodes of the last step, metres from the root, ferrule frame, tip first, two to a node; or empty.
     std::vector<Vec3> side;
     std::vector<double> flank;       ///< m, half-widths of those side nodes without walls; or empty
@@ -54,6 +56,9 @@ struct Spine {
 
 /// Two neighbouring spines: how they stand at rest, and what they remember.
 struct Beside {
+    int first = 0, second = 1;     ///< spines
+    Vec2 direction{1, 0};          ///< unit, from the first to the second, ferrule frame
+    double face = 0;               ///< m, as in FerruleNeighbours
     std::vector<double> distance;  ///< m, of their axes at rest, at which their hair touches. [m+1]
     std::vector<double> shift;     ///< m, along the hair, of the outboard nodes of facing segments at rest. [m]
     rod::PairMemory memory;
@@ -68,9 +73,9 @@ struct Tuft {
 
     Pose pose;           ///< of the last step
     bool posed = false;  ///< false until the first step
-    /// K of them, side by side over the ferrule; a round tuft has one, the trunk of its sub-spines.
+    /// K of them, in a row or in a ring (ferrule.h); a tuft of one has it as the trunk of its sub-spines.
     std::vector<Spine> spines;
-    std::vector<Beside> beside;  ///< of spines k and k + 1. [K−1]
+    std::vector<Beside> beside;  ///< pairs of neighbours
     bool split = false;
     std::vector<Spine> sub_spines;               ///< sub-spines of the last third, `split_into` of them while split
     double spread = 0;                           ///< separation: 0 nonee point … 1 fully
@@ -83,7 +88,7 @@ struct Tuft {
 
     Spine& trunk() { return spines.front(); }
     const Spine& trunk() const { return spines.front(); }
-    /// A ferrule with several spines; their branches all begin at it.
+    /// A ferrule with several spines, in a row or in a ring; their branches all begin at it.
     bool wide() const { return spines.size() > 1; }
 };
 

@@ -181,34 +181,41 @@ struct Widths {
     std::vector<double> free_plus, free_minus;  ///< without walls
     LateralShift shift;
     double spread_energy = 0;
+    std::vector<Vec2> turn;  ///< as in Section
 };
 
-/// Half-widths of the resting sections along e and across it, metres, root first.
+/// Half-widths of the resting sections along e and across it, metres, root first; and where their broad side is, as in
+/// Section.
 struct Rest {
     std::vector<double> along, across;
+    std::vector<Vec2> turn;
 };
 
 Rest rest_of(const SectionInput& in, const std::vector<Vec3>& t, const std::vector<Vec3>& e) {
-    if (!in.wide()) return {in.spine.rest_radius, in.spine.rest_radius};
+    if (!in.wide()) return {in.spine.rest_radius, in.spine.rest_radius, std::vector<Vec2>(e.size(), {1, 0})};
     Rest out;
     const std::vector<Vec3> x = broad_axes(in.spine.memory, t);
     for (std::size_t i = 0; i < e.size(); ++i) {
         const Vec2& rest = in.spine.rest_section[i];
-        out.along.push_back(std::hypot(rest.x * glm::dot(e[i], x[i]), rest.y * glm::dot(e[i], glm::cross(x[i], t[i]))));
-        out.across.push_back(out.along[i] > 0 ? rest.x * rest.y / out.along[i] : 0);
+        const double broad = rest.x * glm::dot(e[i], x[i]), thick = rest.y * glm::dot(e[i], glm::cross(x[i], t[i]));
+        const double along = std::hypot(broad, thick);
+        out.along.push_back(along);
+        out.across.push_back(along > 0 ? rest.x * rest.y / along : 0);
+        // Of each point of the resting ellipse the part along e.
+        out.turn.push_back(along > 0 ? Vec2{broad, -thick} / along : Vec2{1, 0});
     }
     return out;
 }
 
-/// How far, beyond its resting half-width r, a side node may go out along `way` before it meets the middle between its
-/// spine and a neighbour `apart` from it.
-double clearance_beside(const std::vector<Vec3>& apart, std::size_t node, const Vec3& way, double r) {
+/// How far, beyond its resting half-width r, a side node may go out along `way` before it meets the place between its
+/// spine and a neighbour where the hair of both touches.
+double clearance_beside(const Neighbour& beside, std::size_t node, const Vec3& way, double r) {
     constexpr double kFaces = 0.5;  // cosine to the neighbour from which it is in the way
-    if (node >= apart.size()) return std::numeric_limits<double>::infinity();
-    const double distance = glm::length(apart[node]), nearing = glm::dot(apart[node], way);
+    if (node >= beside.apart.size()) return std::numeric_limits<double>::infinity();
+    const Vec3& apart = beside.apart[node];
+    const double distance = glm::length(apart), nearing = glm::dot(apart, way);
     if (nearing < kFaces * distance) return std::numeric_limits<double>::infinity();
-    // Ellipses that touch as their strips do overlap by 2/√π.
-    return distance * distance / nearing / std::sqrt(std::numbers::pi) - r;
+    return distance * distance / nearing * beside.part[node] - r;
 }
 
 /// How far, beyond its rest radius, a side node may go out along `way` before it meets a wall;
@@ -261,13 +268,14 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
             plus.clear[i] = clearance(in, i, in.walls[from_tip], e[i], rest.along[i]);
             minus.clear[i] = clearance(in, i, in.walls[from_tip + 1], -e[i], rest.along[i]);
         }
-        for (const std::vector<Vec3>* apart : {&in.neighbours.before, &in.neighbours.after}) {
-            plus.clear[i] = std::min(plus.clear[i], clearance_beside(*apart, i, e[i], rest.along[i]));
-            minus.clear[i] = std::min(minus.clear[i], clearance_beside(*apart, i, -e[i], rest.along[i]));
+        for (const Neighbour& beside : in.neighbours) {
+            plus.clear[i] = std::min(plus.clear[i], clearance_beside(beside, i, e[i], rest.along[i]));
+            minus.clear[i] = std::min(minus.clear[i], clearance_beside(beside, i, -e[i], rest.along[i]));
         }
         plus.push[i] = minus.push[i] = wet * rest.across[i] * widen;
     }
     Widths out;
+    out.turn = rest.turn;
     const LateralRow row = lateral_row(at, springs);
     out.shift = drag_lateral(row, friction);
     const std::vector<double>& shift = out.shift.shift;
@@ -325,6 +333,7 @@ SectionOutput make_sections(const SectionInput& in) {
         section.b = r > 0 ? r * r / section.a : 0;
         section.tangent = t[i];
         section.e = e[i];
+        section.turn = widths.turn[i];
         section.m = glm::cross(e[i], t[i]);
         section.centre = in.node[i] * p.length + 0.5 * (widths.plus[i] - widths.minus[i]) * e[i];
         section.moment = (i + 1 < count ? in.result.moment[i] : 0) * p.stiffness / p.length;

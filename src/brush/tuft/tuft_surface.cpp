@@ -78,6 +78,7 @@ std::vector<Section> refine_sections(const std::vector<Section>& in, int between
             c.e = (1 - t) * e[i] + t * e[i + 1];
             c.e = glm::normalize(c.e - glm::dot(c.e, c.tangent) * c.tangent);
             c.m = glm::cross(c.e, c.tangent);
+            c.turn = in[t < 0.5 ? i : i + 1].turn;
             c.a = hermite(a[i], a[i + 1], ma[i], ma[i + 1], h, t);
             c.b = hermite(b[i], b[i + 1], mb[i], mb[i + 1], h, t);
             c.moment = hermite(moment[i], moment[i + 1], mm[i], mm[i + 1], h, t);
@@ -127,9 +128,16 @@ void add_branch(const std::vector<Section>& sections, const TuftSurfaceOptions& 
     for (std::uint32_t i = 0; i < p; ++i) add(last + i, tip, last + (i + 1) % p);
 }
 
-/// Closes what lies between two joined spines of a wide ferrule: above and below, from section to section, tip first.
-void add_joint(const Branch& first, const Branch& second, const std::vector<double>& opening,
-               const TuftSurfaceOptions& options, TuftSurface& skin) {
+/// Unit vector across the hair of a section and across the way to its neighbour.
+Vec3 beside_row(const Vec3& way, const Section& s) {
+    const Vec3 out = glm::cross(way, s.tangent);
+    const double size = glm::length(out);
+    return size > 1e-12 ? out / size : s.m;
+}
+
+/// Closes what lies between two joined spines of a ferrule: above and below, from section to section, tip first.
+void add_joint(const TuftState& state, const Opening& opening, const TuftSurfaceOptions& options, TuftSurface& skin) {
+    const Branch &first = state.branches[opening.first], &second = state.branches[opening.second];
     // Sections of equal number from the root face each other.
     const std::size_t count = std::min(first.sections.size(), second.sections.size());
     const auto tail = [&](const Branch& b) {
@@ -142,13 +150,16 @@ void add_joint(const Branch& first, const Branch& second, const std::vector<doub
         const auto start = static_cast<std::uint32_t>(skin.positions.size());
         for (std::size_t i = 0; i < a.size(); ++i) {
             for (const Section* s : {&a[i], &b[i]}) {
-                const double way = side * (glm::dot(s->m, a[i].m) < 0 ? -1 : 1);
-                skin.positions.push_back(s->centre + way * s->b * s->m);
-                skin.normals.push_back(way * s->m);
+                const Vec3 out = state.strips ? (glm::dot(s->m, a[i].m) < 0 ? -1.0 : 1.0) * s->m
+                                              : beside_row(b[i].centre - a[i].centre, *s);
+                const double reach =
+                    state.strips ? s->b : std::hypot(s->a * glm::dot(out, s->e), s->b * glm::dot(out, s->m));
+                skin.positions.push_back(s->centre + side * reach * out);
+                skin.normals.push_back(side * out);
             }
         }
         for (std::uint32_t i = 0; i + 1 < a.size(); ++i) {
-            if (!(opening[off + i / per] <= 0)) continue;
+            if (!(opening.width[off + i / per] <= 0)) continue;
             const std::uint32_t p = start + 2 * i;
             const Vec3 out =
                 glm::cross(skin.positions[p + 1] - skin.positions[p], skin.positions[p + 2] - skin.positions[p]);
@@ -168,8 +179,7 @@ TuftSurface make_tuft_surface(const TuftState& state, const TuftSurfaceOptions& 
     TuftSurfaceOptions used = options;
     used.points_per_ring = skin.points_per_ring;
     for (const Branch& branch : state.branches) add_branch(branch.sections, used, skin);
-    for (std::size_t k = 0; k < state.openings.size(); ++k)
-        add_joint(state.branches[k], state.branches[k + 1], state.openings[k], used, skin);
+    for (const Opening& opening : state.openings) add_joint(state, opening, used, skin);
     return skin;
 }
 

@@ -24,40 +24,59 @@ std::span<const ContactPlane> part_of(std::span<const ContactPlane> all, std::si
     return all.size() > 1 ? all.subspan(first, count) : all;
 }
 
+/// Tangents and broad axes of the nodes of a spine, unit, root first.
+struct NodeAxes {
+    std::vector<Vec3> along, broad;
+
+    explicit NodeAxes(const rod::Memory& memory) : along(node_tangents(memory)), broad(broad_axes(memory, along)) {}
+};
+
 /// Obstacles of one spine (root first) from its planes (tip first). The tuft's reach depends on the direction.
-std::vector<rod::Obstacle> obstacles_of_wide(const Preset& p, const Spine& spine,
+std::vector<rod::Obstacle> obstacles_of_wide(const Preset& p, const Spine& spine, const NodeAxes& axes,
                                              std::span<const ContactPlane> planes) {
     const std::size_t count = spine.rest_radius.size();
     std::vector<rod::Obstacle> out;
     if (planes.empty()) return out;
-    const std::vector<Vec3> t = node_tangents(spine.memory), x = broad_axes(spine.memory, t);
     out.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const ContactPlane& plane = planes.size() == 1 ? planes[0] : planes[count - 1 - i];
-        out[i] = {plane.origin / p.length, plane.normal, rest_reach(spine, i, x[i], t[i], plane.normal) / p.length,
-                  plane.beyond_origin / p.length, plane.beyond_normal};
+        const double reach = rest_reach(spine, i, axes.broad[i], axes.along[i], plane.normal);
+        out[i] = {plane.origin / p.length, plane.normal, reach / p.length, plane.beyond_origin / p.length,
+                  plane.beyond_normal};
     }
     return out;
 }
 
-/// Half-width of the spread section of each node along the ferrule's broad side, without neighbours, metres, root
-/// first.
-std::vector<double> spread_half_widths(const Spine& spine) {
+/// Half-width of the spread section of each node in a direction of the ferrule frame across the hair, without
+/// neighbours, metres, root first.
+std::vector<double> spread_half_widths(const Spine& spine, const Vec2& direction) {
     std::vector<double> out;
     const std::size_t count = spine.rest_radius.size();
     if (spine.flank.size() != 2 * count || spine.side.size() != 2 * count) return out;
-    const std::vector<Vec3> t = node_tangents(spine.memory), x = broad_axes(spine.memory, t);
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t k = 2 * (count - 1 - i);
         const Vec3 across = spine.side[k] - spine.side[k + 1];
         const double size = glm::length(across);
         const double a = 0.5 * (spine.flank[k] + spine.flank[k + 1]);
         const double r = spine.rest_radius[i];
-        const double along = size > 0 ? std::abs(glm::dot(spine.broad[i], across) / size) : 1;
+        const Vec3 way = direction.x * spine.broad[i] + direction.y * spine.across[i];
+        const double along = size > 0 ? std::abs(glm::dot(way, across) / size) : 1;
         out.push_back(std::hypot(a * along, r * r / a * std::sqrt(std::max(0.0, 1 - along * along))));
     }
     return out;
 }
+
+/// Height of the wet film between two spines over that of the law, for their resting sections at a node and at the
+/// mouth.
+struct FilmHeight {
+    double radius = 1, face = 0;  ///< m, of the tuft, and as in FerruleNeighbours
+    Vec2 first_root{1}, second_root{1};
+
+    double at(const Vec2& first, const Vec2& second) const {
+        if (face <= 0) return std::min({1.0, first.y / radius, second.y / radius});
+        return 0.5 * face / radius * std::min(first.y / first_root.y, second.y / second_root.y);
+    }
+};
 
 /// One solve of all spines, with what it needs.
 struct Coupled {
@@ -78,7 +97,7 @@ struct Coupled {
             const std::size_t count = spine.rest_radius.size();
             laws.push_back(law_of(p, tuft.wetness, 1 / spine.share, dt));
             laws.back().max_iterations = std::min(laws.back().max_iterations, most_iterations);
-            obstacles.push_back(obstacles_of_wide(p, spine, part_of(planes, first, count)));
+            obstacles.push_back(obstacles_of_wide(p, spine, NodeAxes(spine.memory), part_of(planes, first, count)));
             walls.push_back(flank_walls(p, spine, pose.rotation, part_of(beside, 2 * first, 2 * count), tuft.wetness));
             first += count;
         }
@@ -88,27 +107,29 @@ struct Coupled {
             rods.push_back(
                 {&spine.rod, &spine.memory, spine_clamp(p, spine, pose), obstacles[k], &laws[k], {}, walls[k]});
         }
-        lay_pairs(tuft);
+        make_pairs(tuft);
         return rod::solve_coupled(rods, pairs, coupling_of(p, tuft.wetness));
     }
 
   private:
-    void lay_pairs(Tuft& tuft) {
+    void make_pairs(Tuft& tuft) {
         const double length = tuft.preset.length;
         pairs.clear();
-        std::vector<double> right = spread_half_widths(tuft.spines.front());
-        for (std::size_t k = 0; k + 1 < tuft.spines.size(); ++k) {
-            Beside& beside = tuft.beside[k];
-            const std::vector<double> left = std::move(right);
-            right = spread_half_widths(tuft.spines[k + 1]);
-            rod::CoupledPair pair{.first = static_cast<int>(k), .second = static_cast<int>(k + 1)};
+        for (Beside& beside : tuft.beside) {
+            const Spine &first = tuft.spines[beside.first], &second = tuft.spines[beside.second];
+            const Vec2& way = beside.direction;
+            const std::vector<double> left = spread_half_widths(first, way), right = spread_half_widths(second, way);
+            // The clamp's second axis is −y.
+            rod::CoupledPair pair{.first = beside.first, .second = beside.second, .direction = {way.x, -way.y}};
+            const FilmHeight film{tuft.preset.radius, beside.face, first.rest_section.front(),
+                                  second.rest_section.front()};
             for (std::size_t i = 0; i < beside.distance.size(); ++i) {
                 pair.touching.push_back(beside.distance[i] / length);
-                const Vec2 &l = tuft.spines[k].rest_section[i], &r = tuft.spines[k + 1].rest_section[i];
+                const Vec2 &l = first.rest_section[i], &r = second.rest_section[i];
                 const double grown =
                     i < left.size() && i < right.size() ? kTouch * (left[i] + right[i] - l.x - r.x) : 0;
                 pair.spread.push_back((beside.distance[i] + std::max(0.0, grown)) / length);
-                pair.film.push_back(std::min({1.0, l.y / tuft.preset.radius, r.y / tuft.preset.radius}));
+                pair.film.push_back(film.at(l, r));
                 pair.depth.push_back(std::max(l.y + r.y, kThinnest) / length);
             }
             for (const double s : beside.shift) pair.rest_shift.push_back(s / length);
@@ -144,10 +165,12 @@ void break_symmetries(Tuft& tuft, const Pose& from, const Pose& to, std::span<co
         double length = 0;
         for (const double l : spine.rod.length) length += l;
         const rod::Clamp clamp = spine_clamp(tuft.preset, spine, to);
+        // The hair of a ring falls outwards all round; that of a row to one side.
+        const bool outward = !has_broad_side(tuft.preset) && glm::length(spine.root) > 0;
         break_symmetry(tuft.preset, spine, from, to, part_of(planes, first, count),
                        {.tip = tuft.preset.length * (clamp.position + length * clamp.tangent),
-                        .aside = {0, 1, 0},
-                        .taken = taken});
+                        .aside = outward ? glm::normalize(spine.root) : Vec3{0, 1, 0},
+                        .taken = outward ? Vec3{0} : taken});
         first += count;
     }
 }
@@ -178,7 +201,8 @@ std::vector<Spine> make_spines(const Preset& p, const Profile& profile) {
         for (double& w : rod.weight) w *= set.length;
         rod.buckling *= set.share / (set.length * set.length);
         Spine spine;
-        spine.root = {set.x, 0, 0};
+        spine.root = {set.x, set.y, 0};
+        spine.strip = strip_corners(p, set);
         spine.lean = set.lean;
         spine.share = set.share;
         spine.rod = std::move(rod);
@@ -196,15 +220,16 @@ std::vector<Spine> make_spines(const Preset& p, const Profile& profile) {
 
 std::vector<Beside> make_beside(const Preset& p, std::span<const Spine> spines) {
     std::vector<Beside> out;
-    for (std::size_t k = 0; k + 1 < spines.size(); ++k) {
-        Beside beside;
-        const std::vector<Vec3>&x = spines[k].memory.node, &y = spines[k + 1].memory.node;
-        const Vec3 t = glm::normalize(spines[k].memory.clamp.tangent + spines[k + 1].memory.clamp.tangent);
+    for (const FerruleNeighbours& pair : ferrule_neighbours(p)) {
+        Beside beside{.first = pair.first, .second = pair.second, .direction = pair.direction, .face = pair.face};
+        const rod::Memory &first = spines[pair.first].memory, &second = spines[pair.second].memory;
+        const std::vector<Vec3>&x = first.node, &y = second.node;
+        const Vec3 t = glm::normalize(first.clamp.tangent + second.clamp.tangent);
         for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
             const Vec3 d = y[i] - x[i];
             beside.distance.push_back(p.length * glm::length(d - glm::dot(d, t) * t));
             if (i == 0) continue;
-            const Vec3 mean = 0.5 * (spines[k].memory.tangent[i - 1] + spines[k + 1].memory.tangent[i - 1]);
+            const Vec3 mean = 0.5 * (first.tangent[i - 1] + second.tangent[i - 1]);
             beside.shift.push_back(p.length * glm::dot(mean, d));
         }
         out.push_back(std::move(beside));
@@ -221,7 +246,8 @@ rod::Clamp spine_clamp(const Preset& p, const Spine& spine, const Pose& pose) {
 rod::CouplingLaw coupling_of(const Preset& p, double wetness) {
     const double unit = p.stiffness / std::pow(p.length, 4);  // N/m² of force per length and displacement
     rod::CouplingLaw law;
-    law.contact = kHairContact / unit;
+    const double contact = kHairModulus * face_over_pitch(p);
+    law.contact = contact / unit;
     law.spread = 0.5 * side_stiffness(wetness) * p.transverse_stiffness / p.spines / unit;
     law.shear = kShear * law.contact;
     law.friction = p.hair_friction;
@@ -230,7 +256,7 @@ rod::CouplingLaw coupling_of(const Preset& p, double wetness) {
     if (film > 0) {
         const double menisci = 4 * p.surface_tension * kHairPart * (1 - wetness) / ((1 - kHairPart) * p.hair_diameter);
         const double suction = kWaterWeight * p.length + menisci;
-        law.film_range = std::max(2 * p.surface_tension / suction, std::sqrt(12 * film / kHairContact)) / p.length;
+        law.film_range = std::max(2 * p.surface_tension / suction, std::sqrt(12 * film / contact)) / p.length;
     }
     return law;
 }
@@ -278,28 +304,40 @@ SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPla
         node.push_back(rod::curve_nodes(spine.rod, spine.memory.node));
         const std::vector<Vec3> t = node_tangents(spine.memory);
         spine.broad = broad_axes(spine.memory, t);
+        spine.across.resize(t.size());
         const Quat back = glm::conjugate(to.rotation);
-        for (Vec3& x : spine.broad) x = back * x;
+        for (std::size_t i = 0; i < t.size(); ++i) {
+            spine.across[i] = back * glm::cross(spine.broad[i], t[i]);
+            spine.broad[i] = back * spine.broad[i];
+        }
     }
     std::size_t first = 0;
     for (std::size_t k = 0; k < k_all; ++k) {
         Spine& spine = tuft.spines[k];
         result.rods[k].slip = slip[k];
         Neighbours neighbours;
-        for (const int side : {-1, 1}) {
-            const std::size_t other = k + static_cast<std::size_t>(side);
-            if (other >= k_all) continue;
-            std::vector<Vec3>& way = side < 0 ? neighbours.before : neighbours.after;
-            for (std::size_t i = 0; i < std::min(node[k].size(), node[other].size()); ++i)
-                way.push_back(p.length * (node[other][i] - node[k][i]));
+        for (const Beside& beside : tuft.beside) {
+            const auto one = static_cast<std::size_t>(beside.first), two = static_cast<std::size_t>(beside.second);
+            if (one != k && two != k) continue;
+            const std::vector<Vec3>& other = node[one == k ? two : one];
+            Neighbour& way = neighbours.emplace_back();
+            for (std::size_t i = 0; i < std::min(node[k].size(), other.size()); ++i) {
+                way.apart.push_back(p.length * (other[i] - node[k][i]));
+                way.part.push_back(spine.rest_section[i].x / beside.distance[i]);
+            }
         }
         const std::size_t count = spine.rest_radius.size();
-        out.spines.push_back(with_sections(p, spine, std::move(result.rods[k]), node[k], to.rotation,
-                                           coupled.obstacles[k], tuft.wetness, 1 / spine.share,
-                                           part_of(walls, 2 * first, 2 * count), neighbours));
+        const SpineStep step{.preset = p,
+                             .clamp = spine.memory.clamp,
+                             .rotation = to.rotation,
+                             .walls = part_of(walls, 2 * first, 2 * count),
+                             .wetness = tuft.wetness,
+                             .share = 1 / spine.share};
+        out.spines.push_back(
+            finish_spine(step, spine, {std::move(result.rods[k]), node[k], coupled.obstacles[k]}, neighbours));
         first += count;
     }
-    for (std::size_t k = 0; k + 1 < k_all; ++k) {
+    for (std::size_t k = 0; k < tuft.beside.size(); ++k) {
         Beside& beside = tuft.beside[k];
         beside.gap = result.pairs[k].gap;
         for (double& g : beside.gap) g *= p.length;

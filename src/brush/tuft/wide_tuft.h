@@ -10,25 +10,27 @@
 /// \file
 /// The spines of a wide ferrule, bent together. Internal to `brush/tuft`; `step` calls it where K > 1.
 ///
-/// Neighbouring spines are rods coupled by contact, wet film and friction (rod/coupled_rods.h). Their law in SI units,
-/// with t the thickness, γ the surface tension, S the wetness, d the diameter of a hair and φ the part of a tuft that
-/// is hair:
+/// Neighbouring spines, in a row or in a ring, are rods coupled by contact, wet film and friction (rod/coupled_rods.h).
+/// Their law in SI units, with t the thickness, γ the surface tension, S the wetness, d the diameter of a hair and φ
+/// the part of a tuft that is hair:
 ///
-///     k_n = kHairContact,   k_s = 0.4 k_n,   W = 2 γ t min(1, S/0.2),
+///     k_n = kHairModulus t/p,   k_s = 0.4 k_n,   W = 2 γ t min(1, S/0.2),
 ///     g_b = max(2 γ/p_c, √(12 W/k_n)),   p_c = ρ g L + 4 γ φ (1 − S) / ((1 − φ) d).
 ///
-/// W is Dupré's work of two new faces; t is the thickness of the hair at the node, so that a thin edge holds little.
-/// p_c is the suction in the film: of the hanging column of ink, and of the menisci between hairs that are not full
-/// (Princen 1968). The least g_b keeps the film's bond stable: its work is at least twice what contact takes of it.
+/// k_n is that of a layer of hair of the height t and the thickness p, the pitch of the spines: the coupling of the
+/// whole row does not depend on their number. W is Dupré's work of two new faces; t is the thickness of the hair at the
+/// node, so that a thin edge holds little, or in a ring the width of the face there. p_c is the suction in the film: of
+/// the hanging column of ink, and of the menisci between hairs that are not full (Princen 1968). The least g_b keeps
+/// the film's bond stable: its work is at least twice what contact takes of it.
 ///
 /// Spread hair of two neighbours meets with the stiffness of both side springs in series (tuft_sections.h).
 namespace tuft::brush {
 
-inline constexpr double kHairContact = 1e5;  ///< N/m², hair against hair of two spines; a guess
+inline constexpr double kHairModulus = 6e4;  ///< Pa, of packed hair pressed across; a guess
 
 /// Returns the spines of the preset's ferrule, straight, with their root at the pose {}.
 std::vector<Spine> make_spines(const Preset& preset, const Profile& profile);
-/// Returns the pairs of neighbours at rest.
+/// Returns the pairs of neighbours of the preset's ferrule at rest.
 std::vector<Beside> make_beside(const Preset& preset, std::span<const Spine> spines);
 
 /// Clamp of a spine for a pose of the holder.

@@ -36,6 +36,7 @@ Cut cut_of(const brush::Section& s, const Frame& frame, const brush::ContactPlan
     };
     cut.e = components(s.e);
     cut.m = components(s.m);
+    cut.turn = s.turn;
     return cut;
 }
 
@@ -117,6 +118,8 @@ class TuftSurface {
         cut.b = hermite(p.b, q.b, g.b, k.b, h, f);
         cut.e = between(p.e, q.e, f);
         cut.m = between(p.m, q.m, f);
+        const Vec2 turn = glm::mix(p.turn, q.turn, f);
+        cut.turn = glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn;
         return cut;
     }
 
@@ -225,7 +228,7 @@ std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame,
     for (std::size_t k = 0; k < count; ++k) {
         const auto& sections = tuft.branches[k].sections;
         if (sections.size() < 2) continue;
-        const TuftSurface skin(tuft.branches[k], tuft.wide, frame, k < planes.size() ? &planes[k] : nullptr,
+        const TuftSurface skin(tuft.branches[k], tuft.strips, frame, k < planes.size() ? &planes[k] : nullptr,
                                std::max(film, 0.0));
         // The middle one of several branches goes on as the trunk.
         const bool carries = count > 1 && k == count / 2 && !tuft.wide;
@@ -233,14 +236,24 @@ std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame,
         // The hair of a wide ferrule differs in length.
         const double whole = tuft.wide && length > 0 ? skin.from_tip(skin.end()) / length : 1;
         for (const Stretch& stretch : touching_stretches(skin)) {
-            Trail trail{.branch = static_cast<int>(k), .cuts = {}, .along = {}, .length = whole, .strip = tuft.wide};
+            Trail trail{.branch = static_cast<int>(k),
+                        .cuts = {},
+                        .along = {},
+                        .length = whole,
+                        .strip = tuft.strips,
+                        .corners = tuft.branches[k].strip};
+            for (const brush::Opening& opening : tuft.openings)
+                if (opening.first == trail.branch) trail.openings.push_back({opening.second, {}});
             for (int i = 0; i < kSamples; ++i) {
                 const double f = 0.5 - 0.5 * std::cos(kPi * i / (kSamples - 1));
                 const double s = stretch.begin + f * (stretch.end - stretch.begin);
                 trail.cuts.push_back(skin.at(s));
                 trail.along.push_back(length > 0 ? whole - skin.from_tip(s) / length : 0);
                 if (s < trunk) trail.trunk = trail.cuts.size();
-                if (k < tuft.openings.size()) trail.opening.push_back(skin.value_at(s, tuft.openings[k]));
+                std::size_t next = 0;
+                for (const brush::Opening& opening : tuft.openings)
+                    if (opening.first == trail.branch)
+                        trail.openings[next++].width.push_back(skin.value_at(s, opening.width));
             }
             found.push_back(std::move(trail));
         }

@@ -21,6 +21,7 @@ struct Cut {
     double a = 0, b = 0;  ///< metres, semi-axes with the film
     Vec3 e{1, 0, 0};      ///< unit axes: (u, v, height)
     Vec3 m{0, 0, 1};
+    Vec2 turn{1, 0};  ///< where a strip's broad side is, see brush::Section
 
     double half_height() const { return std::sqrt(a * a * e.z * e.z + b * b * m.z * m.z); }
     double overlap() const { return half_height() - z; }
@@ -28,17 +29,23 @@ struct Cut {
     Vec2 at(double cos_w, double sin_w) const { return centre + a * cos_w * Vec2(e) + b * sin_w * Vec2(m); }
 };
 
+/// Of each cut of a trail, by how much the gap to a neighbouring branch is wider than ink bridges, metres; see
+/// brush::Opening.
+struct TrailOpening {
+    int branch = 0;
+    std::vector<double> width;
+};
+
 /// A part of one branch that touches the surface, from tip side to root side.
 struct Trail {
-    int branch = 0;             ///< of the tuft
-    std::vector<Cut> cuts;      ///< close together at both ends
-    std::vector<double> along;  ///< position of each cut along the hair, fraction of the length from the root
-    std::size_t trunk = 0;      ///< index of the first cut of the whole tuft, after those of the sub-spine
-    double length = 1;          ///< of the branch's hair over the tuft's
-    bool strip = false;         ///< a spine of a wide ferrule: its hair fills a rectangle, not a disc
-    /// Of each cut, by how much the gap to the next branch is wider than ink bridges, metres; see brush::TuftState.
-    /// Empty where no branch comes next.
-    std::vector<double> opening;
+    int branch = 0;                      ///< of the tuft
+    std::vector<Cut> cuts;               ///< close together at both ends
+    std::vector<double> along;           ///< position of each cut along the hair, fraction of the length from the root
+    std::size_t trunk = 0;               ///< index of the first cut of the whole tuft, after those of the sub-spine
+    double length = 1;                   ///< of the branch's hair over the tuft's
+    bool strip = false;                  ///< a spine of a row: its hair fills a rectangle, not a disc
+    std::vector<Vec2> corners;           ///< of that strip, see brush::Branch
+    std::vector<TrailOpening> openings;  ///< to neighbours that follow in brush::TuftState::openings
 
     /// Half the thickness of the hair at x in [−1, 1] of a section, over b.
     double chord(double x) const { return strip ? kStripChord : std::sqrt(std::max(0.0, 1 - x * x)); }
@@ -92,8 +99,8 @@ void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& fo
 /// Returns the outline of a trail; without points when the trail is too small.
 Outline outline_of(const Trail& trail, int points);
 
-/// Returns the outlines whose union is the contact patch: one for each trail, and where spines of a wide ferrule are
-/// joined by ink, one for what lies between two of them, at equal parts of their hair.
+/// Returns the outlines whose union is the contact patch: one for each trail, and where spines of a ferrule are joined
+/// by ink, one for what lies between two of them, or in a ring between three, at equal parts of their hair.
 std::vector<Outline> outlines_of(std::span<const Trail> trails, int points);
 
 }  // namespace tuft::footprint

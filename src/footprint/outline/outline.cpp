@@ -50,24 +50,31 @@ void add_shadow(const Cut& cut, std::vector<Vec2>& corners) {
     if (level < 1) corners.push_back(cut.at(to.x, to.y));
 }
 
-/// The same of a strip: the rectangle of the ellipse's area, which meets the surface when the ellipse does, cut by it.
-void add_strip_shadow(const Cut& cut, std::vector<Vec2>& corners) {
-    const double rise[2] = {Trail::kStripChord * cut.a * cut.e.z, Trail::kStripChord * cut.b * cut.m.z};
-    const double reach = std::abs(rise[0]) + std::abs(rise[1]), half = cut.half_height();
-    const double z = half > 0 ? cut.z * reach / half : cut.z;
-    static constexpr double kCorner[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
-    const auto height = [&](int k) { return z + kCorner[k][0] * rise[0] + kCorner[k][1] * rise[1]; };
-    const auto point = [&](int k) {
-        return cut.at(Trail::kStripChord * kCorner[k][0], Trail::kStripChord * kCorner[k][1]);
-    };
+/// The same of a strip: its corners at the scale at which it meets the surface when the ellipse does, cut by it.
+void add_strip_shadow(const Cut& cut, std::span<const Vec2> strip, std::vector<Vec2>& corners) {
+    const Vec3 e = cut.a * cut.e, m = cut.b * cut.m;
+    const Vec3 broad = cut.turn.x * e + cut.turn.y * m, thick = cut.turn.x * m - cut.turn.y * e;
+    double reach = 0;
+    for (const Vec2& c : strip) reach = std::max(reach, -(c.x * broad.z + c.y * thick.z));
+    const double half = cut.half_height(), z = half > 0 ? cut.z * reach / half : cut.z;
+    const auto height = [&](const Vec2& c) { return z + c.x * broad.z + c.y * thick.z; };
+    const auto point = [&](const Vec2& c) { return cut.centre + c.x * Vec2(broad) + c.y * Vec2(thick); };
     const std::size_t before = corners.size();
-    for (int k = 0; k < 4; ++k) {
-        const int next = (k + 1) % 4;
-        const double p = height(k), q = height(next);
-        if (p <= 0) corners.push_back(point(k));
-        if ((p <= 0) != (q <= 0)) corners.push_back(glm::mix(point(k), point(next), p / (p - q)));
+    for (std::size_t k = 0; k < strip.size(); ++k) {
+        const Vec2 &c = strip[k], &next = strip[(k + 1) % strip.size()];
+        const double p = height(c), q = height(next);
+        if (p <= 0) corners.push_back(point(c));
+        if ((p <= 0) != (q <= 0)) corners.push_back(glm::mix(point(c), point(next), p / (p - q)));
     }
     if (corners.size() == before) corners.push_back(cut.centre);  // it only just touches
+}
+
+/// Corners of a trail's strip; none of a disc.
+std::span<const Vec2> strip_of(const Trail& trail) {
+    constexpr double k = Trail::kStripChord;
+    static constexpr Vec2 kRectangle[4] = {{k, k}, {-k, k}, {-k, -k}, {k, -k}};
+    if (!trail.strip) return {};
+    return trail.corners.empty() ? std::span<const Vec2>(kRectangle) : std::span<const Vec2>(trail.corners);
 }
 
 Vec2 unit_or(const Vec2& v, const Vec2& other) {
@@ -160,13 +167,14 @@ struct Loops {
     std::vector<Vec2> corners;
     std::vector<std::size_t> first{0};  ///< corner of each loop, and the end
 
-    void add(std::span<const Cut> cuts, bool strip) {
-        corners.reserve(corners.size() + cuts.size() * (strip ? 6 : kDirections + 2));
+    /// `strip`: corners of the hair's sections; empty: ellipses.
+    void add(std::span<const Cut> cuts, std::span<const Vec2> strip) {
+        corners.reserve(corners.size() + cuts.size() * (strip.empty() ? kDirections + 2 : strip.size() + 2));
         for (const Cut& cut : cuts) {
-            if (strip)
-                add_strip_shadow(cut, corners);
-            else
+            if (strip.empty())
                 add_shadow(cut, corners);
+            else
+                add_strip_shadow(cut, strip, corners);
             first.push_back(corners.size());
         }
     }
@@ -211,11 +219,17 @@ void add_loops(const Loops& loops, std::size_t begin, std::size_t end, Envelope&
     }
 }
 
-Outline closed_outline(const Envelope& envelope, const PatchFrame& patch, const Vec2& front, const Vec2& rear,
-                       int points) {
+/// Two ends of an outline, patch frame.
+struct Ends {
+    Vec2 front{0}, rear{0};
+};
+
+/// The outline of an envelope. With `edges` its control points are its own: the spline through them would swing beyond
+/// the straight ends of strips.
+Outline closed_outline(const Envelope& envelope, const PatchFrame& patch, const Ends& ends, int points, bool edges) {
     Outline outline;
-    outline.tip = patch.to_stamp(front);
-    outline.tail = patch.to_stamp(rear);
+    outline.tip = patch.to_stamp(ends.front);
+    outline.tail = patch.to_stamp(ends.rear);
     outline.left.reserve(points);
     outline.right.reserve(points);
     for (int j = points - 1; j >= 0; --j) {
@@ -229,7 +243,7 @@ Outline closed_outline(const Envelope& envelope, const PatchFrame& patch, const 
     closed.insert(closed.end(), outline.left.begin(), outline.left.end());
     closed.push_back(outline.tail);
     closed.insert(closed.end(), outline.right.rbegin(), outline.right.rend());
-    outline.control = spline_control(closed);
+    outline.control = edges ? closed : spline_control(closed);
     return outline;
 }
 
@@ -240,7 +254,7 @@ Outline outline_of(const Trail& trail, int points) {
     points = std::max(points, 4);
     const PatchFrame patch{cuts[cuts.size() / 2].centre, forward_direction(cuts)};
     Loops loops;
-    loops.add(cuts, trail.strip);
+    loops.add(cuts, strip_of(trail));
     patch.to_patch(loops.corners);
     Vec2 front{-1e9, 0}, rear{1e9, 0};
     for (const Vec2& q : loops.corners) {
@@ -249,15 +263,16 @@ Outline outline_of(const Trail& trail, int points) {
     }
     Envelope envelope(rear.x, front.x, points);
     add_loops(loops, 0, loops.size(), envelope);
-    return closed_outline(envelope, patch, front, rear, points);
+    return closed_outline(envelope, patch, {front, rear}, points, trail.strip);
 }
 
 namespace {
 
-/// Sections of two neighbouring trails at equal parts of their hair, tip side first: the skin between two spines goes
-/// from tip to tip.
+/// Sections of two or three neighbouring trails at equal parts of their hair, tip side first: the skin between spines
+/// goes from tip to tip.
 struct Joint {
-    std::vector<Cut> first, second;
+    std::vector<std::vector<Cut>> side;  ///< [trails][sections]
+    std::vector<const Trail*> trail;     ///< [trails]
 };
 
 Cut cut_between(const Cut& p, const Cut& q, double f) {
@@ -265,71 +280,111 @@ Cut cut_between(const Cut& p, const Cut& q, double f) {
         const double size = glm::length(v);
         return size > 1e-9 ? v / size : otherwise;
     };
-    return {glm::mix(p.centre, q.centre, f), std::lerp(p.z, q.z, f),           std::lerp(p.a, q.a, f),
-            std::lerp(p.b, q.b, f),          unit(glm::mix(p.e, q.e, f), p.e), unit(glm::mix(p.m, q.m, f), p.m)};
+    const Vec2 turn = glm::mix(p.turn, q.turn, f);
+    return {glm::mix(p.centre, q.centre, f),
+            std::lerp(p.z, q.z, f),
+            std::lerp(p.a, q.a, f),
+            std::lerp(p.b, q.b, f),
+            unit(glm::mix(p.e, q.e, f), p.e),
+            unit(glm::mix(p.m, q.m, f), p.m),
+            glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn};
 }
 
-/// The section of a trail at the part u of its own hair, and the opening there; `from`: where to look from on.
-Cut cut_at(const Trail& trail, double u, std::size_t& from, double* opening = nullptr) {
-    const double along = u * trail.length;
-    while (from + 2 < trail.cuts.size() && trail.along[from + 1] > along) ++from;
-    const double run = trail.along[from] - trail.along[from + 1];
-    const double f = run > 0 ? std::clamp((trail.along[from] - along) / run, 0.0, 1.0) : 0;
-    if (opening) *opening = std::lerp(trail.opening[from], trail.opening[from + 1], f);
-    return cut_between(trail.cuts[from], trail.cuts[from + 1], f);
+/// A trail that is looked at from its tip to its root.
+struct Walk {
+    const Trail* trail = nullptr;
+    std::size_t from = 0;  ///< cut from which on the next place lies
+
+    /// The section at the part u of the trail's own hair.
+    Cut cut(double u) {
+        const double f = step_to(u);
+        return cut_between(trail->cuts[from], trail->cuts[from + 1], f);
+    }
+    double opening(double u, const TrailOpening& to) {
+        const double f = step_to(u);
+        return std::lerp(to.width[from], to.width[from + 1], f);
+    }
+
+  private:
+    double step_to(double u) {
+        const double along = u * trail->length;
+        while (from + 2 < trail->cuts.size() && trail->along[from + 1] > along) ++from;
+        const double run = trail->along[from] - trail->along[from + 1];
+        return run > 0 ? std::clamp((trail->along[from] - along) / run, 0.0, 1.0) : 0;
+    }
+};
+
+const TrailOpening* opening_between(const Trail& a, const Trail& b) {
+    for (const TrailOpening& o : a.openings)
+        if (o.branch == b.branch) return &o;
+    return nullptr;
 }
 
-/// The stretches over which two neighbouring trails are joined, of where both touch.
-std::vector<Joint> joints_of(const Trail& a, const Trail& b) {
+/// The stretches over which all of the given neighbouring trails are joined, of where all touch.
+std::vector<Joint> joints_of(std::span<const Trail* const> trails) {
     constexpr int kJointSamples = 24;
     constexpr double kPast = 0.02;  // of the hair, that one of two joined ends may touch further
     std::vector<Joint> out;
-    const double tip = std::min(a.along.front() / a.length, b.along.front() / b.length) + kPast,
-                 root = std::max(a.along.back() / a.length, b.along.back() / b.length) - kPast;
-    std::size_t at_a = 0, at_b = 0;
+    std::vector<Walk> walks;
+    double tip = 1e9, root = -1e9;
+    for (const Trail* t : trails) {
+        walks.push_back({t});
+        tip = std::min(tip, t->along.front() / t->length);
+        root = std::max(root, t->along.back() / t->length);
+    }
+    tip += kPast;
+    root -= kPast;
     bool open = true;
     for (int i = 0; i < kJointSamples && root < tip; ++i) {
         const double u = std::lerp(tip, root, 0.5 - 0.5 * std::cos(kPi * i / (kJointSamples - 1)));
-        double opening = 0;
-        const Cut first = cut_at(a, u, at_a, &opening);
-        if (opening <= 0) {
-            if (open) out.emplace_back();
-            out.back().first.push_back(first);
-            out.back().second.push_back(cut_at(b, u, at_b));
+        double widest = -1e9;
+        for (Walk& a : walks)
+            for (const Trail* b : trails)
+                if (const TrailOpening* o = opening_between(*a.trail, *b)) widest = std::max(widest, a.opening(u, *o));
+        if (widest <= 0) {
+            if (open) out.push_back({std::vector<std::vector<Cut>>(trails.size()), {trails.begin(), trails.end()}});
+            for (std::size_t k = 0; k < walks.size(); ++k) out.back().side[k].push_back(walks[k].cut(u));
         }
-        open = opening > 0;
+        open = widest > 0;
     }
-    std::erase_if(out, [](const Joint& j) { return j.first.size() < 2; });
+    std::erase_if(out, [](const Joint& j) { return j.side.front().size() < 2; });
     return out;
 }
 
-/// Outline of two joined stretches and of all that lies between them.
+/// Adds the skin between the sections i of two sides, `last` of which is at the end.
+void add_bridge(std::span<const Vec2> p, std::span<const Vec2> q, bool end, Envelope& envelope) {
+    const auto [p_low, p_high] = std::minmax_element(p.begin(), p.end(), by_y);
+    const auto [q_low, q_high] = std::minmax_element(q.begin(), q.end(), by_y);
+    envelope.add(*p_low, *q_low);
+    envelope.add(*p_high, *q_high);
+    if (!end) return;
+    const auto [p_rear, p_front] = std::minmax_element(p.begin(), p.end(), by_x);
+    const auto [q_rear, q_front] = std::minmax_element(q.begin(), q.end(), by_x);
+    envelope.add(*p_rear, *q_rear);
+    envelope.add(*p_front, *q_front);
+}
+
+/// Outline of joined stretches and of all that lies between them.
 Outline outline_of(const Joint& joint, int points) {
-    const std::size_t n = joint.first.size();
-    const Vec2 forward = forward_direction(joint.first) + forward_direction(joint.second);
-    const PatchFrame patch{0.5 * (joint.first[n / 2].centre + joint.second[n / 2].centre),
-                           unit_or(forward, forward_direction(joint.first))};
+    const std::size_t n = joint.side.front().size(), sides = joint.side.size();
+    Vec2 forward{0}, middle{0};
+    for (const std::vector<Cut>& side : joint.side) {
+        forward += forward_direction(side);
+        middle += side[n / 2].centre;
+    }
+    const PatchFrame patch{middle / static_cast<double>(sides),
+                           unit_or(forward, forward_direction(joint.side.front()))};
     Loops loops;
-    loops.add(joint.first, true);
-    loops.add(joint.second, true);
+    for (std::size_t k = 0; k < sides; ++k) loops.add(joint.side[k], strip_of(*joint.trail[k]));
     patch.to_patch(loops.corners);
     const auto [rear, front] = std::minmax_element(loops.corners.begin(), loops.corners.end(), by_x);
     Envelope envelope(rear->x, front->x, points);
-    add_loops(loops, 0, n, envelope);
-    add_loops(loops, n, 2 * n, envelope);
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::span<const Vec2> p = loops[i], q = loops[n + i];
-        const auto [p_low, p_high] = std::minmax_element(p.begin(), p.end(), by_y);
-        const auto [q_low, q_high] = std::minmax_element(q.begin(), q.end(), by_y);
-        envelope.add(*p_low, *q_low);
-        envelope.add(*p_high, *q_high);
-        if (i != 0 && i + 1 != n) continue;
-        const auto [p_rear, p_front] = std::minmax_element(p.begin(), p.end(), by_x);
-        const auto [q_rear, q_front] = std::minmax_element(q.begin(), q.end(), by_x);
-        envelope.add(*p_rear, *q_rear);
-        envelope.add(*p_front, *q_front);
-    }
-    return closed_outline(envelope, patch, *front, *rear, points);
+    for (std::size_t k = 0; k < sides; ++k) add_loops(loops, k * n, (k + 1) * n, envelope);
+    for (std::size_t k = 0; k < sides; ++k)
+        for (std::size_t l = k + 1; l < sides; ++l)
+            for (std::size_t i = 0; i < n; ++i)
+                add_bridge(loops[k * n + i], loops[l * n + i], i == 0 || i + 1 == n, envelope);
+    return closed_outline(envelope, patch, {*front, *rear}, points, joint.trail.front()->strip);
 }
 
 }  // namespace
@@ -340,12 +395,16 @@ std::vector<Outline> outlines_of(std::span<const Trail> trails, int points) {
     const auto keep = [&](Outline outline) {
         if (outline.left.size() >= 3) out.push_back(std::move(outline));
     };
+    const auto join = [&](std::initializer_list<const Trail*> joined) {
+        for (const Joint& joint : joints_of({joined.begin(), joined.size()})) keep(outline_of(joint, points));
+    };
     for (const Trail& trail : trails) keep(outline_of(trail, points));
     for (const Trail& a : trails) {
-        if (a.opening.empty()) continue;
         for (const Trail& b : trails) {
-            if (b.branch != a.branch + 1) continue;
-            for (const Joint& joint : joints_of(a, b)) keep(outline_of(joint, points));
+            if (!opening_between(a, b)) continue;
+            join({&a, &b});
+            for (const Trail& c : trails)
+                if (opening_between(b, c) && opening_between(a, c)) join({&a, &b, &c});
         }
     }
     return out;

@@ -19,7 +19,8 @@ struct Outline {
     Vec2 tail{0};             ///< H: rear end
     std::vector<Vec2> left;   ///< cut points from tip to tail
     std::vector<Vec2> right;  ///< their mirror images where the tuft is symmetric
-    /// Of the spline, cyclic: point k of the curve at knot k is (control[k-1] + 4 control[k] + control[k+1]) / 6.
+    /// Of strips the points themselves. Of the spline, cyclic: point k of the curve at knot k is (control[k-1] + 4
+    /// control[k] + control[k+1]) / 6.
     std::vector<Vec2> control;
 };
 

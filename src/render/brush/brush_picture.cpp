@@ -40,7 +40,7 @@ struct Hand {
     Hand(const Preset& p, double tilt, double slant, Side side) {
         now.tuft = make_tuft(p, 3);
         now.pose.rotation = glm::angleAxis(-tilt, Vec3{0, 1, 0}) * glm::angleAxis(slant, Vec3{1, 0, 0});
-        if (now.tuft.wide() && side == Side::broad)
+        if (has_broad_side(now.tuft.preset) && side == Side::broad)
             now.pose.rotation = now.pose.rotation * glm::angleAxis(0.5 * std::numbers::pi, Vec3{0, 0, 1});
         lowest = p.length * -now.pose.axis().z;
         now.pose.position = {0, 0, lowest};
@@ -117,9 +117,21 @@ void fill_row(const Sheet& sheet, double top, double ground, double bottom) {
     fill_polygon(sheet.canvas, under, linear_colour(233, 228, 216));
 }
 
+/// By what whole number a patch is drawn smaller, so that it leaves its label free; `space` in pixels.
+int patch_reduction(const Preset& preset, double scale, double space) {
+    constexpr double kSpread = 1.25;  // of the tuft's width, as far as it spreads under the deepest press
+    const double width = tuft_width(preset) + 2 * preset.length * std::sin(preset.splay);
+    return std::max(1, static_cast<int>(std::ceil(kSpread * width * scale / space)));
+}
+
+std::string reduced(const std::string& name, int times) {
+    return times > 1 ? name + label(", patches %.0f times smaller", static_cast<double>(times)) : name;
+}
+
 /// One row from the side; `top` to `top` + 535 units.
 void draw_row(const Sheet& sheet, double top, double tilt, Side side, const char* name) {
-    const double u = sheet.unit, ground = top + 370 * u, plan = ground + 84 * u;
+    const double u = sheet.unit, ground = top + 370 * u, plan = ground + 88 * u;
+    const int smaller = patch_reduction(sheet.preset, sheet.scale, 112 * u);
     fill_row(sheet, top, ground, top + 535 * u);
     const double length = sheet.preset.length;
     for (int k = 0; k < kColumns; ++k) {
@@ -137,8 +149,9 @@ void draw_row(const Sheet& sheet, double top, double tilt, Side side, const char
         view.foot = {(k + 0.33) * sheet.column + 0.35 * sheet.scale * foot, ground};
         draw_brush(sheet.canvas, {at.tuft, at.state, at.pose}, view, 2.5 * length);
         draw_scale(sheet, view, (k + 0.02) * sheet.column, (k + 0.98) * sheet.column);
-        if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, view, plan);
-        // Under the patch of a wide tuft, which is as wide as the tuft.
+        BrushView patch = view;
+        patch.scale /= smaller;
+        if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, patch, plan);
         const double x = (k + 0.5) * sheet.column, y = ground + (sheet.preset.spines > 1 ? 161 : 152) * u;
         sheet.centred(
             lifted ? "lifted" : label("%.1f mm", at.depth / kMillimetre) + label("   %.2f N", at.state.normal_force), x,
@@ -148,7 +161,7 @@ void draw_row(const Sheet& sheet, double top, double tilt, Side side, const char
     // Over the handles' bands, so that it can be read.
     const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
     fill_polygon(sheet.canvas, band, linear_colour(246, 243, 236));
-    sheet.text(name, {24 * u, top + 27 * u}, 14, sheet.ink);
+    sheet.text(reduced(name, smaller), {24 * u, top + 27 * u}, 14, sheet.ink);
 }
 
 /// The tips of a writer's craft, seen from behind and above.
@@ -157,6 +170,7 @@ void draw_tips(const Sheet& sheet, double top) {
     const double u = sheet.unit, length = sheet.preset.length, column = sheet.width / 4;
     const double ground = top + 330 * u;
     fill_row(sheet, top, top + 200 * u, top + 540 * u);
+    const int smaller = patch_reduction(sheet.preset, 1.1 * sheet.scale, 130 * u);
     for (int k = 0; k < 4; ++k) {
         TuftAppearance appearance;
         Hand hand(sheet.preset, k == 1 ? 0.2 : 0, k == 0 ? 0.7 : 0, Side::broad);
@@ -195,14 +209,16 @@ void draw_tips(const Sheet& sheet, double top) {
         draw_brush(sheet.canvas, {at.tuft, at.state, at.pose}, view, 2.5 * length, appearance);
         BrushView plan = view;
         plan.foot.x = (k + 0.42) * column;
-        const std::vector<Section>& sections = at.state.branches.front().sections;
-        plan.origin.y = sections[sections.size() / 3].centre.y;
+        plan.scale /= smaller;
+        double across = 0;
+        for (const Branch& branch : at.state.branches) across += branch.sections[branch.sections.size() / 3].centre.y;
+        plan.origin.y = across / static_cast<double>(at.state.branches.size());
         draw_patch(sheet.canvas, at.tuft, at.state, plan, top + 440 * u, appearance);
         sheet.centred(name, (k + 0.5) * column, top + 522 * u, 12, sheet.ink);
     }
     const Vec2 band[] = {{0, top}, {sheet.width, top}, {sheet.width, top + 40 * u}, {0, top + 40 * u}};
     fill_polygon(sheet.canvas, band, linear_colour(246, 243, 236));
-    sheet.text("tips", {24 * u, top + 27 * u}, 14, sheet.ink);
+    sheet.text(reduced("tips", smaller), {24 * u, top + 27 * u}, 14, sheet.ink);
 }
 
 }  // namespace
@@ -227,7 +243,7 @@ BrushPicture draw_tuft(const Preset& preset, int width) {
     const Vec2 band[] = {{0, 0}, {sheet.width, 0}, {sheet.width, head}, {0, head}};
     fill_polygon(canvas, band, linear_colour(246, 243, 236));
     sheet.text(preset.name + label(", hair %.0f mm long", preset.length / kMillimetre) +
-                   (preset.spines > 1 ? label(", %.0f mm wide", preset.width / kMillimetre) : "") +
+                   (has_broad_side(preset) ? label(", %.0f mm wide", preset.width / kMillimetre) : "") +
                    label(", %.1f mm thick", 2 * preset.radius / kMillimetre),
                {24 * unit, 36 * unit}, 18, sheet.ink);
     return {width, height, to_srgb(canvas)};

@@ -259,12 +259,12 @@ void draw_brush(BrushCanvas& canvas, const PosedTuft& posed, const BrushView& vi
                 const TuftAppearance& appearance) {
     const auto& [tuft, state, pose] = posed;
     const Preset& p = tuft.preset;
-    const double r = tuft.wide() ? std::max(1.3 * p.radius, 0.3 * p.width) : 1.12 * rest_radius(p, 0);
+    const double r = has_broad_side(p) ? std::max(1.3 * p.radius, 0.3 * p.width) : 1.12 * rest_radius(p, 0);
     const Turned handle{
         0.2 * p.length, length, 0.92 * r, 0.9 * r, linear_colour(96, 66, 34), linear_colour(222, 184, 120)};
     const Turned ferrule{0, 0.22 * p.length, r, 1.04 * r, linear_colour(28, 28, 32), linear_colour(150, 150, 158)};
     const bool into_mouth = glm::dot(pose.axis(), view.toward()) > 0;
-    if (tuft.wide()) {
+    if (has_broad_side(p)) {
         Turned out = handle;
         out.from = std::max(ferrule.to, 0.6 * p.width);
         if (into_mouth) fill_turned(canvas, out, pose, view);
@@ -356,7 +356,7 @@ void draw_patch(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, c
                 const std::optional<Vec2> at = placed.at(strands[k], k, i);
                 if (!at || at->y * s.m.z > 0) continue;
                 const double chord =
-                    state.wide ? std::sqrt(std::numbers::pi) / 2 : std::sqrt(std::max(0.0, 1 - at->x * at->x));
+                    state.strips ? std::sqrt(std::numbers::pi) / 2 : std::sqrt(std::max(0.0, 1 - at->x * at->x));
                 const double under = chord * s.b * std::abs(s.m.z);
                 if (s.centre.z + s.a * at->x * s.e.z - under <= 1e-4) line.push_back(plan(point_of(s, *at)));
             }

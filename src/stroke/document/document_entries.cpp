@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "ink/exchange/uptake.h"
 #include "stroke/document/apply_fill.h"
 #include "stroke/document/document.h"
 #include "stroke/journal/tables.h"
@@ -18,11 +19,20 @@ LayerTiles tiles_of(std::uint32_t layer, const ink::Canvas& canvas) {
     return tiles;
 }
 
+/// Part of the tuft's length that a dip wets: what is in the dish, and as far as ink rises over it.
+double wetted_part(const Extent& extent, const brush::Preset& preset) {
+    const double rise = ink::uptake_height(
+        {.surface_tension = preset.surface_tension, .pore_radius = ink::pore_radius_of(preset.hair_diameter)},
+        extent.time);
+    return std::min(1.0, extent.depth + rise / preset.length);
+}
+
 void change_brush(BrushInHand& brush, const BrushAction& action, const ink::Mix& mix) {
     const Extent& extent = action.extent;
     switch (action.kind) {
         case BrushActionKind::dip:
-            ink::dip(brush.reservoir, mix, {.depth = extent.depth, .level = extent.amount, .side = extent.side});
+            ink::dip(brush.reservoir, mix,
+                     {.depth = wetted_part(extent, brush.tuft.preset), .level = extent.amount, .side = extent.side});
             brush.dipped = action.ink;
             break;
         case BrushActionKind::wipe:

@@ -21,7 +21,7 @@ bool same(const Mat3& a, const Mat3& b) {
 
 brush::Pose PoseMap::pose(const brush::Pose& pose) const {
     Mat3 turned = linear * glm::mat3_cast(pose.rotation);
-    if (glm::determinant(turned) < 0) turned[0] = -turned[0];
+    if (glm::determinant(turned) < 0) turned[1] = -turned[1];
     return {point(pose.position), glm::normalize(glm::quat_cast(turned)), pose.time};
 }
 

@@ -24,8 +24,8 @@ struct PoseMap {
     Vec3 centre{0};
 
     Vec3 point(const Vec3& p) const { return centre + linear * (p - centre); }
-    /// Maps a pose. After a reflection the ferrule's x axis is flipped to make its frame right-handed again, which
-    /// changes nothing for a tuft that is symmetric in x.
+    /// Maps a pose. After a reflection the ferrule's y axis is flipped to make its frame right-handed again: every
+    /// tuft is symmetric in y, and a slant, along x, is mirrored with the pose.
     brush::Pose pose(const brush::Pose& pose) const;
 };
 

@@ -160,6 +160,8 @@ void check_extent(const Extent& e, BrushActionKind kind) {
     if (!(e.amount >= 0 && e.amount <= (kind == BrushActionKind::dip ? ink::kMostLevel : 1.0)))
         throw Error("the amount of a wipe is 0 to 1, of a dip 0 to 1.5, above 1 dripping wet");
     if (!(std::abs(e.side) <= 1)) throw Error("the side of a dip or wipe is a part of the tuft's width, -1 to 1");
+    if (!(e.time >= 0 && e.time <= kLongestWait) || (e.time > 0 && kind != BrushActionKind::dip))
+        throw Error("only a dip takes time, seconds in the dish");
 }
 
 std::string group_name(const std::filesystem::path& file) {

@@ -78,7 +78,7 @@ Tool tool_in(const json& j) {
 Extent extent_in(const json& j, BrushActionKind kind) {
     Extent extent;
     try {
-        extent = {j.value("depth", 1.0), j.value("amount", 1.0), j.value("side", 0.0)};
+        extent = {j.value("depth", 1.0), j.value("amount", 1.0), j.value("side", 0.0), j.value("time", 0.0)};
     } catch (const json::exception&) {
         throw Error("how far a brush was dipped or wiped cannot be read");
     }
@@ -119,6 +119,7 @@ json json_of(const BrushAction& action) {
     j["depth"] = action.extent.depth;
     j["amount"] = action.extent.amount;
     if (action.extent.side != 0) j["side"] = action.extent.side;
+    if (action.extent.time != 0) j["time"] = action.extent.time;
     return j;
 }
 

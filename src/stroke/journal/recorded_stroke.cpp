@@ -25,6 +25,7 @@ std::string preparation_text(const Preparation& preparation) {
     add("depth", action->extent.depth, 1);
     add("amount", action->extent.amount, 1);
     add("side", action->extent.side, 0);
+    add("time", action->extent.time, 0);
     return text;
 }
 
@@ -59,10 +60,13 @@ Preparation preparation_of(const std::string& text) {
                         : name == "depth"  ? &action->extent.depth
                         : name == "amount" ? &action->extent.amount
                         : name == "side"   ? &action->extent.side
+                        : name == "time"   ? &action->extent.time
                                            : nullptr;
         if (!value || equal == std::string::npos)
             throw Error(
-                Message("'{}' in '{}' is none of depth=PART, amount=PART and side=PART of a dip or wipe", part, text));
+                Message("'{}' in '{}' is none of depth=PART, amount=PART and side=PART of a dip or wipe, or "
+                        "time=SECONDS of a dip",
+                        part, text));
         const char* last = part.data() + part.size();
         const auto [rest, error] = std::from_chars(part.data() + equal + 1, last, *value);
         if (error != std::errc{} || rest != last) throw Error(Message("'{}' in '{}' is no number", part, text));

@@ -16,8 +16,8 @@ using Preparation = std::variant<BrushAction, Dry, WashPalette, Fill>;
 
 EntryKind kind_of(const Preparation& preparation);
 
-/// Returns a preparation as "ACTION[:INK][,depth=PART][,amount=PART][,side=PART]", such as "dip:cinnabar,depth=0.2" or
-/// "wipe,amount=0.6", and back. Back throws `Error` for any other text.
+/// Returns a preparation as "ACTION[:INK][,depth=PART][,amount=PART][,side=PART][,time=SECONDS]", such as
+/// "dip:cinnabar,depth=0.2" or "wipe,amount=0.6", and back. Back throws `Error` for any other text.
 std::string preparation_text(const Preparation& preparation);
 Preparation preparation_of(const std::string& text);
 

@@ -126,16 +126,29 @@ contact::Result StrokeSession::bend_on_surface(const brush::Pose& pose, double d
     return contact;
 }
 
+namespace {
+
+// Size of a contact patch along its motion, metres: the edge of a wide tuft is far shorter than it is wide.
+double patch_size(const brush::Preset& preset, double area) {
+    return brush::has_broad_side(preset) ? area / preset.width : std::sqrt(std::max(area, 1e-30));
+}
+
+}  // namespace
+
 // The hand's displacement, not the frame's: the patch also grows and shrinks. Hair that lies by itself may swing round.
 // And a patch that leaps by more than it is long, as a tip does that springs back while it is lifted, leaves its line
 // along its own path.
 void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double area) const {
-    const double leap = smooth_step(glm::length(moved.hair - moved.hand) / std::sqrt(std::max(area, 1e-30)) / kLeap);
+    const brush::Preset& preset = tuft_.brush.tuft.preset;
+    const double size = std::max(patch_size(preset, area), 1e-15);
+    const double leap = smooth_step(glm::length(moved.hair - moved.hand) / size / kLeap);
     stamp.motion.shift = glm::mix(moved.hand, moved.hair, std::max(leap, static_cast<double>(stamp.separation)));
     // Dry hair leaves ink by how it is drawn: where it only comes to touch, a tip that leans would print a speck that
     // its stroke, which begins where it has been pressed aside, does not reach.
     const bool prints = motion_.contact_travel >= kPrintTravel;
     stamp.ds = prints ? path_.spacing : (1 - static_cast<double>(stamp.separation)) * path_.spacing;
+    // An edge that slips away under a press draws by its own way, which is longer than the hand's.
+    if (brush::has_broad_side(preset)) stamp.ds = std::max(stamp.ds, leap * glm::length(stamp.motion.shift));
 }
 
 void StrokeSession::set_ink(Stamp& stamp, double area) const {
