@@ -53,12 +53,14 @@ class HairContact {
         std::vector<double> of_bundle;
         double mean = 0, lack = 0;  ///< over the bundles; `lack`: mean of max(0, 1 − wetness)
     };
+    void draw_shape(Stamp& stamp, const TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion,
+                    const Wetness& wetness, std::span<const footprint::Trail> trails);
     Wetness bundle_wetness(TuftInHand& tuft, const MotionTracker& motion, double stress, double dt);
     void draw_hairs(Stamp& stamp, const TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion,
                     const Wetness& wetness, std::span<const footprint::Trail> trails,
                     std::span<const footprint::Outline> outlines);
-    void place_nodes(Stamp& stamp, const TuftInHand& tuft, std::span<const footprint::Trail> trails,
-                     std::span<const footprint::Outline> outlines);
+    void place_nodes(Stamp& stamp, const TuftInHand& tuft, const contact::Result& contact,
+                     std::span<const footprint::Trail> trails, std::span<const footprint::Outline> outlines);
 
     HairContactOptions options_;
     ink::ContactCells cells_, cells_since_;

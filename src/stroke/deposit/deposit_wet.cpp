@@ -40,7 +40,9 @@ class WetDeposit : public DepositModel {
         const std::vector<ink::BundleFirmness> bundles = furrows_.advance(tuft, contact.hair, contact.motion.travel);
         const ink::NodeAreas areas = exposure_.expose(stamp);
         const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
-        const double pour = area > 0 ? ink::drained_volume(reservoir, contact.drain, last_step_) / area : 0;
+        const double runs = brush::is_foam(tuft.preset()) ? ink::excess(reservoir)
+                                                          : ink::drained_volume(reservoir, contact.drain, last_step_);
+        const double pour = area > 0 ? runs / area : 0;
         const ink::ContactStep step{.ds = stamp.ds, .dt = since_stamp_, .stress = contact.stress, .pour = pour};
         ink::refresh(liquid_, reservoir, cells, contact.hair.nodes(), areas, step);
         ink::TransferParams params = ink::transfer_params(liquid_, reservoir, cells, areas, stamp.ink, step);

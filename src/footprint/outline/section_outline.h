@@ -1,0 +1,65 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "brush/tuft/tuft.h"
+#include "footprint/outline/footprint.h"
+#include "footprint/outline/hair.h"
+
+/// \file
+/// Contact patch of a carried shape (brush/tuft/geometry_tuft.h): what lies below the surface. Called by `stroke` for
+/// every stamp, in place of outlines of ellipses; the picture goes the same way from there.
+///
+/// A mesh is cut where the height of its skin over the surface, interpolated over each triangle, is `film`: closed
+/// polygons, as many as there are. Regions are inside an odd number of them (even–odd), so a hollow shape leaves a
+/// ring. A hair is the stadium round each of its parts below the surface. Open pores of foam are discs without contact.
+namespace tuft::footprint {
+
+/// Polygon in the stamp's (u, v), metres, counter-clockwise outside, clockwise round a hole.
+using Polygon = std::vector<Vec2>;
+
+struct ShapeOptions {
+    double film = 0.1e-3;  ///< metres, ink on the skin or the hair
+    double wetness = 1;    ///< 0–1: ink spans the rims of pores and stands out beside hairs
+};
+
+/// Returns the polygons of a mesh. Empty where nothing touches.
+std::vector<Polygon> section_polygons(const brush::CarriedShape& carried, const brush::TuftShape& shape,
+                                      const Frame& frame, const ShapeOptions& options = {});
+
+/// Wetness and motion of single hairs, for `hair_polygons`.
+struct LineInk {
+    std::span<const double> wet = {};  ///< [bundles] as in `HairInk`; empty: full
+    double travel = 0;                 ///< metres of the stroke so far
+    std::uint64_t seed = 0;
+};
+
+/// Returns the stadiums of the hairs of polylines. `width` is a hair's own, metres. With w the wetness of its bundle, a
+/// hair marks while w > n, n of each hair fixed for three quarters and changing along the stroke for one; it marks
+/// width + 2 film min(1, w) wide.
+std::vector<Polygon> hair_polygons(const brush::CarriedShape& carried, const brush::TuftShape& shape,
+                                   const Frame& frame, double width, const LineInk& ink,
+                                   const ShapeOptions& options = {});
+
+/// Removes the open pores of foam from its picture. A pore of radius r₀ at strain ε of the skin has the radius
+/// r₀ √(1 − ε/0.6) − 0.3 film wetness [X]: rims come together, and ink spans them.
+void open_pores(const brush::CarriedShape& carried, const brush::TuftShape& shape, const ShapeOptions& options,
+                Footprint& footprint);
+
+/// Returns the union of polygons of positive sense, less those of negative sense, as a picture; see `rasterise`.
+Footprint rasterise_polygons(std::span<const Polygon> polygons, const Frame& frame, std::uint32_t triangle,
+                             double cell);
+
+/// Multiplies the coverage of `footprint` by that of `by`: marks of single hairs inside a shape.
+void clip_footprint(Footprint& footprint, const Footprint& by);
+
+/// Returns which parts of which bundles touch, as `hair_contact_points` does; at most about 400.
+std::vector<HairContactPoint> shape_contact_points(const brush::CarriedShape& carried, const brush::TuftShape& shape,
+                                                   const Frame& frame, double film);
+
+/// Returns the contact fractions of all cells, as `contact_cells` does.
+std::vector<float> shape_contact_cells(std::span<const HairContactPoint> points, std::size_t bundles,
+                                       std::span<const double> ends);
+
+}  // namespace tuft::footprint
