@@ -20,6 +20,7 @@ struct Work {
     const Options& options;
     StandOptions stand;
     double radius = 0;       // of the tuft, metres
+    double pad = 0;          // metres of hair or foam, pressed flat under the ferrule
     double near = 0;         // metres: farther than this nothing of the tuft can touch
     Stand root;              // of the ferrule's mouth
     bool laid_over = false;  // the tip went so far that its hair was laid there: it did not slide
@@ -33,17 +34,16 @@ Stand stand_of_root(const Work& w, const Memory& memory, double length) {
     return stand_from(w.surface, from, known ? memory.side : 1, root, w.stand);
 }
 
-/// Holds the ferrule's mouth off the surface that it would go through: `kPad` of the tuft's radius where the surface
+/// Holds the ferrule's mouth off the surface that it would go through: by `pad` where the surface
 /// lies before it, nothing where it lies beside it. Returns how far it would be below the surface, metres.
 double hold_off(Work& w) {
-    constexpr double kPad = 0.5;                    // hair pressed flat under the ferrule
     constexpr double kBeside = 0.2, kBefore = 0.5;  // cosines of the normal to the handle
     constexpr int kPasses = 4;
     const double inside = std::max(0.0, -w.root.height);
     for (int pass = 0; pass < kPasses && w.root.triangle != kNone; ++pass) {
         const Vec3& n = w.root.plane.normal;
         const double before = smooth_step((-glm::dot(n, w.pose.axis()) - kBeside) / (kBefore - kBeside));
-        const double needed = kPad * before * w.radius - w.root.height;
+        const double needed = before * w.pad - w.root.height;
         if (needed <= w.stand.lift) break;
         w.pose.position += needed * n;
         w.root = stand_from(w.surface, w.root.outside, w.root.side, w.pose.position, w.stand);
@@ -343,7 +343,8 @@ Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::Surfac
         1.2 * preset.radius * std::max(1.0, preset.flatten_max) + 0.5 * preset.width / std::max(1, preset.spines);
     const bool meets = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
-    Work w{surface, asked, options, {}, preset.radius, 0, {}};
+    Work w{surface, asked, options, {}, preset.radius, 0.5 * preset.radius, 0, {}};
+    if (brush::is_foam(preset)) w.pad = 0.04 * preset.length;
     w.stand.reach = 2 * preset.length + thick + preset.width;
     w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
     if (meets) {

@@ -86,7 +86,7 @@ TEST(Geometry, OfAHostileFileIsRefusedInOneLine) {
     EXPECT_THAT(fault_of(many), HasSubstr("closed"));
     // One face of very many corners.
     many = points + "f";
-    for (std::size_t i = 0; i < kMostTriangles; ++i) many += " 1 2 3";
+    for (std::size_t i = 0; i < kMostTriangles + 2; ++i) many += " 1 2 3";
     EXPECT_THAT(fault_of(many), HasSubstr("at most 40000 triangles"));
     for (const std::string& text : {std::string("v 0 0 nan"), points + "f 1 2 9", many})
         EXPECT_EQ(fault_of(text).find('\n'), std::string::npos);
@@ -100,7 +100,7 @@ TEST(Geometry, LiesInTheFolderOfItsBrush) {
     const std::string shape = "\n[shape]\nlength_mm = 20\nradius_mm = 2\n";
     const auto brush = [&](const std::string& name) { return "geometry = \"" + name + "\"" + shape; };
     EXPECT_EQ(folder.fault(brush("leaf.obj")), "");
-    for (const std::string name :
+    for (const std::string& name :
          {std::string("../out.obj"), std::string("link.obj"), (folder.path / "out.obj").string(),
           std::string("/etc/passwd"), std::string("in/../../out.obj")})
         EXPECT_THAT(folder.fault(brush(name)), HasSubstr("must lie in the folder")) << name;

@@ -20,7 +20,7 @@ constexpr float kRackHeights[] = {54, 40, 30};
 unsigned hair_colour(const std::string& sort) {
     if (sort == "goat") return IM_COL32(240, 236, 226, 255);
     if (sort == "wolf") return IM_COL32(196, 128, 62, 255);
-    if (sort == "sponge") return IM_COL32(226, 190, 112, 255);
+    if (sort == "sponge" || sort == "leaf") return IM_COL32(226, 190, 112, 255);
     if (sort == "mixed") return IM_COL32(222, 184, 138, 255);
     return IM_COL32(170, 172, 178, 255);
 }
@@ -323,7 +323,7 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     if (brushes) add(brush_rack(s.ui, s.brush, room));
     if (s.tools.active != Tool::mask && s.tools.active != Tool::eraser)
         add(ink_section({s.ui, s.brush, s.colours, *s.paint_thread, s.reported, s.dialogs.file}, room));
-    if (brushes) pointer_section(s.ui, s.tools, s.panels, has_wide_ferrule(s.brush));
+    if (brushes) pointer_section(s.ui, s.tools, s.panels, brush_can_be_turned(s.brush));
     if (brushes) symmetry_section(s.ui, s.tools.symmetry);
     section_section(s.ui, s.view.section);
     const float height = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y, there = bottom - top;

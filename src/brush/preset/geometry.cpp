@@ -43,7 +43,7 @@ class GeometryReader {
         for (int k = 0; k < 3; ++k) p[k] = text_.number("a coordinate");
         if (!(std::abs(p.x) <= kLargestGeometry && std::abs(p.y) <= kLargestGeometry &&
               std::abs(p.z) <= kLargestGeometry))
-            text_.fail(Message("a point must be within {} mm of the mouth", kLargestGeometry));
+            text_.fail(Message("a point must be within {} mm of the mouth", static_cast<int>(kLargestGeometry)));
         if (out_.points.size() == kMostPoints) text_.fail(Message("a geometry has at most {} points", kMostPoints));
         out_.points.push_back(p + 0.0);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brush/rod/rod_points.h"
 #include "brush/tuft/tuft.h"
 #include "core/text/units.h"
 
@@ -12,10 +13,13 @@ namespace {
 
 constexpr double kLeastWidth = 1e-4;  ///< m, of the section's box
 
-/// Places of a spine's nodes, 0 root … 1 tip.
-std::vector<double> places_of_nodes(const Spine& spine) {
-    std::vector<double> at{0};
-    for (const double l : spine.rod.length) at.push_back(at.back() + l);
+/// Places of a straight spine's sections, 0 root … 1 tip: on the curve through its nodes, as `step` makes them.
+std::vector<double> places_of_sections(const Spine& spine) {
+    const rod::Clamp clamp;
+    const rod::Memory straight = rod::make_memory(spine.rod, clamp);
+    std::vector<double> at;
+    for (const Vec3& x : rod::curve_nodes(spine.rod, straight.node))
+        at.push_back(glm::dot(x - clamp.position, clamp.tangent));
     for (double& v : at) v /= at.back();
     return at;
 }
@@ -57,7 +61,7 @@ std::shared_ptr<const CarriedShape> embed_geometry(const Tuft& tuft) {
     shape->triangles = p.geometry->triangles;
     shape->lines = p.geometry->lines;
     finish_shape(tuft.bundles, p.length, *shape);
-    shape->at = places_of_nodes(tuft.trunk());
+    shape->at = places_of_sections(tuft.trunk());
     for (const Vec3& point : shape->rest)
         shape->place.push_back(
             lattice_place(shape->at, shape->lo, shape->hi, Vec2(point), std::clamp(-point.z / p.length, 0.0, 1.0)));

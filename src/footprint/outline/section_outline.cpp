@@ -12,7 +12,8 @@
 namespace tuft::footprint {
 namespace {
 
-constexpr double kClosedAt = 0.6;     // strain at which a pore is shut
+constexpr double kClosedAt = 0.45;    // strain at which a pore is shut
+constexpr double kRim = 0.6;          // of a pore's radius, that of its round rim
 constexpr double kSpanned = 0.3;      // films of ink that stand in from a pore's rim
 constexpr int kMostPoints = 400;      // contact points of a shape
 constexpr int kRound = 6;             // points of half a stadium's end
@@ -196,6 +197,18 @@ std::vector<Polygon> hair_polygons(const brush::CarriedShape& carried, const bru
     return out;
 }
 
+std::vector<Polygon> shape_polygons(const brush::Tuft& tuft, const brush::TuftShape& shape, const Frame& frame,
+                                    const ShapeOptions& options) {
+    return tuft.carried->lines.empty()
+               ? section_polygons(*tuft.carried, shape, frame, options)
+               : hair_polygons(*tuft.carried, shape, frame, tuft.preset.hair_diameter, {}, options);
+}
+
+double open_radius(double rest, double depth, double height) {
+    const double rim = kRim * rest, off = std::max(0.0, 1 - depth / rim);
+    return rest * std::sqrt(std::max(0.0, 1 - depth / height / kClosedAt)) + rim * (1 - std::sqrt(1 - off * off));
+}
+
 void open_pores(const brush::CarriedShape& carried, const brush::TuftShape& shape, const ShapeOptions& options,
                 Footprint& f) {
     if (f.empty() || carried.pores.empty()) return;
@@ -206,9 +219,8 @@ void open_pores(const brush::CarriedShape& carried, const brush::TuftShape& shap
         double height = 0;
         for (int k = 0; k < 3; ++k) height += weights[k] * shape.height[t[k]];
         if (height > options.film) continue;
-        const double strain = std::max(0.0, -height) / carried.height;
-        const double r =
-            pore.radius * std::sqrt(std::max(0.0, 1 - strain / kClosedAt)) - kSpanned * options.film * options.wetness;
+        const double r = open_radius(pore.radius, std::max(0.0, -height), carried.height) -
+                         kSpanned * options.film * options.wetness;
         if (!(r > 0.25 * f.cell)) continue;
         Vec2 at{0};
         for (int k = 0; k < 3; ++k) at += weights[k] * places[t[k]];

@@ -42,8 +42,19 @@ std::vector<Polygon> hair_polygons(const brush::CarriedShape& carried, const bru
                                    const Frame& frame, double width, const LineInk& ink,
                                    const ShapeOptions& options = {});
 
-/// Removes the open pores of foam from its picture. A pore of radius r₀ at strain ε of the skin has the radius
-/// r₀ √(1 − ε/0.6) − 0.3 film wetness [X]: rims come together, and ink spans them.
+/// Returns the polygons of a tuft's shape, mesh or hair, in full ink and without pores.
+std::vector<Polygon> shape_polygons(const brush::Tuft& tuft, const brush::TuftShape& shape, const Frame& frame,
+                                    const ShapeOptions& options = {});
+
+/// Returns the radius of a pore's mouth where the skin is pressed by `depth`, metres; `height` is that of the foam:
+///
+///     r = r₀ √(1 − ε/0.45) + q (1 − √(1 − ⟨1 − depth/q⟩²)),   ε = depth/height, q = 0.6 r₀ [X].
+///
+/// Pressed foam shuts its pores. Their rims are round with radius q: skin that only just touches touches with the
+/// ridges between the pores.
+double open_radius(double rest, double depth, double height);
+
+/// Removes the open pores of foam from its picture; ink spans 0.3 film wetness of each rim.
 void open_pores(const brush::CarriedShape& carried, const brush::TuftShape& shape, const ShapeOptions& options,
                 Footprint& footprint);
 

@@ -110,10 +110,7 @@ void draw_shape(BrushCanvas& canvas, const TuftShape& shape, const BrushView& vi
 void draw_shape_patch(BrushCanvas& canvas, const Tuft& tuft, const TuftShape& shape, const BrushView& view, double y) {
     const CarriedShape& carried = *tuft.carried;
     const Frame sheet;
-    const std::vector<footprint::Polygon> polygons =
-        carried.lines.empty()
-            ? footprint::section_polygons(carried, shape, sheet)
-            : footprint::hair_polygons(carried, shape, sheet, tuft.preset.hair_diameter, {.seed = tuft.bundles.seed});
+    const std::vector<footprint::Polygon> polygons = footprint::shape_polygons(tuft, shape, sheet);
     // A cell a pixel.
     footprint::Footprint f = footprint::rasterise_polygons(polygons, sheet, 0, 1 / view.scale);
     if (f.empty()) return;
