@@ -61,6 +61,8 @@ struct TuftShape {
     /// [points] metres over the surface. Of foam: where the point would be if the surface did not hold it; negative
     /// where it is pressed. Empty in air.
     std::vector<double> height;
+    /// [points] metres over the surface, of the middle of the section that a point of a mesh of hair is in; or empty.
+    std::vector<double> middle;
     std::vector<Vec3> normal;  ///< [points] unit, of the surface under the point; or empty
 };
 

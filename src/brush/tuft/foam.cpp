@@ -18,7 +18,7 @@ constexpr int kFaceCells = 44;  ///< across the face
 constexpr int kSideRings = 8;   ///< from the rim to the mouth
 constexpr double kOpen = 0.8;   ///< volume of all pores over that of the foam, overlaps counted twice: 55 % open
 constexpr double kCoarse = 6e-3, kFine = 2.5e-3;  ///< m, wavelengths of the unevenness
-constexpr double kPoresFrom = 0.5;                ///< of the height, above which the skin never touches
+constexpr double kPoresFrom = 0.02;               ///< of the height from the mouth; above is the glued end
 
 std::uint64_t cell_seed(std::uint64_t seed, const glm::i64vec3& cell) {
     const auto part = [](std::int64_t v) { return static_cast<std::uint64_t>(v + (1 << 20)); };

@@ -91,7 +91,7 @@ std::vector<LatticeFrame> frames_of(const Spine& spine, const std::vector<Sectio
 }
 
 /// Height of a point over the surface and its normal, from the planes of the nodes around it.
-struct Ground {
+struct SkinContact {
     double height = 0;
     Vec3 normal{0};
 
@@ -114,37 +114,53 @@ LatticeInput lattice_input(const Tuft& tuft, const TuftState& state) {
     return in;
 }
 
+namespace {
+
+/// Contact of one point of the carried shape, from the planes of the nodes around its place.
+SkinContact contact_of(const CarriedShape& shape, const LatticeInput& in, std::span<const ContactPlane> planes,
+                       std::size_t point, const Vec3& at) {
+    SkinContact contact;
+    if (planes.size() == 1) {
+        contact.add(planes[0], at, 1);
+        return contact;
+    }
+    const LatticePlace& place = shape.place[point];
+    const std::size_t n = shape.at.size(), spines = in.spine_x.size();
+    const double over =
+        spines < 2 ? 0 : std::clamp((shape.rest[point].x - in.spine_x[0]) / (in.spine_x[1] - in.spine_x[0]), 0.0, 1.0);
+    for (std::size_t k = 0; k < spines; ++k) {
+        const double side = spines < 2 ? 1 : k == 0 ? 1 - over : over;
+        // Planes come tip first.
+        const auto own = planes.subspan(k * n, n);
+        contact.add(own[n - 1 - place.cell], at, side * (1 - place.stu.z));
+        contact.add(own[n - 2 - place.cell], at, side * place.stu.z);
+    }
+    return contact;
+}
+
+}  // namespace
+
 void place_geometry(const Tuft& tuft, std::span<const ContactPlane> planes, TuftState& state) {
     const CarriedShape& shape = *tuft.carried;
     const LatticeInput in = lattice_input(tuft, state);
     const SpineLattice lattice(in);
+    const double middle = -shape.lo.y / (shape.hi.y - shape.lo.y);  // t of the spines
     TuftShape& out = state.shape;
     out.carried = tuft.carried;
-    const std::size_t n = shape.at.size(), spines = in.spine_x.size();
     out.position.reserve(shape.rest.size());
     for (std::size_t i = 0; i < shape.rest.size(); ++i) {
-        const LatticePlace& place = shape.place[i];
+        LatticePlace place = shape.place[i];
         const Vec3 p = lattice.at(place);
         out.position.push_back(p);
         if (planes.empty()) continue;
-        Ground ground;
-        if (planes.size() == 1) {
-            ground.add(planes[0], p, 1);
-        } else {
-            const double over =
-                spines < 2 ? 0
-                           : std::clamp((shape.rest[i].x - in.spine_x[0]) / (in.spine_x[1] - in.spine_x[0]), 0.0, 1.0);
-            for (std::size_t k = 0; k < spines; ++k) {
-                const double side = spines < 2 ? 1 : k == 0 ? 1 - over : over;
-                // Planes come tip first.
-                const auto own = planes.subspan(k * n, n);
-                ground.add(own[n - 1 - place.cell], p, side * (1 - place.stu.z));
-                ground.add(own[n - 2 - place.cell], p, side * place.stu.z);
-            }
-        }
-        const double size = glm::length(ground.normal);
-        out.height.push_back(ground.height);
-        out.normal.push_back(size > 1e-9 ? ground.normal / size : Vec3{0, 0, 1});
+        const SkinContact contact = contact_of(shape, in, planes, i, p);
+        const double size = glm::length(contact.normal);
+        out.height.push_back(contact.height);
+        out.normal.push_back(size > 1e-9 ? contact.normal / size : Vec3{0, 0, 1});
+        if (shape.triangles.empty()) continue;
+        place.stu.y = middle;
+        if (tuft.spines.size() < 2) place.stu.x = -shape.lo.x / (shape.hi.x - shape.lo.x);
+        out.middle.push_back(contact_of(shape, in, planes, i, lattice.at(place)).height);
     }
 }
 

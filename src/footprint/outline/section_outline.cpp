@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kClosedAt = 0.45;    // strain at which a pore is shut
 constexpr double kRim = 0.6;          // of a pore's radius, that of its round rim
+constexpr double kDryOpens = 0.8;     // by which a pore of dry foam, which has ink on its ridges only, is wider
 constexpr double kSpanned = 0.3;      // films of ink that stand in from a pore's rim
 constexpr int kMostPoints = 400;      // contact points of a shape
 constexpr int kRound = 6;             // points of half a stadium's end
@@ -73,22 +74,41 @@ bool contains(const Polygon& polygon, const Vec2& p) {
     return inside;
 }
 
-/// Turns each polygon by the number of others that it lies in.
-void turn_even_odd(std::vector<Polygon>& polygons) {
-    std::vector<Bounds> bounds(polygons.size());
-    for (std::size_t k = 0; k < polygons.size(); ++k)
-        for (const Vec2& p : polygons[k]) bounds[k] = {glm::min(bounds[k].lo, p), glm::max(bounds[k].hi, p)};
-    std::vector<char> hole(polygons.size(), 0);
-    for (std::size_t k = 0; k < polygons.size(); ++k)
-        for (std::size_t other = 0; other < polygons.size(); ++other) {
-            if (other == k) continue;
-            const Vec2& p = polygons[k].front();
+/// A polygon, and how far ink stands out at each of its points, metres.
+struct Loop {
+    Polygon polygon;
+    std::vector<double> film;
+};
+
+/// Turns each loop by the number of others that it lies in.
+void turn_even_odd(std::vector<Loop>& loops) {
+    std::vector<Bounds> bounds(loops.size());
+    for (std::size_t k = 0; k < loops.size(); ++k)
+        for (const Vec2& p : loops[k].polygon) bounds[k] = {glm::min(bounds[k].lo, p), glm::max(bounds[k].hi, p)};
+    for (std::size_t k = 0; k < loops.size(); ++k) {
+        const Vec2 p = loops[k].polygon.front();
+        bool hole = false;
+        for (std::size_t other = 0; other < loops.size(); ++other) {
             const Bounds& b = bounds[other];
-            if (p.x < b.lo.x || p.y < b.lo.y || p.x > b.hi.x || p.y > b.hi.y) continue;
-            if (contains(polygons[other], p)) hole[k] = !hole[k];
+            if (other == k || p.x < b.lo.x || p.y < b.lo.y || p.x > b.hi.x || p.y > b.hi.y) continue;
+            if (contains(loops[other].polygon, p)) hole = !hole;
         }
-    for (std::size_t k = 0; k < polygons.size(); ++k)
-        if ((signed_area(polygons[k]) < 0) != (hole[k] != 0)) std::reverse(polygons[k].begin(), polygons[k].end());
+        if ((signed_area(loops[k].polygon) < 0) == hole) continue;
+        std::reverse(loops[k].polygon.begin(), loops[k].polygon.end());
+        std::reverse(loops[k].film.begin(), loops[k].film.end());
+    }
+}
+
+/// The loop's polygon moved by its film, away from what it encloses or, round a hole, into it.
+Polygon widened(const Loop& loop) {
+    Polygon out = loop.polygon;
+    const std::size_t n = out.size();
+    for (std::size_t k = 0; k < n; ++k) {
+        const Vec2 run = loop.polygon[(k + 1) % n] - loop.polygon[(k + n - 1) % n];
+        const double length = glm::length(run);
+        if (length > 1e-12) out[k] += loop.film[k] / length * Vec2{run.y, -run.x};
+    }
+    return out;
 }
 
 /// Name of the edge between two points.
@@ -103,9 +123,14 @@ std::vector<Polygon> section_polygons(const brush::CarriedShape& carried, const 
     std::vector<Polygon> out;
     if (shape.height.empty()) return out;
     Places places(carried, shape, frame);
-    const auto below = [&](std::uint32_t v) { return shape.height[v] < options.film; };
+    const auto level = [&](std::uint32_t v) {
+        return shape.middle.empty() ? options.film : std::min(options.film, shape.middle[v]);
+    };
+    const auto over = [&](std::uint32_t v) { return shape.height[v] - level(v); };
+    const auto below = [&](std::uint32_t v) { return over(v) < 0; };
     struct Crossing {
         Vec2 at{0};
+        double film = 0;  // that stands out
         std::uint64_t next = 0;
         bool visited = false;
     };
@@ -116,8 +141,9 @@ std::vector<Polygon> section_polygons(const brush::CarriedShape& carried, const 
         const std::uint64_t name = edge_of(a, b);
         const auto [at, fresh] = crossings.try_emplace(name);
         if (fresh) {
-            const double p = shape.height[a] - options.film, q = shape.height[b] - options.film;
-            at->second.at = glm::mix(places[a], places[b], p / (p - q));
+            const double part = over(a) / (over(a) - over(b));
+            at->second.at = glm::mix(places[a], places[b], part);
+            at->second.film = std::clamp(options.film - std::lerp(level(a), level(b), part), 0.0, options.film);
             order.push_back(name);
         }
         return name;
@@ -134,15 +160,18 @@ std::vector<Polygon> section_polygons(const brush::CarriedShape& carried, const 
         }
         crossings[up].next = down;
     }
+    std::vector<Loop> loops;
     for (const std::uint64_t start : order) {
-        Polygon polygon;
+        Loop loop;
         for (std::uint64_t name = start; !crossings[name].visited; name = crossings[name].next) {
             crossings[name].visited = true;
-            polygon.push_back(crossings[name].at);
+            loop.polygon.push_back(crossings[name].at);
+            loop.film.push_back(crossings[name].film);
         }
-        if (polygon.size() >= 3) out.push_back(std::move(polygon));
+        if (loop.polygon.size() >= 3) loops.push_back(std::move(loop));
     }
-    turn_even_odd(out);
+    turn_even_odd(loops);
+    for (const Loop& loop : loops) out.push_back(widened(loop));
     return out;
 }
 
@@ -213,13 +242,14 @@ void open_pores(const brush::CarriedShape& carried, const brush::TuftShape& shap
                 Footprint& f) {
     if (f.empty() || carried.pores.empty()) return;
     Places places(carried, shape, f.frame);
+    const double dry = 1 + kDryOpens * (1 - options.wetness);
     for (const brush::SkinPore& pore : carried.pores) {
         const auto& t = carried.triangles[pore.triangle];
         const double weights[3] = {1 - pore.weights.x - pore.weights.y, pore.weights.x, pore.weights.y};
         double height = 0;
         for (int k = 0; k < 3; ++k) height += weights[k] * shape.height[t[k]];
         if (height > options.film) continue;
-        const double r = open_radius(pore.radius, std::max(0.0, -height), carried.height) -
+        const double r = open_radius(dry * pore.radius, std::max(0.0, -height), carried.height) -
                          kSpanned * options.film * options.wetness;
         if (!(r > 0.25 * f.cell)) continue;
         Vec2 at{0};

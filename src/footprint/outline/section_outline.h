@@ -12,7 +12,8 @@
 /// every stamp, in place of outlines of ellipses; the picture goes the same way from there.
 ///
 /// A mesh is cut where the height of its skin over the surface, interpolated over each triangle, is `film`: closed
-/// polygons, as many as there are. Regions are inside an odd number of them (even–odd), so a hollow shape leaves a
+/// polygons, as many as there are. Where the middle of a section of hair lies deeper, it is cut there, at its widest,
+/// and the film stands out beside it. Regions are inside an odd number of them (even–odd), so a hollow shape leaves a
 /// ring. A hair is the stadium round each of its parts below the surface. Open pores of foam are discs without contact.
 namespace tuft::footprint {
 

@@ -121,9 +121,10 @@ void draw_shape_patch(BrushCanvas& canvas, const Tuft& tuft, const TuftShape& sh
             const double cover = f.coverage[static_cast<std::size_t>(j) * f.width + i] / 255.0;
             if (!(cover > 0)) continue;
             const Vec2 at = f.lo + f.cell * Vec2(i, j);
-            const Vec2 from{view.foot.x + view.scale * (at.x - view.origin.x), y + view.scale * (at.y - view.origin.y)};
-            const double side = view.scale * f.cell;
-            const Vec2 cell[] = {from, from + Vec2{side, 0}, from + Vec2{side, side}, from + Vec2{0, side}};
+            // Whole pixels: pieces of two cells in one would not add up.
+            const Vec2 from = glm::floor(
+                Vec2{view.foot.x + view.scale * (at.x - view.origin.x), y + view.scale * (at.y - view.origin.y)} + 0.5);
+            const Vec2 cell[] = {from, from + Vec2{1, 0}, from + Vec2{1, 1}, from + Vec2{0, 1}};
             fill_polygon(canvas, cell, ink, cover);
         }
 }
