@@ -10,7 +10,8 @@ core/geometry core/text
 core/system
 core/manual
 mesh brush/rod
-mesh/read brush/preset brush/state
+mesh/read brush/state
+brush/preset
 mesh/repair mesh/query brush/papers
 atlas brush/tuft
 atlas/seams brush/calibration

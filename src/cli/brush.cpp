@@ -52,6 +52,21 @@ nlohmann::json table_json(const brush::Preset& preset, const brush::QueryTable& 
     return j;
 }
 
+nlohmann::json foam_json(const brush::Preset& preset) {
+    return {{"brush", preset.name},
+            {"length_mm", preset.length / kMillimetre},
+            {"modulus_kPa", 1e-3 * preset.modulus},
+            {"solid", preset.solid},
+            {"capacity_ml", 1e6 * preset.capacity}};
+}
+
+void print_foam(const brush::Preset& preset) {
+    fmt::print("{}: {}\n", preset.name, preset.note);
+    fmt::print("foam {:.1f} mm high, {:.1f} mm wide, E* {:.3g} kPa, {:.3g} % solid, holds {:.3g} ml\n",
+               preset.length / kMillimetre, 2 * preset.radius / kMillimetre, 1e-3 * preset.modulus, 100 * preset.solid,
+               1e6 * preset.capacity);
+}
+
 void print_table(const brush::Preset& preset, const brush::QueryTable& table) {
     fmt::print("{}: {}\n", preset.name, preset.note);
     fmt::print("tuft {:.1f} mm long, {:.1f} mm thick, root stiffness {:.3g} N m2, {} segments\n\n",
@@ -189,6 +204,13 @@ int run(const Brush& a) {
         for (int i = 0; i * step <= most + 0.5 * step; ++i) depths.push_back(i * step);
         const std::string csv = brush::sweep_csv(brush::sweep_depth(preset, depths));
         write_file(a.sweep_depth, csv.data(), csv.size());
+    }
+    if (brush::is_foam(preset)) {
+        if (a.common.json)
+            print_json(foam_json(preset));
+        else
+            print_foam(preset);
+        return 0;
     }
     const brush::QueryTable table = brush::make_table(preset);
     if (a.common.json)

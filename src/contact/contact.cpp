@@ -20,6 +20,7 @@ struct Step {
     const Options& options;
     NodeContactOptions search;
     double radius = 0;        // of the tuft, metres
+    double pad = 0;           // metres of hair or foam, pressed flat under the ferrule
     double near = 0;          // metres: farther than this nothing of the tuft can touch
     NodeContact root;         // of the ferrule's mouth
     Vec3 tip{0};              // predicted, at `pose`
@@ -34,17 +35,16 @@ NodeContact find_root_contact(const Step& w, const Memory& memory, double length
     return find_node_contact(w.surface, {root, from, known ? memory.side : 1}, w.search);
 }
 
-/// Moves the ferrule's mouth off the surface that it would go through: by `kPad` of the tuft's radius where the surface
-/// lies before it, to the surface where it lies beside it. Returns how far it would be below the surface, metres.
+/// Moves the ferrule's mouth off the surface that it would go through: by `pad` where the surface lies before it,
+/// to the surface where it lies beside it. Returns how far it would be below the surface, metres.
 double move_off_surface(Step& w) {
-    constexpr double kPad = 0.5;                    // hair pressed flat under the ferrule
     constexpr double kBeside = 0.2, kBefore = 0.5;  // cosines of the normal to the handle
     constexpr int kPasses = 4;
     const double inside = std::max(0.0, -w.root.height);
     for (int pass = 0; pass < kPasses && w.root.triangle != kNone; ++pass) {
         const Vec3& n = w.root.plane.normal;
         const double before = smooth_step((-glm::dot(n, w.pose.axis()) - kBeside) / (kBefore - kBeside));
-        const double needed = kPad * before * w.radius - w.root.height;
+        const double needed = before * w.pad - w.root.height;
         if (needed <= w.search.lift) break;
         w.pose.position += needed * n;
         w.root = find_node_contact(w.surface, {w.pose.position, w.root.outside, w.root.side}, w.search);
@@ -401,7 +401,8 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
         1.2 * preset.radius * std::max(1.0, preset.flatten_max) + 0.5 * preset.width / std::max(1, preset.spines);
     const bool near = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
-    Step w{surface, input.pose, options, {}, preset.radius, 0, {}};
+    Step w{surface, input.pose, options, {}, preset.radius, 0.5 * preset.radius, 0, {}};
+    if (brush::is_foam(preset)) w.pad = 0.04 * preset.length;
     w.search.reach = 2 * preset.length + thick + preset.width;
     w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
     if (near) {

@@ -66,10 +66,10 @@ struct Result {
 ///
 /// Broad phase: overlap of the oriented boxes of tuft and model. Contact is one-sided: a node is pushed to the side
 /// of the ferrule. This holds where a wall is thinner than the indentation, and where the ferrule itself has passed
-/// through it since the last sample. The ferrule cannot enter the object: its mouth stays half a tuft's radius off
-/// the surface it would cross, less beside that surface. The force is therefore at most that of hair pressed flat.
-/// Planes are local, so creases, bowls and rims need no special case. They are updated where the tuft has moved off
-/// them.
+/// through it since the last sample. The ferrule cannot enter the object: its mouth stays half a tuft's radius, of foam
+/// 4 % of its height, off the surface it would cross, less beside that surface. The force is therefore at most that of
+/// hair pressed flat. Planes are local, so creases, bowls and rims need no special case. They are updated where the
+/// tuft has moved off them.
 Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery& surface, Memory& memory, double dt,
             const Options& options = {});
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "brush/tuft/ferrule.h"
 #include "core/ease.h"
 #include "stroke/placement/surface_mapping.h"
 #include "stroke/placement/tip_lag.h"
@@ -93,7 +94,7 @@ PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Prese
     : surface_(surface),
       holder_(stroke::holder_options(preset, surface.mesh())),
       settings_(settings),
-      wide_(brush::has_broad_side(preset)),
+      wide_(brush::can_be_turned(preset)),
       reach_(std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()})) {
     holder_.tip_lag = std::move(lag.upright);
     holder_.tip_lag_change = std::move(lag.tilted);

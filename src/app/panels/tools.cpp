@@ -20,6 +20,7 @@ constexpr float kRackHeights[] = {54, 40, 30};
 unsigned hair_colour(const std::string& sort) {
     if (sort == "goat") return IM_COL32(240, 236, 226, 255);
     if (sort == "wolf") return IM_COL32(196, 128, 62, 255);
+    if (sort == "sponge" || sort == "leaf") return IM_COL32(226, 190, 112, 255);
     if (sort == "mixed") return IM_COL32(222, 184, 138, 255);
     return IM_COL32(170, 172, 178, 255);
 }
@@ -63,7 +64,9 @@ void draw_tuft_icon(const Ui& ui, const brush::Preset& preset, unsigned hair, Im
     if (brush::has_broad_side(preset)) return draw_wide_tuft_icon(ui, preset, hair, at, width, height);
     ImDrawList* draw = ImGui::GetWindowDrawList();
     constexpr double longest = 0.048;  // metres that fill the icon
-    const auto scale = static_cast<float>(height * 0.74f / longest);
+    const bool foam = brush::is_foam(preset);
+    const auto most = foam ? (width - ui.px(3)) / static_cast<float>(2.7 * preset.radius) : 1e9f;
+    const auto scale = std::min(static_cast<float>(height * 0.74f / longest), most);
     const float x = at.x + 0.5f * width, top = at.y + 0.19f * height;
     constexpr int n = 24;
     std::vector<ImVec2> outline;
@@ -86,7 +89,17 @@ void draw_tuft_icon(const Ui& ui, const brush::Preset& preset, unsigned hair, Im
     draw->Flags = flags;
     draw->AddPolyline(outline.data(), static_cast<int>(outline.size()), IM_COL32(70, 52, 36, 255), ImDrawFlags_Closed,
                       1.0f);
-    const auto r = static_cast<float>(brush::rest_radius(preset, 0)) * scale * 1.5f + ui.px(0.8f);
+    const auto r = static_cast<float>(brush::rest_radius(preset, 0)) * scale * (foam ? 0.35f : 1.5f) + ui.px(0.8f);
+    if (foam) {
+        // Its pores, on a spiral.
+        for (int i = 1; i < 22; ++i) {
+            const float turn = 2.4f * static_cast<float>(i), out = 0.19f * std::sqrt(static_cast<float>(i));
+            const auto half = 1.35f * static_cast<float>(preset.radius) * scale,
+                       tall = 0.5f * static_cast<float>(preset.length) * scale;
+            draw->AddCircleFilled(ImVec2(x + out * half * std::cos(turn), top + tall + out * tall * std::sin(turn)),
+                                  ui.px(0.6f + 0.4f * static_cast<float>(i % 3)), IM_COL32(122, 84, 36, 255), 6);
+        }
+    }
     draw->AddRectFilled(ImVec2(x - r, at.y + 0.05f * height), ImVec2(x + r, top), IM_COL32(122, 78, 38, 255), 1.5f);
 }
 
@@ -310,7 +323,7 @@ void tool_panel(Session& s, float top, float bottom, float left) {
     if (brushes) add(brush_rack(s.ui, s.brush, room));
     if (s.tools.active != Tool::mask && s.tools.active != Tool::eraser)
         add(ink_section({s.ui, s.brush, s.colours, *s.paint_thread, s.reported, s.dialogs.file}, room));
-    if (brushes) pointer_section(s.ui, s.tools, s.panels, has_wide_ferrule(s.brush));
+    if (brushes) pointer_section(s.ui, s.tools, s.panels, brush_can_be_turned(s.brush));
     if (brushes) symmetry_section(s.ui, s.tools.symmetry);
     section_section(s.ui, s.view.section);
     const float height = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y, there = bottom - top;

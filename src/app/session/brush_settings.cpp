@@ -9,6 +9,7 @@
 #include "app/paint/paint_thread.h"
 #include "brush/calibration/sweep.h"
 #include "brush/preset/preset.h"
+#include "brush/tuft/ferrule.h"
 #include "core/system/files.h"
 #include "stroke/placement/placement.h"
 
@@ -124,9 +125,9 @@ void remember_brush(BrushSettings& brush, const PaintThread* work) {
     }
 }
 
-bool has_wide_ferrule(const BrushSettings& brush) {
+bool brush_can_be_turned(const BrushSettings& brush) {
     try {
-        return brush::has_broad_side(brush::load_preset(brush.preset));
+        return brush::can_be_turned(brush::load_preset(brush.preset));
     } catch (const Error&) {
         return false;  // a file that is gone
     }

@@ -41,8 +41,8 @@ std::string first_brush(const std::vector<std::string>& brushes, const std::stri
 void choose_brush(BrushSettings& brush, const PaintThread& work, std::span<const StrokeLine> lines, double pressure);
 /// Stores the chosen brush for this model, where the user chose it. Without a model it does nothing.
 void remember_brush(BrushSettings& brush, const PaintThread* work);
-/// Returns whether the brush has a ferrule that is wider than thick (brush/tuft/ferrule.h).
-bool has_wide_ferrule(const BrushSettings& brush);
+/// Returns whether turning the brush about its axis matters: `brush::can_be_turned`.
+bool brush_can_be_turned(const BrushSettings& brush);
 /// Multiplies the brush's size by `factor`, within the sizes that exist.
 void size_brush(BrushSettings& brush, StatusMessage& status, double factor);
 

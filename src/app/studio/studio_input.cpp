@@ -100,7 +100,7 @@ void StudioInput::scroll(const Event& e) {
     if (s.tools.curve.over >= 0) return curve_.wheel(e, now_);
     if (s.tools.active == Tool::writing && !s.tools.writing.empty() && !(e.modifiers & (kAlt | kControl)))
         return writing_.wheel(e);
-    if ((e.modifiers & kAlt) && has_wide_ferrule(s.brush)) return roll_holder(s.tools.pointer, e.steps);
+    if ((e.modifiers & kAlt) && brush_can_be_turned(s.brush)) return roll_holder(s.tools.pointer, e.steps);
     last_turn_ = now_;
     Orbit& orbit = s.view.orbit;
     if (e.modifiers & kControl) {

@@ -9,6 +9,7 @@
 
 #include "app/tools/aim.h"
 #include "app/tools/stroke_input.h"
+#include "brush/tuft/ferrule.h"
 
 namespace tuft::app {
 namespace {
@@ -141,8 +142,8 @@ void CurveTool::paint(double now) {
                    .settings = s.tools.curve_settings,
                    .pressure = s.tools.pointer.pressure,
                    .tilt = {s.tools.pointer.tilt.x, -s.tools.pointer.tilt.y},
-                   .roll = brush::has_broad_side(preset) ? s.tools.pointer.roll : 0,
-                   .roll_follow = brush::has_broad_side(preset) && s.tools.pointer.roll_follow,
+                   .roll = brush::can_be_turned(preset) ? s.tools.pointer.roll : 0,
+                   .roll_follow = brush::can_be_turned(preset) && s.tools.pointer.roll_follow,
                    .right = c.right,
                    .down = -c.up};
     hand.holder.tip_lag = lag.upright;

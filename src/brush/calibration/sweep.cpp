@@ -64,8 +64,36 @@ void add_meeting(const Section& in, const Section& out, double inside, double ou
     patch.back = std::max(patch.back, q.x);
 }
 
+/// What of a carried shape lies below the sheet: the ends of its edges where they cross it.
+void add_shape(const TuftShape& shape, Patch& patch) {
+    Box box;
+    const auto add_edge = [&](std::uint32_t a, std::uint32_t b) {
+        const double p = shape.height[a], q = shape.height[b];
+        if (p > 0 && q > 0) return;
+        const auto add = [&](const Vec3& at) {
+            box.add(at);
+            patch.front = std::min(patch.front, at.x);
+            patch.back = std::max(patch.back, at.x);
+            if (at.y < patch.right.y) patch.right = Vec2(at);
+            if (at.y > patch.left.y) patch.left = Vec2(at);
+        };
+        const Vec3 &u = shape.position[a], &v = shape.position[b];
+        add(p > 0 ? glm::mix(u, v, p / (p - q)) : u);
+        add(q > 0 ? glm::mix(v, u, q / (q - p)) : v);
+    };
+    for (const auto& t : shape.carried->triangles)
+        for (int k = 0; k < 3; ++k) add_edge(t[k], t[(k + 1) % 3]);
+    for (const std::vector<std::uint32_t>& line : shape.carried->lines)
+        for (std::size_t k = 0; k + 1 < line.size(); ++k) add_edge(line[k], line[k + 1]);
+    patch.width = box.size().y;
+}
+
 Patch patch_of(const TuftState& state) {
     Patch patch;
+    if (!state.shape.height.empty()) {
+        add_shape(state.shape, patch);
+        return patch;
+    }
     for (const Branch& branch : state.branches) {
         const std::vector<Section> fine = refine_sections(branch.sections, kFineSections);
         double before = 0;

@@ -46,6 +46,13 @@ constexpr std::array kFields = {
     Field{"ferrule", "hair_diameter_mm", &Preset::hair_diameter, kMillimetre, 0.01, 2},
     Field{"ferrule", "surface_tension_n_m", &Preset::surface_tension, 1, 0, 1},
     Field{"ferrule", "hair_friction", &Preset::hair_friction, 1, 0, 2},
+    Field{"foam", "modulus_kpa", &Preset::modulus, 1e3, 0, 1000},
+    Field{"foam", "solid", &Preset::solid, 1, 0.005, 0.3},
+    Field{"foam", "pore_min_mm", &Preset::pore_min, kMillimetre, 0.05, 10},
+    Field{"foam", "pore_max_mm", &Preset::pore_max, kMillimetre, 0.05, 10},
+    Field{"foam", "dome_mm", &Preset::dome, kMillimetre, 0, 10000},
+    Field{"foam", "rim_mm", &Preset::rim, kMillimetre, 0, 100},
+    Field{"foam", "unevenness_mm", &Preset::unevenness, kMillimetre, 0, 10},
     Field{"bending", "stiffness_n_m2", &Preset::stiffness, 1, 1e-10, 1},
     Field{"bending", "alpha", &Preset::alpha, 1, -6, 3},
     Field{"bending", "beta", &Preset::beta, 1, -0.995, 1},
@@ -89,8 +96,11 @@ struct WholeField {
 };
 
 constexpr std::array kWholeFields = {
-    WholeField{"shape", "segments", &Preset::segments, 4, 64},  WholeField{"ferrule", "spines", &Preset::spines, 1, 9},
-    WholeField{"split", "into", &Preset::split_into, 2, 5},     WholeField{"hair", "bundles", &Preset::bundles, 1, 200},
+    WholeField{"shape", "segments", &Preset::segments, 4, 64},
+    WholeField{"ferrule", "spines", &Preset::spines, 1, 9},
+    WholeField{"foam", "seed", &Preset::pore_seed, 0, 1000000},
+    WholeField{"split", "into", &Preset::split_into, 2, 5},
+    WholeField{"hair", "bundles", &Preset::bundles, 1, 200},
     WholeField{"hair", "bristles", &Preset::bristles, 1, 4000},
 };
 
@@ -115,7 +125,7 @@ std::string number(double v) {
 
 /// Every known key as "table.key", for hints.
 std::vector<std::string> known_keys() {
-    std::vector<std::string> keys{"name", "note", "bending.spine"};
+    std::vector<std::string> keys{"name", "note", "geometry", "bending.spine"};
     for (const WholeField& f : kWholeFields) keys.push_back(std::string(f.table) + "." + f.key);
     for (const Field& f : kFields) keys.push_back(std::string(f.table) + "." + f.key);
     return keys;
@@ -190,6 +200,40 @@ fs::path preset_folder() {
 
 }  // namespace
 
+namespace {
+
+constexpr double kMostPores = 60000;
+
+void check_foam(const Preset& p, const std::string& source) {
+    if (!is_foam(p)) return;
+    if (p.spines > 1 || p.spine != SpineMethod::rod)
+        throw Error(source, "foam needs 'ferrule.spines' = 1 and 'bending.spine' = \"rod\"");
+    if (p.pore_min > p.pore_max) throw Error(source, "'foam.pore_min_mm' must not exceed 'foam.pore_max_mm'");
+    // About as many as the face and the lower half of the side cut, both as wide as twice the radius.
+    const double least = 0.5 * p.pore_min, most = 0.5 * p.pore_max;
+    const double pores = 4 * p.radius * (p.radius + p.length) / ((least + most) * (least + most));
+    if (pores > kMostPores) throw Error(source, "the pores of 'foam' are too small for its size");
+    if (p.rim > std::min(p.radius, 0.5 * p.length) || (p.dome > 0 && p.dome < 1.2 * p.radius))
+        throw Error(source, "'foam.rim_mm' or 'foam.dome_mm' does not fit 'shape.radius_mm' and 'shape.length_mm'");
+    if (p.geometry && p.geometry->triangles.empty()) throw Error(source, "the geometry of foam must have faces");
+}
+
+void check_geometry(const Preset& p, const std::string& source) {
+    if (!p.geometry) return;
+    if (p.spines > 2) throw Error(source, "a geometry is carried by one or two 'ferrule.spines'");
+    if (p.spine != SpineMethod::rod) throw Error(source, "a geometry needs 'bending.spine' = \"rod\"");
+    const Box box = p.geometry->bounds();
+    constexpr double kSlack = 0.01;  // of the length
+    const double length = p.length / kMillimetre;
+    if (box.hi.z > kSlack * length || box.lo.z < -(1 + kSlack) * length || box.size().z < 0.5 * length)
+        throw Error(source,
+                    Message("the geometry reaches from z = {} to {} mm: it must fill the hair, from the mouth at "
+                            "0 to the tip at {}",
+                            number(box.lo.z), number(box.hi.z), number(-length)));
+}
+
+}  // namespace
+
 void check_preset(const Preset& p, const std::string& source) {
     for (const Field& f : kFields) {
         const double v = p.*f.member / f.unit;
@@ -201,9 +245,12 @@ void check_preset(const Preset& p, const std::string& source) {
     }
     for (const WholeField& f : kWholeFields)
         if (p.*f.member < f.lo || p.*f.member > f.hi) throw Error(source, whole_note(f));
-    if (p.radius > 0.5 * p.length) {
-        throw Error(source, "'shape.radius_mm' must not exceed half of 'shape.length_mm'");
+    if (p.radius > (is_foam(p) ? 2 : 0.5) * p.length) {
+        throw Error(source, is_foam(p) ? "'shape.radius_mm' of foam must not exceed twice 'shape.length_mm'"
+                                       : "'shape.radius_mm' must not exceed half of 'shape.length_mm'");
     }
+    check_foam(p, source);
+    check_geometry(p, source);
     if (p.width > 0 && p.width < 2 * p.radius) {
         throw Error(source, "'ferrule.width_mm' must be at least the thickness, 2 'shape.radius_mm'");
     }
@@ -225,7 +272,7 @@ void check_preset(const Preset& p, const std::string& source) {
     }
 }
 
-Preset parse_preset(std::string_view text, const std::string& source) {
+Preset parse_preset(std::string_view text, const std::string& source, const std::optional<fs::path>& folder) {
     check_toml_nesting(text, source);
     toml::table root;
     try {
@@ -240,6 +287,12 @@ Preset parse_preset(std::string_view text, const std::string& source) {
             p.name = text_of(node, source, name);
         } else if (name == "note") {
             p.note = text_of(node, source, name);
+        } else if (name == "geometry") {
+            if (!folder)
+                throw Error(source, "'geometry' names a file; only a brush in a file of its own has one beside it");
+            p.geometry = std::make_shared<Geometry>(read_geometry(*folder, text_of(node, source, name), source));
+        } else if (name == "geometry_obj") {
+            p.geometry = std::make_shared<Geometry>(parse_geometry(text_of(node, source, name), source + ": geometry"));
         } else if (const toml::table* table = node.as_table()) {
             for (const auto& [sub, value] : *table) {
                 read_value(p, name, std::string(sub.str()), value, source);
@@ -273,9 +326,11 @@ Preset scaled(const Preset& preset, double factor) {
              {&Preset::width, &Preset::toe, &Preset::slant, &Preset::hair_diameter, &Preset::surface_tension})
             p.*length *= factor;
     }
+    for (double Preset::*length : {&Preset::dome, &Preset::rim, &Preset::unevenness}) p.*length *= factor;
+    if (p.geometry) p.geometry = std::make_shared<Geometry>(scaled(*p.geometry, factor));
     p.stiffness *= std::pow(factor, 4);
     p.force_gain /= factor * factor;
-    p.capacity *= factor * factor;
+    p.capacity *= factor * factor * (is_foam(p) ? factor : 1);
     p.name = name_of({preset.name, factor});
     check_preset(p, p.name);
     return p;
@@ -336,14 +391,16 @@ Preset load_preset(const std::string& name_or_path) {
         }
         path = preset_folder() / (name + ".toml");
     }
-    const std::vector<char> bytes = read_file(path, 1 << 20);
-    return as_stored(parse_preset({bytes.data(), bytes.size()}, path.string()), path.string());
+    const std::vector<char> bytes = read_file(path, (1 << 20) + kMostGeometryBytes);
+    return as_stored(parse_preset({bytes.data(), bytes.size()}, path.string(), path.parent_path()), path.string());
 }
 
 namespace {
 
-/// A round tuft says nothing of a ferrule.
-bool has_ferrule(const Preset& p) {
+/// A round tuft says nothing of a ferrule, and hair nothing of foam.
+bool says(const Preset& p, std::string_view table) {
+    if (table == "foam") return is_foam(p);
+    if (table != "ferrule") return true;
     const Preset round;
     if (p.spines != round.spines) return true;
     return std::any_of(kFields.begin(), kFields.end(), [&](const Field& f) {
@@ -364,9 +421,10 @@ std::string preset_toml(const Preset& p) {
         return q + "\"";
     };
     out << "name = " << quoted(p.name) << "\nnote = " << quoted(p.note) << "\n";
+    if (p.geometry) out << "geometry_obj = '''\n" << geometry_text(*p.geometry) << "'''\n";
     std::string table;
     for (const Field& f : kFields) {
-        if (std::string_view(f.table) == "ferrule" && !has_ferrule(p)) continue;
+        if (!says(p, f.table)) continue;
         if (table != f.table) {
             table = f.table;
             out << "\n[" << table << "]\n";

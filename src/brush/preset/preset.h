@@ -1,9 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "brush/preset/geometry.h"
 
 /// \file
 /// Brush presets: the constants of a tuft, which do not change while it paints. `brush`, `stroke` and `io` read
@@ -95,6 +99,19 @@ struct Preset {
     int bundles = 40;    ///< number of cohesive bundles of hair, each with its own ink
     int bristles = 500;  ///< number of hairs drawn and inked individually
 
+    // Foam (tuft/foam.h): a sponge in place of hair; its `length` is its height and its `radius` that of its face.
+    double modulus = 0;      ///< E*, Pa, of the wet foam; 0: hair
+    double solid = 0.03;     ///< part of its volume that is no pore
+    double pore_min = 2e-4;  ///< m, diameters of the pores at the skin
+    double pore_max = 1e-3;  ///< m
+    double dome = 0;         ///< m, radius of curvature of the face; 0: flat
+    double rim = 0;          ///< m, rounding between the face and the side
+    double unevenness = 0;   ///< m, by which the face is recessed here and there
+    int pore_seed = 1;       ///< places of the pores and of the unevenness
+
+    /// Resting shape of the hair or foam; null: that of `radius` and `tip_power`.
+    std::shared_ptr<const Geometry> geometry;
+
     // Device force.
     double force_gain = 15;    ///< G: gain from the hair's force, 0.05–0.5 N, to the device
     double force_limit = 7.9;  ///< N
@@ -107,6 +124,11 @@ inline bool has_broad_side(const Preset& preset) {
     return preset.width > 0;
 }
 
+/// Returns true for a sponge.
+inline bool is_foam(const Preset& preset) {
+    return preset.modulus > 0;
+}
+
 /// Returns how wide the tuft is, metres: the ferrule's width, or the thickness of a round tuft.
 inline double tuft_width(const Preset& preset) {
     return has_broad_side(preset) ? preset.width : 2 * preset.radius;
@@ -114,8 +136,8 @@ inline double tuft_width(const Preset& preset) {
 
 /// Returns a preset scaled by `factor` that draws the same strokes at that size. Lengths scale by `factor`, B0 by
 /// its fourth power and adhesion (N/m) by `factor`, so forces scale by its square and shapes are similar. Capacity
-/// scales by its square, like the area that a stroke covers. The device force is unchanged. Throws `Error` when a
-/// value leaves its range.
+/// scales by its square, like the area that a stroke covers. The device force is unchanged. Of a sponge the capacity
+/// scales by the cube, and pores and modulus do not change. Throws `Error` when a value leaves its range.
 Preset scaled(const Preset& preset, double factor);
 
 /// A brush's name and scale factor: "wolf-small*0.5".
@@ -143,8 +165,10 @@ std::vector<std::string> list_presets();
 /// Returns the preset as TOML. `load_preset` reads the same values back (1e-9).
 std::string preset_toml(const Preset& preset);
 
-/// Parses TOML text; `source` names it in errors.
-Preset parse_preset(std::string_view text, const std::string& source);
+/// Parses TOML text; `source` names it in errors. The key `geometry` names a file in `folder`, and is refused without
+/// one; `geometry_obj` holds the geometry itself, as `preset_toml` writes it.
+Preset parse_preset(std::string_view text, const std::string& source,
+                    const std::optional<std::filesystem::path>& folder = std::nullopt);
 
 /// Throws `Error(source, ...)` when a value is out of its range.
 void check_preset(const Preset& preset, const std::string& source);

@@ -11,7 +11,7 @@ namespace tuft::brush {
 Profile profile_of(const Preset& preset);
 
 /// Returns the radius of the resting tuft, metres: 1.06 R (1−u^2.4)^q (1 − 0.14 (1−u)^6), u from root to tip,
-/// combined with the tip radius as the root of the sum of squares.
+/// combined with the tip radius as the root of the sum of squares. Of foam: its radius, and the rounding of its rim.
 double rest_radius(const Preset& preset, double u);
 
 }  // namespace tuft::brush

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/geometry/types.h"
@@ -55,6 +56,21 @@ struct TuftEnergy {
     double stored() const { return bend + contact + aside; }
 };
 
+struct CarriedShape;
+
+/// What a tuft with a geometry or of foam looks like: the points of its carried shape (tuft/geometry_tuft.h), bent.
+/// Empty for other tufts.
+struct TuftShape {
+    std::shared_ptr<const CarriedShape> carried;  ///< its points at rest, triangles and lines
+    std::vector<Vec3> position;                   ///< [points] metres, world
+    /// [points] metres over the surface. Of foam: where the point would be if the surface did not hold it; negative
+    /// where it is pressed. Empty in air.
+    std::vector<double> height;
+    /// [points] metres over the surface, of the middle of the section that a point of a mesh of hair is in; or empty.
+    std::vector<double> middle;
+    std::vector<Vec3> normal;  ///< [points] unit, of the surface under the point; or empty
+};
+
 /// Gap between two neighbouring branches.
 struct Opening {
     int first = 0, second = 1;  ///< branches
@@ -76,6 +92,8 @@ struct TuftState {
     double root_moment = 0;         ///< bending moment at the ferrule, N·m
     double normal_force = 0;        ///< newtons
     TuftEnergy energy;
+    TuftShape shape;
+    double volume_lost = 0;  ///< m³, by which foam is smaller than at rest
     bool touching = false;
     bool converged = true;  ///< false: the solver stopped at its limit with its best state
     int iterations = 0;

@@ -35,6 +35,11 @@ struct FerruleSpine {
     double from = -1, to = 1;  ///< ends of the strip over the half-width a
 };
 
+/// Returns true for a tuft that looks different when it is turned about its axis: a wide ferrule, or a form of its own.
+inline bool can_be_turned(const Preset& preset) {
+    return preset.spines > 1 || preset.geometry;
+}
+
 /// Returns the spines from −x to +x; one that holds all for a round tuft.
 std::vector<FerruleSpine> ferrule_spines(const Preset& preset);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brush/tuft/foam.h"
 #include "brush/tuft/spine.h"
 #include "brush/tuft/wide_tuft.h"
 #include "core/error.h"
@@ -84,8 +85,14 @@ Tuft make_tuft(const Preset& preset, std::uint64_t seed) {
         tuft.spines.push_back(make_spine(preset, rod, clamp_of(preset, {}), 0, 1));
     }
     if (preset.spine == SpineMethod::table) tuft.table = make_table(preset);
-    tuft.model = SpineModelCopy(make_spine_model(preset));
     tuft.bundles = make_bundles(preset, seed);
+    if (is_foam(preset)) {
+        tuft.carried = make_foam(preset, tuft.bundles);
+        tuft.model = SpineModelCopy(make_foam_model(preset, tuft.carried));
+    } else {
+        tuft.model = SpineModelCopy(make_spine_model(preset));
+        tuft.carried = embed_geometry(tuft);
+    }
     return tuft;
 }
 
@@ -225,8 +232,8 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
         tuft.wide() ? bend_wide(tuft, pose, planes, part, walls) : bend_trunk(tuft, pose, planes, part, walls);
     tuft.pose = pose;
     feel(tuft, state, dt);
-
-    if (tuft.wide()) return state;  // it parts between its spines
+    if (tuft.carried) place_geometry(tuft, planes, state);
+    if (tuft.wide() || tuft.carried) return state;  // it parts between its spines; a geometry keeps together
     const double measure = split_measure(p, tuft.ink_left, state.root_moment);
     if (tuft.split) {
         // Too dry for water to draw it together, it stays split until it is wetted or combed.

@@ -10,6 +10,7 @@
 #include "brush/rod/rod.h"
 #include "brush/state/tuft_state.h"
 #include "brush/tuft/bundles.h"
+#include "brush/tuft/geometry_tuft.h"
 #include "brush/tuft/table.h"
 #include "core/geometry/types.h"
 
@@ -83,8 +84,10 @@ struct Tuft {
     Vec3 device_force{0}, device_force_rate{0};  ///< device force f, N, and its rate, N/s
     Bundles bundles;                             ///< bundles and bristles
     QueryTable table;                            ///< for the table method only
-    /// For the methods of brush/papers only; the trunk then follows its nodes, and there are no sub-spines of ours.
+    /// For the methods of brush/papers and for foam only; the trunk then follows its nodes, and there are no sub-spines
+    /// of ours.
     SpineModelCopy model;
+    std::shared_ptr<const CarriedShape> carried;  ///< geometry or foam that the spines carry; null: none
 
     Spine& trunk() { return spines.front(); }
     const Spine& trunk() const { return spines.front(); }

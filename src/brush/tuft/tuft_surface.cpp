@@ -173,9 +173,57 @@ void add_joint(const TuftState& state, const Opening& opening, const TuftSurface
 
 }  // namespace
 
+namespace {
+
+/// A mesh as it is, with smooth normals.
+void add_mesh(const TuftShape& shape, TuftSurface& skin) {
+    skin.positions = shape.position;
+    skin.normals.assign(shape.position.size(), Vec3{0});
+    for (const auto& t : shape.carried->triangles) {
+        skin.triangles.insert(skin.triangles.end(), t.begin(), t.end());
+        const Vec3& p = shape.position[t[0]];
+        const Vec3 area = glm::cross(shape.position[t[1]] - p, shape.position[t[2]] - p);
+        for (const std::uint32_t v : t) skin.normals[v] += area;
+    }
+    for (Vec3& n : skin.normals) n = glm::length(n) > 0 ? glm::normalize(n) : Vec3{0, 0, 1};
+}
+
+/// Hairs as tubes of three sides.
+void add_lines(const TuftShape& shape, TuftSurface& skin) {
+    constexpr double kHalf = 1e-4;  // m
+    for (const std::vector<std::uint32_t>& line : shape.carried->lines)
+        for (std::size_t k = 0; k < line.size(); ++k) {
+            const Vec3& at = shape.position[line[k]];
+            const Vec3 run =
+                shape.position[line[std::min(k + 1, line.size() - 1)]] - shape.position[line[k > 0 ? k - 1 : 0]];
+            const Frame across = make_frame(at, glm::length(run) > 1e-12 ? glm::normalize(run) : Vec3{0, 0, -1});
+            const auto first = static_cast<std::uint32_t>(skin.positions.size());
+            for (std::uint32_t i = 0; i < 3; ++i) {
+                const double w = 2 * std::numbers::pi * i / 3;
+                const Vec3 out = std::cos(w) * across.t + std::sin(w) * across.b;
+                skin.positions.push_back(at + kHalf * out);
+                skin.normals.push_back(out);
+                if (k == 0) continue;
+                const std::uint32_t a = first + i, b = first + (i + 1) % 3;
+                skin.triangles.insert(skin.triangles.end(), {a - 3, b - 3, b, a - 3, b, a});
+            }
+        }
+}
+
+}  // namespace
+
 TuftSurface make_tuft_surface(const TuftState& state, const TuftSurfaceOptions& options) {
     TuftSurface skin;
     skin.points_per_ring = std::max(3, options.points_per_ring);
+    if (state.shape.carried) {
+        add_mesh(state.shape, skin);
+        if (!state.shape.carried->lines.empty()) {
+            skin.positions.clear();
+            skin.normals.clear();
+            add_lines(state.shape, skin);
+        }
+        return skin;
+    }
     TuftSurfaceOptions used = options;
     used.points_per_ring = skin.points_per_ring;
     for (const Branch& branch : state.branches) add_branch(branch.sections, used, skin);

@@ -22,7 +22,8 @@ struct TuftSurface {
     int rings = 0;                         ///< of all branches; the tip of each closes with one point
 };
 
-/// Returns rings of ellipses along Catmull–Rom splines through the sections of every branch. Between joined spines of a
+/// Returns the carried shape of a tuft that has one, without rings: its mesh, or its hairs as thin tubes. Of others:
+/// rings of ellipses along Catmull–Rom splines through the sections of every branch. Between joined spines of a
 /// wide ferrule strips above and below close the surface; their positions follow those of the rings.
 TuftSurface make_tuft_surface(const TuftState& state, const TuftSurfaceOptions& options = {});
 

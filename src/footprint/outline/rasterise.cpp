@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "footprint/outline/outline.h"
+#include "footprint/outline/section_outline.h"
 
 namespace tuft::footprint {
 namespace {
@@ -137,16 +138,15 @@ Footprint disc(const Frame& frame, std::uint32_t triangle, double radius, double
     return result;
 }
 
-Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle, double cell) {
+Footprint rasterise_polygons(std::span<const Polygon> polygons, const Frame& frame, std::uint32_t triangle,
+                             double cell) {
     Footprint result;
     result.frame = frame;
     result.triangle = triangle;
     result.cell = cell;
-    std::vector<std::vector<Vec2>> curves;
     Vec2 lo{1e9}, hi{-1e9};
-    for (const Outline& o : outlines) {
-        curves.push_back(curve_points(o));
-        for (const Vec2& p : curves.back()) {
+    for (const Polygon& polygon : polygons) {
+        for (const Vec2& p : polygon) {
             lo = glm::min(lo, p);
             hi = glm::max(hi, p);
             result.radius = std::max(result.radius, glm::length(p));
@@ -166,13 +166,22 @@ Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::
     result.radius += 2 * cell;
     Border border{.height = result.height, .cells = {}};
     border.cells.reserve(4 * static_cast<std::size_t>(result.width + result.height));
-    for (auto& curve : curves) {
-        for (Vec2& p : curve) p = p / cell - first;
+    Polygon curve;
+    for (const Polygon& polygon : polygons) {
+        curve.clear();
+        for (const Vec2& p : polygon) curve.push_back(p / cell - first);
         for (std::size_t k = 0; k < curve.size(); ++k) border.add(curve[k], curve[(k + 1) % curve.size()]);
     }
     result.coverage.resize(static_cast<std::size_t>(result.width) * result.height);
     border.resolve(result.width, result.coverage.data());
     return result;
+}
+
+Footprint rasterise(std::span<const Outline> outlines, const Frame& frame, std::uint32_t triangle, double cell) {
+    std::vector<Polygon> curves;
+    curves.reserve(outlines.size());
+    for (const Outline& o : outlines) curves.push_back(curve_points(o));
+    return rasterise_polygons(curves, frame, triangle, cell);
 }
 
 }  // namespace tuft::footprint

@@ -170,7 +170,7 @@ Mix Reservoir::mix() const {
 Reservoir make_reservoir(double millilitres, ReservoirLayout layout) {
     check_layout(layout);
     Reservoir tuft;
-    tuft.capacity = film_of_millilitres(millilitres);
+    tuft.capacity = tuft.rest_capacity = film_of_millilitres(millilitres);
     const std::size_t bundles = layout.bundles.size(), cells = layout.cell_ends.size();
     tuft.content.assign(bundles * cells, Content{});
     for (std::size_t k = 0; k < bundles; ++k)
@@ -189,6 +189,21 @@ Reservoir make_reservoir(double millilitres, ReservoirLayout layout) {
             link(i * cells + c, j * cells + c, layout.side_time, 10 * layout.mix_time);
     tuft.layout = std::move(layout);
     return tuft;
+}
+
+void compress(Reservoir& tuft, double part) {
+    constexpr double kLeast = 1e-3;
+    const double capacity = std::clamp(part, kLeast, 1.0) * tuft.rest_capacity;
+    if (capacity == tuft.capacity) return;
+    tuft.capacity = capacity;
+    const std::size_t cells = tuft.n_cells();
+    for (std::size_t i = 0; i < tuft.cell_capacity.size(); ++i)
+        tuft.cell_capacity[i] =
+            capacity * tuft.layout.cell_capacities[i % cells] / static_cast<double>(tuft.n_bundles());
+}
+
+double excess(const Reservoir& tuft) {
+    return std::max(0.0, tuft.remaining() - tuft.capacity);
 }
 
 double dip(Reservoir& tuft, const Mix& mix, const Dip& how) {

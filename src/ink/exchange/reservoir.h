@@ -34,8 +34,8 @@ struct CellLink {
 };
 
 /// Ink of the tuft in its cells, film·m² of wet ink. Plane p of a cell is the canvas' pigment plane p; the last
-/// plane is water. Invariants: all amounts are ≥ 0. No cell exceeds its capacity, except after `dip` with level > 1
-/// or an `absorb` beyond `free_capacity`.
+/// plane is water. Invariants: all amounts are ≥ 0. No cell exceeds its capacity, except after `dip` with level > 1,
+/// an `absorb` beyond `free_capacity`, or `compress`.
 struct Reservoir {
     static constexpr int kPlanes = kMaxPigments + 1;
     using Content = std::array<double, kPlanes>;
@@ -45,7 +45,8 @@ struct Reservoir {
     std::vector<double> cell_capacity;  ///< [bundles * cells], cell c of bundle k at k * cells + c, root first
     std::vector<Content> content;       ///< likewise
     std::vector<CellLink> links;
-    double unspent = 0;  ///< s of `flow` not yet applied, less than one step
+    double rest_capacity = film_of_millilitres(0.5);  ///< of the tuft that is not pressed; see `compress`
+    double unspent = 0;                               ///< s of `flow` not yet applied, less than one step
 
     std::size_t n_bundles() const { return layout.bundles.size(); }
     std::size_t n_cells() const { return layout.cell_ends.size(); }  ///< of each bundle
@@ -62,6 +63,13 @@ struct Reservoir {
 
 /// Returns the wet ink of a content, film·m²: all planes together.
 double sum_of(const Reservoir::Content& content);
+
+/// Sets the capacity of the tuft and of all its cells to `part` (0–1) of that at rest: foam that is pressed. Contents
+/// do not change; cells may then hold more than their capacity.
+void compress(Reservoir& tuft, double part);
+
+/// Returns the content beyond the capacity, film·m²: what foam gives that is pressed.
+double excess(const Reservoir& tuft);
 
 /// Contact fractions of the cells, [bundles * cells], sum 1; empty: all alike.
 using ContactCells = std::vector<float>;

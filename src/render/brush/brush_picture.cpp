@@ -149,9 +149,15 @@ void draw_row(const Sheet& sheet, double top, double tilt, Side side, const char
         view.foot = {(k + 0.33) * sheet.column + 0.35 * sheet.scale * foot, ground};
         draw_brush(sheet.canvas, {at.tuft, at.state, at.pose}, view, 2.5 * length);
         draw_scale(sheet, view, (k + 0.02) * sheet.column, (k + 0.98) * sheet.column);
-        BrushView patch = view;
-        patch.scale /= smaller;
-        if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, patch, plan);
+        BrushView below = view;
+        below.scale /= smaller;
+        if (at.tuft.carried) {
+            // A shape's patch may be as tall as the shape is wide: it fits under the ground.
+            const Vec2 size = at.tuft.carried->hi - at.tuft.carried->lo;
+            below.scale = std::min(view.scale, 72 * u / (0.5 * std::max(size.x, size.y)));
+        }
+        if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, below, plan);
+        // Under the patch of a wide tuft, which is as wide as the tuft.
         const double x = (k + 0.5) * sheet.column, y = ground + (sheet.preset.spines > 1 ? 161 : 152) * u;
         sheet.centred(
             lifted ? "lifted" : label("%.1f mm", at.depth / kMillimetre) + label("   %.2f N", at.state.normal_force), x,
@@ -226,11 +232,15 @@ void draw_tips(const Sheet& sheet, double top) {
 BrushPicture draw_tuft(const Preset& preset, int width) {
     width = std::clamp(width, 320, 8000);
     const double unit = width / 2000.0, row = 535 * unit, head = 54 * unit;
-    const int height = static_cast<int>(std::ceil(head + 4 * row));
+    // A shape of its own has no split or dry tip.
+    const bool tips = !is_foam(preset) && !preset.geometry;
+    const int height = static_cast<int>(std::ceil(head + (tips ? 4 : 3) * row));
     BrushCanvas canvas(width, height, linear_colour(246, 243, 236));
     const double column = static_cast<double>(width) / kColumns;
-    const Sheet sheet{canvas, preset, unit, static_cast<double>(width), column, 0.92 * column / (1.3 * preset.length)};
-    draw_tips(sheet, head + 3 * row);
+    const Sheet sheet{canvas, preset,
+                      unit,   static_cast<double>(width),
+                      column, 0.92 * column / std::max(1.3 * preset.length, is_foam(preset) ? 2.6 * preset.radius : 0)};
+    if (tips) draw_tips(sheet, head + 3 * row);
     if (preset.spines > 1) {
         draw_row(sheet, head + 2 * row, kTilt, Side::edge, "leaning ahead, on its edge");
         draw_row(sheet, head + row, kTilt, Side::broad, "leaning ahead, on its broad side");
@@ -242,7 +252,8 @@ BrushPicture draw_tuft(const Preset& preset, int width) {
     }
     const Vec2 band[] = {{0, 0}, {sheet.width, 0}, {sheet.width, head}, {0, head}};
     fill_polygon(canvas, band, linear_colour(246, 243, 236));
-    sheet.text(preset.name + label(", hair %.0f mm long", preset.length / kMillimetre) +
+    sheet.text(preset.name +
+                   label(is_foam(preset) ? ", foam %.0f mm high" : ", hair %.0f mm long", preset.length / kMillimetre) +
                    (has_broad_side(preset) ? label(", %.0f mm wide", preset.width / kMillimetre) : "") +
                    label(", %.1f mm thick", 2 * preset.radius / kMillimetre),
                {24 * unit, 36 * unit}, 18, sheet.ink);

@@ -10,6 +10,7 @@
 #include "core/ease.h"
 #include "core/random.h"
 #include "footprint/outline/outline.h"
+#include "render/brush/shape_drawing.h"
 
 namespace tuft::render {
 
@@ -127,6 +128,7 @@ void fill_silhouette(BrushCanvas& canvas, const Strand& strand, const BrushView&
 
 void draw_tuft_hair(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, const BrushView& view,
                     const TuftAppearance& appearance) {
+    if (tuft.carried) return draw_shape(canvas, state.shape, view);
     const std::vector<Strand> strands = strands_of(state, appearance);
     const int count = static_cast<int>(strands.size());
     if (!appearance.dry)
@@ -259,7 +261,9 @@ void draw_brush(BrushCanvas& canvas, const PosedTuft& posed, const BrushView& vi
                 const TuftAppearance& appearance) {
     const auto& [tuft, state, pose] = posed;
     const Preset& p = tuft.preset;
-    const double r = has_broad_side(p) ? std::max(1.3 * p.radius, 0.3 * p.width) : 1.12 * rest_radius(p, 0);
+    const double r = has_broad_side(p) ? std::max(1.3 * p.radius, 0.3 * p.width)
+                     : is_foam(p) ? 0.32 * p.radius
+                                  : 1.12 * rest_radius(p, 0);
     const Turned handle{
         0.2 * p.length, length, 0.92 * r, 0.9 * r, linear_colour(96, 66, 34), linear_colour(222, 184, 120)};
     const Turned ferrule{0, 0.22 * p.length, r, 1.04 * r, linear_colour(28, 28, 32), linear_colour(150, 150, 158)};
@@ -341,6 +345,7 @@ void draw_patch(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, c
     const auto plan = [&](const Vec3& p) {
         return Vec2{view.foot.x + view.scale * (p.x - view.origin.x), y + view.scale * (p.y - view.origin.y)};
     };
+    if (tuft.carried) return draw_shape_patch(canvas, tuft, state.shape, view, y);
     if (appearance.dry) {
         // The lines of the bristles that lie on the sheet.
         TuftAppearance as_pressed = appearance;

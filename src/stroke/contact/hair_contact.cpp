@@ -5,6 +5,7 @@
 
 #include "core/ease.h"
 #include "footprint/outline/hair.h"
+#include "footprint/outline/section_outline.h"
 #include "footprint/outline/slip.h"
 #include "stroke/drawing/line_width.h"
 
@@ -77,7 +78,34 @@ void HairContact::draw_hairs(Stamp& stamp, const footprint::TouchingHair& hair, 
     closed_area_ = marks.closed_area;
 }
 
-void HairContact::place_nodes(Stamp& stamp, const footprint::TouchingHair& hair, const ink::Reservoir& reservoir) {
+// A carried shape: its mesh as a closed patch, in streaks of the hair where that is half dry; foam with its pores; its
+// polylines hair by hair.
+void HairContact::draw_shape(Stamp& stamp, const TuftInHand& tuft, const footprint::TouchingHair& hair,
+                             const contact::Result& contact, const MotionTracker& motion, const Wetness& wetness) {
+    const brush::CarriedShape& carried = *tuft.brush.tuft.carried;
+    const brush::TuftShape& shape = contact.tuft.shape;
+    const footprint::ShapeOptions options{.film = kSkinFilm, .wetness = std::min(1.0, wetness.mean)};
+    if (!carried.lines.empty()) {
+        const footprint::LineInk ink{wetness.of_bundle, motion.travel, hair.bundles.seed};
+        const std::vector<footprint::Polygon> hairs =
+            footprint::hair_polygons(carried, shape, contact.frame, tuft.preset().hair_diameter, ink, options);
+        stamp.footprint = footprint::rasterise_polygons(hairs, contact.frame, contact.triangle, options_.cell);
+        return;
+    }
+    footprint::Footprint section =
+        footprint::rasterise_polygons(footprint::section_polygons(carried, shape, contact.frame, options),
+                                      contact.frame, contact.triangle, options_.cell);
+    if (brush::is_foam(tuft.preset())) footprint::open_pores(carried, shape, options, section);
+    if (brush::is_foam(tuft.preset()) || !by_hair_) {
+        stamp.footprint = std::move(section);
+        return;
+    }
+    draw_hairs(stamp, hair, contact, motion, wetness);
+    footprint::clip_footprint(stamp.footprint, section);
+}
+
+void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, const footprint::TouchingHair& hair,
+                              const contact::Result& contact) {
     // A tip that stands on the surface has no direction: then it keeps the one it had.
     Vec2 lie = kAxisLength * axis_;
     for (const footprint::Trail& trail : hair.trails) lie += trail.cuts.front().centre - trail.cuts.back().centre;
@@ -89,12 +117,16 @@ void HairContact::place_nodes(Stamp& stamp, const footprint::TouchingHair& hair,
         places.push_back(outline.tip);
         places.push_back(outline.tail);
     }
+    const brush::CarriedShape* carried = tuft.brush.tuft.carried.get();
+    const std::vector<footprint::HairContactPoint> points =
+        carried ? footprint::shape_contact_points(*carried, contact.tuft.shape, contact.frame, kSkinFilm)
+                : footprint::hair_contact_points(hair.trails, hair.bundles, hair.branches);
+    if (carried)
+        for (const footprint::HairContactPoint& t : points) places.push_back(t.at);
     stamp.grid = ink::make_contact_grid(places, axis_);
     std::vector<ink::HairSample> samples;
-    for (const footprint::HairContactPoint& t :
-         footprint::hair_contact_points(hair.trails, hair.bundles, hair.branches))
-        samples.push_back({t.bundle, t.at, t.along, t.length});
-    nodes_ = ink::node_contact(reservoir, stamp.grid, samples, cells_);
+    for (const footprint::HairContactPoint& t : points) samples.push_back({t.bundle, t.at, t.along, t.length});
+    nodes_ = ink::node_contact(tuft.brush.reservoir, stamp.grid, samples, cells_);
     if (hair.trails.empty()) return;
     const std::vector<footprint::Cut>& cuts = hair.trails.front().cuts;
     const Vec2 e(cuts[cuts.size() / 2].e);
@@ -105,15 +137,23 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
                               double dt) {
     const double length = tuft.preset().length;
     if (!motion.touching) tracks_ = {};
-    std::vector<footprint::Trail> trails =
-        footprint::find_trails(contact.tuft, contact.frame, contact.branch_planes, length, kSkinFilm);
-    cells_ = footprint::contact_cells(trails, tuft.brush.tuft.bundles, static_cast<int>(contact.tuft.branches.size()),
-                                      tuft.brush.reservoir.layout.cell_ends);
+    const brush::CarriedShape* carried = tuft.brush.tuft.carried.get();
+    const bool foam = brush::is_foam(tuft.preset()), has_lines = carried && !carried->lines.empty();
+    const auto branches = static_cast<int>(contact.tuft.branches.size());
+    std::vector<footprint::Trail> trails;
+    if (!foam)
+        trails = footprint::find_trails(contact.tuft, contact.frame, contact.branch_planes, length, kSkinFilm);
+    const brush::Bundles& bundles = tuft.brush.tuft.bundles;
+    const std::vector<double>& ends = tuft.brush.reservoir.layout.cell_ends;
+    cells_ = carried ? footprint::shape_contact_cells(
+                           footprint::shape_contact_points(*carried, contact.tuft.shape, contact.frame, kSkinFilm),
+                           bundles.place.size(), ends)
+                     : footprint::contact_cells(trails, bundles, branches, ends);
     cells_since_.resize(cells_.size(), 0);
     for (std::size_t i = 0; i < cells_since_.size(); ++i) cells_since_[i] += cells_[i];
     const Wetness wetness = bundle_wetness(tuft, motion, tuft.stress(), dt);
 
-    by_hair_ = wetness.lack > 0 && !options_.always_closed;
+    by_hair_ = wetness.lack > 0 && !options_.always_closed && !foam && !has_lines;
     closed_area_ = 0;
     const double spread = by_hair_ ? std::clamp((1 - wetness.mean) / kSpreadLack, 0.0, 1.0) : 0;
     footprint::spread_trails(trails, tracks_, {motion.hair_travel, length, spread});
@@ -123,20 +163,21 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
         footprint::change_frame(previous_, previous_frame_, contact.frame);
         uncovered = trails;
     }
-    if (!contact.planes.empty())
+    if (!contact.planes.empty() && !carried)
         footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft.brush.tuft, contact.planes.front()),
                                       contact.frame, kSkinFilm);
     const std::vector<footprint::Outline> outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points);
-    const footprint::TouchingHair hair{trails, outlines, tuft.brush.tuft.bundles,
-                                       static_cast<int>(contact.tuft.branches.size())};
+    const footprint::TouchingHair hair{trails, outlines, bundles, branches};
     Stamp stamp;
-    if (by_hair_)
+    if (carried)
+        draw_shape(stamp, tuft, hair, contact, motion, wetness);
+    else if (by_hair_)
         draw_hairs(stamp, hair, contact, motion, wetness);
     else
         stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, options_.cell);
     previous_ = std::move(uncovered);
     previous_frame_ = contact.frame;
-    if (options_.places_nodes) place_nodes(stamp, hair, tuft.brush.reservoir);
+    if (options_.places_nodes) place_nodes(stamp, tuft, hair, contact);
     return stamp;
 }
 

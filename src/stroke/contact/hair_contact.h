@@ -54,12 +54,16 @@ class HairContact {
         std::vector<double> of_bundle;
         double mean = 0, lack = 0;  ///< over the bundles; `lack`: mean of max(0, 1 − wetness)
     };
+    /// Draws the footprint of a tuft with a geometry of its own, or of foam.
+    void draw_shape(Stamp& stamp, const TuftInHand& tuft, const footprint::TouchingHair& hair,
+                    const contact::Result& contact, const MotionTracker& motion, const Wetness& wetness);
     Wetness bundle_wetness(TuftInHand& tuft, const MotionTracker& motion, double stress, double dt);
     /// Draws the footprint hair by hair.
     void draw_hairs(Stamp& stamp, const footprint::TouchingHair& hair, const contact::Result& contact,
                     const MotionTracker& motion, const Wetness& wetness);
     /// Computes the grid of the stamp and what hair touches at its nodes.
-    void place_nodes(Stamp& stamp, const footprint::TouchingHair& hair, const ink::Reservoir& reservoir);
+    void place_nodes(Stamp& stamp, const TuftInHand& tuft, const footprint::TouchingHair& hair,
+                     const contact::Result& contact);
 
     HairContactOptions options_;
     ink::ContactCells cells_, cells_since_;

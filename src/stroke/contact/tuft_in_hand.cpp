@@ -12,6 +12,8 @@ namespace {
 
 // Bending moment of a firm press over B0/L: what a hand reaches at the working depth.
 constexpr double kFirmPress = 0.1;
+// Part of its volume that a sponge loses to a firm press.
+constexpr double kFirmStrain = 0.25;
 
 }  // namespace
 
@@ -51,10 +53,15 @@ void TuftInHand::bend(brush::TuftState next, const brush::Pose& pose) {
         ink::stir(reservoir, bent, preset().radius);
     }
     state = std::move(next);
+    if (brush::is_foam(preset())) ink::compress(reservoir, 1 - state.volume_lost / std::max(preset().capacity, 1e-12));
     rotation = pose.rotation;
 }
 
 double TuftInHand::stress() const {
+    if (brush::is_foam(preset())) {
+        const double volume = preset().capacity / (1 - preset().solid);
+        return std::min(1.0, state.volume_lost / std::max(kFirmStrain * volume, 1e-12));
+    }
     const double firm = kFirmPress * preset().stiffness / preset().length;
     return std::min(1.0, std::abs(state.root_moment) / firm);
 }

@@ -35,9 +35,10 @@ struct TuftInHand {
     const brush::Preset& preset() const { return brush.tuft.preset; }
     /// Sets the hair's wetness from the reservoir. Friction, cohesion, plasticity and splitting depend on it.
     void update_wetness();
-    /// Takes the bent tuft of the next pose. Bending mixes the ink of the bundles.
+    /// Takes the bent tuft of the next pose. Bending mixes the ink of the bundles; pressed foam holds less.
     void bend(brush::TuftState next, const brush::Pose& pose);
-    /// Returns k of the ink's laws: root moment over that of a firm press, clamped to [0, 1].
+    /// Returns k of the ink's laws: root moment over that of a firm press, clamped to [0, 1]; of a sponge the volume
+    /// that it has lost, likewise.
     double stress() const;
     /// Returns how ink that hangs on the tuft drains to `contact` (metres, world). `down`: direction of gravity; zero:
     /// none.

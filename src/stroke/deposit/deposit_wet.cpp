@@ -12,6 +12,12 @@
 namespace tuft::stroke {
 namespace {
 
+/// Of how much longer a contact foam takes up as much as hair: its pores fill through millimetres in a hundredth of a
+/// second (h² = γ r t/2η with r 0.3 mm), hair needs half a second.
+constexpr double kFoamSoaks = 20;
+constexpr double kFoamRoom =
+    0.02;  // of its capacity at rest: with so much room or more it draws in all that it reaches
+
 /// Metres of the patch that pass over a place as it moves.
 double length_along_motion(const Stamp& stamp) {
     const Vec2 size = stamp.grid.step * Vec2{ink::kAlong - 1, ink::kAcross - 1};
@@ -40,10 +46,14 @@ class WetDeposit : public DepositModel {
         const std::vector<ink::BundleFirmness> bundles = furrows_.advance(tuft, contact.hair, contact.motion.travel);
         const ink::NodeAreas areas = exposure_.expose(stamp);
         const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
-        const double pour = area > 0 ? ink::drained_volume(reservoir, contact.drain, last_step_) / area : 0;
-        const ink::ContactStep step{.ds = stamp.ds, .dt = since_stamp_, .stress = contact.stress, .pour = pour};
+        const bool foam = brush::is_foam(tuft.preset());
+        const double runs = foam ? ink::excess(reservoir) : ink::drained_volume(reservoir, contact.drain, last_step_);
+        const double pour = area > 0 ? runs / area : 0;
+        ink::ContactStep step{.ds = stamp.ds, .dt = since_stamp_, .stress = contact.stress, .pour = pour};
+        if (foam) step.dt *= kFoamSoaks, step.stress = 1;
         ink::refresh(liquid_, reservoir, cells, contact.hair.nodes(), areas, step);
         ink::TransferParams params = ink::transfer_params(liquid_, reservoir, cells, areas, stamp.ink, step);
+        if (foam) params.uptake = static_cast<float>(std::clamp(room_in(reservoir) / kFoamRoom, 0.0, 1.0));
         params.rub = ink::rub_of(bundles);
         params.pour = static_cast<float>(pour);
         since_stamp_ = 0;
@@ -67,6 +77,13 @@ class WetDeposit : public DepositModel {
     }
 
   private:
+    /// Part of the capacity at rest that neither the hair's ink nor that on its outside fills.
+    double room_in(const ink::Reservoir& reservoir) const {
+        double held = reservoir.remaining();
+        for (int node = 0; node < ink::kNodes; ++node) held += liquid_.volume(node);
+        return (reservoir.capacity - held) / std::max(reservoir.rest_capacity, 1e-12);
+    }
+
     StampExposure exposure_;
     FilmClock film_;
     bool mixed_;

@@ -6,6 +6,7 @@
 #include "brush/tuft/tuft.h"
 #include "brush/tuft/upright_hair.h"
 #include "footprint/outline/cuts.h"
+#include "footprint/outline/section_outline.h"
 #include "stroke/drawing/line_width.h"
 #include "stroke/gesture/resample.h"
 #include "stroke/placement/holder.h"
@@ -96,6 +97,13 @@ PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, cons
         time = pose.time;
         first = false;
         if (!state.touching) continue;
+        if (tuft.carried) {
+            ink.add(footprint::rasterise_polygons(
+                        footprint::shape_polygons(tuft, state.shape, plane_frame, {.film = kSkinFilm}), plane_frame, 0,
+                        cell),
+                    std::max(0.0, time));
+            continue;
+        }
         std::vector<footprint::Trail> trails = footprint::find_trails(state, plane_frame, {}, preset.length, kSkinFilm);
         footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft, plane), plane_frame, kSkinFilm);
         outlines.clear();

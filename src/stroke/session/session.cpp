@@ -160,6 +160,10 @@ void StrokeSession::set_ink(Stamp& stamp, double area) const {
         .by_hair = static_cast<double>(stamp.separation),
         .cells = hair_.cells()};
     stamp.ink = ink::stamp_deposit(tuft_.brush.reservoir, tuft_.ink, contact, input_.substrate);
+    // What a pressed sponge does not hold comes out with its film.
+    if (brush::is_foam(tuft_.preset()) && area > 0)
+        stamp.ink.target +=
+            static_cast<float>(std::max(0.0, ink::excess(tuft_.brush.reservoir) - deposit_->pending()) / area);
     stamp.ink.capacity = std::max(input_.substrate.capacity, static_cast<float>(ink::standing_film(tuft_.ink.yield)));
 }
 
@@ -236,6 +240,7 @@ SessionResult StrokeSession::finish() {
     report_.removed = deposit_->removed();
     if (report_.touched()) report_.nearest = 0;
     if (input_.record_forces) report_.forces = forces_at_samples();
+    ink::compress(tuft_.brush.reservoir, 1);
     tuft_.brush.named = input_.stroke.ink;
     return {std::move(report_), std::move(tuft_.brush), target_.take_snapshots()};
 }
