@@ -41,7 +41,7 @@ StrokeSession::StrokeSession(SessionInput input)
       path_(path_options()),
       hair_(hair_options(input_, holds_mixed_ink())),
       stencil_(*input_.model.query, input_.stroke.trace),
-      target_(input_.model, input_.canvas, input_.substrate, input_.mask, input_.scratch),
+      target_(input_.model, input_.canvas, input_.substrate, input_.mask, input_.plan, input_.scratch),
       deposit_(make_deposit()) {
     contact_.options.method = input_.stroke.settings.contact;
     report_.nearest = std::numeric_limits<double>::infinity();

@@ -26,6 +26,7 @@ struct SessionInput {
     const ink::Substrate& substrate;
     ink::Canvas& canvas;               ///< of the stroke's layer
     const MaskTexels* mask = nullptr;  ///< texels that may change; null: all
+    const TilePlan* plan = nullptr;    ///< tiles that may be used, or the session throws `OutsideTiles`; null: all
     WetFilmInUse wet;                  ///< for strokes with wet ink
     PlanScratchPool& scratch;
     SeamLinksFn seams;           ///< of the model; called at most once, at the end
@@ -61,6 +62,8 @@ class StrokeSession {
     void check_length(std::span<const brush::Pose> poses) const;
     /// Paints the next poses. `done`: part of the stroke to be reported, 0–1.
     void advance(std::span<const brush::Pose> poses, double done = 0);
+    /// Sets the part of the path that comes next, for the plan of tiles.
+    void set_part(std::uint32_t part) { target_.set_part(part); }
     /// Declares that the first `poses` set the brush down; the stroke's own samples come after them.
     void begin_with_set_down(std::size_t poses) { forces_.before_first = poses; }
     /// Appends poses of a hand in space to the stroke's samples and paints them.
