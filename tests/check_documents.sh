@@ -1,9 +1,19 @@
 #!/usr/bin/env bash
-# check_documents.sh SOURCE: every link of the documents, and every path of a file in `back quotes`, leads to what exists.
+# check_documents.sh SOURCE: what the documents name exists: the targets of links, paths of files in `back quotes`, files
+# of the code by their bare names, such as (deposit.h), and in READMEs of src/ the names of functions and types in `back
+# quotes`. Names with a capital NAME in them are patterns.
 set -euo pipefail
+export LC_ALL=C
 cd "$1"
 bad=0
 missing() { echo "$1: $2"; bad=1; }
+lists=$(mktemp -d)
+trap 'rm -rf "$lists"' EXIT
+code() {
+  find src tests samples models -type f \( -name '*.h' -o -name '*.cpp' -o -name '*.cmake' -o -name CMakeLists.txt \) "$@"
+}
+code -print | sed 's|.*/||' | sort -u > "$lists/files"
+code -print0 | xargs -0 grep -ohE '[A-Za-z_][A-Za-z0-9_]*' | sort -u > "$lists/names"
 while read -r document; do
   folder=$(dirname "$document")
   while read -r target; do
@@ -11,8 +21,18 @@ while read -r document; do
     [[ -z $path || $path == *://* || -e $folder/$path ]] || missing "$document" "link to $target"
   done < <(grep -oE '\]\([^)[:space:]]+\)' "$document" | sed -E 's/^\]\((.*)\)$/\1/')
   # Commands in indented blocks name files of the user.
+  grep -v '^    ' "$document" > "$lists/text" || continue
   while read -r path; do
     [[ -e $path || -e src/$path || -e $folder/$path ]] || missing "$document" "$path"
-  done < <(grep -v '^    ' "$document" | grep -oE '`[A-Za-z0-9_./-]+/[A-Za-z0-9_.-]+\.(h|cpp|sh|toml|md|txt|cmake)`' | tr -d '`')
+  done < <(grep -oE '`[A-Za-z0-9_./-]+/[A-Za-z0-9_.-]+\.(h|cpp|sh|toml|md|txt|cmake)`' "$lists/text" | tr -d '`')
+  while read -r file; do
+    missing "$document" "$file"
+  done < <(grep -oE '(^|[^A-Za-z0-9_*])[A-Za-z0-9_]+\.(h|cpp)\b' "$lists/text" | grep -oE '[A-Za-z0-9_]+\.(h|cpp)$' |
+    grep -v NAME | sort -u | comm -23 - "$lists/files")
+  [[ $document == src/*/README.md || $document == src/README.md ]] || continue
+  while read -r name; do
+    missing "$document" "$name"
+  done < <(grep -oE '`[A-Za-z_][A-Za-z0-9_:]*(\([^`]*\))?`' "$lists/text" | tr -d '`' | sed -E 's/\(.*//; s/.*:://' |
+    grep -E '_|[a-z][A-Z]' | grep -v NAME | sort -u | comm -23 - "$lists/names")
 done < <(find README.md src tests samples models -name '*.md' -not -path '*/build/*')
 exit $bad

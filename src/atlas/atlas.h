@@ -27,8 +27,8 @@ struct Atlas {
     double texel_size = 0;                      ///< metres per texel, area-weighted mean
     std::vector<Vec2f> corner_uvs;              ///< [3 n_triangles]
     std::vector<std::uint32_t> triangle_chart;  ///< [n_triangles]
-    std::uint32_t n_charts = 0;
-    bool from_file = false;  ///< the UVs are those of the file
+    std::uint32_t n_charts = 0;                 ///< number of charts
+    bool from_file = false;                     ///< the UVs are those of the file
 
     std::uint32_t pages_per_side() const;
     std::uint32_t page_size() const { return size / pages_per_side(); }
@@ -78,16 +78,16 @@ struct UnwrapOptions {
     RequestedSeams seams;            ///< these, and pages, force new UVs unless `uvs` is keep
     std::uint32_t max_size = 16384;  ///< of all pages together
     Cutting cutting = Cutting::where_useful;
-    ProgressFn progress;
+    ProgressFn progress;  ///< told the phase and 0–1; empty: none
 };
 
 /// Measures of an atlas. Stretch after Sander et al. 2001 (1 = isometry).
 struct AtlasReport {
-    std::size_t charts = 0;
-    std::size_t flips = 0;                ///< triangles with negative area in UV
-    std::size_t overlapping_texels = 0;   ///< texel centres covered by two triangles
-    std::size_t zero_area_triangles = 0;  ///< with a zero or non-finite UV area
-    double l2_stretch = 0, linf_stretch = 0;
+    std::size_t charts = 0;                               ///< number of charts
+    std::size_t flips = 0;                                ///< triangles with negative area in UV
+    std::size_t overlapping_texels = 0;                   ///< texel centres covered by two triangles
+    std::size_t zero_area_triangles = 0;                  ///< with a zero or non-finite UV area
+    double l2_stretch = 0, linf_stretch = 0;              ///< mean and largest stretch
     double angle_distortion = 0, area_distortion = 0;     ///< area-weighted means, 1 = none
     double utilisation = 0;                               ///< covered texels over texels of all used pages
     double seam_length = 0;                               ///< total length over the diagonal of the bounding box

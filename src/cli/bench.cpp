@@ -85,28 +85,28 @@ double metres_per_unit(const mesh::PolygonSoup& soup) {
     return area > 0 && std::isfinite(area) ? std::sqrt(of_sphere / area) : kMillimetre;
 }
 
-// A place on the surface and the way that is taken there, along `frame.t`.
+// A place on the surface and the path that is taken there, along `frame.t`.
 struct Step {
     Frame frame;
     std::uint32_t triangle;
 };
 
 // Places a texel apart, straight on over the surface from one side of it; left at an edge.
-std::vector<Step> way_over(const stroke::Model& model, int n) {
+std::vector<Step> path_over(const stroke::Model& model, int n) {
     const Box& box = model.mesh->bounds;
     const Vec3 out{std::cos(0.3), std::sin(0.3), 0};
     const auto hit = model.query->ray(box.centre() + box.diagonal() * out, -glm::normalize(out));
     auto at = hit ? hit : model.query->closest_point(box.centre() + box.diagonal() * out);
     const double texel = model.atlas.texel_size;
-    std::vector<Step> way{{make_frame(at->position, at->normal, {-out.y, out.x, 0.0}), at->triangle}};
-    while (static_cast<int>(way.size()) < n) {
-        const Frame& here = way.back().frame;
+    std::vector<Step> path{{make_frame(at->position, at->normal, {-out.y, out.x, 0.0}), at->triangle}};
+    while (static_cast<int>(path.size()) < n) {
+        const Frame& here = path.back().frame;
         at = model.query->closest_point(here.origin + texel * here.t);
         Vec3 heading = parallel_transport(here.t, here.n, at->normal);
         if (glm::length(at->position - here.origin) < 0.5 * texel) heading = glm::cross(at->normal, heading);
-        way.push_back({make_frame(at->position, at->normal, heading), at->triangle});
+        path.push_back({make_frame(at->position, at->normal, heading), at->triangle});
     }
-    return way;
+    return path;
 }
 
 // A disc of `texels` across with a soft rim.
@@ -129,7 +129,7 @@ footprint::Footprint disc(const stroke::Model& model, int texels, const Step& at
     return f;
 }
 
-// Deposit alone: planning, evaluating and inking one stamp after the other along the way.
+// Deposit alone: planning, evaluating and inking one stamp after the other along the path.
 double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps, footprint::Isa isa,
                               std::span<const char* const> inks) {
     ink::Canvas canvas(model.texels.n_slots());
@@ -147,7 +147,7 @@ double microseconds_per_stamp(const stroke::Model& model, int texels, int stamps
     alignas(64) std::array<float, atlas::kTileTexels> exposure;
     footprint::Unpacked unpacked;
     std::vector<footprint::Footprint> path;
-    for (const Step& at : way_over(model, stamps)) path.push_back(disc(model, texels, at));
+    for (const Step& at : path_over(model, stamps)) path.push_back(disc(model, texels, at));
     std::vector<double> runs;
     footprint::StampJobs jobs;
     for (int repeat = 0; repeat < 7; ++repeat) {
@@ -173,7 +173,7 @@ double footprint_texels(int texels) {
 }
 
 // The whole path: a brush as thick as makes lines of about `texels` across, dragged along
-// the way; hand samples at 1 kHz and a stamp per texel.
+// the path; hand samples at 1 kHz and a stamp per texel.
 stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting, int texels,
                          const char* brush = "mixed-medium") {
     brush::Preset preset = brush::load_preset(brush);
@@ -189,18 +189,18 @@ stroke::PaintStroke drag(const stroke::Model& model, stroke::Document& painting,
     s.trace.flat = false;
     s.brush = "bench";
     s.ink = "carbon";
-    const std::vector<Step> way = way_over(model, 401);
+    const std::vector<Step> path = path_over(model, 401);
     const int reach = texels / 2;
     for (int i = 0; i <= 400; ++i) {
         // The hand keeps to the mean of the normals over the width of the line.
         Vec3 n{0};
-        for (int k = std::max(0, i - reach); k <= std::min(400, i + reach); ++k) n += way[k].frame.n;
-        n = glm::length(n) > 0 ? glm::normalize(n) : way[i].frame.n;
+        for (int k = std::max(0, i - reach); k <= std::min(400, i + reach); ++k) n += path[k].frame.n;
+        n = glm::length(n) > 0 ? glm::normalize(n) : path[i].frame.n;
         const double press = std::min(1.0, i / 60.0) * 0.25 * preset.length;
         stroke::StrokeSample p;
         p.time = i * 1e-3;
-        p.position = way[i].frame.origin + (preset.length - press) * n;
-        const Frame f = make_frame(Vec3{0}, n, glm::cross(n, way[i].frame.t));
+        p.position = path[i].frame.origin + (preset.length - press) * n;
+        const Frame f = make_frame(Vec3{0}, n, glm::cross(n, path[i].frame.t));
         p.rotation = glm::quat_cast(Mat3(f.t, f.b, f.n));
         s.trace.samples.push_back(p);
     }

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "contact/outside.h"
+#include "contact/node_contact.h"
 #include "core/error.h"
 #include "core/text/units.h"
 #include "stroke/drawing/drawing.h"
@@ -111,9 +111,9 @@ void note_placed(const PlacedDrawing& p, const Paint& a, const Box& area, double
     console.note(line);
 }
 
-std::optional<PlacedDrawing> lay_drawing(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
-                                         const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths,
-                                         Console& console) {
+std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
+                                            const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths,
+                                            Console& console) {
     for (stroke::JournalEntry& entry : strokes) {
         stroke::PaintStroke* s = entry.as<stroke::PaintStroke>();
         if (!s || s->layer == stroke::kPaletteLayer) continue;  // in its own frame
@@ -157,7 +157,7 @@ std::optional<PlacedDrawing> place_strokes(std::vector<stroke::JournalEntry>& st
     stroke::WidthTables widths;
     const bool chosen = !a.brush.empty();
     const stroke::BrushFit fit{.grow = !chosen, .fit = !chosen || a.fit_brush};
-    const std::optional<PlacedDrawing> placed = lay_drawing(strokes, model, a, fit, widths, console);
+    const std::optional<PlacedDrawing> placed = place_on_model(strokes, model, a, fit, widths, console);
     stroke::redip_long_lines(strokes, fit, widths);
     note_widths(stroke::press_to_widths(strokes, widths), console);
     return placed;

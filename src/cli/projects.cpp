@@ -77,11 +77,11 @@ void note_fit(const Fit& fit, Console& console) {
 
 nlohmann::json to_json(const stroke::StrokeFit& f) {
     nlohmann::json j{{"stroke", f.stroke},
-                     {"path_mm", f.way / kMillimetre},
+                     {"path_mm", f.length / kMillimetre},
                      {"moved_mm", f.moved / kMillimetre},
                      {"moved_most_mm", f.moved_most / kMillimetre},
                      {"missing", f.missing()},
-                     {"stretched", f.way > 0 ? f.stretched / f.way : 0},
+                     {"stretched", f.length > 0 ? f.stretched / f.length : 0},
                      {"length_factor", f.kept > 0 ? f.kept_now / f.kept : 1}};
     if (f.slid) j["moved_on_model_mm"] = *f.slid / kMillimetre;
     if (!f.flat) j["deeper_mm"] = f.deeper / kMillimetre;

@@ -87,7 +87,7 @@ Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
     try {
         Loaded loaded{stroke::prepare_model(std::move(read.soup), options), read.frame};
         for (const Message& warning : loaded.model.repairs.warnings) console.note("warning: " + warning.text());
-        if (!loaded.model.ground.empty())
+        if (!loaded.model.base_colour.empty())
             console.note("ink lies on the colours that the model brings along (--plain leaves them aside)");
         return loaded;
     } catch (const Error& error) {
@@ -184,7 +184,7 @@ render::Image draw_picture(const PictureRequest& request, Console& console) {
     appearance.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
     ink::AtlasMap<float> colour, height;
     ink::Stack bare{std::vector<ink::LayerView>{}};
-    if (material.empty()) bare.ground = &model.ground;
+    if (material.empty()) bare.base_colour = &model.base_colour;
     const ink::Stack stack = painting ? painting->appearance().stack() : bare;
     appearance.vertex_colours = false;
     if (!stack.layers.empty() || stack.has_base_colour()) {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/node_contact.h"
 #include "contact/obb.h"
-#include "contact/outside.h"
 #include "core/ease.h"
 
 namespace tuft::contact {
@@ -13,29 +13,30 @@ namespace {
 
 using brush::ContactPlane;
 
-/// A step in work.
-struct Work {
+/// What the parts of one step share.
+struct Step {
     const mesh::SurfaceQuery& surface;
-    brush::Pose pose;  // as asked, or held off the surface
+    brush::Pose pose;  // as given, or moved off the surface
     const Options& options;
-    StandOptions stand;
-    double radius = 0;       // of the tuft, metres
-    double near = 0;         // metres: farther than this nothing of the tuft can touch
-    Stand root;              // of the ferrule's mouth
-    bool laid_over = false;  // the tip went so far that its hair was laid there: it did not slide
+    NodeContactOptions search;
+    double radius = 0;        // of the tuft, metres
+    double near = 0;          // metres: farther than this nothing of the tuft can touch
+    NodeContact root;         // of the ferrule's mouth
+    Vec3 tip{0};              // predicted, at `pose`
+    bool tip_jumped = false;  // the tip went so far that its hair did not slide there
 };
 
-Stand stand_of_root(const Work& w, const Memory& memory, double length) {
+NodeContact find_root_contact(const Step& w, const Memory& memory, double length) {
     const Vec3& root = w.pose.position;
     // A hand that touched has not left the object's front within a tuft's length.
     const bool known = memory.touching && glm::length(root - memory.root) < 2 * length;
-    const Vec3 from = known ? memory.outside : find_outside(w.surface, root, -w.pose.axis(), w.stand);
-    return stand_from(w.surface, from, known ? memory.side : 1, root, w.stand);
+    const Vec3 from = known ? memory.outside : find_outside_point(w.surface, root, -w.pose.axis(), w.search);
+    return find_node_contact(w.surface, {root, from, known ? memory.side : 1}, w.search);
 }
 
-/// Holds the ferrule's mouth off the surface that it would go through: `kPad` of the tuft's radius where the surface
-/// lies before it, nothing where it lies beside it. Returns how far it would be below the surface, metres.
-double hold_off(Work& w) {
+/// Moves the ferrule's mouth off the surface that it would go through: by `kPad` of the tuft's radius where the surface
+/// lies before it, to the surface where it lies beside it. Returns how far it would be below the surface, metres.
+double move_off_surface(Step& w) {
     constexpr double kPad = 0.5;                    // hair pressed flat under the ferrule
     constexpr double kBeside = 0.2, kBefore = 0.5;  // cosines of the normal to the handle
     constexpr int kPasses = 4;
@@ -44,29 +45,30 @@ double hold_off(Work& w) {
         const Vec3& n = w.root.plane.normal;
         const double before = smooth_step((-glm::dot(n, w.pose.axis()) - kBeside) / (kBefore - kBeside));
         const double needed = kPad * before * w.radius - w.root.height;
-        if (needed <= w.stand.lift) break;
+        if (needed <= w.search.lift) break;
         w.pose.position += needed * n;
-        w.root = stand_from(w.surface, w.root.outside, w.root.side, w.pose.position, w.stand);
+        w.root = find_node_contact(w.surface, {w.pose.position, w.root.outside, w.root.side}, w.search);
     }
     return inside;
 }
 
-std::vector<Vec3> centres(const brush::Branch& branch) {
+std::vector<Vec3> section_centres(const brush::Branch& branch) {
     std::vector<Vec3> out;
     for (const brush::Section& s : branch.sections) out.push_back(s.centre);
     return out;
 }
 
-/// Stands of the tuft's nodes, tip first, spine after spine, each from the ferrule; sub-spines, which follow in the
+/// Contacts of the tuft's nodes, tip first, spine after spine, each from the ferrule; sub-spines, which follow in the
 /// list, start from the trunk.
-std::vector<Stand> stand_nodes(const Work& w, const brush::Tuft& tuft, std::span<const Vec3> nodes,
-                               std::span<const Stand> before = {}) {
-    std::vector<Stand> out;
+std::vector<NodeContact> find_tuft_contacts(const Step& w, const brush::Tuft& tuft, std::span<const Vec3> nodes,
+                                            std::span<const NodeContact> before = {}) {
+    std::vector<NodeContact> out;
     for (const brush::Spine& spine : tuft.spines) {
         const std::size_t first = out.size(), count = spine.rest_radius.size();
-        const auto known = before.size() >= first + count ? before.subspan(first, count) : std::span<const Stand>{};
-        const std::vector<Stand> own =
-            stand_along(w.surface, w.root, nodes.subspan(first, count), w.near, w.stand, known);
+        const auto known =
+            before.size() >= first + count ? before.subspan(first, count) : std::span<const NodeContact>{};
+        const std::vector<NodeContact> own =
+            find_chain_contacts(w.surface, w.root, nodes.subspan(first, count), w.near, w.search, known);
         out.insert(out.end(), own.begin(), own.end());
     }
     if (nodes.size() == out.size()) return out;
@@ -74,8 +76,8 @@ std::vector<Stand> stand_nodes(const Work& w, const brush::Tuft& tuft, std::span
     const std::size_t sub_spine = (nodes.size() - trunk) / 3;
     for (std::size_t first = trunk; first < nodes.size(); first += sub_spine) {
         const auto points = nodes.subspan(first, sub_spine);
-        const Stand& start = out[std::min(sub_spine, trunk) - 1];  // the trunk's node they leave from
-        const std::vector<Stand> more = stand_along(w.surface, start, points, w.near, w.stand);
+        const NodeContact& start = out[std::min(sub_spine, trunk) - 1];  // the trunk's node they leave from
+        const std::vector<NodeContact> more = find_chain_contacts(w.surface, start, points, w.near, w.search);
         out.insert(out.end(), more.begin(), more.end());
     }
     return out;
@@ -83,8 +85,8 @@ std::vector<Stand> stand_nodes(const Work& w, const brush::Tuft& tuft, std::span
 
 /// The plane for a node that met `old` and came to rest where the surface is `now`. In a
 /// concave corner, where it would be thrown from wall to wall, it gets both walls' bisector.
-ContactPlane refreshed(const ContactPlane& old, const Stand& now, const Vec3& p, double radius) {
-    const ContactPlane& fresh = now.met;
+ContactPlane refresh_plane(const ContactPlane& old, const NodeContact& now, const Vec3& p, double radius) {
+    const ContactPlane& fresh = now.wedge;
     if (fresh.beyond_normal != Vec3{0} || old.beyond_normal != Vec3{0}) return fresh;
     const double z_old = glm::dot(p - old.origin, old.normal);
     constexpr double kCorner = 0.87;  // cos 30°
@@ -105,44 +107,45 @@ std::vector<double> node_radii(const brush::Tuft& tuft) {
     return out;
 }
 
-/// What the side nodes of the spines meet: a ray from the spine to a little beyond each, where
-/// the spine is near a surface. Empty where nothing stands in any way.
-std::vector<ContactPlane> side_walls(const Work& w, const brush::Tuft& tuft, std::span<const Stand> stands) {
+/// Walls that the side nodes of the spines meet: a ray from the spine to a little beyond each, where
+/// the spine is near a surface. Empty where there is none.
+std::vector<ContactPlane> find_side_walls(const Step& w, const brush::Tuft& tuft,
+                                          std::span<const NodeContact> contacts) {
     constexpr double kBeyond = 1e-3;  // metres a side may grow in one step
     const std::vector<Vec3> sides = brush::predicted_sides(tuft, w.pose);
     const std::vector<double> radii = node_radii(tuft);
     std::vector<ContactPlane> walls;
-    if (sides.size() != 2 * radii.size() || stands.size() < radii.size()) return walls;
+    if (sides.size() != 2 * radii.size() || contacts.size() < radii.size()) return walls;
     for (std::size_t k = 0; k < sides.size(); ++k) {
-        const Stand& stand = stands[k / 2];
+        const NodeContact& node = contacts[k / 2];
         const double radius = radii[k / 2];
-        if (stand.triangle == kNone || stand.height > 1.5 * radius) continue;
-        const Vec3 way = sides[k] - stand.outside;
-        const double reach = glm::length(way);
+        if (node.triangle == kNone || node.height > 1.5 * radius) continue;
+        const Vec3 path = sides[k] - node.outside;
+        const double reach = glm::length(path);
         if (reach < 1e-9) continue;
-        const auto hit = w.surface.ray(stand.outside, way / reach, 0, reach + kBeyond);
-        if (!hit || std::abs(glm::dot(hit->face_normal, stand.plane.normal)) > 0.9) continue;
+        const auto hit = w.surface.ray(node.outside, path / reach, 0, reach + kBeyond);
+        if (!hit || std::abs(glm::dot(hit->face_normal, node.plane.normal)) > 0.9) continue;
         if (walls.empty()) {
             // Away from any side: no wall.
-            walls.assign(sides.size(), {stand.plane.origin, Vec3{0}});
+            walls.assign(sides.size(), {node.plane.origin, Vec3{0}});
         }
-        const double front = glm::dot(hit->face_normal, way) < 0 ? 1 : -1;
+        const double front = glm::dot(hit->face_normal, path) < 0 ? 1 : -1;
         walls[k] = {hit->position, front * hit->face_normal};
     }
     return walls;
 }
 
 /// Solves, looks where the nodes came to rest, and solves again where their planes were off.
-/// `planes`: those of the last solve. `rest`: stands of the spines where they lie now, or empty.
-brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<ContactPlane>& planes,
-                       std::vector<Stand>& rest) {
+/// `planes`: those of the last solve. `rest`: contacts of the spines where they lie now, or empty.
+brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, std::vector<ContactPlane>& planes,
+                       std::vector<NodeContact>& rest) {
     const std::vector<double> radii = node_radii(tuft);
     const double root_radius = radii[tuft.trunk().rest_radius.size() - 1];
     const bool was_split = tuft.split;
     const std::vector<Vec3> nodes = brush::predicted_nodes(tuft, w.pose);
-    const std::vector<Stand> predicted = stand_nodes(w, tuft, nodes);
-    for (const Stand& s : predicted) planes.push_back(s.met);
-    const std::vector<ContactPlane> walls = side_walls(w, tuft, predicted);
+    const std::vector<NodeContact> predicted = find_tuft_contacts(w, tuft, nodes);
+    for (const NodeContact& c : predicted) planes.push_back(c.wedge);
+    const std::vector<ContactPlane> walls = find_side_walls(w, tuft, predicted);
     if (w.options.max_refreshes <= 0) return brush::step(tuft, w.pose, planes, dt, walls);
 
     const brush::Tuft before = tuft;
@@ -151,19 +154,19 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<
         const std::vector<Vec3> now = brush::predicted_nodes(tuft, w.pose);
         if (tuft.split != was_split && now.size() < nodes.size()) break;
         const auto compared = std::span(now).first(nodes.size());
-        const std::vector<Stand> stands = stand_nodes(w, before, compared, predicted);
+        const std::vector<NodeContact> contacts = find_tuft_contacts(w, before, compared, predicted);
         double worst = 0;
         std::vector<ContactPlane> fresh = planes;
         for (std::size_t i = 0; i < planes.size(); ++i) {
             const double radius = i < radii.size() ? radii[i] : root_radius;
             const double z = brush::height_over(planes[i], compared[i]);
-            const double height = brush::height_over(stands[i].met, compared[i]);
+            const double height = brush::height_over(contacts[i].wedge, compared[i]);
             if (std::min(z, height) > 2 * radius) continue;
             worst = std::max(worst, std::abs(z - height));
-            fresh[i] = refreshed(planes[i], stands[i], compared[i], radius);
+            fresh[i] = refresh_plane(planes[i], contacts[i], compared[i], radius);
         }
         if (worst < w.options.refresh_error) {
-            rest = stands;
+            rest = contacts;
             rest.resize(radii.size());
             break;
         }
@@ -177,7 +180,7 @@ brush::TuftState solve(const Work& w, brush::Tuft& tuft, double dt, std::vector<
 }
 
 /// One plane for all nodes: the tip snapped to the weighted mean of the nearest vertices.
-brush::TuftState solve_by_vertices(const Work& w, brush::Tuft& tuft, double dt, Result& result) {
+brush::TuftState solve_by_vertices(const Step& w, brush::Tuft& tuft, double dt, Result& result) {
     const Vec3 tip = brush::predicted_nodes(tuft, w.pose).front();
     const Vec3 holder = w.pose.position - tuft.preset.length * w.pose.axis();
     const WeightedDistance d = weighted_distance(w.surface, tip, holder, w.options.nearest_vertices);
@@ -189,24 +192,24 @@ brush::TuftState solve_by_vertices(const Work& w, brush::Tuft& tuft, double dt, 
     return state;
 }
 
-/// Stands of every section of every branch of the solved tuft. Of a whole tuft these are the stands
-/// of the rod's nodes, from which the sections' centres differ along the planes' normals, and
-/// along the surface by what friction drags the sides;
-/// `trunk` holds them if they are known.
-std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::Tuft& solved, const brush::TuftState& tuft,
-                                               std::vector<Stand> trunk) {
-    std::vector<std::vector<Stand>> out;
+/// Contacts of every section of every branch of the solved tuft. Of a whole tuft these are the contacts of the rod's
+/// nodes, from which the sections' centres differ along the planes' normals, and along the surface by what friction
+/// drags the sides. `trunk` holds them if they are known.
+std::vector<std::vector<NodeContact>> find_section_contacts(const Step& w, const brush::Tuft& solved,
+                                                            const brush::TuftState& tuft,
+                                                            std::vector<NodeContact> trunk) {
+    std::vector<std::vector<NodeContact>> out;
     if (tuft.branches.size() == 1) {
         const std::vector<Vec3> nodes = brush::predicted_nodes(solved, w.pose);
         const std::size_t count = tuft.branches[0].sections.size();
         if (trunk.size() != count && nodes.size() >= count)
-            trunk = stand_along(w.surface, w.root, std::span(nodes).first(count), w.near, w.stand);
+            trunk = find_chain_contacts(w.surface, w.root, std::span(nodes).first(count), w.near, w.search);
         out.push_back(std::move(trunk));
         return out;
     }
     if (tuft.wide) {
         const std::vector<Vec3> nodes = brush::predicted_nodes(solved, w.pose);
-        if (trunk.size() != nodes.size()) trunk = stand_nodes(w, solved, nodes);
+        if (trunk.size() != nodes.size()) trunk = find_tuft_contacts(w, solved, nodes);
         for (std::size_t b = 0, first = 0; b < tuft.branches.size(); ++b) {
             const auto begin = trunk.begin() + static_cast<long>(first);
             const std::size_t count = tuft.branches[b].sections.size();
@@ -223,20 +226,20 @@ std::vector<std::vector<Stand>> stand_sections(const Work& w, const brush::Tuft&
     });
     out.resize(tuft.branches.size());
     for (const std::size_t b : order) {
-        const std::vector<Vec3> points = centres(tuft.branches[b]);
-        Stand start = w.root;
+        const std::vector<Vec3> points = section_centres(tuft.branches[b]);
+        NodeContact start = w.root;
         if (b != order.front() && !points.empty()) {
-            const std::vector<Stand>& first = out[order.front()];
+            const std::vector<NodeContact>& first = out[order.front()];
             const std::size_t at = std::min(points.size(), first.size());
             if (at > 0) start = first[at - 1];
         }
-        out[b] = stand_along(w.surface, start, points, w.near, w.stand);
+        out[b] = find_chain_contacts(w.surface, start, points, w.near, w.search);
     }
     return out;
 }
 
 /// Metres between the surface and a tuft that hangs free, sections taken for balls.
-double surface_distance(const Work& w, const brush::TuftState& tuft) {
+double surface_distance(const Step& w, const brush::TuftState& tuft) {
     double best = std::numeric_limits<double>::infinity();
     for (const brush::Branch& branch : tuft.branches)
         for (const brush::Section& s : branch.sections) {
@@ -248,58 +251,76 @@ double surface_distance(const Work& w, const brush::TuftState& tuft) {
 
 /// Where to look for the frame's origin: it goes with the hair and drifts to the middle of the
 /// contact over half a radius of travel, so that it does not jump when sections come and go.
-Vec3 followed_centre(const Work& w, const Memory& memory, const Vec3& travel, const Vec3& middle) {
+Vec3 follow_centre(const Step& w, const Memory& memory, const Vec3& travel, const Vec3& middle) {
     if (!memory.touching) return middle;
-    const Vec3 carried = memory.origin + travel;
+    const Vec3 moved_on = memory.origin + travel;
     const double moved = std::max(glm::length(travel), glm::length(w.pose.position - memory.root));
-    if (glm::length(middle - carried) > 4 * w.radius) return middle;
-    return carried + (1 - std::exp(-moved / (0.5 * w.radius))) * (middle - carried);
+    if (glm::length(middle - moved_on) > 4 * w.radius) return middle;
+    return moved_on + (1 - std::exp(-moved / (0.5 * w.radius))) * (middle - moved_on);
 }
 
-/// The contact frame under the middle of the touching sections, and the distance to touch.
-/// Sections weigh as deep as they reach into the surface, so that it moves continuously.
-void place_frame(const Work& w, const std::vector<std::vector<Stand>>& stands, Memory& memory, Result& result) {
-    Vec3 sum{0}, travel{0};
-    std::vector<Vec3> centres;
-    for (const brush::Branch& branch : result.tuft.branches)
-        for (const brush::Section& s : branch.sections) centres.push_back(s.centre);
-    const bool followed = memory.touching && memory.centres.size() == centres.size() && !w.laid_over;
+/// Sums over the touching sections, weighted by how deep they reach into the surface.
+struct ContactSums {
+    Vec3 origin{0}, travel{0};              // metres, not divided by `weight`
+    double weight = 0;                      // m²
+    double gap = 0;                         // metres between the surface and the section nearest to it
+    const NodeContact* heaviest = nullptr;  // of the section of the greatest weight
+    const NodeContact* lowest = nullptr;    // of the section nearest to the surface; null: none within reach
+};
+
+/// `centres`: of all sections now; `before`: at the last sample, or empty.
+ContactSums sum_sections(const std::vector<std::vector<NodeContact>>& contacts, const brush::TuftState& tuft,
+                         std::span<const Vec3> centres, std::span<const Vec3> before) {
+    ContactSums out;
+    out.gap = std::numeric_limits<double>::infinity();
     std::size_t at_centre = 0;
-    double total = 0, heaviest = 0, gap = std::numeric_limits<double>::infinity();
-    const Stand* from = nullptr;
-    const Stand* lowest = nullptr;
-    for (std::size_t b = 0; b < stands.size(); ++b) {
-        const std::vector<brush::Section>& sections = result.tuft.branches[b].sections;
+    double most = 0;
+    for (std::size_t b = 0; b < contacts.size(); ++b) {
+        const std::vector<brush::Section>& sections = tuft.branches[b].sections;
         for (std::size_t i = 0; i < sections.size(); ++i) {
-            const Stand& s = stands[b][i];
+            const NodeContact& node = contacts[b][i];
             const std::size_t k = at_centre++;
-            if (s.triangle == kNone) continue;
-            const double under = s.height - std::sqrt(sections[i].a * sections[i].b);  // as the rod's contacts
-            if (under < gap) {
-                gap = under;
-                lowest = &s;
+            if (node.triangle == kNone) continue;
+            const double under = node.height - std::sqrt(sections[i].a * sections[i].b);  // as the rod's contacts
+            if (under < out.gap) {
+                out.gap = under;
+                out.lowest = &node;
             }
             const std::size_t next = i + 1 < sections.size() ? i + 1 : i, prev = i > 0 ? i - 1 : 0;
             const double share = 0.5 * glm::length(sections[next].centre - sections[prev].centre);
             const double weight = std::max(0.0, 1e-5 - under) * share;
-            sum += weight * s.plane.origin;
-            if (followed) travel += weight * (centres[k] - memory.centres[k]);
-            total += weight;
-            if (weight > heaviest) {
-                heaviest = weight;
-                from = &s;
+            out.origin += weight * node.plane.origin;
+            if (!before.empty()) out.travel += weight * (centres[k] - before[k]);
+            out.weight += weight;
+            if (weight > most) {
+                most = weight;
+                out.heaviest = &node;
             }
         }
     }
-    if (memory.touching && total > 0) result.travel = followed ? travel / total : w.pose.position - memory.root;
+    return out;
+}
+
+/// Finds the contact frame under the middle of the touching sections, and the distance to touch. The weights of the
+/// sections let it move continuously.
+void find_frame(const Step& w, const std::vector<std::vector<NodeContact>>& contacts, Memory& memory, Result& result) {
+    std::vector<Vec3> centres;
+    for (const brush::Branch& branch : result.tuft.branches)
+        for (const brush::Section& s : branch.sections) centres.push_back(s.centre);
+    const bool followed = memory.touching && memory.centres.size() == centres.size() && !w.tip_jumped;
+    const ContactSums sums = sum_sections(contacts, result.tuft, centres,
+                                          followed ? std::span<const Vec3>(memory.centres) : std::span<const Vec3>{});
+    if (memory.touching && sums.weight > 0)
+        result.travel = followed ? sums.travel / sums.weight : w.pose.position - memory.root;
     memory.centres = std::move(centres);
-    if (!lowest) return;
-    result.distance = result.tuft.touching ? 0 : std::max(0.0, gap);
-    if (gap > w.options.tolerance) result.distance = surface_distance(w, result.tuft);
-    Stand at = *lowest;
-    if (total > 0) {
-        const Vec3 centre = followed_centre(w, memory, result.travel, sum / total);
-        const Stand middle = stand_from(w.surface, from->outside, from->side, centre, w.stand);
+    if (!sums.lowest) return;
+    result.distance = result.tuft.touching ? 0 : std::max(0.0, sums.gap);
+    if (sums.gap > w.options.tolerance) result.distance = surface_distance(w, result.tuft);
+    NodeContact at = *sums.lowest;
+    if (sums.weight > 0) {
+        const Vec3 centre = follow_centre(w, memory, result.travel, sums.origin / sums.weight);
+        const NodeContact middle =
+            find_node_contact(w.surface, {centre, sums.heaviest->outside, sums.heaviest->side}, w.search);
         if (middle.triangle != kNone) at = middle;
     }
     result.triangle = at.triangle;
@@ -318,75 +339,91 @@ Vec3 device_force(const brush::Preset& preset, const Result& result, const Optio
     return size > preset.force_limit ? force * (preset.force_limit / size) : force;
 }
 
-Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::SurfaceQuery& surface, Memory& memory,
-                 double dt, const Options& options, bool approaches);
+/// Arguments of `step`, and whether `lower_tuft` calls it.
+struct StepInput {
+    const brush::Pose& pose;
+    double dt = 0;  // s
+    const Options& options;
+    bool lowers = false;
+};
+
+Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& memory, const StepInput& input);
 
 /// Presses a tuft that has not touched yet down to a pose: straight hair that begins pressed flat has no shape near
 /// enough to start the solve from.
-void approach(brush::Tuft& tuft, const Work& w, Memory& memory) {
+void lower_tuft(brush::Tuft& tuft, const Step& w, Memory& memory) {
     constexpr int kSteps = 16;
     for (int i = 0; i < kSteps; ++i) {
         brush::Pose lifted = w.pose;
         lifted.position += (1 - static_cast<double>(i) / kSteps) * tuft.preset.length * w.root.plane.normal;
-        step_from(tuft, lifted, w.surface, memory, 0, w.options, true);
+        take_step(tuft, w.surface, memory, {lifted, 0, w.options, true});
     }
     memory.touching = false;  // the next pose is the first
 }
 
-Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::SurfaceQuery& surface, Memory& memory,
-                 double dt, const Options& options, bool approaches) {
-    Result result;
+/// Bends a tuft that no surface is near.
+void step_in_air(brush::Tuft& tuft, const Step& w, const StepInput& input, Result& result) {
+    result.tuft = brush::step(tuft, w.pose, {}, input.dt);
+    result.inside = std::max(result.inside, depth_inside(w.surface, input.pose.position));
+    const auto nearest = w.surface.closest_point(w.tip);
+    result.distance = nearest ? nearest->distance : std::numeric_limits<double>::infinity();
+}
+
+/// Bends the tuft on the surface and finds frame, planes and travel.
+void step_on_surface(brush::Tuft& tuft, Step& w, double dt, Memory& memory, Result& result) {
     const brush::Preset& preset = tuft.preset;
-    std::vector<Vec3> nodes = brush::predicted_nodes(tuft, asked);
-    // A wide ferrule reaches half its width to the sides; its nodes lie within that of each other's.
-    const double thick =
-        1.2 * preset.radius * std::max(1.0, preset.flatten_max) + 0.5 * preset.width / std::max(1, preset.spines);
-    const bool meets = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
-
-    Work w{surface, asked, options, {}, preset.radius, 0, {}};
-    w.stand.reach = 2 * preset.length + thick + preset.width;
-    w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
-    if (meets) {
-        w.root = stand_of_root(w, memory, preset.length);
-        result.inside = hold_off(w);
-        if (result.inside > 0 && !memory.touching && !approaches) approach(tuft, w, memory);
-        if (w.pose.position != asked.position) nodes = brush::predicted_nodes(tuft, w.pose);
-    }
-    const brush::Pose& pose = w.pose;
-    const bool reachable =
-        meets && w.root.triangle != kNone && w.root.height < preset.length + w.near + 0.5 * preset.width;
-    if (!reachable) {
-        result.tuft = brush::step(tuft, pose, {}, dt);
-        result.inside = std::max(result.inside, depth_inside(surface, asked.position));
-        const auto far = surface.closest_point(nodes.front());
-        result.distance = far ? far->distance : std::numeric_limits<double>::infinity();
-        memory.touching = false;
-        result.device_force = device_force(preset, result, options);
-        return result;
-    }
-
-    std::vector<Stand> rest;
-    result.tuft = options.method == Method::exact ? solve(w, tuft, dt, result.planes, rest)
-                                                  : solve_by_vertices(w, tuft, dt, result);
-    const std::vector<std::vector<Stand>> stands = stand_sections(w, tuft, result.tuft, std::move(rest));
-    for (const std::vector<Stand>& branch : stands) {
+    std::vector<NodeContact> rest;
+    result.tuft = w.options.method == Method::exact ? solve(w, tuft, dt, result.planes, rest)
+                                                    : solve_by_vertices(w, tuft, dt, result);
+    const std::vector<std::vector<NodeContact>> contacts = find_section_contacts(w, tuft, result.tuft, std::move(rest));
+    for (const std::vector<NodeContact>& branch : contacts) {
         result.branch_planes.emplace_back();
-        for (const Stand& s : branch) result.branch_planes.back().push_back(s.plane);
+        for (const NodeContact& c : branch) result.branch_planes.back().push_back(c.plane);
     }
-    constexpr double kLaid = 0.2;  // of the length, in one sample and beside the hand's own motion
-    w.laid_over = glm::distance(nodes.front(), brush::predicted_nodes(tuft, pose).front()) > kLaid * preset.length;
-    place_frame(w, stands, memory, result);
-    if (options.method == Method::vertices && result.triangle != kNone && result.tuft.touching) {
-        const Vec3 holder = pose.position - preset.length * pose.axis();
-        result.patch = effective_patch(surface.mesh(), result.triangle, result.sphere, holder);
+    constexpr double kJump = 0.2;  // of the length, in one sample and beside the hand's own motion
+    w.tip_jumped = glm::distance(w.tip, brush::predicted_nodes(tuft, w.pose).front()) > kJump * preset.length;
+    find_frame(w, contacts, memory, result);
+    if (w.options.method == Method::vertices && result.triangle != kNone && result.tuft.touching) {
+        const Vec3 holder = w.pose.position - preset.length * w.pose.axis();
+        result.patch = effective_patch(w.surface.mesh(), result.triangle, result.sphere, holder);
         result.frame = make_frame(result.frame.origin, result.patch.normal, memory.heading);
         memory.heading = result.frame.t;
     }
+}
+
+Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& memory, const StepInput& input) {
+    Result result;
+    const brush::Preset& preset = tuft.preset;
+    const Options& options = input.options;
+    std::vector<Vec3> nodes = brush::predicted_nodes(tuft, input.pose);
+    // A wide ferrule reaches half its width to the sides; its nodes lie within that of each other's.
+    const double thick =
+        1.2 * preset.radius * std::max(1.0, preset.flatten_max) + 0.5 * preset.width / std::max(1, preset.spines);
+    const bool near = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
+
+    Step w{surface, input.pose, options, {}, preset.radius, 0, {}};
+    w.search.reach = 2 * preset.length + thick + preset.width;
+    w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
+    if (near) {
+        w.root = find_root_contact(w, memory, preset.length);
+        result.inside = move_off_surface(w);
+        if (result.inside > 0 && !memory.touching && !input.lowers) lower_tuft(tuft, w, memory);
+        if (w.pose.position != input.pose.position) nodes = brush::predicted_nodes(tuft, w.pose);
+    }
+    w.tip = nodes.front();
+    const bool reachable =
+        near && w.root.triangle != kNone && w.root.height < preset.length + w.near + 0.5 * preset.width;
+    if (!reachable) {
+        step_in_air(tuft, w, input, result);
+        memory.touching = false;
+    } else {
+        step_on_surface(tuft, w, input.dt, memory, result);
+        memory.touching = result.tuft.touching;
+        memory.root = input.pose.position;
+        memory.outside = w.root.outside;
+        memory.side = w.root.side;
+    }
     result.device_force = device_force(preset, result, options);
-    memory.touching = result.tuft.touching;
-    memory.root = asked.position;
-    memory.outside = w.root.outside;
-    memory.side = w.root.side;
     return result;
 }
 
@@ -394,7 +431,7 @@ Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::Surfac
 
 Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery& surface, Memory& memory, double dt,
             const Options& options) {
-    return step_from(tuft, pose, surface, memory, dt, options, false);
+    return take_step(tuft, surface, memory, {pose, dt, options});
 }
 
 }  // namespace tuft::contact

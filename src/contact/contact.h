@@ -42,7 +42,7 @@ struct Memory {
 
 /// Contact at one pose.
 struct Result {
-    brush::TuftState tuft;
+    brush::TuftState tuft;                    ///< bent
     std::vector<brush::ContactPlane> planes;  ///< of the last solve: one per node, one for all, or none
     /// [branch][section], tip first, as tuft.branches; empty when nothing is near.
     std::vector<std::vector<brush::ContactPlane>> branch_planes;

@@ -15,10 +15,10 @@ namespace tuft::contact {
 
 /// d = Σ w_i n_i·(P0 - v_i) / Σ w_i with w_i = 1 - |P0 - v_i| / d_max; negative inside.
 struct WeightedDistance {
-    double distance = 0;   ///< metres, d_w
-    Vec3 normal{0, 0, 1};  ///< unit, Σ w_i n_i normalised
-    std::vector<mesh::NearVertex> vertices;
-    bool found = false;  ///< false: no vertex, or weights or normals sum to 0
+    double distance = 0;                     ///< metres, d_w
+    Vec3 normal{0, 0, 1};                    ///< unit, Σ w_i n_i normalised
+    std::vector<mesh::NearVertex> vertices;  ///< that were weighted
+    bool found = false;                      ///< false: no vertex, or weights or normals sum to 0
 };
 
 /// Returns the weighted distance over given vertices. Exact on a plane; elsewhere the error is about κ h²/2 for

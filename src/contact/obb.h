@@ -8,6 +8,7 @@
 /// Oriented bounding boxes for the broad phase of contact.h.
 namespace tuft::contact {
 
+/// A box with axes of its own.
 struct Obb {
     Vec3 centre{0};  ///< metres
     Mat3 axes{1.0};  ///< columns, unit and orthogonal

@@ -9,9 +9,9 @@
 #include <numeric>
 #include <span>
 
-#include "atlas/charts/carry_uvs.h"
 #include "atlas/charts/charts.h"
 #include "atlas/charts/merge.h"
+#include "atlas/charts/transfer_uvs.h"
 #include "atlas/pack/snap.h"
 #include "atlas/seams/seam_graph.h"
 #include "atlas/seams/straighten.h"
@@ -59,8 +59,8 @@ Vec2 elsewhere(const Vec2& p) {
     return {std::cos(1.0) * p.x - std::sin(1.0) * p.y + 7, std::sin(1.0) * p.x + std::cos(1.0) * p.y - 3};
 }
 
-FlatChart laid_out(const mesh::TriangleMesh& m, std::span<const std::uint32_t> glued,
-                   const std::vector<std::uint32_t>& triangles, double turn, bool moved) {
+FlatChart flat_chart(const mesh::TriangleMesh& m, std::span<const std::uint32_t> glued,
+                     const std::vector<std::uint32_t>& triangles, double turn, bool moved) {
     FlatChart chart;
     chart.mesh = make_chart(m, glued, triangles, 1);
     chart.uv.resize(chart.mesh.n_vertices());
@@ -83,7 +83,7 @@ std::vector<std::uint32_t> glued_within(const mesh::TriangleMesh& m, const std::
 // Two charts of one developable surface fit together without stretch wherever each of them lies: what
 // one takes over from the other comes to lie as if it had always been its own. 1e-12: rounding, of
 // places about 10 in size.
-TEST(CarryUvs, IsExactBetweenChartsOfADevelopableSurface) {
+TEST(TransferUvs, IsExactBetweenChartsOfADevelopableSurface) {
     const double turn = 2.0;
     const mesh::TriangleMesh m = cylinder_part(turn);
     std::vector<std::uint8_t> before(m.n_triangles()), after(m.n_triangles());
@@ -98,9 +98,10 @@ TEST(CarryUvs, IsExactBetweenChartsOfADevelopableSurface) {
         if (before[t] && !after[t]) taken.push_back(t);
     }
     const std::vector<std::uint32_t> old_seam = glued_within(m, before), new_seam = glued_within(m, after);
-    const FlatChart own = laid_out(m, old_seam, left, turn, false), donor = laid_out(m, old_seam, right, turn, true);
-    const FlatChart truth = laid_out(m, new_seam, grown, turn, false);
-    const std::vector<Vec2> uv = carry_uvs(own, donor, taken, truth.mesh);
+    const FlatChart own = flat_chart(m, old_seam, left, turn, false),
+                    donor = flat_chart(m, old_seam, right, turn, true);
+    const FlatChart truth = flat_chart(m, new_seam, grown, turn, false);
+    const std::vector<Vec2> uv = transfer_uvs(own, donor, taken, truth.mesh);
     ASSERT_GT(taken.size(), 300u);
     for (std::size_t v = 0; v < uv.size(); ++v) EXPECT_LT(glm::length(uv[v] - truth.uv[v]), 1e-12);
 }
@@ -113,7 +114,7 @@ TEST(Arap, RefinesOnlyTheGivenFaces) {
     const mesh::TriangleMesh m = cylinder_part(turn);
     std::vector<std::uint32_t> all(m.n_triangles()), part;
     std::iota(all.begin(), all.end(), 0u);
-    const FlatChart truth = laid_out(m, twin_half_edges(m), all, turn, false);
+    const FlatChart truth = flat_chart(m, twin_half_edges(m), all, turn, false);
     std::vector<std::uint8_t> outside(truth.uv.size(), 0);
     for (std::uint32_t f = 0; f < all.size(); ++f) {
         const Vec2 c =

@@ -331,7 +331,7 @@ TEST(BorderCells, TileTheSurfaceTogetherAndAreExactForLinearFlows) {
             for (const BorderCell& c : border.cells) {
                 if (std::abs(map.position(c.texel.slot, c.texel.texel).y) > 0.095f) continue;
                 const Sums& s = sums[{c.texel.slot, c.texel.texel}];
-                if (s.least < 0.36) continue;  // conductances of pairs so close are held down
+                if (s.least < 0.36) continue;  // conductances of pairs so close are pinned down
                 // Float positions, 1e-5 of a texel.
                 EXPECT_LT(glm::length(s.flux), 1e-3) << a << ' ' << b;
                 EXPECT_NEAR(s.length_distance / (4 * s.area), 1, 1e-3)

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "contact/outside.h"
+#include "contact/node_contact.h"
 #include "core/random.h"
 #include "shapes.h"
 
@@ -404,12 +404,12 @@ TEST(Contact, AnyPoseIsFiniteAndLeavesTheTuftUsable) {
     }
 }
 
-TEST(Outside, WallBetweenMeansBehindHoweverThin) {
+TEST(NodeContact, WallBetweenMeansBehindHoweverThin) {
     const mesh::TriangleMesh m = shapes::plate({0.05, 0.05, 0.0001});
     const mesh::SurfaceQuery surface(m);
-    const StandOptions options;
+    const NodeContactOptions options;
     for (const double depth : {0.0001, 0.001, 0.01, 0.03}) {
-        const Stand s = stand_from(surface, {0.01, 0, 0.02}, 1, {0.013, 0.001, 0.0001 - depth}, options);
+        const NodeContact s = find_node_contact(surface, {{0.013, 0.001, 0.0001 - depth}, {0.01, 0, 0.02}}, options);
         EXPECT_NEAR(s.plane.origin.z, 0.0001, 1e-9);
         EXPECT_NEAR(s.plane.normal.z, 1, 1e-9);
         EXPECT_NEAR(s.height, -depth, 1e-9);
@@ -417,7 +417,7 @@ TEST(Outside, WallBetweenMeansBehindHoweverThin) {
     }
 }
 
-TEST(Outside, NormalTurnsSmoothlyOverAConvexEdge) {
+TEST(NodeContact, NormalTurnsSmoothlyOverAConvexEdge) {
     // Round the edge of a block at constant distance the normal is that of the rounded edge.
     const mesh::TriangleMesh m = shapes::plate({0.05, 0.05, 0.02}, 30);
     const mesh::SurfaceQuery surface(m);
@@ -426,7 +426,7 @@ TEST(Outside, NormalTurnsSmoothlyOverAConvexEdge) {
     for (int i = 0; i <= 90; ++i) {
         const double a = i * std::numbers::pi / 180;
         const Vec3 p{0.05 + r * std::sin(a), 0.003, 0.02 + r * std::cos(a)};
-        const Stand s = stand_from(surface, p + 0.001 * Vec3{std::sin(a), 0, std::cos(a)}, 1, p, {});
+        const NodeContact s = find_node_contact(surface, {p, p + 0.001 * Vec3{std::sin(a), 0, std::cos(a)}}, {});
         EXPECT_LT(glm::length(s.plane.normal - before),
                   0.15);                     // 1° per step, and the blend's 26° over 16
         EXPECT_NEAR(s.height, r, 0.03 * r);  // 1 - cos of the angle at which the blend starts

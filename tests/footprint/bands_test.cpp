@@ -19,7 +19,7 @@ std::vector<std::uint8_t> drawn(int width, int height, bool by_columns, bool tur
     bands.draw(place(30.5, 2.5), place(90, -5), 1.5, 1.5, place(0, 1));
     bands.draw(place(30.5, 33), place(57, 41), 3, 3, place(0, 1));
     std::vector<std::uint8_t> level;
-    bands.rows(level);
+    bands.copy_rows(level);
     return level;
 }
 
@@ -30,7 +30,7 @@ TEST(Bands, AreTheSameHoweverThePictureIsKept) {
 
 TEST(Bands, TurnWithThePicture) {
     std::vector<std::uint8_t> turned;
-    turn_over(drawn(57, 41, false, false), 57, 41, turned);
+    transpose(drawn(57, 41, false, false), 57, 41, turned);
     EXPECT_EQ(turned, drawn(41, 57, false, true));
 }
 
@@ -38,7 +38,7 @@ TEST(Bands, CoverTheirArea) {
     Bands bands(64, 32, false);
     bands.draw({4.5, 10}, {54.5, 16}, 2, 4, {0, 1});
     std::vector<std::uint8_t> level;
-    bands.rows(level);
+    bands.copy_rows(level);
     const double sum = std::accumulate(level.begin(), level.end(), 0.0) / 255;
     // 50 cells of a mean width of 6; half a level of rounding in each of the border's cells, some
     // two a column.
@@ -50,10 +50,10 @@ TEST(Pictures, TurnedTwiceAreThemselves) {
         for (const int height : {1, 8, 9, 40}) {
             std::vector<std::uint8_t> cells(static_cast<std::size_t>(width) * height), once, twice;
             for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = static_cast<std::uint8_t>(37 * i + i / 256);
-            turn_over(cells, width, height, once);
+            transpose(cells, width, height, once);
             for (int y = 0; y < height; ++y)
                 for (int x = 0; x < width; ++x) ASSERT_EQ(once[x * height + y], cells[y * width + x]);
-            turn_over(once, height, width, twice);
+            transpose(once, height, width, twice);
             EXPECT_EQ(twice, cells);
         }
 }

@@ -30,7 +30,7 @@ std::vector<double> pressed(const std::string& brush, double depth, int ms) {
         const double air = i < 0 || i > ms ? 5e-4 : 0;
         brush::Pose pose{.position = {0, 0, length - depth * length * down + air}, .time = 1e-3 * i};
         const brush::TuftState state = step(tuft, pose, {&sheet, 1}, 1e-3);
-        std::vector<Trail> found = trails(state, frame, {}, length, film);
+        std::vector<Trail> found = find_trails(state, frame, {}, length, film);
         cover_upright_hair(found, upright_hair_of(tuft, sheet), frame, film);
         for (const Trail& trail : found) {
             const Outline o = outline_of(trail, OutlineOptions{}.points);

@@ -14,6 +14,7 @@ namespace {
 
 const Frame kFlat;  // the plane z = 0
 constexpr double kCell = 5e-5;
+const PicturePlane kPlane{kFlat, 0, kCell};
 
 struct Pressed {
     brush::Tuft tuft;
@@ -34,7 +35,7 @@ const Pressed& pressed() {
             pose.position = {2e-4 * i - 0.03, 0, length * (1.01 - 0.3 * std::min(1.0, i / 60.0))};
             p.state = brush::step(p.tuft, pose, {&plane, 1}, 0.01);
         }
-        p.trails = trails(p.state, kFlat, {}, length, 1e-4);
+        p.trails = find_trails(p.state, kFlat, {}, length, 1e-4);
         for (const Trail& t : p.trails) p.outlines.push_back(outline_of(t, 20));
         return p;
     }();
@@ -50,7 +51,7 @@ double area_of(const Footprint& f) {
 Footprint marks(const brush::Bundles& bundles, double wet, double travel = 0) {
     const Pressed& p = pressed();
     const std::vector<double> all(bundles.place.size(), wet);
-    return hair_marks(p.trails, p.outlines, bundles, 1, {all, travel}, kFlat, 0, kCell).footprint;
+    return draw_hair_marks({p.trails, p.outlines, bundles}, {all, travel}, kPlane).footprint;
 }
 
 TEST(Hair, WetHairCoversTheOutline) {
@@ -105,19 +106,19 @@ TEST(Hair, SplayedHairGivesInkFromItsWholeLowerHalf) {
     HairTracks tracks;
     for (double slid = 0; slid < patch + 1e-3; slid += 1e-4) {
         std::vector<Trail> now = p.trails;
-        spread_trails(now, tracks, slid, length, 1);
+        spread_trails(now, tracks, {slid, length});
     }
     const auto area = [&](double lean, double more) {
         std::vector<Trail> leaning = p.trails;
         HairTracks own = tracks;
-        spread_trails(leaning, own, patch + 1e-3, length, 1);
+        spread_trails(leaning, own, {patch + 1e-3, length});
         for (std::size_t i = 0; i < leaning[0].cuts.size(); ++i) {
             Cut& cut = leaning[0].cuts[i];
             cut.e.z += lean;
             if (i < 4) cut.a *= 1 + more;
         }
         std::vector<Outline> outlines{outline_of(leaning[0], 20)};
-        return area_of(hair_marks(leaning, outlines, p.tuft.bundles, 1, {wet, 0}, kFlat, 0, kCell).footprint);
+        return area_of(draw_hair_marks({leaning, outlines, p.tuft.bundles}, {wet, 0}, kPlane).footprint);
     };
     const double straight = area(0, 0);
     for (const double lean : {-1e-4, 1e-4})
@@ -212,8 +213,8 @@ TEST(Hair, DrawnSidewaysHasInkForNoWiderAPath) {
     // The tuft lies along x: drawn along y its bristles would paint with their whole length.
     const Pressed& p = pressed();
     const std::vector<double> wet(p.tuft.bundles.place.size(), 0.5);
-    const auto area = [&](const Vec2& way) {
-        return area_of(hair_marks(p.trails, p.outlines, p.tuft.bundles, 1, {wet, 0, way}, kFlat, 0, kCell).footprint);
+    const auto area = [&](const Vec2& direction) {
+        return area_of(draw_hair_marks({p.trails, p.outlines, p.tuft.bundles}, {wet, 0, direction}, kPlane).footprint);
     };
     EXPECT_NEAR(area({1, 0}), area({0, 0}), 0.02 * area({0, 0})) << "a drag along the hair, which is bent a little";
     EXPECT_LT(area({0, 1}), 0.3 * area({1, 0}));
@@ -229,8 +230,7 @@ TEST(Hair, MovingSidewaysByItselfHasInkForNoWiderAPath) {
         std::vector<Trail> before = p.trails;
         for (Trail& trail : before)
             for (Cut& cut : trail.cuts) was(cut);
-        return area_of(
-            hair_marks(p.trails, p.outlines, p.tuft.bundles, 1, {wet, 0, {}, before}, kFlat, 0, kCell).footprint);
+        return area_of(draw_hair_marks({p.trails, p.outlines, p.tuft.bundles}, {wet, 0, {}, before}, kPlane).footprint);
     };
     const double stays = area([](Cut&) {}), along = area([](Cut&c) { c.centre.x -= 3e-5; });
     EXPECT_NEAR(along, stays, 0.02 * stays);
@@ -244,14 +244,13 @@ TEST(Hair, SweptAsideByAPressDrawsNoLine) {
     // spreads by 20 degrees and more leaves next to nothing, and a full tuft closes all the same.
     const Pressed& p = pressed();
     const auto area = [&](double wetness, double lands, const std::function<void(Cut&)>& was, double swings = 0,
-                          const Vec2& way = {1, 0}) {
+                          const Vec2& direction = {1, 0}) {
         const std::vector<double> wet(p.tuft.bundles.place.size(), wetness);
         std::vector<Trail> before = p.trails;
         for (Trail& trail : before)
             for (Cut& cut : trail.cuts) was(cut);
-        return area_of(hair_marks(p.trails, p.outlines, p.tuft.bundles, 1, {wet, 0, way, before, lands, {1, 0}, swings},
-                                  kFlat, 0, kCell)
-                           .footprint);
+        const HairInk ink{wet, 0, direction, before, lands, {1, 0}, swings};
+        return area_of(draw_hair_marks({p.trails, p.outlines, p.tuft.bundles}, ink, kPlane).footprint);
     };
     const auto follows = [](Cut& c) { c.centre.x -= 3e-5; };
     const auto aside = [](Cut& c) { c.centre.x -= 3e-5, c.centre.y -= 2e-5; };
@@ -292,7 +291,7 @@ TEST(Hair, FollowsInItsTrack) {
         if (lying.cuts[i].a > lying.cuts[widest].a) widest = i;
     HairTracks tracks;
     std::vector<Trail> now = p.trails;
-    spread_trails(now, tracks, 0, length, 1);
+    spread_trails(now, tracks, {0, length});
     // A track has a place every 25 µm, over which the very tip grows from nothing.
     const auto near_tip = [&](std::size_t i) { return (lying.along[0] - lying.along[i]) * length < 5e-5; };
     for (std::size_t i = 0; i < widest; ++i) {
@@ -301,7 +300,7 @@ TEST(Hair, FollowsInItsTrack) {
     }
     now = p.trails;
     for (Cut& cut : now[0].cuts) cut.a *= 1.5;  // pressed
-    spread_trails(now, tracks, 0, length, 1);
+    spread_trails(now, tracks, {0, length});
     for (std::size_t i = 0; i < widest; ++i) {
         if (near_tip(i)) continue;
         EXPECT_NEAR(now[0].cuts[i].a, lying.cuts[i].a, 0.01 * lying.cuts[widest].a) << i;
@@ -310,7 +309,7 @@ TEST(Hair, FollowsInItsTrack) {
     const double patch = (lying.along[0] - lying.along[widest]) * length;
     for (double slid = 0; slid <= 0.5 * patch; slid += 1e-4) {
         now = p.trails;
-        spread_trails(now, tracks, slid, length, 1);
+        spread_trails(now, tracks, {slid, length});
     }
     for (std::size_t i = 0; i < widest; ++i) {
         const double behind = (lying.along[i] - lying.along[widest]) * length;
@@ -333,7 +332,7 @@ TEST(Hair, LeavesTheSurfaceWithTheLiftedTuft) {
     std::vector<Trail> now;
     for (double slid = 0; slid <= drawn; slid += 1e-4) {
         now = p.trails;
-        spread_trails(now, tracks, slid, length, 1);
+        spread_trails(now, tracks, {slid, length});
     }
     const double belly = now[0].cuts[12].a;
     for (const double lies : {4e-3, 2e-3, 1e-3}) {
@@ -347,7 +346,7 @@ TEST(Hair, LeavesTheSurfaceWithTheLiftedTuft) {
         double widest = 0;
         for (Cut& cut : trail.cuts) widest = std::max(widest, cut.a *= 0.5);
         ASSERT_LT(widest + 0.35 * lies, 0.8 * belly);
-        spread_trails(now, tracks, drawn, length, 1);
+        spread_trails(now, tracks, {drawn, length});
         for (const Cut& cut : trail.cuts) EXPECT_LE(cut.a, widest + 0.35 * lies + 1e-12) << lies;
         EXPECT_GT(trail.cuts[n / 4].a, widest) << lies;  // it still fans out
     }
@@ -363,7 +362,7 @@ TEST(Hair, ATrackIsAsWideWhateverTheSteps) {
         HairTracks tracks;
         for (double slid = 0; slid <= drawn; slid += step) {
             std::vector<Trail> now = p.trails;
-            spread_trails(now, tracks, slid, length, 1);
+            spread_trails(now, tracks, {slid, length});
             if (slid < length) continue;
             least = std::min(least, now[0].cuts[12].a);
             most = std::max(most, now[0].cuts[12].a);

@@ -64,7 +64,7 @@ TEST(Outline, OfAnEllipsoidIsTheEllipseThePlaneCuts) {
             const double x = (s - c) / c;
             return r * std::sqrt(std::max(0.0, 1 - x * x));
         });
-        const auto outlines = outline(tuft, kFlat, {}, dry());
+        const auto outlines = outlines_of(tuft, kFlat, {}, dry());
         ASSERT_EQ(outlines.size(), 1u);
         const double k = std::sqrt(1 - z * z / (r * r));
         // 25 sections of an ellipsoid, cubics between them (poor where r falls like a root).
@@ -82,7 +82,7 @@ TEST(Outline, OfALyingConeHasTheHyperbolaOfItsCut) {
     // √(g² s² − h²) from s = h/g on; the root end at s = L is closed straight.
     const double L = 0.03, g = 0.15, h = 0.001;
     const auto tuft = straight({0.03, 0, h}, {1, 0, 0}, L, 17, [&](double s) { return g * s; });
-    const auto outlines = outline(tuft, kFlat, {}, dry());
+    const auto outlines = outlines_of(tuft, kFlat, {}, dry());
     ASSERT_EQ(outlines.size(), 1u);
     EXPECT_NEAR(outlines[0].tip.x, 0.03 - h / g, 1e-6);
     double area = 0;
@@ -106,7 +106,7 @@ TEST(Outline, UsesTheChordOfAFlattenedSection) {
     const double r = 0.003, z = 0.001;
     const auto tuft = straight(
         {0.02, 0, z}, {1, 0, 0}, 0.04, 17, [&](double) { return r; }, 2);
-    const auto outlines = outline(tuft, kFlat, {}, dry());
+    const auto outlines = outlines_of(tuft, kFlat, {}, dry());
     ASSERT_EQ(outlines.size(), 1u);
     const double half = 2 * r * std::sqrt(1 - z * z / (0.25 * r * r));
     double widest = 0;
@@ -118,7 +118,7 @@ TEST(Outline, IsSymmetricForASymmetricTuft) {
     const auto tuft = straight(
         {0.01, 0, -0.0005}, glm::normalize(Vec3{1, 0, -0.25}), 0.04, 17,
         [](double s) { return 0.18 * s * std::exp(-s / 0.03); }, 1.3);
-    const auto outlines = outline(tuft, kFlat);
+    const auto outlines = outlines_of(tuft, kFlat);
     ASSERT_EQ(outlines.size(), 1u);
     const Outline& o = outlines[0];
     EXPECT_NEAR(o.tip.y, 0, 1e-12);
@@ -142,7 +142,7 @@ TEST(Outline, MovesWithTheTuftAndTheFrame) {
         s.m = turn * s.m;
     }
     const Frame frame{shift, turn * Vec3{1, 0, 0}, turn * Vec3{0, 1, 0}, turn * Vec3{0, 0, 1}};
-    const auto a = outline(tuft, kFlat), b = outline(moved, frame);
+    const auto a = outlines_of(tuft, kFlat), b = outlines_of(moved, frame);
     ASSERT_EQ(a.size(), 1u);
     ASSERT_EQ(b.size(), 1u);
     ASSERT_EQ(a[0].control.size(), b[0].control.size());
@@ -159,7 +159,7 @@ TEST(Outline, ChangesContinuouslyWhileTheTuftIsPressed) {
         const double depth = i * 1e-6;
         const auto tuft = straight({0, 0, -depth}, glm::normalize(Vec3{1, 0, -0.35}), 0.04, 17,
                                    [](double s) { return 0.2 * s * std::exp(-s / 0.02); });
-        const auto outlines = outline(tuft, kFlat);
+        const auto outlines = outlines_of(tuft, kFlat);
         ASSERT_EQ(outlines.size(), 1u) << i;
         const double area = area_of(curve_points(outlines[0]));
         if (i > 0) {
@@ -181,7 +181,7 @@ TEST(Outline, OfATouchIsADot) {
     for (const double lean : {0.0, 0.3, 1.0}) {
         const auto tuft =
             straight({0, 0, 0}, glm::normalize(Vec3{lean, 0, -1}), 0.04, 17, [](double s) { return 0.15 * s; });
-        const auto outlines = outline(tuft, kFlat);
+        const auto outlines = outlines_of(tuft, kFlat);
         ASSERT_EQ(outlines.size(), 1u) << lean;
         const auto curve = curve_points(outlines[0]);
         const double area = area_of(curve);
@@ -189,14 +189,14 @@ TEST(Outline, OfATouchIsADot) {
         EXPECT_LT(area, kPi * 0.4e-3 * 0.4e-3) << lean;
     }
     const auto above = straight({0, 0, 0.0002}, {0, 0, -1}, 0.04, 17, [](double s) { return 0.15 * s; });
-    EXPECT_TRUE(outline(above, kFlat).empty());
+    EXPECT_TRUE(outlines_of(above, kFlat).empty());
 }
 
 TEST(Outline, OfAPokeIsTheWholeDisc) {
     // Upright and pressed in without bending: the shadow is the section at the surface.
     const double g = 0.2, depth = 0.005;
     const auto tuft = straight({0, 0, -depth}, {0, 0, -1}, 0.04, 17, [&](double s) { return g * s; });
-    const auto outlines = outline(tuft, kFlat, {}, dry());
+    const auto outlines = outlines_of(tuft, kFlat, {}, dry());
     ASSERT_EQ(outlines.size(), 1u);
     const double r = g * depth;
     EXPECT_NEAR(area_of(curve_points(outlines[0])) / (kPi * r * r), 1, 0.02);
@@ -204,16 +204,16 @@ TEST(Outline, OfAPokeIsTheWholeDisc) {
 
 TEST(Outline, SurvivesFewSectionsAndFlatOnes) {
     brush::TuftState tuft;
-    EXPECT_TRUE(outline(tuft, kFlat).empty());
+    EXPECT_TRUE(outlines_of(tuft, kFlat).empty());
     tuft.branches.resize(2);
     tuft.branches[0].sections.resize(1);
     tuft.branches[1].sections.resize(2);  // two equal sections of no size on the plane
-    for (const Outline& o : outline(tuft, kFlat)) {
+    for (const Outline& o : outlines_of(tuft, kFlat)) {
         for (const Vec2& p : curve_points(o)) EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
     }
     for (const int n : {2, 3, 4}) {
         const auto few = straight({0.01, 0, 0.001}, {1, 0, 0}, 0.02, n, [](double s) { return 0.2 * s; });
-        const auto outlines = outline(few, kFlat);
+        const auto outlines = outlines_of(few, kFlat);
         ASSERT_EQ(outlines.size(), 1u) << n;
         EXPECT_GT(area_of(curve_points(outlines[0])), 0) << n;
     }
@@ -242,7 +242,7 @@ TEST(Outline, FollowsNodePlanesRoundACylinder) {
     ASSERT_EQ(by_branch.size(), 1u);
     EXPECT_EQ(node_planes(tuft, {planes.data(), 1}).at(0).size(), 17u);  // one serves all
     EXPECT_TRUE(node_planes(tuft, {planes.data(), 5}).empty());
-    const auto outlines = outline(tuft, kFlat, by_branch, dry());
+    const auto outlines = outlines_of(tuft, kFlat, by_branch, dry());
     ASSERT_EQ(outlines.size(), 1u);
     EXPECT_NEAR(outlines[0].tail.x, -0.5 * length, 1e-5);
     // The blunt tip ends in a ball, seen by the plane of the last node: a chord of √¾ r.

@@ -53,7 +53,7 @@ Edges quick_press(brush::Preset preset, int segments, double lean, double azimut
         pose.time = i * kStep;
         pose.position = start + Vec3{kSpeed * pose.time, 0, -(0.02 * touch + 0.25 * press) * preset.length};
         const brush::TuftState state = step(tuft, pose, {&sheet, 1}, kStep);
-        for (const Outline& o : outline(state, Frame{})) edges.add(curve_points(o, 16));
+        for (const Outline& o : outlines_of(state, Frame{})) edges.add(curve_points(o, 16));
     }
     return edges;
 }

@@ -73,7 +73,7 @@ double spread(const std::vector<double>& v) {
 /// stands out.
 TEST(WideOutline, FlatHasAStraightEdge) {
     const brush::TuftState tuft = dragged("flat-12");
-    const std::vector<Outline> outlines = outline(tuft, kFlat);
+    const std::vector<Outline> outlines = outlines_of(tuft, kFlat);
     const Footprint f = rasterise(outlines, kFlat, 0, kCell);
     const Rim rim = rim_of(f, 0.7);
     EXPECT_NEAR(rim.width, 12e-3, 1.5e-3);
@@ -89,7 +89,7 @@ TEST(WideOutline, FlatHasAStraightEdge) {
 /// A filbert's toe is round: its middle touches further ahead than its edges, as a mirror image.
 TEST(WideOutline, FilbertHasARoundToe) {
     const brush::TuftState tuft = dragged("filbert-12");
-    const Footprint f = rasterise(outline(tuft, kFlat), kFlat, 0, kCell);
+    const Footprint f = rasterise(outlines_of(tuft, kFlat), kFlat, 0, kCell);
     const Rim rim = rim_of(f, 0.9);
     // The hair trails towards +y.
     const std::size_t n = rim.hi.size();
@@ -100,13 +100,13 @@ TEST(WideOutline, FilbertHasARoundToe) {
 /// Spines that are not joined keep outlines of their own; joined ones get one more between two.
 TEST(WideOutline, OutlinesFollowTheOpenings) {
     brush::TuftState tuft = dragged("flat-12");
-    const std::size_t joined = outline(tuft, kFlat).size();
+    const std::size_t joined = outlines_of(tuft, kFlat).size();
     EXPECT_EQ(joined, 5u + 4u);
-    const double whole = coverage_area(rasterise(outline(tuft, kFlat), kFlat, 0, kCell));
+    const double whole = coverage_area(rasterise(outlines_of(tuft, kFlat), kFlat, 0, kCell));
     for (std::vector<double>& row : tuft.openings)
         for (double& o : row) o = 1e-3;
-    EXPECT_EQ(outline(tuft, kFlat).size(), 5u);
-    EXPECT_LT(coverage_area(rasterise(outline(tuft, kFlat), kFlat, 0, kCell)), whole);
+    EXPECT_EQ(outlines_of(tuft, kFlat).size(), 5u);
+    EXPECT_LT(coverage_area(rasterise(outlines_of(tuft, kFlat), kFlat, 0, kCell)), whole);
 }
 
 }  // namespace

@@ -42,10 +42,10 @@ struct Square {
         map = atlas::build_texel_map(mesh, atlas);
     }
 
-    std::array<int, 3> at(const BaseColour& ground, int x, int y) const {
+    std::array<int, 3> at(const BaseColour& base_colour, int x, int y) const {
         const atlas::TexelRef t = atlas::texel_ref(map, x, y);
         std::array<int, 3> c{};
-        for (int k = 0; k < 3; ++k) c[k] = ground.tiles[t.slot].rgb[k][t.texel];
+        for (int k = 0; k < 3; ++k) c[k] = base_colour.tiles[t.slot].rgb[k][t.texel];
         return c;
     }
 };
@@ -71,18 +71,18 @@ TEST(BaseColour, APictureOfTheAtlasSizeIsKeptPixelByPixel) {
     Square square(96);
     const auto picture = random_picture(96, 96, 1);
     square.mesh.materials = {{.picture = picture}};
-    const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
+    const BaseColour base_colour = base_colour_of(square.mesh, square.atlas, square.map);
     for (int y = 0; y < 96; ++y)
-        for (int x = 0; x < 96; ++x) ASSERT_EQ(square.at(ground, x, y), pixel(*picture, x, y)) << x << " " << y;
+        for (int x = 0; x < 96; ++x) ASSERT_EQ(square.at(base_colour, x, y), pixel(*picture, x, y)) << x << " " << y;
 }
 
 TEST(BaseColour, APictureIsRepeatedBeyondItsEnds) {
     Square square(64, Vec2f(-1, 2), Vec2f(1, 4));
     const auto picture = random_picture(32, 32, 2);
     square.mesh.materials = {{.picture = picture}};
-    const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
+    const BaseColour base_colour = base_colour_of(square.mesh, square.atlas, square.map);
     for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) ASSERT_EQ(square.at(ground, x, y), pixel(*picture, x % 32, y % 32));
+        for (int x = 0; x < 64; ++x) ASSERT_EQ(square.at(base_colour, x, y), pixel(*picture, x % 32, y % 32));
 }
 
 // Black and white pixels seen from afar are half the light, which sRGB writes as 188.
@@ -95,18 +95,18 @@ TEST(BaseColour, FinerPicturesAreMeansInLinearLight) {
                 picture->rgb[3 * static_cast<std::size_t>(256 * y + x) + static_cast<std::size_t>(c)] =
                     (x + y) % 2 ? 255 : 0;
     square.mesh.materials = {{.picture = picture}};
-    const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
+    const BaseColour base_colour = base_colour_of(square.mesh, square.atlas, square.map);
     for (int y = 0; y < 32; ++y)
-        for (int x = 0; x < 32; ++x) ASSERT_EQ(square.at(ground, x, y), (std::array{188, 188, 188}));
+        for (int x = 0; x < 32; ++x) ASSERT_EQ(square.at(base_colour, x, y), (std::array{188, 188, 188}));
 }
 
 TEST(BaseColour, ColoursOfVerticesAndMaterialsMultiplyInLinearLight) {
     Square square(64);
     square.mesh.vertex_colours.assign(4, {188, 188, 188, 255});
     square.mesh.materials = {{.colour = Vec3f(1, 188 / 255.0f, 0)}};
-    const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
+    const BaseColour base_colour = base_colour_of(square.mesh, square.atlas, square.map);
     const int quarter = static_cast<int>(std::lround(255 * srgb_encode(0.25f)));
-    const std::array<int, 3> seen = square.at(ground, 20, 30);
+    const std::array<int, 3> seen = square.at(base_colour, 20, 30);
     EXPECT_EQ(seen[0], 188);
     EXPECT_NEAR(seen[1], quarter, 1) << "188 stands for 0.503";
     EXPECT_EQ(seen[2], 0);
@@ -117,9 +117,9 @@ TEST(BaseColour, GroupsHaveTheirOwnColours) {
     square.mesh.triangle_groups = {0, 1};
     square.mesh.group_names = {"a", "b"};
     square.mesh.materials = {{.colour = Vec3f(1, 0, 0)}, {.colour = Vec3f(0, 0, 1)}};
-    const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
-    EXPECT_EQ(square.at(ground, 50, 10), (std::array{255, 0, 0}));
-    EXPECT_EQ(square.at(ground, 10, 50), (std::array{0, 0, 255}));
+    const BaseColour base_colour = base_colour_of(square.mesh, square.atlas, square.map);
+    EXPECT_EQ(square.at(base_colour, 50, 10), (std::array{255, 0, 0}));
+    EXPECT_EQ(square.at(base_colour, 10, 50), (std::array{0, 0, 255}));
 }
 
 TEST(BaseColour, IsEmptyForAModelWithoutColoursAndTheSameForAnyNumberOfThreads) {
@@ -129,8 +129,8 @@ TEST(BaseColour, IsEmptyForAModelWithoutColoursAndTheSameForAnyNumberOfThreads) 
     std::uint64_t hash[2];
     for (int i = 0; i < 2; ++i) {
         set_thread_count(i == 0 ? 1 : 4);
-        const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
-        hash[i] = hash_bytes(ground.tiles.data(), ground.tiles.size() * sizeof(BaseColour::Tile));
+        const BaseColour base_colour = base_colour_of(square.mesh, square.atlas, square.map);
+        hash[i] = hash_bytes(base_colour.tiles.data(), base_colour.tiles.size() * sizeof(BaseColour::Tile));
     }
     set_thread_count(0);
     EXPECT_EQ(hash[0], hash[1]);
@@ -150,10 +150,10 @@ TEST(BaseColour, BareTexelsHaveItsColourInTilesWithInkAndWithout) {
     const auto picture = random_picture(64, 64, 5);
     for (std::size_t i = 0; i < 3 * 64 * 10; ++i) picture->rgb[i] = i % 3 == 2 ? 255 : 0;  // pure blue
     square.mesh.materials = {{.picture = picture}};
-    const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
+    const BaseColour base_colour = base_colour_of(square.mesh, square.atlas, square.map);
     const Canvas canvas = painted(square, 0, 8);  // touched, with nothing on it
     Stack stack(canvas);
-    stack.ground = &ground;
+    stack.base_colour = &base_colour;
     for (const char* name : {"porcelain", "clay"}) {
         const AtlasMap<std::uint8_t> seen = compose_srgb8(stack, square.map, load_substrate(name));
         for (int y = 0; y < 64; ++y)
@@ -174,11 +174,11 @@ TEST(BaseColour, InkOverItIsThatOverASubstrateOfTheSameColour) {
         substrate.reflectance[c] = srgb_decode(code[c]);
     }
     square.mesh.materials = {{.colour = code}};
-    const BaseColour ground = base_colour_of(square.mesh, square.atlas, square.map);
+    const BaseColour base_colour = base_colour_of(square.mesh, square.atlas, square.map);
     const Canvas canvas = painted(square, 0.7f, 16);
-    Stack on_ground(canvas);
-    on_ground.ground = &ground;
-    const TileAppearance a = shade_tile(on_ground, 3, substrate), b = shade_tile(Stack(canvas), 3, substrate);
+    Stack on_base_colour(canvas);
+    on_base_colour.base_colour = &base_colour;
+    const TileAppearance a = shade_tile(on_base_colour, 3, substrate), b = shade_tile(Stack(canvas), 3, substrate);
     for (int c = 0; c < 3; ++c)
         for (int t = 0; t < kN; ++t)
             ASSERT_NEAR(a.colour[c][t], b.colour[c][t], 2e-6) << "floats of two orders of summation";

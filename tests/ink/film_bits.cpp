@@ -93,14 +93,14 @@ int main() {
                         .passing = round & 8 ? 0.2f : 1.0f,
                         .evaporation = 0.004f,
                         .rim = 0.002f,
-                        .hold = 1,
+                        .retained = 1,
                         .relief = 0.015f,
                         .ridge = 0.4f};
         Work work;
-        gather(work.w, w_at);
-        gather(work.s, s_at);
-        gather(work.p, p_at);
-        gather(work.z, z_at);
+        gather_field(work.w, w_at);
+        gather_field(work.s, s_at);
+        gather_field(work.p, p_at);
+        gather_field(work.z, z_at);
         work.on_relief = round % 3 == 2;
         fluxes(work, g, step);
         if (step.most > 0) {

@@ -212,7 +212,7 @@ TEST(WetFilm, UniformWaterStaysUniformOverEverySeam) {
 /// A blot on a ball, heavy, soaking and drying.
 FilmParams everything() {
     FilmParams p = film_params(load_substrate("bisque"), {0, 0.6, -0.8});
-    p.hold = 0.5;
+    p.retained = 0.5;
     return p;
 }
 void blot(Wet& s) {
@@ -263,7 +263,7 @@ TEST(WetFilm, PoresNeverHoldMoreThanTheirCapacityAndNothingGetsNegative) {
         FilmParams p = film_params(load_substrate("rice-paper"), {0, 0, -1});
         p.mobility = 2e-8;
         p.pores = 1.2;
-        p.hold = 0;
+        p.retained = 0;
         p.shortest_step = shortest;
         blot(s);
         const double ink = s.canvas.total(s.map, 0);

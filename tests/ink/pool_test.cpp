@@ -61,14 +61,14 @@ struct Furrowed {
     }
 };
 
-/// Where a film of 2 stands in furrows `deep` micrometres deep: max(hold, level − z) holds as much.
-double level_in(double deep, double hold) {
+/// Where a film of 2 stands in furrows `deep` micrometres deep: max(ridge_film, level − z) holds as much.
+double level_in(double deep, double ridge_film) {
     double low = 0, high = deep / 10 + 2;
     for (int i = 0; i < 60; ++i) {
         const double level = 0.5 * (low + high);
         double sum = 0;
         constexpr int kParts = 1000;
-        for (int k = 0; k < kParts; ++k) sum += std::max(hold, level - deep / 10 * (k + 0.5) / kParts) / kParts;
+        for (int k = 0; k < kParts; ++k) sum += std::max(ridge_film, level - deep / 10 * (k + 0.5) / kParts) / kParts;
         (sum < 2 ? low : high) = level;
     }
     return low;
@@ -79,18 +79,18 @@ TEST(Pool, StandsLevelInTheFurrowsAndThinOnTheRidges) {
     for (const double deep : {60.0, 150.0}) {
         Furrowed f(deep);
         f.settle(options);
-        const double level = level_in(deep, options.hold);
+        const double level = level_in(deep, options.ridge_film);
         double apart = 0, n = 0, thinnest = 9;
         f.each([&](std::uint32_t slot, int t, const Vec3& p) {
             if (std::abs(p.x) > 3e-3 || std::abs(p.y) > 3e-3) return;  // the sheet's ends stop what would flow on
             const double z = deep / 10 * Furrowed::ridge(p.x), w = f.film(slot, t);
             thinnest = std::min(thinnest, w);
-            apart += std::abs(w - std::max(options.hold, level - z));
+            apart += std::abs(w - std::max(options.ridge_film, level - z));
             n += 1;
         });
         EXPECT_LT(apart / n, 0.1) << "film units of 2 in the mean: a texel is a tenth of a furrow's side, deep "
                                   << deep;
-        EXPECT_NEAR(thinnest, options.hold, 0.05);
+        EXPECT_NEAR(thinnest, options.ridge_film, 0.05);
     }
 }
 

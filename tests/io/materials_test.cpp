@@ -154,7 +154,7 @@ TEST(Materials, AProjectKeepsThemAndMakesTheSameBaseColourAgain) {
     put(folder / "m.mtl", "newmtl one\nmap_Kd p.png\nnewmtl two\nKd 0.25 0.5 1\n");
     put(folder / "p.png", png_text());
     const stroke::Model model = model_of(read_model(folder / "m.obj"), 64);
-    ASSERT_FALSE(model.ground.empty());
+    ASSERT_FALSE(model.base_colour.empty());
     Project::create(folder / "m.tuft", contents(model));
     const Project project = Project::open(folder / "m.tuft");
     EXPECT_EQ(project.format(), kColoursFormat) << "older programs do not know them";
@@ -163,16 +163,16 @@ TEST(Materials, AProjectKeepsThemAndMakesTheSameBaseColourAgain) {
     ASSERT_EQ(stored.mesh.materials.size(), 2u);
     EXPECT_EQ(stored.mesh.materials[0].picture->bytes, model.mesh->materials[0].picture->bytes);
     const stroke::Model again = stroke::prepare_model(std::move(stored.mesh), std::move(stored.atlas));
-    ASSERT_EQ(again.ground.tiles.size(), model.ground.tiles.size());
-    for (std::size_t slot = 0; slot < again.ground.tiles.size(); ++slot)
-        ASSERT_EQ(again.ground.tiles[slot].rgb, model.ground.tiles[slot].rgb);
+    ASSERT_EQ(again.base_colour.tiles.size(), model.base_colour.tiles.size());
+    for (std::size_t slot = 0; slot < again.base_colour.tiles.size(); ++slot)
+        ASSERT_EQ(again.base_colour.tiles[slot].rgb, model.base_colour.tiles[slot].rgb);
 }
 
 TEST(Materials, AModelWithoutColoursKeepsAnOlderFormat) {
     const Folder folder("plain");
     put(folder / "m.obj", kTwoTriangles);
     const stroke::Model model = model_of(read_model(folder / "m.obj"), 64);
-    EXPECT_TRUE(model.ground.empty());
+    EXPECT_TRUE(model.base_colour.empty());
     const Project project = Project::create(folder / "m.tuft", contents(model));
     EXPECT_LT(project.format(), kColoursFormat);
 }

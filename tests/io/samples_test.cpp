@@ -66,7 +66,7 @@ TEST(Samples, AHengClosesWithASlantedShoulderNotWithABall) {
         SCOPED_TRACE(t.label);
         ++found;
         const stroke::PlaneInk ink =
-            stroke::plane_ink(t, brush::load_preset(t.brush), tables.hold(t.brush), 1e-4, cell);
+            stroke::plane_ink(t, brush::load_preset(t.brush), tables.holder(t.brush), 1e-4, cell);
         const auto inked = [&](int i, int j) { return ink.at(cell * Vec2(i - n / 2, j - n / 2)) > 0.5; };
         // From end to end, and the height of the middle.
         int begin = n, end = 0;

@@ -126,7 +126,7 @@ TEST(Fit, AFlatStrokeOnTheSameModelOrAnotherMeshOfItFits) {
         EXPECT_EQ(same.moved_most, 0);
         EXPECT_EQ(same.missing(), 0);
         EXPECT_EQ(same.stretched, 0);
-        EXPECT_NEAR(same.way, 0.03, 1e-3);
+        EXPECT_NEAR(same.length, 0.03, 1e-3);
         EXPECT_FALSE(same.slid);
         EXPECT_TRUE(mismatch_reason(finer).empty()) << static_cast<int>(mapping);
         EXPECT_FALSE(finer.slid);
@@ -165,7 +165,7 @@ TEST(Fit, AStretchedStrokeIsReportedByItsFraction) {
     const Model steep = sheet(make_frame(Vec3(0), glm::normalize(Vec3(-std::sqrt(3.0), 0, 1))), kSmall);
     const StrokeFit fit = fit_on(*steep.mesh, written(SurfaceMapping::project));
     EXPECT_NEAR(fit.kept_now / fit.kept, 2, 0.02);
-    EXPECT_GT(fit.stretched, 0.5 * fit.way);
+    EXPECT_GT(fit.stretched, 0.5 * fit.length);
     EXPECT_NE(mismatch_reason(fit).text().find("stretched or squeezed"), std::string::npos)
         << mismatch_reason(fit).text();
 }

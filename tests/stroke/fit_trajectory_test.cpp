@@ -39,7 +39,7 @@ StrokeSamples through(std::initializer_list<Vec2> points) {
 }
 
 StrokeSamples fitted(const StrokeSamples& trace) {
-    return fit_trajectory(trace, brush::load_preset(kBrush), tables().of(kBrush), tables().hold(kBrush));
+    return fit_trajectory(trace, brush::load_preset(kBrush), tables().of(kBrush), tables().holder(kBrush));
 }
 
 /// How far round the ink goes from the line through the points, within `about` of `corner`: the
@@ -49,7 +49,7 @@ struct Spill {
 };
 Spill spilt(const StrokeSamples& trace, std::initializer_list<Vec2> points, const Vec2& corner, double about) {
     const double cell = 5e-5;
-    const PlaneInk ink = plane_ink(trace, brush::load_preset(kBrush), tables().hold(kBrush), 1e-4, cell);
+    const PlaneInk ink = plane_ink(trace, brush::load_preset(kBrush), tables().holder(kBrush), 1e-4, cell);
     Spill s;
     for (double y = corner.y - about; y < corner.y + about; y += cell)
         for (double x = corner.x - about; x < corner.x + about; x += cell) {
@@ -120,7 +120,7 @@ TEST(FitTrajectory, LooksOnlyAtEdgesThatShow) {
 
 TEST(PlaneInk, AStraightLineIsAsWideAsItsPressure) {
     const StrokeSamples line = through({{-0.025, 0}, {0.025, 0}});
-    const PlaneInk ink = plane_ink(line, brush::load_preset(kBrush), tables().hold(kBrush), 1e-4, 5e-5);
+    const PlaneInk ink = plane_ink(line, brush::load_preset(kBrush), tables().holder(kBrush), 1e-4, 5e-5);
     double area = 0;
     for (double y = -0.005; y < 0.005; y += 5e-5)
         for (double x = -0.01; x < 0.01; x += 5e-5) area += ink.at({x + 2.5e-5, y + 2.5e-5}) * 2.5e-9;

@@ -276,7 +276,7 @@ TEST(Placement, TipLagCompensationIsAheadAndTurnsWithThePath) {
     StrokeSamples trace = make_trace({}, points);
     const HolderOptions options{
         .working_depth = 0.008, .tip_lag = {{0.002, 0.001}, {0.006, 0.005}}, .tip_lag_turn = 1e-3};
-    StrokeSamples led = lead_hand(trace, options);
+    StrokeSamples led = compensate_tip_lag(trace, options);
     ASSERT_GT(led.samples.size(), trace.samples.size());
     std::size_t touch = led.samples.size() - trace.samples.size();
     EXPECT_NEAR(led.samples[touch].position.x, 0.003, 1e-12);
@@ -295,22 +295,22 @@ TEST(Placement, TipLagCompensationIsAheadAndTurnsWithThePath) {
     points.clear();
     for (int i = 0; i <= 20000; ++i) points.push_back(radius * Vec2(std::cos(1e-3 * i), std::sin(1e-3 * i)));
     trace = make_trace({}, points);
-    led = lead_hand(trace, options);
+    led = compensate_tip_lag(trace, options);
     const Vec2 p(trace.samples.back().position), d = (Vec2(led.samples.back().position) - p) / 0.003;
     EXPECT_NEAR(glm::length(d), 1, 1e-9);
     EXPECT_NEAR(glm::dot(d, p / radius), l / radius, 6e-4);  // half a sample's step over R: 5e-4
     // There and back: the lead passes through zero and turns round.
     points.clear();
     for (int i = 0; i <= 200; ++i) points.push_back({1e-4 * (i <= 100 ? i : 200 - i), 0});
-    led = lead_hand(make_trace({}, points), options);
+    led = compensate_tip_lag(make_trace({}, points), options);
     touch = led.samples.size() - points.size();
     EXPECT_NEAR(led.samples[touch + 110].position.x, 0.009, 1e-9);  // the string is slack after one length
     EXPECT_NEAR(led.samples[touch + 200].position.x, -0.003, 1e-9);
     // A dot has no direction.
-    led = lead_hand(make_trace({}, {{0.01, 0.02}, {0.01, 0.02}}), options);
+    led = compensate_tip_lag(make_trace({}, {{0.01, 0.02}, {0.01, 0.02}}), options);
     EXPECT_EQ(led.samples[1].position, Vec3(0.01, 0.02, 0));
     // No lead: nothing moves.
-    led = lead_hand(trace, {.tip_lag = {}});
+    led = compensate_tip_lag(trace, {.tip_lag = {}});
     EXPECT_EQ(led.samples[77].position, trace.samples[77].position);
 }
 

@@ -199,7 +199,7 @@ TEST(Sampling, InkIsTheSameAtEveryRateAndPastARest) {
         EXPECT_LT(difference(paint({.rest = 0.5}, rate, past), straight), 0.075) << rate;
 }
 
-/// Speeds of holder and hand over a trace, m/s, and what bounds the holder's; see `lead_hand`.
+/// Speeds of holder and hand over a trace, m/s, and what bounds the holder's; see `compensate_tip_lag`.
 void expect_bounded(const SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options,
                     double curvature) {
     const HandPath path = hand_path(query, trace, options);
@@ -233,7 +233,7 @@ TEST(Sampling, AHolderIsNoFasterThanItsHandMakesIt) {
     const SurfaceQuery on_flat(flat), on_round(round);
     for (const char* name : {"mixed-medium", "wolf-small", "goat-large"}) {
         const brush::Preset preset = brush::load_preset(name);
-        TiltedTipLag leaned(preset);
+        TiltedTipLag tilted(preset);
         for (const double speed : {0.01, 0.04, 0.25})
             for (const char* press : {"at once", "slowly", "twice"})
                 for (const Vec2 tilt : {Vec2{0.02, 0.01}, Vec2{0, 0.5}}) {
@@ -253,7 +253,7 @@ TEST(Sampling, AHolderIsNoFasterThanItsHandMakesIt) {
                     trace.samples.back().pressure = press[0] == 'a' ? 0.4 : 0;
                     HolderOptions options = holder_options(preset, flat);
                     options.tip_lag = measure_tip_lag(preset);
-                    options.leaned = [&](double depth, const Vec2& lean) { return leaned.at(depth, lean); };
+                    options.tip_lag_change = [&](double depth, const Vec2& lean) { return tilted.at(depth, lean); };
                     expect_bounded(on_flat, trace, options, 0);
                     trace.placement = {{kCylinderRadius, 0, 0.01}, {0, 1, 0}, {0, 0, -1}, SurfaceMapping::drape};
                     expect_bounded(on_round, trace, options, 1 / kCylinderRadius);

@@ -96,7 +96,7 @@ TEST(TipLag, AnUprightHolderHasTheMeasuredLagAndSidesMirror) {
 std::vector<Vec2> inked_cells(StrokeSamples trace, const std::string& brush) {
     static WidthTables tables;
     for (StrokeSample& s : trace.samples) s.tilt = {0.015, 0.025};
-    const PlaneInk ink = plane_ink(trace, brush::load_preset(brush), tables.hold(brush), 5e-5, 1e-4);
+    const PlaneInk ink = plane_ink(trace, brush::load_preset(brush), tables.holder(brush), 5e-5, 1e-4);
     std::vector<Vec2> cells;
     for (double y = -0.025; y < 0.025; y += 1e-4)
         for (double x = -0.025; x < 0.025; x += 1e-4)

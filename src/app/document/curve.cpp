@@ -26,7 +26,7 @@ Vec3 spline(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3, doub
     return mix(mix(a1, a2, 0, t2), mix(a2, a3, t1, t3), t1, t2);
 }
 
-CurveSample lay(const mesh::SurfaceQuery& query, const Vec3& p, const Vec3& outward, double reach) {
+CurveSample project_sample(const mesh::SurfaceQuery& query, const Vec3& p, const Vec3& outward, double reach) {
     CurveSample place{.position = p, .normal = outward, .on = false};
     const Vec3 from = p + reach * outward;
     double start = 0;
@@ -82,7 +82,7 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
             sample.roll += stroke::follow_stroke(follower, 0, {glm::dot(gone, axes.right), glm::dot(gone, axes.down)});
         }
         if (press > 0 && glm::length(ahead) > 1e-9)
-            sample.tip_lag = stroke::lead_of(hand.holder, press, hand.tilt, glm::normalize(ahead));
+            sample.tip_lag = stroke::tip_lag_at(hand.holder, press, hand.tilt, glm::normalize(ahead));
         if (const auto on = query.closest_point(place.position, 0.01)) {
             sample.on = *on;
             sample.on_surface =
@@ -90,7 +90,7 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
         }
         samples.push_back(sample);
     }
-    return stroke::hold(query, samples, hand.holder);
+    return stroke::pose_holder(query, samples, hand.holder);
 }
 
 }  // namespace
@@ -109,7 +109,8 @@ std::vector<CurveSample> project_curve(const mesh::SurfaceQuery& query, std::spa
             const double u = static_cast<double>(k) / per_span;
             const Vec3 outward = glm::mix(a.outward, b.outward, u);
             const Vec3 p = spline(before, a.position, b.position, after, u);
-            CurveSample place = lay(query, p, glm::length(outward) > 1e-6 ? glm::normalize(outward) : a.outward, reach);
+            CurveSample place =
+                project_sample(query, p, glm::length(outward) > 1e-6 ? glm::normalize(outward) : a.outward, reach);
             place.pressure = glm::mix(a.pressure, b.pressure, u);
             place.along = curve.empty() ? 0 : curve.back().along + glm::distance(curve.back().position, place.position);
             curve.push_back(place);

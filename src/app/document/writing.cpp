@@ -151,15 +151,15 @@ std::vector<std::vector<PreviewPoint>> preview_lines(const mesh::SurfaceQuery& q
         if ((n - 1) % step != 0) thin.samples.push_back(trace.samples.back());
     }
     stroke::transform_samples(thin, w.centre, painted_scale(w), w.mirrored);
-    const std::vector<stroke::SurfaceSample> laid = stroke::map_to_surface(query, thin).samples;
+    const std::vector<stroke::SurfaceSample> mapped = stroke::map_to_surface(query, thin).samples;
     std::vector<std::vector<PreviewPoint>> lines;
-    for (std::size_t i = 0, next = 0; i < laid.size(); ++i) {
+    for (std::size_t i = 0, next = 0; i < mapped.size(); ++i) {
         while (next < starts.size() && starts[next] == i) {
             lines.emplace_back();
             ++next;
         }
-        if (laid[i].on_surface)
-            lines.back().push_back({.position = laid[i].position, .normal = laid[i].normal});
+        if (mapped[i].on_surface)
+            lines.back().push_back({.position = mapped[i].position, .normal = mapped[i].normal});
         else if (!lines.back().empty())
             lines.emplace_back();
     }

@@ -69,7 +69,7 @@ PointerInput::PointerInput(const mesh::SurfaceQuery& surface, const brush::Prese
       wide_(preset.spines > 1),
       reach_(std::min({2 * preset.radius, kMostFelt, kFeltOfModel * surface.mesh().bounds.diagonal()})) {
     holder_.tip_lag = std::move(lag.upright);
-    holder_.leaned = std::move(lag.tilted);
+    holder_.tip_lag_change = std::move(lag.tilted);
 }
 
 std::optional<AimedSurface> PointerInput::find_surface(const Aim& aim) const {
@@ -170,7 +170,7 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
     const Vec2 ahead{glm::dot(dragged_.string, axes.right), glm::dot(dragged_.string, axes.down)};
     if (glm::length(ahead) < 1e-9) return Vec3(0);
     const Vec2 lag =
-        taut * stroke::lead_of(holder_, pressure, {settings_.tilt.x, -settings_.tilt.y}, glm::normalize(ahead));
+        taut * stroke::tip_lag_at(holder_, pressure, {settings_.tilt.x, -settings_.tilt.y}, glm::normalize(ahead));
     const double spread = pressure * spread_ * (1 - smooth_step(gone_ / (kSpreadGone * holder_.tuft_length)));
     return lag.x * axes.right + lag.y * axes.down + spread * dragged_.string;
 }

@@ -48,7 +48,7 @@ struct Aim {
     Vec4f section{0};                            ///< cut plane; hidden parts of the model are not hit
 };
 
-/// Tip lag of one brush, for `stroke::lead_of`: distance of the ink behind the holder. Empty: none.
+/// Tip lag of one brush, for `stroke::tip_lag_at`: distance of the ink behind the holder. Empty: none.
 struct TipLag {
     std::vector<stroke::TipLag> upright;
     std::function<Vec2(double depth, const Vec2& lean)> tilted = {};
@@ -82,9 +82,9 @@ struct StrokeStep {
 /// direction of the stroke must be known first: the brush is set down once the cursor has moved three pixels, rested,
 /// or the button is up. The tuft is then pressed at the first point while the holder tilts and advances, so that the
 /// hair trails from the first contact. Along the stroke the holder leads the cursor by the tip lag of its depth
-/// (`stroke::lead_of`), in the direction of a point dragged behind it (stroke/placement/tip_lag.h). At the end the hand
-/// decelerates evenly to the cursor's last point and lifts there; after a fast stroke it lifts while moving. Pens need
-/// none of this: their pressure shapes the ends.
+/// (`stroke::tip_lag_at`), in the direction of a point dragged behind it (stroke/placement/tip_lag.h). At the end the
+/// hand decelerates evenly to the cursor's last point and lifts there; after a fast stroke it lifts while moving. Pens
+/// need none of this: their pressure shapes the ends.
 class PointerInput {
   public:
     PointerInput(const mesh::SurfaceQuery& surface, const brush::Preset& preset, const PointerSettings& settings,

@@ -94,7 +94,7 @@ Inspected inspect_file(const fs::path& path, const ProgressFn& progress) {
 }
 
 // Strokes of a former project, its presets and ground, on the new model.
-void carry_strokes(const fs::path& former, PaintWork& work, const ProgressFn& progress) {
+void copy_strokes(const fs::path& former, PaintWork& work, const ProgressFn& progress) {
     const io::Project project = io::Project::open(former, {.access = io::Access::read, .progress = progress});
     work.document->use(ink::parse_substrate(project.model().substrate, former.string()));
     io::use_presets(project, *work.document);
@@ -138,7 +138,7 @@ PaintWork prepare_model(Inspected in, const OpenOptions& options, const fs::path
     work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
     work.document =
         std::make_unique<stroke::Document>(*work.model, stroke::DocumentOptions{.substrate = options.substrate});
-    if (!former.empty()) carry_strokes(former, work, progress);
+    if (!former.empty()) copy_strokes(former, work, progress);
     work.texture = std::make_unique<Texture>(*work.document, progress);
     work.pixels = work.texture->pixels();
     keep(work, project);

@@ -145,7 +145,7 @@ void CurveTool::paint(double now) {
                    .right = c.right,
                    .down = -c.up};
     hand.holder.tip_lag = lag.upright;
-    hand.holder.leaned = lag.tilted;
+    hand.holder.tip_lag_change = lag.tilted;
     const auto strokes = curve_poses(*s.paint_thread->model().query, curve.points, hand);
     if (strokes.empty()) return show_message(s.status, "The line does not lie on the model.");
     if (editable()) s.paint_thread->post(UndoStroke{});

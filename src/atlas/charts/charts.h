@@ -15,6 +15,7 @@
 /// Cuts a mesh into charts that can be flattened with little stretch. Called by `unwrap`.
 namespace tuft::atlas {
 
+/// Limits of charts.
 struct ChartOptions {
     double l2 = 1.0045;      ///< largest mean stretch of a chart
     double largest = 1.35;   ///< largest stretch at 99.9 % of a chart's area
@@ -37,20 +38,21 @@ inline constexpr std::size_t kBlockwiseThreshold = 500000;
 
 /// A chart and its UVs, in the same unit. Every triangle has positive area, and the border does not cross itself.
 struct FlatChart {
-    ChartMesh mesh;
-    std::vector<Vec2> uv;
+    ChartMesh mesh;             ///< of the chart
+    std::vector<Vec2> uv;       ///< [n_vertices of `mesh`]
     double l2 = 1;              ///< stretch
     double worst = 1;           ///< largest stretch of a triangle
     std::uint32_t version = 0;  ///< unique for every chart and change; 0: not assigned
 };
 
+/// A mesh cut into charts.
 struct CutMesh {
     double unit = 1;                   ///< metres: square root of the surface's area
     std::vector<std::uint32_t> twin;   ///< [3n] opposite half-edges, kNone at requested seams
     std::vector<std::uint32_t> glued;  ///< the same, kNone at seams
     std::vector<FlatChart> charts;
-    std::uint32_t versions = 0;  ///< last assigned version
-    RejectedChanges rejected;
+    std::uint32_t versions = 0;        ///< last assigned version
+    RejectedChanges rejected;          ///< changes that need no second trial
     std::vector<std::uint32_t> place;  ///< [n_triangles] scratch buffer of `make_chart`
 };
 

@@ -15,12 +15,12 @@ namespace tuft::atlas {
 namespace {
 
 constexpr int kMostCuts = 9;
-constexpr double kLeastOfUse = 0.98;     // that is left when a cut is made for the sake of the next
-constexpr double kBeyond = 1.03;         // of the goal, once charts are cut: a short search errs by this
-constexpr double kAsLong = 0.85;         // of the longest chart's length
-constexpr std::size_t kCandidates = 6;   // largest charts that are tried
-constexpr std::size_t kMostCharts = 48;  // with more, small ones fill the gaps
-constexpr std::size_t kDear = 200000;    // triangles of a chart that is left as it is
+constexpr double kLeastOfUse = 0.98;            // that is left when a cut is made for the sake of the next
+constexpr double kBeyond = 1.03;                // of the goal, once charts are cut: a short search errs by this
+constexpr double kAsLong = 0.85;                // of the longest chart's length
+constexpr std::size_t kCandidates = 6;          // largest charts that are tried
+constexpr std::size_t kMostCharts = 48;         // with more, small ones fill the gaps
+constexpr std::size_t kMostTriangles = 200000;  // triangles of a chart that is left as it is
 
 std::vector<Vec2> border_of(const FlatChart& chart) {
     std::vector<Vec2> border;
@@ -85,7 +85,7 @@ std::optional<FlatChart> part_of(const Whole& of, std::span<const std::uint32_t>
 
 std::optional<Halves> halve(const mesh::TriangleMesh& mesh, const CutMesh& cut, const FlatChart& chart, double gap) {
     const ChartMesh& m = chart.mesh;
-    if (m.faces.size() < 2 || m.faces.size() > kDear) return std::nullopt;
+    if (m.faces.size() < 2 || m.faces.size() > kMostTriangles) return std::nullopt;
     const Rectangle box = smallest_rectangle(chart_hull(chart));
     double lo = std::numeric_limits<double>::infinity();
     for (const Vec2& p : chart.uv) lo = std::min(lo, box.c * p.x + box.s * p.y);
@@ -176,26 +176,27 @@ std::vector<std::vector<Vec2>> chart_borders(const CutMesh& cut) {
 
 namespace {
 
-/// Where cutting starts from, of which coarse masks show `use`.
-struct Start {
-    double area, use;
+/// Limits of a run of cuts. Coverage is as coarse masks show it, fraction of the atlas.
+struct CutLimits {
+    double area = 0;    ///< of the charts
+    double use = 0;     ///< coverage at the start
+    double goal = 1;    ///< coverage at which to stop
+    int most_cuts = 0;  ///< number of cuts at which to stop
 };
 
-/// Cuts while coarse masks show that it gains, until they show the goal or nothing helps; the
-/// number of cuts.
+/// Cuts while coarse masks show that it gains, until they show the goal or nothing helps. Returns the number of cuts.
 int cut_while_it_gains(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, const PackOptions& options,
-                       const Start& start, double goal, int most) {
-    const double area = start.area;
-    double use = start.use;
+                       const CutLimits& limits) {
+    double use = limits.use;
     std::vector<std::vector<Vec2>> borders = chart_borders(cut);
     int cuts = 0;
-    for (; cuts < most && use < goal; borders = chart_borders(cut)) {
+    for (; cuts < limits.most_cuts && use < limits.goal; borders = chart_borders(cut)) {
         const std::vector<Proposal> all = proposals(mesh, cut, gap);
         std::vector<double> gained(all.size(), 0);
         run_tasks(all.size(), [&](std::size_t i) {
-            gained[i] = use_of(pack(borders_after(borders, all[i]), options), area);
+            gained[i] = use_of(pack(borders_after(borders, all[i]), options), limits.area);
             // Two cuts have to gain as much as each of them would.
-            if (gained[i] < goal) gained[i] /= std::pow(kCutGain, all[i].size());
+            if (gained[i] < limits.goal) gained[i] /= std::pow(kCutGain, all[i].size());
         });
         const auto best = std::max_element(gained.begin(), gained.end());
         // A cut may gain nothing until the next one is made.
@@ -225,9 +226,10 @@ CutToPack cut_to_pack(const mesh::TriangleMesh& mesh, CutMesh& cut, double gap, 
     int cuts = 0;
     for (double now = use; cuts < kMostCuts && now < goal && tried.charts.size() <= kMostCharts;) {
         report(progress, "cut to pack", double(cuts) / kMostCuts);
-        const Start start{area, use_of(pack(chart_borders(tried), coarse), area)};
-        const double shown = kBeyond * start.use / now * goal;  // by coarse masks
-        const int more = cut_while_it_gains(mesh, tried, gap, coarse, start, shown, kMostCuts - cuts);
+        CutLimits limits{.area = area, .use = use_of(pack(chart_borders(tried), coarse), area)};
+        limits.goal = kBeyond * limits.use / now * goal;
+        limits.most_cuts = kMostCuts - cuts;
+        const int more = cut_while_it_gains(mesh, tried, gap, coarse, limits);
         if (more == 0) break;
         cuts += more;
         Packing packing = pack_well(chart_borders(tried), area, options, goal);

@@ -7,8 +7,9 @@
 /// Halves charts that waste space on the page. Called by `unwrap` before the final packing.
 namespace tuft::atlas {
 
+/// Result of `cut_to_pack`.
 struct CutToPack {
-    int cuts = 0;
+    int cuts = 0;     ///< number of halved charts
     Packing packing;  ///< best packing of the resulting charts
 };
 

@@ -6,6 +6,7 @@
 /// Merging of adjacent charts. Called by `unwrap`.
 namespace tuft::atlas {
 
+/// Limits of the shape of a merged chart.
 struct MergeOptions {
     double largest_chart = 0.15;   ///< largest fraction of the surface of a merged chart
     double largest_at_last = 0.3;  ///< the same after the last seam move

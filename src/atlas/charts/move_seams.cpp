@@ -6,9 +6,9 @@
 #include <set>
 #include <utility>
 
-#include "atlas/charts/carry_uvs.h"
 #include "atlas/charts/phase_progress.h"
 #include "atlas/charts/tasks.h"
+#include "atlas/charts/transfer_uvs.h"
 #include "atlas/flatten/hull.h"
 #include "atlas/seams/seam_paths.h"
 
@@ -20,7 +20,7 @@ constexpr float kReach[kReaches] = {0.25f, 0.08f};  // tried one after the other
 constexpr double kLeastSaved = 0.02;                // of a seam's length, for which charts are laid anew
 constexpr int kIterations = 8;                      // from where a chart lies, most of it well
 constexpr double kLeastValue = 0.05;                // saved, over the unit, for flattening all of the mesh anew
-constexpr double kLeastValueDear = 0.1;             // the same where that takes many seconds
+constexpr double kLeastValueLarge = 0.1;            // the same where that takes many seconds
 constexpr double kMostWork = 8;                     // triangles laid flat, over those of the mesh
 
 struct Trial {
@@ -40,7 +40,7 @@ class Mover {
         : mesh_(mesh),
           cut_(cut),
           options_(options),
-          least_value_(mesh.n_triangles() < kBlockwiseThreshold ? kLeastValue : kLeastValueDear),
+          least_value_(mesh.n_triangles() < kBlockwiseThreshold ? kLeastValue : kLeastValueLarge),
           budget_(cut, options.l2_all),
           patch_(whole_patch(mesh, cut)),
           paths_(patch_, seam_flags(cut), chart_of(mesh, cut)) {
@@ -63,7 +63,7 @@ class Mover {
                 t.good = true;
                 // The chart that grows is the one that may not lie flat.
                 const int first = t.swept[0].size() > t.swept[1].size();
-                for (int k = 0; k < t.n_charts() && t.good; ++k) t.good = lay(t, first ^ k);
+                for (int k = 0; k < t.n_charts() && t.good; ++k) t.good = flatten_side(t, first ^ k);
                 part.finish();
             });
             for (Trial& t : trials) {
@@ -233,7 +233,7 @@ class Mover {
     }
 
     /// Lays one of the charts flat as it would be from where it lies.
-    bool lay(Trial& t, int side) {
+    bool flatten_side(Trial& t, int side) {
         const FlatChart& old = cut_.charts[t.chart[side]];
         FlatChart& flat = t.flat[side];
         const std::vector<std::uint32_t> come = taken(t, side);
@@ -243,7 +243,8 @@ class Mover {
         if (!flat.mesh.disk) return false;
         if (flat.mesh.area > old.mesh.area && flat.mesh.area > options_.grown) return false;
         const bool large = flat.mesh.faces.size() > kLargeChart;
-        flat.uv = large ? carry_uvs(old, cut_.charts[t.chart[1 - side]], come, flat.mesh) : unfold_uvs(old, flat.mesh);
+        flat.uv =
+            large ? transfer_uvs(old, cut_.charts[t.chart[1 - side]], come, flat.mesh) : unfold_uvs(old, flat.mesh);
         // A large chart that only gave triangles away is left as it lies, no less flat than before.
         if (!large || !come.empty()) {
             ArapOptions trial = trial_arap(options_);

@@ -76,13 +76,13 @@ Part part_of(const ChartMesh& chart, std::span<const std::uint32_t> faces) {
 
 using Stiffness = Eigen::SparseMatrix<double>;
 
-/// Stiffness matrix Σ half_cot over edges, the lower half of the rows and columns of the vertices that move; `held` is
-/// what the others pull with.
-Stiffness stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2>& held) {
+/// Stiffness matrix Σ half_cot over edges, the lower half of the rows and columns of the vertices that move; `pinned`
+/// is what the others pull with.
+Stiffness stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<Vec2>& pinned) {
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(3 * part.faces.size() + part.n_free);
     std::vector<double> diagonal(part.vertex.size(), 0);
-    held.assign(part.n_free, Vec2(0));
+    pinned.assign(part.n_free, Vec2(0));
     for (std::size_t t = 0; t < part.faces.size(); ++t)
         for (int k = 0; k < 3; ++k) {
             const auto [i, j] = std::minmax(part.faces[t][k], part.faces[t][(k + 1) % 3]);
@@ -92,7 +92,7 @@ Stiffness stiffness(const Part& part, const std::vector<Vec2>& uv, std::vector<V
             if (j < part.n_free)
                 entries.emplace_back(static_cast<int>(j), static_cast<int>(i), -w);
             else if (i < part.n_free)
-                held[i] += w * uv[j];
+                pinned[i] += w * uv[j];
         }
     for (std::uint32_t v = 0; v < part.n_free; ++v)
         entries.emplace_back(static_cast<int>(v), static_cast<int>(v), diagonal[v]);
@@ -164,7 +164,7 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
     if (part.n_free == 0) return 0;
     const double area = std::max(part.area, 1e-300);
     Factor factor;
-    std::vector<Vec2> at(part.vertex.size()), rhs(part.vertex.size()), held;
+    std::vector<Vec2> at(part.vertex.size()), rhs(part.vertex.size()), pinned;
     for (std::size_t v = 0; v < at.size(); ++v) at[v] = uv[part.vertex[v]];
     const auto hand_out = [&] {
         for (std::size_t v = 0; v < part.n_free; ++v) uv[part.vertex[v]] = at[v];
@@ -186,10 +186,10 @@ double arap(const ChartMesh& chart, std::vector<Vec2>& uv, const ArapOptions& op
         }
         before = energy;
         if (step == 0) {
-            factor.compute(stiffness(part, at, held));
+            factor.compute(stiffness(part, at, pinned));
             if (factor.info() != Eigen::Success || !factor.vectorD().allFinite()) break;
         }
-        for (std::size_t v = 0; v < part.n_free; ++v) rhs[v] += held[v];
+        for (std::size_t v = 0; v < part.n_free; ++v) rhs[v] += pinned[v];
         const auto n = static_cast<Eigen::Index>(part.n_free);
         Eigen::Map<Coordinates>(&at[0].x, n, 2) = factor.solve(Eigen::Map<const Coordinates>(&rhs[0].x, n, 2));
     }

@@ -15,9 +15,9 @@ inline constexpr double kMinHeight = 1e-4;
 
 /// The triangle in its own plane, counter-clockwise, first corner at the origin.
 struct Reference {
-    std::array<Vec2, 3> corner;
+    std::array<Vec2, 3> corner;      ///< in the unit of the chart
     std::array<double, 3> half_cot;  ///< half the cotangent of the angle facing edge k -> k + 1
-    double area = 0;
+    double area = 0;                 ///< of the triangle
 };
 
 Reference reference_triangle(const ChartMesh& chart, std::size_t t, double min_height = kMinHeight);

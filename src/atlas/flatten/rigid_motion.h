@@ -11,8 +11,8 @@ namespace tuft::atlas {
 
 /// A rigid motion of the plane: rotation by the angle of cosine c and sine s, then translation.
 struct RigidMotion {
-    double c = 1, s = 0;
-    Vec2 shift{0};
+    double c = 1, s = 0;  ///< unit
+    Vec2 shift{0};        ///< in the unit of the points
     Vec2 operator()(const Vec2& p) const { return Vec2(c * p.x - s * p.y, s * p.x + c * p.y) + shift; }
 };
 

@@ -14,6 +14,7 @@ namespace tuft::atlas {
 /// Marks half-edges across which the UVs differ at an end, and borders. [3n]
 std::vector<std::uint8_t> uv_seams(std::span<const std::uint32_t> twin, std::span<const Vec2f> corner_uvs);
 
+/// Covered texels of a page.
 struct Coverage {
     std::size_t covered = 0;                  ///< texel centres inside a triangle
     std::size_t twice = 0;                    ///< inside more than one

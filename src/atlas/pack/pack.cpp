@@ -133,6 +133,16 @@ class Packer {
         return page;
     }
 
+    /// Empties page p, the next one to be filled; does nothing for one of the `n_filled` before.
+    void begin_page(const Page& page, std::uint32_t p, std::uint32_t& n_filled) {
+        if (p < n_filled) return;
+        ++n_filled;
+        if (p < filling_.size())
+            filling_[p].clear();
+        else
+            filling_.emplace_back(page.cells, reach_of_gutter(page.cell));
+    }
+
     /// Fills pages one after the other, each chart on the first that has room for it. The last
     /// is a strip, at most `limit` times as high as wide; gives up when the excess there is
     /// beyond `hopeless`.
@@ -155,14 +165,6 @@ class Packer {
             const auto last_row = [&](std::uint32_t p) {
                 return p + 1 == pages ? static_cast<std::uint32_t>(limit * page.cells) : page.cells;
             };
-            const auto begin_page = [&](std::uint32_t p) {
-                if (p < n_filled) return;
-                ++n_filled;
-                if (p < filled.size())
-                    filled[p].clear();
-                else
-                    filled.emplace_back(page.cells, reach_of_gutter(page.cell));
-            };
             Found found;
             std::uint32_t p = 0;
             as_before = as_before && at < last_.steps.size() && last_.steps[at].chart == i &&
@@ -170,17 +172,17 @@ class Packer {
             if (as_before) {
                 p = last_.steps[at].page;
                 found = last_.steps[at].found;
-                for (std::uint32_t q = 0; q < std::min(p + 1, pages); ++q) begin_page(q);
-                if (found.mask != nullptr) found.mask = &masks.turned[last_.steps[at].way];
+                for (std::uint32_t q = 0; q < std::min(p + 1, pages); ++q) begin_page(page, q, n_filled);
+                if (found.mask != nullptr) found.mask = &masks.turned[last_.steps[at].orientation];
             } else {
                 for (; p < pages; ++p) {
-                    begin_page(p);
+                    begin_page(page, p, n_filled);
                     found = filled[p].find(masks.turned, last_row(p));
                     if (found.mask != nullptr) break;
                 }
                 last_.steps.resize(at);
-                const auto way = found.mask == nullptr ? 0 : found.mask - masks.turned.data();
-                last_.steps.push_back({i, plan_.turn[i], static_cast<std::size_t>(way), found, p});
+                const auto orientation = found.mask == nullptr ? 0 : found.mask - masks.turned.data();
+                last_.steps.push_back({i, plan_.turn[i], static_cast<std::size_t>(orientation), found, p});
             }
             const std::uint32_t most_rows = last_row(pages - 1);
             if (found.mask == nullptr || found.top > page.cells) {
@@ -354,7 +356,7 @@ class Packer {
         struct Step {
             std::uint32_t chart;
             double turn;
-            std::size_t way;  // which of the chart's masks
+            std::size_t orientation;  // which of the chart's masks
             Found found;
             std::uint32_t page;
         };

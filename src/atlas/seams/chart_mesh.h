@@ -11,6 +11,7 @@
 /// Mesh of one chart: triangles glued over every edge that is no seam. Used by atlas/flatten and atlas/charts.
 namespace tuft::atlas {
 
+/// Triangles of a chart with their own vertices.
 struct ChartMesh {
     std::vector<std::uint32_t> triangles;             ///< [n] triangle of the mesh
     std::vector<std::array<std::uint32_t, 3>> faces;  ///< [n] vertices of the chart
@@ -34,12 +35,12 @@ std::vector<std::vector<std::uint32_t>> connected_charts(std::span<const std::ui
 
 /// Measures of a flattened chart; UVs in the same unit as the positions.
 struct FlatCheck {
-    bool finite = true;
+    bool finite = true;       ///< all UVs are finite
     std::size_t flips = 0;    ///< triangles without positive area
     bool crosses = false;     ///< the border crosses itself
     double l2 = 0, linf = 0;  ///< stretch as the UVs stand, not rescaled
     double stretch_999 = 0;   ///< largest singular value at 99.9 % of the area
-    double uv_area = 0;
+    double uv_area = 0;       ///< sum of the signed areas of the triangles
 
     bool sound() const { return finite && flips == 0 && !crosses; }
 };

@@ -281,23 +281,24 @@ double SeamGraph::cost(std::uint32_t chain, const GluingLimits& limits) const {
     return cost < kNever ? cost : kNever;  // also where it is no number: costs must have an order
 }
 
+std::vector<SeamGraph::GlueEntry> SeamGraph::all_glue_entries(const GluingLimits& limits) {
+    std::vector<GlueEntry> entries;
+    entries.reserve(half_.size());
+    for (std::uint32_t e = 0; e < half_.size(); ++e)
+        if (seam_[e] && chain_parent_[e] == e) entries.push_back({kNever, e, version_[e]});
+    for (std::uint32_t c = 0; c < chart_parent_.size(); ++c) chart_parent_[c] = find_root(chart_parent_, c);
+    parallel_for(entries.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) entries[i].cost = cost(entries[i].chain, limits);
+    });
+    return entries;
+}
+
 void SeamGraph::glue_developable(const GluingLimits& limits, const ProgressFn& progress) {
-    struct Entry {
-        double cost;
-        std::uint32_t chain, version;
-        bool operator<(const Entry& o) const { return cost != o.cost ? cost < o.cost : chain < o.chain; }
-    };
+    using Entry = GlueEntry;
     struct Later {
         bool operator()(const Entry& a, const Entry& b) const { return b < a; }
     };
-    std::vector<Entry> start;
-    start.reserve(half_.size());
-    for (std::uint32_t e = 0; e < half_.size(); ++e)
-        if (seam_[e] && chain_parent_[e] == e) start.push_back({kNever, e, version_[e]});
-    for (std::uint32_t c = 0; c < chart_parent_.size(); ++c) chart_parent_[c] = find_root(chart_parent_, c);
-    parallel_for(start.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) start[i].cost = cost(start[i].chain, limits);
-    });
+    std::vector<Entry> start = all_glue_entries(limits);
 
     std::size_t left = start.size();
     const std::size_t all = std::max<std::size_t>(left, 1);

@@ -14,6 +14,7 @@
 /// along one chain keeps every chart a disk. Used by atlas/charts.
 namespace tuft::atlas {
 
+/// Limits of gluing, and the weight of its cost.
 struct GluingLimits {
     double error = 0.02;              ///< developability error over area of a chart
     double mean_normal = 0.55;        ///< smallest length of the mean unit normal: prevents charts that wrap round
@@ -27,8 +28,8 @@ struct GluingLimits {
 /// area times the least eigenvalue of their covariance: 0 where all normals lie in
 /// one plane of normal space, as on planes, cylinders and cones.
 struct NormalMoments {
-    double area = 0;
-    Vec3 first{0};
+    double area = 0;                 ///< over unit²
+    Vec3 first{0};                   ///< Σ area · normal
     std::array<double, 6> second{};  ///< xx, xy, xz, yy, yz, zz
 
     static NormalMoments of(double area, const Vec3f& normal);
@@ -36,15 +37,16 @@ struct NormalMoments {
     double error() const;
 };
 
+/// Charts of a patch, and the chains of seam edges between them.
 class SeamGraph {
   public:
     /// A chain of seam edges between two charts (or one chart and itself).
     struct Chain {
-        std::uint32_t id = kNone;  ///< an edge of it
-        std::uint32_t chart_a = kNone, chart_b = kNone;
-        double length = 0;    ///< over the patch's unit
-        double bend = 0;      ///< mean dihedral angle, radians
-        bool closed = false;  ///< gluing it would close the surface
+        std::uint32_t id = kNone;                        ///< an edge of it
+        std::uint32_t chart_a = kNone, chart_b = kNone;  ///< on its two sides
+        double length = 0;                               ///< over the patch's unit
+        double bend = 0;                                 ///< mean dihedral angle, radians
+        bool closed = false;                             ///< gluing it would close the surface
     };
 
     /// `seam` [3n] marks the seams to begin with; empty: every edge is one. Takes some 20 bytes a
@@ -75,6 +77,13 @@ class SeamGraph {
     struct Ends {
         std::uint32_t a, b;
     };
+    /// A chain that may be glued; ordered by cost, then by number.
+    struct GlueEntry {
+        double cost;
+        std::uint32_t chain, version;
+        bool operator<(const GlueEntry& o) const { return cost != o.cost ? cost < o.cost : chain < o.chain; }
+    };
+    std::vector<GlueEntry> all_glue_entries(const GluingLimits& limits);
     void number_edges(std::span<const std::uint8_t> seam);
     void number_charts(std::span<const std::uint8_t> seam);
     void count_seams_at_vertices();

@@ -186,13 +186,17 @@ SeamMove SeamPaths::shorten(std::vector<std::uint32_t> chain, float reach, Corne
         while (!s.start_[origin(move.path.back())]) move.path.push_back(s.weight_from_[origin(move.path.back())]);
         std::reverse(move.path.begin(), move.path.end());
     }
+    clear(s);
+    return move;
+}
+
+void SeamPaths::clear(PathSearch& s) const {
     for (const std::uint32_t v : s.touched_) s.distance_[v] = kFar;
     for (const std::uint32_t v : s.marked_) s.band_[v] = kFar;
     for (const std::uint32_t h : s.starts_) s.start_[origin(h)] = 0;
     for (const std::uint32_t h : s.goals_) s.goal_[h] = 0;
     s.touched_.clear();
     s.marked_.clear();
-    return move;
 }
 
 void SeamPaths::set_seam(std::uint32_t h, bool on) {

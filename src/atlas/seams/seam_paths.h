@@ -86,6 +86,8 @@ class SeamPaths {
     std::vector<std::uint32_t> wedge(std::uint32_t h) const;
     void slide(std::uint32_t h, float reach, std::vector<std::uint32_t>& starts) const;
     void mark_band(const std::vector<std::uint32_t>& chain, float reach, PathSearch& search) const;
+    /// Resets what a search has written.
+    void clear(PathSearch& search) const;
     void set_seam(std::uint32_t h, bool on);
     void sweep(std::uint32_t start, std::uint32_t chart, std::vector<std::uint32_t>* swept);
 

@@ -111,9 +111,16 @@ Vec3 inwards_of(const mesh::TriangleMesh& mesh, std::uint32_t triangle, int corn
     return length > 0 ? in / length : Vec3{0};
 }
 
-/// All pairs over one edge of the mesh.
-void cross(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, const SeamEdge& edge,
-           std::vector<SeamSample>& samples, std::array<std::vector<Beside>, 2>& beside, std::vector<Crossing>& found) {
+/// Scratch memory of `find_crossings`; one per thread.
+struct CrossingScratch {
+    std::vector<SeamSample> samples;
+    std::array<std::vector<Beside>, 2> beside;
+};
+
+/// Adds all pairs of texels over one edge of the mesh.
+void find_crossings(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map, const SeamEdge& edge,
+                    CrossingScratch& scratch, std::vector<Crossing>& found) {
+    auto& [samples, beside] = scratch;
     const Vec3 from = mesh.position(edge.triangle_a, edge.corner_a),
                to = mesh.position(edge.triangle_a, (edge.corner_a + 1) % 3);
     const double length = glm::length(to - from);
@@ -146,7 +153,7 @@ void cross(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& m
 }
 
 /// Keeps the shortest path of each pair, the first found of equal ones; in order of the pairs.
-void keep_shortest(std::vector<Crossing>& crossings) {
+void retain_shortest(std::vector<Crossing>& crossings) {
     struct Key {
         std::uint64_t pair;
         float path;
@@ -376,21 +383,17 @@ Cell cell_of(const TexelMap& map, const TexelRef& here, std::span<const Opposite
     return cell;
 }
 
-}  // namespace
-
-BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                               bool only_cells) {
+std::vector<Crossing> find_all_crossings(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map) {
     const std::vector<SeamEdge> seams = find_seams(mesh, atlas);
     constexpr std::size_t kChunk = 64;
     std::vector<std::vector<Crossing>> by_chunk((seams.size() + kChunk - 1) / kChunk);
     parallel_for(by_chunk.size(), 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<SeamSample> samples;
-        std::array<std::vector<Beside>, 2> beside;
+        CrossingScratch scratch;
         for (std::size_t chunk = begin; chunk < end; ++chunk) {
             const std::size_t last = std::min(seams.size(), (chunk + 1) * kChunk);
             for (std::size_t e = chunk * kChunk; e < last; ++e)
-                cross(mesh, atlas, map, seams[e], samples, beside, by_chunk[chunk]);
-            keep_shortest(by_chunk[chunk]);
+                find_crossings(mesh, atlas, map, seams[e], scratch, by_chunk[chunk]);
+            retain_shortest(by_chunk[chunk]);
             by_chunk[chunk].shrink_to_fit();
         }
     });
@@ -402,29 +405,13 @@ BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atla
         crossings.insert(crossings.end(), c.begin(), c.end());
         c = {};
     }
-    keep_shortest(crossings);
+    retain_shortest(crossings);
+    return crossings;
+}
 
-    const Opposites opposites(std::move(crossings));
-    BorderCells result;
-    result.cells.resize(opposites.n_texels());
-    constexpr std::size_t kBlock = 256;
-    std::vector<std::vector<BorderFace>> faces((result.cells.size() + kBlock - 1) / kBlock);
-    std::vector<std::vector<BorderTap>> taps(faces.size());
-    parallel_for(faces.size(), 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<Opposite> over;
-        for (std::size_t block = begin; block < end; ++block)
-            for (std::size_t i = block * kBlock; i < std::min(result.cells.size(), (block + 1) * kBlock); ++i) {
-                opposites.list(i, over);
-                const TexelRef here = opposites.texel(i);
-                const Cell cell = cell_of(map, here, over, only_cells);
-                result.cells[i] = {here, cell.area};
-                faces[block].insert(faces[block].end(), cell.faces.begin(), cell.faces.end());
-                taps[block].insert(taps[block].end(), cell.taps.begin(), cell.taps.end());
-            }
-    });
-    if (only_cells) return result;
-    for (const auto& t : taps) result.taps.insert(result.taps.end(), t.begin(), t.end());
-    // Each cell gives half of its faces: on curved surfaces the two do not quite agree.
+/// Stores the faces of all cells, each once. Each cell gives half of its faces: on curved surfaces the two do not quite
+/// agree.
+void store_faces(const std::vector<std::vector<BorderFace>>& faces, BorderCells& result) {
     const auto is_cell = [&](const TexelRef& t) {
         const auto at = std::lower_bound(result.cells.begin(), result.cells.end(), t,
                                          [](const BorderCell& c, const TexelRef& r) { return before(c.texel, r); });
@@ -449,6 +436,33 @@ BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atla
             result.faces[n++] = f;
     }
     result.faces.resize(n);
+}
+
+}  // namespace
+
+BorderCells build_border_cells(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
+                               bool only_cells) {
+    const Opposites opposites(find_all_crossings(mesh, atlas, map));
+    BorderCells result;
+    result.cells.resize(opposites.n_texels());
+    constexpr std::size_t kBlock = 256;
+    std::vector<std::vector<BorderFace>> faces((result.cells.size() + kBlock - 1) / kBlock);
+    std::vector<std::vector<BorderTap>> taps(faces.size());
+    parallel_for(faces.size(), 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<Opposite> over;
+        for (std::size_t block = begin; block < end; ++block)
+            for (std::size_t i = block * kBlock; i < std::min(result.cells.size(), (block + 1) * kBlock); ++i) {
+                opposites.list(i, over);
+                const TexelRef here = opposites.texel(i);
+                const Cell cell = cell_of(map, here, over, only_cells);
+                result.cells[i] = {here, cell.area};
+                faces[block].insert(faces[block].end(), cell.faces.begin(), cell.faces.end());
+                taps[block].insert(taps[block].end(), cell.taps.begin(), cell.taps.end());
+            }
+    });
+    if (only_cells) return result;
+    for (const auto& t : taps) result.taps.insert(result.taps.end(), t.begin(), t.end());
+    store_faces(faces, result);
     return result;
 }
 

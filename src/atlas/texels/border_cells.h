@@ -13,26 +13,28 @@ namespace tuft::atlas {
 /// Two texels that share a face. `conductance` is the face's length over the distance of the texels: 1 for two
 /// adjacent texels inside an even chart.
 struct BorderFace {
-    TexelRef a, b;  ///< a before b by slot, then texel
-    double conductance = 0;
-    double distance = 0;  ///< texels
-    bool over_seam = false;
+    TexelRef a, b;           ///< a before b by slot, then texel
+    double conductance = 0;  ///< length over distance
+    double distance = 0;     ///< texels
+    bool over_seam = false;  ///< the texels are of two charts
 };
 
+/// The cell of a texel beside a seam.
 struct BorderCell {
-    TexelRef texel;
+    TexelRef texel;   ///< of which it is the cell
     double area = 0;  ///< m²
 };
 
 /// One term of the value beyond a texel's chart border: Σ weight w(other) is the value one texel to its `side` (0
 /// right, 1 above, 2 left, 3 below), exact for linear w.
 struct BorderTap {
-    TexelRef texel, other;
-    std::uint8_t side = 0;
-    double weight = 0;
+    TexelRef texel, other;   ///< beside the border; of which the term is
+    std::uint8_t side = 0;   ///< 0–3, as above
+    double weight = 0;       ///< may be negative; of one texel and side they sum to 1
     bool over_seam = false;  ///< else `other` is the texel itself or one of the eight round it
 };
 
+/// Result of `build_border_cells`.
 struct BorderCells {
     std::vector<BorderTap> taps;    ///< by texel, then side
     std::vector<BorderCell> cells;  ///< of all texels with a neighbour over a seam; by slot, then texel

@@ -23,8 +23,8 @@ Vec3f normal(const TexelShape& shape, int t) {
     return {shape.nx[t], shape.ny[t], shape.nz[t]};
 }
 
-TexelCluster make_piece(const TexelTile& tile, const TexelShape& shape, std::uint32_t slot, std::uint8_t index,
-                        std::uint32_t chart) {
+TexelCluster make_cluster(const TexelTile& tile, const TexelShape& shape, std::uint32_t slot, std::uint8_t index,
+                          std::uint32_t chart) {
     TexelCluster cluster{.slot = slot, .chart = chart, .index = index};
     Vec3 mean{0};
     int n = 0, first = kTile, last = 0;
@@ -92,7 +92,7 @@ void set_distance(Meeting& m, const std::vector<TexelCluster>& clusters) {
     m.distance2 = glm::dot(d, d);
 }
 
-/// Where the meeting of m's pair is to be kept, if it is nearer to the middle than any so far.
+/// Returns where to store the meeting of m's pair; null unless it is nearer to the middle than any so far.
 Meeting* place_of_best(std::vector<Meeting>& meetings, const Meeting& m) {
     for (Meeting& other : meetings)
         if (other.i == m.i && other.j == m.j) return m.key() < other.key() ? &other : nullptr;
@@ -112,8 +112,9 @@ Vec3 border_point(const Vec3& pa, const Vec3& na, const Vec3& pb, const Vec3& nb
     return glm::length(step) < reach ? middle + step : middle;
 }
 
-void meet_inside_charts(const TexelMap& map, const std::vector<TexelCluster>& clusters, std::uint32_t slot,
-                        std::vector<Meeting>& found) {
+/// Adds the meetings of a tile's texels inside their charts.
+void find_inner_meetings(const TexelMap& map, const std::vector<TexelCluster>& clusters, std::uint32_t slot,
+                         std::vector<Meeting>& found) {
     static constexpr std::array<std::array<int, 2>, 4> kForward{{{1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
     const TexelTile& tile = map.tiles[slot];
     const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kTile;
@@ -157,9 +158,18 @@ Vec3 edge_direction(const mesh::TriangleMesh& mesh, const SeamEdge& edge) {
     return length > 0 ? along / length : Vec3{0};
 }
 
-void meet_over_seams(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TexelMap& map,
-                     const std::vector<TexelCluster>& clusters, const SeamEdge& edge, std::vector<SeamSample>& samples,
-                     Meetings& meetings) {
+/// Model and clusters between which meetings are looked for.
+struct ClusteredModel {
+    const mesh::TriangleMesh& mesh;
+    const Atlas& atlas;
+    const TexelMap& map;
+    const std::vector<TexelCluster>& clusters;
+};
+
+/// Adds the meetings over one edge of a seam. `samples` is scratch memory.
+void find_seam_meetings(const ClusteredModel& model, const SeamEdge& edge, std::vector<SeamSample>& samples,
+                        Meetings& meetings) {
+    const auto& [mesh, atlas, map, clusters] = model;
     samples.clear();
     sample_seam(mesh, atlas, edge, kSeamSpacing, samples);
     for (const SeamSample& s : samples) {
@@ -234,7 +244,7 @@ ToBorder path_to_border(const TexelMap& map, const TexelCluster& cluster, std::u
 Vec2 unfolded(const Frame& i, const Frame& j, const Vec3& fold) {
     const Vec2 a{glm::dot(fold, i.t), glm::dot(fold, i.b)}, b{glm::dot(fold, j.t), glm::dot(fold, j.b)};
     const double lengths = glm::length(a) * glm::length(b);
-    if (!(lengths > 0.1)) return carried_direction(i, j.t, j.n);
+    if (!(lengths > 0.1)) return transport_direction(i, j.t, j.n);
     return Vec2{a.x * b.x + a.y * b.y, a.y * b.x - a.x * b.y} / lengths;
 }
 
@@ -265,7 +275,7 @@ ClusterEdge inverse(const ClusterEdge& e, std::uint32_t from) {
 }
 
 /// Adds the parts in order, and empties them.
-void gather(std::vector<Meetings>& parts, Meetings& all) {
+void append_meetings(std::vector<Meetings>& parts, Meetings& all) {
     std::size_t n = all.found.size();
     for (const Meetings& part : parts) n += part.found.size();
     all.found.reserve(n);
@@ -354,8 +364,8 @@ ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& at
             const TexelShape& shape = shape_of(map, slot, buffer);
             for (std::uint32_t i = map.cluster_start[slot]; i < map.cluster_start[slot + 1]; ++i)
                 graph.clusters[i] =
-                    make_piece(map.tiles[slot], shape, slot, static_cast<std::uint8_t>(i - map.cluster_start[slot]),
-                               map.cluster_chart[i]);
+                    make_cluster(map.tiles[slot], shape, slot, static_cast<std::uint8_t>(i - map.cluster_start[slot]),
+                                 map.cluster_chart[i]);
         }
     });
 
@@ -367,7 +377,7 @@ ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& at
             const std::size_t last = std::min(n_slots, (k + 1) * kSlots);
             for (std::size_t slot = k * kSlots; slot < last; ++slot) {
                 found.clear();
-                meet_inside_charts(map, graph.clusters, static_cast<std::uint32_t>(slot), found);
+                find_inner_meetings(map, graph.clusters, static_cast<std::uint32_t>(slot), found);
                 by_slots[k].found.insert(by_slots[k].found.end(), found.begin(), found.end());
             }
         }
@@ -382,12 +392,12 @@ ClusterGraph build_cluster_graph(const mesh::TriangleMesh& mesh, const Atlas& at
         for (std::size_t chunk = begin; chunk < end; ++chunk) {
             const std::size_t last = std::min(seams.size(), (chunk + 1) * kChunk);
             for (std::size_t e = chunk * kChunk; e < last; ++e)
-                meet_over_seams(mesh, atlas, map, graph.clusters, seams[e], samples, by_chunk[chunk]);
+                find_seam_meetings({mesh, atlas, map, graph.clusters}, seams[e], samples, by_chunk[chunk]);
         }
     });
     Meetings all;
-    gather(by_slots, all);
-    gather(by_chunk, all);
+    append_meetings(by_slots, all);
+    append_meetings(by_chunk, all);
     store_edges(map, all, graph);
     find_open_borders(mesh, atlas, map, graph.clusters);
     report(progress, "cluster graph", 1);

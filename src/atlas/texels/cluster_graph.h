@@ -20,11 +20,11 @@ struct TexelCluster {
     /// Metres: unit vectors out over the open borders of the mesh that the cluster lies on, times their lengths,
     /// summed.
     Vec3f outward{0};
-    float cone_cos = 1;          ///< smallest dot product of a texel's normal with `normal`
-    std::uint32_t slot = kNone;  ///< tile, in the order of `TexelMap::tiles`
-    std::uint32_t chart = 0;
-    std::uint8_t index = 0;  ///< as in `TexelTile::cluster`
-    std::uint8_t centre_texel = 0;
+    float cone_cos = 1;                        ///< smallest dot product of a texel's normal with `normal`
+    std::uint32_t slot = kNone;                ///< tile, in the order of `TexelMap::tiles`
+    std::uint32_t chart = 0;                   ///< of the atlas
+    std::uint8_t index = 0;                    ///< as in `TexelTile::cluster`
+    std::uint8_t centre_texel = 0;             ///< texel of the tile at `centre`
     std::uint8_t first_row = 0, last_row = 0;  ///< rows of the tile it lies in, inclusive
 };
 
@@ -34,11 +34,12 @@ Frame frame_of(const TexelCluster& cluster);
 /// Edge from cluster i to cluster `to` (j). A point x_j in j's frame is hop + R x_j in i's frame with R = [[c, −s],
 /// [s, c]]: both are unfolded over their common border. The edge j → i holds the inverse motion.
 struct ClusterEdge {
-    std::uint32_t to = kNone;
+    std::uint32_t to = kNone;    ///< j
     float hop_u = 0, hop_v = 0;  ///< metres, in i's frame
-    float c = 1, s = 0;
+    float c = 1, s = 0;          ///< unit, of R
 };
 
+/// Clusters of a texel map and the edges between neighbours.
 struct ClusterGraph {
     std::vector<TexelCluster> clusters;        ///< slot by slot
     std::vector<std::uint32_t> cluster_start;  ///< [n_slots + 1]; cluster k of slot s is cluster_start[s] + k

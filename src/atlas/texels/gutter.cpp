@@ -235,9 +235,16 @@ struct Near {
     std::array<float, kMax> distance{};  ///< squared, texels²
 };
 
-/// Taps of one gutter texel at `uv`.
+/// Scratch memory of `find_taps`; one per thread.
+struct TapScratch {
+    std::vector<Candidate> found;
+    std::vector<double> weights;
+};
+
+/// Adds the taps of one gutter texel at `uv`.
 void find_taps(const TexelMap& map, const std::vector<Border>& borders, const Near& near, const Vec2& uv,
-               std::vector<Candidate>& found, std::vector<double>& weights, std::vector<GutterTap>& taps) {
+               TapScratch& scratch, std::vector<GutterTap>& taps) {
+    auto& [found, weights] = scratch;
     const std::uint32_t chart = borders[near.border[0]].chart;
     for (const auto& [radius, stiffness] : kFits) {
         found.clear();
@@ -351,8 +358,7 @@ Gutter build_gutter(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Te
     std::vector<Gutter> parts(n_bands);
     parallel_for(n_bands, 1, [&](std::size_t begin, std::size_t end) {
         std::vector<Near> near;
-        std::vector<Candidate> found;
-        std::vector<double> weights;
+        TapScratch scratch;
         for (std::size_t band = begin; band < end; ++band) {
             const auto row = static_cast<std::int64_t>(band) * kTile;
             find_near(map, borders, members[band], row, width, near);
@@ -362,7 +368,7 @@ Gutter build_gutter(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Te
                 const std::int64_t x = std::int64_t(i % map.size), y = row + std::int64_t(i / map.size);
                 const Vec2 uv{double(x) + 0.5, double(y) + 0.5};
                 const std::size_t before = part.taps.size();
-                find_taps(map, borders, near[i], uv, found, weights, part.taps);
+                find_taps(map, borders, near[i], uv, scratch, part.taps);
                 if (part.taps.size() == before) take_nearest(map, borders[near[i].border[0]], uv, part.taps);
                 if (part.taps.size() == before) continue;
                 part.texels.push_back(static_cast<std::uint32_t>(y * map.size + x));

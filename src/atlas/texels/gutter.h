@@ -11,9 +11,10 @@
 /// for mip levels.
 namespace tuft::atlas {
 
+/// One term of the value of a gutter texel.
 struct GutterTap {
     std::uint32_t texel = 0;  ///< slot * 256 + texel of the slot
-    float weight = 0;
+    float weight = 0;         ///< may be negative
 };
 
 /// Uncovered texels near a chart, in row-major order, with the covered texels whose weighted
@@ -22,7 +23,7 @@ struct Gutter {
     std::uint32_t size = 0;             ///< texels per side of the atlas
     std::vector<std::uint32_t> texels;  ///< row * size + column
     std::vector<std::uint32_t> start;   ///< [n_texels + 1] into `taps`
-    std::vector<GutterTap> taps;
+    std::vector<GutterTap> taps;        ///< by gutter texel
 };
 
 /// For every uncovered texel within `width` texels of a chart's border: the surface is
@@ -39,8 +40,8 @@ void fill_gutter(const Gutter& gutter, const TexelMap& map, int channels, std::s
 
 /// A smaller copy of an image of the atlas: [size * size * channels].
 struct MipLevel {
-    std::uint32_t size = 0;
-    std::vector<float> image;
+    std::uint32_t size = 0;    ///< texels per side
+    std::vector<float> image;  ///< row 0 at v = 0
 };
 
 /// Levels 1, 2, … of an image whose gutters are filled, each half the size of the one before:

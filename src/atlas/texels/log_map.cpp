@@ -15,9 +15,9 @@ Vec2 log_map(const Frame& frame, const Vec3& p, const Vec3& m) {
     return {glm::dot(d, frame.t) + h * glm::dot(m, frame.t), glm::dot(d, frame.b) + h * glm::dot(m, frame.b)};
 }
 
-Vec2 carried_direction(const Frame& frame, const Vec3& t, const Vec3& from) {
-    const Vec3 carried = parallel_transport(t, from, frame.n);
-    const Vec2 direction{glm::dot(carried, frame.t), glm::dot(carried, frame.b)};
+Vec2 transport_direction(const Frame& frame, const Vec3& t, const Vec3& from) {
+    const Vec3 moved = parallel_transport(t, from, frame.n);
+    const Vec2 direction{glm::dot(moved, frame.t), glm::dot(moved, frame.b)};
     const double length = glm::length(direction);
     return length > 0 ? direction / length : Vec2{1, 0};
 }

@@ -29,6 +29,6 @@ Vec2 log_map(const Frame& frame, const Vec3& p, const Vec3& m);
 
 /// Returns the direction of tangent vector `t` at normal `from`, rotated by the smallest rotation to frame.n, as
 /// cosine and sine of its angle to frame.t.
-Vec2 carried_direction(const Frame& frame, const Vec3& t, const Vec3& from);
+Vec2 transport_direction(const Frame& frame, const Vec3& t, const Vec3& from);
 
 }  // namespace tuft::atlas

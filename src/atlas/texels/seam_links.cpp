@@ -18,7 +18,7 @@ std::array<std::int64_t, 2> place(const TexelMap& map, const TexelRef& ref) {
 }
 
 /// The face as its lower texel, or the left one of a row, holds it.
-std::pair<std::uint32_t, SeamFace> held(const TexelMap& map, const BorderFace& f) {
+std::pair<std::uint32_t, SeamFace> face_of(const TexelMap& map, const BorderFace& f) {
     const auto a = place(map, f.a), b = place(map, f.b);
     const bool first = a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
     const TexelRef& low = first ? f.a : f.b;
@@ -42,7 +42,7 @@ SeamLinks build_seam_links(const mesh::TriangleMesh& mesh, const Atlas& atlas, c
             links.push_back({f.a.slot, {f.b.slot, weight, f.a.texel, f.b.texel, apart}});
             links.push_back({f.b.slot, {f.a.slot, weight, f.b.texel, f.a.texel, apart}});
         } else
-            faces.push_back(held(map, f));
+            faces.push_back(face_of(map, f));
     }
     std::sort(links.begin(), links.end(), [](const auto& x, const auto& y) {
         return std::tie(x.first, x.second.texel, x.second.other_slot, x.second.other_texel) <

@@ -15,28 +15,29 @@ namespace tuft::atlas {
 /// flux = k · weight · (w_a − w_b). Each link is held by both of its tiles with the
 /// same weight, so the two fluxes cancel to the bit. Scale k where k Σ weight > 1.
 struct SeamLink {
-    std::uint32_t other_slot = kNone;
-    float weight = 0;
-    std::uint8_t texel = 0, other_texel = 0;
-    std::uint8_t apart = 64;  ///< distance, 64ths of a texel
+    std::uint32_t other_slot = kNone;         ///< of the other chart's tile
+    float weight = 0;                         ///< ≥ 0
+    std::uint8_t texel = 0, other_texel = 0;  ///< of their slots
+    std::uint8_t apart = 64;                  ///< distance, 64ths of a texel
 };
 
 /// A face between two texels of one chart beside a seam, as `BorderFace`: of `texel` and the one to the right, above,
 /// above right or above left of it.
 struct SeamFace {
     enum Direction : std::uint8_t { right, above, above_right, above_left };
-    std::uint8_t texel = 0;
-    Direction direction = right;
-    float conductance = 0;
+    std::uint8_t texel = 0;       ///< of the slot
+    Direction direction = right;  ///< to the other texel
+    float conductance = 0;        ///< as in `BorderFace`
 };
 
 /// `BorderTap`: with all of the same texel and side, what lies one texel to that side.
 struct SeamTap {
     std::uint32_t other_slot = kNone;  ///< kNone: `other_texel` is column + 1 + 3 (row + 1) from this texel
-    float weight = 0;
-    std::uint8_t texel = 0, other_texel = 0, side = 0;
+    float weight = 0;                  ///< may be negative
+    std::uint8_t texel = 0, other_texel = 0, side = 0;  ///< as in `BorderTap`
 };
 
+/// Links, faces and taps of all tiles beside seams.
 struct SeamLinks {
     std::vector<std::uint32_t> start;       ///< [n_slots + 1]
     std::vector<SeamLink> links;            ///< by slot, then texel, then other end

@@ -12,7 +12,7 @@ namespace tuft::atlas {
 namespace {
 
 constexpr std::int64_t kSnap = 4096;  // sub-texel steps; 16384 texels × 4096 squared fits 64 bits
-const float kPieceCos = std::cos(35.0f * 0.0174532925f);
+const float kClusterCos = std::cos(35.0f * 0.0174532925f);
 const float kBendCos = std::cos(30.0f * 0.0174532925f);
 
 /// A triangle in the atlas on the snapped grid, counter-clockwise.
@@ -144,10 +144,15 @@ void draw_ids(const Atlas& atlas, const Bands& bands, std::size_t band, std::vec
     });
 }
 
-/// Surface point, normal and area of the texel centre (x, y); returns the length in
-/// metres of the longest side of the texel's image.
-float shade_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle, std::int64_t column,
-                  std::int64_t row, TexelShape& shape, float& texel_area, int texel) {
+/// Surface at a texel's centre.
+struct TexelSurface {
+    Vec3 position{0}, normal{0, 0, 1};  ///< metres; unit
+    double area = 0;                    ///< m²
+    float diagonal = 0;                 ///< metres, of the texel's image
+};
+
+TexelSurface surface_of_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle,
+                              std::int64_t column, std::int64_t row) {
     const SnappedTriangle s = snapped_triangle(atlas, triangle);
     const std::int64_t x = column * kSnap + kSnap / 2, y = row * kSnap + kSnap / 2;
     const double scale = 1.0 / static_cast<double>(s.area2);
@@ -162,7 +167,6 @@ float shade_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint3
         dv += static_cast<double>(s.x[o] - s.x[l]) * scale * kSnap * corner;
     }
     const Vec3 area_vector = glm::cross(du, dv);
-    const double area = glm::length(area_vector);
     double length = glm::length(n);
     if (!(length > 1e-6)) {
         const Vec3 face = glm::cross(mesh.position(triangle, 1) - mesh.position(triangle, 0),
@@ -171,25 +175,38 @@ float shade_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint3
         n = length > 0 ? face : Vec3{0, 0, 1};
         if (!(length > 0)) length = 1;
     }
-    shape.px[texel] = static_cast<float>(p.x);
-    shape.py[texel] = static_cast<float>(p.y);
-    shape.pz[texel] = static_cast<float>(p.z);
-    shape.nx[texel] = static_cast<float>(n.x / length);
-    shape.ny[texel] = static_cast<float>(n.y / length);
-    shape.nz[texel] = static_cast<float>(n.z / length);
-    texel_area = static_cast<float>(area);
-    return static_cast<float>(std::sqrt(glm::dot(du, du) + glm::dot(dv, dv)));
+    return {p,
+            {n.x / length, n.y / length, n.z / length},
+            glm::length(area_vector),
+            static_cast<float>(std::sqrt(glm::dot(du, du) + glm::dot(dv, dv)))};
 }
 
-bool hang_together(const TexelShape& shape, int a, int b, float reach) {
+void store_texel(const TexelSurface& surface, int texel, TexelShape& shape) {
+    shape.px[texel] = static_cast<float>(surface.position.x);
+    shape.py[texel] = static_cast<float>(surface.position.y);
+    shape.pz[texel] = static_cast<float>(surface.position.z);
+    shape.nx[texel] = static_cast<float>(surface.normal.x);
+    shape.ny[texel] = static_cast<float>(surface.normal.y);
+    shape.nz[texel] = static_cast<float>(surface.normal.z);
+}
+
+bool are_connected(const TexelShape& shape, int a, int b, float reach) {
     const float dx = shape.px[a] - shape.px[b], dy = shape.py[a] - shape.py[b], dz = shape.pz[a] - shape.pz[b];
     return dx * dx + dy * dy + dz * dz <= reach * reach;
 }
 
-/// Grows the cluster `cluster` from `seed` over unassigned texels of the same chart in the same square of
-/// `side` × `side` texels.
-void grow_cluster(const TexelShape& shape, TexelTile& tile, const std::array<std::uint32_t, kTileTexels>& chart,
-                  float reach, int seed, std::uint8_t cluster, float min_cos, int side) {
+/// Texels of a tile, and limits of its clusters.
+struct TileTexels {
+    const TexelShape& shape;
+    const std::array<std::uint32_t, kTileTexels>& chart;  ///< kNone: no surface
+    float reach = 0;                                      ///< metres between connected neighbours, at most
+    float min_cos = -2;                                   ///< least cosine of a texel's normal to that of the seed
+    int side = kTile;                                     ///< texels, power of 2: clusters keep to squares of the tile
+};
+
+/// Grows the cluster `cluster` from `seed` over unassigned texels of the same chart in the same square.
+void grow_cluster(const TileTexels& texels, int seed, std::uint8_t cluster, TexelTile& tile) {
+    const auto& [shape, chart, reach, min_cos, side] = texels;
     std::array<std::uint8_t, kTileTexels> open;
     int n_open = 0;
     const float nx = shape.nx[seed], ny = shape.ny[seed], nz = shape.nz[seed];
@@ -204,7 +221,7 @@ void grow_cluster(const TexelShape& shape, TexelTile& tile, const std::array<std
                 if (tile.cluster[b] != kNoCluster || chart[b] != chart[seed]) continue;
                 if (((bx ^ seed % kTile) | (by ^ seed / kTile)) & ~(side - 1)) continue;
                 const float c = shape.nx[b] * nx + shape.ny[b] * ny + shape.nz[b] * nz;
-                if (c < min_cos || !hang_together(shape, a, b, reach)) continue;
+                if (c < min_cos || !are_connected(shape, a, b, reach)) continue;
                 tile.cluster[b] = cluster;
                 open[n_open++] = static_cast<std::uint8_t>(b);
             }
@@ -212,7 +229,7 @@ void grow_cluster(const TexelShape& shape, TexelTile& tile, const std::array<std
     }
 }
 
-/// Whether normals stray so far from their mean that what lies beyond the tile unrolls otherwise from one
+/// Returns true where normals stray so far from their mean that what lies beyond the tile unrolls otherwise from one
 /// of its ends than from the other: folds, and walls that run round a corner. A quarter of such a tile is
 /// still near enough to a plane or a cylinder; raw scans stray less (of the armadillo's tiles at 4096² one
 /// in fifty does).
@@ -233,7 +250,7 @@ bool bends(const TexelShape& shape, const std::array<std::uint32_t, kTileTexels>
 std::vector<std::uint32_t> split_into_clusters(const TexelShape& shape, TexelTile& tile,
                                                const std::array<std::uint32_t, kTileTexels>& chart, float reach) {
     const int side = bends(shape, chart) ? kTile / 2 : kTile;
-    for (const float min_cos : {kPieceCos, -2.0f}) {
+    for (const float min_cos : {kClusterCos, -2.0f}) {
         std::vector<std::uint32_t> charts;
         tile.cluster.fill(kNoCluster);
         bool all = true;
@@ -241,7 +258,7 @@ std::vector<std::uint32_t> split_into_clusters(const TexelShape& shape, TexelTil
             if (chart[t] == kNone || tile.cluster[t] != kNoCluster) continue;
             all = charts.size() < kNoCluster;
             if (!all) break;
-            grow_cluster(shape, tile, chart, reach, t, static_cast<std::uint8_t>(charts.size()), min_cos, side);
+            grow_cluster({shape, chart, reach, min_cos, side}, t, static_cast<std::uint8_t>(charts.size()), tile);
             charts.push_back(chart[t]);
         }
         if (all || min_cos < -1) return charts;
@@ -249,28 +266,43 @@ std::vector<std::uint32_t> split_into_clusters(const TexelShape& shape, TexelTil
     return {};
 }
 
-/// Fills one tile from the triangle of each of its texels; returns the charts of its clusters.
-std::vector<std::uint32_t> fill_tile(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t tile_index,
-                                     std::uint32_t tiles_per_side, const std::uint32_t* ids, TexelShape& shape,
-                                     TexelTile& tile, float& reach) {
-    const std::int64_t x0 = std::int64_t{tile_index % tiles_per_side} * kTile;
-    const std::int64_t y0 = std::int64_t{tile_index / tiles_per_side} * kTile;
+/// A tile in its band of triangle numbers.
+struct TileInBand {
+    std::uint32_t column = 0;         ///< tiles
+    std::size_t band = 0;             ///< row, tiles
+    const std::uint32_t* triangle{};  ///< [kTile atlas.size] by texel of the band, or kNone
+};
+
+/// Clusters of a filled tile.
+struct TileClusters {
+    std::vector<std::uint32_t> chart;  ///< by cluster
+    float reach = 0;                   ///< metres, of connected neighbours
+};
+
+/// Fills one tile from the triangle of each of its texels.
+TileClusters fill_tile(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TileInBand& place, TexelShape& shape,
+                       TexelTile& tile) {
+    const std::int64_t x0 = std::int64_t{place.column} * kTile;
+    const auto y0 = static_cast<std::int64_t>(place.band) * kTile;
     std::array<std::uint32_t, kTileTexels> chart;
-    double side = 0;
+    double diagonals = 0;
     int n = 0;
     for (int t = 0; t < kTileTexels; ++t) {
         chart[t] = kNone;
         const std::int64_t x = x0 + t % kTile, y = y0 + t / kTile;
         if (x >= atlas.size) continue;
-        const std::uint32_t id = ids[static_cast<std::size_t>(t / kTile) * atlas.size + x];
+        const std::uint32_t id = place.triangle[static_cast<std::size_t>(t / kTile) * atlas.size + x];
         if (id == kNone) continue;
         chart[t] = atlas.triangle_chart[id];
-        side += shade_texel(mesh, atlas, id, x, y, shape, tile.area[t], t);
+        const TexelSurface surface = surface_of_texel(mesh, atlas, id, x, y);
+        store_texel(surface, t, shape);
+        tile.area[t] = static_cast<float>(surface.area);
+        diagonals += surface.diagonal;
         ++n;
     }
     // Mean diagonal of a texel, with room for stretch that varies inside the tile.
-    reach = n > 0 ? static_cast<float>(3 * side / n) : 0;
-    return split_into_clusters(shape, tile, chart, reach);
+    const float reach = n > 0 ? static_cast<float>(3 * diagonals / n) : 0;
+    return {split_into_clusters(shape, tile, chart, reach), reach};
 }
 
 double mean_texel_size(const TexelMap& map) {
@@ -293,19 +325,9 @@ void check_sizes(const mesh::TriangleMesh& mesh, const Atlas& atlas) {
         throw Error("the atlas was made for another mesh");
 }
 
-}  // namespace
-
-TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, const ProgressFn& progress,
-                         TexelStore store) {
-    check_sizes(mesh, atlas);
-    report(progress, "texel map", 0);
-    TexelMap map;
-    map.size = atlas.size;
-    map.tiles_per_side = (atlas.size + kTile - 1) / kTile;
-    map.texel_size = atlas.texel_size;
+/// Gives each tile that a triangle covers a slot.
+void number_slots(const Atlas& atlas, const Bands& bands, TexelMap& map) {
     const std::uint32_t side = map.tiles_per_side;
-    Bands bands = sort_into_bands(mesh, atlas, side);
-
     std::vector<std::uint8_t> occupied(std::size_t{side} * side, 0);
     parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t band = begin; band < end; ++band) {
@@ -320,6 +342,55 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, con
         map.slot_of_tile[i] = static_cast<std::uint32_t>(map.tile_of_slot.size());
         map.tile_of_slot.push_back(static_cast<std::uint32_t>(i));
     }
+}
+
+/// Clusters of the tiles, by slot.
+struct FilledTiles {
+    std::vector<std::vector<std::uint32_t>> charts;  // of each cluster
+    std::vector<std::vector<PackedBox>> boxes;       // of each cluster of a packed tile
+};
+
+FilledTiles fill_tiles(const mesh::TriangleMesh& mesh, const Atlas& atlas, const Bands& bands, TexelMap& map) {
+    const std::uint32_t side = map.tiles_per_side;
+    const bool packed = !map.packed.empty();
+    FilledTiles filled;
+    filled.charts.resize(map.tiles.size());
+    filled.boxes.resize(map.packed.size());
+    parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> ids;
+        TexelShape buffer{};
+        for (std::size_t band = begin; band < end; ++band) {
+            draw_ids(atlas, bands, band, ids);
+            for (std::uint32_t tx = 0; tx < side; ++tx) {
+                const std::uint32_t slot = map.slot_of_tile[band * side + tx];
+                if (slot == kNone) continue;
+                TexelShape& shape = packed ? buffer : map.shapes[slot];
+                TileClusters clusters = fill_tile(mesh, atlas, {tx, band, ids.data()}, shape, map.tiles[slot]);
+                filled.charts[slot] = std::move(clusters.chart);
+                map.reach[slot] = clusters.reach;
+                if (!packed) continue;
+                filled.boxes[slot].resize(filled.charts[slot].size());
+                map.packed[slot] = pack_shape(shape, map.tiles[slot], filled.boxes[slot]);
+            }
+        }
+    });
+    return filled;
+}
+
+}  // namespace
+
+TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, const ProgressFn& progress,
+                         TexelStore store) {
+    check_sizes(mesh, atlas);
+    report(progress, "texel map", 0);
+    TexelMap map;
+    map.size = atlas.size;
+    map.tiles_per_side = (atlas.size + kTile - 1) / kTile;
+    map.texel_size = atlas.texel_size;
+    const std::uint32_t side = map.tiles_per_side;
+    Bands bands = sort_into_bands(mesh, atlas, side);
+
+    number_slots(atlas, bands, map);
     report(progress, "texel map", 0.2);
 
     const std::size_t n_slots = map.tile_of_slot.size();
@@ -328,35 +399,16 @@ TexelMap build_texel_map(const mesh::TriangleMesh& mesh, const Atlas& atlas, con
     map.shapes.resize(packed ? 0 : n_slots);
     map.packed.resize(packed ? n_slots : 0);
     map.reach.assign(n_slots, 0);
-    std::vector<std::vector<PackedBox>> boxes(packed ? n_slots : 0);
-    std::vector<std::vector<std::uint32_t>> charts(n_slots);
-    parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint32_t> ids;
-        TexelShape buffer{};
-        for (std::size_t band = begin; band < end; ++band) {
-            draw_ids(atlas, bands, band, ids);
-            for (std::uint32_t tx = 0; tx < side; ++tx) {
-                const std::uint32_t tile = static_cast<std::uint32_t>(band * side + tx);
-                const std::uint32_t slot = map.slot_of_tile[tile];
-                if (slot == kNone) continue;
-                TexelShape& shape = packed ? buffer : map.shapes[slot];
-                charts[slot] = fill_tile(mesh, atlas, tile, side, ids.data(), shape, map.tiles[slot], map.reach[slot]);
-                if (!packed) continue;
-                boxes[slot].resize(charts[slot].size());
-                map.packed[slot] = pack_shape(shape, map.tiles[slot], boxes[slot]);
-            }
-        }
-    });
+    FilledTiles filled = fill_tiles(mesh, atlas, bands, map);
     if (!(map.texel_size > 0)) map.texel_size = mean_texel_size(map);
     map.cluster_start.assign(1, 0);
-    for (const auto& c : charts) {
+    for (const auto& c : filled.charts) {
         map.cluster_chart.insert(map.cluster_chart.end(), c.begin(), c.end());
         map.cluster_start.push_back(static_cast<std::uint32_t>(map.cluster_chart.size()));
     }
-    for (const auto& b : boxes) map.boxes.insert(map.boxes.end(), b.begin(), b.end());
+    for (const auto& b : filled.boxes) map.boxes.insert(map.boxes.end(), b.begin(), b.end());
     bands = {};
-    charts.clear();
-    boxes.clear();
+    filled = {};
     release_free_memory();
     for (const BorderCell& c : build_border_cells(mesh, atlas, map, true).cells)
         map.tiles[c.texel.slot].area[c.texel.texel] = static_cast<float>(c.area);

@@ -50,9 +50,10 @@ struct PackedShape {
     alignas(64) std::array<std::uint16_t, kTileTexels> x, y, z, nu, nv;
 };
 
+/// Box of the packed positions of a cluster.
 struct PackedBox {
-    Vec3f lo{0};
-    float step = 0;  ///< metres
+    Vec3f lo{0};     ///< metres, lower corner
+    float step = 0;  ///< metres, of a packed number
 };
 
 /// Occupied tiles ("slots") of an atlas in row-major tile order. Everything that is
@@ -86,8 +87,8 @@ PackedShape pack_shape(const TexelShape& shape, const TexelTile& tile, std::span
 
 /// A texel of the map.
 struct TexelRef {
-    std::uint32_t slot = kNone;
-    std::uint8_t texel = 0;
+    std::uint32_t slot = kNone;  ///< kNone: no texel
+    std::uint8_t texel = 0;      ///< row * 16 + column of the tile
 
     bool valid() const { return slot != kNone; }
     bool operator==(const TexelRef&) const = default;

@@ -10,7 +10,7 @@ namespace {
 constexpr float kSteps = 65535;
 constexpr float kHalf = 0.5f * kSteps;
 // Beyond this many clusters their boxes are looked up texel by texel.
-constexpr std::size_t kFewPieces = 6;
+constexpr std::size_t kFewClusters = 6;
 
 float fold(float a, float b) {
     return std::copysign(1 - std::abs(b), a);
@@ -130,7 +130,7 @@ const TexelShape& shape_of(const TexelMap& map, std::uint32_t slot, TexelShape& 
         return buffer;
     }
     const auto& cluster = map.tiles[slot].cluster;
-    if (n > kFewPieces) {
+    if (n > kFewClusters) {
         for (int t = 0; t < kTileTexels; ++t) {
             if (cluster[t] == kNoCluster) continue;
             const Vec3f at = unpack_position(p, map.boxes[first + cluster[t]], t);

@@ -9,9 +9,10 @@
 /// Picture of an atlas for `tuft unwrap`.
 namespace tuft::atlas {
 
+/// Picture of an atlas.
 struct AtlasPicture {
-    std::uint32_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgb;  ///< [3 width height], top row first
+    std::uint32_t width = 0, height = 0;  ///< pixels
+    std::vector<std::uint8_t> rgb;        ///< [3 width height], top row first
 };
 
 struct AtlasPictureOptions {

@@ -142,7 +142,7 @@ std::optional<Tile> tile_of(const Bounds& b) {
 }
 
 /// Moves the pages together into the square of an atlas, in the order of their numbers.
-Message lay_pages(Atlas& atlas, const Charts& charts) {
+Message place_on_pages(Atlas& atlas, const Charts& charts) {
     std::vector<Tile> tiles;
     std::vector<std::uint32_t> numbers;
     for (const auto& chart : charts) {
@@ -250,7 +250,7 @@ FileUvs read_file_uvs(const mesh::TriangleMesh& mesh, const UnwrapOptions& optio
 
     const Charts charts = find_charts(mesh, atlas);
     if (!on_one)
-        if (Message what = lay_pages(atlas, charts); !what.empty()) return fault(std::move(what));
+        if (Message what = place_on_pages(atlas, charts); !what.empty()) return fault(std::move(what));
     atlas.gutter = options.gutter;
     atlas.from_file = true;
     if (Message what = give_size(mesh, options, atlas); !what.empty()) return fault(std::move(what));
@@ -288,7 +288,7 @@ UvCheck check_file_uvs(const mesh::TriangleMesh& mesh, std::uint32_t size) {
     const Charts charts = find_charts(mesh, atlas);
     if (std::all_of(atlas.corner_uvs.begin(), atlas.corner_uvs.end(), is_finite)) {
         Atlas paged = atlas;
-        if (lay_pages(paged, charts).empty()) atlas = std::move(paged);
+        if (place_on_pages(paged, charts).empty()) atlas = std::move(paged);
     }
     atlas.size = size * atlas.pages_per_side();
     atlas.gutter = options.gutter;

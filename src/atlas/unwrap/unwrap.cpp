@@ -166,8 +166,8 @@ struct Layout {
 /// Finds every chart its place. Slivers that vanish in rounding become charts of their own; charts that
 /// overlap after all are cut. Both end, at single triangles at the latest. A quick layout is enough to
 /// find them; the best one is made at the end and checked again.
-void lay_out(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, const ChartOptions& chart_options,
-             Layout& layout, Stopwatch& watch, AtlasReport& out) {
+void make_layout(const mesh::TriangleMesh& mesh, const UnwrapOptions& options, const ChartOptions& chart_options,
+                 Layout& layout, Stopwatch& watch, AtlasReport& out) {
     CutMesh& cut = layout.cut;
     Atlas& atlas = layout.atlas;
     refine_parameterisation(cut, chart_options, options.progress);
@@ -246,9 +246,9 @@ Unwrapped make_atlas(const mesh::TriangleMesh& mesh, const UnwrapOptions& option
         if (cut.charts.size() == smaller->cut.charts.size()) smaller.reset();
         watch.lap(out.report, "merge");
     }
-    lay_out(mesh, options, chart_options, layout, watch, out.report);
+    make_layout(mesh, options, chart_options, layout, watch, out.report);
     if (smaller && layout.use < kGoodUse) {
-        lay_out(mesh, options, chart_options, *smaller, watch, out.report);
+        make_layout(mesh, options, chart_options, *smaller, watch, out.report);
         if (smaller->use > layout.use) layout = std::move(*smaller);
     }
     out.atlas = std::move(layout.atlas);

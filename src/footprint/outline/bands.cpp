@@ -15,14 +15,14 @@ struct Band {
     double x0 = 0, x1 = 0, y0 = 0, slope = 0, r = 0, grow = 0, stretch = 1;
 };
 
-/// What a band covers of a column of cells: from `lo` to `hi`, `whole` of 255 of its width.
-struct Covered {
+/// Part of a column of cells that a band covers: from `lo` to `hi`, `whole` of 255 of its width.
+struct ColumnCoverage {
     float lo, hi, whole;
 };
 
 /// Of column i, from x = i to i + 1. Plain, for any instruction set. Where it covers nothing, `hi`
 /// is not above `lo`.
-[[gnu::always_inline]] inline Covered covered_of(const Band& band, int i, float cells) {
+[[gnu::always_inline]] inline ColumnCoverage coverage_of_column(const Band& band, int i, float cells) {
     const double before = i, after = before + 1;
     const double from = band.x0 > before ? band.x0 : before, to = band.x1 < after ? band.x1 : after;
     const double x = 0.5 * (from + to) - band.x0, y = band.y0 + band.slope * x;
@@ -45,7 +45,7 @@ TUFT_CLONES void draw_along(std::uint8_t* __restrict level, int rows, int column
         float lowest = cells, highest = -1;
 #pragma omp simd reduction(min : lowest) reduction(max : highest)
         for (int t = 0; t < kAtOnce; ++t) {
-            const Covered c = covered_of(band, i + t, cells);
+            const ColumnCoverage c = coverage_of_column(band, i + t, cells);
             lo[t] = c.lo;
             hi[t] = c.hi;
             whole[t] = c.whole;
@@ -68,7 +68,7 @@ TUFT_CLONES void draw_along(std::uint8_t* __restrict level, int rows, int column
 /// The same in a picture by columns, [columns rows].
 void draw_across(std::uint8_t* level, int rows, const Band& band, int first, int last) {
     for (int i = first; i <= last; ++i) {
-        const Covered c = covered_of(band, i, static_cast<float>(rows));
+        const ColumnCoverage c = coverage_of_column(band, i, static_cast<float>(rows));
         for (int j = static_cast<int>(c.lo); static_cast<float>(j) < c.hi; ++j) {
             std::uint8_t& cell = level[std::size_t(i) * rows + j];
             const auto low = static_cast<float>(j);
@@ -108,10 +108,10 @@ void Bands::draw(Vec2 p, Vec2 q, double r, double s, const Vec2& across) {
         draw_across(level_.data(), rows, band, first, last);
 }
 
-void Bands::rows(std::vector<std::uint8_t>& level) const {
+void Bands::copy_rows(std::vector<std::uint8_t>& level) const {
     const auto cells = std::span(level_).first(std::size_t(width_) * height_);
     if (steep_)
-        turn_over(cells, height_, width_, level);
+        transpose(cells, height_, width_, level);
     else
         level.assign(cells.begin(), cells.end());
 }

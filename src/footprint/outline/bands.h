@@ -20,8 +20,8 @@ class Bands {
     /// (unit). The band is steep where `across` lies mostly along the rows.
     void draw(Vec2 p, Vec2 q, double r, double s, const Vec2& across);
 
-    /// The picture, [width * height] by rows.
-    void rows(std::vector<std::uint8_t>& level) const;
+    /// Copies the picture, [width * height] by rows.
+    void copy_rows(std::vector<std::uint8_t>& level) const;
 
   private:
     int width_, height_;

@@ -192,7 +192,7 @@ struct Stretch {
 };
 
 /// Parameter between `out` (not touching) and `in` (touching) where the skin meets the surface.
-double meeting(const TuftSurface& skin, double out, double in) {
+double find_meeting_point(const TuftSurface& skin, double out, double in) {
     for (int i = 0; i < 26; ++i) {
         const double middle = 0.5 * (out + in);
         (skin.at(middle).overlap() >= 0 ? in : out) = middle;
@@ -207,9 +207,10 @@ std::vector<Stretch> touching_stretches(const TuftSurface& skin) {
     for (int i = 0; i <= n; ++i) {
         const double s = double(i) / kSearchSteps;
         const bool now = skin.at(s).overlap() >= 0;
-        if (now && !before) found.push_back({i == 0 ? 0 : meeting(skin, double(i - 1) / kSearchSteps, s), s});
+        if (now && !before)
+            found.push_back({i == 0 ? 0 : find_meeting_point(skin, double(i - 1) / kSearchSteps, s), s});
         if (now) found.back().end = s;
-        if (!now && before) found.back().end = meeting(skin, s, double(i - 1) / kSearchSteps);
+        if (!now && before) found.back().end = find_meeting_point(skin, s, double(i - 1) / kSearchSteps);
         before = now;
     }
     return found;
@@ -217,8 +218,8 @@ std::vector<Stretch> touching_stretches(const TuftSurface& skin) {
 
 }  // namespace
 
-std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
-                          double length, double film) {
+std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
+                               double length, double film) {
     std::vector<Trail> found;
     const std::size_t count = tuft.branches.size();
     for (std::size_t k = 0; k < count; ++k) {
@@ -249,15 +250,15 @@ std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame, std:
 
 namespace {
 
-constexpr double kTrackStep = 2.5e-5;  // metres between places of a track
+constexpr double kTrackStep = 2.5e-5;  // metres between positions of a track
 constexpr double kAboutAsWide = 0.1;   // of the widest section's half width
-constexpr double kFan =
-    0.35;  // slope at which lying hair leaves a lifted tuft: sideways it is held by friction, about that
-constexpr double kNarrowest = 0.2;  // of its width to which a section is drawn together
+// Slope at which hair on the surface leaves a lifted tuft: friction holds it sideways, about that.
+constexpr double kFanSlope = 0.35;
+constexpr double kNarrowest = 0.2;  // of its width, the narrowest that a section becomes
 
-/// The place's own value, between two of those that are there.
-double width_at(const HairTracks::Track& track, double place, double otherwise) {
-    const double at = place / kTrackStep - static_cast<double>(track.first), cell = std::floor(at);
+/// Width at a position, linear between two of the track; `otherwise` where the track has none.
+double width_at(const HairTracks::Track& track, double position, double otherwise) {
+    const double at = position / kTrackStep - static_cast<double>(track.first), cell = std::floor(at);
     const auto value = [&](double i) {
         if (i < 0 || i >= static_cast<double>(track.width.size())) return otherwise;
         const float v = track.width[static_cast<std::size_t>(i)];
@@ -266,8 +267,8 @@ double width_at(const HairTracks::Track& track, double place, double otherwise) 
     return std::lerp(value(cell), value(cell + 1), at - cell);
 }
 
-/// Makes room for places from number lo to hi.
-void reach_over(HairTracks::Track& track, long long lo, long long hi) {
+/// Extends the track to the positions numbered lo to hi.
+void reserve_positions(HairTracks::Track& track, long long lo, long long hi) {
     if (track.width.empty()) track.first = lo;
     if (lo < track.first) {
         track.width.insert(track.width.begin(), static_cast<std::size_t>(track.first - lo), -1.0f);
@@ -277,29 +278,31 @@ void reach_over(HairTracks::Track& track, long long lo, long long hi) {
     if (size > track.width.size()) track.width.resize(size, -1.0f);
 }
 
-/// Cuts [begin, end) of a trail: those up to the widest are where the tuft is, and so is what never touched.
-void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::Track& track, double slid,
-                  double length, double amount) {
-    const auto place = [&](std::size_t i) { return slid - trail.along[i] * length; };
+/// Spreads cuts [begin, end) of a trail: those up to the widest are where the tuft is, and so is what never touched.
+void follow_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::Track& track,
+                  const SpreadOptions& options) {
+    const auto position = [&](std::size_t i) { return options.slid - trail.along[i] * options.length; };
     std::size_t widest = end - 1;
     for (std::size_t i = end - 1; i-- > begin;)
         if (trail.cuts[i].a > trail.cuts[widest].a) widest = i;
     // Where it is about as wide: the widest section of all steps from node to node as the tuft is lifted.
     double weight = 0, front = 0;
     for (std::size_t i = begin; i < end; ++i) {
-        const double run = place(std::min(i + 1, end - 1)) - place(i > begin ? i - 1 : begin);
+        const double run = position(std::min(i + 1, end - 1)) - position(i > begin ? i - 1 : begin);
         const double w = run * std::exp((trail.cuts[i].a / trail.cuts[widest].a - 1) / kAboutAsWide);
         weight += w;
-        front += w * place(i);
+        front += w * position(i);
     }
-    front = weight > 0 ? front / weight : place(widest);
+    front = weight > 0 ? front / weight : position(widest);
     const auto number = [](double p) { return static_cast<long long>(std::floor(p / kTrackStep)); };
-    reach_over(track, number(place(begin)), number(place(end - 1)) + 1);
+    const long long last = number(position(end - 1)) + 1;
+    reserve_positions(track, number(position(begin)), last);
     std::size_t i = begin;
-    for (long long k = number(place(begin)); k <= number(place(end - 1)) + 1; ++k) {
+    for (long long k = number(position(begin)); k <= last; ++k) {
         const double at = static_cast<double>(k) * kTrackStep;
-        while (i + 2 < end && place(i + 1) < at) ++i;
-        const double run = place(i + 1) - place(i), f = run > 0 ? std::clamp((at - place(i)) / run, 0.0, 1.0) : 0;
+        while (i + 2 < end && position(i + 1) < at) ++i;
+        const double run = position(i + 1) - position(i);
+        const double f = run > 0 ? std::clamp((at - position(i)) / run, 0.0, 1.0) : 0;
         float& width = track.width[static_cast<std::size_t>(k - track.first)];
         if (track.front_width >= 0 && at >= track.front && at < front) {
             const double g = (at - track.front) / (front - track.front);
@@ -309,28 +312,28 @@ void lay_on_track(Trail& trail, std::size_t begin, std::size_t end, HairTracks::
     }
     track.front = front;
     track.front_width = trail.cuts[widest].a;
-    for (std::size_t k = begin; k < end && place(k) < front; ++k) {
+    for (std::size_t k = begin; k < end && position(k) < front; ++k) {
         Cut& cut = trail.cuts[k];
-        const double laid =
-            std::min(width_at(track, place(k), cut.a), trail.cuts[widest].a + kFan * (front - place(k)));
-        const double grow = std::max(1 + amount * (laid / std::max(cut.a, 1e-9) - 1), kNarrowest);
+        const double width =
+            std::min(width_at(track, position(k), cut.a), trail.cuts[widest].a + kFanSlope * (front - position(k)));
+        const double grow = std::max(1 + options.amount * (width / std::max(cut.a, 1e-9) - 1), kNarrowest);
         cut.a *= grow;
         cut.b /= grow;
-        // It lies as it lay: by the same part of its height.
+        // The same part of its height is on the surface.
         cut.z *= cut.z > 0 ? 1 / grow : 1;
     }
 }
 
 }  // namespace
 
-void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount) {
+void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, const SpreadOptions& options) {
     for (Trail& trail : trails) {
         const auto own = 2 * static_cast<std::size_t>(trail.branch);
         if (tracks.tracks.size() < own + 2) tracks.tracks.resize(own + 2);
         const std::size_t trunk = std::min(trail.trunk, trail.cuts.size());
-        if (trunk > 1) lay_on_track(trail, 0, trunk, tracks.tracks[own], slid, length, amount);
+        if (trunk > 1) follow_track(trail, 0, trunk, tracks.tracks[own], options);
         if (trail.cuts.size() > trunk + 1)
-            lay_on_track(trail, trunk, trail.cuts.size(), tracks.tracks[own + 1], slid, length, amount);
+            follow_track(trail, trunk, trail.cuts.size(), tracks.tracks[own + 1], options);
     }
 }
 

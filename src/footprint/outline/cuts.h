@@ -46,16 +46,23 @@ struct Trail {
     static constexpr double kStripChord = 0.8862269254527580;  ///< √π/2, see brush::in_branch
 };
 
-/// Returns the touching parts of all branches, cut into sections; see `outline` for the arguments. `length` is the
-/// tuft's, metres.
-std::vector<Trail> trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
-                          double length, double film);
+/// Part of a trail.
+struct TrailPart {
+    const Trail& trail;              ///< of which it is a part
+    std::size_t begin = 0, end = 0;  ///< cuts [begin, end)
+};
+
+/// Returns the touching parts of all branches, cut into sections; see `outlines_of` (outline.h) for the arguments.
+/// `length` is the tuft's, metres.
+std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
+                               double length, double film);
 
 /// Half-widths of a dry tuft along the track of its hair, at position = slid − along · length, metres. Friction
 /// holds hair on the surface. Hair therefore follows the track of the hair before it, towards the root; pressing
 /// and lifting neither spreads nor closes it. The track is the hair's, not the hand's: lifted hair straightens and
 /// advances to its point below the hand.
 struct HairTracks {
+    /// Widths of one branch.
     struct Track {
         long long first = 0;       ///< index of the position of width[0]
         std::vector<float> width;  ///< metres; negative: no hair yet
@@ -65,11 +72,17 @@ struct HairTracks {
     std::vector<Track> tracks;  ///< two per branch: sub-spine, trunk
 };
 
-/// Widens the trails of a dry tuft by `amount` (0–1). Hair on the surface takes the width of the widest part of the
-/// tuft at the time it passed that position, and is flattened accordingly. `slid`: metres of hair displacement
-/// since the first touch of `tracks`. `length` is the tuft's, metres. A steady drag has the same width up to its
-/// tip. A tuft pressed straight down does not change. A lifted tuft narrows with a slope of at most 0.35.
-void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, double slid, double length, double amount);
+/// Position and share of the hair that `spread_trails` spreads.
+struct SpreadOptions {
+    double slid = 0;    ///< metres, displacement of the hair since the first touch of its tracks
+    double length = 0;  ///< metres, of the tuft
+    double amount = 1;  ///< 0: no change; 1: hair on the surface has the width of its track
+};
+
+/// Widens the trails of a dry tuft. Hair on the surface takes the width of the widest part of the tuft at the time it
+/// passed that position, and is flattened accordingly. A steady drag has the same width up to its tip. A tuft pressed
+/// straight down does not change. A lifted tuft narrows with a slope of at most 0.35.
+void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, const SpreadOptions& options);
 
 /// Adds the upright hair round the foot of the axis, by `foot.share`: a straight taper from the widest section to
 /// the axis' foot, with a round end. Without it the point, which touches first and then slides aside, leaves a

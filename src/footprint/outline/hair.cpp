@@ -16,44 +16,43 @@ namespace {
 
 constexpr double kClosing = 0.4;   // s_c
 constexpr double kFastHair = 0.7;  // v_c, m/s
-constexpr double kRolling =
-    12e-3;  // m of travel over which the hair of a bundle rolls off and on, longer than it touches
+// Metres of travel over which the hair of a bundle rolls off and on; longer than it touches.
+constexpr double kRolling = 12e-3;
 constexpr double kBreaking = 4e-3;  // m of travel over which the ink under a single bristle breaks and closes
 constexpr double kRollingPart = 0.2, kBreakingPart = 0.2;  // of the wetness at which they stop
 constexpr double kThinning = 0.02;                         // wetness over which a thread of ink tapers before it breaks
-constexpr double kAside = 0.35;  // sine of the angle from the tuft's way, or the hand's course, at which hair that
-                                 // lands or leaves is swept aside
-constexpr double kLessLanding =
-    0.75;                         // of what it may measure across its motion, that it lacks while it lands or leaves
+// Sine of the angle from the tuft's motion, or the hand's course, at which hair that lands or leaves is swept aside.
+constexpr double kAside = 0.35;
+// Fraction of its allowed length across its motion that hair lacks while it lands or leaves.
+constexpr double kLessLanding = 0.75;
 constexpr double kTapers = 0.08;  // sine up to which it is not: hair draws together as a stroke runs out
-constexpr double kTrails = 0.25;  // sine from the course by which hair that goes along itself
-                                  // trails behind the hand round a curve
-constexpr double kMark = 45e-6;   // m, half width of what a bristle leaves by itself: hair is 70–135 µm thick
-constexpr double kSkirt = 0.7,
-                 kFullSkirt =
-                     0.9;  // wetness from which ink stands out beyond the outermost hair, and as far as it bridges
+// Sine from the course by which hair that goes along itself trails behind the hand round a curve.
+constexpr double kTrails = 0.25;
+constexpr double kMark = 45e-6;  // m, half width of a bristle's own streak: hair is 70–135 µm thick
+// Wetness from which ink stands out beyond the outermost hair, and as far as it bridges.
+constexpr double kSkirt = 0.7, kFullSkirt = 0.9;
 constexpr double kBridge = 0.5;        // spacings that ink bridges from one bristle to the next at half wetness
-constexpr double kLeastContact = 0.1;  // part of what lies down of it that the driest bristle touches with
+constexpr double kLeastContact = 0.1;  // fraction of its length on the surface that the driest bristle touches with
 constexpr double kSameEnd = 0.01;      // of the length
 constexpr double kBeyond = 0.5;        // widest half width that the outermost hair's ink may reach further
 
-/// Height of a place over its section's centre.
-double rise(const Cut& cut, const Vec2& place) {
+/// Height of a place over its section's centre, metres.
+double height_over_centre(const Cut& cut, const Vec2& place) {
     return cut.a * place.x * cut.e.z + cut.b * place.y * cut.m.z;
 }
 
-/// The section's underside at the place is at or below the surface.
-bool touches(const Trail& trail, const Cut& cut, const Vec2& place) {
+/// Returns true where the section's underside at the place is at or below the surface.
+bool is_touching(const Trail& trail, const Cut& cut, const Vec2& place) {
     const double chord = trail.chord(place.x);
     return cut.z + cut.a * place.x * cut.e.z - chord * cut.b * std::abs(cut.m.z) <= 0;
 }
 
-/// Where a place of the whole tuft lies at cut i, for the branch that the trail follows.
-struct Placed {
+/// Position of a bristle in the sections of a trail: in the whole tuft, and in the branch that it belongs to.
+struct BristlePlace {
     Vec2 whole{0};
     brush::BranchPlace part;
 
-    Placed(const brush::Bundles& bundles, const Vec2& place, int branches)
+    BristlePlace(const brush::Bundles& bundles, const Vec2& place, int branches)
         : whole(place), part(brush::in_branch(bundles, place, branches)) {}
     const Vec2* at(const Trail& trail, std::size_t i) const {
         if (i >= trail.trunk) return &whole;
@@ -62,11 +61,11 @@ struct Placed {
 };
 
 /// Noise in [-1, 1] along a line, smooth over one unit.
-double roll(std::uint64_t seed, double x) {
+double smooth_noise(std::uint64_t seed, double x) {
     return value_noise(x, [&](std::uint64_t cell) { return 2 * uniform(seed, cell) - 1; });
 }
 
-/// Whether most of the hair lies rather along the picture's columns.
+/// Returns true when most of the hair lies rather along the picture's columns.
 bool mostly_steep(std::span<const Trail> trails) {
     int steep = 0;
     for (const Trail& trail : trails)
@@ -76,19 +75,19 @@ bool mostly_steep(std::span<const Trail> trails) {
 
 /// A band of hair that gives ink: from bristle to bristle across the section, and ink beyond them.
 struct Strand {
-    double lo = 0, hi = 0;            ///< places of its outermost bristles
+    double lo = 0, hi = 0;            ///< positions of its outermost bristles in the section
     double past_lo = 0, past_hi = 0;  ///< metres of ink beyond them
-    double begin = 0, end = 1;        ///< parts of the tuft's length from the root
+    double begin = 0, end = 1;        ///< fractions of the tuft's length from the root
 };
 
-/// From root to tip, parts of the tuft's length.
-struct Lying {
+/// Part of the hair from root to tip, fractions of the tuft's length.
+struct HairRange {
     double begin = 0, end = 1;
 };
 
-/// One bristle of the lower half, as it is drawn.
-struct Lower {
-    double x = 0;
+/// A bristle of the lower half of its section.
+struct LowerBristle {
+    double x = 0;  ///< position in the section, along e
     const brush::Bristle* bristle = nullptr;
 };
 
@@ -100,50 +99,51 @@ std::uint64_t own_seed(const brush::Bundles& bundles, const brush::Bristle& b) {
 double breaks_at(const brush::Bundles& bundles, const brush::Bristle& b, double travel) {
     const std::uint64_t own = own_seed(bundles, b);
     const double phase = uniform(own, 1);
-    const double rolls = roll(hash_bits(bundles.seed, 1000 + b.bundle), travel / kRolling + 0.5 * phase + 1);
-    const double breaks = roll(own, travel / kBreaking + phase + 16);
+    const double rolls = smooth_noise(hash_bits(bundles.seed, 1000 + b.bundle), travel / kRolling + 0.5 * phase + 1);
+    const double breaks = smooth_noise(own, travel / kBreaking + phase + 16);
     return (1 - kThinning) * ((1 - kRollingPart - kBreakingPart) * (1 - static_cast<double>(b.readiness)) +
                               kRollingPart * (0.5 + 0.5 * rolls) + kBreakingPart * (0.5 + 0.5 * breaks));
 }
 
-/// What lies down of the hair, parts of the tuft's length, and what it measures across its motion; of hair that lands
-/// or leaves also across the hand's course.
-struct Laid {
-    Lying lies;
+/// Hair of a part of a trail, all of which lies on the surface, and its length across its motion; of hair that lands or
+/// leaves also across the hand's course.
+struct LyingHair {
+    HairRange range;
     TransverseLength across;
     double press_share = 0, over_course = 0;  ///< metres, of that
 
-    Laid(const Trail& trail, std::size_t begin, std::size_t end, const HairInk& ink)
-        : lies{trail.along[end - 1], trail.along[begin]},
-          across(trail, begin, end, ink.before, ink.direction),
+    LyingHair(const TrailPart& part, const HairInk& ink)
+        : range{part.trail.along[part.end - 1], part.trail.along[part.begin]},
+          across(part, ink.before, ink.direction),
           press_share(ink.press_share) {
         const double size = glm::length(ink.course);
-        for (std::size_t i = begin; i + 1 < end && size > 0; ++i) {
-            const Vec2 run = trail.cuts[i + 1].centre - trail.cuts[i].centre;
+        for (std::size_t i = part.begin; i + 1 < part.end && size > 0; ++i) {
+            const Vec2 run = part.trail.cuts[i + 1].centre - part.trail.cuts[i].centre;
             over_course += std::abs(run.x * ink.course.y - run.y * ink.course.x) / size;
         }
     }
     double measure(double x) const { return std::max(across.at(x), press_share * over_course); }
 };
 
-/// Where a bristle touches: with all that lies down of it where ink closes the gaps, with a part of it, here or there,
-/// where it must touch itself, since hair is not quite straight and lies over other hair. Drawn sideways it has ink for
-/// no wider a way than drawn along itself.
-Lying touching(const brush::Bundles& bundles, const brush::Bristle& b, double wet, double x, const Laid& laid) {
-    const Lying& lies = laid.lies;
+/// Part of a bristle that touches. Where ink closes the gaps it is all that lies on the surface. Elsewhere the bristle
+/// must touch itself, with a part here or there, since hair is not quite straight and lies over other hair. Drawn
+/// sideways it has ink for no wider a path than drawn along itself.
+HairRange contact_range(const brush::Bundles& bundles, const brush::Bristle& b, double wet, double x,
+                        const LyingHair& lying) {
+    const HairRange& range = lying.range;
     if (wet >= 1) return {-4, 4};
     // Water draws the ends to a point.
     const double end = static_cast<double>(b.end) + (1 - static_cast<double>(b.end)) * std::max(0.0, 2 * wet - 1);
     const double limit =
-        2 * kMark * std::max(1.0, (1 - kLessLanding * laid.press_share) * 0.5 * wet / ((1 - wet) * (1 - wet)));
-    const double part = std::min({1.0, kLeastContact + 1.25 * wet * wet, limit / std::max(laid.measure(x), 1e-9)});
-    const double rest = (1 - part) * std::max(0.0, end - lies.begin), behind = uniform(own_seed(bundles, b), 2);
-    return {part < 1 ? lies.begin + (1 - behind * behind) * rest : -4, part < 1 ? end - behind * behind * rest : end};
+        2 * kMark * std::max(1.0, (1 - kLessLanding * lying.press_share) * 0.5 * wet / ((1 - wet) * (1 - wet)));
+    const double part = std::min({1.0, kLeastContact + 1.25 * wet * wet, limit / std::max(lying.measure(x), 1e-9)});
+    const double rest = (1 - part) * std::max(0.0, end - range.begin), behind = uniform(own_seed(bundles, b), 2);
+    return {part < 1 ? range.begin + (1 - behind * behind) * rest : -4, part < 1 ? end - behind * behind * rest : end};
 }
 
-/// How much what the hand presses or lifts sweeps the hair at x aside, 0–1: off the way of the tuft, or with it off the
+/// Returns how much pressing or lifting sweeps the hair at x aside, 0–1: off the motion of the tuft, or with it off the
 /// course.
-double swept_aside(const TransverseLength& across, double x, const HairInk& ink) {
+double swept_share(const TransverseLength& across, double x, const HairInk& ink) {
     const double course = std::max(ink.sine_to_course, across.sine_to(x, ink.course));
     const double off_course = std::max(std::min(course, across.mean_sine(x)), course - kTrails);
     const double off = std::max(across.sine_to(x, ink.direction), off_course);
@@ -151,23 +151,24 @@ double swept_aside(const TransverseLength& across, double x, const HairInk& ink)
 }
 
 /// Bristles side by side into bands, in a section of half width `a` metres.
-std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& bundles, const HairInk& ink, double a,
-                               const Laid& laid) {
+std::vector<Strand> strands_of(std::vector<LowerBristle>& lower, const brush::Bundles& bundles, const HairInk& ink,
+                               double a, const LyingHair& lying) {
     std::vector<Strand> strands;
-    std::sort(lower.begin(), lower.end(),
-              [](const Lower& p, const Lower& q) { return p.x != q.x ? p.x < q.x : p.bristle < q.bristle; });
+    std::sort(lower.begin(), lower.end(), [](const LowerBristle& p, const LowerBristle& q) {
+        return p.x != q.x ? p.x < q.x : p.bristle < q.bristle;
+    });
     const double spacing = 2 * a / std::max<double>(1, static_cast<double>(lower.size()));
     const auto wet_of = [&](const brush::Bristle& b) { return b.bundle < ink.wet.size() ? ink.wet[b.bundle] : 1; };
     double bridge_before = 0;
     for (std::size_t i = 0; i < lower.size(); ++i) {
         const brush::Bristle& b = *lower[i].bristle;
-        const double aside = ink.press_share > 0 ? swept_aside(laid.across, lower[i].x, ink) : 0;
+        const double aside = ink.press_share > 0 ? swept_share(lying.across, lower[i].x, ink) : 0;
         const double wet = wet_of(b), own = breaks_at(bundles, b, ink.travel), breaks = own + aside * (1 - own);
         const double active = std::clamp((wet - std::min(breaks, 1 - kThinning)) / kThinning, 0.0, 1.0);
         if (!(active > 0)) continue;
         const double bridge = wet >= 1 ? 8 * a : active * std::max(kMark, kBridge * spacing * wet / (1 - wet));
         const double mark = active * kMark;
-        const Lying on = touching(bundles, b, wet, lower[i].x, laid);
+        const HairRange on = contact_range(bundles, b, wet, lower[i].x, lying);
         const double skirt = std::lerp(mark, bridge, smooth_step((wet - kSkirt) / (kFullSkirt - kSkirt)));
         const double past_lo = i == 0 ? skirt : mark;
         const double past_hi = i + 1 == lower.size() ? skirt : mark;
@@ -187,77 +188,106 @@ std::vector<Strand> strands_of(std::vector<Lower>& lower, const brush::Bundles& 
     return strands;
 }
 
-/// Where the section at lateral place x meets the surface, or its middle where all of it is below.
-Vec2 on_surface(const Trail& trail, const Cut& cut, double x) {
+/// Returns the point where the section at lateral position x meets the surface, or its middle where all of it is below.
+Vec2 point_on_surface(const Trail& trail, const Cut& cut, double x) {
     const double height = cut.b * cut.m.z, need = cut.z + cut.a * x * cut.e.z;
     const double chord = trail.chord(x);
     const double y = std::abs(height) > 1e-9 ? std::clamp(-need / height, -chord, chord) : 0;
     return cut.at(x, need < -chord * std::abs(height) ? 0 : y);
 }
 
-/// Draws bands along the cuts [begin, end) of a trail. Its first and last cluster go on a little:
-/// the outline bounds them.
-void draw_strands(const Trail& trail, std::size_t begin, std::size_t end, std::span<const Strand> strands,
-                  const Vec2& zero, double cell, Bands& bands) {
-    constexpr std::size_t kStride = 3;
-    std::vector<std::size_t> at;
-    for (std::size_t i = begin; i < end; i += kStride) at.push_back(i);
-    if (at.empty()) return;
-    if (at.back() + 1 != end) at.push_back(end - 1);
-    if (at.size() < 2) return;
-    std::vector<Vec2> across(at.size());
-    double widest = 0;
-    for (std::size_t k = 0; k < at.size(); ++k) {
-        const Vec2 e(trail.cuts[at[k]].e);
-        across[k] = glm::length(e) > 1e-9 ? glm::normalize(e) : Vec2{1, 0};
-        widest = std::max(widest, trail.cuts[at[k]].a);
+/// Picture into which strands are drawn.
+struct StrandPicture {
+    Bands bands;
+    Vec2 lo{0};       ///< metres, lower corner of cell (0, 0)
+    double cell = 0;  ///< metres
+};
+
+/// Draws strands along a part of a trail. The first and the last piece of a strand go on a little: the outline bounds
+/// them.
+class StrandPen {
+  public:
+    StrandPen(const TrailPart& part, StrandPicture& picture) : trail_(part.trail), picture_(picture) {
+        constexpr std::size_t kStride = 3;
+        for (std::size_t i = part.begin; i < part.end; i += kStride) at_.push_back(i);
+        if (!at_.empty() && at_.back() + 1 != part.end) at_.push_back(part.end - 1);
+        across_.resize(at_.size());
+        for (std::size_t k = 0; k < at_.size(); ++k) {
+            const Vec2 e(trail_.cuts[at_[k]].e);
+            across_[k] = glm::length(e) > 1e-9 ? glm::normalize(e) : Vec2{1, 0};
+            widest_ = std::max(widest_, trail_.cuts[at_[k]].a);
+        }
     }
-    for (const Strand& strand : strands) {
-        const double x = 0.5 * (strand.lo + strand.hi), half = 0.5 * (strand.hi - strand.lo);
-        // Ink reaches beyond the hair by a length of its own, so that the sides close where sections end in a point.
-        const double most = kBeyond * widest;
-        const double past_lo = std::min(strand.past_lo, most) / cell, past_hi = std::min(strand.past_hi, most) / cell;
-        const auto place = [&](std::size_t k) {
-            return (on_surface(trail, trail.cuts[at[k]], x) - zero) / cell + 0.5 * (past_hi - past_lo) * across[k];
-        };
-        const auto half_width = [&](std::size_t k) {
-            return half * trail.cuts[at[k]].a / cell + 0.5 * (past_hi + past_lo);
-        };
+
+    void draw(const Strand& strand) {
+        if (at_.size() < 2) return;
+        const Line line = line_of(strand);
+        const double cell = picture_.cell;
         // Pieces from tip to root; the first and the last may end between two cuts.
-        const std::size_t last = at.size() - 1;
+        const std::size_t last = at_.size() - 1;
         std::size_t k = 0;
-        while (k + 1 < last && trail.along[at[k + 1]] > strand.end) ++k;
+        while (k + 1 < last && along(k + 1) > strand.end) ++k;
         Vec2 before{0}, step{0};
         double half_before = 0;
-        const auto part_of = [&](std::size_t i, double along) {  // of the cluster from cut i on
-            const double run = trail.along[at[i]] - trail.along[at[i + 1]];
-            return run > 1e-12 ? std::clamp((trail.along[at[i]] - along) / run, 0.0, 1.0) : 0.0;
-        };
-        const bool whole_tip = trail.along[at[0]] <= strand.end, whole_root = trail.along[at[last]] >= strand.begin;
+        const bool whole_tip = along(0) <= strand.end, whole_root = along(last) >= strand.begin;
         bool first = true;
-        for (; k < last && trail.along[at[k]] > strand.begin && trail.along[at[k + 1]] < strand.end; ++k) {
-            const Vec2 p = place(k), q = place(k + 1);
-            const double r = half_width(k), s = half_width(k + 1), f = part_of(k, strand.end),
-                         g = part_of(k, strand.begin);
-            const double from = trail.along[at[k]] > strand.end ? f : 0,
-                         to = trail.along[at[k + 1]] < strand.begin ? g : 1;
+        for (; k < last && along(k) > strand.begin && along(k + 1) < strand.end; ++k) {
+            const Vec2 p = centre(line, k), q = centre(line, k + 1);
+            const double r = half_width(line, k), s = half_width(line, k + 1);
+            const double from = along(k) > strand.end ? fraction(k, strand.end) : 0,
+                         to = along(k + 1) < strand.begin ? fraction(k, strand.begin) : 1;
             const Vec2 start = glm::mix(p, q, from);
             const double half_start = glm::mix(r, s, from);
             before = glm::mix(p, q, to);
             half_before = glm::mix(r, s, to);
             step = q - p;
             if (first && whole_tip && glm::length(step) > 1e-9)
-                bands.draw(start - widest / cell * glm::normalize(step), start, half_start, half_start, across[k]);
-            bands.draw(start, before, half_start, half_before, across[k]);
+                picture_.bands.draw(start - widest_ / cell * glm::normalize(step), start, half_start, half_start,
+                                    across_[k]);
+            picture_.bands.draw(start, before, half_start, half_before, across_[k]);
             first = false;
         }
         if (!first && whole_root && glm::length(step) > 1e-9)
-            bands.draw(before, before + widest / cell * glm::normalize(step), half_before, half_before, across.back());
+            picture_.bands.draw(before, before + widest_ / cell * glm::normalize(step), half_before, half_before,
+                                across_.back());
     }
-}
+
+  private:
+    /// A strand's middle and half width, as positions in the sections, and the ink beyond them, cells.
+    struct Line {
+        double x, half, past_lo, past_hi;
+    };
+    Line line_of(const Strand& strand) const {
+        // Ink reaches beyond the hair by a length of its own, so that the sides close where sections end in a point.
+        const double most = kBeyond * widest_;
+        return {0.5 * (strand.lo + strand.hi), 0.5 * (strand.hi - strand.lo),
+                std::min(strand.past_lo, most) / picture_.cell, std::min(strand.past_hi, most) / picture_.cell};
+    }
+    double along(std::size_t k) const { return trail_.along[at_[k]]; }
+    /// Centre and half width of a strand at cut k of the pen, cells.
+    Vec2 centre(const Line& line, std::size_t k) const {
+        return (point_on_surface(trail_, trail_.cuts[at_[k]], line.x) - picture_.lo) / picture_.cell +
+               0.5 * (line.past_hi - line.past_lo) * across_[k];
+    }
+    double half_width(const Line& line, std::size_t k) const {
+        return line.half * trail_.cuts[at_[k]].a / picture_.cell + 0.5 * (line.past_hi + line.past_lo);
+    }
+    /// Position of `at`, along the hair, between the cuts k and k + 1 of the pen, 0–1.
+    double fraction(std::size_t k, double at) const {
+        const double run = along(k) - along(k + 1);
+        return run > 1e-12 ? std::clamp((along(k) - at) / run, 0.0, 1.0) : 0.0;
+    }
+
+    const Trail& trail_;
+    StrandPicture& picture_;
+    std::vector<std::size_t> at_;  // every third cut of the part, and its last
+    std::vector<Vec2> across_;     // unit, of these cuts
+    double widest_ = 0;            // metres
+};
 
 /// coverage = coverage level / 255, rounded; returns the sum of what it was. For at most 2^16 cells.
-TUFT_CLONES std::uint32_t thin(std::uint8_t* __restrict coverage, const std::uint8_t* __restrict level, int n) {
+TUFT_CLONES std::uint32_t scale_coverage(std::uint8_t* __restrict coverage, const std::uint8_t* __restrict level,
+                                         int n) {
     std::uint32_t sum = 0;
     for (int i = 0; i < n; ++i) {
         const auto was = static_cast<std::uint16_t>(coverage[i]);
@@ -268,16 +298,16 @@ TUFT_CLONES std::uint32_t thin(std::uint8_t* __restrict coverage, const std::uin
     return sum;
 }
 
-/// Calls f(bundle, cut, place in the section, length) for what of the bundles lies on the surface.
+/// Calls f(bundle, cut, position in the section, length) for each part of a bundle on the surface.
 template <class F>
-void each_touch(const Trail& trail, const brush::Bundles& bundles, int branches, F f) {
+void for_each_contact(const Trail& trail, const brush::Bundles& bundles, int branches, F f) {
     constexpr std::size_t kStride = 3;  // sections looked at
     const std::size_t count = trail.cuts.size();
     for (std::size_t k = 0; k < bundles.place.size(); ++k) {
-        const Placed placed(bundles, bundles.place[k], branches);
+        const BristlePlace placed(bundles, bundles.place[k], branches);
         for (std::size_t i = 0; i < count; i += kStride) {
             const Vec2* at = placed.at(trail, i);
-            if (!at || rise(trail.cuts[i], *at) > 0 || !touches(trail, trail.cuts[i], *at)) continue;
+            if (!at || height_over_centre(trail.cuts[i], *at) > 0 || !is_touching(trail, trail.cuts[i], *at)) continue;
             const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
             f(k, i, *at, std::abs(trail.along[a] - trail.along[b]));
         }
@@ -300,7 +330,7 @@ std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bun
     double front = 0;
     for (const Trail& trail : trails) {
         front = std::max(front, trail.along.front());
-        each_touch(trail, bundles, branches, [&](std::size_t k, std::size_t i, const Vec2&, double length) {
+        for_each_contact(trail, bundles, branches, [&](std::size_t k, std::size_t i, const Vec2&, double length) {
             sum[k * cells + cell_at(trail.along[i])] += length;
         });
     }
@@ -319,56 +349,64 @@ std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails,
                                                   int branches) {
     std::vector<HairContactPoint> found;
     for (const Trail& trail : trails)
-        each_touch(trail, bundles, branches, [&](std::size_t k, std::size_t i, const Vec2& place, double length) {
-            found.push_back(
-                {static_cast<std::uint32_t>(k), on_surface(trail, trail.cuts[i], place.x), trail.along[i], length});
+        for_each_contact(trail, bundles, branches, [&](std::size_t k, std::size_t i, const Vec2& place, double length) {
+            found.push_back({static_cast<std::uint32_t>(k), point_on_surface(trail, trail.cuts[i], place.x),
+                             trail.along[i], length});
         });
     return found;
 }
 
-HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> outlines, const brush::Bundles& bundles,
-                     int branches, const HairInk& ink, const Frame& frame, std::uint32_t triangle, double cell) {
-    HairMarks result{rasterise(outlines, frame, triangle, cell), 0};
+namespace {
+
+/// Bristles of the lower half in a part of a trail. `places`: of all bristles.
+std::vector<LowerBristle> find_lower_bristles(const TrailPart& part, const brush::Bundles& bundles,
+                                              std::span<const BristlePlace> places) {
+    const Trail& trail = part.trail;
+    // Heights over the middle, of all sections together: one of them would be another at every stamp, and hair that
+    // sticks together lies on the same side.
+    Vec2 height{0};
+    for (std::size_t i = part.begin; i + 1 < part.end; ++i) {
+        const Cut& cut = trail.cuts[i];
+        height += std::abs(trail.along[i + 1] - trail.along[i]) * Vec2{cut.a * cut.e.z, cut.b * cut.m.z};
+    }
+    std::vector<LowerBristle> lower;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const Vec2* at = places[k].at(trail, part.begin);
+        if (at && glm::dot(height, *at) <= 0) lower.push_back({at->x, &bundles.bristles[k]});
+    }
+    return lower;
+}
+
+}  // namespace
+
+HairMarks draw_hair_marks(const TouchingHair& hair, const HairInk& ink, const PicturePlane& plane) {
+    HairMarks result{rasterise(hair.outlines, plane.frame, plane.triangle, plane.cell), 0};
     Footprint& f = result.footprint;
     if (f.empty()) return result;
-    cell = f.cell;
-    std::vector<Placed> places;
-    places.reserve(bundles.bristles.size());
-    for (const brush::Bristle& b : bundles.bristles)
-        places.emplace_back(bundles, brush::place_of(bundles, b), branches);
-    Bands bands(f.width, f.height, mostly_steep(trails));
-    std::vector<Lower> lower;
-    const auto draw = [&](const Trail& trail, std::size_t begin, std::size_t end) {
-        if (begin >= end) return;
-        const Laid laid(trail, begin, end, ink);
+    std::vector<BristlePlace> places;
+    places.reserve(hair.bundles.bristles.size());
+    for (const brush::Bristle& b : hair.bundles.bristles)
+        places.emplace_back(hair.bundles, brush::place_of(hair.bundles, b), hair.branches);
+    StrandPicture picture{Bands(f.width, f.height, mostly_steep(hair.trails)), f.lo, f.cell};
+    const auto draw = [&](const TrailPart& part) {
+        if (part.begin >= part.end) return;
         double widest = 0;
-        // Heights over the middle, of all sections together: one of them would be another at every stamp, and hair that
-        // sticks together lies on the same side.
-        Vec2 height{0};
-        for (std::size_t i = begin; i < end; ++i) {
-            const Cut& cut = trail.cuts[i];
-            widest = std::max(widest, cut.a);
-            if (i + 1 == end) break;
-            height += std::abs(trail.along[i + 1] - trail.along[i]) * Vec2{cut.a * cut.e.z, cut.b * cut.m.z};
-        }
-        lower.clear();
-        for (std::size_t k = 0; k < places.size(); ++k) {
-            const Vec2* at = places[k].at(trail, begin);
-            if (at && glm::dot(height, *at) <= 0) lower.push_back({at->x, &bundles.bristles[k]});
-        }
-        draw_strands(trail, begin, end, strands_of(lower, bundles, ink, widest, laid), f.lo, cell, bands);
+        for (std::size_t i = part.begin; i < part.end; ++i) widest = std::max(widest, part.trail.cuts[i].a);
+        std::vector<LowerBristle> lower = find_lower_bristles(part, hair.bundles, places);
+        StrandPen pen(part, picture);
+        for (const Strand& s : strands_of(lower, hair.bundles, ink, widest, LyingHair(part, ink))) pen.draw(s);
     };
-    for (const Trail& trail : trails) {
+    for (const Trail& trail : hair.trails) {
         // The bands of both parts meet between two cuts.
-        draw(trail, 0, std::min(trail.trunk + 1, trail.cuts.size()));
-        draw(trail, trail.trunk, trail.cuts.size());
+        draw({trail, 0, std::min(trail.trunk + 1, trail.cuts.size())});
+        draw({trail, trail.trunk, trail.cuts.size()});
     }
     std::vector<std::uint8_t> level;
-    bands.rows(level);
+    picture.bands.copy_rows(level);
     std::uint64_t sum = 0;
     for (std::size_t row = 0; row < f.coverage.size(); row += static_cast<std::size_t>(f.width))
-        sum += thin(f.coverage.data() + row, level.data() + row, f.width);
-    result.closed_area = static_cast<double>(sum) / 255 * cell * cell;
+        sum += scale_coverage(f.coverage.data() + row, level.data() + row, f.width);
+    result.closed_area = static_cast<double>(sum) / 255 * f.cell * f.cell;
     return result;
 }
 

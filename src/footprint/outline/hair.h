@@ -21,15 +21,30 @@ std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bun
 
 /// A part of a bundle that touches the surface.
 struct HairContactPoint {
-    std::uint32_t bundle = 0;
-    Vec2 at{0};         ///< metres, in the stamp's (u, v)
-    double along = 0;   ///< fraction of the tuft's length from the root
-    double length = 0;  ///< of hair, fraction of the tuft's length
+    std::uint32_t bundle = 0;  ///< of the tuft
+    Vec2 at{0};                ///< metres, in the stamp's (u, v)
+    double along = 0;          ///< fraction of the tuft's length from the root
+    double length = 0;         ///< of hair, fraction of the tuft's length
 };
 
 /// Returns the parts that `contact_cells` counts, one by one. Cost: about 10 µs.
 std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles,
                                                   int branches);
+
+/// Hair that touches the surface.
+struct TouchingHair {
+    std::span<const Trail> trails;      ///< touching parts of the branches, in the stamp's (u, v)
+    std::span<const Outline> outlines;  ///< of the trails; bound the marks
+    const brush::Bundles& bundles;      ///< of the tuft
+    int branches = 1;                   ///< of the tuft; more than 1: split
+};
+
+/// Plane and resolution of a picture of the contact patch; see `Footprint`.
+struct PicturePlane {
+    const Frame& frame;              ///< world; n out of the surface, origin on it
+    std::uint32_t triangle = kNone;  ///< of the mesh under the origin
+    double cell = 0;                 ///< metres, > 0
+};
 
 /// Wetness and motion of the touching hair.
 struct HairInk {
@@ -54,8 +69,9 @@ struct HairInk {
 /// gaps of fast hair. s_c = 0.4, v_c = 0.7 m/s: a full tuft closes up to 0.6 m/s.
 double wetness_of_bundle(double saturation, double holds, double speed);
 
+/// Result of `draw_hair_marks`.
 struct HairMarks {
-    Footprint footprint;
+    Footprint footprint;     ///< picture of the marks
     double closed_area = 0;  ///< m², of the outlines
 };
 
@@ -89,7 +105,6 @@ struct HairMarks {
 ///
 /// streaks across its motion and, weighted by `press_share`, across the course: hair set down across the course
 /// prints no bars. Strokes begin and end ragged, along themselves.
-HairMarks hair_marks(std::span<const Trail> trails, std::span<const Outline> outlines, const brush::Bundles& bundles,
-                     int branches, const HairInk& ink, const Frame& frame, std::uint32_t triangle, double cell);
+HairMarks draw_hair_marks(const TouchingHair& hair, const HairInk& ink, const PicturePlane& plane);
 
 }  // namespace tuft::footprint

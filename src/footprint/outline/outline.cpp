@@ -388,9 +388,9 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<cons
     return dealt;
 }
 
-std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
-                             const OutlineOptions& options) {
-    return outlines_of(trails(tuft, frame, planes, 1, options.film), options.points);
+std::vector<Outline> outlines_of(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
+                                 const OutlineOptions& options) {
+    return outlines_of(find_trails(tuft, frame, planes, 1, options.film), options.points);
 }
 
 std::vector<Vec2> curve_points(const Outline& outline, int per_span) {

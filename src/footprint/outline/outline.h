@@ -23,6 +23,7 @@ struct Outline {
     std::vector<Vec2> control;
 };
 
+/// Options of `outlines_of` a tuft.
 struct OutlineOptions {
     double film = 0.1e-3;  ///< metres, thickness of the ink film on wet hair; added to every section
     int points = 20;       ///< cut points on each side
@@ -41,8 +42,8 @@ std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<cons
 /// continuous while sections enter and leave the surface. Parts below the surface count with their projection onto
 /// it. With `planes` (one entry per branch) each node is cut by its own plane and its cut points are placed on the
 /// surface by the log map. Without, the plane is that of `frame`.
-std::vector<Outline> outline(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes = {},
-                             const OutlineOptions& options = {});
+std::vector<Outline> outlines_of(const brush::TuftState& tuft, const Frame& frame,
+                                 std::span<const NodePlanes> planes = {}, const OutlineOptions& options = {});
 
 /// Returns points of the curve, `per_span` for each cut point.
 std::vector<Vec2> curve_points(const Outline& outline, int per_span = 4);

@@ -1,6 +1,7 @@
 #include "footprint/outline/picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -18,9 +19,10 @@ TUFT_CLONES void pack_rows(const std::uint8_t* __restrict low, const std::uint8_
 }
 
 /// Bits that all, and bits that any of four rows have set, column by column.
-TUFT_CLONES void column_bits(const std::uint8_t* __restrict row0, const std::uint8_t* __restrict row1,
-                             const std::uint8_t* __restrict row2, const std::uint8_t* __restrict row3, int n,
-                             std::uint8_t* __restrict all, std::uint8_t* __restrict any) {
+TUFT_CLONES void column_bits(const std::array<const std::uint8_t*, 4>& rows, int n, std::uint8_t* __restrict all,
+                             std::uint8_t* __restrict any) {
+    const std::uint8_t* __restrict row0 = rows[0], * __restrict row1 = rows[1];
+    const std::uint8_t* __restrict row2 = rows[2], * __restrict row3 = rows[3];
 #pragma omp simd
     for (int i = 0; i < n; ++i) {
         all[i] = row0[i] & row1[i] & row2[i] & row3[i];
@@ -29,7 +31,7 @@ TUFT_CLONES void column_bits(const std::uint8_t* __restrict row0, const std::uin
 }
 
 /// Eight rows of eight cells become columns: corners change places, in squares of 4, of 2 and of 1.
-void turn_square(const std::uint8_t* in, std::ptrdiff_t next_in, std::uint8_t* out, std::ptrdiff_t next_out) {
+void transpose_square(const std::uint8_t* in, std::ptrdiff_t next_in, std::uint8_t* out, std::ptrdiff_t next_out) {
     std::uint64_t row[8];
     for (int k = 0; k < 8; ++k) std::memcpy(&row[k], in + k * next_in, 8);
     const auto swap = [](std::uint64_t& a, std::uint64_t& b, int shift, std::uint64_t low) {
@@ -145,7 +147,7 @@ void pack_picture(const Footprint& footprint, std::vector<std::uint16_t>& pairs)
     pack_rows(footprint.coverage.data(), footprint.coverage.data() + row, pairs.data(), pairs.size());
 }
 
-void turn_over(std::span<const std::uint8_t> cells, int width, int height, std::vector<std::uint8_t>& turned) {
+void transpose(std::span<const std::uint8_t> cells, int width, int height, std::vector<std::uint8_t>& turned) {
     constexpr int kSide = 8;
     turned.resize(static_cast<std::size_t>(width) * height);
     const auto in = [&](int x, int y) { return cells.data() + static_cast<std::ptrdiff_t>(y) * width + x; };
@@ -153,7 +155,7 @@ void turn_over(std::span<const std::uint8_t> cells, int width, int height, std::
     for (int y = 0; y < height; y += kSide)
         for (int x = 0; x < width; x += kSide) {
             if (x + kSide <= width && y + kSide <= height) {
-                turn_square(in(x, y), width, out(x, y), height);
+                transpose_square(in(x, y), width, out(x, y), height);
                 continue;
             }
             for (int j = y; j < std::min(y + kSide, height); ++j)
@@ -177,7 +179,7 @@ void BlockTally::count(const Footprint& footprint) {
         const auto row = [&](int k) {
             return footprint.coverage.data() + std::size_t(std::min(j * kBlock + k, cells_y_ - 1)) * cells_x_;
         };
-        column_bits(row(0), row(1), row(2), row(3), cells_x_, reinterpret_cast<std::uint8_t*>(all_.data()),
+        column_bits({row(0), row(1), row(2), row(3)}, cells_x_, reinterpret_cast<std::uint8_t*>(all_.data()),
                     reinterpret_cast<std::uint8_t*>(any_.data()));
         std::uint32_t* left = to_left_.data() + std::size_t(j) * (width_ + 1);
         left[0] = 0;

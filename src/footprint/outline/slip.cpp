@@ -39,22 +39,22 @@ const Trail* same_hair(const Trail& trail, std::span<const Trail> before) {
 }  // namespace
 
 void change_frame(std::vector<Trail>& trails, const Frame& from, const Frame& to) {
-    const auto turned = [&](const Vec3& v) {
+    const auto to_other = [&](const Vec3& v) {
         const Vec3 world = v.x * from.t + v.y * from.b + v.z * from.n;
         return Vec3{glm::dot(world, to.t), glm::dot(world, to.b), glm::dot(world, to.n)};
     };
     for (Trail& trail : trails)
         for (Cut& cut : trail.cuts) {
             cut.centre = Vec2(to.to_local(from.to_world(Vec3(cut.centre, 0))));
-            cut.e = turned(cut.e);
-            cut.m = turned(cut.m);
+            cut.e = to_other(cut.e);
+            cut.m = to_other(cut.m);
         }
 }
 
-TransverseLength::TransverseLength(const Trail& trail, std::size_t begin, std::size_t end,
-                                   std::span<const Trail> before, const Vec2& direction) {
+TransverseLength::TransverseLength(const TrailPart& part, std::span<const Trail> before, const Vec2& direction) {
+    const Trail& trail = part.trail;
     const Trail* was = same_hair(trail, before);
-    for (std::size_t i = begin; i + 1 < end; ++i) {
+    for (std::size_t i = part.begin; i + 1 < part.end; ++i) {
         const Vec2 run = trail.cuts[i + 1].centre - trail.cuts[i].centre;
         length_ += glm::length(run);
         if (!was) {
@@ -69,9 +69,9 @@ TransverseLength::TransverseLength(const Trail& trail, std::size_t begin, std::s
         const Place p = place_at(*was, along), q = place_at(trail, along);
         const Vec2 middle = q.centre - p.centre, spread = q.half - p.half;
         for (std::size_t k = 0; k < kPlaces; ++k) {
-            const Vec2 went = middle + (2 * static_cast<double>(k) / (kPlaces - 1) - 1) * spread;
-            measure_[k] += std::abs(run.x * went.y - run.y * went.x) / (glm::length(went) + kStill);
-            displacement_[k] += glm::length(run) * went;
+            const Vec2 moved = middle + (2 * static_cast<double>(k) / (kPlaces - 1) - 1) * spread;
+            measure_[k] += std::abs(run.x * moved.y - run.y * moved.x) / (glm::length(moved) + kStill);
+            displacement_[k] += glm::length(run) * moved;
         }
     }
 }
@@ -93,9 +93,9 @@ double TransverseLength::at(double x) const {
 }
 
 double TransverseLength::sine_to(double x, const Vec2& direction) const {
-    const Vec2 went = between(displacement_, x);
-    const double lengths = glm::length(went) * glm::length(direction);
-    return lengths > 0 ? std::abs(went.x * direction.y - went.y * direction.x) / lengths : 0;
+    const Vec2 moved = between(displacement_, x);
+    const double lengths = glm::length(moved) * glm::length(direction);
+    return lengths > 0 ? std::abs(moved.x * direction.y - moved.y * direction.x) / lengths : 0;
 }
 
 }  // namespace tuft::footprint

@@ -20,10 +20,9 @@ void change_frame(std::vector<Trail>& trails, const Frame& from, const Frame& to
 /// hand does. Hair at rest measures 0.
 class TransverseLength {
   public:
-    /// For cuts [begin, end) of a trail. `before`: the previous stamp's trails in the same frame. Where none
-    /// matches this trail, all hair moves along `direction` (unit, or zero).
-    TransverseLength(const Trail& trail, std::size_t begin, std::size_t end, std::span<const Trail> before,
-                     const Vec2& direction);
+    /// `before`: the previous stamp's trails in the same frame. Where none matches this trail, all hair moves along
+    /// `direction` (unit, or zero).
+    TransverseLength(const TrailPart& part, std::span<const Trail> before, const Vec2& direction);
 
     /// Returns the length across the motion, metres, of hair at x in [−1, 1] along the sections' e.
     double at(double x) const;
@@ -34,7 +33,7 @@ class TransverseLength {
 
   private:
     static constexpr std::size_t kPlaces = 17;
-    std::array<double, kPlaces> measure_{};
+    std::array<double, kPlaces> measure_{};  // metres
     std::array<Vec2, kPlaces> displacement_{};
     double length_ = 0;  // metres of hair
 };

@@ -10,10 +10,10 @@
 namespace tuft::footprint {
 namespace {
 
-constexpr double kFewFolds = 0.01;             // of the clusters: fewer are left where the walk placed them
+constexpr double kFewOccluded = 0.01;          // of the clusters: fewer are left where the walk placed them
 constexpr double kBeyond = 1.1;                // of the reach: clusters that begin there
 constexpr std::size_t kMostWindows = 120'000;  // some 20 ms
-constexpr double kBeside = 1e-3;               // of a triangle: what places in the atlas are rounded by
+constexpr double kBeside = 1e-3;               // of a triangle: rounding of positions in the atlas
 
 Vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
     const Vec3 a = mesh.position(triangle, 0);
@@ -82,9 +82,9 @@ struct OccludedClusters {
         if (triangle == kNone) return false;
         const mesh::ExactGeodesics::Geodesic path = geodesics.to(triangle, Vec3(cluster.centre));
         if (!std::isfinite(path.length)) return false;
-        const Vec2 leaves = atlas::carried_direction(from, path.start_direction, normal);
+        const Vec2 leaves = atlas::transport_direction(from, path.start_direction, normal);
         const Vec2 arrives =
-            atlas::carried_direction(atlas::frame_of(cluster), path.end_direction, face_normal(mesh, triangle));
+            atlas::transport_direction(atlas::frame_of(cluster), path.end_direction, face_normal(mesh, triangle));
         n.u = static_cast<float>(path.length * leaves.x);
         n.v = static_cast<float>(path.length * leaves.y);
         n.c = static_cast<float>(glm::dot(leaves, arrives));
@@ -108,16 +108,17 @@ void TriangleCache::insert(std::uint32_t cluster, std::uint32_t triangle, double
         entries_[entry] = {triangle, off2};
 }
 
-void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Frame& from, const Reach& reach,
-                      const Start& start, std::size_t occluded, PlanScratch& scratch) {
+void resolve_occluded(const Surface& surface, const Reach& reach, const Start& start, std::size_t occluded,
+                      PlanScratch& scratch) {
     const auto n_clusters = static_cast<double>(scratch.reached.size());
-    if (occluded == 0 || static_cast<double>(occluded) < kFewFolds * n_clusters) return;
+    if (occluded == 0 || static_cast<double>(occluded) < kFewOccluded * n_clusters) return;
     mesh::ExactGeodesics& geodesics = scratch.geodesics;
     const double radius = kBeyond * static_cast<double>(reach.radius);
-    if (!geodesics.spread(surface.mesh, triangle, from.origin, radius, kMostWindows)) return;
+    if (!geodesics.spread(surface.mesh, start.triangle, start.frame.origin, radius, kMostWindows)) return;
     CentreLocator locator(surface, scratch.triangle_cache);
     for (std::size_t i = 0; i < geodesics.n_faces(); ++i) locator.add_triangle(geodesics.triangle(i));
-    const OccludedClusters occluded_clusters{surface.mesh, geodesics, from, face_normal(surface.mesh, triangle)};
+    const OccludedClusters occluded_clusters{surface.mesh, geodesics, start.frame,
+                                             face_normal(surface.mesh, start.triangle)};
     const atlas::ClusterGraph& graph = surface.clusters;
     begin_walk(scratch, graph.n_clusters());
     std::vector<std::uint32_t> open{start.cluster};

@@ -11,12 +11,11 @@ namespace tuft::footprint {
 /// cluster or pass an opening on either side, as between the spokes of a wheel, and positions come out closer than
 /// the straight line in space.
 ///
-/// (u, v) is the geodesic's length in the direction in which it leaves `from`, a frame with its origin in
-/// `triangle` and in the cluster of `start`. Each cluster is rotated by the direction in which the geodesic
-/// arrives. Behind a corner, where all geodesics leave in one direction, lengths are correct and pictures are
-/// stretched. Cost: none without folds; else 1.5 µs per triangle within reach. Where that exceeds 20 ms, the
-/// positions of the search are retained.
-void resolve_occluded(const Surface& surface, std::uint32_t triangle, const Frame& from, const Reach& reach,
-                      const Start& start, std::size_t occluded, PlanScratch& scratch);
+/// (u, v) is the geodesic's length in the direction in which it leaves `start.frame`. Each cluster is rotated by the
+/// direction in which the geodesic arrives. Behind a corner, where all geodesics leave in one direction, lengths are
+/// correct and pictures are stretched. Cost: none without folds; else 1.5 µs per triangle within reach. Where that
+/// exceeds 20 ms, the positions of the search are retained.
+void resolve_occluded(const Surface& surface, const Reach& reach, const Start& start, std::size_t occluded,
+                      PlanScratch& scratch);
 
 }  // namespace tuft::footprint

@@ -26,16 +26,16 @@ constexpr std::array<std::array<int, 6>, kQuadrants> kTexels = [] {
     return t;
 }();
 
-/// Middles of the quadrants, and half of each diagonal, squared.
-struct Quarters {
+/// Centres of the quadrants, and half of each diagonal, squared.
+struct QuadrantCentres {
     float x[kQuadrants], y[kQuadrants], z[kQuadrants], nx[kQuadrants], ny[kQuadrants], nz[kQuadrants];
     float radius2[kQuadrants];
 };
 
 /// position(t) and normal(t): of a texel.
 template <class Position, class Normal>
-Quarters quadrants_of(Position position, Normal normal) {
-    Quarters out;
+QuadrantCentres quadrants_of(Position position, Normal normal) {
+    QuadrantCentres out;
     for (int q = 0; q < kQuadrants; ++q) {
         const auto& t = kTexels[q];
         const Vec3f middle = 0.5f * (position(t[0]) + position(t[1])), n = 0.5f * (normal(t[0]) + normal(t[1]));
@@ -55,7 +55,7 @@ Quarters quadrants_of(Position position, Normal normal) {
     return out;
 }
 
-Quarters quadrants_of(const atlas::TexelMap& texels, std::uint32_t slot) {
+QuadrantCentres quadrants_of(const atlas::TexelMap& texels, std::uint32_t slot) {
     if (!texels.packed.empty())
         return quadrants_of([&](int t) { return texels.position(slot, t); },
                             [&](int t) { return texels.normal(slot, t); });
@@ -72,33 +72,33 @@ Quarters quadrants_of(const atlas::TexelMap& texels, std::uint32_t slot) {
 }  // namespace
 
 bool add_quadrants(const ClusterFrame& frame, std::int32_t cluster, const atlas::TexelMap& texels, std::uint32_t slot,
-                   const SweptDisplacement& drift, Discs& discs) {
+                   const SweptDisplacement& displacement, Discs& discs) {
     const std::uint8_t* id = texels.tiles[slot].cluster.data();
     for (const auto& quadrant : kTexels)
         for (const int t : quadrant)
             if (id[t] != cluster) return false;
-    const Quarters p = quadrants_of(texels, slot);
+    const QuadrantCentres p = quadrants_of(texels, slot);
     float u[kQuadrants], v[kQuadrants], cos[kQuadrants];
 #pragma omp simd
     for (int k = 0; k < kQuadrants; ++k) {
-        const MappedTexel at = map_texel<false>(frame, p.x[k], p.y[k], p.z[k], p.nx[k], p.ny[k], p.nz[k]);
+        const MappedTexel at = map_texel<false>(frame, {p.x[k], p.y[k], p.z[k], p.nx[k], p.ny[k], p.nz[k]});
         u[k] = at.u;
         v[k] = at.v;
         cos[k] = at.cos;
     }
     // Cells a metre: the longer of the frame's axes.
     const float scale = kClusterSlack * std::sqrt(std::max(glm::dot(frame.tu, frame.tu), glm::dot(frame.tv, frame.tv)));
-    const float way = glm::length(drift.half_way);
+    const float half_length = glm::length(displacement.half_shift);
     for (int k = 0; k < kQuadrants; ++k) {
         const float r = scale * std::sqrt(p.radius2[k]);
-        const Vec2f place = Vec2f{u[k], v[k]} + drift.half_way;
-        const float swing = drift.turn * (glm::length(place + drift.zero) + way + r);
-        discs.add(place, cos[k] > 0 ? r + way + swing + drift.extra + 1.5f : kEverywhere);
+        const Vec2f position = Vec2f{u[k], v[k]} + displacement.half_shift;
+        const float swing = displacement.turn * (glm::length(position + displacement.zero) + half_length + r);
+        discs.add(position, cos[k] > 0 ? r + half_length + swing + displacement.extra + 1.5f : kEverywhere);
     }
     return true;
 }
 
-void sort_quadrants(const Discs& discs, std::size_t first, ClusterFrame& frame) {
+void classify_quadrants(const Discs& discs, std::size_t first, ClusterFrame& frame) {
     frame.partial_quadrants = 0;
     for (int k = 0; k < kQuadrants; ++k) {
         const Cover cover = discs.cover(first + k);

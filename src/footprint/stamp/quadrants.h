@@ -16,10 +16,10 @@ namespace tuft::footprint {
 
 /// Bounds on the poses of a moving picture over a texel, besides the texel's position.
 struct SweptDisplacement {
-    Vec2f zero{0};      ///< cells, of the footprint's origin
-    Vec2f half_way{0};  ///< cells
-    float turn = 0;     ///< radians, absolute
-    float extra = 0;    ///< cells, difference between the two mappings
+    Vec2f zero{0};        ///< cells, of the footprint's origin
+    Vec2f half_shift{0};  ///< cells, half of the translation
+    float turn = 0;       ///< radians, absolute
+    float extra = 0;      ///< cells, difference between the two mappings
 };
 
 inline constexpr int kQuadrants = 4;
@@ -27,9 +27,9 @@ inline constexpr int kQuadrants = 4;
 /// Adds a disc for each quadrant of a tile that contains all picture positions over it; `frame` maps the texels.
 /// Adds none and returns false when the centres and corners of the quadrants are not all in this cluster.
 bool add_quadrants(const ClusterFrame& frame, std::int32_t cluster, const atlas::TexelMap& texels, std::uint32_t slot,
-                   const SweptDisplacement& drift, Discs& discs);
+                   const SweptDisplacement& displacement, Discs& discs);
 
 /// Classifies the quadrants of a cluster as full, empty or partial, by their discs from `first` on.
-void sort_quadrants(const Discs& discs, std::size_t first, ClusterFrame& frame);
+void classify_quadrants(const Discs& discs, std::size_t first, ClusterFrame& frame);
 
 }  // namespace tuft::footprint

@@ -17,7 +17,7 @@ namespace {
 constexpr float kSureCos = 0.8f, kSureNormal = 0.3f;  // clusters that surely face the stamp
 constexpr double kShadow = 0.1;                       // of its distance: what a cluster behind an opening may be off by
 
-/// Frame of texels whose log map in `frame` lands at `place` + turn · (u, v) in the stamp.
+/// Frame of texels whose log map in `frame` is at `place` + turn · (u, v) in the stamp.
 ClusterFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& turn, const Footprint& footprint) {
     ClusterFrame f;
     const double scale = 1 / footprint.cell;
@@ -30,8 +30,9 @@ ClusterFrame picture_frame(const Frame& frame, const Vec2& place, const Vec2& tu
     return f;
 }
 
-/// Sub-poses for no point to go further than `sub_pose` between them; 0: nothing moves.
-double poses_wanted(const Footprint& footprint, const Motion& motion, double texel_size, const StampOptions& options) {
+/// Returns the number of sub-poses at which no point moves further than `sub_pose` between them; 0: nothing moves.
+double count_sub_poses(const Footprint& footprint, const Motion& motion, double texel_size,
+                       const StampOptions& options) {
     const double travel = glm::length(motion.shift) + std::abs(motion.turn) * footprint.radius;
     if (!(travel > 0)) return 0;
     const double step = options.sub_pose * texel_size;
@@ -40,9 +41,9 @@ double poses_wanted(const Footprint& footprint, const Motion& motion, double tex
 
 /// Poses of the picture at the middles of equal parts of the motion. At a part σ before
 /// its end a texel at (u, v) sees the picture's point x = R(σ turn) ((u, v) + σ shift).
-std::vector<SubPose> spread_poses(const Footprint& footprint, const Motion& motion, double texel_size,
-                                  const StampOptions& options) {
-    const double wanted = poses_wanted(footprint, motion, texel_size, options);
+std::vector<SubPose> make_sub_poses(const Footprint& footprint, const Motion& motion, double texel_size,
+                                    const StampOptions& options) {
+    const double wanted = count_sub_poses(footprint, motion, texel_size, options);
     if (!(wanted > 0)) return {SubPose{}};
     const int n = static_cast<int>(std::clamp(wanted, 1.0, double(std::max(options.max_sub_poses, 1))));
     std::vector<SubPose> poses(n);
@@ -84,34 +85,34 @@ bool surely_faces(const atlas::TexelCluster& cluster, const Vec3f& normal) {
     return cluster.cone_cos > kSureCos && glm::dot(cluster.normal, normal) > kSureNormal;
 }
 
-/// Where the texels of the reached clusters may lie in either mode and in whatever pose, and the next
-/// cell; with the disagreement of the modes.
-void cover_of_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint, const Motion& motion, Isa isa,
-                       PlanScratch& scratch) {
+/// Finds the coverage of the discs that hold the texels of the reached clusters in either mode and in all poses, with
+/// the next cell; and the disagreement of the modes.
+void find_cluster_coverage(const atlas::ClusterGraph& graph, const Footprint& footprint, const Motion& motion, Isa isa,
+                           PlanScratch& scratch) {
     const auto cell = static_cast<float>(footprint.cell);
     const Vec2f zero = Vec2f(footprint.lo / footprint.cell + 0.5);
-    const Vec2f half_way = Vec2f(0.5 * motion.shift);
-    const float way = glm::length(half_way), turn = static_cast<float>(std::abs(motion.turn));
-    scratch.apart.clear();
+    const Vec2f half_shift = Vec2f(0.5 * motion.shift);
+    const float half_length = glm::length(half_shift), turn = static_cast<float>(std::abs(motion.turn));
+    scratch.disagreement.clear();
     scratch.discs.clear();
     for (const std::uint32_t i : scratch.reached) {
         const atlas::TexelCluster& cluster = graph.clusters[i];
         const PlanScratch::Node& at = scratch.nodes[i];
-        scratch.apart.push_back(disagreement(footprint.frame, cluster, at));
-        const Vec2f place = Vec2f{at.u, at.v} + half_way;
-        const float r = kClusterSlack * cluster.radius, swing = turn * (glm::length(place) + way + r);
-        const float reach = r + static_cast<float>(scratch.apart.back()) + way + swing;
-        scratch.discs.add(place / cell - zero, reach / cell + 1.5f);
+        scratch.disagreement.push_back(disagreement(footprint.frame, cluster, at));
+        const Vec2f position = Vec2f{at.u, at.v} + half_shift;
+        const float r = kClusterSlack * cluster.radius, swing = turn * (glm::length(position) + half_length + r);
+        const float reach = r + static_cast<float>(scratch.disagreement.back()) + half_length + swing;
+        scratch.discs.add(position / cell - zero, reach / cell + 1.5f);
     }
     scratch.tally.find_coverage(scratch.discs, isa);
 }
 
-/// Lists the reached clusters that the picture may cover, with what is known of its coverage
-/// there, and takes the greatest disagreement; scratch.reached is left with those listed.
+/// Lists the reached clusters that the picture may cover, with its coverage there as far as it is known, and takes the
+/// greatest disagreement; scratch.reached is left with those listed.
 void list_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint, const Motion& motion,
                    PlanScratch& scratch, StampJobs& jobs) {
     scratch.tally.count(footprint);
-    cover_of_clusters(graph, footprint, motion, jobs.isa, scratch);
+    find_cluster_coverage(graph, footprint, motion, jobs.isa, scratch);
     const Vec3f normal(footprint.frame.n);
     std::size_t n = 0;
     jobs.frames.reserve(scratch.reached.size());
@@ -120,7 +121,7 @@ void list_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint,
         const atlas::TexelCluster& cluster = graph.clusters[i];
         const PlanScratch::Node& at = scratch.nodes[i];
         ClusterFrame f;
-        const double apart = scratch.apart[k];
+        const double off = scratch.disagreement[k];
         if (jobs.mapping == Mapping::log) {
             const Cover cover = scratch.discs.cover(k);
             if (cover == Cover::empty) continue;
@@ -130,8 +131,8 @@ void list_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint,
             }
         }
         // Behind an opening the walk itself is in doubt: it went round.
-        if (at.lit || apart > kShadow * static_cast<double>(glm::length(Vec2f{at.u, at.v})))
-            jobs.discrepancy = std::max(jobs.discrepancy, apart);
+        if (at.lit || off > kShadow * static_cast<double>(glm::length(Vec2f{at.u, at.v})))
+            jobs.discrepancy = std::max(jobs.discrepancy, off);
         if (jobs.tiles.empty() || jobs.tiles.back().slot != cluster.slot)
             jobs.tiles.push_back({cluster.slot, static_cast<std::uint32_t>(jobs.frames.size()), 0});
         ++jobs.tiles.back().count;
@@ -176,19 +177,19 @@ void place_clusters(const atlas::ClusterGraph& graph, const Footprint& footprint
     }
 }
 
-/// Appearance closer at clusters of whole tiles that the picture covers in part. Between the two thresholds
+/// Finds the covered quadrants of clusters of whole tiles that the picture covers in part. Between the two thresholds
 /// of discrepancy a cluster may be mapped by either frame.
-void sort_clusters(const Surface& surface, const Footprint& footprint, const Motion& motion,
-                   const StampOptions& options, PlanScratch& scratch, StampJobs& jobs) {
+void classify_clusters(const Surface& surface, const Footprint& footprint, const Motion& motion,
+                       const StampOptions& options, PlanScratch& scratch, StampJobs& jobs) {
     if (jobs.mapping != Mapping::log) return;
     const auto [low, high] = std::minmax(options.enter, options.leave);
     const bool either = jobs.discrepancy > low && jobs.discrepancy <= high;
     const bool own = jobs.discrepancy > high;
     const auto cell = static_cast<float>(footprint.cell);
     const Vec3f normal(footprint.frame.n);
-    SweptDisplacement drift{Vec2f(footprint.lo / footprint.cell + 0.5), Vec2f(0.5 * motion.shift) / cell,
-                            static_cast<float>(std::abs(motion.turn))};
-    if (either) drift.extra = 1 + static_cast<float>(jobs.discrepancy * footprint.radius) / cell;
+    SweptDisplacement displacement{Vec2f(footprint.lo / footprint.cell + 0.5), Vec2f(0.5 * motion.shift) / cell,
+                                   static_cast<float>(std::abs(motion.turn))};
+    if (either) displacement.extra = 1 + static_cast<float>(jobs.discrepancy * footprint.radius) / cell;
     scratch.queried.clear();
     scratch.discs.clear();
     for (const TileJob& job : jobs.tiles) {
@@ -197,13 +198,31 @@ void sort_clusters(const Surface& surface, const Footprint& footprint, const Mot
             const std::uint32_t i = scratch.reached[k];
             if (f.partial_quadrants == 0 || f.first_row > 0 || f.last_row + 1 < atlas::kTile) continue;
             if (!surely_faces(surface.clusters.clusters[i], normal) || (either && !scratch.nodes[i].lit)) continue;
-            if (add_quadrants(own ? f : jobs.stamp_frame, f.cluster, surface.texels, job.slot, drift, scratch.discs))
+            if (add_quadrants(own ? f : jobs.stamp_frame, f.cluster, surface.texels, job.slot, displacement,
+                              scratch.discs))
                 scratch.queried.push_back(k);
         }
     }
     scratch.tally.find_coverage(scratch.discs, jobs.isa);
     for (std::size_t n = 0; n < scratch.queried.size(); ++n)
-        sort_quadrants(scratch.discs, kQuadrants * n, jobs.frames[scratch.queried[n]]);
+        classify_quadrants(scratch.discs, kQuadrants * n, jobs.frames[scratch.queried[n]]);
+}
+
+/// Start of the walk, in the tangent plane of the surface itself: the stamp's normal may be a mean over a crease.
+Start start_of(const Surface& surface, const Footprint& footprint, const atlas::TexelRef& contact) {
+    Start start;
+    start.triangle = footprint.triangle;
+    start.cluster =
+        surface.texels.cluster_start[contact.slot] + surface.texels.tiles[contact.slot].cluster[contact.texel];
+    const atlas::TexelCluster& cluster = surface.clusters.clusters[start.cluster];
+    Frame& frame = start.frame;
+    frame = footprint.frame;
+    frame.n = glm::normalize(Vec3(surface.texels.normal(contact.slot, contact.texel)));
+    frame.t = parallel_transport(footprint.frame.t, footprint.frame.n, frame.n);
+    frame.b = glm::cross(frame.n, frame.t);
+    start.place = Vec2f(atlas::log_map(frame, Vec3(cluster.centre), Vec3(cluster.normal)));
+    start.turn = Vec2f(atlas::transport_direction(frame, Vec3(cluster.tangent), Vec3(cluster.normal)));
+    return start;
 }
 
 }  // namespace
@@ -223,35 +242,22 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     const atlas::TexelRef contact =
         atlas::texel_at(surface.mesh, surface.atlas, surface.texels, footprint.triangle, footprint.frame.origin);
     if (!contact.valid()) return jobs;
-
-    const std::uint32_t first =
-        surface.texels.cluster_start[contact.slot] + surface.texels.tiles[contact.slot].cluster[contact.texel];
-    const atlas::TexelCluster& first_cluster = surface.clusters.clusters[first];
     const Reach reach = reach_of(footprint, motion);
-
-    // The walk starts in the tangent plane of the surface itself: the stamp's normal may be
-    // a mean over a crease.
-    Frame start = footprint.frame;
-    start.n = glm::normalize(Vec3(surface.texels.normal(contact.slot, contact.texel)));
-    start.t = parallel_transport(footprint.frame.t, footprint.frame.n, start.n);
-    start.b = glm::cross(start.n, start.t);
-    const Vec2 place = atlas::log_map(start, Vec3(first_cluster.centre), Vec3(first_cluster.normal));
-    const Vec2 turn = atlas::carried_direction(start, Vec3(first_cluster.tangent), Vec3(first_cluster.normal));
-    const Start at{first, Vec2f(place), Vec2f(turn)};
-    const std::size_t occluded = walk_clusters(surface.clusters, reach, at, scratch);
-    resolve_occluded(surface, footprint.triangle, start, reach, at, occluded, scratch);
+    const Start start = start_of(surface, footprint, contact);
+    const std::size_t occluded = walk_clusters(surface.clusters, reach, start, scratch);
+    resolve_occluded(surface, reach, start, occluded, scratch);
     if (scratch.reached.empty()) return jobs;
 
     jobs.stamp_frame = picture_frame(footprint.frame, Vec2{0}, Vec2{1, 0}, footprint);
     const double texel_size = surface.texels.texel_size;
-    const double wanted = motion.turn == 0 ? poses_wanted(footprint, motion, texel_size, options) : 0;
+    const double wanted = motion.turn == 0 ? count_sub_poses(footprint, motion, texel_size, options) : 0;
     const bool takes_max = options.max_weight > 0 && wanted > 0;
     const bool swept = takes_max || (options.prefix_sums > 0 && wanted >= options.prefix_sums);
-    if (!swept) jobs.sub_poses = spread_poses(footprint, motion, texel_size, options);
+    if (!swept) jobs.sub_poses = make_sub_poses(footprint, motion, texel_size, options);
     list_clusters(surface.clusters, footprint, motion, scratch, jobs);
     if (jobs.discrepancy > std::min(options.enter, options.leave))
         place_clusters(surface.clusters, footprint, scratch, jobs);
-    sort_clusters(surface, footprint, motion, options, scratch, jobs);
+    classify_clusters(surface, footprint, motion, options, scratch, jobs);
     const Vec2f to_cells = Vec2f(footprint.lo / footprint.cell + 0.5);
     jobs.reach_lo = reach.lo / float(footprint.cell) - to_cells - 2.0f;
     jobs.reach_hi = reach.hi / float(footprint.cell) - to_cells + 2.0f;

@@ -28,9 +28,9 @@ enum class Mapping : std::uint8_t {
 /// A model and its texels; the references must outlive it.
 struct Surface {
     const mesh::TriangleMesh& mesh;
-    const atlas::Atlas& atlas;
-    const atlas::TexelMap& texels;
-    const atlas::ClusterGraph& clusters;
+    const atlas::Atlas& atlas;            ///< of the mesh
+    const atlas::TexelMap& texels;        ///< of the atlas
+    const atlas::ClusterGraph& clusters;  ///< of the texels
 };
 
 /// Motion of the footprint since the previous stamp, in its frame: a rotation by `turn` about the origin, then a
@@ -43,14 +43,14 @@ struct Motion {
 /// Options of `plan_stamp` and `choose_mode`.
 struct StampOptions {
     Mapping mapping = Mapping::log;
-    double enter = 0.015;   ///< discrepancy over radius above which each cluster gets a frame
-    double leave = 0.010;   ///< discrepancy over radius below which one frame serves all again
-    double sub_pose = 1.0;  ///< largest displacement of any point between sub-poses, texels
-    int max_sub_poses = 64;
-    int prefix_sums = 12;  ///< number of sub-poses from which a straight motion is integrated by prefix sums
+    double enter = 0.015;    ///< discrepancy over radius above which each cluster gets a frame
+    double leave = 0.010;    ///< discrepancy over radius below which one frame serves all again
+    double sub_pose = 1.0;   ///< largest displacement of any point between sub-poses, texels
+    int max_sub_poses = 64;  ///< of a stamp; longer motions have poses further apart
+    int prefix_sums = 12;    ///< number of sub-poses from which a straight motion is integrated by prefix sums
     /// 0–1: weight of the maximum over a straight motion, against the mean; for hairs finer than a texel.
     float max_weight = 0;
-    Isa isa = best_isa();
+    Isa isa = best_isa();  ///< of the kernels; no bit depends on it
 };
 
 /// Quadrants of a tile, one bit each: rows 0–7 with columns 0–7, then 8–15; rows 8–15 likewise.
@@ -59,24 +59,27 @@ inline constexpr std::uint8_t kAllQuadrants = 0xf;
 /// Log map of the texels of one cluster into the footprint's picture: d = p − origin, (fu, fv) = (u0, v0) + (tu,
 /// tv)·d + ½ (a − g) (tu, tv)·m, in cells.
 struct ClusterFrame {
-    Vec3f origin{0}, normal{0}, tu{0}, tv{0};
-    float u0 = 0, v0 = 0;
-    std::int32_t cluster = 0;  ///< as in `TexelTile::cluster`
-    std::uint8_t first_row = 0, last_row = 0;
+    Vec3f origin{0};                           ///< metres, world
+    Vec3f normal{0};                           ///< unit, world
+    Vec3f tu{0}, tv{0};                        ///< cells a metre, world: axes of the picture
+    float u0 = 0, v0 = 0;                      ///< cells, of `origin` in the picture
+    std::int32_t cluster = 0;                  ///< as in `TexelTile::cluster`
+    std::uint8_t first_row = 0, last_row = 0;  ///< of the tile, that hold texels of the cluster
     std::uint8_t full_quadrants = 0;  ///< quadrants in which the picture covers all of the cluster in all poses
     std::uint8_t partial_quadrants = kAllQuadrants;  ///< other quadrants in which it may cover some of it
 };
 
 /// The frames of one tile that a stamp may touch.
 struct TileJob {
-    std::uint32_t slot = kNone;
+    std::uint32_t slot = kNone;          ///< of the tile in the texel map
     std::uint32_t first = 0, count = 0;  ///< in `StampJobs::frames`
 };
 
 /// A pose of the picture within the stamp: cell coordinates (fu, fv) of a texel map to (xu fu + xv fv + du, yu fu +
 /// yv fv + dv) of the packed picture.
 struct SubPose {
-    float xu = 1, xv = 0, yu = 0, yv = 1, du = 0, dv = 0;
+    float xu = 1, xv = 0, yu = 0, yv = 1;  ///< rotation and shear
+    float du = 0, dv = 0;                  ///< cells
 };
 
 /// A planned stamp: its picture packed for the kernel and the tiles it may touch.
@@ -98,18 +101,24 @@ struct StampJobs {
     bool empty() const { return tiles.empty(); }
 };
 
-/// Scratch memory of `sweep`.
+/// Scratch memory of `sweep`. A strip is 64 values of each line of the sheared picture.
 struct SweepScratch {
-    /// Lines of the picture, by their start, from which the motion over one position is computed.
+    /// Lines of a strip whose maximum is that of the motion over one position: those between which its ends lie, and
+    /// two runs of lines that cover those between the ends. All but `after_*` are offsets of lines in the strip.
     struct SweptLines {
-        std::size_t back = 0, on = 0, first = 0, last = 0;
-        float after_back = 0, after_on = 0;
+        std::size_t back = 0, on = 0;        ///< line before the motion's beginning, and before its end
+        std::size_t first = 0, last = 0;     ///< first line of each run
+        float after_back = 0, after_on = 0;  ///< 0–1, position of the ends between their line and the next
     };
-    std::vector<SweptLines> swept_lines;
-    std::vector<const std::uint8_t*> rows;
-    std::vector<std::uint8_t> turned, strip;
-    std::vector<float> parts, lines, sums, passed;
-    Footprint swept;
+    std::vector<SweptLines> swept_lines;    ///< by line of the result
+    std::vector<const std::uint8_t*> rows;  ///< by line: its first cell in the strip
+    std::vector<std::uint8_t> transposed;   ///< the picture by columns
+    std::vector<std::uint8_t> strip;        ///< cells of lines that leave the picture; rounded results
+    std::vector<float> parts;               ///< 0–1, by line: position of the strip between two cells
+    std::vector<float> lines;               ///< values of the strip, with empty lines before and after
+    std::vector<float> sums;                ///< their prefix sums, or the maxima of runs of lines
+    std::vector<float> maxima;              ///< of the motion, by line of the result
+    Footprint swept;                        ///< the result
 };
 
 /// Cache of the triangles that contain cluster centres, since the last `clear`.
@@ -136,21 +145,24 @@ class TriangleCache {
 
 /// Scratch memory of the cluster search; one per thread, reusable for any stamp.
 struct PlanScratch {
+    /// A cluster in the search.
     struct Node {
-        std::uint32_t epoch = 0;
-        std::uint8_t state = 0;
-        float u = 0, v = 0, c = 1, s = 0, key = 0;
-        float stretch = 1;  ///< of the map across the radial direction
-        bool lit = true;    ///< reached by a straight path from the origin
+        std::uint32_t epoch = 0;  ///< of the search that wrote the node; another: the node is unvisited
+        std::uint8_t state = 0;   ///< see walk.h: open, final or outside
+        float u = 0, v = 0;       ///< metres, of the cluster's centre in the stamp's plane
+        float c = 1, s = 0;       ///< cosine and sine of the rotation of its frame there
+        float key = 0;            ///< m², squared length of the shortest path found, by which the heap is ordered
+        float stretch = 1;        ///< of the map across the radial direction
+        bool lit = true;          ///< reached by a straight path from the origin
     };
-    std::uint32_t epoch = 0;
-    std::vector<Node> nodes;
-    std::vector<std::pair<float, std::uint32_t>> heap;
-    std::vector<std::uint32_t> reached;
-    BlockTally tally;
-    Discs discs;
-    std::vector<double> apart;           ///< metres, by reached cluster
-    std::vector<std::uint32_t> queried;  ///< frames whose quadrants are queried
+    std::uint32_t epoch = 0;                            ///< of the search in work
+    std::vector<Node> nodes;                            ///< by cluster
+    std::vector<std::pair<float, std::uint32_t>> heap;  ///< keys and clusters
+    std::vector<std::uint32_t> reached;                 ///< clusters that the picture reaches, ascending
+    BlockTally tally;                                   ///< of the picture
+    Discs discs;                                        ///< of clusters, then of quadrants
+    std::vector<double> disagreement;                   ///< metres, by reached cluster, between the two mappings
+    std::vector<std::uint32_t> queried;                 ///< frames whose quadrants are queried
     SweepScratch sweep;
     mesh::ExactGeodesics geodesics;
     TriangleCache triangle_cache;
@@ -158,8 +170,8 @@ struct PlanScratch {
 
 /// Buffer for an unpacked tile; one per thread.
 struct Unpacked {
-    std::uint32_t slot = kNone;
-    atlas::TexelShape shape;
+    std::uint32_t slot = kNone;  ///< of the tile unpacked last; kNone: none
+    atlas::TexelShape shape;     ///< its texels
 };
 
 /// Plans a stamp: finds the clusters within the footprint that are connected to the contact point and do not face

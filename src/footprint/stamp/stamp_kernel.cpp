@@ -51,7 +51,7 @@ struct Runs {
 
 /// One bit for each run.
 template <int lanes>
-[[gnu::always_inline]] inline Units joined(Units units) {
+[[gnu::always_inline]] inline Units join_runs(Units units) {
     return lanes == 2 * kUnit ? (units | units >> 1) & 0x55555555u : units;
 }
 
@@ -63,7 +63,7 @@ template <int lanes>
     return runs;
 }
 
-/// What the kernel is called with, as plain pointers: a standard function called there would not be
+/// Input of the kernel, as plain pointers: a standard function called there would not be
 /// inlined into code for another instruction set.
 struct Task {
     const StampJobs& jobs;
@@ -76,22 +76,26 @@ struct Task {
     Vec2f reach_lo, reach_hi;
 };
 
-/// Texel → picture, in cells, for the texels that are `mine`, or all when `whole`; see `atlas::log_map`
-/// for the formula. The others stay as they are, or lie outside when this is the `only` frame.
+/// Positions of a tile's texels in the picture, cells.
+struct PicturePositions {
+    alignas(64) float u[kTileTexels], v[kTileTexels];
+};
+
+/// Texel → picture for the texels that are `mine`, or all when `whole`; see `atlas::log_map` for the formula. The
+/// others stay as they are, or lie outside when this is the `only` frame.
 template <int lanes, bool plane, bool only, bool whole>
 [[gnu::always_inline]] inline void map_texels(const Task& task, const ClusterFrame& f, const Runs& runs,
-                                              const std::int32_t* __restrict mine, float* __restrict fu,
-                                              float* __restrict fv) {
+                                              const std::int32_t* __restrict mine, PicturePositions& out) {
     constexpr float least_cos = float(atlas::kLogMapMinCos);
     for (int run = 0; run < runs.count; ++run) {
         const int begin = runs.start[run];
         const float *px = task.px + begin, *py = task.py + begin, *pz = task.pz + begin;
         const float *mx = task.nx + begin, *my = task.ny + begin, *mz = task.nz + begin;
         const std::int32_t* __restrict own = mine + begin;
-        float* __restrict to_u = fu + begin, * __restrict to_v = fv + begin;
+        float* __restrict to_u = out.u + begin, * __restrict to_v = out.v + begin;
 #pragma omp simd
         for (int t = 0; t < lanes; ++t) {
-            const MappedTexel at = map_texel<plane>(f, px[t], py[t], pz[t], mx[t], my[t], mz[t]);
+            const MappedTexel at = map_texel<plane>(f, {px[t], py[t], pz[t], mx[t], my[t], mz[t]});
             const bool seen = whole ? at.cos > least_cos : (own[t] != 0) & (at.cos > least_cos);
             if constexpr (only) {
                 to_u[t] = seen ? at.u : kOutside;
@@ -116,8 +120,8 @@ template <int lanes, bool plane, bool only, bool whole>
 /// Adds `value` at the texels of a cluster in some units. Numbers are compared as wide as values: compared as bytes,
 /// they would be widened after it, in four times as many steps.
 template <class T>
-[[gnu::always_inline]] inline void mark(const std::uint8_t* __restrict id, std::int32_t cluster, Units units, T value,
-                                        T* __restrict out) {
+[[gnu::always_inline]] inline void add_at_cluster(const std::uint8_t* __restrict id, std::int32_t cluster, Units units,
+                                                  T value, T* __restrict out) {
     for (; units != 0; units &= units - 1) {
         const int begin = kUnit * __builtin_ctz(units);
 #pragma omp simd
@@ -126,16 +130,15 @@ template <class T>
     }
 }
 
-/// Keeps the runs that some pose of the picture may reach.
+/// Drops the runs that no pose of the picture can reach.
 template <int lanes>
-[[gnu::always_inline]] inline void keep_in_picture(const Task& task, Runs& runs, const float* __restrict fu,
-                                                   const float* __restrict fv) {
+[[gnu::always_inline]] inline void drop_outside(const Task& task, Runs& runs, const PicturePositions& at) {
     const float lo_u = task.reach_lo.x, lo_v = task.reach_lo.y;
     const float hi_u = task.reach_hi.x, hi_v = task.reach_hi.y;
     int kept = 0;
     for (int run = 0; run < runs.count; ++run) {
         const std::uint16_t begin = runs.start[run];
-        const float *u = fu + begin, *v = fv + begin;
+        const float *u = at.u + begin, *v = at.v + begin;
         int any = 0;
 #pragma omp simd reduction(| : any)
         for (int t = 0; t < lanes; ++t) any |= (u[t] >= lo_u) & (u[t] <= hi_u) & (v[t] >= lo_v) & (v[t] <= hi_v);
@@ -145,19 +148,21 @@ template <int lanes>
     runs.count = kept;
 }
 
-/// What turns coverage, 255 for full, into exposure; and the greatest exposure met by each lane.
+/// Scale from coverage, 255 for full, to exposure; and the greatest exposure of each lane.
 template <int lanes>
-struct Finish {
+struct ExposureScale {
     float scale;
     float most[lanes];
 };
 
 /// Adds the picture's value at each texel, 255 for full coverage; the `last` pose finishes. In three
-/// loops, so that no texel waits for another's place in the picture.
+/// loops, so that no texel waits for another's position in the picture.
 template <int lanes, bool last>
-[[gnu::always_inline]] inline void gather(const StampJobs& jobs, const std::uint16_t* __restrict pairs,
-                                          const SubPose& pose, const Runs& runs, const float* __restrict fu,
-                                          const float* __restrict fv, float* __restrict sum, Finish<lanes>& finish) {
+[[gnu::always_inline]] inline void add_pose(const Task& task, const SubPose& pose, const Runs& runs,
+                                            const PicturePositions& positions, float* __restrict sum,
+                                            ExposureScale<lanes>& finish) {
+    const StampJobs& jobs = task.jobs;
+    const std::uint16_t* __restrict pairs = task.pairs;
     const int stride = jobs.width + 1;
     // The last coordinates inside: below the number of cells.
     const float last_x = static_cast<float>(jobs.width) * (1 - 1e-6f);
@@ -169,7 +174,7 @@ template <int lanes, bool last>
     alignas(64) std::uint32_t four[kTileTexels];
     alignas(64) float part_x[kTileTexels], part_y[kTileTexels], within[kTileTexels];
     for (int run = 0; run < runs.count; ++run) {
-        const float *u = fu + runs.start[run], *v = fv + runs.start[run];
+        const float *u = positions.u + runs.start[run], *v = positions.v + runs.start[run];
         const int at = run * lanes;
 #pragma omp simd
         for (int t = 0; t < lanes; ++t) {
@@ -211,9 +216,10 @@ template <int lanes, bool last>
     }
 }
 
-/// Finishes runs that no pose was gathered on.
+/// Finishes runs to which no pose was added.
 template <int lanes>
-[[gnu::always_inline]] inline void finish_runs(const Runs& runs, float* __restrict exposure, Finish<lanes>& finish) {
+[[gnu::always_inline]] inline void finish_runs(const Runs& runs, float* __restrict exposure,
+                                               ExposureScale<lanes>& finish) {
     for (int run = 0; run < runs.count; ++run) {
         float* __restrict e = exposure + runs.start[run];
 #pragma omp simd
@@ -227,30 +233,28 @@ template <int lanes>
 
 /// Texel → picture for all runs, by the frame of the stamp or those of the clusters.
 template <int lanes, bool plane>
-[[gnu::always_inline]] inline void map_tile(const Task& task, const Runs& runs, float* __restrict fu,
-                                            float* __restrict fv) {
+[[gnu::always_inline]] inline void map_tile(const Task& task, const Runs& runs, PicturePositions& out) {
     const StampJobs& jobs = task.jobs;
     const std::uint8_t* id = task.cluster;
     alignas(64) std::int32_t mine[kTileTexels];
     if (task.n_frames == 1 && is_alone(id, task.frames[0].cluster)) {
-        map_texels<lanes, plane, true, true>(task, jobs.piecewise ? task.frames[0] : jobs.stamp_frame, runs, mine, fu,
-                                             fv);
+        map_texels<lanes, plane, true, true>(task, jobs.piecewise ? task.frames[0] : jobs.stamp_frame, runs, mine, out);
         return;
     }
     if (!jobs.piecewise) {
         for (int t = 0; t < kTileTexels; ++t) mine[t] = 0;
         for (std::uint32_t k = 0; k < task.n_frames; ++k)
-            mark(id, task.frames[k].cluster, part_units<lanes>(task.frames[k]), 1, mine);
-        map_texels<lanes, plane, true, false>(task, jobs.stamp_frame, runs, mine, fu, fv);
+            add_at_cluster(id, task.frames[k].cluster, part_units<lanes>(task.frames[k]), 1, mine);
+        map_texels<lanes, plane, true, false>(task, jobs.stamp_frame, runs, mine, out);
         return;
     }
-    for (int t = 0; t < kTileTexels; ++t) fu[t] = fv[t] = kOutside;
+    for (int t = 0; t < kTileTexels; ++t) out.u[t] = out.v[t] = kOutside;
     for (std::uint32_t k = 0; k < task.n_frames; ++k) {
         const ClusterFrame& own = task.frames[k];
         const Units units = part_units<lanes>(own);
         for (int t = 0; t < kTileTexels; ++t) mine[t] = 0;
-        mark(id, own.cluster, units, 1, mine);
-        map_texels<lanes, plane, false, false>(task, own, runs_of(joined<lanes>(units)), mine, fu, fv);
+        add_at_cluster(id, own.cluster, units, 1, mine);
+        map_texels<lanes, plane, false, false>(task, own, runs_of(join_runs<lanes>(units)), mine, out);
     }
 }
 
@@ -270,18 +274,18 @@ template <int lanes, bool plane>
     }
     for (int t = 0; t < kTileTexels; ++t) exposure[t] = 0;
     for (std::uint32_t k = 0; full != 0 && k < task.n_frames; ++k)
-        mark(id, task.frames[k].cluster, full_units<lanes>(task.frames[k]), whole, exposure);
-    alignas(64) Finish<lanes> finish{task.jobs.gain / whole, {}};
-    Units known = joined<lanes>(full);
+        add_at_cluster(id, task.frames[k].cluster, full_units<lanes>(task.frames[k]), whole, exposure);
+    alignas(64) ExposureScale<lanes> finish{task.jobs.gain / whole, {}};
+    Units known = join_runs<lanes>(full);
     if (part != 0) {
-        alignas(64) float fu[kTileTexels], fv[kTileTexels];
-        Runs runs = runs_of(joined<lanes>(part));
-        map_tile<lanes, plane>(task, runs, fu, fv);
-        if (task.n_poses > 1) keep_in_picture<lanes>(task, runs, fu, fv);
+        PicturePositions positions;
+        Runs runs = runs_of(join_runs<lanes>(part));
+        map_tile<lanes, plane>(task, runs, positions);
+        if (task.n_poses > 1) drop_outside<lanes>(task, runs, positions);
         std::uint32_t k = 0;
         for (; k + 1 < task.n_poses; ++k)
-            gather<lanes, false>(task.jobs, task.pairs, task.poses[k], runs, fu, fv, exposure, finish);
-        gather<lanes, true>(task.jobs, task.pairs, task.poses[k], runs, fu, fv, exposure, finish);
+            add_pose<lanes, false>(task, task.poses[k], runs, positions, exposure, finish);
+        add_pose<lanes, true>(task, task.poses[k], runs, positions, exposure, finish);
         for (int run = 0; run < runs.count; ++run) known &= ~(Units{1} << (runs.start[run] / kUnit));
     }
     finish_runs(runs_of(known), exposure, finish);

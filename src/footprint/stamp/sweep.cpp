@@ -26,23 +26,23 @@ TUFT_CLONES void blend(const std::uint8_t* const* lines, const float* __restrict
     }
 }
 
-/// sum_out = sum_in + (before + now) / 2: the integral of what is linear between two of the `n + 1`
-/// lines.
-TUFT_CLONES void add_up(const float* __restrict lines, float* __restrict sums, int n) {
+/// sum_out = sum_in + (before + now) / 2: the integral of values linear between two of the `n + 1` lines.
+TUFT_CLONES void integrate_lines(const float* __restrict lines, float* __restrict sums, int n) {
     for (int i = 0; i < n; ++i, lines += kStrip, sums += kStrip) {
 #pragma omp simd
         for (int j = 0; j < kStrip; ++j) sums[j + kStrip] = sums[j] + 0.5f * (lines[j] + lines[j + kStrip]);
     }
 }
 
-/// The integral up to a part t of the way between lines a and b with integrals ia and ib.
-struct Upper {
+/// Data of the integral up to a fraction t between a line and the next; `integral`: up to the line.
+struct LineIntegral {
     const float *integral, *line, *next;
     float t;
 };
 
 /// out = (upper − lower) scale, rounded.
-TUFT_CLONES void difference(const Upper& to, const Upper& from, float scale, std::uint8_t* __restrict out) {
+TUFT_CLONES void difference(const LineIntegral& to, const LineIntegral& from, float scale,
+                            std::uint8_t* __restrict out) {
     const float t = to.t, s = from.t;
     const float *ti = to.integral, *ta = to.line, *tb = to.next;
     const float *si = from.integral, *sa = from.line, *sb = from.next;
@@ -56,15 +56,14 @@ TUFT_CLONES void difference(const Upper& to, const Upper& from, float scale, std
 }
 
 /// out = the larger one of `in` here and `ahead` values on; both may be the same.
-TUFT_CLONES void larger(const float* in, std::size_t ahead, float* out, std::size_t n) {
+TUFT_CLONES void max_ahead(const float* in, std::size_t ahead, float* out, std::size_t n) {
 #pragma omp simd
     for (std::size_t j = 0; j < n; ++j) out[j] = in[j] > in[j + ahead] ? in[j] : in[j + ahead];
 }
 
-/// out = the largest of `most` at two lines and of the values between two pairs of lines, line for
-/// line.
-TUFT_CLONES void largest(const float* __restrict lines, const float* __restrict most,
-                         const SweepScratch::SweptLines* swept_lines, int n, float* __restrict out) {
+/// out = the maximum of `most` at two lines and of the values between two pairs of lines, line for line.
+TUFT_CLONES void max_over_motion(const float* __restrict lines, const float* __restrict most,
+                                 const SweepScratch::SweptLines* swept_lines, int n, float* __restrict out) {
     for (int k = 0; k < n; ++k, out += kStrip) {
         const SweepScratch::SweptLines& p = swept_lines[k];
         const float s = p.after_back, t = p.after_on;
@@ -93,7 +92,7 @@ TUFT_CLONES void soften(const float* __restrict in, int lines, std::uint8_t* __r
 /// from line to line: value j of line i lies `first` + j + `slope` i cells along the line.
 struct Sheared {
     bool along_x = true;
-    double length = 0, slope = 0;  // cells; of the motion, and aside on the way from line to line
+    double length = 0, slope = 0;  // cells; of the motion, and shear from line to line
     int n_lines = 0, n_cells = 0, first = 0, across = 0;
     const std::uint8_t* cells = nullptr;  // [n_lines n_cells]
 
@@ -104,11 +103,11 @@ struct Sheared {
         slope = (along_x ? w.y : w.x) / length;
         n_lines = along_x ? footprint.width : footprint.height;
         n_cells = along_x ? footprint.height : footprint.width;
-        const double lean = slope * (n_lines - 1);
-        first = static_cast<int>(std::floor(-std::max(lean, 0.0)));
-        across = static_cast<int>(std::ceil(n_cells - 1 - std::min(lean, 0.0))) - first + 1;
-        if (along_x) turn_over(footprint.coverage, footprint.width, footprint.height, scratch.turned);
-        cells = along_x ? scratch.turned.data() : footprint.coverage.data();
+        const double shear = slope * (n_lines - 1);
+        first = static_cast<int>(std::floor(-std::max(shear, 0.0)));
+        across = static_cast<int>(std::ceil(n_cells - 1 - std::min(shear, 0.0))) - first + 1;
+        if (along_x) transpose(footprint.coverage, footprint.width, footprint.height, scratch.transposed);
+        cells = along_x ? scratch.transposed.data() : footprint.coverage.data();
     }
 
     /// Values [from, from + kStrip) of all lines into `out` [n_lines kStrip]; outside the picture
@@ -138,12 +137,12 @@ struct Sheared {
         blend(scratch.rows.data(), scratch.parts.data(), out, n_lines);
     }
 
-    /// Places along the motion where the picture passes, and a cell more on either side.
+    /// Positions along the motion where the picture passes, and a cell more on either side.
     int start() const { return static_cast<int>(std::floor(-std::max(length, 0.0))) - 1; }
     int stop() const { return static_cast<int>(std::ceil(n_lines - 1 - std::min(length, 0.0))) + 1; }
 
-    /// Room in the scratch for a picture over those places.
-    Footprint& lay_out(SweepScratch& scratch) const {
+    /// Sizes the scratch's picture for those positions.
+    Footprint& size_picture(SweepScratch& scratch) const {
         Footprint& swept = scratch.swept;
         swept.width = across;
         swept.height = stop() - start() + 1;
@@ -151,15 +150,15 @@ struct Sheared {
         return swept;
     }
 
-    /// The picture over those places as the jobs' one sub-pose.
-    void hand_over(const Footprint& swept, StampJobs& jobs) const {
+    /// Stores the picture over those positions as the jobs' one sub-pose.
+    void store(const Footprint& swept, StampJobs& jobs) const {
         pack_picture(swept, jobs.pairs);
         jobs.width = swept.width - 1;
         jobs.height = swept.height - 1;
-        const auto lean_by = static_cast<float>(-slope);
+        const auto shear = static_cast<float>(-slope);
         SubPose pose{.du = static_cast<float>(-first), .dv = static_cast<float>(-start())};
-        pose.xu = along_x ? lean_by : 1.0f;
-        pose.xv = along_x ? 1.0f : lean_by;
+        pose.xu = along_x ? shear : 1.0f;
+        pose.xv = along_x ? 1.0f : shear;
         pose.yu = along_x ? 1.0f : 0.0f;
         pose.yv = along_x ? 0.0f : 1.0f;
         jobs.sub_poses.assign(1, pose);
@@ -170,12 +169,12 @@ float* line_of(std::vector<float>& v, int line) {
     return v.data() + static_cast<std::ptrdiff_t>(line) * kStrip;
 }
 
-/// E into the scratch's picture; returns the gain that belongs to it.
-float mean_over(const Sheared& sheared, SweepScratch& scratch) {
+/// Computes E into the scratch's picture; returns its gain.
+float take_mean(const Sheared& sheared, SweepScratch& scratch) {
     const int n_lines = sheared.n_lines;
     const double length = sheared.length;
     std::vector<float>&lines = scratch.lines, &sums = scratch.sums;
-    // One line of nothing before the picture and one after it.
+    // One empty line before the picture and one after it.
     lines.assign(static_cast<std::size_t>(n_lines + 2) * kStrip, 0);
     sums.assign(static_cast<std::size_t>(n_lines + 2) * kStrip, 0);
     const auto gain = static_cast<float>(std::min(1.0, (n_lines + 1) / std::abs(length)));
@@ -183,13 +182,13 @@ float mean_over(const Sheared& sheared, SweepScratch& scratch) {
     const auto upper = [&](double x) {  // line k of `lines` lies at k − 1
         const double p = std::clamp(x + 1, 0.0, double(n_lines + 1));
         const int k = std::min(static_cast<int>(p), n_lines);
-        return Upper{line_of(sums, k), line_of(lines, k), line_of(lines, k + 1), static_cast<float>(p - k)};
+        return LineIntegral{line_of(sums, k), line_of(lines, k), line_of(lines, k + 1), static_cast<float>(p - k)};
     };
-    Footprint& swept = sheared.lay_out(scratch);
+    Footprint& swept = sheared.size_picture(scratch);
     alignas(64) std::array<std::uint8_t, kStrip> values;
     for (int from = 0; from < sheared.across; from += kStrip) {
         sheared.strip(from, scratch, line_of(lines, 1));
-        add_up(lines.data(), sums.data(), n_lines + 1);
+        integrate_lines(lines.data(), sums.data(), n_lines + 1);
         const int n = std::min(kStrip, sheared.across - from);
         for (int k = 0; k < swept.height; ++k) {
             const double x = sheared.start() + k;
@@ -200,25 +199,25 @@ float mean_over(const Sheared& sheared, SweepScratch& scratch) {
     return gain;
 }
 
-/// M likewise.
-void most_over(const Sheared& sheared, SweepScratch& scratch) {
+/// Computes M into the scratch's picture.
+void take_maximum(const Sheared& sheared, SweepScratch& scratch) {
     const int n_lines = sheared.n_lines;
     const double back = std::min(sheared.length, 0.0), on = std::max(sheared.length, 0.0);
-    // The same number of whole lines lies between both ends of the way at every place.
+    // The same number of whole lines lies between both ends of the motion at every position.
     const int begin = static_cast<int>(std::ceil(back)), count = static_cast<int>(std::floor(on)) - begin + 1;
-    const int room = count + 3;  // lines of nothing before and after the picture
-    const int total = n_lines + 2 * room;
+    const int margin = count + 3;  // empty lines before and after the picture
+    const int total = n_lines + 2 * margin;
     std::vector<float>& lines = scratch.lines;
     lines.assign(static_cast<std::size_t>(total) * kStrip, 0);
     if (count > 1) scratch.sums.assign(static_cast<std::size_t>(total) * kStrip, 0);
     std::vector<float>& most = count > 1 ? scratch.sums : lines;  // the largest value of `wide` lines from here on
     int wide = 1;
     while (2 * wide <= count) wide *= 2;
-    Footprint& swept = sheared.lay_out(scratch);
-    scratch.passed.resize(static_cast<std::size_t>(swept.height) * kStrip + 2);
+    Footprint& swept = sheared.size_picture(scratch);
+    scratch.maxima.resize(static_cast<std::size_t>(swept.height) * kStrip + 2);
     scratch.swept_lines.resize(static_cast<std::size_t>(swept.height));
     for (int k = 0; k < swept.height; ++k) {
-        const int x = sheared.start() + k + room;
+        const int x = sheared.start() + k + margin;
         const auto between = [&](double y, std::size_t& line, float& after) {
             const int i = std::clamp(static_cast<int>(std::floor(y)), 0, total - 2);
             line = std::size_t(i) * kStrip;
@@ -232,18 +231,18 @@ void most_over(const Sheared& sheared, SweepScratch& scratch) {
     }
     constexpr int kValues = kStrip - 2;
     for (int from = 0; from < sheared.across; from += kValues) {
-        sheared.strip(from - 1, scratch, line_of(lines, room));
+        sheared.strip(from - 1, scratch, line_of(lines, margin));
         for (int w = 1; w < wide; w *= 2)
-            larger(w == 1 ? lines.data() : most.data(), std::size_t(w) * kStrip, most.data(),
-                   std::size_t(total - w) * kStrip);
-        largest(lines.data(), most.data(), scratch.swept_lines.data(), swept.height, scratch.passed.data());
+            max_ahead(w == 1 ? lines.data() : most.data(), std::size_t(w) * kStrip, most.data(),
+                      std::size_t(total - w) * kStrip);
+        max_over_motion(lines.data(), most.data(), scratch.swept_lines.data(), swept.height, scratch.maxima.data());
         std::uint8_t* out = swept.coverage.data() + from;
         if (from + kStrip <= sheared.across) {  // the next strip goes over the last two
-            soften(scratch.passed.data(), swept.height, out, std::size_t(sheared.across));
+            soften(scratch.maxima.data(), swept.height, out, std::size_t(sheared.across));
             continue;
         }
         scratch.strip.resize(static_cast<std::size_t>(swept.height) * kStrip);
-        soften(scratch.passed.data(), swept.height, scratch.strip.data(), kStrip);
+        soften(scratch.maxima.data(), swept.height, scratch.strip.data(), kStrip);
         for (int k = 0; k < swept.height; ++k)
             std::copy_n(scratch.strip.data() + std::size_t(k) * kStrip, std::min(kValues, sheared.across - from),
                         out + std::size_t(k) * sheared.across);
@@ -251,8 +250,8 @@ void most_over(const Sheared& sheared, SweepScratch& scratch) {
 }
 
 /// most = gain mean + part (most − gain mean), rounded.
-TUFT_CLONES void mix(const std::uint8_t* __restrict mean, float gain, float part, std::uint8_t* __restrict most,
-                     int n) {
+TUFT_CLONES void weigh_maximum(const std::uint8_t* __restrict mean, float gain, float part,
+                               std::uint8_t* __restrict most, int n) {
 #pragma omp simd
     for (int j = 0; j < n; ++j) {
         const float e = gain * static_cast<float>(int{mean[j]});
@@ -264,8 +263,8 @@ TUFT_CLONES void mix(const std::uint8_t* __restrict mean, float gain, float part
 
 void sweep(const Footprint& footprint, const Vec2& shift, StampJobs& jobs, SweepScratch& scratch) {
     const Sheared sheared(footprint, shift, scratch);
-    jobs.gain = mean_over(sheared, scratch);
-    sheared.hand_over(scratch.swept, jobs);
+    jobs.gain = take_mean(sheared, scratch);
+    sheared.store(scratch.swept, jobs);
 }
 
 void sweep_over(const Footprint& footprint, const Vec2& shift, float part, StampJobs& jobs, SweepScratch& scratch) {
@@ -273,14 +272,14 @@ void sweep_over(const Footprint& footprint, const Vec2& shift, float part, Stamp
     std::vector<std::uint8_t> mean;
     float gain = 1;
     if (part < 1) {
-        gain = mean_over(sheared, scratch);
+        gain = take_mean(sheared, scratch);
         mean = scratch.swept.coverage;
     }
-    most_over(sheared, scratch);
+    take_maximum(sheared, scratch);
     std::vector<std::uint8_t>& swept = scratch.swept.coverage;
-    if (part < 1) mix(mean.data(), gain, part, swept.data(), static_cast<int>(swept.size()));
+    if (part < 1) weigh_maximum(mean.data(), gain, part, swept.data(), static_cast<int>(swept.size()));
     jobs.gain = 1;
-    sheared.hand_over(scratch.swept, jobs);
+    sheared.store(scratch.swept, jobs);
 }
 
 }  // namespace tuft::footprint

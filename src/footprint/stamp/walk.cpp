@@ -12,18 +12,18 @@ namespace tuft::footprint {
 namespace {
 
 constexpr double kFacingAway = atlas::kLogMapMinCos;  // normals beyond this are never touched
-constexpr float kAgree = 0.25f;                       // of a hop: neighbours that differ by more went other ways
+constexpr float kAgree = 0.25f;                       // of a hop: neighbours that differ by more went other paths
 constexpr float kUpwind = 0.2f;                       // cosine to the source of neighbours that lead on
 constexpr float kNearSource = 0.5f;                   // squared distance over hop below which hops are added up
-constexpr float kLeastStretch = 0.6f;                 // and its inverse: beyond, the ways to both differ
+constexpr float kLeastStretch = 0.6f;                 // and its inverse: beyond, the paths to both differ
 constexpr float kOverBorder = 0.3f;                   // cosine of an open border's outward direction to the source
-constexpr float kDetour = 2;     // cluster radii round the picture in which ways to it are looked for
+constexpr float kDetour = 2;     // cluster radii round the picture in which paths to it are looked for
 constexpr float kFold = 0.99f;   // of the straight line in space: places nearer than that are occluded over themselves
 constexpr float kLater = 1.05f;  // of the squared distance expected: the cluster's turn comes later
-// Ways that bend round a corner (see bent_way).
-constexpr float kShortest = 0.95f;                 // of the straight line in space: a shorter way is none
+// Paths that bend round a corner (see bent_path).
+constexpr float kShortest = 0.95f;                 // of the straight line in space: a shorter path is none
 constexpr float kBackward = 0.03f, kRound = 0.1f;  // of a hop: ends nearer than it began by so much
-constexpr float kCorner = 0.8f;                    // of a hop, what it adds to a way that bends
+constexpr float kCorner = 0.8f;                    // of a hop, what it adds to a path that bends
 constexpr float kBeside = 1.6f;                    // cluster radii: the source may lie beside the cluster itself
 constexpr float kBetween = 0.8f;                   // of the distance it began at: may lead between two neighbours
 
@@ -42,7 +42,7 @@ struct Walk {
     PlanScratch& scratch;
     const Reach& reach;
     std::uint32_t start;       ///< the cluster touched
-    std::size_t occluded = 0;  ///< clusters that no straight way leads to
+    std::size_t occluded = 0;  ///< clusters that no straight path leads to
 
     PlanScratch::Node& node(std::uint32_t cluster) { return node_of(scratch, cluster); }
 
@@ -53,22 +53,25 @@ struct Walk {
         std::push_heap(scratch.heap.begin(), scratch.heap.end(), std::greater<>());
     }
 
-    /// What one settled neighbour says of a cluster's place.
+    /// Position of a cluster as one settled neighbour has it.
     struct Hint {
         float weight, hop2, u, v, c, s;
-        float bent;  ///< length of the way where it is not straight, else 0
+        float bent;  ///< length of the path where it is not straight, else 0
         const atlas::ClusterEdge* edge;
     };
 
-    /// Place of a cluster: mean of what its settled neighbours say, those in radial direction and
-    /// near by first. Behind an obstacle the ways round it on both sides lead to different
-    /// places; there the neighbour with most weight and those who agree with it decide. Ways that
-    /// bend round a corner count where no straight one leads. No place is nearer than the straight
-    /// line in space.
-    void place(const atlas::TexelCluster& cluster, std::uint32_t index, PlanScratch::Node& n) {
+    /// Positions of a cluster as its settled neighbours have it.
+    struct Hints {
+        std::array<Hint, 24> hint;
+        std::size_t count = 0, best = 0;  ///< `best`: of the greatest weight
+        bool straight = false;            ///< straight paths lead to the cluster: those that bend do not count
+
+        std::span<const Hint> all() const { return {hint.data(), count}; }
+    };
+
+    void collect_hints(const atlas::TexelCluster& cluster, std::uint32_t index, Hints& out) const {
         const float least = least_place2(cluster);
-        std::array<Hint, 24> hints;
-        std::size_t count = 0, best = 0, n_straight = 0, n_settled = 0;
+        std::size_t n_settled = 0;
         const std::uint32_t first = graph.edge_start[index];
         const std::uint32_t end = std::min(graph.edge_start[index + 1], first + kMostEdges);
         // Listed first: which ones are settled no processor guesses.
@@ -78,29 +81,41 @@ struct Walk {
             settled[n_settled] = k;
             n_settled += (from.epoch == scratch.epoch) & (from.state == kFinal);
         }
-        for (std::size_t i = 0; i < n_settled && count < hints.size(); ++i) {
+        for (std::size_t i = 0; i < n_settled && out.count < out.hint.size(); ++i) {
             const atlas::ClusterEdge& e = graph.edges[settled[i]];
             const PlanScratch::Node& from = scratch.nodes[e.to];
             const float ci = from.c * e.c + from.s * e.s, si = from.s * e.c - from.c * e.s;
             const float hu = ci * e.hop_u - si * e.hop_v, hv = si * e.hop_u + ci * e.hop_v;
             const float pu = from.u - hu, pv = from.v - hv;
             const float hh = hu * hu + hv * hv, pp = pu * pu + pv * pv, hp = hu * pu + hv * pv;
-            const float way = bent_way(e.to, cluster, pp, hh, least);
-            if (way > 0 && n_straight > 0) continue;
-            if (way == 0 && n_straight++ == 0) count = best = 0;
+            const float bent = bent_path(e.to, cluster, pp, hh, least);
+            if (bent > 0 && out.straight) continue;
+            if (bent == 0 && !out.straight) {
+                out.straight = true;
+                out.count = out.best = 0;
+            }
             const float cos2 = hh * pp > 0 ? hp * hp / (hh * pp) : 1.0f;
             const float weight = ((hp < 0 ? cos2 * cos2 : 0.0f) + 1e-4f) / std::sqrt(hh + 1e-20f);
-            hints[count] = {weight, hh, pu, pv, ci, si, way, &e};
-            if (weight > hints[best].weight) best = count;
-            ++count;
+            out.hint[out.count] = {weight, hh, pu, pv, ci, si, bent, &e};
+            if (weight > out.hint[out.best].weight) out.best = out.count;
+            ++out.count;
         }
-        if (count == 0) return;
-        const float bent = n_straight > 0 ? 0 : round_corner(std::span(hints.data(), count), best);
+    }
+
+    /// Position of a cluster: mean of the hints of its settled neighbours, those in radial direction and near by first.
+    /// Behind an obstacle the paths round it on both sides lead to different positions; there the neighbour of the
+    /// greatest weight and those who agree with it decide. Paths that bend round a corner count where no straight one
+    /// leads. No position is nearer than the straight line in space.
+    void place(const atlas::TexelCluster& cluster, std::uint32_t index, PlanScratch::Node& n) {
+        Hints hints;
+        collect_hints(cluster, index, hints);
+        if (hints.count == 0) return;
+        const float bent = hints.straight ? 0 : round_corner(hints.all(), hints.best);
+        const Hint& best = hints.hint[hints.best];
         float total = 0, u = 0, v = 0, c = 0, s = 0;
-        const float agree = kAgree * kAgree * hints[best].hop2;
-        for (std::size_t k = 0; k < count; ++k) {
-            const Hint& h = hints[k];
-            const float du = h.u - hints[best].u, dv = h.v - hints[best].v;
+        const float agree = kAgree * kAgree * best.hop2;
+        for (const Hint& h : hints.all()) {
+            const float du = h.u - best.u, dv = h.v - best.v;
             if (du * du + dv * dv > agree) continue;
             total += h.weight;
             u += h.weight * h.u;
@@ -117,44 +132,44 @@ struct Walk {
         if (!(turn > 0)) return;
         n.c = c / turn;
         n.s = s / turn;
-        if (longer == 1) swing_in(std::span(hints.data(), count), cluster, n);
-        n.lit = is_lit(std::span(hints.data(), count), cluster, n);
+        if (longer == 1) place_by_polar(hints.all(), cluster, n);
+        n.lit = is_lit(hints.all(), cluster, n);
     }
 
-    /// Squared distance below which a place is no way over the surface but a fold laid over itself:
-    /// no way is shorter than the straight line in space.
+    /// Squared distance below which a place is no path over the surface but a fold laid over itself:
+    /// no path is shorter than the straight line in space.
     float least_place2(const atlas::TexelCluster& cluster) const {
         const Vec3f d = cluster.centre - reach.origin;
         return kShortest * kShortest * glm::dot(d, d);
     }
 
-    /// Where all ways bend: the shortest of them and its length; 0 where neighbours on both sides of the
-    /// straight way agree, so that it leads between them.
+    /// Where all paths bend: the shortest of them and its length; 0 where neighbours on both sides of the
+    /// straight path agree, so that it leads between them.
     float round_corner(std::span<const Hint> hints, std::size_t& best) const {
         for (std::size_t k = 0; k < hints.size(); ++k)
             if (hints[k].bent < hints[best].bent) best = k;
         const PlanScratch::Node& from = scratch.nodes[hints[best].edge->to];
         const float place2 = hints[best].u * hints[best].u + hints[best].v * hints[best].v;
         if (place2 < kBetween * kBetween * (from.u * from.u + from.v * from.v)) return hints[best].bent;
-        const float agree = kAgree * kAgree * hints[best].hop2, x = beside(hints[best]);
+        const float agree = kAgree * kAgree * hints[best].hop2, x = side_of(hints[best]);
         for (const Hint& h : hints) {
             const float du = h.u - hints[best].u, dv = h.v - hints[best].v;
-            if (du * du + dv * dv <= agree && beside(h) * x < 0) return 0;
+            if (du * du + dv * dv <= agree && side_of(h) * x < 0) return 0;
         }
         return hints[best].bent;
     }
 
-    /// On which side of the straight way to its place the neighbour lies that gives the hint.
-    float beside(const Hint& h) const {
+    /// Signed: side of the straight path to its position on which the neighbour lies that gives the hint.
+    float side_of(const Hint& h) const {
         const PlanScratch::Node& from = scratch.nodes[h.edge->to];
         return h.u * from.v - h.v * from.u;
     }
 
-    /// A straight way from the source over a settled cluster to the next ends further away than the cluster
+    /// A straight path from the source over a settled cluster to the next ends further away than the cluster
     /// lies, and no nearer than the straight line in space. Where folds unrolled over each other say
-    /// otherwise, the true way bends round a corner; its length is taken to be the cluster's distance and
-    /// `kCorner` of the hop. 0: the way is straight.
-    float bent_way(std::uint32_t last, const atlas::TexelCluster& next, float place2, float hop2, float least2) const {
+    /// otherwise, the true path bends round a corner; its length is taken to be the cluster's distance and
+    /// `kCorner` of the hop. 0: the path is straight.
+    float bent_path(std::uint32_t last, const atlas::TexelCluster& next, float place2, float hop2, float least2) const {
         const PlanScratch::Node& from = scratch.nodes[last];
         const float from2 = from.u * from.u + from.v * from.v;
         if (place2 >= from2 && place2 >= least2) return 0;
@@ -167,8 +182,8 @@ struct Walk {
         return back > 0 ? place + back * (far + kCorner * hop - place) : 0;
     }
 
-    /// Whether straight ways lead from the source to the cluster, and no opening of the mesh lies
-    /// between: its own open border does not face the source, and the neighbour next to the way is lit.
+    /// Returns true when straight paths lead from the source to the cluster, and no opening of the mesh lies
+    /// between: its own open border does not face the source, and the neighbour next to the path is lit.
     bool is_lit(std::span<const Hint> hints, const atlas::TexelCluster& cluster, const PlanScratch::Node& n) const {
         bool lit = true;
         for (const Hint& h : hints) lit = lit && scratch.nodes[h.edge->to].lit;
@@ -189,16 +204,14 @@ struct Walk {
         return !nearest || scratch.nodes[nearest->edge->to].lit;
     }
 
-    /// Carries distance and angle on from two settled neighbours with the source between them
-    /// (geodesic polar coordinates, Melvær and Reimers 2012): the circles of their distances meet
-    /// in the unfolded source, and angles at it are in proportion to angles at the origin. Where the
-    /// surface curves, adding up hops would turn the cluster by the curvature that they enclose.
-    void swing_in(std::span<const Hint> hints, const atlas::TexelCluster& cluster, PlanScratch::Node& n) {
-        const float d = std::sqrt(n.u * n.u + n.v * n.v);
-        if (!(d > 0)) return;
+    /// The two hints on both sides of the source that point most to it; null: none.
+    struct Beside {
+        const Hint *left = nullptr, *right = nullptr;
+    };
+    static Beside beside_source(std::span<const Hint> hints, const PlanScratch::Node& n, float d) {
         // Towards the source, in the cluster's frame.
         const float sx = -(n.c * n.u + n.s * n.v) / d, sy = -(n.c * n.v - n.s * n.u) / d;
-        const Hint *left = nullptr, *right = nullptr;
+        Beside out;
         float left_cos = kUpwind, right_cos = kUpwind;
         for (const Hint& h : hints) {
             const float du = h.u - n.u, dv = h.v - n.v;
@@ -207,11 +220,22 @@ struct Walk {
             const float cos = (x * sx + y * sy) / length;
             const bool is_left = sx * y - sy * x > 0;
             const bool more_left = is_left & (cos > left_cos), more_right = !is_left & (cos > right_cos);
-            left = more_left ? &h : left;
+            out.left = more_left ? &h : out.left;
             left_cos = more_left ? cos : left_cos;
-            right = more_right ? &h : right;
+            out.right = more_right ? &h : out.right;
             right_cos = more_right ? cos : right_cos;
         }
+        return out;
+    }
+
+    /// Computes distance and angle from two settled neighbours with the source between them (geodesic polar
+    /// coordinates, Melvær and Reimers 2012): the circles of their distances meet in the unfolded source, and angles at
+    /// it are in proportion to angles at the origin. Where the surface curves, adding up hops would turn the cluster by
+    /// the curvature that they enclose.
+    void place_by_polar(std::span<const Hint> hints, const atlas::TexelCluster& cluster, PlanScratch::Node& n) {
+        const float d = std::sqrt(n.u * n.u + n.v * n.v);
+        if (!(d > 0)) return;
+        const auto [left, right] = beside_source(hints, n, d);
         if (!left || !right) return;
         const PlanScratch::Node &a = scratch.nodes[left->edge->to], &b = scratch.nodes[right->edge->to];
         const Vec2f pa{left->edge->hop_u, left->edge->hop_v}, pb{right->edge->hop_u, right->edge->hop_v};
@@ -245,14 +269,31 @@ struct Walk {
         n.stretch = stretch;
     }
 
-    /// Worth a visit where one neighbour sees it: in the picture or on a way into it. Its final
-    /// place may be a little nearer.
-    bool near_picture(const atlas::TexelCluster& cluster, float u, float v) const {
+    /// Returns true where a neighbour puts the cluster in the picture or on a path into it. Its final position may be
+    /// a little nearer.
+    bool is_near_picture(const atlas::TexelCluster& cluster, float u, float v) const {
         const float r = kDetour * cluster.radius;
         const float du = std::max({std::min(reach.lo.x, 0.0f) - u, u - std::max(reach.hi.x, 0.0f), 0.0f});
         const float dv = std::max({std::min(reach.lo.y, 0.0f) - v, v - std::max(reach.hi.y, 0.0f), 0.0f});
         const float far = reach.radius + (kClusterSlack + kAgree) * cluster.radius;
         return du * du + dv * dv <= r * r && u * u + v * v <= far * far;
+    }
+
+    /// Pushes the open neighbours of a settled cluster.
+    void push_neighbours(std::uint32_t i, const PlanScratch::Node& n) {
+        for (std::uint32_t k = graph.edge_start[i]; k < graph.edge_start[i + 1]; ++k) {
+            const atlas::ClusterEdge& e = graph.edges[k];
+            PlanScratch::Node& other = node(e.to);
+            if (other.state != kOpen) continue;
+            const float u = n.u + n.c * e.hop_u - n.s * e.hop_v;
+            const float v = n.v + n.s * e.hop_u + n.c * e.hop_v;
+            const float distance2 = u * u + v * v;
+            const atlas::TexelCluster& next = graph.clusters[e.to];
+            const float hop2 = e.hop_u * e.hop_u + e.hop_v * e.hop_v;
+            const float bent = bent_path(i, next, distance2, hop2, least_place2(next));
+            const float key2 = bent > 0 ? bent * bent : distance2;
+            if (key2 < other.key && is_near_picture(next, u, v)) push(other, e.to, key2);
+        }
     }
 
     /// Dijkstra over the clusters by distance from the stamp's origin; leaves those that the
@@ -268,7 +309,7 @@ struct Walk {
             const atlas::TexelCluster& cluster = graph.clusters[i];
             if (i != start) place(cluster, i, n);
             const float distance = std::sqrt(n.u * n.u + n.v * n.v);
-            // Its turn comes later where the neighbours see it further away than the first of them did.
+            // Its turn comes later where the neighbours put it further away than the first of them did.
             if (distance * distance > kLater * key && i != start) {
                 if (distance - kClusterSlack * cluster.radius > reach.radius)
                     n.state = kOutside;
@@ -280,19 +321,7 @@ struct Walk {
             if (distance - kClusterSlack * cluster.radius > reach.radius || faces_away(reach, cluster)) continue;
             n.state = kFinal;
             if (in_picture(reach, cluster, n)) scratch.reached.push_back(i);
-            for (std::uint32_t k = graph.edge_start[i]; k < graph.edge_start[i + 1]; ++k) {
-                const atlas::ClusterEdge& e = graph.edges[k];
-                PlanScratch::Node& other = node(e.to);
-                if (other.state != kOpen) continue;
-                const float u = n.u + n.c * e.hop_u - n.s * e.hop_v;
-                const float v = n.v + n.s * e.hop_u + n.c * e.hop_v;
-                const float distance2 = u * u + v * v;
-                const atlas::TexelCluster& next = graph.clusters[e.to];
-                const float hop2 = e.hop_u * e.hop_u + e.hop_v * e.hop_v;
-                const float bent = bent_way(i, next, distance2, hop2, least_place2(next));
-                const float key2 = bent > 0 ? bent * bent : distance2;
-                if (key2 < other.key && near_picture(next, u, v)) push(other, e.to, key2);
-            }
+            push_neighbours(i, n);
         }
         std::sort(scratch.reached.begin(), scratch.reached.end());
     }

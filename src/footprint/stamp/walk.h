@@ -13,16 +13,18 @@ inline constexpr float kClusterSlack = 1.1f;
 
 /// Extent of a stamp.
 struct Reach {
-    Vec3f origin{0}, normal{0};
-    float radius = 0;    ///< metres, motion included
-    Vec2f lo{0}, hi{0};  ///< of the picture, motion included, metres
+    Vec3f origin{0}, normal{0};  ///< metres, unit, world; of the stamp's frame
+    float radius = 0;            ///< metres, motion included
+    Vec2f lo{0}, hi{0};          ///< of the picture, motion included, metres
 };
 
 /// Start of the search.
 struct Start {
-    std::uint32_t cluster = kNone;
-    Vec2f place{0};    ///< metres, of its centre in the stamp's plane
-    Vec2f turn{1, 0};  ///< cosine and sine of the rotation of its frame there
+    std::uint32_t triangle = kNone;  ///< of the mesh, under the contact point
+    Frame frame;                     ///< world, tangent to the surface, origin at the contact point
+    std::uint32_t cluster = kNone;   ///< under the contact point
+    Vec2f place{0};                  ///< metres, of its centre in `frame`
+    Vec2f turn{1, 0};                ///< cosine and sine of the rotation of its frame there
 };
 
 /// Dijkstra search over the clusters by path length from the stamp's origin, along straightest paths. Stores the

@@ -139,18 +139,19 @@ class Colours {
 }  // namespace
 
 BaseColour base_colour_of(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, const atlas::TexelMap& map) {
-    BaseColour ground;
-    if (!mesh::has_colours(mesh)) return ground;
+    BaseColour base_colour;
+    if (!mesh::has_colours(mesh)) return base_colour;
     const Colours colours(mesh, atlas);
-    ground.tiles.resize(map.n_slots());
-    for (BaseColour::Tile& tile : ground.tiles)
+    base_colour.tiles.resize(map.n_slots());
+    for (BaseColour::Tile& tile : base_colour.tiles)
         for (auto& channel : tile.rgb) channel.fill(255);
     atlas::visit_texels(mesh, atlas, map,
                         [&](std::uint32_t slot, int texel, std::uint32_t triangle, const Vec3& weights) {
                             const Vec3f colour = colours.at(triangle, weights);
-                            for (int c = 0; c < 3; ++c) ground.tiles[slot].rgb[c][texel] = code_of_linear(colour[c]);
+                            for (int c = 0; c < 3; ++c)
+                                base_colour.tiles[slot].rgb[c][texel] = code_of_linear(colour[c]);
                         });
-    return ground;
+    return base_colour;
 }
 
 }  // namespace tuft::ink

@@ -37,6 +37,7 @@ struct PigmentCurve {
 /// constant beyond the first and the last.
 Coefficients coefficients_at(const PigmentCurve& curve, float nm);
 
+/// A pigment, read from a file.
 struct Pigment {
     std::string name;          ///< identifies the pigment across inks
     Bands k{};                 ///< absorption per film unit
@@ -55,6 +56,7 @@ struct Pigment {
 /// colours as in three bands.
 void use_curve(Pigment& pigment);
 
+/// A pigment of an ink and its share.
 struct InkPart {
     Pigment pigment;
     double fraction = 1;  ///< of the wet ink; the rest of the ink is water

@@ -186,7 +186,7 @@ AtlasMap<T> compose(std::span<const std::uint32_t> slots, const atlas::TexelMap&
 /// Slots whose colour is not the substrate's.
 std::vector<std::uint32_t> coloured_slots(const Stack& stack) {
     if (!stack.has_base_colour()) return stack.touched_slots();
-    std::vector<std::uint32_t> all(stack.ground->tiles.size());
+    std::vector<std::uint32_t> all(stack.base_colour->tiles.size());
     std::iota(all.begin(), all.end(), 0u);
     return all;
 }

@@ -110,7 +110,7 @@ struct Reflectances {
 };
 
 /// Lays one film over the reflectances `r` of what is below it; with `absorbs_only` its S is 0.
-void lay_film(Reflectances& r, TileAppearance& look, const TileFilm& film, std::span<const Pigment> pigments,
+void add_film(Reflectances& r, TileAppearance& appearance, const TileFilm& film, std::span<const Pigment> pigments,
               bool absorbs_only = false) {
     alignas(64) Texels k, s, part, thickness{}, rough{}, height{};
     part.fill(film.opacity);
@@ -141,8 +141,8 @@ void lay_film(Reflectances& r, TileAppearance& look, const TileFilm& film, std::
         add_scaled(rough.data(), w, pigments[p].roughness);
         add_scaled(thickness.data(), w, 1.0f);
     }
-    for (int t = 0; t < kN; ++t) look.height[t] += height[t] * part[t];
-    blend_roughness(look.roughness.data(), rough.data(), thickness.data(), part.data());
+    for (int t = 0; t < kN; ++t) appearance.height[t] += height[t] * part[t];
+    blend_roughness(appearance.roughness.data(), rough.data(), thickness.data(), part.data());
 }
 
 /// What one user layer has on a tile.
@@ -168,11 +168,11 @@ TileLayer layer_of(const Canvas& canvas, std::uint32_t slot, float opacity, Blen
     return layer;
 }
 
-/// Reflectances and look of the bare substrate, below the boundary.
-void begin_look(Reflectances& r, TileAppearance& look, const Substrate& substrate) {
+/// Reflectances and appearance of the bare substrate, below the boundary.
+void begin_appearance(Reflectances& r, TileAppearance& appearance, const Substrate& substrate) {
     constexpr Interface kInterface{};
-    look.height.fill(0);
-    look.roughness.fill(substrate.roughness);
+    appearance.height.fill(0);
+    appearance.roughness.fill(substrate.roughness);
     const Bands bare = bands_of_rgb(substrate.reflectance);
     for (int b = 0; b < r.bands; ++b)
         r[b].fill(static_cast<float>(saunderson_inverse(
@@ -203,8 +203,8 @@ TUFT_CLONES void add_lack(float* __restrict colour, const float* __restrict lack
     for (int t = 0; t < kN; ++t) colour[t] += lack[t] * (lack[t] < 0 ? own[t] : all[t]);
 }
 
-/// A tile of the ground: its colour, linear, and what the bands make of it.
-struct GroundColour {
+/// A tile of the base colour: linear sRGB, and what the bands make of it.
+struct TileBaseColour {
     alignas(64) std::array<Texels, 3> bare, lack;
 };
 
@@ -216,39 +216,40 @@ std::array<Texels, 3> linear_colour(const BaseColour::Tile& tile) {
     return colour;
 }
 
-/// Adds what the bands lack of the ground's colour as far as the ground is seen.
-void make_up(TileAppearance& look, const GroundColour& ground) {
+/// Adds what the bands lack of the base colour as far as it is seen.
+void add_lost_colour(TileAppearance& appearance, const TileBaseColour& base_colour) {
     alignas(64) Texels colour{}, bare{}, all, own;
     for (int c = 0; c < 3; ++c) {
-        add_scaled(colour.data(), look.colour[c].data(), 1);
-        add_scaled(bare.data(), ground.bare[c].data(), 1);
+        add_scaled(colour.data(), appearance.colour[c].data(), 1);
+        add_scaled(bare.data(), base_colour.bare[c].data(), 1);
     }
     part_left(all.data(), colour.data(), bare.data());
     for (int c = 0; c < 3; ++c) {
-        part_left(own.data(), look.colour[c].data(), ground.bare[c].data());
-        add_lack(look.colour[c].data(), ground.lack[c].data(), own.data(), all.data());
+        part_left(own.data(), appearance.colour[c].data(), base_colour.bare[c].data());
+        add_lack(appearance.colour[c].data(), base_colour.lack[c].data(), own.data(), all.data());
     }
 }
 
-/// Reflectances of the ground's colours, below the boundary.
-void lay_ground(Reflectances& r, GroundColour& ground, const BaseColour::Tile& tile, const Substrate& substrate) {
+/// Computes the reflectances of the base colour, below the boundary.
+void reflect_base(Reflectances& r, TileBaseColour& base_colour, const BaseColour::Tile& tile,
+                  const Substrate& substrate) {
     constexpr Interface kInterface{};
     alignas(64) const std::array<Texels, 3> colour = linear_colour(tile);
-    for (Texels& bare : ground.bare) bare.fill(0);
+    for (Texels& bare : base_colour.bare) bare.fill(0);
     for (int b = 0; b < r.bands; ++b) {
         r[b].fill(0);
         for (int c = 0; c < 3; ++c) add_scaled(r[b].data(), colour[c].data(), primary_bands()[c][b]);
         cut_to_unit(r[b].data());
-        for (int c = 0; c < 3; ++c) add_scaled(ground.bare[c].data(), r[b].data(), band_weights()[c][b]);
+        for (int c = 0; c < 3; ++c) add_scaled(base_colour.bare[c].data(), r[b].data(), band_weights()[c][b]);
         below_interface(r[b].data(), static_cast<float>(kInterface.k2) * substrate.interface);
     }
-    into_gamut(ground.bare[0].data(), ground.bare[1].data(), ground.bare[2].data());
+    into_gamut(base_colour.bare[0].data(), base_colour.bare[1].data(), base_colour.bare[2].data());
     for (int c = 0; c < 3; ++c)
-        for (int t = 0; t < kN; ++t) ground.lack[c][t] = colour[c][t] - ground.bare[c][t];
+        for (int t = 0; t < kN; ++t) base_colour.lack[c][t] = colour[c][t] - base_colour.bare[c][t];
 }
 
 /// Colour and gloss under the boundary of glaze and water.
-void end_look(Reflectances& r, TileAppearance& look, const Plane* water, const Substrate& substrate) {
+void finish_appearance(Reflectances& r, TileAppearance& appearance, const Plane* water, const Substrate& substrate) {
     constexpr Interface kInterface{};
     const auto k2 = static_cast<float>(kInterface.k2);
     alignas(64) Texels wet{};
@@ -256,55 +257,55 @@ void end_look(Reflectances& r, TileAppearance& look, const Plane* water, const S
         const float grain = std::max(2 * substrate.relief, 1e-7f);
         wet_part(wet.data(), water->data(), static_cast<float>(kFilmUnit) / grain);
     }
-    gloss(look.roughness.data(), wet.data(), substrate.interface, substrate.roughness);
+    gloss(appearance.roughness.data(), wet.data(), substrate.interface, substrate.roughness);
     if (r.bands == 0) return;
-    for (int c = 0; c < 3; ++c) look.colour[c].fill(0);
+    for (int c = 0; c < 3; ++c) appearance.colour[c].fill(0);
     for (int b = 0; b < r.bands; ++b) {
         if (water || substrate.interface > 0) under_interface(r[b].data(), wet.data(), substrate.interface, k2);
-        for (int c = 0; c < 3; ++c) add_scaled(look.colour[c].data(), r[b].data(), band_weights()[c][b]);
+        for (int c = 0; c < 3; ++c) add_scaled(appearance.colour[c].data(), r[b].data(), band_weights()[c][b]);
     }
-    into_gamut(look.colour[0].data(), look.colour[1].data(), look.colour[2].data());
+    into_gamut(appearance.colour[0].data(), appearance.colour[1].data(), appearance.colour[2].data());
 }
 
-void lay_layer(Reflectances& r, TileAppearance& look, const TileLayer& layer) {
+void add_layer(Reflectances& r, TileAppearance& appearance, const TileLayer& layer) {
     const std::span<const TileFilm> films(layer.films.data(), layer.n_films);
-    const auto lay_films_over = [&](Reflectances& to) {
+    const auto add_films = [&](Reflectances& to) {
         for (const TileFilm& film : films)
-            if (!empty(film)) lay_film(to, look, film, layer.pigments, layer.blend == Blend::glaze);
+            if (!empty(film)) add_film(to, appearance, film, layer.pigments, layer.blend == Blend::glaze);
     };
-    const auto lay_all = [&](Reflectances& to) {
-        if (layer.blend != Blend::multiply) return lay_films_over(to);
+    const auto add_all = [&](Reflectances& to) {
+        if (layer.blend != Blend::multiply) return add_films(to);
         Reflectances filter(to.bands > 0);
         for (int b = 0; b < to.bands; ++b) filter[b].fill(1);
-        lay_films_over(filter);
+        add_films(filter);
         for (int b = 0; b < to.bands; ++b) multiply(to[b].data(), filter[b].data());
     };
     if (layer.opacity >= 1) {
-        lay_all(r);
+        add_all(r);
         return;
     }
     Reflectances with = r;
-    alignas(64) Texels part, height = look.height, roughness = look.roughness;
+    alignas(64) Texels part, height = appearance.height, roughness = appearance.roughness;
     part.fill(layer.opacity);
-    lay_all(with);
+    add_all(with);
     for (int b = 0; b < r.bands; ++b) blend(r[b].data(), with[b].data(), part.data());
-    blend(height.data(), look.height.data(), part.data());
-    blend(roughness.data(), look.roughness.data(), part.data());
-    look.height = height;
-    look.roughness = roughness;
+    blend(height.data(), appearance.height.data(), part.data());
+    blend(roughness.data(), appearance.roughness.data(), part.data());
+    appearance.height = height;
+    appearance.roughness = roughness;
 }
 
 }  // namespace
 
 TileAppearance shade_films(std::span<const TileFilm> films, const Plane* water, std::span<const Pigment> pigments,
                            const Substrate& substrate, bool with_colour) {
-    TileAppearance look;
+    TileAppearance appearance;
     Reflectances r(with_colour);
-    begin_look(r, look, substrate);
+    begin_appearance(r, appearance, substrate);
     for (const TileFilm& film : films)
-        if (!empty(film)) lay_film(r, look, film, pigments);
-    end_look(r, look, water, substrate);
-    return look;
+        if (!empty(film)) add_film(r, appearance, film, pigments);
+    finish_appearance(r, appearance, water, substrate);
+    return appearance;
 }
 
 TileAppearance shade_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate, bool with_colour) {
@@ -314,31 +315,31 @@ TileAppearance shade_tile(const Canvas& canvas, std::uint32_t slot, const Substr
 }
 
 TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate, bool with_colour) {
-    TileAppearance look;
-    const BaseColour::Tile* tile = with_colour && stack.has_base_colour() ? &stack.ground->tiles[slot] : nullptr;
+    TileAppearance appearance;
+    const BaseColour::Tile* tile = with_colour && stack.has_base_colour() ? &stack.base_colour->tiles[slot] : nullptr;
     Reflectances r(with_colour && (!tile || stack.touched(slot)));
-    begin_look(r, look, substrate);
-    GroundColour ground;
+    begin_appearance(r, appearance, substrate);
+    TileBaseColour base_colour;
     if (tile && r.bands == 0) {  // bare
-        look.colour = linear_colour(*tile);
-        end_look(r, look, nullptr, substrate);
-        return look;
+        appearance.colour = linear_colour(*tile);
+        finish_appearance(r, appearance, nullptr, substrate);
+        return appearance;
     }
-    if (tile) lay_ground(r, ground, *tile, substrate);
+    if (tile) reflect_base(r, base_colour, *tile, substrate);
     Plane sum;
     const Plane* water = nullptr;
     for (const LayerView& view : stack.layers) {
         if (!(view.opacity > 0) || !view.canvas->touched(slot)) continue;
         const TileLayer layer = layer_of(*view.canvas, slot, view.opacity, view.blend);
-        lay_layer(r, look, layer);
+        add_layer(r, appearance, layer);
         if (!layer.water) continue;
         if (!water) sum.fill(0);
         water = &sum;
         add_scaled(sum.data(), layer.water->data(), view.opacity);
     }
-    end_look(r, look, water, substrate);
-    if (tile) make_up(look, ground);
-    return look;
+    finish_appearance(r, appearance, water, substrate);
+    if (tile) add_lost_colour(appearance, base_colour);
+    return appearance;
 }
 
 namespace {
@@ -371,8 +372,8 @@ std::vector<std::uint32_t> Stack::touched_slots() const {
     return slots;
 }
 
-Rgb colour_of_film(const Ink& ink, const Rgb& ground, double film) {
-    const Bands under = bands_of_rgb(ground);
+Rgb colour_of_film(const Ink& ink, const Rgb& background, double film) {
+    const Bands under = bands_of_rgb(background);
     Bands seen;
     for (int b = 0; b < kBands; ++b) {
         double k = 0, s = 0;

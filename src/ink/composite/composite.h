@@ -57,9 +57,9 @@ TileAppearance shade_films(std::span<const TileFilm> films, const Plane* water, 
 TileAppearance shade_tile(const Canvas& canvas, std::uint32_t slot, const Substrate& substrate,
                           bool with_colour = true);
 
-/// Returns the colour of one film of an ink, `film` units thick (0: the film of a full brush), over a matte ground:
+/// Returns the colour of one film of an ink, `film` units thick (0: the film of a full brush), over a matte background:
 /// for palettes and charts.
-Rgb colour_of_film(const Ink& ink, const Rgb& ground, double film = 0);
+Rgb colour_of_film(const Ink& ink, const Rgb& background, double film = 0);
 
 /// One visible user layer.
 struct LayerView {
@@ -72,12 +72,12 @@ struct LayerView {
 struct Stack {
     std::vector<LayerView> layers;
     /// Base colours below the layers in place of the substrate's reflectance; null or empty: the substrate.
-    const BaseColour* ground = nullptr;
+    const BaseColour* base_colour = nullptr;
 
     Stack(const Canvas& canvas) : layers{{&canvas}} {}
     explicit Stack(std::vector<LayerView> views) : layers(std::move(views)) {}
 
-    bool has_base_colour() const { return ground && !ground->empty(); }
+    bool has_base_colour() const { return base_colour && !base_colour->empty(); }
     bool touched(std::uint32_t slot) const;
     std::vector<std::uint32_t> touched_slots() const;  ///< of any layer, ascending
 };
@@ -114,6 +114,7 @@ struct GutterPlan {
 /// Built once for a model; `atlas.gutter` texels wide. About 0.3 s.
 GutterPlan plan_gutter(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas, const atlas::TexelMap& map);
 
+/// Options of the maps.
 struct ComposeOptions {
     std::uint32_t gutter = 4;  ///< texels round the charts that are filled with the nearest texel's value
     /// If given, the gutter continues over the seams, so that bilinear lookups on both sides of a seam agree. Must
@@ -123,7 +124,7 @@ struct ComposeOptions {
 };
 
 /// Base colour, sRGB-encoded 8 bit (3 channels). Texels far from any chart have the
-/// substrate's colour. Over a ground all texels of charts are drawn, not those with ink only.
+/// substrate's colour. Over a base colour all texels of charts are drawn, not those with ink only.
 AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                                      const ComposeOptions& options = {});
 /// Base colour, linear RGB.

@@ -368,24 +368,25 @@ std::string to_hex(const Rgb& linear) {
     return text;
 }
 
-ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::span<const Pigment> held,
+ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::span<const Pigment> present,
                             const MatchOptions& options) {
     static const std::vector<Pigment> shipped = shipped_pigments();
     ColourMatch match = match_colour(wanted, shipped, substrate, options);
     const auto is_new = [&](const InkPart& part) {
-        return std::none_of(held.begin(), held.end(), [&](const Pigment& p) { return p.name == part.pigment.name; });
+        return std::none_of(present.begin(), present.end(),
+                            [&](const Pigment& p) { return p.name == part.pigment.name; });
     };
     const auto more = static_cast<std::size_t>(std::count_if(match.ink.parts.begin(), match.ink.parts.end(), is_new));
-    if (!held.empty() && held.size() + more > static_cast<std::size_t>(kMaxPigments))
-        match = match_colour(wanted, {held.begin(), held.end()}, substrate, options);
+    if (!present.empty() && present.size() + more > static_cast<std::size_t>(kMaxPigments))
+        match = match_colour(wanted, {present.begin(), present.end()}, substrate, options);
     return match;
 }
 
-Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> held) {
+Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> present) {
     if (name.empty() || name[0] != '#') return load_ink(name);
     const std::optional<Rgb> wanted = colour_of_hex(name);
     if (!wanted) throw Error(Message("'{}' is no colour; write #rrggbb, such as #c03020", std::string(name)));
-    Ink ink = match_on_canvas(*wanted, substrate, held, {.film = 0}).ink;
+    Ink ink = match_on_canvas(*wanted, substrate, present, {.film = 0}).ink;
     ink.name = name;
     return ink;
 }

@@ -30,12 +30,14 @@ inline constexpr double kWorthThickness = 0.5;
 /// leaves it), in [0, 1]. Equals what `shade_films` shows for the amounts film · fraction.
 Rgb colour_on(const Ink& ink, const Substrate& substrate, double film = 0);
 
+/// Options of `match_colour`.
 struct MatchOptions {
     /// X, film units; 0: as many as the colour needs, up to `kThickestMix` and to what stays on the substrate.
     double film = kMixFilm;
     std::size_t most_parts = 4;  ///< pigments in the mix, 1 to 4
 };
 
+/// Result of `match_colour`.
 struct ColourMatch {
     Ink ink;             ///< with `film` = X; its name is the wanted colour, `#rrggbb`
     Rgb wanted{};        ///< linear sRGB
@@ -112,15 +114,15 @@ std::vector<Pigment> shipped_pigments();
 std::optional<Rgb> colour_of_hex(std::string_view text);
 std::string to_hex(const Rgb& linear);
 
-/// The same, or where a canvas that has the pigments `held` has no free planes for those of the mix
-/// (`kMaxPigments`), the nearest mix of the held ones.
-ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::span<const Pigment> held,
+/// The same, or where a canvas that has the pigments `present` has no free planes for those of the mix
+/// (`kMaxPigments`), the nearest mix of the present ones.
+ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::span<const Pigment> present,
                             const MatchOptions& options = {});
 
 /// `load_ink`, which also takes a colour: `#rrggbb` is the nearest mix of the shipped pigments on
 /// `substrate`, as thick as it needs (`match_on_canvas`). Throws `Error` as `load_ink` does, and for
 /// a `#` without a colour after it.
-Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> held = {});
+Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> present = {});
 
 /// Returns a ΔE2000 in words: "the same to the eye" below 1, and so on.
 const char* difference_in_words(double delta_e);

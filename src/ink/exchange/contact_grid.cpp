@@ -20,9 +20,18 @@ inline float limited(float x, float last) {
     return low < last ? low : last;
 }
 
-TUFT_CLONES void place(float* __restrict along, float* __restrict across, const float* __restrict x,
-                       const float* __restrict y, const float* __restrict z, const Vec3f& origin, const Vec3f& a,
-                       const Vec3f& b, float a0, float b0) {
+/// A node coordinate over the surface: slope · (p − origin) + offset.
+struct NodeAxis {
+    Vec3f slope{0};  ///< nodes a metre, world
+    float offset = 0;
+};
+
+TUFT_CLONES void node_coordinates(TexelPlaces& out, const atlas::TexelShape& shape, const Vec3f& origin,
+                                  const NodeAxis& along_axis, const NodeAxis& across_axis) {
+    float* __restrict along = out.along.data(), * __restrict across = out.across.data();
+    const float* __restrict x = shape.px.data(), * __restrict y = shape.py.data(), * __restrict z = shape.pz.data();
+    const Vec3f &a = along_axis.slope, &b = across_axis.slope;
+    const float a0 = along_axis.offset, b0 = across_axis.offset;
     for (int t = 0; t < kN; ++t) {
         const float dx = x[t] - origin.x, dy = y[t] - origin.y, dz = z[t] - origin.z;
         along[t] = limited(dx * a.x + dy * a.y + dz * a.z + a0, kAlong - 1);
@@ -165,9 +174,8 @@ ContactGrid make_contact_grid(std::span<const Vec2> places, const Vec2& axis) {
 void place_texels(TexelPlaces& out, const ContactGrid& grid, const Frame& frame, const atlas::TexelShape& shape) {
     const Vec3 along = (grid.axis.x * frame.t + grid.axis.y * frame.b) / grid.step.x;
     const Vec3 across = (grid.axis.x * frame.b - grid.axis.y * frame.t) / grid.step.y;
-    place(out.along.data(), out.across.data(), shape.px.data(), shape.py.data(), shape.pz.data(), Vec3f(frame.origin),
-          Vec3f(along), Vec3f(across), static_cast<float>(-grid.lo.x / grid.step.x),
-          static_cast<float>(-grid.lo.y / grid.step.y));
+    node_coordinates(out, shape, Vec3f(frame.origin), {Vec3f(along), static_cast<float>(-grid.lo.x / grid.step.x)},
+                     {Vec3f(across), static_cast<float>(-grid.lo.y / grid.step.y)});
 }
 
 void furrow_depth_at(std::span<float, kN> out, const TexelPlaces& places, const FurrowDepths& furrows) {
@@ -203,9 +211,9 @@ void integrate_hats(std::span<double, kNodes> out, const HatBasis& hats, const f
 
 void interpolate(Texels& out, const HatBasis& hats, const std::array<float, kNodes>& values) {
     if (hats.count == 0) return out.fill(0);
-    std::array<float, kNodes> by_tent;
-    for (int k = 0; k < hats.count; ++k) by_tent[k] = values[hats.node[k]];
-    weighted_sum(out.data(), hats.weight[0].data(), by_tent.data(), hats.count);
+    std::array<float, kNodes> by_hat;
+    for (int k = 0; k < hats.count; ++k) by_hat[k] = values[hats.node[k]];
+    weighted_sum(out.data(), hats.weight[0].data(), by_hat.data(), hats.count);
 }
 
 double change_sum(const float* after, const float* before, const float* area) {

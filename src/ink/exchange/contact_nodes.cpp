@@ -87,9 +87,9 @@ bool is_mixed(const Reservoir& tuft) {
     Content part;
     for (int p = 0; p < kPlanes; ++p) part[p] = tuft.pigment(p) / all;
     for (const Content& c : tuft.content) {
-        const double held = sum_of(c);
+        const double content = sum_of(c);
         for (int p = 0; p < kPlanes; ++p)
-            if (std::abs(c[p] - part[p] * held) > kAlike * held) return true;
+            if (std::abs(c[p] - part[p] * content) > kAlike * content) return true;
     }
     return false;
 }
@@ -112,23 +112,24 @@ NodeMixes mixes_at(const Reservoir& tuft, const NodeContact& nodes) {
 
 void withdraw_contents(Reservoir& tuft, const NodeContents& given, const NodeContact& nodes) {
     const std::size_t n = tuft.content.size();
-    std::vector<double> asked(n);
+    std::vector<double> requested(n);
     for (int p = 0; p < kPlanes; ++p) {
         double lacking = 0;
-        std::fill(asked.begin(), asked.end(), 0.0);
+        std::fill(requested.begin(), requested.end(), 0.0);
         for (int node = 0; node < kNodes; ++node) {
             lacking += given[node][p];
             double sum = 0;
-            const auto held = [&](const NodeContact::Share& s) {
+            const auto content_of = [&](const NodeContact::Share& s) {
                 return static_cast<double>(s.part) / tuft.cell_capacity[s.cell] * tuft.content[s.cell][p];
             };
             if (!(given[node][p] > 0)) continue;
-            for (const NodeContact::Share& s : nodes.of(node)) sum += held(s);
+            for (const NodeContact::Share& s : nodes.of(node)) sum += content_of(s);
             if (!(sum > 0)) continue;
-            for (const NodeContact::Share& s : nodes.of(node)) asked[s.cell] += given[node][p] * held(s) / sum;
+            for (const NodeContact::Share& s : nodes.of(node))
+                requested[s.cell] += given[node][p] * content_of(s) / sum;
         }
         for (std::size_t i = 0; i < n; ++i) {
-            const double v = std::min({asked[i], tuft.content[i][p], std::max(lacking, 0.0)});
+            const double v = std::min({requested[i], tuft.content[i][p], std::max(lacking, 0.0)});
             tuft.content[i][p] -= v;
             lacking -= v;
         }
@@ -147,10 +148,10 @@ NodeContents draw(Reservoir& tuft, const std::array<double, kNodes>& amounts, co
     for (int node = 0; node < kNodes; ++node) {
         for (const NodeContact::Share& s : nodes.of(node)) {
             Content& cell = tuft.content[s.cell];
-            const double held = sum_of(cell);
-            const double want = std::min({held, static_cast<double>(s.part) * amounts[node], lacks[node]});
+            const double content = sum_of(cell);
+            const double want = std::min({content, static_cast<double>(s.part) * amounts[node], lacks[node]});
             if (!(want > 0)) continue;
-            const double part = want / held;
+            const double part = want / content;
             for (int p = 0; p < kPlanes; ++p) {
                 const double v = part * cell[p];
                 cell[p] -= v;

@@ -16,6 +16,7 @@ using Mix = std::array<float, kMaxPigments>;
 /// The planes of an ink's pigments in a canvas (added when new) and their fractions.
 Mix mix_of(Canvas& canvas, const Ink& ink);
 
+/// Ink of one stamp; `stamp_deposit` fills it.
 struct DepositParams {
     Mix mix{};                         ///< mixture that leaves the tuft
     float target = 1.8f;               ///< c: film units of this ink under full coverage

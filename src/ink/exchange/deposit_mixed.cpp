@@ -64,10 +64,10 @@ NodeMixes mixes_within(const Reservoir& tuft, const NodeContact& nodes, double t
     NodeMixes mixes = mixes_at(tuft, nodes);
     for (int p = 0; p < kMaxPigments; ++p) {
         const double most = static_cast<double>(*std::max_element(mixes[p].begin(), mixes[p].end()));
-        const double asked = most * target * area, limit = kMostGiven * tuft.pigment(p);
-        if (!(asked > limit)) continue;
+        const double requested = most * target * area, limit = kMostGiven * tuft.pigment(p);
+        if (!(requested > limit)) continue;
         for (int node = 0; node < kNodes; ++node) {
-            const float less = mixes[p][node] * static_cast<float>(1 - limit / asked);
+            const float less = mixes[p][node] * static_cast<float>(1 - limit / requested);
             mixes[p][node] -= less;
             mixes[kWater][node] += less;
         }

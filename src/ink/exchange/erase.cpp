@@ -19,10 +19,19 @@ TUFT_CLONES void add_scaled(float* __restrict sum, const float* __restrict w, fl
     for (int t = 0; t < kN; ++t) sum[t] += factor * w[t];
 }
 
-/// What stays of each texel's film, as a factor.
-TUFT_CLONES void keep(float* __restrict factor, const float* __restrict film, const float* __restrict start,
-                      const float* __restrict hides, const float* __restrict coverage, const float* __restrict liquid,
-                      float rate) {
+/// Planes that erasing reads, [256]; see `EraseStart`.
+struct ErasedPlanes {
+    const float* film;      ///< film units, now
+    const float* start;     ///< film units, at the start
+    const float* hides;     ///< opacity at the start
+    const float* coverage;  ///< 0–1, of the eraser
+    const float* liquid;    ///< film units
+};
+
+/// Computes the remaining fraction of each texel's film.
+TUFT_CLONES void remaining_fraction(float* __restrict factor, const ErasedPlanes& in, float rate) {
+    const float* __restrict film = in.film, * __restrict start = in.start, * __restrict hides = in.hides;
+    const float* __restrict coverage = in.coverage, * __restrict liquid = in.liquid;
     for (int t = 0; t < kN; ++t) {
         const float f = coverage[t], e = hides[t];
         const float sum = f + exp_minus(e), x = sum < 1 ? sum : 1;
@@ -94,7 +103,8 @@ Amounts erase(Canvas& canvas, const StampedTile& tile, const EraseStart& start, 
     for (const Liquid where : {Liquid::film, Liquid::pores})
         if (const Plane* w = canvas.liquid(slot, where)) add_scaled(liquid.data(), w->data(), 1);
     const auto rate = static_cast<float>(-std::expm1(-params.strength * ds / params.transfer_length));
-    keep(factor.data(), film.data(), start.film.data(), start.hides.data(), coverage.data(), liquid.data(), rate);
+    remaining_fraction(factor.data(),
+                       {film.data(), start.film.data(), start.hides.data(), coverage.data(), liquid.data()}, rate);
     if (std::all_of(factor.begin(), factor.end(), [](float f) { return f == 1; })) return gone;
     for (int film_place = 0; film_place < kFilms; ++film_place)
         for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
@@ -106,9 +116,9 @@ Amounts erase(Canvas& canvas, const StampedTile& tile, const EraseStart& start, 
     return gone;
 }
 
-Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> area, const Coat& coat,
+Amounts add_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> area, const Coat& coat,
                  float capacity) {
-    Amounts laid;
+    Amounts added;
     alignas(64) std::array<float, kN> all{}, dw, part;
     for (int p = 0; p < kMaxPigments; ++p)
         if (const Plane* w = canvas.plane(slot, p)) add_scaled(all.data(), w->data(), 1);
@@ -126,9 +136,9 @@ Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> 
             dw[t] = part[t] * coat.film[t] * (coat.first[p] + coat.towards[t] * (coat.second[p] - coat.first[p]));
             any = any || dw[t] > 0;
         }
-        if (any) laid.pigment[p] += store_change(canvas.touch(slot, p).data(), dw.data(), 1, area.data());
+        if (any) added.pigment[p] += store_change(canvas.touch(slot, p).data(), dw.data(), 1, area.data());
     }
-    return laid;
+    return added;
 }
 
 }  // namespace tuft::ink

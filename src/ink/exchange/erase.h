@@ -13,8 +13,8 @@ namespace tuft::ink {
 
 /// Amounts removed from a tile or added to it: film·m² by pigment plane, and liquid.
 struct Amounts {
-    std::array<double, kMaxPigments> pigment{};
-    double liquid = 0;
+    std::array<double, kMaxPigments> pigment{};  ///< by plane
+    double liquid = 0;                           ///< on the surface and in its pores
 
     double sum() const;  ///< of the pigments
     Amounts& operator+=(const Amounts& other);
@@ -27,6 +27,7 @@ struct EraseStart {
 };
 EraseStart erase_start(const Canvas& canvas, std::uint32_t slot);
 
+/// Strength of an eraser.
 struct EraseParams {
     double transfer_length = 0.08e-3;  ///< s0, metres of travel
     double strength = 1;               ///< 0–1, by the pressure
@@ -53,7 +54,7 @@ struct Coat {
 };
 
 /// Adds a coat to the open film, up to `capacity` film units in all per texel. Returns the added pigments, film·m².
-Amounts lay_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> area, const Coat& coat,
+Amounts add_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> area, const Coat& coat,
                  float capacity);
 
 }  // namespace tuft::ink

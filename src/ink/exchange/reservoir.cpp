@@ -339,9 +339,9 @@ DepositParams stamp_deposit(const Reservoir& tuft, const Ink& ink, const StampCo
     const double k = std::clamp(contact.moment_factor, 0.0, 1.0);
     const double squeezed = kCapillarySupply + (1 - kCapillarySupply) * k;
     const double offered = ink.supply * squeezed * near / ink.supply_length;  // film·m² per metre
-    const double asked = ink.film * contact.width;
+    const double requested = ink.film * contact.width;
     double target = ink.film * std::min(1.0, 0.85 + 0.3 * k);
-    if (asked > 0) target *= std::max(-std::expm1(-offered / asked), kThread * contact.by_hair);
+    if (requested > 0) target *= std::max(-std::expm1(-offered / requested), kThread * contact.by_hair);
     if (contact.area > 0) target = std::min(target, std::max(0.0, left - contact.pending) / contact.area);
     out.target = static_cast<float>(target);
     return out;

@@ -44,13 +44,24 @@ TUFT_CLONES void scale(float* __restrict a, const float* __restrict b) {
     }
 }
 
+/// Liquid that each texel gets and gives, film units.
 struct Volumes {
     alignas(64) Texels down, up;
 };
 
-TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const float* __restrict goal,
-                         const float* __restrict w, const float* __restrict total, const float* __restrict film,
-                         const float* __restrict exchange, const TransferParams& p, float rate) {
+/// Planes that an exchange reads, [256], film units but for the first and the last.
+struct ExchangePlanes {
+    const float* coverage;  ///< 0–1
+    const float* goal;      ///< film that the hair would leave
+    const float* liquid;    ///< on the surface
+    const float* total;     ///< on the surface and in its pores
+    const float* film;      ///< on the hair
+    const float* exchange;  ///< 0–1, share that changes sides in this step
+};
+
+TUFT_CLONES void exchange_volumes(Volumes& out, const ExchangePlanes& in, const TransferParams& p, float rate) {
+    const float* __restrict coverage = in.coverage, * __restrict goal = in.goal, * __restrict w = in.liquid;
+    const float* __restrict total = in.total, * __restrict film = in.film, * __restrict exchange = in.exchange;
     for (int t = 0; t < kN; ++t) {
         const float touched = coverage[t] > 0 ? 1.0f : 0.0f;
         const float lack = positive(smaller(goal[t] - w[t], p.deposit.capacity - total[t])) * rate;
@@ -116,8 +127,8 @@ TUFT_CLONES double move_pigment(float* __restrict p, float* __restrict up, const
     return changes.sum();
 }
 
-/// Planes lie here and there: all of a tile's are on their way while the first sums are made.
-void ask_for(const Plane* plane) {
+/// Planes lie here and there: all of a tile's are fetched while the first sums are made.
+void prefetch(const Plane* plane) {
     if (!plane) return;
     for (int t = 0; t < kN; t += 64 / static_cast<int>(sizeof(float))) __builtin_prefetch(plane->data() + t);
 }
@@ -264,9 +275,9 @@ void transfer(Canvas& canvas, const ContactTile& tile, const TransferParams& par
     const auto& [slot, coverage, area, ds] = tile.stamp;
     const HatBasis& hats = tile.hats;
     if (hats.count == 0) return;
-    ask_for(canvas.liquid(slot, Liquid::film));
-    ask_for(canvas.liquid(slot, Liquid::pores));
-    for (int p = 0; p < kMaxPigments; ++p) ask_for(canvas.plane(slot, p));
+    prefetch(canvas.liquid(slot, Liquid::film));
+    prefetch(canvas.liquid(slot, Liquid::pores));
+    for (int p = 0; p < kMaxPigments; ++p) prefetch(canvas.plane(slot, p));
     std::array<float, kNodes> over{};  // film units of all planes
     for (int k = 0; k < hats.count; ++k)
         for (int p = 0; p < Reservoir::kPlanes; ++p) over[hats.node[k]] += params.film[p][hats.node[k]];
@@ -281,7 +292,8 @@ void transfer(Canvas& canvas, const ContactTile& tile, const TransferParams& par
     for (int t = 0; t < kN; ++t) total[t] = s ? w[t] + (*s)[t] : w[t];
     Volumes v;
     const auto rate = static_cast<float>(-std::expm1(-ds / static_cast<double>(params.deposit.transfer_length)));
-    volumes(v, coverage.data(), goal.data(), w.data(), total.data(), film.data(), exchange.data(), params, rate);
+    exchange_volumes(v, {coverage.data(), goal.data(), w.data(), total.data(), film.data(), exchange.data()}, params,
+                     rate);
     given_part(part.data(), v.down.data(), film.data());
     Booked booked;
     integrate_hats(booked.part, hats, part.data(), area);

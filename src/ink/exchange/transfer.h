@@ -14,8 +14,9 @@ namespace tuft::ink {
 /// a few millimetres, which smears, while the hair behind it hardly changes. Interpolated between the nodes: the
 /// film over an area at node n is Σ_n w_n content_n / area_n.
 struct SurfaceLiquid {
-    NodeContents content{};
+    NodeContents content{};  ///< film·m², by node and plane
 
+    /// Returns the liquid at a node, film·m².
     double volume(int node) const;
 };
 
@@ -29,6 +30,7 @@ void refresh(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& contact
 /// Returns all surface liquid to the hair, at the end of a stroke.
 void withdraw(SurfaceLiquid& liquid, Reservoir& tuft, const ContactCells& contact, const NodeContact& nodes);
 
+/// Parameters of one contact; `transfer_params` fills them.
 struct TransferParams {
     DepositParams deposit;                 ///< target, transfer_length, capacity, extinction; not its mix
     std::array<float, kNodes> exchange{};  ///< fraction of the liquid that a contact renews at each node: 1 − exp(−...)

@@ -17,21 +17,21 @@ constexpr double kCatchment = 2;  // radii from which a bead draws liquid in
 constexpr double kStart = 1.3;    // volumes that run on: with less a bead does not come off a film
 constexpr double kRing = 1.5;     // radii: about a bead lies the film that it stands on
 constexpr double kRim = 1.1;      // a bead's own radius, and what it may have spread meanwhile
-constexpr double kBead = 1.5;     // hold: a film as thick as that is likely a bead
+constexpr double kBead = 1.5;     // of `retained`: a film as thick as that is likely a bead
 constexpr double kAny = std::numeric_limits<double>::infinity();
-constexpr double kApart = 2.2;  // critical radii between beads that move in the same step
+constexpr double kSeparation = 2.2;  // critical radii between beads that move in the same step
 constexpr double kLeastGrain = 0.8, kGrainPart = 0.5;
-constexpr double kHopeful = 0.3;   // of what runs: less about a place will not come together
-constexpr double kFastest = 1.5;   // bead_speed
-constexpr double kAtRest = 1.01;   // of the critical radius
-constexpr double kStops = 1.06;    // of the radius that a moving one needs: it comes to rest
-constexpr double kMoving = 0.65;   // of what holds a bead at rest: so much holds one that runs
-constexpr double kLying = 0.5;     // of bead_angle: a bead's that came to rest
-constexpr double kSummit = 0.3;    // radii: about the highest of a cap
-constexpr double kFull = 0.8;      // of the height of a cap of its volume: one that runs is as high
-constexpr double kTrack = 0.3;     // radii: of the trail next to the bead that left it, along and to each side
-constexpr double kThinnest = 0.5;  // of the trail: what stays behind the slowest bead
-constexpr double kTail = 5;        // radii that a bead at rest is drawn out upwards
+constexpr double kHopeful = 0.3;    // of what runs: less about a place will not come together
+constexpr double kFastest = 1.5;    // bead_speed
+constexpr double kAtRest = 1.01;    // of the critical radius
+constexpr double kStops = 1.06;     // of the radius that a moving one needs: it comes to rest
+constexpr double kMoving = 0.65;    // of what holds a bead at rest: so much holds one that runs
+constexpr double kRestAngle = 0.5;  // of bead_angle: a bead's that came to rest
+constexpr double kSummit = 0.3;     // radii: about the highest of a cap
+constexpr double kFull = 0.8;       // of the height of a cap of its volume: one that runs is as high
+constexpr double kTrack = 0.3;      // radii: of the trail next to the bead that left it, along and to each side
+constexpr double kThinnest = 0.5;   // of the trail: what stays behind the slowest bead
+constexpr double kTail = 5;         // radii that a bead at rest is drawn out upwards
 
 double critical_radius(double angle, double steepness) {
     return 2 * kCapillaryLength * std::sqrt(angle / (kPi * std::max(steepness, kLeastSteepness)));
@@ -54,14 +54,14 @@ Drips::Drips(const atlas::TexelMap& map, const atlas::SeamLinks& seams, const We
     : map_(map), seams_(seams), free_(free), seen_of_slot_(map.n_slots(), kNone) {}
 
 double Drips::least(const FilmParams& p) {
-    // A bead on a dry wall, or what is above hold of a film, over the bead's disc and the ring round it.
+    // A bead on a dry wall, or what is above `retained` of a film, over the bead's disc and the ring round it.
     const double r = critical_radius(p.bead_angle, 1), ring = kCatchment * kCatchment - 1;
     const double mean = std::pow(kLeastGrain, 1.5) * amount_of(r, p.bead_angle) / (kPi * r * r);
-    return std::min(p.hold + kStart * mean / (1 + ring), mean + p.trail);
+    return std::min(p.retained + kStart * mean / (1 + ring), mean + p.trail);
 }
 
 /// The texels within `radius` of `centre` that hang together with `start`.
-void Drips::gather(const atlas::TexelRef& start, const Vec3& centre, double radius) {
+void Drips::collect_disc(const atlas::TexelRef& start, const Vec3& centre, double radius) {
     disc_.clear();
     std::uint32_t last_slot = kNone, last_seen = 0;
     const auto bits_of = [&](std::uint32_t slot) -> std::array<std::uint64_t, atlas::kTileTexels / 64>& {
@@ -95,7 +95,7 @@ void Drips::gather(const atlas::TexelRef& start, const Vec3& centre, double radi
         const int column = here.ref.texel % atlas::kTile, row = here.ref.texel / atlas::kTile;
         for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
             if (const atlas::TexelRef next = beside(here.ref, column + dx, row + dy);
-                next.valid() && !apart(here.ref, next))
+                next.valid() && !is_separate(here.ref, next))
                 visit(next, &here.at, static_cast<double>(std::max(map_.reach[here.ref.slot], map_.reach[next.slot])));
         const auto links =
             std::span(seams_.links)
@@ -104,7 +104,7 @@ void Drips::gather(const atlas::TexelRef& start, const Vec3& centre, double radi
         const auto first = std::lower_bound(links.begin(), links.end(), here.ref.texel,
                                             [](const atlas::SeamLink& l, std::uint8_t t) { return l.texel < t; });
         for (auto l = first; l != links.end() && l->texel == here.ref.texel; ++l)
-            if (const atlas::TexelRef next{l->other_slot, l->other_texel}; !apart(here.ref, next))
+            if (const atlas::TexelRef next{l->other_slot, l->other_texel}; !is_separate(here.ref, next))
                 visit(next, &here.at, 0);
     }
     for (const std::uint32_t slot : seen_slots_) seen_of_slot_[slot] = kNone;
@@ -112,7 +112,7 @@ void Drips::gather(const atlas::TexelRef& start, const Vec3& centre, double radi
 }
 
 /// By the edge of a stencil edge.
-bool Drips::apart(const atlas::TexelRef& a, const atlas::TexelRef& b) const {
+bool Drips::is_separate(const atlas::TexelRef& a, const atlas::TexelRef& b) const {
     return free_ && (free_(a.slot, a.texel) == 0) != (free_(b.slot, b.texel) == 0);
 }
 
@@ -160,23 +160,23 @@ class Drips::Run {
             reach = std::max(start_radius, kRim * radius_of(bead.amount, p_.bead_angle));
         }
         for (const Seen& other : seen_)
-            if (glm::distance(other.at, bead.at) < kApart * start_radius) return;
+            if (glm::distance(other.at, bead.at) < kSeparation * start_radius) return;
         const double grain = 1 + kGrainPart * (seed.grain - 1), radius = critical(bead, grain);
         const double starts = kStart * amount_of(kAtRest * radius, p_.bead_angle);
-        d_.gather(bead.place, bead.at, kCatchment * reach);
-        const BaseColour ground = target_model(bead, reach);
-        const auto [inside, round] = amounts(bead, ground, reach);
-        const double least = is_running(bead, ground, inside) ? std::sqrt(kMoving) : kAtRest,
+        d_.collect_disc(bead.place, bead.at, kCatchment * reach);
+        const WetBase base = fit_base(bead, reach);
+        const auto [inside, round] = amounts(bead, base, reach);
+        const double least = is_running(bead, base, inside) ? std::sqrt(kMoving) : kAtRest,
                      runs = amount_of(least * radius, p_.bead_angle);
         if (inside < runs && inside + round < starts) return;
         seen_.push_back({bead.at, reach});
         bead.amount = 0;
         if (inside < runs)
-            draw_in(bead, ground, reach, std::clamp((starts - inside) / round, 0.0, 1.0), kAny);
+            draw_in(bead, base, reach, std::clamp((starts - inside) / round, 0.0, 1.0), kAny);
         else
-            draw_in(bead, ground, reach, std::min(p_.drain * seconds, 1.0),
-                    kBead * p_.hold);  // leaves other beads whole
-        lay_down(bead, move(bead, grain, seconds));
+            draw_in(bead, base, reach, std::min(p_.drain * seconds, 1.0),
+                    kBead * p_.retained);  // leaves other beads whole
+        deposit_bead(bead, move(bead, grain, seconds));
         seen_.push_back({bead.at, radius_of(bead.amount, p_.bead_angle)});
     }
 
@@ -208,7 +208,7 @@ class Drips::Run {
 
     /// Sets the amount about the bead's middle, and the middle where most of it is.
     bool centre(Bead& bead, double radius) {
-        d_.gather(bead.place, bead.at, radius);
+        d_.collect_disc(bead.place, bead.at, radius);
         double sum = 0;
         Vec3 moment{0};
         for (const Near& n : d_.disc_) {
@@ -222,7 +222,7 @@ class Drips::Run {
         return true;
     }
 
-    /// Onto the surface next to a point near it; `gather` has been there.
+    /// Onto the surface next to a point near it; `collect_disc` has been there.
     void put_at(Bead& bead, const Vec3& at) const {
         double least = 1e300;
         const Near* nearest = nullptr;
@@ -256,19 +256,19 @@ class Drips::Run {
         return t.film * covered * std::sqrt(std::max(profile, inner / t.half));
     }
 
-    /// The film a bead stands on, from what lies round it: `hold` at most.
-    struct BaseColour {
+    /// The film a bead stands on, from what lies round it: `retained` at most.
+    struct WetBase {
         double mean = 0;
         Vec3 slope{0};
         Trail trail;
     };
-    /// `gather` has been as far as kRing.
-    BaseColour target_model(const Bead& bead, double radius) const {
+    /// `collect_disc` has been as far as kRing.
+    WetBase fit_base(const Bead& bead, double radius) const {
         double sum = 0, area = 0, square = 0;
         Vec3 moment{0}, middle{0};
         for (const Near& n : d_.disc_) {
             if (n.distance < radius || n.distance > kRing * radius) continue;
-            const double w = std::min(static_cast<double>(liquid(n.ref)), p_.hold) * n.area;
+            const double w = std::min(static_cast<double>(liquid(n.ref)), p_.retained) * n.area;
             const Vec3 d = n.at - bead.at;
             sum += w;
             area += n.area;
@@ -281,35 +281,35 @@ class Drips::Run {
         const double mean = sum / area;
         return {mean, (moment - mean * middle) * (2 / square), trail};  // least squares on a full ring
     }
-    /// What it leaves there when it goes: the ground, or its trail.
-    double rest(const Bead& bead, const BaseColour& ground, const Near& n) const {
-        return std::max(std::clamp(ground.mean + glm::dot(ground.slope, n.at - bead.at), 0.0, p_.hold),
-                        trail(n, ground.trail));
+    /// What it leaves there when it goes: the base, or its trail.
+    double rest(const Bead& bead, const WetBase& base, const Near& n) const {
+        return std::max(std::clamp(base.mean + glm::dot(base.slope, n.at - bead.at), 0.0, p_.retained),
+                        trail(n, base.trail));
     }
-    /// Above the ground within `radius`, and above hold round it.
-    std::pair<double, double> amounts(const Bead& bead, const BaseColour& ground, double radius) const {
+    /// Above the base within `radius`, and above `retained` round it.
+    std::pair<double, double> amounts(const Bead& bead, const WetBase& base, double radius) const {
         double inside = 0, round = 0;
         for (const Near& n : d_.disc_) {
             const auto w = static_cast<double>(liquid(n.ref));
             if (n.distance < radius)
-                inside += std::max(0.0, w - rest(bead, ground, n)) * n.area;
+                inside += std::max(0.0, w - rest(bead, base, n)) * n.area;
             else
-                round += std::max(0.0, w - p_.hold) * n.area;
+                round += std::max(0.0, w - p_.retained) * n.area;
         }
         return {inside, round};
     }
     /// Whether what lies there was laid down as a cap, which one at rest is not any more, and hangs on a trail: a dot
-    /// that was put on dry surface is held by the line all round it. `gather` has been there.
-    bool is_running(const Bead& bead, const BaseColour& ground, double amount) const {
+    /// that was put on dry surface is held by the line all round it. `collect_disc` has been there.
+    bool is_running(const Bead& bead, const WetBase& base, double amount) const {
         const double radius = radius_of(amount, p_.bead_angle);
-        return is_full(bead, ground, radius) && is_wet_behind(bead, radius);
+        return is_full(bead, base, radius) && is_wet_behind(bead, radius);
     }
-    bool is_full(const Bead& bead, const BaseColour& ground, double radius) const {
+    bool is_full(const Bead& bead, const WetBase& base, double radius) const {
         const double cap = 0.5 * p_.bead_angle * radius / kFilmUnit;
         double sum = 0, area = 0;
         for (const Near& n : d_.disc_)
             if (n.distance < kSummit * radius)
-                sum += (static_cast<double>(liquid(n.ref)) - rest(bead, ground, n)) * n.area, area += n.area;
+                sum += (static_cast<double>(liquid(n.ref)) - rest(bead, base, n)) * n.area, area += n.area;
         return sum > kFull * cap * (1 - 0.5 * kSummit * kSummit) * area;
     }
     bool is_wet_behind(const Bead& bead, double radius) const {
@@ -327,32 +327,32 @@ class Drips::Run {
         return wet > 0.5 * kThinnest * p_.trail * area;
     }
     /// All of the one and `part` of the other, where it is less than `thick`, go into the bead.
-    void draw_in(Bead& bead, const BaseColour& ground, double radius, double part, double thick) {
+    void draw_in(Bead& bead, const WetBase& base, double radius, double part, double thick) {
         for (const Near& n : d_.disc_) {
             const auto w = static_cast<double>(liquid(n.ref));
             if (n.distance < radius)
-                take(bead, n, rest(bead, ground, n));
-            else if (w > p_.hold && w < thick)
-                take(bead, n, w - part * (w - p_.hold));
+                take(bead, n, rest(bead, base, n));
+            else if (w > p_.retained && w < thick)
+                take(bead, n, w - part * (w - p_.retained));
         }
     }
 
-    /// What the bead meets on its way, above `hold`; another bead that it touches comes whole.
+    /// What the bead meets on its way, above `retained`; another bead that it touches comes whole.
     void take_up(Bead& bead, double radius) {
         const Near* thickest = &d_.disc_.front();
         for (const Near& n : d_.disc_)
             if (liquid(n.ref) > liquid(thickest->ref)) thickest = &n;
-        if (static_cast<double>(liquid(thickest->ref)) > kBead * p_.hold) {
+        if (static_cast<double>(liquid(thickest->ref)) > kBead * p_.retained) {
             Bead other{.place = thickest->ref, .at = thickest->at};
             for (int i = 0; i < kShifts && centre(other, radius); ++i) {
             }
-            d_.gather(other.place, other.at, kRing * radius);
-            const BaseColour ground = target_model(other, kRim * radius);
+            d_.collect_disc(other.place, other.at, kRing * radius);
+            const WetBase base = fit_base(other, kRim * radius);
             for (const Near& n : d_.disc_)
-                if (n.distance < kRim * radius) take(bead, n, rest(other, ground, n));
-            d_.gather(bead.place, bead.at, radius);
+                if (n.distance < kRim * radius) take(bead, n, rest(other, base, n));
+            d_.collect_disc(bead.place, bead.at, radius);
         }
-        for (const Near& n : d_.disc_) take(bead, n, std::max(p_.hold, p_.trail));
+        for (const Near& n : d_.disc_) take(bead, n, std::max(p_.retained, p_.trail));
     }
 
     /// What is thicker than `rest`, with its pigments.
@@ -405,7 +405,7 @@ class Drips::Run {
     /// Whether it came to rest where the surface holds it.
     bool move(Bead& bead, double grain, double seconds) {
         double radius = radius_of(bead.amount, p_.bead_angle);
-        d_.gather(bead.place, bead.at, radius);
+        d_.collect_disc(bead.place, bead.at, radius);
         leave_trail(bead, radius);
         const double least_step = 0.5 * d_.map_.texel_size;
         while (seconds > 0) {
@@ -416,11 +416,11 @@ class Drips::Run {
             const double speed = p_.bead_speed * std::min(ratio * ratio - 1, kFastest);
             const double step = std::min(std::max(least_step, 0.08 * radius), speed * seconds);
             seconds -= step / speed;
-            d_.gather(bead.place, bead.at, radius);
+            d_.collect_disc(bead.place, bead.at, radius);
             const Vec3 was = bead.at;
             put_at(bead, bead.at + down * (step / steep));
             if (glm::distance(was, bead.at) < 0.1 * step) return false;  // an edge of the model
-            d_.gather(bead.place, bead.at, radius);
+            d_.collect_disc(bead.place, bead.at, radius);
             take_up(bead, radius);
             leave_trail(bead, radius);
             radius = radius_of(bead.amount, p_.bead_angle);
@@ -430,10 +430,10 @@ class Drips::Run {
 
     /// As a cap whose middle is the bead's; what rounding leaves over goes to the texel there. At rest it is blunt in
     /// front, where it meets dry surface, and drawn out behind, where its own trail holds it at a lower angle.
-    void lay_down(Bead& bead, bool rests) {
+    void deposit_bead(Bead& bead, bool rests) {
         const double radius = radius_of(bead.amount, p_.bead_angle), square = radius * radius;
         if (rests) return hang(bead);
-        d_.gather(bead.place, bead.at, radius);
+        d_.collect_disc(bead.place, bead.at, radius);
         // Texels lie unevenly at seams: without the tilt a bead would creep to one side, step by step.
         Vec3 tilt{0};
         const auto height = [&](const Near& n) {
@@ -450,8 +450,8 @@ class Drips::Run {
         spread(bead, sum, height);
     }
     void hang(Bead& bead) {
-        const double radius = radius_of(bead.amount, kLying * p_.bead_angle);
-        d_.gather(bead.place, bead.at, kTail * radius);
+        const double radius = radius_of(bead.amount, kRestAngle * p_.bead_angle);
+        d_.collect_disc(bead.place, bead.at, kTail * radius);
         const Vec3 down = glm::normalize(downhill(bead.place));
         const auto height = [&](const Near& n) {
             const Vec3 d = n.at - bead.at;

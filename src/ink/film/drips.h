@@ -20,10 +20,10 @@ namespace tuft::ink::wet {
 /// R_c. Its speed is bead_speed ((R / R_k)² − 1), at most 1.5 bead_speed (Le Grand, Daerr, Limat 2005: linear in
 /// the weight beyond the critical one).
 ///
-/// A running bead takes up liquid above `hold` on its path, with its pigments, and draws in liquid above `hold`
+/// A running bead takes up liquid above `retained` on its path, with its pigments, and draws in liquid above `retained`
 /// within 2 R. It leaves a trail of half-width √(R R_k), with a rounded profile, where it passed over less. It
 /// stops when the trail has used it up. It then lies at half its angle, extended up its trail, and dries as a soft
-/// bulb that fades into the trail. A film starts a bead where 1.3 times what the surface holds lies above `hold`
+/// bulb that fades into the trail. A film starts a bead where 1.3 times what the surface holds lies above `retained`
 /// within 2 R.
 ///
 /// No state is stored between steps: the texels tell where beads are and which of them run, namely those as high as
@@ -57,8 +57,8 @@ class Drips {
     struct Bead;
     class Run;
 
-    void gather(const atlas::TexelRef& start, const Vec3& centre, double radius);
-    bool apart(const atlas::TexelRef& a, const atlas::TexelRef& b) const;
+    void collect_disc(const atlas::TexelRef& start, const Vec3& centre, double radius);
+    bool is_separate(const atlas::TexelRef& a, const atlas::TexelRef& b) const;
     atlas::TexelRef beside(const atlas::TexelRef& ref, int column, int row) const;
 
     const atlas::TexelMap& map_;
@@ -67,7 +67,7 @@ class Drips {
     std::vector<std::uint32_t> seen_of_slot_;  ///< [n_slots] scratch
     std::vector<std::array<std::uint64_t, atlas::kTileTexels / 64>> seen_;
     std::vector<std::uint32_t> seen_slots_;
-    std::vector<Near> disc_;    ///< of the last `gather`
+    std::vector<Near> disc_;    ///< of the last `collect_disc`
     std::vector<double> part_;  ///< of a bead for each of those
 };
 

@@ -43,7 +43,7 @@ bool load(Field& field, const Near& near, PlaneOf&& plane_of) {
         any |= plane != nullptr;
         planes[i] = (plane ? plane : &kDry)->data();
     }
-    if (any) gather(field, planes);
+    if (any) gather_field(field, planes);
     return any;
 }
 
@@ -88,7 +88,7 @@ struct WetFilm::State : TileList {
     /// [n_slots] of what is dry, film units: found once in an advance, null where it is plain.
     std::vector<std::unique_ptr<Plane>> relief;
     std::vector<std::unique_ptr<Plane>> paste;  ///< [n_slots] what is paste; null: none
-    std::vector<std::uint8_t> felt;             ///< [n_slots] whether that was looked for
+    std::vector<std::uint8_t> relief_known;     ///< [n_slots] 1: the relief was looked for
     bool any_relief = false;
     std::unique_ptr<Drips> drips;
     std::vector<Sources> sources;             ///< of the list; empty: not looked up yet
@@ -129,11 +129,11 @@ struct WetFilm::State : TileList {
         if (!(glm::length(params.down) > 0)) return false;
         const std::vector<Drips::Seed> seeds = seeds_of_beads(canvas, params);
         if (seeds.empty()) return false;
-        if (!drips) drips = std::make_unique<Drips>(map, seams, ground().free);
+        if (!drips) drips = std::make_unique<Drips>(map, seams, medium().free);
         const std::vector<std::uint32_t> written =
             drips->run(canvas, seeds, params, dt, [&](std::uint32_t slot) { report_slot(slot, before); });
         if (written.empty()) return false;
-        look_at(canvas, written);
+        search_tile(canvas, written);
         return true;
     }
 
@@ -142,13 +142,13 @@ struct WetFilm::State : TileList {
         relief.resize(map.n_slots());
         paste.clear();
         paste.resize(map.n_slots());
-        felt.assign(map.n_slots(), 0);
+        relief_known.assign(map.n_slots(), 0);
         any_relief = false;
     }
 
     void feel(const Canvas& canvas, std::uint32_t slot) {
-        if (felt[slot]) return;
-        felt[slot] = 1;
+        if (relief_known[slot]) return;
+        relief_known[slot] = 1;
         Plane z = dry_relief(canvas, slot);
         const Plane stands = paste_height(canvas, slot);
         paste[slot] = greatest(stands.data()) > 0 ? std::make_unique<Plane>(stands) : nullptr;
@@ -168,7 +168,7 @@ struct WetFilm::State : TileList {
             std::array<float, kTexels> liquid;
             for (int t = 0; t < kTexels; ++t) liquid[t] = at(sources[i].liquid[0], t) + at(sources[i].liquid[1], t);
             if (!bed_paste(canvas, slot, *paste[slot], liquid, 0)) continue;
-            felt[slot] = 0;
+            relief_known[slot] = 0;
             any = true;
         }
         return any;
@@ -186,7 +186,7 @@ struct WetFilm::State : TileList {
         parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 auto& g = geometry[list[i].slot];
-                if (!g) g = std::make_unique<Geometry>(make_geometry(map, seams, list[i].slot, ground()));
+                if (!g) g = std::make_unique<Geometry>(make_geometry(map, seams, list[i].slot, medium()));
                 list[i].stiffness = g->stiffness;
                 list[i].geometry = g.get();
                 list[i].diagonals = g->gd.get();

@@ -29,12 +29,12 @@ struct FilmParams {
     double stain = 0;               ///< fraction of a drying film that soaks into bare substrate
     double unevenness = 0;          ///< rms of ln of the relative mobility over the surface; 0: even
     Vec3 down{0};                   ///< unit, direction of gravity; zero: none
-    double hold = 2;                ///< film units not moved by gravity or surface tension
-    double levelling = 1e-8;        ///< L, m²/s per film unit above `hold`: levelling by surface tension
+    double retained = 2;            ///< w_r: film units not moved by gravity or surface tension
+    double levelling = 1e-8;        ///< L, m²/s per film unit above `retained`: levelling by surface tension
     double ridge = 0.4;             ///< film units that stay on the ridges of dry paint
     double bead_angle = 0.15;       ///< radians: contact angle of a bead that runs down
     double bead_speed = 8e-3;       ///< m/s, speed of a bead of √2 times the radius at which it stops
-    double drain = 2;               ///< 1/s: rate at which a bead draws in near liquid above `hold`
+    double drain = 2;               ///< 1/s: rate at which a bead draws in near liquid above `retained`
     double trail = 0.9;             ///< film units that a bead leaves behind
     /// Seconds; a fifth on relief, half under liquid. Where stability needs shorter steps, the fastest flows are
     /// limited, or computed between blocks of texels; beside seams such steps are divided.
@@ -45,8 +45,9 @@ struct FilmParams {
 /// the direction of gravity.
 FilmParams film_params(const Substrate& substrate, const Vec3& down = Vec3{0});
 
+/// Work of `WetFilm::advance`.
 struct FilmReport {
-    std::size_t steps = 0;
+    std::size_t steps = 0;       ///< number of steps
     std::size_t tile_steps = 0;  ///< tiles stepped, over all steps
     double evaporated = 0;       ///< evaporated liquid, film·m²
 };
@@ -54,7 +55,7 @@ struct FilmReport {
 /// Steps the wet film of a canvas by finite volumes on the texels, with the metric of the surface. Unknowns: liquid
 /// w on the surface and s in the pores (w + s = T), pigments p of the open film:
 ///
-///     ∂w/∂t = ∇·((D ⟨w − w_c⟩ + L ⟨w − hold⟩) ∇w) − soak − e
+///     ∂w/∂t = ∇·((D ⟨w − w_c⟩ + L ⟨w − w_r⟩) ∇w) − soak − e
 ///     ∂s/∂t = ∇·(D s ∇s) + soak,                           soak = a w (1 − s / pores)
 ///     ∂p/∂t = ∇·((p/H)↑ j + D_p M ∇(p/H)),                 j: flux of w and of s (1 − retention)
 ///

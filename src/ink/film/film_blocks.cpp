@@ -76,10 +76,10 @@ Means means_of(const Field& liquid, const Beside& beside) {
 
 /// What flows: how easily, over its mean depth.
 struct Medium {
-    float flow, threshold, levelling, hold, most;
+    float flow, threshold, levelling, retained, most;
 
     float flow_at(float depth) const {
-        return flow * std::max(depth - threshold, 0.0f) + levelling * std::max(depth - hold, 0.0f);
+        return flow * std::max(depth - threshold, 0.0f) + levelling * std::max(depth - retained, 0.0f);
     }
 };
 
@@ -105,10 +105,10 @@ TUFT_CLONES float through_faces(float* __restrict flux, const Row& from, const R
         const float flow = 0.5f * (from.flow[x] + to.flow[x]), drop = (from.mean[x] - to.mean[x]) / kBlock;
         const float k = (static_cast<float>(conductance[x]) * kConductanceUnit) * flow;
         const float over = larger(k - most * static_cast<float>(flow_area[x]), 0);
-        const float held_back = least > 0 ? smaller(over, kMostOfBlock) : 0, limit = kLeastPart * least;
-        const float f = larger(smaller(held_back * drop, limit), -limit);
+        const float limited = least > 0 ? smaller(over, kMostOfBlock) : 0, limit = kLeastPart * least;
+        const float f = larger(smaller(limited * drop, limit), -limit);
         flux[x] = least > 0 ? f : 0;
-        any[x] = held_back;
+        any[x] = limited;
     }
     float all = 0;
     for (int x = 0; x < kSide; ++x) all = larger(all, any[x]);
@@ -156,8 +156,8 @@ Fluxes fluxes_of(Means m, const Geometry& g, const Medium& p) {
 }
 
 /// Sixteen faces from texel k to k + `to`.
-inline __attribute__((always_inline)) void carry(Faces& f, int k, int to, const float* flux, const float* rate,
-                                                 float passing) {
+inline __attribute__((always_inline)) void transport(Faces& f, int k, int to, const float* flux, const float* rate,
+                                                     float passing) {
     float *a = &f.a[k], *b = &f.b[k];
     const float *from = rate + k, *onto = from + to;
 #pragma GCC ivdep
@@ -179,7 +179,7 @@ TUFT_CLONES void spread(Work& work, float* d, const Fluxes& f, float passing) {
         const float* second = f.along[part == 0 ? face : face + 1].data();
         for (int x = 0; x < kSide; ++x)
             along[x] = first[x] + (second[x] - first[x]) * (static_cast<float>(part) / kBlock);
-        carry(work.y, field_at(0, row), kRow, along.data(), work.rate.data(), passing);
+        transport(work.y, field_at(0, row), kRow, along.data(), work.rate.data(), passing);
         if (row >= 0) {
             for (int b = 0; b < kBlocks; ++b) {
                 const float from = f.across[b][row], change = f.across[b + 1][row] - from;
@@ -187,7 +187,7 @@ TUFT_CLONES void spread(Work& work, float* d, const Fluxes& f, float passing) {
                     across[b * kBlock + x] = from + change * (static_cast<float>(x) / kBlock);
             }
             across[kSide] = f.across[kBlocks][row];
-            carry(work.x, field_at(-1, row), 1, across.data(), work.rate.data(), passing);
+            transport(work.x, field_at(-1, row), 1, across.data(), work.rate.data(), passing);
             const int k = field_at(kSide - 1, row);
             work.x.a[k] += std::max(across[kSide] * passing, 0.0f) * work.rate[k];
             work.x.b[k] += std::min(across[kSide] * passing, 0.0f) * work.rate[k + 1];
@@ -202,7 +202,8 @@ TUFT_CLONES void spread(Work& work, float* d, const Fluxes& f, float passing) {
 }  // namespace
 
 void film_block_flow(Work& work, const Geometry& g, const Beside& beside, const Step& p) {
-    const Fluxes fluxes = fluxes_of(means_of(work.w, beside), g, {p.flow, p.threshold, p.levelling, p.hold, p.most});
+    const Fluxes fluxes =
+        fluxes_of(means_of(work.w, beside), g, {p.flow, p.threshold, p.levelling, p.retained, p.most});
     if (fluxes.any) spread(work, work.dw.data(), fluxes, 1);
 }
 

@@ -130,8 +130,8 @@ void take_borders(Neighbourhood& n, const atlas::SeamLinks& seams, std::uint32_t
     }
 }
 
-Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot,
-                     const BaseColour& ground) {
+Neighbourhood collect_texels(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot,
+                             const FlowMedium& medium) {
     Neighbourhood n;
     const std::int64_t x0 = std::int64_t{map.tile_of_slot[slot] % map.tiles_per_side} * kSide;
     const std::int64_t y0 = std::int64_t{map.tile_of_slot[slot] / map.tiles_per_side} * kSide;
@@ -144,7 +144,7 @@ Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, 
                                  .position = Vec3(map.position(ref.slot, ref.texel)),
                                  .area = static_cast<double>(area),
                                  .reach = static_cast<double>(map.reach[ref.slot]),
-                                 .free = ground.free ? ground.free(ref.slot, ref.texel) : std::uint8_t{255}};
+                                 .free = medium.free ? medium.free(ref.slot, ref.texel) : std::uint8_t{255}};
         }
     for (int row = -1; row < kSide + 1; ++row)
         for (int column = -1; column < kSide + 1; ++column) {
@@ -152,7 +152,7 @@ Neighbourhood gather(const atlas::TexelMap& map, const atlas::SeamLinks& seams, 
             Spot& s = n.at(column, row);
             if (!s.valid) continue;
             s.grain = 1 + kGrainDepth * noise(s.position, kGrainLength);
-            if (ground.unevenness > 0) s.ease = exponential(0.5 * ground.unevenness * flocs(s.position));
+            if (medium.unevenness > 0) s.ease = exponential(0.5 * medium.unevenness * flocs(s.position));
         }
     const auto tiles = static_cast<std::int64_t>(map.tiles_per_side);
     for (std::int64_t y = std::max<std::int64_t>(y0 / kSide - 1, 0); y < std::min(y0 / kSide + 2, tiles); ++y)
@@ -222,8 +222,8 @@ double passing(std::uint8_t free_a, std::uint8_t free_b) {
 }
 
 Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot,
-                       const BaseColour& ground) {
-    const Neighbourhood n = gather(map, seams, slot, ground);
+                       const FlowMedium& medium) {
+    const Neighbourhood n = collect_texels(map, seams, slot, medium);
     const double mean = map.texel_size * map.texel_size;
     Geometry g;
     Geometry::Diagonals diagonals{};

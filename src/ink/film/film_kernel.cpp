@@ -58,24 +58,25 @@ TUFT_INLINE float passing_of(const Step& p) {
 }
 TUFT_INLINE End end_of(float w, float s, float grain, float z, const Step& p) {
     const float t = w + s;
-    return {w, s, t, rate_of(t, p.grip), grain, positive(w - p.threshold), positive(w - p.hold), w + passing_of(p) * s,
-            z, 0};
+    return {
+        w, s, t, rate_of(t, p.grip), grain, positive(w - p.threshold), positive(w - p.retained), w + passing_of(p) * s,
+        z, 0};
 }
 
 /// What differs between tiles; all give the same numbers where they apply.
-template <bool kPores, bool kDry, bool kRelief, bool kHeld>
+template <bool kPores, bool kDry, bool kRelief, bool kLimited>
 struct Law {
     static constexpr bool pores = kPores;
 
     /// Conductance g times how much flows.
-    static TUFT_INLINE float held(float g, float flow, float most, const Step& p) {
-        if constexpr (kHeld) return smaller(g * flow, most);
+    static TUFT_INLINE float limited_flow(float g, float flow, float most, const Step& p) {
+        if constexpr (kLimited) return smaller(g * flow, most);
         return g * smaller(flow, p.limit);
     }
 
     /// At most so much of what a texel has leaves it through a face.
     static TUFT_INLINE float most_of(const End& e0, const End& e1, float share, const Step& p) {
-        return kHeld ? share * p.most * static_cast<float>(smaller_of(e0.flow_area, e1.flow_area)) : 0;
+        return kLimited ? share * p.most * static_cast<float>(smaller_of(e0.flow_area, e1.flow_area)) : 0;
     }
 
     /// Flux of liquid on the surface between two texels, film units · mean area.
@@ -85,24 +86,24 @@ struct Law {
         if constexpr (kRelief) over0 = positive(e0.w - p.ridge), over1 = positive(e1.w - p.ridge);
         if constexpr (kDry) {
             const float onto0 = e0.t > 0 ? 0 : p.pin * e0.grain, onto1 = e1.t > 0 ? 0 : p.pin * e1.grain;
-            const float held = p.threshold + (onto0 + onto1);
-            const float over_held0 = positive(e0.w - held), over_held1 = positive(e1.w - held);
-            above = over_held0 + over_held1;
-            if constexpr (kRelief) over0 = smaller(over0, over_held0), over1 = smaller(over1, over_held1);
+            const float retained = p.threshold + (onto0 + onto1);
+            const float over_retained0 = positive(e0.w - retained), over_retained1 = positive(e1.w - retained);
+            above = over_retained0 + over_retained1;
+            if constexpr (kRelief) over0 = smaller(over0, over_retained0), over1 = smaller(over1, over_retained1);
         }
         const float level = (0.5f * p.levelling) * (e0.free + e1.free);
-        const float plain = held(g, (0.5f * p.flow) * above + (above > 0 ? level : 0), most, p) * (e0.w - e1.w);
+        const float plain = limited_flow(g, (0.5f * p.flow) * above + (above > 0 ? level : 0), most, p) * (e0.w - e1.w);
         if constexpr (!kRelief) return plain;
         // Down the liquid's own surface, and no more than its upper end has to give.
         const float drop = (e0.w + e0.z) - (e1.w + e1.z), over = drop > 0 ? over0 : over1;
         const float run = smaller((0.5f * p.flow) * above + p.relief * over, p.limit) * drop, all = p.limit * over;
         float down = g * larger(smaller(run, all), -all);
-        if constexpr (kHeld) down = larger(smaller(down, most * over), -(most * over));
+        if constexpr (kLimited) down = larger(smaller(down, most * over), -(most * over));
         return e0.z + e1.z > 0 ? down : plain;
     }
 
     static TUFT_INLINE float pore_flux(float g, const End& e0, const End& e1, float most, const Step& p) {
-        return held(g, (0.5f * p.flow) * (e0.s + e1.s), most, p) * (e0.s - e1.s);
+        return limited_flow(g, (0.5f * p.flow) * (e0.s + e1.s), most, p) * (e0.s - e1.s);
     }
 };
 
@@ -128,34 +129,43 @@ struct Falling {
     static TUFT_INLINE float unpack(std::int16_t g) { return positive(-(static_cast<float>(g) * kDiagonalUnit)); }
 };
 
-/// A face: what flows, and in `a`, `b` what it carries.
+/// Flow through a face: on the surface and, where the law has pores, in them; and the pigment that it carries by unit
+/// of each end's concentration.
+struct FaceFlow {
+    float film, pores, a, b;
+};
+
 template <class Law, class Kind>
-TUFT_INLINE void face(float g, const End& e0, const End& e1, float& w, float& s, float& a, float& b, const Step& p) {
+TUFT_INLINE FaceFlow face_flow(float g, const End& e0, const End& e1, const Step& p) {
     const float most = Law::most_of(e0, e1, Kind::share, p);
-    const float fw = Law::film_flux(g, e0, e1, most, p);
-    float flux = fw;
+    FaceFlow out{Law::film_flux(g, e0, e1, most, p), 0, 0, 0};
+    float flux = out.film;
     if constexpr (Law::pores) {
-        const float fs = Law::pore_flux(g, e0, e1, most, p);
-        s = fs;
-        flux = fw + p.passing * fs;
+        out.pores = Law::pore_flux(g, e0, e1, most, p);
+        flux = out.film + p.passing * out.pores;
     }
     const Carriers c = carriers(g, flux, e0, e1, p);
-    w = fw;
-    a = c.a * e0.rate;
-    b = c.b * e1.rate;
+    out.a = c.a * e0.rate;
+    out.b = c.b * e1.rate;
+    return out;
 }
 
-/// Sixteen faces from texel k to k + `on`; what flows into o.through.
+/// Sixteen faces between two rows of texels, from texel k on; their flows go into o.through.
 template <class Law, class Kind, class Packed>
-TUFT_INLINE void faces(Work& o, Faces& f, int k, int at, const Packed* g, const Ends& from, const Ends& to,
-                       const Step& p) {
-    float *w = &o.through[0][at], *s = &o.through[1][at], *a = &f.a[k], *b = &f.b[k];
+TUFT_INLINE void faces(Work& o, Faces& f, int k, const Packed* g, const std::array<Ends, 2>& rows, const Step& p) {
+    float *w = &o.through[0][k], *s = &o.through[1][k], *a = &f.a[k], *b = &f.b[k];
+    const Ends from = rows[0], to = rows[1];
 #pragma GCC ivdep
-    for (int x = 0; x < kLanes; ++x)
-        face<Law, Kind>(Kind::unpack(g[x]), from.at(x), to.at(x), w[x], s[x], a[x], b[x], p);
+    for (int x = 0; x < kLanes; ++x) {
+        const FaceFlow flow = face_flow<Law, Kind>(Kind::unpack(g[x]), from.at(x), to.at(x), p);
+        w[x] = flow.film;
+        if constexpr (Law::pores) s[x] = flow.pores;
+        a[x] = flow.a;
+        b[x] = flow.b;
+    }
 }
 
-/// All faces' upper sides of a row, and what comes into its texels through their four sides.
+/// Faces at the upper sides of a row, and the sum of the flows into its texels through their four sides.
 template <class Law, bool kFirst>
 TUFT_INLINE void row_of_faces(Work& o, int row, const Geometry& g, float* below_w, float* below_s, const Step& p) {
     const int k = field_at(0, row);
@@ -166,23 +176,24 @@ TUFT_INLINE void row_of_faces(Work& o, int row, const Geometry& g, float* below_
     float *dw = o.dw.data() + row * kSide, *ds = o.ds.data() + row * kSide;
 #pragma GCC ivdep
     for (int x = 0; x < kLanes; ++x) {
-        float w = 0, s = 0;
-        face<Law, Straight>(Straight::unpack(conductance[x]), from.at(x), to.at(x), w, s, a[x], b[x], p);
-        if constexpr (!kFirst) dw[x] = (x_w[x - 1] - x_w[x]) + (below_w[x] - w);
-        below_w[x] = w;
+        const FaceFlow flow = face_flow<Law, Straight>(Straight::unpack(conductance[x]), from.at(x), to.at(x), p);
+        a[x] = flow.a;
+        b[x] = flow.b;
+        if constexpr (!kFirst) dw[x] = (x_w[x - 1] - x_w[x]) + (below_w[x] - flow.film);
+        below_w[x] = flow.film;
         if constexpr (Law::pores) {
-            if constexpr (!kFirst) ds[x] = (x_s[x - 1] - x_s[x]) + (below_s[x] - s);
-            below_s[x] = s;
+            if constexpr (!kFirst) ds[x] = (x_s[x - 1] - x_s[x]) + (below_s[x] - flow.pores);
+            below_s[x] = flow.pores;
         }
     }
 }
 
-/// What comes through the faces of one kind of diagonal: into texel k from k + `from`, out of it at k + `to`.
+/// Adds the flows through the faces of one kind of diagonal: into texel k from k + `first`, out of it at k + `second`.
 template <class Law, class Kind>
 TUFT_INLINE void diagonals(Work& o, Faces& f, const Geometry& g, int first, int second, const Step& p) {
     for (int k = 0; k < kSquares; k += kLanes)
-        faces<Law, Kind>(o, f, k, k, &(*g.gd)[static_cast<std::size_t>(k)], ends(o, g, k + first),
-                         ends(o, g, k + second), p);
+        faces<Law, Kind>(o, f, k, &(*g.gd)[static_cast<std::size_t>(k)],
+                         {ends(o, g, k + first), ends(o, g, k + second)}, p);
     for (int row = 0; row < kSide; ++row) {
         const int k = field_at(0, row);
         const float *w = &o.through[0][k], *s = &o.through[1][k];
@@ -200,8 +211,8 @@ template <class Law>
 TUFT_INLINE void all_faces(Work& o, const Geometry& g, const Step& step) {
     const Step p = step;  // where nothing that is written could change it
     for (int k = 0; k < kSide * kRow; k += kLanes)
-        faces<Law, Straight>(o, o.x, kRow + k, kRow + k, &g.gx[static_cast<std::size_t>(k)], ends(o, g, kRow + k),
-                             ends(o, g, kRow + k + 1), p);
+        faces<Law, Straight>(o, o.x, kRow + k, &g.gx[static_cast<std::size_t>(k)],
+                             {ends(o, g, kRow + k), ends(o, g, kRow + k + 1)}, p);
     alignas(64) float below_w[kLanes], below_s[kLanes] = {};
     row_of_faces<Law, true>(o, -1, g, below_w, below_s, p);
     for (int row = 0; row < kSide; ++row) row_of_faces<Law, false>(o, row, g, below_w, below_s, p);
@@ -216,7 +227,7 @@ TUFT_INLINE void faces_of(Work& o, const Geometry& g, const Step& p) {
         all_faces<Law<false, kDry, kRelief, false>>(o, g, p);
 }
 template <bool kDry, bool kRelief>
-TUFT_INLINE void held_faces_of(Work& o, const Geometry& g, const Step& p) {
+TUFT_INLINE void limited_faces_of(Work& o, const Geometry& g, const Step& p) {
     if (p.pores > 0)
         all_faces<Law<true, kDry, kRelief, true>>(o, g, p);
     else
@@ -231,14 +242,14 @@ TUFT_CLONES void faces_dry(Work& o, const Geometry& g, const Step& p) {
 TUFT_CLONES void faces_on_relief(Work& o, const Geometry& g, const Step& p) {
     faces_of<true, true>(o, g, p);
 }
-TUFT_CLONES void held_faces_wet(Work& o, const Geometry& g, const Step& p) {
-    held_faces_of<false, false>(o, g, p);
+TUFT_CLONES void limited_faces_wet(Work& o, const Geometry& g, const Step& p) {
+    limited_faces_of<false, false>(o, g, p);
 }
-TUFT_CLONES void held_faces_dry(Work& o, const Geometry& g, const Step& p) {
-    held_faces_of<true, false>(o, g, p);
+TUFT_CLONES void limited_faces_dry(Work& o, const Geometry& g, const Step& p) {
+    limited_faces_of<true, false>(o, g, p);
 }
-TUFT_CLONES void held_faces_on_relief(Work& o, const Geometry& g, const Step& p) {
-    held_faces_of<true, true>(o, g, p);
+TUFT_CLONES void limited_faces_on_relief(Work& o, const Geometry& g, const Step& p) {
+    limited_faces_of<true, true>(o, g, p);
 }
 
 /// What faces need of all texels and those round them; returns the least liquid.
@@ -258,7 +269,7 @@ TUFT_CLONES float levels(Work& o, const Step& step) {
             total[x] = t;
             rate[x] = rate_of(t, p.grip);
             above[x] = positive(w[x] - p.threshold);
-            free[x] = positive(w[x] - p.hold);
+            free[x] = positive(w[x] - p.retained);
             carrying[x] = w[x] + passing * s[x];
             if (k < kAll) least[x] = smaller(least[x], t);
         }
@@ -272,7 +283,7 @@ TUFT_CLONES float levels(Work& o, const Step& step) {
 struct Least {
     bool dry, thin;  ///< a texel of a chart has no liquid, less than is over a rim
 };
-TUFT_CLONES Least look_for_rims(const Work& o, const Geometry& g, float depth) {
+TUFT_CLONES Least find_rims(const Work& o, const Geometry& g, float depth) {
     std::uint32_t dry = 0, thin = 0;
     for (int row = -1; row <= kSide; ++row) {
         std::uint32_t none = 0, little = 0;
@@ -377,59 +388,60 @@ TUFT_CLONES bool any_closed(const float* w, const float* s, const Work& o) {
     return any > 0;
 }
 
-TUFT_INLINE float carried(const Faces& f, const float* p, int k, int from, int to) {
+TUFT_INLINE float pigment_flow(const Faces& f, const float* p, int k, int from, int to) {
     return f.a[k] * p[from] + f.b[k] * p[to];
 }
 
 /// Each flux is computed from the same numbers for both its texels, upwards once: the row above takes it from `below`.
 /// (Written down and read again one to the side, they would be twice as slow.)
 template <bool kUp, bool kDown, bool kSeams>
-TUFT_INLINE void carry(float* __restrict out, const Work& o, const float* __restrict inverse,
-                       const float* __restrict noise) {
+TUFT_INLINE void transport(float* __restrict out, const Work& o, const float* __restrict inverse,
+                           const float* __restrict noise) {
     const float* p = o.p.data();
     alignas(64) float below[kSide];
     for (int x = 0; x < kSide; ++x) {
         const int k = field_at(x, -1);
-        below[x] = carried(o.y, p, k, k, k + kRow);
+        below[x] = pigment_flow(o.y, p, k, k, k + kRow);
     }
     for (int row = 0; row < kSide; ++row) {
 #pragma GCC ivdep
         for (int x = 0; x < kSide; ++x) {
             const int k = field_at(x, row), i = row * kSide + x;
-            const float above = carried(o.y, p, k, k, k + kRow);
-            float d = (carried(o.x, p, k - 1, k - 1, k) - carried(o.x, p, k, k, k + 1)) + (below[x] - above);
+            const float above = pigment_flow(o.y, p, k, k, k + kRow);
+            float d = (pigment_flow(o.x, p, k - 1, k - 1, k) - pigment_flow(o.x, p, k, k, k + 1)) + (below[x] - above);
             below[x] = above;
             if constexpr (kUp)
-                d += carried(o.up, p, k - kRow - 1, k - kRow - 1, k) - carried(o.up, p, k, k, k + kRow + 1);
+                d += pigment_flow(o.up, p, k - kRow - 1, k - kRow - 1, k) - pigment_flow(o.up, p, k, k, k + kRow + 1);
             if constexpr (kDown)
-                d += carried(o.down, p, k - kRow, k - kRow + 1, k) - carried(o.down, p, k - 1, k, k + kRow - 1);
+                d += pigment_flow(o.down, p, k - kRow, k - kRow + 1, k) -
+                     pigment_flow(o.down, p, k - 1, k, k + kRow - 1);
             if constexpr (kSeams) d += o.dp[i];
             out[i] = sum_of(p[k], d * inverse[i], noise[i]);
         }
     }
 }
 template <bool kSeams>
-TUFT_INLINE void carry_all(float* __restrict out, const Work& o, const Geometry& g, const float* __restrict noise) {
+TUFT_INLINE void transport_all(float* __restrict out, const Work& o, const Geometry& g, const float* __restrict noise) {
     const float* inverse = g.inverse.data();
     if (g.ups && g.downs)
-        carry<true, true, kSeams>(out, o, inverse, noise);
+        transport<true, true, kSeams>(out, o, inverse, noise);
     else if (g.ups)
-        carry<true, false, kSeams>(out, o, inverse, noise);
+        transport<true, false, kSeams>(out, o, inverse, noise);
     else if (g.downs)
-        carry<false, true, kSeams>(out, o, inverse, noise);
+        transport<false, true, kSeams>(out, o, inverse, noise);
     else
-        carry<false, false, kSeams>(out, o, inverse, noise);
+        transport<false, false, kSeams>(out, o, inverse, noise);
 }
-TUFT_CLONES void carry_inside(float* out, const Work& o, const Geometry& g, const float* noise) {
-    carry_all<false>(out, o, g, noise);
+TUFT_CLONES void transport_inside(float* out, const Work& o, const Geometry& g, const float* noise) {
+    transport_all<false>(out, o, g, noise);
 }
-TUFT_CLONES void carry_over_seams(float* out, const Work& o, const Geometry& g, const float* noise) {
-    carry_all<true>(out, o, g, noise);
+TUFT_CLONES void transport_over_seams(float* out, const Work& o, const Geometry& g, const float* noise) {
+    transport_all<true>(out, o, g, noise);
 }
 
-template <bool kPores, bool kHeld>
+template <bool kPores, bool kLimited>
 TUFT_INLINE void seam_faces(SeamLanes& l, const Step& step) {
-    using Here = Law<kPores, true, true, kHeld>;
+    using Here = Law<kPores, true, true, kLimited>;
     const Step p = step;
 #pragma GCC ivdep
     for (int x = 0; x < kLanes; ++x) {
@@ -456,7 +468,7 @@ TUFT_CLONES void sixteen_seams(SeamLanes& l, const Step& p) {
     else
         seam_faces<false, false>(l, p);
 }
-TUFT_CLONES void sixteen_held_seams(SeamLanes& l, const Step& p) {
+TUFT_CLONES void sixteen_limited_seams(SeamLanes& l, const Step& p) {
     if (p.pores > 0)
         seam_faces<true, true>(l, p);
     else
@@ -480,15 +492,15 @@ TUFT_CLONES void gather_rows(float* __restrict to, const std::array<const float*
 
 }  // namespace
 
-void gather(Field& field, const std::array<const float*, 9>& planes) {
+void gather_field(Field& field, const std::array<const float*, 9>& planes) {
     gather_rows(field.data(), planes);
 }
 
 bool fluxes(Work& work, const Geometry& g, const Step& step) {
     const float depth = step.rim > 0 ? step.rim_depth : 0, least = levels(work, step);
-    const Least rims = least > 0 && least >= depth ? Least{} : look_for_rims(work, g, depth);
+    const Least rims = least > 0 && least >= depth ? Least{} : find_rims(work, g, depth);
     if (step.most > 0)
-        (work.on_relief ? held_faces_on_relief : rims.dry ? held_faces_dry : held_faces_wet)(work, g, step);
+        (work.on_relief ? limited_faces_on_relief : rims.dry ? limited_faces_dry : limited_faces_wet)(work, g, step);
     else
         (work.on_relief ? faces_on_relief : rims.dry ? faces_dry : faces_wet)(work, g, step);
     if (!(step.pores > 0)) work.ds.fill(0);
@@ -501,7 +513,7 @@ bool fluxes(Work& work, const Geometry& g, const Step& step) {
 }
 
 void pigment_step(float* p, const Work& work, const Geometry& g, bool seams, std::uint64_t seed) {
-    (seams ? carry_over_seams : carry_inside)(p, work, g, dither(seed));
+    (seams ? transport_over_seams : transport_inside)(p, work, g, dither(seed));
 }
 
 Outcome local_step(const LocalFilms& films, const Work& work, const Geometry& g, const Step& step, std::uint64_t seed) {
@@ -550,7 +562,7 @@ const float* dither(std::uint64_t seed) {
 }
 
 void seam_fluxes(std::span<SeamLanes> lanes, const Step& step) {
-    for (SeamLanes& l : lanes) (step.most > 0 ? sixteen_held_seams : sixteen_seams)(l, step);
+    for (SeamLanes& l : lanes) (step.most > 0 ? sixteen_limited_seams : sixteen_seams)(l, step);
 }
 
 }  // namespace tuft::ink::wet

@@ -126,29 +126,29 @@ void TileList::find_link_areas() {
 }
 
 void TileList::set_unevenness(double unevenness) {
-    if (unevenness == ground_.unevenness) return;
-    ground_.unevenness = unevenness;
-    look_anew();
+    if (unevenness == medium_.unevenness) return;
+    medium_.unevenness = unevenness;
+    search_again();
 }
 
 void TileList::set_free(WetFilm::FreeFn free) {
-    if (!free && !ground_.free) return;
-    ground_.free = std::move(free);
-    look_anew();
+    if (!free && !medium_.free) return;
+    medium_.free = std::move(free);
+    search_again();
 }
 
-void TileList::look_anew() {
+void TileList::search_again() {
     for (auto& g : geometry) g.reset();
     for (auto& g : split_geometry) g.reset();
     const auto root = [&](std::uint32_t slot, int texel) {
-        return std::sqrt(ease_of_flow(Vec3(map.position(slot, texel)), ground_.unevenness));
+        return std::sqrt(ease_of_flow(Vec3(map.position(slot, texel)), medium_.unevenness));
     };
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
         for (std::uint32_t i = seams.start[slot]; i < seams.start[slot + 1]; ++i) {
             atlas::SeamLink& l = seams.links[i];
             double weight = static_cast<double>(weights_[i]);
-            if (ground_.unevenness > 0) weight *= root(slot, l.texel) * root(l.other_slot, l.other_texel);
-            if (ground_.free) weight *= passing(ground_.free(slot, l.texel), ground_.free(l.other_slot, l.other_texel));
+            if (medium_.unevenness > 0) weight *= root(slot, l.texel) * root(l.other_slot, l.other_texel);
+            if (medium_.free) weight *= passing(medium_.free(slot, l.texel), medium_.free(l.other_slot, l.other_texel));
             l.weight = static_cast<float>(weight);
         }
     limit_links();
@@ -158,7 +158,7 @@ void TileList::look_anew() {
 /// Where a stencil edge lies on a tap, nothing slopes that way: the texel itself takes the tap's place.
 void TileList::close_taps() {
     seams.taps = taps_;
-    if (!ground_.free) return;
+    if (!medium_.free) return;
     for (std::uint32_t slot = 0; slot < map.n_slots(); ++slot)
         for (std::uint32_t i = seams.tap_start[slot], next = i; i < seams.tap_start[slot + 1]; i = next) {
             const atlas::SeamTap first = taps_[i];
@@ -168,7 +168,7 @@ void TileList::close_taps() {
                  ++next)
                 if (const atlas::SeamTap& tap = taps_[next]; tap.other_slot != kNone)
                     closed = closed ||
-                             passing(ground_.free(slot, tap.texel), ground_.free(tap.other_slot, tap.other_texel)) == 0;
+                             passing(medium_.free(slot, tap.texel), medium_.free(tap.other_slot, tap.other_texel)) == 0;
             if (!closed) continue;
             for (std::uint32_t k = i; k < next; ++k)
                 seams.taps[k] = {kNone, k == i ? 1.0f : 0.0f, first.texel, 4, first.side};
@@ -332,7 +332,7 @@ bool TileList::changed() {
     return more || std::find(wanted_.begin(), wanted_.end(), 0) != wanted_.end();
 }
 
-void TileList::look_at(const Canvas& canvas, std::span<const std::uint32_t> slots) {
+void TileList::search_tile(const Canvas& canvas, std::span<const std::uint32_t> slots) {
     const std::size_t listed = list.size();
     for (const std::uint32_t slot : slots) {
         const auto end = list.begin() + static_cast<std::ptrdiff_t>(listed);

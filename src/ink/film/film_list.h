@@ -82,7 +82,7 @@ struct TileList {
     void set_unevenness(double unevenness);
     /// Sets the stencil. Costly when it changes.
     void set_free(WetFilm::FreeFn free);
-    const BaseColour& ground() const { return ground_; }
+    const FlowMedium& medium() const { return medium_; }
     /// Whether a tile has texels at a seam, or blocks of 4 × 4 texels beside some of the next
     /// tile's.
     bool beside_seam(std::uint32_t slot) const { return beside_[slot]; }
@@ -95,7 +95,7 @@ struct TileList {
     /// Returns true when `spread` would change the list since the last call.
     bool changed();
     /// Updates slots that were written from outside, and adds them to the list.
-    void look_at(const Canvas& canvas, std::span<const std::uint32_t> slots);
+    void search_tile(const Canvas& canvas, std::span<const std::uint32_t> slots);
     /// Returns the possible starts of beads: in each cube of a grain's length the weakest place, the lowest first,
     /// so that the layout of the atlas does not matter.
     std::vector<Drips::Seed> seeds_of_beads(const Canvas& canvas, const FilmParams& params) const;
@@ -112,7 +112,7 @@ struct TileList {
   private:
     std::vector<float> weights_;        ///< of the links as they came
     std::vector<atlas::SeamTap> taps_;  ///< as they came
-    BaseColour ground_;
+    FlowMedium medium_;
     std::vector<std::uint32_t> near_start_;  ///< [n_slots + 1]
     std::vector<Beyond> near_;               ///< over seams, by slot; places unknown
     std::vector<std::uint16_t> link_near_;   ///< of the links: which of the slot's `near_`
@@ -124,7 +124,7 @@ struct TileList {
     std::vector<std::uint32_t> place_;       ///< [n_slots] scratch
 
     void find_near();
-    void look_anew();
+    void search_again();
     void limit_links();
     void find_link_areas();
     void find_beside();

@@ -15,7 +15,7 @@ constexpr double kSeamStiffness = 2;
 static_assert(kFlowPart * (4 + kSeamPart) < 4 + kSeamStiffness);
 // The same where flows are held back: texels inside charts have 4 sides and 4 corners through which half as much goes,
 // those at seams 0.4 of that and the rest over links. Together with mixing no more than all.
-constexpr double kHeldPart = 0.75, kFaces = 6, kHeldPartOfLinks = 0.5;
+constexpr double kLimitPart = 0.75, kFaces = 6, kLimitPartOfLinks = 0.5;
 // Of the shortest step: ink runs off ridges at once; fronts run fast while there is liquid on the
 // surface.
 constexpr double kStepOnRelief = 0.2, kStepOfFilm = 0.5;
@@ -35,8 +35,9 @@ struct Deepest {
     double rate(const FilmParams& p, double levelling, double area, bool on_relief) const {
         const double over_ridges = on_relief ? p.levelling * std::max(0.0, w - p.ridge) : 0;
         return stiffness / area *
-               std::max(p.mobility * (w - p.threshold) + std::max(levelling * std::max(0.0, w - p.hold), over_ridges),
-                        p.pores > 0 ? p.mobility * s : 0.0);
+               std::max(
+                   p.mobility * (w - p.threshold) + std::max(levelling * std::max(0.0, w - p.retained), over_ridges),
+                   p.pores > 0 ? p.mobility * s : 0.0);
     }
 };
 
@@ -68,15 +69,15 @@ Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size
     const double mixing = p.mixing / area * stiffness;
     if (mixing > 0) dt = std::min(dt, kMixingPart / mixing);
     const double shortest = p.shortest_step * (on_relief ? kStepOnRelief : all.w > 0 ? kStepOfFilm : 1);
-    const bool held = dt < shortest;
+    const bool limited = dt < shortest;
     dt = std::max(dt, shortest);
     dt = left / std::ceil(left / dt * (1 - 1e-12));
     Step& step = out.step;
     step.flow = static_cast<float>(p.mobility * dt / area);
     step.levelling = static_cast<float>(levelling * dt / area);
     step.limit = static_cast<float>(kFlowPart / stiffness);
-    step.most = held ? static_cast<float>(kHeldPart / kFaces) * kFlowAreaUnit : 0;
-    step.most_of_link = static_cast<float>(kHeldPartOfLinks);
+    step.most = limited ? static_cast<float>(kLimitPart / kFaces) * kFlowAreaUnit : 0;
+    step.most_of_link = static_cast<float>(kLimitPartOfLinks);
     step.threshold = static_cast<float>(p.threshold);
     step.pin = static_cast<float>(p.pin);
     step.mixing = static_cast<float>(std::min(p.mixing * dt / area, kMixingPart / stiffness));
@@ -87,11 +88,11 @@ Chosen choose_step(const FilmParams& p, const TileList& tiles, double texel_size
     step.evaporation = static_cast<float>(p.evaporation * dt);
     step.rim = static_cast<float>(p.rim_evaporation * dt / (texel_size * p.rim_depth));
     step.rim_depth = static_cast<float>(p.rim_depth);
-    step.hold = static_cast<float>(p.hold);
+    step.retained = static_cast<float>(p.retained);
     step.relief = static_cast<float>(p.levelling * dt / area);
     step.ridge = static_cast<float>(p.ridge);
     out.dt = dt;
-    if (!held || !(beside.w + beside.s > 0)) return out;
+    if (!limited || !(beside.w + beside.s > 0)) return out;
     const double longest = std::max(beside.rate(p, levelling, area, on_relief) / kFlowPart, mixing / kMixingPart);
     out.parts = std::clamp(static_cast<int>(std::ceil(dt * longest)), 2, kMostParts) / 2 * 2;
     out.part = part_of(step, out.parts, beside.stiffness);

@@ -69,16 +69,16 @@ struct alignas(64) Geometry {
     static constexpr int right_of(int column, int row) { return field_at(column, row) - kRow; }
     static constexpr int corner_of(int column, int row) { return field_at(column, row); }
 };
-/// Mobility of the liquid relative to its mean, over the surface.
-struct BaseColour {
-    double unevenness = 0;
-    WetFilm::FreeFn free;  ///< empty: all
+/// Surface that the liquid flows over.
+struct FlowMedium {
+    double unevenness = 0;  ///< rms of the logarithm of the mobility, see `ease_of_flow`
+    WetFilm::FreeFn free;   ///< fraction of a texel that the stencils leave free; empty: all
 };
 /// Returns the fraction of the flow that passes between two texels of the given free fractions; 0 over a stencil
 /// edge.
 double passing(std::uint8_t free_a, std::uint8_t free_b);
 Geometry make_geometry(const atlas::TexelMap& map, const atlas::SeamLinks& seams, std::uint32_t slot,
-                       const BaseColour& ground);
+                       const FlowMedium& medium);
 /// Returns the relative mobility at a position: exp(unevenness n), n noise of mean 0 and rms 1 over 0.6 to 2.4 mm,
 /// −2 to 1.5. On a plane the effective large-scale mobility is the geometric mean, 1 (Dykhne 1971).
 double ease_of_flow(const Vec3& position, double unevenness);
@@ -97,7 +97,7 @@ std::unique_ptr<SplitGeometry> split(const Geometry& g, const std::array<bool, 9
 /// FilmParams for one step, in texels: rates times the step's length.
 struct Step {
     float flow = 0;       ///< D dt / A per film unit
-    float levelling = 0;  ///< L dt / A per film unit above hold
+    float levelling = 0;  ///< L dt / A per film unit above `retained`
     float limit = 0;      ///< of flow × thickness, so that nothing gets negative
     float most = 0;  ///< of flow × thickness × conductance over the module at the face, instead; 0: `limit` holds
     float most_of_link = 0;  ///< the same for links
@@ -110,7 +110,7 @@ struct Step {
     float evaporation = 0;  ///< film units
     float rim = 0;          ///< film units more, per film unit of slope
     float rim_depth = 0;
-    float hold = 0;
+    float retained = 0;
     float relief = 0;  ///< L dt / A, on relief
     float ridge = 0;   ///< film units that stay on relief
 };
@@ -136,7 +136,7 @@ struct alignas(64) Work {
     Field z{};                ///< relief, film units; counts where `on_relief`
     bool on_relief = false;
     Field rate{};                                        ///< 1 / total, where that is thin 1 / grip, 0 where it is dry
-    Field above{}, free{};                               ///< liquid above threshold, above hold
+    Field above{}, free{};                               ///< liquid above threshold, above `retained`
     Field carrying{};                                    ///< liquid in which pigments move, M
     Field p{};                                           ///< one pigment
     Faces x, y, up, down;                                ///< up: of diagonals k to k + 19, down: k + 1 to k + 18
@@ -148,7 +148,7 @@ struct alignas(64) Work {
 };
 
 /// A plane with a border of one texel from the tiles around, row by row: [256] each, none null.
-void gather(Field& field, const std::array<const float*, 9>& planes);
+void gather_field(Field& field, const std::array<const float*, 9>& planes);
 /// What follows from w and s, what goes through the faces, and dw and ds from that. Whether less than rim_depth stands
 /// on some texel.
 bool fluxes(Work& work, const Geometry& g, const Step& step);

@@ -12,15 +12,15 @@ namespace tuft::ink {
 namespace {
 
 constexpr int kN = atlas::kTileTexels;
-constexpr int kModes = 64;           // the finest waves are a thirtieth of the width
-constexpr double kTension = 0.03;    // N/m, of oil and of water with binder
-constexpr double kDensity = 1500;    // kg/m³ of heavy paint
-constexpr double kGravity = 9.81;    // m/s²
-constexpr double kTine = 0.35;       // half width of a furrow over the mean distance of bundles
-constexpr double kRimWidth = 1.5;    // of what is pushed out, over the film's thickness
-constexpr double kHeld = 0.02;       // of its height: finer waves than those held so far are rounded off
-constexpr double kLeastFilm = 0.15;  // of the mean: hair never scrapes to the ground
-constexpr double kRub = 0.6;         // of what bundles rub goes by where they lie, the rest is the liquid's
+constexpr int kModes = 64;             // the finest waves are a thirtieth of the width
+constexpr double kTension = 0.03;      // N/m, of oil and of water with binder
+constexpr double kDensity = 1500;      // kg/m³ of heavy paint
+constexpr double kGravity = 9.81;      // m/s²
+constexpr double kFurrowWidth = 0.35;  // half width of a furrow over the mean distance of bundles
+constexpr double kRimWidth = 1.5;      // of what is pushed out, over the film's thickness
+constexpr double kRounded = 0.02;      // of its height: waves below that are rounded off
+constexpr double kLeastFilm = 0.15;    // of the mean: hair never scrapes to the surface
+constexpr double kRub = 0.6;           // of what bundles rub goes by where they lie, the rest is the liquid's
 
 constexpr double kWear = 1e-3;                      // part of what hair slides over that comes off
 constexpr double kPunch = 2 + 3.14159265358979324;  // what bears over what shears, under a flat punch
@@ -47,13 +47,29 @@ TUFT_CLONES void where_dry(float* __restrict height, const float* __restrict fil
     }
 }
 
+/// Paste that each texel gets and gives, film units.
 struct Volumes {
     alignas(64) Texels down, up;
 };
 
-TUFT_CLONES void volumes(Volumes& out, const float* __restrict coverage, const float* __restrict full,
-                         const float* __restrict here, const float* __restrict before, float rate, float keep,
-                         float exchange, float free_capacity, float capacity) {
+/// Planes, [256], and rates that an exchange of paste reads.
+struct PasteExchangeInput {
+    const float* coverage;    ///< 0–1
+    const float* full;        ///< film units that the tuft leaves where it covers all
+    const float* here;        ///< film units, now
+    const float* before;      ///< film units, before the stroke
+    float rate = 0;           ///< 0–1, share of the lack that this step makes up
+    float keep = 1;           ///< 0–1, share of the earlier paste that is not dug up
+    float exchange = 0;       ///< 0–1, share that is renewed from the tuft
+    float free_capacity = 0;  ///< film units that the tuft can take up
+    float capacity = 0;       ///< film units that the surface holds
+};
+
+TUFT_CLONES void exchange_volumes(Volumes& out, const PasteExchangeInput& in) {
+    const float* __restrict coverage = in.coverage, * __restrict full = in.full;
+    const float* __restrict here = in.here, * __restrict before = in.before;
+    const float rate = in.rate, keep = in.keep, exchange = in.exchange;
+    const float free_capacity = in.free_capacity, capacity = in.capacity;
     for (int t = 0; t < kN; ++t) {
         const float f = coverage[t], w = here[t];
         float goal = before[t] + f * full[t];
@@ -75,9 +91,19 @@ TUFT_CLONES void part_of(float* __restrict up, const float* __restrict here) {
     }
 }
 
-/// What goes up of a plane, what of the mixture comes down, and the plane after both.
-TUFT_CLONES void move(float* __restrict w, float* __restrict up, float* __restrict down, const float* __restrict part,
-                      const float* __restrict volume, const float* __restrict mix, const float* __restrict strength) {
+/// Planes that the exchange of one pigment reads, [256].
+struct PasteMixture {
+    const float* part;      ///< 0–1, share of a texel's paste that goes up
+    const float* volume;    ///< film units of paste that come down
+    const float* mix;       ///< the pigment's amount in a film unit of the paste, times `strength`
+    const float* strength;  ///< of the paste; 0: none
+};
+
+/// Moves `up` of a plane to the tuft and `down` of the mixture to the plane.
+TUFT_CLONES void exchange_pigment(float* __restrict w, float* __restrict up, float* __restrict down,
+                                  const PasteMixture& in) {
+    const float* __restrict part = in.part, * __restrict volume = in.volume;
+    const float* __restrict mix = in.mix, * __restrict strength = in.strength;
     for (int t = 0; t < kN; ++t) {
         up[t] = w[t] * part[t];
         down[t] = strength[t] > 0 ? volume[t] * mix[t] / strength[t] : 0;
@@ -107,11 +133,11 @@ std::array<double, 2 * (kFirmnessSamples - 1)> make_wave() {
 }
 
 /// How much of the firmest bundle lies at each place, 0–1.
-std::array<double, kFirmnessSamples> pushed_by(std::span<const BundleFirmness> bundles) {
+std::array<double, kFirmnessSamples> push_share(std::span<const BundleFirmness> bundles) {
     std::array<double, kFirmnessSamples> out;
     double firm = 0;
     for (const BundleFirmness& bundle : bundles) firm += bundle.weight;
-    const double half = firm > 0 ? kTine / firm : 1;  // of the width: firm bundles lie 1 / firm apart
+    const double half = firm > 0 ? kFurrowWidth / firm : 1;  // of the width: firm bundles lie 1 / firm apart
     for (int i = 0; i < kFirmnessSamples; ++i) {
         double pushed = 0;
         for (const BundleFirmness& bundle : bundles)
@@ -122,8 +148,8 @@ std::array<double, kFirmnessSamples> pushed_by(std::span<const BundleFirmness> b
 }
 
 /// Furrows and rims before they level, over the mean.
-std::array<double, kFirmnessSamples> ploughed(std::span<const BundleFirmness> bundles, const FurrowOptions& o) {
-    std::array<double, kFirmnessSamples> film = pushed_by(bundles);
+std::array<double, kFirmnessSamples> plough(std::span<const BundleFirmness> bundles, const FurrowOptions& o) {
+    std::array<double, kFirmnessSamples> film = push_share(bundles);
     const double rim = std::max(kRimWidth * o.film / o.width, 1.5 / kFirmnessSamples);
     for (int i = 0; i < kFirmnessSamples; ++i) {
         const double u = double(i) / (kFirmnessSamples - 1);
@@ -138,7 +164,7 @@ FurrowDepths furrow_depths(std::span<const BundleFirmness> bundles, const Furrow
     FurrowDepths out;
     out.fill(1);
     if (!(o.yield > 0) || !(o.width > 0) || !(o.film > 0)) return out;
-    const std::array<double, kFirmnessSamples> film = ploughed(bundles, o);
+    const std::array<double, kFirmnessSamples> film = plough(bundles, o);
     constexpr int kLast = kFirmnessSamples - 1;
     static const std::array<double, 2 * kLast> wave = make_wave();
     double mean = 0;
@@ -150,15 +176,15 @@ FurrowDepths furrow_depths(std::span<const BundleFirmness> bundles, const Furrow
             a += (i == 0 || i == kLast ? 1.0 : 2.0) * film[i] * wave[n * i % (2 * kLast)] / kLast;
         const double k = 3.14159265358979324 * n / o.width;
         const double most = o.yield / (kTension * k * k * k * o.film) / o.film;  // over the mean film
-        const double held = std::clamp(a / mean, -most, most);
-        for (int i = 0; i < kFirmnessSamples; ++i) levelled[i] += held * wave[n * i % (2 * kLast)];
+        const double amplitude = std::clamp(a / mean, -most, most);
+        for (int i = 0; i < kFirmnessSamples; ++i) levelled[i] += amplitude * wave[n * i % (2 * kLast)];
     }
     for (int i = 0; i < kFirmnessSamples; ++i) out[i] = static_cast<float>(std::max(1 + levelled[i], 0.0));
     return out;
 }
 
 FurrowDepths rub_of(std::span<const BundleFirmness> bundles) {
-    const std::array<double, kFirmnessSamples> lies = pushed_by(bundles);
+    const std::array<double, kFirmnessSamples> lies = push_share(bundles);
     double mean = 0;
     for (const double l : lies) mean += l / kFirmnessSamples;
     FurrowDepths out;
@@ -172,7 +198,7 @@ double standing_film(double yield) {
 }
 
 double levelling_length(double yield, double film) {
-    return yield > 0 && film > 0 ? std::cbrt(kTension * kHeld * film * film / yield) : 0;
+    return yield > 0 && film > 0 ? std::cbrt(kTension * kRounded * film * film / yield) : 0;
 }
 
 Plane open_pigment(const Canvas& canvas, std::uint32_t slot) {
@@ -238,10 +264,15 @@ void deposit_paste(Canvas& canvas, const ContactTile& tile, const PasteParams& p
     for (int t = 0; t < kN; ++t) full[t] *= static_cast<float>(params.target) * strength[t];
     const Plane here = open_pigment(canvas, slot);
     Volumes v;
-    volumes(v, coverage.data(), full.data(), here.data(), before.data(),
-            static_cast<float>(-std::expm1(-ds / params.transfer_length)), static_cast<float>(1 - params.dig),
-            static_cast<float>(params.exchange), static_cast<float>(params.free_capacity),
-            static_cast<float>(params.capacity));
+    exchange_volumes(v, {.coverage = coverage.data(),
+                         .full = full.data(),
+                         .here = here.data(),
+                         .before = before.data(),
+                         .rate = static_cast<float>(-std::expm1(-ds / params.transfer_length)),
+                         .keep = static_cast<float>(1 - params.dig),
+                         .exchange = static_cast<float>(params.exchange),
+                         .free_capacity = static_cast<float>(params.free_capacity),
+                         .capacity = static_cast<float>(params.capacity)});
     part_of(v.up.data(), here.data());
     std::array<double, kNodes> shares;
     MixtureGiven mixture(exchange.given, mixes, hats);
@@ -251,7 +282,8 @@ void deposit_paste(Canvas& canvas, const ContactTile& tile, const PasteParams& p
         if (!used[p]) mix[p].fill(0);
         Plane& w = canvas.touch(slot, p);
         old = w;
-        move(w.data(), up.data(), down.data(), v.up.data(), v.down.data(), mix[p].data(), strength.data());
+        exchange_pigment(w.data(), up.data(), down.data(),
+                         {v.up.data(), v.down.data(), mix[p].data(), strength.data()});
         const double stored = change_sum(w.data(), old.data(), area.data());
         double lifted = 0;
         if (there)
@@ -261,10 +293,10 @@ void deposit_paste(Canvas& canvas, const ContactTile& tile, const PasteParams& p
         for (int k = 0; k < hats.count; ++k) lifted += shares[k];
         // What rounding makes of it: nothing may be given that does not come down.
         if (!used[p]) lifted = std::max(-stored, 0.0);
-        const double laid = std::max(stored + lifted, 0.0);
-        distribute(exchange.taken, p, laid - stored, shares, hats);
+        const double given = std::max(stored + lifted, 0.0);
+        distribute(exchange.taken, p, given - stored, shares, hats);
         integrate_hats(shares, hats, down.data(), area);
-        mixture.pigment(p, laid, shares);
+        mixture.pigment(p, given, shares);
     }
     mixture.water();
 }

@@ -19,6 +19,7 @@ struct BundleFirmness {
     double weight = 1;  ///< pressure on the surface, relative to the largest
 };
 
+/// Shape of the furrows under a tuft.
 struct FurrowOptions {
     double width = 8e-3;  ///< metres across the patch
     double film = 3e-4;   ///< metres of wet paste in the mean
@@ -48,6 +49,7 @@ double standing_film(double yield);
 /// `film` metres holds only a fiftieth of the height, k³ = 50 τ / (σ h²).
 double levelling_length(double yield, double film);
 
+/// Parameters of one contact of paste.
 struct PasteParams {
     double target = 40;             ///< c: film units in the mean of a full contact
     double transfer_length = 8e-5;  ///< s0, metres

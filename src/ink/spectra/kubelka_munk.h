@@ -19,6 +19,7 @@ struct Layer {
     double r_back = 0;  ///< reflectance from below; equals r for a single layer
 };
 
+/// Absorption and scattering of a film unit.
 struct Coefficients {
     double k = 0;  ///< absorption per film unit
     double s = 0;  ///< scattering per film unit

@@ -57,7 +57,7 @@ struct Tile {
             if (canvas.has_film(slot, film) && sum_of(at(film, t)) > 0) return film;
         return kSoakedFilm;
     }
-    void make_room(int t) {
+    void free_film(int t) {
         add(kFirstDryFilm, t, at(kFirstDryFilm + 1, t));
         for (int film = kFirstDryFilm + 1; film + 1 < kOpenFilm; ++film) put(film, t, at(film + 1, t));
         put(kOpenFilm - 1, t, {});
@@ -82,7 +82,7 @@ struct Tile {
             }
         }
         if (film == kOpenFilm - 1) {
-            make_room(t);
+            free_film(t);
             --film;
         }
         put(film + 1, t, amounts);

@@ -34,7 +34,7 @@ void add_film(Canvas& to, int to_film, const Canvas& from, std::uint32_t slot, i
         }
 }
 
-void lay_tile(Canvas& lower, const Canvas& upper, std::uint32_t slot) {
+void merge_tile(Canvas& lower, const Canvas& upper, std::uint32_t slot) {
     add_film(lower, kSoakedFilm, upper, slot, kSoakedFilm);
     for (int film = kFirstDryFilm; film <= kOpenFilm; ++film) {
         const Texels texels = inked(upper, slot, film);
@@ -52,14 +52,14 @@ void lay_tile(Canvas& lower, const Canvas& upper, std::uint32_t slot) {
 
 }  // namespace
 
-void lay_films(Canvas& lower, const Canvas& upper) {
+void merge_films(Canvas& lower, const Canvas& upper) {
     const auto same = [](const Pigment& a, const Pigment& b) { return a.name == b.name; };
     if (lower.n_slots() != upper.n_slots() || !std::equal(lower.pigments().begin(), lower.pigments().end(),
                                                           upper.pigments().begin(), upper.pigments().end(), same))
         throw Error("layers of different atlases or pigments cannot be merged");
     const std::vector<std::uint32_t> slots = upper.touched_slots();
     parallel_for(slots.size(), 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) lay_tile(lower, upper, slots[i]);
+        for (std::size_t i = begin; i < end; ++i) merge_tile(lower, upper, slots[i]);
     });
 }
 

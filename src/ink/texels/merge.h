@@ -13,6 +13,6 @@ namespace tuft::ink {
 ///
 /// Throws `Error` unless both canvases have the same pigments in the same planes and the same number of slots.
 /// `upper` does not change.
-void lay_films(Canvas& lower, const Canvas& upper);
+void merge_films(Canvas& lower, const Canvas& upper);
 
 }  // namespace tuft::ink

@@ -20,7 +20,7 @@ using Texels = std::array<float, kN>;
 struct Tile : HaloTile {
     alignas(64) Texels relief, near, film;           ///< film units of height, 0–1, film units
     alignas(64) Texels area, inverse;                ///< m² and 1 / m², of texels; 0 outside of charts
-    alignas(64) Halo surface, level, slack, spread;  ///< of a step: z + T, T, ⟨T − hold⟩, ⟨T − pin⟩
+    alignas(64) Halo surface, level, slack, spread;  ///< of a step: z + T, T, ⟨T − ridge_film⟩, ⟨T − pin⟩
     alignas(64) Halo nearness, size;                 ///< n, area
     alignas(64) std::array<Halo, 2> faces;           ///< flux to the right and upwards of a texel
     alignas(64) std::array<Texels, kMaxPigments> loose, fixed;  ///< of the open film: what settles, and what lay there
@@ -35,20 +35,27 @@ inline float positive(float a) {
     return a > 0 ? a : 0;
 }
 
-/// From one end to the other, n film units; antisymmetric.
-inline float flux(float za, float ta, float sa, float pa, float zb, float tb, float sb, float pb, float n) {
-    const float drop = za - zb;
-    const float from_a = tb > 0 ? sa : pa, from_b = ta > 0 ? sb : pb;
+/// A texel at one end of a face, film units: surface, film, and what of it may leave to wet and to dry texels.
+struct PoolEnd {
+    float surface, level, slack, spread;
+};
+
+/// Flux from a to b, film units, times n; antisymmetric.
+inline float flux(const PoolEnd& a, const PoolEnd& b, float n) {
+    const float drop = a.surface - b.surface;
+    const float from_a = b.level > 0 ? a.slack : a.spread, from_b = a.level > 0 ? b.slack : b.spread;
     return kPart * n * (smaller(from_a, positive(drop)) - smaller(from_b, positive(-drop)));
 }
 
-TUFT_CLONES void face_fluxes(float* __restrict out, const Halo& z, const Halo& t, const Halo& s, const Halo& p,
-                             const Halo& n, const Halo& area, int to) {
+/// Fluxes from each texel to that `to` further on in the halo.
+TUFT_CLONES void face_fluxes(float* __restrict out, const Tile& tile, int to) {
+    const Halo &z = tile.surface, &l = tile.level, &s = tile.slack, &p = tile.spread, &n = tile.nearness,
+               &area = tile.size;
     for (int y = -1; y < kSide; ++y)
         for (int x = -1; x < kSide; ++x) {
             const int a = halo_at(x, y), b = a + to;
-            out[a] =
-                flux(z[a], t[a], s[a], p[a], z[b], t[b], s[b], p[b], smaller(n[a], n[b]) * smaller(area[a], area[b]));
+            out[a] = flux({z[a], l[a], s[a], p[a]}, {z[b], l[b], s[b], p[b]},
+                          smaller(n[a], n[b]) * smaller(area[a], area[b]));
         }
 }
 
@@ -63,7 +70,7 @@ TUFT_CLONES void film_after(float* __restrict film, const float* __restrict righ
 }
 
 /// What a face brings of a pigment whose part of the film is c at its ends.
-inline float carried(float f, float c_from, float c_to) {
+inline float pigment_flow(float f, float c_from, float c_to) {
     return f > 0 ? f * c_from : f * c_to;
 }
 
@@ -72,17 +79,17 @@ TUFT_CLONES void pigment_after(float* __restrict p, const float* __restrict righ
     for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x) {
             const int k = halo_at(x, y), below = k - kHaloRow, above = k + kHaloRow;
-            const float d = (carried(right[k - 1], c[k - 1], c[k]) - carried(right[k], c[k], c[k + 1])) +
-                            (carried(up[below], c[below], c[k]) - carried(up[k], c[k], c[above]));
+            const float d = (pigment_flow(right[k - 1], c[k - 1], c[k]) - pigment_flow(right[k], c[k], c[k + 1])) +
+                            (pigment_flow(up[below], c[below], c[k]) - pigment_flow(up[k], c[k], c[above]));
             const int t = y * kSide + x;
             p[t] = positive(p[t] + d * inverse[t]);
         }
 }
 
-TUFT_CLONES void prepare(Tile& tile, Texels& surface, Texels& slack, Texels& spread, float hold, float pin) {
+TUFT_CLONES void prepare(Tile& tile, Texels& surface, Texels& slack, Texels& spread, float ridge_film, float pin) {
     for (int t = 0; t < kN; ++t) {
         surface[t] = tile.relief[t] + tile.film[t];
-        slack[t] = positive(tile.film[t] - hold);
+        slack[t] = positive(tile.film[t] - ridge_film);
         spread[t] = positive(tile.film[t] - pin);
     }
 }
@@ -158,7 +165,7 @@ class Pool {
 
     void step() {
         each([&](std::size_t i) {
-            prepare(tiles_[i], surface_[i], slack_[i], spread_[i], static_cast<float>(o_.hold),
+            prepare(tiles_[i], surface_[i], slack_[i], spread_[i], static_cast<float>(o_.ridge_film),
                     static_cast<float>(o_.pin));
         });
         each([&](std::size_t i) {
@@ -171,23 +178,20 @@ class Pool {
             fill(tile.slack, tile, from(slack_));
             fill(tile.spread, tile, from(spread_));
             fill(tile.level, tile, [](const Tile& t) -> const Texels& { return t.film; });
-            face_fluxes(tile.faces[0].data(), tile.surface, tile.level, tile.slack, tile.spread, tile.nearness,
-                        tile.size, 1);
-            face_fluxes(tile.faces[1].data(), tile.surface, tile.level, tile.slack, tile.spread, tile.nearness,
-                        tile.size, kHaloRow);
+            face_fluxes(tile.faces[0].data(), tile, 1);
+            face_fluxes(tile.faces[1].data(), tile, kHaloRow);
             tile.over.clear();
             for (const auto& [place, link] : tile.links) {
                 const int a = link.texel, b = link.other_texel;
                 const float n = smaller(tile.near[a], tiles_[place].near[b]) * smaller(link.weight, 1) *
                                 smaller(tile.area[a], tiles_[place].area[b]);
-                tile.over.push_back(flux(surface_[i][a], tile.film[a], slack_[i][a], spread_[i][a], surface_[place][b],
-                                         tiles_[place].film[b], slack_[place][b], spread_[place][b], n));
+                tile.over.push_back(flux(end_at(i, a), end_at(place, b), n));
             }
         });
         for (int p = 0; p < kMaxPigments; ++p) {
             const bool any =
                 std::any_of(tiles_.begin(), tiles_.end(), [p](const Tile& t) { return t.pigments >> p & 1; });
-            if (any) carry(p);
+            if (any) transport(p);
         }
         each([&](std::size_t i) {
             Tile& tile = tiles_[i];
@@ -203,7 +207,11 @@ class Pool {
     std::vector<Texels> surface_, slack_, spread_;
 
   private:
-    void carry(int p) {
+    PoolEnd end_at(std::size_t tile, int texel) const {
+        return {surface_[tile][texel], tiles_[tile].film[texel], slack_[tile][texel], spread_[tile][texel]};
+    }
+
+    void transport(int p) {
         each([&](std::size_t i) {  // parts of the film
             const Tile& tile = tiles_[i];
             for (int t = 0; t < kN; ++t) slack_[i][t] = tile.film[t] > 0 ? tile.loose[p][t] / tile.film[t] : 0;
@@ -217,8 +225,9 @@ class Pool {
             for (std::size_t k = 0; k < tile.over.size(); ++k) {
                 const auto& [place, link] = tile.links[k];
                 float& here = tile.loose[p][link.texel];
-                here = positive(here - carried(tile.over[k], slack_[i][link.texel], slack_[place][link.other_texel]) *
-                                           tile.inverse[link.texel]);
+                here =
+                    positive(here - pigment_flow(tile.over[k], slack_[i][link.texel], slack_[place][link.other_texel]) *
+                                        tile.inverse[link.texel]);
             }
         });
     }

@@ -13,11 +13,12 @@
 /// `stroke` at the end of a stroke.
 namespace tuft::ink {
 
+/// Options of `pool`.
 struct PoolOptions {
-    double hold = 0.4;      ///< film units held by the ridges
-    double pin = 1.5;       ///< film units needed to wet dry texels
-    double reach = 0.6e-3;  ///< metres over which ink settles
-    double strength = 1;    ///< of the ink: pigments in a film unit
+    double ridge_film = 0.4;  ///< film units held by the ridges
+    double pin = 1.5;         ///< film units needed to wet dry texels
+    double reach = 0.6e-3;    ///< metres over which ink settles
+    double strength = 1;      ///< of the ink: pigments in a film unit
     /// Empty: all; no ink crosses to or from texels that are not free.
     std::function<bool(std::uint32_t slot, int texel)> free = {};
 };
@@ -32,7 +33,7 @@ Plane dry_relief(const Canvas& canvas, std::uint32_t slot);
 /// drives it (Orchard 1962: time constant 3 η λ⁴ / (σ h³ (2π)⁴), 5 ms for λ = 0.5 mm, h = 20 µm, η = 10 mPa s); a
 /// film held by the wall does not move. With z the relief and T the film, in each step
 ///
-///     F = n min(⟨T − hold⟩, ⟨z + T − z' − T'⟩) / 5   from texel to lower texel,
+///     F = n min(⟨T − ridge_film⟩, ⟨z + T − z' − T'⟩) / 5   from texel to lower texel,
 ///
 /// n is 1 on relief and falls to 0 over `reach` beside it; ⟨T − pin⟩ onto texels without ink. The surface in a
 /// furrow becomes level and thins to 0 at its walls. Pigments move in proportion. The flux through a face is one

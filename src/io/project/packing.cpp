@@ -41,7 +41,7 @@ class Compressor {
   public:
     Compressor(std::size_t bytes, int level)
         : context_(ZSTD_createCCtx(), ZSTD_freeCCtx),
-          room_(std::min(ZSTD_CStreamOutSize(), ZSTD_compressBound(bytes))) {
+          buffer_(std::min(ZSTD_CStreamOutSize(), ZSTD_compressBound(bytes))) {
         if (!context_) throw Error("compression failed: out of memory");
         check(ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, level));
         check(ZSTD_CCtx_setPledgedSrcSize(context_.get(), bytes));
@@ -51,10 +51,10 @@ class Compressor {
     void add(const unsigned char* data, std::size_t size, ZSTD_EndDirective mode) {
         ZSTD_inBuffer in{data, size, 0};
         for (std::size_t left = 1; mode == ZSTD_e_end ? left > 0 : in.pos < in.size;) {
-            ZSTD_outBuffer out{room_.data(), room_.size(), 0};
+            ZSTD_outBuffer out{buffer_.data(), buffer_.size(), 0};
             left = ZSTD_compressStream2(context_.get(), &out, &in, mode);
             check(left);
-            blob_.insert(blob_.end(), room_.data(), room_.data() + out.pos);
+            blob_.insert(blob_.end(), buffer_.data(), buffer_.data() + out.pos);
         }
     }
 
@@ -65,11 +65,11 @@ class Compressor {
 
   private:
     std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context_;
-    std::vector<char> room_, blob_;
+    std::vector<char> buffer_, blob_;
 };
 
 template <class T>
-void gather(const unsigned char* planes, std::size_t count, std::size_t lag, void* out) {
+void merge_planes(const unsigned char* planes, std::size_t count, std::size_t lag, void* out) {
     auto* bytes = static_cast<unsigned char*>(out);
     for (std::size_t i = 0; i < count; ++i) {
         T v = 0;
@@ -121,9 +121,9 @@ void unpack(const void* blob, std::size_t blob_size, void* out, std::size_t coun
     std::vector<unsigned char> planes(expected);
     const std::size_t size = ZSTD_decompress(planes.data(), planes.size(), blob, blob_size);
     if (ZSTD_isError(size) || size != expected) throw Error(Message("{} is damaged", what));
-    if (packing.element == 1) gather<std::uint8_t>(planes.data(), count, packing.lag, out);
-    if (packing.element == 4) gather<std::uint32_t>(planes.data(), count, packing.lag, out);
-    if (packing.element == 8) gather<std::uint64_t>(planes.data(), count, packing.lag, out);
+    if (packing.element == 1) merge_planes<std::uint8_t>(planes.data(), count, packing.lag, out);
+    if (packing.element == 4) merge_planes<std::uint32_t>(planes.data(), count, packing.lag, out);
+    if (packing.element == 8) merge_planes<std::uint64_t>(planes.data(), count, packing.lag, out);
 }
 
 }  // namespace tuft::io

@@ -254,7 +254,7 @@ struct Part {
     Line line;
     bool head = false, tail = false;  ///< ends that are such points
 };
-std::vector<Part> parted(const Line& line, double reach) {
+std::vector<Part> split_line(const Line& line, double reach) {
     constexpr double kHairpin = -0.17;  // cosine
     const std::size_t n = line.size();
     const bool closed = n > 3 && line.front() == line.back();
@@ -426,7 +426,7 @@ std::vector<AreaLine> area_lines(std::span<const Ring> rings, FillRule rule) {
             for (const Line& line : runs) {
                 const double around = line.front() == line.back() ? length_of(line) / w : kSmall;
                 if (around < kSmall) shell.push_back({.line = dab(line, w), .width = w});
-                if (around >= 0.5 * kSmall) add_parts(parted(line, kPoint * w), k);
+                if (around >= 0.5 * kSmall) add_parts(split_line(line, kPoint * w), k);
             }
             shells.push_back(std::move(shell));
         }

@@ -86,7 +86,7 @@ class Decoder {
         switch (peek()) {
             case '*':
                 ++at_;
-                carry_on(h);
+                extrapolate(h);
                 return;
             case '?':
                 ++at_;
@@ -122,7 +122,7 @@ class Decoder {
         h.reported = true;
     }
 
-    void carry_on(History& h) {
+    void extrapolate(History& h) {
         if (h.order == Order::first_difference) {
             h.value += h.velocity;
         } else if (h.order == Order::second_difference) {

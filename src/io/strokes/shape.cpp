@@ -92,19 +92,19 @@ std::vector<Ring> united(const Grid& grid, const clip::Paths& paths, clip::PolyF
 /// The points of the way from `first` to `last` (past the end it begins anew) that are needed are
 /// marked.
 void mark_needed(const Ring& ring, std::size_t first, std::size_t last, double tolerance, std::vector<bool>& needed) {
-    std::vector<std::pair<std::size_t, std::size_t>> ways{{first, last}};
+    std::vector<std::pair<std::size_t, std::size_t>> ranges{{first, last}};
     const auto at = [&](std::size_t i) -> const Vec2& { return ring[i % ring.size()]; };
-    while (!ways.empty()) {
-        const auto [from, to] = ways.back();
-        ways.pop_back();
+    while (!ranges.empty()) {
+        const auto [from, to] = ranges.back();
+        ranges.pop_back();
         double farthest = tolerance;
         std::size_t split = from;
         for (std::size_t i = from + 1; i < to; ++i)
             if (const double d = segment_distance(at(from), at(to), at(i)); d > farthest) farthest = d, split = i;
         if (split == from) continue;
         needed[split % ring.size()] = true;
-        ways.emplace_back(from, split);
-        ways.emplace_back(split, to);
+        ranges.emplace_back(from, split);
+        ranges.emplace_back(split, to);
     }
 }
 

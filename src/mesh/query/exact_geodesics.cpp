@@ -328,6 +328,37 @@ bool ExactGeodesics::spread(const TriangleMesh& mesh, std::uint32_t triangle, co
     return true;
 }
 
+const ExactGeodesics::Window* ExactGeodesics::shortest_window(const Face& face, const Vec2& q,
+                                                              const std::array<Vec2, 3>& corners,
+                                                              const std::array<Vec2, 3>& edges, double& length) const {
+    double beside = kFarBeside, length_beside = kInfinity;
+    const Window* best = nullptr;
+    const Window* fallback = nullptr;
+    for (int k = 0; k < 3; ++k) {
+        const Vec2 at = turned_back(q - corners[k], edges[k]);
+        for (std::uint32_t i = face.windows[k]; i != kNone; i = windows_[i].next) {
+            const Window& w = windows_[i];
+            const double height = std::max(at.y, 0.0);
+            const double cut = w.source.x + (at.x - w.source.x) * -w.source.y / (height - w.source.y);
+            const double off = std::max({w.from - cut, cut - w.to, 0.0}) / face.length[k];
+            const double by_window = w.before + glm::length(at - w.source);
+            if (off <= kBeside && by_window < length) {
+                length = by_window;
+                best = &w;
+            } else if (off > kBeside && off < beside) {
+                beside = off;
+                length_beside = by_window;
+                fallback = &w;
+            }
+        }
+    }
+    if (!best && fallback && length_beside < length) {
+        best = fallback;
+        length = length_beside;
+    }
+    return best;
+}
+
 ExactGeodesics::Geodesic ExactGeodesics::to(std::uint32_t triangle, const Vec3& p) const {
     Geodesic path;
     const std::uint32_t number = face_numbers_.find(triangle);
@@ -341,38 +372,15 @@ ExactGeodesics::Geodesic ExactGeodesics::to(std::uint32_t triangle, const Vec3& 
         path.length = glm::length(q - origin_);
         start_direction = end_direction = path.length > 0 ? (q - origin_) / path.length : Vec2{1, 0};
     }
-    double beside = kFarBeside, length_beside = kInfinity;
-    const Window* best = nullptr;
-    const Window* fallback = nullptr;
-    Vec2 corner{0}, e{1, 0};
     std::array<Vec2, 3> corners, edges;
+    Vec2 corner{0}, e{1, 0};
     for (int k = 0; k < 3; ++k) {
         corners[k] = corner;
         edges[k] = e;
-        const Vec2 at = turned_back(q - corner, e);
-        for (std::uint32_t i = face.windows[k]; i != kNone; i = windows_[i].next) {
-            const Window& w = windows_[i];
-            const double height = std::max(at.y, 0.0);
-            const double cut = w.source.x + (at.x - w.source.x) * -w.source.y / (height - w.source.y);
-            const double off = std::max({w.from - cut, cut - w.to, 0.0}) / face.length[k];
-            const double length = w.before + glm::length(at - w.source);
-            if (off <= kBeside && length < path.length) {
-                path.length = length;
-                best = &w;
-            } else if (off > kBeside && off < beside) {
-                beside = off;
-                length_beside = length;
-                fallback = &w;
-            }
-        }
         corner += face.length[k] * e;
         e = glm::normalize((k == 0 ? face.third[0] : Vec2{0}) - corner);
     }
-    if (!best && fallback && length_beside < path.length) {
-        best = fallback;
-        path.length = length_beside;
-    }
-    if (best) {
+    if (const Window* best = shortest_window(face, q, corners, edges, path.length)) {
         const Vec2 from = corners[best->edge] + turned(best->source, edges[best->edge]);
         end_direction = glm::normalize(q - from);
         path.bent = best->root != kNone;

@@ -91,6 +91,10 @@ class ExactGeodesics {
         int corner;
     };
 
+    /// Returns the window of the shortest path to q (frame of edge 0) through `face`, and its length; null where none
+    /// is shorter than `length`. `corners`, `edges`: of the face, edges unit.
+    const Window* shortest_window(const Face& face, const Vec2& q, const std::array<Vec2, 3>& corners,
+                                  const std::array<Vec2, 3>& edges, double& length) const;
     void begin(const TriangleMesh& mesh, double radius);
     std::uint32_t face_of(std::uint32_t triangle);
     std::uint32_t vertex_of(std::uint32_t vertex);

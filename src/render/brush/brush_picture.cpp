@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPressings[] = {0.02, 0.1, 0.2, 0.32, 0.45};  ///< depths over length
 constexpr int kColumns = 6;
-constexpr double kLean = 0.45;    ///< radians
+constexpr double kTilt = 0.45;    ///< radians
 constexpr double kStride = 0.02;  ///< lengths between two samples
 constexpr double kSample = 0.01;  ///< s
 
@@ -109,7 +109,7 @@ void draw_scale(const Sheet& sheet, const BrushView& view, double x0, double x1)
 }
 
 /// Paper and, from `ground` on, the sheet; what the row below drew into this one goes.
-void fill_ground(const Sheet& sheet, double top, double ground, double bottom) {
+void fill_row(const Sheet& sheet, double top, double ground, double bottom) {
     const Vec2 over[] = {{0, top}, {sheet.width, top}, {sheet.width, ground}, {0, ground}};
     fill_polygon(sheet.canvas, over, linear_colour(246, 243, 236));
     top = ground;
@@ -120,7 +120,7 @@ void fill_ground(const Sheet& sheet, double top, double ground, double bottom) {
 /// One row from the side; `top` to `top` + 535 units.
 void draw_row(const Sheet& sheet, double top, double tilt, Side side, const char* name) {
     const double u = sheet.unit, ground = top + 370 * u, plan = ground + 84 * u;
-    fill_ground(sheet, top, ground, top + 535 * u);
+    fill_row(sheet, top, ground, top + 535 * u);
     const double length = sheet.preset.length;
     for (int k = 0; k < kColumns; ++k) {
         const bool lifted = k + 1 == kColumns;
@@ -156,7 +156,7 @@ void draw_tips(const Sheet& sheet, double top) {
     constexpr double kDown = 0.5;  // radians the viewer looks down
     const double u = sheet.unit, length = sheet.preset.length, column = sheet.width / 4;
     const double ground = top + 330 * u;
-    fill_ground(sheet, top, top + 200 * u, top + 540 * u);
+    fill_row(sheet, top, top + 200 * u, top + 540 * u);
     for (int k = 0; k < 4; ++k) {
         TuftAppearance appearance;
         Hand hand(sheet.preset, k == 1 ? 0.2 : 0, k == 0 ? 0.7 : 0, Side::broad);
@@ -216,12 +216,12 @@ BrushPicture draw_tuft(const Preset& preset, int width) {
     const Sheet sheet{canvas, preset, unit, static_cast<double>(width), column, 0.92 * column / (1.3 * preset.length)};
     draw_tips(sheet, head + 3 * row);
     if (preset.spines > 1) {
-        draw_row(sheet, head + 2 * row, kLean, Side::edge, "leaning ahead, on its edge");
-        draw_row(sheet, head + row, kLean, Side::broad, "leaning ahead, on its broad side");
+        draw_row(sheet, head + 2 * row, kTilt, Side::edge, "leaning ahead, on its edge");
+        draw_row(sheet, head + row, kTilt, Side::broad, "leaning ahead, on its broad side");
         draw_row(sheet, head, 0, Side::broad, "upright, on its broad side");
     } else {
-        draw_row(sheet, head + 2 * row, -kLean, Side::broad, "leaning back, pushed");
-        draw_row(sheet, head + row, kLean, Side::broad, "leaning ahead, pulled");
+        draw_row(sheet, head + 2 * row, -kTilt, Side::broad, "leaning back, pushed");
+        draw_row(sheet, head + row, kTilt, Side::broad, "leaning ahead, pulled");
         draw_row(sheet, head, 0, Side::broad, "upright");
     }
     const Vec2 band[] = {{0, 0}, {sheet.width, 0}, {sheet.width, head}, {0, head}};

@@ -29,7 +29,7 @@ struct Strand {
 std::vector<Strand> strands_of(const TuftState& state, const TuftAppearance& appearance) {
     std::vector<Strand> out;
     const std::size_t count = state.branches.size(), middle = count / 2;
-    const std::vector<Section>& carrier = state.branches[middle].sections;
+    const std::vector<Section>& trunk_branch = state.branches[middle].sections;
     for (const Branch& branch : state.branches) {
         Strand strand;
         std::vector<Section> all = branch.sections;
@@ -42,7 +42,7 @@ std::vector<Strand> strands_of(const TuftState& state, const TuftAppearance& app
             trunk = own - 1;
             if (&branch != &state.branches[middle]) {
                 all.pop_back();
-                all.insert(all.end(), carrier.begin() + static_cast<long>(trunk), carrier.end());
+                all.insert(all.end(), trunk_branch.begin() + static_cast<long>(trunk), trunk_branch.end());
             }
         }
         strand.trunk = trunk * (kBetween + 1);
@@ -366,7 +366,7 @@ void draw_patch(BrushCanvas& canvas, const Tuft& tuft, const TuftState& state, c
     }
     if (state.wide) {
         // The patch as it is painted: strips, and the skin between those that ink joins.
-        for (const footprint::Outline& outline : footprint::outline(state, Frame{})) {
+        for (const footprint::Outline& outline : footprint::outlines_of(state, Frame{})) {
             std::vector<Vec2> points;
             for (const Vec2& q : footprint::curve_points(outline)) points.push_back(plan({q, 0}));
             fill_polygon(canvas, points, ink);

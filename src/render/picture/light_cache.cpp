@@ -128,8 +128,8 @@ void LightCache::seed_floor(const Scene& scene) {
 }
 
 /// Direct and dome light of a patch into `own`, one link per ray that meets another surface.
-void LightCache::gather(const Scene& scene, const Patch& at, std::size_t index, Vec3f& own,
-                        std::vector<Link>& links) const {
+void LightCache::link_patch(const Scene& scene, const Patch& at, std::size_t index, Vec3f& own,
+                            std::vector<Link>& links) const {
     const Vec3f start = at.p + scene.offset * at.n;
     const Vec2f shift = hash_point(23, index);
     own = direct_light(scene, start, at.n, {16, 8, 8}, shift);
@@ -175,7 +175,7 @@ void LightCache::solve(const Scene& scene) {
                 at.p = {xy.x, xy.y, scene.studio.floor_z};
                 at.n = {0, 0, 1};
             }
-            gather(scene, at, i, own[i], links[i]);
+            link_patch(scene, at, i, own[i], links[i]);
         }
     });
     light = own;

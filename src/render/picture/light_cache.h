@@ -60,7 +60,7 @@ class LightCache {
     void insert(const Vec3f& p, const Vec3f& n);
     void seed_patches(const Scene& scene);
     void seed_floor(const Scene& scene);
-    void gather(const Scene& scene, const Patch& at, std::size_t index, Vec3f& own, std::vector<Link>& links) const;
+    void link_patch(const Scene& scene, const Patch& at, std::size_t index, Vec3f& own, std::vector<Link>& links) const;
     void solve(const Scene& scene);
     Vec3f read_floor(const std::vector<Vec3f>& grid, float x, float y) const;
 

@@ -17,8 +17,8 @@ constexpr double kGrainFilm = 7.5e-6;
 constexpr double kHeldUp = 1;           // rms heights over the mean of the grain that dry hair is held up by its hills
 constexpr double kSoakLength = 0.2e-3;  // metres of travel over which ink comes to the parts of the hair that touch
 constexpr double kAxisLength = 1e-3;    // metres of hair on the surface that turn the grid of its ink
-constexpr double kSeparateLack =
-    0.05;  // mean lack of wetness of the bundles at which all of a tuft touches by single hairs
+// Mean lack of wetness of the bundles at which all of a tuft touches by single hairs.
+constexpr double kSeparateLack = 0.05;
 constexpr double kSpreadLack = 0.4;  // lack of wetness at which no water holds the tip together
 
 }  // namespace
@@ -54,18 +54,21 @@ HairContact::Wetness HairContact::bundle_wetness(TuftInHand& tuft, const MotionT
     return wetness;
 }
 
-void HairContact::draw_hairs(Stamp& stamp, const TuftInHand& tuft, const contact::Result& contact,
-                             const MotionTracker& motion, const Wetness& wetness,
-                             std::span<const footprint::Trail> trails, std::span<const footprint::Outline> outlines) {
+void HairContact::draw_hairs(Stamp& stamp, const footprint::TouchingHair& hair, const contact::Result& contact,
+                             const MotionTracker& motion, const Wetness& wetness) {
     const Frame& frame = contact.frame;
-    const Vec2 hand(frame.to_local(frame.origin + motion.hand_course)),
-        hair(frame.to_local(frame.origin + motion.hair_course));
-    const double lengths = glm::length(hand) * glm::length(hair);
-    const double swings = lengths > 0 ? std::abs(hand.x * hair.y - hand.y * hair.x) / lengths : 0;
-    footprint::HairMarks marks = footprint::hair_marks(
-        trails, outlines, tuft.brush.tuft.bundles, static_cast<int>(contact.tuft.branches.size()),
-        {wetness.of_bundle, motion.travel, motion.hair_direction, previous_, motion.press_share, hand, swings}, frame,
-        contact.triangle, options_.cell);
+    const Vec2 of_hand(frame.to_local(frame.origin + motion.hand_course)),
+        of_hair(frame.to_local(frame.origin + motion.hair_course));
+    const double lengths = glm::length(of_hand) * glm::length(of_hair);
+    const footprint::HairInk ink{
+        .wet = wetness.of_bundle,
+        .travel = motion.travel,
+        .direction = motion.hair_direction,
+        .before = previous_,
+        .press_share = motion.press_share,
+        .course = of_hand,
+        .sine_to_course = lengths > 0 ? std::abs(of_hand.x * of_hair.y - of_hand.y * of_hair.x) / lengths : 0};
+    footprint::HairMarks marks = footprint::draw_hair_marks(hair, ink, {frame, contact.triangle, options_.cell});
     stamp.footprint = std::move(marks.footprint);
     stamp.by_hair = true;
     stamp.separation = static_cast<float>(smooth_step(wetness.lack / kSeparateLack));
@@ -74,14 +77,13 @@ void HairContact::draw_hairs(Stamp& stamp, const TuftInHand& tuft, const contact
     closed_area_ = marks.closed_area;
 }
 
-void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, std::span<const footprint::Trail> trails,
-                              std::span<const footprint::Outline> outlines) {
+void HairContact::place_nodes(Stamp& stamp, const footprint::TouchingHair& hair, const ink::Reservoir& reservoir) {
     // A tip that stands on the surface has no direction: then it keeps the one it had.
     Vec2 lie = kAxisLength * axis_;
-    for (const footprint::Trail& trail : trails) lie += trail.cuts.front().centre - trail.cuts.back().centre;
+    for (const footprint::Trail& trail : hair.trails) lie += trail.cuts.front().centre - trail.cuts.back().centre;
     if (glm::length(lie) > 1e-9) axis_ = glm::normalize(lie);
     std::vector<Vec2> places;
-    for (const footprint::Outline& outline : outlines) {
+    for (const footprint::Outline& outline : hair.outlines) {
         places.insert(places.end(), outline.left.begin(), outline.left.end());
         places.insert(places.end(), outline.right.begin(), outline.right.end());
         places.push_back(outline.tip);
@@ -90,11 +92,12 @@ void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, std::span<co
     stamp.grid = ink::make_contact_grid(places, axis_);
     std::vector<ink::HairSample> samples;
     for (const footprint::HairContactPoint& t :
-         footprint::hair_contact_points(trails, tuft.brush.tuft.bundles, static_cast<int>(tuft.state.branches.size())))
+         footprint::hair_contact_points(hair.trails, hair.bundles, hair.branches))
         samples.push_back({t.bundle, t.at, t.along, t.length});
-    nodes_ = ink::node_contact(tuft.brush.reservoir, stamp.grid, samples, cells_);
-    if (trails.empty()) return;
-    const Vec2 e(trails.front().cuts[trails.front().cuts.size() / 2].e);
+    nodes_ = ink::node_contact(reservoir, stamp.grid, samples, cells_);
+    if (hair.trails.empty()) return;
+    const std::vector<footprint::Cut>& cuts = hair.trails.front().cuts;
+    const Vec2 e(cuts[cuts.size() / 2].e);
     orientation_ = axis_.x * e.y - axis_.y * e.x < 0 ? -1 : 1;
 }
 
@@ -103,7 +106,7 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     const double length = tuft.preset().length;
     if (!motion.touching) tracks_ = {};
     std::vector<footprint::Trail> trails =
-        footprint::trails(contact.tuft, contact.frame, contact.branch_planes, length, kSkinFilm);
+        footprint::find_trails(contact.tuft, contact.frame, contact.branch_planes, length, kSkinFilm);
     cells_ = footprint::contact_cells(trails, tuft.brush.tuft.bundles, static_cast<int>(contact.tuft.branches.size()),
                                       tuft.brush.reservoir.layout.cell_ends);
     cells_since_.resize(cells_.size(), 0);
@@ -113,25 +116,27 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     by_hair_ = wetness.lack > 0 && !options_.always_closed;
     closed_area_ = 0;
     const double spread = by_hair_ ? std::clamp((1 - wetness.mean) / kSpreadLack, 0.0, 1.0) : 0;
-    footprint::spread_trails(trails, tracks_, motion.hair_travel, length, spread);
-    std::vector<footprint::Trail> lying;
+    footprint::spread_trails(trails, tracks_, {motion.hair_travel, length, spread});
+    std::vector<footprint::Trail> uncovered;  // without the upright hair
     if (by_hair_) {
         if (!motion.touching) previous_.clear();
         footprint::change_frame(previous_, previous_frame_, contact.frame);
-        lying = trails;
+        uncovered = trails;
     }
     if (!contact.planes.empty())
         footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft.brush.tuft, contact.planes.front()),
                                       contact.frame, kSkinFilm);
     const std::vector<footprint::Outline> outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points);
+    const footprint::TouchingHair hair{trails, outlines, tuft.brush.tuft.bundles,
+                                       static_cast<int>(contact.tuft.branches.size())};
     Stamp stamp;
     if (by_hair_)
-        draw_hairs(stamp, tuft, contact, motion, wetness, trails, outlines);
+        draw_hairs(stamp, hair, contact, motion, wetness);
     else
         stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, options_.cell);
-    previous_ = std::move(lying);
+    previous_ = std::move(uncovered);
     previous_frame_ = contact.frame;
-    if (options_.places_nodes) place_nodes(stamp, tuft, trails, outlines);
+    if (options_.places_nodes) place_nodes(stamp, hair, tuft.brush.reservoir);
     return stamp;
 }
 

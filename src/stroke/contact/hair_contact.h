@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "contact/contact.h"
-#include "footprint/outline/cuts.h"
+#include "footprint/outline/hair.h"
 #include "ink/exchange/contact_nodes.h"
 #include "stroke/contact/motion_tracker.h"
 #include "stroke/contact/stamp.h"
@@ -15,6 +15,7 @@
 
 namespace tuft::stroke {
 
+/// Options of the footprints of a stroke.
 struct HairContactOptions {
     double cell = 1e-4;          ///< metres, of footprints
     bool always_closed = false;  ///< ink on the surface, such as a pool, fills the gaps of dry hair
@@ -54,18 +55,18 @@ class HairContact {
         double mean = 0, lack = 0;  ///< over the bundles; `lack`: mean of max(0, 1 − wetness)
     };
     Wetness bundle_wetness(TuftInHand& tuft, const MotionTracker& motion, double stress, double dt);
-    void draw_hairs(Stamp& stamp, const TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion,
-                    const Wetness& wetness, std::span<const footprint::Trail> trails,
-                    std::span<const footprint::Outline> outlines);
-    void place_nodes(Stamp& stamp, const TuftInHand& tuft, std::span<const footprint::Trail> trails,
-                     std::span<const footprint::Outline> outlines);
+    /// Draws the footprint hair by hair.
+    void draw_hairs(Stamp& stamp, const footprint::TouchingHair& hair, const contact::Result& contact,
+                    const MotionTracker& motion, const Wetness& wetness);
+    /// Computes the grid of the stamp and what hair touches at its nodes.
+    void place_nodes(Stamp& stamp, const footprint::TouchingHair& hair, const ink::Reservoir& reservoir);
 
     HairContactOptions options_;
     ink::ContactCells cells_, cells_since_;
     ink::NodeContact nodes_;
     std::vector<double> soaked_;              // wetness of each bundle at its last contact
     double updated_at_ = 0;                   // travel at which wetness and splitting were last updated
-    footprint::HairTracks tracks_;            // of the hair that lies there
+    footprint::HairTracks tracks_;            // of the hair on the surface
     std::vector<footprint::Trail> previous_;  // trails of the last stamp by hair, in `previous_frame_`
     Frame previous_frame_;
     bool by_hair_ = false;

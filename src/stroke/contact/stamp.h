@@ -10,6 +10,7 @@
 /// texels.
 namespace tuft::stroke {
 
+/// The footprint at one pose, with its motion and its ink.
 struct Stamp {
     footprint::Footprint footprint;
     footprint::Motion motion;  ///< since the stamp before, in the footprint's frame

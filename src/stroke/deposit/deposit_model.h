@@ -51,6 +51,7 @@ class DepositModel {
     virtual ink::Amounts removed() const { return {}; }
 };
 
+/// Options of a deposit model.
 struct DepositOptions {
     footprint::StampOptions stamp;
     WetFilmInUse wet;     ///< film that flows meanwhile

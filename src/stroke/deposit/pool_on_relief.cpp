@@ -8,7 +8,7 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kHeldByRidges = 0.35;  // of the film that is deposited
+constexpr double kRidgeFilm = 0.35;  // of the film that is deposited
 
 }  // namespace
 
@@ -17,7 +17,7 @@ void pool_on_relief(StampTarget& target, const ink::Ink& ink, const std::functio
     std::vector<const ink::TileSnapshot*> before;
     for (const auto& [slot, tile] : target.snapshots()) before.push_back(&tile);
     std::sort(before.begin(), before.end(), [](const auto* a, const auto* b) { return a->slot < b->slot; });
-    ink::PoolOptions options{.hold = kHeldByRidges * ink.film, .strength = ink.strength()};
+    ink::PoolOptions options{.ridge_film = kRidgeFilm * ink.film, .strength = ink.strength()};
     if (const MaskTexels* mask = target.mask())
         options.free = [mask](std::uint32_t slot, int texel) { return mask->coverage(slot, texel) > 0; };
     ink::pool(target.canvas(), target.texels(), seams(), before, options);

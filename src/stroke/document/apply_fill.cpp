@@ -53,7 +53,7 @@ FillResult apply_fill(const Fill& fill, const PaintTarget& target, const FillMix
     for (const std::uint32_t slot : slots) result.before.push_back(target.canvas.snapshot(slot));
 
     const atlas::TexelMap& map = target.model.texels;
-    std::vector<ink::Amounts> laid(slots.size());
+    std::vector<ink::Amounts> added(slots.size());
     parallel_for(slots.size(), 16, [&](std::size_t begin, std::size_t end) {
         ink::Coat coat;
         coat.first = mixes.first;
@@ -61,11 +61,12 @@ FillResult apply_fill(const Fill& fill, const PaintTarget& target, const FillMix
         for (std::size_t i = begin; i < end; ++i) {
             set_coat(coat, fill, map, charts, slots[i]);
             if (target.mask) target.mask->apply(slots[i], coat.film);
-            laid[i] = ink::lay_coat(target.canvas, slots[i], map.tiles[slots[i]].area, coat, target.substrate.capacity);
+            added[i] =
+                ink::add_coat(target.canvas, slots[i], map.tiles[slots[i]].area, coat, target.substrate.capacity);
             if (target.on_palette) pour(target.canvas, slots[i], coat);
         }
     });
-    for (const ink::Amounts& a : laid) result.ink_given += a.sum();
+    for (const ink::Amounts& a : added) result.ink_given += a.sum();
     return result;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "contact/outside.h"
+#include "contact/node_contact.h"
 #include "stroke/document/document.h"
 #include "stroke/document/paint_path.h"
 #include "stroke/gesture/hand.h"

@@ -64,7 +64,7 @@ void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::opt
         if (!p.was) continue;
         const double step = std::max(kTouch / static_cast<double>(places.size()),
                                      i > 0 ? glm::distance(p.hand, places[i - 1].hand) : 0.0);
-        fit.way += step;
+        fit.length += step;
         if (p.buried)
             fit.buried += step;
         else if (!p.is)
@@ -203,9 +203,9 @@ std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
 }
 
 Message mismatch_reason(const StrokeFit& fit) {
-    if (fit.way <= 0) return {};
-    const auto percent = [&](double part) { return static_cast<int>(std::lround(100 * part / fit.way)); };
-    const double far = std::max(kLeastMove, kMovePart * fit.way);
+    if (fit.length <= 0) return {};
+    const auto percent = [&](double part) { return static_cast<int>(std::lround(100 * part / fit.length)); };
+    const double far = std::max(kLeastMove, kMovePart * fit.length);
     std::vector<Message> reasons;
     // A place in space is the hand's: it moves along the hair only, which the depth shows.
     if (fit.flat && fit.moved > far)
@@ -214,7 +214,7 @@ Message mismatch_reason(const StrokeFit& fit) {
         reasons.push_back(Message("lies {} mm from its place on the model", tenths(1e3 * *fit.slid)));
     const bool sank = std::abs(fit.deeper) > std::max(kLeastChange, kDepthPart * fit.depth);
     // A surface that sank loses the light ends of a stroke too: that it sank says more.
-    const double least = (sank ? kMost : kPart) * fit.way;
+    const double least = (sank ? kMost : kPart) * fit.length;
     if (fit.lost > least && fit.lost >= fit.buried)
         reasons.push_back(Message("{} % of it touches nothing", percent(fit.lost)));
     else if (fit.buried > least)
@@ -222,7 +222,7 @@ Message mismatch_reason(const StrokeFit& fit) {
     else if (sank)
         reasons.push_back(Message(fit.deeper > 0 ? "pressed {} mm deeper" : "pressed {} mm less deep",
                                   tenths(1e3 * std::abs(fit.deeper))));
-    if (fit.stretched > kPart * fit.way)
+    if (fit.stretched > kPart * fit.length)
         reasons.push_back(
             Message("{} % of it is stretched or squeezed by more than a quarter", percent(fit.stretched)));
     return join(reasons);
@@ -247,19 +247,19 @@ std::vector<StrokeMismatch> find_mismatches(const std::vector<StrokeReport>& rep
 FitTotal total_of(const std::vector<StrokeFit>& fits, const std::vector<StrokeMismatch>& mismatches) {
     FitTotal total{.strokes = fits.size(), .mismatches = mismatches.size()};
     std::vector<double> moved, slid;
-    double way = 0, missing = 0, stretched = 0;
+    double length = 0, missing = 0, stretched = 0;
     for (const StrokeFit& fit : fits) {
-        if (!(fit.way > 0)) continue;
+        if (!(fit.length > 0)) continue;
         moved.push_back(fit.moved);
         if (fit.slid) slid.push_back(*fit.slid);
         total.moved_most = std::max(total.moved_most, fit.moved_most);
-        way += fit.way;
+        length += fit.length;
         missing += fit.lost + fit.buried;
         stretched += fit.stretched;
     }
     total.moved = median(std::move(moved));
     if (!slid.empty()) total.slid = median(std::move(slid));
-    if (way > 0) total.missing = missing / way, total.stretched = stretched / way;
+    if (length > 0) total.missing = missing / length, total.stretched = stretched / length;
     return total;
 }
 

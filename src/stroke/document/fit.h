@@ -22,7 +22,7 @@ namespace tuft::stroke {
 struct StrokeFit {
     std::uint64_t stroke = 0;
     bool reached = false;        ///< the former model was within a tuft's length of the ferrule's mouth somewhere
-    double way = 0;              ///< length of the path
+    double length = 0;           ///< length of the path
     double lost = 0;             ///< of it, where the revised model has no surface for the ink
     double buried = 0;           ///< of it, where the revised surface lies above the ferrule's mouth
     double depth = 0;            ///< in space: median depth of the unbent tip in the former model, of the rest
@@ -37,7 +37,7 @@ struct StrokeFit {
     double stretched = 0;        ///< of `kept`, where 5 mm became more than a quarter longer or shorter
 
     /// Part of the path without ink, 0–1.
-    double missing() const { return way > 0 ? (lost + buried) / way : 0; }
+    double missing() const { return length > 0 ? (lost + buried) / length : 0; }
 };
 
 /// Returns why a revised model is too small to be painted on, as a sentence for people; empty where it is not. Too

@@ -95,7 +95,7 @@ LayerTiles LayerStack::merge_canvas(std::uint32_t into, const ink::Canvas& from)
     ink::Canvas& lower = canvas(into);
     LayerTiles before{into, {}};
     for (const std::uint32_t slot : from.touched_slots()) before.tiles.push_back(lower.snapshot(slot));
-    ink::lay_films(lower, from);
+    ink::merge_films(lower, from);
     return before;
 }
 

@@ -26,7 +26,7 @@ HolderOptions Materials::holder(const std::string& name, const mesh::TriangleMes
         brush.tilted_tip_lag = std::make_unique<TiltedTipLag>(brush.preset);
     }
     options.tip_lag = brush.tip_lag;
-    options.leaned = [tilted = brush.tilted_tip_lag.get()](double depth, const Vec2& lean) {
+    options.tip_lag_change = [tilted = brush.tilted_tip_lag.get()](double depth, const Vec2& lean) {
         return tilted->at(depth, lean);
     };
     return options;

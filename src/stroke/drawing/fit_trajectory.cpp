@@ -228,6 +228,75 @@ std::vector<T> smoothed(const std::vector<T>& v, const std::vector<double>& alon
     return out;
 }
 
+/// Path that is corrected: its stations, `along` metres, and the weight of each.
+struct FittedPath {
+    std::vector<Station> stations;
+    std::vector<double> along, weight;
+    double width = 0;  // metres, of the line
+};
+
+/// Errors of the ink at the stations, before they are smoothed.
+struct InkErrors {
+    std::vector<Vec2> shift;           // metres that the path has to move
+    std::vector<double> press, kicks;  // metres that the line has to widen; that ink of other stations reaches too far
+    double rms = 0;                    // of the errors, in widths
+};
+
+/// Compares the ink of `tried` with the edge points of the line.
+InkErrors measure_ink(const PlaneInk& ink, const StrokeSamples& tried, const FittedPath& path,
+                      std::span<const EdgePoint> edge) {
+    const std::size_t n = path.stations.size();
+    InkErrors out{std::vector<Vec2>(n, Vec2{0}), std::vector<double>(n, 0), std::vector<double>(n, 0)};
+    std::vector<double> count(n, 0);
+    double sum = 0, all = 0;
+    for (const EdgePoint& point : edge) {
+        const double e = reach_over(ink, point, path.stations[point.station].half);
+        sum += path.weight[point.station] * e * e;
+        all += path.weight[point.station];
+        std::size_t by = point.station;
+        if (e > 0) {
+            const Vec2 p = point.at + 0.7 * e * point.out;
+            const double when = ink.when({p.x, -p.y});
+            const auto at = std::lower_bound(tried.samples.begin(), tried.samples.end(), when,
+                                             [](const StrokeSample& s, double time) { return s.time < time; });
+            by = std::min<std::size_t>(static_cast<std::size_t>(at - tried.samples.begin()), n - 1);
+        }
+        if (std::abs(path.along[by] - path.along[point.station]) < kOwn * path.width) {
+            out.shift[point.station] -= e * point.out;
+            out.press[point.station] -= e;
+            ++count[point.station];
+        } else
+            out.kicks[by] = std::max(out.kicks[by], e);
+    }
+    out.rms = std::sqrt(sum / std::max(all, 1e-9)) / path.width;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double m = std::max(count[i], 1.0);
+        out.shift[i] *= path.weight[i] / m;
+        out.press[i] = path.weight[i] * (2 * out.press[i] / m - kKick * out.kicks[i]);
+    }
+    return out;
+}
+
+/// Correction of each station: metres that it is moved, and that its line is pressed wider.
+struct Correction {
+    std::vector<Vec2> moved;
+    std::vector<double> wider;
+};
+
+void correct(Correction& correction, const InkErrors& errors, const FittedPath& path) {
+    const std::vector<Vec2> shift = smoothed(errors.shift, path.along, kSoft * path.width);
+    const std::vector<double> press = smoothed(errors.press, path.along, kSoft * path.width);
+    for (std::size_t i = 0; i < path.stations.size(); ++i) {
+        Vec2& moved = correction.moved[i];
+        double& wider = correction.wider[i];
+        moved += kShift * shift[i];
+        if (const double far = glm::length(moved); far > kMostMoved * path.width)
+            moved *= kMostMoved * path.width / far;
+        const double half = path.stations[i].half;
+        wider = std::clamp(wider + kPress * press[i], -1.6 * half, 0.8 * half);
+    }
+}
+
 }  // namespace
 
 StrokeSamples fit_trajectory(StrokeSamples trace, const brush::Preset& preset, const LineWidths& widths,
@@ -238,71 +307,40 @@ StrokeSamples fit_trajectory(StrokeSamples trace, const brush::Preset& preset, c
     StrokeSamples tried = trace;
     tried.samples = evenly(trace.samples, kApart * width);
     const std::size_t n = tried.samples.size();
-    const std::vector<double> along = travelled<StrokeSample>(tried.samples);
-    std::vector<Station> wanted;
-    for (const StrokeSample& s : tried.samples) wanted.push_back({Vec2(s.position), 0.5 * widths.at(s.pressure)});
-    const std::vector<double> turns = turns_of(wanted, along, width);
+    FittedPath path{.stations = {}, .along = travelled<StrokeSample>(tried.samples), .weight = {}, .width = width};
+    for (const StrokeSample& s : tried.samples)
+        path.stations.push_back({Vec2(s.position), 0.5 * widths.at(s.pressure)});
+    const std::vector<double> turns = turns_of(path.stations, path.along, width);
     if (*std::max_element(turns.begin(), turns.end()) < kTurn) return trace;
-    std::vector<double> weight = far_from_turns(turns, along, kTurn), wider = far_from_turns(turns, along, kSharp);
-    for (double& w : weight) w = 1 - smooth_step(w / width - kAbout + 1);
+    path.weight = far_from_turns(turns, path.along, kTurn);
+    for (double& w : path.weight) w = 1 - smooth_step(w / width - kAbout + 1);
+    Correction correction{std::vector<Vec2>(n, Vec2{0}), far_from_turns(turns, path.along, kSharp)};
     for (std::size_t i = 0; i < n; ++i)
-        wider[i] = -2 * kLifted * wanted[i].half * (1 - smooth_step(wider[i] / (kSharpLift * width)));
-    const std::vector<EdgePoint> edge = find_edge_points(wanted, weight, width, area);
+        correction.wider[i] =
+            -2 * kLifted * path.stations[i].half * (1 - smooth_step(correction.wider[i] / (kSharpLift * width)));
+    const std::vector<EdgePoint> edge = find_edge_points(path.stations, path.weight, width, area);
     if (edge.empty()) return trace;
-    std::vector<Vec2> moved(n, Vec2{0});
     double least = 1e300;
     StrokeSamples best = trace;
     for (int t = 0, idle = 0; t < kTries && idle < 2; ++t) {
         check_interrupt();
         for (std::size_t i = 0; i < n; ++i) {
             StrokeSample& s = tried.samples[i];
-            s.position = Vec3(wanted[i].centre + moved[i], s.position.z);
+            const Vec2& moved = correction.moved[i];
+            const double wider = correction.wider[i];
+            s.position = Vec3(path.stations[i].centre + moved, s.position.z);
             s.pressure =
-                wider[i] == 0 && moved[i] == Vec2(0) ? s.pressure : widths.pressure(2 * wanted[i].half + wider[i]);
+                wider == 0 && moved == Vec2(0) ? s.pressure : widths.pressure(2 * path.stations[i].half + wider);
         }
         const PlaneInk ink = plane_ink(tried, preset, options, kStep * width, kCell * width);
-        std::vector<Vec2> shift(n, Vec2{0});
-        std::vector<double> press(n, 0), count(n, 0), kicks(n, 0);
-        double sum = 0, all = 0;
-        for (const EdgePoint& point : edge) {
-            const double e = reach_over(ink, point, wanted[point.station].half);
-            sum += weight[point.station] * e * e;
-            all += weight[point.station];
-            std::size_t by = point.station;
-            if (e > 0) {
-                const Vec2 p = point.at + 0.7 * e * point.out;
-                const double when = ink.when({p.x, -p.y});
-                const auto at = std::lower_bound(tried.samples.begin(), tried.samples.end(), when,
-                                                 [](const StrokeSample& s, double time) { return s.time < time; });
-                by = std::min<std::size_t>(static_cast<std::size_t>(at - tried.samples.begin()), n - 1);
-            }
-            if (std::abs(along[by] - along[point.station]) < kOwn * width) {
-                shift[point.station] -= e * point.out;
-                press[point.station] -= e;
-                ++count[point.station];
-            } else
-                kicks[by] = std::max(kicks[by], e);
-        }
-        const double rms = std::sqrt(sum / std::max(all, 1e-9)) / width;
-        idle = rms < kGain * least ? 0 : idle + 1;
-        if (rms < least) {
-            least = rms;
+        const InkErrors errors = measure_ink(ink, tried, path, edge);
+        idle = errors.rms < kGain * least ? 0 : idle + 1;
+        if (errors.rms < least) {
+            least = errors.rms;
             best = tried;
         }
-        if (rms < kEnough) break;
-        for (std::size_t i = 0; i < n; ++i) {
-            const double m = std::max(count[i], 1.0);
-            shift[i] *= weight[i] / m;
-            press[i] = weight[i] * (2 * press[i] / m - kKick * kicks[i]);
-        }
-        shift = smoothed(shift, along, kSoft * width);
-        press = smoothed(press, along, kSoft * width);
-        for (std::size_t i = 0; i < n; ++i) {
-            moved[i] += kShift * shift[i];
-            if (const double far = glm::length(moved[i]); far > kMostMoved * width)
-                moved[i] *= kMostMoved * width / far;
-            wider[i] = std::clamp(wider[i] + kPress * press[i], -1.6 * wanted[i].half, 0.8 * wanted[i].half);
-        }
+        if (errors.rms < kEnough) break;
+        correct(correction, errors, path);
     }
     return best;
 }
@@ -332,7 +370,7 @@ void fit_trajectory(std::span<PaintStroke* const> drawing, WidthTables& tables) 
             area.line = i;
             const std::string& brush = drawing[i]->brush;
             StrokeSamples& t = drawing[i]->trace;
-            t = fit_trajectory(std::move(t), brush::load_preset(brush), tables.of(brush), tables.hold(brush), &area);
+            t = fit_trajectory(std::move(t), brush::load_preset(brush), tables.of(brush), tables.holder(brush), &area);
             done[i] = true;
         }
     }

@@ -53,7 +53,7 @@ const brush::Preset& WidthTables::preset(const std::string& brush) {
     return at != presets_.end() ? at->second : presets_.emplace(brush, brush::load_preset(brush)).first->second;
 }
 
-const HolderOptions& WidthTables::hold(const std::string& brush) {
+const HolderOptions& WidthTables::holder(const std::string& brush) {
     const auto at = holds_.find(brush);
     if (at != holds_.end()) return at->second;
     HolderOptions options = holder_options(preset(brush));

@@ -40,7 +40,7 @@ class WidthTables {
     const LineWidths& of(const std::string& brush);
     const brush::Preset& preset(const std::string& brush);
     /// Returns options of an upright holder over a plane that compensates the tip lag (`measure_tip_lag`).
-    const HolderOptions& hold(const std::string& brush);
+    const HolderOptions& holder(const std::string& brush);
 
   private:
     std::map<std::string, brush::Preset> presets_;

@@ -78,7 +78,7 @@ PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, cons
                    double cell) {
     const Frame plane_frame;
     std::vector<brush::Pose> poses;
-    const StrokeSamples led = lift_off(lead_hand(trace, options), options);
+    const StrokeSamples led = lift_off(compensate_tip_lag(trace, options), options);
     const std::vector<double> depths = tip_depths<StrokeSample>(led.samples, options);
     for (std::size_t i = 0; i < led.samples.size(); ++i) {
         const StrokeSample& s = led.samples[i];
@@ -96,7 +96,7 @@ PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, cons
         time = pose.time;
         first = false;
         if (!state.touching) continue;
-        std::vector<footprint::Trail> trails = footprint::trails(state, plane_frame, {}, preset.length, kSkinFilm);
+        std::vector<footprint::Trail> trails = footprint::find_trails(state, plane_frame, {}, preset.length, kSkinFilm);
         footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft, plane), plane_frame, kSkinFilm);
         outlines.clear();
         for (const footprint::Trail& trail : trails)

@@ -42,8 +42,8 @@ class PlaneInk {
 };
 
 /// Returns the area that a full brush touches along a flat trace on a plane. Frame: metres, x to the right, y up (−y of
-/// the trace). Holder (`lead_hand`, `pose_holder`), resampling, tuft and outlines are those of a stroke on a model, in
-/// steps of `step` metres. Cost: 0.1 ms per step.
+/// the trace). Holder (`compensate_tip_lag`, `pose_holder`), resampling, tuft and outlines are those of a stroke on a
+/// model, in steps of `step` metres. Cost: 0.1 ms per step.
 PlaneInk plane_ink(const StrokeSamples& trace, const brush::Preset& preset, const HolderOptions& options, double step,
                    double cell);
 

@@ -50,10 +50,10 @@ void check_fill(const Fill& f) {
 }
 
 double along_gradient(const Fill& f, const Vec3& p) {
-    const Vec3 way = f.to - f.from;
-    const double length = glm::length(way);
+    const Vec3 run = f.to - f.from;
+    const double length = glm::length(run);
     double t = 0;
-    if (f.gradient == Gradient::along) t = glm::dot(p - f.from, way) / (length * length);
+    if (f.gradient == Gradient::along) t = glm::dot(p - f.from, run) / (length * length);
     if (f.gradient == Gradient::round) t = glm::length(p - f.from) / length;
     return std::clamp(t, 0.0, 1.0);
 }

@@ -18,7 +18,7 @@ using mesh::SurfaceQuery;
 constexpr int kRays = 180;  // headings in which lines are walked; between them linear
 constexpr std::size_t kMostSteps = 20'000;
 
-/// One step of a straightest line: ahead on the osculating paraboloid, then onto the ground.
+/// One step of a straightest line: ahead on the osculating paraboloid, then onto the surface.
 SurfacePatch step(const SurfaceQuery& query, const SurfacePatch& from, double length, double radius) {
     const double k = from.found ? from.curvature[0] : 0, mixed = from.found ? from.curvature[1] : 0;
     const Vec3 side = glm::cross(from.normal, from.heading);
@@ -45,18 +45,18 @@ class Drape {
         const auto start = query.closest_point(place.origin);
         if (!start) throw Error("there is no surface to lay a stroke on");
         gap_ = start->distance;
-        SurfacePatch ground{
+        SurfacePatch patch{
             start->position, start->normal, axes_across(start->normal, place.right, place.down).right, {0, 0, 0}, true};
-        for (int pass = 0; pass < 4; ++pass) ground = fit_patch(query, ground, radius_);
-        origin_ = ground;
-        axes_ = axes_across(ground.normal, place.right, place.down);
-        hand_ = glm::dot(glm::cross(axes_.right, ground.normal), axes_.down) < 0 ? -1 : 1;
+        for (int pass = 0; pass < 4; ++pass) patch = fit_patch(query, patch, radius_);
+        origin_ = patch;
+        axes_ = axes_across(patch.normal, place.right, place.down);
+        hand_ = glm::dot(glm::cross(axes_.right, patch.normal), axes_.down) < 0 ? -1 : 1;
     }
 
     double origin_gap() const { return gap_; }
     double radius() const { return radius_; }
 
-    /// Place, normal and axes of a flat point on the ground; `on_surface` as felt there.
+    /// Place, normal and axes of a flat point on the smoothed surface; `on_surface` as it is there.
     SurfaceSample at(const Vec2& flat) {
         const double length = glm::length(flat);
         const double angle = std::atan2(flat.y, flat.x) / (2 * std::numbers::pi) * kRays;

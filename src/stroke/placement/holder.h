@@ -3,7 +3,7 @@
 #include "stroke/placement/placement.h"
 
 /// \file
-/// The pose of a holder over one point. Called by `hold` for surfaces and by drawing/plane_ink.h for planes.
+/// The pose of a holder over one point. Called by placement.h for surfaces and by drawing/plane_ink.h for planes.
 namespace tuft::stroke {
 
 /// A point that a holder stands over, and its lean.
@@ -17,7 +17,7 @@ struct HolderPose {
     double time = 0;       ///< seconds
 };
 
-/// Returns the ferrule's pose over `place` (metres, world), by the law of `hold`. `height`: metres of the levelled
+/// Returns the ferrule's pose over `place` (metres, world), by the law of placement.h. `height`: metres of the levelled
 /// surface over `place`.
 brush::Pose pose_holder(const Vec3& place, double height, const HolderPose& held, const HolderOptions& options);
 

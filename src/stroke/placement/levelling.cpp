@@ -73,7 +73,7 @@ class Stations {
              std::span<const LevelledSurface> levelled, double radius)
         : query_(query), samples_(samples), along_(along), levelled_(levelled), radius_(radius) {
         const double n = std::clamp(std::ceil(along.back() * kStations / radius), 1.0, kMostCells);
-        apart_ = along.back() / n;
+        spacing_ = along.back() / n;
         levels_.resize(static_cast<std::size_t>(n) + 1);
     }
 
@@ -81,11 +81,11 @@ class Stations {
     double height(const Vec3& position, const Vec3& normal, double s) {
         const double soft = kSoft * radius_;
         const auto at = [&](double x) {
-            return apart_ > 0 ? std::clamp(x / apart_, 0.0, static_cast<double>(levels_.size() - 1)) : 0.0;
+            return spacing_ > 0 ? std::clamp(x / spacing_, 0.0, static_cast<double>(levels_.size() - 1)) : 0.0;
         };
         double w = 0, x = 0, xx = 0, z = 0, xz = 0;
         for (auto k = static_cast<std::size_t>(std::ceil(at(s - soft))); static_cast<double>(k) <= at(s + soft); ++k) {
-            const double off = static_cast<double>(k) * apart_ - s, weight = 1 - std::abs(off) / (1.001 * soft);
+            const double off = static_cast<double>(k) * spacing_ - s, weight = 1 - std::abs(off) / (1.001 * soft);
             if (weight <= 0) continue;
             const double up = glm::dot(level(k) - position, normal);
             w += weight, x += weight * off, xx += weight * off * off, z += weight * up, xz += weight * off * up;
@@ -97,7 +97,7 @@ class Stations {
   private:
     const Vec3& level(std::size_t k) {
         if (!levels_[k]) {
-            const double s = std::min(static_cast<double>(k) * apart_, along_.back());
+            const double s = std::min(static_cast<double>(k) * spacing_, along_.back());
             const auto above = std::upper_bound(along_.begin(), along_.end(), s);
             const auto j = std::min<std::size_t>(static_cast<std::size_t>(above - along_.begin()), samples_.size() - 1);
             const std::size_t i = j > 0 ? j - 1 : 0;
@@ -115,7 +115,7 @@ class Stations {
     std::span<const SurfaceSample> samples_;
     std::span<const double> along_;
     std::span<const LevelledSurface> levelled_;
-    double radius_, apart_ = 0;
+    double radius_, spacing_ = 0;
     std::vector<std::optional<Vec3>> levels_;
 };
 

@@ -7,8 +7,8 @@
 #include "stroke/placement/placement.h"
 
 /// \file
-/// Normals and heights of the surface along a path, without narrow detail. Called by `hold`: a hand does not follow
-/// grooves.
+/// Normals and heights of the surface along a path, without narrow detail. Called by placement.h: a hand does not
+/// follow grooves.
 namespace tuft::stroke {
 
 /// The levelled surface under one sample.

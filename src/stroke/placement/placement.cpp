@@ -59,8 +59,8 @@ brush::Pose pose_holder(const Vec3& place, double height, const HolderPose& held
     return pose;
 }
 
-std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
-                              const HolderOptions& options) {
+std::vector<brush::Pose> pose_holder(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
+                                     const HolderOptions& options) {
     std::vector<brush::Pose> poses;
     poses.reserve(samples.size());
     const std::vector<double> along = travelled(samples, kTremble * options.steady);
@@ -68,16 +68,15 @@ std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const S
     const std::vector<double> depths = tip_depths(samples, options);
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const SurfaceSample& s = samples[i];
-        const LevelledSurface& ground = levelled[i];
-        const Axes axes = axes_across(ground.normal, s.right, s.down);
+        const LevelledSurface& level = levelled[i];
+        const Axes axes = axes_across(level.normal, s.right, s.down);
         const Vec3 ahead = s.tip_lag.x * axes.right + s.tip_lag.y * axes.down;
-        double height = ground.height;
+        double height = level.height;
         // A tuft that has not trailed yet touches where the hand is.
         if (const double tip_lag = glm::length(s.tip_lag); along[i] < tip_lag)
-            height += (1 - along[i] / tip_lag) * rise(query, s.position, ahead, ground.normal, options.steady);
+            height += (1 - along[i] / tip_lag) * rise(query, s.position, ahead, level.normal, options.steady);
         poses.push_back(pose_holder(s.position + ahead, height,
-                                    {ground.normal, axes.right, axes.down, depths[i], s.tilt, s.roll, s.time},
-                                    options));
+                                    {level.normal, axes.right, axes.down, depths[i], s.tilt, s.roll, s.time}, options));
     }
     return poses;
 }
@@ -91,8 +90,8 @@ std::vector<brush::Pose> spatial_poses(const StrokeSamples& trace) {
 
 HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options) {
     if (!trace.flat) return {{}, spatial_poses(trace), 0};
-    // Laid is where the ink is to be: over a hollow, the surface ahead leans otherwise.
-    const StrokeSamples led = lead_hand(trace, options);
+    // The mapped samples are where the ink is to be: over a hollow, the surface ahead leans otherwise.
+    const StrokeSamples led = compensate_tip_lag(trace, options);
     HandPath path;
     path.set_down = led.samples.size() - trace.samples.size();
     const StrokeSamples lifted = lift_off(led, options);
@@ -104,7 +103,7 @@ HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, 
     path.mapped = map_to_surface(query, ink);
     for (std::size_t i = 0; i < ink.samples.size(); ++i)
         path.mapped.samples[i].tip_lag = Vec2(lifted.samples[i].position - ink.samples[i].position);
-    path.poses = hold(query, path.mapped.samples, options);
+    path.poses = pose_holder(query, path.mapped.samples, options);
     return path;
 }
 

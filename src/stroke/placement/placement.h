@@ -88,7 +88,7 @@ struct HolderOptions {
     std::vector<TipLag> tip_lag;   ///< ascending in depth, linear between, constant outside; empty: no tip lag
     /// Change of the tip lag by a lean: metres ahead and to the path's left, for a depth (metres) and a lean along the
     /// path and to its left (radians); `TiltedTipLag::at`. Empty: no change.
-    std::function<Vec2(double depth, const Vec2& lean)> leaned = {};
+    std::function<Vec2(double depth, const Vec2& lean)> tip_lag_change = {};
     double tip_lag_turn = 0.0015;  ///< metres of travel in which the tip lag follows a turn
 };
 
@@ -110,8 +110,8 @@ HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMe
 /// height are levelled (`level_surface` over `steady` of path): the holder follows ridges and valleys and passes over
 /// grooves narrower than half of that radius. On a surface of curvature κ along the path the height is off by at most
 /// κ steady² / 200.
-std::vector<brush::Pose> hold(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
-                              const HolderOptions& options);
+std::vector<brush::Pose> pose_holder(const mesh::SurfaceQuery& query, std::span<const SurfaceSample> samples,
+                                     const HolderOptions& options);
 
 /// Returns the poses of a trace in space: its samples, with rotations normalised.
 std::vector<brush::Pose> spatial_poses(const StrokeSamples& trace);
@@ -122,8 +122,8 @@ struct HandPath {
     std::vector<brush::Pose> poses;
     std::size_t set_down = 0;  ///< poses before that of the trace's first sample
 };
-/// Returns the poses of a trace: of a flat one after `lead_hand`, `lift_off`, `map_to_surface` and `hold`; of one in
-/// space its own.
+/// Returns the poses of a trace: of a flat one after `compensate_tip_lag`, `lift_off`, `map_to_surface` and
+/// `pose_holder`; of one in space its own.
 HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options);
 
 }  // namespace tuft::stroke

@@ -144,7 +144,7 @@ SurfacePatch fit_patch(const SurfaceQuery& query, const SurfacePatch& guess, dou
         if (hit.triangle == kNone || glm::dot(face_normal(query.mesh(), hit.triangle), guess.normal) < 0.1) continue;
         heights.push_back({p.x, p.y, (glm::dot(eye - guess.position, guess.normal) - double(hit.distance)) / radius});
     }
-    SurfacePatch ground = guess;
+    SurfacePatch patch = guess;
     const auto part = double(heights.size()) / double(pattern().size());
     double height = 0, fit_error = 0;
     Vec2 slope{0};
@@ -153,40 +153,40 @@ SurfacePatch fit_patch(const SurfaceQuery& query, const SurfacePatch& guess, dou
         height = c[0];
         slope = {c[1], c[2]};
         const double most = 1.0;  // detail sharper than the disk is no different from noise
-        for (int k = 0; k < 3; ++k) ground.curvature[k] = std::clamp(c[3 + k], -most, most) / radius;
+        for (int k = 0; k < 3; ++k) patch.curvature[k] = std::clamp(c[3 + k], -most, most) / radius;
     } else if (std::array<double, 3> d; part >= kLeast) {
         for (Height& h : heights)
             h.z -=
                 0.5 * radius *
                 (guess.curvature[0] * h.a * h.a + 2 * guess.curvature[1] * h.a * h.b + guess.curvature[2] * h.b * h.b);
-        if (!fit<3>(heights, below, d)) return ground;
+        if (!fit<3>(heights, below, d)) return patch;
         fit_error = fit_error_of<3>(heights, d);
         height = d[0];
         slope = {d[1], d[2]};
     } else {
-        return ground;
+        return patch;
     }
-    ground.found = true;
-    ground.fit_error = radius * fit_error;
-    ground.position += radius * height * guess.normal;
-    ground.normal = glm::normalize(guess.normal - slope.x * guess.heading - slope.y * side);
-    ground.heading = into_plane(parallel_transport(guess.heading, guess.normal, ground.normal), ground.normal);
-    return ground;
+    patch.found = true;
+    patch.fit_error = radius * fit_error;
+    patch.position += radius * height * guess.normal;
+    patch.normal = glm::normalize(guess.normal - slope.x * guess.heading - slope.y * side);
+    patch.heading = into_plane(parallel_transport(guess.heading, guess.normal, patch.normal), patch.normal);
+    return patch;
 }
 
 double level_at(const SurfaceQuery& query, const Vec3& position, const Vec3& normal, double radius) {
     constexpr int kScales = 3;
     double height = 0, left = 1, before = 0;
     for (int scale = 0; scale < kScales; ++scale) {
-        const SurfacePatch ground =
+        const SurfacePatch patch =
             fit_patch(query, {.position = position, .normal = normal, .heading = any_across(normal)},
                       radius / double(1 << scale), kBelow);
-        if (!ground.found) continue;
-        const double up = glm::dot(ground.position - position, normal);
-        if (before > 0) left *= smooth_step((kSame - ground.fit_error / before) / (kSame - kBetter));
+        if (!patch.found) continue;
+        const double up = glm::dot(patch.position - position, normal);
+        if (before > 0) left *= smooth_step((kSame - patch.fit_error / before) / (kSame - kBetter));
         height += left * (up - height);
-        left *= smooth_step((ground.fit_error / radius - kTrusted) / (kDoubted - kTrusted));
-        before = ground.fit_error;
+        left *= smooth_step((patch.fit_error / radius - kTrusted) / (kDoubted - kTrusted));
+        before = patch.fit_error;
         if (left <= 0) break;
     }
     return height;

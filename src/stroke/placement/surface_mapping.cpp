@@ -70,7 +70,7 @@ void check(const StrokeSamples& trace) {
             throw Error("a stroke has a sample that is not finite");
 }
 
-SurfaceTrace lay_wrapped(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
+SurfaceTrace map_wrapped(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
     const auto start = query.closest_point(trace.placement.origin);
     if (!start) throw Error("there is no surface to lay a stroke on");
     SurfaceTrace mapped;
@@ -94,12 +94,12 @@ SurfaceTrace lay_wrapped(const mesh::SurfaceQuery& query, const StrokeSamples& t
         // The frame keeps its angle to the line.
         const Vec3 side0 = glm::cross(start->face_normal, heading);
         const Vec3 side1 = glm::cross(line.end.face_normal, line.direction);
-        const auto carry = [&](const Vec3& v) {
+        const auto transport = [&](const Vec3& v) {
             const Vec3 flat = glm::dot(v, heading) * line.direction + glm::dot(v, side0) * side1;
             return parallel_transport(flat, line.end.face_normal, line.end.normal);
         };
         out.normal = line.end.normal;
-        const Axes here = axes_across(out.normal, carry(right0), carry(down0));
+        const Axes here = axes_across(out.normal, transport(right0), transport(down0));
         out.right = here.right;
         out.down = here.down;
         mapped.samples.push_back(out);
@@ -134,7 +134,7 @@ void fill_misses(SurfaceTrace& mapped, const std::vector<Vec3>& on_plane, const 
     }
 }
 
-SurfaceTrace lay_projected(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
+SurfaceTrace map_projected(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
     const Placement& place = trace.placement;
     const Vec3 outward = glm::normalize(glm::cross(place.down, place.right));
     const Axes axes = axes_across(outward, place.right, place.down);
@@ -280,13 +280,13 @@ SurfaceTrace map_to_surface(const mesh::SurfaceQuery& query, const StrokeSamples
     check(trace);
     switch (trace.placement.mapping) {
         case SurfaceMapping::project:
-            return lay_projected(query, trace);
+            return map_projected(query, trace);
         case SurfaceMapping::drape:
             return map_draped(query, trace);
         case SurfaceMapping::wrap:
             break;
     }
-    return lay_wrapped(query, trace);
+    return map_wrapped(query, trace);
 }
 
 }  // namespace tuft::stroke

@@ -48,15 +48,15 @@ Vec2 TiltedTipLag::at(double depth, const Vec2& lean) {
     if (part <= 0 || depth <= 0) return Vec2{0};
     const auto [i, f] = cell_of(kAlong, lean.x);
     const auto [j, g] = cell_of(kAcross, std::abs(lean.y));
-    Vec2 leaned{0};
+    Vec2 sum{0};
     for (const auto& [a, wa] : {std::pair{i, 1 - f}, std::pair{i + 1, f}})
         for (const auto& [b, wb] : {std::pair{j, 1 - g}, std::pair{j + 1, g}})
-            if (wa * wb > 0) leaned += wa * wb * of_node(a, b, depth);
+            if (wa * wb > 0) sum += wa * wb * of_node(a, b, depth);
     // Leaning to the other side is the mirror image.
-    if (lean.y < 0) leaned.y = -leaned.y;
+    if (lean.y < 0) sum.y = -sum.y;
     constexpr std::size_t kUprightNode = 3;
     static_assert(kAlong[kUprightNode] == 0 && kAcross[0] == 0);
-    return part * (leaned - of_node(kUprightNode, 0, depth));
+    return part * (sum - of_node(kUprightNode, 0, depth));
 }
 
 std::vector<TipLag> measure_tip_lag(const brush::Preset& preset) {
@@ -93,16 +93,16 @@ Vec2 tilted_tip_lag(const HolderOptions& options, const Vec2& tilt, double depth
     const Vec2 ahead = along / taut, left{ahead.y, -ahead.x};  // y of a trace is down
     const Vec2 held = tilt * (std::min(lean, options.max_tilt) / lean);
     const Vec2 up{std::tan(held.x), std::tan(held.y)};
-    const Vec2 more = options.leaned(depth, {std::atan(glm::dot(up, ahead)), std::atan(glm::dot(up, left))});
+    const Vec2 more = options.tip_lag_change(depth, {std::atan(glm::dot(up, ahead)), std::atan(glm::dot(up, left))});
     return taut * (more.x * ahead + more.y * left);
 }
 
 }  // namespace
 
-Vec2 lead_of(const HolderOptions& options, double pressure, const Vec2& tilt, const Vec2& ahead) {
+Vec2 tip_lag_at(const HolderOptions& options, double pressure, const Vec2& tilt, const Vec2& ahead) {
     const double depth = depth_of(options, pressure);
     const Vec2 tip_lag = tip_lag_length(options.tip_lag, depth) * ahead;
-    return options.leaned ? tip_lag + tilted_tip_lag(options, tilt, depth, ahead) : tip_lag;
+    return options.tip_lag_change ? tip_lag + tilted_tip_lag(options, tilt, depth, ahead) : tip_lag;
 }
 
 namespace {
@@ -144,36 +144,36 @@ double first_pace(std::span<const StrokeSample> samples, double way) {
 bool set_down(StrokeSamples& trace, const HolderOptions& options, const Vec2& ahead) {
     constexpr double kStep = 2.5e-4;  // metres between samples, less where they would be few
     constexpr double kFewest = 8, kMost = 100;
-    constexpr double kWay = 3e-3;    // metres over which the pace is taken
-    constexpr int kPieces = 64;      // of the press, whose length is measured
-    constexpr double kTouch = 1e-6;  // of the pressure: the tip is down from the first sample
+    constexpr double kPaceLength = 3e-3;  // metres over which the pace is taken
+    constexpr int kPieces = 64;           // of the press, whose length is measured
+    constexpr double kTouch = 1e-6;       // of the pressure: the tip is down from the first sample
     const StrokeSample first = trace.samples.front();
     if (!(tip_lag_length(options.tip_lag, depth_of(options, first.pressure)) > 0)) return false;
-    const double pace = first_pace(trace.samples, kWay);
+    const double pace = first_pace(trace.samples, kPaceLength);
     if (!(pace > 0)) return false;
     // Metres that the foot of the holder goes, ahead and down, up to each pressure.
     std::vector<double> gone{0};
     Vec3 foot{0};
     for (int i = 1; i <= kPieces; ++i) {
         const double pressure = first.pressure * i / kPieces;
-        const Vec3 next(lead_of(options, pressure, first.tilt, ahead), -depth_of(options, pressure));
+        const Vec3 next(tip_lag_at(options, pressure, first.tilt, ahead), -depth_of(options, pressure));
         gone.push_back(gone.back() + glm::distance(next, foot));
         foot = next;
     }
     const double duration = gone.back() / (kSetDownPace * std::max(pace, kSlowestSetDown));
     const int n = static_cast<int>(std::clamp(std::ceil(gone.back() / kStep), kFewest, kMost));
-    std::vector<StrokeSample> touch(static_cast<std::size_t>(n), first);
+    std::vector<StrokeSample> added(static_cast<std::size_t>(n), first);
     std::size_t k = 1;
     for (int i = 0; i < n; ++i) {
         const double part = static_cast<double>(i) / n, at = part * gone.back();
         while (k < kPieces && gone[k] < at) ++k;
         const double span = gone[k] - gone[k - 1];
-        StrokeSample& s = touch[static_cast<std::size_t>(i)];
+        StrokeSample& s = added[static_cast<std::size_t>(i)];
         const double pressed = (static_cast<double>(k - 1) + (span > 0 ? (at - gone[k - 1]) / span : 0)) / kPieces;
         s.pressure = first.pressure * std::max(pressed, kTouch);
         s.time = first.time - (1 - part) * duration;
     }
-    trace.samples.insert(trace.samples.begin(), touch.begin(), touch.end());
+    trace.samples.insert(trace.samples.begin(), added.begin(), added.end());
     return true;
 }
 
@@ -204,7 +204,7 @@ void set_down_plumb(StrokeSamples& trace, const HolderOptions& options) {
 
 }  // namespace
 
-StrokeSamples lead_hand(StrokeSamples trace, const HolderOptions& options) {
+StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& options) {
     if (options.tip_lag.empty() || trace.samples.empty() || !trace.flat) return trace;
     // The hand knows where it is going to start: the string is taut from the first touch.
     const Vec2 first(trace.samples.front().position);
@@ -217,7 +217,8 @@ StrokeSamples lead_hand(StrokeSamples trace, const HolderOptions& options) {
         const Vec2 p(s.position);
         dragged = drag_string(dragged, before, p, options.tip_lag_turn);
         before = p;
-        s.position = Vec3(p + lead_of(options, s.pressure, s.tilt, (p - dragged) / options.tip_lag_turn), s.position.z);
+        s.position =
+            Vec3(p + tip_lag_at(options, s.pressure, s.tilt, (p - dragged) / options.tip_lag_turn), s.position.z);
     }
     return trace;
 }

@@ -50,7 +50,7 @@ class TiltedTipLag {
 
 /// Returns the tip lag at one point of a path, metres to the right and down. `tilt`: radians towards right and down, as
 /// in `SurfaceSample`; `ahead`: unit direction of the path in the same axes.
-Vec2 lead_of(const HolderOptions& options, double pressure, const Vec2& tilt, const Vec2& ahead);
+Vec2 tip_lag_at(const HolderOptions& options, double pressure, const Vec2& tilt, const Vec2& ahead);
 
 /// Speed of setting down, ahead and down together: over the speed of the trace, and the least speed of the trace that
 /// is taken for it, m/s.
@@ -72,7 +72,7 @@ inline constexpr double kHoverTime = 0.05;  ///< seconds of the tip between the 
 ///     |v_holder| ≤ (1 + tip_lag / tip_lag_turn + 2 κ L + 1.5) |v_path| + 4 (|depth'| + L |tilt'|),
 ///
 /// with L the tuft's length; above the surface it is at most `hover / kHoverTime` faster than the hand.
-StrokeSamples lead_hand(StrokeSamples trace, const HolderOptions& options);
+StrokeSamples compensate_tip_lag(StrokeSamples trace, const HolderOptions& options);
 
 /// Adds samples after a trace that ends with pressure 0, in which the tip rises to `hover`. Other traces do not change.
 StrokeSamples lift_off(StrokeSamples trace, const HolderOptions& options);

@@ -57,9 +57,9 @@ ResampleOptions StrokeSession::path_options() const {
 void StrokeSession::check_length(std::span<const brush::Pose> poses) const {
     if (input_.stroke.trace.flat) return check_path_length(poses, path_options());
     GestureFilter state;
-    std::vector<brush::Pose> held;
-    for (const brush::Pose& pose : poses) held.push_back(steady(state, pose, input_.stroke.settings));
-    check_path_length(held, path_options());
+    std::vector<brush::Pose> steadied;
+    for (const brush::Pose& pose : poses) steadied.push_back(steady(state, pose, input_.stroke.settings));
+    check_path_length(steadied, path_options());
 }
 
 bool StrokeSession::holds_mixed_ink() const {
@@ -90,9 +90,9 @@ void StrokeSession::advance(std::span<const brush::Pose> poses, double done) {
     for (const brush::Pose& pose : poses) {
         ++report_.samples;
         const bool prepared = input_.stroke.trace.flat;
-        const brush::Pose held = prepared ? pose : steady(path_.steady, pose, input_.stroke.settings);
-        if (input_.record_forces) forces_.samples.push_back(held);
-        path_.resampler.push(held, path_.poses);
+        const brush::Pose steadied = prepared ? pose : steady(path_.steady, pose, input_.stroke.settings);
+        if (input_.record_forces) forces_.samples.push_back(steadied);
+        path_.resampler.push(steadied, path_.poses);
     }
     paint_poses();
     progress_.done = done;
@@ -139,14 +139,14 @@ void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double 
 }
 
 void StrokeSession::set_ink(Stamp& stamp, double area) const {
-    const ink::StampContact touch{
+    const ink::StampContact contact{
         .moment_factor = tuft_.stress(),
         .width = hair_.closed_area() > 0 ? area / std::sqrt(hair_.closed_area()) : std::sqrt(area),
         .area = area * static_cast<double>(deposit_->stamps_per_batch()),
         .pending = deposit_->pending(),
         .by_hair = static_cast<double>(stamp.separation),
         .cells = hair_.cells()};
-    stamp.ink = ink::stamp_deposit(tuft_.brush.reservoir, tuft_.ink, touch, input_.substrate);
+    stamp.ink = ink::stamp_deposit(tuft_.brush.reservoir, tuft_.ink, contact, input_.substrate);
     stamp.ink.capacity = std::max(input_.substrate.capacity, static_cast<float>(ink::standing_film(tuft_.ink.yield)));
 }
 

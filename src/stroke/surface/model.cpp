@@ -36,7 +36,7 @@ void finish(Model& model, atlas::TexelStore texels, const ProgressFn& progress) 
     model.texels = atlas::build_texel_map(*model.mesh, model.atlas, progress, texels);
     release_free_memory();
     model.clusters = atlas::build_cluster_graph(*model.mesh, model.atlas, model.texels, progress);
-    model.ground = ink::base_colour_of(*model.mesh, model.atlas, model.texels);
+    model.base_colour = ink::base_colour_of(*model.mesh, model.atlas, model.texels);
     release_free_memory();
 }
 

@@ -24,7 +24,7 @@ struct Model {
     std::unique_ptr<mesh::SurfaceQuery> query;
     atlas::TexelMap texels;
     atlas::ClusterGraph clusters;
-    ink::BaseColour ground;  ///< colours of the mesh's file, or empty
+    ink::BaseColour base_colour;  ///< colours of the mesh's file, or empty
 
     footprint::Surface surface() const { return {*mesh, atlas, texels, clusters}; }
 };

@@ -18,9 +18,9 @@ constexpr double kSame = 1e-9;       // parts of a distance by which equal ones 
 
 /// How far a place lies beside the line of an edge, inwards.
 double beside(const StencilEdge& e, const Vec2& place) {
-    const Vec2 way = e.to - e.from, d = place - e.from;
-    const double length = glm::length(way);
-    return length > 0 ? (way.x * d.y - way.y * d.x) / length : 0;
+    const Vec2 run = e.to - e.from, d = place - e.from;
+    const double length = glm::length(run);
+    return length > 0 ? (run.x * d.y - run.y * d.x) / length : 0;
 }
 
 /// The nearest of some edges. Of two as near, which is off their common end, the one that the place
@@ -129,10 +129,10 @@ SurfaceStencil::SurfaceStencil(const mesh::SurfaceQuery& query, const StrokeSamp
         if (ways[i] == Vec2(0) || !a.on_surface || !b.on_surface) continue;
         pieces_.push_back({a.position, b.position, ways[i].x * a.down - ways[i].y * a.right});
     }
-    gather();
+    find_clusters();
 }
 
-void SurfaceStencil::gather() {
+void SurfaceStencil::find_clusters() {
     const auto n = static_cast<std::uint32_t>(pieces_.size());
     for (std::uint32_t begin = 0; begin < n; begin += kRun) {
         Run run{begin, std::min(begin + kRun, n), Vec3(0), 0};

@@ -35,7 +35,7 @@ class SurfaceStencil {
     void cut_off(footprint::Footprint& footprint) const;
 
   private:
-    void gather();
+    void find_clusters();
     std::vector<StencilEdge> seen_from(const footprint::Footprint& footprint, double reach) const;
 
     /// Consecutive segments and their bounding sphere.

@@ -1,4 +1,4 @@
-#include "contact/outside.h"
+#include "contact/node_contact.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 namespace tuft::contact {
 namespace {
 
-/// Normal of the plane under a point that stands `off` from its closest point q: the smooth
+/// Normal of the plane under a point at `off` from its closest point q: the smooth
 /// normal, and over a crease, where the two differ by more than shading does, the direction of
 /// `off`.
 Vec3 plane_normal(const mesh::SurfacePoint& q, double side, const Vec3& off, double lift) {
@@ -62,19 +62,19 @@ std::optional<SharpEdge> sharp_edge(const mesh::TriangleMesh& mesh, std::uint32_
     // Both faces share their normals on a smooth surface: nothing to compute.
     const auto& normal = mesh.corner_normals;
     if (normal[3 * t + k] == normal[3 * other + a] && normal[3 * t + l] == normal[3 * other + b]) return {};
-    const Vec3 from = mesh.position(t, k), way = mesh.position(t, l) - from;
-    const double w = std::clamp(glm::dot(q - from, way) / glm::dot(way, way), 0.0, 1.0);
+    const Vec3 from = mesh.position(t, k), edge = mesh.position(t, l) - from;
+    const double w = std::clamp(glm::dot(q - from, edge) / glm::dot(edge, edge), 0.0, 1.0);
     const Vec3 own = corner_normal(mesh, t, k, l, w);
     constexpr double kSharp = 0.9;  // cos 26°
     if (glm::dot(own, corner_normal(mesh, other, a, b, w)) > kSharp) return {};
     if (glm::dot(mesh.position(other, far) - from, face_normal(mesh, t)) >= 0) return {};
-    const Vec3 nearest = from + w * way;
+    const Vec3 nearest = from + w * edge;
     return SharpEdge{nearest, face_normal(mesh, other), glm::length(nearest - q)};
 }
 
 /// The sharp convex edge nearest to the surface point q within reach, over triangles that
 /// hang together with q's without such an edge between them.
-std::optional<SharpEdge> edge_near(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& q) {
+std::optional<SharpEdge> find_edge(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint& q) {
     constexpr double kReach = 1e-3;  // metres; more than a node goes from step to step
     constexpr int kMost = 24;        // triangles
     std::array<std::uint32_t, kMost> seen{q.triangle};
@@ -84,14 +84,14 @@ std::optional<SharpEdge> edge_near(const mesh::TriangleMesh& mesh, const mesh::S
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t next = mesh.neighbours[3 * seen[i] + k];
             if (next == kNone || std::find(seen.begin(), seen.begin() + count, next) != seen.begin() + count) continue;
-            const Vec3 from = mesh.position(seen[i], k), way = mesh.position(seen[i], (k + 1) % 3) - from;
+            const Vec3 from = mesh.position(seen[i], k), edge = mesh.position(seen[i], (k + 1) % 3) - from;
             const Vec3 to_q = q.position - from;
-            const double length2 = glm::dot(way, way), along = std::clamp(glm::dot(to_q, way), 0.0, length2);
+            const double length2 = glm::dot(edge, edge), along = std::clamp(glm::dot(to_q, edge), 0.0, length2);
             // Squared distance from the edge, times its squared length.
-            if (length2 * glm::dot(to_q, to_q) + along * (along - 2 * glm::dot(to_q, way)) > kReach * kReach * length2)
+            if (length2 * glm::dot(to_q, to_q) + along * (along - 2 * glm::dot(to_q, edge)) > kReach * kReach * length2)
                 continue;
-            if (const auto edge = sharp_edge(mesh, seen[i], k, q.position)) {
-                if (!best || edge->distance < best->distance) best = edge;
+            if (const auto sharp = sharp_edge(mesh, seen[i], k, q.position)) {
+                if (!best || sharp->distance < best->distance) best = sharp;
             } else if (count < kMost) {
                 seen[count++] = next;
             }
@@ -113,27 +113,28 @@ bool before_other_face(const mesh::TriangleMesh& mesh, const mesh::SurfacePoint&
 
 }  // namespace
 
-Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double side, const Vec3& p,
-                 const StandOptions& options, const Vec3* known) {
-    Stand out;
-    out.outside = p;
-    out.side = side;
-    Vec3 front = p;
+NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery& query,
+                              const NodeContactOptions& options) {
+    const Vec3& node = query.node;
+    NodeContact out;
+    out.outside = node;
+    out.side = query.side;
+    Vec3 front = node;
     bool behind = false;
-    const Vec3 way = p - from;
-    const double length = glm::length(way);
+    const Vec3 path = node - query.from;
+    const double length = glm::length(path);
     if (length > 1e-9) {
-        if (const auto wall = surface.ray(from, way / length, 0, length)) {
-            out.side = glm::dot(wall->face_normal, way) < 0 ? 1 : -1;
+        if (const auto wall = surface.ray(query.from, path / length, 0, length)) {
+            out.side = glm::dot(wall->face_normal, path) < 0 ? 1 : -1;
             const Vec3 n = out.side * wall->face_normal;
-            front = p + (glm::dot(wall->position - p, n) + options.lift) * n;
+            front = node + (glm::dot(wall->position - node, n) + options.lift) * n;
             behind = true;
         }
     }
-    const double within = known ? 1.000001 * glm::length(front - *known) + 1e-9 : options.reach;
+    const double within = query.known ? 1.000001 * glm::length(front - *query.known) + 1e-9 : options.reach;
     const auto q = surface.closest_point(front, std::min(within, options.reach));
     if (!q) return out;
-    const Vec3 off = p - q->position;
+    const Vec3 off = node - q->position;
     if (!behind) {
         // Clearly in front of an open sheet's back.
         const double over = out.side * glm::dot(off, q->face_normal);
@@ -145,42 +146,45 @@ Stand stand_from(const mesh::SurfaceQuery& surface, const Vec3& from, double sid
     out.plane.origin = q->position;
     out.plane.normal = behind ? out.side * q->normal : plane_normal(*q, out.side, off, options.lift);
     out.height = glm::dot(off, out.plane.normal);
-    out.met = out.plane;
-    if (const auto edge = edge_near(surface.mesh(), *q)) {
+    out.wedge = out.plane;
+    if (const auto edge = find_edge(surface.mesh(), *q)) {
         // On the edge itself both faces are taken flat, so that it is the same from either.
         const Vec3& own = edge->distance < 1e-7 ? q->face_normal : q->normal;
-        out.met = {q->position, out.side * own, edge->origin, out.side * edge->beyond};
+        out.wedge = {q->position, out.side * own, edge->origin, out.side * edge->beyond};
     }
-    if (out.height < options.lift) out.outside = p + (options.lift - out.height) * out.plane.normal;
+    if (out.height < options.lift) out.outside = node + (options.lift - out.height) * out.plane.normal;
     return out;
 }
 
-std::vector<Stand> stand_along(const mesh::SurfaceQuery& surface, const Stand& root, std::span<const Vec3> points,
-                               double near, const StandOptions& options, std::span<const Stand> before) {
-    std::vector<Stand> out(points.size());
-    Stand last = root;
-    Vec3 looked_up = root.outside;
-    double clear = root.triangle == kNone ? options.reach : root.height;
-    for (std::size_t i = points.size(); i-- > 0;) {
-        const Vec3& p = points[i];
-        const double free = clear - glm::length(p - looked_up);
+std::vector<NodeContact> find_chain_contacts(const mesh::SurfaceQuery& surface, const NodeContact& root,
+                                             std::span<const Vec3> nodes, double near,
+                                             const NodeContactOptions& options, std::span<const NodeContact> before) {
+    std::vector<NodeContact> out(nodes.size());
+    NodeContact last = root;
+    Vec3 searched_at = root.outside;
+    double clearance = root.triangle == kNone ? options.reach : root.height;
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        const Vec3& node = nodes[i];
+        const double free = clearance - glm::length(node - searched_at);
         if (free > near) {
             out[i] = last;
-            out[i].outside = p;
+            out[i].outside = node;
             out[i].height = free;
             continue;
         }
-        const Stand& hint = i < before.size() ? before[i] : last;
-        const Vec3& from = i + 1 < points.size() ? out[i + 1].outside : root.outside;
-        last = stand_from(surface, from, last.side, p, options, hint.triangle != kNone ? &hint.plane.origin : nullptr);
+        const NodeContact& hint = i < before.size() ? before[i] : last;
+        const Vec3& from = i + 1 < nodes.size() ? out[i + 1].outside : root.outside;
+        const Vec3* known = hint.triangle != kNone ? &hint.plane.origin : nullptr;
+        last = find_node_contact(surface, {node, from, last.side, known}, options);
         out[i] = last;
-        looked_up = last.outside;
-        clear = last.triangle == kNone ? options.reach : last.height;
+        searched_at = last.outside;
+        clearance = last.triangle == kNone ? options.reach : last.height;
     }
     return out;
 }
 
-Vec3 find_outside(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up, const StandOptions& options) {
+Vec3 find_outside_point(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up,
+                        const NodeContactOptions& options) {
     const auto q = surface.closest_point(root, options.reach);
     if (!q || glm::dot(root - q->position, q->face_normal) >= 0) return root;
     const auto exit = surface.ray(root, up, 0, 4 * options.reach);
@@ -193,10 +197,10 @@ double depth_inside(const mesh::SurfaceQuery& surface, const Vec3& p) {
     if (box.empty() || glm::any(glm::lessThan(p, box.lo)) || glm::any(glm::greaterThan(p, box.hi))) return 0;
     for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {-1.0, 1.0}) {
-            Vec3 way{0};
-            way[axis] = sign;
-            const auto hit = surface.ray(p, way);
-            if (!hit || glm::dot(hit->face_normal, way) <= 0) return 0;
+            Vec3 direction{0};
+            direction[axis] = sign;
+            const auto hit = surface.ray(p, direction);
+            if (!hit || glm::dot(hit->face_normal, direction) <= 0) return 0;
         }
     const auto near = surface.closest_point(p);
     return near ? near->distance : 0;

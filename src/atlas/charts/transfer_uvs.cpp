@@ -1,4 +1,4 @@
-#include "atlas/charts/carry_uvs.h"
+#include "atlas/charts/transfer_uvs.h"
 
 #include <algorithm>
 #include <array>
@@ -22,9 +22,10 @@ Vec2 unfold(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec2& a, const
     return a + along * u + side * Vec2(-u.y, u.x);
 }
 
-class Carrier {
+class UvTransfer {
   public:
-    Carrier(const FlatChart& old, const FlatChart& donor, std::span<const std::uint32_t> taken, const ChartMesh& chart)
+    UvTransfer(const FlatChart& old, const FlatChart& donor, std::span<const std::uint32_t> taken,
+               const ChartMesh& chart)
         : donor_(donor),
           chart_(chart),
           uv_(chart.n_vertices()),
@@ -134,9 +135,9 @@ class Carrier {
 
 }  // namespace
 
-std::vector<Vec2> carry_uvs(const FlatChart& old, const FlatChart& donor, std::span<const std::uint32_t> taken,
-                            const ChartMesh& chart) {
-    return Carrier(old, donor, taken, chart).run();
+std::vector<Vec2> transfer_uvs(const FlatChart& old, const FlatChart& donor, std::span<const std::uint32_t> taken,
+                               const ChartMesh& chart) {
+    return UvTransfer(old, donor, taken, chart).run();
 }
 
 std::vector<Vec2> unfold_uvs(const FlatChart& old, const ChartMesh& chart) {

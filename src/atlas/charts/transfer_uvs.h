@@ -9,7 +9,7 @@
 /// Initial UVs of a chart that has changed. Called by merging and by seam moves.
 namespace tuft::atlas {
 
-/// Number of triangles above which a changed chart starts from `carry_uvs`: in large charts the errors of other
+/// Number of triangles above which a changed chart starts from `transfer_uvs`: in large charts the errors of other
 /// starts grow along the long seams. Below it, the other starts lead to 2 to 4 % fewer charts.
 inline constexpr std::size_t kLargeChart = 20000;
 
@@ -17,8 +17,8 @@ inline constexpr std::size_t kLargeChart = 20000;
 /// retain their UVs in `old`. Each connected part of `taken` retains its shape in `donor` and is moved rigidly to
 /// the best fit along the border; the remaining gap is distributed over the part. `donor` may be `old`, where a
 /// part moves to the other side of a slit.
-std::vector<Vec2> carry_uvs(const FlatChart& old, const FlatChart& donor, std::span<const std::uint32_t> taken,
-                            const ChartMesh& chart);
+std::vector<Vec2> transfer_uvs(const FlatChart& old, const FlatChart& donor, std::span<const std::uint32_t> taken,
+                               const ChartMesh& chart);
 
 /// The same for a small chart: triangles shared with `old` retain their UVs. The others are unfolded from those one
 /// by one, which follows a winding border better.

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "brush/state/tuft_state.h"
+#include "mesh/query/surface_query.h"
+
+/// \file
+/// Contact plane of a point, on the side of the surface where the ferrule is. Called by contact.h for every node,
+/// and by `stroke` and `cli` to test poses.
+namespace tuft::contact {
+
+/// Position of a node relative to the surface.
+struct NodeContact {
+    brush::ContactPlane plane;       ///< touches the surface at `plane.origin`
+    brush::ContactPlane wedge;       ///< the same, but with both faces' planes next to a sharp convex edge
+    std::uint32_t triangle = kNone;  ///< under plane.origin; kNone: nothing within reach
+    double height = 0;               ///< metres of the node over the plane, negative behind it
+    Vec3 outside{0};                 ///< the node, or its projection in front of the surface
+    double side = 1;                 ///< -1 where an open sheet is met from its back
+};
+
+/// A node and the path on which it comes to the surface.
+struct NodeQuery {
+    Vec3 node{0};                 ///< metres, world
+    Vec3 from{0};                 ///< metres, world; a point outside
+    double side = 1;              ///< of the surface at `from`; see `NodeContact::side`
+    const Vec3* known = nullptr;  ///< any point of the surface: bounds the search and makes it faster; null: none
+};
+
+/// Distances of the search.
+struct NodeContactOptions {
+    double reach = 0.05;  ///< metres within which surfaces are looked for, > 0
+    double lift = 2e-5;   ///< metres, distance of `outside` from the surface, > 0
+};
+
+/// Returns the surface that a node meets when it comes from `from`. If a wall of any thickness lies between them,
+/// the node is behind it, and the plane is that of the wall's front closest to the node. Otherwise it is that of the
+/// closest point. Over a convex edge the normal turns smoothly from one face to the other.
+NodeContact find_node_contact(const mesh::SurfaceQuery& surface, const NodeQuery& query,
+                              const NodeContactOptions& options);
+
+/// Returns the contacts of a chain of nodes (tip first, root last, like the tuft's). Each is found from the previous
+/// one, from the root outwards. Nodes farther than `near` metres from any surface share the last plane found; their
+/// height over it is at most their distance from the surface. `before`, if not empty, holds the previous contacts of
+/// the same nodes and only makes the search faster.
+std::vector<NodeContact> find_chain_contacts(const mesh::SurfaceQuery& surface, const NodeContact& root,
+                                             std::span<const Vec3> nodes, double near,
+                                             const NodeContactOptions& options,
+                                             std::span<const NodeContact> before = {});
+
+/// Returns a point outside the object for a tuft at `root` whose handle points along `up`. It is the root, or,
+/// inside a closed object, the exit point of the handle.
+Vec3 find_outside_point(const mesh::SurfaceQuery& surface, const Vec3& root, const Vec3& up,
+                        const NodeContactOptions& options);
+
+/// Returns the distance, metres, from a point inside a closed body to its surface. Returns 0 outside, and on both
+/// sides of an open sheet. A point is inside when the first hits in all six axis directions are back faces. Cost:
+/// six rays.
+double depth_inside(const mesh::SurfaceQuery& surface, const Vec3& p);
+
+}  // namespace tuft::contact
