@@ -101,20 +101,20 @@ void HairContact::place_nodes(Stamp& stamp, const footprint::TouchingHair& hair,
     orientation_ = axis_.x * e.y - axis_.y * e.x < 0 ? -1 : 1;
 }
 
-Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion,
-                              double dt) {
+Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, HairShape shape,
+                              const MotionTracker& motion, double dt) {
     const double length = tuft.preset().length;
+    const auto branches = static_cast<int>(contact.tuft.branches.size());
     if (!motion.touching) tracks_ = {};
-    std::vector<footprint::Trail> trails =
-        footprint::find_trails(contact.tuft, contact.frame, contact.branch_planes, length, kSkinFilm);
-    cells_ = footprint::contact_cells(trails, tuft.brush.tuft.bundles, static_cast<int>(contact.tuft.branches.size()),
-                                      tuft.brush.reservoir.layout.cell_ends);
+    std::vector<footprint::Trail>& trails = shape.trails;
+    cells_ = footprint::contact_cells(trails, tuft.brush.tuft.bundles, branches, tuft.brush.reservoir.layout.cell_ends);
     cells_since_.resize(cells_.size(), 0);
     for (std::size_t i = 0; i < cells_since_.size(); ++i) cells_since_[i] += cells_[i];
     const Wetness wetness = bundle_wetness(tuft, motion, tuft.stress(), dt);
 
     by_hair_ = wetness.lack > 0 && !options_.always_closed;
     closed_area_ = 0;
+    if (!by_hair_ && !shape.closed) close_hair(shape, contact, options_.cell);
     const double spread = by_hair_ ? std::clamp((1 - wetness.mean) / kSpreadLack, 0.0, 1.0) : 0;
     footprint::spread_trails(trails, tracks_, {motion.hair_travel, length, spread});
     std::vector<footprint::Trail> uncovered;  // without the upright hair
@@ -123,17 +123,14 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
         footprint::change_frame(previous_, previous_frame_, contact.frame);
         uncovered = trails;
     }
-    if (!contact.planes.empty())
-        footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft.brush.tuft, contact.planes.front()),
-                                      contact.frame, kSkinFilm);
-    const std::vector<footprint::Outline> outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points);
-    const footprint::TouchingHair hair{trails, outlines, tuft.brush.tuft.bundles,
-                                       static_cast<int>(contact.tuft.branches.size())};
+    footprint::cover_upright_hair(trails, shape.upright, contact.frame, kSkinFilm);
+    if (by_hair_) shape.outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points);
+    const footprint::TouchingHair hair{trails, shape.outlines, tuft.brush.tuft.bundles, branches};
     Stamp stamp;
     if (by_hair_)
         draw_hairs(stamp, hair, contact, motion, wetness);
     else
-        stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, options_.cell);
+        stamp.footprint = std::move(*shape.closed);
     previous_ = std::move(uncovered);
     previous_frame_ = contact.frame;
     if (options_.places_nodes) place_nodes(stamp, hair, tuft.brush.reservoir);

@@ -36,7 +36,7 @@ struct Document::BatchStroke {
 
     const PaintStroke& stroke() const { return entry->get<PaintStroke>(); }
     bool hidden() const { return entry->hidden; }
-    std::size_t n_steps() const { return parts.size() + 1; }  // of painting: the parts, and the end of the stroke
+    std::size_t n_steps() const { return parts.size() + 2; }  // forecast, parts of the path, end of the stroke
 };
 
 namespace {
@@ -73,8 +73,8 @@ BatchOrder order_by_tiles(const Strokes& batch, std::size_t n_slots) {
         std::vector<std::uint32_t>& last = last_of_layer[batch[i].stroke().layer];
         last.resize(n_slots, kNone);
         for (const TileUse& use : batch[i].tiles) {
-            if (last[use.slot] != kNone) order.before[first + use.first].push_back(last[use.slot]);
-            last[use.slot] = first + use.last;
+            if (last[use.slot] != kNone) order.before[first + 1 + use.first].push_back(last[use.slot]);
+            last[use.slot] = first + 1 + use.last;
         }
         for (std::size_t k = first; k < order.steps.size(); ++k) {
             std::ranges::sort(order.before[k]);
@@ -178,10 +178,15 @@ void Document::plan_path(BatchStroke& planned) const {
 void Document::paint_step(BatchStroke& stroke, std::size_t step, const ProgressFn& progress) const {
     StrokeSession& session = *stroke.session;
     const std::span<const brush::Pose> poses = stroke.path.poses;
-    if (step == 0) begin_path(session, stroke.path, progress);
-    session.set_part(static_cast<std::uint32_t>(step));
-    if (step < stroke.parts.size())
-        return paint_poses(session, poses, step ? stroke.parts[step - 1] : 0, stroke.parts[step]);
+    if (step == 0) {
+        begin_path(session, stroke.path, progress);
+        if (std::optional<StrokeForecast> forecast = session.forecast(poses)) session.use(std::move(*forecast));
+        return;
+    }
+    const std::size_t part = step - 1;
+    session.set_part(static_cast<std::uint32_t>(part));
+    if (part < stroke.parts.size())
+        return paint_poses(session, poses, part ? stroke.parts[part - 1] : 0, stroke.parts[part]);
     stroke.result = session.finish();
     note_origin(stroke.result->report, stroke.stroke(), model_);
 }
