@@ -182,14 +182,16 @@ int run(const Paint& a) {
     std::vector<stroke::StrokeReport> reports;
     const ProgressFn progress = console.progress();
     try {
-        for (std::size_t i = 0; i < strokes.size(); ++i) {
-            stroke::StrokeReport report = painting.paint(strokes[i], [&](std::string_view phase, double fraction) {
+        painting.paint(
+            strokes,
+            [&](const stroke::JournalEntry& entry, stroke::StrokeReport report) {
+                if (entry.as<stroke::PaintStroke>()) reports.push_back(std::move(report));
+                if (project) project->append(entry);
+            },
+            [&](std::string_view phase, double fraction) {
                 if (first_stamp == 0) first_stamp = seconds_since(start);
-                return progress(phase, (static_cast<double>(i) + fraction) / static_cast<double>(strokes.size()));
+                return progress(phase, fraction);
             });
-            if (strokes[i].as<stroke::PaintStroke>()) reports.push_back(std::move(report));
-            if (project) project->append(painting.journal().entries().back());
-        }
     } catch (const Cancelled&) {
         if (project)
             console.note(fmt::format("{} holds the {} that {} finished", a.project.string(),

@@ -5,11 +5,13 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <queue>
 
 #include "core/system/interrupt.h"
 
@@ -17,6 +19,7 @@ namespace tuft {
 namespace {
 
 std::atomic<int> g_threads{0};
+thread_local bool t_in_task = false;  // of `run_tasks`
 
 tbb::task_arena& arena() {
     // One arena, rebuilt when the count changes; TBB sizes it once.
@@ -51,7 +54,7 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
     check_interrupt();
     if (n == 0) return;
     grain = std::max<std::size_t>(grain, 1);
-    if (thread_count() == 1 || n <= grain) {
+    if (thread_count() == 1 || n <= grain || t_in_task) {
         body(0, n);
         return;
     }
@@ -64,6 +67,49 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
                                   body(r.begin(), r.end());
                               });
         });
+    });
+}
+
+void run_tasks(const std::vector<std::vector<std::uint32_t>>& before, const std::function<void(std::size_t)>& task) {
+    const std::size_t n = before.size();
+    if (thread_count() == 1 || n <= 1) {
+        for (std::size_t i = 0; i < n; ++i) task(i);
+        return;
+    }
+    std::vector<std::vector<std::uint32_t>> after(n);
+    std::vector<std::size_t> waits(n);
+    std::mutex mutex;  // of `waits` and `ready`
+    std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>> ready;
+    for (std::size_t i = 0; i < n; ++i) {
+        waits[i] = before[i].size();
+        if (before[i].empty()) ready.push(i);
+        for (const std::uint32_t k : before[i]) after[k].push_back(static_cast<std::uint32_t>(i));
+    }
+    const auto take = [&] {
+        const std::lock_guard lock(mutex);
+        const std::size_t first = ready.top();
+        ready.pop();
+        return first;
+    };
+    const auto release = [&](std::size_t done) {
+        const std::lock_guard lock(mutex);
+        std::size_t released = 0;
+        for (const std::uint32_t next : after[done])
+            if (--waits[next] == 0) ready.push(next), ++released;
+        return released;
+    };
+    arena().execute([&] {
+        tbb::task_group group;
+        // One call for every task that is ready; which one it takes is decided when it runs.
+        const std::function<void()> run_next = [&] {
+            const std::size_t i = take();
+            t_in_task = true;
+            task(i);
+            t_in_task = false;
+            for (std::size_t k = release(i); k > 0; --k) group.run(run_next);
+        };
+        for (std::size_t k = ready.size(); k > 0; --k) group.run(run_next);
+        group.wait();
     });
 }
 

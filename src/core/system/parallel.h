@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 /// \file
 /// Parallel loops for all modules. Results never depend on the number of threads: a body writes only to its own
@@ -17,5 +19,11 @@ int thread_count();
 /// (interrupt.h).
 void parallel_for(std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// Calls task(i) once for each i in [0, before.size()), for up to `thread_count` of them at a time. Task i starts after
+/// the tasks `before[i]`, all of them below i, have returned; of those that can start, the lowest goes first. On one
+/// thread tasks run in order. `task` must not throw. Loops within a task run on its thread. Unlike `parallel_for` it
+/// does not end early when the process is interrupted: tasks look at the flag themselves.
+void run_tasks(const std::vector<std::vector<std::uint32_t>>& before, const std::function<void(std::size_t i)>& task);
 
 }  // namespace tuft

@@ -133,18 +133,16 @@ void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, const footpr
     orientation_ = axis_.x * e.y - axis_.y * e.x < 0 ? -1 : 1;
 }
 
-Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion,
-                              double dt) {
+Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, HairShape shape,
+                              const MotionTracker& motion, double dt) {
     const double length = tuft.preset().length;
-    if (!motion.touching) tracks_ = {};
-    const brush::CarriedShape* carried = tuft.brush.tuft.carried.get();
-    const bool foam = brush::is_foam(tuft.preset()), has_lines = carried && !carried->lines.empty();
-    const auto branches = static_cast<int>(contact.tuft.branches.size());
-    std::vector<footprint::Trail> trails;
-    if (!foam)
-        trails = footprint::find_trails(contact.tuft, contact.frame, contact.branch_planes, length, kSkinFilm);
     const brush::Bundles& bundles = tuft.brush.tuft.bundles;
     const std::vector<double>& ends = tuft.brush.reservoir.layout.cell_ends;
+    const brush::CarriedShape* carried = tuft.brush.tuft.carried.get();
+    const bool by_lines = carried && !carried->lines.empty();
+    const auto branches = static_cast<int>(contact.tuft.branches.size());
+    if (!motion.touching) tracks_ = {};
+    std::vector<footprint::Trail>& trails = shape.trails;
     cells_ = carried ? footprint::shape_contact_cells(
                            footprint::shape_contact_points(*carried, contact.tuft.shape, contact.frame, kSkinFilm),
                            bundles.place.size(), ends)
@@ -153,8 +151,9 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     for (std::size_t i = 0; i < cells_since_.size(); ++i) cells_since_[i] += cells_[i];
     const Wetness wetness = bundle_wetness(tuft, motion, tuft.stress(), dt);
 
-    by_hair_ = wetness.lack > 0 && !options_.always_closed && !foam && !has_lines;
+    by_hair_ = wetness.lack > 0 && !options_.always_closed && !brush::is_foam(tuft.preset()) && !by_lines;
     closed_area_ = 0;
+    if (!by_hair_ && !shape.closed) close_hair(shape, contact, options_.cell);
     const double spread = by_hair_ ? std::clamp((1 - wetness.mean) / kSpreadLack, 0.0, 1.0) : 0;
     footprint::spread_trails(trails, tracks_, {motion.hair_travel, length, spread});
     std::vector<footprint::Trail> uncovered;  // without the upright hair
@@ -163,18 +162,16 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
         footprint::change_frame(previous_, previous_frame_, contact.frame);
         uncovered = trails;
     }
-    if (!contact.planes.empty() && !carried)
-        footprint::cover_upright_hair(trails, brush::upright_hair_of(tuft.brush.tuft, contact.planes.front()),
-                                      contact.frame, kSkinFilm);
-    const std::vector<footprint::Outline> outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points);
-    const footprint::TouchingHair hair{trails, outlines, bundles, branches};
+    footprint::cover_upright_hair(trails, shape.upright, contact.frame, kSkinFilm);
+    if (by_hair_) shape.outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points);
+    const footprint::TouchingHair hair{trails, shape.outlines, bundles, branches};
     Stamp stamp;
     if (carried)
         draw_shape(stamp, tuft, hair, contact, motion, wetness);
     else if (by_hair_)
         draw_hairs(stamp, hair, contact, motion, wetness);
     else
-        stamp.footprint = footprint::rasterise(outlines, contact.frame, contact.triangle, options_.cell);
+        stamp.footprint = std::move(*shape.closed);
     previous_ = std::move(uncovered);
     previous_frame_ = contact.frame;
     if (options_.places_nodes) place_nodes(stamp, tuft, hair, contact);

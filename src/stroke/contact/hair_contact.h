@@ -5,6 +5,7 @@
 #include "contact/contact.h"
 #include "footprint/outline/hair.h"
 #include "ink/exchange/contact_nodes.h"
+#include "stroke/contact/hair_shape.h"
 #include "stroke/contact/motion_tracker.h"
 #include "stroke/contact/stamp.h"
 #include "stroke/contact/tuft_in_hand.h"
@@ -28,10 +29,12 @@ struct HairContactOptions {
 class HairContact {
   public:
     explicit HairContact(const HairContactOptions& options) : options_(options) {}
+    const HairContactOptions& options() const { return options_; }
 
     /// Returns the stamp of the next pose with footprint, separation and grid; the caller sets motion and ink. Splits
-    /// and merges the tuft's bundles by their wetness. `dt`: seconds since the pose before.
-    Stamp make_stamp(TuftInHand& tuft, const contact::Result& contact, const MotionTracker& motion, double dt);
+    /// and merges the tuft's bundles by their wetness. `hair`: of this contact; `dt`: seconds since the pose before.
+    Stamp make_stamp(TuftInHand& tuft, const contact::Result& contact, HairShape hair, const MotionTracker& motion,
+                     double dt);
 
     /// Cells of the reservoir that touch, with weights of sum 1; and the nodes of the stamp's grid, with
     /// `places_nodes`.

@@ -18,8 +18,7 @@ constexpr double kFirmStrain = 0.25;
 }  // namespace
 
 double wetness_of(const ink::Reservoir& reservoir) {
-    constexpr double kWet = 0.25;
-    const double x = std::clamp(reservoir.fullness() / kWet, 0.0, 1.0);
+    const double x = std::clamp(reservoir.fullness() / kWetFullness, 0.0, 1.0);
     return x * (2 - x);
 }
 

@@ -19,7 +19,10 @@ struct BrushInHand {
     std::string named;   ///< name of the ink of the last stroke
 };
 
-/// Returns the wetness of the hair, 0 dry … 1 wet: x (2 − x), with x = min(1, fullness / 0.25).
+/// Fullness of the tuft from which its hair is wet.
+inline constexpr double kWetFullness = 0.25;
+
+/// Returns the wetness of the hair, 0 dry … 1 wet: x (2 − x), with x = min(1, fullness / `kWetFullness`).
 double wetness_of(const ink::Reservoir& reservoir);
 
 /// Returns an empty reservoir for a tuft: a cell per cluster of hair of each bundle.

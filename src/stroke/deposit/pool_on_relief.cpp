@@ -10,19 +10,10 @@ namespace {
 
 constexpr double kRidgeFilm = 0.35;  // of the film that is deposited
 
-bool on_relief(StampTarget& target) {
-    const auto& tiles = target.snapshots();
-    return std::any_of(tiles.begin(), tiles.end(), [&](const auto& tile) {
-        if (!target.canvas().has_film(tile.first, ink::kFirstDryFilm)) return false;
-        const ink::Plane height = ink::dry_relief(target.canvas(), tile.first);
-        return *std::max_element(height.begin(), height.end()) > static_cast<float>(ink::kPlain);
-    });
-}
-
 }  // namespace
 
 void pool_on_relief(StampTarget& target, const ink::Ink& ink, const std::function<const atlas::SeamLinks&()>& seams) {
-    if (!on_relief(target)) return;
+    if (!target.on_relief()) return;
     std::vector<const ink::TileSnapshot*> before;
     for (const auto& [slot, tile] : target.snapshots()) before.push_back(&tile);
     std::sort(before.begin(), before.end(), [](const auto* a, const auto* b) { return a->slot < b->slot; });

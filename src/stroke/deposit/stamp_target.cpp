@@ -2,15 +2,17 @@
 
 #include <algorithm>
 
+#include "ink/texels/pool.h"
 #include "ink/texels/relief.h"
 
 namespace tuft::stroke {
 
 StampTarget::StampTarget(const Model& model, ink::Canvas& canvas, const ink::Substrate& substrate,
-                         const MaskTexels* mask, PlanScratchPool& scratch)
+                         const MaskTexels* mask, const TilePlan* plan, PlanScratchPool& scratch)
     : model_(model),
       canvas_(canvas),
       mask_(mask),
+      plan_(plan),
       scratch_(scratch),
       grain_rms_(substrate.relief),
       grain_length_(substrate.relief_length) {}
@@ -33,8 +35,19 @@ void StampTarget::expose_grain(std::uint32_t slot, std::array<float, atlas::kTil
     ink::expose_relief(exposure, grain(slot), grain_rms_, static_cast<float>(film));
 }
 
+bool StampTarget::may_use(std::uint32_t slot) const {
+    if (!plan_) return true;
+    const auto use = std::ranges::lower_bound(*plan_, slot, {}, &TileUse::slot);
+    return use != plan_->end() && use->slot == slot && use->first <= part_ && part_ <= use->last;
+}
+
 void StampTarget::snapshot(std::uint32_t slot) {
-    if (!before_.contains(slot)) before_.emplace(slot, canvas_.snapshot(slot));
+    if (!may_use(slot)) throw OutsideTiles();
+    if (!before_.try_emplace(slot).second) return;
+    before_[slot] = canvas_.snapshot(slot);
+    if (on_relief_ || !canvas_.has_film(slot, ink::kFirstDryFilm)) return;
+    const ink::Plane height = ink::dry_relief(canvas_, slot);
+    on_relief_ = *std::max_element(height.begin(), height.end()) > static_cast<float>(ink::kPlain);
 }
 
 std::vector<ink::TileSnapshot> StampTarget::take_snapshots() {

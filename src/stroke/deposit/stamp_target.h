@@ -1,6 +1,8 @@
 #pragma once
 
+#include <exception>
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -15,15 +17,30 @@
 
 namespace tuft::stroke {
 
+/// Thrown before a stroke reads or writes ink of a tile that it may not use.
+struct OutsideTiles : std::exception {
+    const char* what() const noexcept override { return "the stroke leaves the tiles planned for it"; }
+};
+
+/// A tile that a stroke may use while the parts `first` to `last` of its path are painted.
+struct TileUse {
+    std::uint32_t slot = kNone;
+    std::uint32_t first = 0, last = 0;
+};
+
+/// Tiles that a stroke may use, ascending by slot.
+using TilePlan = std::vector<TileUse>;
+
 /// The canvas that a stroke writes to, with its mask, the substrate's grain, and copies of tiles before the stroke, for
 /// undo.
 class StampTarget {
   public:
     using Grain = std::array<float, atlas::kTileTexels>;
 
-    /// All must outlive it. `mask`: texels that may change; null: all.
+    /// All must outlive it. `mask`: texels that may change; null: all. `plan`: tiles that may be
+    /// used; null: all.
     StampTarget(const Model& model, ink::Canvas& canvas, const ink::Substrate& substrate, const MaskTexels* mask,
-                PlanScratchPool& scratch);
+                const TilePlan* plan, PlanScratchPool& scratch);
 
     const Model& model() const { return model_; }
     const atlas::TexelMap& texels() const { return model_.texels; }
@@ -31,14 +48,20 @@ class StampTarget {
     const MaskTexels* mask() const { return mask_; }
     PlanScratchPool& scratch() { return scratch_; }
 
+    /// Sets the part of the path that is painted now, for the plan.
+    void set_part(std::uint32_t part) { part_ = part; }
+
     /// Must be called once, by one thread, before `expose_grain`.
     void prepare_grain();
     /// Reduces a tile's exposure to the part of the grain that hair with `film` metres of ink under it reaches. One
     /// thread per tile.
     void expose_grain(std::uint32_t slot, std::array<float, atlas::kTileTexels>& exposure, double film);
 
-    /// Copies a tile, unless it was copied before.
+    /// Copies a tile, unless it was copied before. Deposit models call it before every use of the tile's ink. Throws
+    /// `OutsideTiles`.
     void snapshot(std::uint32_t slot);
+    /// Whether a tile so far was rough with dry paint before the stroke.
+    bool on_relief() const { return on_relief_; }
     /// Copies so far by slot.
     const std::unordered_map<std::uint32_t, ink::TileSnapshot>& snapshots() const { return before_; }
     /// Returns the copies, ascending by slot, and forgets them.
@@ -46,14 +69,18 @@ class StampTarget {
 
   private:
     const Grain& grain(std::uint32_t slot);
+    bool may_use(std::uint32_t slot) const;
 
     const Model& model_;
     ink::Canvas& canvas_;
     const MaskTexels* mask_;
+    const TilePlan* plan_;
+    std::uint32_t part_ = 0;
     PlanScratchPool& scratch_;
     float grain_rms_, grain_length_;             ///< rms height and length of the substrate's grain, metres
     std::vector<std::unique_ptr<Grain>> grain_;  ///< by slot, evaluated at first use by dry hair
     std::unordered_map<std::uint32_t, ink::TileSnapshot> before_;
+    bool on_relief_ = false;
 };
 
 }  // namespace tuft::stroke

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/overloaded.h"
+#include "stroke/document/tile_reach.h"
 #include "stroke/journal/tables.h"
 #include "stroke/session/session.h"
 
@@ -94,18 +95,36 @@ StrokeReport Document::perform(const JournalEntry& entry, const ProgressFn& prog
                       entry.content);
 }
 
+void Document::paint(std::vector<JournalEntry> entries, const EntryDoneFn& done, const ProgressFn& progress) {
+    const EntrySteps steps{.prepare =
+                               [this](JournalEntry& entry, std::size_t ahead) {
+                                   check_layer(entry);
+                                   settle(entry.content);
+                                   entry.id = journal_.next_id() + ahead;
+                               },
+                           .append =
+                               [&](JournalEntry& entry, StrokeReport report) {
+                                   journal_.append(std::move(entry));
+                                   if (done) done(journal_.entries().back(), std::move(report));
+                               }};
+    try {
+        perform_all(entries, steps, progress);
+    } catch (...) {
+        forget_pigments();
+        throw;
+    }
+}
+
 std::vector<StrokeReport> Document::replay(std::vector<JournalEntry> entries, const ProgressFn& progress) {
     std::vector<StrokeReport> reports;
-    const double all = std::max<double>(1.0, static_cast<double>(entries.size()));
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        if (!entries[i].hidden) {
-            StrokeReport report = perform(entries[i], [&](std::string_view phase, double fraction) {
-                return !progress || progress(phase, (static_cast<double>(i) + fraction) / all);
-            });
-            if (entries[i].as<PaintStroke>()) reports.push_back(std::move(report));
-        }
-        journal_.restore(std::move(entries[i]));
-    }
+    perform_all(entries,
+                {.prepare = {},
+                 .append =
+                     [&](JournalEntry& entry, StrokeReport report) {
+                         if (!entry.hidden && entry.as<PaintStroke>()) reports.push_back(std::move(report));
+                         journal_.restore(std::move(entry));
+                     }},
+                progress);
     return reports;
 }
 
@@ -129,9 +148,9 @@ void Document::adopt(std::vector<JournalEntry> entries, std::vector<LayerCanvas>
     masks_.set_table(std::move(masks));
     brushes_.clear();
     history_.clear(layers_.pigments().size());
-    for (auto entry = rest; entry != entries.end(); ++entry)
-        if (!entry->hidden) perform(*entry, {});
-    for (JournalEntry& entry : entries) journal_.restore(std::move(entry));
+    std::vector<JournalEntry> after(std::make_move_iterator(rest), std::make_move_iterator(entries.end()));
+    for (auto entry = entries.begin(); entry != rest; ++entry) journal_.restore(std::move(*entry));
+    replay(std::move(after));
     appearance_.apply_recolours();
 }
 
@@ -176,8 +195,8 @@ void Document::repaint_all() {
     brushes_.clear();
     history_.clear(0);
     forget_pigments();
-    for (const JournalEntry& entry : journal_.entries())
-        if (!entry.hidden) perform(entry, {});
+    std::vector<JournalEntry> entries = journal_.entries();
+    perform_all(entries, {.prepare = {}, .append = [](JournalEntry&, StrokeReport) {}}, {});
 }
 
 // The entry is done: this is what it changed.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -30,8 +31,15 @@ struct DocumentOptions {
 };
 
 class PlanScratchPool;
-struct WetFilmInUse;
+struct SessionResult;
 class StrokeSession;
+class TileReach;
+struct TileUse;
+struct WetFilmInUse;
+
+/// Called with an entry that has been performed and appended to the journal, in the journal's order, by the thread that
+/// waits for the document.
+using EntryDoneFn = std::function<void(const JournalEntry& entry, StrokeReport report)>;
 
 /// A journal and what its entries make: layers, masks, palette, and the brushes in hand. Each entry is performed once,
 /// in order; the same entries give the same bits, for any number of threads. `model` must outlive the document. Its
@@ -72,6 +80,12 @@ class Document {
     /// brush in hand (`BrushesInHand::take_up_for_stroke`). A brush that is not held is fresh: its entry is stored as
     /// "each", so that a replay is the same.
     StrokeReport paint(JournalEntry entry, const ProgressFn& progress = {});
+
+    /// The same for each entry in turn. Strokes with fresh brushes and still ink are painted side by side where the
+    /// tiles that they can reach differ; the bits are those of `paint` one after the other. When an entry throws, those
+    /// before it are done, and those from it on are not. `progress` is called from one thread at a time, not always
+    /// the same.
+    void paint(std::vector<JournalEntry> entries, const EntryDoneFn& done, const ProgressFn& progress = {});
 
     /// Throws the `Error` of `paint` for a stroke of the model whose brush is too wide for its texels, or which is at
     /// least twice as long as one that is painted; before anything is painted, and without mapping it to the surface.
@@ -114,9 +128,26 @@ class Document {
     void edit_layers(std::uint64_t id, const LayerEdit& edit);
     void edit_masks(std::uint64_t id, const MaskEdit& edit);
 
+    /// How entries that are performed in turn enter the journal.
+    struct EntrySteps {
+        std::function<void(JournalEntry& entry, std::size_t ahead)> prepare;  // `ahead`: entries not yet appended
+        std::function<void(JournalEntry& entry, StrokeReport report)> append;
+    };
+    struct BatchStroke;
+    void perform_all(std::vector<JournalEntry>& entries, const EntrySteps& steps, const ProgressFn& progress);
+    bool paints_beside_others(const JournalEntry& entry) const;
+    std::vector<BatchStroke> plan_batch(std::span<JournalEntry> entries, const EntrySteps& steps);
+    bool plan_stroke(BatchStroke& stroke);
+    void plan_path(BatchStroke& planned) const;
+    void paint_step(BatchStroke& stroke, std::size_t step, const ProgressFn& progress) const;
+    void paint_batch(std::vector<BatchStroke>& batch, const ProgressFn& progress);
+    std::size_t append_batch(std::vector<BatchStroke>& batch, const EntrySteps& steps);
+    void take_back(std::span<BatchStroke> batch);
+
     HandPath path_of(const PaintStroke& stroke);
-    void begin_session(PaintStroke stroke);
+    std::unique_ptr<StrokeSession> make_session(PaintStroke stroke, const std::vector<TileUse>* plan = nullptr);
     StrokeReport finish_session(std::uint64_t id);
+    StrokeReport put_down(std::uint64_t id, const PaintStroke& stroke, SessionResult result, std::size_t n_pigments);
     BrushInHand take_up(const PaintStroke& stroke);
     WetFilmInUse wet_film_for(const PaintStroke& stroke, const PaintTarget& target);
 
@@ -144,6 +175,7 @@ class Document {
     ModelFilm film_;
     UndoHistory history_;
     std::unique_ptr<PlanScratchPool> plan_scratch_;
+    std::unique_ptr<TileReach> tile_reach_;   ///< of the model, made for the first batch of strokes
     std::unique_ptr<StrokeSession> session_;  ///< the stroke in work
     JournalEntry open_;                       ///< its header, from `begin` to `end`
 };

@@ -5,6 +5,7 @@
 
 #include "contact/node_contact.h"
 #include "stroke/document/document.h"
+#include "stroke/document/paint_path.h"
 #include "stroke/gesture/hand.h"
 #include "stroke/gesture/resample.h"
 #include "stroke/journal/tables.h"
@@ -27,6 +28,21 @@ void check_width(const brush::Preset& preset, double texel) {
 
 }  // namespace
 
+void begin_path(StrokeSession& session, const HandPath& path, const ProgressFn& progress) {
+    session.set_progress(progress);
+    session.begin_with_set_down(path.set_down);
+    session.check_length(path.poses);
+}
+
+void paint_poses(StrokeSession& session, std::span<const brush::Pose> poses, std::size_t from, std::size_t to) {
+    const auto all = static_cast<double>(poses.size());
+    for (std::size_t i = from; i < to; ++i) session.advance(poses.subspan(i, 1), static_cast<double>(i + 1) / all);
+}
+
+void note_origin(StrokeReport& report, const PaintStroke& stroke, const Model& model) {
+    if (stroke.trace.flat) report.inside.origin = contact::depth_inside(*model.query, stroke.trace.placement.origin);
+}
+
 void Document::check_size(const JournalEntry& entry) {
     const PaintStroke* stroke = entry.as<PaintStroke>();
     if (!stroke || on_palette(entry)) return;
@@ -45,7 +61,8 @@ void Document::check_size(const JournalEntry& entry) {
 
 void Document::begin(JournalEntry entry) {
     check_layer(entry);
-    begin_session(std::get<PaintStroke>(entry.content));
+    cancel();
+    session_ = make_session(std::get<PaintStroke>(entry.content));
     open_ = std::move(entry);
 }
 
@@ -88,39 +105,46 @@ WetFilmInUse Document::wet_film_for(const PaintStroke& stroke, const PaintTarget
     return {&film_.within(stroke.mask, masks_), ink::film_params(target.substrate, stroke.settings.down)};
 }
 
-void Document::begin_session(PaintStroke stroke) {
-    cancel();
+// `plan`: tiles that it may use; null: all, and with them the links over the seams.
+std::unique_ptr<StrokeSession> Document::make_session(PaintStroke stroke, const TilePlan* plan) {
     settle(stroke);
     BrushInHand brush = take_up(stroke);
     const ink::Ink ink = stroke.erases() ? ink::Ink{} : materials_.ink(brush.dipped);
     const PaintTarget target = this->target(stroke.layer, stroke.mask);
     check_width(brush.tuft.preset, target.model.texels.texel_size);
     WetFilmInUse wet = wet_film_for(stroke, target);
-    const SeamLinksFn seams = [this, on_palette = target.on_palette]() -> const atlas::SeamLinks& {
+    const SeamLinksFn seams = [this, plan, on_palette = target.on_palette]() -> const atlas::SeamLinks& {
+        if (plan) throw OutsideTiles();
         return on_palette ? palette_.plate().seams : film_.seams();
     };
-    session_ = std::make_unique<StrokeSession>(SessionInput{.stroke = std::move(stroke),
-                                                            .brush = std::move(brush),
-                                                            .ink = ink,
-                                                            .model = target.model,
-                                                            .substrate = target.substrate,
-                                                            .canvas = target.canvas,
-                                                            .mask = target.mask,
-                                                            .wet = std::move(wet),
-                                                            .scratch = *plan_scratch_,
-                                                            .seams = seams,
-                                                            .record_forces = options_.record_forces});
+    return std::make_unique<StrokeSession>(SessionInput{.stroke = std::move(stroke),
+                                                        .brush = std::move(brush),
+                                                        .ink = ink,
+                                                        .model = target.model,
+                                                        .substrate = target.substrate,
+                                                        .canvas = target.canvas,
+                                                        .mask = target.mask,
+                                                        .plan = plan,
+                                                        .wet = std::move(wet),
+                                                        .scratch = *plan_scratch_,
+                                                        .seams = seams,
+                                                        .record_forces = options_.record_forces});
 }
 
 // Ends the stroke in work without a word to the journal.
 StrokeReport Document::finish_session(std::uint64_t id) {
-    SessionResult result = session_->finish();
-    const PaintStroke& stroke = session_->stroke();
+    StrokeReport report = put_down(id, session_->stroke(), session_->finish(), layers_.pigments().size());
+    session_.reset();
+    return report;
+}
+
+// Puts the brush of a finished stroke down. `n_pigments`: that the document has met with it.
+StrokeReport Document::put_down(std::uint64_t id, const PaintStroke& stroke, SessionResult result,
+                                std::size_t n_pigments) {
     UndoRecord undo{.entry = id};
     undo.tiles.push_back({stroke.layer, std::move(result.before)});
     if (!stroke.erases()) undo.brush = brushes_.put_down(stroke.brush, std::move(result.brush));
-    record(std::move(undo));
-    session_.reset();
+    history_.add(std::move(undo), n_pigments);
     result.report.stroke_id = id;
     return std::move(result.report);
 }
@@ -136,19 +160,13 @@ HandPath Document::path_of(const PaintStroke& stroke) {
 StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const ProgressFn& progress) {
     if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
     const HandPath path = path_of(stroke);
-    const std::vector<brush::Pose>& poses = path.poses;
-    begin_session(stroke);
-    session_->set_progress(progress);
-    session_->begin_with_set_down(path.set_down);
+    cancel();
+    session_ = make_session(stroke);
     try {
-        session_->check_length(poses);
-        for (std::size_t i = 0; i < poses.size(); ++i)
-            session_->advance(std::span(poses).subspan(i, 1),
-                              static_cast<double>(i + 1) / static_cast<double>(poses.size()));
+        begin_path(*session_, path, progress);
+        paint_poses(*session_, path.poses, 0, path.poses.size());
         StrokeReport report = finish_session(id);
-        if (stroke.trace.flat)
-            report.inside.origin =
-                contact::depth_inside(*target(stroke.layer, 0).model.query, stroke.trace.placement.origin);
+        note_origin(report, stroke, target(stroke.layer, 0).model);
         return report;
     } catch (...) {
         cancel();

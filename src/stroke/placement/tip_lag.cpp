@@ -24,6 +24,7 @@ std::pair<std::size_t, double> cell_of(const std::array<double, N>& grid, double
 }  // namespace
 
 const std::vector<Vec2>& TiltedTipLag::node(std::size_t i, std::size_t j) {
+    const std::lock_guard lock(mutex_);
     std::vector<Vec2>& tip_lags = nodes_[i * kAcross.size() + j];
     if (tip_lags.empty()) {
         for (const double part : kDepths) {

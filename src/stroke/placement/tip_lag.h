@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,7 +25,7 @@ std::vector<TipLag> measure_tip_lag(const brush::Preset& preset);
 
 /// Change of a brush's tip lag by a lean of the holder, measured on steady strokes at a grid of leans and depths. A
 /// node of the grid is measured at its first use (25 ms). Leans up to 0.05 rad change nothing, as a hand does not hold
-/// a brush more upright; from 0.15 rad on the change is full. Not safe in several threads.
+/// a brush more upright; from 0.15 rad on the change is full. Thread-safe.
 class TiltedTipLag {
   public:
     explicit TiltedTipLag(brush::Preset preset) : preset_(std::move(preset)) {}
@@ -43,6 +44,7 @@ class TiltedTipLag {
     Vec2 of_node(std::size_t i, std::size_t j, double depth);
 
     brush::Preset preset_;
+    std::mutex mutex_;  // of `nodes_` while one is measured; measured ones do not change
     std::array<std::vector<Vec2>, kAlong.size() * kAcross.size()> nodes_;  // ahead and left by depth
 };
 

@@ -41,7 +41,7 @@ StrokeSession::StrokeSession(SessionInput input)
       path_(path_options()),
       hair_(hair_options(input_, holds_mixed_ink())),
       stencil_(*input_.model.query, input_.stroke.trace),
-      target_(input_.model, input_.canvas, input_.substrate, input_.mask, input_.scratch),
+      target_(input_.model, input_.canvas, input_.substrate, input_.mask, input_.plan, input_.scratch),
       deposit_(make_deposit()) {
     contact_.options.method = input_.stroke.settings.contact;
     report_.nearest = std::numeric_limits<double>::infinity();
@@ -89,8 +89,7 @@ void StrokeSession::extend(std::span<const brush::Pose> poses) {
 void StrokeSession::advance(std::span<const brush::Pose> poses, double done) {
     for (const brush::Pose& pose : poses) {
         ++report_.samples;
-        const bool prepared = input_.stroke.trace.flat;
-        const brush::Pose steadied = prepared ? pose : steady(path_.steady, pose, input_.stroke.settings);
+        const brush::Pose steadied = next_pose(path_, pose);
         if (input_.record_forces) forces_.samples.push_back(steadied);
         path_.resampler.push(steadied, path_.poses);
     }
@@ -98,9 +97,35 @@ void StrokeSession::advance(std::span<const brush::Pose> poses, double done) {
     progress_.done = done;
 }
 
+// A flat stroke is steadied before its path is prepared.
+brush::Pose StrokeSession::next_pose(Path& path, const brush::Pose& pose) const {
+    return input_.stroke.trace.flat ? pose : steady(path.steady, pose, input_.stroke.settings);
+}
+
 void StrokeSession::paint_poses() {
     for (const brush::Pose& pose : path_.poses) step(pose);
     path_.poses.clear();
+}
+
+contact::Result StrokeSession::next_contact(const brush::Pose& pose, double dt) {
+    if (contact_.forecast) {
+        if (PoseForecast* ready = contact_.forecast->next(pose, tuft_.brush.tuft)) {
+            contact_.hair = std::move(ready->hair);
+            return std::move(ready->contact);
+        }
+        leave_forecast();
+    }
+    // Hair that painted before comes through the air, as it sprang back.
+    if (!path_.started && tuft_.brush.tuft.posed) brush::step(tuft_.brush.tuft, pose, {}, 0);
+    contact::Result contact =
+        contact::step(tuft_.brush.tuft, pose, *input_.model.query, contact_.memory, dt, contact_.options);
+    contact_.hair = touches(contact) ? find_hair(tuft_.brush.tuft, contact) : HairShape{};
+    return contact;
+}
+
+void StrokeSession::leave_forecast() {
+    if (contact_.forecast) contact_.forecast->catch_up(tuft_.brush.tuft, contact_.memory);
+    contact_.forecast.reset();
 }
 
 // Bends the tuft on the surface at the next pose; ink spreads within the hair meanwhile.
@@ -108,10 +133,7 @@ contact::Result StrokeSession::bend_on_surface(const brush::Pose& pose, double d
     if (refill_) tuft_.brush.reservoir = *refill_;
     tuft_.update_wetness();
     ink::flow(tuft_.brush.reservoir, dt, hair_.by_hair() ? ink::FlowTo::now : ink::FlowTo::whole_step);
-    // Hair that painted before comes through the air, as it sprang back.
-    if (!path_.started && tuft_.brush.tuft.posed) brush::step(tuft_.brush.tuft, pose, {}, 0);
-    contact::Result contact =
-        contact::step(tuft_.brush.tuft, pose, *input_.model.query, contact_.memory, dt, contact_.options);
+    contact::Result contact = next_contact(pose, dt);
     contact_.device_force = contact.device_force;
     path_.time = pose.time;
     path_.started = true;
@@ -186,12 +208,12 @@ void StrokeSession::step(const brush::Pose& pose) {
     report(progress_.ask, "painting", progress_.done);
     const double dt = path_.started ? pose.time - path_.time : 0.0;
     const contact::Result contact = bend_on_surface(pose, dt);
-    if (!contact.tuft.touching || contact.triangle == kNone) return motion_.lose_contact();
+    if (!touches(contact)) return motion_.lose_contact();
     if (!contact.tuft.converged) ++report_.unconverged;
 
     const ContactMotion moved = motion_.advance(pose, contact, dt);
     deposit_->settle(tuft_, hair_.by_hair());
-    Stamp stamp = hair_.make_stamp(tuft_, contact, motion_, dt);
+    Stamp stamp = hair_.make_stamp(tuft_, contact, std::move(contact_.hair), motion_, dt);
     const double hair_area = covered_area(stamp.footprint);
     stencil_.cut_off(stamp.footprint);
     if (stamp.footprint.empty()) return motion_.lose_contact();
@@ -232,9 +254,18 @@ std::vector<ForceRecord> StrokeSession::forces_at_samples() const {
     return records;
 }
 
+std::optional<StrokeForecast> StrokeSession::forecast(std::span<const brush::Pose> poses) const {
+    if (!StrokeForecast::serves(tuft_.brush.tuft)) return std::nullopt;
+    Path path(path_options());
+    for (const brush::Pose& pose : poses) path.resampler.push(next_pose(path, pose), path.poses);
+    path.resampler.finish(path.poses);
+    return StrokeForecast(tuft_.brush.tuft, path.poses, *input_.model.query, {contact_.options, hair_.options().cell});
+}
+
 SessionResult StrokeSession::finish() {
     path_.resampler.finish(path_.poses);
     paint_poses();
+    leave_forecast();
     report_.ink_given += deposit_->finish(tuft_, hair_, input_.seams);
     report_.ink_left = tuft_.brush.reservoir.remaining();
     report_.removed = deposit_->removed();

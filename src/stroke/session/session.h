@@ -9,6 +9,7 @@
 #include "stroke/gesture/hand.h"
 #include "stroke/gesture/resample.h"
 #include "stroke/journal/entry.h"
+#include "stroke/session/forecast.h"
 #include "stroke/session/report.h"
 #include "stroke/surface/surface_stencil.h"
 
@@ -26,6 +27,7 @@ struct SessionInput {
     const ink::Substrate& substrate;
     ink::Canvas& canvas;               ///< of the stroke's layer
     const MaskTexels* mask = nullptr;  ///< texels that may change; null: all
+    const TilePlan* plan = nullptr;    ///< tiles that may be used, or the session throws `OutsideTiles`; null: all
     WetFilmInUse wet;                  ///< for strokes with wet ink
     PlanScratchPool& scratch;
     SeamLinksFn seams;           ///< of the model; called at most once, at the end
@@ -59,8 +61,15 @@ class StrokeSession {
     void set_progress(ProgressFn progress) { progress_.ask = std::move(progress); }
     /// Throws `Error` where these poses, which are all of the stroke's, are a longer path than is painted.
     void check_length(std::span<const brush::Pose> poses) const;
+    /// Returns a forecast of the stroke along all of its poses, or nothing where its brush allows none. Before the
+    /// first `advance`; safe beside other sessions.
+    std::optional<StrokeForecast> forecast(std::span<const brush::Pose> poses) const;
+    /// Takes a forecast of the poses that come. The bits are the same as without.
+    void use(StrokeForecast forecast) { contact_.forecast.emplace(std::move(forecast)); }
     /// Paints the next poses. `done`: part of the stroke to be reported, 0–1.
     void advance(std::span<const brush::Pose> poses, double done = 0);
+    /// Sets the part of the path that comes next, for the plan of tiles.
+    void set_part(std::uint32_t part) { target_.set_part(part); }
     /// Declares that the first `poses` set the brush down; the stroke's own samples come after them.
     void begin_with_set_down(std::size_t poses) { forces_.before_first = poses; }
     /// Appends poses of a hand in space to the stroke's samples and paints them.
@@ -92,6 +101,8 @@ class StrokeSession {
         contact::Memory memory;
         contact::Options options;
         Vec3 device_force{0};
+        std::optional<StrokeForecast> forecast;
+        HairShape hair;  // at the last pose that touched
     };
     /// What is recorded of the forces, where it is asked for.
     struct ForceLog {
@@ -109,9 +120,12 @@ class StrokeSession {
     ResampleOptions path_options() const;
     std::unique_ptr<DepositModel> make_deposit();
     std::vector<ForceRecord> forces_at_samples() const;
+    brush::Pose next_pose(Path& path, const brush::Pose& pose) const;
     void paint_poses();
     void step(const brush::Pose& pose);
     contact::Result bend_on_surface(const brush::Pose& pose, double dt);
+    contact::Result next_contact(const brush::Pose& pose, double dt);
+    void leave_forecast();
     void set_motion(Stamp& stamp, const ContactMotion& moved, double area) const;
     void set_ink(Stamp& stamp, double area) const;
     void note_dryness(double film, double displacement);

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "brush/tuft/upright_hair.h"
+#include "contact/contact.h"
+#include "footprint/outline/cuts.h"
+#include "footprint/outline/footprint.h"
+
+/// \file
+/// Where the hair touches at one pose, whatever ink it holds. `HairContact` makes stamps of it; a forecast computes it
+/// ahead.
+namespace tuft::stroke {
+
+/// Hair on the surface at one pose, in the frame of the contact.
+struct HairShape {
+    std::vector<footprint::Trail> trails;        ///< of all branches, without the upright hair
+    brush::UprightHair upright;                  ///< `share` 0: none
+    std::vector<footprint::Outline> outlines;    ///< of wet hair, which closes its gaps; with `closed` only
+    std::optional<footprint::Footprint> closed;  ///< footprint of wet hair, where it was computed
+};
+
+/// Whether hair touches, on a triangle of the model.
+inline bool touches(const contact::Result& contact) {
+    return contact.tuft.touching && contact.triangle != kNone;
+}
+
+/// Returns the trails and the upright hair of a tuft that touches.
+HairShape find_hair(const brush::Tuft& tuft, const contact::Result& contact);
+
+/// Adds outlines and footprint of wet hair. `cell`: metres, of the footprint.
+void close_hair(HairShape& hair, const contact::Result& contact, double cell);
+
+}  // namespace tuft::stroke
