@@ -33,17 +33,14 @@ Stand stand_of_root(const Work& w, const Memory& memory, double length) {
     return stand_from(w.surface, from, known ? memory.side : 1, root, w.stand);
 }
 
-/// Holds the ferrule's mouth off the surface that it would go through: `kPad` of the tuft's radius where the surface
-/// lies before it, nothing where it lies beside it. Returns how far it would be below the surface, metres.
+/// Holds the ferrule's mouth off the surface that it would go through, by `mouth_clearance`. Returns how far it would
+/// be below the surface, metres.
 double hold_off(Work& w) {
-    constexpr double kPad = 0.5;                    // hair pressed flat under the ferrule
-    constexpr double kBeside = 0.2, kBefore = 0.5;  // cosines of the normal to the handle
     constexpr int kPasses = 4;
     const double inside = std::max(0.0, -w.root.height);
     for (int pass = 0; pass < kPasses && w.root.triangle != kNone; ++pass) {
         const Vec3& n = w.root.plane.normal;
-        const double before = smooth_step((-glm::dot(n, w.pose.axis()) - kBeside) / (kBefore - kBeside));
-        const double needed = kPad * before * w.radius - w.root.height;
+        const double needed = mouth_clearance(n, w.pose.axis(), w.radius) - w.root.height;
         if (needed <= w.stand.lift) break;
         w.pose.position += needed * n;
         w.root = stand_from(w.surface, w.root.outside, w.root.side, w.pose.position, w.stand);
@@ -391,6 +388,12 @@ Result step_from(brush::Tuft& tuft, const brush::Pose& asked, const mesh::Surfac
 }
 
 }  // namespace
+
+double mouth_clearance(const Vec3& n, const Vec3& axis, double radius) {
+    constexpr double kPad = 0.5;                    // of the radius: hair pressed flat under the ferrule
+    constexpr double kBeside = 0.2, kBefore = 0.5;  // cosines of the normal to the handle
+    return kPad * radius * smooth_step((-glm::dot(n, axis) - kBeside) / (kBefore - kBeside));
+}
 
 Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery& surface, Memory& memory, double dt,
             const Options& options) {

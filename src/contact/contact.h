@@ -60,6 +60,10 @@ struct Result {
     EffectivePatch patch;  ///< Method::vertices: vertices the projection plane is made from
 };
 
+/// Returns the least height, m, of the ferrule's mouth over a surface with normal `n` for a tuft of this radius whose
+/// rest axis is `axis`: hair pressed flat where the surface lies before the mouth, 0 where it lies beside it.
+double mouth_clearance(const Vec3& n, const Vec3& axis, double radius);
+
 /// Moves the brush to `pose`, finds the contact plane of every node and bends the tuft against the planes. The
 /// result is always finite. `dt` is in seconds since the last step. Throws `Error` for a pose that `brush::step`
 /// rejects. Cost: 50–200 µs.
