@@ -16,7 +16,9 @@ struct RootPose {
     Vec3 position{0};           ///< y, m: the virtual root, not the arm
     Quat rotation{1, 0, 0, 0};  ///< of the holder; the tuft points along rotation * (0, 0, −1)
     std::uint32_t buttons = 0;  ///< of the grip, one bit each
-    bool restart = false;       ///< the brush comes through the air from elsewhere
+    /// Period in which the brush was last taken up in the air. Another one than that of the pose before: the hair
+    /// comes from elsewhere.
+    std::uint64_t taken_up = 0;
 };
 
 /// The root y must keep normal · y >= height: ferrule or handle would pass the surface beyond.

@@ -82,7 +82,7 @@ Vec3 HairSolver::paste_drag(const Vec3& velocity) const {
 HairAnswer HairSolver::solve(const RootPose& pose) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point begin = Clock::now();
-    if (!started_ || pose.restart) restart(pose);
+    if (!started_ || pose.taken_up != last_.taken_up) restart(pose);
     const double dt = static_cast<double>(pose.tick - last_.tick) * kPeriod;
     const double time = static_cast<double>(pose.tick) * kPeriod;
     contact::Result result =

@@ -112,7 +112,7 @@ TrialPlace place_above(const mesh::SurfaceQuery& surface, std::string name) {
     return {std::move(name), make_frame(hit->position, hit->normal, Vec3{1, 0, 0})};
 }
 
-TrialPlace place_at_edge(const mesh::SurfaceQuery& surface, std::string name) {
+TrialPlace place_at_edge(const mesh::SurfaceQuery& surface, std::string name, bool groove) {
     const Box& box = surface.mesh().bounds;
     const double top = box.centre().z + box.diagonal(), half = 0.5 * (box.hi.x - box.lo.x);
     constexpr int kSteps = 400;
@@ -126,7 +126,9 @@ TrialPlace place_at_edge(const mesh::SurfaceQuery& surface, std::string name) {
         if (before) {
             const double turn = glm::dot(before->face_normal, hit->face_normal);
             const Vec3 n = before->face_normal + hit->face_normal;
-            if (turn < sharpest && n.z > 0) {
+            const bool convex =
+                glm::dot(hit->position - before->position, hit->face_normal - before->face_normal) > 0;
+            if (turn < sharpest && n.z > 0 && convex == !groove) {
                 sharpest = turn;
                 best = make_frame(0.5 * (before->position + hit->position), glm::normalize(n), Vec3{1, 0, 0});
             }

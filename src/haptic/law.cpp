@@ -14,6 +14,8 @@ constexpr double kFadeFree = 0.01;         // N that g may jump in a period
 constexpr double kFadeRate = 0.06;         // N by which the offset falls in a period
 constexpr double kRestoreTime = 0.15;      // s
 constexpr double kTankFull = 30e-6;        // e_0, J
+constexpr double kEmpty = 2e-6;            // J
+constexpr double kMostLent = 1e-4;         // J that friction pays in a contact
 constexpr double kMostAcceleration = 60;   // m/s², of a hand
 constexpr double kFree = 1e-3;             // N below which a force is none
 
@@ -78,7 +80,13 @@ void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
     if (size > count) {
         const Vec3 moved = off * (1 - count / size);
         s.played += moved;
-        s.tank += 0.5 * options.limits.friction * glm::length(moved) - glm::dot(s.force, moved);
+        s.tank -= glm::dot(s.force, moved);
+        // Friction of the arm pays where the tank is empty: it would lock at no force.
+        const double paid = std::min(0.5 * options.limits.friction * glm::length(moved), kMostLent - s.lent);
+        if (s.tank < kEmpty && paid > 0) {
+            s.tank += paid;
+            s.lent += paid;
+        }
     }
     s.tank -= glm::dot(s.moment, turn_between(s.rotation, in.rotation));
 }
@@ -132,20 +140,23 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     f = limited(f, std::min(options.limits.max_force, options.most_force)) * in.pass;
 
     const bool touching = in.hair && (in.hair->touching || held.hard || in.hair->force != Vec3{0});
-    if (!touching && wanted < kFree) {
-        s.tank = kTankFull;
-        s.restored = Vec3{0};
+    s.coupled = 0.5 * K * glm::dot(stretch, stretch) + 0.5 * m * glm::dot(velocity, velocity);
+    s.free = !touching && glm::length(s.offset) < kFree;
+    if (s.free) {
+        s.tank = kTankFull + s.coupled;
+        s.lent = 0;
+        s.restored *= 1 - T / kRestoreTime;
     }
     const double stored = in.hair ? gain * in.hair->stored : 0;
-    s.tank = std::min(s.tank, kTankFull + stored + 0.5 * K * glm::dot(stretch, stretch) +
-                                  0.5 * m * glm::dot(velocity, velocity));
+    s.tank = std::min(s.tank, kTankFull + stored + s.coupled);
     LawOutput out{.root = root, .hard = held.hard};
     const double size = glm::length(f);
     if (size > 0) {
-        const double ahead = std::max(0.0, glm::dot(moved, f) / size + kMostAcceleration * T * T);
-        const double most = std::max(0.0, s.tank) / (ahead + options.limits.count * options.scale);
-        out.limited = size > most;
-        f = limited(f, most);
+        // The way along the force that the hand can make in the next period; against it, the tank only fills.
+        const double ahead = glm::dot(moved, f) / size + kMostAcceleration * T * T, count = options.limits.count;
+        const double most = std::max(0.0, s.tank) / (std::max(0.0, ahead) + count * options.scale);
+        out.limited = size > most && ahead + count * options.scale > 0;
+        if (out.limited) f = limited(f, most);
     }
     const double kept = wanted > 0 ? glm::length(f) / wanted : in.pass;
     s.force = f;

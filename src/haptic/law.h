@@ -56,6 +56,9 @@ struct LawState {
     Vec3 force{0};             ///< f, N
     Vec3 moment{0};            ///< of hair and handle about the root, N·m, scaled as the force is
     double tank = 0;           ///< e, J
+    double lent = 0;           ///< J, by the arm's friction in this contact
+    double coupled = 0;        ///< J, in the spring of the coupling and the moving root
+    bool free = true;          ///< neither hair nor ferrule touches
 };
 
 struct LawInput {

@@ -37,7 +37,7 @@ RootPose Servo::begin(std::uint64_t tick, const DeviceState* fresh, const ServoC
             .position = law_.root,
             .rotation = rotation_,
             .buttons = buttons_,
-            .restart = verdict_.restart};
+            .taken_up = restarted_};
 }
 
 ServoOutput Servo::finish(const HairAnswer* newest) {

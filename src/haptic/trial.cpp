@@ -8,7 +8,7 @@
 namespace tuft::haptic {
 namespace {
 
-constexpr double kFree = 1e-3;             // N below which a force is none
+constexpr double kFelt = 0.02;             // N
 constexpr std::uint64_t kAfterHard = 10;   // periods in which a blow of the ferrule dies away
 
 /// Energies of one contact after the other.
@@ -17,11 +17,12 @@ struct Judge {
     bool contact = false;
     double base = 0, base_with_arm = 0;
 
-    void see(bool touches, const ArmEnergy& arm, TrialReport& report) {
+    // What is in the coupling when the contact begins came from the hand.
+    void see(bool touches, double coupled, const ArmEnergy& arm, TrialReport& report) {
         const double energy = arm.port + wrist, with_arm = energy + arm.losses;
         if (touches && !contact) {
-            base = energy;
-            base_with_arm = with_arm;
+            base = energy - coupled;
+            base_with_arm = with_arm - coupled;
             ++report.contacts;
         }
         if (contact || touches) {
@@ -77,14 +78,42 @@ TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface
         report.limited += out.limited;
         report.hash = hash_bytes(&out.force, sizeof out.force, report.hash);
         if (options.record) report.forces.push_back(out.force);
-        const bool touches = answered && (answer.touching || out.hard || glm::length(out.force) > kFree);
-        judge.see(touches, arm.energy(), report);
+        judge.see(!servo.law().free, servo.law().coupled, arm.energy(), report);
         force = out.force;
         at = arm.position();
         ++report.periods;
     }
     report.last_hair = answer.force;
     return report;
+}
+
+int periods_to_stop(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,
+                    const TrialOptions& options, Trouble trouble, double from) {
+    constexpr int kLongest = 100;
+    SimulatedArm arm(options.law.limits, path, {.hand = options.hand, .seed = options.seed});
+    HairSolver solver(tuft, surface, options.solver);
+    Servo servo(options.law);
+    const auto begin = static_cast<std::uint64_t>(from / kPeriod);
+    bool felt = false;
+    for (std::uint64_t tick = 1; tick < begin + kLongest; ++tick) {
+        const double time = static_cast<double>(tick) * kPeriod;
+        arm.advance(time);
+        DeviceState state = arm.measure();
+        const bool wrong = tick >= begin;
+        if (wrong && trouble == Trouble::not_finite) state.position.x = std::nan("");
+        if (wrong && trouble == Trouble::jump) state.position.x += 0.05;
+        const bool heard = !wrong || trouble != Trouble::silence;
+        const ServoControl control{.paused = wrong && trouble == Trouble::pause,
+                                   .emergency = wrong && trouble == Trouble::emergency};
+        const RootPose pose = servo.begin(tick, heard ? &state : nullptr, control);
+        HairAnswer answer;
+        if (servo.engaged()) answer = solver.solve(pose);
+        const ServoOutput out = servo.finish(servo.engaged() ? &answer : nullptr);
+        arm.command(out.command, time);
+        if (!wrong) felt = glm::length(out.force) > kFelt;
+        if (wrong && out.force == Vec3{0}) return felt ? static_cast<int>(tick - begin) : -1;
+    }
+    return -1;
 }
 
 void merge(TrialReport& into, const TrialReport& from) {

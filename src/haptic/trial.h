@@ -21,10 +21,10 @@ struct TrialPlace {
     Frame frame;  ///< on the surface: n outward, m
 };
 
-/// The places on a mesh with z up, m: the first hit from above its middle, and where the surface turns most along
-/// the way from there along +x.
+/// Places on a mesh with z up, m: the first hit from above its middle, and where the surface seen from above turns most
+/// along the way from there along +x, on its sharpest edge or in its sharpest groove.
 TrialPlace place_above(const mesh::SurfaceQuery& surface, std::string name);
-TrialPlace place_at_edge(const mesh::SurfaceQuery& surface, std::string name);
+TrialPlace place_at_edge(const mesh::SurfaceQuery& surface, std::string name, bool groove = false);
 
 /// What the hand does.
 enum class Way { press, press_fast, drag, circles, taps, rocking, rest, hit, slide };
@@ -67,6 +67,16 @@ struct TrialReport {
 
 TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,
                       const TrialOptions& options);
+
+/// What goes wrong in `periods_to_stop`.
+enum class Trouble { silence, not_finite, jump, pause, emergency };
+inline constexpr Trouble kTroubles[] = {Trouble::silence, Trouble::not_finite, Trouble::jump, Trouble::pause,
+                                        Trouble::emergency};
+
+/// Runs a trial up to `from`, s, where something goes wrong, and returns after how many periods no force leaves any
+/// more; -1 where there was none before, or it did not end within 100.
+int periods_to_stop(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,
+                    const TrialOptions& options, Trouble trouble, double from);
 
 /// Worst of both; counts and hashes added up.
 void merge(TrialReport& into, const TrialReport& from);
