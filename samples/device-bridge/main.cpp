@@ -55,7 +55,8 @@ class Arm {
     void give(const Vector& force) { force_ = force; }
     // Greatest force (N) of the motors along one axis.
     static double strongest() { return 3.3; }
-    // Ends all force. Called whenever tuft is gone, has been silent for 20 ms, or says something that is not understood.
+    // Ends all force. Called whenever tuft is gone, has been silent for 20 ms, or says something that is not
+    // understood.
     void release() { give({}); }
 
     Vector position{0.02, 0, 0}, velocity;

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cmath>
 #include <iostream>
-#include <optional>
 
 #include "brush/preset/preset.h"
+#include "cli/options.h"
 #include "cli/reference.h"
 #include "core/error.h"
 #include "core/geometry/bounds.h"
@@ -20,12 +19,6 @@
 #include "stroke/drawing/free_area.h"
 #include "stroke/journal/recorded_stroke.h"
 
-// What help and manual call the value of an option that is a path.
-template <>
-constexpr const char* CLI::detail::type_name<std::filesystem::path>() {
-    return "FILE";
-}
-
 namespace tuft::cli {
 namespace {
 
@@ -34,16 +27,6 @@ constexpr std::size_t kLongestMessage = 600;  // bytes
 constexpr double kMostTexels = 1e9;           // along a side; memory is asked about later
 constexpr double kLeastTexelMm = 1e-9;
 constexpr double kMostDegrees = 36000;  // a hundred turns
-
-/// The whole of `text` as a finite number; nothing for anything else.
-std::optional<double> number_of(const std::string& text) {
-    double value = 0;
-    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-    const char* end = text.data() + text.size();
-    const auto [last, error] = std::from_chars(begin, end, value);
-    if (error != std::errc{} || last != end || !std::isfinite(value)) return std::nullopt;
-    return value;
-}
 
 /// "A,B[,C]" into numbers within ±`most`; empty when it is anything else.
 std::vector<double> numbers(const std::string& text, char separator, std::size_t count, double most) {
@@ -57,23 +40,6 @@ std::vector<double> numbers(const std::string& text, char separator, std::size_t
     }
     if (values.size() != count || text.ends_with(separator)) values.clear();
     return values;
-}
-
-/// Checks every number of the command line: finite, and from `lo` to `hi`, which the help calls `name`.
-CLI::Validator number_in(double lo, double hi, const std::string& name = {}) {
-    return CLI::Validator(
-        [lo, hi](std::string& text) -> std::string {
-            const std::optional<double> value = number_of(text);
-            if (value && *value >= lo && *value <= hi) return {};
-            return fmt::format("'{}' is not a number from {:g} to {:g}", excerpt(text), lo, hi);
-        },
-        name.empty() ? fmt::format("{:g} to {:g}", lo, hi) : name);
-}
-
-void add_common(CLI::App* app, Common& c) {
-    app->add_option("--threads", c.threads, "threads to use (0: one per core)")->check(number_in(0, 1024));
-    app->add_flag("--json", c.json, "print one JSON object on standard output");
-    app->add_flag("--quiet", c.quiet, "no progress, no notes");
 }
 
 void add_store(CLI::App* app, Surface& s) {
@@ -194,62 +160,6 @@ void add_view(CLI::App* app, View& v) {
            },
            "the point to look at, in millimetres: X,Y,Z")
         ->type_name("X,Y,Z");
-}
-
-void add_arm(CLI::App* app, DeviceWork& d) {
-    app->add_option("--preset", d.preset, "figures of the arm: touch, inverse3, falcon, omega.6")->type_name("ARM");
-    app->add_option("--host", d.host, "address of the arm's service");
-    app->add_option("--port", d.port, "port of the arm's service")->check(number_in(0, 65535));
-    add_common(app, d.common);
-}
-
-void add_hand(CLI::App* app, DeviceWork& d) {
-    app->add_option("--simulate", d.simulate, "simulate an arm of these figures in a hand, in place of a real one")
-        ->type_name("ARM");
-    app->add_option("--seconds", d.seconds, "how long")->check(number_in(0.1, 86400));
-    app->add_option("--brush", d.brush, "brush that is felt")->type_name("BRUSH");
-    app->add_option("--model", d.model, "model that is felt (default: the bowl)");
-    app->add_flag("--restore", d.restore, "take the softness of the coupling away; the arm's friction pays");
-}
-
-void add_way(CLI::App* app, DeviceWork& d) {
-    app->add_option("--way", d.way, "what the simulated hand does")
-        ->check(CLI::IsMember({"press", "press-fast", "drag", "circles", "taps", "rocking", "rest", "hit", "slide"}));
-}
-
-void add_device(CLI::App& app, DeviceWork& d) {
-    auto* device = app.add_subcommand("device", "force-feedback arms: list, simulate, test, record");
-    device->require_subcommand(1);
-    auto* list = device->add_subcommand("list", "print known arms, and whether one answers");
-    add_arm(list, d);
-    auto* simulate = device->add_subcommand(
-        "simulate", "serve a simulated arm in a hand, as the Haply Inverse service does, until it is interrupted");
-    add_arm(simulate, d);
-    simulate->add_option("--brush", d.brush, "brush that the hand holds")->type_name("BRUSH");
-    simulate->add_option("--model", d.model, "model that the hand paints (default: the bowl)");
-    add_way(simulate, d);
-    simulate->add_option("--delay", d.delay_ms, "delay of a force on its way, in milliseconds")
-        ->check(number_in(0, 20));
-    simulate->add_option("--fault", d.fault, "what the server does wrong, for tests of what it is joined to")
-        ->check(CLI::IsMember({"none", "dies", "nan", "jumps", "silent", "floods"}));
-    simulate->add_option("--fault-after", d.fault_after, "seconds of a connection after which it does")
-        ->check(number_in(0, 86400));
-    auto* test = device->add_subcommand("test", "check safety, stability and loop of an arm (hands off), or simulated");
-    add_arm(test, d);
-    add_hand(test, d);
-    test->add_option("--hands", d.hands, "try so many random hands too (10000: ten minutes)")
-        ->check(number_in(0, 1000000));
-    test->add_option("--hours", d.hours, "try one hand for so many simulated hours too")->check(number_in(0, 100));
-    test->add_flag("--all-brushes", d.all_brushes, "all shipped brushes, not only the one of --brush");
-    test->add_option("--delay", d.delay_ms, "delay of a force on its way, in milliseconds")->check(number_in(0, 20));
-    auto* record = device->add_subcommand("record", "record what an arm does and the forces that it is given (.csv)");
-    add_arm(record, d);
-    add_hand(record, d);
-    add_way(record, d);
-    record->add_option("-o,--output", d.output, "table to write (.csv)")->required();
-    record->add_option("--replay", d.replay, "play this recording in place of an arm, and compare the forces (.csv)");
-    for (CLI::App* command : {list, simulate, test, record})
-        command->callback([&d, command] { d.what = command->get_name(); });
 }
 
 // Values that are names of presets.

@@ -211,20 +211,20 @@ struct Bench {
 
 /// `tuft device list | simulate | test | record`
 struct DeviceWork {
-    std::string what;                   ///< list | simulate | test | record
-    std::string preset = "inverse3";    ///< of the arm that is spoken to or simulated
-    std::string simulate;               ///< preset to simulate in this process; empty: the arm at `host`
+    std::string what;                 ///< list | simulate | test | record
+    std::string preset = "inverse3";  ///< of the arm that is spoken to or simulated
+    std::string simulate;             ///< preset to simulate in this process; empty: the arm at `host`
     std::string host = "127.0.0.1";
     int port = 10001;
     double seconds = 10;
     std::string brush = "wolf-medium";
-    std::filesystem::path model;        ///< empty: the shipped bowl
-    std::string way = "circles";        ///< of the simulated hand
-    std::string fault = "none";         ///< of the simulated server, after `fault_after` seconds
+    std::filesystem::path model;  ///< empty: the shipped bowl
+    std::string way = "circles";  ///< of the simulated hand
+    std::string fault = "none";   ///< of the simulated server, after `fault_after` seconds
     double fault_after = 3;
     double delay_ms = 0;
-    int hands = 0;                      ///< random hands beside the tests
-    double hours = 0;                   ///< simulated, one hand
+    int hands = 0;     ///< random hands beside the tests
+    double hours = 0;  ///< simulated, one hand
     bool all_brushes = false, restore = false;
     std::filesystem::path output, replay;
     Common common;

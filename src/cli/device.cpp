@@ -178,8 +178,8 @@ std::unique_ptr<haptic::Device> open_device(const DeviceWork& a, const haptic::H
     if (!a.simulate.empty())
         return std::make_unique<haptic::SimulatedDevice>(
             haptic::SimulatedArm(haptic::device_preset(a.simulate), path, {.delay = 1e-3 * a.delay_ms}));
-    auto device = std::make_unique<haptic::HaplyDevice>(haptic::device_preset(a.preset),
-                                                        haptic::HaplyAddress{a.host, a.port});
+    auto device =
+        std::make_unique<haptic::HaplyDevice>(haptic::device_preset(a.preset), haptic::HaplyAddress{a.host, a.port});
     for (auto waited = 0ms; waited < kPatience; waited += kLook) {
         check_interrupt();
         if (device->read(state)) return device;

@@ -1,3 +1,5 @@
+#include "cli/device.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <thread>
 
 #include "brush/preset/preset.h"
-#include "cli/device.h"
 #include "cli/steps.h"
 #include "core/random.h"
 #include "core/system/interrupt.h"
@@ -72,7 +73,8 @@ TrialReport try_ways(const DeviceWork& a, const Places& places, Console& console
     for (const std::string& name : brushes) {
         const brush::Tuft tuft = brush::make_tuft(brush::load_preset(name));
         for (std::size_t p = 0; p < places.place.size(); ++p, ++done) {
-            report(progress, "ways", static_cast<double>(done) / static_cast<double>(brushes.size() * places.place.size()));
+            report(progress, "ways",
+                   static_cast<double>(done) / static_cast<double>(brushes.size() * places.place.size()));
             for (int way = 0; way <= static_cast<int>(haptic::Way::slide); ++way) {
                 check_interrupt();
                 const auto path = haptic::hand_path(static_cast<haptic::Way>(way), places.place[p], tuft.preset);
@@ -118,9 +120,10 @@ TrialReport try_hours(const DeviceWork& a, const Places& places, Console& consol
         const std::size_t p = static_cast<std::size_t>(part) % places.place.size();
         const haptic::Way way = haptic::kPaintingWays[static_cast<std::size_t>(part) / places.place.size() %
                                                       std::size(haptic::kPaintingWays)];
-        merge(worst, run_trial(tuft, *places.surface[p],
-                               haptic::hand_path(way, places.place[p], tuft.preset, static_cast<std::uint64_t>(part) + 1),
-                               options));
+        merge(worst,
+              run_trial(tuft, *places.surface[p],
+                        haptic::hand_path(way, places.place[p], tuft.preset, static_cast<std::uint64_t>(part) + 1),
+                        options));
         worst.seconds.clear();
     }
     return worst;
@@ -131,8 +134,8 @@ int slowest_stop(const DeviceWork& a, const Places& places) {
     const auto path = haptic::hand_path(haptic::Way::rest, places.place[0], tuft.preset);
     int slowest = 0;
     for (const haptic::Trouble trouble : haptic::kTroubles) {
-        const int periods = haptic::periods_to_stop(tuft, *places.surface[0], path, trial_options(a, tuft.preset),
-                                                    trouble, 2.5);
+        const int periods =
+            haptic::periods_to_stop(tuft, *places.surface[0], path, trial_options(a, tuft.preset), trouble, 2.5);
         if (periods < 0) throw Error("the force of the simulated arm does not end");
         slowest = std::max(slowest, periods);
     }
@@ -158,7 +161,8 @@ haptic::LoopStatus run_loop(const DeviceWork& a, const Places& places) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(a.seconds);
     haptic::SolvedPose pose;
     while (std::chrono::steady_clock::now() < end && !interrupted()) {
-        while (loop.pop(pose)) {}
+        while (loop.pop(pose)) {
+        }
         std::this_thread::sleep_for(20ms);
     }
     loop.stop();
@@ -196,8 +200,10 @@ int test_device(const DeviceWork& a) {
                {"simulated_s", static_cast<double>(ways.periods) * haptic::kPeriod},
                {"contacts", ways.contacts},
                {"unconverged_percent", percent(ways.unconverged, ways.solves)},
-               {"solve_us", {{"p50", 1e6 * quantile(solves, 0.5)}, {"p999", 1e6 * quantile(solves, 0.999)},
-                             {"worst", 1e6 * quantile(solves, 1)}}},
+               {"solve_us",
+                {{"p50", 1e6 * quantile(solves, 0.5)},
+                 {"p999", 1e6 * quantile(solves, 0.999)},
+                 {"worst", 1e6 * quantile(solves, 1)}}},
                {"stop_ms", slowest_stop(a, places)}};
     }
     const haptic::LoopStatus loop = run_loop(a, places);

@@ -13,11 +13,11 @@ namespace tuft::haptic {
 
 /// State of an arm in its own frame, right-handed: x to the right, y away from the person, z up.
 struct DeviceState {
-    double time = 0;             ///< s, when it arrived; clock of the device
-    Vec3 position{0};            ///< m, of the arm's tip
-    Vec3 velocity{0};            ///< m/s
-    Quat rotation{1, 0, 0, 0};   ///< of the grip; unit. The brush points along rotation * (0, 0, −1)
-    std::uint32_t buttons = 0;   ///< one bit each, the first is 1
+    double time = 0;            ///< s, when it arrived; clock of the device
+    Vec3 position{0};           ///< m, of the arm's tip
+    Vec3 velocity{0};           ///< m/s
+    Quat rotation{1, 0, 0, 0};  ///< of the grip; unit. The brush points along rotation * (0, 0, −1)
+    std::uint32_t buttons = 0;  ///< one bit each, the first is 1
 };
 
 /// What the arm shall do, in its own frame, until the next command.

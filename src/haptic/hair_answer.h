@@ -32,16 +32,16 @@ struct RootBound {
 struct HairAnswer {
     static constexpr std::size_t kMostBounds = 12;
 
-    RootPose pose;            ///< that was solved
-    Vec3 force{0};            ///< F, N, of the surface on the tuft, world: `brush::TuftState::force`, paste, proximity
-    Vec3 moment{0};           ///< τ, N·m, of F about the root
-    double stored = 0;        ///< J, elastic energy of hair and contact
-    double distance = 1;      ///< m, from the hair to the surface
-    bool touching = false;    ///< hair touches
-    bool converged = true;    ///< the solve ended within its limits
-    std::size_t n_bounds = 0; ///< of `bounds`
+    RootPose pose;             ///< that was solved
+    Vec3 force{0};             ///< F, N, of the surface on the tuft, world: `brush::TuftState::force`, paste, proximity
+    Vec3 moment{0};            ///< τ, N·m, of F about the root
+    double stored = 0;         ///< J, elastic energy of hair and contact
+    double distance = 1;       ///< m, from the hair to the surface
+    bool touching = false;     ///< hair touches
+    bool converged = true;     ///< the solve ended within its limits
+    std::size_t n_bounds = 0;  ///< of `bounds`
     std::array<RootBound, kMostBounds> bounds;
-    double seconds = 0;       ///< that the solve took
+    double seconds = 0;  ///< that the solve took
 };
 
 /// A pose that was solved, as the stroke takes it.

@@ -14,10 +14,10 @@ namespace tuft::haptic {
 
 struct SolverOptions {
     contact::Options contact;
-    double proximity_force = 0;  ///< N on the hair's scale, rises over the last millimetre before the hair touches
-    double yield_stress = 0;     ///< τ_y, Pa, of paste under the hair
-    double handle_length = 0.15; ///< m, from the ferrule's mouth
-    double ferrule_wall = 5e-4;  ///< m, by which ferrule and handle are thicker than the tuft's root
+    double proximity_force = 0;   ///< N on the hair's scale, rises over the last millimetre before the hair touches
+    double yield_stress = 0;      ///< τ_y, Pa, of paste under the hair
+    double handle_length = 0.15;  ///< m, from the ferrule's mouth
+    double ferrule_wall = 5e-4;   ///< m, by which ferrule and handle are thicker than the tuft's root
 };
 
 class HairSolver {

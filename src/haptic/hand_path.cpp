@@ -35,8 +35,10 @@ Posture posture(Way way, double t, double length) {
     const auto to_depth = [&](double part) { return kAbove + part * length; };
     if (w < 0) return {.height = kAbove};
     switch (way) {
-        case Way::press: return {.height = kAbove - to_depth(0.4) * down_and_up(w, 1.0, 0.4), .lean = 0.1};
-        case Way::press_fast: return {.height = kAbove - to_depth(0.4) * down_and_up(std::fmod(w, 1.0), 0.12, 0.3)};
+        case Way::press:
+            return {.height = kAbove - to_depth(0.4) * down_and_up(w, 1.0, 0.4), .lean = 0.1};
+        case Way::press_fast:
+            return {.height = kAbove - to_depth(0.4) * down_and_up(std::fmod(w, 1.0), 0.12, 0.3)};
         case Way::drag:
             return {.height = kAbove - to_depth(0.25) * smooth_step(w / 0.4),
                     .along = 0.02 * std::sin(2 * pi * 0.5 * w),
@@ -56,7 +58,8 @@ Posture posture(Way way, double t, double length) {
         case Way::rocking:
             return {.height = kAbove - to_depth(0.3) * smooth_step(w / 0.4),
                     .lean = 15 * pi / 180 * std::sin(2 * pi * w) * smooth_step(w)};
-        case Way::rest: return {.height = kAbove - to_depth(0.3) * smooth_step(w / 0.5), .lean = 0.1};
+        case Way::rest:
+            return {.height = kAbove - to_depth(0.3) * smooth_step(w / 0.5), .lean = 0.1};
         case Way::hit: {
             // The root, a tuft's length above the tip, comes down at 0.5 m/s and goes on to 5 mm behind the surface.
             const double fall = std::min(0.5 * std::fmod(w, 1.0), length + kAbove + 5e-3);
@@ -87,8 +90,8 @@ HandPath hand_path(Way way, const TrialPlace& place, const brush::Preset& brush,
     const double length = brush.length, heading = seed ? 2 * pi * uniform(seed, 1) : 0;
     const double faster = seed ? 0.7 + 0.6 * uniform(seed, 2) : 1;
     const Vec3 b = glm::cross(f.n, f.t), t = std::cos(heading) * f.t + std::sin(heading) * b, s = glm::cross(f.n, t);
-    const Vec3 from = f.origin + (seed ? 2e-3 * (uniform(seed, 3) - 0.5) * t + 2e-3 * (uniform(seed, 4) - 0.5) * s
-                                       : Vec3{0});
+    const Vec3 from =
+        f.origin + (seed ? 2e-3 * (uniform(seed, 3) - 0.5) * t + 2e-3 * (uniform(seed, 4) - 0.5) * s : Vec3{0});
     const auto at = [=](double time) {
         const Posture p = posture(way, kAir + (time - kAir) * faster, length);
         const Quat q = glm::angleAxis(p.lean, s) * upright(f.n);
@@ -126,8 +129,7 @@ TrialPlace place_at_edge(const mesh::SurfaceQuery& surface, std::string name, bo
         if (before) {
             const double turn = glm::dot(before->face_normal, hit->face_normal);
             const Vec3 n = before->face_normal + hit->face_normal;
-            const bool convex =
-                glm::dot(hit->position - before->position, hit->face_normal - before->face_normal) > 0;
+            const bool convex = glm::dot(hit->position - before->position, hit->face_normal - before->face_normal) > 0;
             if (turn < sharpest && n.z > 0 && convex == !groove) {
                 sharpest = turn;
                 best = make_frame(0.5 * (before->position + hit->position), glm::normalize(n), Vec3{1, 0, 0});

@@ -26,10 +26,10 @@ using namespace std::chrono_literals;
 
 constexpr auto kRetry = 1000ms, kLook = 20ms;
 constexpr auto kSilence = 2s;
-constexpr auto kFastest = 50us;          // between two messages that are read: 20 kHz
-constexpr int kMostDropped = 1000;       // in a row
-constexpr auto kOldCommand = 20ms;       // after which the servo has fallen silent: no force
-constexpr int kTransportPriority = 21;   // SCHED_FIFO, above the servo's: its work is short
+constexpr auto kFastest = 50us;         // between two messages that are read: 20 kHz
+constexpr int kMostDropped = 1000;      // in a row
+constexpr auto kOldCommand = 20ms;      // after which the servo has fallen silent: no force
+constexpr int kTransportPriority = 21;  // SCHED_FIFO, above the servo's: its work is short
 
 struct TimedCommand {
     DeviceCommand command;

@@ -102,9 +102,9 @@ std::string haply_state_text(const HaplyState& state) {
     const DeviceState& s = state.state;
     Json buttons;
     for (std::size_t i = 0; i < kButtons.size(); ++i) buttons[kButtons[i]] = (s.buttons >> i & 1) != 0;
-    const Json arm = {{"device_id", state.device},
-                      {"state", {{"cursor_position", vector_json(s.position)},
-                                 {"cursor_velocity", vector_json(s.velocity)}}}};
+    const Json arm = {
+        {"device_id", state.device},
+        {"state", {{"cursor_position", vector_json(s.position)}, {"cursor_velocity", vector_json(s.velocity)}}}};
     const Json turn = {{"w", s.rotation.w}, {"x", s.rotation.x}, {"y", s.rotation.y}, {"z", s.rotation.z}};
     const Json grip = {{"device_id", state.device + "-grip"}, {"state", {{"orientation", turn}, {"buttons", buttons}}}};
     return Json{{"inverse3", Json::array({arm})}, {"wireless_verse_grip", Json::array({grip})}}.dump();

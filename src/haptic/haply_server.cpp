@@ -109,8 +109,8 @@ class Client {
                 if (error) end();
             });
         }
-        const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
-            flood ? 1e-6 : 1 / options_.rate));
+        const auto period = std::chrono::duration_cast<Clock::duration>(
+            std::chrono::duration<double>(flood ? 1e-6 : 1 / options_.rate));
         due_ = std::max(due_ + period, Clock::now() - 10 * period);
         timer_.expires_at(due_);
         timer_.async_wait([this](beast::error_code error) {

@@ -7,17 +7,19 @@ namespace tuft::haptic {
 namespace {
 
 constexpr double T = kPeriod;
-constexpr double kRootMass = 0.02;         // m, kg
-constexpr double kVelocityTime = 4e-3;     // s, of the low-pass of v_x: B count / T would be 0.3 N of noise
-constexpr double kFadeStiffness = 1000;    // N/m
-constexpr double kFadeFree = 0.01;         // N that g may jump in a period
-constexpr double kFadeRate = 0.06;         // N by which the offset falls in a period
-constexpr double kRestoreTime = 0.15;      // s
-constexpr double kTankFull = 30e-6;        // e_0, J
-constexpr double kEmpty = 2e-6;            // J
-constexpr double kMostLent = 1e-4;         // J that friction pays in a contact
-constexpr double kMostAcceleration = 60;   // m/s², of a hand
-constexpr double kFree = 1e-3;             // N below which a force is none
+constexpr double kRootMass = 0.02;        // m, kg
+constexpr double kVelocityTime = 4e-3;    // s, of the low-pass of v_x: B count / T would be 0.3 N of noise
+constexpr double kFadeStiffness = 1000;   // N/m
+constexpr double kFadeFree = 0.01;        // N that g may jump in a period
+constexpr double kFadeRate = 0.06;        // N by which the offset falls in a period
+constexpr double kRestoreTime = 0.15;     // s
+constexpr double kTankFull = 30e-6;       // e_0, J
+constexpr double kTankStiffness = 1.25;   // of K: what a full spring gives is never held back
+constexpr double kMostDelayed = 12;       // periods
+constexpr double kEmpty = 2e-6;           // J
+constexpr double kMostLent = 1e-4;        // J that friction pays in a contact
+constexpr double kMostAcceleration = 60;  // m/s², of a hand
+constexpr double kFree = 1e-3;            // N below which a force is none
 
 /// `v` no longer than `most`.
 Vec3 limited(const Vec3& v, double most) {
@@ -72,6 +74,11 @@ Held hold_to_bounds(const LawOptions& options, const HairAnswer& hair, Vec3& roo
     return held;
 }
 
+/// The force that was sent i periods ago, from 1 on.
+const Vec3& sent(const LawState& s, std::size_t i) {
+    return s.sent[(s.n_sent + s.sent.size() - i) % s.sent.size()];
+}
+
 /// Step 6 before the force of this period: what the last one has given.
 void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
     const double count = options.limits.count * options.scale;
@@ -80,7 +87,10 @@ void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
     if (size > count) {
         const Vec3 moved = off * (1 - count / size);
         s.played += moved;
-        s.tank -= glm::dot(s.force, moved);
+        // With a delay that is not known to a period, the worse of two.
+        double taken = glm::dot(sent(s, s.delayed + 1), moved);
+        if (s.delayed > 0) taken = std::max(taken, glm::dot(sent(s, s.delayed + 2), moved));
+        s.tank -= taken;
         // Friction of the arm pays where the tank is empty: it would lock at no force.
         const double paid = std::min(0.5 * options.limits.friction * glm::length(moved), kMostLent - s.lent);
         if (s.tank < kEmpty && paid > 0) {
@@ -89,6 +99,26 @@ void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
         }
     }
     s.tank -= glm::dot(s.moment, turn_between(s.rotation, in.rotation));
+}
+
+/// k, N/m.
+double tank_stiffness(const LawOptions& options) {
+    return std::min(options.limits.max_stiffness / options.scale, kTankStiffness * coupling_of(options));
+}
+
+/// Step 6: the greatest force along `u` that the tank lets out.
+double most_force(const LawOptions& options, const LawState& s, const Vec3& moved, const Vec3& u) {
+    const double tank = std::max(0.0, s.tank);
+    const double k = tank_stiffness(options);
+    const double count = options.limits.count * options.scale;
+    double pending = 0;  // what forces on their way will take, if the hand goes on
+    for (std::size_t i = 1; i <= s.delayed; ++i) pending += std::max(0.0, glm::dot(sent(s, i), moved));
+    const double left = std::max(0.0, tank - pending);
+    // The way along the force that the hand can make while it acts.
+    const double ahead = glm::dot(moved, u) + kMostAcceleration * T * T * static_cast<double>(1 + s.delayed) + count;
+    if (ahead <= 0) return std::sqrt(2 * k * left) - k * ahead;  // against it, the tank only fills
+    if (left < k * ahead * ahead) return left / ahead;
+    return std::sqrt(2 * k * left - k * k * ahead * ahead);
 }
 
 }  // namespace
@@ -117,6 +147,7 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     if (!s.started) restart_law(s, in.arm, in.rotation);
     const double K = coupling_of(options), B = 2 * std::sqrt(K * kRootMass), m = kRootMass;
     const Vec3 moved = in.arm - s.arm;
+    s.delayed = static_cast<std::size_t>(std::clamp(std::ceil(options.delay / T - 1e-9), 0.0, kMostDelayed));
     settle_tank(options, s, in);
     s.arm_velocity += (moved / T - s.arm_velocity) * (1 - std::exp(-T / kVelocityTime));
     s.arm = in.arm;
@@ -148,18 +179,17 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
         s.restored *= 1 - T / kRestoreTime;
     }
     const double stored = in.hair ? gain * in.hair->stored : 0;
-    s.tank = std::min(s.tank, kTankFull + stored + s.coupled);
+    s.tank = std::min(s.tank, kTankFull + stored + s.coupled);  // what the hair lost is not kept for later
     LawOutput out{.root = root, .hard = held.hard};
     const double size = glm::length(f);
     if (size > 0) {
-        // The way along the force that the hand can make in the next period; against it, the tank only fills.
-        const double ahead = glm::dot(moved, f) / size + kMostAcceleration * T * T, count = options.limits.count;
-        const double most = std::max(0.0, s.tank) / (std::max(0.0, ahead) + count * options.scale);
-        out.limited = size > most && ahead + count * options.scale > 0;
+        const double most = most_force(options, s, moved, f / size);
+        out.limited = size > most;
         if (out.limited) f = limited(f, most);
     }
     const double kept = wanted > 0 ? glm::length(f) / wanted : in.pass;
     s.force = f;
+    s.sent[s.n_sent++ % s.sent.size()] = f;
     s.moment = in.hair ? kept * (gain * in.hair->moment + held.moment) : Vec3{0};
     out.force = f;
     if (options.limits.max_torque > 0) out.torque = limited(s.moment, options.limits.max_torque);

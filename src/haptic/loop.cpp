@@ -37,7 +37,8 @@ class Semaphore {
     Semaphore& operator=(const Semaphore&) = delete;
     void post() { ::sem_post(&sem_); }
     void wait() {
-        while (::sem_wait(&sem_) != 0) {}
+        while (::sem_wait(&sem_) != 0) {
+        }
     }
     bool wait_until(std::int64_t ns) {
         const timespec until = timespec_of(ns);
@@ -110,8 +111,7 @@ struct Loop::State {
     LoopStatus seen;
     bool locked = false;
 
-    State(Device& d, HairSolver s, const LoopOptions& o)
-        : device(d), solver(std::move(s)), options(o), servo(o.law) {}
+    State(Device& d, HairSolver s, const LoopOptions& o) : device(d), solver(std::move(s)), options(o), servo(o.law) {}
     void run_servo();
     void run_solver();
     void run_record();

@@ -32,7 +32,7 @@ struct LatenessHistogram {
 struct LoopOptions {
     LawOptions law;
     int servo_priority = 20, solver_priority = 10;  ///< SCHED_FIFO; 0: as other threads
-    bool record = false;  ///< keeps each period for `take_recording`
+    bool record = false;                            ///< keeps each period for `take_recording`
     /// Returns how much memory the calling thread has allocated so far, in calls; null: not counted.
     std::uint64_t (*count_allocations)() = nullptr;
 };
@@ -45,10 +45,10 @@ struct LoopStatus {
     bool engaged = false, hard = false;
     Fault fault = Fault::none;
     double pass = 0;
-    Vec3 force{0};             ///< N, on the hand, world
-    Vec3 root{0};              ///< m, world
+    Vec3 force{0};  ///< N, on the hand, world
+    Vec3 root{0};   ///< m, world
     Quat rotation{1, 0, 0, 0};
-    Vec3 device{0};            ///< m, arm's frame
+    Vec3 device{0};  ///< m, arm's frame
     std::uint32_t buttons = 0;
     std::uint64_t periods = 0, late_solves = 0, solves = 0, lost_poses = 0, unconverged = 0;
     std::uint64_t allocations = 0;  ///< of the servo's thread since its first period

@@ -20,12 +20,18 @@ bool is_finite(const Vec3& v) {
 
 Message describe(Fault fault) {
     switch (fault) {
-        case Fault::not_finite: return "the arm sent a position that is no number";
-        case Fault::jump: return "the arm's position jumped";
-        case Fault::silence: return "the arm has stopped sending its position";
-        case Fault::paused: return "forces are paused";
-        case Fault::emergency: return "forces were stopped by the emergency key";
-        case Fault::none: break;
+        case Fault::not_finite:
+            return "the arm sent a position that is no number";
+        case Fault::jump:
+            return "the arm's position jumped";
+        case Fault::silence:
+            return "the arm has stopped sending its position";
+        case Fault::paused:
+            return "forces are paused";
+        case Fault::emergency:
+            return "forces were stopped by the emergency key";
+        case Fault::none:
+            break;
     }
     return {};
 }

@@ -25,9 +25,9 @@ Message describe(Fault fault);
 double trust_at_age(std::uint64_t periods);
 
 struct Verdict {
-    bool engaged = false;   ///< the law runs
-    bool restart = false;   ///< and begins here, in the air
-    double pass = 0;        ///< of the force, 0–1
+    bool engaged = false;       ///< the law runs
+    bool restart = false;       ///< and begins here, in the air
+    double pass = 0;            ///< of the force, 0–1
     Fault fault = Fault::none;  ///< why it is less than 1, beside the ramp
 };
 

@@ -8,8 +8,8 @@
 namespace tuft::haptic {
 namespace {
 
-constexpr double kFelt = 0.02;             // N
-constexpr std::uint64_t kAfterHard = 10;   // periods in which a blow of the ferrule dies away
+constexpr double kFelt = 0.02;            // N
+constexpr std::uint64_t kAfterHard = 10;  // periods in which a blow of the ferrule dies away
 
 /// Energies of one contact after the other.
 struct Judge {

@@ -51,18 +51,18 @@ struct TrialOptions {
 /// Extremes over a trial. Energies are those that flow truly: of the force as the hand has it, over the true way of
 /// the arm. Each contact counts from its own beginning: over an hour the arm's friction would hide anything.
 struct TrialReport {
-    double least_energy = 0;      ///< J, port + wrist
-    double least_with_arm = 0;    ///< J, port + wrist + losses of the arm
-    double largest_step = 0;      ///< N, of |Δf| in a period beyond k_max |Δx|, with hair alone
-    double largest_step_hard = 0; ///< N, the same while ferrule or handle is on the surface, or 10 ms after
-    double largest_force = 0;     ///< N
-    double deepest = 0;           ///< m, of the arm behind the root while it is held on the surface
+    double least_energy = 0;       ///< J, port + wrist
+    double least_with_arm = 0;     ///< J, port + wrist + losses of the arm
+    double largest_step = 0;       ///< N, of |Δf| in a period beyond k_max |Δx|, with hair alone
+    double largest_step_hard = 0;  ///< N, the same while ferrule or handle is on the surface, or 10 ms after
+    double largest_force = 0;      ///< N
+    double deepest = 0;            ///< m, of the arm behind the root while it is held on the surface
     std::size_t periods = 0, solves = 0, unconverged = 0, limited = 0, contacts = 0;
-    std::vector<float> seconds;   ///< of each solve
-    std::uint64_t hash = 0;       ///< of all forces
-    std::vector<Vec3> forces;     ///< N, on the hand, one per period
+    std::vector<float> seconds;  ///< of each solve
+    std::uint64_t hash = 0;      ///< of all forces
+    std::vector<Vec3> forces;    ///< N, on the hand, one per period
     std::vector<SolvedPose> roots;
-    Vec3 last_hair{0};            ///< N, of the hair at the end
+    Vec3 last_hair{0};  ///< N, of the hair at the end
 };
 
 TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,

@@ -16,7 +16,8 @@ struct Workspace {
     /// A force is not scaled: the stiffness is, see `coupling_of`.
     Vec3 to_device(const Vec3& force) const { return glm::conjugate(rotation) * force; }
     Vec3 place_in_device(const Vec3& world) const { return glm::conjugate(rotation) * (world - offset) / scale; }
-    /// The same space, shifted so that the arm at `device` is at `world`: the end of a clutch, or of a turn of the view.
+    /// The same space, shifted so that the arm at `device` is at `world`: the end of a clutch, or of a turn of the
+    /// view.
     Workspace regripped(const Vec3& device, const Vec3& world) const {
         Workspace w = *this;
         w.offset += world - to_world(device);

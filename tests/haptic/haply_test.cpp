@@ -1,3 +1,5 @@
+#include "haptic/haply.h"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -7,7 +9,6 @@
 #include <thread>
 
 #include "felt.h"
-#include "haptic/haply.h"
 #include "haptic/haply_messages.h"
 #include "haptic/loop.h"
 #include "haptic/strokes.h"
@@ -56,13 +57,20 @@ TEST(HaplyMessages, AMessageOfTheServiceIsUnderstood) {
 
 TEST(HaplyMessages, WhatIsNoStateIsRefusedAndChangesNothing) {
     const std::string whole = haply_state_text(some_state());
-    std::vector<std::string> broken{"", "{", "[]", "null", "{}", R"({"inverse3":[]})", R"({"inverse3":{}})",
+    std::vector<std::string> broken{"",
+                                    "{",
+                                    "[]",
+                                    "null",
+                                    "{}",
+                                    R"({"inverse3":[]})",
+                                    R"({"inverse3":{}})",
                                     R"({"inverse3":[{"state":{"cursor_position":{"x":NaN,"y":0,"z":0}}}]})",
                                     R"({"inverse3":[{"state":{"cursor_position":{"x":1e999,"y":0,"z":0}}}]})",
                                     R"({"inverse3":[{"state":{"cursor_position":{"x":1e9,"y":0,"z":0}}}]})",
                                     R"({"inverse3":[{"state":{"cursor_position":{"x":"1","y":0,"z":0}}}]})",
                                     R"({"inverse3":[{"state":{"cursor_position":[0,0,0]}}]})",
-                                    std::string(50000, '['), std::string(70000, ' ') + whole};
+                                    std::string(50000, '['),
+                                    std::string(70000, ' ') + whole};
     for (std::size_t cut = 1; cut < whole.size(); cut += 7) broken.push_back(whole.substr(0, cut));
     for (const std::string& text : broken) {
         HaplyState read = some_state();
@@ -104,10 +112,10 @@ struct Server {
 
 /// What a session over the wire did.
 struct Session {
-    bool felt = false;       ///< there was force
-    std::size_t strokes = 0; ///< that began and ended
+    bool felt = false;        ///< there was force
+    std::size_t strokes = 0;  ///< that began and ended
     std::size_t poses = 0;
-    double left = -1;        ///< N, on the simulated arm at the end
+    double left = -1;  ///< N, on the simulated arm at the end
     LoopStatus status;
 };
 
@@ -148,8 +156,8 @@ Session paint_over_the_wire(ServerFault fault) {
 }
 
 TEST(Haply, AStrokeIsKeptAndNoForceIsLeftWhateverTheServerDoes) {
-    for (const ServerFault fault : {ServerFault::none, ServerFault::dies, ServerFault::not_a_number,
-                                    ServerFault::jumps, ServerFault::silent, ServerFault::floods}) {
+    for (const ServerFault fault : {ServerFault::none, ServerFault::dies, ServerFault::not_a_number, ServerFault::jumps,
+                                    ServerFault::silent, ServerFault::floods}) {
         SCOPED_TRACE(static_cast<int>(fault));
         const Session session = paint_over_the_wire(fault);
         EXPECT_TRUE(session.felt);

@@ -1,8 +1,8 @@
+#include "haptic/law.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "haptic/law.h"
 
 namespace tuft::haptic {
 namespace {

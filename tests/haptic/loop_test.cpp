@@ -1,3 +1,5 @@
+#include "haptic/loop.h"
+
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -9,7 +11,6 @@
 #include "felt.h"
 #include "haptic/allocations.h"
 #include "haptic/exchange.h"
-#include "haptic/loop.h"
 
 namespace tuft::haptic {
 namespace {
@@ -53,10 +54,10 @@ TEST(Exchange, AQueueKeepsTheOrderAndCountsWhatDoesNotFit) {
 struct Live {
     Felt f = felt("sheet");
     brush::Tuft tuft = tuft_of("wolf-small");
-    SimulatedDevice device{
-        SimulatedArm(device_preset("inverse3"), hand_path(Way::drag, f.place, tuft.preset))};
+    SimulatedDevice device{SimulatedArm(device_preset("inverse3"), hand_path(Way::drag, f.place, tuft.preset))};
     LawOptions law{.limits = device_preset("inverse3")};
-    Loop loop{device, HairSolver(tuft, *f.surface),
+    Loop loop{device,
+              HairSolver(tuft, *f.surface),
               {.law = law, .record = true, .count_allocations = allocations_of_this_thread}};
 };
 
@@ -90,7 +91,8 @@ TEST(Loop, ARecordedSessionGivesTheSameForcesWhenItIsPlayedAgain) {
     for (int i = 0; i < 25; ++i) {
         std::this_thread::sleep_for(100ms);
         SolvedPose pose;
-        while (live.loop.pop(pose)) {}
+        while (live.loop.pop(pose)) {
+        }
     }
     live.loop.stop();
     const std::vector<RecordedPeriod> periods = live.loop.take_recording();

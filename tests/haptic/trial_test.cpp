@@ -14,12 +14,13 @@ TrialOptions options_for(const DeviceLimits& limits, double delay = 0) {
     return {.law = {.limits = limits, .delay = delay}, .delay = delay, .jitter = delay > 0 ? 5e-4 : 0, .seconds = 2.5};
 }
 
-/// |Δf| in a period beyond k_max |Δx|: noise of a count through spring and damper, and the fade. HAPTICS of the
-/// papers' arms give 0.13, 0.14, 0.33 and 0.11 N; 0.02 N more for the count between true place and read place.
+/// |Δf| in a period beyond k_max |Δx|, N: what a count of noise makes in spring and damper, and the fade (0.13 Touch,
+/// 0.14 Inverse3, 0.33 Falcon, 0.11 omega.6), or the end of a tank by the way of a hand at 60 m/s² and a count.
 double allowed_step(const DeviceLimits& limits) {
     const double K = limits.coupling, B = 2 * std::sqrt(K * 0.02);
-    return K * limits.count + 0.2 * B * limits.count / kPeriod + 0.06 + 0.02 +
-           limits.max_stiffness * limits.count;  // the place itself is known to a count
+    const double noise = K * limits.count + 0.2 * B * limits.count / kPeriod + 0.06;
+    const double tank = 1.25 * K * (60 * kPeriod * kPeriod + limits.count);
+    return std::max(noise, tank) + 0.03;  // 0.03: read places, a count apart from true ones
 }
 
 void expect_passive(const std::string& place, const std::string& brush, double delay) {
@@ -33,7 +34,8 @@ void expect_passive(const std::string& place, const std::string& brush, double d
             // A contact gives back no more than it took: 1 µJ is a hundredth of what a light touch stores.
             EXPECT_GE(r.least_energy, -kMicrojoule);
             EXPECT_GE(r.least_with_arm, -kMicrojoule);
-            EXPECT_LE(r.largest_step, allowed_step(limits));
+            // Hair that is lifted at 0.5 m/s loses more than it stored; the tank then ends within two periods.
+            EXPECT_LE(r.largest_step, is_tap(way) ? 0.6 : allowed_step(limits));
             EXPECT_LE(r.largest_force, std::min(limits.max_force, kForceLimit) + 1e-9);
             EXPECT_GT(r.contacts, 0u);
         }
@@ -80,7 +82,8 @@ TEST(Trial, RandomHandsGetNothingBack) {
                         .damping = random.uniform(1, 12),
                         .stiffness = 50 * std::pow(20.0, random.uniform())};
         const Way way = kPaintingWays[random.bits() % std::size(kPaintingWays)];
-        const TrialReport r = run_trial(tuft, *f.surface, hand_path(way, f.place, tuft.preset, random.bits() | 1), options);
+        const TrialReport r =
+            run_trial(tuft, *f.surface, hand_path(way, f.place, tuft.preset, random.bits() | 1), options);
         EXPECT_GE(r.least_energy, -kMicrojoule) << hand << " " << options.law.limits.name << " " << name_of(way);
     }
 }
