@@ -2,7 +2,7 @@
 # Needs Debian 12 (or a system with the same packages); uses sudo when not root.
 
 packages_build=(build-essential cmake ninja-build pkg-config git ccache gettext
-  libopenmesh-dev libcgal-dev libeigen3-dev libembree-dev libtbb-dev libglm-dev
+  libboost-dev libopenmesh-dev libcgal-dev libeigen3-dev libembree-dev libtbb-dev libglm-dev
   libopenimageio-dev openimageio-tools libtinygltf-dev libsqlite3-dev libsqlitecpp-dev
   libzstd-dev zlib1g-dev libxxhash-dev libpugixml-dev libassimp-dev libpolyclipping-dev libtomlplusplus-dev libcli11-dev libfmt-dev
   nlohmann-json3-dev libstb-dev libbenchmark-dev

@@ -19,6 +19,7 @@ atlas/flatten
 atlas/pack
 atlas/charts
 atlas/unwrap atlas/texels contact
+haptic
 footprint/outline
 footprint/stamp
 ink

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cmath>
 #include <iostream>
-#include <optional>
 
 #include "brush/preset/preset.h"
+#include "cli/options.h"
 #include "cli/reference.h"
 #include "core/error.h"
 #include "core/geometry/bounds.h"
@@ -20,12 +19,6 @@
 #include "stroke/drawing/free_area.h"
 #include "stroke/journal/recorded_stroke.h"
 
-// What help and manual call the value of an option that is a path.
-template <>
-constexpr const char* CLI::detail::type_name<std::filesystem::path>() {
-    return "FILE";
-}
-
 namespace tuft::cli {
 namespace {
 
@@ -34,16 +27,6 @@ constexpr std::size_t kLongestMessage = 600;  // bytes
 constexpr double kMostTexels = 1e9;           // along a side; memory is asked about later
 constexpr double kLeastTexelMm = 1e-9;
 constexpr double kMostDegrees = 36000;  // a hundred turns
-
-/// The whole of `text` as a finite number; nothing for anything else.
-std::optional<double> number_of(const std::string& text) {
-    double value = 0;
-    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-    const char* end = text.data() + text.size();
-    const auto [last, error] = std::from_chars(begin, end, value);
-    if (error != std::errc{} || last != end || !std::isfinite(value)) return std::nullopt;
-    return value;
-}
 
 /// "A,B[,C]" into numbers within ±`most`; empty when it is anything else.
 std::vector<double> numbers(const std::string& text, char separator, std::size_t count, double most) {
@@ -57,23 +40,6 @@ std::vector<double> numbers(const std::string& text, char separator, std::size_t
     }
     if (values.size() != count || text.ends_with(separator)) values.clear();
     return values;
-}
-
-/// Checks every number of the command line: finite, and from `lo` to `hi`, which the help calls `name`.
-CLI::Validator number_in(double lo, double hi, const std::string& name = {}) {
-    return CLI::Validator(
-        [lo, hi](std::string& text) -> std::string {
-            const std::optional<double> value = number_of(text);
-            if (value && *value >= lo && *value <= hi) return {};
-            return fmt::format("'{}' is not a number from {:g} to {:g}", excerpt(text), lo, hi);
-        },
-        name.empty() ? fmt::format("{:g} to {:g}", lo, hi) : name);
-}
-
-void add_common(CLI::App* app, Common& c) {
-    app->add_option("--threads", c.threads, "threads to use (0: one per core)")->check(number_in(0, 1024));
-    app->add_flag("--json", c.json, "print one JSON object on standard output");
-    app->add_flag("--quiet", c.quiet, "no progress, no notes");
 }
 
 void add_store(CLI::App* app, Surface& s) {
@@ -543,6 +509,9 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     add_store(n, bench.surface);
     add_common(n, bench.common);
 
+    DeviceWork device;
+    add_device(app, device);
+
     name_presets(app);
     if (argc == 3 && std::string_view(argv[1]) == "--reference") {  // when the program is built
         write_manual(manual_of(app), argv[2]);
@@ -592,6 +561,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         command = mask;
     else if (inks->parsed())
         command = ink;
+    else if (!device.what.empty())
+        command = device;
     else
         command = bench;
     return true;

@@ -213,8 +213,29 @@ struct Bench {
     Common common;
 };
 
+/// `tuft device list | simulate | test | record`
+struct DeviceWork {
+    std::string what;                 ///< list | simulate | test | record
+    std::string preset = "inverse3";  ///< of the arm that is spoken to or simulated
+    std::string simulate;             ///< preset to simulate in this process; empty: the arm at `host`
+    std::string host = "127.0.0.1";
+    int port = 10001;
+    double seconds = 10;
+    std::string brush = "wolf-medium";
+    std::filesystem::path model;  ///< empty: the shipped bowl
+    std::string way = "circles";  ///< of the simulated hand
+    std::string fault = "none";   ///< of the simulated server, after `fault_after` seconds
+    double fault_after = 3;
+    double delay_ms = 0;
+    int hands = 0;     ///< random hands beside the tests
+    double hours = 0;  ///< simulated, one hand
+    bool all_brushes = false, restore = false;
+    std::filesystem::path output, replay;
+    Common common;
+};
+
 using Command = std::variant<Paint, Inspect, Unwrap, Replay, Export, Render, Brush, BiasCorrection, Bench, LayerWork,
-                             FillWork, MaskWork, InkWork>;
+                             FillWork, MaskWork, InkWork, DeviceWork>;
 
 /// Parses the command line into `command`. Returns false, with the exit status in `status`, when there is nothing to
 /// run: after printing help or version (0), and after one line on standard error for a wrong command line (2). Main

@@ -21,5 +21,6 @@ int run(const LayerWork& arguments);
 int run(const FillWork& arguments);
 int run(const MaskWork& arguments);
 int run(const InkWork& arguments);
+int run(const DeviceWork& arguments);
 
 }  // namespace tuft::cli

@@ -35,16 +35,14 @@ NodeContact find_root_contact(const Step& w, const Memory& memory, double length
     return find_node_contact(w.surface, {root, from, known ? memory.side : 1}, w.search);
 }
 
-/// Moves the ferrule's mouth off the surface that it would go through: by `pad` where the surface lies before it,
-/// to the surface where it lies beside it. Returns how far it would be below the surface, metres.
+/// Moves the ferrule's mouth off the surface that it would go through, by `mouth_clearance`. Returns how far it would
+/// be below the surface, metres.
 double move_off_surface(Step& w) {
-    constexpr double kBeside = 0.2, kBefore = 0.5;  // cosines of the normal to the handle
     constexpr int kPasses = 4;
     const double inside = std::max(0.0, -w.root.height);
     for (int pass = 0; pass < kPasses && w.root.triangle != kNone; ++pass) {
         const Vec3& n = w.root.plane.normal;
-        const double before = smooth_step((-glm::dot(n, w.pose.axis()) - kBeside) / (kBefore - kBeside));
-        const double needed = before * w.pad - w.root.height;
+        const double needed = mouth_clearance(n, w.pose.axis(), w.pad) - w.root.height;
         if (needed <= w.search.lift) break;
         w.pose.position += needed * n;
         w.root = find_node_contact(w.surface, {w.pose.position, w.root.outside, w.root.side}, w.search);
@@ -401,8 +399,7 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
         1.2 * preset.radius * std::max(1.0, preset.flatten_max) + 0.5 * preset.width / std::max(1, preset.spines);
     const bool near = overlap(obb_of(nodes, thick + options.tolerance), obb_of(surface.mesh().bounds));
 
-    Step w{surface, input.pose, options, {}, preset.radius, 0.5 * preset.radius, 0, {}};
-    if (brush::is_foam(preset)) w.pad = 0.04 * preset.length;
+    Step w{surface, input.pose, options, {}, preset.radius, ferrule_pad(preset), 0, {}};
     w.search.reach = 2 * preset.length + thick + preset.width;
     w.near = 1.2 * preset.radius + options.tolerance + 1e-3;
     if (near) {
@@ -429,6 +426,15 @@ Result take_step(brush::Tuft& tuft, const mesh::SurfaceQuery& surface, Memory& m
 }
 
 }  // namespace
+
+double ferrule_pad(const brush::Preset& preset) {
+    return brush::is_foam(preset) ? 0.04 * preset.length : 0.5 * preset.radius;
+}
+
+double mouth_clearance(const Vec3& n, const Vec3& axis, double pad) {
+    constexpr double kBeside = 0.2, kBefore = 0.5;  // cosines of the normal to the handle
+    return pad * smooth_step((-glm::dot(n, axis) - kBeside) / (kBefore - kBeside));
+}
 
 Result step(brush::Tuft& tuft, const brush::Pose& pose, const mesh::SurfaceQuery& surface, Memory& memory, double dt,
             const Options& options) {

@@ -60,6 +60,13 @@ struct Result {
     EffectivePatch patch;  ///< Method::vertices: vertices the projection plane is made from
 };
 
+/// Returns the thickness, m, of hair or foam that is pressed flat under the ferrule.
+double ferrule_pad(const brush::Preset& preset);
+
+/// Returns the least height, m, of the ferrule's mouth over a surface with normal `n` for a tuft whose rest axis is
+/// `axis`: `pad`, which is pressed flat, where the surface lies before the mouth, 0 where it lies beside it.
+double mouth_clearance(const Vec3& n, const Vec3& axis, double pad);
+
 /// Moves the brush to `pose`, finds the contact plane of every node and bends the tuft against the planes. The
 /// result is always finite. `dt` is in seconds since the last step. Throws `Error` for a pose that `brush::step`
 /// rejects. Cost: 50–200 µs.

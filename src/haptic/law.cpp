@@ -1,0 +1,199 @@
+#include "haptic/law.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tuft::haptic {
+namespace {
+
+constexpr double T = kPeriod;
+constexpr double kRootMass = 0.02;        // m, kg
+constexpr double kVelocityTime = 4e-3;    // s, of the low-pass of v_x: B count / T would be 0.3 N of noise
+constexpr double kFadeStiffness = 1000;   // N/m
+constexpr double kFadeFree = 0.01;        // N that g may jump in a period
+constexpr double kFadeRate = 0.06;        // N by which the offset falls in a period
+constexpr double kRestoreTime = 0.15;     // s
+constexpr double kTankFull = 30e-6;       // e_0, J
+constexpr double kTankStiffness = 1.25;   // of K: what a full spring gives is never held back
+constexpr double kMostDelayed = 12;       // periods
+constexpr double kEmpty = 2e-6;           // J
+constexpr double kMostLent = 1e-4;        // J that friction pays in a contact
+constexpr double kMostAcceleration = 60;  // m/s², of a hand
+constexpr double kFree = 1e-3;            // N below which a force is none
+
+/// `v` no longer than `most`.
+Vec3 limited(const Vec3& v, double most) {
+    const double size = glm::length(v);
+    return size > most ? v * (most / size) : v;
+}
+
+/// Step 2.
+Vec3 fade(const LawOptions& options, LawState& s, const Vec3& g, double moved) {
+    const Vec3 jump = g - s.hair_force;
+    const double size = glm::length(jump), old = glm::length(s.offset);
+    const double allowed = std::min(options.limits.max_stiffness / options.scale, kFadeStiffness) * moved + kFadeFree;
+    s.offset = old > kFadeRate ? s.offset * (1 - kFadeRate / old) : Vec3{0};
+    if (size > allowed) s.offset -= jump * (1 - allowed / size);
+    s.hair_force = g;
+    return g + s.offset;
+}
+
+/// Keeps root and velocity to the free side of all bounds. Returns the moment of what holds them, about the root.
+struct Held {
+    Vec3 moment{0};
+    bool hard = false;
+};
+
+Held hold_to_bounds(const LawOptions& options, const HairAnswer& hair, Vec3& root, Vec3& velocity) {
+    constexpr int kPasses = 4;  // bounds of a corner or a gap push each other's way
+    Held held;
+    for (int pass = 0; pass < kPasses; ++pass) {
+        bool moved = false;
+        for (std::size_t i = 0; i < hair.n_bounds; ++i) {
+            const RootBound& b = hair.bounds[i];
+            const double miss = b.height - glm::dot(b.normal, root);
+            if (miss <= 0) continue;
+            root += miss * b.normal;
+            const double into = -glm::dot(b.normal, velocity);
+            if (into > 0) {
+                velocity += into * b.normal;
+                const double sliding = glm::length(velocity), stopped = options.hard_friction * into;
+                Vec3 impulse = into * b.normal;
+                if (sliding > 1e-12) {
+                    const Vec3 drag = velocity * (std::min(stopped, sliding) / sliding);
+                    velocity -= drag;
+                    root -= T * drag;
+                    impulse -= drag;
+                }
+                held.moment += glm::cross(b.lever, impulse * (kRootMass / T));
+            }
+            moved = held.hard = true;
+        }
+        if (!moved) break;
+    }
+    return held;
+}
+
+/// The force that was sent i periods ago, from 1 on.
+const Vec3& sent(const LawState& s, std::size_t i) {
+    return s.sent[(s.n_sent + s.sent.size() - i) % s.sent.size()];
+}
+
+/// Step 6 before the force of this period: what the last one has given.
+void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
+    const double count = options.limits.count * options.scale;
+    const Vec3 off = in.arm - s.played;
+    const double size = glm::length(off);
+    if (size > count) {
+        const Vec3 moved = off * (1 - count / size);
+        s.played += moved;
+        // With a delay that is not known to a period, the worse of two.
+        double taken = glm::dot(sent(s, s.delayed + 1), moved);
+        if (s.delayed > 0) taken = std::max(taken, glm::dot(sent(s, s.delayed + 2), moved));
+        s.tank -= taken;
+        // Friction of the arm pays where the tank is empty: it would lock at no force.
+        const double paid = std::min(0.5 * options.limits.friction * glm::length(moved), kMostLent - s.lent);
+        if (s.tank < kEmpty && paid > 0) {
+            s.tank += paid;
+            s.lent += paid;
+        }
+    }
+    s.tank -= glm::dot(s.moment, turn_between(s.rotation, in.rotation));
+}
+
+/// k, N/m.
+double tank_stiffness(const LawOptions& options) {
+    return std::min(options.limits.max_stiffness / options.scale, kTankStiffness * coupling_of(options));
+}
+
+/// Step 6: the greatest force along `u` that the tank lets out.
+double most_force(const LawOptions& options, const LawState& s, const Vec3& moved, const Vec3& u) {
+    const double tank = std::max(0.0, s.tank);
+    const double k = tank_stiffness(options);
+    const double count = options.limits.count * options.scale;
+    double pending = 0;  // what forces on their way will take, if the hand goes on
+    for (std::size_t i = 1; i <= s.delayed; ++i) pending += std::max(0.0, glm::dot(sent(s, i), moved));
+    const double left = std::max(0.0, tank - pending);
+    // The way along the force that the hand can make while it acts.
+    const double ahead = glm::dot(moved, u) + kMostAcceleration * T * T * static_cast<double>(1 + s.delayed) + count;
+    if (ahead <= 0) return std::sqrt(2 * k * left) - k * ahead;  // against it, the tank only fills
+    if (left < k * ahead * ahead) return left / ahead;
+    return std::sqrt(2 * k * left - k * k * ahead * ahead);
+}
+
+}  // namespace
+
+double coupling_of(const LawOptions& options) {
+    return coupling_for_delay(options.limits, options.delay) / options.scale;
+}
+
+Vec3 turn_between(const Quat& before, const Quat& now) {
+    Quat turn = now * glm::conjugate(before);
+    if (turn.w < 0) turn = -turn;
+    const Vec3 v{turn.x, turn.y, turn.z};
+    const double s = glm::length(v);
+    return s > 1e-12 ? v * (2 * std::atan2(s, turn.w) / s) : 2.0 * v;
+}
+
+void restart_law(LawState& state, const Vec3& arm, const Quat& rotation) {
+    state = {};
+    state.started = true;
+    state.arm = state.root = state.played = arm;
+    state.rotation = rotation;
+    state.tank = kTankFull;
+}
+
+LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
+    if (!s.started) restart_law(s, in.arm, in.rotation);
+    const double K = coupling_of(options), B = 2 * std::sqrt(K * kRootMass), m = kRootMass;
+    const Vec3 moved = in.arm - s.arm;
+    s.delayed = static_cast<std::size_t>(std::clamp(std::ceil(options.delay / T - 1e-9), 0.0, kMostDelayed));
+    settle_tank(options, s, in);
+    s.arm_velocity += (moved / T - s.arm_velocity) * (1 - std::exp(-T / kVelocityTime));
+    s.arm = in.arm;
+    s.rotation = in.rotation;
+
+    const double gain = options.gain * in.trust;
+    const Vec3 hair = in.hair ? gain * in.hair->force : Vec3{0};
+    const Vec3 g = fade(options, s, hair, glm::length(moved));
+    const Vec3 pull = K * (in.arm + s.restored - s.root) + B * s.arm_velocity + g;
+    Vec3 velocity = (m * s.root_velocity + T * pull) / (m + T * (K * T + B));
+    Vec3 root = s.root + T * velocity;
+    Held held;
+    if (in.hair) held = hold_to_bounds(options, *in.hair, root, velocity);
+    s.root = root;
+    s.root_velocity = velocity;
+    const Vec3 stretch = root - in.arm - s.restored;
+    Vec3 f = K * stretch + B * (velocity - s.arm_velocity);
+    if (options.restore) s.restored += (T / kRestoreTime) * (in.arm - root);
+
+    const double wanted = glm::length(f);
+    f = limited(f, std::min(options.limits.max_force, options.most_force)) * in.pass;
+
+    const bool touching = in.hair && (in.hair->touching || held.hard || in.hair->force != Vec3{0});
+    s.coupled = 0.5 * K * glm::dot(stretch, stretch) + 0.5 * m * glm::dot(velocity, velocity);
+    s.free = !touching && glm::length(s.offset) < kFree;
+    if (s.free) {
+        s.tank = kTankFull + s.coupled;
+        s.lent = 0;
+        s.restored *= 1 - T / kRestoreTime;
+    }
+    const double stored = in.hair ? gain * in.hair->stored : 0;
+    s.tank = std::min(s.tank, kTankFull + stored + s.coupled);  // what the hair lost is not kept for later
+    LawOutput out{.root = root, .hard = held.hard};
+    const double size = glm::length(f);
+    if (size > 0) {
+        const double most = most_force(options, s, moved, f / size);
+        out.limited = size > most;
+        if (out.limited) f = limited(f, most);
+    }
+    const double kept = wanted > 0 ? glm::length(f) / wanted : in.pass;
+    s.force = f;
+    s.sent[s.n_sent++ % s.sent.size()] = f;
+    s.moment = in.hair ? kept * (gain * in.hair->moment + held.moment) : Vec3{0};
+    out.force = f;
+    if (options.limits.max_torque > 0) out.torque = limited(s.moment, options.limits.max_torque);
+    return out;
+}
+
+}  // namespace tuft::haptic

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+
+#include "core/geometry/types.h"
+#include "haptic/hair_answer.h"
+#include "haptic/limits.h"
+
+/// \file
+/// The law of the force, one period T = 1 ms at a time: from the place of the arm and the force of the hair to the
+/// force on the hand. Pure: no clock, no thread, no memory allocation. `Servo` (servo.h) calls it.
+///
+/// Frame: world, metres at the brush. x is the arm, y the virtual root of the tuft, which a coupling holds to the arm.
+/// Hair is solved at y, and the stroke is painted from y. In each period:
+///
+/// 1. g = G F(y, q).
+/// 2. Fade. What g jumps beyond a = min(k_max, 1000 N/m) |Δx| + 0.01 N goes into an offset o −= jump − a; |o| falls by
+///    0.06 N a period; g += o.
+/// 3. Coupling, implicit [Colgate1995], [Adams1999]:
+///
+///        v⁺ = (m v + T (K (x + s − y) + B v_x + g)) / (m + T (K T + B)),   y += T v⁺,
+///        f = K (y − x − s) + B (v⁺ − v_x),
+///
+///    m = 0.02 kg, B = 2 √(K m), v_x low-passed at 4 ms. y keeps to the free side of the bounds of ferrule and handle
+///    (a proxy [Ruspini1997]); along them acts Coulomb friction. The arm never shows more than K.
+/// 4. Restore, optional: s += (T / 0.15 s) (x − y) takes the softness of the coupling away in the long run.
+/// 5. Clamp to the device and to 7.9 N. A moment is scaled with its force.
+/// 6. Tank (a passivity observer and controller [Hannaford2002]): e −= f₋ · Δx′, e −= G τ · Δθ; x′ follows x with a
+///    play of one count, f₋ is the force that acted, sent as long ago as the delay says (of two periods the worse);
+///    e <= e_0 + G stored + ½ K |y − x − s|² + ½ m v², and equal to that without G stored when free; an empty tank is
+///    lent ½ f_c |Δx′| by the arm's friction, 0.1 mJ a contact.
+///
+///        |f| <= e′ / a where e′ < k a², else √(2 k e′ − k² a²);   a = Δx · f̂ + 60 m/s² T² + count,
+///
+///    e_0 = 30 µJ, k = min(k_max, 1.25 K); e′ is e less what forces on their way will take. A force that ends with
+///    its energy so falls by k a a period at most. Where a < 0 the tank only fills: |f| <= √(2 k e′) − k a.
+///
+/// It holds while the hand accelerates by less than 60 m/s².
+namespace tuft::haptic {
+
+struct LawOptions {
+    DeviceLimits limits;
+    double gain = 15;                 ///< G: force on the hand over force of the hair
+    double delay = 0;                 ///< s, of the whole loop; see `coupling_for_delay`
+    double scale = 1;                 ///< metres of the brush per metre of the arm
+    bool restore = false;             ///< step 4
+    double hard_friction = 0.2;       ///< Coulomb coefficient of lacquered wood on glaze, assumed
+    double most_force = kForceLimit;  ///< N
+};
+
+/// What the law remembers from period to period.
+struct LawState {
+    bool started = false;
+    Vec3 arm{0};                  ///< x of the period before, m
+    Quat rotation{1, 0, 0, 0};    ///< q of the period before
+    Vec3 arm_velocity{0};         ///< v_x, m/s, low-passed
+    Vec3 root{0};                 ///< y, m
+    Vec3 root_velocity{0};        ///< v, m/s
+    Vec3 restored{0};             ///< s, m
+    Vec3 hair_force{0};           ///< g before the fade, N
+    Vec3 offset{0};               ///< o, N
+    Vec3 played{0};               ///< x′, m
+    Vec3 force{0};                ///< f, N
+    Vec3 moment{0};               ///< of hair and handle about the root, N·m, scaled as the force is
+    std::array<Vec3, 16> sent{};  ///< f of the last periods, N: a ring
+    std::size_t n_sent = 0;
+    std::size_t delayed = 0;  ///< periods until a force acts
+    double tank = 0;          ///< e, J
+    double lent = 0;          ///< J, by the arm's friction in this contact
+    double coupled = 0;       ///< J, in the spring of the coupling and the moving root
+    bool free = true;         ///< neither hair nor ferrule touches
+};
+
+struct LawInput {
+    Vec3 arm{0};                       ///< x, m, world
+    Quat rotation{1, 0, 0, 0};         ///< q
+    const HairAnswer* hair = nullptr;  ///< newest answer, or none yet
+    double trust = 1;                  ///< of the answer: 1 fresh … 0 too old; scales its force
+    double pass = 1;  ///< of the force: 0 on a fault or a pause … 1; scales what leaves, before the tank
+};
+
+struct LawOutput {
+    Vec3 force{0};         ///< f on the hand, N, world
+    Vec3 torque{0};        ///< N·m, world; 0 for an arm without torque
+    Vec3 root{0};          ///< y, m, of the next pose to solve
+    bool hard = false;     ///< ferrule or handle is on the surface
+    bool limited = false;  ///< the tank held the force back
+};
+
+/// Begins at an arm that stands at x, in the air.
+void restart_law(LawState& state, const Vec3& arm, const Quat& rotation);
+
+/// One period. The first call after construction restarts.
+LawOutput step_law(const LawOptions& options, LawState& state, const LawInput& input);
+
+/// K of these options in the world frame, N/m.
+double coupling_of(const LawOptions& options);
+
+/// Rotation vector of the turn from `before` to `now`, rad, world frame.
+Vec3 turn_between(const Quat& before, const Quat& now);
+
+}  // namespace tuft::haptic

@@ -1,0 +1,297 @@
+#include "haptic/loop.h"
+
+#include <pthread.h>
+#include <semaphore.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <set>
+#include <thread>
+
+#include "haptic/exchange.h"
+
+namespace tuft::haptic {
+namespace {
+
+constexpr long kPeriodNs = 1'000'000, kWaitNs = 600'000;
+constexpr std::size_t kRecent = 3000;  // periods of the plot
+
+std::int64_t now_ns() {
+    timespec t{};
+    ::clock_gettime(CLOCK_MONOTONIC, &t);
+    return t.tv_sec * 1'000'000'000LL + t.tv_nsec;
+}
+
+timespec timespec_of(std::int64_t ns) {
+    return {.tv_sec = ns / 1'000'000'000, .tv_nsec = ns % 1'000'000'000};
+}
+
+class Semaphore {
+  public:
+    Semaphore() { ::sem_init(&sem_, 0, 0); }
+    ~Semaphore() { ::sem_destroy(&sem_); }
+    Semaphore(const Semaphore&) = delete;
+    Semaphore& operator=(const Semaphore&) = delete;
+    void post() { ::sem_post(&sem_); }
+    void wait() {
+        while (::sem_wait(&sem_) != 0) {
+        }
+    }
+    bool wait_until(std::int64_t ns) {
+        const timespec until = timespec_of(ns);
+        return ::sem_clockwait(&sem_, CLOCK_MONOTONIC, &until) == 0;
+    }
+
+  private:
+    sem_t sem_;
+};
+
+bool take_priority(int priority) {
+    if (priority <= 0) return false;
+    const sched_param param{.sched_priority = priority};
+    return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &param) == 0;
+}
+
+/// Touches the stack that a period may need, so that no page of it is missing later.
+void touch_stack() {
+    volatile unsigned char pages[256 * 1024];
+    for (std::size_t i = 0; i < sizeof pages; i += 4096) pages[i] = 0;
+}
+
+struct Ink {
+    double wetness = 1, left = 1;
+};
+
+}  // namespace
+
+void LatenessHistogram::add(double seconds) {
+    const auto bin = static_cast<std::size_t>(std::max(0.0, seconds) * 1e4);
+    ++bins[std::min(bin, kBins - 1)];
+    ++count;
+    late += seconds > kPeriod;
+    worst = std::max(worst, seconds);
+}
+
+double LatenessHistogram::quantile(double share) const {
+    const double most = share * static_cast<double>(count);
+    double sum = 0;
+    for (std::size_t i = 0; i < kBins; ++i) {
+        sum += static_cast<double>(bins[i]);
+        if (sum >= most) return i + 1 < kBins ? 1e-4 * static_cast<double>(i + 1) : worst;
+    }
+    return worst;
+}
+
+struct Loop::State {
+    Device& device;
+    HairSolver solver;
+    LoopOptions options;
+    Servo servo;
+    std::atomic<bool> running{false}, released{false};
+    std::atomic<int> with_priority{0};
+    std::atomic<std::uint64_t> unconverged{0};
+    Semaphore posed, answered;
+    TripleBuffer<RootPose> pose;
+    TripleBuffer<HairAnswer> answer;
+    TripleBuffer<ServoControl> control;
+    TripleBuffer<LawOptions> law;
+    TripleBuffer<Ink> ink;
+    TripleBuffer<LoopStatus> status;
+    BoundedQueue<SolvedPose, 4096> solved;
+    BoundedQueue<RecordedPeriod, 4096> periods;
+    BoundedQueue<std::uint64_t, 4096> solved_ticks;
+    std::array<std::atomic<float>, kRecent> recent{};
+    std::atomic<std::uint64_t> n_recent{0};
+    std::thread servo_thread, solver_thread, record_thread;
+    std::vector<RecordedPeriod> recording;  // of the record's thread until it ends
+    std::set<std::uint64_t> recorded_ticks;
+    LoopStatus seen;
+    bool locked = false;
+
+    State(Device& d, HairSolver s, const LoopOptions& o) : device(d), solver(std::move(s)), options(o), servo(o.law) {}
+    void run_servo();
+    void run_solver();
+    void run_record();
+    void drain_record();
+    bool wait_for_answer(std::uint64_t tick, std::int64_t until, HairAnswer& newest, bool& any);
+};
+
+// Returns whether the answer to this period's pose has come.
+bool Loop::State::wait_for_answer(std::uint64_t tick, std::int64_t until, HairAnswer& newest, bool& any) {
+    for (;;) {
+        any = answer.read(newest) || any;
+        if (any && newest.pose.tick == tick) return true;
+        if (!answered.wait_until(until)) return false;
+    }
+}
+
+void Loop::State::run_servo() {
+    with_priority += take_priority(options.servo_priority);
+    touch_stack();
+    LoopStatus now{.running = true, .locked = locked};
+    ServoControl wanted;
+    HairAnswer newest;
+    bool any = false;
+    LawOptions fresh_law;
+    const std::int64_t begin = now_ns();
+    std::int64_t due = begin + kPeriodNs;
+    std::uint64_t tick = 0;
+    const auto allocations = [&] { return options.count_allocations ? options.count_allocations() : 0; };
+    const std::uint64_t allocated = allocations();
+    while (running.load(std::memory_order_relaxed)) {
+        const timespec until = timespec_of(due);
+        ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+        tick = std::max<std::uint64_t>(tick + 1, static_cast<std::uint64_t>((now_ns() - begin) / kPeriodNs));
+        DeviceState state;
+        const bool fresh = device.read(state);
+        control.read(wanted);
+        if (law.read(fresh_law)) servo.set_options(fresh_law);
+        if (released.exchange(false)) servo.release();
+        const RootPose asked = servo.begin(tick, fresh ? &state : nullptr, wanted);
+        if (servo.engaged()) {
+            pose.write(asked);
+            posed.post();
+            now.late_solves += !wait_for_answer(tick, due + kWaitNs, newest, any);
+            ++now.solves;
+        }
+        const ServoOutput out = servo.finish(any ? &newest : nullptr);
+        device.send(out.command);
+        now.cycle.add(1e-9 * static_cast<double>(now_ns() - due));
+        now.engaged = out.engaged;
+        now.hard = out.hard;
+        now.fault = out.fault;
+        now.pass = out.pass;
+        now.force = out.force;
+        now.root = out.root;
+        now.rotation = asked.rotation;
+        if (fresh) {
+            now.device = state.position;
+            now.buttons = state.buttons;
+        }
+        ++now.periods;
+        now.realtime = with_priority.load() == 2;
+        now.lost_poses = solved.overflow();
+        now.unconverged = unconverged.load(std::memory_order_relaxed);
+        now.allocations = allocations() - allocated;
+        status.write(now);
+        const std::uint64_t n = n_recent.load(std::memory_order_relaxed);
+        recent[n % kRecent].store(static_cast<float>(glm::length(out.force)), std::memory_order_relaxed);
+        n_recent.store(n + 1, std::memory_order_release);
+        if (options.record)
+            periods.push({.tick = tick,
+                          .fresh = fresh,
+                          .state = state,
+                          .control = wanted,
+                          .answer = any ? newest.pose.tick : 0,
+                          .force = out.force});
+        due = std::max(due + kPeriodNs, begin + (now_ns() - begin) / kPeriodNs * kPeriodNs);
+    }
+    device.send({});
+    now.running = now.engaged = false;
+    now.force = Vec3{0};
+    status.write(now);
+}
+
+void Loop::State::run_solver() {
+    with_priority += take_priority(options.solver_priority);
+    touch_stack();
+    while (true) {
+        posed.wait();
+        if (!running.load(std::memory_order_relaxed)) return;
+        RootPose asked;
+        if (!pose.read(asked)) continue;
+        Ink fresh;
+        if (ink.read(fresh)) solver.set_ink(fresh.wetness, fresh.left);
+        const HairAnswer found = solver.solve(asked);
+        answer.write(found);
+        answered.post();
+        if (!found.converged) unconverged.fetch_add(1, std::memory_order_relaxed);
+        solved.push({asked, found.touching});
+        if (options.record) solved_ticks.push(asked.tick);
+    }
+}
+
+void Loop::State::drain_record() {
+    RecordedPeriod period;
+    while (periods.pop(period)) recording.push_back(period);
+    std::uint64_t tick = 0;
+    while (solved_ticks.pop(tick)) recorded_ticks.insert(tick);
+}
+
+void Loop::State::run_record() {
+    while (running.load(std::memory_order_relaxed)) {
+        drain_record();
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+}
+
+Loop::Loop(Device& device, HairSolver solver, const LoopOptions& options)
+    : state_(std::make_unique<State>(device, std::move(solver), options)) {}
+
+Loop::~Loop() {
+    stop();
+}
+
+void Loop::start() {
+    State& s = *state_;
+    if (s.running.exchange(true)) return;
+    // Pages that are there stay; later ones are not counted against the limit, so that painting gets its memory.
+    s.locked = ::mlockall(MCL_CURRENT | MCL_ONFAULT) == 0;
+    s.solver_thread = std::thread([&s] { s.run_solver(); });
+    s.servo_thread = std::thread([&s] { s.run_servo(); });
+    if (s.options.record) s.record_thread = std::thread([&s] { s.run_record(); });
+}
+
+void Loop::stop() {
+    State& s = *state_;
+    if (!s.running.exchange(false)) return;
+    s.servo_thread.join();
+    s.posed.post();
+    s.solver_thread.join();
+    if (s.record_thread.joinable()) s.record_thread.join();
+    s.drain_record();
+    if (s.locked) ::munlockall();
+}
+
+void Loop::set_control(const ServoControl& control) {
+    state_->control.write(control);
+}
+
+void Loop::release() {
+    state_->released = true;
+}
+
+void Loop::set_law(const LawOptions& law) {
+    state_->law.write(law);
+}
+
+void Loop::set_ink(double wetness, double ink_left) {
+    state_->ink.write({wetness, ink_left});
+}
+
+LoopStatus Loop::status() {
+    state_->status.read(state_->seen);
+    return state_->seen;
+}
+
+std::vector<float> Loop::recent_forces() const {
+    const std::uint64_t end = state_->n_recent.load(std::memory_order_acquire);
+    std::vector<float> out;
+    for (std::uint64_t i = end > kRecent ? end - kRecent : 0; i < end; ++i)
+        out.push_back(state_->recent[i % kRecent].load(std::memory_order_relaxed));
+    return out;
+}
+
+bool Loop::pop(SolvedPose& pose) {
+    return state_->solved.pop(pose);
+}
+
+std::vector<RecordedPeriod> Loop::take_recording() {
+    for (RecordedPeriod& period : state_->recording) period.solved = state_->recorded_ticks.contains(period.tick);
+    return std::move(state_->recording);
+}
+
+}  // namespace tuft::haptic

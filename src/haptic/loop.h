@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "haptic/device.h"
+#include "haptic/hair_solver.h"
+#include "haptic/recording.h"
+#include "haptic/servo.h"
+
+/// \file
+/// The loop by the wall clock: a servo that reads the arm, steps the law and sends the force each millisecond, and a
+/// solver that bends the hair, each in a thread of its own. The servo waits for the answer to its own pose up to
+/// 0.6 ms, then goes on with the last one. It never waits for painting, drawing, disk or memory.
+///
+/// Servo: SCHED_FIFO 20, solver: SCHED_FIFO 10, where the system allows it (CAP_SYS_NICE or `ulimit -r`).
+namespace tuft::haptic {
+
+/// How late something was, counted in bins of 0.1 ms, the last one open.
+struct LatenessHistogram {
+    static constexpr std::size_t kBins = 41;
+    std::array<std::uint64_t, kBins> bins{};
+    std::uint64_t count = 0, late = 0;  ///< all, and those over 1 ms
+    double worst = 0;                   ///< s
+
+    void add(double seconds);
+    /// Upper bound of the bin below which this share lies, s.
+    double quantile(double share) const;
+};
+
+struct LoopOptions {
+    LawOptions law;
+    int servo_priority = 20, solver_priority = 10;  ///< SCHED_FIFO; 0: as other threads
+    bool record = false;                            ///< keeps each period for `take_recording`
+    /// Returns how much memory the calling thread has allocated so far, in calls; null: not counted.
+    std::uint64_t (*count_allocations)() = nullptr;
+};
+
+/// A snapshot of the loop.
+struct LoopStatus {
+    bool running = false;
+    bool realtime = false;  ///< both threads have their priority
+    bool locked = false;    ///< memory stays in RAM
+    bool engaged = false, hard = false;
+    Fault fault = Fault::none;
+    double pass = 0;
+    Vec3 force{0};  ///< N, on the hand, world
+    Vec3 root{0};   ///< m, world
+    Quat rotation{1, 0, 0, 0};
+    Vec3 device{0};  ///< m, arm's frame
+    std::uint32_t buttons = 0;
+    std::uint64_t periods = 0, late_solves = 0, solves = 0, lost_poses = 0, unconverged = 0;
+    std::uint64_t allocations = 0;  ///< of the servo's thread since its first period
+    LatenessHistogram cycle;        ///< from the time a period is due to its force being sent
+};
+
+class Loop {
+  public:
+    /// `device` must outlive the loop.
+    Loop(Device& device, HairSolver solver, const LoopOptions& options);
+    ~Loop();
+    Loop(const Loop&) = delete;
+    Loop& operator=(const Loop&) = delete;
+
+    void start();
+    /// Sends no force and ends both threads. The poses solved so far stay in their queue.
+    void stop();
+
+    // One thread, the owner's:
+    void set_control(const ServoControl& control);
+    /// Ends an emergency.
+    void release();
+    void set_law(const LawOptions& law);
+    /// What the stroke has made of the hair, see `HairSolver::set_ink`.
+    void set_ink(double wetness, double ink_left);
+    LoopStatus status();
+    /// The sizes of the force in the last 3 s, N, oldest first.
+    std::vector<float> recent_forces() const;
+
+    /// The poses that were solved, in order: the stroke. One thread, the painting's. Holds 4 s of them.
+    bool pop(SolvedPose& pose);
+    /// After `stop`: all periods, with `LoopOptions::record`.
+    std::vector<RecordedPeriod> take_recording();
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace tuft::haptic

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "haptic/device.h"
+#include "haptic/hair_answer.h"
+#include "haptic/law.h"
+#include "haptic/safety.h"
+#include "haptic/workspace.h"
+
+/// \file
+/// One period of the servo, without clock or thread: safety, workspace and law in their order. The loop (loop.h) calls
+/// it by the wall clock, the trial (trial.h) in virtual time, a replay (recording.h) by recorded periods; the same
+/// inputs give the same bits.
+namespace tuft::haptic {
+
+/// What a person wants of the servo in this period.
+struct ServoControl {
+    bool paused = false;     ///< also: the window lost its focus
+    bool emergency = false;  ///< latched until `Servo::release`
+    bool clutched = false;   ///< the arm moves without the brush
+    /// Its offset counts only while no force is on; after a turn or a change of scale the brush stays where it is.
+    Workspace workspace;
+};
+
+struct ServoOutput {
+    DeviceCommand command;  ///< in the arm's frame
+    Vec3 force{0};          ///< N, on the hand, world
+    Vec3 root{0};           ///< y, m, of the next pose
+    Fault fault = Fault::none;
+    double pass = 0;
+    bool engaged = false, hard = false, limited = false;
+    std::uint64_t age = 0;  ///< periods of the answer that was used
+};
+
+class Servo {
+  public:
+    explicit Servo(const LawOptions& law) : options_(law) {}
+
+    /// Takes the arm's state, null when none came, and returns the pose to solve. Not engaged: nothing to solve.
+    RootPose begin(std::uint64_t tick, const DeviceState* fresh, const ServoControl& control);
+    bool engaged() const { return verdict_.engaged; }
+    /// Ends the period with the newest answer, or null.
+    ServoOutput finish(const HairAnswer* newest);
+
+    void release() { safety_.release(); }
+    void set_options(const LawOptions& options) { options_ = options; }
+    const LawOptions& options() const { return options_; }
+    const LawState& law() const { return law_; }
+
+  private:
+    void place_arm(const ServoControl& control);
+
+    LawOptions options_;
+    LawState law_;
+    Safety safety_;
+    Verdict verdict_;
+    Workspace workspace_;
+    Vec3 device_{0}, arm_{0};  // m: the arm in its frame and in the world
+    Vec3 shift_{0};            // m, world, by clutch and turns of the workspace
+    Quat rotation_{1, 0, 0, 0};
+    std::uint32_t buttons_ = 0;
+    std::uint64_t tick_ = 0, restarted_ = 0;
+    bool known_ = false, placed_ = false, clutched_ = false;
+};
+
+}  // namespace tuft::haptic

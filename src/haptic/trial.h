@@ -1,0 +1,84 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "haptic/hair_solver.h"
+#include "haptic/servo.h"
+#include "haptic/simulated.h"
+
+/// \file
+/// The loop in virtual time, on one thread: a simulated hand with a simulated arm paints a way at a place of a model,
+/// and the energies and steps of the force are judged. The tests of `haptic` and `tuft device test` run it. The same
+/// options give the same bits.
+namespace tuft::haptic {
+
+/// A place on a model where a hand paints.
+struct TrialPlace {
+    std::string name;
+    Frame frame;  ///< on the surface: n outward, m
+};
+
+/// Places on a mesh with z up, m: the first hit from above its middle, and where the surface seen from above turns most
+/// along the way from there along +x, on its sharpest edge or in its sharpest groove.
+TrialPlace place_above(const mesh::SurfaceQuery& surface, std::string name);
+TrialPlace place_at_edge(const mesh::SurfaceQuery& surface, std::string name, bool groove = false);
+
+/// What the hand does.
+enum class Way { press, press_fast, drag, circles, taps, rocking, rest, hit, slide };
+inline constexpr Way kPaintingWays[] = {Way::press, Way::press_fast, Way::drag, Way::circles,
+                                        Way::taps,  Way::rocking,    Way::rest};
+std::string_view name_of(Way way);
+/// Whether hair lands at more than 0.3 m/s.
+bool is_tap(Way way);
+
+/// The way of a hand, from 1 s in the air on. Depths follow the tuft: painting ways press it to 0.25–0.4 of its
+/// length; `hit` brings the ferrule down at 0.5 m/s, `slide` draws it over the surface.
+HandPath hand_path(Way way, const TrialPlace& place, const brush::Preset& brush, std::uint64_t seed = 0);
+
+struct TrialOptions {
+    LawOptions law;
+    SolverOptions solver;
+    HandModel hand;
+    double delay = 0, jitter = 0;  ///< s, of commands on their way to the motors
+    double seconds = 4;
+    std::uint64_t seed = 1;
+    bool record = false;  ///< fills `TrialReport::forces` and `roots`
+};
+
+/// Extremes over a trial. Energies are those that flow truly: of the force as the hand has it, over the true way of
+/// the arm. Each contact counts from its own beginning: over an hour the arm's friction would hide anything.
+struct TrialReport {
+    double least_energy = 0;       ///< J, port + wrist
+    double least_with_arm = 0;     ///< J, port + wrist + losses of the arm
+    double largest_step = 0;       ///< N, of |Δf| in a period beyond k_max |Δx|, with hair alone
+    double largest_step_hard = 0;  ///< N, the same while ferrule or handle is on the surface, or 10 ms after
+    double largest_force = 0;      ///< N
+    double deepest = 0;            ///< m, of the arm behind the root while it is held on the surface
+    std::size_t periods = 0, solves = 0, unconverged = 0, limited = 0, contacts = 0;
+    std::vector<float> seconds;  ///< of each solve
+    std::uint64_t hash = 0;      ///< of all forces
+    std::vector<Vec3> forces;    ///< N, on the hand, one per period
+    std::vector<SolvedPose> roots;
+    Vec3 last_hair{0};  ///< N, of the hair at the end
+};
+
+TrialReport run_trial(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,
+                      const TrialOptions& options);
+
+/// What goes wrong in `periods_to_stop`.
+enum class Trouble { silence, not_finite, jump, pause, emergency };
+inline constexpr Trouble kTroubles[] = {Trouble::silence, Trouble::not_finite, Trouble::jump, Trouble::pause,
+                                        Trouble::emergency};
+
+/// Runs a trial up to `from`, s, where something goes wrong, and returns after how many periods no force leaves any
+/// more; -1 where there was none before, or it did not end within 100.
+int periods_to_stop(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, const HandPath& path,
+                    const TrialOptions& options, Trouble trouble, double from);
+
+/// Worst of both; counts and hashes added up.
+void merge(TrialReport& into, const TrialReport& from);
+
+}  // namespace tuft::haptic

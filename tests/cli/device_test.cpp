@@ -1,0 +1,122 @@
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "haptic/haply.h"
+#include "program.h"
+
+/// \file
+/// `tuft device` and samples/device-bridge as programs.
+namespace tuft {
+namespace {
+
+using Device = test::Program;
+
+TEST_F(Device, ListsTheKnownArms) {
+    const test::Ran ran = tuft("device list --port 1 --json");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const nlohmann::json out = nlohmann::json::parse(ran.out);
+    EXPECT_FALSE(out["answers"]);
+    ASSERT_EQ(out["presets"].size(), 4u);
+    EXPECT_EQ(out["presets"][0]["preset"], "touch");
+    EXPECT_EQ(out["presets"][0]["max_force_n"], 3.3);
+}
+
+TEST_F(Device, WrongArgumentsAreOneLine) {
+    for (const char* arguments :
+         {"device", "device fly", "device list --preset omega", "device test --simulate wand", "device record",
+          "device simulate --way jump", "device test --port 1 --seconds 1", "device simulate --brush nosuch"}) {
+        const test::Ran ran = tuft(arguments);
+        EXPECT_TRUE(ran.status == 1 || ran.status == 2) << arguments;
+        EXPECT_EQ(ran.error_lines(), 1) << arguments << ran.err;
+        EXPECT_EQ(ran.out, "") << arguments;
+    }
+}
+
+TEST_F(Device, TestPrintsTheFiguresOfASimulatedArm) {
+    const test::Ran ran = tuft("device test --simulate inverse3 --model sheet --seconds 1 --json --quiet");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const nlohmann::json out = nlohmann::json::parse(ran.out);
+    for (const char* key : {"least_energy_uj", "late_percent", "worst_cycle_ms", "largest_step_n", "allocations",
+                            "late_solves_percent", "stop_ms"})
+        EXPECT_TRUE(out[key].is_number()) << key;
+    EXPECT_GE(out["least_energy_uj"], -1);
+    EXPECT_EQ(out["allocations"], 0);
+    EXPECT_LT(out["stop_ms"], 20);
+}
+
+TEST_F(Device, ARecordingPlaysAgainToTheBit) {
+    test::Ran ran = tuft("device record --simulate touch --seconds 2.5 -o '" + path("a.csv") + "' --json");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_GT(nlohmann::json::parse(ran.out)["greatest_force_n"], 0);
+    ran = tuft("device record --simulate touch --replay '" + path("a.csv") + "' -o '" + path("b.csv") + "' --json");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(nlohmann::json::parse(ran.out)["different"], 0);
+    EXPECT_EQ(read(path("a.csv")), read(path("b.csv")));
+}
+
+/// A program in the background whose first line tells its port.
+class Served {
+  public:
+    Served(const std::string& program, const std::string& arguments) {
+        const std::string command =
+            "export TUFT_DATA='" + source_folder() + "'; echo $$; exec '" + program + "' " + arguments;
+        pipe_ = ::popen(command.c_str(), "r");
+        char line[200];
+        if (std::fgets(line, sizeof line, pipe_)) pid_ = std::atoi(line);
+        if (std::fgets(line, sizeof line, pipe_)) {
+            const std::string text = line;
+            port = std::atoi(text.substr(text.find_last_of(": ") + 1).c_str());
+        }
+    }
+    ~Served() {
+        if (pid_ > 0) ::kill(pid_, SIGINT);
+        ::pclose(pipe_);
+    }
+    Served(const Served&) = delete;
+    Served& operator=(const Served&) = delete;
+
+    int port = 0;
+
+  private:
+    FILE* pipe_ = nullptr;
+    int pid_ = 0;
+};
+
+TEST_F(Device, SimulateServesAnArmThatListAndRecordFind) {
+    const Served server(tuft_program(), "device simulate --preset omega.6 --port 0");
+    ASSERT_GT(server.port, 0);
+    const std::string port = " --port " + std::to_string(server.port);
+    test::Ran ran = tuft("device list --json" + port);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_TRUE(nlohmann::json::parse(ran.out)["answers"]);
+    ran = tuft("device record --preset omega.6 --seconds 1 -o '" + path("a.csv") + "' --json" + port);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_GT(nlohmann::json::parse(ran.out)["periods"], 100);
+}
+
+TEST_F(Device, TheSampleBridgeSpeaksTheProtocol) {
+    const Served bridge(TUFT_BRIDGE, "0");
+    ASSERT_GT(bridge.port, 0);
+    haptic::HaplyDevice device(haptic::device_preset("touch"), {.port = bridge.port});
+    haptic::DeviceState state;
+    int states = 0;
+    for (int i = 0; i < 500 && states < 20; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        device.send({.force = {0, 0, 2}});  // 40 mm against its spring of 50 N/m
+        states += device.read(state);
+    }
+    EXPECT_GE(states, 20);
+    EXPECT_EQ(device.device_id(), "bridge");
+    for (int i = 0; i < 500 && state.position.z < 0.02; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        device.send({.force = {0, 0, 2}});
+        device.read(state);
+    }
+    EXPECT_GT(state.position.z, 0.02);
+}
+
+}  // namespace
+}  // namespace tuft

@@ -1,0 +1,140 @@
+#include "haptic/law.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tuft::haptic {
+namespace {
+
+/// A hair that is a spring of `stiffness` N/m against z below 0.
+HairAnswer spring(double z, double stiffness) {
+    const double depth = std::max(0.0, -z);
+    return {.force = {0, 0, stiffness * depth}, .stored = 0.5 * stiffness * depth * depth, .touching = depth > 0};
+}
+
+// However stiff the hair is, the arm shows at most the coupling's K.
+TEST(Law, TheArmNeverShowsMoreThanTheCoupling) {
+    for (const DeviceLimits& limits : device_presets()) {
+        const LawOptions options{.limits = limits, .gain = 15};
+        LawState state;
+        double x = 0, force = 0;
+        const double depth = 0.5 * limits.max_force / coupling_of(options);
+        HairAnswer hair = spring(0, 367);  // N/m, wolf hair end on
+        for (int i = 0; i < 4000; ++i) {
+            x = -depth * std::min(1.0, i / 2000.0);
+            force = step_law(options, state, {.arm = {0, 0, x}, .hair = &hair}).force.z;
+            hair = spring(state.root.z, 367);
+        }
+        EXPECT_LT(force / depth, coupling_of(options)) << limits.name;
+        // Two springs in series.
+        const double series = 1 / (1 / coupling_of(options) + 1 / (15 * 367.0));
+        EXPECT_NEAR(force / depth, series, 0.01 * series) << limits.name;
+    }
+}
+
+// With restore only the hair's own stiffness is left.
+TEST(Law, RestoreTakesTheSoftnessAway) {
+    const LawOptions options{.limits = device_preset("omega.6"), .gain = 15, .restore = true};
+    LawState state;
+    HairAnswer hair = spring(0, 20);
+    double force = 0;
+    for (int i = 0; i < 4000; ++i) {
+        force = step_law(options, state, {.arm = {0, 0, -2e-3 * std::min(1.0, i / 1000.0)}, .hair = &hair}).force.z;
+        hair = spring(state.root.z, 20);
+    }
+    EXPECT_NEAR(force, 15 * 20 * 2e-3, 0.01 * 15 * 20 * 2e-3);
+}
+
+TEST(Law, AJumpOfTheHairComesAsARamp) {
+    const LawOptions options{.limits = device_preset("omega.6"), .gain = 15};
+    LawState state;
+    HairAnswer hair{.force = {0, 0, 0}, .stored = 1, .touching = true};
+    Vec3 before{0};
+    for (int i = 0; i < 400; ++i) {
+        if (i == 100) hair.force = {0, 0, 0.1};
+        if (i == 200) hair.force = {0, 0, 0};
+        const Vec3 f = step_law(options, state, {.hair = &hair}).force;
+        // 0.06 N of the fade and 0.01 N free, through a critically damped coupling.
+        EXPECT_LE(glm::distance(f, before), 0.075) << i;
+        before = f;
+    }
+}
+
+TEST(Law, ForcesKeepToTheDeviceAndToThePapersLimit) {
+    for (const DeviceLimits& limits : device_presets()) {
+        const LawOptions options{.limits = limits, .gain = 15};
+        LawState state;
+        HairAnswer hair{.force = {30, 0, 40}, .moment = {0, 1, 0}, .stored = 100, .touching = true};
+        for (int i = 0; i < 1000; ++i)
+            EXPECT_LE(glm::length(step_law(options, state, {.hair = &hair}).force),
+                      std::min(limits.max_force, kForceLimit) + 1e-12);
+        // A moment is scaled with its force.
+        EXPECT_LT(glm::length(state.moment), 15 * 1.0 * std::min(limits.max_force, kForceLimit) / 100);
+    }
+}
+
+// A force that pushes whichever way the hand goes would be a motor; the tank ends it.
+TEST(Law, AForceThatWorksOnItsOwnRunsOutOfEnergy) {
+    for (const DeviceLimits& limits : device_presets()) {
+        const LawOptions options{.limits = limits, .gain = 1};
+        LawState state;
+        double x = 0, given = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const double speed = 0.05 * std::cos(0.01 * i);  // m/s
+            const HairAnswer hair{.force = {speed > 0 ? 1.0 : -1.0, 0, 0}, .touching = true};
+            const double f = step_law(options, state, {.arm = {x, 0, 0}, .hair = &hair}).force.x;
+            x += speed * kPeriod;
+            given += f * speed * kPeriod;
+        }
+        // e_0, what friction lends, and the play of a count at full force.
+        EXPECT_LT(given, 30e-6 + 100e-6 + limits.max_force * limits.count) << limits.name;
+    }
+}
+
+TEST(Law, TheRootKeepsToTheFreeSideOfItsBounds) {
+    const LawOptions options{.limits = device_preset("inverse3")};
+    LawState state;
+    HairAnswer hair;
+    hair.n_bounds = 2;
+    hair.bounds[0] = {.normal = {0, 0, 1}, .height = 0};
+    hair.bounds[1] = {.normal = {1, 0, 0}, .height = -0.01};
+    for (int i = 0; i < 1000; ++i) {
+        const double t = i / 1000.0;
+        const LawOutput out = step_law(options, state, {.arm = {-0.03 * t, 0, 0.01 - 0.02 * t}, .hair = &hair});
+        EXPECT_GE(out.root.z, -1e-9);
+        EXPECT_GE(out.root.x, -0.01 - 1e-9);
+        if (i > 900) {
+            EXPECT_TRUE(out.hard);
+        }
+    }
+    EXPECT_GT(state.force.z, 1);
+    EXPECT_GT(state.force.x, 1);
+}
+
+TEST(Law, ALongerDelayLowersTheCoupling) {
+    const DeviceLimits& limits = device_preset("omega.6");
+    EXPECT_EQ(coupling_for_delay(limits, 0), limits.coupling);
+    EXPECT_EQ(coupling_for_delay(limits, 1e-3), limits.coupling);
+    EXPECT_NEAR(coupling_for_delay(limits, 3e-3), limits.coupling / 4, 1e-9);
+}
+
+TEST(Limits, AnUnknownDeviceIsAnErrorThatNamesTheNearest) {
+    try {
+        device_preset("omega");
+        FAIL();
+    } catch (const std::exception& e) {
+        EXPECT_NE(std::string(e.what()).find("omega.6"), std::string::npos) << e.what();
+    }
+}
+
+TEST(Turn, IsTheRotationVector) {
+    const Quat q = glm::angleAxis(0.3, glm::normalize(Vec3{1, 2, 3}));
+    const Vec3 v{0.02, -0.01, 0.03};
+    const Quat after = glm::angleAxis(glm::length(v), glm::normalize(v)) * q;
+    EXPECT_LT(glm::distance(turn_between(q, after), v), 1e-12);
+    EXPECT_LT(glm::distance(turn_between(q, -after), v), 1e-12);
+}
+
+}  // namespace
+}  // namespace tuft::haptic

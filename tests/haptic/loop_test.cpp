@@ -1,0 +1,144 @@
+#include "haptic/loop.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "core/error.h"
+#include "felt.h"
+#include "haptic/allocations.h"
+#include "haptic/exchange.h"
+
+namespace tuft::haptic {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(Exchange, AReaderSeesWholeValuesThatOnlyGrow) {
+    struct Pair {
+        std::uint64_t a = 0, b = 0;
+    };
+    TripleBuffer<Pair> buffer;
+    constexpr std::uint64_t kLast = 200000;
+    std::thread writer([&] {
+        for (std::uint64_t i = 1; i <= kLast; ++i) buffer.write({i, ~i});
+    });
+    Pair seen;
+    std::uint64_t before = 0;
+    while (seen.a < kLast) {
+        if (!buffer.read(seen)) continue;
+        ASSERT_EQ(seen.b, ~seen.a);
+        ASSERT_GT(seen.a, before);
+        before = seen.a;
+    }
+    writer.join();
+    EXPECT_FALSE(buffer.read(seen));
+}
+
+TEST(Exchange, AQueueKeepsTheOrderAndCountsWhatDoesNotFit) {
+    BoundedQueue<int, 8> queue;
+    for (int i = 0; i < 11; ++i) queue.push(i);
+    EXPECT_EQ(queue.overflow(), 3u);
+    int value = -1;
+    for (int i = 0; i < 8; ++i) {
+        ASSERT_TRUE(queue.pop(value));
+        EXPECT_EQ(value, i);
+    }
+    EXPECT_FALSE(queue.pop(value));
+}
+
+/// A live loop of a simulated arm over the sheet.
+struct Live {
+    Felt f = felt("sheet");
+    brush::Tuft tuft = tuft_of("wolf-small");
+    SimulatedDevice device{SimulatedArm(device_preset("inverse3"), hand_path(Way::drag, f.place, tuft.preset))};
+    LawOptions law{.limits = device_preset("inverse3")};
+    Loop loop{device,
+              HairSolver(tuft, *f.surface),
+              {.law = law, .record = true, .count_allocations = allocations_of_this_thread}};
+};
+
+TEST(Loop, TheServoAllocatesNothingAndTheQueueHoldsWhatWasSolved) {
+    Live live;
+    live.loop.start();
+    std::vector<SolvedPose> poses;
+    SolvedPose pose;
+    for (int i = 0; i < 250; ++i) {
+        std::this_thread::sleep_for(10ms);
+        while (live.loop.pop(pose)) poses.push_back(pose);
+    }
+    live.loop.stop();
+    while (live.loop.pop(pose)) poses.push_back(pose);
+    const LoopStatus status = live.loop.status();
+    EXPECT_EQ(status.allocations, 0u);
+    EXPECT_GT(status.periods, 100u);
+    EXPECT_EQ(status.cycle.count, status.periods);
+    EXPECT_EQ(status.lost_poses, 0u);
+    EXPECT_EQ(status.force, Vec3{0});
+    EXPECT_FALSE(status.running);
+    ASSERT_GT(poses.size(), 100u);
+    for (std::size_t i = 1; i < poses.size(); ++i) ASSERT_GT(poses[i].pose.tick, poses[i - 1].pose.tick);
+    EXPECT_LE(live.loop.recent_forces().size(), 3000u);
+}
+
+// Whatever was late, the recording says so: played again, each force is the same to the bit.
+TEST(Loop, ARecordedSessionGivesTheSameForcesWhenItIsPlayedAgain) {
+    Live live;
+    live.loop.start();
+    for (int i = 0; i < 25; ++i) {
+        std::this_thread::sleep_for(100ms);
+        SolvedPose pose;
+        while (live.loop.pop(pose)) {
+        }
+    }
+    live.loop.stop();
+    const std::vector<RecordedPeriod> periods = live.loop.take_recording();
+    ASSERT_GT(periods.size(), 100u);
+    double greatest = 0;
+    for (const RecordedPeriod& p : periods) greatest = std::max(greatest, glm::length(p.force));
+    EXPECT_GT(greatest, 0.05);
+    const std::vector<Vec3> forces = replay_forces(periods, HairSolver(live.tuft, *live.f.surface), live.law);
+    for (std::size_t i = 0; i < forces.size(); ++i) ASSERT_EQ(forces[i], periods[i].force) << i;
+
+    const std::string file = testing::TempDir() + "/tuft_session_" + std::to_string(::getpid()) + ".csv";
+    {
+        std::ofstream out(file);
+        write_recording(out, periods);
+    }
+    const std::vector<RecordedPeriod> read = read_recording(file);
+    std::filesystem::remove(file);
+    EXPECT_EQ(replay_forces(read, HairSolver(live.tuft, *live.f.surface), live.law), forces);
+}
+
+TEST(Recording, BrokenTablesAreOneClearError) {
+    const std::string file = testing::TempDir() + "/tuft_broken_" + std::to_string(::getpid()) + ".csv";
+    const std::string head = "tick,fresh,x,y,z,qw,qx,qy,qz,buttons,control,answer,solved,fx,fy,fz\n";
+    for (const std::string& text :
+         {std::string("a,b\n1,2\n"), head + "1,1,0,0\n", head + "1,1,x,0,0,1,0,0,0,0,0,0,0,0,0,0\n",
+          head + "2,1,0,0,0,1,0,0,0,0,0,0,0,0,0,0\n1,1,0,0,0,1,0,0,0,0,0,0,0,0,0,0\n", head + std::string(5000, '1')}) {
+        std::ofstream(file) << text;
+        EXPECT_THROW(read_recording(file), Error) << text.substr(0, 100);
+    }
+    std::filesystem::remove(file);
+}
+
+TEST(Replay, ADevicePlaysItsStatesInOrder) {
+    std::vector<RecordedPeriod> periods;
+    for (std::uint64_t i = 1; i <= 50; ++i)
+        periods.push_back({.tick = i, .fresh = true, .state = {.position = {1e-3 * static_cast<double>(i), 0, 0}}});
+    ReplayDevice device(device_preset("touch"), periods);
+    double last = 0;
+    while (device.open()) {
+        DeviceState state;
+        if (!device.read(state)) continue;
+        EXPECT_GT(state.position.x, last);
+        last = state.position.x;
+    }
+    EXPECT_NEAR(last, 0.05, 1e-12);
+}
+
+}  // namespace
+}  // namespace tuft::haptic
