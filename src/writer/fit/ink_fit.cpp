@@ -1,0 +1,163 @@
+#include "writer/fit/ink_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/system/interrupt.h"
+
+namespace tuft::writer {
+namespace {
+
+constexpr double kMove = 0.6, kPress = 0.5, kLengthen = 0.6;  // parts of an error taken back at once
+constexpr double kOwn = 60;       // units along the path within which ink is a station's own
+constexpr double kMostMoved = 60;  // units from the path of the first try
+constexpr double kTip = 2;        // units of half width at a tip
+constexpr double kEndFade = 20;   // units over which a moved end fades
+constexpr double kSoft = 2;       // stations of the Gaussian that smooths corrections
+constexpr double kTaken = 0.5;    // coverage from which a cell is ink
+
+struct Errors {
+    std::vector<double> left, right, kick;  ///< units, [stations]
+    double head = 0, tail = 0;              ///< units by which the ends are to be longer
+    double iou = 0;
+};
+
+std::vector<double> lengths_of(const std::vector<Station>& s) {
+    std::vector<double> along{0};
+    for (std::size_t i = 1; i < s.size(); ++i)
+        along.push_back(along.back() + glm::distance(s[i].centre, s[i - 1].centre));
+    return along;
+}
+
+Vec2 direction_at(const std::vector<Station>& s, std::size_t i) {
+    const std::size_t a = i - std::min<std::size_t>(i, 1), b = std::min(s.size() - 1, i + 1);
+    const Vec2 d = s[b].centre - s[a].centre;
+    const double size = glm::length(d);
+    return size > 1e-9 ? d / size : Vec2(1, 0);
+}
+
+std::vector<double> smoothed(const std::vector<double>& v, double sigma) {
+    const int reach = static_cast<int>(std::ceil(3 * sigma)), n = static_cast<int>(v.size());
+    std::vector<double> out(v.size(), 0);
+    for (int i = 0; i < n; ++i) {
+        double sum = 0, all = 0;
+        for (int k = std::max(0, i - reach); k <= std::min(n - 1, i + reach); ++k) {
+            const double z = (k - i) / sigma, w = std::exp(-0.5 * z * z);
+            sum += w * v[static_cast<std::size_t>(k)], all += w;
+        }
+        out[static_cast<std::size_t>(i)] = sum / all;
+    }
+    return out;
+}
+
+std::size_t nearest_station(const std::vector<Station>& s, const Vec2& p) {
+    std::size_t best = 0;
+    double least = 1e300;
+    for (std::size_t i = 0; i < s.size(); ++i)
+        if (const Vec2 d = p - s[i].centre; glm::dot(d, d) < least) least = glm::dot(d, d), best = i;
+    return best;
+}
+
+/// Compares the ink of a try with the target.
+Errors errors_of(const std::vector<Station>& s, const FitTarget& target, const stroke::PlaneInk& ink,
+                 const stroke::StrokeSamples& trace, double unit) {
+    const Cells& cells = target.wanted;
+    const std::size_t n = s.size();
+    const std::vector<double> along = lengths_of(s);
+    Errors e{.left = std::vector<double>(n, 0), .right = std::vector<double>(n, 0), .kick = std::vector<double>(n, 0)};
+    const double spacing = std::max(along.back() / static_cast<double>(n - 1), 1.0);
+    const double part = cells.cell * cells.cell / spacing;
+    double both = 0, either = 0, head = 0, tail = 0;
+    const Vec2 out_head = -direction_at(s, 0), out_tail = direction_at(s, n - 1);
+    for (int j = 0; j < cells.height; ++j)
+        for (int i = 0; i < cells.width; ++i) {
+            const Vec2 p = cells.centre(i, j);
+            const bool wanted = cells.at(i, j), there = ink.at(p * unit) > kTaken;
+            if (!wanted && !there) continue;
+            const std::size_t at = std::size_t(j) * cells.width + i;
+            const double weight = target.weights.empty() ? 1 : static_cast<double>(target.weights[at]);
+            if (wanted && there) {
+                both += 1, either += 1;
+                continue;
+            }
+            either += weight;
+            const double error = weight * (wanted ? part : -part);
+            const std::size_t k = nearest_station(s, p);
+            if (k < 2 && glm::dot(p - s[0].centre, out_head) > 0) {
+                head += error * spacing;
+                continue;
+            }
+            if (k + 2 >= n && glm::dot(p - s[n - 1].centre, out_tail) > 0) {
+                tail += error * spacing;
+                continue;
+            }
+            if (there) {
+                const double when = ink.when(p * unit);
+                const auto later =
+                    std::lower_bound(trace.samples.begin(), trace.samples.end(), when,
+                                     [](const stroke::StrokeSample& a, double time) { return a.time < time; });
+                const std::size_t by = std::min<std::size_t>(std::size_t(later - trace.samples.begin()), n - 1);
+                if (std::abs(along[by] - along[k]) > kOwn) {
+                    e.kick[by] -= error;
+                    continue;
+                }
+            }
+            const Vec2 d = direction_at(s, k), off = p - s[k].centre;
+            (d.x * off.y - d.y * off.x > 0 ? e.left : e.right)[k] += error;
+        }
+    const auto width = [&](std::size_t k) { return std::max(2 * s[k].half, 12.0); };
+    e.head = head / width(std::min<std::size_t>(2, n - 1));
+    e.tail = tail / width(n - 1 - std::min<std::size_t>(2, n - 1));
+    e.iou = either > 0 ? both / either : 0;
+    return e;
+}
+
+void correct(std::vector<Station>& s, const std::vector<Station>& first, const Errors& e) {
+    const std::size_t n = s.size();
+    const std::vector<double> left = smoothed(e.left, kSoft), right = smoothed(e.right, kSoft),
+                              kick = smoothed(e.kick, kSoft), along = lengths_of(s);
+    const std::vector<Station> before = s;
+    const Vec2 out_head = -direction_at(before, 0), out_tail = direction_at(before, n - 1);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec2 d = direction_at(before, i);
+        s[i].centre += kMove * 0.5 * (left[i] - right[i]) * Vec2(-d.y, d.x);
+        s[i].half += kPress * (0.5 * (left[i] + right[i]) - kick[i]);
+        const double from_head = std::max(0.0, 1 - along[i] / kEndFade),
+                     from_tail = std::max(0.0, 1 - (along.back() - along[i]) / kEndFade);
+        s[i].centre += kLengthen * (from_head * std::clamp(e.head, -20.0, 20.0) * out_head +
+                                    from_tail * std::clamp(e.tail, -20.0, 20.0) * out_tail);
+        const Vec2 moved = s[i].centre - first[i].centre;
+        if (const double far = glm::length(moved); far > kMostMoved)
+            s[i].centre = first[i].centre + kMostMoved / far * moved;
+        const double tip = std::min(along[i], along.back() - along[i]);
+        s[i].half = std::clamp(s[i].half, 0.0, kTip + tip);
+    }
+}
+
+}  // namespace
+
+stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHand& hand, const Pace& pace, double step,
+                               double cell) {
+    return stroke::plane_ink(samples_of(stations, hand, pace), hand.preset, hand.hold, step * hand.unit,
+                             cell * hand.unit);
+}
+
+FitResult fit_stations(std::vector<Station> stations, const FitTarget& target, const BrushHand& hand, const Pace& pace,
+                       const FitOptions& options) {
+    FitResult best{.stations = stations};
+    const std::vector<Station> first = stations;
+    for (int t = 0, idle = 0; t < options.tries && idle < options.idle; ++t) {
+        check_interrupt();
+        const stroke::StrokeSamples trace = samples_of(stations, hand, pace);
+        const stroke::PlaneInk ink = stroke::plane_ink(trace, hand.preset, hand.hold, options.step * hand.unit,
+                                                       target.wanted.cell * hand.unit);
+        const Errors errors = errors_of(stations, target, ink, trace, hand.unit);
+        idle = errors.iou > best.iou + 1e-4 ? 0 : idle + 1;
+        if (errors.iou > best.iou) best.iou = errors.iou, best.stations = stations;
+        best.tries = t + 1;
+        correct(stations, first, errors);
+    }
+    return best;
+}
+
+}  // namespace tuft::writer
