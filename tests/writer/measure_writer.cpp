@@ -1,6 +1,6 @@
 // Measures the writer on characters of a folder of hanzi-writer-data:
 //   measure_writer sides DATA CHARACTERS                     features and measured sides of each stroke, a line each
-//   measure_writer score DATA CHARACTERS [--fit 1] [--brush NAME] [--side MM] [--tries N] [--verbose 1]
+//   measure_writer score DATA CHARACTERS [--fit 1] [--brush NAME] [--side MM] [--tries N] [--step UNITS] [--verbose 1]
 // CHARACTERS is a file. `score` draws the writer's strokes on a plane, without texels, and compares their union with the
 // outlines in cells of 2 units; score_painted.py compares what `tuft write` painted.
 #include <fmt/format.h>
@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
         for (std::size_t s = 0; s < written.size(); ++s) {
             fill(truth, glyph.strokes[s].outline);
             const stroke::PlaneInk ink =
-                stroke::plane_ink(written[s].trace, hand.preset, hand.hold, 5 * hand.unit, 2 * hand.unit);
+                stroke::plane_ink(written[s].trace, hand.preset, hand.hold, number("step", 5) * hand.unit, 2 * hand.unit);
             Cells own = square();
             fill(own, glyph.strokes[s].outline);
             Overlap overlap;

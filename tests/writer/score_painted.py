@@ -17,6 +17,7 @@ from PIL import Image, ImageDraw
 
 N = 1280          # pixels of the common raster, one unit each
 MARGIN = 128
+INK = 128         # grey level half way between paper and ink
 SHEET, SIDE, TEXELS = 200.0, 133.0, 2048   # mm, mm, texels of the map
 
 def outline(d):
@@ -45,14 +46,14 @@ def truth(character):
 def best_match(T, image):
     """The painted raster in the frame of T, and its IoU."""
     F = np.conj(np.fft.rfft2(T.astype(float))); total = T.sum()
-    ink = image < 110
+    ink = image < INK
     if not ink.any(): return None, 0
     ys, xs = np.where(ink); image = image[ys.min():ys.max()+1, xs.min():xs.max()+1]
     picture = Image.fromarray(image); ty, tx = np.where(T)
     def at(q, s, raster=False):
         w, h = max(1, round(picture.size[0]*s)), max(1, round(picture.size[1]*s))
         if w > N or h > N: return 0, None
-        p = np.asarray(picture.resize((w, h), Image.BICUBIC)) < 110
+        p = np.asarray(picture.resize((w, h), Image.BICUBIC)) < INK
         p = np.rot90(p, q % 4); p = p[:, ::-1] if q >= 4 else p
         R = np.zeros((N, N)); R[:p.shape[0], :p.shape[1]] = p
         c = np.fft.irfft2(np.fft.rfft2(R)*F, s=(N, N)); k = c.argmax(); both = c.flat[k]
@@ -65,8 +66,21 @@ def best_match(T, image):
     for step in (.01, .003, .001):
         centre = best
         for k in (-3, -2, -1, 1, 2, 3): best = max(best, (at(centre[1], centre[2]*(1+k*step))[0], centre[1], centre[2]*(1+k*step)))
-    iou, R = at(best[1], best[2], True)
-    return R, iou
+    iou, q, s = best; _, R = at(q, s, True); ry, rx = np.where(R)
+    turned = np.rot90(image, q % 4); turned = Image.fromarray(np.ascontiguousarray(turned[:, ::-1] if q >= 4 else turned))
+    white = Image.new('L', (turned.size[0] + 16, turned.size[1] + 16), 255); white.paste(turned, (8, 8))
+    def moved(s, x, y):   # scale and shift in parts of a pixel
+        p = np.asarray(white.transform((N, N), Image.AFFINE, (1/s, 0, 8 - x/s, 0, 1/s, 8 - y/s), Image.BICUBIC, fillcolor=255)) < INK
+        return (p & T).sum()/(p | T).sum(), p
+    at_best = (moved(s, rx.min(), ry.min())[0], s, float(rx.min()), float(ry.min()))
+    for step in (.5, .25, .12):
+        for _ in range(3):
+            before = at_best
+            for ds, dx, dy in ((0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)):
+                t = (before[1]*(1 + ds*step*.002), before[2] + dx*step, before[3] + dy*step)
+                at_best = max(at_best, (moved(*t)[0],) + t)
+            if at_best == before: break
+    return moved(*at_best[1:])[1], max(iou, at_best[0])
 
 def contours(mask):
     """Closed boundaries between pixels, each in order, as points."""

@@ -11,9 +11,14 @@ namespace {
 constexpr double kMove = 0.6, kPress = 0.5, kLengthen = 0.6;  // parts of an error taken back at once
 constexpr double kOwn = 60;       // units along the path within which ink is a station's own
 constexpr double kMostMoved = 60;  // units from the path of the first try
-constexpr double kTip = 2;        // units of half width at a tip
+constexpr double kTip = 5;        // units of half width at a tip
 constexpr double kEndFade = 20;   // units over which a moved end fades
 constexpr double kSoft = 2;       // stations of the Gaussian that smooths corrections
+constexpr double kSharp = 1.6;       // radians of a turn at which corrections are smoothed less
+constexpr double kCornerSoft = 1.2;  // stations, there
+constexpr std::size_t kCornerReach = 3;  // stations
+constexpr double kNeedle = 24;           // units about an end in which its ink must not reach further than wanted
+constexpr double kNeedleBack = 0.6;      // part of that taken back at once
 constexpr double kTaken = 0.5;    // coverage from which a cell is ink
 
 struct Errors {
@@ -36,10 +41,12 @@ Vec2 direction_at(const std::vector<Station>& s, std::size_t i) {
     return size > 1e-9 ? d / size : Vec2(1, 0);
 }
 
-std::vector<double> smoothed(const std::vector<double>& v, double sigma) {
-    const int reach = static_cast<int>(std::ceil(3 * sigma)), n = static_cast<int>(v.size());
+std::vector<double> smoothed(const std::vector<double>& v, const std::vector<double>& soft) {
+    const int n = static_cast<int>(v.size());
     std::vector<double> out(v.size(), 0);
     for (int i = 0; i < n; ++i) {
+        const double sigma = soft[static_cast<std::size_t>(i)];
+        const int reach = static_cast<int>(std::ceil(3 * sigma));
         double sum = 0, all = 0;
         for (int k = std::max(0, i - reach); k <= std::min(n - 1, i + reach); ++k) {
             const double z = (k - i) / sigma, w = std::exp(-0.5 * z * z);
@@ -58,6 +65,20 @@ std::size_t nearest_station(const std::vector<Station>& s, const Vec2& p) {
     return best;
 }
 
+/// How far ink and wanted area reach beyond an end, in a strip about its axis. A needle there has hardly an area.
+struct Reach {
+    double wanted = 0, ink = 0;  ///< units
+
+    void add(const Vec2& from_end, const Vec2& out, bool is_wanted, bool is_ink) {
+        const double along = glm::dot(from_end, out);
+        if (along < -kNeedle || along > 2 * kNeedle || std::abs(out.x * from_end.y - out.y * from_end.x) > kNeedle)
+            return;
+        if (is_wanted) wanted = std::max(wanted, along + kNeedle);
+        if (is_ink) ink = std::max(ink, along + kNeedle);
+    }
+    double too_short() const { return ink > wanted ? kNeedleBack * (wanted - ink) : 1e9; }
+};
+
 /// Compares the ink of a try with the target.
 Errors errors_of(const std::vector<Station>& s, const FitTarget& target, const stroke::PlaneInk& ink,
                  const stroke::StrokeSamples& trace, double unit) {
@@ -68,12 +89,15 @@ Errors errors_of(const std::vector<Station>& s, const FitTarget& target, const s
     const double spacing = std::max(along.back() / static_cast<double>(n - 1), 1.0);
     const double part = cells.cell * cells.cell / spacing;
     double both = 0, either = 0, head = 0, tail = 0;
+    Reach reach_head, reach_tail;
     const Vec2 out_head = -direction_at(s, 0), out_tail = direction_at(s, n - 1);
     for (int j = 0; j < cells.height; ++j)
         for (int i = 0; i < cells.width; ++i) {
             const Vec2 p = cells.centre(i, j);
             const bool wanted = cells.at(i, j), there = ink.at(p * unit) > kTaken;
             if (!wanted && !there) continue;
+            reach_head.add(p - s[0].centre, out_head, wanted, there);
+            reach_tail.add(p - s[n - 1].centre, out_tail, wanted, there);
             const std::size_t at = std::size_t(j) * cells.width + i;
             const double weight = target.weights.empty() ? 1 : static_cast<double>(target.weights[at]);
             if (wanted && there) {
@@ -108,14 +132,33 @@ Errors errors_of(const std::vector<Station>& s, const FitTarget& target, const s
     const auto width = [&](std::size_t k) { return std::max(2 * s[k].half, 12.0); };
     e.head = head / width(std::min<std::size_t>(2, n - 1));
     e.tail = tail / width(n - 1 - std::min<std::size_t>(2, n - 1));
+    e.head = std::min(e.head, reach_head.too_short());
+    e.tail = std::min(e.tail, reach_tail.too_short());
     e.iou = either > 0 ? both / either : 0;
     return e;
 }
 
-void correct(std::vector<Station>& s, const std::vector<Station>& first, const Errors& e) {
+double turn_at(const std::vector<Station>& s, std::size_t i) {
+    const Vec2 in = s[i].centre - s[i - kCornerReach].centre, on = s[i + kCornerReach].centre - s[i].centre;
+    return std::abs(std::atan2(in.x * on.y - in.y * on.x, glm::dot(in, on)));
+}
+
+/// Stations over which corrections are smoothed: fewer at sharp corners, which would be cut.
+std::vector<double> softness_of(const std::vector<Station>& s) {
     const std::size_t n = s.size();
-    const std::vector<double> left = smoothed(e.left, kSoft), right = smoothed(e.right, kSoft),
-                              kick = smoothed(e.kick, kSoft), along = lengths_of(s);
+    std::vector<double> soft(n, kSoft);
+    for (std::size_t i = kCornerReach; i + kCornerReach < n; ++i) {
+        if (turn_at(s, i) < kSharp) continue;
+        for (std::size_t k = i - 1; k <= i + 1; ++k) soft[k] = kCornerSoft;
+    }
+    return soft;
+}
+
+void correct(std::vector<Station>& s, const std::vector<Station>& first, const std::vector<double>& soft,
+             const Errors& e) {
+    const std::size_t n = s.size();
+    const std::vector<double> left = smoothed(e.left, soft), right = smoothed(e.right, soft),
+                              kick = smoothed(e.kick, soft), along = lengths_of(s);
     const std::vector<Station> before = s;
     const Vec2 out_head = -direction_at(before, 0), out_tail = direction_at(before, n - 1);
     for (std::size_t i = 0; i < n; ++i) {
@@ -144,19 +187,26 @@ stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHan
 
 FitResult fit_stations(std::vector<Station> stations, const FitTarget& target, const BrushHand& hand, const Pace& pace,
                        const FitOptions& options) {
-    FitResult best{.stations = stations};
     const std::vector<Station> first = stations;
-    for (int t = 0, idle = 0; t < options.tries && idle < options.idle; ++t) {
-        check_interrupt();
-        const stroke::StrokeSamples trace = samples_of(stations, hand, pace);
-        const stroke::PlaneInk ink = stroke::plane_ink(trace, hand.preset, hand.hold, options.step * hand.unit,
-                                                       target.wanted.cell * hand.unit);
-        const Errors errors = errors_of(stations, target, ink, trace, hand.unit);
-        idle = errors.iou > best.iou + 1e-4 ? 0 : idle + 1;
-        if (errors.iou > best.iou) best.iou = errors.iou, best.stations = stations;
-        best.tries = t + 1;
-        correct(stations, first, errors);
-    }
+    const std::vector<double> soft = softness_of(first);
+    FitResult best{.stations = stations};
+    const auto try_with = [&](int tries, double step) {
+        best.iou = 0;
+        stations = best.stations;
+        for (int t = 0, idle = 0; t < tries && idle < options.idle; ++t) {
+            check_interrupt();
+            const stroke::StrokeSamples trace = samples_of(stations, hand, pace);
+            const stroke::PlaneInk ink =
+                stroke::plane_ink(trace, hand.preset, hand.hold, step * hand.unit, target.wanted.cell * hand.unit);
+            const Errors errors = errors_of(stations, target, ink, trace, hand.unit);
+            idle = errors.iou > best.iou + 1e-4 ? 0 : idle + 1;
+            if (errors.iou > best.iou) best.iou = errors.iou, best.stations = stations;
+            ++best.tries;
+            correct(stations, first, soft, errors);
+        }
+    };
+    try_with(options.tries, options.step);
+    if (options.fine_tries > 0) try_with(options.fine_tries, options.fine_step);
     return best;
 }
 

@@ -18,9 +18,11 @@ struct FitTarget {
 };
 
 struct FitOptions {
-    int tries = 10;     ///< drawings on the plane at most
-    double step = 5;    ///< units between poses
-    int idle = 4;       ///< tries without a gain after which it stops
+    int tries = 8;           ///< drawings on the plane at most
+    double step = 5;         ///< units between poses
+    int fine_tries = 4;      ///< drawings after those, from the best of them on
+    double fine_step = 1.5;  ///< units; the ink of a tuft depends on the step, by .005 of the overlap from 5 to 1
+    int idle = 4;            ///< tries without a gain after which it stops
 };
 
 struct FitResult {
@@ -35,7 +37,7 @@ struct FitResult {
 /// goes to the left or right of its nearest station, as area over station spacing; extra ink that another station, more
 /// than 60 units along the path, covered first lifts that one; cells beyond an end change the length. Smoothed over two
 /// stations, the path moves by 0.6 · ½ (left − right) and the half width grows by 0.5 · ½ (left + right) less the kick.
-/// Half widths stay below 2 units + the distance to the nearer tip. Returns the best try; deterministic. Cost: 0.1 ms
+/// Half widths stay below 5 units + the distance to the nearer tip. Returns the best try; deterministic. Cost: 0.1 ms
 /// per pose.
 FitResult fit_stations(std::vector<Station> stations, const FitTarget& target, const BrushHand& hand, const Pace& pace,
                        const FitOptions& options = {});

@@ -10,6 +10,8 @@ namespace tuft::writer {
 namespace {
 
 constexpr double kMostSide = 130, kMostRay = 70;  // units
+constexpr double kLeastEnd = 5;                   // units of half width of an end
+constexpr std::size_t kMostThin = 2;              // stations taken off an end
 constexpr double kTangent = 12;                   // units before and after, of the direction at a knot
 
 Vec2 turned(const Vec2& v, double angle) {
@@ -73,6 +75,15 @@ double clearance_at(const Cells& cells, const std::vector<float>& clearance, con
     const int i = static_cast<int>(low.x), j = static_cast<int>(low.y);
     return std::lerp(std::lerp(value(i, j), value(i + 1, j), f.x), std::lerp(value(i, j + 1), value(i + 1, j + 1), f.x),
                      f.y);
+}
+
+/// Takes off ends so thin that a brush would draw them as needles.
+void blunt_ends(std::vector<Station>& s) {
+    std::size_t head = 0, tail = s.size();
+    while (head < kMostThin && head + 4 < tail && s[head].half < kLeastEnd) ++head;
+    for (std::size_t n = 0; n < kMostThin && head + 4 < tail && s[tail - 1].half < kLeastEnd; ++n) --tail;
+    s.erase(s.begin() + static_cast<std::ptrdiff_t>(tail), s.end());
+    s.erase(s.begin(), s.begin() + static_cast<std::ptrdiff_t>(head));
 }
 
 void smooth(std::vector<Station>& s, int passes) {
@@ -185,6 +196,7 @@ std::vector<Station> make_stations(const StrokeLine& line, const StrokeSides& si
         const bool beyond = along < head_end || along > tail_begin;
         stations[i].half = beyond ? room : std::min(stations[i].half, room);
     }
+    blunt_ends(stations);
     return stations;
 }
 
