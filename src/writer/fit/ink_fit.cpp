@@ -12,6 +12,7 @@ constexpr double kMove = 0.6, kPress = 0.5, kLengthen = 0.6;  // parts of an err
 constexpr double kOwn = 60;       // units along the path within which ink is a station's own
 constexpr double kMostMoved = 60;  // units from the path of the first try
 constexpr double kTip = 5;        // units of half width at a tip
+constexpr double kGrown = 1.15;   // of the first half width, with kTip more: beyond it corners become balls
 constexpr double kEndFade = 20;   // units over which a moved end fades
 constexpr double kSoft = 2;       // stations of the Gaussian that smooths corrections
 constexpr double kSharp = 1.6;       // radians of a turn at which corrections are smoothed less
@@ -173,7 +174,7 @@ void correct(std::vector<Station>& s, const std::vector<Station>& first, const s
         if (const double far = glm::length(moved); far > kMostMoved)
             s[i].centre = first[i].centre + kMostMoved / far * moved;
         const double tip = std::min(along[i], along.back() - along[i]);
-        s[i].half = std::clamp(s[i].half, 0.0, kTip + tip);
+        s[i].half = std::clamp(s[i].half, 0.0, std::min(kTip + tip, kGrown * first[i].half + kTip));
     }
 }
 

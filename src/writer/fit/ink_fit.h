@@ -20,7 +20,7 @@ struct FitTarget {
 struct FitOptions {
     int tries = 8;           ///< drawings on the plane at most
     double step = 5;         ///< units between poses
-    int fine_tries = 4;      ///< drawings after those, from the best of them on
+    int fine_tries = 3;      ///< drawings after those, from the best of them on
     double fine_step = 1.5;  ///< units; the ink of a tuft depends on the step, by .005 of the overlap from 5 to 1
     int idle = 4;            ///< tries without a gain after which it stops
 };

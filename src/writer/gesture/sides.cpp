@@ -10,6 +10,9 @@ namespace tuft::writer {
 namespace {
 
 constexpr double kMostSide = 130, kMostRay = 70;  // units
+// A side counts at most this part of the median half width, and so many units more: at corners the inner ray runs down
+// the other segment, and would pull the path off the corner.
+constexpr double kWidest = 1.25, kWider = 10;
 constexpr double kLeastEnd = 5;                   // units of half width of an end
 constexpr std::size_t kMostThin = 2;              // stations taken off an end
 constexpr double kTangent = 12;                   // units before and after, of the direction at a knot
@@ -75,6 +78,16 @@ double clearance_at(const Cells& cells, const std::vector<float>& clearance, con
     const int i = static_cast<int>(low.x), j = static_cast<int>(low.y);
     return std::lerp(std::lerp(value(i, j), value(i + 1, j), f.x), std::lerp(value(i, j + 1), value(i + 1, j + 1), f.x),
                      f.y);
+}
+
+/// Median of the half widths at the knots.
+double median_half(const StrokeSides& sides) {
+    std::vector<double> half;
+    for (std::size_t s = 0; s < sides.left.size(); ++s)
+        for (std::size_t k = 0; k < kKnots; ++k) half.push_back(0.5 * (sides.left[s][k] + sides.right[s][k]));
+    const auto middle = half.begin() + static_cast<std::ptrdiff_t>(half.size() / 2);
+    std::nth_element(half.begin(), middle, half.end());
+    return *middle;
 }
 
 /// Takes off ends so thin that a brush would draw them as needles.
@@ -165,10 +178,12 @@ std::vector<Station> resample_stations(std::span<const Station> stations, double
 
 std::vector<Station> make_stations(const StrokeLine& line, const StrokeSides& sides, const Cells& area) {
     std::vector<Station> path;
+    const double cap = kWidest * median_half(sides) + kWider;
     const auto n = static_cast<int>(std::max(2.0, std::round(line.length() / kStationsApart)));
     for (int i = 0; i <= n; ++i) {
         const double at = line.length() * i / n;
-        const Vec2 side = sides_at(line, sides, at), normal = left_of(line.direction(at, kTangent));
+        const Vec2 side = glm::min(sides_at(line, sides, at), Vec2(cap));
+        const Vec2 normal = left_of(line.direction(at, kTangent));
         path.push_back({line.at(at) + 0.5 * (side.x - side.y) * normal, 0.5 * (side.x + side.y)});
     }
     smooth(path, 4);
