@@ -39,6 +39,9 @@ stroke/document
 io/image render/brush render/picture render/gl
 io/model
 io/export io/project io/strokes
+writer/glyphs
+writer/gesture
+writer/fit writer/layout
 cli app/input app/text
 app/view
 app/document
@@ -81,7 +84,9 @@ wall() {
 wall 'OpenMesh' 'mesh/*.cpp'
 wall 'CGAL' '*.cpp'
 wall 'embree3' '*.cpp'
-wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|pugixml|zlib|assimp' 'io/*.cpp'
+wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|zlib|assimp' 'io/*.cpp'
+wall 'pugixml' 'io/*.cpp' 'writer/glyphs/*.cpp'
+wall 'ft2build|hb' 'writer/glyphs/*.cpp'
 wall 'GL/|epoxy|EGL' 'render/*' 'app/*'
 wall 'GLFW|imgui' 'app/*'
 exit $bad

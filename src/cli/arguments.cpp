@@ -10,161 +10,15 @@
 #include "cli/options.h"
 #include "cli/reference.h"
 #include "core/error.h"
-#include "core/geometry/bounds.h"
 #include "core/text/text.h"
-#include "core/text/units.h"
 #include "ink/composite/match.h"
 #include "io/export/export_maps.h"
 #include "io/model/read_model.h"
-#include "stroke/drawing/free_area.h"
-#include "stroke/journal/recorded_stroke.h"
 
 namespace tuft::cli {
 namespace {
 
-constexpr double kFarthestMm = kFarthest / kMillimetre;
 constexpr std::size_t kLongestMessage = 600;  // bytes
-constexpr double kMostTexels = 1e9;           // along a side; memory is asked about later
-constexpr double kLeastTexelMm = 1e-9;
-constexpr double kMostDegrees = 36000;  // a hundred turns
-
-/// "A,B[,C]" into numbers within ±`most`; empty when it is anything else.
-std::vector<double> numbers(const std::string& text, char separator, std::size_t count, double most) {
-    std::vector<double> values;
-    std::stringstream stream(text);
-    std::string part;
-    while (std::getline(stream, part, separator)) {
-        const std::optional<double> value = number_of(part);
-        if (!value || std::abs(*value) > most) return {};
-        values.push_back(*value);
-    }
-    if (values.size() != count || text.ends_with(separator)) values.clear();
-    return values;
-}
-
-void add_store(CLI::App* app, Surface& s) {
-    app->add_option("--texel-store", s.texel_store,
-                    "how texels are kept in memory: float, packed (16 bits, half the memory), "
-                    "auto (packed beyond 4096)")
-        ->check(CLI::IsMember({"auto", "float", "packed"}));
-}
-
-void add_reading(CLI::App* app, FileReading& reading, const std::string& what) {
-    app->add_option("--unit", reading.unit, what)->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
-    app->add_option("--up", reading.up,
-                    "axis of the model file that points up: z, or y, as many modellers write it; points "
-                    "on the command line are with z up: (x, y, z) of a file with y up is (x, -z, y)")
-        ->check(CLI::IsMember({"z", "y"}));
-    app->add_option("--sides", reading.sides,
-                    "front of the open parts of the model file, onto which ink goes: outward (default; a part that is "
-                    "inside out is turned round), file (as the file has it), turned (the other side)")
-        ->check(CLI::IsMember({"outward", "file", "turned"}));
-}
-
-void add_surface(CLI::App* app, Surface& s) {
-    add_reading(app, s, "unit of the model file (default: a guess from its size)");
-    app->add_option("--atlas-size", s.atlas_size, "texels along the side of the atlas")
-        ->check(number_in(1, kMostTexels, "POSITIVE"));
-    app->add_option("--texel-size", s.texel_size_mm, "size of a texel in millimetres")
-        ->check(number_in(kLeastTexelMm, kFarthestMm, "POSITIVE"));
-    app->add_option("--pages", s.pages,
-                    "most pages of the atlas (UDIM), each --atlas-size texels wide: as many as "
-                    "--texel-size needs, or all of them")
-        ->check(number_in(1, 100));
-    app->parse_complete_callback([&s] {
-        if (s.atlas_size > 0 && s.texel_size_mm > 0 && s.pages <= 1)
-            throw CLI::ExcludesError("--atlas-size", "--texel-size (without --pages)");
-    });
-    auto* renew = app->add_flag("--new-uv", s.new_uv, "make a new atlas even if the file has UVs");
-    auto* keep = app->add_flag("--keep-uv", s.keep_uv, "use the file's UVs or fail");
-    renew->excludes(keep);
-    auto* tight = app->add_flag("--tight", s.tight,
-                                "halve large charts as long as the atlas is covered better then "
-                                "(else: only where less than 65 % would be)");
-    app->add_flag("--whole", s.whole, "never halve charts for the sake of the atlas")->excludes(tight);
-    app->add_option("--seams", s.seams, "where the atlas must be cut: free, groups (of faces), sharp (edges), both")
-        ->check(CLI::IsMember({"free", "groups", "sharp", "both"}))
-        ->excludes(keep);
-    app->add_option("--sharp-angle", s.sharp_angle_deg, "degrees from which an edge is sharp")
-        ->check(number_in(1.0, 180.0));
-    app->add_flag(
-        "--plain", s.plain,
-        "leave aside the colours that the model brings along (pictures, vertices, facets); else ink lies on them");
-    add_store(app, s);
-}
-
-CLI::Option* add_point(CLI::App* app, const std::string& name, std::vector<double>& to, const std::string& what) {
-    return app
-        ->add_option_function<std::string>(
-            name,
-            [&to, name](const std::string& text) {
-                to = numbers(text, ',', 3, kFarthestMm);
-                if (to.empty())
-                    throw CLI::ValidationError(
-                        name, "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
-            },
-            what)
-        ->type_name("X,Y,Z");
-}
-
-void add_layers(CLI::App* app, std::vector<std::string>& layers) {
-    app->add_option("--layers", layers, "show these layers only, hidden ones too: NAME,...")->delimiter(',');
-}
-
-void add_recolouring(CLI::App* app, Recolouring& recolouring) {
-    app->add_option("--substrate", recolouring.substrate,
-                    "show the ink on this substrate (name or .toml), without painting it anew");
-    app->add_option("--recolour", recolouring.recolours,
-                    "show what was painted with INK as another ink or recipe: INK=NAME, INK=FILE.toml or INK=#rrggbb")
-        ->type_name("INK=NAME");
-}
-
-void add_view_direction(CLI::App* app, View& v) {
-    app->add_option_function<std::string>(
-           "--view",
-           [&v](const std::string& text) {
-               const auto n = numbers(text, ',', 2, kMostDegrees);
-               if (n.empty())
-                   throw CLI::ValidationError("--view", "'" + excerpt(text) + "' is not AZIMUTH,ELEVATION in degrees");
-               v.azimuth = n[0];
-               v.elevation = n[1];
-               v.directed = true;
-           },
-           "where to look from, in degrees: AZIMUTH,ELEVATION")
-        ->type_name("AZ,EL");
-}
-
-void add_view(CLI::App* app, View& v) {
-    app->add_option_function<std::string>(
-           "--size",
-           [&v](const std::string& text) {
-               const auto n = numbers(text, 'x', 2, 16384);
-               if (n.empty() || n[0] < 16 || n[1] < 16 || n[0] != std::floor(n[0]) || n[1] != std::floor(n[1]))
-                   throw CLI::ValidationError("--size",
-                                              "'" + excerpt(text) + "' is not WIDTHxHEIGHT, such as 1280x720");
-               v.width = static_cast<int>(n[0]);
-               v.height = static_cast<int>(n[1]);
-           },
-           "size of the picture, WIDTHxHEIGHT")
-        ->type_name("WxH");
-    add_layers(app, v.layers);
-    add_view_direction(app, v);
-    app->add_option("--light", v.light, "turn the lights by so many degrees (they follow the camera)")
-        ->check(number_in(-kMostDegrees, kMostDegrees, "DEGREES"));
-    app->add_flag("--raking", v.raking,
-                  "one lamp from the side, which shows the relief of the ink; --light turns it about the view");
-    app->add_option("--zoom", v.zoom, "magnification (1: the whole model)")->check(number_in(0.05, 100.0));
-    app->add_option_function<std::string>(
-           "--target",
-           [&v](const std::string& text) {
-               v.target_mm = numbers(text, ',', 3, kFarthestMm);
-               if (v.target_mm.empty())
-                   throw CLI::ValidationError("--target",
-                                              "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
-           },
-           "the point to look at, in millimetres: X,Y,Z")
-        ->type_name("X,Y,Z");
-}
 
 // Values that are names of presets.
 void name_presets(CLI::App& app) {
@@ -200,144 +54,13 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     auto* p = app.add_subcommand("paint", "paint recorded strokes onto a model, or go on with a project");
     p->add_option("MODEL", paint.model, std::string("mesh (") + io::kModelFormats + ") or project")->required();
     p->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
-    p->add_option("--brush", paint.brush,
-                  "brush for all strokes ('tuft brush' lists them; goat-small*0.5 is one of half the size; default: "
-                  "what they name, else wolf-medium)");
-    p->add_option("--ink", paint.ink,
-                  "ink for all strokes: a name ('tuft ink' lists them), a .toml file, or a colour such as '#c03020' "
-                  "(default: what they name, else carbon)");
-    p->add_option("--mask", paint.mask, "mask of the project to keep to, for strokes that name none");
-    p->add_flag_callback(
-        "--erase", [&paint] { paint.erases = true; },
-        "the strokes take ink away, wet and dry, instead of leaving some");
-    p->add_option("--layer", paint.layer, "layer for strokes that name none; it is made when there is none yet");
-    p->add_option("--substrate", paint.surface.substrate, "what the model is made of: porcelain, bisque, clay, ...");
-    p->add_option("--spine", paint.spine,
-                  "how the tuft bends: rod (live solve; as the brush says), table (query table), or a model of the "
-                  "papers: macro "
-                  "(hair macros), chain (kinematic chain), truss (spring truss)")
-        ->check(CLI::IsMember(std::vector<std::string>(std::begin(brush::kSpineWords), std::end(brush::kSpineWords))));
-    p->add_option("--footprint", paint.footprint, "footprint along the surface, or on one plane")
-        ->check(CLI::IsMember({"surface", "plane"}));
-    p->add_option("--contact", paint.contact, "exact closest points, or weighted distance to vertices")
-        ->check(CLI::IsMember({"exact", "vertices"}));
-    p->add_option(
-         "--dip", paint.dip,
-         "each: a fresh full brush for each stroke; persistent: hair and ink stay as the stroke before left them, "
-         "until the next dip; endless: a brush that never runs dry")
-        ->transform(CLI::Validator(
-            [](std::string& word) {
-                if (word == "carry") word = "persistent";  // of earlier versions
-                return std::string();
-            },
-            ""))
-        ->check(CLI::IsMember({"each", "persistent", "endless"}));
-    p->add_option("--film", paint.film,
-                  "still: ink stays where it is put; wet: it flows, soaks in, dries and is picked up")
-        ->check(CLI::IsMember({"still", "wet"}));
-    p->add_option_function<std::string>(
-         "--down",
-         [&paint](const std::string& text) {
-             paint.down = numbers(text, ',', 3, kFarthestMm);
-             if (paint.down.empty()) throw CLI::ValidationError("--down", "'" + excerpt(text) + "' is not X,Y,Z");
-         },
-         "direction of weight for wet ink (0,0,0: none)")
-        ->type_name("X,Y,Z");
-    p->add_option("--dry", paint.dry, "let the ink dry for so many seconds after each stroke file; 0: until all is dry")
-        ->check(number_in(0.0, 86400.0))
-        ->type_name("SECONDS");
-    p->add_option("--prepare", paint.prepare,
-                  "done with the full brush before it paints, in this order: rinse, wipe[,amount=0.6][,depth=0.3], "
-                  "dip[:INK][,depth=0.2][,amount=0.5], reshape; side=0.5 of a dip or wipe: only this part of the "
-                  "width, from the right flank, negative from the left")
-        ->check([](const std::string& text) -> std::string {
-            try {
-                stroke::preparation_of(text);
-                return {};
-            } catch (const Error& e) {
-                return e.what();
-            }
-        })
-        ->type_name("CARE");
-    p->add_option("--pressure", paint.pressure,
-                  "pressure for flat strokes that have none: none, speed, dwell or speed+dwell")
-        ->check(CLI::IsMember({"none", "speed", "dwell", "speed+dwell"}));
-    p->add_option("--smooth", paint.smooth, "steady a shaky hand: 1 takes the jitter of a mouse away, 0 is off")
-        ->check(number_in(0.0, 100.0));
-    p->add_option("--stabilise", paint.stabilise_mm, "pull the tip on a string of so many millimetres")
-        ->check(number_in(0.0, 1000.0))
-        ->type_name("MM");
-    p->add_option("--roll", paint.roll_deg,
-                  "turn the holder about its own axis, anticlockwise as seen from its end; at 0 a wide ferrule lies "
-                  "along the width of flat strokes")
-        ->check(number_in(-360.0, 360.0))
-        ->type_name("DEG");
-    p->add_flag("--roll-follow", paint.roll_follow,
-                "turn the broad side of the ferrule across the path as flat strokes go on; --roll is added");
-    p->add_option("--bias,--habit", paint.bias, "correct a writer's bias (.toml, made by 'tuft bias')");
-    p->add_option_function<std::string>(
-         "--place",
-         [&paint](const std::string& text) {
-             paint.place_mm = numbers(text, ',', 3, kFarthestMm);
-             if (paint.place_mm.empty())
-                 throw CLI::ValidationError("--place",
-                                            "'" + excerpt(text) + "' is not X,Y,Z in millimetres, each within 10 km");
-         },
-         "where flat strokes go that have no place of their own: X,Y,Z in millimetres")
-        ->type_name("X,Y,Z");
-    p->add_option("--on", paint.on,
-                  "puts flat strokes onto the largest calm area of a side, as by default onto the "
-                  "front or what lies flat: "
-                  "front (-y), back, left (-x), right, top, bottom, inside (of what is open above)")
-        ->check(CLI::IsMember({"front", "back", "left", "right", "top", "bottom", "inside"}))
-        ->excludes("--place")
-        ->type_name("SIDE");
-    p->add_option_function<std::string>(
-         "--read-from",
-         [&paint](const std::string& text) {
-             const auto side = stroke::side_named(text);
-             if (side && *side != stroke::Side::inside) {
-                 const Vec3 from = -stroke::look_at_side(*side);
-                 paint.read_from = {from.x, from.y, from.z};
-                 return;
-             }
-             paint.read_from = numbers(text, ',', 3, 1e9);
-             if (paint.read_from.empty() ||
-                 std::hypot(paint.read_from[0], paint.read_from[1], paint.read_from[2]) < 1e-6)
-                 throw CLI::ValidationError("--read-from", "'" + text +
-                                                               "' is neither front, back, left, right, top or "
-                                                               "bottom nor a direction X,Y,Z");
-         },
-         "where a person stands who reads the drawing: front, back, left, right, top, bottom, or a "
-         "direction X,Y,Z from the model; "
-         "it stands upright for them, and --mapping project goes straight away from them (default: "
-         "before the surface)")
-        ->type_name("DIRECTION");
-    p->add_option("--mapping,--laying", paint.mapping,
-                  "how flat strokes lie: drape (bent round the surface, over its grooves, relief and gaps), wrap "
-                  "(round its very "
-                  "triangles, into each groove), project (straight, as seen from before the place); default: as their "
-                  "file says, "
-                  "drape where it names no place")
-        ->check(CLI::IsMember({"drape", "wrap", "project"}));
-    p->add_option("--place-width", paint.place_width_mm,
-                  "draws what is placed this wide, all stroke files together (default: as written)")
-        ->check(number_in(kLeastTexelMm, kFarthestMm, "POSITIVE"))
-        ->type_name("MM");
-    p->add_option("--place-turn", paint.place_turn_deg, "turns it anticlockwise by so many degrees")
-        ->check(number_in(-360.0, 360.0))
-        ->type_name("DEG");
-    p->add_flag("--place-mirror", paint.place_mirror, "flips it from left to right");
-    p->add_flag("--fit-brush", paint.fit_brush,
-                "with --brush: takes this make in the sizes that draw the line widths of a drawing");
-    add_surface(p, paint.surface);
-    p->add_option("--project", paint.project, "write a project file (.tuft)");
-    p->add_option("--export", paint.exported, "write the textured model: .glb, .gltf or .obj");
-    p->add_option("--preview", paint.preview, "write a picture (.png)");
-    p->add_option("--forces", paint.forces,
-                  "write time, pose, force, force on the hand and moment at every sample of the hand (.csv)");
-    add_view(p, paint.view);
-    add_common(p, paint.common);
+    add_paint_options(p, paint);
+
+    Write write;
+    auto* w = app.add_subcommand("write", "write a text onto a model, as a calligrapher does");
+    w->add_option("MODEL", write.model, std::string("mesh (") + io::kModelFormats + ") or project")->required();
+    add_paint_options(w, write);
+    add_write_options(w, write);
 
     Inspect inspect;
     auto* i = app.add_subcommand("inspect", "say what is in a mesh or a project, and what is wrong with it");
@@ -539,6 +262,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     }
     if (p->parsed())
         command = paint;
+    else if (w->parsed())
+        command = write;
     else if (i->parsed())
         command = inspect;
     else if (u->parsed())

@@ -9,6 +9,7 @@ namespace tuft::cli {
 /// Runs one command and returns the exit status. Results go to standard output, notes and progress to standard error.
 /// Throws `Error` or `Cancelled`.
 int run(const Paint& arguments);
+int run(const Write& arguments);
 int run(const Inspect& arguments);
 int run(const Unwrap& arguments);
 int run(const Replay& arguments);

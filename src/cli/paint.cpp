@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "cli/commands.h"
-#include "cli/place.h"
+#include "cli/paint.h"
 #include "cli/steps.h"
 #include "core/system/files.h"
 #include "core/text/counted.h"
@@ -130,6 +130,12 @@ void note_misses(const std::vector<stroke::StrokeReport>& reports,
 }  // namespace
 
 int run(const Paint& a) {
+    return paint(a, {.load = [&](Console& console) { return load_strokes(a, console); },
+                     .place = [&](std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
+                                  Console& console) { return place_strokes(strokes, model, a, console); }});
+}
+
+int paint(const Paint& a, const StrokeSource& source) {
     Outputs outputs{a.project, a.exported, a.preview, a.view, {}};
     check_outputs(outputs);
     check_output(a.forces);
@@ -142,11 +148,11 @@ int run(const Paint& a) {
     const auto reserved = in_place ? std::nullopt : reserve(a.project, console);
     const auto before =
         goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console) : nullptr;
-    std::vector<stroke::JournalEntry> strokes = load_strokes(a, console);
+    std::vector<stroke::JournalEntry> strokes = source.load(console);
     Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, a.surface, console);
     const stroke::Model model = std::move(loaded.model);
     outputs.frame = loaded.frame;
-    const std::optional<PlacedDrawing> placed = place_strokes(strokes, model, a, console);
+    const std::optional<PlacedDrawing> placed = source.place(strokes, model, console);
     if (!a.view.directed) look_at_strokes(outputs.view, strokes, model);
 
     stroke::Document painting(model, {.substrate = a.surface.substrate, .record_forces = !a.forces.empty()});

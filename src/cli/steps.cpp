@@ -144,7 +144,7 @@ void check_extension(const fs::path& path, const std::vector<std::string>& allow
     throw UsageError(path.string() + ": the name must end in " + fmt::format("{}", fmt::join(allowed, ", ")));
 }
 
-std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console) {
+stroke::EntryOptions entry_options(const Paint& a) {
     stroke::StrokeSettings settings;
     settings.spine = stroke::spine_method_of(a.spine);
     settings.footprint = stroke::footprint_mapping_of(a.footprint);
@@ -163,6 +163,11 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
                                  .pressure = stroke::pressure_from(a.pressure),
                                  .erases = a.erases};
     for (const std::string& text : a.prepare) options.prepare.push_back(stroke::preparation_of(text));
+    return options;
+}
+
+std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console) {
+    const stroke::EntryOptions options = entry_options(a);
     std::optional<stroke::BiasCorrection> bias;
     if (!a.bias.empty()) bias = stroke::load_bias(a.bias);
 
@@ -179,7 +184,7 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
         stroke::append_entries(strokes, std::move(traces), options);
         for (std::size_t i = first; i < strokes.size(); ++i)
             strokes[i].group = {static_cast<std::uint64_t>(1 + (&file - a.strokes.data())), stroke::group_name(file)};
-        if (a.dry >= 0 && !strokes.empty()) strokes.emplace_back(stroke::Dry{.seconds = a.dry, .down = settings.down});
+        if (a.dry >= 0 && !strokes.empty()) strokes.emplace_back(stroke::Dry{.seconds = a.dry, .down = options.settings.down});
         report(console.progress(), "strokes", 1);
     }
     return strokes;

@@ -12,6 +12,7 @@
 #include "io/project/project.h"
 #include "render/picture/picture.h"
 #include "stroke/document/document.h"
+#include "stroke/journal/entries.h"
 
 /// \file
 /// Steps that several commands share. Main thread. All functions throw `Error` where a file cannot be read or written.
@@ -41,6 +42,9 @@ Loaded load_bare(const std::filesystem::path& path, const FileReading& how, Cons
 void check_output(const std::filesystem::path& path);
 /// Throws `UsageError` when the extension is none of `allowed` (".glb" …).
 void check_extension(const std::filesystem::path& path, const std::vector<std::string>& allowed);
+
+/// Returns the settings of strokes by the arguments.
+stroke::EntryOptions entry_options(const Paint& arguments);
 
 /// Returns the strokes of InkML and SVG files in order. Brush and ink are filled in where the file names none. Each
 /// file is a group, numbered from 1.

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "cli/place.h"
+#include "stroke/journal/entry.h"
+
+/// \file
+/// Painting of strokes on a model, for `tuft paint` and `tuft write`. Main thread.
+namespace tuft::cli {
+
+/// Where the strokes of a painting command come from.
+struct StrokeSource {
+    /// Returns the strokes before the model is read, so that a fault of theirs is reported first.
+    std::function<std::vector<stroke::JournalEntry>(Console&)> load;
+    /// Puts the strokes onto the model, or adds those that depend on it.
+    std::function<std::optional<PlacedDrawing>(std::vector<stroke::JournalEntry>&, const stroke::Model&, Console&)>
+        place;
+};
+
+/// Paints strokes as `tuft paint` does and writes all outputs. Returns the exit status.
+int paint(const Paint& arguments, const StrokeSource& source);
+
+}  // namespace tuft::cli

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stroke/drawing/line_width.h"
+#include "writer/gesture/sides.h"
+
+/// \file
+/// The hand that moves a brush along stations: pressure from the wanted width and time from the curvature. Called by
+/// ink_fit.h and by writer/layout.
+namespace tuft::writer {
+
+/// A brush over a plane and the size of the character that it writes. The tables must outlive it.
+struct BrushHand {
+    const brush::Preset& preset;
+    const stroke::LineWidths& widths;
+    const stroke::HolderOptions& hold;
+    double unit = 1e-4;  ///< metres per unit of the character
+};
+
+/// Pace of a hand, by the two-thirds law (Lacquaniti, Terzuolo and Viviani 1983):
+///
+///     v = speed · min(1, (κ · radius)^(−1/3)) · e,
+///
+/// with κ the curvature of the path and e rising from `ends` to 1 over `ease` at the head and at blunt ends.
+struct Pace {
+    double speed = 0.06;  ///< m/s
+    double radius = 150;  ///< units
+    double ends = 0.3;    ///< part of the speed
+    double ease = 40;     ///< units
+};
+
+/// Returns the flat samples of a hand along stations, metres, y down: pressures that draw the widths
+/// (`LineWidths::pressure`, below the least width in proportion to 0), the holder upright, and a last sample where the
+/// tip leaves. Frame: the character's square, origin at its lower left corner, so y is negative within it.
+stroke::StrokeSamples samples_of(std::span<const Station> stations, const BrushHand& hand, const Pace& pace = {});
+
+}  // namespace tuft::writer

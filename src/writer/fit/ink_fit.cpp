@@ -1,0 +1,214 @@
+#include "writer/fit/ink_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/system/interrupt.h"
+
+namespace tuft::writer {
+namespace {
+
+constexpr double kMove = 0.6, kPress = 0.5, kLengthen = 0.6;  // parts of an error taken back at once
+constexpr double kOwn = 60;       // units along the path within which ink is a station's own
+constexpr double kMostMoved = 60;  // units from the path of the first try
+constexpr double kTip = 5;        // units of half width at a tip
+constexpr double kGrown = 1.15;   // of the first half width, with kTip more: beyond it corners become balls
+constexpr double kEndFade = 20;   // units over which a moved end fades
+constexpr double kSoft = 2;       // stations of the Gaussian that smooths corrections
+constexpr double kSharp = 1.6;       // radians of a turn at which corrections are smoothed less
+constexpr double kCornerSoft = 1.2;  // stations, there
+constexpr std::size_t kCornerReach = 3;  // stations
+constexpr double kNeedle = 24;           // units about an end in which its ink must not reach further than wanted
+constexpr double kNeedleBack = 0.6;      // part of that taken back at once
+constexpr double kTaken = 0.5;    // coverage from which a cell is ink
+
+struct Errors {
+    std::vector<double> left, right, kick;  ///< units, [stations]
+    double head = 0, tail = 0;              ///< units by which the ends are to be longer
+    double iou = 0;
+};
+
+std::vector<double> lengths_of(const std::vector<Station>& s) {
+    std::vector<double> along{0};
+    for (std::size_t i = 1; i < s.size(); ++i)
+        along.push_back(along.back() + glm::distance(s[i].centre, s[i - 1].centre));
+    return along;
+}
+
+Vec2 direction_at(const std::vector<Station>& s, std::size_t i) {
+    const std::size_t a = i - std::min<std::size_t>(i, 1), b = std::min(s.size() - 1, i + 1);
+    const Vec2 d = s[b].centre - s[a].centre;
+    const double size = glm::length(d);
+    return size > 1e-9 ? d / size : Vec2(1, 0);
+}
+
+std::vector<double> smoothed(const std::vector<double>& v, const std::vector<double>& soft) {
+    const int n = static_cast<int>(v.size());
+    std::vector<double> out(v.size(), 0);
+    for (int i = 0; i < n; ++i) {
+        const double sigma = soft[static_cast<std::size_t>(i)];
+        const int reach = static_cast<int>(std::ceil(3 * sigma));
+        double sum = 0, all = 0;
+        for (int k = std::max(0, i - reach); k <= std::min(n - 1, i + reach); ++k) {
+            const double z = (k - i) / sigma, w = std::exp(-0.5 * z * z);
+            sum += w * v[static_cast<std::size_t>(k)], all += w;
+        }
+        out[static_cast<std::size_t>(i)] = sum / all;
+    }
+    return out;
+}
+
+std::size_t nearest_station(const std::vector<Station>& s, const Vec2& p) {
+    std::size_t best = 0;
+    double least = 1e300;
+    for (std::size_t i = 0; i < s.size(); ++i)
+        if (const Vec2 d = p - s[i].centre; glm::dot(d, d) < least) least = glm::dot(d, d), best = i;
+    return best;
+}
+
+/// How far ink and wanted area reach beyond an end, in a strip about its axis. A needle there has hardly an area.
+struct Reach {
+    double wanted = 0, ink = 0;  ///< units
+
+    void add(const Vec2& from_end, const Vec2& out, bool is_wanted, bool is_ink) {
+        const double along = glm::dot(from_end, out);
+        if (along < -kNeedle || along > 2 * kNeedle || std::abs(out.x * from_end.y - out.y * from_end.x) > kNeedle)
+            return;
+        if (is_wanted) wanted = std::max(wanted, along + kNeedle);
+        if (is_ink) ink = std::max(ink, along + kNeedle);
+    }
+    double too_short() const { return ink > wanted ? kNeedleBack * (wanted - ink) : 1e9; }
+};
+
+/// Compares the ink of a try with the target.
+Errors errors_of(const std::vector<Station>& s, const FitTarget& target, const stroke::PlaneInk& ink,
+                 const stroke::StrokeSamples& trace, double unit) {
+    const Cells& cells = target.wanted;
+    const std::size_t n = s.size();
+    const std::vector<double> along = lengths_of(s);
+    Errors e{.left = std::vector<double>(n, 0), .right = std::vector<double>(n, 0), .kick = std::vector<double>(n, 0)};
+    const double spacing = std::max(along.back() / static_cast<double>(n - 1), 1.0);
+    const double part = cells.cell * cells.cell / spacing;
+    double both = 0, either = 0, head = 0, tail = 0;
+    Reach reach_head, reach_tail;
+    const Vec2 out_head = -direction_at(s, 0), out_tail = direction_at(s, n - 1);
+    for (int j = 0; j < cells.height; ++j)
+        for (int i = 0; i < cells.width; ++i) {
+            const Vec2 p = cells.centre(i, j);
+            const bool wanted = cells.at(i, j), there = ink.at(p * unit) > kTaken;
+            if (!wanted && !there) continue;
+            reach_head.add(p - s[0].centre, out_head, wanted, there);
+            reach_tail.add(p - s[n - 1].centre, out_tail, wanted, there);
+            const std::size_t at = std::size_t(j) * cells.width + i;
+            const double weight = target.weights.empty() ? 1 : static_cast<double>(target.weights[at]);
+            if (wanted && there) {
+                both += 1, either += 1;
+                continue;
+            }
+            either += weight;
+            const double error = weight * (wanted ? part : -part);
+            const std::size_t k = nearest_station(s, p);
+            if (k < 2 && glm::dot(p - s[0].centre, out_head) > 0) {
+                head += error * spacing;
+                continue;
+            }
+            if (k + 2 >= n && glm::dot(p - s[n - 1].centre, out_tail) > 0) {
+                tail += error * spacing;
+                continue;
+            }
+            if (there) {
+                const double when = ink.when(p * unit);
+                const auto later =
+                    std::lower_bound(trace.samples.begin(), trace.samples.end(), when,
+                                     [](const stroke::StrokeSample& a, double time) { return a.time < time; });
+                const std::size_t by = std::min<std::size_t>(std::size_t(later - trace.samples.begin()), n - 1);
+                if (std::abs(along[by] - along[k]) > kOwn) {
+                    e.kick[by] -= error;
+                    continue;
+                }
+            }
+            const Vec2 d = direction_at(s, k), off = p - s[k].centre;
+            (d.x * off.y - d.y * off.x > 0 ? e.left : e.right)[k] += error;
+        }
+    const auto width = [&](std::size_t k) { return std::max(2 * s[k].half, 12.0); };
+    e.head = head / width(std::min<std::size_t>(2, n - 1));
+    e.tail = tail / width(n - 1 - std::min<std::size_t>(2, n - 1));
+    e.head = std::min(e.head, reach_head.too_short());
+    e.tail = std::min(e.tail, reach_tail.too_short());
+    e.iou = either > 0 ? both / either : 0;
+    return e;
+}
+
+double turn_at(const std::vector<Station>& s, std::size_t i) {
+    const Vec2 in = s[i].centre - s[i - kCornerReach].centre, on = s[i + kCornerReach].centre - s[i].centre;
+    return std::abs(std::atan2(in.x * on.y - in.y * on.x, glm::dot(in, on)));
+}
+
+/// Stations over which corrections are smoothed: fewer at sharp corners, which would be cut.
+std::vector<double> softness_of(const std::vector<Station>& s) {
+    const std::size_t n = s.size();
+    std::vector<double> soft(n, kSoft);
+    for (std::size_t i = kCornerReach; i + kCornerReach < n; ++i) {
+        if (turn_at(s, i) < kSharp) continue;
+        for (std::size_t k = i - 1; k <= i + 1; ++k) soft[k] = kCornerSoft;
+    }
+    return soft;
+}
+
+void correct(std::vector<Station>& s, const std::vector<Station>& first, const std::vector<double>& soft,
+             const Errors& e) {
+    const std::size_t n = s.size();
+    const std::vector<double> left = smoothed(e.left, soft), right = smoothed(e.right, soft),
+                              kick = smoothed(e.kick, soft), along = lengths_of(s);
+    const std::vector<Station> before = s;
+    const Vec2 out_head = -direction_at(before, 0), out_tail = direction_at(before, n - 1);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec2 d = direction_at(before, i);
+        s[i].centre += kMove * 0.5 * (left[i] - right[i]) * Vec2(-d.y, d.x);
+        s[i].half += kPress * (0.5 * (left[i] + right[i]) - kick[i]);
+        const double from_head = std::max(0.0, 1 - along[i] / kEndFade),
+                     from_tail = std::max(0.0, 1 - (along.back() - along[i]) / kEndFade);
+        s[i].centre += kLengthen * (from_head * std::clamp(e.head, -20.0, 20.0) * out_head +
+                                    from_tail * std::clamp(e.tail, -20.0, 20.0) * out_tail);
+        const Vec2 moved = s[i].centre - first[i].centre;
+        if (const double far = glm::length(moved); far > kMostMoved)
+            s[i].centre = first[i].centre + kMostMoved / far * moved;
+        const double tip = std::min(along[i], along.back() - along[i]);
+        s[i].half = std::clamp(s[i].half, 0.0, std::min(kTip + tip, kGrown * first[i].half + kTip));
+    }
+}
+
+}  // namespace
+
+stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHand& hand, const Pace& pace, double step,
+                               double cell) {
+    return stroke::plane_ink(samples_of(stations, hand, pace), hand.preset, hand.hold, step * hand.unit,
+                             cell * hand.unit);
+}
+
+FitResult fit_stations(std::vector<Station> stations, const FitTarget& target, const BrushHand& hand, const Pace& pace,
+                       const FitOptions& options) {
+    const std::vector<Station> first = stations;
+    const std::vector<double> soft = softness_of(first);
+    FitResult best{.stations = stations};
+    const auto try_with = [&](int tries, double step) {
+        best.iou = 0;
+        stations = best.stations;
+        for (int t = 0, idle = 0; t < tries && idle < options.idle; ++t) {
+            check_interrupt();
+            const stroke::StrokeSamples trace = samples_of(stations, hand, pace);
+            const stroke::PlaneInk ink =
+                stroke::plane_ink(trace, hand.preset, hand.hold, step * hand.unit, target.wanted.cell * hand.unit);
+            const Errors errors = errors_of(stations, target, ink, trace, hand.unit);
+            idle = errors.iou > best.iou + 1e-4 ? 0 : idle + 1;
+            if (errors.iou > best.iou) best.iou = errors.iou, best.stations = stations;
+            ++best.tries;
+            correct(stations, first, soft, errors);
+        }
+    };
+    try_with(options.tries, options.step);
+    if (options.fine_tries > 0) try_with(options.fine_tries, options.fine_step);
+    return best;
+}
+
+}  // namespace tuft::writer

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "stroke/drawing/plane_ink.h"
+#include "writer/fit/brush_hand.h"
+
+/// \file
+/// Correction of a path until the ink of a real brush covers a wanted area (iterative learning control). Called by the
+/// writer for every stroke.
+namespace tuft::writer {
+
+/// What a stroke is to cover.
+struct FitTarget {
+    Cells wanted;                ///< with a margin of at least 40 units
+    std::vector<float> weights;  ///< of each cell's error, 0–1, as under another stroke; empty: 1
+};
+
+struct FitOptions {
+    int tries = 8;           ///< drawings on the plane at most
+    double step = 5;         ///< units between poses
+    int fine_tries = 3;      ///< drawings after those, from the best of them on
+    double fine_step = 1.5;  ///< units; the ink of a tuft depends on the step, by .005 of the overlap from 5 to 1
+    int idle = 4;            ///< tries without a gain after which it stops
+};
+
+struct FitResult {
+    std::vector<Station> stations;
+    double iou = 0;  ///< weighted intersection over union with the wanted area
+    int tries = 0;
+};
+
+/// Fits stations to a wanted area.
+///
+/// Each try draws the path on a plane (`stroke::plane_ink`) in the target's cells. A wrong cell (missing +, extra −)
+/// goes to the left or right of its nearest station, as area over station spacing; extra ink that another station, more
+/// than 60 units along the path, covered first lifts that one; cells beyond an end change the length. Smoothed over two
+/// stations, the path moves by 0.6 · ½ (left − right) and the half width grows by 0.5 · ½ (left + right) less the kick.
+/// Half widths stay below 5 units + the distance to the nearer tip. Returns the best try; deterministic. Cost: 0.1 ms
+/// per pose.
+FitResult fit_stations(std::vector<Station> stations, const FitTarget& target, const BrushHand& hand, const Pace& pace,
+                       const FitOptions& options = {});
+
+/// Returns the ink of stations on a plane, in cells of `cell` units.
+stroke::PlaneInk draw_on_plane(std::span<const Station> stations, const BrushHand& hand, const Pace& pace, double step,
+                               double cell);
+
+}  // namespace tuft::writer

@@ -1,0 +1,263 @@
+#include "writer/fit/writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "brush/preset/preset.h"
+#include "core/error.h"
+#include "core/hash.h"
+#include "core/system/files.h"
+#include "core/system/parallel.h"
+#include "io/strokes/area_lines.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::writer {
+namespace {
+
+constexpr double kMargin = 80;                // units of cells around a stroke
+constexpr float kUnder = 0.25f;               // weight of an error under another stroke
+constexpr std::uint64_t kVersion = 5;         // of what is stored in the cache
+constexpr std::size_t kMostStations = 20'000;  // of a stroke
+
+double median_width(const stroke::LineWidths& widths, double unit) {
+    return std::max(2 * 21 * unit, widths.least());
+}
+
+std::string sized(const std::string& brush, double factor) {
+    const brush::SizedName name = brush::sized_name(brush);
+    const double size = std::clamp(name.factor * factor, brush::kLeastSize, brush::kMostSize);
+    return brush::name_of({name.base, std::round(size * 1000) / 1000});
+}
+
+std::uint64_t hash_of(const std::vector<Station>& s, std::uint64_t seed) {
+    return hash_span(std::span<const Station>(s), seed);
+}
+
+Vec2 slanted(const Vec2& p, double slant) {
+    return {p.x + std::tan(slant) * p.y, p.y};
+}
+
+}  // namespace
+
+/// A stroke before its fit.
+struct Writer::Job {
+    std::vector<Station> stations;
+    FitTarget target;
+    bool fit = true;
+    std::uint64_t key = 0;
+};
+
+Writer::Writer(WriterOptions options) : options_(std::move(options)) {
+    const Style& style = options_.style;
+    brush_ = options_.brush.empty() ? sized(style.brush, options_.side / style.brush_side) : options_.brush;
+    if (style.kind == HandKind::brush) sides_ = SideTable::load(data_folder() / "models" / "writer" / "sides.txt");
+    hand();
+}
+
+BrushHand Writer::hand() {
+    return {tables_.preset(brush_), tables_.of(brush_), tables_.hold(brush_), unit()};
+}
+
+Pace Writer::pace() const {
+    const Style& s = options_.style;
+    return {.speed = s.speed * options_.side / s.brush_side, .radius = s.bend_radius, .ends = s.ends, .ease = s.ease};
+}
+
+Writer::Job Writer::job_of(const Glyph& glyph, std::size_t stroke) const {
+    const Style& style = options_.style;
+    Job job;
+    const GlyphStroke& own = glyph.strokes[stroke];
+    if (glyph.single_line || style.kind != HandKind::brush) {
+        job.fit = false;
+        for (const Vec2& p : own.median) job.stations.push_back({slanted(p, style.slant), style.half_width});
+        job.stations = resample_stations(job.stations, kStationsApart);
+        return job;
+    }
+    const StrokeLine line = make_stroke_line(own.median);
+    const bool outlined = options_.fit && !own.outline.empty();
+    const auto rings_of = [&](std::size_t k) {
+        const GlyphStroke& s = glyph.strokes[k];
+        if (outlined && !s.outline.empty()) return s.outline;
+        const StrokeLine other = make_stroke_line(s.median);
+        return area_of(other, sides_.predict(other, glyph, k));
+    };
+    const StrokeSides sides = outlined ? measure_sides(line, own.outline) : sides_.predict(line, glyph, stroke);
+    const auto add = [&](Cells& cells, std::size_t k) {
+        const std::vector<Ring> rings = rings_of(k);
+        if (outlined) return fill(cells, rings);
+        for (const Ring& ring : rings) fill(cells, std::span(&ring, 1));
+    };
+    job.target.wanted = cells_over(rings_of(stroke), 2, kMargin);
+    Cells others = job.target.wanted;
+    add(job.target.wanted, stroke);
+    for (std::size_t k = 0; k < glyph.strokes.size(); ++k)
+        if (k != stroke) add(others, k);
+    for (const std::uint8_t under : others.inside) job.target.weights.push_back(under ? kUnder : 1.0f);
+    job.stations = make_stations(line, sides, job.target.wanted);
+    job.key = hash_of(job.stations, kVersion);
+    job.key = hash_span(std::span<const std::uint8_t>(job.target.wanted.inside), job.key);
+    job.key = hash_span(std::span<const float>(job.target.weights), job.key);
+    return job;
+}
+
+std::vector<std::vector<WrittenStroke>> Writer::write(const std::vector<Glyph>& glyphs, const ProgressFn& progress) {
+    const BrushHand with = hand();
+    const Pace at = pace();
+    const std::string preset = brush::preset_toml(with.preset);
+    const double facts[] = {with.unit,  at.speed, at.radius, at.ends, at.ease, static_cast<double>(options_.style.tries)};
+    const std::uint64_t seed = hash_bytes(facts, sizeof facts, hash_bytes(preset.data(), preset.size()));
+    struct Place {
+        std::size_t glyph, stroke;
+    };
+    std::vector<Place> places;
+    for (std::size_t g = 0; g < glyphs.size(); ++g)
+        for (std::size_t s = 0; s < glyphs[g].strokes.size(); ++s) places.push_back({g, s});
+    std::vector<std::vector<Station>> done(places.size());
+    std::vector<std::uint64_t> keys(places.size(), 0);
+    std::size_t fitted = 0;
+    // In batches, so that progress is reported and a stop is heard.
+    const std::size_t batch = 4 * static_cast<std::size_t>(std::max(1, thread_count()));
+    for (std::size_t begin = 0; begin < places.size(); begin += batch) {
+        report(progress, "writing", static_cast<double>(begin) / static_cast<double>(places.size()));
+        const std::size_t n = std::min(batch, places.size() - begin);
+        std::vector<char> made(n, 0);
+        parallel_for(n, 1, [&](std::size_t lo, std::size_t hi) {
+            for (std::size_t i = lo; i < hi; ++i) {
+                const Place& p = places[begin + i];
+                Job job = job_of(glyphs[p.glyph], p.stroke);
+                if (!job.fit) {
+                    done[begin + i] = std::move(job.stations);
+                    continue;
+                }
+                const std::uint64_t key = hash_bytes(&job.key, sizeof job.key, seed);
+                keys[begin + i] = key;
+                if (const auto known = known_.find(key); known != known_.end()) {
+                    done[begin + i] = known->second;
+                } else if (std::optional<std::vector<Station>> stored = cached(key)) {
+                    done[begin + i] = std::move(*stored);
+                } else {
+                    done[begin + i] =
+                        fit_stations(std::move(job.stations), job.target, with, at, {.tries = options_.style.tries})
+                            .stations;
+                    store(key, done[begin + i]);
+                    made[i] = 1;
+                }
+            }
+        });
+        for (std::size_t i = 0; i < n; ++i) {
+            if (keys[begin + i] != 0) known_[keys[begin + i]] = done[begin + i];
+            fitted += static_cast<std::size_t>(made[i]);
+        }
+    }
+    n_fitted_ += fitted;
+    std::vector<std::vector<WrittenStroke>> out;
+    std::size_t next = 0;
+    for (const Glyph& glyph : glyphs) {
+        std::vector<std::vector<Station>> own;
+        for (std::size_t s = 0; s < glyph.strokes.size(); ++s) own.push_back(std::move(done[next++]));
+        out.push_back(strokes_of(glyph, own));
+    }
+    return out;
+}
+
+std::vector<WrittenStroke> Writer::strokes_of(const Glyph& glyph, const std::vector<std::vector<Station>>& fitted) {
+    if (!glyph.area.empty()) return filled(glyph);
+    const bool drawn = glyph.single_line || options_.style.kind != HandKind::brush;
+    const std::vector<std::vector<Station>> strokes = drawn ? fitted : linked(fitted, options_.style);
+    std::vector<WrittenStroke> out;
+    for (std::size_t i = 0; i < strokes.size(); ++i) out.push_back(motion(strokes[i], glyph, i));
+    return out;
+}
+
+WrittenStroke Writer::motion(const std::vector<Station>& stations, const Glyph& glyph, std::size_t stroke) {
+    const Style& style = options_.style;
+    const BrushHand with = hand();
+    WrittenStroke out{.brush = brush_, .label = fmt::format("{} {}", utf8_of(glyph.code), stroke + 1)};
+    std::vector<Station> own = stations;
+    const bool drawn = glyph.single_line || style.kind != HandKind::brush;
+    if (drawn && style.kind != HandKind::nib)  // ends as round as the line is wide
+        for (Station& s : own) s.half = style.kind == HandKind::line ? style.half_width : median_width(with.widths, with.unit) / with.unit / 2;
+    out.trace = samples_of(own, with, pace());
+    if (style.kind == HandKind::nib && glyph.single_line)
+        for (stroke::StrokeSample& s : out.trace.samples) s.roll = style.edge_angle;
+    return out;
+}
+
+std::vector<WrittenStroke> Writer::filled(const Glyph& glyph) const {
+    std::vector<io::Ring> rings;
+    for (const Ring& ring : glyph.area) {
+        io::Ring own;
+        for (const Vec2& p : ring) own.emplace_back(unit() * p.x, -unit() * p.y);
+        rings.push_back(std::move(own));
+    }
+    std::vector<WrittenStroke> out;
+    for (io::AreaLine& area : io::area_lines(rings, io::FillRule::nonzero)) {
+        WrittenStroke s{.brush = brush::sized_name(brush_).base,
+                        .label = fmt::format("{} {}", utf8_of(glyph.code), out.size() + 1),
+                        .made_up = true};
+        s.trace.pressed = false;
+        s.trace.line_width = area.width;
+        s.trace.stencil = std::move(area.stencil);
+        double along = 0, whole = 0;
+        for (std::size_t i = 1; i < area.line.size(); ++i) whole += glm::distance(area.line[i], area.line[i - 1]);
+        for (std::size_t i = 0; i < area.line.size(); ++i) {
+            if (i > 0) along += glm::distance(area.line[i], area.line[i - 1]);
+            double part = 1;
+            if (area.taper_in > 0) part = std::min(part, along / area.taper_in);
+            if (area.taper_out > 0) part = std::min(part, (whole - along) / area.taper_out);
+            s.trace.samples.push_back({.time = along / options_.style.speed,
+                                       .position = Vec3(area.line[i], 0),
+                                       .pressure = 0.5 * std::max(part, 0.05)});
+        }
+        out.push_back(std::move(s));
+    }
+    return out;
+}
+
+fs::path fit_cache_folder() {
+    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return fs::path(cache) / "tuft" / "writer";
+    if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache" / "tuft" / "writer";
+    return {};
+}
+
+std::optional<std::vector<Station>> Writer::cached(std::uint64_t key) const {
+    if (options_.cache.empty()) return std::nullopt;
+    const fs::path path = options_.cache / fmt::format("{:016x}.fit", key);
+    std::error_code none;
+    if (!fs::exists(path, none)) return std::nullopt;
+    try {
+        const std::vector<char> bytes = read_file(path, kMostStations * 3 * sizeof(double));
+        std::vector<double> values(bytes.size() / sizeof(double));
+        if (bytes.size() % (3 * sizeof(double)) != 0 || values.size() < 6) return std::nullopt;
+        std::memcpy(values.data(), bytes.data(), bytes.size());
+        std::vector<Station> stations;
+        for (std::size_t i = 0; i < values.size(); i += 3) {
+            const Station s{{values[i], values[i + 1]}, values[i + 2]};
+            if (!(std::abs(s.centre.x) < kFarthestUnit && std::abs(s.centre.y) < kFarthestUnit && s.half >= 0 &&
+                  s.half < kSide))
+                return std::nullopt;
+            stations.push_back(s);
+        }
+        return stations;
+    } catch (const Error&) {
+        return std::nullopt;  // it is fitted again
+    }
+}
+
+void Writer::store(std::uint64_t key, const std::vector<Station>& stations) const {
+    if (options_.cache.empty()) return;
+    std::vector<double> values;
+    for (const Station& s : stations) values.insert(values.end(), {s.centre.x, s.centre.y, s.half});
+    try {
+        fs::create_directories(options_.cache);
+        write_file(options_.cache / fmt::format("{:016x}.fit", key), values.data(), values.size() * sizeof(double));
+    } catch (const std::exception&) {  // a cache that cannot be written costs time only
+    }
+}
+
+}  // namespace tuft::writer

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/system/progress.h"
+#include "writer/fit/ink_fit.h"
+#include "writer/gesture/side_table.h"
+#include "writer/gesture/style.h"
+
+/// \file
+/// From characters to motions of a brush. Called by `tuft write`.
+namespace tuft::writer {
+
+struct WriterOptions {
+    Style style;
+    std::string brush;             ///< preset; empty: the style's, in the size that suits the character
+    double side = 0.05;            ///< metres, of a character's square
+    bool fit = false;              ///< to the source's outlines where it states them; else to predicted sides
+    std::filesystem::path cache;   ///< folder of fitted strokes; empty: none
+};
+
+/// A stroke of the hand.
+struct WrittenStroke {
+    stroke::StrokeSamples trace;  ///< metres, y down, origin at the lower left corner of the character's square
+    std::string brush;            ///< preset
+    std::string label;            ///< the character and the number of the stroke
+    bool made_up = false;         ///< a line with a width, whose pressure `press_to_widths` sets
+    double roll = 0;              ///< radians, of the holder, in the samples
+};
+
+/// Writes characters. Equal characters are fitted once.
+class Writer {
+  public:
+    /// Throws `Error` for an unknown brush.
+    explicit Writer(WriterOptions options);
+
+    /// Returns the strokes of each glyph, in order. Strokes are fitted in parallel; the result does not depend on the
+    /// number of threads. Cost: about 0.1 s a stroke; none for strokes in the cache.
+    std::vector<std::vector<WrittenStroke>> write(const std::vector<Glyph>& glyphs, const ProgressFn& progress = {});
+
+    const std::string& brush() const { return brush_; }
+    double unit() const { return options_.side / kSide; }
+    std::size_t fitted() const { return n_fitted_; }
+
+  private:
+    struct Job;
+    BrushHand hand();
+    Pace pace() const;
+    Job job_of(const Glyph& glyph, std::size_t stroke) const;
+    std::vector<WrittenStroke> strokes_of(const Glyph& glyph, const std::vector<std::vector<Station>>& fitted);
+    std::vector<WrittenStroke> filled(const Glyph& glyph) const;
+    WrittenStroke motion(const std::vector<Station>& stations, const Glyph& glyph, std::size_t stroke);
+    std::optional<std::vector<Station>> cached(std::uint64_t key) const;
+    void store(std::uint64_t key, const std::vector<Station>& stations) const;
+
+    WriterOptions options_;
+    std::string brush_;
+    SideTable sides_;
+    stroke::WidthTables tables_;
+    std::map<std::uint64_t, std::vector<Station>> known_;
+    std::size_t n_fitted_ = 0;
+};
+
+/// Returns the folder where fitted strokes are stored: `tuft/writer` in $XDG_CACHE_HOME or ~/.cache; empty: neither is
+/// known.
+std::filesystem::path fit_cache_folder();
+
+/// Joins the stations of consecutive strokes over gaps up to `style.link` by thin curves, and rounds corners.
+std::vector<std::vector<Station>> linked(std::vector<std::vector<Station>> strokes, const Style& style);
+
+}  // namespace tuft::writer

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "writer/gesture/sides.h"
+
+/// \file
+/// Sides of a stroke predicted from its centre line and its neighbours: a table of means of a typeface by class of
+/// stroke. Called for characters whose source states no outline.
+namespace tuft::writer {
+
+/// What a stroke's sides are predicted from: numbers of the order of 1.
+///
+/// Per stroke: 1; ln of the number of strokes; the middle of the centre line in the square; its place in the order of
+/// writing; ln of the length of all strokes; distances to the nearest other centre line, at most 120 units: at the ends,
+/// beyond them, and to the left and the right at five places; deviation of the direction at head and tail, over 12, 24
+/// and 48 units, from that of the segment. Per segment: ln of its length, its square, the deviation of its direction from
+/// the middle of its code, the bow, the deviation of its first and its third quarter from the chord.
+std::vector<double> stroke_features(const StrokeLine& line, const Glyph& glyph, std::size_t stroke);
+std::size_t count_features(std::size_t n_segments);
+
+/// Sides by class of stroke, as a regression on `stroke_features`: with x the standardised features, clamped to ±4,
+///
+///     sides = mean + basisᵀ (output tanh(hidden x + hidden_bias) + direct x + bias),
+///
+/// fitted by least squares to the strokes of a typeface (tests/writer/learn_sides.py) onto principal components of the
+/// sides. Strokes of a class that is not in the table are predicted segment by segment, by code and by whether the
+/// segment begins or ends the stroke ("-H-").
+class SideTable {
+  public:
+    /// Reads a table (see `models/writer/README.md`). Throws `Error` for a damaged file.
+    static SideTable load(const std::filesystem::path& path);
+    static SideTable parse(std::string_view text, const std::string& source);
+
+    /// Returns the predicted sides of a stroke, units, at least 1; fans at least 0.
+    StrokeSides predict(const StrokeLine& line, const Glyph& glyph, std::size_t stroke) const;
+    bool has(const std::string& stroke_class) const { return models_.contains(stroke_class); }
+
+    /// The regression of one class.
+    struct Model {
+        std::size_t n_features = 0, n_outputs = 0, n_hidden = 0, rank = 0;
+        std::vector<double> feature_mean, feature_scale;  ///< [features]
+        std::vector<double> mean, basis;                  ///< [outputs], [rank × outputs], units
+        std::vector<double> hidden, hidden_bias;          ///< [hidden × features], [hidden]
+        std::vector<double> output, bias, direct;         ///< [rank × hidden], [rank], [rank × features]
+        std::vector<double> evaluate(const std::vector<double>& features) const;
+    };
+
+  private:
+    std::map<std::string, Model> models_;
+};
+
+/// Sides as one row: left and right of each segment, then the fans of head and tail.
+std::vector<double> row_of(const StrokeSides& sides);
+StrokeSides sides_of(const std::vector<double>& row, std::size_t n_segments);
+
+}  // namespace tuft::writer

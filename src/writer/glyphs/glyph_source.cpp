@@ -1,0 +1,192 @@
+#include "writer/glyphs/glyph_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "core/error.h"
+#include "core/system/files.h"
+#include "writer/glyphs/outline_font.h"
+
+namespace fs = std::filesystem;
+
+namespace tuft::writer {
+namespace {
+
+constexpr std::size_t kMostGlyphBytes = std::size_t{1} << 20, kMostBookBytes = std::size_t{512} << 20;
+
+std::string text_of(const fs::path& path, std::size_t most) {
+    const std::vector<char> bytes = read_file(path, most);
+    return {bytes.data(), bytes.size()};
+}
+
+/// A file of each character.
+class Folder : public GlyphSource {
+  public:
+    explicit Folder(fs::path path) : path_(std::move(path)) {}
+
+    std::optional<Glyph> find(char32_t code) override {
+        std::error_code none;
+        if (const fs::path json = path_ / (utf8_of(code) + ".json"); code > 0x20 && code != '/' && fs::exists(json, none))
+            return parse_hanzi_json(text_of(json, kMostGlyphBytes), code, json.string());
+        if (const fs::path svg = path_ / fmt::format("{:05x}.svg", static_cast<unsigned>(code)); fs::exists(svg, none))
+            return parse_kanji_svg(text_of(svg, kMostGlyphBytes), code, svg.string());
+        return std::nullopt;
+    }
+
+  private:
+    fs::path path_;
+};
+
+/// `graphics.txt`: a JSON object a line. Lines are parsed when they are asked for.
+class Book : public GlyphSource {
+  public:
+    explicit Book(const fs::path& path) : name_(path.string()), text_(text_of(path, kMostBookBytes)) {
+        static constexpr std::string_view kKey = "\"character\":\"";
+        for (std::size_t begin = 0, number = 1; begin < text_.size(); ++number) {
+            const std::size_t end = std::min(text_.find('\n', begin), text_.size());
+            const std::string_view line(text_.data() + begin, end - begin);
+            if (const std::size_t key = line.find(kKey); key != std::string_view::npos) {
+                const std::string_view rest = line.substr(key + kKey.size(), 4 * 4);
+                const std::u32string character = characters_of(rest.substr(0, rest.find('"')));
+                if (character.size() == 1) lines_[character[0]] = {begin, end - begin, number};
+            }
+            begin = end + 1;
+        }
+        if (lines_.empty()) throw Error(name_, Message("it has no line with a \"character\""));
+    }
+
+    std::optional<Glyph> find(char32_t code) override {
+        const auto at = lines_.find(code);
+        if (at == lines_.end()) return std::nullopt;
+        const Line& line = at->second;
+        return parse_hanzi_json(std::string_view(text_).substr(line.begin, line.size), code,
+                                fmt::format("{}:{}", name_, line.number));
+    }
+
+  private:
+    struct Line {
+        std::size_t begin = 0, size = 0, number = 0;
+    };
+    std::string name_, text_;
+    std::map<char32_t, Line> lines_;
+};
+
+class LineFont : public GlyphSource {
+  public:
+    explicit LineFont(const fs::path& path) {
+        for (Glyph& g : parse_line_font(text_of(path, kMostBookBytes), path.string()))
+            glyphs_.emplace(g.code, std::move(g));
+    }
+    std::optional<Glyph> find(char32_t code) override {
+        const auto at = glyphs_.find(code);
+        return at == glyphs_.end() ? std::nullopt : std::optional(at->second);
+    }
+
+  private:
+    std::map<char32_t, Glyph> glyphs_;
+};
+
+/// The first of several that has a character.
+class Sources : public GlyphSource {
+  public:
+    explicit Sources(std::vector<std::unique_ptr<GlyphSource>> all) : all_(std::move(all)) {}
+    std::optional<Glyph> find(char32_t code) override {
+        for (const auto& one : all_)
+            if (std::optional<Glyph> glyph = one->find(code)) return glyph;
+        return std::nullopt;
+    }
+
+  private:
+    std::vector<std::unique_ptr<GlyphSource>> all_;
+};
+
+std::unique_ptr<GlyphSource> open_folder(const fs::path& path) {
+    std::vector<fs::path> books, fonts, outlines;
+    bool characters = false;
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) {
+        const fs::path& file = entry.path();
+        const std::string kind = file.extension().string();
+        if (kind == ".txt") books.push_back(file);
+        if (is_outline_font(file)) outlines.push_back(file);
+        if (kind == ".json") characters = true;
+        if (kind != ".svg") continue;
+        const std::string stem = file.stem().string();
+        const bool code = stem.size() == 5 && stem.find_first_not_of("0123456789abcdef") == std::string::npos;
+        if (code) characters = true;
+        else fonts.push_back(file);
+    }
+    if (error) throw Error(path.string(), Message("the folder cannot be read"));
+    for (auto* list : {&books, &fonts, &outlines}) std::sort(list->begin(), list->end());
+    std::vector<std::unique_ptr<GlyphSource>> all;
+    if (characters) all.push_back(std::make_unique<Folder>(path));
+    for (const fs::path& p : books) all.push_back(std::make_unique<Book>(p));
+    for (const fs::path& p : fonts) all.push_back(std::make_unique<LineFont>(p));
+    for (const fs::path& p : outlines) all.push_back(open_outline_font(p));
+    if (all.empty())
+        throw Error(path.string(),
+                    Message("no characters are found: neither CHARACTER.json, CODE.svg, graphics.txt nor a font"));
+    return std::make_unique<Sources>(std::move(all));
+}
+
+bool is_blank(char32_t c) {
+    return c == ' ' || c == '\t' || c == 0xA0 || c == 0x3000;
+}
+
+Glyph blank(char32_t c) {
+    return {.code = c, .advance = c == 0x3000 ? kSide : 0.35 * kSide};
+}
+
+}  // namespace
+
+std::vector<std::optional<Glyph>> GlyphSource::find_line(const std::u32string& line) {
+    std::vector<std::optional<Glyph>> out;
+    for (const char32_t c : line) out.push_back(is_blank(c) ? blank(c) : find(c));
+    return out;
+}
+
+std::unique_ptr<GlyphSource> open_glyphs(const fs::path& path) {
+    std::error_code error;
+    if (!fs::exists(path, error)) throw Error(path.string(), Message("there is no such file or folder of characters"));
+    if (fs::is_directory(path, error)) return open_folder(path);
+    if (path.extension() == ".svg") return std::make_unique<LineFont>(path);
+    if (is_outline_font(path)) return open_outline_font(path);
+    if (path.extension() == ".txt" || path.extension() == ".json" || path.extension() == ".jsonl")
+        return std::make_unique<Book>(path);
+    throw Error(path.string(), Message("neither a folder of characters, graphics.txt, an SVG font nor a font"));
+}
+
+fs::path bundled_glyphs() {
+    return data_folder() / "models" / "glyphs";
+}
+
+std::vector<std::vector<Glyph>> glyphs_of(const std::vector<std::u32string>& lines,
+                                          const std::vector<GlyphSource*>& sources) {
+    std::vector<std::vector<Glyph>> out;
+    std::set<char32_t> missing;
+    for (const std::u32string& line : lines) {
+        std::vector<std::optional<Glyph>> found(line.size());
+        for (GlyphSource* source : sources) {
+            const bool none = std::none_of(found.begin(), found.end(), [](const auto& g) { return g.has_value(); });
+            if (none) {
+                found = source->find_line(line);
+                continue;
+            }
+            for (std::size_t i = 0; i < line.size() && found.size() == line.size(); ++i)
+                if (!found[i]) found[i] = source->find(line[i]);
+        }
+        std::vector<Glyph>& row = out.emplace_back();
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (found[i]) row.push_back(std::move(*found[i]));
+            else missing.insert(line[std::min(i, line.size() - 1)]);
+    }
+    if (missing.empty()) return out;
+    std::string names;
+    for (const char32_t c : missing) names += (names.empty() ? "" : " ") + utf8_of(c);
+    throw Error(Message("no source has the characters {} (see --glyphs)", names));
+}
+
+}  // namespace tuft::writer

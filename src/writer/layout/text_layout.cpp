@@ -1,0 +1,227 @@
+#include "writer/layout/text_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "core/error.h"
+
+namespace tuft::writer {
+namespace {
+
+double advance_of(const Glyph& glyph, const LayoutOptions& options) {
+    return options.spacing * glyph.advance / kSide * options.side;
+}
+
+/// A segment of the section in a triangle: crossed edges as keys of their vertices.
+struct Crossing {
+    std::uint64_t edge = 0;
+    Vec3 at{0};
+};
+
+std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+    return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
+}
+
+struct SectionPart {
+    Crossing from, to;
+    bool used = false;
+};
+
+/// Crosses every triangle with the plane z = level; vertices on it count as above.
+std::vector<SectionPart> section_parts(const mesh::TriangleMesh& mesh, double level) {
+    std::vector<SectionPart> parts;
+    for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
+        Crossing found[2];
+        int n = 0;
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+            const Vec3 p(mesh.positions[a]), q(mesh.positions[b]);
+            if ((p.z < level) == (q.z < level) || n == 2) continue;
+            // The same point from both sides of an edge.
+            const Vec3 lo = a < b ? p : q, hi = a < b ? q : p;
+            found[n++] = {edge_key(a, b), lo + (level - lo.z) / (hi.z - lo.z) * (hi - lo)};
+        }
+        if (n == 2) parts.push_back({found[0], found[1]});
+    }
+    return parts;
+}
+
+/// Follows parts from one on, over shared edges.
+std::vector<Vec3> follow(std::vector<SectionPart>& parts, std::size_t first,
+                         const std::unordered_multimap<std::uint64_t, std::size_t>& by_edge, bool& closed) {
+    const auto walk = [&](std::uint64_t edge, std::vector<Vec3>& line) {
+        const std::uint64_t begin = edge;
+        for (bool found = true; found;) {
+            found = false;
+            for (auto [at, end] = by_edge.equal_range(edge); at != end; ++at) {
+                SectionPart& part = parts[at->second];
+                if (part.used) continue;
+                part.used = found = true;
+                const Crossing& next = part.from.edge == edge ? part.to : part.from;
+                line.push_back(next.at);
+                edge = next.edge;
+                break;
+            }
+        }
+        return edge == begin;
+    };
+    SectionPart& part = parts[first];
+    part.used = true;
+    std::vector<Vec3> on{part.to.at}, back{part.from.at};
+    walk(part.to.edge, on);
+    const bool ring = glm::distance(on.back(), part.from.at) < 1e-12;
+    closed = ring;
+    if (!ring) walk(part.from.edge, back);
+    std::reverse(back.begin(), back.end());
+    if (ring) back.clear();
+    back.insert(back.end(), on.begin(), on.end());
+    return back;
+}
+
+}  // namespace
+
+std::optional<Direction> direction_named(std::string_view name) {
+    if (name == "horizontal") return Direction::horizontal;
+    if (name == "vertical") return Direction::vertical;
+    if (name == "rim") return Direction::rim;
+    if (name == "curve") return Direction::curve;
+    return std::nullopt;
+}
+
+std::vector<std::u32string> lines_of(std::string_view text) {
+    std::u32string all = characters_of(text), line;
+    std::vector<std::u32string> lines;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const bool written = all[i] == '\\' && i + 1 < all.size() && all[i + 1] == 'n';
+        if (all[i] == '\n' || written) {
+            lines.push_back(std::move(line));
+            line.clear();
+            i += written ? 1 : 0;
+        } else if (all[i] != '\r') {
+            line.push_back(all[i]);
+        }
+    }
+    lines.push_back(std::move(line));
+    return lines;
+}
+
+std::vector<std::vector<Vec2>> place_in_lines(const std::vector<std::vector<Glyph>>& lines,
+                                              const LayoutOptions& options) {
+    const bool columns = options.direction == Direction::vertical;
+    std::vector<std::vector<Vec2>> out;
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+        double whole = 0;
+        for (const Glyph& g : lines[l]) whole += columns ? options.spacing * options.side : advance_of(g, options);
+        std::vector<Vec2>& row = out.emplace_back();
+        double at = -0.5 * whole;
+        const double line = static_cast<double>(l) * options.line_spacing * options.side;
+        for (const Glyph& g : lines[l]) {
+            const double step = columns ? options.spacing * options.side : advance_of(g, options);
+            const double own = g.advance / kSide * options.side;  // width of the square of this glyph
+            // Corners are at the lower left, y down.
+            if (columns) row.emplace_back(-line - 0.5 * own, at + 0.5 * (step + options.side));
+            else row.emplace_back(at + 0.5 * (step - own), line + 0.5 * options.side);
+            at += step;
+        }
+    }
+    return out;
+}
+
+double ModelPath::length() const {
+    double length = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) length += glm::distance(points[i], points[i - 1]);
+    if (closed && points.size() > 1) length += glm::distance(points.back(), points.front());
+    return length;
+}
+
+namespace {
+
+struct PathPoint {
+    Vec3 position{0}, normal{0, 0, 1};
+};
+PathPoint point_on(const ModelPath& path, double along) {
+    const double whole = path.length();
+    along = path.closed ? along - whole * std::floor(along / whole) : std::clamp(along, 0.0, whole);
+    const std::size_t n = path.points.size(), pieces = path.closed ? n : n - 1;
+    for (std::size_t i = 0; i < pieces; ++i) {
+        const std::size_t k = i + 1 < n ? i + 1 : 0;
+        const double piece = glm::distance(path.points[k], path.points[i]);
+        if (along <= piece || i + 1 == pieces) {
+            const double f = piece > 0 ? std::min(along / piece, 1.0) : 0;
+            return {glm::mix(path.points[i], path.points[k], f),
+                    glm::normalize(glm::mix(path.normals[i], path.normals[k], f))};
+        }
+        along -= piece;
+    }
+    return {path.points.front(), path.normals.front()};
+}
+
+}  // namespace
+
+PathPlace place_on(const ModelPath& path, double along, double reach) {
+    const PathPoint at = point_on(path, along);
+    const Vec3 d = point_on(path, along + reach).position - point_on(path, along - reach).position;
+    const Vec3 right = d - glm::dot(d, at.normal) * at.normal;
+    const double size = glm::length(right);
+    return {at.position, size > 1e-12 ? right / size : make_frame(Vec3(0), at.normal).t, at.normal};
+}
+
+std::vector<double> place_along(const ModelPath& path, const std::vector<Glyph>& glyphs, double middle,
+                                const LayoutOptions& options) {
+    double whole = 0;
+    for (const Glyph& g : glyphs) whole += advance_of(g, options);
+    if (const double room = path.length(); whole > room * (1 + 1e-9))
+        throw Error(Message("the text is {} mm long, the path on the model {} mm (see --size, --spacing)",
+                            std::round(whole * 1e4) / 10, std::round(room * 1e4) / 10));
+    std::vector<double> out;
+    double at = middle - 0.5 * whole;
+    for (const Glyph& g : glyphs) {
+        const double step = advance_of(g, options);
+        out.push_back(at + 0.5 * step);
+        at += step;
+    }
+    return out;
+}
+
+ModelPath level_section(const mesh::SurfaceQuery& query, const Vec3& through) {
+    const mesh::TriangleMesh& mesh = query.mesh();
+    std::vector<SectionPart> parts = section_parts(mesh, through.z);
+    if (parts.empty()) throw Error(Message("no surface lies at the height of the text (see --place)"));
+    std::unordered_multimap<std::uint64_t, std::size_t> by_edge;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        by_edge.emplace(parts[i].from.edge, i);
+        by_edge.emplace(parts[i].to.edge, i);
+    }
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (glm::distance(parts[i].from.at, through) < glm::distance(parts[nearest].from.at, through)) nearest = i;
+    ModelPath path;
+    const Vec3 begin = parts[nearest].from.at;
+    path.points = follow(parts, nearest, by_edge, path.closed);
+    for (const Vec3& p : path.points) {
+        const auto on = query.closest_point(p);
+        path.normals.push_back(on ? on->normal : Vec3(0, 0, 1));
+    }
+    const auto first = static_cast<std::ptrdiff_t>(
+        std::min_element(path.points.begin(), path.points.end(),
+                         [&](const Vec3& a, const Vec3& b) { return glm::distance(a, begin) < glm::distance(b, begin); }) -
+        path.points.begin());
+    const std::size_t k = static_cast<std::size_t>(first), next = k + 1 < path.points.size() ? k + 1 : k - 1;
+    const Vec3 ahead = (k + 1 < path.points.size() ? 1.0 : -1.0) * (path.points[next] - path.points[k]);
+    if (path.closed) {
+        std::rotate(path.points.begin(), path.points.begin() + first, path.points.end());
+        std::rotate(path.normals.begin(), path.normals.begin() + first, path.normals.end());
+    }
+    if (glm::dot(ahead, glm::cross(Vec3(0, 0, 1), path.normals[path.closed ? 0 : k])) < 0) {
+        std::reverse(path.points.begin(), path.points.end());
+        std::reverse(path.normals.begin(), path.normals.end());
+        if (path.closed) {  // the first point stays the first
+            std::rotate(path.points.begin(), path.points.end() - 1, path.points.end());
+            std::rotate(path.normals.begin(), path.normals.end() - 1, path.normals.end());
+        }
+    }
+    return path;
+}
+
+}  // namespace tuft::writer

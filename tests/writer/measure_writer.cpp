@@ -1,0 +1,129 @@
+// Measures the writer on characters of a folder of hanzi-writer-data:
+//   measure_writer sides DATA CHARACTERS                     features and measured sides of each stroke, a line each
+//   measure_writer score DATA CHARACTERS [--fit 1] [--brush NAME] [--side MM] [--tries N] [--step UNITS] [--verbose 1]
+// CHARACTERS is a file. `score` draws the writer's strokes on a plane, without texels, and compares their union with the
+// outlines in cells of 2 units; score_painted.py compares what `tuft write` painted.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <ctime>
+#include <iostream>
+#include <map>
+
+#include "core/error.h"
+#include "core/system/files.h"
+#include "writer/fit/writer.h"
+#include "writer/glyphs/glyph_source.h"
+
+using namespace tuft;
+using namespace tuft::writer;
+
+namespace {
+
+Glyph load(const std::string& folder, char32_t code) {
+    const std::string path = folder + "/" + utf8_of(code) + ".json";
+    const std::vector<char> bytes = read_file(path, 1 << 20);
+    return parse_hanzi_json({bytes.data(), bytes.size()}, code, path);
+}
+
+void print_sides(const Glyph& glyph) {
+    for (std::size_t i = 0; i < glyph.strokes.size(); ++i) {
+        const StrokeLine line = make_stroke_line(glyph.strokes[i].median);
+        std::string row = fmt::format("{} {}", utf8_of(glyph.code), line.stroke_class());
+        for (const double f : stroke_features(line, glyph, i)) row += fmt::format(" {:.4g}", f);
+        row += " |";
+        for (const double s : row_of(measure_sides(line, glyph.strokes[i].outline))) row += fmt::format(" {:.4g}", s);
+        std::cout << row << "\n";
+    }
+}
+
+struct Overlap {
+    double both = 0, either = 0;
+    void add(bool a, bool b) { both += a && b, either += a || b; }
+    double iou() const { return either > 0 ? both / either : 1; }
+};
+
+Cells square() {
+    Cells cells{.lo = Vec2(-100), .cell = 2, .width = 612, .height = 612};
+    cells.inside.assign(std::size_t(cells.width) * cells.height, 0);
+    return cells;
+}
+
+struct Sum {
+    double iou = 0;
+    int n = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::map<std::string, std::string> options;
+    std::vector<std::string> words;
+    for (int i = 1; i < argc; ++i)
+        if (std::strncmp(argv[i], "--", 2) == 0 && i + 1 < argc) options[argv[i] + 2] = argv[i + 1], ++i;
+        else words.emplace_back(argv[i]);
+    const auto number = [&](const std::string& key, double otherwise) {
+        return options.contains(key) ? std::stod(options[key]) : otherwise;
+    };
+    const std::vector<char> list = read_file(words.at(2));
+    std::u32string characters;
+    for (const char32_t c : characters_of({list.data(), list.size()}))
+        if (c > 0x2000) characters.push_back(c);
+    if (words.at(0) == "sides") {
+        for (const char32_t code : characters) print_sides(load(words.at(1), code));
+        return 0;
+    }
+    WriterOptions with{.style = load_style("kaishu"), .side = number("side", 133) * 1e-3, .fit = number("fit", 0) > 0};
+    if (options.contains("brush")) with.brush = options["brush"];
+    with.style.tries = static_cast<int>(number("tries", with.style.tries));
+    Writer writer(with);
+    stroke::WidthTables tables;
+    const BrushHand hand{tables.preset(writer.brush()), tables.of(writer.brush()), tables.hold(writer.brush()),
+                         writer.unit()};
+    std::map<std::string, Sum> classes;
+    std::vector<double> scores;
+    std::size_t n_strokes = 0;
+    double seconds = 0;
+    for (const char32_t code : characters) {
+        const Glyph glyph = load(words.at(1), code);
+        const std::clock_t start = std::clock();
+        const std::vector<WrittenStroke> written = writer.write({glyph}).front();
+        seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+        Cells truth = square(), drawn = square();
+        for (std::size_t s = 0; s < written.size(); ++s) {
+            fill(truth, glyph.strokes[s].outline);
+            const stroke::PlaneInk ink =
+                stroke::plane_ink(written[s].trace, hand.preset, hand.hold, number("step", 5) * hand.unit, 2 * hand.unit);
+            Cells own = square();
+            fill(own, glyph.strokes[s].outline);
+            Overlap overlap;
+            for (int j = 0; j < own.height; ++j)
+                for (int i = 0; i < own.width; ++i) {
+                    const bool there = ink.at(own.centre(i, j) * hand.unit) > 0.5;
+                    if (there) drawn.inside[std::size_t(j) * drawn.width + i] = 1;
+                    overlap.add(own.at(i, j), there);
+                }
+            Sum& sum = classes[make_stroke_line(glyph.strokes[s].median).stroke_class()];
+            sum.iou += overlap.iou(), ++sum.n, ++n_strokes;
+            if (options.contains("verbose"))
+                fmt::print("  {} {:.3f}\n", written[s].label, overlap.iou());
+        }
+        Overlap whole;
+        for (std::size_t i = 0; i < truth.inside.size(); ++i) whole.add(truth.inside[i], drawn.inside[i]);
+        scores.push_back(whole.iou());
+        if (options.contains("verbose")) fmt::print("{} {:.3f}\n", utf8_of(code), scores.back());
+    }
+    std::vector<std::pair<std::string, Sum>> order(classes.begin(), classes.end());
+    std::stable_sort(order.begin(), order.end(), [](auto& a, auto& b) { return a.second.n > b.second.n; });
+    double all = 0, sum = 0;
+    for (const auto& [name, s] : order) {
+        if (s.n >= 5) fmt::print("{:6} {:4} strokes, mean {:.3f}\n", name, s.n, s.iou / s.n);
+        all += s.iou;
+    }
+    for (const double s : scores) sum += s;
+    fmt::print("{} characters: mean {:.4f}, worst {:.3f}; {} strokes: mean {:.4f}, {:.3f} s of CPU each\n", scores.size(),
+               sum / static_cast<double>(scores.size()), *std::min_element(scores.begin(), scores.end()), n_strokes,
+               all / static_cast<double>(n_strokes), seconds / static_cast<double>(n_strokes));
+    return 0;
+}
