@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/drawing.h"
 #include "cli/place.h"
 #include "cli/steps.h"
 #include "core/system/files.h"
@@ -143,11 +144,16 @@ int run(const Paint& a) {
     const auto before =
         goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console) : nullptr;
     std::vector<stroke::JournalEntry> strokes = load_strokes(a, console);
-    Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, a.surface, console);
+    Surface surface = a.surface;
+    if (const double texel = a.auto_texel ? texel_for_detail(strokes, a) : 0; texel > 0)
+        surface.texel_size_mm = texel / kMillimetre;
+    Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, surface, console);
     const stroke::Model model = std::move(loaded.model);
     outputs.frame = loaded.frame;
     const std::optional<PlacedDrawing> placed = place_strokes(strokes, model, a, console);
     if (!a.view.directed) look_at_strokes(outputs.view, strokes, model);
+    note_detail(strokes, model.atlas.texel_size, console);
+    add_copies(strokes, model, a);
 
     stroke::Document painting(model, {.substrate = a.surface.substrate, .record_forces = !a.forces.empty()});
     if (before) {
@@ -163,6 +169,8 @@ int run(const Paint& a) {
         if (s.group.id != 0) s.group.id += first_group - 1;
     const double prepared = seconds_since(start);
     find_presets(painting, strokes);
+    set_films(strokes, painting);
+    note_inks(strokes, painting, console);
     const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
     if (const Message fault = stroke::size_fault(strokes, length_of, *model.query); !fault.empty())
         throw Error(a.model.string(), Message("{} (see --unit, --place-width, --brush)", fault));
@@ -180,6 +188,8 @@ int run(const Paint& a) {
     const auto painting_start = Clock::now();
     double first_stamp = 0;
     std::vector<stroke::StrokeReport> reports;
+    std::size_t areas = 0;
+    double area_ink = 0;
     const ProgressFn progress = console.progress();
     try {
         for (std::size_t i = 0; i < strokes.size(); ++i) {
@@ -187,6 +197,8 @@ int run(const Paint& a) {
                 if (first_stamp == 0) first_stamp = seconds_since(start);
                 return progress(phase, (static_cast<double>(i) + fraction) / static_cast<double>(strokes.size()));
             });
+            if (const stroke::Fill* fill = strokes[i].as<stroke::Fill>(); fill && fill->area)
+                ++areas, area_ink += report.ink_given;
             if (strokes[i].as<stroke::PaintStroke>()) reports.push_back(std::move(report));
             if (project) project->append(painting.journal().entries().back());
         }
@@ -215,7 +227,7 @@ int run(const Paint& a) {
     console.clear();
 
     std::size_t stamps = 0;
-    double given = 0;
+    double given = area_ink;
     for (const auto& r : reports) stamps += r.stamps, given += r.ink_given;
     if (a.common.json) {
         nlohmann::json j;
@@ -226,6 +238,8 @@ int run(const Paint& a) {
         if (placed) j["placed"] = to_json(*placed);
         j["strokes"] = nlohmann::json::array();
         for (std::size_t i = 0; i < reports.size(); ++i) j["strokes"].push_back(to_json(reports[i], *done[i]));
+        j["inks"] = inks_json(strokes, painting);
+        j["areas"] = areas;
         j["stamps"] = stamps;
         j["ink_mm3"] = given * ink::kFilmUnit * 1e9;
         j["canvas_hash"] = fmt::format("{:016x}", painting.layers().hash());
@@ -236,8 +250,13 @@ int run(const Paint& a) {
         j["peak_mb"] = peak_megabytes();
         print_json(j);
     } else {
-        fmt::print("painted {} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n",
-                   counted(reports.size(), "stroke"), counted(stamps, "stamp"), given * ink::kFilmUnit * 1e9, painted,
+        const std::string painted_areas = areas == 0 ? "" : counted(areas, "area");
+        const std::string painted_strokes =
+            reports.empty() && areas > 0
+                ? ""
+                : fmt::format("{}{}", areas > 0 ? " and " : "", counted(reports.size(), "stroke"));
+        fmt::print("painted {}{} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n",
+                   painted_areas, painted_strokes, counted(stamps, "stamp"), given * ink::kFilmUnit * 1e9, painted,
                    model.atlas.size, model.atlas.size, counted(model.atlas.n_charts, "chart"),
                    model.atlas.texel_size / kMillimetre);
         for (const auto& path : {a.project, a.exported, a.preview, a.forces})

@@ -48,8 +48,8 @@ constexpr LossText kTexts[] = {
      "{} transforms in styles are not applied: write them as attributes"},
     {SvgLoss::animation, "1 animation is not played", "{} animations are not played"},
     {SvgLoss::script, "1 script is not run", "{} scripts are not run"},
-    {SvgLoss::rule, "1 rule of a style sheet is passed over: only element names, .class and #id are understood",
-     "{} rules of style sheets are passed over: only element names, .class and #id are understood"},
+    {SvgLoss::rule, "1 rule of a style sheet is passed over: at-rules and most pseudo-classes are not understood",
+     "{} rules of style sheets are passed over: at-rules and most pseudo-classes are not understood"},
 };
 static_assert(std::size(kTexts) == kSvgLosses);
 

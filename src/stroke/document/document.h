@@ -29,6 +29,8 @@ struct DocumentOptions {
     bool record_forces = false;                       ///< fills `StrokeReport::forces`
 };
 
+class FlatTexels;
+struct FillResult;
 class PlanScratchPool;
 struct WetFilmInUse;
 class StrokeSession;
@@ -111,6 +113,7 @@ class Document {
     void dry(std::uint64_t id, const Dry& wait, const ProgressFn& progress);
     void wash(std::uint64_t id);
     StrokeReport fill(std::uint64_t id, const Fill& fill);
+    FillResult fill_area(const Fill& fill);
     void edit_layers(std::uint64_t id, const LayerEdit& edit);
     void edit_masks(std::uint64_t id, const MaskEdit& edit);
 
@@ -142,6 +145,7 @@ class Document {
     BrushesInHand brushes_;
     Appearance appearance_;
     ModelFilm film_;
+    std::unique_ptr<FlatTexels> flat_texels_;  ///< of the last area
     UndoHistory history_;
     std::unique_ptr<PlanScratchPool> plan_scratch_;
     std::unique_ptr<StrokeSession> session_;  ///< the stroke in work
