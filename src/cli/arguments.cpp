@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "brush/preset/preset.h"
+#include "cli/drawing_arguments.h"
 #include "cli/reference.h"
 #include "core/error.h"
 #include "core/geometry/bounds.h"
@@ -358,29 +359,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         ->check(number_in(-360.0, 360.0))
         ->type_name("DEG");
     p->add_flag("--place-mirror", paint.place_mirror, "flips it from left to right");
-    p->add_option(
-         "--areas", paint.areas,
-         "how drawings (.svg) are painted: mask, in the colours of the file, each shape masked and filled, in "
-         "the order of the file; brush, in one ink (--ink) by lines of a brush, white left bare; default: mask "
-         "where the file has colours besides black and neither --ink, --brush nor --erase is given, else brush")
-        ->check(CLI::IsMember({"mask", "brush"}));
-    p->add_option("--only", paint.only, "only these layers and named groups of an .svg: NAME, more by another --only")
-        ->allow_extra_args(false)
-        ->type_name("NAME");
-    p->add_option("--mirror", paint.mirror,
-                  "paints the other flank as well: copies beyond the planes through the middle of the model across "
-                  "these axes, such as y; a group of its own in the journal")
-        ->check(CLI::IsMember({"x", "y", "z", "xy", "xz", "yz", "xyz"}))
-        ->type_name("AXES");
-    p->add_flag("--readable", paint.readable,
-                "with --mirror: groups of an .svg with the class 'readable' (or data-readable) are not mirrored, such "
-                "as lettering; they stay where the mirror puts them");
-    p->add_option("--radial", paint.radial, "copies round the middle of the model, with the original")
-        ->check(CLI::Range(1, 32))
-        ->type_name("N");
-    p->add_option("--radial-axis", paint.radial_axis, "axis of --radial")->check(CLI::IsMember({"x", "y", "z"}));
-    p->add_flag("--auto-texel", paint.auto_texel,
-                "texels as small as the finest detail of a drawing's areas needs: a third of it");
+    add_drawing_options(*p, paint);
     p->add_flag("--fit-brush", paint.fit_brush,
                 "with --brush: takes this make in the sizes that draw the line widths of a drawing");
     add_surface(p, paint.surface);
