@@ -335,6 +335,12 @@ ColourMatch match_colour(const Rgb& wanted, const std::vector<Pigment>& pigments
     for (const double film : {2.0, 4.0, 8.0}) {
         all.push_back(MixSearch(pigments, substrate, std::min(film, most)).nearest(wanted, options.most_parts));
         if (film >= most) break;
+        // None that is thicker can be better by more than it is worth, and none that is thinner does.
+        const ColourMatch& match = all.back();
+        if (match.delta_e <= kWorthThickness &&
+            std::all_of(all.begin(), all.end() - 1,
+                        [&](const ColourMatch& thinner) { return thinner.delta_e > match.delta_e + kWorthThickness; }))
+            break;
     }
     double best = all.front().delta_e;
     for (const ColourMatch& match : all) best = std::min(best, match.delta_e);
