@@ -19,7 +19,7 @@
 
 /// Scores of coloured drawings beside rasters of them by another program:
 ///
-///     io_drawing_scores FOLDER        # NAME.svg beside NAME.png, 300 by 300 pixels, for each NAME
+///     io_drawing_scores FOLDER        # NAME.svg beside NAME.png, its larger side 300 pixels, for each NAME
 ///
 /// Each drawing is painted onto a sheet of 300 by 300 texels. Says for each the intersection over union of what is
 /// painted in it and in its raster (half covered and more), and the median and the mean of ΔE2000 within both, away
@@ -123,15 +123,21 @@ double difference(const ink::Rgb& a, const ink::Rgb& b) {
 Score score(const std::filesystem::path& svg, const std::filesystem::path& png) {
     const std::vector<stroke::JournalEntry> entries = placed(svg);
     const io::Image8 raster = io::read_image8(png);
-    if (raster.width != kSide || raster.height != kSide || raster.channels != 4)
-        throw Error(png.string(), "is not 300 by 300 pixels with opacity");
+    if (std::max(raster.width, raster.height) != kSide || raster.channels != 4)
+        throw Error(png.string(), "is not 300 pixels large, with opacity");
     const std::vector<double> covered = coverage_of(entries);
     const std::vector<std::vector<float>> colours = colours_of(entries);
-    const auto alpha = [&](int x, int y) { return raster.pixels[static_cast<std::size_t>(4 * (y * kSide + x) + 3)]; };
+    // In the middle of the sheet.
+    const int left = (kSide - raster.width) / 2, top = (kSide - raster.height) / 2;
+    const auto channel = [&](int x, int y, std::size_t k) -> std::uint8_t {
+        x -= left, y -= top;
+        if (x < 0 || y < 0 || x >= raster.width || y >= raster.height) return 0;
+        return raster.pixels[static_cast<std::size_t>(4 * (y * raster.width + x)) + k];
+    };
+    const auto alpha = [&](int x, int y) { return channel(x, y, 3); };
     const auto colour = [&](int x, int y) {
         ink::Rgb rgb;
-        for (std::size_t k = 0; k < 3; ++k)
-            rgb[k] = ink::srgb_decode(float(raster.pixels[static_cast<std::size_t>(4 * (y * kSide + x)) + k]) / 255);
+        for (std::size_t k = 0; k < 3; ++k) rgb[k] = ink::srgb_decode(float(channel(x, y, k)) / 255);
         return rgb;
     };
     std::size_t both = 0, either = 0, inner = 0, reached = 0;

@@ -121,10 +121,15 @@ struct MaskPiece {
     SvgGradientPtr fade;  ///< of a mask's gradient: the value is that of its stops
 };
 
+std::vector<Ring> page_rings(const Vec2& size) {
+    if (!(size.x > 0 && size.y > 0)) return {};
+    return {{Vec2(0), {size.x, 0}, size, {0, size.y}}};
+}
+
 class AreaMaker {
   public:
     AreaMaker(SvgScene& scene, const std::string& source, double tolerance)
-        : scene_(scene), source_(source), tolerance_(tolerance) {}
+        : scene_(scene), source_(source), tolerance_(tolerance), page_(page_rings(scene.page), FillRule::nonzero) {}
 
     std::vector<stroke::RecordedStroke> make() {
         std::vector<std::vector<PaintedPart>> all;
@@ -175,20 +180,33 @@ class AreaMaker {
     void add(const PaintedPart& part) {
         check_interrupt();
         const SvgShape& s = *part.shape;
-        if (s.clips.empty() && s.masks.empty())
-            return emit(part, part.rings, part.rule == FillRule::even_odd, 1, nullptr);
+        const auto whole = [&] { emit(part, part.rings, part.rule == FillRule::even_odd, 1, nullptr); };
+        const bool past_page = is_past_page(part.rings);
+        if (s.clips.empty() && s.masks.empty() && !past_page) return whole();
         std::size_t n = 0;
         for (const Ring& ring : part.rings) n += ring.size();
         if (n > Shape::kMostPoints) {
-            scene_.losses.add(s.clips.empty() ? SvgLoss::mask : SvgLoss::clip);
-            return emit(part, part.rings, part.rule == FillRule::even_odd, 1, nullptr);
+            scene_.losses.add(s.masks.empty() ? SvgLoss::clip : SvgLoss::mask);
+            return whole();
         }
         Shape region(part.rings, part.rule);
+        if (past_page) region = region.intersected(page_);
         for (const std::size_t k : s.clips) region = region.intersected(scene_.clips[k]);
         std::vector<MaskPiece> pieces{{std::move(region), 1, 1, nullptr}};
         for (const std::size_t k : s.masks) pieces = masked(std::move(pieces), scene_.masks[k]);
         for (const MaskPiece& piece : pieces)
             if (!piece.region.empty()) emit(part, piece.region.rings(), false, piece.value, piece.fade);
+    }
+
+    // What lies beside the page is not seen in any viewer.
+    bool is_past_page(const std::vector<Ring>& rings) const {
+        if (page_.empty()) return false;
+        const Vec2 slack = 1e-6 * scene_.page;
+        for (const Ring& ring : rings)
+            for (const Vec2& p : ring)
+                if (p.x < -slack.x || p.y < -slack.y || p.x > scene_.page.x + slack.x || p.y > scene_.page.y + slack.y)
+                    return true;
+        return false;
     }
 
     std::vector<MaskPiece> masked(std::vector<MaskPiece> before, const SvgMask& mask) {
@@ -322,6 +340,7 @@ class AreaMaker {
     SvgScene& scene_;
     const std::string& source_;
     double tolerance_;
+    Shape page_;
     Inks inks_;
     std::vector<stroke::RecordedStroke> out_;
     std::size_t n_points_ = 0, n_pieces_ = 0;

@@ -20,8 +20,9 @@ bool has_colours(const SvgScene& scene);
 /// Returns the areas of a scene, back to front: the fill and the stroke of each shape as a `stroke::FlatArea`, in inks
 /// named by their colours (`#rrggbb`). A colour within `kSameInk` of an earlier one takes its ink. Gradients get stops
 /// at most 8 ΔE2000 apart, colours between them mixed in sRGB (SVG 1.1, 13.2.4). Clip paths and masks cut the areas; a
-/// mask with a gradient grades the film. A white shape over the whole page below all others is the ground and is left
-/// out. Adds to `scene.losses` what is not painted. Throws `Error` for too many points or pieces.
+/// mask with a gradient grades the film. What lies beside the page is cut off. A white shape over the whole page below
+/// all others is the ground and is left out. Adds to `scene.losses` what is not painted. Throws `Error` for too many
+/// points or pieces.
 std::vector<stroke::RecordedStroke> svg_areas(SvgScene& scene, const std::string& source, double tolerance);
 
 }  // namespace tuft::io
