@@ -13,7 +13,10 @@ Materials::Brush& Materials::find_brush(const std::string& name) const {
 const ink::Ink& Materials::ink(const std::string& name) const {
     const auto found = inks_.find(name);
     if (found != inks_.end()) return found->second;
-    return inks_.emplace(name, ink::ink_named(name, substrate_, layers_.pigments())).first->second;
+    const bool colour = name.starts_with('#');
+    if (colour && !searches_) searches_.emplace(ink::shipped_pigments(), substrate_);
+    return inks_.emplace(name, ink::ink_named(name, substrate_, layers_.pigments(), colour ? &*searches_ : nullptr))
+        .first->second;
 }
 
 HolderOptions Materials::holder(const std::string& name, const mesh::TriangleMesh& mesh,

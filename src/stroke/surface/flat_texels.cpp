@@ -179,12 +179,15 @@ Vec3 normal_in(const atlas::TexelShape& s, int t) {
     return {double(s.nx[t]), double(s.ny[t]), double(s.nz[t])};
 }
 
-bool reaches(const Box& bounds, const atlas::TexelShape& shape, const atlas::TexelTile& tile, double reach) {
+/// Whether a texel of the tile may lie over the grid.
+bool reaches(const SurfaceGrid& grid, const atlas::TexelShape& shape, const atlas::TexelTile& tile) {
     Box box;
     for (int t = 0; t < atlas::kTileTexels; ++t)
         if (tile.cluster[t] != atlas::kNoCluster) box.add(position_in(shape, t));
-    return !box.empty() && glm::all(glm::lessThanEqual(box.lo, bounds.hi + reach)) &&
-           glm::all(glm::greaterThanEqual(box.hi, bounds.lo - reach));
+    if (box.empty() || !glm::all(glm::lessThanEqual(box.lo, grid.bounds().hi + grid.reach())) ||
+        !glm::all(glm::greaterThanEqual(box.hi, grid.bounds().lo - grid.reach())))
+        return false;
+    return grid.query().closest_point(box.centre(), 0.5 * box.diagonal() + grid.reach()).has_value();
 }
 
 }  // namespace
@@ -201,7 +204,7 @@ void FlatTexels::unfold(const Model& model) {
     const SurfaceGrid grid(model, placement_, low_, high_);
     if (grid.empty()) return;
     tiles_ = gather_tiles(model, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
-        if (!reaches(grid.bounds(), shape, in, grid.reach())) return false;
+        if (!reaches(grid, shape, in)) return false;
         TileUnfolding unfolding(grid, model.texels.texel_size);
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             // There and back by rows: each texel begins beside the last one.
