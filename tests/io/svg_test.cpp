@@ -175,6 +175,22 @@ std::vector<std::string> told(const std::string& inside) {
 }
 using Notes = std::vector<std::string>;
 
+TEST(Svg, WideLinesEndAsTheFileSays) {
+    // Outlines of the stencils: a line of 40 x 10 mm is a box of that size, longer by its round or square ends.
+    const auto extent = [](const std::string& more) {
+        const auto lines = drawn("<path d='M20 50 H60' stroke='black' stroke-width='10' " + more + "/>");
+        EXPECT_GT(lines.size(), 1u);
+        Vec2 low(1e9), high(-1e9);
+        for (const auto& t : lines)
+            for (const auto& e : t.stencil) low = glm::min(low, e.from), high = glm::max(high, e.from);
+        return Vec2(1e3 * (high - low));
+    };
+    expect_near(extent(""), {40, 10});
+    expect_near(extent("stroke-linecap='square'"), {50, 10});
+    EXPECT_NEAR(extent("stroke-linecap='round'").x, 50, 0.04) << "chords within 20 um";
+    EXPECT_EQ(drawn("<path d='M20 50 H60' stroke='black' stroke-width='7'/>").size(), 1u) << "a line";
+}
+
 TEST(Svg, WhatIsLeftOutIsReportedInALineEach) {
     EXPECT_EQ(told("<g/>"), Notes{});
     EXPECT_EQ(told("<text>Hello <tspan>there</tspan></text><image/><text display='none'>no</text><g "

@@ -37,7 +37,12 @@ class BrushLines {
         : scene_(scene), source_(source), options_(options) {}
 
     std::vector<Drawn> draw() {
-        for (const SvgShape& s : scene_.shapes) add(s);
+        for (const SvgShape& s : scene_.shapes) {
+            if (s.style.visible && s.style.stroked() && s.style.width * svg_growth(s.matrix) >= options_.wide)
+                add_wide(s);
+            else
+                add(s);
+        }
         return std::move(lines_);
     }
 
@@ -56,6 +61,28 @@ class BrushLines {
         else if (s.style.filled())
             fill(before, s.style);
         for (std::size_t i = before; i < lines_.size(); ++i) lines_[i].group = s.group;
+    }
+
+    // A wide line is an area with the ends and corners that the file gives it.
+    void add_wide(const SvgShape& s) {
+        if (s.style.filled()) {
+            SvgShape fill = s;
+            fill.style.stroke = {};
+            add(fill);
+        }
+        SvgStyle stroke = s.style;
+        stroke.fill = {};
+        stroke.dashes.clear();
+        const std::vector<Ring> rings = svg_stroke_outline(s, scene_.unit, options_.tolerance);
+        std::vector<AreaLine> lines = area_lines(rings, FillRule::nonzero);
+        if (lines.empty()) return add(s);
+        count_paints(stroke);
+        for (AreaLine& line : lines) {
+            n_points_ += line.line.size() + line.stencil.size();
+            lines_.push_back(
+                {std::move(line.line), line.width, line.taper_in, line.taper_out, std::move(line.stencil), s.group});
+        }
+        if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
     }
 
     // The lines from `before` on are outlines of one area: lines that fill it come before them where they are

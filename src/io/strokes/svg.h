@@ -24,7 +24,10 @@ struct SvgOptions {
     SvgPainting painting = SvgPainting::brush;
     std::vector<std::string> groups;  ///< only shapes in these layers and named groups; empty: all
     double tolerance = 2e-5;          ///< metres, largest distance of a chord from its curve
-    InkmlOptions ink;                 ///< speed, pressure and limits
+    /// metres, as the file is written; with `brush`, lines from this width on are filled like areas, with the ends,
+    /// corners and dashes that the file says
+    double wide = 8e-3;
+    InkmlOptions ink;  ///< speed, pressure and limits
 };
 
 /// Reads a drawing as flat traces, in the order of the file: `path` (all commands), `line`, `polyline`, `polygon`,
@@ -43,6 +46,8 @@ struct SvgOptions {
 /// in their frames. What stays out is reported by `InkmlOptions::note`: text, images, filters, blend modes, animation.
 ///
 /// `RecordedStroke::group` is the layer, or the outermost group with a name (`inkscape:label`, `data-name`, `id`).
+///
+/// With `SvgPainting::brush` a stroke at least `SvgOptions::wide` wide is filled as an area, too.
 ///
 /// In traces with a width the pressure is the fraction of the width to draw, 0.5 for all of it. Other traces have speed
 /// and pressure as by `parse_inkml`.

@@ -67,24 +67,6 @@ std::vector<Ring> moved(std::vector<SvgLine> lines, const SvgMatrix& matrix) {
     return lines;
 }
 
-std::vector<Ring> stroke_rings(const SvgShape& s, double unit, double tolerance) {
-    SvgStyle style = s.style;
-    SvgMatrix matrix = s.matrix;
-    std::vector<SvgLine> lines = s.lines;
-    if (s.fixed_width) {
-        lines = moved(std::move(lines), matrix);
-        matrix = SvgMatrix(1);
-        style.width *= unit;
-        style.dash_offset *= unit;
-        for (double& d : style.dashes) d *= unit;
-    }
-    const double growth = std::max(svg_growth(matrix), 1e-12);
-    std::vector<Ring> rings;
-    for (const SvgLine& line : lines)
-        for (SvgLine& ring : svg_stroke_rings(line, style, tolerance / growth)) rings.push_back(std::move(ring));
-    return moved(std::move(rings), matrix);
-}
-
 /// What a shape paints, back to front.
 std::vector<PaintedPart> parts_of(const SvgShape& s, double unit, double tolerance) {
     std::vector<PaintedPart> parts;
@@ -103,8 +85,8 @@ std::vector<PaintedPart> parts_of(const SvgShape& s, double unit, double toleran
     add(
         s.style.fill, s.fill_gradient, s.style.fill_opacity, [&] { return moved(s.lines, s.matrix); }, s.style.rule);
     add(
-        s.style.stroke, s.stroke_gradient, s.style.stroke_opacity, [&] { return stroke_rings(s, unit, tolerance); },
-        FillRule::nonzero);
+        s.style.stroke, s.stroke_gradient, s.style.stroke_opacity,
+        [&] { return svg_stroke_outline(s, unit, tolerance); }, FillRule::nonzero);
     return parts;
 }
 
@@ -347,6 +329,24 @@ class AreaMaker {
 };
 
 }  // namespace
+
+std::vector<Ring> svg_stroke_outline(const SvgShape& s, double unit, double tolerance) {
+    SvgStyle style = s.style;
+    SvgMatrix matrix = s.matrix;
+    std::vector<SvgLine> lines = s.lines;
+    if (s.fixed_width) {
+        lines = moved(std::move(lines), matrix);
+        matrix = SvgMatrix(1);
+        style.width *= unit;
+        style.dash_offset *= unit;
+        for (double& d : style.dashes) d *= unit;
+    }
+    const double growth = std::max(svg_growth(matrix), 1e-12);
+    std::vector<Ring> rings;
+    for (const SvgLine& line : lines)
+        for (SvgLine& ring : svg_stroke_rings(line, style, tolerance / growth)) rings.push_back(std::move(ring));
+    return moved(std::move(rings), matrix);
+}
 
 bool has_colours(const SvgScene& scene) {
     bool first = true;

@@ -17,6 +17,10 @@ inline constexpr double kSameInk = 1;
 /// Returns true when a shape has a colour other than black, or white that is not the page alone.
 bool has_colours(const SvgScene& scene);
 
+/// Returns rings that enclose, by the nonzero rule, what the stroke of a shape covers, with its dashes; metres. `unit`:
+/// metres of a unit of the page, for strokes of fixed width.
+std::vector<Ring> svg_stroke_outline(const SvgShape& shape, double unit, double tolerance);
+
 /// Returns the areas of a scene, back to front: the fill and the stroke of each shape as a `stroke::FlatArea`, in inks
 /// named by their colours (`#rrggbb`). A colour within `kSameInk` of an earlier one takes its ink. Gradients get stops
 /// at most 8 ΔE2000 apart, colours between them mixed in sRGB (SVG 1.1, 13.2.4). Clip paths and masks cut the areas; a
