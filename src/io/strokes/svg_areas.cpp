@@ -16,7 +16,7 @@ namespace tuft::io {
 namespace {
 
 constexpr double kStopStep = 8;                  // ΔE2000 between stops
-constexpr int kMostSteps = 16;                   // stops between two of the file
+constexpr int kMostBetween = 16;                   // stops between two of the file
 constexpr std::size_t kMostMaskPieces = 20'000;  // of masked areas
 constexpr double kSeen = 1.0 / 512;              // opacity
 
@@ -286,7 +286,7 @@ class AreaMaker {
             const SvgStop &a = g.stops[i - 1], &b = g.stops[i];
             const double apart = ink::delta_e_2000(lab_of(a.colour), lab_of(b.colour)) / kStopStep +
                                  8 * std::abs(a.colour.alpha - b.colour.alpha);
-            const int n = b.at > a.at ? std::clamp(static_cast<int>(std::ceil(apart)), 1, kMostSteps) : 1;
+            const int n = b.at > a.at ? std::clamp(static_cast<int>(std::ceil(apart)), 1, kMostBetween) : 1;
             for (int k = 1; k <= n && area.stops.size() < stroke::kMaxAreaStops; ++k)
                 stop_at(a.at + (b.at - a.at) * k / n, mixed(a.colour, b.colour, double(k) / n));
         }

@@ -12,7 +12,7 @@ namespace tuft::io {
 namespace {
 
 constexpr std::size_t kMostParts = 32;  // compounds of a selector
-constexpr int kMostSteps = 4096;        // of matching one selector with one element
+constexpr int kMostMatchSteps = 4096;        // of matching one selector with one element
 
 std::string without_comments(std::string_view sheet) {
     std::string out;
@@ -243,7 +243,7 @@ bool SvgSheet::fits(const std::vector<Compound>& selector, std::size_t last, con
 SvgDeclarations SvgSheet::declared(const pugi::xml_node& node) const {
     std::vector<const Rule*> own;
     for (const Rule& rule : rules_) {
-        int budget = kMostSteps;
+        int budget = kMostMatchSteps;
         if (fits(rule.selector, rule.selector.size() - 1, node, budget)) own.push_back(&rule);
     }
     std::stable_sort(own.begin(), own.end(),

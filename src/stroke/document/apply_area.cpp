@@ -9,7 +9,7 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr int kScanLines = 8;  // scan lines a cell
+constexpr int kScanLines = 16;  // scan lines a cell
 constexpr std::size_t kMostCells = std::size_t{1} << 26;
 
 /// An edge that crosses scan lines; up or down.
@@ -32,19 +32,13 @@ std::vector<ScanEdge> scan_edges(const FlatArea& area, const Vec2& low, double c
     return edges;
 }
 
-/// Adds a span [a, b) of one scan line to a row of cells.
-void add_span(std::vector<float>& row, double a, double b) {
-    a = std::max(a, 0.0);
-    b = std::min(b, static_cast<double>(row.size()));
-    if (!(a < b)) return;
-    const auto first = static_cast<std::size_t>(a), last = std::min(static_cast<std::size_t>(b), row.size() - 1);
-    if (first == last) {
-        row[first] += static_cast<float>(b - a);
-        return;
-    }
-    row[first] += static_cast<float>(static_cast<double>(first + 1) - a);
-    for (std::size_t i = first + 1; i < last; ++i) row[i] += 1;
-    row[last] += static_cast<float>(b - static_cast<double>(last));
+/// Adds what lies right of x on one scan line to the differences of a row of cells, `sign` times.
+void add_step(std::vector<float>& row, double x, float sign) {
+    x = std::clamp(x, 0.0, static_cast<double>(row.size() - 2));
+    const auto i = static_cast<std::size_t>(x);
+    const auto part = static_cast<float>(x - static_cast<double>(i));
+    row[i] += sign * (1 - part);
+    row[i + 1] += sign * part;
 }
 
 /// Mixture of the stops round a parameter.
@@ -98,7 +92,7 @@ AreaRaster::AreaRaster(const FlatArea& area, double cell) : cell_(cell) {
     const std::vector<ScanEdge> edges = scan_edges(area, low_, cell_);
     std::vector<std::size_t> active;
     std::vector<std::pair<double, int>> crossings;
-    std::vector<float> row(static_cast<std::size_t>(width_));
+    std::vector<float> row(static_cast<std::size_t>(width_) + 2);  // differences of neighbours
     std::size_t next = 0;
     for (int j = 0; j < height_; ++j) {
         std::fill(row.begin(), row.end(), 0.0f);
@@ -117,13 +111,15 @@ AreaRaster::AreaRaster(const FlatArea& area, double cell) : cell_(cell) {
             for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
                 winding += crossings[i].second;
                 if (area.even_odd ? i % 2 == 0 : winding != 0)
-                    add_span(row, crossings[i].first, crossings[i + 1].first);
+                    add_step(row, crossings[i].first, 1), add_step(row, crossings[i + 1].first, -1);
             }
         }
         std::uint8_t* out = &coverage_[static_cast<std::size_t>(j) * static_cast<std::size_t>(width_)];
-        for (int i = 0; i < width_; ++i)
-            out[i] = static_cast<std::uint8_t>(
-                std::lround(std::clamp(255.0f / kScanLines * row[static_cast<std::size_t>(i)], 0.0f, 255.0f)));
+        float sum = 0;
+        for (int i = 0; i < width_; ++i) {
+            sum += row[static_cast<std::size_t>(i)];
+            out[i] = static_cast<std::uint8_t>(std::lround(std::clamp(255.0f / kScanLines * sum, 0.0f, 255.0f)));
+        }
     }
 }
 

@@ -10,7 +10,7 @@
 /// Masked areas of a drawing on texels. Called by `Document` for fills with `Region::outline`.
 namespace tuft::stroke {
 
-/// Coverage of square cells of the plane by an area, 0–1: exact along x, from eight lines a cell along y.
+/// Coverage of square cells of the plane by an area, 0–1: exact along x, from 16 lines a cell along y.
 class AreaRaster {
   public:
     /// Cells of about `cell` metres over the bounds of the area; larger ones where there would be more than 2²⁶.

@@ -51,6 +51,7 @@ class Materials {
         std::vector<TipLag> tip_lag;  ///< empty: not measured
         std::unique_ptr<TiltedTipLag> tilted_tip_lag;
     };
+    std::vector<ink::Pigment> pigments_in_use() const;
     Brush& find_brush(const std::string& name) const;
 
     const LayerStack& layers_;
