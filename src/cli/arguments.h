@@ -87,6 +87,13 @@ struct Paint {
     std::string mapping;                 ///< drape, wrap, project; empty: see place_strokes
     double place_turn_deg = 0;           ///< anticlockwise, seen from outside the surface
     bool place_mirror = false;           ///< mirrors the drawing from left to right
+    std::string areas;                   ///< mask, brush; empty: by the drawing's colours
+    std::vector<std::string> only;       ///< layers and named groups of drawings; empty: all
+    std::string mirror;                  ///< some of x, y, z: planes of copies
+    bool readable = false;               ///< mirrored copies keep text and marked groups readable
+    int radial = 1;                      ///< copies round an axis, with the original
+    std::string radial_axis = "z";       ///< x | y | z
+    bool auto_texel = false;             ///< texels as small as the drawing's detail needs
     bool fit_brush = false;              ///< scales `brush` to the line widths of a drawing
     Surface surface;
     std::filesystem::path project, exported, preview, forces;

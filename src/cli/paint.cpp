@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/drawing.h"
 #include "cli/paint.h"
 #include "cli/steps.h"
 #include "core/system/files.h"
@@ -149,11 +150,16 @@ int paint(const Paint& a, const StrokeSource& source) {
     const auto before =
         goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console) : nullptr;
     std::vector<stroke::JournalEntry> strokes = source.load(console);
-    Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, a.surface, console);
+    Surface surface = a.surface;
+    if (const double texel = a.auto_texel ? texel_for_detail(strokes, a) : 0; texel > 0)
+        surface.texel_size_mm = texel / kMillimetre;
+    Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, surface, console);
     const stroke::Model model = std::move(loaded.model);
     outputs.frame = loaded.frame;
     const std::optional<PlacedDrawing> placed = source.place(strokes, model, console);
     if (!a.view.directed) look_at_strokes(outputs.view, strokes, model);
+    note_detail(strokes, model.atlas.texel_size, console);
+    add_copies(strokes, model, a);
 
     stroke::Document painting(model, {.substrate = a.surface.substrate, .record_forces = !a.forces.empty()});
     if (before) {
@@ -169,6 +175,8 @@ int paint(const Paint& a, const StrokeSource& source) {
         if (s.group.id != 0) s.group.id += first_group - 1;
     const double prepared = seconds_since(start);
     find_presets(painting, strokes);
+    set_films(strokes, painting);
+    note_inks(strokes, painting, console);
     const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
     if (const Message fault = stroke::size_fault(strokes, length_of, *model.query); !fault.empty())
         throw Error(a.model.string(), Message("{} (see --unit, --place-width, --brush)", fault));
@@ -186,11 +194,15 @@ int paint(const Paint& a, const StrokeSource& source) {
     const auto painting_start = Clock::now();
     double first_stamp = 0;
     std::vector<stroke::StrokeReport> reports;
+    std::size_t areas = 0;
+    double area_ink = 0;
     const ProgressFn progress = console.progress();
     try {
         painting.paint(
             strokes,
             [&](const stroke::JournalEntry& entry, stroke::StrokeReport report) {
+                if (const stroke::Fill* fill = entry.as<stroke::Fill>(); fill && fill->area)
+                    ++areas, area_ink += report.ink_given;
                 if (entry.as<stroke::PaintStroke>()) reports.push_back(std::move(report));
                 if (project) project->append(entry);
             },
@@ -223,7 +235,7 @@ int paint(const Paint& a, const StrokeSource& source) {
     console.clear();
 
     std::size_t stamps = 0;
-    double given = 0;
+    double given = area_ink;
     for (const auto& r : reports) stamps += r.stamps, given += r.ink_given;
     if (a.common.json) {
         nlohmann::json j;
@@ -234,6 +246,8 @@ int paint(const Paint& a, const StrokeSource& source) {
         if (placed) j["placed"] = to_json(*placed);
         j["strokes"] = nlohmann::json::array();
         for (std::size_t i = 0; i < reports.size(); ++i) j["strokes"].push_back(to_json(reports[i], *done[i]));
+        j["inks"] = inks_json(strokes, painting);
+        j["areas"] = areas;
         j["stamps"] = stamps;
         j["ink_mm3"] = given * ink::kFilmUnit * 1e9;
         j["canvas_hash"] = fmt::format("{:016x}", painting.layers().hash());
@@ -244,8 +258,13 @@ int paint(const Paint& a, const StrokeSource& source) {
         j["peak_mb"] = peak_megabytes();
         print_json(j);
     } else {
-        fmt::print("painted {} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n",
-                   counted(reports.size(), "stroke"), counted(stamps, "stamp"), given * ink::kFilmUnit * 1e9, painted,
+        const std::string painted_areas = areas == 0 ? "" : counted(areas, "area");
+        const std::string painted_strokes =
+            reports.empty() && areas > 0
+                ? ""
+                : fmt::format("{}{}", areas > 0 ? " and " : "", counted(reports.size(), "stroke"));
+        fmt::print("painted {}{} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n",
+                   painted_areas, painted_strokes, counted(stamps, "stamp"), given * ink::kFilmUnit * 1e9, painted,
                    model.atlas.size, model.atlas.size, counted(model.atlas.n_charts, "chart"),
                    model.atlas.texel_size / kMillimetre);
         for (const auto& path : {a.project, a.exported, a.preview, a.forces})

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "brush/preset/preset.h"
+#include "cli/drawing_arguments.h"
 #include "cli/options.h"
 #include "core/error.h"
 #include "core/text/text.h"
@@ -140,6 +141,7 @@ void add_paint_options(CLI::App* p, Paint& paint) {
         ->check(number_in(-360.0, 360.0))
         ->type_name("DEG");
     p->add_flag("--place-mirror", paint.place_mirror, "flips it from left to right");
+    add_drawing_options(*p, paint);
     p->add_flag("--fit-brush", paint.fit_brush,
                 "with --brush: takes this make in the sizes that draw the line widths of a drawing");
     add_surface(p, paint.surface);

@@ -112,22 +112,29 @@ void note_placed(const PlacedDrawing& p, const Paint& a, const Box& area, double
 }
 
 std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
-                                            const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths,
-                                            Console& console) {
+                                         const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths,
+                                         Console& console) {
+    const auto mapping = stroke::surface_mapping_named(a.mapping);
+    for (stroke::FlatArea* area : stroke::areas_in(strokes, true)) {
+        if (!area->placed) area->placement.mapping = stroke::SurfaceMapping::drape;
+        if (mapping) area->placement.mapping = *mapping;
+    }
     for (stroke::JournalEntry& entry : strokes) {
         stroke::PaintStroke* s = entry.as<stroke::PaintStroke>();
         if (!s || s->layer == stroke::kPaletteLayer) continue;  // in its own frame
         if (!s->trace.placed) s->trace.placement.mapping = stroke::SurfaceMapping::drape;
-        if (const auto mapping = stroke::surface_mapping_named(a.mapping)) s->trace.placement.mapping = *mapping;
+        if (mapping) s->trace.placement.mapping = *mapping;
     }
-    const std::vector<stroke::StrokeSamples*> drawing =
-        stroke::drawing_in(strokes, !a.place_mm.empty() || !a.on.empty());
-    if (drawing.empty()) {
+    const bool all = !a.place_mm.empty() || !a.on.empty();
+    const std::vector<stroke::StrokeSamples*> drawing = stroke::drawing_in(strokes, all);
+    const std::vector<stroke::FlatArea*> areas = stroke::areas_in(strokes, all);
+    if (drawing.empty() && areas.empty()) {
         stroke::choose_brushes(strokes, {}, 1, 0, fit, widths);
         return {};
     }
     stroke::arrange_parts(drawing);
-    const Box area = stroke::extent_of(drawing);
+    Box area = stroke::extent_of(drawing);
+    for (const stroke::FlatArea* part : areas) stroke::add_extent(area, *part);
     const double turn = a.place_turn_deg * kDegree, width = stroke::width_of(area);
     double scale = a.place_width_mm > 0 && width > 0 ? a.place_width_mm * kMillimetre / width : 1;
     PlacedDrawing placed;
@@ -144,8 +151,12 @@ std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& s
             fmt::format("the drawing is {:.4g} mm large, the model {:.4g} mm: most of it meets no surface (see "
                         "--place-width, --unit)",
                         large / kMillimetre, whole / kMillimetre));
-    const bool project = drawing.front()->placement.mapping == stroke::SurfaceMapping::project;
-    stroke::place_drawing(drawing, {placement_at(spot, a, project), Vec2(area.centre()), scale, a.place_mirror});
+    const stroke::SurfaceMapping first =
+        drawing.empty() ? areas.front()->placement.mapping : drawing.front()->placement.mapping;
+    const stroke::DrawingPlace place{placement_at(spot, a, first == stroke::SurfaceMapping::project),
+                                     Vec2(area.centre()), scale, a.place_mirror};
+    stroke::place_drawing(drawing, place);
+    stroke::place_areas(areas, place);
     stroke::choose_brushes(strokes, drawing, scale, scale * std::max(area.size().x, area.size().y), fit, widths);
     return placed;
 }
@@ -168,6 +179,12 @@ void look_at_strokes(View& view, const std::vector<stroke::JournalEntry>& stroke
     double count = 0;
     for (const stroke::JournalEntry& s : strokes) {
         const stroke::StrokeSamples& trace = stroke::samples_of(s);
+        if (const stroke::Fill* fill = s.as<stroke::Fill>(); fill && fill->area) {
+            if (const auto near = model.query->closest_point(fill->area->placement.origin)) sum += near->face_normal;
+            up -= glm::normalize(fill->area->placement.down);
+            count += 1;
+            continue;
+        }
         if (trace.samples.empty() || stroke::on_palette(s)) continue;
         const auto weight = static_cast<double>(trace.samples.size());
         const Vec3 at = trace.flat ? trace.placement.origin : trace.samples[trace.samples.size() / 2].position;

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 
 #include "core/text/units.h"
 #include "ink/composite/composite.h"
@@ -144,6 +146,38 @@ void check_extension(const fs::path& path, const std::vector<std::string>& allow
     throw UsageError(path.string() + ": the name must end in " + fmt::format("{}", fmt::join(allowed, ", ")));
 }
 
+namespace {
+
+io::SvgPainting painting_of(const Paint& a) {
+    if (a.areas == "mask") return io::SvgPainting::areas;
+    const bool one_ink = !a.ink.empty() || !a.brush.empty() || a.erases;
+    return a.areas == "brush" || one_ink ? io::SvgPainting::brush : io::SvgPainting::automatic;
+}
+
+// The file is a group, and so is each layer and named group in it.
+void number_groups(std::span<stroke::JournalEntry> strokes, const fs::path& file, std::uint64_t& n_groups) {
+    std::map<std::string, std::uint64_t> ids;
+    for (stroke::JournalEntry& s : strokes) {
+        const auto [at, fresh] = ids.try_emplace(s.group.name, n_groups + 1);
+        if (fresh) ++n_groups;
+        std::string name = stroke::group_name(file);
+        if (!s.group.name.empty()) {
+            name += ": " + s.group.name;
+            std::replace(name.begin(), name.end(), '/', '-');
+            name = stroke::group_name(fs::path(name));
+        }
+        s.group = {at->second, name};
+    }
+}
+
+// One ink for all areas but those that are white.
+void use_ink(stroke::JournalEntry& entry, const std::string& ink) {
+    const stroke::Fill* fill = entry.as<stroke::Fill>();
+    if (fill && fill->area && fill->ink != "#ffffff") stroke::set_ink(entry, ink);
+}
+
+}  // namespace
+
 stroke::EntryOptions entry_options(const Paint& a) {
     stroke::StrokeSettings settings;
     settings.spine = stroke::spine_method_of(a.spine);
@@ -172,18 +206,21 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
     if (!a.bias.empty()) bias = stroke::load_bias(a.bias);
 
     std::vector<stroke::JournalEntry> strokes;
+    std::uint64_t n_groups = 0;
     std::set<std::string> reported;  // a file that is painted twice is reported once
     for (const fs::path& file : a.strokes) {
         const std::size_t first = strokes.size();
+        const io::InkmlOptions reading{.actions = true, .note = [&](const Message& line) {
+                                           const std::string text = file.string() + ": " + line.text();
+                                           if (reported.insert(text).second) console.note(text);
+                                       }};
         std::vector<stroke::RecordedStroke> traces =
-            io::read_strokes(file, {.actions = true, .note = [&](const Message& line) {
-                                        const std::string text = file.string() + ": " + line.text();
-                                        if (reported.insert(text).second) console.note(text);
-                                    }});
+            io::read_strokes(file, io::SvgOptions{.painting = painting_of(a), .groups = a.only, .ink = reading});
         if (bias) traces = stroke::correct_bias(*bias, std::move(traces));
         stroke::append_entries(strokes, std::move(traces), options);
-        for (std::size_t i = first; i < strokes.size(); ++i)
-            strokes[i].group = {static_cast<std::uint64_t>(1 + (&file - a.strokes.data())), stroke::group_name(file)};
+        number_groups(std::span(strokes).subspan(first), file, n_groups);
+        if (!a.ink.empty())
+            for (std::size_t i = first; i < strokes.size(); ++i) use_ink(strokes[i], a.ink);
         if (a.dry >= 0 && !strokes.empty()) strokes.emplace_back(stroke::Dry{.seconds = a.dry, .down = options.settings.down});
         report(console.progress(), "strokes", 1);
     }

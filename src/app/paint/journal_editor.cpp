@@ -10,15 +10,20 @@
 namespace tuft::app {
 namespace {
 
-void shift(stroke::PaintStroke& stroke, const RigidMove& move) {
-    const auto moved = [&](const Vec3& p) { return move.to + move.rotation * (p - move.from); };
-    stroke::Placement& place = stroke.trace.placement;
-    if (stroke.trace.flat) {
-        place = {moved(place.origin), move.rotation * place.right, move.rotation * place.down, place.mapping};
-        return;
-    }
-    for (stroke::StrokeSample& s : stroke.trace.samples) {
-        s.position = moved(s.position);
+Vec3 moved(const RigidMove& move, const Vec3& p) {
+    return move.to + move.rotation * (p - move.from);
+}
+void shift(stroke::Placement& place, const RigidMove& move) {
+    place = {moved(move, place.origin), move.rotation * place.right, move.rotation * place.down, place.mapping};
+}
+
+void shift(stroke::JournalEntry& entry, const RigidMove& move) {
+    if (stroke::Fill* fill = entry.as<stroke::Fill>(); fill && fill->area) shift(fill->area->placement, move);
+    stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>();
+    if (!stroke) return;
+    if (stroke->trace.flat) return shift(stroke->trace.placement, move);
+    for (stroke::StrokeSample& s : stroke->trace.samples) {
+        s.position = moved(move, s.position);
         s.rotation = glm::normalize(move.rotation * s.rotation);
     }
 }
@@ -102,8 +107,7 @@ void JournalEditor::edit(const EditStrokes& command) {
             if (command.brush && stroke::has_brush(stroke::kind_of(before)))
                 stroke::set_brush(after, rebrushed(stroke::brush_of(before), *command.brush));
             if (command.ink && has_ink_of_its_own(before)) stroke::set_ink(after, *command.ink);
-            if (stroke::PaintStroke* stroke = after.as<stroke::PaintStroke>(); stroke && command.move)
-                shift(*stroke, *command.move);
+            if (command.move) shift(after, *command.move);
             if (command.group) after.group = group;
             const std::string &brush = stroke::brush_of(after), &ink = stroke::ink_of(after);
             if (brush != stroke::brush_of(before) || ink != stroke::ink_of(before))

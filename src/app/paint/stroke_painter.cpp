@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "stroke/document/fit.h"
+#include "stroke/drawing/copies.h"
 
 namespace tuft::app {
 namespace {
@@ -80,13 +81,8 @@ void StrokePainter::end() {
 void StrokePainter::add_copies(const stroke::JournalEntry& original, std::size_t& made) {
     for (const stroke::PoseMap& map : stroke::symmetry_copies(current_.symmetry)) {
         load_tip(current_, made);
-        stroke::JournalEntry copy = original;
+        stroke::JournalEntry copy = stroke::copy_of(original, map, stroke::CopyReading::mirrored);
         copy.label = "symmetric to " + std::to_string(original.id);
-        for (stroke::StrokeSample& sample : std::get<stroke::PaintStroke>(copy.content).trace.samples) {
-            const brush::Pose pose = map.pose({sample.position, sample.rotation, sample.time});
-            sample.position = pose.position;
-            sample.rotation = pose.rotation;
-        }
         context_.work.document->paint(std::move(copy));
         context_.work.autosave.add(context_.work.document->journal().entries().back());
         ++made;
@@ -122,17 +118,9 @@ std::vector<stroke::JournalEntry> StrokePainter::entries_of(PaintDrawing& comman
     stroke::redip_long_lines(drawing.entries, drawing.fit, widths_);
     stroke::press_to_widths(drawing.entries, widths_);
     std::vector<stroke::JournalEntry> all = drawing.entries;
-    for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry)) {
-        const double reads =
-            glm::determinant(map.linear) < 0 ? -1 : 1;  // with its right turned back it reads as the original
-        for (stroke::JournalEntry entry : drawing.entries) {
-            if (stroke::PaintStroke* stroke = entry.as<stroke::PaintStroke>()) {
-                stroke::Placement& p = stroke->trace.placement;
-                p = {map.point(p.origin), reads * (map.linear * p.right), map.linear * p.down, p.mapping};
-            }
-            all.push_back(std::move(entry));
-        }
-    }
+    for (const stroke::PoseMap& map : stroke::symmetry_copies(command.symmetry))
+        for (const stroke::JournalEntry& entry : drawing.entries)
+            all.push_back(stroke::copy_of(entry, map, stroke::CopyReading::upright));
     return all;
 }
 

@@ -330,11 +330,22 @@ ColourMatch MixSearch::nearest(const Rgb& wanted, std::size_t most_parts) const 
 ColourMatch match_colour(const Rgb& wanted, const std::vector<Pigment>& pigments, const Substrate& substrate,
                          const MatchOptions& options) {
     if (options.film > 0) return MixSearch(pigments, substrate, options.film).nearest(wanted, options.most_parts);
-    const double most = std::min(kThickestMix, std::max(0.5, static_cast<double>(substrate.capacity)));
+    return MixSearches(pigments, substrate).nearest(wanted, options.most_parts);
+}
+
+ColourMatch MixSearches::nearest(const Rgb& wanted, std::size_t most_parts) {
+    const double most = std::min(kThickestMix, std::max(0.5, static_cast<double>(substrate_.capacity)));
     std::vector<ColourMatch> all;
     for (const double film : {2.0, 4.0, 8.0}) {
-        all.push_back(MixSearch(pigments, substrate, std::min(film, most)).nearest(wanted, options.most_parts));
+        if (all.size() == searches_.size()) searches_.emplace_back(pigments_, substrate_, std::min(film, most));
+        all.push_back(searches_[all.size()].nearest(wanted, most_parts));
         if (film >= most) break;
+        // None that is thicker can be better by more than it is worth, and none that is thinner does.
+        const ColourMatch& match = all.back();
+        if (match.delta_e <= kWorthThickness &&
+            std::all_of(all.begin(), all.end() - 1,
+                        [&](const ColourMatch& thinner) { return thinner.delta_e > match.delta_e + kWorthThickness; }))
+            break;
     }
     double best = all.front().delta_e;
     for (const ColourMatch& match : all) best = std::min(best, match.delta_e);
@@ -369,9 +380,10 @@ std::string to_hex(const Rgb& linear) {
 }
 
 ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::span<const Pigment> present,
-                            const MatchOptions& options) {
+                            const MatchOptions& options, MixSearches* searches) {
     static const std::vector<Pigment> shipped = shipped_pigments();
-    ColourMatch match = match_colour(wanted, shipped, substrate, options);
+    ColourMatch match = searches && options.film == 0 ? searches->nearest(wanted, options.most_parts)
+                                                      : match_colour(wanted, shipped, substrate, options);
     const auto is_new = [&](const InkPart& part) {
         return std::none_of(present.begin(), present.end(),
                             [&](const Pigment& p) { return p.name == part.pigment.name; });
@@ -382,11 +394,11 @@ ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::
     return match;
 }
 
-Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> present) {
+Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> present, MixSearches* searches) {
     if (name.empty() || name[0] != '#') return load_ink(name);
     const std::optional<Rgb> wanted = colour_of_hex(name);
     if (!wanted) throw Error(Message("'{}' is no colour; write #rrggbb, such as #c03020", std::string(name)));
-    Ink ink = match_on_canvas(*wanted, substrate, present, {.film = 0}).ink;
+    Ink ink = match_on_canvas(*wanted, substrate, present, {.film = 0}, searches).ink;
     ink.name = name;
     return ink;
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "ink/colour/pigments.h"
@@ -101,9 +102,25 @@ class MixSearch {
     std::vector<Sample> samples_;
 };
 
-/// The same for one colour, with the film's thickness chosen where `film` is 0: the thinnest of 2,
-/// 4 and 8 units, cut to what stays on the substrate, that comes within `kWorthThickness` of the
-/// best.
+/// Searches of one set of pigments on one substrate for films that are as thick as a colour needs: the thinnest of 2, 4
+/// and 8 units, cut to what stays on the substrate, that comes within `kWorthThickness` of the best. Each is made at
+/// its first use, for all colours. One thread at a time.
+class MixSearches {
+  public:
+    MixSearches(std::vector<Pigment> pigments, Substrate substrate)
+        : pigments_(std::move(pigments)), substrate_(std::move(substrate)) {}
+
+    /// As `MixSearch::nearest`; 10 ms for each film that is tried.
+    ColourMatch nearest(const Rgb& wanted, std::size_t most_parts = 4);
+    const Substrate& substrate() const { return substrate_; }
+
+  private:
+    std::vector<Pigment> pigments_;
+    Substrate substrate_;
+    std::vector<MixSearch> searches_;  ///< thinnest first
+};
+
+/// The same for one colour; with a film of 0 by `MixSearches`.
 ColourMatch match_colour(const Rgb& wanted, const std::vector<Pigment>& pigments, const Substrate& substrate,
                          const MatchOptions& options = {});
 
@@ -116,13 +133,15 @@ std::string to_hex(const Rgb& linear);
 
 /// The same, or where a canvas that has the pigments `present` has no free planes for those of the mix
 /// (`kMaxPigments`), the nearest mix of the present ones.
+/// `searches`: of the shipped pigments on `substrate`, reused for many colours; null: made anew.
 ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::span<const Pigment> present,
-                            const MatchOptions& options = {});
+                            const MatchOptions& options = {}, MixSearches* searches = nullptr);
 
 /// `load_ink`, which also takes a colour: `#rrggbb` is the nearest mix of the shipped pigments on
 /// `substrate`, as thick as it needs (`match_on_canvas`). Throws `Error` as `load_ink` does, and for
 /// a `#` without a colour after it.
-Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> present = {});
+Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> present = {},
+              MixSearches* searches = nullptr);
 
 /// Returns a ΔE2000 in words: "the same to the eye" below 1, and so on.
 const char* difference_in_words(double delta_e);

@@ -61,6 +61,21 @@ float extinction_of(const Pigment& pigment) {
     return ink::extinction_of(Ink{.parts = {{pigment, 1.0}}});
 }
 
+/// Multiplies all films and liquids of a tile by `factor`.
+Amounts scale_all(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> area,
+                  const std::array<float, kN>& factor) {
+    Amounts gone;
+    if (std::all_of(factor.begin(), factor.end(), [](float f) { return f == 1; })) return gone;
+    for (int film_place = 0; film_place < kFilms; ++film_place)
+        for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
+            if (canvas.film_plane(slot, film_place, p))
+                gone.pigment[p] += scale(canvas.touch_film(slot, film_place, p).data(), factor.data(), area.data());
+    for (const Liquid where : {Liquid::film, Liquid::pores})
+        if (canvas.liquid(slot, where))
+            gone.liquid += scale(canvas.touch_liquid(slot, where).data(), factor.data(), area.data());
+    return gone;
+}
+
 }  // namespace
 
 double Amounts::sum() const {
@@ -101,15 +116,19 @@ Amounts erase(Canvas& canvas, const StampedTile& tile, const EraseStart& start, 
     const auto rate = static_cast<float>(-std::expm1(-params.strength * ds / params.transfer_length));
     remaining_fraction(factor.data(),
                        {film.data(), start.film.data(), start.hides.data(), coverage.data(), liquid.data()}, rate);
-    if (std::all_of(factor.begin(), factor.end(), [](float f) { return f == 1; })) return gone;
-    for (int film_place = 0; film_place < kFilms; ++film_place)
-        for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
-            if (canvas.film_plane(slot, film_place, p))
-                gone.pigment[p] += scale(canvas.touch_film(slot, film_place, p).data(), factor.data(), area.data());
-    for (const Liquid where : {Liquid::film, Liquid::pores})
-        if (canvas.liquid(slot, where))
-            gone.liquid += scale(canvas.touch_liquid(slot, where).data(), factor.data(), area.data());
-    return gone;
+    return scale_all(canvas, slot, area, factor);
+}
+
+Amounts take_part(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> area,
+                  std::span<const float, kN> part) {
+    if (!canvas.touched(slot)) return {};
+    const Plane film = erase_start(canvas, slot).film;
+    alignas(64) std::array<float, kN> factor;
+    for (int t = 0; t < kN; ++t) {
+        factor[t] = std::clamp(1 - part[t], 0.0f, 1.0f);
+        if (part[t] > 0 && film[t] * factor[t] < kNothing) factor[t] = 0;
+    }
+    return scale_all(canvas, slot, area, factor);
 }
 
 Amounts add_coat(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> area, const Coat& coat,

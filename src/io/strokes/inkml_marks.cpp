@@ -87,8 +87,9 @@ stroke::Fill fill_of(const InkmlText& file, const xml_node& node) {
     fill.to_ink = node.attribute("to_ink").value();
     try {
         if (node.attribute("region")) fill.region = stroke::region_of(node.attribute("region").value());
+        if (const auto area = node.attribute("area")) fill.area = stroke::area_of_text(area.value());
         if (node.attribute("gradient")) fill.gradient = stroke::gradient_of(node.attribute("gradient").value());
-        if (fill.region != stroke::Region::all && !node.attribute("at"))
+        if (fill.region != stroke::Region::all && !fill.area && !node.attribute("at"))
             file.fail(node, "a fill of a part or a chart needs a point: at=\"x y z\"");
         stroke::check_fill(fill);
     } catch (const Error& e) {

@@ -101,6 +101,7 @@ std::string fill_attributes(const stroke::Fill& fill, const Style& style) {
                    ? fmt::format(" {}=\"{}\"", name, point_text(v, style))
                    : fmt::format(" {}=\"{} {} {}\"", name, v.x / kMillimetre, v.y / kMillimetre, v.z / kMillimetre);
     };
+    if (fill.area) return out + fmt::format(" area=\"{}\"", escaped(stroke::text_of(*fill.area)));
     if (fill.region != stroke::Region::all) add("at", fill.at);
     if (fill.gradient == stroke::Gradient::none) return out;
     out += fmt::format(" gradient=\"{}\" to_film=\"{}\" to_ink=\"{}\"", stroke::name_of(fill.gradient), fill.to_film,

@@ -168,6 +168,32 @@ Shape Shape::simplified(double tolerance) const {
     return shape;
 }
 
+template <class Operation>
+Shape Shape::combined(const Shape& other, Operation operation) const {
+    std::vector<Ring> all = rings_;
+    all.insert(all.end(), other.rings_.begin(), other.rings_.end());
+    std::size_t n = 0;
+    for (const Ring& ring : all) n += ring.size();
+    Shape shape;
+    const Grid grid(all);
+    if (n > kMostPoints || grid.scale == 0) return shape;
+    clip::Clipper clipper;
+    clipper.AddPaths(grid.paths(rings_), clip::ptSubject, true);
+    clipper.AddPaths(grid.paths(other.rings_), clip::ptClip, true);
+    clip::Paths out;
+    clipper.Execute(operation, out, clip::pftNonZero, clip::pftNonZero);
+    shape.rings_ = grid.rings(out);
+    return shape;
+}
+
+Shape Shape::intersected(const Shape& other) const {
+    return empty() || other.empty() ? Shape() : combined(other, clip::ctIntersection);
+}
+
+Shape Shape::without(const Shape& other) const {
+    return empty() || other.empty() ? *this : combined(other, clip::ctDifference);
+}
+
 Shape Shape::inset(double d, double tolerance) const {
     // A jagged outline crosses itself at d over the distance of its points: small steps first, each
     // of which leaves fewer points to the next, twice as long.

@@ -35,10 +35,17 @@ class Shape {
     /// Returns the part more than `d` metres inside. `tolerance`: largest error of the distance, metres.
     Shape inset(double d, double tolerance) const;
 
+    /// Return what lies in both shapes, and what lies in this one alone. Empty for more than `kMostPoints` points.
+    Shape intersected(const Shape& other) const;
+    Shape without(const Shape& other) const;
+
     static constexpr std::size_t kMostPoints = 20'000;
 
   private:
     Shape() = default;
+    template <class Operation>
+    Shape combined(const Shape& other, Operation operation) const;
+
     std::vector<Ring> rings_;
 };
 

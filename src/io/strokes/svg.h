@@ -12,10 +12,22 @@
 /// Drawings in SVG 1.1 (W3C Recommendation, 16 August 2011). Called by `cli` and by the studio. Any thread.
 namespace tuft::io {
 
+/// How a drawing is painted.
+enum class SvgPainting {
+    brush,      ///< in one ink, by lines of a brush
+    areas,      ///< in its colours, each area masked and filled (svg_areas.h)
+    automatic,  ///< in its colours where it has any but black, else by a brush
+};
+
 /// Options of `read_svg`.
 struct SvgOptions {
-    double tolerance = 2e-5;  ///< metres, largest distance of a chord from its curve
-    InkmlOptions ink;         ///< speed, pressure and limits
+    SvgPainting painting = SvgPainting::brush;
+    std::vector<std::string> groups;  ///< only shapes in these layers and named groups; empty: all
+    double tolerance = 2e-5;          ///< metres, largest distance of a chord from its curve
+    /// metres, as the file is written; with `brush`, lines from this width on are filled like areas, with the ends,
+    /// corners and dashes that the file says
+    double wide = 8e-3;
+    InkmlOptions ink;  ///< speed, pressure and limits
 };
 
 /// Reads a drawing as flat traces, in the order of the file: `path` (all commands), `line`, `polyline`, `polygon`,
@@ -29,6 +41,14 @@ struct SvgOptions {
 /// the background and is not filled. An element without either is drawn along its outlines, and so is one without area
 /// and `stroke`. Other styles are ignored.
 ///
+/// With `SvgPainting::areas` the shapes become fills with `stroke::Region::outline` instead: strokes with their ends,
+/// corners and dashes, gradients, opacities, clip paths, masks, patterns, markers, `use` of symbols and inner drawings
+/// in their frames. What stays out is reported by `InkmlOptions::note`: text, images, filters, blend modes, animation.
+///
+/// `RecordedStroke::group` is the layer, or the outermost group with a name (`inkscape:label`, `data-name`, `id`).
+///
+/// With `SvgPainting::brush` a stroke at least `SvgOptions::wide` wide is filled as an area, too.
+///
 /// In traces with a width the pressure is the fraction of the width to draw, 0.5 for all of it. Other traces have speed
 /// and pressure as by `parse_inkml`.
 ///
@@ -39,6 +59,7 @@ std::vector<stroke::RecordedStroke> parse_svg(std::string_view text, const std::
                                               const SvgOptions& options = {});
 
 /// Reads the traces of an `.svg` drawing, else of an InkML file.
+std::vector<stroke::RecordedStroke> read_strokes(const std::filesystem::path& path, const SvgOptions& options);
 std::vector<stroke::RecordedStroke> read_strokes(const std::filesystem::path& path, const InkmlOptions& options = {});
 
 }  // namespace tuft::io

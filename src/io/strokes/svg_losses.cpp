@@ -67,8 +67,8 @@ Message loss_text(SvgLoss loss, std::size_t n) {
         case SvgLoss::script:
             return say("1 script is not run", "{} scripts are not run");
         case SvgLoss::rule:
-            return say("1 rule of a style sheet is passed over: only element names, .class and #id are understood",
-                       "{} rules of style sheets are passed over: only element names, .class and #id are understood");
+            return say("1 rule of a style sheet is passed over: at-rules and most pseudo-classes are not understood",
+                       "{} rules of style sheets are passed over: at-rules and most pseudo-classes are not understood");
     }
     return {};
 }

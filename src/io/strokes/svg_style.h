@@ -2,63 +2,69 @@
 
 #include <map>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "io/strokes/shape.h"
+#include "io/strokes/svg_colour.h"
+#include "io/strokes/svg_css.h"
 
 namespace pugi {
 class xml_node;
 }
 
 /// \file
-/// Presentation properties of SVG elements: attributes, `style`, style sheets. Called by svg.cpp only. Any thread.
+/// Presentation properties of SVG elements. Called by svg_scene.cpp and its consumers. Any thread.
 namespace tuft::io {
+
+/// Elements of a file by their `id`.
+using SvgIds = std::map<std::string, pugi::xml_node>;
 
 /// Value of `fill` or `stroke`.
 struct SvgPaint {
     enum class Kind { none, flat, white, gradient, pattern, missing } kind = Kind::none;
     std::string colour;  ///< of `flat`: as written, in lower case without blanks
+    SvgColour value;     ///< of `flat` and `white`
+    std::string server;  ///< id of a gradient or a pattern
 
     bool paints() const { return kind == Kind::flat || kind == Kind::gradient || kind == Kind::pattern; }
+    bool paints_colours() const { return paints() || kind == Kind::white; }
 };
+
+enum class SvgCap { butt, round, square };
+enum class SvgJoin { miter, round, bevel };
 
 /// Properties that elements inherit from their parents.
 struct SvgStyle {
-    SvgPaint stroke, fill{SvgPaint::Kind::flat, "black"};
-    FillRule rule = FillRule::nonzero;
+    SvgPaint stroke, fill{SvgPaint::Kind::flat, "black", {}, {}};
+    SvgColour current;  ///< `color`
+    FillRule rule = FillRule::nonzero, clip_rule = FillRule::nonzero;
     double width = 1;  ///< of lines, user units
+    SvgCap cap = SvgCap::butt;
+    SvgJoin join = SvgJoin::miter;
+    double miter_limit = 4;
+    std::vector<double> dashes;  ///< user units, an even number; empty: a solid line
+    double dash_offset = 0;
+    std::string marker_start, marker_mid, marker_end;  ///< ids; empty: none
     double fill_opacity = 1, stroke_opacity = 1;
-    bool visible = true, dashed = false, marked = false;
+    bool visible = true;
 
     bool filled() const { return fill.paints() && fill_opacity > 0; }
     bool stroked() const { return stroke.paints() && stroke_opacity > 0; }
+    bool marked() const { return !marker_start.empty() || !marker_mid.empty() || !marker_end.empty(); }
     /// Returns true for an element that is painted but gives no ink: white, transparent, or with a missing paint.
     bool bare() const {
         return !filled() && !stroked() && !(fill.kind == SvgPaint::Kind::none && stroke.kind == SvgPaint::Kind::none);
     }
 };
 
-/// Returns the text without white space at both ends.
-std::string_view stripped(std::string_view text);
-
-/// Rules of style sheets for element names, classes and ids.
-class SvgSheet {
-  public:
-    /// Adds the rules of a sheet. Returns the number of skipped rules: at-rules and other selectors.
-    std::size_t add(std::string_view sheet);
-    /// Returns the properties that apply to an element besides its attributes: its `style`, else the rules for its id,
-    /// its classes, its name (CSS 2.1, 6.4.3; later rules win).
-    std::map<std::string, std::string> declared(const pugi::xml_node& element, const std::string& local_name) const;
-
-  private:
-    std::map<std::string, std::map<std::string, std::string>> rules_;  // by selector
-};
-
-/// Elements of a file by their `id`.
-using SvgIds = std::map<std::string, pugi::xml_node>;
+/// Returns the target of `url(#id)`, without quotes; empty for any other text.
+std::string svg_reference(std::string_view value);
 
 /// Returns the paint of a `fill` or `stroke` value. A reference to an undefined paint gives its fallback, else
 /// `missing`.
-SvgPaint svg_paint(const std::string& value, const SvgIds& ids);
+SvgPaint svg_paint(const std::string& value, const SvgIds& ids, const SvgColour& current);
+
+/// Returns a number or a percentage as a part, 0–1; `otherwise` for anything else.
+double svg_part(const std::string& text, double otherwise);
 
 }  // namespace tuft::io

@@ -7,6 +7,7 @@
 #include "stroke/document/tile_reach.h"
 #include "stroke/journal/tables.h"
 #include "stroke/session/session.h"
+#include "stroke/surface/flat_texels.h"
 
 /// The journal: painting, replaying, taking back. What one entry does is in document_entries.cpp and
 /// document_stroke.cpp.

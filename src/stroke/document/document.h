@@ -30,6 +30,8 @@ struct DocumentOptions {
     bool record_forces = false;                       ///< fills `StrokeReport::forces`
 };
 
+class FlatTexels;
+struct FillResult;
 class PlanScratchPool;
 struct SessionResult;
 class StrokeSession;
@@ -125,6 +127,7 @@ class Document {
     void dry(std::uint64_t id, const Dry& wait, const ProgressFn& progress);
     void wash(std::uint64_t id);
     StrokeReport fill(std::uint64_t id, const Fill& fill);
+    FillResult fill_area(const Fill& fill);
     void edit_layers(std::uint64_t id, const LayerEdit& edit);
     void edit_masks(std::uint64_t id, const MaskEdit& edit);
 
@@ -173,6 +176,7 @@ class Document {
     BrushesInHand brushes_;
     Appearance appearance_;
     ModelFilm film_;
+    std::unique_ptr<FlatTexels> flat_texels_;  ///< of the last area
     UndoHistory history_;
     std::unique_ptr<PlanScratchPool> plan_scratch_;
     std::unique_ptr<TileReach> tile_reach_;   ///< of the model, made for the first batch of strokes

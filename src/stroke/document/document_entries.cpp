@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/error.h"
 #include "ink/exchange/uptake.h"
+#include "stroke/document/apply_area.h"
 #include "stroke/document/apply_fill.h"
 #include "stroke/document/document.h"
 #include "stroke/journal/tables.h"
@@ -137,11 +139,30 @@ void Document::wash(std::uint64_t id) {
     record(std::move(undo));
 }
 
+FillResult Document::fill_area(const Fill& fill) {
+    const FlatArea& area = *fill.area;
+    if (fill.layer == kPaletteLayer) throw Error("an area of a drawing lies on the model, not on the palette");
+    std::vector<ink::Mix> mixes;
+    std::vector<double> films;
+    for (const AreaStop& stop : area.stops) {
+        mixes.push_back(mix_of(stop.ink));
+        films.push_back(stop.film >= 0 ? stop.film : stop.opacity * materials_.ink(stop.ink).film);
+    }
+    if (!flat_texels_ || !flat_texels_->is_for(area.placement, area.low, area.high))
+        flat_texels_ = std::make_unique<FlatTexels>(model_, area.placement, area.low, area.high);
+    return apply_area(fill, target(fill.layer, fill.mask), *flat_texels_, mixes, films);
+}
+
 StrokeReport Document::fill(std::uint64_t id, const Fill& fill) {
     check_fill(fill);
-    FillMixes mixes{.first = mix_of(fill.ink)};
-    mixes.second = fill.to_ink.empty() ? mixes.first : mix_of(fill.to_ink);
-    FillResult result = apply_fill(fill, target(fill.layer, fill.mask), mixes);
+    FillResult result;
+    if (fill.area) {
+        result = fill_area(fill);
+    } else {
+        FillMixes mixes{.first = mix_of(fill.ink)};
+        mixes.second = fill.to_ink.empty() ? mixes.first : mix_of(fill.to_ink);
+        result = apply_fill(fill, target(fill.layer, fill.mask), mixes);
+    }
     UndoRecord undo{.entry = id};
     undo.tiles.push_back({fill.layer, std::move(result.before)});
     record(std::move(undo));

@@ -1,5 +1,7 @@
 #include "stroke/document/materials.h"
 
+#include <algorithm>
+
 #include "ink/composite/match.h"
 
 namespace tuft::stroke {
@@ -13,7 +15,20 @@ Materials::Brush& Materials::find_brush(const std::string& name) const {
 const ink::Ink& Materials::ink(const std::string& name) const {
     const auto found = inks_.find(name);
     if (found != inks_.end()) return found->second;
-    return inks_.emplace(name, ink::ink_named(name, substrate_, layers_.pigments())).first->second;
+    if (!name.starts_with('#')) return inks_.emplace(name, ink::load_ink(name)).first->second;
+    if (!searches_) searches_.emplace(ink::shipped_pigments(), substrate_);
+    return inks_.emplace(name, ink::ink_named(name, substrate_, pigments_in_use(), &*searches_)).first->second;
+}
+
+// Of the layers, and of inks that were asked for and may come onto them.
+std::vector<ink::Pigment> Materials::pigments_in_use() const {
+    std::vector<ink::Pigment> all(layers_.pigments().begin(), layers_.pigments().end());
+    for (const auto& [name, ink] : inks_)
+        for (const ink::InkPart& part : ink.parts)
+            if (std::none_of(all.begin(), all.end(),
+                             [&](const ink::Pigment& p) { return p.name == part.pigment.name; }))
+                all.push_back(part.pigment);
+    return all;
 }
 
 HolderOptions Materials::holder(const std::string& name, const mesh::TriangleMesh& mesh,

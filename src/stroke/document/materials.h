@@ -2,11 +2,13 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "brush/preset/preset.h"
 #include "ink/colour/pigments.h"
+#include "ink/composite/match.h"
 #include "stroke/document/layer_stack.h"
 #include "stroke/placement/tip_lag.h"
 
@@ -26,7 +28,10 @@ class Materials {
     /// A preset in the place of others of its name, for strokes painted from now on.
     void use(const ink::Ink& ink) { inks_.insert_or_assign(ink.name, ink); }
     void use(const brush::Preset& preset) { brushes_.insert_or_assign(preset.name, Brush{preset, {}, {}}); }
-    void use(const ink::Substrate& substrate) { substrate_ = substrate; }
+    void use(const ink::Substrate& substrate) {
+        substrate_ = substrate;
+        searches_.reset();
+    }
 
     /// Returns the brush of this name; throws `Error` when there is none.
     const brush::Preset& brush(const std::string& name) const { return find_brush(name).preset; }
@@ -46,12 +51,14 @@ class Materials {
         std::vector<TipLag> tip_lag;  ///< empty: not measured
         std::unique_ptr<TiltedTipLag> tilted_tip_lag;
     };
+    std::vector<ink::Pigment> pigments_in_use() const;
     Brush& find_brush(const std::string& name) const;
 
     const LayerStack& layers_;
     ink::Substrate substrate_;
     mutable std::map<std::string, Brush> brushes_;
     mutable std::map<std::string, ink::Ink> inks_;
+    mutable std::optional<ink::MixSearches> searches_;  ///< of inks that colours name
 };
 
 }  // namespace tuft::stroke

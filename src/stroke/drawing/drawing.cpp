@@ -116,6 +116,30 @@ std::vector<StrokeSamples*> drawing_in(std::vector<JournalEntry>& entries, bool 
     return drawing;
 }
 
+std::vector<FlatArea*> areas_in(std::vector<JournalEntry>& entries, bool all) {
+    std::vector<FlatArea*> areas;
+    for (JournalEntry& entry : entries) {
+        Fill* fill = entry.as<Fill>();
+        if (fill && fill->area && (all || !fill->area->placed)) areas.push_back(&*fill->area);
+    }
+    return areas;
+}
+
+void add_extent(Box& box, const FlatArea& area) {
+    box.add(Vec3(area.low, 0));
+    box.add(Vec3(area.high, 0));
+}
+
+void place_areas(std::span<FlatArea* const> areas, const DrawingPlace& place) {
+    for (FlatArea* area : areas) {
+        transform_area(*area, place.centre, place.scale, place.mirrored);
+        area->placement.origin = place.placement.origin;
+        area->placement.right = place.placement.right;
+        area->placement.down = place.placement.down;
+        area->placed = true;
+    }
+}
+
 void place_drawing(std::span<StrokeSamples* const> drawing, const DrawingPlace& place) {
     for (StrokeSamples* trace : drawing) {
         transform_samples(*trace, place.centre, place.scale, place.mirrored);

@@ -72,6 +72,15 @@ struct DrawingPlace {
 /// with `all` also those with one.
 std::vector<StrokeSamples*> drawing_in(std::vector<JournalEntry>& entries, bool all);
 
+/// Returns pointers to the areas of these entries that have no placement of their own; with `all` also those with one.
+std::vector<FlatArea*> areas_in(std::vector<JournalEntry>& entries, bool all);
+
+/// Adds the bounds of the drawing that an area is part of to a box. Metres, frame of the area.
+void add_extent(Box& box, const FlatArea& area);
+
+/// Places the areas of a drawing as `place_drawing` places its traces.
+void place_areas(std::span<FlatArea* const> areas, const DrawingPlace& place);
+
 /// Transforms the traces of a drawing (`transform_samples`) and sets origin, right and down of their placements. Their
 /// mappings do not change.
 void place_drawing(std::span<StrokeSamples* const> drawing, const DrawingPlace& place);

@@ -58,6 +58,7 @@ void append_entries(std::vector<JournalEntry>& entries, std::vector<RecordedStro
         const DipMode dip = settings.dip;
         for (const Preparation& preparation : preparations_of(recorded, entries, options)) {
             entries.emplace_back().content = prepared(preparation, recorded, settings);
+            entries.back().group.name = recorded.group;
             if (std::holds_alternative<BrushAction>(preparation)) settings.dip = DipMode::persistent;
         }
         if (recorded.samples.empty()) continue;
@@ -65,6 +66,7 @@ void append_entries(std::vector<JournalEntry>& entries, std::vector<RecordedStro
         if (recorded.flat && !recorded.pressed) settings.pressure = options.pressure;
         JournalEntry& entry = entries.emplace_back();
         entry.label = std::move(recorded.label);
+        entry.group.name = recorded.group;
         StrokeSamples& samples = recorded;
         entry.content = PaintStroke{.trace = std::move(samples),
                                     .brush = std::move(recorded.brush),

@@ -20,7 +20,7 @@ struct EntryOptions {
 };
 
 /// Appends an entry per recorded stroke, each after entries for its `before`. A stroke without samples gives those
-/// alone. A brush that neither file nor options name stays empty.
+/// alone. `group.name` of an entry is its stroke's; ids stay 0. A brush that neither file nor options name stays empty.
 void append_entries(std::vector<JournalEntry>& entries, std::vector<RecordedStroke> strokes,
                     const EntryOptions& options);
 

@@ -117,6 +117,8 @@ void set_brush(JournalEntry& entry, const std::string& brush) {
 
 void set_ink(JournalEntry& entry, const std::string& ink) {
     if (std::string* own = ink_in(entry)) *own = ink;
+    if (Fill* fill = entry.as<Fill>(); fill && fill->area)
+        for (AreaStop& stop : fill->area->stops) stop.ink = ink;
 }
 
 std::uint64_t seed_of(const JournalEntry& entry) {
@@ -146,7 +148,10 @@ std::vector<std::string> inks_of(const JournalEntry& entry) {
     std::vector<std::string> inks;
     const PaintStroke* stroke = entry.as<PaintStroke>();
     if (const std::string& ink = ink_of(entry); !ink.empty() && !(stroke && stroke->erases())) inks.push_back(ink);
-    if (const Fill* fill = entry.as<Fill>(); fill && !fill->to_ink.empty()) inks.push_back(fill->to_ink);
+    const Fill* fill = entry.as<Fill>();
+    if (fill && !fill->to_ink.empty()) inks.push_back(fill->to_ink);
+    if (fill && fill->area)
+        for (std::size_t i = 1; i < fill->area->stops.size(); ++i) inks.push_back(fill->area->stops[i].ink);
     return inks;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/error.h"
 #include "core/geometry/bounds.h"
@@ -12,7 +13,7 @@ namespace tuft::stroke {
 namespace {
 
 constexpr double kThickest = 1000;  // film units: ten millimetres of ink
-constexpr const char* kRegions[] = {"all", "part", "chart"};
+constexpr const char* kRegions[] = {"all", "part", "chart", "outline"};
 constexpr const char* kGradients[] = {"none", "along", "round"};
 
 template <class Word, std::size_t N>
@@ -40,7 +41,17 @@ Gradient gradient_of(const std::string& name) {
     return word_of<Gradient>(name, kGradients, "gradient");
 }
 
+Fill fill_of_area(FlatArea area) {
+    Fill fill;
+    fill.ink = area.stops.front().ink;
+    fill.region = Region::outline;
+    fill.area = std::move(area);
+    return fill;
+}
+
 void check_fill(const Fill& f) {
+    if (f.area.has_value() != (f.region == Region::outline)) throw Error("a fill of an outline needs an area");
+    if (f.area) check_area(*f.area);
     for (const double film : {f.film, f.to_film})
         if (!(film >= 0 && film <= kThickest)) throw Error("the film of a fill is 0 to 1000 film units");
     for (const Vec3& v : {f.from, f.to, f.at})
@@ -69,6 +80,10 @@ Vec3 vector_of(const nlohmann::json& j) {
 
 nlohmann::json json_of(const Fill& f) {
     nlohmann::json j{{"film", f.film}, {"region", name_of(f.region)}};
+    if (f.area) {
+        j["area"] = json_of(*f.area);
+        return j;
+    }
     if (f.region != Region::all) j["at"] = json_of(f.at);
     if (f.gradient == Gradient::none) return j;
     j["gradient"] = name_of(f.gradient);
@@ -84,6 +99,10 @@ Fill fill_of(const nlohmann::json& j) {
     try {
         f.film = j.at("film").get<double>();
         f.region = region_of(j.at("region").get<std::string>());
+        if (f.region == Region::outline) {
+            f.area = flat_area_of(j.at("area"));
+            return f;
+        }
         if (f.region != Region::all) f.at = vector_of(j.at("at"));
         f.gradient = gradient_of(j.value("gradient", "none"));
         if (f.gradient != Gradient::none) {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/geometry/types.h"
+#include "stroke/journal/flat_area.h"
 #include "stroke/journal/layers.h"
 
 /// \file
@@ -12,9 +14,10 @@ namespace tuft::stroke {
 
 /// Part of the model that is filled.
 enum class Region {
-    all,    ///< the whole model
-    part,   ///< the connected component at `Fill::at`
-    chart,  ///< the chart of the atlas at `Fill::at`
+    all,      ///< the whole model
+    part,     ///< the connected component at `Fill::at`
+    chart,    ///< the chart of the atlas at `Fill::at`
+    outline,  ///< `Fill::area`: masked, so that it covers what lies there
 };
 
 /// Parameter t of a gradient at a point p, clamped to [0, 1].
@@ -39,8 +42,14 @@ struct Fill {
     Region region = Region::all;
     Vec3 at{0};  ///< on or near the surface, for `Region::part` and `chart`
 
+    /// For `Region::outline`, else none. `ink` is that of its first stop; film and gradient are its own.
+    std::optional<FlatArea> area;
+
     bool operator==(const Fill&) const = default;
 };
+
+/// Returns the fill of an area. Precondition: it has a stop.
+Fill fill_of_area(FlatArea area);
 
 /// Throws `Error` for numbers out of range and for a gradient whose ends coincide.
 void check_fill(const Fill& fill);

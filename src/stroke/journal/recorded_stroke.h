@@ -29,6 +29,7 @@ struct RecordedStroke : StrokeSamples {
     PlaceNames names;         ///< of layer and mask; empty: those of the command line
     std::uint64_t seed = 0;
     std::string label;
+    std::string group;                       ///< of a drawing's file: a name; empty: the file's own
     std::vector<Preparation> before;         ///< performed before the stroke, with its brush
     std::optional<StrokeSettings> settings;  ///< none: those of the command line
 };

@@ -31,6 +31,8 @@ struct Placement {
     Vec3 right{1, 0, 0};
     Vec3 down{0, -1, 0};
     SurfaceMapping mapping = SurfaceMapping::wrap;
+
+    bool operator==(const Placement&) const = default;
 };
 
 /// One sample of the hand.

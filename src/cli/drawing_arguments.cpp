@@ -1,0 +1,37 @@
+#include "cli/drawing_arguments.h"
+
+#include <CLI/CLI.hpp>
+
+namespace tuft::cli {
+
+void add_drawing_options(CLI::App& command, Paint& paint) {
+    command
+        .add_option(
+            "--areas", paint.areas,
+            "how drawings (.svg) are painted: mask, in the colours of the file, each shape masked and filled, in "
+            "the order of the file; brush, in one ink (--ink) by lines of a brush, white left bare; default: mask "
+            "where the file has colours besides black and neither --ink, --brush nor --erase is given, else brush")
+        ->check(CLI::IsMember({"mask", "brush"}));
+    command
+        .add_option("--only", paint.only, "only these layers and named groups of an .svg: NAME, more by another --only")
+        ->allow_extra_args(false)
+        ->type_name("NAME");
+    command
+        .add_option("--mirror", paint.mirror,
+                    "paints the other flank as well: copies beyond the planes through the middle of the model across "
+                    "these axes, such as y; a group of its own in the journal")
+        ->check(CLI::IsMember({"x", "y", "z", "xy", "xz", "yz", "xyz"}))
+        ->type_name("AXES");
+    command.add_flag(
+        "--readable", paint.readable,
+        "with --mirror: groups of an .svg with the class 'readable' (or data-readable) are not mirrored, such "
+        "as lettering; they stay where the mirror puts them");
+    command.add_option("--radial", paint.radial, "copies round the middle of the model, with the original")
+        ->check(CLI::Range(1, 32))
+        ->type_name("N");
+    command.add_option("--radial-axis", paint.radial_axis, "axis of --radial")->check(CLI::IsMember({"x", "y", "z"}));
+    command.add_flag("--auto-texel", paint.auto_texel,
+                     "texels as small as the finest detail of a drawing's areas needs: a third of it");
+}
+
+}  // namespace tuft::cli

@@ -1,0 +1,590 @@
+#include "io/strokes/svg_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <pugixml.hpp>
+#include <utility>
+
+#include "core/error.h"
+#include "core/system/interrupt.h"
+#include "io/strokes/inkml_marks.h"
+#include "io/strokes/svg_page.h"
+
+namespace tuft::io {
+namespace {
+
+constexpr int kDeepest = 64;                             // of nested groups and references
+constexpr std::size_t kMostElements = 1'000'000;         // drawn, each `use` of one counted
+constexpr std::size_t kMostText = std::size_t{1} << 30;  // bytes of attributes read, those of each `use` counted
+constexpr std::size_t kMostMatches = 200'000'000;        // rules of style sheets times elements
+constexpr std::size_t kMostTiles = 20'000;               // of one pattern
+constexpr std::size_t kMostMarkers = 100'000;            // of one line
+
+/// What holds for an element and all within it.
+struct State {
+    SvgMatrix matrix{1};
+    SvgStyle style;
+    double opacity = 1;
+    std::vector<std::size_t> clips, masks;
+    std::string group, upright;
+    Vec2 page{0};  ///< size of the viewport, user units
+};
+
+class SceneReader {
+  public:
+    SceneReader(const std::string& source, const SvgSceneOptions& options) : source_(source), options_(options) {}
+
+    SvgScene read(const pugi::xml_node& svg) {
+        index(svg);
+        read_sheets(svg, 0);
+        const SvgPage page = svg_page(svg, source_);
+        scene_.page = page.size;
+        scene_.unit = svg_growth(page.frame);
+        State state{.matrix = page.frame, .page = page.view};
+        walk(svg, std::move(state), 0);
+        return std::move(scene_);
+    }
+
+  private:
+    /// Properties of one element.
+    class Properties {
+      public:
+        Properties(const pugi::xml_node& node, SvgDeclarations declared)
+            : node_(node), declared_(std::move(declared)) {}
+        /// "" where nothing says it, or where it is handed down anyway.
+        std::string operator()(const char* name) const {
+            const auto at = declared_.find(name);
+            std::string value = at != declared_.end() ? at->second : node_.attribute(name).value();
+            return value == "inherit" ? std::string() : value;
+        }
+        bool declares(const char* name) const { return declared_.contains(name); }
+
+      private:
+        const pugi::xml_node& node_;
+        SvgDeclarations declared_;
+    };
+
+    void walk(const pugi::xml_node& node, State state, int depth) {
+        if (depth > kDeepest) throw Error(source_, "groups are nested too deeply");
+        count(node);
+        const std::string name(local_name(node));
+        static constexpr const char* skipped[] = {"defs",    "symbol",   "clipPath", "mask",  "marker",
+                                                  "pattern", "metadata", "style",    "title", "desc"};
+        if (std::find(std::begin(skipped), std::end(skipped), name) != std::end(skipped) || is_lost(node, name)) return;
+        const Properties own(node, sheet_.declared(node));
+        if (own("display") == "none" || svg_part(own("opacity"), 1) == 0) return;
+        inherit(state.style, own);
+        if (name == "text" || name == "image") {
+            if (state.style.visible) scene_.losses.add(name == "text" ? SvgLoss::text : SvgLoss::image);
+            return;
+        }
+        count_effects(own);
+        state.opacity *= svg_part(own("opacity"), 1);
+        name_group(node, name, own, state, depth);
+        const bool inner = name == "svg" && depth > 0;
+        if (inner && options_.brush && (node.attribute("x") || node.attribute("y") || node.attribute("viewBox")))
+            scene_.losses.add(SvgLoss::frame);
+        if (const auto transform = node.attribute("transform"))
+            state.matrix = state.matrix * svg_transform(transform.value(), source_);
+        if (!options_.brush) {
+            add_effects(node, own, state, depth);
+            if (inner) enter_frame(node, state, viewport_of(node, state, 1), overflows(own));
+        }
+        if (name == "use") return use(node, std::move(state), depth);
+        if (state.style.visible) shape(node, name, own, state, depth);
+        if (name == "switch" && !options_.brush) return choose(node, state, depth);
+        children(node, state, depth);
+    }
+
+    void count(const pugi::xml_node& node) {
+        check_interrupt();
+        if (++n_elements_ > kMostElements) throw Error(source_, "there are too many elements in it");
+        if ((n_matches_ += sheet_.size()) > kMostMatches) throw Error(source_, "its style sheets take too long");
+        for (const pugi::xml_attribute& one : node.attributes()) n_text_ += std::strlen(one.value());
+        if (n_text_ > kMostText) throw Error(source_, "what 'use' repeats makes it too large");
+    }
+
+    void children(const pugi::xml_node& node, const State& state, int depth) {
+        for (const pugi::xml_node& child : node.children())
+            if (child.type() == pugi::node_element) walk(child, state, depth + 1);
+    }
+    // The first child that asks for nothing special.
+    void choose(const pugi::xml_node& node, const State& state, int depth) {
+        for (const pugi::xml_node& child : node.children()) {
+            const std::string_view name = local_name(child);
+            if (child.type() != pugi::node_element || name == "foreignObject" || child.attribute("requiredExtensions"))
+                continue;
+            if (const auto language = child.attribute("systemLanguage");
+                language && std::string_view(language.value()).find("en") == std::string_view::npos)
+                continue;
+            return walk(child, state, depth + 1);
+        }
+    }
+
+    // A layer or the outermost group with a name; text and marked groups stay readable in a mirrored copy.
+    void name_group(const pugi::xml_node& node, const std::string& name, const Properties& own, State& state,
+                    int depth) {
+        if (depth == 0 || (name != "g" && name != "svg" && name != "a" && name != "use")) return;
+        std::string label = node.attribute("inkscape:label").value();
+        const std::string id = node.attribute("id").value();
+        if (label.empty()) label = node.attribute("data-name").value();
+        if (label.empty()) label = id;
+        const bool layer = std::string_view(node.attribute("inkscape:groupmode").value()) == "layer";
+        if (!label.empty() && name == "g" && (layer || state.group.empty())) state.group = label;
+        const std::string marked = node.attribute("data-readable").value();
+        std::string words = std::string(" ") + node.attribute("class").value() + " ";
+        if (state.upright.empty() && (words.find(" readable ") != words.npos ||
+                                      (!marked.empty() && marked != "false") || own("--readable") == "true"))
+            state.upright = label.empty() ? "readable " + std::to_string(++n_upright_) : label;
+    }
+
+    // Another element drawn here; one that is not in the file draws nothing. A symbol is its children, in the
+    // frame of its viewBox.
+    void use(const pugi::xml_node& node, State state, int depth) {
+        const std::string target = href_of(node);
+        const bool inside = target.starts_with('#');
+        const auto at = inside ? by_id_.find(target.substr(1)) : by_id_.end();
+        if (at == by_id_.end())
+            return scene_.losses.add(inside || target.empty() ? SvgLoss::missing_use : SvgLoss::outside_use);
+        state.matrix = state.matrix * svg_translation(number(node, "x", state), number(node, "y", state));
+        const std::string name(local_name(at->second));
+        if (name != "symbol" && (name != "svg" || options_.brush)) return walk(at->second, std::move(state), depth + 1);
+        if (depth + 1 > kDeepest) throw Error(source_, "groups are nested too deeply");
+        count(at->second);
+        const Properties own(at->second, sheet_.declared(at->second));
+        if (!options_.brush) {
+            inherit(state.style, own);
+            enter_frame(at->second, state, {Vec2(0), use_size(node, at->second, state)}, overflows(own));
+        } else if (const std::string box = at->second.attribute("viewBox").value(); !box.empty()) {
+            SvgReader in(box, source_);
+            const double x = in.number(), y = in.number(), w = in.number(), wanted = number(node, "width", state);
+            const double scale = wanted > 0 && w > 0 ? wanted / w : 1;
+            state.matrix = state.matrix * svg_scaling(scale, scale) * svg_translation(-x, -y);
+        }
+        children(at->second, state, depth + 1);
+    }
+
+    Vec2 use_size(const pugi::xml_node& node, const pugi::xml_node& target, const State& state) const {
+        const auto side = [&](const char* name, double whole) {
+            if (node.attribute(name)) return number(node, name, state);
+            if (local_name(target) == "svg" && target.attribute(name)) return number(target, name, state);
+            return whole;
+        };
+        return {side("width", state.page.x), side("height", state.page.y)};
+    }
+
+    SvgViewport viewport_of(const pugi::xml_node& node, const State& state, double whole) const {
+        return {{number(node, "x", state), number(node, "y", state)},
+                {node.attribute("width") ? number(node, "width", state) : whole * state.page.x,
+                 node.attribute("height") ? number(node, "height", state) : whole * state.page.y}};
+    }
+    static bool overflows(const Properties& own) {
+        const std::string value = own("overflow");
+        return value == "visible" || value == "auto";
+    }
+    /// Moves into the frame of an inner `svg`, a `symbol` or a `marker`: its viewBox fills the viewport (SVG 1.1, 7.8).
+    void enter_frame(const pugi::xml_node& node, State& state, const SvgViewport& port, bool overflow) {
+        if (!(port.size.x > 0 && port.size.y > 0)) {
+            state.style.visible = false;
+            return;
+        }
+        if (!overflow)
+            add_clip(state, {{port.corner, port.corner + Vec2(port.size.x, 0), port.corner + port.size,
+                              port.corner + Vec2(0, port.size.y)}});
+        const SvgFraming framing = svg_framing(node, port, source_);
+        state.matrix = state.matrix * framing.matrix;
+        state.page = framing.view;
+    }
+    // What lies within lines of the user space.
+    void add_clip(State& state, std::vector<SvgLine> lines, FillRule rule = FillRule::nonzero) {
+        for (SvgLine& line : lines)
+            for (Vec2& p : line) p = Vec2(state.matrix * Vec3(p, 1));
+        put_clip(state, lines, rule);
+    }
+    void put_clip(State& state, const std::vector<Ring>& rings, FillRule rule) {
+        std::size_t n = 0;
+        for (const Ring& ring : rings) n += ring.size();
+        if (n > Shape::kMostPoints) return scene_.losses.add(SvgLoss::clip);
+        if (scene_.clips.size() > kMostElements) throw Error(source_, "there are too many clip paths in it");
+        state.clips.push_back(scene_.clips.size());
+        scene_.clips.emplace_back(rings, rule);
+    }
+
+    void inherit(SvgStyle& style, const Properties& own) const {
+        if (const std::string colour = own("color"); !colour.empty())
+            style.current = svg_colour(colour).value_or(style.current);
+        if (const std::string paint = own("stroke"); !paint.empty())
+            style.stroke = svg_paint(paint, by_id_, style.current);
+        if (const std::string paint = own("fill"); !paint.empty()) style.fill = svg_paint(paint, by_id_, style.current);
+        if (const std::string width = own("stroke-width"); !width.empty() && width.back() != '%')
+            style.width = std::max(0.0, svg_length(width, source_) / kSvgPixel);
+        const auto rule_of = [&](const char* name, FillRule& to) {
+            if (const std::string rule = own(name); !rule.empty())
+                to = rule == "evenodd" ? FillRule::even_odd : FillRule::nonzero;
+        };
+        rule_of("fill-rule", style.rule);
+        rule_of("clip-rule", style.clip_rule);
+        if (const std::string seen = own("visibility"); !seen.empty()) style.visible = seen == "visible";
+        if (const std::string cap = own("stroke-linecap"); !cap.empty())
+            style.cap = cap == "round" ? SvgCap::round : cap == "square" ? SvgCap::square : SvgCap::butt;
+        if (const std::string join = own("stroke-linejoin"); !join.empty())
+            style.join = join == "round" ? SvgJoin::round : join == "bevel" ? SvgJoin::bevel : SvgJoin::miter;
+        if (const std::string limit = own("stroke-miterlimit"); !limit.empty())
+            style.miter_limit = std::max(1.0, SvgReader(limit, source_).number());
+        if (const std::string dashes = own("stroke-dasharray"); !dashes.empty())
+            style.dashes = svg_dashes(dashes, source_);
+        if (const std::string offset = own("stroke-dashoffset"); !offset.empty() && offset.back() != '%')
+            style.dash_offset = svg_length(offset, source_) / kSvgPixel;
+        if (const std::string all = own("marker"); !all.empty())
+            style.marker_start = style.marker_mid = style.marker_end = svg_reference(all);
+        for (const auto& [name, to] :
+             {std::pair("marker-start", &style.marker_start), std::pair("marker-mid", &style.marker_mid),
+              std::pair("marker-end", &style.marker_end)})
+            if (const std::string value = own(name); !value.empty()) *to = svg_reference(value);
+        style.fill_opacity = svg_part(own("fill-opacity"), style.fill_opacity);
+        style.stroke_opacity = svg_part(own("stroke-opacity"), style.stroke_opacity);
+    }
+
+    // Elements that leave nothing; whether this is one.
+    bool is_lost(const pugi::xml_node& node, const std::string& name) {
+        if (name == "foreignObject" && local_name(node.parent()) == "switch")
+            return true;  // another child takes its place
+        if (name == "foreignObject" || name == "video" || name == "iframe" || name == "canvas")
+            scene_.losses.add(SvgLoss::foreign);
+        else if (name == "animate" || name == "animateTransform" || name == "animateMotion" || name == "animateColor" ||
+                 name == "set")
+            scene_.losses.add(SvgLoss::animation);
+        else if (name == "script")
+            scene_.losses.add(SvgLoss::script);
+        else
+            return false;
+        return true;
+    }
+
+    // What an element does to all within it, where it is not done.
+    void count_effects(const Properties& own) {
+        const auto used = [&](const char* name) {
+            const std::string value = own(name);
+            return !value.empty() && value != "none" && value != "normal";
+        };
+        if (options_.brush && used("clip-path")) scene_.losses.add(SvgLoss::clip);
+        if (options_.brush && used("mask")) scene_.losses.add(SvgLoss::mask);
+        if (used("filter")) scene_.losses.add(SvgLoss::filter);
+        if (used("mix-blend-mode")) scene_.losses.add(SvgLoss::blend);
+        if (options_.brush && svg_part(own("opacity"), 1) < 1) scene_.losses.add(SvgLoss::opacity);
+        if (own.declares("transform") && used("transform")) scene_.losses.add(SvgLoss::transform);
+    }
+
+    // The shapes that `draw` adds, apart from the drawing's.
+    template <class Draw>
+    std::vector<SvgShape> apart(const Draw& draw) {
+        std::vector<SvgShape> own;
+        std::swap(own, scene_.shapes);
+        draw();
+        std::swap(own, scene_.shapes);
+        return own;
+    }
+
+    /// Bounds of an element in its own user space, for units of its bounding box.
+    std::pair<Vec2, Vec2> bounds_of(const pugi::xml_node& node, const State& state, int depth) {
+        Vec2 low(HUGE_VAL), high(-HUGE_VAL);
+        const auto extend = [&](const std::vector<SvgShape>& shapes, const SvgMatrix& back) {
+            for (const SvgShape& s : shapes)
+                for (const SvgLine& line : s.lines)
+                    for (const Vec2& p : line) {
+                        const Vec2 q(back * (s.matrix * Vec3(p, 1)));
+                        low = glm::min(low, q), high = glm::max(high, q);
+                    }
+        };
+        State plain{.matrix = state.matrix, .page = state.page};
+        const std::string name(local_name(node));
+        extend(apart([&] {
+                   if (name == "use")
+                       use(node, plain, depth);
+                   else
+                       shape(node, name, Properties(node, {}), plain, depth), children(node, plain, depth);
+               }),
+               glm::inverse(state.matrix));
+        return {low, high};
+    }
+
+    void add_effects(const pugi::xml_node& node, const Properties& own, State& state, int depth) {
+        if (const std::string id = svg_reference(own("clip-path")); !id.empty()) {
+            const auto at = by_id_.find(id);
+            if (at == by_id_.end() || local_name(at->second) != "clipPath")
+                scene_.losses.add(SvgLoss::clip);
+            else
+                clip_by(at->second, node, state, depth);
+        }
+        if (const std::string id = svg_reference(own("mask")); !id.empty()) {
+            const auto at = by_id_.find(id);
+            if (at == by_id_.end() || local_name(at->second) != "mask")
+                scene_.losses.add(SvgLoss::mask);
+            else
+                mask_by(at->second, node, state, depth);
+        }
+    }
+
+    SvgMatrix content_matrix(const pugi::xml_node& node, const char* units, const pugi::xml_node& user,
+                             const State& state, int depth) {
+        if (std::string_view(node.attribute(units).value()) != "objectBoundingBox") return state.matrix;
+        const auto [low, high] = bounds_of(user, state, depth);
+        if (!(low.x < high.x && low.y < high.y)) return state.matrix * svg_scaling(0, 0);
+        return state.matrix * svg_translation(low.x, low.y) * svg_scaling(high.x - low.x, high.y - low.y);
+    }
+
+    void clip_by(const pugi::xml_node& clip, const pugi::xml_node& user, State& state, int depth) {
+        if (depth > kDeepest) throw Error(source_, "clip paths refer to each other");
+        State inside{.matrix = content_matrix(clip, "clipPathUnits", user, state, depth), .page = state.page};
+        if (const auto transform = clip.attribute("transform"))
+            inside.matrix = inside.matrix * svg_transform(transform.value(), source_);
+        const Properties own(clip, sheet_.declared(clip));
+        inherit(inside.style, own);
+        add_effects(clip, own, inside, depth + 1);
+        const std::vector<std::size_t> outer = std::exchange(inside.clips, {});
+        std::vector<Ring> rings;
+        for (const SvgShape& s : apart([&] { children(clip, inside, depth + 1); })) {
+            std::vector<SvgLine> lines = s.lines;
+            for (SvgLine& line : lines)
+                for (Vec2& p : line) p = Vec2(s.matrix * Vec3(p, 1));
+            Shape part(lines, s.style.clip_rule);
+            for (const std::size_t k : s.clips) part = part.intersected(scene_.clips[k]);
+            rings.insert(rings.end(), part.rings().begin(), part.rings().end());
+        }
+        state.clips.insert(state.clips.end(), outer.begin(), outer.end());
+        put_clip(state, rings, FillRule::nonzero);
+    }
+
+    void mask_by(const pugi::xml_node& mask, const pugi::xml_node& user, State& state, int depth) {
+        if (depth > kDeepest) throw Error(source_, "masks refer to each other");
+        State inside{.matrix = content_matrix(mask, "maskContentUnits", user, state, depth), .page = state.page};
+        const Properties own(mask, sheet_.declared(mask));
+        inherit(inside.style, own);
+        SvgMask made{.shapes = apart([&] { children(mask, inside, depth + 1); }), .alpha = own("mask-type") == "alpha"};
+        state.masks.push_back(scene_.masks.size());
+        scene_.masks.push_back(std::move(made));
+    }
+
+    void shape(const pugi::xml_node& node, const std::string& name, const Properties& own, const State& state,
+               int depth) {
+        std::vector<SvgLine> lines = svg_lines(node, name, curves(state.matrix), state.page, source_);
+        if (lines.empty()) return;
+        for (const SvgLine& line : lines) n_points_ += line.size();
+        if (n_points_ > options_.max_points) throw Error(source_, "the drawing has too many points");
+        SvgShape shape{.lines = std::move(lines),
+                       .matrix = state.matrix,
+                       .style = state.style,
+                       .opacity = state.opacity,
+                       .fixed_width = own("vector-effect") == "non-scaling-stroke",
+                       .clips = state.clips,
+                       .masks = state.masks,
+                       .group = state.group,
+                       .upright = state.upright};
+        if (options_.brush) {
+            scene_.shapes.push_back(std::move(shape));
+            return;
+        }
+        Vec2 low(HUGE_VAL), high(-HUGE_VAL);
+        for (const SvgLine& line : shape.lines)
+            for (const Vec2& p : line) low = glm::min(low, p), high = glm::max(high, p);
+        const SvgGradientUse use{state.matrix, low, high, state.page};
+        const auto gradient_of = [&](SvgPaint& paint) -> SvgGradientPtr {
+            if (paint.kind != SvgPaint::Kind::gradient) return nullptr;
+            auto gradient = svg_gradient(paint.server, use, by_id_, sheet_, source_);
+            if (!gradient) paint.kind = SvgPaint::Kind::none;
+            return gradient ? std::make_shared<const SvgGradient>(std::move(*gradient)) : nullptr;
+        };
+        shape.fill_gradient = gradient_of(shape.style.fill);
+        shape.stroke_gradient = gradient_of(shape.style.stroke);
+        if (shape.style.stroke.kind == SvgPaint::Kind::pattern) {
+            scene_.losses.add(SvgLoss::pattern);
+            shape.style.stroke.kind = SvgPaint::Kind::none;
+        }
+        if (shape.style.fill.kind == SvgPaint::Kind::pattern) {
+            pattern(shape, {low, high}, state, depth);
+            shape.style.fill.kind = SvgPaint::Kind::none;
+        }
+        const bool marked =
+            shape.style.marked() && (name == "path" || name == "line" || name == "polyline" || name == "polygon");
+        const std::vector<SvgLine> line_copy = marked ? shape.lines : std::vector<SvgLine>();
+        scene_.shapes.push_back(std::move(shape));
+        if (marked) markers(line_copy, state, depth);
+    }
+
+    // The tiles of a pattern, back to front, within the shape (SVG 1.1, 13.3).
+    void pattern(const SvgShape& shape, const std::pair<Vec2, Vec2>& bounds, const State& state, int depth) {
+        if (depth > kDeepest) throw Error(source_, "patterns refer to each other");
+        const auto find = [&](const char* name, pugi::xml_node& with_children) {
+            std::string found;
+            bool has = false;
+            auto at = by_id_.find(shape.style.fill.server);
+            for (int k = 0; k < kDeepest && at != by_id_.end() && local_name(at->second) == "pattern"; ++k) {
+                if (!has && at->second.attribute(name)) found = at->second.attribute(name).value(), has = true;
+                if (!with_children && at->second.first_child()) with_children = at->second;
+                const std::string next = href_of(at->second);
+                at = next.size() > 1 ? by_id_.find(next.substr(1)) : by_id_.end();
+            }
+            return found;
+        };
+        pugi::xml_node content;
+        const bool in_box = find("patternUnits", content) != "userSpaceOnUse";
+        const auto [low, high] = bounds;
+        const Vec2 size = high - low, whole = in_box ? Vec2(1) : state.page;
+        const auto number = [&](const char* name, double unit) {
+            const std::string text = find(name, content);
+            if (text.empty()) return 0.0;
+            SvgReader in(text, source_);
+            const double value = in.number();
+            return in.peek() == '%' ? value / 100 * unit : value;
+        };
+        Vec2 corner(number("x", whole.x), number("y", whole.y)),
+            tile(number("width", whole.x), number("height", whole.y));
+        if (in_box) corner = low + corner * size, tile *= size;
+        if (!content || !(tile.x > 0 && tile.y > 0) || !(size.x > 0 && size.y > 0)) return;
+        SvgMatrix own(1);
+        if (const std::string text = find("patternTransform", content); !text.empty())
+            own = svg_transform(text.c_str(), source_);
+        if (glm::determinant(own) == 0) return;
+        Vec2 from(HUGE_VAL), to(-HUGE_VAL);
+        for (const Vec2& p : {low, high, Vec2(low.x, high.y), Vec2(high.x, low.y)}) {
+            const Vec2 q = (Vec2(glm::inverse(own) * Vec3(p, 1)) - corner) / tile;
+            from = glm::min(from, q), to = glm::max(to, q);
+        }
+        from = glm::floor(from + 1e-9), to = glm::ceil(to - 1e-9);
+        if (!((to.x - from.x) * (to.y - from.y) <= double(kMostTiles)))
+            throw Error(source_, "a pattern has too many tiles");
+        State inside{.matrix = state.matrix * own,
+                     .opacity = shape.opacity * shape.style.fill_opacity,
+                     .clips = state.clips,
+                     .masks = state.masks,
+                     .group = state.group,
+                     .upright = state.upright,
+                     .page = state.page};
+        State outer = state;
+        add_clip(outer, shape.lines, shape.style.rule);
+        inside.clips.push_back(outer.clips.back());
+        const std::string box = find("viewBox", content);
+        const bool content_in_box = box.empty() && find("patternContentUnits", content) == "objectBoundingBox";
+        for (double j = from.y; j < to.y; ++j)
+            for (double i = from.x; i < to.x; ++i) {
+                State one = inside;
+                one.matrix = inside.matrix * svg_translation(corner.x + i * tile.x, corner.y + j * tile.y);
+                add_clip(one, {{Vec2(0), {tile.x, 0}, tile, {0, tile.y}}});
+                if (!box.empty())
+                    one.matrix = one.matrix * svg_framing(content, {Vec2(0), tile}, source_).matrix;
+                else if (content_in_box)
+                    one.matrix = one.matrix * svg_scaling(size.x, size.y);
+                else
+                    one.matrix = one.matrix * svg_translation(-corner.x, -corner.y);
+                children(content, one, depth + 1);
+            }
+    }
+
+    void markers(const std::vector<SvgLine>& lines, const State& state, int depth) {
+        std::vector<std::pair<Vec2, double>> at;  // of each vertex: place and direction
+        for (const SvgLine& line : lines)
+            for (std::size_t i = 0; i < line.size(); ++i) {
+                const Vec2 in = i > 0 ? line[i] - line[i - 1] : Vec2(0),
+                           on = i + 1 < line.size() ? line[i + 1] - line[i] : Vec2(0);
+                const auto unit = [](const Vec2& d) { return glm::length(d) > 0 ? glm::normalize(d) : Vec2(0); };
+                const Vec2 middle = unit(in) + unit(on);
+                at.emplace_back(line[i], std::atan2(middle.y, middle.x));
+            }
+        if (at.empty() || at.size() > kMostMarkers) return;
+        marker(state.style.marker_start, at.front(), true, state, depth);
+        if (!state.style.marker_mid.empty()) {
+            // Vertices of curves that became chords have none.
+            if (lines.size() == 1 && at.size() <= 1000)
+                for (std::size_t i = 1; i + 1 < at.size(); ++i)
+                    marker(state.style.marker_mid, at[i], false, state, depth);
+            else
+                scene_.losses.add(SvgLoss::marker);
+        }
+        marker(state.style.marker_end, at.back(), false, state, depth);
+    }
+
+    void marker(const std::string& id, const std::pair<Vec2, double>& at, bool start, const State& state, int depth) {
+        const auto found = by_id_.find(id);
+        if (id.empty() || found == by_id_.end() || local_name(found->second) != "marker") return;
+        if (depth > kDeepest) throw Error(source_, "markers refer to each other");
+        const pugi::xml_node& node = found->second;
+        State inside{.matrix = state.matrix * svg_translation(at.first.x, at.first.y),
+                     .opacity = state.opacity,
+                     .clips = state.clips,
+                     .masks = state.masks,
+                     .group = state.group,
+                     .upright = state.upright,
+                     .page = state.page};
+        const Properties own(node, sheet_.declared(node));
+        inherit(inside.style, own);
+        const std::string orient = node.attribute("orient").value();
+        double angle = orient.starts_with("auto")
+                           ? at.second + (start && orient == "auto-start-reverse" ? std::numbers::pi : 0)
+                       : orient.empty() ? 0
+                                        : SvgReader(orient, source_).number() * std::numbers::pi / 180;
+        inside.matrix = inside.matrix *
+                        SvgMatrix(std::cos(angle), std::sin(angle), 0, -std::sin(angle), std::cos(angle), 0, 0, 0, 1);
+        if (std::string_view(node.attribute("markerUnits").value()) != "userSpaceOnUse")
+            inside.matrix = inside.matrix * svg_scaling(state.style.width, state.style.width);
+        const auto side = [&](const char* name, double otherwise) {
+            return node.attribute(name) ? number(node, name, state) : otherwise;
+        };
+        const SvgViewport port{Vec2(0), {side("markerWidth", 3), side("markerHeight", 3)}};
+        const SvgFraming framing = svg_framing(node, port, source_);
+        const Vec2 ref(framing.matrix * Vec3(side("refX", 0), side("refY", 0), 1));
+        inside.matrix = inside.matrix * svg_translation(-ref.x, -ref.y);
+        enter_frame(node, inside, port, overflows(own));
+        if (inside.style.visible) children(node, inside, depth + 1);
+    }
+
+    /// Elements by their `id`, for `use`.
+    void index(const pugi::xml_node& node, int depth = 0) {
+        if (depth > kDeepest) return;  // `walk` will say so
+        if (const auto id = node.attribute("id")) by_id_.emplace(id.value(), node);
+        for (const pugi::xml_node& child : node.children())
+            if (child.type() == pugi::node_element) index(child, depth + 1);
+    }
+
+    /// Rules of all style sheets of the file.
+    void read_sheets(const pugi::xml_node& node, int depth) {
+        if (depth > kDeepest) throw Error(source_, "groups are nested too deeply");
+        for (const pugi::xml_node& child : node.children()) {
+            if (child.type() != pugi::node_element) continue;
+            if (local_name(child) != "style") {
+                read_sheets(child, depth + 1);
+                continue;
+            }
+            std::string sheet;
+            for (const pugi::xml_node& text : child.children()) sheet += text.value();
+            for (std::size_t passed = sheet_.add(sheet); passed > 0; --passed) scene_.losses.add(SvgLoss::rule);
+        }
+    }
+
+    static std::string href_of(const pugi::xml_node& node) {
+        std::string target = node.attribute("href").value();
+        return target.empty() ? node.attribute("xlink:href").value() : target;
+    }
+    double number(const pugi::xml_node& node, const char* name, const State& state) const {
+        return svg_number(node, name, state.page, source_);
+    }
+    SvgCurves curves(const SvgMatrix& matrix) const {
+        return {.growth = svg_growth(matrix), .tolerance = options_.tolerance};
+    }
+
+    const std::string& source_;
+    const SvgSceneOptions& options_;
+    SvgScene scene_;
+    SvgSheet sheet_;
+    SvgIds by_id_;
+    std::size_t n_elements_ = 0, n_points_ = 0, n_text_ = 0, n_matches_ = 0, n_upright_ = 0;
+};
+
+}  // namespace
+
+SvgScene read_svg_scene(const pugi::xml_node& svg, const std::string& source, const SvgSceneOptions& options) {
+    return SceneReader(source, options).read(svg);
+}
+
+}  // namespace tuft::io

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "core/geometry/types.h"
+#include "stroke/journal/samples.h"
+
+/// \file
+/// Areas of a drawing that are masked and filled, as a painter cuts a mask, cleans what lies in it and lays an even
+/// film. Part of `Fill`; document/apply_area.h puts them onto texels.
+namespace tuft::stroke {
+
+/// Colour of an area at a parameter of its gradient.
+struct AreaStop {
+    double at = 0;  ///< parameter, 0–1
+    std::string ink;
+    double opacity = 1;  ///< part of the ink below that is taken away, 0–1
+    double film = -1;    ///< film units; < 0: what a full brush leaves, times the opacity
+
+    bool operator==(const AreaStop&) const = default;
+};
+
+/// How a gradient goes on beyond its ends (SVG 1.1, 13.2.2).
+enum class AreaSpread { pad, reflect, repeat };
+
+/// How the parameter t of an area's gradient follows from a point q = A (x, y, 1) of its unit space.
+enum class AreaGradient {
+    none,    ///< t = 0
+    linear,  ///< t = q.x
+    radial,  ///< the circle of radius t about (1 − t) focus passes through q (SVG 1.1, 13.2.3)
+};
+
+/// A closed flat area with an even or a graded film. Lengths in metres, frame of flat samples (x right, y down).
+struct FlatArea {
+    std::vector<std::vector<Vec2>> rings;  ///< closed: the last point is joined to the first
+    bool even_odd = false;                 ///< rule for what the rings enclose; else nonzero
+    Placement placement;
+    bool placed = false;          ///< the file gives a placement
+    Vec2 low{0}, high{0};         ///< bounds of the drawing that it is part of
+    std::string upright;          ///< parts of one name are read the same way in a mirrored copy; empty: mirrored
+    Vec2 upright_centre{0};       ///< of such a part
+    std::vector<AreaStop> stops;  ///< ascending, at least one
+    AreaGradient gradient = AreaGradient::none;
+    AreaSpread spread = AreaSpread::pad;
+    std::array<double, 6> to_unit{1, 0, 0, 1, 0, 0};  ///< A: q = (a₀ x + a₂ y + a₄, a₁ x + a₃ y + a₅)
+    Vec2 focus{0};                                    ///< radial: |focus| < 1
+
+    bool operator==(const FlatArea&) const = default;
+};
+
+inline constexpr std::size_t kMaxAreaPoints = 2'000'000;
+inline constexpr std::size_t kMaxAreaStops = 1000;
+
+/// Throws `Error` for points out of range, more than the limits, no stop, and parameters that are no numbers.
+void check_area(const FlatArea& area);
+
+/// Returns t at a flat point, in [0, 1] after the spread.
+double along_area(const FlatArea& area, const Vec2& point);
+
+/// Maps an area by p' = scale (p − centre); `mirrored` then flips x. As `transform_samples`.
+void transform_area(FlatArea& area, const Vec2& centre, double scale, bool mirrored = false);
+
+/// Areas as JSON and as its text, and back. Back throws `Error` where it cannot be read.
+nlohmann::json json_of(const FlatArea& area);
+FlatArea flat_area_of(const nlohmann::json& json);
+std::string text_of(const FlatArea& area);
+FlatArea area_of_text(const std::string& text);
+
+}  // namespace tuft::stroke

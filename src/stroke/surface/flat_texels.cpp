@@ -1,0 +1,241 @@
+#include "stroke/surface/flat_texels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/system/parallel.h"
+#include "stroke/placement/surface_mapping.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr double kGridStep = 2e-3;  // metres between nodes
+constexpr int kFewestNodes = 33;    // nodes along a side
+constexpr int kMostNodes = 400;     // likewise
+constexpr double kFacing = 0.3;     // cosine of the angle between texel and grid, below which a texel faces away
+constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
+
+/// The drawing's rectangle on the surface, as nodes of a grid.
+class SurfaceGrid {
+  public:
+    SurfaceGrid(const Model& model, const Placement& placement, const Vec2& low, const Vec2& high) {
+        const Vec2 size = glm::max(high - low, Vec2(1e-6));
+        for (int k = 0; k < 2; ++k)
+            n_[k] = std::clamp(static_cast<int>(std::ceil(size[k] / kGridStep)) + 1, kFewestNodes, kMostNodes);
+        // One more node around: no texel of the rectangle is past the last one.
+        step_ = size / Vec2(n_[0] - 1, n_[1] - 1);
+        low_ = low - step_;
+        n_[0] += 2, n_[1] += 2;
+        StrokeSamples nodes{.placement = placement};
+        for (int j = 0; j < n_[1]; ++j)
+            for (int i = 0; i < n_[0]; ++i) nodes.samples.push_back({.position = Vec3(low_ + step_ * Vec2(i, j), 0)});
+        nodes_ = map_to_surface(*model.query, nodes).samples;
+        build_mesh();
+    }
+
+    bool empty() const { return mesh_.triangles.empty(); }
+    double reach() const { return reach_; }
+    const Box& bounds() const { return mesh_.bounds; }
+    const mesh::SurfaceQuery& query() const { return *query_; }
+    Vec2 flat(const Vec2& cell) const { return low_ + step_ * cell; }
+
+    /// Place in cells of a point of the mesh.
+    Vec2 cell_of(const mesh::SurfacePoint& at) const {
+        const auto& t = mesh_.triangles[at.triangle];
+        const auto node = [&](std::uint32_t k) { return Vec2(int(k) % n_[0], int(k) / n_[0]); };
+        return (1 - at.b1 - at.b2) * node(t[0]) + at.b1 * node(t[1]) + at.b2 * node(t[2]);
+    }
+
+    /// Where a point lies over the bilinear patches: Gauss–Newton from a place nearby.
+    struct Foot {
+        Vec2 cell{0};
+        Vec3 offset{0}, normal{0, 0, 1};  ///< from the foot to the point; unit
+    };
+    std::optional<Foot> foot(const Vec3& p, Vec2 cell) const {
+        constexpr int kSteps = 8;
+        for (int k = 0; k < kSteps; ++k) {
+            if (!(cell.x >= 0 && cell.y >= 0 && cell.x <= n_[0] - 1 && cell.y <= n_[1] - 1)) return {};
+            const int i = std::min(static_cast<int>(cell.x), n_[0] - 2),
+                      j = std::min(static_cast<int>(cell.y), n_[1] - 2);
+            const double u = cell.x - i, v = cell.y - j;
+            const SurfaceSample &a = node(i, j), &b = node(i + 1, j), &c = node(i, j + 1), &d = node(i + 1, j + 1);
+            if (!(a.on_surface || b.on_surface || c.on_surface || d.on_surface)) return {};
+            const Vec3 x = glm::mix(glm::mix(a.position, b.position, u), glm::mix(c.position, d.position, u), v);
+            const Vec3 du = glm::mix(b.position - a.position, d.position - c.position, v);
+            const Vec3 dv = glm::mix(c.position - a.position, d.position - b.position, u);
+            const Vec3 off = p - x;
+            const double uu = glm::dot(du, du), uv = glm::dot(du, dv), vv = glm::dot(dv, dv), det = uu * vv - uv * uv;
+            if (!(det > 1e-6 * uu * vv)) return {};
+            const double x1 = glm::dot(off, du), x2 = glm::dot(off, dv);
+            const Vec2 change((vv * x1 - uv * x2) / det, (uu * x2 - uv * x1) / det);
+            if (std::max(std::abs(change.x), std::abs(change.y)) < 1e-4)
+                return Foot{
+                    cell + change, off,
+                    glm::normalize(glm::mix(glm::mix(a.normal, b.normal, u), glm::mix(c.normal, d.normal, u), v))};
+            cell += glm::clamp(change, Vec2(-2), Vec2(2));
+        }
+        return {};
+    }
+
+  private:
+    const SurfaceSample& node(int i, int j) const {
+        return nodes_[static_cast<std::size_t>(j) * static_cast<std::size_t>(n_[0]) + static_cast<std::size_t>(i)];
+    }
+
+    void build_mesh() {
+        for (const SurfaceSample& s : nodes_) {
+            mesh_.positions.emplace_back(s.position);
+            mesh_.bounds.add(s.position);
+        }
+        const auto add = [&](int a, int b, int c) {
+            const std::array<std::uint32_t, 3> t{std::uint32_t(a), std::uint32_t(b), std::uint32_t(c)};
+            const Vec3 &pa = nodes_[t[0]].position, &pb = nodes_[t[1]].position, &pc = nodes_[t[2]].position;
+            const bool on = nodes_[t[0]].on_surface || nodes_[t[1]].on_surface || nodes_[t[2]].on_surface;
+            if (!on || !(glm::length(glm::cross(pb - pa, pc - pa)) > 0)) return;
+            mesh_.triangles.push_back(t);
+            for (const std::uint32_t k : t) mesh_.corner_normals.emplace_back(nodes_[k].normal);
+            for (const auto& [from, to] : {std::pair(pa, pb), std::pair(pb, pc), std::pair(pc, pa)})
+                reach_ = std::max(reach_, std::min(glm::distance(from, to), 2 * glm::length(step_)));
+        };
+        for (int j = 0; j + 1 < n_[1]; ++j)
+            for (int i = 0; i + 1 < n_[0]; ++i) {
+                const int k = j * n_[0] + i;
+                add(k, k + 1, k + n_[0] + 1);
+                add(k, k + n_[0] + 1, k + n_[0]);
+            }
+        mesh_.neighbours.assign(3 * mesh_.triangles.size(), kNone);
+        if (!mesh_.triangles.empty()) query_.emplace(mesh_);
+    }
+
+    int n_[2] = {0, 0};
+    Vec2 step_{0}, low_{0};
+    std::vector<SurfaceSample> nodes_;
+    mesh::TriangleMesh mesh_;
+    std::optional<mesh::SurfaceQuery> query_;
+    double reach_ = 0;  // metres
+};
+
+/// Texels of one tile over the grid.
+class TileUnfolding {
+  public:
+    TileUnfolding(const SurfaceGrid& grid, double texel) : grid_(grid), slack_(0.3 * texel + 0.02 * grid.reach()) {}
+
+    Vec2f at(const Vec3& p, const Vec3& normal) {
+        std::optional<SurfaceGrid::Foot> foot = has_last_ ? grid_.foot(p, last_) : std::nullopt;
+        if (!foot || !lies(*foot, normal)) {
+            const auto near = grid_.query().closest_point(p, grid_.reach());
+            if (!near) return Vec2f(kNowhere);
+            foot = grid_.foot(p, grid_.cell_of(*near));
+            if (!foot || !lies(*foot, normal)) return Vec2f(kNowhere);
+        }
+        last_ = foot->cell;
+        has_last_ = true;
+        return Vec2f(grid_.flat(foot->cell));
+    }
+
+  private:
+    bool lies(const SurfaceGrid::Foot& foot, const Vec3& normal) const {
+        const double height = glm::dot(foot.offset, foot.normal);
+        return glm::dot(normal, foot.normal) > kFacing && std::abs(height) <= grid_.reach() &&
+               glm::length(foot.offset - height * foot.normal) <= slack_ + 0.2 * std::abs(height);
+    }
+
+    const SurfaceGrid& grid_;
+    double slack_;
+    Vec2 last_{0};
+    bool has_last_ = false;
+};
+
+/// Takes `at(tile's shape, texel)` for the texels of charts; tiles without one that is reached are dropped.
+template <class Fill>
+std::vector<FlatTexels::Tile> gather_tiles(const Model& model, const Fill& fill) {
+    const atlas::TexelMap& map = model.texels;
+    std::vector<std::unique_ptr<FlatTexels::Tile>> found(map.n_slots());
+    parallel_for(map.n_slots(), 16, [&](std::size_t begin, std::size_t end) {
+        atlas::TexelShape buffer;
+        for (std::size_t slot = begin; slot < end; ++slot) {
+            const atlas::TexelShape& shape = atlas::shape_of(map, static_cast<std::uint32_t>(slot), buffer);
+            FlatTexels::Tile tile{.slot = static_cast<std::uint32_t>(slot)};
+            if (!fill(shape, map.tiles[slot], tile)) continue;
+            tile.low = Vec2f(std::numeric_limits<float>::infinity());
+            tile.high = -tile.low;
+            for (const Vec2f& p : tile.at)
+                if (p.x == p.x) tile.low = glm::min(tile.low, p), tile.high = glm::max(tile.high, p);
+            if (tile.low.x <= tile.high.x) found[slot] = std::make_unique<FlatTexels::Tile>(tile);
+        }
+    });
+    std::vector<FlatTexels::Tile> tiles;
+    for (const auto& tile : found)
+        if (tile) tiles.push_back(*tile);
+    return tiles;
+}
+
+Vec3 position_in(const atlas::TexelShape& s, int t) {
+    return {double(s.px[t]), double(s.py[t]), double(s.pz[t])};
+}
+Vec3 normal_in(const atlas::TexelShape& s, int t) {
+    return {double(s.nx[t]), double(s.ny[t]), double(s.nz[t])};
+}
+
+/// Whether a texel of the tile may lie over the grid.
+bool reaches(const SurfaceGrid& grid, const atlas::TexelShape& shape, const atlas::TexelTile& tile) {
+    Box box;
+    for (int t = 0; t < atlas::kTileTexels; ++t)
+        if (tile.cluster[t] != atlas::kNoCluster) box.add(position_in(shape, t));
+    if (box.empty() || !glm::all(glm::lessThanEqual(box.lo, grid.bounds().hi + grid.reach())) ||
+        !glm::all(glm::greaterThanEqual(box.hi, grid.bounds().lo - grid.reach())))
+        return false;
+    return grid.query().closest_point(box.centre(), 0.5 * box.diagonal() + grid.reach()).has_value();
+}
+
+}  // namespace
+
+FlatTexels::FlatTexels(const Model& model, const Placement& placement, const Vec2& low, const Vec2& high)
+    : placement_(placement), low_(low), high_(high) {
+    if (placement.mapping == SurfaceMapping::project)
+        project(model);
+    else
+        unfold(model);
+}
+
+void FlatTexels::unfold(const Model& model) {
+    const SurfaceGrid grid(model, placement_, low_, high_);
+    if (grid.empty()) return;
+    tiles_ = gather_tiles(model, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
+        if (!reaches(grid, shape, in)) return false;
+        TileUnfolding unfolding(grid, model.texels.texel_size);
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            // There and back by rows: each texel begins beside the last one.
+            const int row = t / atlas::kTile, column = t % atlas::kTile;
+            const int k = row * atlas::kTile + (row % 2 ? atlas::kTile - 1 - column : column);
+            out.at[k] = in.cluster[k] == atlas::kNoCluster ? Vec2f(kNowhere)
+                                                           : unfolding.at(position_in(shape, k), normal_in(shape, k));
+        }
+        return true;
+    });
+}
+
+void FlatTexels::project(const Model& model) {
+    const Vec3 outward = glm::normalize(glm::cross(placement_.down, placement_.right));
+    const Axes axes = axes_across(outward, placement_.right, placement_.down);
+    // With right and down of the other hand the reader is on the other side.
+    const double texel = model.texels.texel_size, far = 4 * model.mesh->bounds.diagonal();
+    const Vec2 margin(2 * texel);
+    tiles_ = gather_tiles(model, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
+        for (int t = 0; t < atlas::kTileTexels; ++t) {
+            out.at[t] = Vec2f(kNowhere);
+            if (in.cluster[t] == atlas::kNoCluster) continue;
+            const Vec3 p = position_in(shape, t), n = normal_in(shape, t), d = p - placement_.origin;
+            const Vec2 flat(glm::dot(d, axes.right), glm::dot(d, axes.down));
+            if (glm::any(glm::lessThan(flat, low_ - margin)) || glm::any(glm::greaterThan(flat, high_ + margin)))
+                continue;
+            if (glm::dot(n, outward) <= kFacing || model.query->occluded(p + 2 * texel * n, outward, 0, far)) continue;
+            out.at[t] = Vec2f(flat);
+        }
+        return true;
+    });
+}
+
+}  // namespace tuft::stroke

@@ -1,0 +1,374 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "io/strokes/svg.h"
+#include "io/strokes/svg_css.h"
+#include "stroke/document/apply_area.h"
+
+/// Coloured drawings as areas. 100 units are 100 mm; areas below are in mm².
+namespace tuft::io {
+namespace {
+
+using stroke::FlatArea;
+
+struct Read {
+    std::vector<FlatArea> areas;
+    std::vector<std::string> groups, notes;
+};
+
+Read read(const std::string& inside, const std::string& page = "width='100mm' height='100mm' viewBox='0 0 100 100'") {
+    Read out;
+    SvgOptions options{.painting = SvgPainting::areas};
+    options.ink.note = [&](const std::string& line) { out.notes.push_back(line); };
+    for (const stroke::RecordedStroke& r : parse_svg(
+             "<svg xmlns:xlink='http://www.w3.org/1999/xlink' " + page + ">" + inside + "</svg>", "a.svg", options)) {
+        EXPECT_TRUE(r.samples.empty());
+        out.areas.push_back(*std::get<stroke::Fill>(r.before.at(0)).area);
+        out.groups.push_back(r.group);
+    }
+    return out;
+}
+
+/// What an area covers, mm², on cells of `cell` mm.
+double covered(const FlatArea& area, double cell = 0.02) {
+    const stroke::AreaRaster raster(area, 1e-3 * cell);
+    const Vec2 size = raster.high() - raster.low();
+    double sum = 0;
+    for (double y = raster.low().y; y < raster.high().y; y += 1e-3 * cell)
+        for (double x = raster.low().x; x < raster.high().x; x += 1e-3 * cell)
+            sum += raster.mean({x + 0.5e-3 * cell, y + 0.5e-3 * cell}, 1e-9);
+    EXPECT_GT(size.x, 0);
+    return sum * cell * cell;
+}
+double covered(const std::string& inside, double cell = 0.02) {
+    double sum = 0;
+    for (const FlatArea& area : read(inside).areas) sum += covered(area, cell);
+    return sum;
+}
+bool inside(const FlatArea& area, double x, double y) {
+    return stroke::AreaRaster(area, 2e-5).mean({1e-3 * x, 1e-3 * y}, 1e-9) > 0.5;
+}
+std::string fault(const std::string& inside) {
+    try {
+        read(inside);
+        return {};
+    } catch (const Error& e) {
+        return e.what();
+    }
+}
+
+TEST(SvgAreas, ColoursAreInks) {
+    const auto ink = [](const std::string& fill) {
+        return read("<g color='#010203'><rect width='9' height='9' style='fill:" + fill + "'/></g>")
+            .areas.at(0)
+            .stops.at(0)
+            .ink;
+    };
+    for (const auto& [text, hex] : std::vector<std::pair<std::string, std::string>>{{"#e30613", "#e30613"},
+                                                                                    {"#F00", "#ff0000"},
+                                                                                    {"#12345680", "#123456"},
+                                                                                    {"rgb(1, 2, 250)", "#0102fa"},
+                                                                                    {"rgb(10% 20% 100%)", "#1a33ff"},
+                                                                                    {"hsl(120, 100%, 25%)", "#008000"},
+                                                                                    {"RebeccaPurple", "#000000"},
+                                                                                    {"CornflowerBlue", "#6495ed"},
+                                                                                    {"currentColor", "#010203"},
+                                                                                    {"white", "#ffffff"}})
+        EXPECT_EQ(ink(text), hex) << text;
+    EXPECT_NEAR(read("<rect width='9' height='9' fill='rgba(0,0,9,0.25)' opacity='.5'/>").areas[0].stops[0].opacity,
+                0.125, 1e-12);
+}
+
+TEST(SvgAreas, ColoursThatAreTheSameToTheEyeShareAnInk) {
+    const auto areas = read(
+                           "<rect width='9' height='9' fill='#e30613'/><rect width='9' height='9' fill='#e30714'/>"
+                           "<rect width='9' height='9' fill='#c30613'/>")
+                           .areas;
+    EXPECT_EQ(areas[1].stops[0].ink, "#e30613");
+    EXPECT_EQ(areas[2].stops[0].ink, "#c30613");
+}
+
+TEST(SvgAreas, ShapesComeBackToFrontWithTheStrokeOverTheFill) {
+    const auto areas =
+        read("<rect width='9' height='9' fill='red' stroke='blue'/><g><circle r='3' fill='lime'/></g>").areas;
+    ASSERT_EQ(areas.size(), 3u);
+    EXPECT_EQ(areas[0].stops[0].ink, "#ff0000");
+    EXPECT_EQ(areas[1].stops[0].ink, "#0000ff");
+    EXPECT_EQ(areas[2].stops[0].ink, "#00ff00");
+    EXPECT_EQ(areas[0].low, areas[2].low) << "all in the frame of the drawing";
+}
+
+TEST(SvgAreas, SelectorsAndSpecificity) {
+    const auto ink = [](const std::string& sheet) {
+        return read("<style>rect{fill:#400000}" + sheet +
+                    "</style><g id='g' class='a'><circle r='1' fill='#000000'/><rect id='r' class='b c' data-k='one "
+                    "two' "
+                    "width='9' height='9'/></g>")
+            .areas.at(1)
+            .stops.at(0)
+            .ink;
+    };
+    for (const std::string fits : {"*{fill:#00ff00} rect{}", "g rect", "g > rect", ".a .b", ".b.c", "#g rect.c",
+                                   "circle + rect", "circle ~ .c", "[data-k~=two]", "[data-k^='one']", "[data-k$=two]",
+                                   "[data-k*='e t']", "rect[id=r]", ".x, .b", "rect:last-child"}) {
+        const std::string rule = fits.find('{') == std::string::npos ? fits + "{fill:#00ff00}" : "#r{fill:#00ff00}";
+        EXPECT_EQ(ink(rule), "#00ff00") << fits;
+    }
+    for (const std::string no : {"g > g rect", "svg > rect", "circle > rect", ".a.b", "rect + circle", "[data-k=one]",
+                                 "[data-k~=o]", "rect:first-child", "#g#r"})
+        EXPECT_EQ(ink(no + "{fill:#00ff00}"), "#400000") << no;
+    EXPECT_EQ(ink("#r{fill:#ff0000} g .b.c{fill:#00ff00}"), "#ff0000");
+    EXPECT_EQ(ink("g rect{fill:#ff0000} .b{fill:#00ff00}"), "#00ff00") << "a class counts more than two names";
+    EXPECT_EQ(ink(".b{fill:#ff0000} .c{fill:#00ff00}"), "#00ff00") << "the later one";
+    EXPECT_EQ(ink(".b{fill:#00ff00 !important} #r{fill:#ff0000}"), "#00ff00");
+}
+
+TEST(SvgAreas, StrokesHaveTheirEndsAndCorners) {
+    const std::string line = "<path d='M20 20 H60' fill='none' stroke='red' stroke-width='4' ";
+    EXPECT_NEAR(covered(line + "/>"), 160, 0.2);
+    EXPECT_NEAR(covered(line + "stroke-linecap='square'/>"), 176, 0.2);
+    EXPECT_NEAR(covered(line + "stroke-linecap='round'/>"), 160 + 4 * std::numbers::pi, 0.3);
+    const std::string corner = "<path d='M20 20 H60 V60' fill='none' stroke='red' stroke-width='4' stroke-linejoin='";
+    EXPECT_NEAR(covered(corner + "miter'/>"), 320, 0.3);
+    EXPECT_NEAR(covered(corner + "bevel'/>"), 318, 0.3);
+    EXPECT_NEAR(covered(corner + "round'/>"), 316 + std::numbers::pi, 0.3);
+    EXPECT_NEAR(covered(corner + "miter' stroke-miterlimit='1.4'/>"), 318, 0.3) << "beyond the limit";
+    EXPECT_NEAR(covered("<rect x='20' y='20' width='30' height='20' fill='none' stroke='red' stroke-width='2'/>"),
+                32 * 22 - 28 * 18, 0.3);
+    EXPECT_NEAR(covered("<circle cx='50' cy='50' r='20' fill='none' stroke='red' stroke-width='6'/>"),
+                std::numbers::pi * (23 * 23 - 17 * 17), 0.8);
+    EXPECT_NEAR(covered("<circle cx='50' cy='50' r='2' fill='none' stroke='red' stroke-width='6'/>"),
+                std::numbers::pi * 25, 0.2)
+        << "wider than its radius";
+    EXPECT_NEAR(covered("<path d='M50 50 z' stroke='red' stroke-width='6' stroke-linecap='round'/>"),
+                9 * std::numbers::pi, 0.2);
+    EXPECT_NEAR(covered("<g transform='scale(1,3)'>" + line + "/></g>"), 480, 0.5);
+    EXPECT_NEAR(covered("<g transform='scale(1,3)'>" + line + "vector-effect='non-scaling-stroke'/></g>"), 160, 0.5);
+}
+
+TEST(SvgAreas, DashesHaveTheirLengths) {
+    const std::string line = "<path d='M20 20 H60' fill='none' stroke='red' stroke-width='4' stroke-dasharray='";
+    EXPECT_NEAR(covered(line + "5 3'/>"), 4 * 25, 0.2);
+    EXPECT_NEAR(covered(line + "5'/>"), 4 * 20, 0.2);
+    EXPECT_NEAR(covered(line + "5 3' stroke-dashoffset='4'/>"), 4 * 25, 0.2);
+    EXPECT_NEAR(covered(line + "8 2 1'/>"), 4 * (8 + 1 + 2 + 8 + 1), 0.2) << "an odd list is doubled";
+    EXPECT_NEAR(covered(line + "none'/>"), 160, 0.2);
+    const auto dashes = read(line + "5 3' stroke-dashoffset='4'/>").areas.at(0);
+    EXPECT_TRUE(inside(dashes, 20.5, 20));
+    EXPECT_FALSE(inside(dashes, 22, 20));
+    EXPECT_TRUE(inside(dashes, 26, 20));
+}
+
+TEST(SvgAreas, ClipPathsCut) {
+    const std::string defs =
+        "<clipPath id='c'><rect x='20' y='20' width='10' height='30'/></clipPath>"
+        "<clipPath id='box' clipPathUnits='objectBoundingBox'><rect width='.5' height='1'/></clipPath>"
+        "<clipPath id='both' clip-path='url(#c)'><rect x='10' y='10' width='15' height='20'/></clipPath>"
+        "<clipPath id='ring'><path clip-rule='evenodd' d='M10 10h40v40h-40zM20 20h20v20h-20z'/></clipPath>";
+    const std::string square = "<rect x='10' y='10' width='40' height='40' fill='red' ";
+    EXPECT_NEAR(covered(defs + square + "clip-path='url(#c)'/>"), 300, 0.3);
+    EXPECT_NEAR(covered(defs + "<g clip-path='url(#c)'>" + square + "/></g>"), 300, 0.3);
+    EXPECT_NEAR(covered(defs + square + "style='clip-path:url(#box)'/>"), 800, 0.3);
+    EXPECT_NEAR(covered(defs + "<g clip-path='url(#box)'>" + square + "/></g>"), 800, 0.3);
+    EXPECT_NEAR(covered(defs + square + "clip-path='url(#both)'/>"), 5 * 10, 0.3);
+    EXPECT_NEAR(covered(defs + square + "clip-path='url(#ring)'/>"), 1200, 0.3);
+    EXPECT_NEAR(covered(defs + square + "clip-path='url(#c)' transform='translate(7 3)'/>"), 300, 0.3);
+}
+
+TEST(SvgAreas, MasksLetLightThrough) {
+    const std::string square = "<rect x='10' y='10' width='40' height='40' fill='red' ";
+    auto areas =
+        read(
+            "<mask id='m'><rect x='10' y='10' width='20' height='99' fill='white'/><rect x='30' y='10' width='10' "
+            "height='99' fill='#808080'/></mask>" +
+            square + "mask='url(#m)'/>")
+            .areas;
+    ASSERT_EQ(areas.size(), 2u);
+    std::sort(areas.begin(), areas.end(),
+              [](const auto& a, const auto& b) { return a.stops[0].opacity > b.stops[0].opacity; });
+    EXPECT_NEAR(areas[0].stops[0].opacity, 1, 1e-9);
+    EXPECT_NEAR(covered(areas[0]), 800, 0.3);
+    EXPECT_NEAR(areas[1].stops[0].opacity, 128.0 / 255, 1e-3);
+    EXPECT_NEAR(covered(areas[1]), 400, 0.3);
+    // A fade: the film follows the mask's gradient.
+    areas = read(
+                "<linearGradient id='g' gradientUnits='userSpaceOnUse' x1='10' x2='50'><stop stop-color='white'/><stop "
+                "offset='1'/></linearGradient><mask id='m'><rect width='99' height='99' fill='url(#g)'/></mask>" +
+                square + "mask='url(#m)'/>")
+                .areas;
+    ASSERT_EQ(areas.size(), 1u);
+    EXPECT_EQ(areas[0].gradient, stroke::AreaGradient::linear);
+    EXPECT_NEAR(areas[0].stops.front().opacity, 1, 1e-9);
+    EXPECT_NEAR(areas[0].stops.back().opacity, 0, 1e-9);
+    EXPECT_NEAR(stroke::along_area(areas[0], {0.030, 0.02}), 0.5, 1e-9);
+    for (const auto& stop : areas[0].stops) EXPECT_EQ(stop.ink, "#ff0000");
+}
+
+TEST(SvgAreas, GradientsHaveTheirEndsUnitsAndTransforms) {
+    const auto t_at = [](const std::string& attributes, const std::string& name, double x, double y) {
+        const auto areas = read("<" + name +
+                                " id='base'><stop offset='10%' stop-color='#f00'/><stop offset='.9' "
+                                "style='stop-color:#00f'/></" +
+                                name + "><" + name + " id='g' xlink:href='#base' " + attributes +
+                                "/><rect x='20' y='30' width='40' height='20' fill='url(#g)'/>")
+                               .areas;
+        EXPECT_EQ(areas.at(0).stops.front().ink, "#ff0000");
+        EXPECT_EQ(areas.at(0).stops.back().ink, "#0000ff");
+        EXPECT_NEAR(areas.at(0).stops.front().at, 0.1, 1e-12);
+        EXPECT_NEAR(areas.at(0).stops.back().at, 0.9, 1e-12);
+        EXPECT_GT(areas.at(0).stops.size(), 5u) << "red to blue is far";
+        return stroke::along_area(areas.at(0), {1e-3 * x, 1e-3 * y});
+    };
+    EXPECT_NEAR(t_at("", "linearGradient", 30, 40), 0.25, 1e-9);
+    EXPECT_NEAR(t_at("x2='0' y2='1'", "linearGradient", 30, 40), 0.5, 1e-9);
+    EXPECT_NEAR(t_at("gradientUnits='userSpaceOnUse' x1='0' x2='100'", "linearGradient", 30, 40), 0.3, 1e-9);
+    EXPECT_NEAR(t_at("gradientUnits='userSpaceOnUse' x1='0' x2='100' gradientTransform='translate(10)'",
+                     "linearGradient", 30, 40),
+                0.2, 1e-9);
+    EXPECT_NEAR(t_at("spreadMethod='reflect' x2='.25'", "linearGradient", 35, 40), 0.5, 1e-9);
+    EXPECT_NEAR(t_at("", "radialGradient", 50, 40), 0.5, 1e-9);
+    EXPECT_NEAR(t_at("", "radialGradient", 40, 45), 0.5, 1e-9) << "an ellipse in the box";
+    EXPECT_NEAR(t_at("gradientUnits='userSpaceOnUse' cx='40' cy='40' r='20' fx='30'", "radialGradient", 30, 40), 0,
+                1e-9);
+    EXPECT_NEAR(t_at("gradientUnits='userSpaceOnUse' cx='40' cy='40' r='20' fx='30'", "radialGradient", 60, 40), 1,
+                1e-9);
+    // Between ends colours are mixed in sRGB.
+    const auto grey =
+        read(
+            "<linearGradient id='g'><stop stop-color='#000'/><stop offset='1' stop-color='#fff'/></linearGradient>"
+            "<rect width='9' height='9' fill='url(#g)'/>")
+            .areas.at(0)
+            .stops;
+    bool middle = false;
+    for (const auto& stop : grey) middle = middle || (std::abs(stop.at - 0.5) < 1e-9 && stop.ink == "#808080");
+    EXPECT_TRUE(middle || grey.size() % 2 == 0);
+    for (std::size_t i = 1; i < grey.size(); ++i) EXPECT_GT(grey[i].ink, grey[i - 1].ink) << "lighter and lighter";
+}
+
+TEST(SvgAreas, UsesSymbolsAndInnerDrawingsHaveTheirFrames) {
+    const std::string defs = "<symbol id='s' viewBox='0 0 10 10'><rect width='20' height='5' fill='red'/></symbol>";
+    EXPECT_NEAR(covered(defs + "<use href='#s' width='20' height='20'/>"), 20 * 10, 0.2) << "cut at its frame";
+    EXPECT_NEAR(covered(defs + "<use href='#s' width='20' height='40'/>"), 20 * 10, 0.2) << "as wide as fits";
+    EXPECT_TRUE(inside(read(defs + "<use href='#s' width='20' height='40'/>").areas[0], 1, 11)) << "in the middle";
+    EXPECT_NEAR(covered("<svg x='10' y='10' width='20' height='20' viewBox='0 0 4 4'><circle cx='2' cy='2' r='1' "
+                        "fill='red'/></svg>"),
+                25 * std::numbers::pi, 0.3);
+    EXPECT_NEAR(
+        covered("<svg width='20' height='10' viewBox='0 0 4 4' preserveAspectRatio='none'><rect width='2' height='4' "
+                "fill='red'/></svg>"),
+        100, 0.2);
+    EXPECT_NEAR(
+        covered("<svg width='20' height='10' viewBox='0 0 4 4' preserveAspectRatio='xMinYMin slice'><rect width='4' "
+                "height='4' fill='red'/></svg>"),
+        200, 0.2);
+}
+
+TEST(SvgAreas, PatternsAndMarkersAreDrawn) {
+    EXPECT_NEAR(
+        covered("<pattern id='p' patternUnits='userSpaceOnUse' width='10' height='10'><rect width='5' height='10' "
+                "fill='red'/></pattern><rect x='12' y='10' width='40' height='20' fill='url(#p)'/>"),
+        400, 1);
+    EXPECT_NEAR(covered("<pattern id='p' width='.25' height='.5' viewBox='0 0 2 2'><circle cx='1' cy='1' r='1' "
+                        "fill='red'/></pattern>"
+                        "<rect width='40' height='20' fill='url(#p)'/>"),
+                8 * 25 * std::numbers::pi, 2);
+    const std::string marker =
+        "<marker id='m' markerWidth='4' markerHeight='4' refX='2' refY='2' orient='auto'><rect width='4' "
+        "height='2' fill='blue'/></marker>";
+    const auto areas = read(marker + "<path d='M20 20 V60' stroke='red' stroke-width='2' marker-end='url(#m)'/>").areas;
+    ASSERT_EQ(areas.size(), 2u);
+    EXPECT_NEAR(covered(areas[1]), 8 * 4, 0.2) << "in units of the line's width";
+    EXPECT_TRUE(inside(areas[1], 22, 60)) << "turned with the line";
+    EXPECT_FALSE(inside(areas[1], 18, 60));
+}
+
+TEST(SvgAreas, LayersAndNamedGroupsAreGroups) {
+    const auto r = read(
+        "<g inkscape:label='Stripes' inkscape:groupmode='layer'><g id='inner'><rect width='9' height='9' fill='red'/>"
+        "</g></g><g id='marks'><rect width='9' height='9' fill='red'/></g><rect width='9' height='9' fill='red'/>");
+    EXPECT_EQ(r.groups, (std::vector<std::string>{"Stripes", "marks", ""}));
+    const auto marked =
+        read(
+            "<g id='no' class='big readable'><rect x='10' width='10' height='10' fill='red'/><rect x='30' "
+            "width='10' height='10' fill='red'/></g><rect width='9' height='9' fill='red'/>")
+            .areas;
+    EXPECT_EQ(marked[0].upright, "no");
+    EXPECT_NEAR(marked[1].upright_centre.x, 0.025, 1e-9);
+    EXPECT_EQ(marked[2].upright, "");
+}
+
+TEST(SvgAreas, WhiteOverThePageIsTheGround) {
+    const std::string red = "<rect width='9' height='9' fill='red'/>";
+    EXPECT_EQ(read("<rect width='100' height='100' fill='white'/>" + red).areas.size(), 1u);
+    EXPECT_EQ(read(red + "<rect width='100' height='100' fill='white'/>").areas.size(), 2u);
+    EXPECT_EQ(read("<rect width='50' height='100' fill='white'/>" + red).areas.size(), 2u);
+}
+
+TEST(SvgAreas, ADrawingInBlackIsForABrush) {
+    const auto lines = [](const std::string& inside, SvgPainting painting) {
+        return parse_svg("<svg width='100mm' viewBox='0 0 100 100'>" + inside + "</svg>", "a.svg",
+                         {.painting = painting});
+    };
+    const std::string black =
+        "<rect width='99' height='99' rx='20'/><path d='M0 0 L50 50' stroke='#000' stroke-width='3'/>";
+    const auto before = lines(black, SvgPainting::brush), now = lines(black, SvgPainting::automatic);
+    ASSERT_EQ(before.size(), now.size());
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        ASSERT_EQ(before[i].samples.size(), now[i].samples.size());
+        for (std::size_t k = 0; k < now[i].samples.size(); ++k)
+            ASSERT_EQ(before[i].samples[k].position, now[i].samples[k].position);
+    }
+    EXPECT_TRUE(lines(black + "<rect width='9' height='9' fill='red'/>", SvgPainting::automatic)[0].samples.empty());
+}
+
+TEST(SvgAreas, WhatIsNotPaintedIsSaid) {
+    const auto notes = read(
+                           "<rect width='9' height='9' fill='red' filter='url(#f)'/><text>no</text><image/>"
+                           "<rect width='9' height='9' fill='url(#gone)'/>")
+                           .notes;
+    EXPECT_EQ(notes.size(), 4u);
+    EXPECT_TRUE(read("<g opacity='.5' stroke-dasharray='3'><rect width='9' height='9' fill='red' stroke='blue'/></g>")
+                    .notes.empty());
+}
+
+TEST(SvgAreas, DrawingsThatNeverEndAreRefusedInALine) {
+    std::string nest = "<g id='a0'><rect width='1' height='1' fill='red'/></g>";
+    for (int i = 1; i < 30; ++i) {
+        const std::string before = "<use href='#a" + std::to_string(i - 1) + "'/>";
+        nest += "<g id='a" + std::to_string(i) + "'>" + before + before + "</g>";
+    }
+    EXPECT_NE(fault("<defs>" + nest + "</defs><use href='#a29'/>"), "");
+    const std::string red = "<rect width='9' height='9' fill='red'/>", box = "<rect width='90' height='90' ";
+    EXPECT_NE(fault("<g id='a'><use href='#a'/></g>" + red), "");
+    EXPECT_NE(
+        fault("<clipPath id='c' clip-path='url(#c)'>" + red + "</clipPath>" + box + "clip-path='url(#c)' fill='red'/>"),
+        "");
+    EXPECT_NE(fault("<clipPath id='c'><rect clip-path='url(#c)' width='9' height='9'/></clipPath>" + box +
+                    "clip-path='url(#c)' fill='red'/>"),
+              "");
+    EXPECT_NE(
+        fault("<mask id='m'><rect mask='url(#m)' width='9' height='9'/></mask>" + box + "mask='url(#m)' fill='red'/>"),
+        "");
+    EXPECT_NE(fault("<pattern id='p' width='.5' height='.5'><rect width='9' height='9' fill='url(#p)'/></pattern>" +
+                    box + "fill='url(#p)'/>"),
+              "");
+    EXPECT_NE(fault("<pattern id='p' patternUnits='userSpaceOnUse' width='.001' height='.001'>" + red + "</pattern>" +
+                    box + "fill='url(#p)'/>"),
+              "");
+    EXPECT_NE(fault("<marker id='m'><path d='M0 0 L1 1' stroke='red' marker-end='url(#m)'/></marker><path d='M0 0 L9 "
+                    "9' stroke='red' marker-end='url(#m)'/>"),
+              "");
+    EXPECT_EQ(fault("<linearGradient id='g' href='#h'/><linearGradient id='h' href='#g'/><rect width='9' height='9' "
+                    "fill='url(#g)'/>" +
+                    red),
+              "");
+    EXPECT_EQ(fault("<path d='M0 0 H90' stroke='red' stroke-dasharray='1e-9'/>"), "") << "drawn whole";
+    EXPECT_NE(fault("<rect width='1e9' height='1e9' fill='red' transform='scale(1e9)'/>"), "");
+}
+
+}  // namespace
+}  // namespace tuft::io
