@@ -96,6 +96,60 @@ TEST(Ferrule, ItsOutlineIsTheMouth) {
     EXPECT_TRUE(mouth_outline(load_preset("wolf-medium")).empty());
 }
 
+/// A round ferrule: one spine in the middle, the others evenly round it, each the centroid of its sector, and each with
+/// the two beside it and the middle one for neighbours.
+TEST(Ferrule, RingHasOneSpineInTheMiddle) {
+    Preset p = load_preset("stippler-10");
+    for (const int count : {4, 7, 9}) {
+        p.spines = count;
+        const std::vector<FerruleSpine> spines = ferrule_spines(p);
+        const auto around = static_cast<std::size_t>(count - 1);
+        double share = 0, moment = 0;
+        for (const FerruleSpine& s : spines) {
+            share += s.share;
+            moment += s.share * (s.x * s.x + s.y * s.y);
+            // Discs of equal area.
+            EXPECT_NEAR(s.pitch * s.thick * count / (std::numbers::pi * p.radius * p.radius), 1, 1e-12);
+        }
+        EXPECT_NEAR(share, 1, 1e-12);
+        EXPECT_EQ(spines[0].x, 0);
+        EXPECT_EQ(spines[0].y, 0);
+        // Less than that of the whole disc, R²/2, by what the hair of each cell has about its own spine.
+        EXPECT_LT(moment, 0.5 * p.radius * p.radius);
+        EXPECT_GT(moment, 0.3 * p.radius * p.radius);
+        std::vector<int> neighbours(spines.size());
+        for (const FerruleNeighbours& n : ferrule_neighbours(p)) {
+            ++neighbours[n.first];
+            ++neighbours[n.second];
+            const Vec2 way{spines[n.second].x - spines[n.first].x, spines[n.second].y - spines[n.first].y};
+            EXPECT_NEAR(glm::distance(glm::normalize(way), n.direction), 0, 1e-12);
+        }
+        EXPECT_EQ(neighbours[0], count - 1);
+        for (std::size_t k = 1; k <= around; ++k) EXPECT_EQ(neighbours[k], 3);
+    }
+    p.spines = 3;
+    EXPECT_ANY_THROW(make_tuft(p));
+}
+
+/// Hair of a ring is shared among its spines by their areas, and fills the disc of each evenly.
+TEST(Ferrule, RingSharesItsHairEvenly) {
+    const Tuft tuft = make_tuft(load_preset("stippler-10"), 3);
+    constexpr int kPlaces = 60000;
+    std::vector<double> count(tuft.spines.size()), inner(tuft.spines.size());
+    for (int i = 0; i < kPlaces; ++i) {
+        const double r = std::sqrt((i + 0.5) / kPlaces), w = 2.399963 * i;  // the golden angle
+        const BranchPlace at = in_branch(tuft.bundles, r * Vec2{std::cos(w), std::sin(w)}, 7);
+        EXPECT_LE(glm::length(at.place), 1 + 1e-12);
+        count[at.branch] += 1;
+        inner[at.branch] += glm::dot(at.place, at.place) < 0.5 ? 1 : 0;
+    }
+    // A spiral of so many points tells areas of a seventh apart to 1 %.
+    for (std::size_t k = 0; k < count.size(); ++k) {
+        EXPECT_NEAR(count[k] * 7 / kPlaces, 1, 0.01) << k;
+        EXPECT_NEAR(inner[k] / count[k], 0.5, 0.01) << k;
+    }
+}
+
 /// Resting sections keep the area of their strip, also in a fan that spreads.
 TEST(Ferrule, RestingSectionsKeepTheirArea) {
     for (const char* name : {"flat-12", "fan-30", "filbert-12"}) {
@@ -112,7 +166,7 @@ TEST(Ferrule, RestingSectionsKeepTheirArea) {
 
 /// A bent section keeps its area: a b is that at rest.
 TEST(WideTuft, BentSectionsKeepTheirArea) {
-    for (const char* name : {"flat-12", "filbert-12", "fan-30", "sword-8", "hake-60"}) {
+    for (const char* name : {"flat-12", "filbert-12", "fan-30", "sword-8", "hake-60", "stippler-10"}) {
         Tuft tuft = make_tuft(load_preset(name), 1);
         const TuftState state = dragged(tuft, {.depth = 0.25, .lean = 0.4});
         for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
@@ -128,7 +182,7 @@ TEST(WideTuft, BentSectionsKeepTheirArea) {
 
 /// The tuft at rest bears no force: its neighbours stand as they were set in, wet or dry.
 TEST(WideTuft, HangsAsItWasSetIn) {
-    for (const char* name : {"flat-12", "filbert-12", "fan-30", "sword-8", "hake-60"}) {
+    for (const char* name : {"flat-12", "filbert-12", "fan-30", "sword-8", "hake-60", "stippler-10"}) {
         for (const double wet : {0.0, 1.0}) {
             Tuft tuft = make_tuft(load_preset(name), 1);
             tuft.wetness = wet;
@@ -202,7 +256,7 @@ TEST(WideTuft, RefinedRowsConverge) {
 
 /// Work of the hand = stored + lost over a closed cycle of press, drag and lift.
 TEST(WideTuft, ClosedCycleLosesWhatTheHandDoes) {
-    for (const char* name : {"flat-12", "filbert-12"}) {
+    for (const char* name : {"flat-12", "filbert-12", "stippler-10"}) {
         Tuft tuft = make_tuft(load_preset(name), 3);
         const Preset& p = tuft.preset;
         double work = 0, lost = 0, most = 0;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "brush/preset/preset.h"
+#include "brush/preset/rest_shape.h"
 #include "brush/tuft/tuft.h"
 #include "footprint/outline/cuts.h"
 #include "footprint/outline/outline.h"
@@ -170,6 +171,37 @@ TEST(WideOutline, FilbertHasARoundToe) {
     const std::size_t n = rim.hi.size();
     EXPECT_GT(rim.hi[n / 2], rim.hi.front() + 0.5e-3);
     for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(rim.hi[i], rim.hi[n - 1 - i], 3 * kCell);
+}
+
+/// A stippler that just touches, upright, marks the disc of its hair: seven discs and all that lies between those that
+/// ink joins, from side to side.
+TEST(WideOutline, RingMarksADisc) {
+    const brush::Preset p = brush::load_preset("stippler-10");
+    brush::Tuft tuft = brush::make_tuft(p, 5);
+    brush::TuftState state;
+    const brush::ContactPlane ground;
+    for (int i = 0; i <= 10; ++i) {
+        brush::Pose pose;
+        pose.position = {0, 0, p.length + 1e-5 - 2e-6 * i};
+        state = brush::step(tuft, pose, std::span(&ground, 1), 1e-3);
+    }
+    const Footprint f = rasterise(outline(state, kFlat, {}, {.film = 0}), kFlat, 0, kCell);
+    double filled = 0;
+    for (int x = 0; x < f.width; ++x) {
+        int lo = f.height, hi = -1;
+        for (int y = 0; y < f.height; ++y) {
+            if (f.coverage[static_cast<std::size_t>(y) * f.width + x] < 128) continue;
+            lo = std::min(lo, y);
+            hi = std::max(hi, y);
+        }
+        filled += std::max(0, hi - lo + 1);
+    }
+    const double area = coverage_area(f), cell = brush::rest_radius(p, 1) / p.radius;
+    // No bay; the middle falls to one side by a quarter of a millimetre, and leaves a gap behind it.
+    EXPECT_NEAR(filled * f.cell * f.cell / area, 1, 0.05);
+    // Within the disc; the hexagon of the outer discs' outer sides is the least.
+    EXPECT_LT(area, 1.02 * std::numbers::pi * p.radius * p.radius);
+    EXPECT_GT(area, 0.75 * std::numbers::pi * p.radius * p.radius * cell);
 }
 
 /// Width of the stripe of a sword after a long way, straight or on a circle of 60 mm, metres. Its blade goes along the

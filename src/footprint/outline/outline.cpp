@@ -290,6 +290,8 @@ Cut cut_between(const Cut& p, const Cut& q, double f) {
             glm::dot(turn, turn) > 1e-6 ? glm::normalize(turn) : p.turn};
 }
 
+constexpr double kPast = 0.02;  ///< of the hair, that one of two joined ends may touch further
+
 /// A trail that is looked at from its tip to its root.
 struct Walk {
     const Trail* trail = nullptr;
@@ -308,6 +310,14 @@ struct Walk {
   private:
     double step_to(double u) {
         const double along = u * trail->length;
+        // The round end of discs lies beyond all hair.
+        if (const double past = along - trail->along.front(); past > 0 && !trail->strip) {
+            const auto at = std::upper_bound(trail->along.rbegin(), trail->along.rend(), trail->along.front() - 1e-12);
+            const auto end = static_cast<double>(std::max<std::ptrdiff_t>(trail->along.rend() - at, 2) - 1);
+            const double place = end * (1 - std::min(1.0, past / kPast));
+            from = std::min(static_cast<std::size_t>(place), trail->cuts.size() - 2);
+            return std::min(1.0, place - static_cast<double>(from));
+        }
         while (from + 2 < trail->cuts.size() && trail->along[from + 1] > along) ++from;
         const double run = trail->along[from] - trail->along[from + 1];
         return run > 0 ? std::clamp((trail->along[from] - along) / run, 0.0, 1.0) : 0;
@@ -323,7 +333,6 @@ const TrailOpening* opening_between(const Trail& a, const Trail& b) {
 /// The stretches over which all of the given neighbouring trails are joined, of where all touch.
 std::vector<Joint> joints_of(std::span<const Trail* const> trails) {
     constexpr int kJointSamples = 24;
-    constexpr double kPast = 0.02;  // of the hair, that one of two joined ends may touch further
     std::vector<Joint> out;
     std::vector<Walk> walks;
     double tip = 1e9, root = -1e9;
@@ -351,13 +360,13 @@ std::vector<Joint> joints_of(std::span<const Trail* const> trails) {
     return out;
 }
 
-/// Adds the skin between the sections i of two sides, `last` of which is at the end.
-void add_bridge(std::span<const Vec2> p, std::span<const Vec2> q, bool end, Envelope& envelope) {
+/// Adds the skin between two sections side by side; with `ends` also before and behind them.
+void add_bridge(std::span<const Vec2> p, std::span<const Vec2> q, bool ends, Envelope& envelope) {
     const auto [p_low, p_high] = std::minmax_element(p.begin(), p.end(), by_y);
     const auto [q_low, q_high] = std::minmax_element(q.begin(), q.end(), by_y);
     envelope.add(*p_low, *q_low);
     envelope.add(*p_high, *q_high);
-    if (!end) return;
+    if (!ends) return;
     const auto [p_rear, p_front] = std::minmax_element(p.begin(), p.end(), by_x);
     const auto [q_rear, q_front] = std::minmax_element(q.begin(), q.end(), by_x);
     envelope.add(*p_rear, *q_rear);
@@ -367,6 +376,7 @@ void add_bridge(std::span<const Vec2> p, std::span<const Vec2> q, bool end, Enve
 /// Outline of joined stretches and of all that lies between them.
 Outline outline_of(const Joint& joint, int points) {
     const std::size_t n = joint.side.front().size(), sides = joint.side.size();
+    const bool discs = !joint.trail.front()->strip;  // any of them may reach furthest
     Vec2 forward{0}, middle{0};
     for (const std::vector<Cut>& side : joint.side) {
         forward += forward_direction(side);
@@ -383,7 +393,7 @@ Outline outline_of(const Joint& joint, int points) {
     for (std::size_t k = 0; k < sides; ++k)
         for (std::size_t l = k + 1; l < sides; ++l)
             for (std::size_t i = 0; i < n; ++i)
-                add_bridge(loops[k * n + i], loops[l * n + i], i == 0 || i + 1 == n, envelope);
+                add_bridge(loops[k * n + i], loops[l * n + i], discs || i == 0 || i + 1 == n, envelope);
     return closed_outline(envelope, patch, {*front, *rear}, points, joint.trail.front()->strip);
 }
 
