@@ -1,3 +1,5 @@
+#include "cli/paint.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 
 #include "cli/commands.h"
 #include "cli/drawing.h"
-#include "cli/paint.h"
 #include "cli/steps.h"
 #include "core/system/files.h"
 #include "core/text/counted.h"

@@ -112,8 +112,8 @@ void note_placed(const PlacedDrawing& p, const Paint& a, const Box& area, double
 }
 
 std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
-                                         const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths,
-                                         Console& console) {
+                                            const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths,
+                                            Console& console) {
     const auto mapping = stroke::surface_mapping_named(a.mapping);
     for (stroke::FlatArea* area : stroke::areas_in(strokes, true)) {
         if (!area->placed) area->placement.mapping = stroke::SurfaceMapping::drape;

@@ -221,7 +221,8 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
         number_groups(std::span(strokes).subspan(first), file, n_groups);
         if (!a.ink.empty())
             for (std::size_t i = first; i < strokes.size(); ++i) use_ink(strokes[i], a.ink);
-        if (a.dry >= 0 && !strokes.empty()) strokes.emplace_back(stroke::Dry{.seconds = a.dry, .down = options.settings.down});
+        if (a.dry >= 0 && !strokes.empty())
+            strokes.emplace_back(stroke::Dry{.seconds = a.dry, .down = options.settings.down});
         report(console.progress(), "strokes", 1);
     }
     return strokes;

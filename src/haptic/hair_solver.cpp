@@ -60,7 +60,8 @@ void HairSolver::bound_root(const RootPose& pose, HairAnswer& answer) {
         s.clear = stand.triangle == kNone ? 2 * reach : std::max(0.0, stand.height);
         if (stand.triangle == kNone || answer.n_bounds == HairAnswer::kMostBounds) continue;
         const Vec3& n = stand.plane.normal;
-        const double needed = s.radius < 0 ? contact::mouth_clearance(n, axis, contact::ferrule_pad(tuft_.preset)) : s.radius;
+        const double needed =
+            s.radius < 0 ? contact::mouth_clearance(n, axis, contact::ferrule_pad(tuft_.preset)) : s.radius;
         if (stand.height > needed + kMargin) continue;
         answer.bounds[answer.n_bounds++] = {n, glm::dot(n, pose.position) + needed - stand.height, lever};
     }

@@ -223,9 +223,8 @@ TEST(Svg, EffectsThatABrushCannotPaintAreReportedWithTheirCounts) {
                    square + "fill='url(#gone)'/>" + square + "fill='url(#gone) black'/>"),
               (Notes{"1 area or line has a paint that the file does not hold and is not painted",
                      "2 gradients are painted as one even ink", "1 pattern is painted as one even ink"}));
-    EXPECT_EQ(
-        told("<style>g > path {fill:red} @media print {.b{fill:red} .c{fill:red}} .x{}</style>"),
-        Notes{"1 rule of a style sheet is passed over: at-rules and most pseudo-classes are not understood"});
+    EXPECT_EQ(told("<style>g > path {fill:red} @media print {.b{fill:red} .c{fill:red}} .x{}</style>"),
+              Notes{"1 rule of a style sheet is passed over: at-rules and most pseudo-classes are not understood"});
     EXPECT_EQ(told(line + "style='transform:scale(2)'/>"),
               Notes{"1 transform in a style is not applied: write it as an attribute"});
 }

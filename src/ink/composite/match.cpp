@@ -394,7 +394,8 @@ ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::
     return match;
 }
 
-Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> present, MixSearches* searches) {
+Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> present,
+              MixSearches* searches) {
     if (name.empty() || name[0] != '#') return load_ink(name);
     const std::optional<Rgb> wanted = colour_of_hex(name);
     if (!wanted) throw Error(Message("'{}' is no colour; write #rrggbb, such as #c03020", std::string(name)));

@@ -262,8 +262,8 @@ void draw_brush(BrushCanvas& canvas, const PosedTuft& posed, const BrushView& vi
     const auto& [tuft, state, pose] = posed;
     const Preset& p = tuft.preset;
     const double r = has_broad_side(p) ? std::max(1.3 * p.radius, 0.3 * p.width)
-                     : is_foam(p) ? 0.32 * p.radius
-                                  : 1.12 * rest_radius(p, 0);
+                     : is_foam(p)      ? 0.32 * p.radius
+                                       : 1.12 * rest_radius(p, 0);
     const Turned handle{
         0.2 * p.length, length, 0.92 * r, 0.9 * r, linear_colour(96, 66, 34), linear_colour(222, 184, 120)};
     const Turned ferrule{0, 0.22 * p.length, r, 1.04 * r, linear_colour(28, 28, 32), linear_colour(150, 150, 158)};

@@ -8,10 +8,9 @@ namespace tuft::stroke {
 HairShape find_hair(const brush::Tuft& tuft, const contact::Result& contact) {
     HairShape hair;
     if (!brush::is_foam(tuft.preset))
-        hair.trails = footprint::find_trails(contact.tuft, contact.frame, contact.branch_planes, tuft.preset.length,
-                                             kSkinFilm);
-    if (!contact.planes.empty() && !tuft.carried)
-        hair.upright = brush::upright_hair_of(tuft, contact.planes.front());
+        hair.trails =
+            footprint::find_trails(contact.tuft, contact.frame, contact.branch_planes, tuft.preset.length, kSkinFilm);
+    if (!contact.planes.empty() && !tuft.carried) hair.upright = brush::upright_hair_of(tuft, contact.planes.front());
     return hair;
 }
 

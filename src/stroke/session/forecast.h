@@ -33,9 +33,7 @@ class StrokeForecast {
     };
 
     /// Whether a tuft can be forecast: fresh, of hair in a ferrule, and bent by our own rods.
-    static bool serves(const brush::Tuft& tuft) {
-        return !tuft.posed && !tuft.split && !tuft.model && !tuft.carried;
-    }
+    static bool serves(const brush::Tuft& tuft) { return !tuft.posed && !tuft.split && !tuft.model && !tuft.carried; }
 
     /// `path`: poses of the resampled path. Cost: that of bending and outlines at every pose.
     StrokeForecast(brush::Tuft tuft, std::span<const brush::Pose> path, const mesh::SurfaceQuery& surface,
