@@ -25,7 +25,7 @@ namespace {
 using namespace std::chrono_literals;
 using haptic::DeviceLimits;
 
-constexpr auto kPatience = 3000ms, kLook = 10ms;
+constexpr auto kStopPatience = 3000ms, kLook = 10ms;
 
 haptic::ServerFault fault_named(const std::string& name) {
     using haptic::ServerFault;
@@ -180,7 +180,7 @@ std::unique_ptr<haptic::Device> open_device(const DeviceWork& a, const haptic::H
             haptic::SimulatedArm(haptic::device_preset(a.simulate), path, {.delay = 1e-3 * a.delay_ms}));
     auto device =
         std::make_unique<haptic::HaplyDevice>(haptic::device_preset(a.preset), haptic::HaplyAddress{a.host, a.port});
-    for (auto waited = 0ms; waited < kPatience; waited += kLook) {
+    for (auto waited = 0ms; waited < kStopPatience; waited += kLook) {
         check_interrupt();
         if (device->read(state)) return device;
         std::this_thread::sleep_for(kLook);

@@ -51,7 +51,7 @@ std::vector<ink::Pigment> candidates(const InkWork& a) {
     return all;
 }
 
-nlohmann::json to_json(const ink::ColourMatch& match, const ink::Substrate& substrate) {
+nlohmann::json match_json(const ink::ColourMatch& match, const ink::Substrate& substrate) {
     nlohmann::json parts = nlohmann::json::array();
     for (const ink::InkPart& part : match.ink.parts)
         parts.push_back({{"pigment", part.pigment.name}, {"fraction", part.fraction}});
@@ -83,7 +83,7 @@ int run(const InkWork& a) {
         write_file(a.output, toml.data(), toml.size());
     }
     if (a.common.json) {
-        nlohmann::json j = to_json(match, substrate);
+        nlohmann::json j = match_json(match, substrate);
         if (!a.output.empty()) j["wrote"] = a.output.string();
         std::cout << j.dump(2) << '\n';
         return 0;

@@ -36,8 +36,8 @@ void HairSolver::restart(const RootPose& pose) {
     const brush::Pose at{pose.position, pose.rotation, 0};
     memory_ = {};
     if (tuft_.posed) brush::step(tuft_, at, {}, 0);  // the hair comes through the air, as it sprang back
-    const contact::StandOptions reach{.reach = options_.handle_length};
-    const Vec3 free = contact::find_outside(surface_, pose.position, -at.axis(), reach);
+    const contact::NodeContactOptions reach{.reach = options_.handle_length};
+    const Vec3 free = contact::find_outside_point(surface_, pose.position, -at.axis(), reach);
     for (Station& s : stations_) {
         s.outside = s.last = free;
         s.clear = 0;
@@ -53,7 +53,8 @@ void HairSolver::bound_root(const RootPose& pose, HairAnswer& answer) {
         const Vec3 lever = pose.rotation * s.place, p = pose.position + lever;
         const double reach = kMargin + (s.radius < 0 ? tuft_.preset.radius : s.radius);
         if (s.clear - glm::length(p - s.last) > reach) continue;
-        const contact::Stand stand = contact::stand_from(surface_, s.outside, s.side, p, {.reach = 2 * reach});
+        const contact::NodeContact stand =
+            contact::find_node_contact(surface_, {.node = p, .from = s.outside, .side = s.side}, {.reach = 2 * reach});
         s.outside = stand.triangle == kNone ? p : stand.outside;
         s.side = stand.triangle == kNone ? 1 : stand.side;
         s.last = p;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "contact/contact.h"
-#include "contact/outside.h"
+#include "contact/node_contact.h"
 #include "haptic/hair_answer.h"
 
 /// \file

@@ -138,7 +138,7 @@ Areas pressed(const std::string& name, double depth) {
         state = brush::step(tuft, pose, {&sheet, 1}, 0.01);
     }
     const double film = 1e-4;
-    const std::vector<Outline> outlines = outline(state, Frame{}, {}, {.film = film});
+    const std::vector<Outline> outlines = outlines_of(state, Frame{}, {}, {.film = film});
     return {area_of(rasterise(outlines, Frame{}, 0, 5e-5)),
             area_of(rasterise_polygons(section_polygons(*tuft.carried, state.shape, Frame{}, {.film = film}), Frame{},
                                        0, 5e-5))};

@@ -185,7 +185,7 @@ TEST(WideOutline, RingMarksADisc) {
         pose.position = {0, 0, p.length + 1e-5 - 2e-6 * i};
         state = brush::step(tuft, pose, std::span(&ground, 1), 1e-3);
     }
-    const Footprint f = rasterise(outline(state, kFlat, {}, {.film = 0}), kFlat, 0, kCell);
+    const Footprint f = rasterise(outlines_of(state, kFlat, {}, {.film = 0}), kFlat, 0, kCell);
     double filled = 0;
     for (int x = 0; x < f.width; ++x) {
         int lo = f.height, hi = -1;

@@ -23,7 +23,7 @@ struct Read {
 Read read(const std::string& inside, const std::string& page = "width='100mm' height='100mm' viewBox='0 0 100 100'") {
     Read out;
     SvgOptions options{.painting = SvgPainting::areas};
-    options.ink.note = [&](const std::string& line) { out.notes.push_back(line); };
+    options.ink.note = [&](const Message& line) { out.notes.push_back(line.text()); };
     for (const stroke::RecordedStroke& r : parse_svg(
              "<svg xmlns:xlink='http://www.w3.org/1999/xlink' " + page + ">" + inside + "</svg>", "a.svg", options)) {
         EXPECT_TRUE(r.samples.empty());

@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
     with.style.tries = static_cast<int>(number("tries", with.style.tries));
     Writer writer(with);
     stroke::WidthTables tables;
-    const BrushHand hand{tables.preset(writer.brush()), tables.of(writer.brush()), tables.hold(writer.brush()),
+    const BrushHand hand{tables.preset(writer.brush()), tables.of(writer.brush()), tables.holder(writer.brush()),
                          writer.unit()};
     std::map<std::string, Sum> classes;
     std::vector<double> scores;

@@ -195,7 +195,7 @@ FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTex
                 if (!any) continue;
                 coat.first = mixes[stop];
                 coat.second = mixes[next];
-                laid[i] += ink::lay_coat(target.canvas, slot, map.tiles[slot].area, coat, target.substrate.capacity);
+                laid[i] += ink::add_coat(target.canvas, slot, map.tiles[slot].area, coat, target.substrate.capacity);
             }
         }
     });

@@ -60,7 +60,7 @@ Writer::Writer(WriterOptions options) : options_(std::move(options)) {
 }
 
 BrushHand Writer::hand() {
-    return {tables_.preset(brush_), tables_.of(brush_), tables_.hold(brush_), unit()};
+    return {tables_.preset(brush_), tables_.of(brush_), tables_.holder(brush_), unit()};
 }
 
 Pace Writer::pace() const {
