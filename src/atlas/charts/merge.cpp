@@ -14,11 +14,11 @@
 namespace tuft::atlas {
 namespace {
 
-constexpr std::size_t kLargeChart = 4096;  // triangles
-constexpr double kNearEnds = 1.0 / 32;     // of the border's length
-constexpr double kAsLong = 1.05;           // as another
-constexpr double kAtFirst = 1.1;           // beyond limits of form, before a chart is laid flat
-constexpr double kUnderway = 1.01;         // the same after a step of it
+constexpr std::size_t kManyTriangles = 4096;  // from which crossings are looked for in each step
+constexpr double kNearEnds = 1.0 / 32;        // of the border's length
+constexpr double kAsLong = 1.05;              // as another
+constexpr double kAtFirst = 1.1;              // beyond limits of form, before a chart is laid flat
+constexpr double kUnderway = 1.01;            // the same after a step of it
 constexpr double kNearEndsUnderway = 1.0 / 64;
 constexpr int kSettled = 4;       // steps after which the rest of a crossing stays
 constexpr double kUsualWork = 5;  // triangles in all trials, over those of the mesh
@@ -221,7 +221,7 @@ class Merger {
 
         // Charts that lie one over the other stay so; only near the ends of the chain do small
         // crossings go away. That is worth a look where laying flat is dear.
-        if (mesh.faces.size() > kLargeChart && crosses_itself(mesh, t.flat.uv, 0, kNearEnds)) return;
+        if (mesh.faces.size() > kManyTriangles && crosses_itself(mesh, t.flat.uv, 0, kNearEnds)) return;
         // Nor does laying flat change much of the shape.
         const std::array<Form, 2> parts{form_of(a), form_of(b)};
         scale_to_area(mesh, t.flat.uv);
@@ -247,7 +247,7 @@ class Merger {
     /// Whether a chart of two parts that is being laid flat will have to be rejected: nearly all its
     /// motion is in the first steps.
     bool should_stop(const FlatChart& chart, const std::array<Form, 2>& parts, int steps) const {
-        if (chart.mesh.faces.size() <= kLargeChart) return false;
+        if (chart.mesh.faces.size() <= kManyTriangles) return false;
         if (misshapen(form_of(chart), parts, kUnderway)) return true;
         if (chart.mesh.faces.size() <= kLargeChart) return false;
         return crosses_itself(chart.mesh, chart.uv, 0, steps < kSettled ? kNearEndsUnderway : 0);

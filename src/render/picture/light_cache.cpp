@@ -24,7 +24,7 @@ int side_of(const Vec3f& n) {
 
 }  // namespace
 
-Vec3f float_face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+Vec3f face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
     const auto& t = mesh.triangles[triangle];
     const Vec3f n =
         glm::cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
@@ -138,7 +138,7 @@ void LightCache::link_patch(const Scene& scene, const Patch& at, std::size_t ind
         const Vec3f d = cosine_direction(at.n, wrap(sobol_point(i) + shift));
         const mesh::RayHit hit = scene.query.trace(start, d, 0, std::numeric_limits<float>::infinity());
         if (hit.triangle != kNone) {
-            Vec3f n = float_face_normal(scene.mesh, hit.triangle);
+            Vec3f n = face_normal(scene.mesh, hit.triangle);
             if (glm::dot(n, d) > 0) n = -n;
             const Vec3f p = start + hit.distance * d;
             const std::uint32_t patch = find(key(p, side_of(n)));
