@@ -212,17 +212,17 @@ struct Bench {
 /// `tuft write MODEL --text TEXT`
 struct Write : Paint {
     std::string text;
-    std::filesystem::path glyphs;            ///< source of strokes before the bundled ones, or empty
-    std::string style = "kaishu";            ///< name or .toml
-    bool fit = false;                        ///< to the source's outlines
-    double size_mm = 0;                      ///< side of a character's square; 0: as the place allows
-    std::string direction = "horizontal";    ///< horizontal | vertical | rim | curve
-    std::filesystem::path curve;             ///< stroke file whose first line the text runs along, or empty
-    double spacing = 0, line_spacing = 0;    ///< 0: the style's
+    std::filesystem::path glyphs;          ///< source of strokes before the bundled ones, or empty
+    std::string style = "kaishu";          ///< name or .toml
+    bool fit = false;                      ///< to the source's outlines
+    double size_mm = 0;                    ///< side of a character's square; 0: as the place allows
+    std::string direction = "horizontal";  ///< horizontal | vertical | rim | curve
+    std::filesystem::path curve;           ///< stroke file whose first line the text runs along, or empty
+    double spacing = 0, line_spacing = 0;  ///< 0: the style's
 };
 
-using Command = std::variant<Paint, Write, Inspect, Unwrap, Replay, Export, Render, Brush, BiasCorrection, Bench, LayerWork,
-                             FillWork, MaskWork, InkWork>;
+using Command = std::variant<Paint, Write, Inspect, Unwrap, Replay, Export, Render, Brush, BiasCorrection, Bench,
+                             LayerWork, FillWork, MaskWork, InkWork>;
 
 /// Parses the command line into `command`. Returns false, with the exit status in `status`, when there is nothing to
 /// run: after printing help or version (0), and after one line on standard error for a wrong command line (2). Main

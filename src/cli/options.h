@@ -22,7 +22,7 @@ constexpr const char* CLI::detail::type_name<std::filesystem::path>() {
 namespace tuft::cli {
 
 inline constexpr double kFarthestMm = kFarthest / kMillimetre;
-inline constexpr double kMostTexels = 1e9;           // along a side; memory is asked about later
+inline constexpr double kMostTexels = 1e9;  // along a side; memory is asked about later
 inline constexpr double kLeastTexelMm = 1e-9;
 inline constexpr double kMostDegrees = 36000;  // a hundred turns
 

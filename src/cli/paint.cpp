@@ -1,3 +1,5 @@
+#include "cli/paint.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <optional>
 
 #include "cli/commands.h"
-#include "cli/paint.h"
 #include "cli/steps.h"
 #include "core/system/files.h"
 #include "core/text/counted.h"

@@ -157,7 +157,9 @@ constexpr double kMostPicture = 16384;  // pixels along a side
 }
 
 void add_write_options(CLI::App* w, Write& write) {
-    w->add_option("--text", write.text, "what is written; \\n begins a line or a column")->required()->type_name("TEXT");
+    w->add_option("--text", write.text, "what is written; \\n begins a line or a column")
+        ->required()
+        ->type_name("TEXT");
     w->add_option("--glyphs", write.glyphs,
                   "where the characters' strokes come from before the bundled ones: a folder of KanjiVG (SVG), of "
                   "hanzi-writer-data or Make Me a Hanzi (JSON), a single-line SVG font, or a font file")

@@ -173,7 +173,8 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
         stroke::append_entries(strokes, std::move(traces), options);
         for (std::size_t i = first; i < strokes.size(); ++i)
             strokes[i].group = {static_cast<std::uint64_t>(1 + (&file - a.strokes.data())), stroke::group_name(file)};
-        if (a.dry >= 0 && !strokes.empty()) strokes.emplace_back(stroke::Dry{.seconds = a.dry, .down = options.settings.down});
+        if (a.dry >= 0 && !strokes.empty())
+            strokes.emplace_back(stroke::Dry{.seconds = a.dry, .down = options.settings.down});
         report(console.progress(), "strokes", 1);
     }
     return strokes;

@@ -118,11 +118,8 @@ class Entries {
 };
 
 writer::Writer make_writer(const Text& text, const Write& a, double side) {
-    return writer::Writer({.style = text.style,
-                           .brush = a.brush,
-                           .side = side,
-                           .fit = a.fit,
-                           .cache = writer::fit_cache_folder()});
+    return writer::Writer(
+        {.style = text.style, .brush = a.brush, .side = side, .fit = a.fit, .cache = writer::fit_cache_folder()});
 }
 
 std::optional<PlacedDrawing> write_in_lines(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
@@ -217,11 +214,11 @@ int run(const Write& a) {
     const bool along =
         text.layout.direction == writer::Direction::rim || text.layout.direction == writer::Direction::curve;
     return paint(a, {.load = [](Console&) { return std::vector<stroke::JournalEntry>{}; },
-                     .place = [&](std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
-                                  Console& console) {
-                         return along ? write_along(strokes, model, text, a, console)
-                                      : write_in_lines(strokes, model, text, a, console);
-                     }});
+                     .place =
+                         [&](std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model, Console& console) {
+                             return along ? write_along(strokes, model, text, a, console)
+                                          : write_in_lines(strokes, model, text, a, console);
+                         }});
 }
 
 }  // namespace tuft::cli

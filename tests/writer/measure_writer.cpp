@@ -1,8 +1,8 @@
 // Measures the writer on characters of a folder of hanzi-writer-data:
 //   measure_writer sides DATA CHARACTERS                     features and measured sides of each stroke, a line each
 //   measure_writer score DATA CHARACTERS [--fit 1] [--brush NAME] [--side MM] [--tries N] [--step UNITS] [--verbose 1]
-// CHARACTERS is a file. `score` draws the writer's strokes on a plane, without texels, and compares their union with the
-// outlines in cells of 2 units; score_painted.py compares what `tuft write` painted.
+// CHARACTERS is a file. `score` draws the writer's strokes on a plane, without texels, and compares their union with
+// the outlines in cells of 2 units; score_painted.py compares what `tuft write` painted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,8 +61,10 @@ int main(int argc, char** argv) {
     std::map<std::string, std::string> options;
     std::vector<std::string> words;
     for (int i = 1; i < argc; ++i)
-        if (std::strncmp(argv[i], "--", 2) == 0 && i + 1 < argc) options[argv[i] + 2] = argv[i + 1], ++i;
-        else words.emplace_back(argv[i]);
+        if (std::strncmp(argv[i], "--", 2) == 0 && i + 1 < argc)
+            options[argv[i] + 2] = argv[i + 1], ++i;
+        else
+            words.emplace_back(argv[i]);
     const auto number = [&](const std::string& key, double otherwise) {
         return options.contains(key) ? std::stod(options[key]) : otherwise;
     };
@@ -93,8 +95,8 @@ int main(int argc, char** argv) {
         Cells truth = square(), drawn = square();
         for (std::size_t s = 0; s < written.size(); ++s) {
             fill(truth, glyph.strokes[s].outline);
-            const stroke::PlaneInk ink =
-                stroke::plane_ink(written[s].trace, hand.preset, hand.hold, number("step", 5) * hand.unit, 2 * hand.unit);
+            const stroke::PlaneInk ink = stroke::plane_ink(written[s].trace, hand.preset, hand.hold,
+                                                           number("step", 5) * hand.unit, 2 * hand.unit);
             Cells own = square();
             fill(own, glyph.strokes[s].outline);
             Overlap overlap;
@@ -106,8 +108,7 @@ int main(int argc, char** argv) {
                 }
             Sum& sum = classes[make_stroke_line(glyph.strokes[s].median).stroke_class()];
             sum.iou += overlap.iou(), ++sum.n, ++n_strokes;
-            if (options.contains("verbose"))
-                fmt::print("  {} {:.3f}\n", written[s].label, overlap.iou());
+            if (options.contains("verbose")) fmt::print("  {} {:.3f}\n", written[s].label, overlap.iou());
         }
         Overlap whole;
         for (std::size_t i = 0; i < truth.inside.size(); ++i) whole.add(truth.inside[i], drawn.inside[i]);
@@ -122,8 +123,8 @@ int main(int argc, char** argv) {
         all += s.iou;
     }
     for (const double s : scores) sum += s;
-    fmt::print("{} characters: mean {:.4f}, worst {:.3f}; {} strokes: mean {:.4f}, {:.3f} s of CPU each\n", scores.size(),
-               sum / static_cast<double>(scores.size()), *std::min_element(scores.begin(), scores.end()), n_strokes,
-               all / static_cast<double>(n_strokes), seconds / static_cast<double>(n_strokes));
+    fmt::print("{} characters: mean {:.4f}, worst {:.3f}; {} strokes: mean {:.4f}, {:.3f} s of CPU each\n",
+               scores.size(), sum / static_cast<double>(scores.size()), *std::min_element(scores.begin(), scores.end()),
+               n_strokes, all / static_cast<double>(n_strokes), seconds / static_cast<double>(n_strokes));
     return 0;
 }

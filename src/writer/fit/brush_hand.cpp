@@ -6,7 +6,7 @@
 namespace tuft::writer {
 namespace {
 
-constexpr double kBlunt = 12;      // units of half width from which an end is blunt
+constexpr double kBlunt = 12;       // units of half width from which an end is blunt
 constexpr double kLiftTime = 0.03;  // seconds from the last ink to the free tip
 
 /// Curvature at a station from its neighbours two stations away, 1/units.

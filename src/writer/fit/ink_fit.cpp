@@ -9,18 +9,18 @@ namespace tuft::writer {
 namespace {
 
 constexpr double kMove = 0.6, kPress = 0.5, kLengthen = 0.6;  // parts of an error taken back at once
-constexpr double kOwn = 60;       // units along the path within which ink is a station's own
-constexpr double kMostMoved = 60;  // units from the path of the first try
-constexpr double kTip = 5;        // units of half width at a tip
-constexpr double kGrown = 1.15;   // of the first half width, with kTip more: beyond it corners become balls
-constexpr double kEndFade = 20;   // units over which a moved end fades
-constexpr double kSoft = 2;       // stations of the Gaussian that smooths corrections
-constexpr double kSharp = 1.6;       // radians of a turn at which corrections are smoothed less
-constexpr double kCornerSoft = 1.2;  // stations, there
+constexpr double kOwn = 60;              // units along the path within which ink is a station's own
+constexpr double kMostMoved = 60;        // units from the path of the first try
+constexpr double kTip = 5;               // units of half width at a tip
+constexpr double kGrown = 1.15;          // of the first half width, with kTip more: beyond it corners become balls
+constexpr double kEndFade = 20;          // units over which a moved end fades
+constexpr double kSoft = 2;              // stations of the Gaussian that smooths corrections
+constexpr double kSharp = 1.6;           // radians of a turn at which corrections are smoothed less
+constexpr double kCornerSoft = 1.2;      // stations, there
 constexpr std::size_t kCornerReach = 3;  // stations
 constexpr double kNeedle = 24;           // units about an end in which its ink must not reach further than wanted
 constexpr double kNeedleBack = 0.6;      // part of that taken back at once
-constexpr double kTaken = 0.5;    // coverage from which a cell is ink
+constexpr double kTaken = 0.5;           // coverage from which a cell is ink
 
 struct Errors {
     std::vector<double> left, right, kick;  ///< units, [stations]

@@ -40,9 +40,9 @@ std::vector<Station> link_between(const std::vector<Station>& a, const std::vect
     const int n = std::max(2, static_cast<int>(gap / kStationsApart));
     for (int i = 1; i < n; ++i) {
         const double t = static_cast<double>(i) / n, u = 1 - t;
-        link.push_back({u * u * u * from + 3 * u * u * t * (from + pull * out) + 3 * u * t * t * (to - pull * in) +
-                            t * t * t * to,
-                        half});
+        link.push_back(
+            {u * u * u * from + 3 * u * u * t * (from + pull * out) + 3 * u * t * t * (to - pull * in) + t * t * t * to,
+             half});
     }
     return link;
 }

@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 namespace tuft::writer {
 namespace {
 
-constexpr double kMargin = 80;                // units of cells around a stroke
-constexpr float kUnder = 0.25f;               // weight of an error under another stroke
-constexpr std::uint64_t kVersion = 5;         // of what is stored in the cache
+constexpr double kMargin = 80;                 // units of cells around a stroke
+constexpr float kUnder = 0.25f;                // weight of an error under another stroke
+constexpr std::uint64_t kVersion = 5;          // of what is stored in the cache
 constexpr std::size_t kMostStations = 20'000;  // of a stroke
 
 double median_width(const stroke::LineWidths& widths, double unit) {
@@ -109,7 +109,8 @@ std::vector<std::vector<WrittenStroke>> Writer::write(const std::vector<Glyph>& 
     const BrushHand with = hand();
     const Pace at = pace();
     const std::string preset = brush::preset_toml(with.preset);
-    const double facts[] = {with.unit,  at.speed, at.radius, at.ends, at.ease, static_cast<double>(options_.style.tries)};
+    const double facts[] = {with.unit, at.speed, at.radius,
+                            at.ends,   at.ease,  static_cast<double>(options_.style.tries)};
     const std::uint64_t seed = hash_bytes(facts, sizeof facts, hash_bytes(preset.data(), preset.size()));
     struct Place {
         std::size_t glyph, stroke;
@@ -181,7 +182,9 @@ WrittenStroke Writer::motion(const std::vector<Station>& stations, const Glyph& 
     std::vector<Station> own = stations;
     const bool drawn = glyph.single_line || style.kind != HandKind::brush;
     if (drawn && style.kind != HandKind::nib)  // ends as round as the line is wide
-        for (Station& s : own) s.half = style.kind == HandKind::line ? style.half_width : median_width(with.widths, with.unit) / with.unit / 2;
+        for (Station& s : own)
+            s.half =
+                style.kind == HandKind::line ? style.half_width : median_width(with.widths, with.unit) / with.unit / 2;
     out.trace = samples_of(own, with, pace());
     if (style.kind == HandKind::nib && glyph.single_line)
         for (stroke::StrokeSample& s : out.trace.samples) s.roll = style.edge_angle;

@@ -18,10 +18,10 @@ namespace tuft::writer {
 
 struct WriterOptions {
     Style style;
-    std::string brush;             ///< preset; empty: the style's, in the size that suits the character
-    double side = 0.05;            ///< metres, of a character's square
-    bool fit = false;              ///< to the source's outlines where it states them; else to predicted sides
-    std::filesystem::path cache;   ///< folder of fitted strokes; empty: none
+    std::string brush;            ///< preset; empty: the style's, in the size that suits the character
+    double side = 0.05;           ///< metres, of a character's square
+    bool fit = false;             ///< to the source's outlines where it states them; else to predicted sides
+    std::filesystem::path cache;  ///< folder of fitted strokes; empty: none
 };
 
 /// A stroke of the hand.

@@ -73,8 +73,8 @@ void fill(Cells& cells, std::span<const Ring> rings) {
             winding += row[k].winding;
             if (winding == 0) continue;
             const auto cell_from = [&](double x) {
-                return static_cast<int>(std::clamp(std::ceil((x - cells.lo.x) / cells.cell - 0.5), 0.0,
-                                                   static_cast<double>(cells.width)));
+                return static_cast<int>(
+                    std::clamp(std::ceil((x - cells.lo.x) / cells.cell - 0.5), 0.0, static_cast<double>(cells.width)));
             };
             for (int i = cell_from(row[k].x); i < cell_from(row[k + 1].x); ++i)
                 cells.inside[std::size_t(j) * cells.width + i] = 1;

@@ -13,8 +13,8 @@ namespace tuft::writer {
 /// Cells of an area. Cell (i, j) has its centre at lo + ((i + ½) cell, (j + ½) cell).
 struct Cells {
     Vec2 lo{0};
-    double cell = 2;                  ///< units
-    int width = 0, height = 0;        ///< cells
+    double cell = 2;                   ///< units
+    int width = 0, height = 0;         ///< cells
     std::vector<std::uint8_t> inside;  ///< [width * height] 1: in the area
 
     Vec2 centre(int i, int j) const { return lo + cell * Vec2(i + 0.5, j + 0.5); }

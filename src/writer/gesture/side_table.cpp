@@ -91,8 +91,10 @@ SideTable SideTable::parse(std::string_view text, const std::string& source) {
         std::istringstream row(line);
         std::vector<double> out(n);
         for (double& v : out)
-            if (!(row >> v) || !(std::abs(v) < 1e7)) fail("a row has too few numbers, or one that is none");
-            else v *= kScale;
+            if (!(row >> v) || !(std::abs(v) < 1e7))
+                fail("a row has too few numbers, or one that is none");
+            else
+                v *= kScale;
         return out;
     };
     while (next(line)) {

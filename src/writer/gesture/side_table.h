@@ -15,10 +15,10 @@ namespace tuft::writer {
 /// What a stroke's sides are predicted from: numbers of the order of 1.
 ///
 /// Per stroke: 1; ln of the number of strokes; the middle of the centre line in the square; its place in the order of
-/// writing; ln of the length of all strokes; distances to the nearest other centre line, at most 120 units: at the ends,
-/// beyond them, and to the left and the right at five places; deviation of the direction at head and tail, over 12, 24
-/// and 48 units, from that of the segment. Per segment: ln of its length, its square, the deviation of its direction from
-/// the middle of its code, the bow, the deviation of its first and its third quarter from the chord.
+/// writing; ln of the length of all strokes; distances to the nearest other centre line, at most 120 units: at the
+/// ends, beyond them, and to the left and the right at five places; deviation of the direction at head and tail, over
+/// 12, 24 and 48 units, from that of the segment. Per segment: ln of its length, its square, the deviation of its
+/// direction from the middle of its code, the bow, the deviation of its first and its third quarter from the chord.
 std::vector<double> stroke_features(const StrokeLine& line, const Glyph& glyph, std::size_t stroke);
 std::size_t count_features(std::size_t n_segments);
 

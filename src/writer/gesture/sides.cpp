@@ -13,9 +13,9 @@ constexpr double kMostSide = 130, kMostRay = 70;  // units
 // A side counts at most this part of the median half width, and so many units more: at corners the inner ray runs down
 // the other segment, and would pull the path off the corner.
 constexpr double kWidest = 1.25, kWider = 10;
-constexpr double kLeastEnd = 5;                   // units of half width of an end
-constexpr std::size_t kMostThin = 2;              // stations taken off an end
-constexpr double kTangent = 12;                   // units before and after, of the direction at a knot
+constexpr double kLeastEnd = 5;       // units of half width of an end
+constexpr std::size_t kMostThin = 2;  // stations taken off an end
+constexpr double kTangent = 12;       // units before and after, of the direction at a knot
 
 Vec2 turned(const Vec2& v, double angle) {
     return {std::cos(angle) * v.x - std::sin(angle) * v.y, std::sin(angle) * v.x + std::cos(angle) * v.y};

@@ -14,7 +14,7 @@ namespace tuft::writer {
 
 inline constexpr std::size_t kKnots = 16, kFan = 5;
 /// Places of the knots, part of a segment's length.
-inline constexpr std::array<double, kKnots> kKnotPlaces{0,    .03, .07, .12, .18, .26, .35, .45,
+inline constexpr std::array<double, kKnots> kKnotPlaces{0,   .03, .07, .12, .18, .26, .35, .45,
                                                         .55, .65, .74, .82, .88, .93, .97, 1};
 /// Directions of the rays of a fan, degrees from the outward direction of an end, anticlockwise.
 inline constexpr std::array<double, kFan> kFanDegrees{60, 30, 0, -30, -60};

@@ -38,7 +38,8 @@ std::vector<Vec2> resampled(std::span<const Vec2> line, double apart) {
         const double at = along.back() * static_cast<double>(k) / n;
         while (i + 1 < line.size() && along[i] < at) ++i;
         const double piece = along[i] - along[i - 1];
-        out.push_back(glm::mix(line[i - 1], line[i], piece > 0 ? std::clamp((at - along[i - 1]) / piece, 0.0, 1.0) : 1));
+        out.push_back(
+            glm::mix(line[i - 1], line[i], piece > 0 ? std::clamp((at - along[i - 1]) / piece, 0.0, 1.0) : 1));
     }
     return out;
 }

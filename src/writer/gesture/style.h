@@ -18,19 +18,19 @@ enum class HandKind {
 struct Style {
     std::string name;
     HandKind kind = HandKind::brush;
-    std::string brush = "goat-medium";  ///< preset, made for a character of side `brush_side`
-    double brush_side = 0.133;          ///< metres
-    double speed = 0.06;                ///< m/s at that side; proportional to it
-    double bend_radius = 150;           ///< units, of the two-thirds law
-    double ends = 0.3, ease = 40;       ///< part of the speed at ends; units over which it rises
-    int tries = 8;                      ///< of the fit of a stroke
-    double half_width = 18;             ///< units; of `line`, and the edge of `nib`
-    double link = 0;                    ///< units: gaps up to this length are drawn as a thin line
-    double link_half = 5;               ///< units, half width of that line
-    double rounding = 0;                ///< units over which corners are rounded
-    double weight = 1;                  ///< factor of all half widths
-    double slant = 0;                   ///< radians, letters lean to the right
-    double edge_angle = 0.6981317;      ///< radians, of the nib's edge above the line
+    std::string brush = "goat-medium";           ///< preset, made for a character of side `brush_side`
+    double brush_side = 0.133;                   ///< metres
+    double speed = 0.06;                         ///< m/s at that side; proportional to it
+    double bend_radius = 150;                    ///< units, of the two-thirds law
+    double ends = 0.3, ease = 40;                ///< part of the speed at ends; units over which it rises
+    int tries = 8;                               ///< of the fit of a stroke
+    double half_width = 18;                      ///< units; of `line`, and the edge of `nib`
+    double link = 0;                             ///< units: gaps up to this length are drawn as a thin line
+    double link_half = 5;                        ///< units, half width of that line
+    double rounding = 0;                         ///< units over which corners are rounded
+    double weight = 1;                           ///< factor of all half widths
+    double slant = 0;                            ///< radians, letters lean to the right
+    double edge_angle = 0.6981317;               ///< radians, of the nib's edge above the line
     double spacing = 1.05, line_spacing = 1.25;  ///< parts of the side, between centres of squares
 };
 

@@ -9,8 +9,8 @@ namespace tuft::writer {
 
 std::u32string characters_of(std::string_view text) {
     if (text.size() > 4 * kMostCharacters)
-        throw Error(Message("a text of {} bytes is too long to write (at most {} characters)", text.size(),
-                            kMostCharacters));
+        throw Error(
+            Message("a text of {} bytes is too long to write (at most {} characters)", text.size(), kMostCharacters));
     const std::string utf8 = to_utf8(text);
     std::u32string out;
     for (std::size_t i = 0; i < utf8.size();) {
@@ -36,7 +36,8 @@ std::string utf8_of(char32_t c) {
     } else if (c < 0x10000) {
         byte(0xE0 | (c >> 12)), byte(0x80 | ((c >> 6) & 0x3F)), byte(0x80 | (c & 0x3F));
     } else {
-        byte(0xF0 | (c >> 18)), byte(0x80 | ((c >> 12) & 0x3F)), byte(0x80 | ((c >> 6) & 0x3F)), byte(0x80 | (c & 0x3F));
+        byte(0xF0 | (c >> 18)), byte(0x80 | ((c >> 12) & 0x3F)), byte(0x80 | ((c >> 6) & 0x3F)),
+            byte(0x80 | (c & 0x3F));
     }
     return out;
 }

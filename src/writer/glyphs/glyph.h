@@ -7,9 +7,9 @@
 #include "core/geometry/types.h"
 
 /// \file
-/// Characters as strokes in the order in which a hand writes them. Readers of glyph_source.h make them; `writer/gesture`
-/// turns them into motions of a brush. Frame: units of 1/1024 of the character's side, x to the right, y up; the square
-/// of the character is [0, 1024]².
+/// Characters as strokes in the order in which a hand writes them. Readers of glyph_source.h make them;
+/// `writer/gesture` turns them into motions of a brush. Frame: units of 1/1024 of the character's side, x to the right,
+/// y up; the square of the character is [0, 1024]².
 namespace tuft::writer {
 
 inline constexpr double kSide = 1024;  ///< units along the side of a character's square

@@ -29,7 +29,8 @@ class Folder : public GlyphSource {
 
     std::optional<Glyph> find(char32_t code) override {
         std::error_code none;
-        if (const fs::path json = path_ / (utf8_of(code) + ".json"); code > 0x20 && code != '/' && fs::exists(json, none))
+        if (const fs::path json = path_ / (utf8_of(code) + ".json");
+            code > 0x20 && code != '/' && fs::exists(json, none))
             return parse_hanzi_json(text_of(json, kMostGlyphBytes), code, json.string());
         if (const fs::path svg = path_ / fmt::format("{:05x}.svg", static_cast<unsigned>(code)); fs::exists(svg, none))
             return parse_kanji_svg(text_of(svg, kMostGlyphBytes), code, svg.string());
@@ -116,8 +117,10 @@ std::unique_ptr<GlyphSource> open_folder(const fs::path& path) {
         if (kind != ".svg") continue;
         const std::string stem = file.stem().string();
         const bool code = stem.size() == 5 && stem.find_first_not_of("0123456789abcdef") == std::string::npos;
-        if (code) characters = true;
-        else fonts.push_back(file);
+        if (code)
+            characters = true;
+        else
+            fonts.push_back(file);
     }
     if (error) throw Error(path.string(), Message("the folder cannot be read"));
     for (auto* list : {&books, &fonts, &outlines}) std::sort(list->begin(), list->end());
@@ -180,8 +183,10 @@ std::vector<std::vector<Glyph>> glyphs_of(const std::vector<std::u32string>& lin
         }
         std::vector<Glyph>& row = out.emplace_back();
         for (std::size_t i = 0; i < found.size(); ++i)
-            if (found[i]) row.push_back(std::move(*found[i]));
-            else missing.insert(line[std::min(i, line.size() - 1)]);
+            if (found[i])
+                row.push_back(std::move(*found[i]));
+            else
+                missing.insert(line[std::min(i, line.size() - 1)]);
     }
     if (missing.empty()) return out;
     std::string names;

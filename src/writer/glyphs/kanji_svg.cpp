@@ -9,10 +9,10 @@
 namespace tuft::writer {
 namespace {
 
-constexpr double kBox = 109;          // user units of a character's square in KanjiVG
-constexpr double kTolerance = 0.02;   // user units
-constexpr int kDeepest = 64;          // groups within each other
-constexpr double kInset = 12;         // units by which the centre lines of a typeface end before the ink
+constexpr double kBox = 109;         // user units of a character's square in KanjiVG
+constexpr double kTolerance = 0.02;  // user units
+constexpr int kDeepest = 64;         // groups within each other
+constexpr double kInset = 12;        // units by which the centre lines of a typeface end before the ink
 
 /// Cuts a length off both ends of a line, at most a fifth of it each.
 std::vector<Vec2> inset(const std::vector<Vec2>& line, double by) {

@@ -9,9 +9,9 @@ namespace tuft::writer {
 namespace {
 
 constexpr int kDeepest = 64;
-constexpr double kTolerance = 5e-4;      // of the em
+constexpr double kTolerance = 5e-4;  // of the em
 constexpr std::size_t kMostGlyphs = 70'000;
-constexpr double kDescent = 0.22;        // of the em below the baseline, where the font states none
+constexpr double kDescent = 0.22;  // of the em below the baseline, where the font states none
 
 pugi::xml_node find_font(const pugi::xml_node& node, int depth) {
     if (depth > kDeepest) return {};
@@ -47,9 +47,8 @@ std::vector<Glyph> parse_line_font(std::string_view text, const std::string& sou
         const std::u32string name = characters_of(node.attribute("unicode").value());
         if (name.size() != 1) continue;
         if (glyphs.size() >= kMostGlyphs) throw Error(source, Message("too many glyphs"));
-        Glyph glyph{.code = name[0],
-                    .advance = scale * number(node, "horiz-adv-x", advance, source),
-                    .single_line = true};
+        Glyph glyph{
+            .code = name[0], .advance = scale * number(node, "horiz-adv-x", advance, source), .single_line = true};
         io::svg_path(node.attribute("d").value(), source, {.tolerance = kTolerance * em}, [&](const io::SvgLine& line) {
             if (line.size() < 2) return;
             GlyphStroke stroke;

@@ -67,7 +67,8 @@ int cubic_to(const FT_Vector* first, const FT_Vector* second, const FT_Vector* t
 
 class OutlineFont : public GlyphSource {
   public:
-    explicit OutlineFont(const std::filesystem::path& path) : name_(path.string()), bytes_(read_file(path, kMostFontBytes)) {
+    explicit OutlineFont(const std::filesystem::path& path)
+        : name_(path.string()), bytes_(read_file(path, kMostFontBytes)) {
         if (FT_Init_FreeType(&library_) != 0) throw Error(name_, Message("FreeType does not start"));
         if (FT_New_Memory_Face(library_, reinterpret_cast<const FT_Byte*>(bytes_.data()),
                                static_cast<FT_Long>(bytes_.size()), 0, &face_) != 0 ||

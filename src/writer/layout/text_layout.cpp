@@ -120,8 +120,10 @@ std::vector<std::vector<Vec2>> place_in_lines(const std::vector<std::vector<Glyp
             const double step = columns ? options.spacing * options.side : advance_of(g, options);
             const double own = g.advance / kSide * options.side;  // width of the square of this glyph
             // Corners are at the lower left, y down.
-            if (columns) row.emplace_back(-line - 0.5 * own, at + 0.5 * (step + options.side));
-            else row.emplace_back(at + 0.5 * (step - own), line + 0.5 * options.side);
+            if (columns)
+                row.emplace_back(-line - 0.5 * own, at + 0.5 * (step + options.side));
+            else
+                row.emplace_back(at + 0.5 * (step - own), line + 0.5 * options.side);
             at += step;
         }
     }
@@ -203,10 +205,12 @@ ModelPath level_section(const mesh::SurfaceQuery& query, const Vec3& through) {
         const auto on = query.closest_point(p);
         path.normals.push_back(on ? on->normal : Vec3(0, 0, 1));
     }
-    const auto first = static_cast<std::ptrdiff_t>(
-        std::min_element(path.points.begin(), path.points.end(),
-                         [&](const Vec3& a, const Vec3& b) { return glm::distance(a, begin) < glm::distance(b, begin); }) -
-        path.points.begin());
+    const auto first =
+        static_cast<std::ptrdiff_t>(std::min_element(path.points.begin(), path.points.end(),
+                                                     [&](const Vec3& a, const Vec3& b) {
+                                                         return glm::distance(a, begin) < glm::distance(b, begin);
+                                                     }) -
+                                    path.points.begin());
     const std::size_t k = static_cast<std::size_t>(first), next = k + 1 < path.points.size() ? k + 1 : k - 1;
     const Vec3 ahead = (k + 1 < path.points.size() ? 1.0 : -1.0) * (path.points[next] - path.points[k]);
     if (path.closed) {
