@@ -95,7 +95,8 @@ TEST(Fit, AStraightBarIsCoveredFromAWrongStart) {
     const FitResult once = fit_stations(start, target, hand, {}, {.tries = 1, .fine_tries = 0});
     const FitResult fitted = fit_stations(start, target, hand, {}, {.tries = 12});
     EXPECT_LT(once.iou, 0.6);
-    EXPECT_GT(fitted.iou, 0.95);  // what is left are the ends, where a tuft lands
+    // A cell along both edges, 2 of 44 units, and 6 units at either end, 12 of 444: where a tuft lands and lifts.
+    EXPECT_GT(fitted.iou, 0.93);
 }
 
 TEST(Style, ShippedOnesLoadAndUnknownKeysAreNamed) {
