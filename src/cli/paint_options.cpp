@@ -59,11 +59,12 @@ void add_paint_options(CLI::App* p, Paint& paint) {
     p->add_option("--dry", paint.dry, "let the ink dry for so many seconds after each stroke file; 0: until all is dry")
         ->check(number_in(0.0, 86400.0))
         ->type_name("SECONDS");
-    p->add_option("--prepare", paint.prepare,
-                  "done with the full brush before it paints, in this order: rinse, wipe[,amount=0.6][,depth=0.3], "
-                  "dip[:INK][,depth=0.2][,amount=0.5], reshape; side=0.5 of a dip or wipe: only this part of the "
-                  "width, from the right flank, negative from the left; time=0.3 of a dip: seconds in the dish, in which "
-                  "ink rises in the hair")
+    p->add_option(
+         "--prepare", paint.prepare,
+         "done with the full brush before it paints, in this order: rinse, wipe[,amount=0.6][,depth=0.3], "
+         "dip[:INK][,depth=0.2][,amount=0.5], reshape; side=0.5 of a dip or wipe: only this part of the "
+         "width, from the right flank, negative from the left; time=0.3 of a dip: seconds in the dish, in which "
+         "ink rises in the hair")
         ->check([](const std::string& text) -> std::string {
             try {
                 stroke::preparation_of(text);

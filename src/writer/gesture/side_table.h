@@ -31,7 +31,7 @@ std::size_t count_features(std::size_t n_segments);
 /// segment begins or ends the stroke ("-H-").
 class SideTable {
   public:
-    /// Reads a table (see `models/writer/README.md`). Throws `Error` for a damaged file.
+    /// Reads a table (models/README.md). Throws `Error` for a damaged file.
     static SideTable load(const std::filesystem::path& path);
     static SideTable parse(std::string_view text, const std::string& source);
 

@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "core/system/files.h"
+#include "core/system/parallel.h"
+#include "writer/fit/writer.h"
+#include "writer/glyphs/glyph_source.h"
+
+namespace tuft::writer {
+namespace {
+
+Glyph bundled(char32_t code) {
+    return *open_glyphs(bundled_glyphs())->find(code);
+}
+
+WriterOptions options() {
+    return {.style = load_style("kaishu"), .side = 0.1};
+}
+
+bool equal(const stroke::StrokeSamples& a, const stroke::StrokeSamples& b) {
+    if (a.samples.size() != b.samples.size()) return false;
+    for (std::size_t i = 0; i < a.samples.size(); ++i)
+        if (a.samples[i].time != b.samples[i].time || a.samples[i].position != b.samples[i].position ||
+            a.samples[i].pressure != b.samples[i].pressure)
+            return false;
+    return true;
+}
+
+TEST(Writer, FitIsTheSameForAnyNumberOfThreadsAndFromTheCache) {
+    const std::vector<Glyph> text{bundled(U'人')};
+    set_thread_count(1);
+    const auto one = Writer(options()).write(text);
+    set_thread_count(4);
+    WriterOptions cached = options();
+    cached.cache = std::filesystem::path(testing::TempDir()) / "tuft-fit-cache";
+    std::filesystem::remove_all(cached.cache);
+    Writer first(cached), second(cached);
+    const auto many = first.write(text), again = second.write(text);
+    set_thread_count(0);
+    EXPECT_EQ(first.fitted(), 2u);
+    EXPECT_EQ(second.fitted(), 0u);  // all of it was in the cache
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_TRUE(equal(one[0][i].trace, many[0][i].trace));
+        EXPECT_TRUE(equal(one[0][i].trace, again[0][i].trace));
+    }
+    std::filesystem::remove_all(cached.cache);
+}
+
+// The predicted area of a bundled character is what its strokes are to cover; 0.90 is the floor of a stroke that a
+// reader takes for it, dots and turns included.
+TEST(Writer, InkCoversThePredictedArea) {
+    const SideTable table = SideTable::load(data_folder() / "models" / "writer" / "sides.txt");
+    Writer writer(options());
+    stroke::WidthTables tables;
+    const BrushHand hand{tables.preset(writer.brush()), tables.of(writer.brush()), tables.hold(writer.brush()),
+                         writer.unit()};
+    const Glyph glyph = bundled(U'大');
+    const auto strokes = writer.write({glyph}).front();
+    for (std::size_t s = 0; s < strokes.size(); ++s) {
+        const StrokeLine line = make_stroke_line(glyph.strokes[s].median);
+        const std::vector<Ring> rings = area_of(line, table.predict(line, glyph, s));
+        Cells wanted = cells_over(rings, 2, 60);
+        for (const Ring& ring : rings) fill(wanted, std::span(&ring, 1));
+        const stroke::PlaneInk ink =
+            stroke::plane_ink(strokes[s].trace, hand.preset, hand.hold, 1.5 * hand.unit, 2 * hand.unit);
+        double both = 0, either = 0;
+        for (int j = 0; j < wanted.height; ++j)
+            for (int i = 0; i < wanted.width; ++i) {
+                const bool a = wanted.at(i, j), b = ink.at(wanted.centre(i, j) * hand.unit) > 0.5;
+                both += a && b, either += a || b;
+            }
+        EXPECT_GT(both / either, 0.90) << strokes[s].label;
+    }
+}
+
+TEST(Fit, AStraightBarIsCoveredFromAWrongStart) {
+    stroke::WidthTables tables;
+    const std::string brush = "goat-medium";
+    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.hold(brush), 1.3e-4};
+    Ring bar;
+    for (int i = 0; i <= 180; ++i) {  // round ends, as a brush leaves them
+        const double a = 0.5 * 3.14159265358979 + 3.14159265358979 * i / 180;
+        bar.push_back(Vec2(100, 100) + 22.0 * Vec2(std::cos(a), std::sin(a)));
+    }
+    for (int i = 0; i <= 180; ++i) {
+        const double a = -0.5 * 3.14159265358979 + 3.14159265358979 * i / 180;
+        bar.push_back(Vec2(500, 100) + 22.0 * Vec2(std::cos(a), std::sin(a)));
+    }
+    FitTarget target{.wanted = cells_over(std::span(&bar, 1), 2, 80)};
+    fill(target.wanted, std::span(&bar, 1));
+    std::vector<Station> start;
+    for (double x = 100; x <= 500; x += 8) start.push_back({{x, 112}, 14});  // 12 units beside it, too thin
+    const FitResult once = fit_stations(start, target, hand, {}, {.tries = 1, .fine_tries = 0});
+    const FitResult fitted = fit_stations(start, target, hand, {}, {.tries = 12});
+    EXPECT_LT(once.iou, 0.6);
+    // A cell along both edges, 2 of 44 units, and 6 units at either end, 12 of 444: where a tuft lands and lifts.
+    EXPECT_GT(fitted.iou, 0.93);
+}
+
+TEST(Style, ShippedOnesLoadAndUnknownKeysAreNamed) {
+    EXPECT_EQ(list_styles(), (std::vector<std::string>{"italic", "kaishu", "line", "xingshu"}));
+    for (const std::string& name : list_styles()) EXPECT_EQ(load_style(name).name, name);
+    EXPECT_ANY_THROW(load_style("kaisu"));
+    EXPECT_ANY_THROW(parse_style("speed_mm = 3", "s.toml"));
+    EXPECT_ANY_THROW(parse_style("tries = 1000", "s.toml"));
+}
+
+TEST(Links, GapsUpToTheStylesLengthAreDrawn) {
+    Style style;
+    style.link = 100;
+    const std::vector<Station> a{{{0, 0}, 20}, {{8, 0}, 20}, {{16, 0}, 20}},
+        near{{{80, 0}, 20}, {{88, 0}, 20}, {{96, 0}, 20}}, far{{{400, 0}, 20}, {{408, 0}, 20}, {{416, 0}, 20}};
+    const auto joined = linked({a, near, far}, style);
+    ASSERT_EQ(joined.size(), 2u);
+    EXPECT_EQ(joined[0].front().centre, a.front().centre);
+    EXPECT_EQ(joined[0].back().centre, near.back().centre);
+    style.link = 0;
+    EXPECT_EQ(linked({a, near, far}, style).size(), 3u);
+}
+
+}  // namespace
+}  // namespace tuft::writer

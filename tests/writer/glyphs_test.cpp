@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/error.h"
+#include "writer/glyphs/glyph_source.h"
+
+namespace tuft::writer {
+namespace {
+
+constexpr const char* kTen =
+    R"({"character":"十","strokes":["M 100 380 L 900 380 L 900 420 L 100 420 Z","M 480 0 L 520 0 L 520 800 L 480 800 Z"],)"
+    R"("medians":[[[110,400],[890,400]],[[500,790],[500,10]]]})";
+
+std::string fault_of(const std::string& json) {
+    try {
+        parse_hanzi_json(json, U'十', "file.json");
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(HanziJson, MediansAndOutlinesAreInTheSquare) {
+    const Glyph g = parse_hanzi_json(kTen, U'x', "file.json");
+    EXPECT_EQ(g.code, U'十');
+    ASSERT_EQ(g.strokes.size(), 2u);
+    EXPECT_EQ(g.strokes[0].median.front(), Vec2(110, 524));  // the baseline lies 124 units above the square's edge
+    ASSERT_EQ(g.strokes[1].outline.size(), 1u);
+    EXPECT_EQ(g.strokes[1].outline[0][0], Vec2(480, 124));
+}
+
+TEST(HanziJson, DamagedFilesAreOneLineWithTheirName) {
+    const std::string deep(5000, '[');
+    for (const std::string& json :
+         {std::string("{"), std::string("[]"), std::string("{}"), std::string(R"({"medians":7})"), deep,
+          std::string(R"({"medians":[[[1,2]]]})"), std::string(R"({"medians":[[[1,2],[1e300,2]]]})"),
+          std::string(R"({"medians":[[[1,2],["a",2]]]})"), std::string(R"({"medians":[[[1,2],[3,4]]],"strokes":[]})"),
+          std::string(R"({"medians":[[[1,2],[3,4]]],"strokes":["M 1 nan"]})")}) {
+        const std::string fault = fault_of(json);
+        EXPECT_TRUE(fault.starts_with("file.json")) << json.substr(0, 60) << ": " << fault;
+        EXPECT_EQ(fault.find('\n'), std::string::npos);
+    }
+}
+
+TEST(KanjiSvg, StrokesHaveTheirTypeAndTheSquareOf109) {
+    const Glyph g = parse_kanji_svg(
+        R"(<svg xmlns="http://www.w3.org/2000/svg" xmlns:kvg="http://kanjivg.tagaini.net" viewBox="0 0 109 109">)"
+        R"(<g id="a"><g id="b"><path kvg:type="㇐" d="M10.9,54.5 L98.1,54.5"/></g><path d="M54.5,10c0,30,0,60,0,90"/></g>)"
+        R"(<g id="numbers"><text>1</text></g></svg>)",
+        U'十', "053.svg");
+    ASSERT_EQ(g.strokes.size(), 2u);
+    EXPECT_EQ(g.strokes[0].type, "㇐");
+    // 0.1 of the side and the inset of 12 units; half way up.
+    EXPECT_NEAR(g.strokes[0].median.front().x, 0.1 * kSide + 12, 1e-6);
+    EXPECT_NEAR(g.strokes[0].median.front().y, 0.5 * kSide, 1e-6);
+}
+
+TEST(KanjiSvg, DeepAndEmptyOnesAreRefused) {
+    std::string deep;
+    for (int i = 0; i < 500; ++i) deep += "<g>";
+    for (const std::string& svg : {std::string("<svg>") + deep, std::string("<svg/>"), std::string("none"),
+                                   std::string("<svg><path d='M0 0 L1e99 0'/></svg>")})
+        EXPECT_THROW(parse_kanji_svg(svg, U'a', "x.svg"), Error) << svg.substr(0, 40);
+}
+
+TEST(LineFont, OpenPathsAreStrokesInUnitsOfTheEm) {
+    const std::vector<Glyph> font = parse_line_font(
+        R"(<svg><defs><font horiz-adv-x="500"><font-face units-per-em="2048" descent="-512"/>)"
+        R"(<glyph unicode="T" d="M0 1400 L1000 1400 M500 1400 L500 0"/><glyph unicode="ab" d="M0 0 L1 1"/></font></defs></svg>)",
+        "font.svg");
+    ASSERT_EQ(font.size(), 1u);  // a ligature is no character
+    ASSERT_EQ(font[0].strokes.size(), 2u);
+    EXPECT_TRUE(font[0].single_line);
+    EXPECT_EQ(font[0].advance, 250);
+    EXPECT_EQ(font[0].strokes[1].median.back(), Vec2(250, 256));
+}
+
+TEST(Bundled, AtLeastFortyCharactersAndAnAlphabetAreThere) {
+    const auto source = open_glyphs(bundled_glyphs());
+    int n = 0;
+    for (char32_t c = 0x4E00; c < 0xA000; ++c)
+        if (const auto glyph = source->find(c)) {
+            ++n;
+            EXPECT_FALSE(glyph->single_line);
+        }
+    EXPECT_GE(n, 40);
+    for (const char32_t c : std::u32string(U"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789.,!?-"))
+        EXPECT_TRUE(source->find(c).has_value()) << utf8_of(c);
+}
+
+TEST(Bundled, MissingCharactersAreNamedInOneLine) {
+    const auto source = open_glyphs(bundled_glyphs());
+    try {
+        glyphs_of({U"永鑫 A", U"麤"}, {source.get()});
+        FAIL();
+    } catch (const Error& error) {
+        const std::string what = error.what();
+        EXPECT_NE(what.find("鑫"), std::string::npos) << what;
+        EXPECT_NE(what.find("麤"), std::string::npos) << what;
+        EXPECT_EQ(what.find("永"), std::string::npos) << what;
+        EXPECT_EQ(what.find('\n'), std::string::npos);
+    }
+}
+
+TEST(Characters, Utf8GoesThereAndBack) {
+    const std::string text = "aé永𠮷";
+    std::string back;
+    for (const char32_t c : characters_of(text)) back += utf8_of(c);
+    EXPECT_EQ(back, text);
+    EXPECT_THROW(characters_of(std::string(1 << 20, 'a')), Error);
+}
+
+}  // namespace
+}  // namespace tuft::writer

@@ -1,0 +1,95 @@
+#include "writer/gesture/stroke_line.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "writer/gesture/side_table.h"
+
+namespace tuft::writer {
+namespace {
+
+TEST(StrokeLine, CodesFollowTheDirection) {
+    const auto code = [](double x, double y) {
+        return make_stroke_line(std::vector<Vec2>{{0, 0}, {x, y}}).stroke_class();
+    };
+    EXPECT_EQ(code(300, 20), "H");
+    EXPECT_EQ(code(0, -300), "S");
+    EXPECT_EQ(code(-200, -250), "P");
+    EXPECT_EQ(code(200, -180), "N");
+    EXPECT_EQ(code(200, 150), "T");
+    EXPECT_EQ(code(-30, 100), "U");
+    EXPECT_EQ(code(-100, 10), "L");
+}
+
+TEST(StrokeLine, CornersAreFoundWhereTheyAre) {
+    const StrokeLine line = make_stroke_line(std::vector<Vec2>{{0, 0}, {400, 30}, {390, -300}, {310, -270}});
+    EXPECT_EQ(line.stroke_class(), "HSL");
+    ASSERT_EQ(line.segments.size(), 3u);
+    // A corner is a point of the resampled line, 4 units apart, and smoothing moves it by less than a step.
+    EXPECT_LT(glm::distance(line.points[line.segments[0].last], Vec2(400, 30)), 8);
+    EXPECT_LT(glm::distance(line.points[line.segments[1].last], Vec2(390, -300)), 8);
+}
+
+TEST(StrokeLine, ARoundBendIsNoCorner) {
+    std::vector<Vec2> arc;
+    for (int i = 0; i <= 60; ++i) {  // radius 120: 28 units turn by 0.23 rad on either side
+        const double a = -std::numbers::pi / 2 * i / 60;
+        arc.push_back(120.0 * Vec2(std::cos(a), std::sin(a)));
+    }
+    EXPECT_EQ(make_stroke_line(arc).segments.size(), 1u);
+}
+
+TEST(Sides, OfARectangleAreItsHalfWidth) {
+    const std::vector<Ring> outline{{{0, -20}, {400, -20}, {400, 30}, {0, 30}}};
+    const StrokeLine line = make_stroke_line(std::vector<Vec2>{{15, 0}, {390, 0}});
+    const StrokeSides sides = measure_sides(line, outline);
+    for (std::size_t k = 0; k < kKnots; ++k) {
+        EXPECT_NEAR(sides.left[0][k], 30, 1e-9);
+        EXPECT_NEAR(sides.right[0][k], 20, 1e-9);
+    }
+    EXPECT_NEAR(sides.head[2], 15, 1e-9);
+    EXPECT_NEAR(sides.tail[2], 10, 1e-9);
+    Cells area = cells_over(outline, 2, 40);
+    for (const Ring& ring : area_of(line, sides)) fill(area, std::span(&ring, 1));
+    // The fans cut the corners of the ends: rays at 60° are their last points.
+    EXPECT_NEAR(static_cast<double>(area.count()) * 4, 400 * 50, 0.03 * 400 * 50);
+    // The path is the middle of the sides, inside by its own half width.
+    for (const Station& s : make_stations(line, sides, area)) {
+        EXPECT_NEAR(s.centre.y, 5, 0.5);
+        EXPECT_LE(s.half, 25 + 1.5);  // clearance is to centres of cells
+    }
+}
+
+TEST(Clearances, OfADiscAreTheDistanceToItsEdge) {
+    Ring ring;
+    for (int i = 0; i < 720; ++i) {
+        const double a = i * std::numbers::pi / 360;
+        ring.push_back(100.0 * Vec2(std::cos(a), std::sin(a)));
+    }
+    Cells cells = cells_over(std::span(&ring, 1), 2, 20);
+    fill(cells, std::span(&ring, 1));
+    EXPECT_NEAR(static_cast<double>(cells.count()) * 4, std::numbers::pi * 1e4, 0.01 * std::numbers::pi * 1e4);
+    const std::vector<float> d = clearances(cells);
+    for (int j = 0; j < cells.height; ++j)
+        for (int i = 0; i < cells.width; ++i) {
+            const double want = 100 - glm::length(cells.centre(i, j));
+            if (want > 2) EXPECT_NEAR(d[std::size_t(j) * cells.width + i], want, 2.1);  // a cell and half its diagonal
+        }
+}
+
+TEST(SideTable, RowsOfSidesGoThereAndBack) {
+    std::vector<double> row(2 * kKnots * 3 + 2 * kFan);
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] = static_cast<double>(i);
+    EXPECT_EQ(row_of(sides_of(row, 3)), row);
+}
+
+TEST(SideTable, DamagedTablesAreRefused) {
+    for (const char* text : {"", "H", "H 34 42 4 2\n1 2 3\n", "H 1 1 1 1\n", "H 34 42 999999 2\n"})
+        EXPECT_ANY_THROW(SideTable::parse(text, "sides.txt")) << text;
+}
+
+}  // namespace
+}  // namespace tuft::writer
