@@ -123,8 +123,8 @@ double difference(const ink::Rgb& a, const ink::Rgb& b) {
 Score score(const std::filesystem::path& svg, const std::filesystem::path& png) {
     const std::vector<stroke::JournalEntry> entries = placed(svg);
     const io::Image8 raster = io::read_image8(png);
-    if (std::max(raster.width, raster.height) != kSide || raster.channels != 4)
-        throw Error(png.string(), "is not 300 pixels large, with opacity");
+    if (std::max(raster.width, raster.height) != kSide || (raster.channels != 4 && raster.channels != 3))
+        throw Error(png.string(), "is not 300 pixels large and in colours");
     const std::vector<double> covered = coverage_of(entries);
     const std::vector<std::vector<float>> colours = colours_of(entries);
     // In the middle of the sheet.
@@ -132,7 +132,8 @@ Score score(const std::filesystem::path& svg, const std::filesystem::path& png) 
     const auto channel = [&](int x, int y, std::size_t k) -> std::uint8_t {
         x -= left, y -= top;
         if (x < 0 || y < 0 || x >= raster.width || y >= raster.height) return 0;
-        return raster.pixels[static_cast<std::size_t>(4 * (y * raster.width + x)) + k];
+        if (k >= static_cast<std::size_t>(raster.channels)) return 255;
+        return raster.pixels[static_cast<std::size_t>(raster.channels * (y * raster.width + x)) + k];
     };
     const auto alpha = [&](int x, int y) { return channel(x, y, 3); };
     const auto colour = [&](int x, int y) {
