@@ -29,6 +29,7 @@ namespace {
 
 constexpr int kSide = 300;    // pixels
 constexpr int kMargin = 8;    // texels round the sheet
+constexpr int kEven = 2;      // codes by which pixels of one area differ
 constexpr double kReach = 3;  // ΔE2000
 
 struct Score {
@@ -147,10 +148,11 @@ Score score(const std::filesystem::path& svg, const std::filesystem::path& png) 
         for (int x = 0; x < kSide; ++x) {
             const bool a = covered[static_cast<std::size_t>(y * kSide + x)] >= 0.5, b = alpha(x, y) >= 128;
             both += a && b, either += a || b;
-            bool even = a && x > 1 && y > 1 && x < kSide - 2 && y < kSide - 2;
+            bool even = a && alpha(x, y) == 255 && x > 1 && y > 1 && x < kSide - 2 && y < kSide - 2;
             for (int j = -2; j <= 2 && even; ++j)
                 for (int i = -2; i <= 2 && even; ++i)
-                    even = alpha(x + i, y + j) == 255 && difference(colour(x + i, y + j), colour(x, y)) < 2;
+                    for (std::size_t k = 0; k < 4 && even; ++k)
+                        even = std::abs(int(channel(x + i, y + j, k)) - int(channel(x, y, k))) <= kEven;
             if (!even) continue;
             ++inner;
             if (unreached(colour(x, y)) > kReach) continue;

@@ -16,7 +16,7 @@ namespace tuft::io {
 namespace {
 
 constexpr double kStopStep = 8;                  // ΔE2000 between stops
-constexpr int kMostBetween = 16;                   // stops between two of the file
+constexpr int kMostBetween = 16;                 // stops between two of the file
 constexpr std::size_t kMostMaskPieces = 20'000;  // of masked areas
 constexpr double kSeen = 1.0 / 512;              // opacity
 

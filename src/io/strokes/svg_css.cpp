@@ -12,7 +12,7 @@ namespace tuft::io {
 namespace {
 
 constexpr std::size_t kMostParts = 32;  // compounds of a selector
-constexpr int kMostMatchSteps = 4096;        // of matching one selector with one element
+constexpr int kMostMatchSteps = 4096;   // of matching one selector with one element
 
 std::string without_comments(std::string_view sheet) {
     std::string out;

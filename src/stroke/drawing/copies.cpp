@@ -51,8 +51,7 @@ bool is_copied(const JournalEntry& entry) {
 JournalEntry copy_of(const JournalEntry& entry, const PoseMap& map, CopyReading reading) {
     const bool reflects = glm::determinant(map.linear) < 0;
     JournalEntry copy = entry;
-    if (PaintStroke* stroke = copy.as<PaintStroke>())
-        copy_trace(stroke->trace, map, reflects, reading);
+    if (PaintStroke* stroke = copy.as<PaintStroke>()) copy_trace(stroke->trace, map, reflects, reading);
     if (Fill* fill = copy.as<Fill>(); fill && fill->area) copy_area(*fill->area, map, reflects, reading);
     return copy;
 }
