@@ -33,13 +33,14 @@ say "a drawing on the car's door"
 
 say "a livery on the car"
 livery() { "$tuft" paint "$1" --strokes samples/strokes/livery.svg --mapping project "${@:2}"; }
-livery models/car.ply --only Flank --read-from front --place=-2,-239,133 --mirror y --readable --substrate primed-metal \
+livery models/car.ply --only Flank --read-from front --place=-2,-216,131.8 --mirror y --readable --substrate primed-metal \
   --atlas-size 8192 --project "$out/livery.tuft"
 livery "$out/livery.tuft" --only Top --read-from top --place=-2,0,330 --export "$out/livery.glb"
 "$tuft" render "$out/livery.tuft" -o "$out/livery-right.png" --view 28,14 --size 740x460
 "$tuft" render "$out/livery.tuft" -o "$out/livery-left.png" --view 152,14 --size 740x460
-"$tuft" render "$out/livery.tuft" -o "$out/livery-top.png" --view 90,50 --size 1480x560 --zoom 1.2
-oiiotool "$out/livery-left.png" "$out/livery-right.png" --create 1480x460 3 --paste +0+0 --paste +740+0 -d uint8 -o "$out/livery.png"
+"$tuft" render "$out/livery.tuft" -o "$out/livery-top.png" --view 75,40 --size 1480x620 --zoom 0.85
+oiiotool "$out/livery-top.png" "$out/livery-left.png" "$out/livery-right.png" --create 1480x1080 3 --paste +0+0 --paste +740+0 --paste +0+460 \
+  -d uint8 -o "$out/livery.png"
 
 say "stroke sheet"
 "$tuft" paint models/sheet.ply --strokes samples/strokes/stroke-sheet.inkml --atlas-size 4096 \

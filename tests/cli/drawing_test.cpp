@@ -83,7 +83,7 @@ TEST_F(Drawing, FineDetailIsSaidWithTheTexelThatItNeeds) {
     const std::string file = " --strokes " + path("fine.svg") + " --place 0,0,0 ";
     const Ran coarse = tuft("paint " + model("sheet.ply") + " --atlas-size 512" + file);
     EXPECT_EQ(coarse.status, 0);
-    EXPECT_NE(coarse.err.find("texels of 0.1 mm"), std::string::npos) << coarse.err;
+    EXPECT_NE(coarse.err.find("texels of 0.099 mm"), std::string::npos) << coarse.err;
     const Ran fine = tuft("paint " + model("sheet.ply") + " --auto-texel --json" + file);
     ASSERT_EQ(fine.status, 0) << fine.err;
     EXPECT_EQ(fine.err.find("detail"), std::string::npos) << fine.err;

@@ -29,6 +29,7 @@ namespace {
 
 constexpr int kSide = 300;    // pixels
 constexpr int kMargin = 8;    // texels round the sheet
+constexpr int kEven = 2;      // codes by which pixels of one area differ
 constexpr double kReach = 3;  // ΔE2000
 
 struct Score {
@@ -123,8 +124,8 @@ double difference(const ink::Rgb& a, const ink::Rgb& b) {
 Score score(const std::filesystem::path& svg, const std::filesystem::path& png) {
     const std::vector<stroke::JournalEntry> entries = placed(svg);
     const io::Image8 raster = io::read_image8(png);
-    if (std::max(raster.width, raster.height) != kSide || raster.channels != 4)
-        throw Error(png.string(), "is not 300 pixels large, with opacity");
+    if (std::max(raster.width, raster.height) != kSide || (raster.channels != 4 && raster.channels != 3))
+        throw Error(png.string(), "is not 300 pixels large and in colours");
     const std::vector<double> covered = coverage_of(entries);
     const std::vector<std::vector<float>> colours = colours_of(entries);
     // In the middle of the sheet.
@@ -132,7 +133,8 @@ Score score(const std::filesystem::path& svg, const std::filesystem::path& png) 
     const auto channel = [&](int x, int y, std::size_t k) -> std::uint8_t {
         x -= left, y -= top;
         if (x < 0 || y < 0 || x >= raster.width || y >= raster.height) return 0;
-        return raster.pixels[static_cast<std::size_t>(4 * (y * raster.width + x)) + k];
+        if (k >= static_cast<std::size_t>(raster.channels)) return 255;
+        return raster.pixels[static_cast<std::size_t>(raster.channels * (y * raster.width + x)) + k];
     };
     const auto alpha = [&](int x, int y) { return channel(x, y, 3); };
     const auto colour = [&](int x, int y) {
@@ -146,10 +148,11 @@ Score score(const std::filesystem::path& svg, const std::filesystem::path& png) 
         for (int x = 0; x < kSide; ++x) {
             const bool a = covered[static_cast<std::size_t>(y * kSide + x)] >= 0.5, b = alpha(x, y) >= 128;
             both += a && b, either += a || b;
-            bool even = a && x > 1 && y > 1 && x < kSide - 2 && y < kSide - 2;
+            bool even = a && alpha(x, y) == 255 && x > 1 && y > 1 && x < kSide - 2 && y < kSide - 2;
             for (int j = -2; j <= 2 && even; ++j)
                 for (int i = -2; i <= 2 && even; ++i)
-                    even = alpha(x + i, y + j) == 255 && difference(colour(x + i, y + j), colour(x, y)) < 2;
+                    for (std::size_t k = 0; k < 4 && even; ++k)
+                        even = std::abs(int(channel(x + i, y + j, k)) - int(channel(x, y, k))) <= kEven;
             if (!even) continue;
             ++inner;
             if (unreached(colour(x, y)) > kReach) continue;
