@@ -10,7 +10,6 @@
 
 #include "cli/commands.h"
 #include "cli/drawing.h"
-#include "cli/paint.h"
 #include "cli/steps.h"
 #include "core/system/files.h"
 #include "core/text/counted.h"
