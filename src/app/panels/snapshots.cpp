@@ -71,7 +71,8 @@ void snapshots_section(Session& s) {
         const std::string count = ui.sentence(Message(line.strokes == 1 ? "{} stroke" : "{} strokes", line.strokes));
         const float right = ImGui::CalcTextSize(count.c_str()).x, room = ImGui::GetContentRegionAvail().x,
                     x = ImGui::GetCursorPosX();
-        if (ui.entry(ui.fitted(line.name, room - right - ui.px(10)).c_str(), chosen)) all.chosen = chosen ? "" : line.id;
+        if (ui.entry(ui.fitted(line.name, room - right - ui.px(10)).c_str(), chosen))
+            all.chosen = chosen ? "" : line.id;
         ui.mark("snapshot " + line.name);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s\n%s", line.name.c_str(), date_text(line.made).c_str());
         ImGui::SameLine(x + room - right);
