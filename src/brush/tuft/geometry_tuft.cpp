@@ -12,6 +12,7 @@ namespace tuft::brush {
 namespace {
 
 constexpr double kLeastWidth = 1e-4;  ///< m, of the section's box
+constexpr double kPoint = 1e-6;       ///< m, half-width of a section that is a point: it is not stretched
 
 /// Places of a straight spine's sections, 0 root … 1 tip: on the curve through its nodes, as `step` makes them.
 std::vector<double> places_of_sections(const Spine& spine) {
@@ -84,7 +85,10 @@ std::vector<LatticeFrame> frames_of(const Spine& spine, const std::vector<Sectio
         y = parallel_transport(y, tangent, s.tangent);
         tangent = s.tangent;
         const Vec2 rest = spine.rest_section.empty() ? Vec2{spine.rest_radius[i]} : Vec2(spine.rest_section[i]);
-        const double along_e = s.a / std::max(rest.x, 1e-9), along_m = s.b / std::max(rest.y, 1e-9);
+        // Half-widths of the resting section along e and m; its area is kept.
+        const double along = std::hypot(rest.x * glm::dot(s.e, x), rest.y * glm::dot(s.e, y));
+        const double across = along > 0 ? rest.x * rest.y / along : 0;
+        const double along_e = along > kPoint ? s.a / along : 1, along_m = across > kPoint ? s.b / across : 1;
         out.push_back({s.centre, stretched(s, x, along_e, along_m), stretched(s, y, along_e, along_m)});
     }
     return out;

@@ -154,7 +154,7 @@ void draw_row(const Sheet& sheet, double top, double tilt, Side side, const char
         if (at.tuft.carried) {
             // A shape's patch may be as tall as the shape is wide: it fits under the ground.
             const Vec2 size = at.tuft.carried->hi - at.tuft.carried->lo;
-            below.scale = std::min(view.scale, 72 * u / (0.5 * std::max(size.x, size.y)));
+            below.scale = std::min(view.scale, 58 * u / (0.5 * std::max(size.x, size.y)));
         }
         if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, below, plan);
         // Under the patch of a wide tuft, which is as wide as the tuft.
