@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "contact/node_contact.h"
 #include "contact/obb.h"
@@ -168,11 +169,20 @@ brush::TuftState solve(const Step& w, brush::Tuft& tuft, double dt, std::vector<
             rest.resize(radii.size());
             break;
         }
-        planes = std::move(fresh);
-        tuft = before;
-        const int iterations = state.iterations;
+        std::swap(planes, fresh);  // `fresh` now holds those of the solve before
+        brush::Tuft solved = std::exchange(tuft, before);
+        brush::TuftState former = std::move(state);
         state = brush::step(tuft, w.pose, planes, dt, walls);
-        state.iterations += iterations;
+        state.iterations += former.iterations;
+        // Between two faces of a rim the planes at the new places may leave no rest: the solve ends anywhere, with a
+        // force of many newtons. The planes before are off by less than a tuft moves in a sample.
+        if (!state.converged && former.converged) {
+            former.iterations = state.iterations;
+            planes = std::move(fresh);
+            tuft = std::move(solved);
+            state = std::move(former);
+            break;
+        }
     }
     return state;
 }

@@ -262,9 +262,9 @@ TEST(UiText, ErrorsOfFilesAreSaidInChineseAndKeepTheNameOfTheFile) {
         error_of([&] { io::read_model(written("c.stl", "short")); }),
         error_of([&] { io::read_model(written("d.xyz", "1 2 3\n")); }),
         error_of([&] { io::Project::open(written("e.tuft", "no project"), {.access = io::Access::read}); }),
-        error_of([&] { io::read_strokes(written("f.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>"), {}); }),
+        error_of([&] { io::read_strokes(written("f.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>")); }),
         error_of([&] { write_file(folder + "/none/x.ply", "x", 1); }),
-        error_of([&] { io::read_strokes(written("g.svg", "<svg xmlns='http://www.w3.org/2000/svg'><g></svg>"), {}); }),
+        error_of([&] { io::read_strokes(written("g.svg", "<svg xmlns='http://www.w3.org/2000/svg'><g></svg>")); }),
         error_of([&] { throw Error(folder, Message("cannot be read: {}", system_message(EACCES))); }),
         error_of([&] {
             throw Error(folder, Message("cannot be read: {}",

@@ -54,7 +54,7 @@ TEST(Writer, InkCoversThePredictedArea) {
     const SideTable table = SideTable::load(data_folder() / "models" / "writer" / "sides.txt");
     Writer writer(options());
     stroke::WidthTables tables;
-    const BrushHand hand{tables.preset(writer.brush()), tables.of(writer.brush()), tables.hold(writer.brush()),
+    const BrushHand hand{tables.preset(writer.brush()), tables.of(writer.brush()), tables.holder(writer.brush()),
                          writer.unit()};
     const Glyph glyph = bundled(U'大');
     const auto strokes = writer.write({glyph}).front();
@@ -78,7 +78,7 @@ TEST(Writer, InkCoversThePredictedArea) {
 TEST(Fit, AStraightBarIsCoveredFromAWrongStart) {
     stroke::WidthTables tables;
     const std::string brush = "goat-medium";
-    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.hold(brush), 1.3e-4};
+    const BrushHand hand{tables.preset(brush), tables.of(brush), tables.holder(brush), 1.3e-4};
     Ring bar;
     for (int i = 0; i <= 180; ++i) {  // round ends, as a brush leaves them
         const double a = 0.5 * 3.14159265358979 + 3.14159265358979 * i / 180;
