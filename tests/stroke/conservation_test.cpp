@@ -76,8 +76,8 @@ TEST(Conservation, AThousandStrokesKeepEachPigment) {
     }
 }
 
-/// A flat that is dipped whole in one ink and with one corner in another lays both down at once; of each, what is on
-/// the sheet and in the hair is what the dips brought.
+/// A flat that is dipped whole in one ink, not full, and with one corner in another lays both down at once; of each,
+/// what is on the sheet and in the hair is what the dips brought.
 TEST(Conservation, ADoubleLoadedFlatKeepsBothInks) {
     const std::string flat = "flat-12";
     const Model model = sheet();
@@ -87,10 +87,11 @@ TEST(Conservation, ADoubleLoadedFlatKeepsBothInks) {
         painting.paint(BrushAction{.kind = BrushActionKind::dip,
                                    .brush = flat,
                                    .ink = kInks[k],
-                                   .extent = {.side = k == 0 ? 0.0 : 0.5},
+                                   .extent = {.amount = k == 0 ? 0.6 : 1.0, .side = k == 0 ? 0.0 : 0.5},
                                    .dip = DipMode::persistent});
     const std::array supplied{in_hair(0), in_hair(1)};
     ASSERT_GT(supplied[0], 0);
+    ASSERT_GT(supplied[1], 0);
     PaintStroke s;
     s.trace.flat = false;
     s.brush = flat;
@@ -108,7 +109,7 @@ TEST(Conservation, ADoubleLoadedFlatKeepsBothInks) {
     for (int p = 0; p < 2; ++p) {
         const double on_sheet = painting.layers().canvas().total(model.texels, p);
         // Texels are of single precision: 6e-8 of each, thousands of them alike in sign at most.
-        if (supplied[p] > 0) EXPECT_NEAR((on_sheet + in_hair(p)) / supplied[p], 1, 1e-6) << kInks[p];
+        EXPECT_NEAR((on_sheet + in_hair(p)) / supplied[p], 1, 1e-6) << kInks[p];
         EXPECT_GT(on_sheet, 0) << kInks[p];
     }
 }
