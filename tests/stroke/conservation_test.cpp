@@ -76,19 +76,20 @@ TEST(Conservation, AThousandStrokesKeepEachPigment) {
     }
 }
 
-/// A flat that is dipped whole in one ink, not full, and with one corner in another lays both down at once; of each,
-/// what is on the sheet and in the hair is what the dips brought.
+/// A flat that is dipped whole in one ink, wiped, and dipped with one corner in another lays both down at once; of
+/// each, what is on the sheet and in the hair is what the dips brought.
 TEST(Conservation, ADoubleLoadedFlatKeepsBothInks) {
     const std::string flat = "flat-12";
     const Model model = sheet();
     Document painting(model, {.substrate = "porcelain", .undo_bytes = 1});
     const auto in_hair = [&](int p) { return painting.brushes().find(flat)->reservoir.pigment(p); };
-    for (int k = 0; k < 2; ++k)
-        painting.paint(BrushAction{.kind = BrushActionKind::dip,
-                                   .brush = flat,
-                                   .ink = kInks[k],
-                                   .extent = {.amount = k == 0 ? 0.6 : 1.0, .side = k == 0 ? 0.0 : 0.5},
-                                   .dip = DipMode::persistent});
+    const auto act = [&](BrushActionKind kind, const char* ink, const Extent& extent) {
+        painting.paint(
+            BrushAction{.kind = kind, .brush = flat, .ink = ink, .extent = extent, .dip = DipMode::persistent});
+    };
+    act(BrushActionKind::dip, kInks[0], {});
+    act(BrushActionKind::wipe, kInks[0], {.amount = 0.4});
+    act(BrushActionKind::dip, kInks[1], {.side = 0.5});
     const std::array supplied{in_hair(0), in_hair(1)};
     ASSERT_GT(supplied[0], 0);
     ASSERT_GT(supplied[1], 0);
