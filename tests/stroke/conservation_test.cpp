@@ -76,21 +76,23 @@ TEST(Conservation, AThousandStrokesKeepEachPigment) {
     }
 }
 
-/// A flat that is dipped whole in one ink and with one corner in another lays both down at once; of each, what is on
-/// the sheet and in the hair is what the dips brought.
+/// A flat that is dipped whole in one ink, wiped, and dipped with one corner in another lays both down at once; of
+/// each, what is on the sheet and in the hair is what the dips brought.
 TEST(Conservation, ADoubleLoadedFlatKeepsBothInks) {
     const std::string flat = "flat-12";
     const Model model = sheet();
     Document painting(model, {.substrate = "porcelain", .undo_bytes = 1});
     const auto in_hair = [&](int p) { return painting.brushes().find(flat)->reservoir.pigment(p); };
-    for (int k = 0; k < 2; ++k)
-        painting.paint(BrushAction{.kind = BrushActionKind::dip,
-                                   .brush = flat,
-                                   .ink = kInks[k],
-                                   .extent = {.side = k == 0 ? 0.0 : 0.5},
-                                   .dip = DipMode::persistent});
+    const auto act = [&](BrushActionKind kind, const char* ink, const Extent& extent) {
+        painting.paint(
+            BrushAction{.kind = kind, .brush = flat, .ink = ink, .extent = extent, .dip = DipMode::persistent});
+    };
+    act(BrushActionKind::dip, kInks[0], {});
+    act(BrushActionKind::wipe, kInks[0], {.amount = 0.4});
+    act(BrushActionKind::dip, kInks[1], {.side = 0.5});
     const std::array supplied{in_hair(0), in_hair(1)};
     ASSERT_GT(supplied[0], 0);
+    ASSERT_GT(supplied[1], 0);
     PaintStroke s;
     s.trace.flat = false;
     s.brush = flat;
@@ -108,7 +110,7 @@ TEST(Conservation, ADoubleLoadedFlatKeepsBothInks) {
     for (int p = 0; p < 2; ++p) {
         const double on_sheet = painting.layers().canvas().total(model.texels, p);
         // Texels are of single precision: 6e-8 of each, thousands of them alike in sign at most.
-        if (supplied[p] > 0) EXPECT_NEAR((on_sheet + in_hair(p)) / supplied[p], 1, 1e-6) << kInks[p];
+        EXPECT_NEAR((on_sheet + in_hair(p)) / supplied[p], 1, 1e-6) << kInks[p];
         EXPECT_GT(on_sheet, 0) << kInks[p];
     }
 }
