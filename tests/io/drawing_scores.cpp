@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <pugixml.hpp>
@@ -181,6 +182,7 @@ int run(const std::filesystem::path& folder) {
         const Score s = score(svg, png);
         fmt::print("{:<34} {:>6.4f} {:>8.2f} {:>8.2f} {:>7.0f}%\n", svg.stem().string(), s.iou, s.median, s.mean,
                    100 * s.reached);
+        std::fflush(stdout);
         iou += s.iou, worst = std::min(worst, s.iou);
         if (s.reached > 0) mean += s.mean, n_mean += 1;
     }
