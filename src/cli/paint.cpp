@@ -17,266 +17,262 @@
 #include "stroke/document/fit.h"
 #include "stroke/journal/tables.h"
 
-        namespace tuft::cli {
-    namespace {
+namespace tuft::cli {
+namespace {
 
-    using Clock = std::chrono::steady_clock;
-    double seconds_since(Clock::time_point start) {
-        return std::chrono::duration<double>(Clock::now() - start).count();
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+nlohmann::json to_json(const PlacedDrawing& p) {
+    const Vec3 at = p.at / kMillimetre;
+    nlohmann::json j{{"at_mm", {at.x, at.y, at.z}},
+                     {"normal", {p.normal.x, p.normal.y, p.normal.z}},
+                     {"width_mm", p.size.x / kMillimetre},
+                     {"height_mm", p.size.y / kMillimetre}};
+    if (!p.side.empty()) j["side"] = p.side;
+    if (p.part > 0) j["free_mm"] = {p.free.x / kMillimetre, p.free.y / kMillimetre}, j["part"] = p.part;
+    return j;
+}
+
+std::string forces_csv(const std::vector<stroke::StrokeReport>& reports) {
+    std::string csv =
+        "stroke,time_s,x_m,y_m,z_m,qw,qx,qy,qz,force_x_N,force_y_N,force_z_N,"
+        "hand_x_N,hand_y_N,hand_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,moment_Nm\n";
+    for (const stroke::StrokeReport& report : reports)
+        for (const stroke::ForceRecord& f : report.forces) {
+            const brush::Pose& p = f.pose;
+            csv += fmt::format("{},{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", report.stroke_id, p.time,
+                               p.position.x, p.position.y, p.position.z, p.rotation.w, p.rotation.x, p.rotation.y,
+                               p.rotation.z);
+            for (const Vec3& v : {f.force, f.device_force, f.torque})
+                csv += fmt::format(",{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z);
+            csv += fmt::format(",{:.6g}\n", f.moment);
+        }
+    return csv;
+}
+
+// What was painted: the journal from `first` on without actions, one entry per report.
+std::vector<const stroke::JournalEntry*> painted_strokes(const stroke::Journal& journal, std::size_t first) {
+    std::vector<const stroke::JournalEntry*> strokes;
+    for (std::size_t i = first; i < journal.entries().size(); ++i)
+        if (journal.entries()[i].as<stroke::PaintStroke>()) strokes.push_back(&journal.entries()[i]);
+    return strokes;
+}
+
+// Warnings for strokes whose brush was full and ran out of ink.
+void note_dry(const std::vector<stroke::StrokeReport>& reports, Console& console) {
+    const auto dry = std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.ran_dry(); });
+    if (dry == 0) return;
+    const auto first = std::find_if(reports.begin(), reports.end(), [](const auto& r) { return r.ran_dry(); });
+    console.note(
+        fmt::format("warning: {} full brush{} run{} dry: stroke {} after {:.0f} of {:.0f} mm{} (see --dip "
+                    "endless, a larger --brush; dry_from_mm of --json)",
+                    dry, dry == 1 ? "" : "es", dry == 1 ? "s" : "", first->stroke_id, first->dryness.from / kMillimetre,
+                    first->path / kMillimetre, dry == 1 ? "" : ", and others"));
+}
+
+std::string stroke_name(const stroke::StrokeReport& report, const stroke::JournalEntry& stroke) {
+    const std::string& label = stroke.label;
+    return fmt::format("stroke {}{}", report.stroke_id, label.empty() ? "" : " (" + label + ")");
+}
+
+// The strokes of whose reports there is a value, as one line: "stroke 3 (seal)", "43 strokes, from stroke 3 (seal)
+// on,"; empty: none. `most` becomes the largest value of them.
+template <typename Value>
+std::string strokes_with(const std::vector<stroke::StrokeReport>& reports,
+                         const std::vector<const stroke::JournalEntry*>& strokes, const Value& value_of, double& most) {
+    std::size_t n = 0, first = 0;
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        const std::optional<double> value = value_of(reports[i]);
+        if (!value) continue;
+        most = n == 0 ? *value : std::max(most, *value);
+        if (n++ == 0) first = i;
     }
+    if (n == 0) return {};
+    const std::string name = stroke_name(reports[first], *strokes[first]);
+    return n == 1 ? name : fmt::format("{} strokes, the first {},", n, name);
+}
 
-    nlohmann::json to_json(const PlacedDrawing& p) {
-        const Vec3 at = p.at / kMillimetre;
-        nlohmann::json j{{"at_mm", {at.x, at.y, at.z}},
-                         {"normal", {p.normal.x, p.normal.y, p.normal.z}},
-                         {"width_mm", p.size.x / kMillimetre},
-                         {"height_mm", p.size.y / kMillimetre}};
-        if (!p.side.empty()) j["side"] = p.side;
-        if (p.part > 0) j["free_mm"] = {p.free.x / kMillimetre, p.free.y / kMillimetre}, j["part"] = p.part;
-        return j;
-    }
-
-    std::string forces_csv(const std::vector<stroke::StrokeReport>& reports) {
-        std::string csv =
-            "stroke,time_s,x_m,y_m,z_m,qw,qx,qy,qz,force_x_N,force_y_N,force_z_N,"
-            "hand_x_N,hand_y_N,hand_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,moment_Nm\n";
-        for (const stroke::StrokeReport& report : reports)
-            for (const stroke::ForceRecord& f : report.forces) {
-                const brush::Pose& p = f.pose;
-                csv += fmt::format("{},{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", report.stroke_id,
-                                   p.time, p.position.x, p.position.y, p.position.z, p.rotation.w, p.rotation.x,
-                                   p.rotation.y, p.rotation.z);
-                for (const Vec3& v : {f.force, f.device_force, f.torque})
-                    csv += fmt::format(",{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z);
-                csv += fmt::format(",{:.6g}\n", f.moment);
-            }
-        return csv;
-    }
-
-    // What was painted: the journal from `first` on without actions, one entry per report.
-    std::vector<const stroke::JournalEntry*> painted_strokes(const stroke::Journal& journal, std::size_t first) {
-        std::vector<const stroke::JournalEntry*> strokes;
-        for (std::size_t i = first; i < journal.entries().size(); ++i)
-            if (journal.entries()[i].as<stroke::PaintStroke>()) strokes.push_back(&journal.entries()[i]);
-        return strokes;
-    }
-
-    // Warnings for strokes whose brush was full and ran out of ink.
-    void note_dry(const std::vector<stroke::StrokeReport>& reports, Console& console) {
-        const auto dry = std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.ran_dry(); });
-        if (dry == 0) return;
-        const auto first = std::find_if(reports.begin(), reports.end(), [](const auto& r) { return r.ran_dry(); });
+// Warnings for strokes that go into a closed body, in space or by their place.
+void note_inside(const std::vector<stroke::StrokeReport>& reports,
+                 const std::vector<const stroke::JournalEntry*>& strokes, const Box& model, Console& console) {
+    const auto noted = [](double depth, double from) { return depth > from ? std::optional(depth) : std::nullopt; };
+    double deepest = 0;
+    if (const std::string which = strokes_with(
+            reports, strokes, [&](const auto& r) { return noted(r.inside.origin, place_inside_noted(model)); },
+            deepest);
+        !which.empty())
         console.note(
-            fmt::format("warning: {} full brush{} run{} dry: stroke {} after {:.0f} of {:.0f} mm{} (see --dip "
-                        "endless, a larger --brush; dry_from_mm of --json)",
-                        dry, dry == 1 ? "" : "es", dry == 1 ? "s" : "", first->stroke_id,
-                        first->dryness.from / kMillimetre, first->path / kMillimetre, dry == 1 ? "" : ", and others"));
+            fmt::format("warning: the place of {} lies up to {:.2f} mm inside the model; strokes go onto its surface",
+                        which, deepest / kMillimetre));
+    if (const std::string which = strokes_with(
+            reports, strokes, [&](const auto& r) { return noted(r.inside.deepest, kInsideNoted); }, deepest);
+        !which.empty())
+        console.note(
+            fmt::format("warning: {} the ferrule into the model, up to {:.2f} mm deep; it is held on the surface there "
+                        "(check the place, the unit and the pressure)",
+                        which.ends_with(',') ? which + " take" : which + " takes", deepest / kMillimetre));
+}
+
+// Warnings for strokes that never met the model.
+void note_misses(const std::vector<stroke::StrokeReport>& reports,
+                 const std::vector<const stroke::JournalEntry*>& strokes, Console& console) {
+    double farthest = 0;
+    const std::string which = strokes_with(
+        reports, strokes, [](const auto& r) { return r.touched() ? std::nullopt : std::optional(r.nearest); },
+        farthest);
+    if (which.empty()) return;
+    console.note(fmt::format("warning: {} the model, up to {:.2f} mm away",
+                             which.ends_with(',') ? which + " never touch" : which + " never touches",
+                             farthest / kMillimetre));
+}
+
+}  // namespace
+
+int run(const Paint& a) {
+    return paint(a, {.load = [&](Console& console) { return load_strokes(a, console); },
+                     .place = [&](std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
+                                  Console& console) { return place_strokes(strokes, model, a, console); }});
+}
+
+int paint(const Paint& a, const StrokeSource& source) {
+    Outputs outputs{a.project, a.exported, a.preview, a.view, {}};
+    check_outputs(outputs);
+    check_output(a.forces);
+    Console console(a.common.quiet);
+    const auto start = Clock::now();
+
+    std::error_code no_matter;
+    const bool goes_on = is_project_file(a.model);
+    const bool in_place = goes_on && (a.project.empty() || std::filesystem::equivalent(a.project, a.model, no_matter));
+    const auto reserved = in_place ? std::nullopt : reserve(a.project, console);
+    const auto before =
+        goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console) : nullptr;
+    std::vector<stroke::JournalEntry> strokes = source.load(console);
+    Surface surface = a.surface;
+    if (const double texel = a.auto_texel ? texel_for_detail(strokes, a) : 0; texel > 0)
+        surface.texel_size_mm = texel / kMillimetre;
+    Loaded loaded = before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, surface, console);
+    const stroke::Model model = std::move(loaded.model);
+    outputs.frame = loaded.frame;
+    const std::optional<PlacedDrawing> placed = source.place(strokes, model, console);
+    if (!a.view.directed) look_at_strokes(outputs.view, strokes, model);
+    note_detail(strokes, model.atlas.texel_size, console);
+    add_copies(strokes, model, a);
+
+    stroke::Document painting(model, {.substrate = a.surface.substrate, .record_forces = !a.forces.empty()});
+    if (before) {
+        restore(*before, painting, console);
+        apply_recolouring(before->file, painting, {}, console);
     }
-
-    std::string stroke_name(const stroke::StrokeReport& report, const stroke::JournalEntry& stroke) {
-        const std::string& label = stroke.label;
-        return fmt::format("stroke {}{}", report.stroke_id, label.empty() ? "" : " (" + label + ")");
+    strokes = stroke::onto_named_layers(std::move(strokes), painting.layers().table(), a.layer);
+    stroke::keep_to_named_masks(strokes, painting.masks().table(), a.mask);
+    const std::size_t n_before = painting.journal().entries().size();
+    // Files are numbered from 1: each is a group of its own in this journal.
+    const std::uint64_t first_group = painting.journal().next_group_id();
+    for (stroke::JournalEntry& s : strokes)
+        if (s.group.id != 0) s.group.id += first_group - 1;
+    const double prepared = seconds_since(start);
+    find_presets(painting, strokes);
+    set_films(strokes, painting);
+    note_inks(strokes, painting, console);
+    const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
+    if (const Message fault = stroke::size_fault(strokes, length_of, *model.query); !fault.empty())
+        throw Error(a.model.string(), Message("{} (see --unit, --place-width, --brush)", fault));
+    for (const stroke::JournalEntry& s : strokes) painting.check_size(s);
+    std::optional<io::Project> project;
+    if (in_place) {
+        project = std::move(before->file);
+        put_presets(*project, painting, strokes);
+    } else if (!a.project.empty()) {
+        std::vector<stroke::JournalEntry> all = painting.journal().entries();
+        all.insert(all.end(), strokes.begin(), strokes.end());
+        project = start_project(a.project, before ? before->source : a.model.string(), outputs.frame, painting, all);
+        project->append(painting.journal().entries());
     }
-
-    // The strokes of whose reports there is a value, as one line: "stroke 3 (seal)", "43 strokes, from stroke 3 (seal)
-    // on,"; empty: none. `most` becomes the largest value of them.
-    template <typename Value>
-    std::string strokes_with(const std::vector<stroke::StrokeReport>& reports,
-                             const std::vector<const stroke::JournalEntry*>& strokes, const Value& value_of,
-                             double& most) {
-        std::size_t n = 0, first = 0;
-        for (std::size_t i = 0; i < reports.size(); ++i) {
-            const std::optional<double> value = value_of(reports[i]);
-            if (!value) continue;
-            most = n == 0 ? *value : std::max(most, *value);
-            if (n++ == 0) first = i;
-        }
-        if (n == 0) return {};
-        const std::string name = stroke_name(reports[first], *strokes[first]);
-        return n == 1 ? name : fmt::format("{} strokes, the first {},", n, name);
+    const auto painting_start = Clock::now();
+    double first_stamp = 0;
+    std::vector<stroke::StrokeReport> reports;
+    std::size_t areas = 0;
+    double area_ink = 0;
+    const ProgressFn progress = console.progress();
+    try {
+        painting.paint(
+            strokes,
+            [&](const stroke::JournalEntry& entry, stroke::StrokeReport report) {
+                if (const stroke::Fill* fill = entry.as<stroke::Fill>(); fill && fill->area)
+                    ++areas, area_ink += report.ink_given;
+                if (entry.as<stroke::PaintStroke>()) reports.push_back(std::move(report));
+                if (project) project->append(entry);
+            },
+            [&](std::string_view phase, double fraction) {
+                if (first_stamp == 0) first_stamp = seconds_since(start);
+                return progress(phase, fraction);
+            });
+    } catch (const Cancelled&) {
+        if (project)
+            console.note(fmt::format("{} holds the {} that {} finished", a.project.string(),
+                                     counted(project->n_strokes(), "stroke"),
+                                     project->n_strokes() == 1 ? "was" : "were"));
+        throw;
     }
+    if (project && !strokes.empty())
+        project->save_canvases(stroke::all_canvases(painting), painting.journal().entries().back().id);
+    const double painted = seconds_since(painting_start);
+    console.clear();
+    const std::vector<const stroke::JournalEntry*> done = painted_strokes(painting.journal(), n_before);
+    note_misses(reports, done, console);
+    note_dry(reports, console);
+    note_inside(reports, done, model.mesh->bounds, console);
 
-    // Warnings for strokes that go into a closed body, in space or by their place.
-    void note_inside(const std::vector<stroke::StrokeReport>& reports,
-                     const std::vector<const stroke::JournalEntry*>& strokes, const Box& model, Console& console) {
-        const auto noted = [](double depth, double from) { return depth > from ? std::optional(depth) : std::nullopt; };
-        double deepest = 0;
-        if (const std::string which = strokes_with(
-                reports, strokes, [&](const auto& r) { return noted(r.inside.origin, place_inside_noted(model)); },
-                deepest);
-            !which.empty())
-            console.note(fmt::format(
-                "warning: the place of {} lies up to {:.2f} mm inside the model; strokes go onto its surface", which,
-                deepest / kMillimetre));
-        if (const std::string which = strokes_with(
-                reports, strokes, [&](const auto& r) { return noted(r.inside.deepest, kInsideNoted); }, deepest);
-            !which.empty())
-            console.note(fmt::format(
-                "warning: {} the ferrule into the model, up to {:.2f} mm deep; it is held on the surface there "
-                "(check the place, the unit and the pressure)",
-                which.ends_with(',') ? which + " take" : which + " takes", deepest / kMillimetre));
+    show_layers(painting, a.view.layers);
+    write_outputs(outputs, painting, console);
+    if (!a.forces.empty()) {
+        const std::string csv = forces_csv(reports);
+        write_file(a.forces, csv.data(), csv.size());
     }
+    console.clear();
 
-    // Warnings for strokes that never met the model.
-    void note_misses(const std::vector<stroke::StrokeReport>& reports,
-                     const std::vector<const stroke::JournalEntry*>& strokes, Console& console) {
-        double farthest = 0;
-        const std::string which = strokes_with(
-            reports, strokes, [](const auto& r) { return r.touched() ? std::nullopt : std::optional(r.nearest); },
-            farthest);
-        if (which.empty()) return;
-        console.note(fmt::format("warning: {} the model, up to {:.2f} mm away",
-                                 which.ends_with(',') ? which + " never touch" : which + " never touches",
-                                 farthest / kMillimetre));
+    std::size_t stamps = 0;
+    double given = area_ink;
+    for (const auto& r : reports) stamps += r.stamps, given += r.ink_given;
+    if (a.common.json) {
+        nlohmann::json j;
+        j["model"] = a.model.string();
+        j["triangles"] = model.mesh->n_triangles();
+        j["mesh"] = to_json(model.repairs);
+        j["atlas"] = to_json(model.atlas, model.atlas_report);
+        if (placed) j["placed"] = to_json(*placed);
+        j["strokes"] = nlohmann::json::array();
+        for (std::size_t i = 0; i < reports.size(); ++i) j["strokes"].push_back(to_json(reports[i], *done[i]));
+        j["inks"] = inks_json(strokes, painting);
+        j["areas"] = areas;
+        j["stamps"] = stamps;
+        j["ink_mm3"] = given * ink::kFilmUnit * 1e9;
+        j["canvas_hash"] = fmt::format("{:016x}", painting.layers().hash());
+        j["seconds"] = {{"to_first_stamp", first_stamp},
+                        {"preparing", prepared},
+                        {"painting", painted},
+                        {"total", seconds_since(start)}};
+        j["peak_mb"] = peak_megabytes();
+        print_json(j);
+    } else {
+        const std::string painted_areas = areas == 0 ? "" : counted(areas, "area");
+        const std::string painted_strokes =
+            reports.empty() && areas > 0
+                ? ""
+                : fmt::format("{}{}", areas > 0 ? " and " : "", counted(reports.size(), "stroke"));
+        fmt::print("painted {}{} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n",
+                   painted_areas, painted_strokes, counted(stamps, "stamp"), given * ink::kFilmUnit * 1e9, painted,
+                   model.atlas.size, model.atlas.size, counted(model.atlas.n_charts, "chart"),
+                   model.atlas.texel_size / kMillimetre);
+        for (const auto& path : {a.project, a.exported, a.preview, a.forces})
+            if (!path.empty()) fmt::print("wrote {}\n", path.string());
+        std::fflush(stdout);
     }
-
-    }  // namespace
-
-    int run(const Paint& a) {
-        return paint(a, {.load = [&](Console& console) { return load_strokes(a, console); },
-                         .place = [&](std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
-                                      Console& console) { return place_strokes(strokes, model, a, console); }});
-    }
-
-    int paint(const Paint& a, const StrokeSource& source) {
-        Outputs outputs{a.project, a.exported, a.preview, a.view, {}};
-        check_outputs(outputs);
-        check_output(a.forces);
-        Console console(a.common.quiet);
-        const auto start = Clock::now();
-
-        std::error_code no_matter;
-        const bool goes_on = is_project_file(a.model);
-        const bool in_place =
-            goes_on && (a.project.empty() || std::filesystem::equivalent(a.project, a.model, no_matter));
-        const auto reserved = in_place ? std::nullopt : reserve(a.project, console);
-        const auto before =
-            goes_on ? open_project(a.model, in_place ? io::Access::write : io::Access::read, console) : nullptr;
-        std::vector<stroke::JournalEntry> strokes = source.load(console);
-        Surface surface = a.surface;
-        if (const double texel = a.auto_texel ? texel_for_detail(strokes, a) : 0; texel > 0)
-            surface.texel_size_mm = texel / kMillimetre;
-        Loaded loaded =
-            before ? Loaded{std::move(before->model), before->frame} : load_model(a.model, surface, console);
-        const stroke::Model model = std::move(loaded.model);
-        outputs.frame = loaded.frame;
-        const std::optional<PlacedDrawing> placed = source.place(strokes, model, console);
-        if (!a.view.directed) look_at_strokes(outputs.view, strokes, model);
-        note_detail(strokes, model.atlas.texel_size, console);
-        add_copies(strokes, model, a);
-
-        stroke::Document painting(model, {.substrate = a.surface.substrate, .record_forces = !a.forces.empty()});
-        if (before) {
-            restore(*before, painting, console);
-            apply_recolouring(before->file, painting, {}, console);
-        }
-        strokes = stroke::onto_named_layers(std::move(strokes), painting.layers().table(), a.layer);
-        stroke::keep_to_named_masks(strokes, painting.masks().table(), a.mask);
-        const std::size_t n_before = painting.journal().entries().size();
-        // Files are numbered from 1: each is a group of its own in this journal.
-        const std::uint64_t first_group = painting.journal().next_group_id();
-        for (stroke::JournalEntry& s : strokes)
-            if (s.group.id != 0) s.group.id += first_group - 1;
-        const double prepared = seconds_since(start);
-        find_presets(painting, strokes);
-        set_films(strokes, painting);
-        note_inks(strokes, painting, console);
-        const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
-        if (const Message fault = stroke::size_fault(strokes, length_of, *model.query); !fault.empty())
-            throw Error(a.model.string(), Message("{} (see --unit, --place-width, --brush)", fault));
-        for (const stroke::JournalEntry& s : strokes) painting.check_size(s);
-        std::optional<io::Project> project;
-        if (in_place) {
-            project = std::move(before->file);
-            put_presets(*project, painting, strokes);
-        } else if (!a.project.empty()) {
-            std::vector<stroke::JournalEntry> all = painting.journal().entries();
-            all.insert(all.end(), strokes.begin(), strokes.end());
-            project =
-                start_project(a.project, before ? before->source : a.model.string(), outputs.frame, painting, all);
-            project->append(painting.journal().entries());
-        }
-        const auto painting_start = Clock::now();
-        double first_stamp = 0;
-        std::vector<stroke::StrokeReport> reports;
-        std::size_t areas = 0;
-        double area_ink = 0;
-        const ProgressFn progress = console.progress();
-        try {
-            painting.paint(
-                strokes,
-                [&](const stroke::JournalEntry& entry, stroke::StrokeReport report) {
-                    if (const stroke::Fill* fill = entry.as<stroke::Fill>(); fill && fill->area)
-                        ++areas, area_ink += report.ink_given;
-                    if (entry.as<stroke::PaintStroke>()) reports.push_back(std::move(report));
-                    if (project) project->append(entry);
-                },
-                [&](std::string_view phase, double fraction) {
-                    if (first_stamp == 0) first_stamp = seconds_since(start);
-                    return progress(phase, fraction);
-                });
-        } catch (const Cancelled&) {
-            if (project)
-                console.note(fmt::format("{} holds the {} that {} finished", a.project.string(),
-                                         counted(project->n_strokes(), "stroke"),
-                                         project->n_strokes() == 1 ? "was" : "were"));
-            throw;
-        }
-        if (project && !strokes.empty())
-            project->save_canvases(stroke::all_canvases(painting), painting.journal().entries().back().id);
-        const double painted = seconds_since(painting_start);
-        console.clear();
-        const std::vector<const stroke::JournalEntry*> done = painted_strokes(painting.journal(), n_before);
-        note_misses(reports, done, console);
-        note_dry(reports, console);
-        note_inside(reports, done, model.mesh->bounds, console);
-
-        show_layers(painting, a.view.layers);
-        write_outputs(outputs, painting, console);
-        if (!a.forces.empty()) {
-            const std::string csv = forces_csv(reports);
-            write_file(a.forces, csv.data(), csv.size());
-        }
-        console.clear();
-
-        std::size_t stamps = 0;
-        double given = area_ink;
-        for (const auto& r : reports) stamps += r.stamps, given += r.ink_given;
-        if (a.common.json) {
-            nlohmann::json j;
-            j["model"] = a.model.string();
-            j["triangles"] = model.mesh->n_triangles();
-            j["mesh"] = to_json(model.repairs);
-            j["atlas"] = to_json(model.atlas, model.atlas_report);
-            if (placed) j["placed"] = to_json(*placed);
-            j["strokes"] = nlohmann::json::array();
-            for (std::size_t i = 0; i < reports.size(); ++i) j["strokes"].push_back(to_json(reports[i], *done[i]));
-            j["inks"] = inks_json(strokes, painting);
-            j["areas"] = areas;
-            j["stamps"] = stamps;
-            j["ink_mm3"] = given * ink::kFilmUnit * 1e9;
-            j["canvas_hash"] = fmt::format("{:016x}", painting.layers().hash());
-            j["seconds"] = {{"to_first_stamp", first_stamp},
-                            {"preparing", prepared},
-                            {"painting", painted},
-                            {"total", seconds_since(start)}};
-            j["peak_mb"] = peak_megabytes();
-            print_json(j);
-        } else {
-            const std::string painted_areas = areas == 0 ? "" : counted(areas, "area");
-            const std::string painted_strokes =
-                reports.empty() && areas > 0
-                    ? ""
-                    : fmt::format("{}{}", areas > 0 ? " and " : "", counted(reports.size(), "stroke"));
-            fmt::print("painted {}{} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n",
-                       painted_areas, painted_strokes, counted(stamps, "stamp"), given * ink::kFilmUnit * 1e9, painted,
-                       model.atlas.size, model.atlas.size, counted(model.atlas.n_charts, "chart"),
-                       model.atlas.texel_size / kMillimetre);
-            for (const auto& path : {a.project, a.exported, a.preview, a.forces})
-                if (!path.empty()) fmt::print("wrote {}\n", path.string());
-            std::fflush(stdout);
-        }
-        return 0;
-    }
+    return 0;
+}
 
 }  // namespace tuft::cli
