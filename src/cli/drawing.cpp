@@ -151,7 +151,8 @@ double texel_for_detail(std::vector<stroke::JournalEntry>& strokes, const Paint&
     for (const stroke::FlatArea* area : stroke::areas_in(strokes, true)) stroke::add_extent(extent, *area);
     const double width = stroke::width_of(extent);
     const double scale = a.place_width_mm > 0 && width > 0 ? a.place_width_mm * kMillimetre / width : 1;
-    return scale * finest / kTexelsAcross;
+    constexpr double kSpare = 1.02;  // the atlas meets the texel size within a percent
+    return scale * finest / (kSpare * kTexelsAcross);
 }
 
 void note_detail(std::vector<stroke::JournalEntry>& strokes, double texel, Console& console) {

@@ -195,10 +195,14 @@ std::string zsh_completion(const ManualCommand& program) {
         "    )\n    _describe command commands_ ;;\n  words)\n    case $words[1] in\n";
     for (const ManualCommand& command : program.commands) {
         text += "    " + command.name + ") ";
-        for (const ManualCommand& part : command.commands)
-            text += "if (( ${words[(I)" + part.name + "]} && ${words[(I)" + part.name +
+        const char* test = "if";
+        for (const ManualCommand& part : command.commands) {
+            text += std::string(test) + " (( ${words[(I)" + part.name + "]} && ${words[(I)" + part.name +
                     "]} < CURRENT )); then\n      _arguments" + zsh_arguments(part, function) +
-                    " \\\n      '*: :'\n      else ";
+                    " \\\n      '*: :'\n      ";
+            test = "elif";
+        }
+        if (!command.commands.empty()) text += "else ";
         text += "_arguments" + zsh_arguments(command, function);
         text += command.commands.empty() ? "" : "; fi";
         text += " ;;\n";

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/geometry/bounds.h"
 #include "stroke/journal/entry_json.h"
+#include "stroke/journal/flat_area_json.h"
 
 namespace tuft::stroke {
 namespace {

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/geometry/bounds.h"
 #include "core/text/nesting.h"
+#include "stroke/journal/flat_area_json.h"
 
 namespace tuft::stroke {
 namespace {

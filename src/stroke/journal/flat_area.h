@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -63,9 +62,7 @@ double along_area(const FlatArea& area, const Vec2& point);
 /// Maps an area by p' = scale (p − centre); `mirrored` then flips x. As `transform_samples`.
 void transform_area(FlatArea& area, const Vec2& centre, double scale, bool mirrored = false);
 
-/// Areas as JSON and as its text, and back. Back throws `Error` where it cannot be read.
-nlohmann::json json_of(const FlatArea& area);
-FlatArea flat_area_of(const nlohmann::json& json);
+/// Areas as JSON text (flat_area_json.h), and back. Back throws `Error` where it cannot be read.
 std::string text_of(const FlatArea& area);
 FlatArea area_of_text(const std::string& text);
 
