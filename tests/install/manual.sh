@@ -13,11 +13,16 @@ fail() { echo "FAILED: $*"; bad=1; }
 [ -z "$studio" ] || "$studio" --reference "$work"
 
 plain() { sed -e 's/\\f[BIR]//g' -e 's/\\-/-/g' -e 's/\\&//g' "$1"; }
-# named PAGE HELP...: every option of a help text is in the page and in both completions.
+subcommands() { "$@" --help | sed -n '/^Subcommands:/,/^$/p' | grep -oE '^  [a-z]+' | tr -d ' ' || true; }
+# named PAGE PROGRAM [COMMAND]: every option of the help of a command and its subcommands is in the page and in both
+# completions.
 named() {
-  local page=$1 option options
+  local page=$1 option options sub
   shift
-  options=$("$@" --help | grep -oE '^  +-[^ ]+' | tr ',' '\n' | grep -oE '\-\-?[a-z][a-z-]*' | sort -u)
+  options=$({
+    "$@" --help
+    [ $# = 1 ] || for sub in $(subcommands "$@"); do "$@" "$sub" --help; done
+  } | grep -oE '^  +-[^ ]+' | tr ',' '\n' | grep -oE '\-\-?[a-z][a-z-]*' | sort -u)
   local text
   text=$(plain "$work/man1/$page.1")
   [ "$(wc -w <<<"$options")" -ge 3 ] || fail "$* --help names only: $options"
@@ -27,7 +32,7 @@ named() {
     grep -q -- "$option" "$work/zsh/_${page%%-[a-rt-z]*}" || fail "the zsh completion does not name $option of $page"
   done
 }
-commands=$("$tuft" --help | sed -n '/^Subcommands:/,/^$/p' | grep -oE '^  [a-z]+' | tr -d ' ')
+commands=$(subcommands "$tuft")
 [ "$(wc -w <<<"$commands")" -ge 10 ] || fail "commands: $commands"
 named tuft "$tuft"
 for command in $commands; do named "tuft-$command" "$tuft" "$command"; done
