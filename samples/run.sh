@@ -38,7 +38,7 @@ livery models/car.ply --only Flank --read-from front --place=-2,-216,131.8 --mir
 livery "$out/livery.tuft" --only Top --read-from top --place=-2,0,330 --export "$out/livery.glb"
 "$tuft" render "$out/livery.tuft" -o "$out/livery-right.png" --view 28,14 --size 740x460
 "$tuft" render "$out/livery.tuft" -o "$out/livery-left.png" --view 152,14 --size 740x460
-"$tuft" render "$out/livery.tuft" -o "$out/livery-top.png" --view 75,40 --size 1480x620 --zoom 0.85
+"$tuft" render "$out/livery.tuft" -o "$out/livery-top.png" --view 75,40 --size 1480x620 --zoom 0.7
 oiiotool "$out/livery-top.png" "$out/livery-left.png" "$out/livery-right.png" --create 1480x1080 3 --paste +0+0 --paste +740+0 --paste +0+460 \
   -d uint8 -o "$out/livery.png"
 

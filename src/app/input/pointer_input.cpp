@@ -43,6 +43,7 @@ constexpr double kSlanting = 0.35;   // cosine to the line of sight under which 
 // Behind an edge hair that was pressed onto the rim would hook over it: the stroke goes on lightly, by this part of its
 // pressure's way, and is pressed down over this part of the tuft's length.
 constexpr double kLightly = 0.2, kOverAnEdge = 0.08;
+constexpr double kWall = 0.25, kLip = 0.55;  // radians from the mean normal: of a wall beside a lip at most, of a lip
 constexpr double kSameGround = 1.5;  // radii round the aim in which a place belongs to the ground that a holder levels
 
 double part(double dt, double constant) {
@@ -147,8 +148,9 @@ std::optional<AimedSurface> PointerInput::find_surface(const Aim& aim) const {
     return found;
 }
 
-// The mean over what is seen of the ground within the radius that a holder levels (stroke/placement/levelling.h): on a
-// lip a few millimetres wide it is that of the wall beside it, and it turns gradually over an edge.
+// On a lip a few millimetres wide, the normal of the wall beside it: the mean over what is seen of the ground within
+// the radius that a holder levels (stroke/placement/levelling.h), where the surface's own is far from it. On the wall
+// it is the surface's own, with the lip in that radius or without.
 Vec3 PointerInput::levelled_normal(const Aim& aim, const mesh::SurfacePoint& hit) const {
     const double furthest = kSameGround * holder_.steady;
     Vec3 mean = facing(hit, aim);
@@ -163,7 +165,10 @@ Vec3 PointerInput::levelled_normal(const Aim& aim, const mesh::SurfacePoint& hit
             const double away = at ? glm::distance(at->position, hit.position) / furthest : 1;
             if (away < 1) mean += part * (1 - away * away) * facing(*at, aim);
         }
-    return glm::length(mean) > 1e-6 ? glm::normalize(mean) : own;
+    if (!(glm::length(mean) > 1e-6)) return own;
+    mean = glm::normalize(mean);
+    const double angle = std::acos(std::clamp(glm::dot(own, mean), -1.0, 1.0));
+    return glm::normalize(glm::mix(own, mean, smooth_step((angle - kWall) / (kLip - kWall))));
 }
 
 // The smoothed point cuts the corners of a curved surface: it is brought back. Over a gap the nearest

@@ -151,14 +151,10 @@ void draw_row(const Sheet& sheet, double top, double tilt, Side side, const char
         draw_scale(sheet, view, (k + 0.02) * sheet.column, (k + 0.98) * sheet.column);
         BrushView below = view;
         below.scale /= smaller;
-        if (at.tuft.carried) {
-            // A shape's patch may be as tall as the shape is wide: it fits under the ground.
-            const Vec2 size = at.tuft.carried->hi - at.tuft.carried->lo;
-            below.scale = std::min(view.scale, 58 * u / (0.5 * std::max(size.x, size.y)));
-        }
         if (at.state.touching) draw_patch(sheet.canvas, at.tuft, at.state, below, plan);
         // Under the patch of a wide tuft, which is as wide as the tuft.
-        const double x = (k + 0.5) * sheet.column, y = ground + (sheet.preset.spines > 1 ? 161 : 152) * u;
+        const double x = (k + 0.5) * sheet.column,
+                     y = ground + (sheet.preset.spines > 1 || at.tuft.carried ? 161 : 152) * u;
         sheet.centred(
             lifted ? "lifted" : label("%.1f mm", at.depth / kMillimetre) + label("   %.2f N", at.state.normal_force), x,
             y, 12, sheet.ink);
@@ -241,7 +237,7 @@ BrushPicture draw_tuft(const Preset& preset, int width) {
                       unit,   static_cast<double>(width),
                       column, 0.92 * column / std::max(1.3 * preset.length, is_foam(preset) ? 2.6 * preset.radius : 0)};
     if (tips) draw_tips(sheet, head + 3 * row);
-    if (preset.spines > 1) {
+    if (has_broad_side(preset)) {
         draw_row(sheet, head + 2 * row, kTilt, Side::edge, "leaning ahead, on its edge");
         draw_row(sheet, head + row, kTilt, Side::broad, "leaning ahead, on its broad side");
         draw_row(sheet, head, 0, Side::broad, "upright, on its broad side");
