@@ -1,7 +1,8 @@
 #include "stroke/document/tile_reach.h"
 
 #include <algorithm>
-#include <limits>
+#include <array>
+#include <numbers>
 #include <optional>
 
 #include "core/system/parallel.h"
@@ -9,26 +10,33 @@
 namespace tuft::stroke {
 namespace {
 
-// A tile at the border of a chart may hold texels of others, far away on the surface: one ball for each cluster.
+// A tile at the border of a chart may hold texels of others, far away on the surface: one ball for each cluster, round
+// every third texel of every third row, and as far beyond as two texels are apart.
 void add_balls(const atlas::TexelMap& map, std::uint32_t slot, std::span<Ball> balls) {
+    constexpr int kEach = 3;
+    const double beyond = 2 * std::numbers::sqrt2 * static_cast<double>(map.reach[slot]);
     atlas::TexelShape buffer;
     const atlas::TexelShape& shape = atlas::shape_of(map, slot, buffer);
     const auto& cluster = map.tiles[slot].cluster;
-    const auto at = [&](std::size_t t) { return Vec3(shape.px[t], shape.py[t], shape.pz[t]); };
-    std::vector<Vec3> lo(balls.size(), Vec3{std::numeric_limits<double>::infinity()}), hi(balls.size(), -lo[0]);
-    for (std::size_t t = 0; t < atlas::kTileTexels; ++t) {
-        const std::uint8_t c = cluster[t];
-        if (c == atlas::kNoCluster) continue;
-        lo[c] = glm::min(lo[c], at(t));
-        hi[c] = glm::max(hi[c], at(t));
-    }
+    std::array<Ball, atlas::kTileTexels> sampled;  // radius: number of texels sampled
+    for (Ball& ball : std::span(sampled).first(balls.size())) ball = {Vec3{0}, 0};
+    const auto each_sample = [&](const auto& visit) {
+        for (int row = 0; row < atlas::kTile; row += kEach)
+            for (int column = 0; column < atlas::kTile; column += kEach) {
+                const auto t = static_cast<std::size_t>(row * atlas::kTile + column);
+                if (cluster[t] != atlas::kNoCluster) visit(cluster[t], Vec3(shape.px[t], shape.py[t], shape.pz[t]));
+            }
+    };
+    each_sample([&](std::uint8_t c, const Vec3& p) { sampled[c].centre += p, sampled[c].radius += 1; });
     for (std::size_t c = 0; c < balls.size(); ++c)
-        if (lo[c].x <= hi[c].x) balls[c] = {.centre = 0.5 * (lo[c] + hi[c]), .radius = 0};
+        if (sampled[c].radius > 0) balls[c] = {sampled[c].centre / sampled[c].radius, beyond};
+    each_sample([&](std::uint8_t c, const Vec3& p) {
+        balls[c].radius = std::max(balls[c].radius, glm::distance(balls[c].centre, p) + beyond);
+    });
+    // A cluster between the samples.
     for (std::size_t t = 0; t < atlas::kTileTexels; ++t)
-        if (cluster[t] != atlas::kNoCluster) {
-            Ball& ball = balls[cluster[t]];
-            ball.radius = std::max(ball.radius, glm::distance(ball.centre, at(t)));
-        }
+        if (const std::uint8_t c = cluster[t]; c != atlas::kNoCluster && balls[c].radius < 0)
+            balls[c] = {Vec3(shape.px[t], shape.py[t], shape.pz[t]), 2 * beyond};
 }
 
 Ball ball_around(std::span<const Ball> balls) {
@@ -108,7 +116,11 @@ TileReach::TileReach(const atlas::TexelMap& map)
 TilePlan TileReach::tiles_at(std::span<const ReachedPlace> places) const {
     TilePlan tiles;
     std::vector<ReachedPlace> near;
+    std::vector<Ball> balls;
+    for (const ReachedPlace& place : places) balls.push_back(place.ball);
+    const Ball all = ball_around(balls);
     for (std::size_t g = 0; g < groups_.size(); ++g) {
+        if (!meet(groups_[g], all)) continue;
         near.clear();
         std::ranges::copy_if(places, std::back_inserter(near),
                              [&](const ReachedPlace& place) { return meet(groups_[g], place.ball); });

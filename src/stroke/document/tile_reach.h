@@ -41,10 +41,11 @@ std::vector<std::size_t> parts_of_path(std::span<const brush::Pose> poses, doubl
 std::vector<ReachedPlace> reached_places(const mesh::SurfaceQuery& query, std::span<const brush::Pose> poses,
                                          std::span<const std::size_t> parts, const brush::Preset& preset, double texel);
 
-/// Bounding balls of the tiles of a model. Constant after it is built; reading is safe in several threads.
+/// Balls round the texels of each cluster of the tiles of a model. Constant after it is built; reading is safe in
+/// several threads.
 class TileReach {
   public:
-    /// Cost: one pass over all texels, in parallel.
+    /// Cost: one pass over a ninth of all texels, in parallel.
     explicit TileReach(const atlas::TexelMap& map);
 
     /// Returns the tiles that meet the places.
