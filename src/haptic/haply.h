@@ -54,8 +54,8 @@ struct ServerOptions {
 };
 
 /// Serves a simulated arm on 127.0.0.1, one client at a time, until `go_on` returns false; it is asked ten times a
-/// second. `ready` is told the port. Without a command for 20 ms the arm's motors are off. Throws `Error` where the
-/// port is taken. `force`, if given, always holds the size of the arm's force, N.
+/// second. `ready` is called with the port. Without a command for 20 ms the arm's motors are off. Throws `Error` where
+/// the port is taken. `force`, if given, always holds the size of the arm's force, N.
 void serve_simulated(SimulatedArm arm, const ServerOptions& options, const std::function<bool()>& go_on,
                      const std::function<void(int port)>& ready, std::atomic<double>* force = nullptr);
 

@@ -143,7 +143,7 @@ TEST(Ferrule, RingSharesItsHairEvenly) {
         count[at.branch] += 1;
         inner[at.branch] += glm::dot(at.place, at.place) < 0.5 ? 1 : 0;
     }
-    // A spiral of so many points tells areas of a seventh apart to 1 %.
+    // A spiral of so many points resolves areas of a seventh to 1 %.
     for (std::size_t k = 0; k < count.size(); ++k) {
         EXPECT_NEAR(count[k] * 7 / kPlaces, 1, 0.01) << k;
         EXPECT_NEAR(inner[k] / count[k], 0.5, 0.01) << k;
@@ -203,7 +203,7 @@ TEST(WideTuft, MirrorImageOfHandAndBrush) {
         const TuftState left = dragged(p, {.lean = 0.3, .roll = 0.2, .way = {1e-4, -2e-4, 0}});
         const TuftState right = dragged(p, {.lean = 0.3, .roll = -0.2, .way = {-1e-4, -2e-4, 0}});
         const std::size_t count = left.branches.size();
-        // The residual of a solve, 1e-6 of B0/L; only rounding tells the two apart.
+        // The residual of a solve, 1e-6 of B0/L; the two differ by rounding only.
         EXPECT_NEAR(left.force.z, right.force.z, 1e-6 * std::abs(left.force.z)) << name;
         EXPECT_NEAR(left.force.x, -right.force.x, 1e-6 * glm::length(left.force)) << name;
         for (std::size_t k = 0; k < count; ++k) {

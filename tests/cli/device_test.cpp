@@ -56,7 +56,7 @@ TEST_F(Device, ARecordingPlaysAgainToTheBit) {
     EXPECT_EQ(read(path("a.csv")), read(path("b.csv")));
 }
 
-/// A program in the background whose first line tells its port.
+/// A program in the background whose first line is its port.
 class Served {
   public:
     Served(const std::string& program, const std::string& arguments) {

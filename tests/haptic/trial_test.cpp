@@ -23,6 +23,14 @@ double allowed_step(const DeviceLimits& limits) {
     return std::max(noise, tank) + 0.03;  // 0.03: read places, a count apart from true ones
 }
 
+/// Hair that is lifted at 0.5 m/s loses more than it stored. The tank then ends within two periods: by up to 0.5 N a
+/// period on Inverse3, whose spring is stiff and whose count is fine, and on Touch where forces come 3 ms late.
+double allowed_tap_step(const DeviceLimits& limits, double delay) {
+    if (limits.name == "inverse3") return 0.5;
+    if (limits.name == "touch") return delay > 1e-3 ? 0.55 : 0.2;
+    return allowed_step(limits);
+}
+
 void expect_passive(const std::string& place, const std::string& brush, double delay) {
     const Felt f = felt(place);
     const brush::Tuft tuft = tuft_of(brush);
@@ -34,8 +42,7 @@ void expect_passive(const std::string& place, const std::string& brush, double d
             // A contact gives back no more than it took: 1 µJ is a hundredth of what a light touch stores.
             EXPECT_GE(r.least_energy, -kMicrojoule);
             EXPECT_GE(r.least_with_arm, -kMicrojoule);
-            // Hair that is lifted at 0.5 m/s loses more than it stored; the tank then ends within two periods.
-            EXPECT_LE(r.largest_step, is_tap(way) ? 0.6 : allowed_step(limits));
+            EXPECT_LE(r.largest_step, is_tap(way) ? allowed_tap_step(limits, delay) : allowed_step(limits));
             EXPECT_LE(r.largest_force, std::min(limits.max_force, kForceLimit) + 1e-9);
             EXPECT_GT(r.contacts, 0u);
         }
@@ -108,22 +115,26 @@ TEST(Trial, FerruleAtHalfAMetrePerSecondStopsAndGivesNothingBack) {
     }
 }
 
+/// Four recorded seconds of a press that stands still at its end.
+TrialReport rest_on(const Felt& f, const brush::Tuft& tuft, TrialOptions options) {
+    options.record = true;
+    options.seconds = 4;
+    return run_trial(tuft, *f.surface, hand_path(Way::rest, f.place, tuft.preset), options);
+}
+
 // A hand at rest feels rest: the last second of a press that stands still.
 TEST(Trial, RestIsSteady) {
     const Felt f = felt("sheet");
     const brush::Tuft tuft = tuft_of("wolf-medium");
     for (const DeviceLimits& limits : device_presets()) {
-        TrialOptions options = options_for(limits);
-        options.record = true;
-        options.seconds = 4;
-        const TrialReport r = run_trial(tuft, *f.surface, hand_path(Way::rest, f.place, tuft.preset), options);
+        const TrialReport r = rest_on(f, tuft, options_for(limits));
         double least = 1e9, most = 0;
         for (std::size_t i = r.forces.size() - 1000; i < r.forces.size(); ++i) {
             least = std::min(least, glm::length(r.forces[i]));
             most = std::max(most, glm::length(r.forces[i]));
         }
         EXPECT_GT(least, 0.1) << limits.name;
-        EXPECT_LT(most - least, 2e-3) << limits.name;  // N, below what a finger tells from nothing
+        EXPECT_LT(most - least, 2e-3) << limits.name;  // N, below what a finger feels
     }
 }
 
@@ -132,10 +143,8 @@ TEST(Trial, SteadyForceIsTheHairsAtTheVirtualRoot) {
     const Felt f = felt("sheet");
     const brush::Tuft tuft = tuft_of("wolf-medium");
     for (const DeviceLimits& limits : device_presets()) {
-        TrialOptions options = options_for(limits);
-        options.record = true;
-        options.seconds = 4;
-        const TrialReport r = run_trial(tuft, *f.surface, hand_path(Way::rest, f.place, tuft.preset), options);
+        const TrialOptions options = options_for(limits);
+        const TrialReport r = rest_on(f, tuft, options);
         const Vec3 felt_force = r.forces.back(), hair = options.law.gain * r.last_hair;
         EXPECT_LT(glm::distance(felt_force, hair), 0.02 * glm::length(hair)) << limits.name;
         HairSolver again(tuft, *f.surface);

@@ -316,7 +316,7 @@ TEST(Repair, OpenPartsThatAreInsideOutAreTurnedRound) {
     EXPECT_EQ(turned.report.parts_turned, 1u);
     EXPECT_EQ(turned.report.faces_flipped, 0u);
     EXPECT_THAT(texts(describe_defects(turned.report)), Contains("1 open part was inside out: turned round"));
-    // One face of the file shows its back among the others: that is told apart.
+    // One face of the file shows its back among the others: that is reported.
     PolygonSoup one = inverted(jar);
     reverse(one, 5);
     EXPECT_EQ(repaired(one).report.faces_flipped, 2u);

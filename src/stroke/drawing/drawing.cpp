@@ -130,23 +130,25 @@ void add_extent(Box& box, const FlatArea& area) {
     box.add(Vec3(area.high, 0));
 }
 
+// `shape`: an area or samples. Their way of mapping stays.
+void put_at(auto& shape, const Placement& place) {
+    shape.placement.origin = place.origin;
+    shape.placement.right = place.right;
+    shape.placement.down = place.down;
+    shape.placed = true;
+}
+
 void place_areas(std::span<FlatArea* const> areas, const DrawingPlace& place) {
     for (FlatArea* area : areas) {
         transform_area(*area, place.centre, place.scale, place.mirrored);
-        area->placement.origin = place.placement.origin;
-        area->placement.right = place.placement.right;
-        area->placement.down = place.placement.down;
-        area->placed = true;
+        put_at(*area, place.placement);
     }
 }
 
 void place_drawing(std::span<StrokeSamples* const> drawing, const DrawingPlace& place) {
     for (StrokeSamples* trace : drawing) {
         transform_samples(*trace, place.centre, place.scale, place.mirrored);
-        trace->placement.origin = place.placement.origin;
-        trace->placement.right = place.placement.right;
-        trace->placement.down = place.placement.down;
-        trace->placed = true;
+        put_at(*trace, place.placement);
     }
 }
 
