@@ -36,7 +36,7 @@ stroke/contact
 stroke/deposit
 stroke/session
 stroke/document
-io/image render/brush render/picture render/gl
+io/font io/image render/brush render/picture render/gl
 io/model
 io/export io/project io/strokes
 writer/glyphs
@@ -86,7 +86,7 @@ wall 'CGAL' '*.cpp'
 wall 'embree3' '*.cpp'
 wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|zlib|assimp' 'io/*.cpp'
 wall 'pugixml' 'io/*.cpp' 'writer/glyphs/*.cpp'
-wall 'ft2build|hb' 'writer/glyphs/*.cpp'
+wall 'ft2build|hb|fontconfig' 'io/font/*.cpp'
 wall 'GL/|epoxy|EGL' 'render/*' 'app/*'
 wall 'GLFW|imgui' 'app/*'
 exit $bad

@@ -51,7 +51,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_NAME tuft-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "tuft ${same_version}" libglm-dev libopenmesh-dev libembree-dev
   libtbb-dev libfmt-dev libtinygltf-dev libsqlite3-dev libsqlitecpp-dev libzstd-dev zlib1g-dev libxxhash-dev
-  libpugixml-dev libfreetype-dev libharfbuzz-dev
+  libpugixml-dev libfontconfig-dev libfreetype-dev libharfbuzz-dev
   libpolyclipping-dev libtomlplusplus-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "cmake, pkg-config")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "libraries that unwrap 3D models and paint on them

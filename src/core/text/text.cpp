@@ -65,4 +65,34 @@ std::string excerpt(std::string_view text, std::size_t most) {
     return head.size() < text.size() ? out + "..." : out;
 }
 
+std::u32string utf32_of(std::string_view text) {
+    const std::string utf8 = to_utf8(text);
+    std::u32string out;
+    for (std::size_t i = 0; i < utf8.size();) {
+        const auto lead = static_cast<unsigned char>(utf8[i]);
+        const int n = lead < 0x80 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+        char32_t code = n == 1 ? lead : lead & (0xFFu >> (n + 1));
+        for (int k = 1; k < n; ++k) code = (code << 6) | (static_cast<unsigned char>(utf8[i + k]) & 0x3Fu);
+        out.push_back(code);
+        i += static_cast<std::size_t>(n);
+    }
+    return out;
+}
+
+std::string utf8_of(char32_t c) {
+    std::string out;
+    const auto byte = [&](char32_t v) { out.push_back(static_cast<char>(v)); };
+    if (c < 0x80) {
+        byte(c);
+    } else if (c < 0x800) {
+        byte(0xC0 | (c >> 6)), byte(0x80 | (c & 0x3F));
+    } else if (c < 0x10000) {
+        byte(0xE0 | (c >> 12)), byte(0x80 | ((c >> 6) & 0x3F)), byte(0x80 | (c & 0x3F));
+    } else {
+        byte(0xF0 | (c >> 18)), byte(0x80 | ((c >> 12) & 0x3F)), byte(0x80 | ((c >> 6) & 0x3F)),
+            byte(0x80 | (c & 0x3F));
+    }
+    return out;
+}
+
 }  // namespace tuft

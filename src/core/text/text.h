@@ -15,6 +15,11 @@ bool is_utf8(std::string_view text);
 /// names.
 std::string to_utf8(std::string_view text);
 
+/// Returns the characters of a text, which is decoded as by `to_utf8`.
+std::u32string utf32_of(std::string_view text);
+/// Returns a character as UTF-8.
+std::string utf8_of(char32_t code);
+
 /// Returns `text` for use in a message: UTF-8, with control characters as '?'. A text longer than `most` bytes is
 /// cut and ends in "...".
 std::string excerpt(std::string_view text, std::size_t most = 60);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/text/text.h"
+
 namespace tuft::io {
 namespace {
 
@@ -12,8 +14,11 @@ Message loss_text(SvgLoss loss, std::size_t n) {
     const auto say = [n](const char* one, const char* several) { return n == 1 ? Message(one) : Message(several, n); };
     switch (loss) {
         case SvgLoss::text:
-            return say("1 text is left out: turn text into paths first",
-                       "{} texts are left out: turn text into paths first");
+            return say("1 character is left out: no installed font has it",
+                       "{} characters are left out: no installed font has them");
+        case SvgLoss::text_end:
+            return say("1 character is left out: its path is too short",
+                       "{} characters are left out: their path is too short");
         case SvgLoss::image:
             return say("1 image is left out", "{} images are left out");
         case SvgLoss::foreign:
@@ -86,10 +91,17 @@ void SvgLosses::add_colour(const std::string& colour) {
     if (known_.insert(name).second) colours_.push_back(name);
 }
 
+void SvgLosses::add_font(const std::string& missing, const std::string& used) {
+    const std::pair pair(missing, used);
+    if (std::find(fonts_.begin(), fonts_.end(), pair) == fonts_.end()) fonts_.push_back(pair);
+}
+
 std::vector<Message> SvgLosses::lines() const {
     std::vector<Message> out;
     for (std::size_t i = 0; i < kSvgLosses; ++i)
         if (counts_[i] > 0) out.push_back(loss_text(static_cast<SvgLoss>(i), counts_[i]));
+    for (const auto& [missing, used] : fonts_)
+        out.push_back(Message("the font '{}' is not installed: its text is set in '{}'", excerpt(missing), used));
     if (colours_.empty() || (colours_.size() == 1 && colours_.front() == "black")) return out;
     constexpr std::size_t kNamed = 6;
     const std::vector<std::string> named(

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/message.h"
@@ -14,7 +15,8 @@ namespace tuft::io {
 
 /// Kinds of loss, in the order in which they are reported.
 enum class SvgLoss {
-    text,
+    text,      ///< characters without a font
+    text_end,  ///< characters beyond the end of their path
     image,
     foreign,
     missing_use,
@@ -45,12 +47,16 @@ class SvgLosses {
     void add(SvgLoss loss) { ++counts_[static_cast<std::size_t>(loss)]; }
     /// Adds a colour of a drawn element, as the file writes it.
     void add_colour(const std::string& colour);
-    /// Returns one line for each kind found, with its count, and one for the colours where any is not black.
+    /// Adds a font family that is not installed, and the one that replaces it.
+    void add_font(const std::string& missing, const std::string& used);
+    /// Returns one line for each kind found, with its count, one for each missing font, and one for the colours
+    /// where any is not black.
     std::vector<Message> lines() const;
 
   private:
     std::array<std::size_t, kSvgLosses> counts_{};
-    std::vector<std::string> colours_;  // in the order found
+    std::vector<std::pair<std::string, std::string>> fonts_;  // missing and used, in the order found
+    std::vector<std::string> colours_;                        // in the order found
     std::set<std::string> known_;
 };
 

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "io/strokes/shape.h"
 #include "io/strokes/svg_colour.h"
 #include "io/strokes/svg_css.h"
+#include "io/strokes/svg_font.h"
 
 namespace pugi {
 class xml_node;
@@ -47,6 +49,7 @@ struct SvgStyle {
     std::string marker_start, marker_mid, marker_end;  ///< ids; empty: none
     double fill_opacity = 1, stroke_opacity = 1;
     bool visible = true;
+    std::shared_ptr<const SvgFont> font;  ///< of text; null: the initial one
 
     bool filled() const { return fill.paints() && fill_opacity > 0; }
     bool stroked() const { return stroke.paints() && stroke_opacity > 0; }

@@ -37,9 +37,6 @@ struct Glyph {
 std::u32string characters_of(std::string_view text);
 inline constexpr std::size_t kMostCharacters = 10'000;
 
-/// Returns a character as UTF-8.
-std::string utf8_of(char32_t code);
-
 /// Throws `Error` with `source` where a glyph has numbers that are not finite or beyond ±`kFarthestUnit`, a centre line
 /// of fewer than two points, or more than `kMostStrokes` strokes or `kMostPoints` points.
 void check_glyph(const Glyph& glyph, const std::string& source);

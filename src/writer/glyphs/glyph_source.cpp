@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/system/files.h"
+#include "io/font/font.h"
 #include "writer/glyphs/outline_font.h"
 
 namespace fs = std::filesystem;
@@ -112,7 +113,7 @@ std::unique_ptr<GlyphSource> open_folder(const fs::path& path) {
         const fs::path& file = entry.path();
         const std::string kind = file.extension().string();
         if (kind == ".txt") books.push_back(file);
-        if (is_outline_font(file)) outlines.push_back(file);
+        if (io::is_font_file(file)) outlines.push_back(file);
         if (kind == ".json") characters = true;
         if (kind != ".svg") continue;
         const std::string stem = file.stem().string();
@@ -156,7 +157,7 @@ std::unique_ptr<GlyphSource> open_glyphs(const fs::path& path) {
     if (!fs::exists(path, error)) throw Error(path.string(), Message("there is no such file or folder of characters"));
     if (fs::is_directory(path, error)) return open_folder(path);
     if (path.extension() == ".svg") return std::make_unique<LineFont>(path);
-    if (is_outline_font(path)) return open_outline_font(path);
+    if (io::is_font_file(path)) return open_outline_font(path);
     if (path.extension() == ".txt" || path.extension() == ".json" || path.extension() == ".jsonl")
         return std::make_unique<Book>(path);
     throw Error(path.string(), Message("neither a folder of characters, graphics.txt, an SVG font nor a font"));
