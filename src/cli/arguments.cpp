@@ -88,6 +88,7 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     r->add_option("--ink", replay.ink,
                   "use this ink for every stroke: a name, a .toml file or a colour such as '#c03020'");
     add_surface(r, replay.surface);
+    add_cache(r, replay.surface);
     add_recolouring(r, replay.recolouring);
     r->add_option("--project", replay.out_project, "write a project file (.tuft)");
     r->add_option("--export", replay.exported, "write the textured model: .glb, .gltf or .obj");

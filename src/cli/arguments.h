@@ -36,7 +36,8 @@ struct Surface : FileReading {
     double sharp_angle_deg = 40;
     std::string texel_store = "auto";  ///< auto | float | packed
     std::string substrate = "porcelain";
-    bool plain = false;  ///< ignores the model's own colours
+    bool plain = false;     ///< ignores the model's own colours
+    bool no_cache = false;  ///< neither reads nor writes prepared models
 };
 
 /// Options of all commands.

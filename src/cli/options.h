@@ -36,6 +36,7 @@ void add_common(CLI::App* app, Common& c);
 void add_store(CLI::App* app, Surface& s);
 void add_reading(CLI::App* app, FileReading& reading, const std::string& what);
 void add_surface(CLI::App* app, Surface& s);
+void add_cache(CLI::App* app, Surface& s);
 CLI::Option* add_point(CLI::App* app, const std::string& name, std::vector<double>& to, const std::string& what);
 void add_layers(CLI::App* app, std::vector<std::string>& layers);
 void add_recolouring(CLI::App* app, Recolouring& recolouring);

@@ -147,6 +147,7 @@ void add_paint_options(CLI::App* p, Paint& paint) {
     p->add_flag("--fit-brush", paint.fit_brush,
                 "with --brush: takes this make in the sizes that draw the line widths of a drawing");
     add_surface(p, paint.surface);
+    add_cache(p, paint.surface);
     p->add_option("--project", paint.project, "write a project file (.tuft)");
     p->add_option("--export", paint.exported, "write the textured model: .glb, .gltf or .obj");
     p->add_option("--preview", paint.preview, "write a picture (.png)");

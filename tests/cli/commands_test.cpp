@@ -55,6 +55,30 @@ TEST_F(Commands, ReplayMakesTheSameTexelsForAnyThreadCount) {
     }
 }
 
+TEST_F(Commands, APreparedModelIsStoredOnceAndPaintsTheSameTexels) {
+    write("s.inkml", stroke_file());
+    const std::string cache = "export XDG_CACHE_HOME='" + path("cache") + "';";
+    const auto painted = [&](const std::string& options) {
+        const Ran ran = tuft("paint " + model("sphere.ply") + " --strokes " + path("s.inkml") +
+                                 " --place 0,0,100 --atlas-size 512 --json " + options,
+                             cache);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return json::parse(ran.out).at("canvas_hash").get<std::string>();
+    };
+    const auto entries = [&] {
+        const std::filesystem::path folder = std::filesystem::path(path("cache")) / "tuft" / "models";
+        return std::filesystem::exists(folder)
+                   ? std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator())
+                   : 0;
+    };
+    const std::string hash = painted("--no-cache");
+    EXPECT_EQ(entries(), 0);
+    EXPECT_EQ(painted(""), hash);
+    EXPECT_EQ(entries(), 1);
+    EXPECT_EQ(painted("--threads 2"), hash);
+    EXPECT_EQ(entries(), 1);
+}
+
 TEST_F(Commands, ReplayTakesAnotherSizeInkAndModel) {
     write("s.inkml", stroke_file());
     ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " +
