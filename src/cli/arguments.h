@@ -230,9 +230,9 @@ struct DeviceWork {
     int port = 10001;
     double seconds = 10;
     std::string brush = "wolf-medium";
-    std::filesystem::path model;  ///< empty: the shipped bowl
-    std::string way = "circles";  ///< of the simulated hand
-    std::string fault = "none";   ///< of the simulated server, after `fault_after` seconds
+    std::filesystem::path model;     ///< empty: the shipped bowl
+    std::string motion = "circles";  ///< of the simulated hand
+    std::string fault = "none";      ///< of the simulated server, after `fault_after` seconds
     double fault_after = 3;
     double delay_ms = 0;
     int hands = 0;     ///< random hands beside the tests

@@ -47,6 +47,6 @@ void add_write_options(CLI::App* app, Write& write);
 /// Adds what `tuft paint` takes besides its model and its stroke files.
 void add_paint_options(CLI::App* app, Paint& paint);
 /// Adds `tuft device` with its commands.
-void add_device(CLI::App& app, DeviceWork& device);
+CLI::App* add_device(CLI::App& app, DeviceWork& device);
 
 }  // namespace tuft::cli

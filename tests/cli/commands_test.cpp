@@ -249,9 +249,9 @@ TEST_F(Commands, APersistentBrushReplaysTheSame) {
     std::string ink = stroke_file();
     const std::size_t at = ink.find("<trace>"), end = ink.find("</trace>") + 8;
     const std::string trace = ink.substr(at, end - at);
-    std::string told = trace;
-    told.insert(7, "<annotation type=\"tuft:reshape\"/><annotation type=\"tuft:dip\">cinnabar</annotation>");
-    write("s.inkml", ink.substr(0, at) + trace + trace + told + ink.substr(end));
+    std::string annotated = trace;
+    annotated.insert(7, "<annotation type=\"tuft:reshape\"/><annotation type=\"tuft:dip\">cinnabar</annotation>");
+    write("s.inkml", ink.substr(0, at) + trace + trace + annotated + ink.substr(end));
     const std::string common =
         "paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --json";
     const Ran carried = tuft(common + " --dip persistent --project " + path("p.tuft"));
@@ -270,7 +270,7 @@ TEST_F(Commands, APersistentBrushReplaysTheSame) {
     EXPECT_EQ(entries[3]["ink"], "cinnabar");
 }
 
-// A wavy line without pressure; `slant` leans it, `width` of the way in mm.
+// A wavy line without pressure; `slant` leans it, `width` of the path in mm.
 std::string plain_pen(double slant, bool with_pressure, double pressure = 0.5) {
     std::ostringstream ink;
     ink << "<ink><traceFormat><channel name=\"X\" type=\"decimal\" units=\"mm\"/>"
