@@ -45,7 +45,7 @@ struct Held {
 };
 
 Held hold_to_bounds(const LawOptions& options, const HairAnswer& hair, Vec3& root, Vec3& velocity) {
-    constexpr int kPasses = 4;  // bounds of a corner or a gap push each other's way
+    constexpr int kPasses = 4;  // bounds of a corner or a gap push against each other
     Held held;
     for (int pass = 0; pass < kPasses; ++pass) {
         bool moved = false;
@@ -91,11 +91,11 @@ void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
         double taken = glm::dot(sent(s, s.delayed + 1), moved);
         if (s.delayed > 0) taken = std::max(taken, glm::dot(sent(s, s.delayed + 2), moved));
         s.tank -= taken;
-        // Friction of the arm pays where the tank is empty: it would lock at no force.
-        const double paid = std::min(0.5 * options.limits.friction * glm::length(moved), kMostLent - s.lent);
-        if (s.tank < kEmpty && paid > 0) {
-            s.tank += paid;
-            s.lent += paid;
+        // Friction of the arm charges the tank where it is empty: it would lock at no force.
+        const double charged = std::min(0.5 * options.limits.friction * glm::length(moved), kMostLent - s.lent);
+        if (s.tank < kEmpty && charged > 0) {
+            s.tank += charged;
+            s.lent += charged;
         }
     }
     s.tank -= glm::dot(s.moment, turn_between(s.rotation, in.rotation));
@@ -114,7 +114,7 @@ double most_force(const LawOptions& options, const LawState& s, const Vec3& move
     double pending = 0;  // what forces on their way will take, if the hand goes on
     for (std::size_t i = 1; i <= s.delayed; ++i) pending += std::max(0.0, glm::dot(sent(s, i), moved));
     const double left = std::max(0.0, tank - pending);
-    // The way along the force that the hand can make while it acts.
+    // The path along the force that the hand can make while it acts.
     const double ahead = glm::dot(moved, u) + kMostAcceleration * T * T * static_cast<double>(1 + s.delayed) + count;
     if (ahead <= 0) return std::sqrt(2 * k * left) - k * ahead;  // against it, the tank only fills
     if (left < k * ahead * ahead) return left / ahead;
