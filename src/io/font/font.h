@@ -24,7 +24,7 @@ struct ShapedGlyph {
 
 /// How a run is shaped.
 struct Shaping {
-    bool ligatures = true;  ///< off where letters are spaced or placed one by one
+    bool ligatures = true;    ///< off where letters are spaced or placed one by one
     double tolerance = 5e-4;  ///< em, largest distance of a chord from its curve
 };
 

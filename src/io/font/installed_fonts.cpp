@@ -30,9 +30,9 @@ std::string string_in(const FcPattern* pattern, const char* name, int index = 0)
 }
 
 bool is_generic(std::string_view family) {
-    static constexpr std::array names{"serif",     "sans-serif", "sans",       "monospace", "cursive",
-                                      "fantasy",   "system-ui",  "ui-serif",   "ui-rounded", "ui-monospace",
-                                      "ui-sans-serif", "emoji",  "math",       "fangsong"};
+    static constexpr std::array names{"serif",         "sans-serif", "sans",     "monospace",  "cursive",
+                                      "fantasy",       "system-ui",  "ui-serif", "ui-rounded", "ui-monospace",
+                                      "ui-sans-serif", "emoji",      "math",     "fangsong"};
     return std::find(names.begin(), names.end(), family) != names.end();
 }
 

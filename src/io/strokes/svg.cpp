@@ -191,9 +191,8 @@ std::vector<stroke::RecordedStroke> traces_of(const std::vector<Drawn>& lines, c
 
 void report_losses(const std::vector<Message>& losses, bool nothing, const std::string& source,
                    const InkmlOptions& options) {
-    if (nothing)
-        throw Error(source, Message("nothing is drawn in this file; {}",
-                                    losses.empty() ? Message("text must be turned into paths first") : losses.front()));
+    if (nothing && losses.empty()) throw Error(source, "nothing is drawn in this file");
+    if (nothing) throw Error(source, Message("nothing is drawn in this file; {}", losses.front()));
     if (options.note)
         for (const Message& loss : losses) options.note(loss);
 }

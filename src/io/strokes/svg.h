@@ -31,9 +31,10 @@ struct SvgOptions {
 };
 
 /// Reads a drawing as flat traces, in the order of the file: `path` (all commands), `line`, `polyline`, `polygon`,
-/// `rect`, `circle`, `ellipse`, under the `transform`s of their groups and once for each `use`. Content of `defs` and
-/// elements that are not displayed are skipped. Curves become chords; elliptical arcs follow appendix F.6.5. One user
-/// unit is given by `width` and `viewBox`, else it is 1/96 inch.
+/// `rect`, `circle`, `ellipse`, `text` as outlines of installed fonts (svg_text.h), under the `transform`s of their
+/// groups and once for each `use`. Content of `defs` and elements that are not displayed are skipped. Curves become
+/// chords; elliptical arcs follow appendix F.6.5. One user unit is given by `width` and `viewBox`, else it is 1/96
+/// inch.
 ///
 /// An element with `stroke` is drawn along its outlines with `stroke-width` as `StrokeSamples::line_width`. The width
 /// may be an attribute, a style, a rule of a style sheet or inherited; transforms scale it. An element with `fill` is
@@ -43,7 +44,7 @@ struct SvgOptions {
 ///
 /// With `SvgPainting::areas` the shapes become fills with `stroke::Region::outline` instead: strokes with their ends,
 /// corners and dashes, gradients, opacities, clip paths, masks, patterns, markers, `use` of symbols and inner drawings
-/// in their frames. What stays out is reported by `InkmlOptions::note`: text, images, filters, blend modes, animation.
+/// in their frames. What stays out is reported by `InkmlOptions::note`: images, filters, blend modes, animation.
 ///
 /// `RecordedStroke::group` is the layer, or the outermost group with a name (`inkscape:label`, `data-name`, `id`).
 ///

@@ -15,10 +15,23 @@ namespace tuft::io {
 namespace {
 
 constexpr double kMostSize = 1e6;  // user units
-constexpr std::array kNames{"font",        "font-family",       "font-size",       "font-weight",    "font-style",
-                            "font-stretch", "letter-spacing",   "word-spacing",    "text-anchor",    "dominant-baseline",
-                            "alignment-baseline", "baseline-shift", "text-decoration", "text-decoration-line",
-                            "writing-mode", "xml:space", "white-space"};
+constexpr std::array kNames{"font",
+                            "font-family",
+                            "font-size",
+                            "font-weight",
+                            "font-style",
+                            "font-stretch",
+                            "letter-spacing",
+                            "word-spacing",
+                            "text-anchor",
+                            "dominant-baseline",
+                            "alignment-baseline",
+                            "baseline-shift",
+                            "text-decoration",
+                            "text-decoration-line",
+                            "writing-mode",
+                            "xml:space",
+                            "white-space"};
 
 std::string lower(std::string_view text) {
     std::string out(stripped(text));
@@ -44,8 +57,9 @@ std::optional<double> length_of(std::string_view given, double em) {
 }
 
 std::optional<double> size_of(std::string_view given, double parent) {
-    static constexpr std::pair<std::string_view, double> words[] = {
-        {"xx-small", 9}, {"x-small", 10}, {"small", 13}, {"medium", 16}, {"large", 18}, {"x-large", 24}, {"xx-large", 32}};
+    static constexpr std::pair<std::string_view, double> words[] = {{"xx-small", 9}, {"x-small", 10}, {"small", 13},
+                                                                    {"medium", 16},  {"large", 18},   {"x-large", 24},
+                                                                    {"xx-large", 32}};
     const std::string text = lower(given);
     for (const auto& [name, size] : words)
         if (text == name) return size;
@@ -68,8 +82,9 @@ bool set_weight(FontRequest& face, const std::string& text) {
 
 bool set_stretch(FontRequest& face, const std::string& text) {
     static constexpr std::pair<std::string_view, int> words[] = {
-        {"ultra-condensed", 50}, {"extra-condensed", 63}, {"condensed", 75},      {"semi-condensed", 87}, {"normal", 100},
-        {"semi-expanded", 113},  {"expanded", 125},       {"extra-expanded", 150}, {"ultra-expanded", 200}};
+        {"ultra-condensed", 50}, {"extra-condensed", 63}, {"condensed", 75},
+        {"semi-condensed", 87},  {"normal", 100},         {"semi-expanded", 113},
+        {"expanded", 125},       {"extra-expanded", 150}, {"ultra-expanded", 200}};
     for (const auto& [name, width] : words)
         if (text == name) return face.width = width, true;
     return false;
@@ -138,7 +153,8 @@ void inherit_font(SvgFont& font, const SvgProperty& own) {
     if (const std::string text = own("font"); !text.empty()) set_shorthand(font, stripped(text));
     if (std::vector<std::string> families = families_of(own("font-family")); !families.empty())
         font.face.families = std::move(families);
-    if (const std::string text = own("font-size"); !text.empty()) font.size = size_of(text, parent_size).value_or(font.size);
+    if (const std::string text = own("font-size"); !text.empty())
+        font.size = size_of(text, parent_size).value_or(font.size);
     if (const std::string text = lower(own("font-weight")); !text.empty()) set_weight(font.face, text);
     if (const std::string text = lower(own("font-style")); !text.empty()) font.face.italic = text != "normal";
     if (const std::string text = lower(own("font-stretch")); !text.empty()) set_stretch(font.face, text);

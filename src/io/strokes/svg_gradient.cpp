@@ -13,9 +13,9 @@ namespace {
 constexpr int kMostReferences = 64;
 constexpr std::size_t kMostStops = 256;
 
-std::string href_of(const pugi::xml_node& node) {
-    std::string target = node.attribute("href").value();
-    if (target.empty()) target = node.attribute("xlink:href").value();
+/// The id that an element refers to; empty: none of this file.
+std::string id_in_href(const pugi::xml_node& node) {
+    const std::string target = svg_href(node);
     return target.starts_with('#') ? target.substr(1) : std::string();
 }
 
@@ -24,7 +24,7 @@ class Chain {
   public:
     Chain(const std::string& id, const SvgIds& ids) {
         for (auto at = ids.find(id); at != ids.end() && int(nodes_.size()) < kMostReferences;
-             at = ids.find(href_of(at->second))) {
+             at = ids.find(id_in_href(at->second))) {
             const std::string_view name = local_name(at->second);
             if (name != "linearGradient" && name != "radialGradient") break;
             nodes_.push_back(at->second);

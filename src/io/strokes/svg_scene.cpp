@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <pugixml.hpp>
@@ -12,6 +13,8 @@
 #include "core/system/interrupt.h"
 #include "io/strokes/inkml_marks.h"
 #include "io/strokes/svg_page.h"
+#include "io/strokes/svg_pattern.h"
+#include "io/strokes/svg_text.h"
 
 namespace tuft::io {
 namespace {
@@ -20,7 +23,6 @@ constexpr int kDeepest = 64;                             // of nested groups and
 constexpr std::size_t kMostElements = 1'000'000;         // drawn, each `use` of one counted
 constexpr std::size_t kMostText = std::size_t{1} << 30;  // bytes of attributes read, those of each `use` counted
 constexpr std::size_t kMostMatches = 200'000'000;        // rules of style sheets times elements
-constexpr std::size_t kMostTiles = 20'000;               // of one pattern
 constexpr std::size_t kMostMarkers = 100'000;            // of one line
 
 /// What holds for an element and all within it.
@@ -76,9 +78,9 @@ class SceneReader {
         if (std::find(std::begin(skipped), std::end(skipped), name) != std::end(skipped) || is_lost(node, name)) return;
         const Properties own(node, sheet_.declared(node));
         if (own("display") == "none" || svg_part(own("opacity"), 1) == 0) return;
-        inherit(state.style, own);
-        if (name == "text" || name == "image") {
-            if (state.style.visible) scene_.losses.add(name == "text" ? SvgLoss::text : SvgLoss::image);
+        inherit_style(state.style, std::cref(own), by_id_, source_);
+        if (name == "image") {
+            if (state.style.visible) scene_.losses.add(SvgLoss::image);
             return;
         }
         count_effects(own);
@@ -94,6 +96,7 @@ class SceneReader {
             if (inner) enter_frame(node, state, viewport_of(node, state, 1), overflows(own));
         }
         if (name == "use") return use(node, std::move(state), depth);
+        if (name == "text") return text(node, own, std::move(state), depth);
         if (state.style.visible) shape(node, name, own, state, depth);
         if (name == "switch" && !options_.brush) return choose(node, state, depth);
         children(node, state, depth);
@@ -144,7 +147,7 @@ class SceneReader {
     // Another element drawn here; one that is not in the file draws nothing. A symbol is its children, in the
     // frame of its viewBox.
     void use(const pugi::xml_node& node, State state, int depth) {
-        const std::string target = href_of(node);
+        const std::string target = svg_href(node);
         const bool inside = target.starts_with('#');
         const auto at = inside ? by_id_.find(target.substr(1)) : by_id_.end();
         if (at == by_id_.end())
@@ -156,7 +159,7 @@ class SceneReader {
         count(at->second);
         const Properties own(at->second, sheet_.declared(at->second));
         if (!options_.brush) {
-            inherit(state.style, own);
+            inherit_style(state.style, std::cref(own), by_id_, source_);
             enter_frame(at->second, state, {Vec2(0), use_size(node, at->second, state)}, overflows(own));
         } else if (const std::string box = at->second.attribute("viewBox").value(); !box.empty()) {
             SvgReader in(box, source_);
@@ -211,41 +214,6 @@ class SceneReader {
         if (scene_.clips.size() > kMostElements) throw Error(source_, "there are too many clip paths in it");
         state.clips.push_back(scene_.clips.size());
         scene_.clips.emplace_back(rings, rule);
-    }
-
-    void inherit(SvgStyle& style, const Properties& own) const {
-        if (const std::string colour = own("color"); !colour.empty())
-            style.current = svg_colour(colour).value_or(style.current);
-        if (const std::string paint = own("stroke"); !paint.empty())
-            style.stroke = svg_paint(paint, by_id_, style.current);
-        if (const std::string paint = own("fill"); !paint.empty()) style.fill = svg_paint(paint, by_id_, style.current);
-        if (const std::string width = own("stroke-width"); !width.empty() && width.back() != '%')
-            style.width = std::max(0.0, svg_length(width, source_) / kSvgPixel);
-        const auto rule_of = [&](const char* name, FillRule& to) {
-            if (const std::string rule = own(name); !rule.empty())
-                to = rule == "evenodd" ? FillRule::even_odd : FillRule::nonzero;
-        };
-        rule_of("fill-rule", style.rule);
-        rule_of("clip-rule", style.clip_rule);
-        if (const std::string seen = own("visibility"); !seen.empty()) style.visible = seen == "visible";
-        if (const std::string cap = own("stroke-linecap"); !cap.empty())
-            style.cap = cap == "round" ? SvgCap::round : cap == "square" ? SvgCap::square : SvgCap::butt;
-        if (const std::string join = own("stroke-linejoin"); !join.empty())
-            style.join = join == "round" ? SvgJoin::round : join == "bevel" ? SvgJoin::bevel : SvgJoin::miter;
-        if (const std::string limit = own("stroke-miterlimit"); !limit.empty())
-            style.miter_limit = std::max(1.0, SvgReader(limit, source_).number());
-        if (const std::string dashes = own("stroke-dasharray"); !dashes.empty())
-            style.dashes = svg_dashes(dashes, source_);
-        if (const std::string offset = own("stroke-dashoffset"); !offset.empty() && offset.back() != '%')
-            style.dash_offset = svg_length(offset, source_) / kSvgPixel;
-        if (const std::string all = own("marker"); !all.empty())
-            style.marker_start = style.marker_mid = style.marker_end = svg_reference(all);
-        for (const auto& [name, to] :
-             {std::pair("marker-start", &style.marker_start), std::pair("marker-mid", &style.marker_mid),
-              std::pair("marker-end", &style.marker_end)})
-            if (const std::string value = own(name); !value.empty()) *to = svg_reference(value);
-        style.fill_opacity = svg_part(own("fill-opacity"), style.fill_opacity);
-        style.stroke_opacity = svg_part(own("stroke-opacity"), style.stroke_opacity);
     }
 
     // Elements that leave nothing; whether this is one.
@@ -304,6 +272,8 @@ class SceneReader {
         extend(apart([&] {
                    if (name == "use")
                        use(node, plain, depth);
+                   else if (name == "text")
+                       text(node, Properties(node, sheet_.declared(node)), plain, depth);
                    else
                        shape(node, name, Properties(node, {}), plain, depth), children(node, plain, depth);
                }),
@@ -336,13 +306,25 @@ class SceneReader {
         return state.matrix * svg_translation(low.x, low.y) * svg_scaling(high.x - low.x, high.y - low.y);
     }
 
+    // What an element of `defs` inherits: the properties of the elements round it, not of those that refer to it.
+    SvgStyle style_round(const pugi::xml_node& node) const {
+        std::vector<pugi::xml_node> parents;
+        for (pugi::xml_node p = node.parent(); p.type() == pugi::node_element; p = p.parent()) parents.push_back(p);
+        SvgStyle style;
+        for (auto p = parents.rbegin(); p != parents.rend(); ++p)
+            inherit_style(style, Properties(*p, sheet_.declared(*p)), by_id_, source_);
+        return style;
+    }
+
     void clip_by(const pugi::xml_node& clip, const pugi::xml_node& user, State& state, int depth) {
         if (depth > kDeepest) throw Error(source_, "clip paths refer to each other");
-        State inside{.matrix = content_matrix(clip, "clipPathUnits", user, state, depth), .page = state.page};
+        State inside{.matrix = content_matrix(clip, "clipPathUnits", user, state, depth),
+                     .style = style_round(clip),
+                     .page = state.page};
         if (const auto transform = clip.attribute("transform"))
             inside.matrix = inside.matrix * svg_transform(transform.value(), source_);
         const Properties own(clip, sheet_.declared(clip));
-        inherit(inside.style, own);
+        inherit_style(inside.style, std::cref(own), by_id_, source_);
         add_effects(clip, own, inside, depth + 1);
         const std::vector<std::size_t> outer = std::exchange(inside.clips, {});
         std::vector<Ring> rings;
@@ -360,9 +342,11 @@ class SceneReader {
 
     void mask_by(const pugi::xml_node& mask, const pugi::xml_node& user, State& state, int depth) {
         if (depth > kDeepest) throw Error(source_, "masks refer to each other");
-        State inside{.matrix = content_matrix(mask, "maskContentUnits", user, state, depth), .page = state.page};
+        State inside{.matrix = content_matrix(mask, "maskContentUnits", user, state, depth),
+                     .style = style_round(mask),
+                     .page = state.page};
         const Properties own(mask, sheet_.declared(mask));
-        inherit(inside.style, own);
+        inherit_style(inside.style, std::cref(own), by_id_, source_);
         SvgMask made{.shapes = apart([&] { children(mask, inside, depth + 1); }), .alpha = own("mask-type") == "alpha"};
         state.masks.push_back(scene_.masks.size());
         scene_.masks.push_back(std::move(made));
@@ -371,7 +355,50 @@ class SceneReader {
     void shape(const pugi::xml_node& node, const std::string& name, const Properties& own, const State& state,
                int depth) {
         std::vector<SvgLine> lines = svg_lines(node, name, curves(state.matrix), state.page, source_);
-        if (lines.empty()) return;
+        if (!lines.empty()) add_shape(std::move(lines), own, state, depth, name);
+    }
+
+    // Glyphs as areas. A mirrored copy keeps a text readable.
+    void text(const pugi::xml_node& node, const Properties& own, State state, int depth) {
+        if (state.upright.empty()) state.upright = "text " + std::to_string(++n_upright_);
+        const SvgTextContext context{
+            .style_of = [this](const pugi::xml_node& element, const SvgStyle& parent) -> std::optional<SvgStyle> {
+                count(element);
+                const Properties inner(element, sheet_.declared(element));
+                if (inner("display") == "none") return std::nullopt;
+                SvgStyle style = parent;
+                inherit_style(style, std::cref(inner), by_id_, source_);
+                return style;
+            },
+            .path_of = [&](const pugi::xml_node& along) { return text_path(along, state); },
+            .fonts = fonts_,
+            .losses = scene_.losses,
+            .page = state.page,
+            .growth = svg_growth(state.matrix),
+            .tolerance = options_.tolerance,
+            .source = source_};
+        for (SvgTextShape& glyphs : set_svg_text(node, state.style, context)) {
+            state.style = glyphs.style;
+            add_shape(std::move(glyphs.lines), own, state, depth, "text");
+        }
+    }
+
+    std::vector<SvgLine> text_path(const pugi::xml_node& along, const State& state) const {
+        const std::string target = svg_href(along);
+        const auto at = target.size() > 1 ? by_id_.find(target.substr(1)) : by_id_.end();
+        if (at == by_id_.end()) return {};
+        std::vector<SvgLine> lines =
+            svg_lines(at->second, std::string(local_name(at->second)), curves(state.matrix), state.page, source_);
+        if (const auto transform = at->second.attribute("transform")) {
+            const SvgMatrix matrix = svg_transform(transform.value(), source_);
+            for (SvgLine& line : lines)
+                for (Vec2& p : line) p = Vec2(matrix * Vec3(p, 1));
+        }
+        return lines;
+    }
+
+    void add_shape(std::vector<SvgLine> lines, const Properties& own, const State& state, int depth,
+                   std::string_view name) {
         for (const SvgLine& line : lines) n_points_ += line.size();
         if (n_points_ > options_.max_points) throw Error(source_, "the drawing has too many points");
         SvgShape shape{.lines = std::move(lines),
@@ -414,74 +441,20 @@ class SceneReader {
         if (marked) markers(line_copy, state, depth);
     }
 
-    /// Elements of a pattern: the one that a paint names, then those that it refers to. Attributes and content that one
-    /// lacks are those of the next.
-    std::vector<pugi::xml_node> pattern_chain(const std::string& id) const {
-        std::vector<pugi::xml_node> chain;
-        auto at = by_id_.find(id);
-        for (int k = 0; k < kDeepest && at != by_id_.end() && local_name(at->second) == "pattern"; ++k) {
-            chain.push_back(at->second);
-            const std::string next = href_of(at->second);
-            at = next.size() > 1 ? by_id_.find(next.substr(1)) : by_id_.end();
-        }
-        return chain;
-    }
-    static std::string chain_text(const std::vector<pugi::xml_node>& chain, const char* name) {
-        for (const pugi::xml_node& one : chain)
-            if (one.attribute(name)) return one.attribute(name).value();
-        return {};
-    }
-
-    /// Where the tiles of a pattern lie on a shape, user units.
-    struct PatternGrid {
-        Vec2 corner{0}, tile{0};  ///< of the first tile; empty: nothing is painted
-        SvgMatrix matrix{1};      ///< patternTransform
-        Vec2 from{0}, to{0};      ///< whole numbers: tiles that reach the shape
-    };
-    std::optional<PatternGrid> pattern_grid(const std::vector<pugi::xml_node>& chain,
-                                            const std::pair<Vec2, Vec2>& bounds, const Vec2& page) const {
-        const bool in_box = chain_text(chain, "patternUnits") != "userSpaceOnUse";
-        const auto [low, high] = bounds;
-        const Vec2 size = high - low, whole = in_box ? Vec2(1) : page;
-        const auto number = [&](const char* name, double unit) {
-            const std::string text = chain_text(chain, name);
-            if (text.empty()) return 0.0;
-            SvgReader in(text, source_);
-            const double value = in.number();
-            return in.peek() == '%' ? value / 100 * unit : value;
-        };
-        PatternGrid grid;
-        grid.corner = {number("x", whole.x), number("y", whole.y)};
-        grid.tile = {number("width", whole.x), number("height", whole.y)};
-        if (in_box) grid.corner = low + grid.corner * size, grid.tile *= size;
-        if (!(grid.tile.x > 0 && grid.tile.y > 0) || !(size.x > 0 && size.y > 0)) return std::nullopt;
-        if (const std::string text = chain_text(chain, "patternTransform"); !text.empty())
-            grid.matrix = svg_transform(text.c_str(), source_);
-        if (glm::determinant(grid.matrix) == 0) return std::nullopt;
-        Vec2 from(HUGE_VAL), to(-HUGE_VAL);
-        for (const Vec2& p : {low, high, Vec2(low.x, high.y), Vec2(high.x, low.y)}) {
-            const Vec2 q = (Vec2(glm::inverse(grid.matrix) * Vec3(p, 1)) - grid.corner) / grid.tile;
-            from = glm::min(from, q), to = glm::max(to, q);
-        }
-        grid.from = glm::floor(from + 1e-9), grid.to = glm::ceil(to - 1e-9);
-        if (!((grid.to.x - grid.from.x) * (grid.to.y - grid.from.y) <= double(kMostTiles)))
-            throw Error(source_, "a pattern has too many tiles");
-        return grid;
-    }
-
     // The tiles of a pattern, back to front, within the shape (SVG 1.1, 13.3).
     void pattern(const SvgShape& shape, const std::pair<Vec2, Vec2>& bounds, const State& state, int depth) {
         if (depth > kDeepest) throw Error(source_, "patterns refer to each other");
-        const std::vector<pugi::xml_node> chain = pattern_chain(shape.style.fill.server);
+        const std::vector<pugi::xml_node> chain = svg_pattern_chain(shape.style.fill.server, by_id_);
         const auto filled =
             std::find_if(chain.begin(), chain.end(), [](const pugi::xml_node& one) { return bool(one.first_child()); });
         if (filled == chain.end()) return;
-        const std::optional<PatternGrid> grid = pattern_grid(chain, bounds, state.page);
+        const std::optional<SvgPatternGrid> grid = svg_pattern_grid(chain, bounds, state.page, source_);
         if (!grid) return;
         const auto& [corner, tile, own, from, to] = *grid;
         const pugi::xml_node content = *filled;
         const Vec2 size = bounds.second - bounds.first;
         State inside{.matrix = state.matrix * own,
+                     .style = style_round(content),
                      .opacity = shape.opacity * shape.style.fill_opacity,
                      .clips = state.clips,
                      .masks = state.masks,
@@ -491,8 +464,8 @@ class SceneReader {
         State outer = state;
         add_clip(outer, shape.lines, shape.style.rule);
         inside.clips.push_back(outer.clips.back());
-        const std::string box = chain_text(chain, "viewBox");
-        const bool content_in_box = box.empty() && chain_text(chain, "patternContentUnits") == "objectBoundingBox";
+        const std::string box = svg_chain_text(chain, "viewBox");
+        const bool content_in_box = box.empty() && svg_chain_text(chain, "patternContentUnits") == "objectBoundingBox";
         for (double j = from.y; j < to.y; ++j)
             for (double i = from.x; i < to.x; ++i) {
                 State one = inside;
@@ -537,6 +510,7 @@ class SceneReader {
         if (depth > kDeepest) throw Error(source_, "markers refer to each other");
         const pugi::xml_node& node = found->second;
         State inside{.matrix = state.matrix * svg_translation(at.first.x, at.first.y),
+                     .style = style_round(node),
                      .opacity = state.opacity,
                      .clips = state.clips,
                      .masks = state.masks,
@@ -544,7 +518,7 @@ class SceneReader {
                      .upright = state.upright,
                      .page = state.page};
         const Properties own(node, sheet_.declared(node));
-        inherit(inside.style, own);
+        inherit_style(inside.style, std::cref(own), by_id_, source_);
         const std::string orient = node.attribute("orient").value();
         double angle = orient.starts_with("auto")
                            ? at.second + (start && orient == "auto-start-reverse" ? std::numbers::pi : 0)
@@ -588,10 +562,6 @@ class SceneReader {
         }
     }
 
-    static std::string href_of(const pugi::xml_node& node) {
-        std::string target = node.attribute("href").value();
-        return target.empty() ? node.attribute("xlink:href").value() : target;
-    }
     double number(const pugi::xml_node& node, const char* name, const State& state) const {
         return svg_number(node, name, state.page, source_);
     }
@@ -604,6 +574,7 @@ class SceneReader {
     SvgScene scene_;
     SvgSheet sheet_;
     SvgIds by_id_;
+    SvgFonts fonts_;
     std::size_t n_elements_ = 0, n_points_ = 0, n_text_ = 0, n_matches_ = 0, n_upright_ = 0;
 };
 

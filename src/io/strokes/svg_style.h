@@ -63,11 +63,18 @@ struct SvgStyle {
 /// Returns the target of `url(#id)`, without quotes; empty for any other text.
 std::string svg_reference(std::string_view value);
 
+/// Returns the target of `href` or `xlink:href`; empty: none.
+std::string svg_href(const pugi::xml_node& node);
+
 /// Returns the paint of a `fill` or `stroke` value. A reference to an undefined paint gives its fallback, else
 /// `missing`.
 SvgPaint svg_paint(const std::string& value, const SvgIds& ids, const SvgColour& current);
 
 /// Returns a number or a percentage as a part, 0–1; `otherwise` for anything else.
 double svg_part(const std::string& text, double otherwise);
+
+/// Changes a style by the presentation properties of an element; a property that it does not state stays as its
+/// parent's. Throws `Error` with `source` for an invalid number.
+void inherit_style(SvgStyle& style, const SvgProperty& own, const SvgIds& ids, const std::string& source);
 
 }  // namespace tuft::io

@@ -94,7 +94,7 @@ class TextSetter {
                 values.push_back(value / 100 * whole);
             } else {
                 const std::string unit = in.word();
-                values.push_back(unit.empty()  ? value
+                values.push_back(unit.empty()   ? value
                                  : unit == "em" ? value * em
                                  : unit == "ex" ? value * em / 2
                                                 : value * svg_length("1" + unit, with_.source) / kSvgPixel);
@@ -200,9 +200,7 @@ class TextSetter {
         for (std::size_t at = begin; at < end;) {
             Font* const face = with_.fonts.find(font.face, characters_[at].code, with_.losses);
             std::size_t stop = at + 1;
-            while (stop < end &&
-                   with_.fonts.find(font.face, characters_[stop].code, with_.losses) == face)
-                ++stop;
+            while (stop < end && with_.fonts.find(font.face, characters_[stop].code, with_.losses) == face) ++stop;
             if (face)
                 shape(*face, at, stop);
             else
@@ -222,14 +220,14 @@ class TextSetter {
                           .tolerance = scale > 0 ? std::clamp(with_.tolerance / scale, 1e-5, 1e-2) : 1e-2};
         for (ShapedGlyph& shaped : face.shape(codes, how)) {
             const Character& c = characters_[begin + shaped.character];
-            PlacedGlyph glyph{.character = begin + shaped.character,
-                              .rings = std::move(shaped.rings),
-                              .pen = pen_,
-                              .offset = font.size * Vec2(shaped.offset.x, -shaped.offset.y),
-                              .advance = font.size * shaped.advance + font.letter_spacing +
-                                         (c.code == ' ' ? font.word_spacing : 0),
-                              .angle = c.rotate.value_or(0) * std::numbers::pi / 180,
-                              .metrics = face.metrics()};
+            PlacedGlyph glyph{
+                .character = begin + shaped.character,
+                .rings = std::move(shaped.rings),
+                .pen = pen_,
+                .offset = font.size * Vec2(shaped.offset.x, -shaped.offset.y),
+                .advance = font.size * shaped.advance + font.letter_spacing + (c.code == ' ' ? font.word_spacing : 0),
+                .angle = c.rotate.value_or(0) * std::numbers::pi / 180,
+                .metrics = face.metrics()};
             if (font.vertical) {  // upright, on a centre line, an em apart
                 glyph.offset += Vec2(-0.5 * font.size * shaped.advance, 0.5 * font.size * middle_of(glyph.metrics));
                 glyph.pen.y += 0.5 * font.size;
@@ -298,7 +296,8 @@ class TextSetter {
                     glyph.advance *= stretch;
                     glyph.offset.x *= stretch;
                 } else {
-                    glyph.pen.x += each * static_cast<double>(k++);
+                    glyph.pen.x += each * static_cast<double>(k);
+                    if (++k < n) glyph.advance += each;  // what is drawn under it reaches the next
                 }
             }
         }

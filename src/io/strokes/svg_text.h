@@ -46,7 +46,7 @@ struct SvgTextContext {
     std::function<std::vector<SvgLine>(const pugi::xml_node& text_path)> path_of;
     SvgFonts& fonts;
     SvgLosses& losses;
-    Vec2 page{0};  ///< user units, for per cent
+    Vec2 page{0};                         ///< user units, for per cent
     double growth = 1, tolerance = 2e-5;  ///< as in `SvgCurves`
     const std::string& source;
 };
@@ -54,6 +54,7 @@ struct SvgTextContext {
 /// Returns the glyphs of a `text` element with this style, style by style in the order of their first characters. A
 /// character that no installed font has is left out and counted in the losses. Throws `Error` for more than 100,000
 /// characters, more than 64 nested elements and invalid numbers.
-std::vector<SvgTextShape> set_svg_text(const pugi::xml_node& text, const SvgStyle& style, const SvgTextContext& context);
+std::vector<SvgTextShape> set_svg_text(const pugi::xml_node& text, const SvgStyle& style,
+                                       const SvgTextContext& context);
 
 }  // namespace tuft::io

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/text/text.h"
 
 namespace tuft::writer {
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/types.h"
+#include "core/text/text.h"
 
 /// \file
 /// Characters as strokes in the order in which a hand writes them. Readers of glyph_source.h make them;
