@@ -280,7 +280,7 @@ TEST(UiText, ErrorsOfFilesAreSaidInChineseAndKeepTheNameOfTheFile) {
     std::vector<Message> notes;
     io::read_strokes(written("h.svg",
                              "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0L9 9' stroke='#900000' "
-                             "stroke-dasharray='1'/><image/><image/><text>a</text></svg>"),
+                             "stroke-dasharray='1'/><image/><image/><text fill='#900000'>a&#x10FFFD;</text></svg>"),
                      {.note = [&](const Message& note) { notes.push_back(note); }});
     EXPECT_EQ(notes.size(), 4u);
     for (const Message& note : notes) EXPECT_FALSE(has_english(chinese(note))) << chinese(note);

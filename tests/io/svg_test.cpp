@@ -108,6 +108,31 @@ TEST(Svg, LongLinesSwellAndTaper) {
     EXPECT_GT(s[s.size() / 2].pressure, 1.5 * s.back().pressure);
 }
 
+TEST(Svg, EntitiesOfTheFileAreReplaced) {
+    const auto read = [](const std::string& declared, const std::string& inside) {
+        return parse_svg("<?xml version='1.0'?><!DOCTYPE svg PUBLIC '-//W3C' 'svg11.dtd' [" + declared + "]><svg>" +
+                             inside + "</svg>",
+                         "a.svg");
+    };
+    // Illustrator's styles; an entity in an entity; whole elements.
+    const auto lines = read(
+        "<!-- <!ENTITY a \"no\"> --><!ENTITY st0 \"stroke-width:3\"><!ENTITY b '&st0;;stroke:black'>"
+        "<!ENTITY mark \"<line x2='7' style='stroke:black'/>\">",
+        "<line x2='5' style='&b;'/>&mark;<!-- &st0; --><![CDATA[&gone;]]>");
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_NEAR(lines[0].line_width, 3 * 0.0254 / 96, 1e-9);
+    EXPECT_THROW(read("<!ENTITY a '&b;'><!ENTITY b '&a;'>", "<line x2='5' style='&a;'/>"), Error);
+    std::string laughs = "<!ENTITY l0 'ha'>";
+    for (int i = 1; i < 12; ++i) {
+        laughs += "<!ENTITY l" + std::to_string(i) + " '";
+        for (int k = 0; k < 10; ++k) laughs += "&l" + std::to_string(i - 1) + ";";
+        laughs += "'>";
+    }
+    EXPECT_THROW(read(laughs, "<line x2='5' id='&l11;'/>"), Error);
+    for (const std::string open : {"<!ENTITY", "<!ENTITY a", "<!ENTITY a '", "<!--", "'", "]"})
+        EXPECT_NO_THROW(try { read(open, "<line x2='5'/>"); } catch (const Error&){}) << open;
+}
+
 TEST(Svg, MistakesAreNamedWithTheFile) {
     const auto fault = [](const std::string& text) {
         try {

@@ -16,6 +16,7 @@
 #include "io/strokes/svg_areas.h"
 #include "io/strokes/svg_page.h"
 #include "io/strokes/svg_scene.h"
+#include "io/strokes/xml_entities.h"
 
 namespace tuft::io {
 namespace {
@@ -239,7 +240,8 @@ std::optional<std::vector<stroke::RecordedStroke>> coloured(const pugi::xml_node
 std::vector<stroke::RecordedStroke> parse_svg(std::string_view text, const std::string& source,
                                               const SvgOptions& options) {
     pugi::xml_document document;
-    const auto parsed = document.load_buffer(text.data(), text.size());
+    const std::string expanded = expand_entities(text, source);
+    const auto parsed = document.load_buffer(expanded.data(), expanded.size());
     if (!parsed) throw Error(source, Message("not well formed: {}", xml_fault(parsed)));
     const pugi::xml_node svg = document.document_element();
     if (local_name(svg) != "svg") throw Error(source, "not an SVG drawing");
