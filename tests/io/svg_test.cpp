@@ -108,6 +108,21 @@ TEST(Svg, LongLinesSwellAndTaper) {
     EXPECT_GT(s[s.size() / 2].pressure, 1.5 * s.back().pressure);
 }
 
+// SVG 1.1, F.2: a path with a fault is drawn up to the last segment before it.
+TEST(Svg, ADamagedPathIsDrawnUpToItsFault) {
+    std::vector<std::string> notes;
+    SvgOptions options;
+    options.ink.note = [&](const Message& line) { notes.push_back(line.text()); };
+    const auto lines = parse_svg(
+        "<svg stroke='black' fill='none'><path d='M0 0 H96 V96 Z 5 5'/><path d='M0 0 H96 A1 1 0 7 1 2 2'/></svg>",
+        "a.svg", options);
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_NEAR(lines[0].samples.back().position.x, 0, 1e-9);
+    EXPECT_NEAR(lines[1].samples.back().position.x, 0.0254, 1e-9);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_EQ(notes[0].substr(0, 22), "2 paths are damaged: t");
+}
+
 TEST(Svg, EntitiesOfTheFileAreReplaced) {
     const auto read = [](const std::string& declared, const std::string& inside) {
         return parse_svg("<?xml version='1.0'?><!DOCTYPE svg PUBLIC '-//W3C' 'svg11.dtd' [" + declared + "]><svg>" +

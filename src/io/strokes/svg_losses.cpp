@@ -21,6 +21,9 @@ Message loss_text(SvgLoss loss, std::size_t n) {
                        "{} characters are left out: their path is too short");
         case SvgLoss::image:
             return say("1 image is left out", "{} images are left out");
+        case SvgLoss::damaged_path:
+            return say("1 path is damaged: it is drawn up to its fault",
+                       "{} paths are damaged: they are drawn up to their faults");
         case SvgLoss::foreign:
             return say("1 foreignObject is left out", "{} foreignObjects are left out");
         case SvgLoss::missing_use:

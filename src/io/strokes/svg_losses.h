@@ -18,6 +18,7 @@ enum class SvgLoss {
     text,      ///< characters without a font
     text_end,  ///< characters beyond the end of their path
     image,
+    damaged_path,
     foreign,
     missing_use,
     outside_use,

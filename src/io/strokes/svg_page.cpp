@@ -96,14 +96,19 @@ SvgFraming svg_framing(const pugi::xml_node& node, const SvgViewport& port, cons
 }
 
 std::vector<SvgLine> svg_lines(const pugi::xml_node& node, const std::string& name, const SvgCurves& curves,
-                               const Vec2& page, const std::string& source) {
+                               const Vec2& page, const std::string& source, bool* damaged) {
     const auto number = [&](const char* of) { return svg_number(node, of, page, source); };
     std::vector<SvgLine> lines;
     const auto emit = [&](SvgLine line) {
         if (!line.empty()) lines.push_back(std::move(line));
     };
     if (name == "path") {
-        svg_path(node.attribute("d").value(), source, curves, emit);
+        try {
+            svg_path(node.attribute("d").value(), source, curves, emit);
+        } catch (const Error&) {
+            if (!damaged) throw;
+            *damaged = true;
+        }
     } else if (name == "polyline" || name == "polygon") {
         emit(svg_points(node.attribute("points").value(), source, name == "polygon"));
     } else if (name == "line") {

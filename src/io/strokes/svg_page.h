@@ -44,8 +44,9 @@ struct SvgFraming {
 /// `viewBox` its corner alone.
 SvgFraming svg_framing(const pugi::xml_node& node, const SvgViewport& port, const std::string& source);
 
-/// Returns the lines of a basic shape or path; none for another element. User units. Throws `Error` for invalid data.
+/// Returns the lines of a basic shape or path; none for another element. User units. Throws `Error` for invalid data;
+/// with `damaged`, a path with a fault ends before it (SVG 1.1, F.2) and sets `damaged` instead.
 std::vector<SvgLine> svg_lines(const pugi::xml_node& node, const std::string& name, const SvgCurves& curves,
-                               const Vec2& page, const std::string& source);
+                               const Vec2& page, const std::string& source, bool* damaged = nullptr);
 
 }  // namespace tuft::io

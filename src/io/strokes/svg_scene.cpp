@@ -354,7 +354,9 @@ class SceneReader {
 
     void shape(const pugi::xml_node& node, const std::string& name, const Properties& own, const State& state,
                int depth) {
-        std::vector<SvgLine> lines = svg_lines(node, name, curves(state.matrix), state.page, source_);
+        bool damaged = false;
+        std::vector<SvgLine> lines = svg_lines(node, name, curves(state.matrix), state.page, source_, &damaged);
+        if (damaged) scene_.losses.add(SvgLoss::damaged_path);
         if (!lines.empty()) add_shape(std::move(lines), own, state, depth, name);
     }
 

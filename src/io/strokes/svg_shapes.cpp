@@ -220,17 +220,22 @@ void svg_path(const char* text, const std::string& source, const SvgCurves& curv
     SvgReader in(text, source);
     PathReader path(in, curves, emit);
     char command = '\0';
-    while (!in.done()) {
-        if (std::isalpha(static_cast<unsigned char>(in.peek()))) {
-            command = in.take();
-            if (!std::strchr("MmLlHhVvCcSsQqTtAaZz", command))
-                throw Error(source, Message("a path has the unknown command '{}'", command));
-        } else if (!in.number_next() || command == '\0' || command == 'Z' || command == 'z') {
-            throw Error(source, "a path cannot be read");
+    try {
+        while (!in.done()) {
+            if (std::isalpha(static_cast<unsigned char>(in.peek()))) {
+                command = in.take();
+                if (!std::strchr("MmLlHhVvCcSsQqTtAaZz", command))
+                    throw Error(source, Message("a path has the unknown command '{}'", command));
+            } else if (!in.number_next() || command == '\0' || command == 'Z' || command == 'z') {
+                throw Error(source, "a path cannot be read");
+            }
+            path.read(command);
+            if (command == 'M') command = 'L';  // more points are lines
+            if (command == 'm') command = 'l';
         }
-        path.read(command);
-        if (command == 'M') command = 'L';  // more points are lines
-        if (command == 'm') command = 'l';
+    } catch (const Error&) {
+        path.flush();
+        throw;
     }
     path.flush();
 }

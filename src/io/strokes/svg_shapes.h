@@ -67,7 +67,8 @@ struct SvgCurves {
     void arc(SvgLine& line, const SvgArc& arc) const;
 };
 
-/// Calls `emit` with each subpath of path data as soon as it is read. Throws `Error` for invalid data.
+/// Calls `emit` with each subpath of path data as soon as it is read. Throws `Error` for invalid data, after `emit` got
+/// what comes before the fault.
 void svg_path(const char* text, const std::string& source, const SvgCurves& curves,
               const std::function<void(const SvgLine&)>& emit);
 /// Returns the points of a polyline, or of a polygon with `closed`.
