@@ -24,7 +24,7 @@ struct WriterOptions {
     std::filesystem::path cache;  ///< folder of fitted strokes; empty: none
 };
 
-/// A stroke of the hand.
+/// A motion of the hand for one stroke of a character.
 struct WrittenStroke {
     stroke::StrokeSamples trace;  ///< metres, y down, origin at the lower left corner of the character's square
     std::string brush;            ///< preset
