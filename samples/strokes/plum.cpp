@@ -159,10 +159,10 @@ std::vector<stroke::RecordedStroke> vase_plum() {
           "mixed-medium", "iron-red", 0.09, {kFlank("bone-black", 0.4), kWipe(0.3)});
     p.add({"branch", {{2, -3, 0}, {10, -3, 3.4, 0.9}, {22, 2, 2.6, 1.1, 0.04}, {36, -2, 0, 1.4}}}, "mixed-medium",
           "iron-red", 0.09, {kFlank("bone-black", 0.4), kWipe(0.3)});
-    const double sub_spines[][6] = {
+    const double twigs[][6] = {
         {-20, -4, -12, -14, -9, -27}, {14, -12, 10, -24, 14, -38}, {22, 2, 30, 9, 40, 12}, {24, -28, 32, -27, 42, -24}};
-    for (const auto& t : sub_spines)
-        p.add({"sub_spine", {{t[0], t[1], 0}, {t[2], t[3], 1.3, 1}, {t[4], t[5], 0, 1.4}}}, "wolf-medium", "carbon",
+    for (const auto& t : twigs)
+        p.add({"twig", {{t[0], t[1], 0}, {t[2], t[3], 1.3, 1}, {t[4], t[5], 0, 1.4}}}, "wolf-medium", "carbon",
               0.1, {kWipe(0.3)});
     // Moss on the trunk.
     for (int k = 0; k < 9; ++k) {
