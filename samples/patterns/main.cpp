@@ -89,7 +89,7 @@ void car(const std::filesystem::path& folder) {
     const int pigment = canvas.add_pigment(ink::load_ink("carbon").parts[0].pigment);
     const double check = 20 * kMillimetre, step = check / 48, length = 12 * check;
     const auto track = straight_track(model, {0.34, -0.02, 0.25}, {0.08, -1, 0}, step, 12 * 48);
-    roll(model, canvas, pigment, 2.5f, track, step, 4 * check, [&](double x, double v) {
+    roll(model, canvas, track, {pigment, 2.5f, step, 4 * check}, [&](double x, double v) {
         if (x < 0 || x > length || std::abs(v) > 2 * check) return false;
         return static_cast<int>(std::floor(x / check) + std::floor(v / check)) % 2 == 0;
     });
@@ -108,7 +108,7 @@ void plate(const std::filesystem::path& folder) {
     constexpr int kPeriods = 48, kRows = 180;  // of a period
     const double step = 2 * pi * radius / (kPeriods * kRows), period = kRows * step;
     const auto track = ring(model, radius, 0.1, kPeriods * kRows);
-    roll(model, canvas, pigment, 2.0f, track, step, 18 * kMillimetre, [&](double x, double v) {
+    roll(model, canvas, track, {pigment, 2.0f, step, 18 * kMillimetre}, [&](double x, double v) {
         const double mm = v / kMillimetre;
         if (std::abs(std::abs(mm) - 8) < 0.4) return true;
         if (std::abs(mm - 3.6 * std::sin(2 * pi * x / period)) < 0.7) return true;

@@ -48,8 +48,9 @@ std::vector<Contact> ring(const stroke::Model& model, double radius, double heig
     return track;
 }
 
-void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float film, const std::vector<Contact>& track,
-          double step, double width, const Pattern& pattern) {
+void roll(const stroke::Model& model, ink::Canvas& canvas, const std::vector<Contact>& track, const Print& print,
+          const Pattern& pattern) {
+    const auto& [pigment, film, step, width] = print;
     const double cell = 0.5 * model.texels.texel_size;
     // The wheel flattens over four steps, so that rows that fan out where the surface bends like a
     // saddle leave nothing blank between them.

@@ -27,8 +27,15 @@ std::vector<Contact> ring(const stroke::Model& model, double radius, double heig
 /// Black or white after `x` metres of the path and `v` metres to the left of it.
 using Pattern = std::function<bool(double x, double v)>;
 
-/// Prints `film` film units of the canvas's pigment along the path, `width` metres wide.
-void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float film, const std::vector<Contact>& track,
-          double step, double width, const Pattern& pattern);
+/// How a pattern is printed.
+struct Print {
+    int pigment = 0;   ///< of the canvas
+    float film = 2;    ///< film units
+    double step = 0;   ///< metres between two contacts of the path
+    double width = 0;  ///< metres across the path
+};
+/// Prints a pattern along a path.
+void roll(const stroke::Model& model, ink::Canvas& canvas, const std::vector<Contact>& track, const Print& print,
+          const Pattern& pattern);
 
 }  // namespace tuft::samples

@@ -32,7 +32,7 @@ const BrushAction kWipe(double amount) {
     return BrushAction{.kind = BrushActionKind::wipe, .extent = {.amount = amount}};
 }
 
-struct PaintThread : Series {
+struct Branch : Series {
     /// A stroke along (x, y) places that swells from 0 to `width` at `swell` of its length and runs out.
     static Stroke leaf(const char* name, const Vec2& from, double turn, double length, double width, double bend) {
         const Vec2 u{std::cos(turn), std::sin(turn)}, v{-u.y, u.x};
@@ -45,8 +45,14 @@ struct PaintThread : Series {
 
     /// One press: the tuft leans away from the heart, so that its tip, in the deeper red, points
     /// to it and its belly goes down outside and prints the round of the petal.
-    void petal(const Vec2& heart, const Vec2& u, double from, double to, double width, double red_tip,
-               bool wait = false) {
+    struct Petal {
+        double from = 0, to = 0;  ///< millimetres from the heart
+        double width = 0;         ///< millimetres
+        double red_tip = 0;       ///< fraction of the tuft's length
+        bool wait = false;        ///< until the ink before is dry
+    };
+    void petal(const Vec2& heart, const Vec2& u, const Petal& petal) {
+        const auto& [from, to, width, red_tip, wait] = petal;
         const auto at = [&](double f, double w, double pace) {
             const Vec2 p = heart + f * u;
             return Key{p.x, p.y, w, pace};
@@ -61,8 +67,8 @@ struct PaintThread : Series {
     void blossom(const Vec2& heart, double size, double turn, double flat) {
         for (int k = 0; k < 5; ++k) {
             const double a = turn + 2 * kPi * k / 5 + 0.07 * std::sin(3.0 * k + turn);
-            petal(heart, {std::cos(a), flat * std::sin(a)}, 0.24 * size, 0.74 * size,
-                  (1.0 + 0.06 * std::cos(2.0 * k + turn)) * size, 0.07);
+            petal(heart, {std::cos(a), flat * std::sin(a)},
+                  {0.24 * size, 0.74 * size, (1.0 + 0.06 * std::cos(2.0 * k + turn)) * size, 0.07});
         }
     }
     void stamens(const Vec2& heart, double size, double turn, double flat) {
@@ -85,8 +91,8 @@ struct PaintThread : Series {
     /// Two petals still closed, and the calyx that holds them.
     void bud(const Vec2& at, double size, double turn, bool wait) {
         const Vec2 u{std::cos(turn), std::sin(turn)};
-        petal(at, {std::cos(turn - 0.3), std::sin(turn - 0.3)}, 0.1 * size, 0.5 * size, 0.85 * size, 0.1, wait);
-        petal(at, {std::cos(turn + 0.35), std::sin(turn + 0.35)}, 0.05 * size, 0.4 * size, 0.75 * size, 0.1);
+        petal(at, {std::cos(turn - 0.3), std::sin(turn - 0.3)}, {0.1 * size, 0.5 * size, 0.85 * size, 0.1, wait});
+        petal(at, {std::cos(turn + 0.35), std::sin(turn + 0.35)}, {0.05 * size, 0.4 * size, 0.75 * size, 0.1});
         add(leaf("calyx", at - 0.35 * size * u, turn + 0.1, 0.55 * size, 0.28 * size, 0.1), "wolf-small", "carbon",
             0.04);
     }
@@ -95,7 +101,7 @@ struct PaintThread : Series {
 }  // namespace
 
 std::vector<stroke::RecordedStroke> vase_plum() {
-    PaintThread p{{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::SurfaceMapping::wrap}}};
+    Branch p{{{{0, -66.7 * kMillimetre, 118 * kMillimetre}, {1, 0, 0}, {0, 0, -1}, stroke::SurfaceMapping::wrap}}};
     // Two boulders: a thin wash, axe-cut strokes with the side of a half-dry tuft, and their edges.
     const double washes[][4] = {
         {-43, 33, -46, 50}, {-38, 29, -41, 52}, {-33, 31, -35, 53}, {-14.5, 47, -16, 54}, {-12, 44, -13, 53}};
@@ -153,10 +159,10 @@ std::vector<stroke::RecordedStroke> vase_plum() {
           "mixed-medium", "iron-red", 0.09, {kFlank("bone-black", 0.4), kWipe(0.3)});
     p.add({"branch", {{2, -3, 0}, {10, -3, 3.4, 0.9}, {22, 2, 2.6, 1.1, 0.04}, {36, -2, 0, 1.4}}}, "mixed-medium",
           "iron-red", 0.09, {kFlank("bone-black", 0.4), kWipe(0.3)});
-    const double sub_spines[][6] = {
+    const double twigs[][6] = {
         {-20, -4, -12, -14, -9, -27}, {14, -12, 10, -24, 14, -38}, {22, 2, 30, 9, 40, 12}, {24, -28, 32, -27, 42, -24}};
-    for (const auto& t : sub_spines)
-        p.add({"sub_spine", {{t[0], t[1], 0}, {t[2], t[3], 1.3, 1}, {t[4], t[5], 0, 1.4}}}, "wolf-medium", "carbon",
+    for (const auto& t : twigs)
+        p.add({"twig", {{t[0], t[1], 0}, {t[2], t[3], 1.3, 1}, {t[4], t[5], 0, 1.4}}}, "wolf-medium", "carbon",
               0.1, {kWipe(0.3)});
     // Moss on the trunk.
     for (int k = 0; k < 9; ++k) {
@@ -168,7 +174,7 @@ std::vector<stroke::RecordedStroke> vase_plum() {
     const double leaves[][4] = {{5, 31, 0.75, 20},  {4, 32, 1.35, 19}, {6, 30, 0.2, 22},   {19, 35, 0.9, 17},
                                 {20, 34, 0.35, 20}, {3, 32, 1.9, 15},  {20, 33, -0.15, 17}};
     for (const auto& l : leaves)
-        p.add(PaintThread::leaf("bamboo", {l[0], l[1]}, l[2], l[3], 4.2, 0.06), "mixed-medium", "indigo", 0.07,
+        p.add(Branch::leaf("bamboo", {l[0], l[1]}, l[2], l[3], 4.2, 0.06), "mixed-medium", "indigo", 0.07,
               {kWipe(0.6), kTip("gamboge", 0.16)});
     p.add({"stem", {{-4, 52, 1.2}, {-2, 46, 1.3}, {1, 36, 1.1, 1, 0.05}, {6, 30, 0}}}, "wolf-medium", "indigo", 0.07);
     p.add({"stem", {{6, 52, 1.1}, {9, 46, 1.2}, {14, 40, 0.9}, {20, 34, 0}}}, "wolf-medium", "indigo", 0.07);

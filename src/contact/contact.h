@@ -53,7 +53,7 @@ struct Result {
     /// Metres, world: displacement of the touching hair since the last sample; 0 at first contact. Differs from
     /// that of the frame's origin over a crease.
     Vec3 travel{0};
-    double distance = 0;   ///< metres from the tuft's skin to the surface; 0 when touching
+    double distance = 0;   ///< metres from the tuft's surface to the model's; 0 when touching
     double inside = 0;     ///< metres, depth of the ferrule's mouth below the surface at the given pose
     Vec3 device_force{0};  ///< N, to a haptic device: gain, clamp and proximity applied
     Sphere sphere;         ///< Method::vertices: round the bent tuft

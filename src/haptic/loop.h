@@ -42,27 +42,32 @@ struct LoopStatus {
     bool running = false;
     bool realtime = false;  ///< both threads have their priority
     bool locked = false;    ///< memory stays in RAM
-    bool engaged = false, hard = false;
+    bool engaged = false;   ///< the law runs
+    bool hard = false;      ///< ferrule or handle is on the surface
     Fault fault = Fault::none;
-    double pass = 0;
-    Vec3 force{0};  ///< N, on the hand, world
-    Vec3 root{0};   ///< m, world
-    Quat rotation{1, 0, 0, 0};
-    Vec3 device{0};  ///< m, arm's frame
-    std::uint32_t buttons = 0;
-    std::uint64_t periods = 0, late_solves = 0, solves = 0, lost_poses = 0, unconverged = 0;
+    double pass = 0;            ///< 0–1, share of the force that safety lets out
+    Vec3 force{0};              ///< N, on the hand, world
+    Vec3 root{0};               ///< m, of the tuft, world
+    Quat rotation{1, 0, 0, 0};  ///< of the holder, world
+    Vec3 device{0};             ///< m, arm's frame
+    std::uint32_t buttons = 0;  ///< of the grip, one bit each
+    std::uint64_t periods = 0, solves = 0;
+    std::uint64_t late_solves = 0;  ///< answers that came after 0.6 ms
+    std::uint64_t lost_poses = 0;   ///< that did not fit into the queue to the painting
+    std::uint64_t unconverged = 0;  ///< solves that ended at their limits
     std::uint64_t allocations = 0;  ///< of the servo's thread since its first period
     LatenessHistogram cycle;        ///< from the time a period is due to its force being sent
 };
 
+/// Servo and solver as threads. `device` must outlive the loop.
 class Loop {
   public:
-    /// `device` must outlive the loop.
     Loop(Device& device, HairSolver solver, const LoopOptions& options);
     ~Loop();
     Loop(const Loop&) = delete;
     Loop& operator=(const Loop&) = delete;
 
+    /// Starts both threads.
     void start();
     /// Sends no force and ends both threads. The poses solved so far stay in their queue.
     void stop();

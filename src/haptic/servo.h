@@ -26,11 +26,12 @@ struct ServoOutput {
     Vec3 force{0};          ///< N, on the hand, world
     Vec3 root{0};           ///< y, m, of the next pose
     Fault fault = Fault::none;
-    double pass = 0;
-    bool engaged = false, hard = false, limited = false;
-    std::uint64_t age = 0;  ///< periods of the answer that was used
+    double pass = 0;                                      ///< 0–1, share of the force that safety lets out
+    bool engaged = false, hard = false, limited = false;  ///< see `Verdict`, `LawOutput`
+    std::uint64_t age = 0;                                ///< periods of the answer that was used
 };
 
+/// The servo between two periods.
 class Servo {
   public:
     explicit Servo(const LawOptions& law) : options_(law) {}

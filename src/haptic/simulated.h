@@ -47,6 +47,7 @@ struct ArmEnergy {
     double losses = 0;  ///< of friction and damping of the arm
 };
 
+/// The arm in the hand, in virtual time.
 class SimulatedArm {
   public:
     SimulatedArm(const DeviceLimits& limits, HandPath path, const SimulationOptions& options = {});

@@ -71,7 +71,7 @@ class Served {
         }
     }
     ~Served() {
-        if (pid_ > 0) ::kill(pid_, SIGINT);
+        if (pid_ > 0) ::kill(pid_, SIGTERM);  // a shell makes its background jobs ignore SIGINT
         ::pclose(pipe_);
     }
     Served(const Served&) = delete;

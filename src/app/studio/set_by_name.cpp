@@ -23,7 +23,7 @@ double number_of(const std::string& value) {
 namespace {
 
 /// A setting as a script writes it.
-struct Value {
+struct SettingValue {
     const std::string& name;
     const std::string& text;
     double number = 0;  ///< at the start of the text; 0 for a word
@@ -45,148 +45,152 @@ struct Value {
 
 struct Setting {
     std::string_view name;
-    void (*set)(Session& s, const Value& v);
+    void (*set)(Session& s, const SettingValue& v);
 };
 
 /// Returns the name of a shipped ink or of an own one.
-std::string ink_named(const Session& s, const Value& v) {
+std::string ink_named(const Session& s, const SettingValue& v) {
     std::vector<std::string> names = s.colours.shipped;
     for (const ink::Ink& ink : s.colours.own) names.push_back(ink.name);
     return names[static_cast<std::size_t>(v.one_of(names))];
 }
 
-constexpr Setting kBrush[] = {
+constexpr Setting kBrushSettings[] = {
     {"brush",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.brush.preset = s.brush.presets[static_cast<std::size_t>(v.one_of(s.brush.presets))];
      }},
-    {"brush-size", [](Session& s, const Value& v) { size_brush(s.brush, s.status, v.number); }},
-    {"ink", [](Session& s, const Value& v) { s.brush.ink = ink_named(s, v); }},
-    {"tip-ink", [](Session& s, const Value& v) { s.brush.tip_ink = ink_named(s, v); }},
-    {"colour", [](Session& s, const Value& v) { set_colour(s, v.text); }},
-    {"persistent", [](Session& s, const Value& v) { s.brush.persistent = v.on; }},
-    {"carry", [](Session& s, const Value& v) { s.brush.persistent = v.on; }},  // its name before
-    {"wet", [](Session& s, const Value& v) { s.brush.wet = v.on; }},
-    {"two-inks", [](Session& s, const Value& v) { s.brush.two_inks = v.on; }},
-    {"tip", [](Session& s, const Value& v) { s.brush.tip_depth = v.within(0.05, 0.9); }},
-    {"dip-depth", [](Session& s, const Value& v) { s.brush.dip_depth = v.within(0.05, 1); }},
-    {"dip-side", [](Session& s, const Value& v) { s.brush.dip_side = v.within(-1, 1); }},
-    {"palette", [](Session& s, const Value& v) { show_palette(s.colours.palette, s.brush, s.status, v.on); }},
+    {"brush-size", [](Session& s, const SettingValue& v) { size_brush(s.brush, s.status, v.number); }},
+    {"ink", [](Session& s, const SettingValue& v) { s.brush.ink = ink_named(s, v); }},
+    {"tip-ink", [](Session& s, const SettingValue& v) { s.brush.tip_ink = ink_named(s, v); }},
+    {"colour", [](Session& s, const SettingValue& v) { set_colour(s, v.text); }},
+    {"persistent", [](Session& s, const SettingValue& v) { s.brush.persistent = v.on; }},
+    {"carry", [](Session& s, const SettingValue& v) { s.brush.persistent = v.on; }},  // its name before
+    {"wet", [](Session& s, const SettingValue& v) { s.brush.wet = v.on; }},
+    {"two-inks", [](Session& s, const SettingValue& v) { s.brush.two_inks = v.on; }},
+    {"tip", [](Session& s, const SettingValue& v) { s.brush.tip_depth = v.within(0.05, 0.9); }},
+    {"dip-depth", [](Session& s, const SettingValue& v) { s.brush.dip_depth = v.within(0.05, 1); }},
+    {"dip-side", [](Session& s, const SettingValue& v) { s.brush.dip_side = v.within(-1, 1); }},
+    {"palette", [](Session& s, const SettingValue& v) { show_palette(s.colours.palette, s.brush, s.status, v.on); }},
     {"palette-tool",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.colours.palette.tool = v.choice<PaletteTool>({"brush", "pour", "pick"});
      }},
 };
 
-constexpr Setting kTools[] = {
+constexpr Setting kToolSettings[] = {
     {"tool",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.tools.active = v.choice<Tool>({"brush", "line", "curve", "writing", "eraser", "fill", "pick", "mask"});
      }},
-    {"clean-ends", [](Session& s, const Value& v) { s.tools.pointer.clean_ends = v.on; }},
-    {"pressure", [](Session& s, const Value& v) { s.tools.pointer.pressure = v.within(0.02, 1); }},
-    {"roll", [](Session& s, const Value& v) { s.tools.pointer.roll = v.within(-180, 180) * kDegree; }},
-    {"roll-follow", [](Session& s, const Value& v) { s.tools.pointer.roll_follow = v.on; }},
-    {"string", [](Session& s, const Value& v) { s.tools.pointer.string = std::max(0.0, v.number) * kMillimetre; }},
-    {"radial", [](Session& s, const Value& v) { s.tools.symmetry.radial = v.whole(1, 32); }},
+    {"clean-ends", [](Session& s, const SettingValue& v) { s.tools.pointer.clean_ends = v.on; }},
+    {"pressure", [](Session& s, const SettingValue& v) { s.tools.pointer.pressure = v.within(0.02, 1); }},
+    {"roll", [](Session& s, const SettingValue& v) { s.tools.pointer.roll = v.within(-180, 180) * kDegree; }},
+    {"roll-follow", [](Session& s, const SettingValue& v) { s.tools.pointer.roll_follow = v.on; }},
+    {"string",
+     [](Session& s, const SettingValue& v) { s.tools.pointer.string = std::max(0.0, v.number) * kMillimetre; }},
+    {"radial", [](Session& s, const SettingValue& v) { s.tools.symmetry.radial = v.whole(1, 32); }},
     {"mirror",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.tools.symmetry.mirror_x = v.text.find('x') != std::string::npos;
          s.tools.symmetry.mirror_y = v.text.find('y') != std::string::npos;
          s.tools.symmetry.mirror_z = v.text.find('z') != std::string::npos;
      }},
     {"writing-width",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.tools.writing.scale = v.number * kMillimetre / std::max(1e-6, s.tools.writing.width);
      }},
-    {"writing-turn", [](Session& s, const Value& v) { s.tools.writing.turn = -v.number * kDegree; }},
-    {"writing-mirror", [](Session& s, const Value& v) { s.tools.writing.mirrored = v.on; }},
+    {"writing-turn", [](Session& s, const SettingValue& v) { s.tools.writing.turn = -v.number * kDegree; }},
+    {"writing-mirror", [](Session& s, const SettingValue& v) { s.tools.writing.mirrored = v.on; }},
     {"writing-mapping",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.tools.writing.mapping = v.choice<stroke::SurfaceMapping>({"wrap", "drape", "project"});
      }},
-    {"mask-kind", [](Session& s, const Value& v) { s.masks.choice.kind = stroke::mask_kind_of(v.text); }},
-    {"mask-within", [](Session& s, const Value& v) { s.masks.choice.within = v.within(0, 180) * kDegree; }},
+    {"mask-kind", [](Session& s, const SettingValue& v) { s.masks.choice.kind = stroke::mask_kind_of(v.text); }},
+    {"mask-within", [](Session& s, const SettingValue& v) { s.masks.choice.within = v.within(0, 180) * kDegree; }},
     {"layer",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          const stroke::Layer* layer = s.reported.document.layers.find(std::string_view(v.text));
          if (!layer) throw Error(Message("there is no layer '{}'", v.text));
          s.layers.active = layer->id;
      }},
 };
 
-constexpr Setting kView[] = {
+constexpr Setting kViewSettings[] = {
     {"shading",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.view.shading =
              v.choice<ModelView>({"glaze", "clay", "flat", "height", "wetness", "texels", "charts", "stretch"});
      }},
     {"light",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.view.rig = v.choice<render::LightRig>({"studio", "window", "raking"});
      }},
-    {"parallel", [](Session& s, const Value& v) { s.view.orbit.set_parallel(v.on); }},
-    {"azimuth", [](Session& s, const Value& v) { s.view.orbit.azimuth = v.number * kDegree; }},
-    {"elevation", [](Session& s, const Value& v) { s.view.orbit.elevation = v.number * kDegree; }},
-    {"zoom", [](Session& s, const Value& v) { s.view.orbit.zoom(v.number, s.view.orbit.target); }},
+    {"parallel", [](Session& s, const SettingValue& v) { s.view.orbit.set_parallel(v.on); }},
+    {"azimuth", [](Session& s, const SettingValue& v) { s.view.orbit.azimuth = v.number * kDegree; }},
+    {"elevation", [](Session& s, const SettingValue& v) { s.view.orbit.elevation = v.number * kDegree; }},
+    {"zoom", [](Session& s, const SettingValue& v) { s.view.orbit.zoom(v.number, s.view.orbit.target); }},
     {"section",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.view.section.on = v.number > 0;
          s.view.section.position = v.within(0.02, 1);
      }},
     {"section-axis",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.view.section.axis = v.one_of({"x", "y", "z"});
      }},
-    {"see-through", [](Session& s, const Value& v) { s.view.see_through = v.on; }},
-    {"atlas", [](Session& s, const Value& v) { s.view.atlas.shown = v.on; }},
+    {"see-through", [](Session& s, const SettingValue& v) { s.view.see_through = v.on; }},
+    {"atlas", [](Session& s, const SettingValue& v) { s.view.atlas.shown = v.on; }},
     {"swipe",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.journal.snapshots.swipe = v.number > 0;
          s.journal.snapshots.line_at = v.within(0.02, 0.98);
      }},
-    {"panels", [](Session& s, const Value& v) { s.panels.show_tools = s.panels.show_journal = v.on; }},
-    {"guide", [](Session& s, const Value& v) { v.on ? start_guide(s.panels.help) : void(s.panels.help.step = -1); }},
+    {"panels", [](Session& s, const SettingValue& v) { s.panels.show_tools = s.panels.show_journal = v.on; }},
+    {"guide",
+     [](Session& s, const SettingValue& v) { v.on ? start_guide(s.panels.help) : void(s.panels.help.step = -1); }},
 };
 
-constexpr Setting kPreferences[] = {
+constexpr Setting kPreferenceSettings[] = {
     {"keymap",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.preferences.keymap = v.one_of({"blender", "maya"}) ? Keymap::maya : Keymap::blender;
      }},
     {"left-handed",
-     [](Session& s, const Value& v) { s.preferences.ui.left_handed = v.on, s.preferences.restyle = true; }},
+     [](Session& s, const SettingValue& v) { s.preferences.ui.left_handed = v.on, s.preferences.restyle = true; }},
     {"language",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.preferences.ui.language = v.one_of({"english", "chinese"}) ? Language::chinese : Language::english;
          s.preferences.restyle = true;
      }},
     {"theme",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.preferences.ui.theme = v.one_of({"dark", "light"}) ? Theme::light : Theme::dark;
          s.preferences.restyle = true;
      }},
     {"scale",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.preferences.ui.scale = static_cast<float>(v.within(0.75, 3));
          s.preferences.ui.own_scale = s.preferences.restyle = true;
      }},
-    {"texels", [](Session& s,
-                  const Value& v) { s.project.options.atlas_size = static_cast<std::uint32_t>(v.within(64, 16384)); }},
+    {"texels",
+     [](Session& s, const SettingValue& v) {
+         s.project.options.atlas_size = static_cast<std::uint32_t>(v.within(64, 16384));
+     }},
     {"export-size",
-     [](Session& s, const Value& v) {
+     [](Session& s, const SettingValue& v) {
          s.dialogs.export_settings.size = static_cast<std::uint32_t>(v.within(0, 16384));
      }},
-    {"export-pictures", [](Session& s, const Value& v) { s.dialogs.export_settings.picture = v.whole(0, 360); }},
+    {"export-pictures", [](Session& s, const SettingValue& v) { s.dialogs.export_settings.picture = v.whole(0, 360); }},
     {"export-picture-width",
-     [](Session& s, const Value& v) { s.dialogs.export_settings.picture_width = v.whole(16, 8192); }},
+     [](Session& s, const SettingValue& v) { s.dialogs.export_settings.picture_width = v.whole(16, 8192); }},
 };
 
 }  // namespace
 
 void set_by_name(Session& s, const std::string& name, const std::string& value) {
-    const Value v{.name = name, .text = value, .number = number_of(value), .on = value == "on"};
-    const std::span<const Setting> groups[] = {kBrush, kTools, kView, kPreferences};
+    const SettingValue v{.name = name, .text = value, .number = number_of(value), .on = value == "on"};
+    const std::span<const Setting> groups[] = {kBrushSettings, kToolSettings, kViewSettings, kPreferenceSettings};
     for (const std::span<const Setting> group : groups)
         for (const Setting& setting : group)
             if (setting.name == name) return setting.set(s, v);

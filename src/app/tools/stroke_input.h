@@ -22,12 +22,15 @@ class StrokeInput {
     StrokeInput(Session& session, TipLagCache& tip_lag) : session_(session), tip_lag_(tip_lag) {}
 
     bool drawing() const { return hand_.has_value(); }
+    /// Pen down on the model, with the active brush.
     void press(const Event& e);
     /// Stirs, pours or picks on the palette, by its tool.
     void press_palette(const Event& e);
+    /// Continues the stroke.
     void move(const Event& e);
     /// Moves the stroke after the view turned under the cursor.
     void follow_view(const Event& cursor);
+    /// Pen up: ends the stroke where the button came up.
     void release(const Event& e);
     /// Cancels the stroke.
     void cancel();

@@ -26,6 +26,7 @@ struct Orbit {
     void look_from(StandardView view);
     /// Sets the projection permanently.
     void set_parallel(bool on);
+    /// Rotates about the target by 0.007 rad a pixel; upwards at most to the zenith.
     void turn(double dx_pixels, double dy_pixels);
     /// Moves the target in the picture plane, so that the point under the cursor stays there.
     void pan(double dx_pixels, double dy_pixels, int shorter_side);

@@ -14,7 +14,7 @@ namespace tuft::io {
 /// ΔE2000 up to which two colours of a drawing become one ink.
 inline constexpr double kSameInk = 1;
 
-/// Returns true when a shape has a colour other than black, or white that is not the page alone.
+/// Returns true when a shape has a colour other than black. A white page does not count, other white does.
 bool has_colours(const SvgScene& scene);
 
 /// Returns rings that enclose, by the nonzero rule, what the stroke of a shape covers, with its dashes; metres. `unit`:

@@ -28,8 +28,8 @@ class SvgSheet {
   public:
     /// Adds the rules of a sheet. Returns the number of skipped rules: at-rules and other selectors.
     std::size_t add(std::string_view sheet);
-    /// Returns the properties that apply to an element besides its attributes, by specificity and order; `style` of the
-    /// element counts more than every rule, `!important` more than that.
+    /// Returns the properties that apply to an element besides its attributes, by specificity and order. The element's
+    /// `style` outranks every rule; `!important` outranks both.
     SvgDeclarations declared(const pugi::xml_node& element) const;
     /// Returns the number of rules.
     std::size_t size() const { return rules_.size(); }

@@ -25,7 +25,7 @@ struct SvgGradient {
     std::vector<SvgStop> stops;  ///< at least one
 };
 
-/// What a gradient is put on.
+/// Shape and page that a gradient is used on.
 struct SvgGradientUse {
     SvgMatrix matrix{1};   ///< user units to metres
     Vec2 low{0}, high{0};  ///< bounds of the shape, user units

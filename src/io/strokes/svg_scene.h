@@ -21,7 +21,7 @@ namespace tuft::io {
 
 struct SvgShape;
 
-/// A mask: where it is painted, light shows what it is put on, dark hides it.
+/// A mask. Light parts of it show the masked shape, dark and unpainted parts hide it.
 struct SvgMask {
     std::vector<SvgShape> shapes;
     bool alpha = false;  ///< counts opacity alone, not light
@@ -30,14 +30,14 @@ struct SvgMask {
 /// Gradients of a shape; null where its paint is none.
 using SvgGradientPtr = std::shared_ptr<const SvgGradient>;
 
-/// One shape with what is inherited.
+/// One shape with its inherited properties.
 struct SvgShape {
     std::vector<SvgLine> lines;  ///< user units
     SvgMatrix matrix{1};         ///< user units to metres
     SvgStyle style;
     double opacity = 1;                     ///< of the shape and of all groups round it
     bool fixed_width = false;               ///< its stroke does not grow with transforms
-    std::vector<std::size_t> clips, masks;  ///< indices into the scene: all of them hold
+    std::vector<std::size_t> clips, masks;  ///< indices into the scene: all of them apply
     SvgGradientPtr fill_gradient, stroke_gradient;
     std::string group;    ///< the outermost group that is a layer or has a name; empty: none
     std::string upright;  ///< the group that a mirrored copy keeps readable; empty: none

@@ -27,7 +27,7 @@ struct DepositContact {
 /// Returns the links over the seams of the model; they may be made by the call.
 using SeamLinksFn = std::function<const atlas::SeamLinks&()>;
 
-/// One way of depositing ink, with the state of one stroke. Calls come from one thread: per pose `pass_time`; per
+/// A method of depositing ink, with the state of one stroke. Calls come from one thread: per pose `pass_time`; per
 /// touching pose then `settle` and `deposit`; once `finish`.
 class DepositModel {
   public:

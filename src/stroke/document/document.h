@@ -21,7 +21,7 @@
 
 /// \file
 /// A decorated model: its journal, and the texels made from it. The studio, `tuft` and the tests paint through
-/// `Document`; there is no second path.
+/// `Document`; there is no second path. `samples/hello` is the smallest program that does.
 namespace tuft::stroke {
 
 struct DocumentOptions {

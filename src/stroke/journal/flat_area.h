@@ -8,8 +8,8 @@
 #include "stroke/journal/samples.h"
 
 /// \file
-/// Areas of a drawing that are masked and filled, as a painter cuts a mask, cleans what lies in it and lays an even
-/// film. Part of `Fill`; document/apply_area.h puts them onto texels.
+/// Flat areas of a drawing. An area is masked, the ink in it is taken away, and an even or graded film is deposited.
+/// Part of `Fill`; document/apply_area.h puts them onto texels.
 namespace tuft::stroke {
 
 /// Colour of an area at a parameter of its gradient.
@@ -22,10 +22,10 @@ struct AreaStop {
     bool operator==(const AreaStop&) const = default;
 };
 
-/// How a gradient goes on beyond its ends (SVG 1.1, 13.2.2).
+/// Continuation of a gradient beyond its ends (SVG 1.1, 13.2.2).
 enum class AreaSpread { pad, reflect, repeat };
 
-/// How the parameter t of an area's gradient follows from a point q = A (x, y, 1) of its unit space.
+/// Parameter t of an area's gradient at a point q = A (x, y, 1) of its unit space.
 enum class AreaGradient {
     none,    ///< t = 0
     linear,  ///< t = q.x

@@ -8,12 +8,12 @@
 #include "stroke/contact/tuft_in_hand.h"
 
 /// \file
-/// How the hair of a stroke bends and touches, computed ahead of its ink. Wet hair bends and touches in the same way
-/// whatever it holds, so strokes can be forecast at the same time, and only their ink is deposited in turn.
-/// `StrokeSession` uses a forecast as long as the hair is wet.
+/// Bending and contact of a stroke's hair, computed before its ink is deposited. Both do not depend on the ink of wet
+/// hair. Strokes are forecast at the same time; their ink is deposited in turn. `StrokeSession` uses a forecast as long
+/// as the hair is wet.
 namespace tuft::stroke {
 
-/// What a session would compute at one pose of its path.
+/// Contact and hair at one pose of a path, as the session would compute them.
 struct PoseForecast {
     brush::Pose pose;
     contact::Result contact;
@@ -22,9 +22,8 @@ struct PoseForecast {
 
 /// The hair of one stroke along its path.
 ///
-/// Bending depends on the ink by the wetness, which is 1 from `kWetFullness` on, and by splitting, which comes the
-/// sooner the less ink is left. A forecast is made with wetness 1 and with the least ink that is wet; it ends where
-/// the tuft splits.
+/// Bending depends on the ink in two respects. The wetness is 1 from `kWetFullness` on. Splitting comes sooner with
+/// less ink. A forecast assumes wetness 1 and the least ink that is wet. It ends where the tuft splits.
 class StrokeForecast {
   public:
     struct Options {
@@ -32,15 +31,15 @@ class StrokeForecast {
         double cell = 1e-4;  ///< metres, of footprints
     };
 
-    /// Whether a tuft can be forecast: fresh, of hair in a ferrule, and bent by our own rods.
+    /// Returns true for a tuft that can be forecast: fresh, hair in a ferrule, bent by the rods of `brush/rod`.
     static bool serves(const brush::Tuft& tuft) { return !tuft.posed && !tuft.split && !tuft.model && !tuft.carried; }
 
     /// `path`: poses of the resampled path. Cost: that of bending and outlines at every pose.
     StrokeForecast(brush::Tuft tuft, std::span<const brush::Pose> path, const mesh::SurfaceQuery& surface,
                    const Options& options);
 
-    /// Returns the next pose's forecast if it holds for this pose and this hair, else null. The result may be moved
-    /// from.
+    /// Returns the forecast of the next pose where it is valid for this pose and this hair, else null. The result may
+    /// be moved from.
     PoseForecast* next(const brush::Pose& pose, const brush::Tuft& hair);
     /// Sets the hair and the memory of the contact to what they are after the poses returned by `next`. Bundles,
     /// wetness and ink of `hair` stay. Cost: bending at all those poses, or nothing at the end of the path.

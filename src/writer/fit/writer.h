@@ -24,7 +24,7 @@ struct WriterOptions {
     DiskCache cache;     ///< of fitted strokes
 };
 
-/// A stroke of the hand.
+/// A motion of the hand for one stroke of a character.
 struct WrittenStroke {
     stroke::StrokeSamples trace;  ///< metres, y down, origin at the lower left corner of the character's square
     std::string brush;            ///< preset

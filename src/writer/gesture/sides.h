@@ -8,8 +8,8 @@
 #include "writer/gesture/stroke_line.h"
 
 /// \file
-/// Where the edge of a stroke lies beside its centre line: measured on an outline, or predicted (side_table.h), and the
-/// area and the brush's path that follow. Units, y up.
+/// Distances from a stroke's centre line to its edge: measured on an outline, or predicted (side_table.h). The area and
+/// the brush's path follow from them. Units, y up.
 namespace tuft::writer {
 
 inline constexpr std::size_t kKnots = 16, kFan = 5;

@@ -7,7 +7,7 @@
 #include "core/geometry/types.h"
 
 /// \file
-/// A centre line in segments between its corners, each with a code: what kind of stroke it is. Called by sides.h.
+/// A centre line, divided into segments at its corners. Each segment has a code for its direction. Called by sides.h.
 namespace tuft::writer {
 
 /// A part of a line between two corners.
