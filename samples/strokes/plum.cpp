@@ -162,8 +162,8 @@ std::vector<stroke::RecordedStroke> vase_plum() {
     const double twigs[][6] = {
         {-20, -4, -12, -14, -9, -27}, {14, -12, 10, -24, 14, -38}, {22, 2, 30, 9, 40, 12}, {24, -28, 32, -27, 42, -24}};
     for (const auto& t : twigs)
-        p.add({"twig", {{t[0], t[1], 0}, {t[2], t[3], 1.3, 1}, {t[4], t[5], 0, 1.4}}}, "wolf-medium", "carbon",
-              0.1, {kWipe(0.3)});
+        p.add({"twig", {{t[0], t[1], 0}, {t[2], t[3], 1.3, 1}, {t[4], t[5], 0, 1.4}}}, "wolf-medium", "carbon", 0.1,
+              {kWipe(0.3)});
     // Moss on the trunk.
     for (int k = 0; k < 9; ++k) {
         const double x = -27 + 3.8 * k, y = 33 - 3.3 * k + 2.5 * std::sin(2.0 * k);

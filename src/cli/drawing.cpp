@@ -111,6 +111,23 @@ double finest_width(std::vector<stroke::JournalEntry>& strokes) {
 
 }  // namespace
 
+void mix_inks(std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting) {
+    std::map<std::string, double> weights;
+    double whole = 0;
+    for (const stroke::FlatArea* area : stroke::areas_in(strokes, true)) {
+        double inside = 0;
+        for (const auto& ring : area->rings) inside += area_in(ring);
+        whole += std::abs(inside);
+        for (const stroke::AreaStop& stop : area->stops)
+            if (stop.ink.starts_with('#'))
+                weights[stop.ink] += std::abs(inside) / static_cast<double>(area->stops.size());
+    }
+    if (weights.empty() || !(whole > 0)) return;
+    // A small sign counts, too: a fifth of the weight is shared evenly.
+    for (auto& [name, weight] : weights) weight = 0.8 * weight / whole + 0.2 / static_cast<double>(weights.size());
+    painting.mix_together(weights);
+}
+
 void set_films(std::vector<stroke::JournalEntry>& strokes, const stroke::Document& painting) {
     std::map<std::pair<std::string, double>, double> known;
     for (stroke::FlatArea* area : stroke::areas_in(strokes, true))

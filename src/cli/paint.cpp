@@ -144,6 +144,7 @@ void prepare_strokes(std::vector<stroke::JournalEntry>& strokes, stroke::Documen
     const std::uint64_t first_group = painting.journal().next_group_id();
     for (stroke::JournalEntry& s : strokes)
         if (s.group.id != 0) s.group.id += first_group - 1;
+    mix_inks(strokes, painting);
     find_presets(painting, strokes);
     set_films(strokes, painting);
     note_inks(strokes, painting, console);

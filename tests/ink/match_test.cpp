@@ -207,19 +207,58 @@ TEST(Match, LabAndLinearLightAreInverse) {
 // Eight pigments are all that a canvas holds.
 TEST(Match, OnAFullCanvasUsesItsPigmentsOnly) {
     const Substrate porcelain = load_substrate("porcelain");
-    std::vector<Pigment> held(pigments().begin(), pigments().end());
-    std::erase_if(held, [](const Pigment& p) { return p.name == "gamboge"; });
+    std::vector<Pigment> held;  // as many as a canvas takes, none of them yellow
+    for (const char* name : {"bone-black", "carbon-black", "cinnabar", "cobalt-underglaze", "indigo", "iron-red",
+                             "shell-white", "titanium-white"})
+        held.push_back(load_pigment(name));
     ASSERT_EQ(held.size(), static_cast<std::size_t>(kMaxPigments));
     const Rgb yellow = *colour_of_hex("#e0c040");
     const ColourMatch free = match_on_canvas(yellow, porcelain, {});
     const ColourMatch bound = match_on_canvas(yellow, porcelain, held);
-    const auto has = [](const ColourMatch& m) {
-        return std::any_of(m.ink.parts.begin(), m.ink.parts.end(),
-                           [](const InkPart& p) { return p.pigment.name == "gamboge"; });
-    };
-    EXPECT_TRUE(has(free));
-    EXPECT_FALSE(has(bound));
+    for (const InkPart& part : bound.ink.parts)
+        EXPECT_TRUE(std::any_of(held.begin(), held.end(), [&](const Pigment& p) {
+            return p.name == part.pigment.name;
+        })) << part.pigment.name;
     EXPECT_GT(bound.delta_e, free.delta_e);
+}
+
+// Twelve hues of a colour circle need more pigments than a canvas has planes for. Each order of mixing them one by one
+// leaves the last ones what is left; chosen together their errors sum to no more.
+TEST(Match, PigmentsChosenTogetherAreNoWorseThanOneColourAfterTheOther) {
+    const Substrate porcelain = load_substrate("porcelain");
+    std::vector<WeightedColour> colours;
+    for (int i = 0; i < 12; ++i) {
+        const double hue = 2 * 3.14159265 * i / 12;
+        const auto part = [&](double at) { return static_cast<float>(0.02 + 0.48 * (1 + std::cos(hue - at))); };
+        colours.push_back({{part(0), part(2.0944), part(4.18879)}, 1});
+    }
+    const std::vector<Pigment> chosen = choose_pigments(colours, pigments(), {}, porcelain);
+    ASSERT_LE(chosen.size(), static_cast<std::size_t>(kMaxPigments));
+    MixSearches together(chosen, porcelain), all(pigments(), porcelain);
+    double sum = 0, one_by_one = 0;
+    std::vector<Pigment> present;
+    for (const WeightedColour& c : colours) {
+        sum += together.nearest(c.colour).delta_e;
+        const ColourMatch match = match_on_canvas(c.colour, porcelain, present, {.film = 0}, &all);
+        one_by_one += match.delta_e;
+        for (const InkPart& part : match.ink.parts)
+            if (std::none_of(present.begin(), present.end(),
+                             [&](const Pigment& p) { return p.name == part.pigment.name; }))
+                present.push_back(part.pigment);
+    }
+    EXPECT_LE(sum, one_by_one + 1e-6);  // of 12 colours, where both find the same mixes
+}
+
+TEST(Match, PigmentsOnTheCanvasStayAndFewColoursKeepTheirBestMixes) {
+    const Substrate porcelain = load_substrate("porcelain");
+    const std::vector<Pigment> present{load_pigment("indigo"), load_pigment("shell-white")};
+    const std::vector<WeightedColour> colours{{*colour_of_hex("#c02020"), 1}, {*colour_of_hex("#208040"), 1}};
+    const std::vector<Pigment> chosen = choose_pigments(colours, pigments(), present, porcelain);
+    EXPECT_EQ(chosen[0].name, "indigo");
+    EXPECT_EQ(chosen[1].name, "shell white");
+    MixSearches together(chosen, porcelain), all(pigments(), porcelain);
+    for (const WeightedColour& c : colours)  // two mixes of at most three pigments fit into the six free planes
+        EXPECT_LE(together.nearest(c.colour).delta_e, all.nearest(c.colour).delta_e + kWorthThickness);
 }
 
 TEST(Match, HexIsReadAndWritten) {

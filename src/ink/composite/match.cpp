@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "core/error.h"
@@ -392,6 +393,49 @@ ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::
     if (!present.empty() && present.size() + more > static_cast<std::size_t>(kMaxPigments))
         match = match_colour(wanted, {present.begin(), present.end()}, substrate, options);
     return match;
+}
+
+std::vector<Pigment> choose_pigments(std::span<const WeightedColour> colours, const std::vector<Pigment>& candidates,
+                                     std::span<const Pigment> present, const Substrate& substrate) {
+    constexpr std::size_t kMostColours = 48;
+    std::vector<WeightedColour> heaviest(colours.begin(), colours.end());
+    std::stable_sort(heaviest.begin(), heaviest.end(),
+                     [](const WeightedColour& a, const WeightedColour& b) { return a.weight > b.weight; });
+    if (heaviest.size() > kMostColours) heaviest.resize(kMostColours);
+
+    const auto index_of = [&](const Pigment& pigment) {
+        const auto at = std::find_if(candidates.begin(), candidates.end(),
+                                     [&](const Pigment& p) { return p.name == pigment.name; });
+        return static_cast<std::size_t>(at - candidates.begin());
+    };
+    std::vector<double> cost(candidates.size(), 0);
+    std::vector<std::vector<std::pair<std::size_t, double>>> users(candidates.size());  // colour and its best ΔE
+    MixSearches all(candidates, substrate);
+    for (std::size_t c = 0; c < heaviest.size(); ++c) {
+        const ColourMatch best = all.nearest(heaviest[c].colour);
+        for (const InkPart& part : best.ink.parts) users[index_of(part.pigment)].emplace_back(c, best.delta_e);
+    }
+    for (std::size_t p = 0; p < candidates.size(); ++p) {
+        if (users[p].empty()) continue;
+        cost[p] = 1e-9;  // one that is used goes before one that is not
+        std::vector<Pigment> others = candidates;
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(p));
+        if (others.empty()) continue;
+        MixSearches without(std::move(others), substrate);
+        for (const auto& [c, best] : users[p])
+            cost[p] += heaviest[c].weight * std::max(0.0, without.nearest(heaviest[c].colour).delta_e - best);
+    }
+    std::vector<Pigment> chosen(present.begin(), present.end());
+    std::vector<std::size_t> order(candidates.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return cost[a] > cost[b]; });
+    for (const std::size_t p : order) {
+        const bool known = std::any_of(chosen.begin(), chosen.end(),
+                                       [&](const Pigment& own) { return own.name == candidates[p].name; });
+        if (cost[p] > 0 && !known && chosen.size() < static_cast<std::size_t>(kMaxPigments))
+            chosen.push_back(candidates[p]);
+    }
+    return chosen;
 }
 
 Ink ink_named(std::string_view name, const Substrate& substrate, std::span<const Pigment> present,

@@ -137,6 +137,18 @@ std::string to_hex(const Rgb& linear);
 ColourMatch match_on_canvas(const Rgb& wanted, const Substrate& substrate, std::span<const Pigment> present,
                             const MatchOptions& options = {}, MixSearches* searches = nullptr);
 
+/// A colour that many share a canvas with, and how much it counts.
+struct WeightedColour {
+    Rgb colour{};       ///< linear sRGB
+    double weight = 1;  ///< above 0
+};
+
+/// Returns at most `kMaxPigments` pigments for all colours together: those `present`, and of the candidates those whose
+/// loss costs most. The cost of losing p is Σ weight · (ΔE2000 of the best mix without p − ΔE2000 of the best mix). All
+/// that any best mix uses when there is room. The 48 heaviest colours are looked at. Cost: about 40 ms a colour.
+std::vector<Pigment> choose_pigments(std::span<const WeightedColour> colours, const std::vector<Pigment>& candidates,
+                                     std::span<const Pigment> present, const Substrate& substrate);
+
 /// `load_ink`, which also takes a colour: `#rrggbb` is the nearest mix of the shipped pigments on
 /// `substrate`, as thick as it needs (`match_on_canvas`). Throws `Error` as `load_ink` does, and for
 /// a `#` without a colour after it.

@@ -73,6 +73,8 @@ class Document {
     void use(const brush::Preset& preset);
     void use(const ink::Ink& ink) { materials_.use(ink); }
     void use(const ink::Substrate& substrate) { materials_.use(substrate); }
+    /// `Materials::mix_together`.
+    void mix_together(const std::map<std::string, double>& weights) { materials_.mix_together(weights); }
 
     /// Performs the entry and appends it to the journal. Throws `Error`, before anything is changed, for an unknown
     /// brush, ink, layer or mask, a locked layer, a stroke without samples. Throws `Cancelled` when `progress` stops

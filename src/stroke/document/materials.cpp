@@ -20,6 +20,26 @@ const ink::Ink& Materials::ink(const std::string& name) const {
     return inks_.emplace(name, ink::ink_named(name, substrate_, pigments_in_use(), &*searches_)).first->second;
 }
 
+void Materials::mix_together(const std::map<std::string, double>& weights) {
+    std::vector<std::string> names;
+    std::vector<ink::WeightedColour> colours;
+    for (const auto& [name, weight] : weights) {
+        const std::optional<ink::Rgb> colour = ink::colour_of_hex(name);
+        if (!colour || inks_.contains(name)) continue;
+        names.push_back(name);
+        colours.push_back({*colour, weight});
+    }
+    if (colours.empty()) return;
+    const std::vector<ink::Pigment> chosen =
+        ink::choose_pigments(colours, ink::shipped_pigments(), pigments_in_use(), substrate_);
+    ink::MixSearches searches(chosen, substrate_);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        ink::Ink ink = searches.nearest(colours[i].colour).ink;
+        ink.name = names[i];
+        use(ink);
+    }
+}
+
 // Of the layers, and of inks that were asked for and may come onto them.
 std::vector<ink::Pigment> Materials::pigments_in_use() const {
     std::vector<ink::Pigment> all(layers_.pigments().begin(), layers_.pigments().end());

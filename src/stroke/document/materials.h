@@ -38,6 +38,10 @@ class Materials {
     /// Returns the ink of this name; throws `Error` when there is none. A colour `#rrggbb` is an ink, too: the nearest
     /// mix on the substrate, of pigments for which the document's layers have planes (`ink::ink_named`).
     const ink::Ink& ink(const std::string& name) const;
+    /// Mixes the inks of a drawing's colours (`#rrggbb`) from pigments that suit all of them together
+    /// (`ink::choose_pigments`), because a canvas has planes for few. Those already known stay. Without it each is
+    /// mixed when it is first asked for, and the last ones get what is left.
+    void mix_together(const std::map<std::string, double>& weights);
     /// What the ink is painted on.
     const ink::Substrate& substrate() const { return substrate_; }
 
