@@ -222,16 +222,19 @@ TEST(Match, OnAFullCanvasUsesItsPigmentsOnly) {
     EXPECT_GT(bound.delta_e, free.delta_e);
 }
 
-// Twelve hues of a colour circle need more pigments than a canvas has planes for. Each order of mixing them one by one
-// leaves the last ones what is left; chosen together their errors sum to no more.
-TEST(Match, PigmentsChosenTogetherAreNoWorseThanOneColourAfterTheOther) {
+// Two colour circles, a dark and a light one, need more pigments than a canvas has planes for. Mixed one after the
+// other the last colours get what is left.
+TEST(Match, PigmentsChosenTogetherSuitAllColoursBetterThanOneAfterTheOther) {
     const Substrate porcelain = load_substrate("porcelain");
     std::vector<WeightedColour> colours;
-    for (int i = 0; i < 12; ++i) {
-        const double hue = 2 * 3.14159265 * i / 12;
-        const auto part = [&](double at) { return static_cast<float>(0.02 + 0.48 * (1 + std::cos(hue - at))); };
-        colours.push_back({{part(0), part(2.0944), part(4.18879)}, 1});
-    }
+    for (const float light : {0.05f, 0.4f})
+        for (int i = 0; i < 10; ++i) {
+            const double hue = 2 * 3.14159265 * i / 10;
+            const auto part = [&](double at) {
+                return light * static_cast<float>(0.05 + 0.95 * (1 + std::cos(hue - at)));
+            };
+            colours.push_back({{part(0), part(2.0944), part(4.18879)}, 1});
+        }
     const std::vector<Pigment> chosen = choose_pigments(colours, pigments(), {}, porcelain);
     ASSERT_LE(chosen.size(), static_cast<std::size_t>(kMaxPigments));
     MixSearches together(chosen, porcelain), all(pigments(), porcelain);
@@ -246,7 +249,7 @@ TEST(Match, PigmentsChosenTogetherAreNoWorseThanOneColourAfterTheOther) {
                              [&](const Pigment& p) { return p.name == part.pigment.name; }))
                 present.push_back(part.pigment);
     }
-    EXPECT_LE(sum, one_by_one + 1e-6);  // of 12 colours, where both find the same mixes
+    EXPECT_LT(sum, 0.9 * one_by_one);
 }
 
 TEST(Match, PigmentsOnTheCanvasStayAndFewColoursKeepTheirBestMixes) {
