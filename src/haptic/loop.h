@@ -48,7 +48,9 @@ struct LoopStatus {
     Vec3 force{0};  ///< N, on the hand, world
     Vec3 root{0};   ///< m, world
     Quat rotation{1, 0, 0, 0};
-    Vec3 device{0};  ///< m, arm's frame
+    Vec3 arm{0};            ///< x, m, world
+    Vec3 device{0};         ///< m, arm's frame: the same place
+    Quat grip{1, 0, 0, 0};  ///< arm's frame
     std::uint32_t buttons = 0;
     std::uint64_t periods = 0, late_solves = 0, solves = 0, lost_poses = 0, unconverged = 0;
     std::uint64_t allocations = 0;  ///< of the servo's thread since its first period
@@ -69,7 +71,7 @@ class Loop {
 
     // One thread, the owner's:
     void set_control(const ServoControl& control);
-    /// Ends an emergency.
+    /// Ends an emergency; first set a control that asks for none.
     void release();
     void set_law(const LawOptions& law);
     /// What the stroke has made of the hair, see `HairSolver::set_ink`.

@@ -60,10 +60,40 @@ TEST(Trial, PortAndWristGiveBackNothingWithThreeMillisecondsAndALowerCoupling) {
     expect_passive("sheet", "wolf-medium", 3e-3);
 }
 
-// Stiff flats and edges under taps are out of reach yet: README.md of the module has the figures.
 TEST(Trial, RoundBrushesGiveBackNothing) {
     for (const char* brush : {"goat-small", "mixed-medium", "liner-3"})
         for (const char* place : {"sheet", "bowl"}) expect_passive(place, brush, 0);
+}
+
+/// Energy alone, with delays of none and of a millisecond.
+void expect_no_energy(const Felt& f, const std::string& brush, std::initializer_list<Way> ways) {
+    const brush::Tuft tuft = tuft_of(brush);
+    for (const DeviceLimits& limits : device_presets())
+        for (const Way way : ways)
+            for (const double delay : {0.0, 1e-3}) {
+                const TrialReport r =
+                    run_trial(tuft, *f.surface, hand_path(way, f.place, tuft.preset), options_for(limits, delay));
+                EXPECT_GE(r.least_energy, -kMicrojoule)
+                    << f.place.name << " " << brush << " " << limits.name << " " << name_of(way) << " " << delay;
+            }
+}
+
+// Five spines of hog hair on a ferrule 13 mm wide: the arm stands at its greatest force when the hand turns round.
+TEST(Trial, AStiffFlatBrushGivesBackNothing) {
+    expect_no_energy(felt("sheet"), "bright-12", {Way::taps, Way::press_fast});
+}
+
+// Beside a shut line the planes of nodes change from one period to the next, and the hair's force works by itself.
+TEST(Trial, EdgesGiveBackNothing) {
+    for (const char* place : {"edge", "rim", "plate"})
+        expect_no_energy(felt(place), "wolf-medium", {Way::taps, Way::rocking, Way::hit, Way::slide});
+}
+
+TEST(Trial, HairTrappedInAShutLineGivesBackNothing) {
+    Felt f = felt("edge");
+    f.place = place_at_edge(*f.surface, "shut line", true);
+    expect_no_energy(f, "wolf-small", {Way::press, Way::drag, Way::taps, Way::rocking});
+    expect_no_energy(f, "liner-3", {Way::drag, Way::rocking});
 }
 
 // Restore leaks like any lag; the arm's friction pays.

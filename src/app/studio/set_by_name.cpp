@@ -18,6 +18,61 @@ double number_of(const std::string& value) {
     return std::isfinite(number) ? number : 0;
 }
 
+namespace {
+
+std::vector<std::string> arm_hands() {
+    std::vector<std::string> names{"pointer"};
+    for (const haptic::Way way : haptic::kPaintingWays) names.emplace_back(haptic::name_of(way));
+    return names;
+}
+
+/// Settings of the arm; false for a name that is none of them.
+bool set_arm(Session& s, const std::string& name, const std::string& value, double number) {
+    ArmState& a = s.arm;
+    const bool on = value == "on";
+    if (name == "arm") {
+        disconnect_arm(a, s.paint_thread.get());
+        if (on) connect_arm(a, s.status);
+    } else if (name == "arm-source")
+        a.settings.source = value == "service"     ? ArmSource::service
+                            : value == "recording" ? ArmSource::recording
+                                                   : ArmSource::simulated;
+    else if (name == "arm-preset")
+        a.settings.preset = haptic::device_preset(value).name;
+    else if (name == "arm-hand") {
+        const std::vector<std::string> hands = arm_hands();
+        if (std::find(hands.begin(), hands.end(), value) == hands.end())
+            throw Error(Message("unknown hand '{}'{}", value, did_you_mean(nearest_name(value, hands))));
+        a.settings.hand = value;
+    } else if (name == "arm-recording")
+        a.settings.recording = value;
+    else if (name == "arm-port")
+        a.settings.port = std::clamp(static_cast<int>(number), 0, 65535);
+    else if (name == "arm-gain")
+        a.settings.gain = std::clamp(number, 0.0, kMostArmGain);
+    else if (name == "arm-limit")
+        a.settings.most_force = std::clamp(number, 0.1, haptic::kForceLimit);
+    else if (name == "arm-scale")
+        a.settings.scale = std::clamp(number, kLeastArmScale, kMostArmScale);
+    else if (name == "arm-view")
+        a.settings.with_view = on;
+    else if (name == "arm-pause")
+        a.paused = on;
+    else if (name == "arm-clutch")
+        a.clutched = on;
+    else if (name == "arm-palette")
+        a.on_palette = on;
+    else if (name == "arm-panel")
+        a.shown = on;
+    else if (name == "arm-emergency")
+        on ? stop_forces(a) : release_forces(a);
+    else
+        return false;
+    return true;
+}
+
+}  // namespace
+
 void set_by_name(Session& s, const std::string& name, const std::string& value) {
     const double number = number_of(value);
     const bool on = value == "on";
@@ -135,6 +190,8 @@ void set_by_name(Session& s, const std::string& name, const std::string& value) 
     else if (name == "scale")
         s.preferences.ui.scale = static_cast<float>(std::clamp(number, 0.75, 3.0)), s.preferences.ui.own_scale = true,
         s.preferences.restyle = true;
+    else if (name.starts_with("arm") && set_arm(s, name, value, number))
+        return;
     else if (name == "panels")
         s.panels.show_tools = s.panels.show_journal = on;
     else
