@@ -21,13 +21,18 @@ using namespace std::chrono_literals;
 
 constexpr auto kLook = 100ms;
 
-/// The arm, moved on by the wall clock, with or without a client.
+/// The arm, moved on by the wall clock from its first client on, with or without one.
 struct RunningArm {
     SimulatedArm arm;
-    Clock::time_point begin = Clock::now();
+    bool began = false;
+    Clock::time_point begin{};
 
     double now() const { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+    void start() {
+        if (!std::exchange(began, true)) begin = Clock::now();
+    }
     void advance() {
+        if (!began) return;
         constexpr double kCatchUp = 0.1;  // s
         const double behind = now() - arm.time();
         if (behind > kCatchUp)
@@ -169,6 +174,7 @@ void serve_simulated(SimulatedArm arm, const ServerOptions& options, const std::
                 if (options.fault == ServerFault::dies) served = false;
             }
             if (next && !client) {
+                running.start();
                 client.emplace(io, std::move(*next), running, options);
                 next.reset();
                 client->accept();

@@ -199,7 +199,8 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
         s.restored *= 1 - T / kRestoreTime;
     }
     const double stored = in.hair ? gain * in.hair->stored : 0;
-    s.tank = std::min(s.tank, kTankFull + stored + s.coupled);  // what the hair lost is not kept for later
+    // What the hair lost is not kept for later; hair that has taken a set may have less than none.
+    s.tank = std::min(s.tank, s.repaid + kTankFull + std::max(0.0, stored) + s.coupled);
     LawOutput out{.root = root, .hard = held.hard};
     const double size = glm::length(f);
     if (size > 0) {
