@@ -23,14 +23,14 @@ struct Part {
 using Chip = std::vector<std::vector<Part>>;
 using Row = std::vector<Chip>;
 
-std::vector<ink::Substrate> grounds() {
+std::vector<ink::Substrate> backings() {
     ink::Substrate white, black;
     white.reflectance = {0.9f, 0.9f, 0.88f};
     black.reflectance = {0.03f, 0.03f, 0.03f};
     return {white, black, ink::load_substrate("porcelain")};
 }
 
-ink::Rgb colour_of(const Chip& chip, const ink::Substrate& ground) {
+ink::Rgb colour_of(const Chip& chip, const ink::Substrate& backing) {
     std::vector<ink::Pigment> pigments;
     std::vector<ink::Plane> planes;
     planes.reserve(ink::kMaxPigments);
@@ -43,7 +43,7 @@ ink::Rgb colour_of(const Chip& chip, const ink::Substrate& ground) {
             pigments.push_back(ink::load_pigment(part.pigment));
         }
     }
-    const ink::TileAppearance look = ink::shade_films(films, nullptr, pigments, ground);
+    const ink::TileAppearance look = ink::shade_films(films, nullptr, pigments, backing);
     return {look.colour[0][0], look.colour[1][0], look.colour[2][0]};
 }
 
@@ -87,7 +87,7 @@ std::vector<std::vector<Row>> chart() {
 
 void draw(const std::string& path) {
     const std::vector<std::vector<Row>> parts = chart();
-    const std::vector<ink::Substrate> under = grounds();
+    const std::vector<ink::Substrate> under = backings();
     int rows = 0;
     for (const auto& part : parts) rows += static_cast<int>(part.size());
     const int step = kChip + kGap, group = kColumns * step - kGap + 2 * kGroupGap;

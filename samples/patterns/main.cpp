@@ -88,8 +88,8 @@ void car(const std::filesystem::path& folder) {
     ink::Canvas canvas(model.texels.n_slots());
     const int pigment = canvas.add_pigment(ink::load_ink("carbon").parts[0].pigment);
     const double check = 20 * kMillimetre, step = check / 48, length = 12 * check;
-    const auto way = straight_way(model, {0.34, -0.02, 0.25}, {0.08, -1, 0}, step, 12 * 48);
-    roll(model, canvas, pigment, 2.5f, way, step, 4 * check, [&](double x, double v) {
+    const auto track = straight_track(model, {0.34, -0.02, 0.25}, {0.08, -1, 0}, step, 12 * 48);
+    roll(model, canvas, pigment, 2.5f, track, step, 4 * check, [&](double x, double v) {
         if (x < 0 || x > length || std::abs(v) > 2 * check) return false;
         return static_cast<int>(std::floor(x / check) + std::floor(v / check)) % 2 == 0;
     });
@@ -107,8 +107,8 @@ void plate(const std::filesystem::path& folder) {
     const double radius = 113.5 * kMillimetre;
     constexpr int kPeriods = 48, kRows = 180;  // of a period
     const double step = 2 * pi * radius / (kPeriods * kRows), period = kRows * step;
-    const auto way = ring(model, radius, 0.1, kPeriods * kRows);
-    roll(model, canvas, pigment, 2.0f, way, step, 18 * kMillimetre, [&](double x, double v) {
+    const auto track = ring(model, radius, 0.1, kPeriods * kRows);
+    roll(model, canvas, pigment, 2.0f, track, step, 18 * kMillimetre, [&](double x, double v) {
         const double mm = v / kMillimetre;
         if (std::abs(std::abs(mm) - 8) < 0.4) return true;
         if (std::abs(mm - 3.6 * std::sin(2 * pi * x / period)) < 0.7) return true;
@@ -129,25 +129,26 @@ void bowl(const std::filesystem::path& folder) {
     s.brush = "wolf-small";
     s.ink = "cinnabar";
     const double length = painting.materials().brush(s.brush).length, step = 0.25 * kMillimetre;
-    const auto way = straight_way(model, {0.035, -0.01, 0.02}, glm::normalize(Vec3{1, -0.3, 0.6}), step, 400);
-    const auto rim = std::max_element(
-        way.begin(), way.end(), [](const Contact& a, const Contact& b) { return a.frame.origin.z < b.frame.origin.z; });
+    const auto track = straight_track(model, {0.035, -0.01, 0.02}, glm::normalize(Vec3{1, -0.3, 0.6}), step, 400);
+    const auto rim = std::max_element(track.begin(), track.end(), [](const Contact& a, const Contact& b) {
+        return a.frame.origin.z < b.frame.origin.z;
+    });
     double time = 0;
     Vec3 before{0};
-    for (std::size_t i = 0; i < way.size(); ++i) {
-        const double part = double(i) / double(way.size() - 1);
+    for (std::size_t i = 0; i < track.size(); ++i) {
+        const double part = double(i) / double(track.size() - 1);
         // Lighter on the edge, where the hair is pressed over a narrow lip: it comes there 4 mm behind the hand.
-        const double behind_rim = (double(i) - double(rim - way.begin())) * step - 4 * kMillimetre;
+        const double behind_rim = (double(i) - double(rim - track.begin())) * step - 4 * kMillimetre;
         const double over = 1 - 0.3 * std::exp(-std::pow(behind_rim / (5 * kMillimetre), 2));
         const double press = 4 * kMillimetre * over * std::min({1.0, part / 0.2, (1 - part) / 0.3});
-        // The holder turns over the rim gently: its axis is the mean normal of 15 mm of the way.
+        // The holder turns over the rim gently: its axis is the mean normal of 15 mm of the path.
         Vec3 n{0};
         for (int k = -30; k <= 30; ++k)
-            n += way[std::clamp<std::ptrdiff_t>(std::ptrdiff_t(i) + k, 0, std::ptrdiff_t(way.size()) - 1)].frame.n;
+            n += track[std::clamp<std::ptrdiff_t>(std::ptrdiff_t(i) + k, 0, std::ptrdiff_t(track.size()) - 1)].frame.n;
         n = glm::normalize(n);
-        const Frame f = make_frame(Vec3{0}, n, way[i].frame.t);
+        const Frame f = make_frame(Vec3{0}, n, track[i].frame.t);
         stroke::StrokeSample p;
-        p.position = way[i].frame.origin + (length - press) * n;
+        p.position = track[i].frame.origin + (length - press) * n;
         p.rotation = glm::quat_cast(Mat3(f.t, f.b, f.n));
         if (i > 0) time += std::max(step, glm::length(p.position - before)) / 0.06;
         before = p.position;

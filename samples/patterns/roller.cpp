@@ -11,13 +11,13 @@ constexpr double kWheel = 2.5e-3;  // metres, radius: too wide for the shut line
 
 }  // namespace
 
-std::vector<Contact> straight_way(const stroke::Model& model, const Vec3& from, const Vec3& heading, double step,
-                                  int n) {
+std::vector<Contact> straight_track(const stroke::Model& model, const Vec3& from, const Vec3& heading, double step,
+                                    int n) {
     const auto start = model.query->closest_point(from);
     Frame frame = make_frame(start->position, start->normal, heading);
-    std::vector<Contact> way{{frame, start->triangle}};
+    std::vector<Contact> track{{frame, start->triangle}};
     double gone = 0;  // since the last place
-    while (static_cast<int>(way.size()) < n) {
+    while (static_cast<int>(track.size()) < n) {
         const Vec3 centre = frame.origin + kWheel * frame.n + 0.25 * step * frame.t;
         const auto at = model.query->closest_point(centre);
         const Vec3 normal = glm::normalize(centre - at->position);
@@ -30,25 +30,25 @@ std::vector<Contact> straight_way(const stroke::Model& model, const Vec3& from, 
             const auto on = model.query->closest_point(at->position - (gone - step) / length * leap);
             Contact place{frame, length < 0.5 * kWheel ? on->triangle : kNone};
             place.frame.origin = on->position;
-            way.push_back(place);
+            track.push_back(place);
         }
     }
-    return way;
+    return track;
 }
 
 std::vector<Contact> ring(const stroke::Model& model, double radius, double height, int n) {
-    std::vector<Contact> way;
+    std::vector<Contact> track;
     for (int i = 0; i < n; ++i) {
         const double a = 2 * std::numbers::pi * i / n;
         const Vec3 above{radius * std::cos(a), radius * std::sin(a), height};
         const auto at = model.query->ray(above, {0, 0, -1});
         const Vec3 along{-std::sin(a), std::cos(a), 0};
-        way.push_back({make_frame(at->position, at->normal, along), at->triangle});
+        track.push_back({make_frame(at->position, at->normal, along), at->triangle});
     }
-    return way;
+    return track;
 }
 
-void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float film, const std::vector<Contact>& way,
+void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float film, const std::vector<Contact>& track,
           double step, double width, const Pattern& pattern) {
     const double cell = 0.5 * model.texels.texel_size;
     // The wheel flattens over four steps, so that rows that fan out where the surface bends like a
@@ -66,10 +66,10 @@ void roll(const stroke::Model& model, ink::Canvas& canvas, int pigment, float fi
     footprint::Unpacked unpacked;
     footprint::StampJobs jobs;
     std::array<float, atlas::kTileTexels> exposure;
-    for (std::size_t i = 0; i < way.size(); ++i) {
-        if (way[i].triangle == kNone) continue;
-        f.frame = way[i].frame;
-        f.triangle = way[i].triangle;
+    for (std::size_t i = 0; i < track.size(); ++i) {
+        if (track[i].triangle == kNone) continue;
+        f.frame = track[i].frame;
+        f.triangle = track[i].triangle;
         f.coverage.assign(std::size_t(f.width) * f.height, 0);
         for (int j = 2; j < f.height - 2; ++j)
             for (int k = 2; k < f.width - 2; ++k) {

@@ -16,11 +16,11 @@ namespace {
 struct Spot {
     Vec2 p{0};
     double width = 0, pace = 1;
-    double length = 0;  ///< along the way, changes of width count too
+    double length = 0;  ///< along the path, changes of width count too
 };
 
 /// Distance that the hand feels between two keys: pressing is a motion too.
-double way(const Spot& a, const Spot& b) {
+double travel(const Spot& a, const Spot& b) {
     return std::hypot(glm::length(b.p - a.p), 0.7 * (b.width - a.width));
 }
 
@@ -45,7 +45,7 @@ double hermite(double v0, double m0, double v1, double m1, double h, double u) {
 std::vector<Spot> trace_piece(const std::vector<Spot>& keys) {
     std::vector<double> t{0}, width, pace;
     for (std::size_t i = 1; i < keys.size(); ++i)
-        t.push_back(t.back() + std::max(1e-6, std::sqrt(way(keys[i - 1], keys[i]))));
+        t.push_back(t.back() + std::max(1e-6, std::sqrt(travel(keys[i - 1], keys[i]))));
     for (const Spot& k : keys) {
         width.push_back(k.width);
         pace.push_back(k.pace);
@@ -67,14 +67,14 @@ std::vector<Spot> trace_piece(const std::vector<Spot>& keys) {
     for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
         const double h = t[i + 1] - t[i];
         const Vec2 m0 = tangent(i), m1 = tangent(i + 1);
-        const int steps = std::max(4, static_cast<int>(way(keys[i], keys[i + 1]) / 2e-5));
+        const int steps = std::max(4, static_cast<int>(travel(keys[i], keys[i + 1]) / 2e-5));
         for (int k = 1; k <= steps; ++k) {
             const double u = double(k) / steps;
             Spot s;
             for (int c = 0; c < 2; ++c) s.p[c] = hermite(keys[i].p[c], m0[c], keys[i + 1].p[c], m1[c], h, u);
             s.width = hermite(width[i], width_slope[i], width[i + 1], width_slope[i + 1], h, u);
             s.pace = hermite(pace[i], pace_slope[i], pace[i + 1], pace_slope[i + 1], h, u);
-            s.length = spots.back().length + way(spots.back(), s);
+            s.length = spots.back().length + travel(spots.back(), s);
             spots.push_back(s);
         }
     }

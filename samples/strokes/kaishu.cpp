@@ -48,7 +48,7 @@ void run_out(Stroke& s, double w) {
 
 }  // namespace
 
-// Heads of 横 and 折 land where they are pressed: a tip that first goes a way draws a stick of its own width.
+// Heads of 横 and 折 land where they are pressed: a tip that first moves draws a stick of its own width.
 Stroke heng(Vec2 from, Vec2 to, double w, double bow) {
     const Axis l(from, to);
     const double n = l.length, b = -bow * n;
@@ -209,7 +209,7 @@ Stroke ti(Vec2 from, Vec2 to, double w) {
 
 namespace {
 
-/// The way across and the shoulder of a 折.
+/// The path across and the shoulder of a 折.
 void zhe_head(Stroke& s, const Axis& l, double w) {
     const double n = l.length;
     append(s, {l.at(0.17 * w, -0.243 * w, 0, 0.5), l.at(0.18 * w, -0.24 * w, 0.28 * w, 0.5),

@@ -51,12 +51,12 @@ struct PaintThread : Series {
             const Vec2 p = heart + f * u;
             return Key{p.x, p.y, w, pace};
         };
-        std::vector<Preparation> care{kWipeTip(red_tip), kTip("cinnabar", red_tip)};
-        if (wait) care.insert(care.begin(), kDry);
+        std::vector<Preparation> preparations{kWipeTip(red_tip), kTip("cinnabar", red_tip)};
+        if (wait) preparations.insert(preparations.begin(), kDry);
         add({"petal",
              {at(from, 0, 0.5), at(from + 0.35 * (to - from), 0.5 * width, 0.5), at(to, width, 0.5),
               at(to - 0.2, 0.4 * width, 0.6), at(to - 1.3, 0, 1)}},
-            "mixed-medium", "samples/inks/blossom-pink.toml", 0.03, care, 20 * kDegree * glm::normalize(u));
+            "mixed-medium", "samples/inks/blossom-pink.toml", 0.03, preparations, 20 * kDegree * glm::normalize(u));
     }
     void blossom(const Vec2& heart, double size, double turn, double flat) {
         for (int k = 0; k < 5; ++k) {
@@ -71,12 +71,13 @@ struct PaintThread : Series {
                          r = size * (0.5 + 0.1 * std::cos(3.0 * k));
             const Vec2 end = heart + r * Vec2{std::cos(a), flat * std::sin(a)};
             const Vec2 begin = heart + 0.12 * size * Vec2{std::cos(a), flat * std::sin(a)};
-            const std::vector<Preparation> care = k ? std::vector<Preparation>{} : std::vector<Preparation>{kDry};
+            const std::vector<Preparation> preparations =
+                k ? std::vector<Preparation>{} : std::vector<Preparation>{kDry};
             add({"filament",
                  {{begin.x, begin.y, 0},
                   {0.5 * (begin.x + end.x), 0.5 * (begin.y + end.y), 0.35},
                   {end.x, end.y, 0.15}}},
-                "wolf-small*0.6", "cinnabar", 0.05, care);
+                "wolf-small*0.6", "cinnabar", 0.05, preparations);
             add({"anther", {{end.x, end.y, 0}, {end.x + 0.15, end.y + 0.05, 0.9, 0.5}, {end.x + 0.25, end.y, 0}}},
                 "wolf-small*0.6", "gamboge", 0.02);
         }

@@ -36,8 +36,8 @@ struct Writer {
 };
 
 Stroke sweep(const char* name, Vec2 from, Vec2 to, double width, double pace = 1) {
-    const Vec2 way = to - from;
-    const auto at = [&](double f, double w, double p) { return Key{from.x + f * way.x, from.y + f * way.y, w, p}; };
+    const Vec2 chord = to - from;
+    const auto at = [&](double f, double w, double p) { return Key{from.x + f * chord.x, from.y + f * chord.y, w, p}; };
     return {name,
             {at(0, 0, 0.6), at(0.01, 0.25 * width, 0.4), at(0.07, width, pace), at(0.5, width, pace),
              at(0.93, width, pace), at(1, 0, pace)}};

@@ -52,8 +52,8 @@ Writer on_sheet(double x, double y) {
 }
 
 Stroke band(const char* name, Vec2 from, Vec2 to, double width) {
-    const Vec2 way = to - from;
-    const auto at = [&](double f, double w) { return Key{from.x + f * way.x, from.y + f * way.y, w}; };
+    const Vec2 chord = to - from;
+    const auto at = [&](double f, double w) { return Key{from.x + f * chord.x, from.y + f * chord.y, w}; };
     return {name, {at(0, 0), at(0.05, 0.3 * width), at(0.25, 0.8 * width), at(0.5, width), at(0.88, width), at(1, 0)}};
 }
 

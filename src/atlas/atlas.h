@@ -78,7 +78,7 @@ struct UnwrapOptions {
     RequestedSeams seams;            ///< these, and pages, force new UVs unless `uvs` is keep
     std::uint32_t max_size = 16384;  ///< of all pages together
     Cutting cutting = Cutting::where_useful;
-    ProgressFn progress;  ///< told the phase and 0–1; empty: none
+    ProgressFn progress;  ///< receives the phase and 0–1; empty: none
 };
 
 /// Measures of an atlas. Stretch after Sander et al. 2001 (1 = isometry).

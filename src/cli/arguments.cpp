@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
+#include <memory>
 
 #include "brush/preset/preset.h"
 #include "cli/options.h"
@@ -38,172 +41,195 @@ void check_no_empty_values(const CLI::App& app) {
     for (const CLI::App* command : app.get_subcommands()) check_no_empty_values(*command);
 }
 
-}  // namespace
+CLI::App* add_paint(CLI::App& app, Paint& paint) {
+    auto* command = app.add_subcommand("paint", "paint recorded strokes onto a model, or go on with a project");
+    command->add_option("MODEL", paint.model, std::string("mesh (") + io::kModelFormats + ") or project")->required();
+    command->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
+    add_paint_options(command, paint);
+    return command;
+}
 
-bool parse_arguments(int argc, const char* const* argv, Command& command, int& status) {
-    CLI::App app{"tuft: ink and a bending hair brush on the surface of 3D models", "tuft"};
-    bool json_version = false;
-    auto* json = app.add_flag("--json", json_version,
-                              "with --version: the libraries' versions and facts of the build, as one JSON object");
-    json->needs(app.set_version_flag("--version", [&] { return version_text(json_version); }));
-    app.require_subcommand(1);
-    app.footer("Run 'tuft COMMAND --help' for the options of a command.");
-    app.get_formatter()->column_width(34);
+CLI::App* add_write(CLI::App& app, Write& write) {
+    auto* command = app.add_subcommand("write", "write a text onto a model, as a calligrapher does");
+    command->add_option("MODEL", write.model, std::string("mesh (") + io::kModelFormats + ") or project")->required();
+    add_paint_options(command, write);
+    add_write_options(command, write);
+    return command;
+}
 
-    Paint paint;
-    auto* p = app.add_subcommand("paint", "paint recorded strokes onto a model, or go on with a project");
-    p->add_option("MODEL", paint.model, std::string("mesh (") + io::kModelFormats + ") or project")->required();
-    p->add_option("--strokes", paint.strokes, "InkML files, painted in the order given")->required();
-    add_paint_options(p, paint);
-
-    Write write;
-    auto* w = app.add_subcommand("write", "write a text onto a model, as a calligrapher does");
-    w->add_option("MODEL", write.model, std::string("mesh (") + io::kModelFormats + ") or project")->required();
-    add_paint_options(w, write);
-    add_write_options(w, write);
-
-    Inspect inspect;
-    auto* i = app.add_subcommand("inspect", "say what is in a mesh or a project, and what is wrong with it");
-    i->add_option("FILE", inspect.file, "mesh or project")->required();
-    add_reading(i, inspect, "unit of the model file (default: a guess from its size)");
+CLI::App* add_inspect(CLI::App& app, Inspect& inspect) {
+    auto* command = app.add_subcommand("inspect", "say what is in a mesh or a project, and what is wrong with it");
+    command->add_option("FILE", inspect.file, "mesh or project")->required();
+    add_reading(command, inspect, "unit of the model file (default: a guess from its size)");
     auto* spot =
-        add_point(i, "--at", inspect.at_mm, "say which pigments lie at this point of a project, in millimetres");
-    i->add_option("--save-ink", inspect.save_ink, "write them as an ink (.toml), for --ink")->needs(spot);
-    i->add_flag("--palette", inspect.palette, "the point is one of the palette, from its middle, z = 0")->needs(spot);
-    add_common(i, inspect.common);
+        add_point(command, "--at", inspect.at_mm, "say which pigments lie at this point of a project, in millimetres");
+    command->add_option("--save-ink", inspect.save_ink, "write them as an ink (.toml), for --ink")->needs(spot);
+    command->add_flag("--palette", inspect.palette, "the point is one of the palette, from its middle, z = 0")
+        ->needs(spot);
+    add_common(command, inspect.common);
+    return command;
+}
 
-    Unwrap unwrap;
-    auto* u = app.add_subcommand("unwrap", "make a texture atlas for a model");
-    u->add_option("MODEL", unwrap.model, "mesh")->required();
-    u->add_option("-o,--output", unwrap.output, "write the model with its UVs (.obj or .glb)")->required();
-    u->add_option("--picture", unwrap.picture, "write a picture of the atlas (.png)");
-    add_surface(u, unwrap.surface);
-    add_common(u, unwrap.common);
+CLI::App* add_unwrap(CLI::App& app, Unwrap& unwrap) {
+    auto* command = app.add_subcommand("unwrap", "make a texture atlas for a model");
+    command->add_option("MODEL", unwrap.model, "mesh")->required();
+    command->add_option("-o,--output", unwrap.output, "write the model with its UVs (.obj or .glb)")->required();
+    command->add_option("--picture", unwrap.picture, "write a picture of the atlas (.png)");
+    add_surface(command, unwrap.surface);
+    add_common(command, unwrap.common);
+    return command;
+}
 
-    Replay replay;
-    auto* r = app.add_subcommand("replay", "paint a project's strokes again, on the same or a revised model");
-    r->add_option("PROJECT", replay.project, "project file (.tuft)")->required();
-    r->add_option("--model", replay.model, "paint onto this revised mesh instead");
-    r->add_option("--brush", replay.brush, "use this brush for every stroke");
-    r->add_option("--ink", replay.ink,
-                  "use this ink for every stroke: a name, a .toml file or a colour such as '#c03020'");
-    add_surface(r, replay.surface);
-    add_recolouring(r, replay.recolouring);
-    r->add_option("--project", replay.out_project, "write a project file (.tuft)");
-    r->add_option("--export", replay.exported, "write the textured model: .glb, .gltf or .obj");
-    r->add_option("--preview", replay.preview, "write a picture (.png)");
-    add_view(r, replay.view);
-    add_common(r, replay.common);
+CLI::App* add_replay(CLI::App& app, Replay& replay) {
+    auto* command = app.add_subcommand("replay", "paint a project's strokes again, on the same or a revised model");
+    command->add_option("PROJECT", replay.project, "project file (.tuft)")->required();
+    command->add_option("--model", replay.model, "paint onto this revised mesh instead");
+    command->add_option("--brush", replay.brush, "use this brush for every stroke");
+    command->add_option("--ink", replay.ink,
+                        "use this ink for every stroke: a name, a .toml file or a colour such as '#c03020'");
+    add_surface(command, replay.surface);
+    add_cache(command, replay.surface);
+    add_recolouring(command, replay.recolouring);
+    command->add_option("--project", replay.out_project, "write a project file (.tuft)");
+    command->add_option("--export", replay.exported, "write the textured model: .glb, .gltf or .obj");
+    command->add_option("--preview", replay.preview, "write a picture (.png)");
+    add_view(command, replay.view);
+    add_common(command, replay.common);
+    return command;
+}
 
-    Export exported;
-    auto* e = app.add_subcommand("export", "write a project's textured model, maps or strokes");
-    e->add_option("PROJECT", exported.project, "project file (.tuft)")->required();
-    e->add_option("-o,--output", exported.output,
-                  ".glb, .gltf, .obj (model); .png, .exr (one map); .inkml (strokes, to the bit)")
+CLI::App* add_export(CLI::App& app, Export& exported) {
+    auto* command = app.add_subcommand("export", "write a project's textured model, maps or strokes");
+    command->add_option("PROJECT", exported.project, "project file (.tuft)")->required();
+    command
+        ->add_option("-o,--output", exported.output,
+                     ".glb, .gltf, .obj (model); .png, .exr (one map); .inkml (strokes, to the bit)")
         ->required();
-    e->add_option(
-         "--map", exported.map,
-         "which map a .png or .exr holds: base-colour, normal, height, roughness, pigments (.exr) or palette (.png); "
-         "default: the file's name if it is one of these, else base-colour")
+    command
+        ->add_option("--map", exported.map,
+                     "which map a .png or .exr holds: base-colour, normal, height, roughness, pigments (.exr) or "
+                     "palette (.png); "
+                     "default: the file's name if it is one of these, else base-colour")
         ->check(CLI::IsMember(io::map_names()));
-    e->add_option("--bits", exported.bits, "8 or 16 bits a channel of base-colour.png")->check(CLI::IsMember({8, 16}));
-    add_recolouring(e, exported.recolouring);
-    add_layers(e, exported.layers);
-    add_common(e, exported.common);
+    command->add_option("--bits", exported.bits, "8 or 16 bits a channel of base-colour.png")
+        ->check(CLI::IsMember({8, 16}));
+    add_recolouring(command, exported.recolouring);
+    add_layers(command, exported.layers);
+    add_common(command, exported.common);
+    return command;
+}
 
-    LayerWork layer;
-    auto* l = app.add_subcommand("layer", "change a project's layers");
-    l->add_option("PROJECT", layer.project, "project file (.tuft)")->required();
-    l->add_option(
-         "WHAT", layer.what,
-         "add, remove, show, hide, lock, unlock, opacity, blend, rename, move, duplicate or merge (into the one below)")
+CLI::App* add_layer(CLI::App& app, LayerWork& layer) {
+    auto* command = app.add_subcommand("layer", "change a project's layers");
+    command->add_option("PROJECT", layer.project, "project file (.tuft)")->required();
+    command
+        ->add_option("WHAT", layer.what,
+                     "add, remove, show, hide, lock, unlock, opacity, blend, rename, move, duplicate or merge (into "
+                     "the one below)")
         ->required()
         ->check(CLI::IsMember({"add", "remove", "show", "hide", "lock", "unlock", "opacity", "blend", "rename", "move",
                                "duplicate", "merge"}));
-    l->add_option("NAME", layer.name, "name of the layer")->required();
-    l->add_option("VALUE", layer.value,
-                  "opacity (0 to 1), blend (normal, glaze, multiply), new name, or place (1 is the lowest)");
-    add_common(l, layer.common);
+    command->add_option("NAME", layer.name, "name of the layer")->required();
+    command->add_option("VALUE", layer.value,
+                        "opacity (0 to 1), blend (normal, glaze, multiply), new name, or place (1 is the lowest)");
+    add_common(command, layer.common);
+    return command;
+}
 
-    FillWork fill;
-    auto* f = app.add_subcommand("fill", "cover a whole project, a part or a chart of it with ink, even or graded");
-    f->add_option("PROJECT", fill.project, "project file (.tuft)")->required();
-    f->add_option("--ink", fill.ink, "ink to fill with: a name, a .toml file or a colour such as '#c03020'");
-    f->add_option("--film", fill.film, "film units of 10 um of wet ink (default: what a full brush leaves)")
+CLI::App* add_fill(CLI::App& app, FillWork& fill) {
+    auto* command =
+        app.add_subcommand("fill", "cover a whole project, a part or a chart of it with ink, even or graded");
+    command->add_option("PROJECT", fill.project, "project file (.tuft)")->required();
+    command->add_option("--ink", fill.ink, "ink to fill with: a name, a .toml file or a colour such as '#c03020'");
+    command->add_option("--film", fill.film, "film units of 10 um of wet ink (default: what a full brush leaves)")
         ->check(number_in(0.0, 1000.0));
-    f->add_option("--to-ink", fill.to_ink, "ink at the other end of a gradient (default: the same)");
-    f->add_option("--to-film", fill.to_film, "film at the other end of a gradient (default: the same)")
+    command->add_option("--to-ink", fill.to_ink, "ink at the other end of a gradient (default: the same)");
+    command->add_option("--to-film", fill.to_film, "film at the other end of a gradient (default: the same)")
         ->check(number_in(0.0, 1000.0));
-    auto* from = add_point(f, "--from", fill.from_mm, "where the gradient begins, in millimetres");
-    auto* to = add_point(f, "--to", fill.to_mm, "where it ends");
+    auto* from = add_point(command, "--from", fill.from_mm, "where the gradient begins, in millimetres");
+    auto* to = add_point(command, "--to", fill.to_mm, "where it ends");
     from->needs(to);
     to->needs(from);
-    f->add_flag("--round", fill.round, "grade by the distance from the first point")->needs(from);
-    auto* part = add_point(f, "--part", fill.part_mm, "fill only what hangs together with the surface here");
-    add_point(f, "--chart", fill.chart_mm, "fill only the chart of the atlas here")->excludes(part);
-    f->add_option("--mask", fill.mask, "fill only what lies in this mask");
-    f->add_option("--layer", fill.layer, "layer to fill; it is made when there is none yet");
-    f->add_flag("--palette", fill.palette, "pour it onto the palette (points in millimetres from its middle, z = 0)");
-    add_common(f, fill.common);
+    command->add_flag("--round", fill.round, "grade by the distance from the first point")->needs(from);
+    auto* part = add_point(command, "--part", fill.part_mm, "fill only what hangs together with the surface here");
+    add_point(command, "--chart", fill.chart_mm, "fill only the chart of the atlas here")->excludes(part);
+    command->add_option("--mask", fill.mask, "fill only what lies in this mask");
+    command->add_option("--layer", fill.layer, "layer to fill; it is made when there is none yet");
+    command->add_flag("--palette", fill.palette,
+                      "pour it onto the palette (points in millimetres from its middle, z = 0)");
+    add_common(command, fill.common);
+    return command;
+}
 
-    MaskWork mask;
-    auto* k = app.add_subcommand("mask", "make a mask in a project: strokes and fills that name it keep to it");
-    k->add_option("PROJECT", mask.project, "project file (.tuft)")->required();
-    k->add_option("NAME", mask.name, "name of the mask")->required();
-    k->require_option(2, 0);
-    k->add_option("--group", mask.groups, "the mesh's groups of these names")->delimiter(',');
-    add_point(k, "--facing", mask.direction, "where the surface faces this direction");
-    k->add_option("--within", mask.within, "to within so many degrees")->check(number_in(0.0, 180.0));
-    k->add_option("--soft", mask.soft, "with an edge of so many degrees to either side")->check(number_in(0.0, 180.0));
-    add_point(k, "--chart", mask.chart_mm, "the chart of the atlas at this point, in millimetres");
-    k->add_option(
+CLI::App* add_mask(CLI::App& app, MaskWork& mask) {
+    auto* command = app.add_subcommand("mask", "make a mask in a project: strokes and fills that name it keep to it");
+    command->add_option("PROJECT", mask.project, "project file (.tuft)")->required();
+    command->add_option("NAME", mask.name, "name of the mask")->required();
+    command->require_option(2, 0);
+    command->add_option("--group", mask.groups, "the mesh's groups of these names")->delimiter(',');
+    add_point(command, "--facing", mask.direction, "where the surface faces this direction");
+    command->add_option("--within", mask.within, "to within so many degrees")->check(number_in(0.0, 180.0));
+    command->add_option("--soft", mask.soft, "with an edge of so many degrees to either side")
+        ->check(number_in(0.0, 180.0));
+    add_point(command, "--chart", mask.chart_mm, "the chart of the atlas at this point, in millimetres");
+    command->add_option(
         "--lasso", mask.lasso,
         "what this polygon encloses: 'X,Y X,Y X,Y ...', millimetres right and up of the middle as seen from --view");
-    add_view_direction(k, mask.view);
-    k->add_flag("--through", mask.through, "the lasso also takes what faces away or is hidden");
-    k->add_option("--invert", mask.invert, "what this mask leaves out");
-    k->add_option("--intersect", mask.intersect, "what lies in all of these masks: NAME,...")->delimiter(',');
-    k->add_option("--unite", mask.unite, "what lies in any of these masks: NAME,...")->delimiter(',');
-    k->add_flag("--remove", mask.remove, "end the mask; what was painted under it stays");
-    add_common(k, mask.common);
+    add_view_direction(command, mask.view);
+    command->add_flag("--through", mask.through, "the lasso also takes what faces away or is hidden");
+    command->add_option("--invert", mask.invert, "what this mask leaves out");
+    command->add_option("--intersect", mask.intersect, "what lies in all of these masks: NAME,...")->delimiter(',');
+    command->add_option("--unite", mask.unite, "what lies in any of these masks: NAME,...")->delimiter(',');
+    command->add_flag("--remove", mask.remove, "end the mask; what was painted under it stays");
+    add_common(command, mask.common);
+    return command;
+}
 
-    Render render;
-    auto* d = app.add_subcommand("render", "draw a picture of a model or a project");
-    d->add_option("FILE", render.file, "mesh or project")->required();
-    d->add_option("-o,--output", render.output, "picture (.png); with --turntable a number is added")->required();
-    d->add_option("--turntable", render.turntable, "draw N pictures all round")->check(number_in(1, 3600));
-    add_reading(d, render, "unit of a model file (default: a guess from its size)");
-    add_recolouring(d, render.recolouring);
-    d->add_option("--material", render.material, "porcelain, clay, ... (default: the project's)");
-    add_view(d, render.view);
-    add_common(d, render.common);
+CLI::App* add_render(CLI::App& app, Render& render) {
+    auto* command = app.add_subcommand("render", "draw a picture of a model or a project");
+    command->add_option("FILE", render.file, "mesh or project")->required();
+    command->add_option("-o,--output", render.output, "picture (.png); with --turntable a number is added")->required();
+    command->add_option("--turntable", render.turntable, "draw N pictures all round")->check(number_in(1, 3600));
+    add_reading(command, render, "unit of a model file (default: a guess from its size)");
+    add_recolouring(command, render.recolouring);
+    command->add_option("--material", render.material, "porcelain, clay, ... (default: the project's)");
+    add_view(command, render.view);
+    add_common(command, render.common);
+    return command;
+}
 
-    Brush brush;
-    auto* b = app.add_subcommand("brush", "print a brush's query table, draw it, or fit one to measurements");
-    b->add_option("BRUSH", brush.name, "brush name or .toml file; without it, the names are listed");
-    b->add_option("--picture", brush.picture,
-                  "draw the tuft at five depths and three tilts, lifted, slanted, reversed, split and dry (.png)");
-    b->add_option("--sweep-depth", brush.sweep_depth, "write line width over depth (.csv)");
-    b->add_option("--compare", brush.compare,
-                  "print what each way to bend the tuft draws beside a measured table (.csv); --picture draws that");
-    auto* fit = b->add_subcommand("calibrate", "fit a brush to a table of depth against line width");
+CLI::App* add_brush(CLI::App& app, Brush& brush) {
+    auto* command = app.add_subcommand("brush", "print a brush's query table, draw it, or fit one to measurements");
+    command->add_option("BRUSH", brush.name, "brush name or .toml file; without it, the names are listed");
+    command->add_option(
+        "--picture", brush.picture,
+        "draw the tuft at five depths and three tilts, lifted, slanted, reversed, split and dry (.png)");
+    command->add_option("--sweep-depth", brush.sweep_depth, "write line width over depth (.csv)");
+    command->add_option(
+        "--compare", brush.compare,
+        "print what each way to bend the tuft draws beside a measured table (.csv); --picture draws that");
+    auto* fit = command->add_subcommand("calibrate", "fit a brush to a table of depth against line width");
     fit->add_option("MEASURED", brush.calibrate, "measured table (.csv)")->required();
     fit->add_option("-o,--output", brush.output, "brush preset to write (.toml)")->required();
-    add_common(b, brush.common);
+    add_common(command, brush.common);
     fit->fallthrough();  // options of 'brush' also stand behind 'calibrate'
+    return command;
+}
 
-    BiasCorrection bias;
-    auto* h =
+CLI::App* add_bias(CLI::App& app, BiasCorrection& bias) {
+    auto* command =
         app.add_subcommand("bias", "learn how a writer's strokes differ from those that were meant")->alias("habit");
-    h->add_option("INTENDED", bias.intended, "strokes as they should be (.inkml)")->required();
-    h->add_option("WRITTEN", bias.written, "the same strokes as the writer makes them (.inkml)")->required();
-    h->add_option("-o,--output", bias.output, "bias correction to write (.toml)")->required();
-    add_common(h, bias.common);
+    command->add_option("INTENDED", bias.intended, "strokes as they should be (.inkml)")->required();
+    command->add_option("WRITTEN", bias.written, "the same strokes as the writer makes them (.inkml)")->required();
+    command->add_option("-o,--output", bias.output, "bias correction to write (.toml)")->required();
+    add_common(command, bias.common);
+    return command;
+}
 
-    InkWork ink;
-    auto* inks = app.add_subcommand("ink", "list the inks, or find the mix of pigments nearest to a colour");
+CLI::App* add_ink(CLI::App& app, InkWork& ink) {
+    auto* command = app.add_subcommand("ink", "list the inks, or find the mix of pigments nearest to a colour");
     auto* match =
-        inks->add_subcommand("match", "find the mix of pigments nearest to a colour, by Kubelka-Munk and CIEDE2000");
+        command->add_subcommand("match", "find the mix of pigments nearest to a colour, by Kubelka-Munk and CIEDE2000");
     match
         ->add_option("COLOUR", ink.colour,
                      "sRGB as '#rrggbb' (quoted: a shell takes an open # for a comment) or rrggbb")
@@ -219,77 +245,86 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     match->add_option("--parts", ink.parts, "most pigments in the mix")->check(CLI::Range(1, 4));
     match->add_option("-o,--output", ink.output, "write the mix as an ink (.toml), for --ink");
     add_common(match, ink.common);
-    add_common(inks, ink.common);
+    add_common(command, ink.common);
+    return command;
+}
 
-    Bench bench;
-    auto* n = app.add_subcommand("bench", "measure the speed on this machine");
-    n->add_option("MODEL", bench.model, "measure on this mesh instead of the built-in ones");
-    n->add_flag("--quick", bench.quick, "smaller models, fewer repeats");
-    n->add_option("--atlas-size", bench.surface.atlas_size, "texels along the side of the atlas")
+CLI::App* add_bench(CLI::App& app, Bench& bench) {
+    auto* command = app.add_subcommand("bench", "measure the speed on this machine");
+    command->add_option("MODEL", bench.model, "measure on this mesh instead of the built-in ones");
+    command->add_flag("--quick", bench.quick, "smaller models, fewer repeats");
+    command->add_option("--atlas-size", bench.surface.atlas_size, "texels along the side of the atlas")
         ->check(number_in(1, kMostTexels, "POSITIVE"));
-    n->add_option("--isa", bench.isa, "instruction set of the stamps: best, avx512, avx2, baseline")
+    command->add_option("--isa", bench.isa, "instruction set of the stamps: best, avx512, avx2, baseline")
         ->check(CLI::IsMember({"best", "avx512", "avx2", "baseline"}));
-    add_store(n, bench.surface);
-    add_common(n, bench.common);
+    add_store(command, bench.surface);
+    add_common(command, bench.common);
+    return command;
+}
 
-    DeviceWork device;
-    add_device(app, device);
+/// A command with the arguments that its options fill.
+struct Entry {
+    CLI::App* app;
+    std::function<Command()> arguments;
+};
 
+template <class T>
+Entry make_entry(CLI::App& app, CLI::App* (*add)(CLI::App&, T&)) {
+    const auto arguments = std::make_shared<T>();
+    CLI::App* command = add(app, *arguments);
+    return {command, [arguments] { return Command(*arguments); }};
+}
+
+/// Adds all commands, in the order of --help.
+std::vector<Entry> add_commands(CLI::App& app) {
+    return {
+        make_entry(app, add_paint),  make_entry(app, add_write),  make_entry(app, add_inspect),
+        make_entry(app, add_unwrap), make_entry(app, add_replay), make_entry(app, add_export),
+        make_entry(app, add_layer),  make_entry(app, add_fill),   make_entry(app, add_mask),
+        make_entry(app, add_render), make_entry(app, add_brush),  make_entry(app, add_bias),
+        make_entry(app, add_ink),    make_entry(app, add_bench),  make_entry(app, add_device),
+    };
+}
+
+/// Parses the arguments. Returns false where the program ends with `status`: after a help text or a fault.
+bool parse(CLI::App& app, int argc, const char* const* argv, int& status) {
+    try {
+        app.parse(argc, argv);
+        check_no_empty_values(app);
+        return true;
+    } catch (const CLI::Success& wanted) {  // a help text or the version
+        status = app.exit(wanted);
+    } catch (const CLI::ParseError& error) {
+        std::string line = error.what();
+        if (const auto end = line.find('\n'); end != std::string::npos) line.resize(end);
+        std::cerr << "tuft: " << excerpt(line, kLongestMessage) << " (see 'tuft --help')\n";
+        status = 2;
+    }
+    return false;
+}
+
+}  // namespace
+
+bool parse_arguments(int argc, const char* const* argv, Command& command, int& status) {
+    CLI::App app{"tuft: ink and a bending hair brush on the surface of 3D models", "tuft"};
+    bool json_version = false;
+    auto* json = app.add_flag("--json", json_version,
+                              "with --version: the libraries' versions and facts of the build, as one JSON object");
+    json->needs(app.set_version_flag("--version", [&] { return version_text(json_version); }));
+    app.require_subcommand(1);
+    app.footer("Run 'tuft COMMAND --help' for the options of a command.");
+    app.get_formatter()->column_width(34);
+
+    const std::vector<Entry> commands = add_commands(app);
     name_presets(app);
     if (argc == 3 && std::string_view(argv[1]) == "--reference") {  // when the program is built
         write_manual(manual_of(app), argv[2]);
         status = 0;
         return false;
     }
-    try {
-        app.parse(argc, argv);
-        check_no_empty_values(app);
-    } catch (const CLI::CallForHelp& help) {
-        status = app.exit(help);
-        return false;
-    } catch (const CLI::CallForAllHelp& help) {
-        status = app.exit(help);
-        return false;
-    } catch (const CLI::CallForVersion& version) {
-        status = app.exit(version);
-        return false;
-    } catch (const CLI::ParseError& error) {
-        std::string line = error.what();
-        if (const auto end = line.find('\n'); end != std::string::npos) line.resize(end);
-        std::cerr << "tuft: " << excerpt(line, kLongestMessage) << " (see 'tuft --help')\n";
-        status = 2;
-        return false;
-    }
-    if (p->parsed())
-        command = paint;
-    else if (w->parsed())
-        command = write;
-    else if (i->parsed())
-        command = inspect;
-    else if (u->parsed())
-        command = unwrap;
-    else if (r->parsed())
-        command = replay;
-    else if (e->parsed())
-        command = exported;
-    else if (d->parsed())
-        command = render;
-    else if (b->parsed())
-        command = brush;
-    else if (h->parsed())
-        command = bias;
-    else if (l->parsed())
-        command = layer;
-    else if (f->parsed())
-        command = fill;
-    else if (k->parsed())
-        command = mask;
-    else if (inks->parsed())
-        command = ink;
-    else if (!device.what.empty())
-        command = device;
-    else
-        command = bench;
+    if (!parse(app, argc, argv, status)) return false;
+    const auto called = std::find_if(commands.begin(), commands.end(), [](const Entry& e) { return e.app->parsed(); });
+    command = called->arguments();
     return true;
 }
 

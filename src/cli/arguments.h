@@ -36,7 +36,8 @@ struct Surface : FileReading {
     double sharp_angle_deg = 40;
     std::string texel_store = "auto";  ///< auto | float | packed
     std::string substrate = "porcelain";
-    bool plain = false;  ///< ignores the model's own colours
+    bool plain = false;     ///< ignores the model's own colours
+    bool no_cache = false;  ///< neither reads nor writes prepared models
 };
 
 /// Options of all commands.
@@ -229,9 +230,9 @@ struct DeviceWork {
     int port = 10001;
     double seconds = 10;
     std::string brush = "wolf-medium";
-    std::filesystem::path model;  ///< empty: the shipped bowl
-    std::string way = "circles";  ///< of the simulated hand
-    std::string fault = "none";   ///< of the simulated server, after `fault_after` seconds
+    std::filesystem::path model;     ///< empty: the shipped bowl
+    std::string motion = "circles";  ///< of the simulated hand
+    std::string fault = "none";      ///< of the simulated server, after `fault_after` seconds
     double fault_after = 3;
     double delay_ms = 0;
     int hands = 0;     ///< random hands beside the tests

@@ -73,10 +73,10 @@ int list_devices(const DeviceWork& a) {
 }
 
 int simulate_device(const DeviceWork& a) {
-    const FeltModel model = felt_model(a.model);
+    const ContactModel model = load_contact_model(a.model);
     const haptic::TrialPlace place = haptic::place_above(*model.surface, "");
     haptic::SimulatedArm arm(haptic::device_preset(a.preset),
-                             haptic::hand_path(way_named(a.way), place, brush::load_preset(a.brush)),
+                             haptic::hand_path(motion_named(a.motion), place, brush::load_preset(a.brush)),
                              {.delay = 1e-3 * a.delay_ms});
     haptic::serve_simulated(
         std::move(arm), {.port = a.port, .fault = fault_named(a.fault), .fault_after = a.fault_after},
@@ -88,11 +88,11 @@ int simulate_device(const DeviceWork& a) {
     return 0;
 }
 
-std::vector<haptic::RecordedPeriod> live_recording(const DeviceWork& a, const FeltModel& model,
+std::vector<haptic::RecordedPeriod> live_recording(const DeviceWork& a, const ContactModel& model,
                                                    const haptic::TrialPlace& place, const haptic::LawOptions& law) {
     const brush::Preset preset = brush::load_preset(a.brush);
     haptic::DeviceState state;
-    const auto path = haptic::hand_path(way_named(a.way), place, preset);
+    const auto path = haptic::hand_path(motion_named(a.motion), place, preset);
     const std::unique_ptr<haptic::Device> device = open_device(a, path, state);
     haptic::Loop loop(*device, haptic::HairSolver(brush::make_tuft(preset), *model.surface),
                       {.law = law, .record = true});
@@ -119,7 +119,7 @@ haptic::Workspace workspace_of(const std::vector<haptic::RecordedPeriod>& period
 int record_device(const DeviceWork& a) {
     check_extension(a.output, {".csv"});
     check_output(a.output);
-    const FeltModel model = felt_model(a.model);
+    const ContactModel model = load_contact_model(a.model);
     const haptic::TrialPlace place = haptic::place_above(*model.surface, "");
     const brush::Preset preset = brush::load_preset(a.brush);
     const haptic::LawOptions law{.limits = haptic::device_preset(a.simulate.empty() ? a.preset : a.simulate),
@@ -156,21 +156,21 @@ int record_device(const DeviceWork& a) {
 
 }  // namespace
 
-FeltModel felt_model(const std::filesystem::path& file) {
+ContactModel load_contact_model(const std::filesystem::path& file) {
     std::filesystem::path path = file.empty() ? "bowl" : file;
     if (!path.has_extension()) path = data_folder() / "models" / (path.string() + ".ply");
     mesh::RepairOptions options;
     options.metres_per_unit = io::metres_per_unit_of(path).value_or(1e-3);
-    FeltModel model;
+    ContactModel model;
     model.mesh = std::make_unique<mesh::TriangleMesh>(mesh::build_surface(io::read_model(path), options).mesh);
     model.surface = std::make_unique<mesh::SurfaceQuery>(*model.mesh);
     return model;
 }
 
-haptic::Way way_named(const std::string& name) {
-    for (int i = 0; i <= static_cast<int>(haptic::Way::slide); ++i)
-        if (haptic::name_of(static_cast<haptic::Way>(i)) == name) return static_cast<haptic::Way>(i);
-    throw UsageError(Message("unknown way '{}'", name));
+haptic::HandMotion motion_named(const std::string& name) {
+    for (int i = 0; i <= static_cast<int>(haptic::HandMotion::slide); ++i)
+        if (haptic::name_of(static_cast<haptic::HandMotion>(i)) == name) return static_cast<haptic::HandMotion>(i);
+    throw UsageError(Message("unknown motion '{}'", name));
 }
 
 std::unique_ptr<haptic::Device> open_device(const DeviceWork& a, const haptic::HandPath& path,

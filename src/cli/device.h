@@ -11,15 +11,15 @@
 /// What the commands of `tuft device` share. Main thread.
 namespace tuft::cli {
 
-/// A model to feel, with the place where a hand paints.
-struct FeltModel {
+/// A model that the simulated or real arm touches.
+struct ContactModel {
     std::unique_ptr<mesh::TriangleMesh> mesh;
     std::unique_ptr<mesh::SurfaceQuery> surface;
 };
 /// Reads a model; `file` may be the name of a shipped one, such as "bowl".
-FeltModel felt_model(const std::filesystem::path& file);
+ContactModel load_contact_model(const std::filesystem::path& file);
 
-haptic::Way way_named(const std::string& name);
+haptic::HandMotion motion_named(const std::string& name);
 
 /// The arm of the arguments, simulated with `path` or real. Throws `Error` where no service answers within 3 s; then
 /// `state` is its first state.

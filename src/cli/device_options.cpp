@@ -14,19 +14,19 @@ void add_hand(CLI::App* app, DeviceWork& d) {
     app->add_option("--simulate", d.simulate, "simulate an arm of these figures in a hand, in place of a real one")
         ->type_name("ARM");
     app->add_option("--seconds", d.seconds, "how long")->check(number_in(0.1, 86400));
-    app->add_option("--brush", d.brush, "brush that is felt")->type_name("BRUSH");
-    app->add_option("--model", d.model, "model that is felt (default: the bowl)");
+    app->add_option("--brush", d.brush, "brush in the holder")->type_name("BRUSH");
+    app->add_option("--model", d.model, "model that the brush touches (default: the bowl)");
     app->add_flag("--restore", d.restore, "take the softness of the coupling away; the arm's friction pays");
 }
 
-void add_way(CLI::App* app, DeviceWork& d) {
-    app->add_option("--way", d.way, "what the simulated hand does")
+void add_motion(CLI::App* app, DeviceWork& d) {
+    app->add_option("--motion", d.motion, "what the simulated hand does")
         ->check(CLI::IsMember({"press", "press-fast", "drag", "circles", "taps", "rocking", "rest", "hit", "slide"}));
 }
 
 }  // namespace
 
-void add_device(CLI::App& app, DeviceWork& d) {
+CLI::App* add_device(CLI::App& app, DeviceWork& d) {
     auto* device = app.add_subcommand("device", "force-feedback arms: list, simulate, test, record");
     device->require_subcommand(1);
     auto* list = device->add_subcommand("list", "print known arms, and whether one answers");
@@ -36,7 +36,7 @@ void add_device(CLI::App& app, DeviceWork& d) {
     add_arm(simulate, d);
     simulate->add_option("--brush", d.brush, "brush that the hand holds")->type_name("BRUSH");
     simulate->add_option("--model", d.model, "model that the hand paints (default: the bowl)");
-    add_way(simulate, d);
+    add_motion(simulate, d);
     simulate->add_option("--delay", d.delay_ms, "delay of a force on its way, in milliseconds")
         ->check(number_in(0, 20));
     simulate->add_option("--fault", d.fault, "what the server does wrong, for tests of what it is joined to")
@@ -54,11 +54,12 @@ void add_device(CLI::App& app, DeviceWork& d) {
     auto* record = device->add_subcommand("record", "record what an arm does and the forces that it is given (.csv)");
     add_arm(record, d);
     add_hand(record, d);
-    add_way(record, d);
+    add_motion(record, d);
     record->add_option("-o,--output", d.output, "table to write (.csv)")->required();
     record->add_option("--replay", d.replay, "play this recording in place of an arm, and compare the forces (.csv)");
     for (CLI::App* command : {list, simulate, test, record})
         command->callback([&d, command] { d.what = command->get_name(); });
+    return device;
 }
 
 }  // namespace tuft::cli

@@ -25,12 +25,12 @@ using haptic::TrialReport;
 
 /// Where hands try.
 struct Places {
-    std::vector<FeltModel> models;
+    std::vector<ContactModel> models;
     std::vector<const mesh::SurfaceQuery*> surface;
     std::vector<haptic::TrialPlace> place;
 
     enum class Where { above, edge, groove };
-    void add(FeltModel model, const std::string& name, Where where) {
+    void add(ContactModel model, const std::string& name, Where where) {
         surface.push_back(model.surface.get());
         place.push_back(where == Where::above ? haptic::place_above(*surface.back(), name)
                                               : haptic::place_at_edge(*surface.back(), name, where == Where::groove));
@@ -41,17 +41,17 @@ struct Places {
 Places places_of(const DeviceWork& a) {
     Places places;
     if (!a.model.empty()) {
-        places.add(felt_model(a.model), "model", Places::Where::above);
-        places.add(felt_model(a.model), "edge", Places::Where::edge);
+        places.add(load_contact_model(a.model), "model", Places::Where::above);
+        places.add(load_contact_model(a.model), "edge", Places::Where::edge);
         return places;
     }
-    places.add(felt_model("sheet"), "sheet", Places::Where::above);
-    places.add(felt_model("bowl"), "bowl", Places::Where::above);
-    places.add(felt_model("bowl"), "rim", Places::Where::edge);
-    places.add(felt_model("car"), "roof", Places::Where::above);
-    places.add(felt_model("car"), "car's edge", Places::Where::edge);
-    places.add(felt_model("car"), "shut line", Places::Where::groove);
-    places.add(felt_model("plate"), "plate's edge", Places::Where::edge);
+    places.add(load_contact_model("sheet"), "sheet", Places::Where::above);
+    places.add(load_contact_model("bowl"), "bowl", Places::Where::above);
+    places.add(load_contact_model("bowl"), "rim", Places::Where::edge);
+    places.add(load_contact_model("car"), "roof", Places::Where::above);
+    places.add(load_contact_model("car"), "car's edge", Places::Where::edge);
+    places.add(load_contact_model("car"), "shut line", Places::Where::groove);
+    places.add(load_contact_model("plate"), "plate's edge", Places::Where::edge);
     return places;
 }
 
@@ -66,8 +66,8 @@ TrialOptions trial_options(const DeviceWork& a, const brush::Preset& preset) {
     return options;
 }
 
-/// All ways at all places with each brush.
-TrialReport try_ways(const DeviceWork& a, const Places& places, Console& console) {
+/// All motions at all places with each brush.
+TrialReport try_motions(const DeviceWork& a, const Places& places, Console& console) {
     const std::vector<std::string> brushes = a.all_brushes ? brush::list_presets() : std::vector{a.brush};
     const ProgressFn progress = console.progress();
     TrialReport worst;
@@ -75,11 +75,12 @@ TrialReport try_ways(const DeviceWork& a, const Places& places, Console& console
     for (const std::string& name : brushes) {
         const brush::Tuft tuft = brush::make_tuft(brush::load_preset(name));
         for (std::size_t p = 0; p < places.place.size(); ++p, ++done) {
-            report(progress, "ways",
+            report(progress, "motions",
                    static_cast<double>(done) / static_cast<double>(brushes.size() * places.place.size()));
-            for (int way = 0; way <= static_cast<int>(haptic::Way::slide); ++way) {
+            for (int motion = 0; motion <= static_cast<int>(haptic::HandMotion::slide); ++motion) {
                 check_interrupt();
-                const auto path = haptic::hand_path(static_cast<haptic::Way>(way), places.place[p], tuft.preset);
+                const auto path =
+                    haptic::hand_path(static_cast<haptic::HandMotion>(motion), places.place[p], tuft.preset);
                 merge(worst, run_trial(tuft, *places.surface[p], path, trial_options(a, tuft.preset)));
             }
         }
@@ -87,7 +88,7 @@ TrialReport try_ways(const DeviceWork& a, const Places& places, Console& console
     return worst;
 }
 
-/// Hands of any weight and grip, one second each on a way of their own.
+/// Hands of any weight and grip, one second each with a motion of its own.
 TrialReport try_hands(const DeviceWork& a, const Places& places, Console& console) {
     const brush::Tuft tuft = brush::make_tuft(brush::load_preset(a.brush));
     const ProgressFn progress = console.progress();
@@ -101,9 +102,10 @@ TrialReport try_hands(const DeviceWork& a, const Places& places, Console& consol
                         .damping = random.uniform(1, 12),
                         .stiffness = 50 * std::pow(20.0, random.uniform())};
         const std::size_t p = random.bits() % places.place.size();
-        const auto way = static_cast<haptic::Way>(random.bits() % (static_cast<int>(haptic::Way::slide) + 1));
+        const auto motion =
+            static_cast<haptic::HandMotion>(random.bits() % (static_cast<int>(haptic::HandMotion::slide) + 1));
         merge(worst, run_trial(tuft, *places.surface[p],
-                               haptic::hand_path(way, places.place[p], tuft.preset, random.bits() | 1), options));
+                               haptic::hand_path(motion, places.place[p], tuft.preset, random.bits() | 1), options));
         worst.seconds.clear();
     }
     return worst;
@@ -112,7 +114,7 @@ TrialReport try_hands(const DeviceWork& a, const Places& places, Console& consol
 TrialReport try_hours(const DeviceWork& a, const Places& places, Console& console) {
     const brush::Tuft tuft = brush::make_tuft(brush::load_preset(a.brush));
     const ProgressFn progress = console.progress();
-    constexpr double kPart = 60;  // s of one way
+    constexpr double kPart = 60;  // s of one motion
     const int parts = static_cast<int>(std::ceil(a.hours * 3600 / kPart));
     TrialReport worst;
     for (int part = 0; part < parts; ++part) {
@@ -120,11 +122,12 @@ TrialReport try_hours(const DeviceWork& a, const Places& places, Console& consol
         TrialOptions options = trial_options(a, tuft.preset);
         options.seconds = kPart;
         const std::size_t p = static_cast<std::size_t>(part) % places.place.size();
-        const haptic::Way way = haptic::kPaintingWays[static_cast<std::size_t>(part) / places.place.size() %
-                                                      std::size(haptic::kPaintingWays)];
+        const haptic::HandMotion motion =
+            haptic::kPaintingMotions[static_cast<std::size_t>(part) / places.place.size() %
+                                     std::size(haptic::kPaintingMotions)];
         merge(worst,
               run_trial(tuft, *places.surface[p],
-                        haptic::hand_path(way, places.place[p], tuft.preset, static_cast<std::uint64_t>(part) + 1),
+                        haptic::hand_path(motion, places.place[p], tuft.preset, static_cast<std::uint64_t>(part) + 1),
                         options));
         worst.seconds.clear();
     }
@@ -133,7 +136,7 @@ TrialReport try_hours(const DeviceWork& a, const Places& places, Console& consol
 
 int slowest_stop(const DeviceWork& a, const Places& places) {
     const brush::Tuft tuft = brush::make_tuft(brush::load_preset(a.brush));
-    const auto path = haptic::hand_path(haptic::Way::rest, places.place[0], tuft.preset);
+    const auto path = haptic::hand_path(haptic::HandMotion::rest, places.place[0], tuft.preset);
     int slowest = 0;
     for (const haptic::Trouble trouble : haptic::kTroubles) {
         const int periods =
@@ -147,7 +150,7 @@ int slowest_stop(const DeviceWork& a, const Places& places) {
 /// The loop by the wall clock; with a real arm in the air, far from the model.
 haptic::LoopStatus run_loop(const DeviceWork& a, const Places& places) {
     const brush::Preset preset = brush::load_preset(a.brush);
-    const haptic::HandPath path = haptic::hand_path(haptic::Way::circles, places.place[0], preset);
+    const haptic::HandPath path = haptic::hand_path(haptic::HandMotion::circles, places.place[0], preset);
     haptic::DeviceState state;
     const std::unique_ptr<haptic::Device> device = open_device(a, path, state);
     const haptic::LawOptions law{.limits = device->limits(), .gain = preset.force_gain, .restore = a.restore};
@@ -190,18 +193,18 @@ int test_device(const DeviceWork& a) {
     nlohmann::json out;
     if (!a.simulate.empty()) {
         haptic::device_preset(a.simulate);
-        TrialReport ways = try_ways(a, places, console);
-        const std::vector<float> solves = ways.seconds;
-        merge(ways, try_hands(a, places, console));
-        merge(ways, try_hours(a, places, console));
-        out = {{"least_energy_uj", 1e6 * ways.least_energy},
-               {"least_energy_with_arm_uj", 1e6 * ways.least_with_arm},
-               {"largest_step_n", ways.largest_step},
-               {"largest_step_hard_n", ways.largest_step_hard},
-               {"largest_force_n", ways.largest_force},
-               {"simulated_s", static_cast<double>(ways.periods) * haptic::kPeriod},
-               {"contacts", ways.contacts},
-               {"unconverged_percent", percent(ways.unconverged, ways.solves)},
+        TrialReport worst = try_motions(a, places, console);
+        const std::vector<float> solves = worst.seconds;
+        merge(worst, try_hands(a, places, console));
+        merge(worst, try_hours(a, places, console));
+        out = {{"least_energy_uj", 1e6 * worst.least_energy},
+               {"least_energy_with_arm_uj", 1e6 * worst.least_with_arm},
+               {"largest_step_n", worst.largest_step},
+               {"largest_step_hard_n", worst.largest_step_hard},
+               {"largest_force_n", worst.largest_force},
+               {"simulated_s", static_cast<double>(worst.periods) * haptic::kPeriod},
+               {"contacts", worst.contacts},
+               {"unconverged_percent", percent(worst.unconverged, worst.solves)},
                {"solve_us",
                 {{"p50", 1e6 * quantile(solves, 0.5)},
                  {"p999", 1e6 * quantile(solves, 0.999)},

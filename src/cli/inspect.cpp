@@ -118,60 +118,64 @@ nlohmann::json entry_to_json(const stroke::JournalEntry& entry) {
             {"hidden", entry.hidden}};
 }
 
-int inspect_project(const Inspect& a) {
-    if (!a.at_mm.empty()) return inspect_point(a);
-    Console console(a.common.quiet);
-    const io::Project project = io::Project::open(a.file, open_options(io::Access::read, console));
-    const io::ProjectModel model = project.model();
-    const std::vector<stroke::JournalEntry> strokes = project.strokes();
-    const stroke::LayerTable layers = stroke::layers_after(strokes);
-    const std::map<std::uint64_t, GroupSum> groups = groups_of(strokes);
-    const atlas::AtlasReport quality = atlas::measure(model.mesh, model.atlas);
-    if (a.common.json) {
-        nlohmann::json j{{"project", a.file.string()},
-                         {"format", project.format()},
-                         {"written_by", project.written_by()},
-                         {"model", model.source},
-                         {"triangles", model.mesh.n_triangles()},
-                         {"size_mm", vector_json(model.mesh.bounds.size())},
-                         {"atlas", to_json(model.atlas, quality)},
-                         {"layers", nlohmann::json::array()},
-                         {"masks", nlohmann::json::array()},
-                         {"strokes", nlohmann::json::array()}};
-        for (const stroke::Mask& m : stroke::masks_after(strokes).masks)
-            j["masks"].push_back({{"id", m.id}, {"name", m.name}, {"kind", stroke::name_of(m.kind)}});
-        for (const stroke::Layer& l : layers.layers)  // the lowest first
-            j["layers"].push_back({{"id", l.id},
-                                   {"name", l.name},
-                                   {"visible", l.visible},
-                                   {"opacity", l.opacity},
-                                   {"blend", ink::name_of(l.blend)},
-                                   {"locked", l.locked}});
-        j["groups"] = nlohmann::json::array();
-        for (const auto& [id, group] : groups)
-            j["groups"].push_back({{"id", id},
-                                   {"name", group.name},
-                                   {"entries", group.entries},
-                                   {"strokes", group.strokes},
-                                   {"hidden", group.hidden == group.entries}});
-        for (const stroke::JournalEntry& s : strokes) j["strokes"].push_back(entry_to_json(s));
-        print_json(j);
-        return 0;
-    }
-    const Vec3 size = model.mesh.bounds.size() / kMillimetre;
-    fmt::print("{}: project by {}, of {}\n", a.file.string(), project.written_by(), model.source);
+/// What `inspect` says of a project.
+struct ProjectFacts {
+    const io::Project& file;
+    const io::ProjectModel& model;
+    std::vector<stroke::JournalEntry> strokes;
+    stroke::LayerTable layers;
+    std::map<std::uint64_t, GroupSum> groups;
+};
+
+nlohmann::json project_json(const ProjectFacts& p, const std::filesystem::path& file) {
+    const atlas::AtlasReport quality = atlas::measure(p.model.mesh, p.model.atlas);
+    nlohmann::json j{{"project", file.string()},
+                     {"format", p.file.format()},
+                     {"written_by", p.file.written_by()},
+                     {"model", p.model.source},
+                     {"triangles", p.model.mesh.n_triangles()},
+                     {"size_mm", vector_json(p.model.mesh.bounds.size())},
+                     {"atlas", to_json(p.model.atlas, quality)},
+                     {"layers", nlohmann::json::array()},
+                     {"masks", nlohmann::json::array()},
+                     {"groups", nlohmann::json::array()},
+                     {"strokes", nlohmann::json::array()}};
+    for (const stroke::Mask& m : stroke::masks_after(p.strokes).masks)
+        j["masks"].push_back({{"id", m.id}, {"name", m.name}, {"kind", stroke::name_of(m.kind)}});
+    for (const stroke::Layer& l : p.layers.layers)  // the lowest first
+        j["layers"].push_back({{"id", l.id},
+                               {"name", l.name},
+                               {"visible", l.visible},
+                               {"opacity", l.opacity},
+                               {"blend", ink::name_of(l.blend)},
+                               {"locked", l.locked}});
+    for (const auto& [id, group] : p.groups)
+        j["groups"].push_back({{"id", id},
+                               {"name", group.name},
+                               {"entries", group.entries},
+                               {"strokes", group.strokes},
+                               {"hidden", group.hidden == group.entries}});
+    for (const stroke::JournalEntry& s : p.strokes) j["strokes"].push_back(entry_to_json(s));
+    return j;
+}
+
+void print_project(const ProjectFacts& p, const std::filesystem::path& file) {
+    const mesh::TriangleMesh& mesh = p.model.mesh;
+    const atlas::Atlas& atlas = p.model.atlas;
+    const Vec3 size = mesh.bounds.size() / kMillimetre;
+    fmt::print("{}: project by {}, of {}\n", file.string(), p.file.written_by(), p.model.source);
     fmt::print("{}, {:.1f} x {:.1f} x {:.1f} mm; atlas {} x {}, {}, texel {:.3f} mm\n",
-               counted(model.mesh.n_triangles(), "triangle"), size.x, size.y, size.z, model.atlas.size,
-               model.atlas.size, counted(model.atlas.n_charts, "chart"), model.atlas.texel_size / kMillimetre);
-    if (layers != stroke::LayerTable{})
-        for (auto l = layers.layers.rbegin(); l != layers.layers.rend(); ++l)
+               counted(mesh.n_triangles(), "triangle"), size.x, size.y, size.z, atlas.size, atlas.size,
+               counted(atlas.n_charts, "chart"), atlas.texel_size / kMillimetre);
+    if (p.layers != stroke::LayerTable{})
+        for (auto l = p.layers.layers.rbegin(); l != p.layers.layers.rend(); ++l)
             fmt::print("  layer   {:>4}  {}, opacity {:g}{}{}{}\n", l->id, l->name, l->opacity,
                        l->blend == ink::Blend::normal ? "" : std::string(", ") + ink::name_of(l->blend),
                        l->visible ? "" : ", hidden", l->locked ? ", locked" : "");
     std::uint64_t group = 0;
-    for (const stroke::JournalEntry& s : strokes) {
+    for (const stroke::JournalEntry& s : p.strokes) {
         if (s.group.id != 0 && s.group.id != group) {
-            const GroupSum& sum = groups.at(s.group.id);
+            const GroupSum& sum = p.groups.at(s.group.id);
             fmt::print("  group   {:>4}  {}: {}{}\n", s.group.id, sum.name, counted(sum.strokes, "stroke"),
                        sum.hidden == sum.entries ? " (hidden)" : "");
         }
@@ -180,6 +184,23 @@ int inspect_project(const Inspect& a) {
                    stroke::name_of(stroke::kind_of(s)), s.id, stroke::brush_of(s), stroke::ink_of(s),
                    stroke::samples_of(s).samples.size(), s.label, s.hidden ? " (hidden)" : "");
     }
+}
+
+int inspect_project(const Inspect& a) {
+    if (!a.at_mm.empty()) return inspect_point(a);
+    Console console(a.common.quiet);
+    const io::Project project = io::Project::open(a.file, open_options(io::Access::read, console));
+    const io::ProjectModel model = project.model();
+    std::vector<stroke::JournalEntry> strokes = project.strokes();
+    const ProjectFacts facts{.file = project,
+                             .model = model,
+                             .strokes = strokes,
+                             .layers = stroke::layers_after(strokes),
+                             .groups = groups_of(strokes)};
+    if (a.common.json)
+        print_json(project_json(facts, a.file));
+    else
+        print_project(facts, a.file);
     return 0;
 }
 
@@ -230,12 +251,18 @@ std::vector<std::string> uv_notes(const mesh::TriangleMesh& mesh, const atlas::A
     return notes;
 }
 
-}  // namespace
+/// What `inspect` says of a mesh.
+struct MeshFacts {
+    mesh::MeshSummary summary;
+    atlas::UvCheck uvs;  ///< of the file, on pages of kPage texels
+    atlas::AtlasReport quality;
+    std::vector<std::string> uv_notes;
+};
 
-int run(const Inspect& a) {
-    if (a.file.extension() == ".tuft" || io::is_project(a.file)) return inspect_project(a);
-    if (!a.at_mm.empty()) throw UsageError("--at looks at a project, not at a mesh");
-    Console console(a.common.quiet);
+constexpr std::uint32_t kPage = 2048;  // texels that the file's UVs are measured on
+
+/// Reads and repairs a mesh.
+MeshFacts mesh_facts(const Inspect& a, const ProgressFn& progress) {
     mesh::PolygonSoup soup = io::read_model(a.file);
     Box bounds;
     for (const Vec3& p : soup.points) bounds.add(p);
@@ -245,56 +272,55 @@ int run(const Inspect& a) {
     options.metres_per_unit = fixed.value_or(metres_per(a.unit.empty() ? guess.unit : a.unit).value_or(kMillimetre));
     options.y_up = a.up == "y" && !fixed;
     if (!a.sides.empty()) options.sides = mesh::open_sides_of(a.sides);
-    options.progress = console.progress();
+    options.progress = progress;
     mesh::Surface surface;
     try {
         surface = mesh::build_surface(std::move(soup), options);
     } catch (const Error& error) {
         throw Error(a.file.string(), error.what());
     }
-    console.clear();
-    const mesh::MeshSummary s = mesh::summarise(surface, options.metres_per_unit);
-    constexpr std::uint32_t kPage = 2048;  // texels that the file's UVs are measured on
-    atlas::UvCheck uvs;
-    atlas::AtlasReport quality;
-    if (s.has_uvs) {
-        uvs = atlas::check_file_uvs(surface.mesh, kPage);
-        quality = atlas::measure(surface.mesh, uvs.atlas);
+    MeshFacts facts{
+        .summary = mesh::summarise(surface, options.metres_per_unit), .uvs = {}, .quality = {}, .uv_notes = {}};
+    if (facts.summary.has_uvs) {
+        facts.uvs = atlas::check_file_uvs(surface.mesh, kPage);
+        facts.quality = atlas::measure(surface.mesh, facts.uvs.atlas);
+        if (facts.uvs.fault.empty())
+            facts.uv_notes = uv_notes(surface.mesh, facts.uvs.atlas, facts.quality.smallest_gap, kPage);
     }
-    std::vector<std::string> notes;
-    if (s.has_uvs && uvs.fault.empty()) notes = uv_notes(surface.mesh, uvs.atlas, quality.smallest_gap, kPage);
-    if (a.common.json) {
-        nlohmann::json j{{"file", a.file.string()},
-                         {"triangles", s.n_triangles},
-                         {"vertices", s.n_vertices},
-                         {"size_mm", vector_json(s.bounds.size())},
-                         {"area_cm2", s.area * 1e4},
-                         {"volume_cm3", s.volume * 1e6},
-                         {"median_edge_mm", s.median_edge / kMillimetre},
-                         {"unit_guess", s.unit.unit},
-                         {"unit_note", s.unit.sentence},
-                         {"has_colours", s.has_colours},
-                         {"pictures", s.pictures},
-                         {"groups", s.group_names},
-                         {"defects", texts(mesh::describe_defects(s.report))},
-                         {"mesh", to_json(s.report)}};
-        j["has_uvs"] = s.has_uvs;
-        j["uv_fault"] = s.has_uvs && !uvs.fault.empty() ? nlohmann::json(uvs.fault.text()) : nlohmann::json();
-        j["uv_notes"] = notes;
-        j["atlas"] = s.has_uvs ? to_json(uvs.atlas, quality) : nlohmann::json();
-        print_json(j);
-        return 0;
-    }
-    fmt::print("{}\n", a.file.string());
-    for (const std::string& line : mesh::describe(s)) fmt::print("{}\n", line);
-    if (!s.has_uvs) {
-        fmt::print("UVs: none; painting makes them\n");
-        return 0;
-    }
-    const atlas::Atlas& in_file = uvs.atlas;
+    return facts;
+}
+
+nlohmann::json mesh_json(const MeshFacts& facts, const std::filesystem::path& file) {
+    const mesh::MeshSummary& s = facts.summary;
+    const atlas::UvCheck& uvs = facts.uvs;
+    return {{"file", file.string()},
+            {"triangles", s.n_triangles},
+            {"vertices", s.n_vertices},
+            {"size_mm", vector_json(s.bounds.size())},
+            {"area_cm2", s.area * 1e4},
+            {"volume_cm3", s.volume * 1e6},
+            {"median_edge_mm", s.median_edge / kMillimetre},
+            {"unit_guess", s.unit.unit},
+            {"unit_note", s.unit.sentence},
+            {"has_colours", s.has_colours},
+            {"pictures", s.pictures},
+            {"groups", s.group_names},
+            {"defects", texts(mesh::describe_defects(s.report))},
+            {"mesh", to_json(s.report)},
+            {"has_uvs", s.has_uvs},
+            {"uv_fault", s.has_uvs && !uvs.fault.empty() ? nlohmann::json(uvs.fault.text()) : nlohmann::json()},
+            {"uv_notes", facts.uv_notes},
+            {"atlas", s.has_uvs ? to_json(uvs.atlas, facts.quality) : nlohmann::json()}};
+}
+
+void print_mesh(const MeshFacts& facts, const std::filesystem::path& file) {
+    fmt::print("{}\n", file.string());
+    for (const std::string& line : mesh::describe(facts.summary)) fmt::print("{}\n", line);
+    if (!facts.summary.has_uvs) return fmt::print("UVs: none; painting makes them\n");
+    const auto& [summary, uvs, quality, notes] = facts;
     fmt::print("UVs: {} on {}, seams {:.1f} x the diagonal; stretch L2 {:.4f}, Linf {:.2f}; {:.0f} % used\n",
                counted(quality.charts, "chart"),
-               in_file.pages > 1 ? fmt::format("{} UDIM pages", in_file.pages) : "one page", quality.seam_length,
+               uvs.atlas.pages > 1 ? fmt::format("{} UDIM pages", uvs.atlas.pages) : "one page", quality.seam_length,
                quality.l2_stretch, quality.linf_stretch, 100 * quality.utilisation);
     fmt::print("     {} flipped triangles, {} without room; at {} x {} texels {} overlap, gap {}\n", quality.flips,
                quality.zero_area_triangles, kPage, kPage, quality.overlapping_texels, quality.smallest_gap);
@@ -303,6 +329,20 @@ int run(const Inspect& a) {
     else
         fmt::print("     they cannot be kept: {}\n", uvs.fault.text());
     for (const std::string& note : notes) fmt::print("     {}\n", note);
+}
+
+}  // namespace
+
+int run(const Inspect& a) {
+    if (a.file.extension() == ".tuft" || io::is_project(a.file)) return inspect_project(a);
+    if (!a.at_mm.empty()) throw UsageError("--at looks at a project, not at a mesh");
+    Console console(a.common.quiet);
+    const MeshFacts facts = mesh_facts(a, console.progress());
+    console.clear();
+    if (a.common.json)
+        print_json(mesh_json(facts, a.file));
+    else
+        print_mesh(facts, a.file);
     return 0;
 }
 

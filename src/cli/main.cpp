@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kLongestMessage = 1000;  // bytes
 
 /// One line on standard error, whatever is in it; where nobody reads that, nothing.
-void tell(const std::string& what) noexcept {
+void report_error(const std::string& what) noexcept {
     try {
         fmt::print(stderr, "tuft: {}\n", tuft::excerpt(what, kLongestMessage));
     } catch (const std::exception&) {
@@ -37,14 +37,14 @@ int main(int argc, char** argv) {
         if (!std::cout) throw Error("standard output could not be written to its end");
         return status;
     } catch (const UsageError& error) {
-        tell(error.what());
+        report_error(error.what());
         return 2;
     } catch (const Cancelled&) {
-        tell("stopped");
+        report_error("stopped");
     } catch (const std::bad_alloc&) {
-        tell("not enough memory for this; try a smaller atlas or mesh");
+        report_error("not enough memory for this; try a smaller atlas or mesh");
     } catch (const std::exception& error) {
-        tell(error.what());
+        report_error(error.what());
     }
     return 1;
 }

@@ -101,6 +101,12 @@ void add_surface(CLI::App* app, Surface& s) {
     add_store(app, s);
 }
 
+void add_cache(CLI::App* app, Surface& s) {
+    app->add_flag(
+        "--no-cache", s.no_cache,
+        "neither read nor write prepared models and fitted strokes (in tuft/ of $XDG_CACHE_HOME or ~/.cache)");
+}
+
 CLI::Option* add_point(CLI::App* app, const std::string& name, std::vector<double>& to, const std::string& what) {
     return app
         ->add_option_function<std::string>(

@@ -36,6 +36,7 @@ void add_common(CLI::App* app, Common& c);
 void add_store(CLI::App* app, Surface& s);
 void add_reading(CLI::App* app, FileReading& reading, const std::string& what);
 void add_surface(CLI::App* app, Surface& s);
+void add_cache(CLI::App* app, Surface& s);
 CLI::Option* add_point(CLI::App* app, const std::string& name, std::vector<double>& to, const std::string& what);
 void add_layers(CLI::App* app, std::vector<std::string>& layers);
 void add_recolouring(CLI::App* app, Recolouring& recolouring);
@@ -46,6 +47,6 @@ void add_write_options(CLI::App* app, Write& write);
 /// Adds what `tuft paint` takes besides its model and its stroke files.
 void add_paint_options(CLI::App* app, Paint& paint);
 /// Adds `tuft device` with its commands.
-void add_device(CLI::App& app, DeviceWork& device);
+CLI::App* add_device(CLI::App& app, DeviceWork& device);
 
 }  // namespace tuft::cli

@@ -25,7 +25,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-nlohmann::json to_json(const PlacedDrawing& p) {
+nlohmann::json placed_json(const PlacedDrawing& p) {
     const Vec3 at = p.at / kMillimetre;
     nlohmann::json j{{"at_mm", {at.x, at.y, at.z}},
                      {"normal", {p.normal.x, p.normal.y, p.normal.z}},
@@ -51,6 +51,12 @@ std::string forces_csv(const std::vector<stroke::StrokeReport>& reports) {
             csv += fmt::format(",{:.6g}\n", f.moment);
         }
     return csv;
+}
+
+void write_forces(const std::vector<stroke::StrokeReport>& reports, const std::filesystem::path& file) {
+    if (file.empty()) return;
+    const std::string csv = forces_csv(reports);
+    write_file(file, csv.data(), csv.size());
 }
 
 // What was painted: the journal from `first` on without actions, one entry per report.
@@ -129,6 +135,125 @@ void note_misses(const std::vector<stroke::StrokeReport>& reports,
                              farthest / kMillimetre));
 }
 
+/// Prepares strokes for the document: layers, masks, groups, presets and films.
+void prepare_strokes(std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting, const Paint& a,
+                     Console& console) {
+    strokes = stroke::onto_named_layers(std::move(strokes), painting.layers().table(), a.layer);
+    stroke::keep_to_named_masks(strokes, painting.masks().table(), a.mask);
+    // Files are numbered from 1: each is a group of its own in this journal.
+    const std::uint64_t first_group = painting.journal().next_group_id();
+    for (stroke::JournalEntry& s : strokes)
+        if (s.group.id != 0) s.group.id += first_group - 1;
+    find_presets(painting, strokes);
+    set_films(strokes, painting);
+    note_inks(strokes, painting, console);
+}
+
+/// Throws `Error` for strokes that cannot be of this model's size.
+void check_sizes(const std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting,
+                 const stroke::Model& model, const Paint& a) {
+    const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
+    if (const Message fault = stroke::size_fault(strokes, length_of, *model.query); !fault.empty())
+        throw Error(a.model.string(), Message("{} (see --unit, --place-width, --brush)", fault));
+    for (const stroke::JournalEntry& s : strokes) painting.check_size(s);
+}
+
+/// Returns the project that the strokes go into: the one that was opened, a new one, or none.
+std::optional<io::Project> output_project(const Paint& a, bool in_place, OpenProject* before, const FileFrame& frame,
+                                          stroke::Document& painting,
+                                          const std::vector<stroke::JournalEntry>& strokes) {
+    std::optional<io::Project> project;
+    if (in_place) {
+        project = std::move(before->file);
+        put_presets(*project, painting, strokes);
+    } else if (!a.project.empty()) {
+        std::vector<stroke::JournalEntry> all = painting.journal().entries();
+        all.insert(all.end(), strokes.begin(), strokes.end());
+        project = start_project(a.project, before ? before->source : a.model.string(), frame, painting, all);
+        project->append(painting.journal().entries());
+    }
+    return project;
+}
+
+/// What painting gave, besides texels.
+struct Painted {
+    std::vector<stroke::StrokeReport> reports;      ///< of strokes
+    std::vector<const stroke::JournalEntry*> done;  ///< the strokes themselves
+    std::size_t areas = 0;
+    double ink = 0;  ///< film units · m²
+    std::size_t stamps = 0;
+    double prepared = 0, first_stamp = 0, seconds = 0;  ///< s; the first two since the start
+};
+
+/// Paints the strokes, and commits each to `project` where there is one.
+Painted paint_strokes(const std::vector<stroke::JournalEntry>& strokes, stroke::Document& painting,
+                      std::optional<io::Project>& project, const Paint& a, Console& console, Clock::time_point start) {
+    Painted out;
+    const std::size_t n_before = painting.journal().entries().size();
+    const auto painting_start = Clock::now();
+    double area_ink = 0;
+    const ProgressFn progress = console.progress();
+    try {
+        painting.paint(
+            strokes,
+            [&](const stroke::JournalEntry& entry, stroke::StrokeReport report) {
+                if (const stroke::Fill* fill = entry.as<stroke::Fill>(); fill && fill->area)
+                    ++out.areas, area_ink += report.ink_given;
+                if (entry.as<stroke::PaintStroke>()) out.reports.push_back(std::move(report));
+                if (project) project->append(entry);
+            },
+            [&](std::string_view phase, double fraction) {
+                if (out.first_stamp == 0) out.first_stamp = seconds_since(start);
+                return progress(phase, fraction);
+            });
+    } catch (const Cancelled&) {
+        if (project)
+            console.note(fmt::format("{} holds the {} that {} finished", a.project.string(),
+                                     counted(project->n_strokes(), "stroke"),
+                                     project->n_strokes() == 1 ? "was" : "were"));
+        throw;
+    }
+    if (project && !strokes.empty())
+        project->save_canvases(stroke::all_canvases(painting), painting.journal().entries().back().id);
+    out.seconds = seconds_since(painting_start);
+    out.ink = area_ink;
+    for (const auto& r : out.reports) out.stamps += r.stamps, out.ink += r.ink_given;
+    out.done = painted_strokes(painting.journal(), n_before);
+    console.clear();
+    return out;
+}
+
+void print_painted(const Painted& painted, const stroke::Model& model, const Paint& a) {
+    const auto& [reports, done, areas, ink, stamps, prepared, first_stamp, seconds] = painted;
+    const std::string painted_areas = areas == 0 ? "" : counted(areas, "area");
+    const std::string painted_strokes =
+        reports.empty() && areas > 0 ? ""
+                                     : fmt::format("{}{}", areas > 0 ? " and " : "", counted(reports.size(), "stroke"));
+    fmt::print("painted {}{} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n", painted_areas,
+               painted_strokes, counted(stamps, "stamp"), ink * ink::kFilmUnit * 1e9, seconds, model.atlas.size,
+               model.atlas.size, counted(model.atlas.n_charts, "chart"), model.atlas.texel_size / kMillimetre);
+    for (const auto& path : {a.project, a.exported, a.preview, a.forces})
+        if (!path.empty()) fmt::print("wrote {}\n", path.string());
+    std::fflush(stdout);
+}
+
+nlohmann::json painted_json(const Painted& painted, const stroke::Model& model) {
+    nlohmann::json j;
+    j["triangles"] = model.mesh->n_triangles();
+    j["mesh"] = to_json(model.repairs);
+    j["atlas"] = to_json(model.atlas, model.atlas_report);
+    j["strokes"] = nlohmann::json::array();
+    for (std::size_t i = 0; i < painted.reports.size(); ++i)
+        j["strokes"].push_back(to_json(painted.reports[i], *painted.done[i]));
+    j["areas"] = painted.areas;
+    j["stamps"] = painted.stamps;
+    j["ink_mm3"] = painted.ink * ink::kFilmUnit * 1e9;
+    j["seconds"] = {
+        {"to_first_stamp", painted.first_stamp}, {"preparing", painted.prepared}, {"painting", painted.seconds}};
+    j["peak_mb"] = peak_megabytes();
+    return j;
+}
+
 }  // namespace
 
 int run(const Paint& a) {
@@ -167,111 +292,27 @@ int paint(const Paint& a, const StrokeSource& source) {
         restore(*before, painting, console);
         apply_recolouring(before->file, painting, {}, console);
     }
-    strokes = stroke::onto_named_layers(std::move(strokes), painting.layers().table(), a.layer);
-    stroke::keep_to_named_masks(strokes, painting.masks().table(), a.mask);
-    const std::size_t n_before = painting.journal().entries().size();
-    // Files are numbered from 1: each is a group of its own in this journal.
-    const std::uint64_t first_group = painting.journal().next_group_id();
-    for (stroke::JournalEntry& s : strokes)
-        if (s.group.id != 0) s.group.id += first_group - 1;
     const double prepared = seconds_since(start);
-    find_presets(painting, strokes);
-    set_films(strokes, painting);
-    note_inks(strokes, painting, console);
-    const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
-    if (const Message fault = stroke::size_fault(strokes, length_of, *model.query); !fault.empty())
-        throw Error(a.model.string(), Message("{} (see --unit, --place-width, --brush)", fault));
-    for (const stroke::JournalEntry& s : strokes) painting.check_size(s);
-    std::optional<io::Project> project;
-    if (in_place) {
-        project = std::move(before->file);
-        put_presets(*project, painting, strokes);
-    } else if (!a.project.empty()) {
-        std::vector<stroke::JournalEntry> all = painting.journal().entries();
-        all.insert(all.end(), strokes.begin(), strokes.end());
-        project = start_project(a.project, before ? before->source : a.model.string(), outputs.frame, painting, all);
-        project->append(painting.journal().entries());
-    }
-    const auto painting_start = Clock::now();
-    double first_stamp = 0;
-    std::vector<stroke::StrokeReport> reports;
-    std::size_t areas = 0;
-    double area_ink = 0;
-    const ProgressFn progress = console.progress();
-    try {
-        painting.paint(
-            strokes,
-            [&](const stroke::JournalEntry& entry, stroke::StrokeReport report) {
-                if (const stroke::Fill* fill = entry.as<stroke::Fill>(); fill && fill->area)
-                    ++areas, area_ink += report.ink_given;
-                if (entry.as<stroke::PaintStroke>()) reports.push_back(std::move(report));
-                if (project) project->append(entry);
-            },
-            [&](std::string_view phase, double fraction) {
-                if (first_stamp == 0) first_stamp = seconds_since(start);
-                return progress(phase, fraction);
-            });
-    } catch (const Cancelled&) {
-        if (project)
-            console.note(fmt::format("{} holds the {} that {} finished", a.project.string(),
-                                     counted(project->n_strokes(), "stroke"),
-                                     project->n_strokes() == 1 ? "was" : "were"));
-        throw;
-    }
-    if (project && !strokes.empty())
-        project->save_canvases(stroke::all_canvases(painting), painting.journal().entries().back().id);
-    const double painted = seconds_since(painting_start);
-    console.clear();
-    const std::vector<const stroke::JournalEntry*> done = painted_strokes(painting.journal(), n_before);
-    note_misses(reports, done, console);
-    note_dry(reports, console);
-    note_inside(reports, done, model.mesh->bounds, console);
-
+    prepare_strokes(strokes, painting, a, console);
+    check_sizes(strokes, painting, model, a);
+    std::optional<io::Project> project = output_project(a, in_place, before.get(), outputs.frame, painting, strokes);
+    Painted painted = paint_strokes(strokes, painting, project, a, console, start);
+    painted.prepared = prepared;
+    note_misses(painted.reports, painted.done, console);
+    note_dry(painted.reports, console);
+    note_inside(painted.reports, painted.done, model.mesh->bounds, console);
     show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);
-    if (!a.forces.empty()) {
-        const std::string csv = forces_csv(reports);
-        write_file(a.forces, csv.data(), csv.size());
-    }
+    write_forces(painted.reports, a.forces);
     console.clear();
-
-    std::size_t stamps = 0;
-    double given = area_ink;
-    for (const auto& r : reports) stamps += r.stamps, given += r.ink_given;
-    if (a.common.json) {
-        nlohmann::json j;
-        j["model"] = a.model.string();
-        j["triangles"] = model.mesh->n_triangles();
-        j["mesh"] = to_json(model.repairs);
-        j["atlas"] = to_json(model.atlas, model.atlas_report);
-        if (placed) j["placed"] = to_json(*placed);
-        j["strokes"] = nlohmann::json::array();
-        for (std::size_t i = 0; i < reports.size(); ++i) j["strokes"].push_back(to_json(reports[i], *done[i]));
-        j["inks"] = inks_json(strokes, painting);
-        j["areas"] = areas;
-        j["stamps"] = stamps;
-        j["ink_mm3"] = given * ink::kFilmUnit * 1e9;
-        j["canvas_hash"] = fmt::format("{:016x}", painting.layers().hash());
-        j["seconds"] = {{"to_first_stamp", first_stamp},
-                        {"preparing", prepared},
-                        {"painting", painted},
-                        {"total", seconds_since(start)}};
-        j["peak_mb"] = peak_megabytes();
-        print_json(j);
-    } else {
-        const std::string painted_areas = areas == 0 ? "" : counted(areas, "area");
-        const std::string painted_strokes =
-            reports.empty() && areas > 0
-                ? ""
-                : fmt::format("{}{}", areas > 0 ? " and " : "", counted(reports.size(), "stroke"));
-        fmt::print("painted {}{} ({}, {:.1f} mm3 of ink) in {:.2f} s; atlas {} x {}, {}, texel {:.3f} mm\n",
-                   painted_areas, painted_strokes, counted(stamps, "stamp"), given * ink::kFilmUnit * 1e9, painted,
-                   model.atlas.size, model.atlas.size, counted(model.atlas.n_charts, "chart"),
-                   model.atlas.texel_size / kMillimetre);
-        for (const auto& path : {a.project, a.exported, a.preview, a.forces})
-            if (!path.empty()) fmt::print("wrote {}\n", path.string());
-        std::fflush(stdout);
-    }
+    if (!a.common.json) return print_painted(painted, model, a), 0;
+    nlohmann::json j = painted_json(painted, model);
+    j["model"] = a.model.string();
+    if (placed) j["placed"] = placed_json(*placed);
+    j["inks"] = inks_json(strokes, painting);
+    j["canvas_hash"] = fmt::format("{:016x}", painting.layers().hash());
+    j["seconds"]["total"] = seconds_since(start);
+    print_json(j);
     return 0;
 }
 

@@ -12,7 +12,10 @@
 
 namespace tuft::cli {
 
-void add_paint_options(CLI::App* p, Paint& paint) {
+namespace {
+
+/// Brush, ink, layer, mask and substrate.
+void add_materials(CLI::App* p, Paint& paint) {
     p->add_option("--brush", paint.brush,
                   "brush for all strokes ('tuft brush' lists them; goat-small*0.5 is one of half the size; default: "
                   "what they name, else wolf-medium)");
@@ -25,6 +28,10 @@ void add_paint_options(CLI::App* p, Paint& paint) {
         "the strokes take ink away, wet and dry, instead of leaving some");
     p->add_option("--layer", paint.layer, "layer for strokes that name none; it is made when there is none yet");
     p->add_option("--substrate", paint.surface.substrate, "what the model is made of: porcelain, bisque, clay, ...");
+}
+
+/// Models of tuft, footprint and contact.
+void add_models(CLI::App* p, Paint& paint) {
     p->add_option("--spine", paint.spine,
                   "how the tuft bends: rod (live solve; as the brush says), table (query table), or a model of the "
                   "papers: macro "
@@ -34,6 +41,10 @@ void add_paint_options(CLI::App* p, Paint& paint) {
         ->check(CLI::IsMember({"surface", "plane"}));
     p->add_option("--contact", paint.contact, "exact closest points, or weighted distance to vertices")
         ->check(CLI::IsMember({"exact", "vertices"}));
+}
+
+/// What happens to the ink before, during and after strokes.
+void add_ink_options(CLI::App* p, Paint& paint) {
     p->add_option(
          "--dip", paint.dip,
          "each: a fresh full brush for each stroke; persistent: hair and ink stay as the stroke before left them, "
@@ -73,7 +84,11 @@ void add_paint_options(CLI::App* p, Paint& paint) {
                 return e.what();
             }
         })
-        ->type_name("CARE");
+        ->type_name("ACTION");
+}
+
+/// Filters of the hand and turn of the holder.
+void add_hand_options(CLI::App* p, Paint& paint) {
     p->add_option("--pressure", paint.pressure,
                   "pressure for flat strokes that have none: none, speed, dwell or speed+dwell")
         ->check(CLI::IsMember({"none", "speed", "dwell", "speed+dwell"}));
@@ -90,6 +105,10 @@ void add_paint_options(CLI::App* p, Paint& paint) {
     p->add_flag("--roll-follow", paint.roll_follow,
                 "turn the broad side of the ferrule across the path as flat strokes go on; --roll is added");
     p->add_option("--bias,--habit", paint.bias, "correct a writer's bias (.toml, made by 'tuft bias')");
+}
+
+/// Where flat strokes go.
+void add_place_options(CLI::App* p, Paint& paint) {
     p->add_option_function<std::string>(
          "--place",
          [&paint](const std::string& text) {
@@ -107,6 +126,10 @@ void add_paint_options(CLI::App* p, Paint& paint) {
         ->check(CLI::IsMember({"front", "back", "left", "right", "top", "bottom", "inside"}))
         ->excludes("--place")
         ->type_name("SIDE");
+}
+
+/// From where a drawing is read.
+void add_reader(CLI::App* p, Paint& paint) {
     p->add_option_function<std::string>(
          "--read-from",
          [&paint](const std::string& text) {
@@ -128,6 +151,10 @@ void add_paint_options(CLI::App* p, Paint& paint) {
          "it stands upright for them, and --mapping project goes straight away from them (default: "
          "before the surface)")
         ->type_name("DIRECTION");
+}
+
+/// How flat strokes are mapped onto the surface.
+void add_mapping(CLI::App* p, Paint& paint) {
     p->add_option("--mapping,--laying", paint.mapping,
                   "how flat strokes lie: drape (bent round the surface, over its grooves, relief and gaps), wrap "
                   "(round its very "
@@ -143,15 +170,33 @@ void add_paint_options(CLI::App* p, Paint& paint) {
         ->check(number_in(-360.0, 360.0))
         ->type_name("DEG");
     p->add_flag("--place-mirror", paint.place_mirror, "flips it from left to right");
-    add_drawing_options(*p, paint);
-    p->add_flag("--fit-brush", paint.fit_brush,
-                "with --brush: takes this make in the sizes that draw the line widths of a drawing");
-    add_surface(p, paint.surface);
+}
+
+/// Files that are written.
+void add_outputs(CLI::App* p, Paint& paint) {
     p->add_option("--project", paint.project, "write a project file (.tuft)");
     p->add_option("--export", paint.exported, "write the textured model: .glb, .gltf or .obj");
     p->add_option("--preview", paint.preview, "write a picture (.png)");
     p->add_option("--forces", paint.forces,
                   "write time, pose, force, force on the hand and moment at every sample of the hand (.csv)");
+}
+
+}  // namespace
+
+void add_paint_options(CLI::App* p, Paint& paint) {
+    add_materials(p, paint);
+    add_models(p, paint);
+    add_ink_options(p, paint);
+    add_hand_options(p, paint);
+    add_place_options(p, paint);
+    add_reader(p, paint);
+    add_mapping(p, paint);
+    add_drawing_options(*p, paint);
+    p->add_flag("--fit-brush", paint.fit_brush,
+                "with --brush: takes this make in the sizes that draw the line widths of a drawing");
+    add_surface(p, paint.surface);
+    add_cache(p, paint.surface);
+    add_outputs(p, paint);
     add_view(p, paint.view);
     add_common(p, paint.common);
 }

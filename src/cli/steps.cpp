@@ -90,6 +90,7 @@ void tell_sides(const mesh::RepairReport& repairs, Console& console) {
 
 Loaded load_model(const fs::path& path, const Surface& s, Console& console) {
     stroke::ModelOptions options = model_options(s, console);
+    if (!s.no_cache) options.cache = stroke::shared_model_cache();
     options.repair.progress = options.progress;
     Read read = read_file(path, s, options.repair, console);
     options.repair.progress = nullptr;

@@ -118,8 +118,11 @@ class Entries {
 };
 
 writer::Writer make_writer(const Text& text, const Write& a, double side) {
-    return writer::Writer(
-        {.style = text.style, .brush = a.brush, .side = side, .fit = a.fit, .cache = writer::fit_cache_folder()});
+    return writer::Writer({.style = text.style,
+                           .brush = a.brush,
+                           .side = side,
+                           .fit = a.fit,
+                           .cache = DiskCache(a.surface.no_cache ? "" : cache_folder("writer"))});
 }
 
 std::optional<PlacedDrawing> write_in_lines(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,

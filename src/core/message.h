@@ -31,6 +31,13 @@ class Message {
         (arguments_.push_back(argument(std::forward<Arguments>(arguments))), ...);
     }
 
+    /// The parts of a message that a file keeps.
+    Message(std::string words, bool translated, std::vector<Message> arguments)
+        : words_(std::move(words)), translated_(translated), arguments_(std::move(arguments)) {}
+    const std::string& words() const { return words_; }
+    bool translated() const { return translated_; }
+    std::span<const Message> arguments() const { return arguments_; }
+
     bool empty() const { return words_.empty(); }
     /// In English.
     std::string text() const;

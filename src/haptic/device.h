@@ -8,7 +8,7 @@
 #include "haptic/limits.h"
 
 /// \file
-/// The force-feedback arm as the servo sees it. haply.h, simulated.h and replay.h implement it.
+/// The force-feedback arm as the servo sees it. haply.h and simulated.h implement it.
 namespace tuft::haptic {
 
 /// State of an arm in its own frame, right-handed: x to the right, y away from the person, z up.

@@ -20,7 +20,7 @@ Quat upright(const Vec3& n) {
     return glm::angleAxis(std::atan2(s, n.z), axis / s);
 }
 
-/// Place of the root over the surface: height of the tip above it at rest, way along t and b, lean about b.
+/// Place of the root over the surface: height of the tip above it at rest, displacement along t and b, lean about b.
 struct Posture {
     double height = 0, along = 0, across = 0, lean = 0;
 };
@@ -30,42 +30,42 @@ double down_and_up(double t, double in, double stay) {
     return smooth_step(t / in) * (1 - smooth_step((t - in - stay) / in));
 }
 
-Posture posture(Way way, double t, double length) {
+Posture posture(HandMotion motion, double t, double length) {
     const double w = t - kAir;
     const auto to_depth = [&](double part) { return kAbove + part * length; };
     if (w < 0) return {.height = kAbove};
-    switch (way) {
-        case Way::press:
+    switch (motion) {
+        case HandMotion::press:
             return {.height = kAbove - to_depth(0.4) * down_and_up(w, 1.0, 0.4), .lean = 0.1};
-        case Way::press_fast:
+        case HandMotion::press_fast:
             return {.height = kAbove - to_depth(0.4) * down_and_up(std::fmod(w, 1.0), 0.12, 0.3)};
-        case Way::drag:
+        case HandMotion::drag:
             return {.height = kAbove - to_depth(0.25) * smooth_step(w / 0.4),
                     .along = 0.02 * std::sin(2 * pi * 0.5 * w),
                     .lean = 0.2};
-        case Way::circles: {
+        case HandMotion::circles: {
             const double in = smooth_step(w / 0.5);
             return {.height = kAbove - to_depth(0.25) * in,
                     .along = in * 0.01 * std::cos(2 * pi * w),
                     .across = in * 0.01 * std::sin(2 * pi * w),
                     .lean = 0.15};
         }
-        case Way::taps: {
+        case HandMotion::taps: {
             constexpr double kSwing = 0.012, kSpeed = 0.5;  // m, m/s at the middle, where the tip lands
             return {.height = -kSwing * std::sin(kSpeed / kSwing * w) * smooth_step(w / 0.2) +
                               kAbove * (1 - smooth_step(w / 0.2))};
         }
-        case Way::rocking:
+        case HandMotion::rocking:
             return {.height = kAbove - to_depth(0.3) * smooth_step(w / 0.4),
                     .lean = 15 * pi / 180 * std::sin(2 * pi * w) * smooth_step(w)};
-        case Way::rest:
+        case HandMotion::rest:
             return {.height = kAbove - to_depth(0.3) * smooth_step(w / 0.5), .lean = 0.1};
-        case Way::hit: {
+        case HandMotion::hit: {
             // The root, a tuft's length above the tip, comes down at 0.5 m/s and goes on to 5 mm behind the surface.
             const double fall = std::min(0.5 * std::fmod(w, 1.0), length + kAbove + 5e-3);
             return {.height = kAbove - fall * (1 - smooth_step((std::fmod(w, 1.0) - 0.5) / 0.3))};
         }
-        case Way::slide:
+        case HandMotion::slide:
             return {.height = kAbove - (length + kAbove + 1e-3) * smooth_step(w / 0.8),
                     .along = 0.03 * std::sin(2 * pi * 0.5 * std::max(0.0, w - 0.8)),
                     .lean = 0.3};
@@ -75,17 +75,17 @@ Posture posture(Way way, double t, double length) {
 
 }  // namespace
 
-std::string_view name_of(Way way) {
+std::string_view name_of(HandMotion motion) {
     constexpr std::string_view kNames[] = {"press",   "press-fast", "drag", "circles", "taps",
                                            "rocking", "rest",       "hit",  "slide"};
-    return kNames[static_cast<int>(way)];
+    return kNames[static_cast<int>(motion)];
 }
 
-bool is_tap(Way way) {
-    return way == Way::taps || way == Way::hit;
+bool is_tap(HandMotion motion) {
+    return motion == HandMotion::taps || motion == HandMotion::hit;
 }
 
-HandPath hand_path(Way way, const TrialPlace& place, const brush::Preset& brush, std::uint64_t seed) {
+HandPath hand_path(HandMotion motion, const TrialPlace& place, const brush::Preset& brush, std::uint64_t seed) {
     const Frame f = place.frame;
     const double length = brush.length, heading = seed ? 2 * pi * uniform(seed, 1) : 0;
     const double faster = seed ? 0.7 + 0.6 * uniform(seed, 2) : 1;
@@ -93,7 +93,7 @@ HandPath hand_path(Way way, const TrialPlace& place, const brush::Preset& brush,
     const Vec3 from =
         f.origin + (seed ? 2e-3 * (uniform(seed, 3) - 0.5) * t + 2e-3 * (uniform(seed, 4) - 0.5) * s : Vec3{0});
     const auto at = [=](double time) {
-        const Posture p = posture(way, kAir + (time - kAir) * faster, length);
+        const Posture p = posture(motion, kAir + (time - kAir) * faster, length);
         const Quat q = glm::angleAxis(p.lean, s) * upright(f.n);
         // The tip stays where it is while the holder leans about it.
         const Vec3 tip = from + p.along * t + p.across * s + p.height * f.n;

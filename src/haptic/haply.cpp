@@ -62,7 +62,7 @@ struct HaplyDevice::State {
     std::thread thread;
 
     void run();
-    void tell(Message what) {
+    void set_trouble(Message what) {
         const std::lock_guard lock(texts);
         trouble = std::move(what);
     }
@@ -175,14 +175,14 @@ void HaplyDevice::State::run() {
             io.restart();
             io.run_for(kLook);
             if (connection.heard() && !connected) {
-                tell({});
+                set_trouble({});
                 const std::lock_guard lock(texts);
                 id = connection.id();
                 connected = true;
             }
         }
         connected = false;
-        if (connection.ended()) tell(connection.why());
+        if (connection.ended()) set_trouble(connection.why());
         connection.close();
         io.restart();
         io.run_for(kLook);  // handlers of what was closed

@@ -47,7 +47,7 @@ struct Held {
 };
 
 Held hold_to_bounds(const LawOptions& options, const HairAnswer& hair, Vec3& root, Vec3& velocity) {
-    constexpr int kPasses = 4;  // bounds of a corner or a gap push each other's way
+    constexpr int kPasses = 4;  // bounds of a corner or a gap push against each other
     Held held;
     for (int pass = 0; pass < kPasses; ++pass) {
         bool moved = false;
@@ -88,13 +88,13 @@ struct Acted {
     double taken = 0;  // J
 };
 
-Acted acted_over(const LawState& s, const Vec3& way) {
+Acted acted_over(const LawState& s, const Vec3& moved) {
     const double n = static_cast<double>(std::max<std::size_t>(1, s.n_acted));
     Acted acted{s.acted[0] / n};
-    acted.taken = glm::dot(acted.mean, way);
+    acted.taken = glm::dot(acted.mean, moved);
     if (s.delayed == 0) return acted;
     const Vec3 later = s.acted[1] / n;
-    if (glm::dot(later, way) > acted.taken) acted = {later, glm::dot(later, way)};
+    if (glm::dot(later, moved) > acted.taken) acted = {later, glm::dot(later, moved)};
     return acted;
 }
 
@@ -104,8 +104,8 @@ void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
     s.acted[0] += sent(s, s.delayed + 1);
     s.acted[1] += sent(s, s.delayed + 2);
     ++s.n_acted;
-    if (const Vec3 way = in.arm - s.played; glm::length(way) > kFlicker * count) {
-        const Acted acted = acted_over(s, way);
+    if (const Vec3 moved = in.arm - s.played; glm::length(moved) > kFlicker * count) {
+        const Acted acted = acted_over(s, moved);
         // The true position is within half a count: by Abel's sum its work differs by that times the change of force.
         s.tank -= acted.taken + kCountError * count * glm::distance(acted.mean, s.counted_force);
         s.counted_force = acted.mean;
@@ -134,7 +134,7 @@ double most_force(const LawOptions& options, const LawState& s, const Vec3& move
     double pending = 0;  // what forces on their way will take, if the hand goes on
     for (std::size_t i = 1; i <= s.delayed; ++i) pending += std::max(0.0, glm::dot(sent(s, i), moved));
     const double left = std::max(0.0, tank - pending);
-    // The way along the force that the hand can make while it acts.
+    // The path along the force that the hand can make while it acts.
     const double ahead = glm::dot(moved, u) + kMostAcceleration * T * T * static_cast<double>(1 + s.delayed) + count;
     if (ahead <= 0) return std::sqrt(2 * k * left) - k * ahead;  // against it, the tank only fills
     if (left < k * ahead * ahead) return left / ahead;

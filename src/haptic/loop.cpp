@@ -55,8 +55,8 @@ bool take_priority(int priority) {
     return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &param) == 0;
 }
 
-/// Touches the stack that a period may need, so that no page of it is missing later.
-void touch_stack() {
+/// Writes to each page of the stack that a period may need. No page fault occurs later.
+void prefault_stack() {
     volatile unsigned char pages[256 * 1024];
     for (std::size_t i = 0; i < sizeof pages; i += 4096) pages[i] = 0;
 }
@@ -130,7 +130,7 @@ bool Loop::State::wait_for_answer(std::uint64_t tick, std::int64_t until, HairAn
 
 void Loop::State::run_servo() {
     with_priority += take_priority(options.servo_priority);
-    touch_stack();
+    prefault_stack();
     LoopStatus now{.running = true, .locked = locked};
     ServoControl wanted;
     HairAnswer newest;
@@ -203,7 +203,7 @@ void Loop::State::run_servo() {
 
 void Loop::State::run_solver() {
     with_priority += take_priority(options.solver_priority);
-    touch_stack();
+    prefault_stack();
     while (true) {
         posed.wait();
         if (!running.load(std::memory_order_relaxed)) return;

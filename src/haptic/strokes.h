@@ -8,7 +8,7 @@
 
 /// \file
 /// Cuts the solved poses into strokes: from the last pose in the air before the hair touches to the end of 50 ms in the
-/// air. The poses are those that were felt, to the bit; the painting takes them as they are
+/// air. The poses are those that the force was computed for, to the bit; the painting takes them as they are
 /// (`stroke::Document::begin`, `extend`, `end`).
 namespace tuft::haptic {
 

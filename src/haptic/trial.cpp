@@ -8,7 +8,7 @@
 namespace tuft::haptic {
 namespace {
 
-constexpr double kFelt = 0.02;            // N
+constexpr double kNoticeable = 0.02;      // N
 constexpr std::uint64_t kAfterHard = 10;  // periods in which a blow of the ferrule dies away
 
 /// Energies of one contact after the other.
@@ -94,7 +94,7 @@ int periods_to_stop(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, 
     HairSolver solver(tuft, surface, options.solver);
     Servo servo(options.law);
     const auto begin = static_cast<std::uint64_t>(from / kPeriod);
-    bool felt = false;
+    bool had_force = false;
     for (std::uint64_t tick = 1; tick < begin + kLongest; ++tick) {
         const double time = static_cast<double>(tick) * kPeriod;
         arm.advance(time);
@@ -110,8 +110,8 @@ int periods_to_stop(const brush::Tuft& tuft, const mesh::SurfaceQuery& surface, 
         if (servo.engaged()) answer = solver.solve(pose);
         const ServoOutput out = servo.finish(servo.engaged() ? &answer : nullptr);
         arm.command(out.command, time);
-        if (!wrong) felt = glm::length(out.force) > kFelt;
-        if (wrong && out.force == Vec3{0}) return felt ? static_cast<int>(tick - begin) : -1;
+        if (!wrong) had_force = glm::length(out.force) > kNoticeable;
+        if (wrong && out.force == Vec3{0}) return had_force ? static_cast<int>(tick - begin) : -1;
     }
     return -1;
 }

@@ -10,9 +10,9 @@
 #include "haptic/simulated.h"
 
 /// \file
-/// The loop in virtual time, on one thread: a simulated hand with a simulated arm paints a way at a place of a model,
-/// and the energies and steps of the force are judged. The tests of `haptic` and `tuft device test` run it. The same
-/// options give the same bits.
+/// The loop in virtual time, on one thread. A simulated hand with a simulated arm paints at a place of a model. The
+/// report states energies and steps of the force. The tests of `haptic` and `tuft device test` run it. The same options
+/// give the same bits.
 namespace tuft::haptic {
 
 /// A place on a model where a hand paints.
@@ -21,22 +21,24 @@ struct TrialPlace {
     Frame frame;  ///< on the surface: n outward, m
 };
 
-/// Places on a mesh with z up, m: the first hit from above its middle, and where the surface seen from above turns most
-/// along the way from there along +x, on its sharpest edge or in its sharpest groove.
+/// Places on a mesh with z up, m. `place_above`: the first hit from above its middle. `place_at_edge`: the sharpest
+/// edge, or with `groove` the sharpest groove, that a ray from above meets from there along +x.
 TrialPlace place_above(const mesh::SurfaceQuery& surface, std::string name);
 TrialPlace place_at_edge(const mesh::SurfaceQuery& surface, std::string name, bool groove = false);
 
-/// What the hand does.
-enum class Way { press, press_fast, drag, circles, taps, rocking, rest, hit, slide };
-inline constexpr Way kPaintingWays[] = {Way::press, Way::press_fast, Way::drag, Way::circles,
-                                        Way::taps,  Way::rocking,    Way::rest};
-std::string_view name_of(Way way);
+/// What the simulated hand does.
+enum class HandMotion { press, press_fast, drag, circles, taps, rocking, rest, hit, slide };
+inline constexpr HandMotion kPaintingMotions[] = {HandMotion::press,   HandMotion::press_fast, HandMotion::drag,
+                                                  HandMotion::circles, HandMotion::taps,       HandMotion::rocking,
+                                                  HandMotion::rest};
+std::string_view name_of(HandMotion motion);
 /// Whether hair lands at more than 0.3 m/s.
-bool is_tap(Way way);
+bool is_tap(HandMotion motion);
 
-/// The way of a hand, from 1 s in the air on. Depths follow the tuft: painting ways press it to 0.25–0.4 of its
-/// length; `hit` brings the ferrule down at 0.5 m/s, `slide` draws it over the surface.
-HandPath hand_path(Way way, const TrialPlace& place, const brush::Preset& brush, std::uint64_t seed = 0);
+/// Returns the path of a hand: 1 s in the air, then `motion`. Painting motions press the tuft by 0.25–0.4 of its
+/// length. `hit` brings the ferrule down at 0.5 m/s. `slide` draws the ferrule over the surface. `seed` 0: the plain
+/// motion; else heading, pace and place vary.
+HandPath hand_path(HandMotion motion, const TrialPlace& place, const brush::Preset& brush, std::uint64_t seed = 0);
 
 struct TrialOptions {
     LawOptions law;
@@ -48,8 +50,8 @@ struct TrialOptions {
     bool record = false;  ///< fills `TrialReport::forces` and `roots`
 };
 
-/// Extremes over a trial. Energies are those that flow truly: of the force as the hand has it, over the true way of
-/// the arm. Each contact counts from its own beginning: over an hour the arm's friction would hide anything.
+/// Extremes over a trial. Energies are the work of the force on the hand along the true path of the arm, not along the
+/// measured one. Each contact counts from its own beginning: over an hour the arm's friction would cover any gain.
 struct TrialReport {
     double least_energy = 0;       ///< J, port + wrist
     double least_with_arm = 0;     ///< J, port + wrist + losses of the arm

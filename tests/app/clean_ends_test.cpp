@@ -264,7 +264,7 @@ TEST(CleanEnds, AStrokeOverARimHasNoGapAndNoClaw) {
                         const Vec2 along = glm::normalize(b - a), d = p - a;
                         aside_most = std::max(aside_most, std::abs(along.x * d.y - along.y * d.x));
                     }
-                    // The line is up to 16 wide. Behind the rim its middle is within 3 of the cursor's way, and in one
+                    // The line is up to 16 wide. Behind the rim its middle is within 3 of the cursor's path, and in one
                     // of these 36 strokes within 6.5.
                     EXPECT_LT(aside_most, 15) << what;
                     far_aside += aside_most >= 11;

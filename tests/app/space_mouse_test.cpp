@@ -90,16 +90,16 @@ TEST_F(SpaceMouseTest, AnUnpluggedOneStandsStillAndOneThatComesBackIsTaken) {
     daemon->motion({0, 350, 0, 0, 0, 0});
     ASSERT_TRUE(comes_true([&] { return mouse->held(); }));
     daemon->device(1);  // the device is unplugged
-    std::string told;
-    ASSERT_TRUE(comes_true([&] { return !(told = mouse->take_trouble().text()).empty(); }));
-    EXPECT_NE(told.find("unplugged"), std::string::npos) << told;
+    std::string reported;
+    ASSERT_TRUE(comes_true([&] { return !(reported = mouse->take_trouble().text()).empty(); }));
+    EXPECT_NE(reported.find("unplugged"), std::string::npos) << reported;
     EXPECT_FALSE(mouse->held());
 
     daemon->motion({0, 0, 0, 350, 0, 0});
     ASSERT_TRUE(comes_true([&] { return mouse->held(); }));
     daemon.reset();  // the daemon is killed
-    ASSERT_TRUE(comes_true([&] { return !(told = mouse->take_trouble().text()).empty(); }));
-    EXPECT_NE(told.find("ended"), std::string::npos) << told;
+    ASSERT_TRUE(comes_true([&] { return !(reported = mouse->take_trouble().text()).empty(); }));
+    EXPECT_NE(reported.find("ended"), std::string::npos) << reported;
     EXPECT_FALSE(mouse->held());
 
     daemon = std::make_unique<SpaceDaemon>(path_);

@@ -118,7 +118,7 @@ TEST_F(StudioArm, StirsOnThePalette) {
 }
 
 TEST_F(StudioArm, AServiceThatDiesLeavesTheStrokeAndOneLine) {
-    const Served server("--way rest --brush wolf-medium --fault dies --fault-after 6");
+    const Served server("--motion rest --brush wolf-medium --fault dies --fault-after 6");
     ASSERT_GT(server.port, 0);
     expect_played(kLookedAt + "set arm-view off\nset arm-source service\nset arm-port " + std::to_string(server.port) +
                   "\nset arm on\nawait arm painting\nawait message ended\nawait arm free\nwait-ready\nexpect strokes "
@@ -128,7 +128,7 @@ TEST_F(StudioArm, AServiceThatDiesLeavesTheStrokeAndOneLine) {
 
 TEST_F(StudioArm, ARecordingPaintsWhatTheArmDid) {
     tuft("device record --simulate inverse3 --model '" + source_folder() +
-         "/models/bowl.ply' --brush wolf-medium --way drag --seconds 2.5 -o '" + path("a.csv") + "'");
+         "/models/bowl.ply' --brush wolf-medium --motion drag --seconds 2.5 -o '" + path("a.csv") + "'");
     expect_played(kLookedAt + "set arm-source recording\nset arm-recording " + path("a.csv") +
                   "\nset arm on\nawait arm painting\nawait message \"has ended\"\nwait-ready\nexpect strokes 1\nexpect "
                   "arm off\nwait 0.2\n");

@@ -85,10 +85,10 @@ TEST_F(Journal, APlacedDrawingIsOneGroupThatIsHiddenMovedInkedAndDeletedAsOne) {
         EXPECT_EQ(tuft("replay '" + path(name) + ".tuft'")["canvas_hash"],
                   test::stored_hash(path(std::string(name) + ".tuft")))
             << name;
-    const nlohmann::json told = tuft("inspect '" + path("placed.tuft") + "'");
-    ASSERT_EQ(told["groups"].size(), 1u);
-    EXPECT_EQ(told["groups"][0]["name"], "leaves.svg");
-    EXPECT_EQ(told["groups"][0]["strokes"], 10);
+    const nlohmann::json reported = tuft("inspect '" + path("placed.tuft") + "'");
+    ASSERT_EQ(reported["groups"].size(), 1u);
+    EXPECT_EQ(reported["groups"][0]["name"], "leaves.svg");
+    EXPECT_EQ(reported["groups"][0]["strokes"], 10);
 }
 
 TEST_F(Journal, AGroupOpensAndIsTakenApartAndEachSymmetricCopyIsOneOfItsOwn) {
@@ -148,15 +148,15 @@ TEST_F(Journal, TheCommandLineMakesAGroupOfEachStrokeFile) {
     tuft("paint '" + source_folder() + "/models/bowl.ply' --atlas-size 256 --strokes '" + path("leaves.svg") + "' '" +
          path("a.svg") + "' --project '" + path("two.tuft") + "'");
     tuft("paint '" + path("two.tuft") + "' --strokes '" + path("a.svg") + "'");
-    const nlohmann::json told = tuft("inspect '" + path("two.tuft") + "'");
-    ASSERT_EQ(told["groups"].size(), 3u);
+    const nlohmann::json reported = tuft("inspect '" + path("two.tuft") + "'");
+    ASSERT_EQ(reported["groups"].size(), 3u);
     std::set<std::uint64_t> ids;
-    for (const auto& group : told["groups"]) {
+    for (const auto& group : reported["groups"]) {
         ids.insert(group["id"].get<std::uint64_t>());
         EXPECT_EQ(group["strokes"], 10);
     }
     EXPECT_EQ(ids.size(), 3u);
-    EXPECT_EQ(told["groups"][0]["name"], "leaves.svg");
+    EXPECT_EQ(reported["groups"][0]["name"], "leaves.svg");
 }
 
 }  // namespace

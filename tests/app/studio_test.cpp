@@ -435,7 +435,7 @@ TEST_F(StudioProgram, NoSampleOfTheHandIsLostUnderLoad) {
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto samples = io::Project::open(path("work.tuft")).strokes().at(0).get<stroke::PaintStroke>().trace.samples;
     EXPECT_GT(samples.size(),
-              1000u);  // three ways of some 100 pixels at 260 pixels a second, a sample each millisecond
+              1000u);  // three paths of some 100 pixels at 260 pixels a second, a sample each millisecond
     // Each sample went to the painter as a pose; the last one is the lift, which is drawn in twelve.
     EXPECT_EQ(samples.size(), nlohmann::json::parse(ran.out)["samples"].get<std::size_t>() - 1 + 12);
     for (std::size_t i = 2; i + 13 < samples.size(); ++i)

@@ -134,7 +134,7 @@ TEST_F(Tablet, PressureTiltAndEraserComeFromTheDeviceToTheStroke) {
 
     const auto strokes = io::Project::open(path("work.tuft")).strokes();
     ASSERT_EQ(strokes.size(), 3u);
-    // The driver stamps reports when it reads them. Where it could not run, a hand's way comes in no time at all.
+    // The driver stamps reports when it reads them. Where it could not run, a hand's path comes in no time at all.
     for (int k : {0, 1}) {
         const auto& samples = stroke::samples_of(strokes[static_cast<std::size_t>(k)]).samples;
         std::size_t clump = 0;

@@ -15,11 +15,11 @@ using Polygon = std::vector<Vec2>;
 Polygon star(Random& random) {
     const int n = 3 + static_cast<int>(random.uniform() * 20);
     const double size = std::pow(10.0, random.uniform(-1.5, 0));
-    const double squash = random.uniform(0.1, 1);
+    const double flattening = random.uniform(0.1, 1);
     Polygon p;
     for (int i = 0; i < n; ++i) {
         const double a = 2 * std::numbers::pi * i / n, r = size * random.uniform(0.3, 1);
-        p.push_back({r * std::cos(a), squash * r * std::sin(a)});
+        p.push_back({r * std::cos(a), flattening * r * std::sin(a)});
     }
     return p;
 }

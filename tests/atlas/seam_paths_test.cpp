@@ -65,7 +65,7 @@ struct ThreeCharts {
     }
 };
 
-// The shortest way from the strip to the opposite border is straight down: 0.8. With its ends
+// The shortest path from the strip to the opposite border is straight down: 0.8. With its ends
 // where they are it has to go 0.4 aside: sqrt(0.8) at least, and along the edges of a grid with
 // one diagonal up to 0.4 + 0.8 (or, along diagonals, 0.4 sqrt 2 + 0.4).
 TEST(SeamPaths, CornersMoveToWhereSeamsAreShortest) {

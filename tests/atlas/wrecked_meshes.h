@@ -88,12 +88,12 @@ inline PolygonSoup bow_ties(Random& random) {
     for (int cone = 0; cone < 5; ++cone) {
         const int n = 3 + static_cast<int>(random.uniform() * 12);
         const double open = random.uniform(0.05, 2);
-        const Vec3 way(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-        const Vec3 x = glm::normalize(glm::cross(way, Vec3(0.3, 0.5, 0.8))), y = glm::cross(way, x);
+        const Vec3 axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        const Vec3 x = glm::normalize(glm::cross(axis, Vec3(0.3, 0.5, 0.8))), y = glm::cross(axis, x);
         const auto base = static_cast<std::uint32_t>(soup.points.size());
         for (int i = 0; i < n; ++i) {
             const double a = 2 * std::numbers::pi * i / n;
-            soup.points.push_back(way + open * (std::cos(a) * x + std::sin(a) * y));
+            soup.points.push_back(axis + open * (std::cos(a) * x + std::sin(a) * y));
         }
         for (int i = 0; i < n; ++i) add_polygon(soup, {0, base + std::uint32_t(i), base + std::uint32_t((i + 1) % n)});
     }

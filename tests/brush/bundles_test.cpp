@@ -117,7 +117,7 @@ TEST(Bundles, DryHairUnderStressPartsStaysSoAndMergesWhenWettedOrCombed) {
     split_bundles(b, p, 0, dry, 0.1, 10);
     EXPECT_EQ(sum(), parted) << "lifted and still dry";
     Bundles combed = b;
-    gather(combed);
+    rejoin_hair(combed);
     for (const double a : combed.separation) EXPECT_EQ(a, 0);
     split_bundles(b, p, 0, wet, 0, 1);
     EXPECT_LT(sum(), 1e-3 * parted) << "e^-10 after a second";
@@ -188,7 +188,7 @@ TEST(Bundles, SubSpinesBeginInTheShapeOfTheTuftAndPartOnTheWay) {
         const TuftState state = step(tuft, pose, {&plane, 1}, 0.005);
         if (state.branches.size() < 2) continue;
         const double gap = glm::distance(state.branches[0].sections[0].centre, state.branches[2].sections[0].centre);
-        // 0.1 mm of way parts e^-1/60 of what is left. Rods that meet in the tip when straight are
+        // 0.1 mm of path parts e^-1/60 of what is left. Rods that meet in the tip when straight are
         // half a millimetre apart when bent, beside a width of 8 mm: no jump from one tip to three.
         EXPECT_LT(std::abs(gap - gap_before), 6e-4) << i;
         gap_before = gap;

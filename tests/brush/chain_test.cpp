@@ -182,8 +182,8 @@ TEST(Chain, FrictionAlongTheDragOverAgainstItIsOneLessTheCone) {
     s.problem.friction = {.coefficient = 0.3, .grain = 0.4, .with_hair = 0.35, .along = {1, 0, 0}, .smoothing = 1e-7};
     s.problem.max_iterations = 0;
     const Vec3 tip = chain_nodes(s.spine, s.problem.root, s.problem.frame, straight).back();
-    const auto energy = [&](const Vec3& way) {
-        s.contact.back().touched = tip - way;
+    const auto energy = [&](const Vec3& motion) {
+        s.contact.back().touched = tip - motion;
         s.problem.contact = s.contact;
         return solve_chain(s.spine, straight, s.problem).dissipation;
     };
@@ -249,14 +249,14 @@ Preset wolf() {
     return load_preset("wolf-medium");
 }
 
-/// Presses to `depth` while moving by `way` in all, upright over z = 0, in `steps` steps.
-Pose press_and_drag(SpineModel& model, const Preset& p, double depth, const Vec3& way, int steps) {
+/// Presses to `depth` while moving by `motion` in all, upright over z = 0, in `steps` steps.
+Pose press_and_drag(SpineModel& model, const Preset& p, double depth, const Vec3& motion, int steps) {
     const ContactPlane sheet;
     Pose pose{{0, 0, p.length}, {1, 0, 0, 0}, 0};
     model.straighten(pose);
     for (int i = 1; i <= steps; ++i) {
         pose.position =
-            way * (static_cast<double>(i) / steps) + Vec3{0, 0, p.length - depth * std::min(1.0, 2.0 * i / steps)};
+            motion * (static_cast<double>(i) / steps) + Vec3{0, 0, p.length - depth * std::min(1.0, 2.0 * i / steps)};
         pose.time += 0.01;
         model.step({pose, {&sheet, 1}, 0.01, 1});
     }

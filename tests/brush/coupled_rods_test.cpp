@@ -54,7 +54,7 @@ struct Row {
     CoupledResult solve() { return solve_coupled(problem(), pairs(), coupling); }
 };
 
-Law soft_ground() {
+Law soft_contact() {
     Law law;
     law.points_per_segment = 6;
     law.stiffness = 2000;
@@ -84,7 +84,7 @@ TEST(CoupledRods, PairForceIsTheDerivativeOfItsEnergy) {
 /// Uncoupled rods: K rods of stiffness 1/K bear the load of one.
 TEST(CoupledRods, UncoupledRodsBearWhatOneBears) {
     Row row(5, 0.1);
-    row.law = soft_ground();
+    row.law = soft_contact();
     row.obstacles.assign(13, {{0, 0, -0.9}, {0, 0, 1}, 0.02});
     Rod one = make_rod({.alpha = 0, .beta = 0}, 12, 1);
     Memory memory = make_memory(one, {});
@@ -98,7 +98,7 @@ TEST(CoupledRods, UncoupledRodsBearWhatOneBears) {
         for (Clamp& c : row.clamps) c = {{c.position.x, -0.01 * i, down}, tangent, {1, 0, 0}};
         const Clamp clamp{{0, -0.01 * i, down}, tangent, {1, 0, 0}};
         std::vector<Obstacle> obstacles = row.obstacles;
-        const Result alone = solve(one, memory, clamp, obstacles, law);
+        const Result alone = solve(one, memory, clamp, {.obstacles = obstacles, .law = law});
         const CoupledResult all = row.solve();
         Vec3 force{0};
         for (const Result& r : all.rods) force += r.force;
@@ -110,7 +110,7 @@ TEST(CoupledRods, UncoupledRodsBearWhatOneBears) {
 /// The step found by elimination in blocks solves the dense system.
 TEST(CoupledRods, EliminationSolvesTheDenseSystem) {
     Row row(4, 0.08);
-    row.law = soft_ground();
+    row.law = soft_contact();
     row.law.stiffness /= 4;
     row.obstacles.assign(13, {{0, 0, -0.85}, {0, 0.1, std::sqrt(1 - 0.01)}, 0.03});
     row.coupling = {.contact = 500, .spread = 20, .film = 0.01, .film_range = 0.02, .shear = 200, .friction = 0.3};

@@ -28,7 +28,7 @@ Bent bend(const Profile& profile, int n, Vec3 force, double end_moment, int step
     Result r;
     for (int i = 1; i <= steps; ++i) {
         const double part = static_cast<double>(i) / steps;
-        r = solve(rod, memory, kClamp, {}, law, {part * force, part * end_moment, {0, 1, 0}});
+        r = solve(rod, memory, kClamp, {.law = law, .load = {part * force, part * end_moment, {0, 1, 0}}});
     }
     double angle = 0;
     Vec3 t = kClamp.tangent;

@@ -47,10 +47,10 @@ struct Account {
         least_left = std::min(least_left, e.bend + e.contact - e.spread);
     }
 
-    /// Smooth motion by `way` in n steps.
-    void move(const Vec3& way, int n) {
+    /// Smooth motion by `motion` in n steps.
+    void move(const Vec3& motion, int n) {
         const auto eased = [](double x) { return x * x * (3 - 2 * x); };
-        for (int i = 1; i <= n; ++i) go((eased(double(i) / n) - eased(double(i - 1) / n)) * way);
+        for (int i = 1; i <= n; ++i) go((eased(double(i) / n) - eased(double(i - 1) / n)) * motion);
     }
 };
 

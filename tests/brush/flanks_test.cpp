@@ -95,7 +95,7 @@ TEST(Flanks, AWallPushesTheTuftAsideUntilItsFlankLiesOnIt) {
             // ledge's edge also bears the hair over it, on some two λ of 1.8 mm, four times its own
             // length at most.
             EXPECT_NEAR(reach(d.state), wall, 0.04 * (width - wall) + 2e-5);
-            // Spread hair and the tuft's bend share the way: each gives the more, the nearer the
+            // Spread hair and the tuft's bend share the distance: each gives the more, the nearer the
             // wall.
             const double moved = -(spine_y(d) - spine_y(free));
             EXPECT_GT(moved, moved_before + 5e-5);

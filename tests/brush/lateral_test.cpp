@@ -216,14 +216,14 @@ TEST(Lateral, ADragShiftsTheSidesUntilTheirSpringsPullAsFrictionDoesAndLosesTheR
     LateralShift now;
     now.shift.assign(at.size(), 0);
     double brought = 0, lost = 0;
-    const auto slide = [&](double way) {  // of the tuft over the surface
+    const auto slide = [&](double travel) {  // of the tuft over the surface
         f.stuck = now.shift;
-        for (std::size_t i = 6; i < at.size(); ++i) f.stuck[i] -= way;
+        for (std::size_t i = 6; i < at.size(); ++i) f.stuck[i] -= travel;
         const LateralShift next = drag_lateral(at, springs, f);
         double slipped = 0;
         for (std::size_t i = 6; i < at.size(); ++i)
             slipped += tributary(at, i) * f.most[i] * std::abs(next.shift[i] - f.stuck[i]);
-        for (std::size_t i = 6; i < at.size(); ++i) brought += tributary(at, i) * f.most[i] * std::abs(way);
+        for (std::size_t i = 6; i < at.size(); ++i) brought += tributary(at, i) * f.most[i] * std::abs(travel);
         lost += slipped;
         // What is stored more was brought by friction on the way; the rest is lost.
         EXPECT_LE(next.stored + lost, brought + 1e-15);

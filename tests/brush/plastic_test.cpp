@@ -39,7 +39,7 @@ Cycle load_and_unload(const Profile& profile, int n, double load) {
     Cycle out;
     Result r;
     const auto go = [&](double p) {
-        r = solve(rod, memory, kClamp, {}, law, {{0, p, 0}});
+        r = solve(rod, memory, kClamp, {.law = law, .load = {{0, p, 0}}});
         EXPECT_TRUE(r.converged);
         out.lost += r.dissipation;
         out.least_loss = std::min(out.least_loss, r.dissipation);
@@ -107,8 +107,8 @@ TEST(PlasticRod, PartlyPlasticHairKeepsLessSetThanItsShareAllows) {
     Memory memory = make_memory(rod, kClamp);
     Law law;
     law.max_iterations = 300;
-    for (int i = 1; i <= 40; ++i) solve(rod, memory, kClamp, {}, law, {{0, 0.1 * i, 0}});
-    for (int i = 39; i >= 0; --i) solve(rod, memory, kClamp, {}, law, {{0, 0.1 * i, 0}});
+    for (int i = 1; i <= 40; ++i) solve(rod, memory, kClamp, {.law = law, .load = {{0, 0.1 * i, 0}}});
+    for (int i = 39; i >= 0; --i) solve(rod, memory, kClamp, {.law = law, .load = {{0, 0.1 * i, 0}}});
     Vec3 t = kClamp.tangent;
     double total = 0;
     for (int j = 0; j < rod.segments(); ++j) {

@@ -16,7 +16,7 @@ double tip_error(const Profile& profile, int n, const Vec3& load, const Vec3& ex
     Law law;
     law.tolerance = 1e-11;
     law.max_iterations = 300;
-    for (int i = 1; i <= 4; ++i) solve(rod, memory, kClamp, {}, law, {(0.25 * i) * load});
+    for (int i = 1; i <= 4; ++i) solve(rod, memory, kClamp, {.law = law, .load = {(0.25 * i) * load}});
     return glm::length(memory.node.back() - exact);
 }
 
@@ -31,7 +31,7 @@ TEST(RodLaws, TipErrorFallsFourfoldWhenSegmentsDouble) {
         Law law;
         law.tolerance = 1e-11;
         law.max_iterations = 300;
-        for (int i = 1; i <= 4; ++i) solve(rod, memory, kClamp, {}, law, {(0.25 * i) * load});
+        for (int i = 1; i <= 4; ++i) solve(rod, memory, kClamp, {.law = law, .load = {(0.25 * i) * load}});
         return memory.node.back();
     };
     const Vec3 exact = (4.0 * tip(128) - tip(64)) / 3.0;
@@ -50,7 +50,7 @@ TEST(RodLaws, SmallLoadsReduceToLinearTheory) {
         Memory memory = make_memory(rod, kClamp);
         Law law;
         law.tolerance = 1e-13;
-        solve(rod, memory, kClamp, {}, law, {{0, load, 0}});
+        solve(rod, memory, kClamp, {.law = law, .load = {{0, load, 0}}});
         const double w = small_deflection(profile, 1).w;
         // 64 segments: error of second order, below 0.1 % for these profiles.
         EXPECT_NEAR(memory.node.back().y / load, w, 2e-3 * w);
@@ -116,7 +116,7 @@ Scene rough_scene(bool hard, Under under = Under::plane) {
     for (int i = 0; i <= 8; ++i) s.plane[i].radius = 0.08 * (1 - i / 8.5);
     for (int i = 0; i < 30; ++i) {
         clamp.position += Vec3{0.01 * std::sin(0.4 * i), 0.012, -0.008};
-        solve(s.rod, s.memory, clamp, s.plane, s.law);
+        solve(s.rod, s.memory, clamp, {.obstacles = s.plane, .law = s.law});
     }
     return s;
 }
@@ -142,7 +142,7 @@ TEST(RodLaws, WhichFaceOfAnEdgeANodeCallsItsOwnDoesNotMatter) {
         Result r;
         for (int i = 0; i < 10; ++i) {
             clamp.position += Vec3{0.004, 0.003, -0.004};
-            r = solve(s.rod, s.memory, clamp, s.plane, s.law);
+            r = solve(s.rod, s.memory, clamp, {.obstacles = s.plane, .law = s.law});
         }
         EXPECT_TRUE(r.converged);
         return r.force;
@@ -162,15 +162,17 @@ TEST(RodLaws, GradientMatchesFiniteDifferences) {
         const Load load{{0.01, -0.02, 0.03}, 0, {}};
         const std::size_t size = 16;
         std::vector<double> x(size, 0.0);
-        const Probe at = probe_energy(s.rod, s.memory, s.plane, s.law, load, x);
+        const Probe at = probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law, .load = load}, x);
         double largest = 0;
         for (const double g : at.gradient) largest = std::max(largest, std::abs(g));
         for (std::size_t i = 0; i < size; ++i) {
             constexpr double h = 1e-6;
             x[i] = h;
-            const double up = probe_energy(s.rod, s.memory, s.plane, s.law, load, x).value;
+            const double up =
+                probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law, .load = load}, x).value;
             x[i] = -h;
-            const double down = probe_energy(s.rod, s.memory, s.plane, s.law, load, x).value;
+            const double down =
+                probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law, .load = load}, x).value;
             x[i] = 0;
             // Central difference: h² times third derivatives, h times kinks of the second, round-off 1e-16/h.
             EXPECT_NEAR((up - down) / (2 * h), at.gradient[i], 1e-6 * (1 + largest))
@@ -191,7 +193,7 @@ TEST(RodLaws, GradientMatchesAtRandomShapesToo) {
         }
         s.memory.node = nodes(s.rod, s.memory);
         std::vector<double> x(16, 0.0);
-        const Probe at = probe_energy(s.rod, s.memory, s.plane, s.law, {}, x);
+        const Probe at = probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law}, x);
         // One random direction sums all components.
         std::vector<double> d(16);
         double slope = 0, scale = 0;
@@ -202,9 +204,9 @@ TEST(RodLaws, GradientMatchesAtRandomShapesToo) {
         }
         constexpr double h = 1e-6;
         for (std::size_t i = 0; i < 16; ++i) x[i] = h * d[i];
-        const double up = probe_energy(s.rod, s.memory, s.plane, s.law, {}, x).value;
+        const double up = probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law}, x).value;
         for (std::size_t i = 0; i < 16; ++i) x[i] = -h * d[i];
-        const double down = probe_energy(s.rod, s.memory, s.plane, s.law, {}, x).value;
+        const double down = probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law}, x).value;
         EXPECT_NEAR((up - down) / (2 * h), slope, 1e-5 * (1 + scale));
     }
 }
@@ -218,8 +220,8 @@ TEST(RodLaws, PointsOverOnePlaneAddUpAsEachByItself) {
     for (int trial = 0; trial < 20; ++trial) {
         std::vector<double> x(16);
         for (double& u : x) u = random.uniform(-0.2, 0.2);
-        const Probe one = probe_energy(s.rod, s.memory, s.plane, s.law, {}, x);
-        const Probe other = probe_energy(s.rod, s.memory, apart, s.law, {}, x);
+        const Probe one = probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law}, x);
+        const Probe other = probe_energy(s.rod, s.memory, {.obstacles = apart, .law = s.law}, x);
         constexpr double kClose = 1e-8;  // the planes' angle times the stiffest second derivative, 10^4
         EXPECT_NEAR(one.value, other.value, kClose);
         for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(one.gradient[i], other.gradient[i], kClose);
@@ -240,7 +242,7 @@ TEST(RodLaws, EliminationAlongTheRodSolvesTheFullMatrix) {
         std::vector<double> x(kSize);
         for (double& u : x) u = trial < 5 ? 0 : random.uniform(-0.2, 0.2);
         const double damping = trial % 2 == 0 ? 0 : 3;
-        const Probe at = probe_energy(s.rod, s.memory, s.plane, s.law, {}, x, damping);
+        const Probe at = probe_energy(s.rod, s.memory, {.obstacles = s.plane, .law = s.law}, x, damping);
         if (at.step.empty()) continue;
         ++solved;
         for (int i = 0; i < kSize; ++i) {
@@ -288,13 +290,13 @@ TEST(RodLaws, ThePotentialNeverRisesFromStepToStep) {
             for (std::size_t i = 0; i < planes.size(); ++i) planes[i].normal = start.node[i].x < 0 ? left : right;
         }
         const std::vector<double> still(2 * 16, 0.0);
-        double before = probe_energy(rod, start, planes, law, {}, still).value;
+        double before = probe_energy(rod, start, {.obstacles = planes, .law = law}, still).value;
         const double first = before;
         for (int k = 1; k <= 60; ++k) {
             law.max_iterations = k;
             Memory memory = start;
-            const Result r = solve(rod, memory, clamp, planes, law);
-            const double now = probe_energy(rod, memory, planes, law, {}, still).value;
+            const Result r = solve(rod, memory, clamp, {.obstacles = planes, .law = law});
+            const double now = probe_energy(rod, memory, {.obstacles = planes, .law = law}, still).value;
             EXPECT_LE(now, before + 1e-11 * (1 + std::abs(first))) << trial << " after " << k;  // round-off
             steps += now < before;
             before = now;
@@ -323,7 +325,7 @@ TEST(RodLaws, EndsThatMeetTheSurfaceEndOnHaveTheirCompliance) {
         const double s = 0.1 * i * give;
         const Clamp clamp{{0, 0, 1 - s}, {0, 0, -1}, {1, 0, 0}};
         Memory memory = make_memory(rod, clamp);
-        const Result r = solve(rod, memory, clamp, plane, law);
+        const Result r = solve(rod, memory, clamp, {.obstacles = plane, .law = law});
         ASSERT_TRUE(r.converged);
         // ∫ k_e(a) (s - a) da with 1/k_e fading as (1 - a/4 s_e)².
         double expected = 0;
@@ -354,18 +356,18 @@ TEST(RodLaws, DampingOnlyDelays) {
     Memory memory = make_memory(rod, clamp);
     Law law;
     law.tolerance = 1e-12;
-    Result r = solve(rod, memory, clamp, {}, law, {{0, 0.2, 0}});
+    Result r = solve(rod, memory, clamp, {.law = law, .load = {{0, 0.2, 0}}});
     const double stored = r.bend_energy, start = memory.node.back().y;
     law.damping = 50;  // τ/Δt
     double lost = 0;
     for (int i = 0; i < 50; ++i) {
-        r = solve(rod, memory, clamp, {}, law);
+        r = solve(rod, memory, clamp, {.law = law});
         lost += r.dissipation;
         EXPECT_LT(memory.node.back().y, start);
     }
     // Backward Euler: (1 + 1/50)^-50 = 0.3715 in place of 1/e; shapes this small are linear.
     EXPECT_NEAR(memory.node.back().y / start, std::pow(1.02, -50), 0.01);
-    for (int i = 0; i < 600; ++i) lost += solve(rod, memory, clamp, {}, law).dissipation;
+    for (int i = 0; i < 600; ++i) lost += solve(rod, memory, clamp, {.law = law}).dissipation;
     // ∫ η κ̇² dt in steps of τ/50 counts half a step too little.
     EXPECT_NEAR(lost, stored, 0.02 * stored);
     EXPECT_LT(memory.node.back().y, 1e-4 * start);
@@ -390,7 +392,7 @@ TEST(RodLaws, RootCarriesWhatTheContactsGiveAndFrictionStaysInItsCone) {
         const Vec3 v = i < 50 ? Vec3{0.002, 0, -0.006} : Vec3{0.01 * std::cos(0.02 * i), 0.01 * std::sin(0.02 * i), 0};
         clamp.position += v;
         const std::vector<Vec3> before = memory.node;
-        const Result r = solve(rod, memory, clamp, plane, law);
+        const Result r = solve(rod, memory, clamp, {.obstacles = plane, .law = law});
         ASSERT_TRUE(r.converged) << i;
         // The clamp joint's moment balances all contact forces about the root.
         Vec3 moment{0};
@@ -438,7 +440,7 @@ TEST(RodLaws, WorkOfTheHandEqualsStoredPlusLostEnergy) {
     Result r;
     const auto go = [&](const Vec3& d) {
         clamp.position += d;
-        r = solve(rod, memory, clamp, plane, law);
+        r = solve(rod, memory, clamp, {.obstacles = plane, .law = law});
         // The hand holds against the contact force: work is -F·d, by the trapezoidal rule.
         work -= 0.5 * glm::dot(force + r.force, d);
         force = r.force;
@@ -459,8 +461,8 @@ TEST(RodLaws, ARecoveringSetOnlyLosesEnergyAndComesBack) {
     Law law;
     law.tolerance = 1e-10;
     law.max_iterations = 300;
-    for (int i = 1; i <= 20; ++i) solve(rod, memory, kClamp, {}, law, {{0, 0.02 * i, 0}});
-    Result r = solve(rod, memory, kClamp, {}, law);
+    for (int i = 1; i <= 20; ++i) solve(rod, memory, kClamp, {.law = law, .load = {{0, 0.02 * i, 0}}});
+    Result r = solve(rod, memory, kClamp, {.law = law});
     const double set = memory.node.back().y;
     ASSERT_GT(set, 0.02);
     law.recovery = 0.05;
@@ -468,7 +470,7 @@ TEST(RodLaws, ARecoveringSetOnlyLosesEnergyAndComesBack) {
     const double at_start = stored;
     double lost = 0;
     for (int i = 0; i < 400; ++i) {
-        r = solve(rod, memory, kClamp, {}, law);
+        r = solve(rod, memory, kClamp, {.law = law});
         EXPECT_LE(r.bend_energy, stored + 1e-12);
         EXPECT_GE(r.dissipation, 0);
         EXPECT_LE(memory.node.back().y, before + 1e-9);
@@ -481,10 +483,10 @@ TEST(RodLaws, ARecoveringSetOnlyLosesEnergyAndComesBack) {
     EXPECT_LT(before, 0.15 * set);
     // Bent hair that is held gains nothing by waiting.
     law.recovery = 0;
-    solve(rod, memory, kClamp, {}, law, {{0, 0.3, 0}});
+    solve(rod, memory, kClamp, {.law = law, .load = {{0, 0.3, 0}}});
     law.recovery = 0.2;
     const double held = memory.node.back().y;
-    for (int i = 0; i < 20; ++i) solve(rod, memory, kClamp, {}, law, {{0, 0.3, 0}});
+    for (int i = 0; i < 20; ++i) solve(rod, memory, kClamp, {.law = law, .load = {{0, 0.3, 0}}});
     EXPECT_GE(memory.node.back().y, held - 1e-3);
 }
 
@@ -499,14 +501,14 @@ TEST(RodLaws, ElasticFrictionlessCycleReturnsExactly) {
     for (int i = 0; i <= 16; ++i) plane[i].radius = 0.09 * (1 - i / 16.2);
     Clamp clamp{{0, 0, 0.8}, glm::normalize(Vec3{0.3, 0, -1}), {0, 1, 0}};
     Memory memory = make_memory(rod, clamp);
-    solve(rod, memory, clamp, plane, law);
+    solve(rod, memory, clamp, {.obstacles = plane, .law = law});
     const std::vector<Vec3> start = memory.node;
     for (int i = 1; i <= 40; ++i) {
         Clamp c = clamp;
         const double a = 2 * 3.14159265358979 * i / 40;
         c.position += Vec3{0.2 * (1 - std::cos(a)), 0.15 * std::sin(a), 0.1 * std::sin(a)};
         if (i == 40) c = clamp;
-        solve(rod, memory, c, plane, law);
+        solve(rod, memory, c, {.obstacles = plane, .law = law});
     }
     for (std::size_t i = 0; i < start.size(); ++i) {
         EXPECT_LT(glm::length(memory.node[i] - start[i]), 1e-8);  // solver tolerance over the softest joint

@@ -48,7 +48,7 @@ Standing press_and_drag(const Row& row, int n) {
         clamp.position.z = std::sin(tilt) - depth * std::min(1.0, static_cast<double>(i) / press);
         if (i > press) clamp.position += drag * (3.0 / pull);
         const Vec3 before = s.result.force;
-        s.result = solve(rod, s.memory, clamp, plane, law);
+        s.result = solve(rod, s.memory, clamp, {.obstacles = plane, .law = law});
         s.limited += !s.result.converged;
         if (i > press + pull - 50) s.max_change = std::max(s.max_change, glm::length(s.result.force - before));
     }

@@ -23,23 +23,23 @@ TuftState bent(bool pressed) {
     return state;
 }
 
-double volume(const TuftSurface& skin) {
+double volume(const TuftSurface& surface) {
     double v = 0;
-    for (std::size_t i = 0; i < skin.triangles.size(); i += 3) {
-        const Vec3 a = skin.positions[skin.triangles[i]], b = skin.positions[skin.triangles[i + 1]],
-                   c = skin.positions[skin.triangles[i + 2]];
+    for (std::size_t i = 0; i < surface.triangles.size(); i += 3) {
+        const Vec3 a = surface.positions[surface.triangles[i]], b = surface.positions[surface.triangles[i + 1]],
+                   c = surface.positions[surface.triangles[i + 2]];
         v += glm::dot(a, glm::cross(b, c)) / 6;
     }
     return v;
 }
 
 TEST(TuftSurface, IsOpenOnlyAtTheFerruleAndTurnedOutward) {
-    const TuftSurface skin = make_tuft_surface(bent(true));
+    const TuftSurface surface = make_tuft_surface(bent(true));
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-    for (std::size_t i = 0; i < skin.triangles.size(); i += 3) {
+    for (std::size_t i = 0; i < surface.triangles.size(); i += 3) {
         for (int k = 0; k < 3; ++k) {
-            const std::uint32_t a = skin.triangles[i + k], b = skin.triangles[i + (k + 1) % 3];
-            ASSERT_LT(a, skin.positions.size());
+            const std::uint32_t a = surface.triangles[i + k], b = surface.triangles[i + (k + 1) % 3];
+            ASSERT_LT(a, surface.positions.size());
             ++edges[{a, b}];
         }
     }
@@ -49,12 +49,12 @@ TEST(TuftSurface, IsOpenOnlyAtTheFerruleAndTurnedOutward) {
         if (!edges.count({edge.second, edge.first})) ++border;
     }
     EXPECT_EQ(border, 24);  // the first ring
-    for (std::size_t i = 0; i + 2 < skin.triangles.size(); i += 3) {
-        const Vec3 a = skin.positions[skin.triangles[i]], b = skin.positions[skin.triangles[i + 1]],
-                   c = skin.positions[skin.triangles[i + 2]];
+    for (std::size_t i = 0; i + 2 < surface.triangles.size(); i += 3) {
+        const Vec3 a = surface.positions[surface.triangles[i]], b = surface.positions[surface.triangles[i + 1]],
+                   c = surface.positions[surface.triangles[i + 2]];
         const Vec3 n = glm::cross(b - a, c - a);
-        const Vec3 outward =
-            skin.normals[skin.triangles[i]] + skin.normals[skin.triangles[i + 1]] + skin.normals[skin.triangles[i + 2]];
+        const Vec3 outward = surface.normals[surface.triangles[i]] + surface.normals[surface.triangles[i + 1]] +
+                             surface.normals[surface.triangles[i + 2]];
         EXPECT_GT(glm::dot(n, outward), -1e-15) << i / 3;
     }
 }

@@ -382,9 +382,9 @@ TEST(Tuft, ForceGrowsWithDepth) {
         const TuftState state = draw(tuft, s);
         EXPECT_GT(state.normal_force, before);
         before = state.normal_force;
-        const Vec3 felt = device_force(tuft.preset, state);
-        EXPECT_LE(glm::length(felt), tuft.preset.force_limit * (1 + 1e-12));
-        EXPECT_GT(glm::dot(felt, state.force), 0);
+        const Vec3 filtered = device_force(tuft.preset, state);
+        EXPECT_LE(glm::length(filtered), tuft.preset.force_limit * (1 + 1e-12));
+        EXPECT_GT(glm::dot(filtered, state.force), 0);
     }
 }
 

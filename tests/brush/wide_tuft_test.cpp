@@ -15,11 +15,11 @@ constexpr ContactPlane kGround{};
 
 /// A tuft pressed to a depth over 30 steps and then dragged, ferrule upright but for a lean about x.
 struct Drag {
-    double depth = 0.2;     ///< of the length
-    double lean = 0;        ///< rad, of the handle towards −y, so that the hair trails
-    double roll = 0;        ///< rad, of the ferrule about its axis
-    Vec3 way{0, -2e-4, 0};  ///< m a step
-    int steps = 60;         ///< after the press
+    double depth = 0.2;        ///< of the length
+    double lean = 0;           ///< rad, of the handle towards −y, so that the hair trails
+    double roll = 0;           ///< rad, of the ferrule about its axis
+    Vec3 motion{0, -2e-4, 0};  ///< m a step
+    int steps = 60;            ///< after the press
 };
 
 Pose pose_at(const Preset& p, const Drag& drag, int i) {
@@ -28,7 +28,7 @@ Pose pose_at(const Preset& p, const Drag& drag, int i) {
     Pose pose;
     pose.rotation = turn;
     pose.position =
-        Vec3{0, 0, p.length * std::cos(drag.lean) - down} + static_cast<double>(std::max(0, i - 30)) * drag.way;
+        Vec3{0, 0, p.length * std::cos(drag.lean) - down} + static_cast<double>(std::max(0, i - 30)) * drag.motion;
     return pose;
 }
 
@@ -121,8 +121,8 @@ TEST(Ferrule, RingHasOneSpineInTheMiddle) {
         for (const FerruleNeighbours& n : ferrule_neighbours(p)) {
             ++neighbours[n.first];
             ++neighbours[n.second];
-            const Vec2 way{spines[n.second].x - spines[n.first].x, spines[n.second].y - spines[n.first].y};
-            EXPECT_NEAR(glm::distance(glm::normalize(way), n.direction), 0, 1e-12);
+            const Vec2 offset{spines[n.second].x - spines[n.first].x, spines[n.second].y - spines[n.first].y};
+            EXPECT_NEAR(glm::distance(glm::normalize(offset), n.direction), 0, 1e-12);
         }
         EXPECT_EQ(neighbours[0], count - 1);
         for (std::size_t k = 1; k <= around; ++k) EXPECT_EQ(neighbours[k], 3);
@@ -200,8 +200,8 @@ TEST(WideTuft, HangsAsItWasSetIn) {
 TEST(WideTuft, MirrorImageOfHandAndBrush) {
     for (const char* name : {"flat-12", "bright-12", "filbert-12", "fan-30", "hake-60"}) {
         const Preset p = load_preset(name);
-        const TuftState left = dragged(p, {.lean = 0.3, .roll = 0.2, .way = {1e-4, -2e-4, 0}});
-        const TuftState right = dragged(p, {.lean = 0.3, .roll = -0.2, .way = {-1e-4, -2e-4, 0}});
+        const TuftState left = dragged(p, {.lean = 0.3, .roll = 0.2, .motion = {1e-4, -2e-4, 0}});
+        const TuftState right = dragged(p, {.lean = 0.3, .roll = -0.2, .motion = {-1e-4, -2e-4, 0}});
         const std::size_t count = left.branches.size();
         // The residual of a solve, 1e-6 of B0/L; the two differ by rounding only.
         EXPECT_NEAR(left.force.z, right.force.z, 1e-6 * std::abs(left.force.z)) << name;
@@ -218,8 +218,8 @@ TEST(WideTuft, MirrorImageOfHandAndBrush) {
 /// The same steps give the same bits.
 TEST(WideTuft, RepeatsToTheBit) {
     const Preset p = load_preset("filbert-12");
-    const TuftState a = dragged(p, {.lean = 0.3, .way = {1e-4, -2e-4, 0}}),
-                    b = dragged(p, {.lean = 0.3, .way = {1e-4, -2e-4, 0}});
+    const TuftState a = dragged(p, {.lean = 0.3, .motion = {1e-4, -2e-4, 0}}),
+                    b = dragged(p, {.lean = 0.3, .motion = {1e-4, -2e-4, 0}});
     EXPECT_EQ(a.force, b.force);
     for (std::size_t k = 0; k < a.branches.size(); ++k)
         EXPECT_EQ(a.branches[k].sections.front().centre, b.branches[k].sections.front().centre);
@@ -290,7 +290,7 @@ TEST(WideTuft, InkHoldsSpinesTogether) {
         Tuft tuft = make_tuft(p, 2);
         tuft.wetness = tuft.ink_left = wet;
         const TuftState s =
-            dragged(tuft, {.depth = 0.25, .lean = 0.5, .roll = 0.5, .way = {0, -4e-4, 0}, .steps = 120});
+            dragged(tuft, {.depth = 0.25, .lean = 0.5, .roll = 0.5, .motion = {0, -4e-4, 0}, .steps = 120});
         double most = -1;
         for (const Opening& opening : s.openings)
             for (const double o : opening.width) most = std::max(most, o);

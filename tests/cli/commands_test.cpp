@@ -55,6 +55,30 @@ TEST_F(Commands, ReplayMakesTheSameTexelsForAnyThreadCount) {
     }
 }
 
+TEST_F(Commands, APreparedModelIsStoredOnceAndPaintsTheSameTexels) {
+    write("s.inkml", stroke_file());
+    const std::string cache = "export XDG_CACHE_HOME='" + path("cache") + "';";
+    const auto painted = [&](const std::string& options) {
+        const Ran ran = tuft("paint " + model("sphere.ply") + " --strokes " + path("s.inkml") +
+                                 " --place 0,0,100 --atlas-size 512 --json " + options,
+                             cache);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return json::parse(ran.out).at("canvas_hash").get<std::string>();
+    };
+    const auto entries = [&] {
+        const std::filesystem::path folder = std::filesystem::path(path("cache")) / "tuft" / "models";
+        return std::filesystem::exists(folder)
+                   ? std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator())
+                   : 0;
+    };
+    const std::string hash = painted("--no-cache");
+    EXPECT_EQ(entries(), 0);
+    EXPECT_EQ(painted(""), hash);
+    EXPECT_EQ(entries(), 1);
+    EXPECT_EQ(painted("--threads 2"), hash);
+    EXPECT_EQ(entries(), 1);
+}
+
 TEST_F(Commands, ReplayTakesAnotherSizeInkAndModel) {
     write("s.inkml", stroke_file());
     ASSERT_EQ(tuft("paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --project " +
@@ -225,9 +249,9 @@ TEST_F(Commands, APersistentBrushReplaysTheSame) {
     std::string ink = stroke_file();
     const std::size_t at = ink.find("<trace>"), end = ink.find("</trace>") + 8;
     const std::string trace = ink.substr(at, end - at);
-    std::string told = trace;
-    told.insert(7, "<annotation type=\"tuft:reshape\"/><annotation type=\"tuft:dip\">cinnabar</annotation>");
-    write("s.inkml", ink.substr(0, at) + trace + trace + told + ink.substr(end));
+    std::string annotated = trace;
+    annotated.insert(7, "<annotation type=\"tuft:reshape\"/><annotation type=\"tuft:dip\">cinnabar</annotation>");
+    write("s.inkml", ink.substr(0, at) + trace + trace + annotated + ink.substr(end));
     const std::string common =
         "paint " + model("sheet.ply") + " --strokes " + path("s.inkml") + " --atlas-size 256 --json";
     const Ran carried = tuft(common + " --dip persistent --project " + path("p.tuft"));
@@ -246,7 +270,7 @@ TEST_F(Commands, APersistentBrushReplaysTheSame) {
     EXPECT_EQ(entries[3]["ink"], "cinnabar");
 }
 
-// A wavy line without pressure; `slant` leans it, `width` of the way in mm.
+// A wavy line without pressure; `slant` leans it, `width` of the path in mm.
 std::string plain_pen(double slant, bool with_pressure, double pressure = 0.5) {
     std::ostringstream ink;
     ink << "<ink><traceFormat><channel name=\"X\" type=\"decimal\" units=\"mm\"/>"

@@ -27,7 +27,7 @@ TEST_F(Device, ListsTheKnownArms) {
 TEST_F(Device, WrongArgumentsAreOneLine) {
     for (const char* arguments :
          {"device", "device fly", "device list --preset omega", "device test --simulate wand", "device record",
-          "device simulate --way jump", "device test --port 1 --seconds 1", "device simulate --brush nosuch"}) {
+          "device simulate --motion jump", "device test --port 1 --seconds 1", "device simulate --brush nosuch"}) {
         const test::Ran ran = tuft(arguments);
         EXPECT_TRUE(ran.status == 1 || ran.status == 2) << arguments;
         EXPECT_EQ(ran.error_lines(), 1) << arguments << ran.err;

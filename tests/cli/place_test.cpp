@@ -90,19 +90,19 @@ TEST_F(Place, ADrawingLiesWithItsMiddleAtThePlaceAsWideAsAsked) {
     const Reach plain = painted("lines.inkml", "--place 10,0,20");
     // The ferrule is ahead of the ink at the end and, where it is set down, on its way there: by no more than hair lies
     // down.
-    const double lead = plain.size(0) - 10;
-    EXPECT_LT(std::abs(lead), 5) << "about what of the hair lies down";
+    const double lag = plain.size(0) - 10;
+    EXPECT_LT(std::abs(lag), 5) << "about what of the hair lies down";
     // The ferrule leans away from the tip: where it is shows against a drawing about the origin.
     write("about.inkml", lines(-5, -1.25, 10));
     const Reach about = painted("about.inkml", "--place 0,0,20");
     EXPECT_NEAR(plain.middle(0), 10 + about.middle(0), kStep);
     EXPECT_NEAR(plain.middle(1), about.middle(1), kStep);
     const Reach wide = painted("lines.inkml", "--place 10,0,20 --place-width 40");
-    EXPECT_NEAR(wide.size(0), 40 + lead, kStep);
+    EXPECT_NEAR(wide.size(0), 40 + lag, kStep);
     EXPECT_NEAR(wide.size(1), 10, kStep);
     const Reach turned = painted("lines.inkml", "--place 10,0,20 --place-width 40 --place-turn 90");
     EXPECT_NEAR(turned.size(0), 10, kStep);
-    EXPECT_NEAR(turned.size(1), 40 + lead, kStep);
+    EXPECT_NEAR(turned.size(1), 40 + lag, kStep);
     EXPECT_NEAR(turned.middle(1), about.middle(0), kStep) << "the lean turns too";
 }
 
@@ -121,11 +121,11 @@ TEST_F(Place, TheWidthAskedForIsThatOfTheInk) {
 TEST_F(Place, ADrawingFarLargerThanTheModelIsReported) {
     write("box.obj", box(false));  // 108 mm across
     write("lines.inkml", lines(0, 0, 10));
-    for (const auto& [width, told] : {std::pair{"300", false}, {"400", true}}) {
+    for (const auto& [width, reported] : {std::pair{"300", false}, {"400", true}}) {
         const Ran ran = tuft("paint " + path("box.obj") + " --atlas-size 256 --strokes " + path("lines.inkml") +
                              " --place 0,-30,0 --place-width " + width);
         EXPECT_EQ(ran.status, 0) << ran.err;
-        EXPECT_EQ(ran.err.find("the drawing is 400 mm large, the model 107.7 mm") != std::string::npos, told)
+        EXPECT_EQ(ran.err.find("the drawing is 400 mm large, the model 107.7 mm") != std::string::npos, reported)
             << ran.err;
     }
 }
@@ -135,7 +135,7 @@ TEST_F(Place, ADrawingFarLargerThanTheModelIsReported) {
 TEST_F(Place, APlaceBesideTheModelIsToldWithItsDistance) {
     write("box.obj", box(false));
     write("lines.inkml", lines(0, 0, 10));
-    const auto told = [&](const std::string& place) {
+    const auto reported = [&](const std::string& place) {
         const Ran ran = tuft("paint " + path("box.obj") + " --brush wolf-small --atlas-size 256 --strokes " +
                              path("lines.inkml") + " --place " + place + " --json");
         EXPECT_EQ(ran.status, 0) << ran.err;
@@ -143,14 +143,14 @@ TEST_F(Place, APlaceBesideTheModelIsToldWithItsDistance) {
         EXPECT_NEAR(placed["at_mm"][1].get<double>(), -30, 1e-4) << "the front; single precision of metres";
         return ran.err;
     };
-    EXPECT_EQ(told("0,-30,0").find("the model"), std::string::npos);
-    EXPECT_EQ(told("0,-35.3,0").find("beside the model"), std::string::npos) << "4.9 %";
-    EXPECT_NE(told("0,-35.5,0").find("lies 5.5 mm beside the model"), std::string::npos) << "5.1 %";
-    EXPECT_NE(told("5,-1030,0")
+    EXPECT_EQ(reported("0,-30,0").find("the model"), std::string::npos);
+    EXPECT_EQ(reported("0,-35.3,0").find("beside the model"), std::string::npos) << "4.9 %";
+    EXPECT_NE(reported("0,-35.5,0").find("lies 5.5 mm beside the model"), std::string::npos) << "5.1 %";
+    EXPECT_NE(reported("5,-1030,0")
                   .find("warning: --place 5,-1030,0 lies 1000.0 mm beside the model; the drawing goes to "
                         "the nearest place of its surface, 5.0,-30.0,0.0 mm"),
               std::string::npos);
-    EXPECT_NE(told("0,-20,0").find("lies 10.00 mm inside the model"), std::string::npos);
+    EXPECT_NE(reported("0,-20,0").find("lies 10.00 mm inside the model"), std::string::npos);
 }
 
 TEST_F(Place, ADrawingWithoutPlaceFitsTheFront) {
@@ -159,11 +159,11 @@ TEST_F(Place, ADrawingWithoutPlaceFitsTheFront) {
     const Reach reach = painted("device.inkml", "");
     write("fits.inkml", lines(0, 0, 30));
     const Reach fits = painted("fits.inkml", "");
-    const double lead = fits.size(0) - 30;
+    const double lag = fits.size(0) - 30;
     // The ferrule is ahead of the ink at the end and, where it is set down, on its way there: by no more than hair lies
     // down.
-    EXPECT_LT(std::abs(lead), 5) << "what fits stays as it is written";
-    EXPECT_NEAR(reach.size(0), 48 + lead, kStep) << "six tenths of the front";
+    EXPECT_LT(std::abs(lag), 5) << "what fits stays as it is written";
+    EXPECT_NEAR(reach.size(0), 48 + lag, kStep) << "six tenths of the front";
     EXPECT_LT(reach.high[1], -30 + 1e-3) << "before the front";
     EXPECT_NEAR(reach.middle(0), fits.middle(0), kStep);
 }
@@ -210,9 +210,9 @@ TEST_F(Place, TheUnitIsGuessedWhereNothingSaysIt) {
     const std::string guessed_model = read(path("out.glb"));
     EXPECT_EQ(guessed.status, 0) << guessed.err;
     EXPECT_NE(guessed.err.find("look like metres"), std::string::npos) << guessed.err;
-    const Ran told = tuft(paint + " --unit m --export " + path("out.glb"));
-    EXPECT_EQ(told.status, 0) << told.err;
-    EXPECT_EQ(told.err.find("look like"), std::string::npos) << told.err;
+    const Ran reported = tuft(paint + " --unit m --export " + path("out.glb"));
+    EXPECT_EQ(reported.status, 0) << reported.err;
+    EXPECT_EQ(reported.err.find("look like"), std::string::npos) << reported.err;
     EXPECT_TRUE(guessed_model == read(path("out.glb")));
 }
 
@@ -352,7 +352,7 @@ TEST_F(Place, ADrawingGoesToTheSideThatIsNamedAndSaysWhatWasChosen) {
 TEST_F(Place, TheReadersDirectionSaysWhichWayUpItIs) {
     write("box.obj", box(false));
     write("lines.inkml", lines(0, 0, 30));
-    // Up to the lead of the hand, as in the tests above.
+    // Up to the lag of the hand, as in the tests above.
     const Reach front = painted("lines.inkml", "--on top"), left = painted("lines.inkml", "--on top --read-from left"),
                 back = painted("lines.inkml", "--on top --read-from 0,1,0.5");
     EXPECT_NEAR(left.size(1), front.size(0), kStep) << "the lines go from back to front";

@@ -22,8 +22,8 @@ brush::Pose pose_at(const brush::Preset& preset, const Vec3& tip, const Quat& q 
 }
 
 /// One brush with its memory on one surface.
-struct Hand {
-    explicit Hand(const mesh::SurfaceQuery& s, const std::string& name = "wolf", Options o = {})
+struct ContactStage {
+    explicit ContactStage(const mesh::SurfaceQuery& s, const std::string& name = "wolf", Options o = {})
         : surface(s), tuft(brush::make_tuft(brush::load_preset(name))), options(o) {}
 
     const brush::Preset& preset() const { return tuft.preset; }
@@ -48,14 +48,14 @@ const std::vector<brush::Section>& spine(const Result& r) {
 TEST(Contact, FlatSheetIsTheBrushsOwnPlane) {
     const mesh::TriangleMesh m = shapes::sheet(0.3, 60);
     const mesh::SurfaceQuery surface(m);
-    Hand hand(surface);
+    ContactStage hand(surface);
     brush::Tuft alone = brush::make_tuft(hand.preset());
-    const brush::ContactPlane ground;
+    const brush::ContactPlane plane;
     for (int i = 0; i < 120; ++i) {
         const double depth = 0.01 * std::min(1.0, i / 40.0), x = std::max(0.0, (i - 40) * 5e-4);
         const brush::Pose pose = pose_at(hand.preset(), {x, 0, -depth});
         const Result r = step(hand.tuft, pose, surface, hand.memory, 1e-3);
-        const brush::TuftState expected = brush::step(alone, pose, std::span(&ground, 1), 1e-3);
+        const brush::TuftState expected = brush::step(alone, pose, std::span(&plane, 1), 1e-3);
         EXPECT_EQ(r.tuft.touching, expected.touching);
         // The same problem with planes that differ by single precision of the mesh (1e-9 m).
         EXPECT_NEAR(glm::length(r.tuft.force - expected.force), 0, 1e-4 * (glm::length(expected.force) + 1e-3));
@@ -84,7 +84,7 @@ TEST(Contact, TurnedAndMovedSheetTurnsAndMovesEverything) {
         for (const Method method : {Method::exact, Method::vertices}) {
             Options options;
             options.method = method;
-            Hand one(flat_surface, "mixed", options), two(turned_surface, "mixed", options);
+            ContactStage one(flat_surface, "mixed", options), two(turned_surface, "mixed", options);
             for (int i = 0; i < 60; ++i) {
                 const Vec3 tip{i * 4e-4, i * 1e-4, -0.008 * std::min(1.0, i / 20.0)};
                 const Quat lean = glm::angleAxis(0.3, Vec3{0, 1, 0});
@@ -108,7 +108,7 @@ TEST(Contact, ThinPlateHasContactOnTheSideOfTheFerrule) {
     const mesh::SurfaceQuery surface(m);
     for (const double side : {1.0, -1.0})
         for (const int steps : {1, 60}) {
-            Hand hand(surface);
+            ContactStage hand(surface);
             const Quat q = side > 0 ? Quat{1, 0, 0, 0} : glm::angleAxis(kUp, Vec3{1, 0, 0});
             Result r;
             for (int i = 1; i <= steps; ++i) r = hand.move({0.003, 0.002, side * (0.0005 - 0.012 * i / steps)}, q);
@@ -124,7 +124,7 @@ TEST(Contact, ThinPlateHasContactOnTheSideOfTheFerrule) {
 TEST(Contact, FerrulePushedThroughAPlateKeepsItsSide) {
     const mesh::TriangleMesh m = shapes::plate({0.08, 0.08, 0.0005});
     const mesh::SurfaceQuery surface(m);
-    Hand hand(surface);
+    ContactStage hand(surface);
     const double length = hand.preset().length;
     for (int i = 0; i <= 200; ++i) {
         const double depth = 1.5 * length * std::sin(std::numbers::pi * i / 200);
@@ -142,7 +142,7 @@ TEST(Contact, FerrulePushedThroughAPlateKeepsItsSide) {
 TEST(Contact, OpenSheetHasContactFromEitherSide) {
     const mesh::TriangleMesh m = shapes::sheet();  // normals +z, no thickness
     const mesh::SurfaceQuery surface(m);
-    Hand hand(surface);
+    ContactStage hand(surface);
     const Quat below = glm::angleAxis(kUp, Vec3{1, 0, 0});
     Result r;
     for (int i = 0; i <= 40; ++i) r = hand.move({0.01, 0, 0.002 + 2e-4 * i - 0.004}, below);
@@ -161,7 +161,7 @@ struct Drag {
     double travel = 0;      ///< largest step of the touching hair, metres
 };
 Drag drag_across(const mesh::SurfaceQuery& surface, const std::function<double(double)>& height, double depth) {
-    Hand hand(surface);
+    ContactStage hand(surface);
     const Quat lean = glm::angleAxis(-0.6, Vec3{0, 1, 0});
     for (int i = 0; i <= 40; ++i) hand.move({0.03, 0, height(0.03) - depth * i / 40}, lean);
     for (int i = 0; i < 50; ++i) hand.move({0.03 - 1e-4 * i, 0, height(0.03 - 1e-4 * i) - depth}, lean);
@@ -222,7 +222,7 @@ TEST(Contact, CircleInsideABowlIsSteadyAndTheSameAtEveryAzimuth) {
     constexpr double kRadius = 0.06;
     const mesh::TriangleMesh m = shapes::bowl(kRadius, 160);
     const mesh::SurfaceQuery surface(m);
-    Hand hand(surface);
+    ContactStage hand(surface);
     constexpr double kPolar = 2.4;  // of the touched circle, from +z
     const double depth = 0.006;
     double lo = 1e9, hi = 0, worst = 0;
@@ -248,7 +248,7 @@ TEST(Contact, CircleInsideABowlIsSteadyAndTheSameAtEveryAzimuth) {
 TEST(Contact, LeavesAPlateOverItsRim) {
     const mesh::TriangleMesh m = shapes::plate({0.03, 0.05, 0.002}, 60);
     const mesh::SurfaceQuery surface(m);
-    Hand hand(surface);
+    ContactStage hand(surface);
     for (int i = 0; i <= 40; ++i) hand.move({0, 0, 0.002 - 0.008 * i / 40});
     Vec3 force{0};
     double steady = 0, worst = 0;
@@ -279,7 +279,7 @@ TEST(Contact, SidesThatMeetAWallStopThere) {
             return Vec3{std::min(s, wall), 0.2 * (v - 0.5), std::max(0.0, s - wall)};
         });
         const mesh::SurfaceQuery surface(m);
-        Hand hand(surface, "goat");
+        ContactStage hand(surface, "goat");
         double widest = 0;
         for (int i = 0; i <= 240; ++i) {
             const double depth = 0.012 * std::min(1.0, i / 100.0);
@@ -307,7 +307,7 @@ TEST(Contact, ALedgeBesideTheTuftPushesIt) {
             return Vec3{s - up, 0.2 * (v - 0.5), up};
         });
         const mesh::SurfaceQuery surface(m);
-        Hand hand(surface, "goat");
+        ContactStage hand(surface, "goat");
         Pushed out{};
         for (int i = 0; i <= 240; ++i) {
             const Result r = hand.move({0, -0.02 + 2e-4 * i, -0.012 * std::min(1.0, i / 100.0)});
@@ -327,7 +327,7 @@ TEST(Contact, ALedgeBesideTheTuftPushesIt) {
 TEST(Contact, HoverHasAForceWithinTheTolerance) {
     const mesh::TriangleMesh m = shapes::sheet();
     const mesh::SurfaceQuery surface(m);
-    Hand hand(surface);
+    ContactStage hand(surface);
     const double tip_radius = brush::rest_radius(hand.preset(), 1);
     double before = 0;
     for (int i = 0; i <= 400; ++i) {
@@ -353,7 +353,7 @@ TEST(Contact, HoverHasAForceWithinTheTolerance) {
 TEST(Contact, DeviceForceIsClamped) {
     const mesh::TriangleMesh m = shapes::sheet();
     const mesh::SurfaceQuery surface(m);
-    Hand hand(surface);
+    ContactStage hand(surface);
     for (int i = 1; i <= 60; ++i) {
         const Result r = hand.move({0, 0, -0.025 * i / 60});
         const Vec3 wanted = brush::device_force(hand.preset(), r.tuft) + Vec3{0, 0, 0.1};
@@ -367,7 +367,7 @@ TEST(Contact, VertexMethodGivesThePlaneOfTheSheetAndTheSphereOfTheTuft) {
     const mesh::SurfaceQuery surface(m);
     Options options;
     options.method = Method::vertices;
-    Hand by_vertices(surface, "wolf", options), exact(surface);
+    ContactStage by_vertices(surface, "wolf", options), exact(surface);
     for (int i = 0; i <= 80; ++i) {
         const Vec3 tip{std::max(0, i - 40) * 3e-4, 0, -0.01 * std::min(1.0, i / 40.0)};
         const Result a = by_vertices.move(tip), b = exact.move(tip);
@@ -386,7 +386,7 @@ TEST(Contact, AnyPoseIsFiniteAndLeavesTheTuftUsable) {
     const mesh::TriangleMesh roof = shapes::roof(1.2, 0.1, 20);
     for (const mesh::TriangleMesh* m : {&bowl, &plate, &roof}) {
         const mesh::SurfaceQuery surface(*m);
-        Hand hand(surface, "goat");
+        ContactStage hand(surface, "goat");
         Random random(11);
         for (int i = 0; i < 700; ++i) {
             const Quat q = glm::normalize(Quat{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1),
@@ -440,7 +440,7 @@ TEST(Contact, AFerruleThatWouldEnterTheObjectIsHeldOnItsSurface) {
     const mesh::TriangleMesh block = shapes::plate({0.1, 0.1, 0.05});
     const mesh::SurfaceQuery surface(block);
     for (const char* name : {"wolf-medium", "goat-small"}) {
-        Hand hand(surface, name);
+        ContactStage hand(surface, name);
         const double length = hand.preset().length, down = 0.05 - length;
         double flat = 0;                                             // force where the ferrule rests on pressed hair
         for (double below = -length; below < 0.06; below += 1e-4) {  // of the ferrule's mouth
@@ -452,7 +452,7 @@ TEST(Contact, AFerruleThatWouldEnterTheObjectIsHeldOnItsSurface) {
         }
         EXPECT_LT(flat, 60) << "a firm press of a whole arm";
         // One that begins there is solved, too.
-        Hand inside(surface, name);
+        ContactStage inside(surface, name);
         const Result first = inside.move({0, 0, down - 0.02});
         EXPECT_NEAR(first.inside, 0.02, 3e-5);
         EXPECT_TRUE(first.tuft.converged) << name;

@@ -11,7 +11,7 @@
 #include "core/geometry/types.h"
 #include "mesh/triangle_mesh.h"
 
-/// Exact shortest ways over the triangles near a point (Xin and Wang 2009, by CGAL): what the
+/// Exact shortest paths over the triangles near a point (Xin and Wang 2009, by CGAL): what the
 /// log map of stamps is measured against on meshes.
 namespace tuft::testing {
 
@@ -42,33 +42,33 @@ class ExactGeodesics {
         paths_->add_source_point(face_.at(triangle), weights(face_.at(triangle), origin));
     }
 
-    /// Length of the shortest way to the point `p` of `triangle`, metres, and the unit direction
-    /// in which it leaves the origin; infinity where no way leads there.
+    /// Length of the shortest path to the point `p` of `triangle`, metres, and the unit direction
+    /// in which it leaves the origin; infinity where no path leads there.
     struct Geodesic {
         double length = std::numeric_limits<double>::infinity();
         Vec3 direction{0};
-        bool bent = false;  ///< it bends round a vertex: the straight ways from the origin do not
+        bool bent = false;  ///< it bends round a vertex: the straight paths from the origin do not
                             ///< reach the point, as behind an opening
     };
     Geodesic to(std::uint32_t triangle, const Vec3& p) const {
-        Geodesic way;
+        Geodesic path;
         const auto found = face_.find(triangle);
-        if (found == face_.end() || found->second == Surface::null_face()) return way;
+        if (found == face_.end() || found->second == Surface::null_face()) return path;
         std::vector<Kernel::Point_3> points;
         Bends bends;
         paths_->shortest_path_sequence_to_source_points(found->second, weights(found->second, p), bends);
-        way.bent = bends.any;
+        path.bent = bends.any;
         const auto result = paths_->shortest_path_points_to_source_points(found->second, weights(found->second, p),
                                                                           std::back_inserter(points));
-        if (points.size() < 2 || result.second == paths_->source_points_end()) return way;
-        way.length = result.first;
+        if (points.size() < 2 || result.second == paths_->source_points_end()) return path;
+        path.length = result.first;
         for (std::size_t i = points.size() - 1; i-- > 0;) {
             const Vec3 d = Vec3(points[i].x(), points[i].y(), points[i].z()) - origin_;
             if (glm::length(d) < 1e-9) continue;
-            way.direction = glm::normalize(d);
+            path.direction = glm::normalize(d);
             break;
         }
-        return way;
+        return path;
     }
 
     std::size_t n_triangles() const { return surface_.number_of_faces(); }

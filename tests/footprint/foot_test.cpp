@@ -100,7 +100,7 @@ TEST(UprightHair, HairDrawnToOneSideHasNone) {
         step(tuft, pose, {&sheet, 1}, 2e-3);
         const double share = upright_hair_of(tuft, sheet).share;
         EXPECT_LE(share, before + 1e-12);
-        EXPECT_GT(share, before - 0.1);  // 0.1 mm of a way of some 4 mm
+        EXPECT_GT(share, before - 0.1);  // 0.1 mm of a path of some 4 mm
         before = share;
     }
     EXPECT_EQ(before, 0);

@@ -17,7 +17,7 @@
 #include "paths.h"
 #include "stage.h"
 
-// Stamps on meshes against exact shortest ways over their triangles.
+// Stamps on meshes against exact shortest paths over their triangles.
 
 namespace tuft::footprint {
 namespace {
@@ -74,8 +74,8 @@ double mean(const std::vector<double>& v) {
     return sum / std::max<double>(1, double(v.size()));
 }
 
-/// | |(u, v)| − length of the exact way | over the radius, at texels of stamps of `texels` across
-/// anywhere on the model. Texels behind an opening are left out: no straight way leads there.
+/// | |(u, v)| − length of the exact path | over the radius, at texels of stamps of `texels` across
+/// anywhere on the model. Texels behind an opening are left out: no straight path leads there.
 std::vector<double> distance_errors(Model& model, double texels, int stamps, double part, std::uint64_t places = 5) {
     std::vector<double> errors, area{0};
     for (std::size_t t = 0; t < model.mesh.n_triangles(); ++t) {
@@ -97,16 +97,16 @@ std::vector<double> distance_errors(Model& model, double texels, int stamps, dou
             if (choice.uniform(0, 1) > part) return;
             const auto p = model.query->closest_point(Vec3(model.map.position(slot, t)), 1e-5);
             if (!p) return;
-            const auto way = exact.to(p->triangle, p->position);
-            if (way.bent || !std::isfinite(way.length)) return;
+            const auto geodesic = exact.to(p->triangle, p->position);
+            if (geodesic.bent || !std::isfinite(geodesic.length)) return;
             const Vec2 uv = place_of(model.map, jobs, f, slot, t);
-            errors.push_back(std::abs(glm::length(uv) - way.length) / r);
+            errors.push_back(std::abs(glm::length(uv) - geodesic.length) / r);
         });
     }
     return errors;
 }
 
-// Both are exact: positions are in single precision, sums along a way in double. Origins lie a nanometre off.
+// Both are exact: positions are in single precision, sums along a path in double. Origins lie a nanometre off.
 TEST(Geodesics, PathsAreAsLongAsCgals) {
     for (const char* name : {"car", "bowl"}) {
         const auto path = source_folder() + "/models/" + name + ".ply";
@@ -157,7 +157,7 @@ TEST(Geodesics, StampsKeepDistancesOnARoughSurface) {
 
 void expect_distances_on_the_car(std::uint32_t gutter) {
     // Stamps as wide as the openings between the spokes, as the wheels, and between. Where the
-    // surface folds, clusters lie as exact ways say; what is left are single texels of clusters on
+    // surface folds, clusters lie as exact paths say; what is left are single texels of clusters on
     // whose other side another way is the shortest: up to 41 % there. Measured: mean 0.02 to 0.10
     // %, 98 % within 0.14 to 0.63 %, 99 % within 0.28 to 1.03 %; by the walk over the clusters alone
     // 99 % lay within 12 % at 256 texels.
@@ -187,19 +187,19 @@ struct Contact {
     std::uint32_t triangle = kNone;
 };
 
-/// Places `step` metres apart on the straightest way from the surface at `from` along `heading`.
-std::vector<Contact> straight_way(const Model& model, const Vec3& from, const Vec3& heading, double step, int n) {
+/// Places `step` metres apart on the straightest path from the surface at `from` along `heading`.
+std::vector<Contact> straight_geodesic(const Model& model, const Vec3& from, const Vec3& heading, double step, int n) {
     constexpr int kSub = 64;
-    std::vector<Contact> way;
+    std::vector<Contact> geodesic;
     auto at = model.query->closest_point(from);
     Frame frame = make_frame(at->position, at->normal, heading);
     for (int i = 0; i < n * kSub; ++i) {
-        if (i % kSub == 0) way.push_back({frame, at->triangle});
+        if (i % kSub == 0) geodesic.push_back({frame, at->triangle});
         at = model.query->closest_point(frame.origin + (step / kSub) * frame.t);
         const Vec3 t = parallel_transport(frame.t, frame.n, at->normal);
         frame = make_frame(at->position, at->normal, t);
     }
-    return way;
+    return geodesic;
 }
 
 /// Two by two checks of side `s` about the origin, the lower left and upper right ones black.
@@ -282,7 +282,7 @@ struct Squares {
     std::vector<double> sides;   ///< of all checks, |length / s − 1|, and diagonals
     std::vector<double> curved;  ///< the same where the surface does not unroll
     std::vector<double> areas;   ///< of the black checks by their exposure, |area / 2s² − 1|
-    std::vector<double> radii;   ///< origin to corner where straight ways lead, |length / |uv| − 1|
+    std::vector<double> radii;   ///< origin to corner where straight paths lead, |length / |uv| − 1|
 };
 
 void measure(Model& model, const Contact& at, double s, Squares& out) {
@@ -305,8 +305,8 @@ void measure(Model& model, const Contact& at, double s, Squares& out) {
     const auto compare = [&](int a, int b, double length, const testing::ExactGeodesics& exact,
                              std::vector<double>& into) {
         if (!corner[a] || !corner[b]) return;
-        const auto way = exact.to(corner[b]->triangle, corner[b]->position);
-        if (!way.bent && std::isfinite(way.length)) into.push_back(std::abs(way.length / length - 1));
+        const auto geodesic = exact.to(corner[b]->triangle, corner[b]->position);
+        if (!geodesic.bent && std::isfinite(geodesic.length)) into.push_back(std::abs(geodesic.length / length - 1));
     };
     for (int k = 0; k < 9; ++k) {
         if (!corner[k]) continue;
@@ -335,7 +335,7 @@ TEST(Geodesics, ChecksStampedAlongAPathAreSquareInSpace) {
                           Case{"car", 4096, {350, 20, 200}, {0, 1, 0}, 20, 18}}) {
         Model model = shipped(c.name, c.size);
         Squares squares;
-        for (const Contact& at : straight_way(model, 1e-3 * c.from, c.heading, 1e-3 * c.side, c.n))
+        for (const Contact& at : straight_geodesic(model, 1e-3 * c.from, c.heading, 1e-3 * c.side, c.n))
             measure(model, at, 1e-3 * c.side, squares);
         // Where the surface unrolls to a plane, the checks are square.
         ASSERT_GT(squares.sides.size(), 60u) << c.name;

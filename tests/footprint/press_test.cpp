@@ -36,7 +36,7 @@ struct Edges {
 };
 
 /// A stroke along x at 0.2 m/s, 30 mm long after a touch, pressed ever deeper down to a quadrant of the hair;
-/// the hand leans by `lean` towards `azimuth` from the way it goes, radians.
+/// the hand leans by `lean` towards `azimuth` from its motion, radians.
 Edges quick_press(brush::Preset preset, int segments, double lean, double azimuth) {
     preset.segments = segments;
     brush::Tuft tuft = brush::make_tuft(preset);

@@ -126,9 +126,9 @@ TEST(Stamp, StaysOnItsTurnOfARolledSheet) {
         // The turn it lies on, from its distance to the axis.
         const double phase = std::atan2(p.y, p.x);
         const double a = phase + 2 * kPi * std::round((((std::hypot(p.x, p.y) - inner) / pitch) - phase) / (2 * kPi));
-        const double way = std::hypot(length(a) - length(middle), p.z - at.z);
-        wrong += way > 1.05 * r;
-        worst = std::max(worst, std::abs(way - glm::length(place_of(stage, jobs, f, slot, t))) / r);
+        const double distance = std::hypot(length(a) - length(middle), p.z - at.z);
+        wrong += distance > 1.05 * r;
+        worst = std::max(worst, std::abs(distance - glm::length(place_of(stage, jobs, f, slot, t))) / r);
         ++exposed;
     });
     EXPECT_GT(exposed, 10000u);

@@ -143,7 +143,7 @@ TEST(Stamp, UnrollsTheConesOfTheReferenceTable) {
     };
     // On the slope, radius over curvature 0.4 (2 where the disc comes near the tip) and 0.9; then
     // over the tip, whose neighbourhood is
-    // cut off at 0.3: behind it the ways from both sides meet. Targets up to ratio 1: 1 %, 6 %.
+    // cut off at 0.3: behind it the paths from both sides meet. Targets up to ratio 1: 1 %, 6 %.
     for (const Case& c : {Case{1.1, 10, 8, 2e-3, 1e-2}, Case{0.5, 2, 1, 1e-3, 1e-2}, Case{1.1, 10, 13, 2e-3, 2e-2}}) {
         const double unit = 0.01;
         Stage stage(cone(c.alpha, 0.03 * c.contact * unit, 2.4 * c.contact * unit, 3, 64 / (c.radius * unit)));
@@ -194,7 +194,7 @@ TEST(Stamp, UnfoldsARightAngle) {
 
 TEST(Stamp, RollsOverAFillet) {
     // Two leaves at a right angle with a fillet of ρ = 0.2 r between, rounded out or in: the
-    // way over it is ρ π/2 longer. Contact 0.3 r before it.
+    // path over it is ρ π/2 longer. Contact 0.3 r before it.
     const double r = 0.01, rho = 0.2 * r, a = 0.3 * r, side = 0.03, texels = 400;
     for (const double sense : {1.0, -1.0}) {
         testing::Patch level = testing::flat({-side, -0.5 * side, 0}, {side, 0, 0}, {0, side, 0}, 8, 8);

@@ -19,13 +19,13 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Sum of exposure × way over a stroke of stamps `step` texels apart.
+/// Sum of exposure × travel over a stroke of stamps `step` texels apart.
 std::vector<std::array<double, atlas::kTileTexels>> stroke(Stage& stage, double texel, double step) {
     std::vector<std::array<double, atlas::kTileTexels>> sum(stage.map.n_slots());
     for (auto& s : sum) s.fill(0);
     const double length = 64;
-    for (double way = step; way <= length + 1e-9; way += step) {
-        const Vec3 at = Vec3{-0.006, -0.0031, 0} + way * texel * Vec3{0.8, 0.6, 0};
+    for (double travel = step; travel <= length + 1e-9; travel += step) {
+        const Vec3 at = Vec3{-0.006, -0.0031, 0} + travel * texel * Vec3{0.8, 0.6, 0};
         const Footprint f = disc(make_frame(at, {0, 0, 1}, {1, 0, 0}), stage.triangle_at(at), 16 * texel, 0.5 * texel);
         const Motion motion{step * texel * Vec2{0.8, 0.6}, 0};
         for_exposed(stage, stage.plan(f, motion),
@@ -65,13 +65,13 @@ TEST(Stamp, PrefixSumsAreManySubPoses) {
     Stage stage(testing::sheet(0.06, 2, 200));
     const double texel = 0.06 / 400;
     Random random(4);
-    for (const double way : {16.0, 37.3, 120.0}) {
+    for (const double travel : {16.0, 37.3, 120.0}) {
         for (const double angle : {0.0, 0.3, 1.2, kPi / 2, 2.5, 4.1}) {
             Footprint f = disc(make_frame({0.003, 0.002, 0}, {0, 0, 1}), 0, 14 * texel, 0.5 * texel);
             f.triangle = stage.triangle_at(f.frame.origin);
             for (std::uint8_t& c : f.coverage)  // bristles: a picture without order
                 if (random.uniform(0, 1) < 0.3) c = 0;
-            const Motion motion{way * texel * Vec2{std::cos(angle), std::sin(angle)}, 0};
+            const Motion motion{travel * texel * Vec2{std::cos(angle), std::sin(angle)}, 0};
             const StampJobs swept = stage.plan(f, motion);
             ASSERT_EQ(swept.sub_poses.size(), 1u);
             const StampJobs many = stage.plan(f, motion, {.sub_pose = 0.05, .max_sub_poses = 4096, .prefix_sums = 0});
@@ -92,8 +92,8 @@ TEST(Stamp, PrefixSumsAreManySubPoses) {
             // picture that is noise from cell to cell; without one (along an axis) only the steps
             // of 1/255 are left.
             const bool sheared = std::abs(std::sin(2 * angle)) > 1e-6;
-            EXPECT_LT(std::sqrt(square / double(n)) / peak, sheared ? 0.02 : 0.003) << way << " " << angle;
-            EXPECT_NEAR(sum_a / sum_b, 1, 2e-3) << way << " " << angle;
+            EXPECT_LT(std::sqrt(square / double(n)) / peak, sheared ? 0.02 : 0.003) << travel << " " << angle;
+            EXPECT_NEAR(sum_a / sum_b, 1, 2e-3) << travel << " " << angle;
         }
     }
 }
@@ -101,7 +101,7 @@ TEST(Stamp, PrefixSumsAreManySubPoses) {
 TEST(Stamp, HairDrawnSidewaysInksAllThatItPassesOver) {
     Stage stage(testing::sheet(0.06, 2, 200));
     const double texel = 0.06 / 400;
-    for (const double way : {2.0, 5.3, 40.0}) {
+    for (const double travel : {2.0, 5.3, 40.0}) {
         for (const double angle : {0.0, 0.3, 1.2, kPi / 2, 2.5, 4.1}) {
             // A hair a texel wide across the motion, 40 texels long: it leaves a box.
             const Vec2 along{-std::sin(angle), std::cos(angle)}, on{std::cos(angle), std::sin(angle)};
@@ -114,21 +114,21 @@ TEST(Stamp, HairDrawnSidewaysInksAllThatItPassesOver) {
                     f.coverage[static_cast<std::size_t>(j) * f.width + i] =
                         end < 20 ? static_cast<std::uint8_t>(255 * std::clamp(1.5 - off, 0.0, 1.0)) : 0;
                 }
-            const StampJobs jobs = stage.plan(f, {way * texel * on, 0}, {.max_weight = 1});
+            const StampJobs jobs = stage.plan(f, {travel * texel * on, 0}, {.max_weight = 1});
             ASSERT_EQ(jobs.sub_poses.size(), 1u);
             double inside = 1, outside = 0;
             for_exposed(stage, jobs, [&](std::uint32_t slot, int t, float e) {
                 const Vec3 d = Vec3(stage.map.position(slot, t)) - f.frame.origin;
                 const Vec2 p(glm::dot(d, f.frame.t), glm::dot(d, f.frame.b));
                 const double x = glm::dot(p, on) / texel, y = std::abs(glm::dot(p, along)) / texel;
-                // It came from -way; a texel and a cell of the picture lie at its border.
-                if (x > -way && x < 0 && y < 18.5) inside = std::min(inside, double(e));
-                if (x < -way - 1.8 || x > 1.8 || y > 21.5) outside = std::max(outside, double(e));
+                // It came from -travel; a texel and a cell of the picture lie at its border.
+                if (x > -travel && x < 0 && y < 18.5) inside = std::min(inside, double(e));
+                if (x < -travel - 1.8 || x > 1.8 || y > 21.5) outside = std::max(outside, double(e));
             });
             // Half of it: half of what lies over the mean that any closed picture leaves.
             const auto exposed = [&](float part) {
                 std::map<std::pair<std::uint32_t, int>, float> by_texel;
-                const StampJobs some = stage.plan(f, {way * texel * on, 0}, {.max_weight = part});
+                const StampJobs some = stage.plan(f, {travel * texel * on, 0}, {.max_weight = part});
                 for_exposed(stage, some, [&](std::uint32_t slot, int t, float e) { by_texel[{slot, t}] = e; });
                 return by_texel;
             };
@@ -137,8 +137,8 @@ TEST(Stamp, HairDrawnSidewaysInksAllThatItPassesOver) {
             for (const auto& [texel_of, e] : exposed(1))
                 ASSERT_NEAR(half[texel_of], 0.5f * (e + none[texel_of]), 1.1f / 255);
             // Between the cells of the sheared picture some of the hair's peak is lost, and little goes beyond.
-            EXPECT_GT(inside, 0.75) << way << " " << angle;
-            EXPECT_LT(outside, 0.01) << way << " " << angle;
+            EXPECT_GT(inside, 0.75) << travel << " " << angle;
+            EXPECT_LT(outside, 0.01) << travel << " " << angle;
         }
     }
 }
@@ -171,7 +171,7 @@ TEST(Stamp, ATurnAboutTheOriginSweepsTheAngle) {
         ++n;
     });
     EXPECT_EQ(outside, 0u);  // it came from −60°
-    // Width 4 texels over a way of ρ π/3; 44 sub-poses.
+    // Width 4 texels over a path of ρ π/3; 44 sub-poses.
     EXPECT_NEAR(at_30 / double(n) / (4 / (kPi / 3)), 1, 0.02);
 }
 

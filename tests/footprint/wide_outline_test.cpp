@@ -21,14 +21,14 @@ brush::TuftState dragged(const std::string& name, double wet = 1) {
     brush::Tuft tuft = brush::make_tuft(brush::load_preset(name), 5);
     tuft.wetness = tuft.ink_left = wet;
     brush::TuftState state;
-    const brush::ContactPlane ground;
+    const brush::ContactPlane plane;
     const double length = tuft.preset.length;
     for (int i = 0; i <= 90; ++i) {
         brush::Pose pose;
         pose.rotation = glm::angleAxis(0.4, Vec3{1, 0, 0});
         pose.position = {0, -2e-4 * std::max(0, i - 30),
                          length * std::cos(0.4) - 0.2 * length * std::min(1.0, i / 30.0)};
-        state = brush::step(tuft, pose, std::span(&ground, 1), 1e-3);
+        state = brush::step(tuft, pose, std::span(&plane, 1), 1e-3);
     }
     return state;
 }
@@ -116,12 +116,12 @@ TEST(WideOutline, EdgeIsThatOfTheMouth) {
             const double turn = degrees * std::numbers::pi / 180;
             brush::Tuft tuft = brush::make_tuft(p, 5);
             brush::TuftState state;
-            const brush::ContactPlane ground;
+            const brush::ContactPlane plane;
             for (int i = 0; i <= 10; ++i) {
                 brush::Pose pose;
                 pose.rotation = glm::angleAxis(turn, Vec3{0, 0, 1});
                 pose.position = {0, 0, p.length + 1e-4 - 2e-5 * i};
-                state = brush::step(tuft, pose, std::span(&ground, 1), 1e-3);
+                state = brush::step(tuft, pose, std::span(&plane, 1), 1e-3);
             }
             const double width = extent_of(outlines_of(state, kFlat, {}, {.film = 0})).width();
             const double s = q / (q - 1), w = p.width * std::abs(std::cos(turn)),
@@ -137,7 +137,8 @@ TEST(WideOutline, EdgeIsThatOfTheMouth) {
     }
 }
 
-/// What a row draws converges with the square of its pitch: 3, 5 and 9 spines of a flat that is turned against its way.
+/// What a row draws converges with the square of its pitch: 3, 5 and 9 spines of a flat that is turned against its
+/// path.
 TEST(WideOutline, RefinedRowsConvergeWithTheSquareOfTheirPitch) {
     std::vector<double> force, width;
     for (const int count : {3, 5, 9}) {
@@ -145,13 +146,13 @@ TEST(WideOutline, RefinedRowsConvergeWithTheSquareOfTheirPitch) {
         p.spines = count;
         brush::Tuft tuft = brush::make_tuft(p, 7);
         brush::TuftState state;
-        const brush::ContactPlane ground;
+        const brush::ContactPlane plane;
         for (int i = 0; i <= 90; ++i) {
             brush::Pose pose;
             pose.rotation = glm::angleAxis(0.4, Vec3{1, 0, 0}) * glm::angleAxis(0.3, Vec3{0, 0, 1});
             pose.position = {0, -2e-4 * std::max(0, i - 30),
                              p.length * (std::cos(0.4) - 0.2 * std::min(1.0, i / 30.0))};
-            state = brush::step(tuft, pose, std::span(&ground, 1), 1e-3);
+            state = brush::step(tuft, pose, std::span(&plane, 1), 1e-3);
         }
         force.push_back(state.force.z);
         width.push_back(extent_of(outlines_of(state, kFlat, {}, {.film = 0, .points = 60})).width());
@@ -181,11 +182,11 @@ TEST(WideOutline, RingMarksADisc) {
     const brush::Preset p = brush::load_preset("stippler-10");
     brush::Tuft tuft = brush::make_tuft(p, 5);
     brush::TuftState state;
-    const brush::ContactPlane ground;
+    const brush::ContactPlane plane;
     for (int i = 0; i <= 10; ++i) {
         brush::Pose pose;
         pose.position = {0, 0, p.length + 1e-5 - 2e-6 * i};
-        state = brush::step(tuft, pose, std::span(&ground, 1), 1e-3);
+        state = brush::step(tuft, pose, std::span(&plane, 1), 1e-3);
     }
     const Footprint f = rasterise(outlines_of(state, kFlat, {}, {.film = 0}), kFlat, 0, kCell);
     double filled = 0;
@@ -206,14 +207,14 @@ TEST(WideOutline, RingMarksADisc) {
     EXPECT_GT(area, 0.75 * std::numbers::pi * p.radius * p.radius * cell);
 }
 
-/// Width of the stripe of a sword after a long way, straight or on a circle of 60 mm, metres. Its blade goes along the
-/// way where its point touches, or keeps its direction.
+/// Width of the stripe of a sword after a long path, straight or on a circle of 60 mm, metres. Its blade goes along the
+/// path where its point touches, or keeps its direction.
 double stripe_of_sword(bool circle, bool follows) {
     constexpr double kRadius = 60e-3, kStep = 2e-4, kDepth = 0.15;
     const brush::Preset p = brush::load_preset("sword-8");
     brush::Tuft tuft = brush::make_tuft(p, 7);
     brush::TuftState state;
-    const brush::ContactPlane ground;
+    const brush::ContactPlane plane;
     double behind = 0, widest = 0;
     for (int i = 0; i < 1800; ++i) {
         const double along = kStep * i, turn = circle ? along / kRadius : 0;
@@ -221,7 +222,7 @@ double stripe_of_sword(bool circle, bool follows) {
         pose.position = {circle ? kRadius * std::sin(turn) : along, circle ? kRadius * (1 - std::cos(turn)) : 0,
                          p.length * (1 - kDepth * std::min(1.0, i / 150.0))};
         pose.rotation = glm::angleAxis(follows ? turn - behind : 0, Vec3{0, 0, 1});
-        state = brush::step(tuft, pose, std::span(&ground, 1), 2e-3);
+        state = brush::step(tuft, pose, std::span(&plane, 1), 2e-3);
         const Vec3& point = state.branches.back().sections.front().centre;
         if (circle && state.touching)
             behind = std::remainder(turn - std::atan2(point.x, kRadius - point.y), 2 * std::numbers::pi);

@@ -162,7 +162,7 @@ void run_substrate(Input input) {
     });
 }
 
-void run_habit(Input input) {
+void run_bias(Input input) {
     refusing([&] {
         const stroke::BiasCorrection bias = stroke::parse_bias(text_of(input), "input.toml");
         stroke::parse_bias(stroke::bias_toml(bias), "again.toml");
@@ -223,7 +223,7 @@ constexpr Target kTargets[] = {
     {"brush", run_brush, 3000, true},
     {"ink", run_ink, 3000, true},
     {"substrate", run_substrate, 3000, true},
-    {"habit", run_habit, 3000, true},
+    {"bias", run_bias, 3000, true},
     {"entry", run_entry, 3000, true},
     {"project", run_project, 500, false},
     {"image", run_image, 500, false},

@@ -8,10 +8,10 @@
 #include <future>
 #include <thread>
 
-#include "felt.h"
 #include "haptic/haply_messages.h"
 #include "haptic/loop.h"
 #include "haptic/strokes.h"
+#include "trial_model.h"
 
 namespace tuft::haptic {
 namespace {
@@ -96,10 +96,10 @@ struct Server {
     std::promise<int> port;
     std::thread thread;
 
-    Server(const Felt& f, const brush::Preset& brush, ServerFault fault) {
+    Server(const TrialModel& f, const brush::Preset& brush, ServerFault fault) {
         thread = std::thread([this, &f, brush, fault] {
             serve_simulated(
-                SimulatedArm(device_preset("inverse3"), hand_path(Way::rest, f.place, brush)),
+                SimulatedArm(device_preset("inverse3"), hand_path(HandMotion::rest, f.place, brush)),
                 {.port = 0, .fault = fault, .fault_after = 2.5}, [this] { return !stop; },
                 [this](int p) { port.set_value(p); }, &force);
         });
@@ -112,7 +112,7 @@ struct Server {
 
 /// What a session over the wire did.
 struct Session {
-    bool felt = false;        ///< there was force
+    bool had_force = false;   ///< there was force
     std::size_t strokes = 0;  ///< that began and ended
     std::size_t poses = 0;
     double left = -1;  ///< N, on the simulated arm at the end
@@ -122,7 +122,7 @@ struct Session {
 // Presses the tuft by a server that goes wrong after 2.5 s, and closes in mid-stroke. Deadlines of threads are no
 // matter here: they are judged in virtual time (safety_test.cpp).
 Session paint_over_the_wire(ServerFault fault) {
-    const Felt f = felt("sheet");
+    const TrialModel f = load_trial_model("sheet");
     const brush::Tuft tuft = tuft_of("wolf-medium");
     Session session;
     {
@@ -142,7 +142,7 @@ Session paint_over_the_wire(ServerFault fault) {
         for (int i = 0; i < 400; ++i) {
             std::this_thread::sleep_for(10ms);
             take();
-            session.felt = session.felt || glm::length(loop.status().force) > 0.02;
+            session.had_force = session.had_force || glm::length(loop.status().force) > 0.02;
         }
         loop.stop();
         take();
@@ -160,7 +160,7 @@ TEST(Haply, AStrokeIsKeptAndNoForceIsLeftWhateverTheServerDoes) {
                                     ServerFault::silent, ServerFault::floods}) {
         SCOPED_TRACE(static_cast<int>(fault));
         const Session session = paint_over_the_wire(fault);
-        EXPECT_TRUE(session.felt);
+        EXPECT_TRUE(session.had_force);
         EXPECT_GE(session.strokes, 1u);
         EXPECT_GT(session.poses, 100u);
         EXPECT_EQ(session.status.force, Vec3{0});

@@ -94,8 +94,8 @@ TEST(Law, AForceThatWorksOnItsOwnRunsOutOfEnergy) {
     }
 }
 
-// Whatever the hair does, and however coarse the counts are: the work of the force over the true way stays above what
-// the tank lends. The way is a hand's, of less than 60 m/s².
+// Whatever the hair does, and however coarse the counts are: the work of the force over the true path stays above what
+// the tank lends. The path is a hand's, of less than 60 m/s².
 TEST(Law, NoHairTakesMoreThanTheTankLends) {
     constexpr double kLent = 31e-6;  // J, e_0 and what fills an empty tank
     for (const DeviceLimits& limits : device_presets())

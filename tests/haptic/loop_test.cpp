@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "core/error.h"
-#include "felt.h"
 #include "haptic/allocations.h"
 #include "haptic/exchange.h"
+#include "trial_model.h"
 
 namespace tuft::haptic {
 namespace {
@@ -52,9 +52,9 @@ TEST(Exchange, AQueueKeepsTheOrderAndCountsWhatDoesNotFit) {
 
 /// A live loop of a simulated arm over the sheet.
 struct Live {
-    Felt f = felt("sheet");
+    TrialModel f = load_trial_model("sheet");
     brush::Tuft tuft = tuft_of("wolf-small");
-    SimulatedDevice device{SimulatedArm(device_preset("inverse3"), hand_path(Way::drag, f.place, tuft.preset))};
+    SimulatedDevice device{SimulatedArm(device_preset("inverse3"), hand_path(HandMotion::drag, f.place, tuft.preset))};
     LawOptions law{.limits = device_preset("inverse3")};
     Loop loop{device,
               HairSolver(tuft, *f.surface),

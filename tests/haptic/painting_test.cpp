@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "felt.h"
 #include "haptic/strokes.h"
 #include "io/model/read_model.h"
 #include "stroke/document/document.h"
+#include "trial_model.h"
 
 namespace tuft::haptic {
 namespace {
@@ -15,7 +15,7 @@ stroke::Model sheet() {
     return stroke::prepare_model(io::read_model(source_folder() + "/models/sheet.ply"), options);
 }
 
-stroke::PaintStroke felt_stroke() {
+stroke::PaintStroke device_stroke() {
     stroke::PaintStroke s;
     s.trace.flat = false;
     s.brush = "wolf-small";
@@ -24,23 +24,23 @@ stroke::PaintStroke felt_stroke() {
 }
 
 /// Solved poses of a trial of taps, which are several strokes.
-std::vector<SolvedPose> solved_poses(const stroke::Model& model, Way way) {
+std::vector<SolvedPose> solved_poses(const stroke::Model& model, HandMotion motion) {
     const brush::Tuft tuft = tuft_of("wolf-small");
     const TrialPlace place = place_above(*model.query, "sheet");
     TrialOptions options{.law = {.limits = device_preset("inverse3")}, .seconds = 2.5, .record = true};
-    return run_trial(tuft, *model.query, hand_path(way, place, tuft.preset), options).roots;
+    return run_trial(tuft, *model.query, hand_path(motion, place, tuft.preset), options).roots;
 }
 
 // The poses that were solved are the stroke's samples, to the bit, and a replay of the journal gives the same texels.
 TEST(Painting, AStrokeFromTheQueueAndItsJournalGiveTheSameTexels) {
     const stroke::Model model = sheet();
-    const std::vector<SolvedPose> solved = solved_poses(model, Way::circles);
+    const std::vector<SolvedPose> solved = solved_poses(model, HandMotion::circles);
     stroke::Document painting(model, {});
     StrokeCutter cutter;
     std::size_t poses = 0;
     for (const SolvedPose& pose : solved) {
         const StrokeCutter::Cut cut = cutter.add(pose);
-        if (cut.begins) painting.begin(felt_stroke());
+        if (cut.begins) painting.begin(device_stroke());
         if (!cut.poses.empty()) painting.extend(cut.poses);
         poses += cut.poses.size();
         if (cut.ends) painting.end();
@@ -66,7 +66,7 @@ TEST(Painting, AStrokeFromTheQueueAndItsJournalGiveTheSameTexels) {
 
 TEST(Painting, TapsAreStrokesOfTheirOwn) {
     const stroke::Model model = sheet();
-    const std::vector<SolvedPose> solved = solved_poses(model, Way::taps);
+    const std::vector<SolvedPose> solved = solved_poses(model, HandMotion::taps);
     StrokeCutter cutter;
     int begun = 0, ended = 0;
     for (const SolvedPose& pose : solved) {

@@ -3,15 +3,15 @@
 #include <cmath>
 #include <limits>
 
-#include "felt.h"
+#include "trial_model.h"
 
 namespace tuft::haptic {
 namespace {
 
 TEST(Safety, NoForceTwentyMillisecondsAfterAnyTrouble) {
-    const Felt f = felt("sheet");
+    const TrialModel f = load_trial_model("sheet");
     const brush::Tuft tuft = tuft_of("wolf-medium");
-    const auto path = hand_path(Way::rest, f.place, tuft.preset);
+    const auto path = hand_path(HandMotion::rest, f.place, tuft.preset);
     for (const DeviceLimits& limits : device_presets())
         for (const Trouble trouble : kTroubles) {
             const int periods = periods_to_stop(tuft, *f.surface, path, {.law = {.limits = limits}}, trouble, 2.2);

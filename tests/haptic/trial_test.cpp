@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "brush/preset/preset.h"
-#include "felt.h"
+#include "trial_model.h"
 
 namespace tuft::haptic {
 namespace {
@@ -15,7 +15,7 @@ TrialOptions options_for(const DeviceLimits& limits, double delay = 0) {
 }
 
 /// |Δf| in a period beyond k_max |Δx|, N: what a count of noise makes in spring and damper, and the fade (0.13 Touch,
-/// 0.14 Inverse3, 0.33 Falcon, 0.11 omega.6), or the end of a tank by the way of a hand at 60 m/s² and a count.
+/// 0.14 Inverse3, 0.33 Falcon, 0.11 omega.6), or the end of a tank by the motion of a hand at 60 m/s² and a count.
 double allowed_step(const DeviceLimits& limits) {
     const double K = limits.coupling, B = 2 * std::sqrt(K * 0.02);
     const double noise = K * limits.count + 0.2 * B * limits.count / kPeriod + 0.06;
@@ -32,17 +32,17 @@ double allowed_tap_step(const DeviceLimits& limits, double delay) {
 }
 
 void expect_passive(const std::string& place, const std::string& brush, double delay) {
-    const Felt f = felt(place);
+    const TrialModel f = load_trial_model(place);
     const brush::Tuft tuft = tuft_of(brush);
     for (const DeviceLimits& limits : device_presets())
-        for (const Way way : kPaintingWays) {
-            SCOPED_TRACE(place + " " + brush + " " + std::string(limits.name) + " " + std::string(name_of(way)));
+        for (const HandMotion motion : kPaintingMotions) {
+            SCOPED_TRACE(place + " " + brush + " " + std::string(limits.name) + " " + std::string(name_of(motion)));
             const TrialReport r =
-                run_trial(tuft, *f.surface, hand_path(way, f.place, tuft.preset), options_for(limits, delay));
+                run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset), options_for(limits, delay));
             // A contact gives back no more than it took: 1 µJ is a hundredth of what a light touch stores.
             EXPECT_GE(r.least_energy, -kMicrojoule);
             EXPECT_GE(r.least_with_arm, -kMicrojoule);
-            EXPECT_LE(r.largest_step, is_tap(way) ? allowed_tap_step(limits, delay) : allowed_step(limits));
+            EXPECT_LE(r.largest_step, is_tap(motion) ? allowed_tap_step(limits, delay) : allowed_step(limits));
             EXPECT_LE(r.largest_force, std::min(limits.max_force, kForceLimit) + 1e-9);
             EXPECT_GT(r.contacts, 0u);
         }
@@ -66,51 +66,52 @@ TEST(Trial, RoundBrushesGiveBackNothing) {
 }
 
 /// Energy alone, with delays of none and of a millisecond.
-void expect_no_energy(const Felt& f, const std::string& brush, std::initializer_list<Way> ways) {
+void expect_no_energy(const Felt& f, const std::string& brush, std::initializer_list<HandMotion> motions) {
     const brush::Tuft tuft = tuft_of(brush);
     for (const DeviceLimits& limits : device_presets())
-        for (const Way way : ways)
+        for (const HandMotion motion : motions)
             for (const double delay : {0.0, 1e-3}) {
                 const TrialReport r =
-                    run_trial(tuft, *f.surface, hand_path(way, f.place, tuft.preset), options_for(limits, delay));
+                    run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset), options_for(limits, delay));
                 EXPECT_GE(r.least_energy, -kMicrojoule)
-                    << f.place.name << " " << brush << " " << limits.name << " " << name_of(way) << " " << delay;
+                    << f.place.name << " " << brush << " " << limits.name << " " << name_of(motion) << " " << delay;
             }
 }
 
 // Five spines of hog hair on a ferrule 13 mm wide: the arm stands at its greatest force when the hand turns round.
 TEST(Trial, AStiffFlatBrushGivesBackNothing) {
-    expect_no_energy(felt("sheet"), "bright-12", {Way::taps, Way::press_fast});
+    expect_no_energy(felt("sheet"), "bright-12", {HandMotion::taps, HandMotion::press_fast});
 }
 
 // Beside a shut line the planes of nodes change from one period to the next, and the hair's force works by itself.
 TEST(Trial, EdgesGiveBackNothing) {
     for (const char* place : {"edge", "rim", "plate"})
-        expect_no_energy(felt(place), "wolf-medium", {Way::taps, Way::rocking, Way::hit, Way::slide});
+        expect_no_energy(felt(place), "wolf-medium",
+                         {HandMotion::taps, HandMotion::rocking, HandMotion::hit, HandMotion::slide});
 }
 
 TEST(Trial, HairTrappedInAShutLineGivesBackNothing) {
     Felt f = felt("edge");
     f.place = place_at_edge(*f.surface, "shut line", true);
-    expect_no_energy(f, "wolf-small", {Way::press, Way::drag, Way::taps, Way::rocking});
-    expect_no_energy(f, "liner-3", {Way::drag, Way::rocking});
+    expect_no_energy(f, "wolf-small", {HandMotion::press, HandMotion::drag, HandMotion::taps, HandMotion::rocking});
+    expect_no_energy(f, "liner-3", {HandMotion::drag, HandMotion::rocking});
 }
 
 // Restore leaks like any lag; the arm's friction pays.
 TEST(Trial, RestoreIsPaidForByTheArm) {
-    const Felt f = felt("sheet");
+    const TrialModel f = load_trial_model("sheet");
     const brush::Tuft tuft = tuft_of("wolf-medium");
     for (const DeviceLimits& limits : device_presets())
-        for (const Way way : kPaintingWays) {
+        for (const HandMotion motion : kPaintingMotions) {
             TrialOptions options = options_for(limits);
             options.law.restore = true;
-            const TrialReport r = run_trial(tuft, *f.surface, hand_path(way, f.place, tuft.preset), options);
-            EXPECT_GE(r.least_with_arm, -30 * kMicrojoule) << limits.name << " " << name_of(way);
+            const TrialReport r = run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset), options);
+            EXPECT_GE(r.least_with_arm, -30 * kMicrojoule) << limits.name << " " << name_of(motion);
         }
 }
 
 TEST(Trial, RandomHandsGetNothingBack) {
-    const Felt f = felt("sheet");
+    const TrialModel f = load_trial_model("sheet");
     const brush::Tuft tuft = tuft_of("wolf-medium");
     for (int hand = 0; hand < 40; ++hand) {
         Random random(static_cast<std::uint64_t>(hand) + 1);
@@ -118,43 +119,43 @@ TEST(Trial, RandomHandsGetNothingBack) {
         options.hand = {.mass = 0.02 * std::pow(25.0, random.uniform()),
                         .damping = random.uniform(1, 12),
                         .stiffness = 50 * std::pow(20.0, random.uniform())};
-        const Way way = kPaintingWays[random.bits() % std::size(kPaintingWays)];
+        const HandMotion motion = kPaintingMotions[random.bits() % std::size(kPaintingMotions)];
         const TrialReport r =
-            run_trial(tuft, *f.surface, hand_path(way, f.place, tuft.preset, random.bits() | 1), options);
-        EXPECT_GE(r.least_energy, -kMicrojoule) << hand << " " << options.law.limits.name << " " << name_of(way);
+            run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset, random.bits() | 1), options);
+        EXPECT_GE(r.least_energy, -kMicrojoule) << hand << " " << options.law.limits.name << " " << name_of(motion);
     }
 }
 
 // The root never passes the surface; the arm does by what its motors cannot hold.
 TEST(Trial, FerruleAtHalfAMetrePerSecondStopsAndGivesNothingBack) {
     for (const char* place : {"sheet", "rim"}) {
-        const Felt f = felt(place);
+        const TrialModel f = load_trial_model(place);
         const brush::Tuft tuft = tuft_of("wolf-small");
         for (const DeviceLimits& limits : device_presets())
-            for (const Way way : {Way::hit, Way::slide}) {
+            for (const HandMotion motion : {HandMotion::hit, HandMotion::slide}) {
                 TrialOptions options = options_for(limits);
                 options.hand = {.mass = 0.3, .damping = 8, .stiffness = 800};
                 options.record = true;
-                const TrialReport r = run_trial(tuft, *f.surface, hand_path(way, f.place, tuft.preset), options);
-                EXPECT_GE(r.least_energy, -kMicrojoule) << place << " " << limits.name << " " << name_of(way);
+                const TrialReport r = run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset), options);
+                EXPECT_GE(r.least_energy, -kMicrojoule) << place << " " << limits.name << " " << name_of(motion);
                 if (std::string(place) != "sheet") continue;
                 for (const SolvedPose& p : r.roots)
                     ASSERT_GT(glm::dot(p.pose.position - f.place.frame.origin, f.place.frame.n), -1e-4)
-                        << limits.name << " " << name_of(way);
+                        << limits.name << " " << name_of(motion);
             }
     }
 }
 
 /// Four recorded seconds of a press that stands still at its end.
-TrialReport rest_on(const Felt& f, const brush::Tuft& tuft, TrialOptions options) {
+TrialReport rest_on(const TrialModel& f, const brush::Tuft& tuft, TrialOptions options) {
     options.record = true;
     options.seconds = 4;
-    return run_trial(tuft, *f.surface, hand_path(Way::rest, f.place, tuft.preset), options);
+    return run_trial(tuft, *f.surface, hand_path(HandMotion::rest, f.place, tuft.preset), options);
 }
 
 // A hand at rest feels rest: the last second of a press that stands still.
 TEST(Trial, RestIsSteady) {
-    const Felt f = felt("sheet");
+    const TrialModel f = load_trial_model("sheet");
     const brush::Tuft tuft = tuft_of("wolf-medium");
     for (const DeviceLimits& limits : device_presets()) {
         const TrialReport r = rest_on(f, tuft, options_for(limits));
@@ -170,13 +171,13 @@ TEST(Trial, RestIsSteady) {
 
 // At rest spring and hair balance: f = G F(y), whatever the device.
 TEST(Trial, SteadyForceIsTheHairsAtTheVirtualRoot) {
-    const Felt f = felt("sheet");
+    const TrialModel f = load_trial_model("sheet");
     const brush::Tuft tuft = tuft_of("wolf-medium");
     for (const DeviceLimits& limits : device_presets()) {
         const TrialOptions options = options_for(limits);
         const TrialReport r = rest_on(f, tuft, options);
-        const Vec3 felt_force = r.forces.back(), hair = options.law.gain * r.last_hair;
-        EXPECT_LT(glm::distance(felt_force, hair), 0.02 * glm::length(hair)) << limits.name;
+        const Vec3 device_force = r.forces.back(), hair = options.law.gain * r.last_hair;
+        EXPECT_LT(glm::distance(device_force, hair), 0.02 * glm::length(hair)) << limits.name;
         HairSolver again(tuft, *f.surface);
         HairAnswer answer;
         for (const SolvedPose& p : r.roots) answer = again.solve(p.pose);
@@ -185,18 +186,18 @@ TEST(Trial, SteadyForceIsTheHairsAtTheVirtualRoot) {
 }
 
 TEST(Trial, SameOptionsGiveTheSameBits) {
-    const Felt f = felt("bowl");
+    const TrialModel f = load_trial_model("bowl");
     const brush::Tuft tuft = tuft_of("goat-small");
-    const auto path = hand_path(Way::rocking, f.place, tuft.preset);
+    const auto path = hand_path(HandMotion::rocking, f.place, tuft.preset);
     const TrialOptions options = options_for(device_preset("inverse3"), 1e-3);
     EXPECT_EQ(run_trial(tuft, *f.surface, path, options).hash, run_trial(tuft, *f.surface, path, options).hash);
 }
 
 TEST(Trial, PasteDragsAgainstTheMotionAndStaysPassive) {
-    const Felt f = felt("sheet");
+    const TrialModel f = load_trial_model("sheet");
     const brush::Tuft tuft = tuft_of("wolf-medium");
     TrialOptions options = options_for(device_preset("omega.6"));
-    const auto path = hand_path(Way::circles, f.place, tuft.preset);
+    const auto path = hand_path(HandMotion::circles, f.place, tuft.preset);
     const double without = run_trial(tuft, *f.surface, path, options).largest_force;
     options.solver.yield_stress = 300;  // Pa, of stiff oil paint
     const TrialReport paste = run_trial(tuft, *f.surface, path, options);

@@ -101,13 +101,13 @@ std::vector<double> band_errors(int n, std::uint64_t seed) {
     }
     std::vector<double> errors;
     for (const test::Mixture& m : test::random_mixtures(n, static_cast<int>(full.size()), seed)) {
-        const Spectrum ground = spectrum_of_rgb(m.ground);
-        const Bands under = bands_of_rgb(m.ground);
+        const Spectrum backing = spectrum_of_rgb(m.backing);
+        const Bands under = bands_of_rgb(m.backing);
         Spectrum fine;
         Bands coarse;
         for (int i = 0; i < kWavelengths; ++i)
             fine[i] = test::reflectance(
-                m, ground[i], [&](int p) { return full[p].k[i]; }, [&](int p) { return full[p].s[i]; });
+                m, backing[i], [&](int p) { return full[p].k[i]; }, [&](int p) { return full[p].s[i]; });
         for (int b = 0; b < kBands; ++b)
             coarse[b] = static_cast<float>(test::reflectance(
                 m, under[b], [&](int p) { return banded[p].k[b]; }, [&](int p) { return banded[p].s[b]; }));
@@ -151,10 +151,10 @@ Spectrum stack_in_full(const std::vector<std::vector<std::pair<Pigment, double>>
         }
     }
     const Interface glaze{.k1 = 0, .k2 = 0.6 * static_cast<double>(on.interface)};
-    const Spectrum ground = spectrum_of_rgb(on.reflectance);
+    const Spectrum backing = spectrum_of_rgb(on.reflectance);
     Spectrum r;
     for (int i = 0; i < kWavelengths; ++i) {
-        r[i] = saunderson_inverse(ground[i], glaze, false);
+        r[i] = saunderson_inverse(backing[i], glaze, false);
         for (const auto& film : curves) {
             double k = 0, s = 0;
             for (const auto& [c, amount] : film) {
@@ -218,13 +218,13 @@ TEST(Upsampling, FilmsKeepTheColoursTheyHaveInThreeBands) {
         double worst = 0, sum = 0;
         int n = 0;
         for (const float x : {0.1f, 0.25f, 0.5f, 1.0f, 1.6f, 2.5f, 5.0f})
-            for (const float ground : {0.03f, 0.3f, 0.84f, 0.95f}) {
+            for (const float backing : {0.03f, 0.3f, 0.84f, 0.95f}) {
                 Rgb three;
                 for (int c = 0; c < 3; ++c)
-                    three[c] = static_cast<float>(over(layer(p.curve.k[c], p.curve.s[c], p.curve.scale * x), ground));
+                    three[c] = static_cast<float>(over(layer(p.curve.k[c], p.curve.s[c], p.curve.scale * x), backing));
                 Ink ink;
                 ink.parts = {{p, 1.0}};
-                const double e = delta_e(colour_of_film(ink, {ground, ground, ground}, x), three);
+                const double e = delta_e(colour_of_film(ink, {backing, backing, backing}, x), three);
                 worst = std::max(worst, e);
                 sum += e;
                 ++n;

@@ -152,7 +152,7 @@ TEST(WetFilm, FibresHoldGrainsBackFromWhatSeeps) {
         };
         const double before = s.canvas.total(s.map, 0), start = radius();
         s.film.advance(s.canvas, 2 * (to - from) * 1e-6 / p.mobility, p);
-        // Upwind, first order: r² grows by a texel of 0.2 mm times the way, some 2 mm, more: 3 % of 3.5 mm squared.
+        // Upwind, first order: r² grows by a texel of 0.2 mm times the path, some 2 mm, more: 3 % of 3.5 mm squared.
         EXPECT_NEAR(radius() / start, std::pow(growth, 1 - retention), 0.03) << retention;
         EXPECT_NEAR(s.canvas.total(s.map, 0) / before, 1, 1e-5) << retention;
     }
@@ -342,12 +342,12 @@ TEST(WetFilm, ADryCanvasCostsNothingAndOnlyWetTilesDo) {
     EXPECT_TRUE(s.canvas.plane(s.canvas.touched_slots()[0], 0)) << "an open film that never was wet stays open";
     const std::uint32_t slot = atlas::texel_ref(s.map, 168, 168).slot;
     s.canvas.touch_liquid(slot, Liquid::film)[8 * 16 + 8] = 1;  // a drop in the middle of a tile
-    std::size_t told = 0;
+    std::size_t calls = 0;
     const FilmReport one =
-        s.film.advance(s.canvas, 1, film_params(load_substrate("porcelain")), [&](std::uint32_t) { ++told; });
+        s.film.advance(s.canvas, 1, film_params(load_substrate("porcelain")), [&](std::uint32_t) { ++calls; });
     EXPECT_GT(one.steps, 0u);
     EXPECT_LE(one.tile_steps, 9u + one.steps) << "its own tile, and once those round it";
-    EXPECT_LE(told, 9u);
+    EXPECT_LE(calls, 9u);
     EXPECT_EQ(s.film.advance(s.canvas, 300, film_params(load_substrate("porcelain"))).evaporated > 0, true);
     EXPECT_FALSE(s.canvas.wet());
 }

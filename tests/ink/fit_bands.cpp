@@ -41,11 +41,11 @@ Lab lab_shown(const std::array<double, 3>& rgb) {
 Samples make_samples(const std::vector<Curves>& pigments, int n, std::uint64_t seed) {
     Samples out;
     for (const Mixture& m : random_mixtures(n, static_cast<int>(pigments.size()), seed)) {
-        const Spectrum ground = spectrum_of_rgb(m.ground);
+        const Spectrum backing = spectrum_of_rgb(m.backing);
         Spectrum r;
         for (int i = 0; i < kW; ++i)
             r[i] = reflectance(
-                m, ground[i], [&](int p) { return pigments[p].k[i]; }, [&](int p) { return pigments[p].s[i]; });
+                m, backing[i], [&](int p) { return pigments[p].k[i]; }, [&](int p) { return pigments[p].s[i]; });
         const auto rgb = rgb_of_spectrum(r);
         const Lab lab = lab_of_rgb(rgb);
         Eigen::Matrix3d slope;
@@ -194,9 +194,9 @@ Places choose(const Gram& gram, int n) {
     for (bool moved = true; moved;) {
         moved = false;
         for (int k = 0; k < n; ++k)
-            for (const int way : {-1, 1}) {
+            for (const int sign : {-1, 1}) {
                 Places other = place;
-                other[k] += way;
+                other[k] += sign;
                 if (other[k] < 0 || other[k] >= kW || std::count(place.begin(), place.end(), other[k])) continue;
                 if (const double cost = cost_of(other); cost < best - 1e-9 * std::abs(best)) {
                     best = cost;

@@ -51,14 +51,14 @@ inline std::vector<Curves> estimated_pigments() {
     return out;
 }
 
-/// One or two films of one to four pigments each over a grey or coloured ground.
+/// One or two films of one to four pigments each over a grey or coloured backing.
 struct Mixture {
     struct Film {
         std::vector<int> pigment;
         std::vector<double> amount;  ///< film units
     };
     std::vector<Film> films;
-    Rgb ground{};
+    Rgb backing{};
     double interface = 0;
 };
 
@@ -82,17 +82,17 @@ inline std::vector<Mixture> random_mixtures(int n, int n_pigments, std::uint64_t
             for (double& a : film.amount) a *= x / sum;
             m.films.push_back(std::move(film));
         }
-        const double grounds = u();
-        if (grounds < 0.5)
-            m.ground = {.84f, .83f, .79f};
-        else if (grounds < 0.65)
-            m.ground = {.88f, .86f, .80f};
-        else if (grounds < 0.8)
-            m.ground = {.30f, .23f, .17f};
-        else if (grounds < 0.9)
-            m.ground = {.42f, .43f, .44f};
+        const double choice = u();
+        if (choice < 0.5)
+            m.backing = {.84f, .83f, .79f};
+        else if (choice < 0.65)
+            m.backing = {.88f, .86f, .80f};
+        else if (choice < 0.8)
+            m.backing = {.30f, .23f, .17f};
+        else if (choice < 0.9)
+            m.backing = {.42f, .43f, .44f};
         else
-            m.ground = {.03f, .03f, .03f};
+            m.backing = {.03f, .03f, .03f};
         m.interface = u() < 0.5 ? 1 : 0;
         all.push_back(std::move(m));
     }
@@ -101,9 +101,9 @@ inline std::vector<Mixture> random_mixtures(int n, int n_pigments, std::uint64_t
 
 /// Reflectance of a mixture at one wavelength; `k(p)`, `s(p)` of the pigments there.
 template <class K, class S>
-double reflectance(const Mixture& m, double ground, K&& k, S&& s) {
+double reflectance(const Mixture& m, double backing, K&& k, S&& s) {
     const Interface glaze{.k1 = 0, .k2 = 0.6 * m.interface};
-    double r = saunderson_inverse(ground, glaze, false);
+    double r = saunderson_inverse(backing, glaze, false);
     for (const Mixture::Film& film : m.films) {
         double sum_k = 0, sum_s = 0;
         for (std::size_t p = 0; p < film.pigment.size(); ++p) {

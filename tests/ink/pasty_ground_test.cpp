@@ -18,7 +18,7 @@ TEST(PasteUnderAWash, WhatComesLooseFollowsArchardsLaw) {
     // µm off.
     const Rub rub{.pressure = 1400, .length = 15e-3, .yield = 400};
     EXPECT_NEAR(loosened(rub) * kFilmUnit, 10.2e-6, 0.05e-6);
-    // What rests on twice the area goes as deep: the force counts, and the way, in whatever parts.
+    // What rests on twice the area goes as deep: the force counts, and the path, in whatever parts.
     EXPECT_NEAR(loosened({.pressure = 700, .length = 30e-3, .yield = 400}), loosened(rub), 1e-12);
     EXPECT_NEAR(loosened({.pressure = 2800, .length = 15e-3, .yield = 800}), loosened(rub), 1e-12);
     EXPECT_EQ(loosened({.pressure = -1, .length = 1}), 0);

@@ -205,7 +205,7 @@ TEST(Reservoir, InkMovesFromTheWetRootToTheDryTipAndSettlesEven) {
         EXPECT_GE(tuft.saturation(tip), before - 1e-15) << "rises steadily";
         before = tuft.saturation(tip);
     }
-    // One cell alone with τ = 0.3 s: 1 − e^{−t/τ} of the way, less what the cell above lacks by then.
+    // One cell alone with τ = 0.3 s: 1 − e^{−t/τ} of the change, less what the cell above lacks by then.
     Reservoir short_time = make_reservoir(0.5, layout_of(12));
     dip(short_time, kBlack);
     wipe(short_time, 1, {.depth = 0.1});

@@ -169,7 +169,7 @@ TEST(AreaLines, TaperIntoCorners) {
             if (l.taper_in > 0) nearest = std::min(nearest, passes(l.line.front(), l.line[1]));
             if (l.taper_out > 0) nearest = std::min(nearest, passes(l.line.back(), l.line[l.line.size() - 2]));
         }
-        // Points lie a tenth of a width apart, so that the way ahead leaves the tip's middle by half of that, and its
+        // Points lie a tenth of a width apart, so that the path ahead leaves the tip's middle by half of that, and its
         // side, which is 24 degrees off, by 0.05 w / tan 24 = 0.11 w before the end; twice for both sides' chords.
         EXPECT_LT(nearest, 0.22 * lines[0].width) << i;
     }

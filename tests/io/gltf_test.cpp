@@ -258,13 +258,13 @@ TEST(Gltf, NoMessageHoldsAWholeDataUri) {
          {"data:image/png;base64," + std::string(100'000, 'A'), "data:image/bmp;base64," + std::string(100'000, 'A'),
           std::string("data:") + std::string(100'000, 'A')}) {
         j["images"][0]["uri"] = uri;
-        std::string told;
+        std::string reported;
         try {
-            for (const std::string& warning : texts(read(j).warnings)) told += warning;
+            for (const std::string& warning : texts(read(j).warnings)) reported += warning;
         } catch (const Error& e) {
-            told = e.what();
+            reported = e.what();
         }
-        EXPECT_LT(told.size(), 500u) << told.substr(0, 600);
+        EXPECT_LT(reported.size(), 500u) << reported.substr(0, 600);
     }
 }
 

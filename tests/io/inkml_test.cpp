@@ -243,7 +243,7 @@ TEST(Inkml, WhatIsDoneWithTheBrushStandsOnTheTraceInOrder) {
         "<annotation type=\"tuft:dry\"> 2.5 </annotation>0 0, 1 1</trace>"
         "<trace><annotation type=\"tuft:dip\" depth=\"0.2\"/><annotation type=\"tuft:wipe\" amount=\"0.3\"/>0 0, 1 "
         "1</trace><trace>0 0, 1 1</trace></traceGroup></ink>";
-    const auto traces = parse_inkml(text, "care.inkml");
+    const auto traces = parse_inkml(text, "actions.inkml");
     ASSERT_EQ(traces.size(), 3u);
     ASSERT_EQ(traces[0].before.size(), 5u);
     const auto kind = [&](std::size_t i, std::size_t k) { return stroke::kind_of(traces[i].before[k]); };

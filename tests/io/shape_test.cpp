@@ -52,9 +52,9 @@ TEST(Shape, TheAreaIsOnTheLeft) {
         ASSERT_EQ(frame.rings().size(), 2u);
         for (const Ring& ring : frame.rings())
             for (std::size_t i = 0; i < ring.size(); ++i) {
-                const Vec2 a = ring[i], way = ring[(i + 1) % ring.size()] - a, left(-way.y, way.x);
-                EXPECT_TRUE(frame.contains(a + 0.5 * way + 0.01 * left));
-                EXPECT_FALSE(frame.contains(a + 0.5 * way - 0.01 * left));
+                const Vec2 a = ring[i], edge = ring[(i + 1) % ring.size()] - a, left(-edge.y, edge.x);
+                EXPECT_TRUE(frame.contains(a + 0.5 * edge + 0.01 * left));
+                EXPECT_FALSE(frame.contains(a + 0.5 * edge - 0.01 * left));
             }
         std::reverse(rings[turned].begin(), rings[turned].end());
     }

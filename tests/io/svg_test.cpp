@@ -164,8 +164,8 @@ TEST(Svg, LinesHaveTheWidthOfTheirStroke) {
     EXPECT_THROW(drawn("<line " + line + " stroke='red' stroke-width='wide'/>"), Error);
 }
 
-/// What is told of a drawing with a black line and this in it.
-std::vector<std::string> told(const std::string& inside) {
+/// What is reported of a drawing with a black line and this in it.
+std::vector<std::string> reported(const std::string& inside) {
     std::vector<std::string> notes;
     SvgOptions options;
     options.ink.note = [&](const Message& line) { notes.push_back(line.text()); };
@@ -192,54 +192,54 @@ TEST(Svg, WideLinesEndAsTheFileSays) {
 }
 
 TEST(Svg, WhatIsLeftOutIsReportedInALineEach) {
-    EXPECT_EQ(told("<g/>"), Notes{});
-    EXPECT_EQ(told("<text>Hello <tspan>there</tspan></text><image/><text display='none'>no</text><g "
-                   "visibility='hidden'><text>no</text></g>"),
+    EXPECT_EQ(reported("<g/>"), Notes{});
+    EXPECT_EQ(reported("<text>Hello <tspan>there</tspan></text><image/><text display='none'>no</text><g "
+                       "visibility='hidden'><text>no</text></g>"),
               (Notes{"1 text is left out: turn text into paths first", "1 image is left out"}));
-    EXPECT_EQ(told("<switch><foreignObject/><g/></switch><foreignObject/>"), Notes{"1 foreignObject is left out"});
-    EXPECT_EQ(told("<use href='#gone'/><use xlink:href='#lost' x='3'/><use href='other.svg#a'/>"),
+    EXPECT_EQ(reported("<switch><foreignObject/><g/></switch><foreignObject/>"), Notes{"1 foreignObject is left out"});
+    EXPECT_EQ(reported("<use href='#gone'/><use xlink:href='#lost' x='3'/><use href='other.svg#a'/>"),
               (Notes{"2 uses draw nothing: the file has no elements of the ids that they name",
                      "1 use of another file is left out: put its element into this file"}));
-    EXPECT_EQ(told("<script/><path d='M0 0H9' stroke='#000'><animate/><set/></path>"),
+    EXPECT_EQ(reported("<script/><path d='M0 0H9' stroke='#000'><animate/><set/></path>"),
               (Notes{"2 animations are not played", "1 script is not run"}));
 }
 
 TEST(Svg, EffectsThatABrushCannotPaintAreReportedWithTheirCounts) {
     const std::string line = "<path d='M0 0 H 50' stroke='black' ", square = "<rect width='20' height='20' ";
-    EXPECT_EQ(told("<g clip-path='url(#a)'>" + line + "/>" + line + "style='clip-path:url(#a)'/></g>"),
+    EXPECT_EQ(reported("<g clip-path='url(#a)'>" + line + "/>" + line + "style='clip-path:url(#a)'/></g>"),
               Notes{"2 clip paths are not applied: what they hide is painted"});
-    EXPECT_EQ(told(line + "mask='url(#m)'/>" + line + "mask='none'/>"),
+    EXPECT_EQ(reported(line + "mask='url(#m)'/>" + line + "mask='none'/>"),
               Notes{"1 mask is not applied: what it hides is painted"});
-    EXPECT_EQ(told(line + "filter='url(#f)'/>"), Notes{"1 filter is not applied"});
-    EXPECT_EQ(told("<g stroke-dasharray='3 2'>" + line + "/>" + line + "/>" + line + "stroke-dasharray='none'/>" +
-                   line + "stroke-dasharray='0'/></g>"),
+    EXPECT_EQ(reported(line + "filter='url(#f)'/>"), Notes{"1 filter is not applied"});
+    EXPECT_EQ(reported("<g stroke-dasharray='3 2'>" + line + "/>" + line + "/>" + line + "stroke-dasharray='none'/>" +
+                       line + "stroke-dasharray='0'/></g>"),
               Notes{"2 dashed lines are painted whole"});
-    EXPECT_EQ(told(line + "marker-end='url(#arrow)'/>"), Notes{"1 line loses its markers, such as arrow heads"});
+    EXPECT_EQ(reported(line + "marker-end='url(#arrow)'/>"), Notes{"1 line loses its markers, such as arrow heads"});
     EXPECT_EQ(
-        told("<g opacity='.5'>" + line + "/></g>" + line + "style='stroke-opacity:40%'/>" + line + "opacity='1'/>"),
+        reported("<g opacity='.5'>" + line + "/></g>" + line + "style='stroke-opacity:40%'/>" + line + "opacity='1'/>"),
         Notes{"2 opacities are not applied: the ink is painted in full"});
-    EXPECT_EQ(told("<defs><linearGradient id='g'/><radialGradient id='r'/><pattern id='p'/></defs>" + square +
-                   "fill='url(#g)'/>" + square + "style='fill:url(\"#r\")'/>" + square + "fill='url(#p) red'/>" +
-                   square + "fill='url(#gone)'/>" + square + "fill='url(#gone) black'/>"),
+    EXPECT_EQ(reported("<defs><linearGradient id='g'/><radialGradient id='r'/><pattern id='p'/></defs>" + square +
+                       "fill='url(#g)'/>" + square + "style='fill:url(\"#r\")'/>" + square + "fill='url(#p) red'/>" +
+                       square + "fill='url(#gone)'/>" + square + "fill='url(#gone) black'/>"),
               (Notes{"1 area or line has a paint that the file does not hold and is not painted",
                      "2 gradients are painted as one even ink", "1 pattern is painted as one even ink"}));
-    EXPECT_EQ(told("<style>g > path {fill:red} @media print {.b{fill:red} .c{fill:red}} .x{}</style>"),
+    EXPECT_EQ(reported("<style>g > path {fill:red} @media print {.b{fill:red} .c{fill:red}} .x{}</style>"),
               Notes{"1 rule of a style sheet is passed over: at-rules and most pseudo-classes are not understood"});
-    EXPECT_EQ(told(line + "style='transform:scale(2)'/>"),
+    EXPECT_EQ(reported(line + "style='transform:scale(2)'/>"),
               Notes{"1 transform in a style is not applied: write it as an attribute"});
 }
 
 TEST(Svg, ColoursThatBecomeOneInkAreNamed) {
     const auto square = [](const std::string& fill) { return "<rect width='20' height='20' fill='" + fill + "'/>"; };
-    EXPECT_EQ(told(square("black") + square("#000") + square("rgb(0, 0, 0)")), Notes{});
-    EXPECT_EQ(told(square("#E30613") + square("#e30613") + "<path d='M0 0H9' fill='none' stroke='navy'/>"),
+    EXPECT_EQ(reported(square("black") + square("#000") + square("rgb(0, 0, 0)")), Notes{});
+    EXPECT_EQ(reported(square("#E30613") + square("#e30613") + "<path d='M0 0H9' fill='none' stroke='navy'/>"),
               Notes{"3 colours are painted in one ink: black, #e30613, navy"});
-    EXPECT_EQ(told(square("white") + square("#FFF") + square("none")),
+    EXPECT_EQ(reported(square("white") + square("#FFF") + square("none")),
               Notes{"2 white areas and lines are left bare: white is the background, and what they cover stays "
                     "painted"});
     std::string many;
     for (int i = 0; i < 9; ++i) many += square("#00000" + std::to_string(i + 1));
-    EXPECT_EQ(told(many),
+    EXPECT_EQ(reported(many),
               Notes{"10 colours are painted in one ink: black, #000001, #000002, #000003, #000004, #000005, ..."});
 }
 

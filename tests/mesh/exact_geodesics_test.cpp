@@ -49,16 +49,16 @@ Vec3 pleated(Vec2 p) {
 struct Stand {
     TriangleMesh mesh;
     SurfaceQuery query{mesh};
-    ExactGeodesics ways;
+    ExactGeodesics geodesics;
 
     explicit Stand(TriangleMesh m) : mesh(std::move(m)) {}
     bool from(const Vec3& p, double radius = 2) {
         const auto at = query.closest_point(p);
-        return ways.spread(mesh, at->triangle, at->position, radius, kMost);
+        return geodesics.spread(mesh, at->triangle, at->position, radius, kMost);
     }
     ExactGeodesics::Geodesic to(const Vec3& p) const {
         const auto at = query.closest_point(p);
-        return ways.to(at->triangle, at->position);
+        return geodesics.to(at->triangle, at->position);
     }
 };
 
@@ -104,7 +104,7 @@ TEST(ExactGeodesics, BendRoundTheCornerOfANotch) {
 }
 
 TEST(ExactGeodesics, AreAsLongThereAsBack) {
-    // Over a field of hills and hollows, with ways round many vertices of either kind.
+    // Over a field of hills and hollows, with paths round many vertices of either kind.
     const auto hills = [](Vec2 p) { return Vec3(p, 0.06 * std::sin(19 * p.x) * std::cos(17 * p.y)); };
     Stand stand(sheet(32, hills));
     Random random(5);
@@ -114,7 +114,7 @@ TEST(ExactGeodesics, AreAsLongThereAsBack) {
         ASSERT_TRUE(stand.from(a));
         const double there = stand.to(b).length;
         ASSERT_TRUE(stand.from(b));
-        // Flat vertices throw no shadow, whose ways would be longer by 1e-8 of an edge each.
+        // Flat vertices throw no shadow, whose paths would be longer by 1e-8 of an edge each.
         EXPECT_NEAR(stand.to(a).length / there, 1, 1e-5);
         EXPECT_GE(there, glm::length(a - b) * (1 - 1e-3));
     }
@@ -125,8 +125,8 @@ TEST(ExactGeodesics, EndAtTheRadiusAndAtTheMostWindows) {
     ASSERT_TRUE(stand.from(flat({0.5, 0.5}), 0.2));
     EXPECT_NEAR(stand.to(flat({0.6, 0.6})).length, std::hypot(0.1, 0.1), 1e-6);
     EXPECT_TRUE(std::isinf(stand.to(flat({0.9, 0.5})).length));
-    EXPECT_FALSE(stand.ways.spread(stand.mesh, 0, stand.mesh.position(0, 0), 10, 100));
-    EXPECT_FALSE(stand.ways.spread(stand.mesh, kNone, Vec3{0}, 10, kMost));
+    EXPECT_FALSE(stand.geodesics.spread(stand.mesh, 0, stand.mesh.position(0, 0), 10, 100));
+    EXPECT_FALSE(stand.geodesics.spread(stand.mesh, kNone, Vec3{0}, 10, kMost));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace tuft::stroke {
 namespace {
 
-// A smooth stroke of some 10–30 mm: a random cubic, pressed and lifted, leaned a little.
+// A smooth stroke of some 10–30 mm: a random cubic, pressed and lifted, tilted a little.
 RecordedStroke random_stroke(std::uint64_t seed) {
     Random random(seed);
     Vec2 p[4];

@@ -24,21 +24,21 @@ PaintStroke dab(int i, const std::string& ink) {
     s.settings.dip = DipMode::persistent;
     s.settings.film = i % 4 ? FilmModel::still : FilmModel::wet;
     s.settings.spacing = 6;
-    const Vec3 way{2e-3 * std::cos(turn), 2e-3 * std::sin(turn), 0};
+    const Vec3 motion{2e-3 * std::cos(turn), 2e-3 * std::sin(turn), 0};
     const Vec3 start{12e-3 * (u(1) - 0.5), 12e-3 * (u(2) - 0.5), brush::load_preset(kBrush).length};
     constexpr int kSamples = 8;
     for (int k = 0; k <= kSamples; ++k) {
         const double f = static_cast<double>(k) / kSamples;
         StrokeSample p;
         p.time = 0.06 * f;
-        p.position = start + f * way;
+        p.position = start + f * motion;
         p.position.z += 0.5e-3 - 3e-3 * std::sin(std::numbers::pi * f);
         s.trace.samples.push_back(p);
     }
     return s;
 }
 
-BrushAction care(BrushActionKind kind, const std::string& ink, const Extent& extent) {
+BrushAction brush_action(BrushActionKind kind, const std::string& ink, const Extent& extent) {
     return {.kind = kind, .brush = kBrush, .ink = ink, .extent = extent, .dip = DipMode::persistent};
 }
 
@@ -62,8 +62,8 @@ TEST(Conservation, AThousandStrokesKeepEachPigment) {
     for (int i = 0; i < 1000; ++i) {
         if (i % 20 == 0) {
             ink = kInks[i / 20 % kPigments];
-            tend(care(BrushActionKind::wipe, ink, {.depth = 0.6, .amount = 0.5}));
-            tend(care(BrushActionKind::dip, ink, {.depth = 0.5, .side = i % 40 ? 0.5 : 0.0}));
+            tend(brush_action(BrushActionKind::wipe, ink, {.depth = 0.6, .amount = 0.5}));
+            tend(brush_action(BrushActionKind::dip, ink, {.depth = 0.5, .side = i % 40 ? 0.5 : 0.0}));
         }
         if (i % 100 == 99) painting.paint(Dry{i == 999 ? 0 : 0.3});
         touched += painting.paint(dab(i, ink)).touched();

@@ -194,7 +194,7 @@ TEST(DryBrush, ATiltedTuftThatTurnsRoundLeavesNoFan) {
     EXPECT_LT(end, 0.08);
 }
 
-/// Ink by itself: the area, m², of texels from which no way over inked texels or past `gap` bare ones leads to the
+/// Ink by itself: the area, m², of texels from which no path over inked texels or past `gap` bare ones leads to the
 /// most of the ink.
 double loose_ink(const Document& p, int gap) {
     const auto n = static_cast<int>(kSize);
@@ -253,9 +253,9 @@ TEST(DryBrush, ATiltedTipAtFirstContactLeavesNoSpeck) {
         }
         s.settings.dip = DipMode::persistent;
         Document painting(model);
-        BrushAction care = wipe(0.72, s.seed);
-        care.brush = s.brush;
-        painting.paint(care);
+        BrushAction action = wipe(0.72, s.seed);
+        action.brush = s.brush;
+        painting.paint(action);
         painting.paint(s);
         EXPECT_EQ(loose_ink(painting, 12), 0) << seed << ", " << samples << " samples";
     }

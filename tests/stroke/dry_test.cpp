@@ -188,13 +188,13 @@ TEST(DryBrush, AFinerAtlasShowsTheSameStreaks) {
         }
         return difference / all;
     };
-    for (const char* ground : {"porcelain", "rice-paper"}) {
+    for (const char* substrate : {"porcelain", "rice-paper"}) {
         const auto squares = [&](const Model& model, std::uint64_t seed) {
-            return by_squares(DryStroke(model, 0.2, seed, {.substrate = ground}), 0.18e-3);
+            return by_squares(DryStroke(model, 0.2, seed, {.substrate = substrate}), 0.18e-3);
         };
         const std::vector<double> a = squares(coarse, 5), b = squares(fine, 5);
-        EXPECT_LT(apart_by(a, b), 0.5 * apart_by(a, squares(coarse, 6))) << ground << " " << apart_by(a, b);
-        EXPECT_LT(apart_by(a, b), 0.3) << ground;
+        EXPECT_LT(apart_by(a, b), 0.5 * apart_by(a, squares(coarse, 6))) << substrate << " " << apart_by(a, b);
+        EXPECT_LT(apart_by(a, b), 0.3) << substrate;
     }
 }
 
@@ -229,7 +229,7 @@ TEST(DryBrush, AStrokeRunsDryByItself) {
     EXPECT_LT(before, 0.9 * covered(painting, -0.009, -0.005));
 }
 
-/// A wiped brush that leans across its way, lying on its side: rows of texels along the stroke's even part.
+/// A wiped brush that leans across its path, lying on its side: rows of texels along the stroke's even part.
 std::vector<std::vector<bool>> rows_of_slanted_stroke(const Model& model, std::uint64_t seed) {
     PaintStroke s = drag(seed);
     const double lean = 0.7, length = brush::load_preset(kBrush).length;
@@ -258,7 +258,7 @@ TEST(DryBrush, HairThatSticksTogetherDoesNotComeAndGoAtOnce) {
     const Model model = sheet();
     for (std::uint64_t seed = 1; seed < 5; ++seed) {
         const auto rows = rows_of_slanted_stroke(model, seed);
-        std::array<double, 30> clusters{};  // inked texels of every half millimetre along the way
+        std::array<double, 30> clusters{};  // inked texels of every half millimetre along the path
         for (const auto& row : rows)
             for (std::size_t i = 0; i < row.size(); ++i) {
                 const double at = ((static_cast<double>(i) + 0.5) / kSize - 0.5) * kSide;
@@ -271,7 +271,7 @@ TEST(DryBrush, HairThatSticksTogetherDoesNotComeAndGoAtOnce) {
 }
 
 /// How much the edge of the ink of a stroke along x goes in and out to one side (±1) of it, metres for each metre of
-/// the way from x0 to x1: by the ink within half a millimetre of the outermost.
+/// the path from x0 to x1: by the ink within half a millimetre of the outermost.
 double raggedness(const Document& p, int side, double x0, double x1) {
     constexpr double texel = kSide / (kSize - 16), strip = 0.5e-3;
     const atlas::TexelMap& map = p.model().texels;

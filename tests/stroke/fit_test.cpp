@@ -53,7 +53,7 @@ TEST(Fit, AMissingPartIsReportedByItsFraction) {
     const Model half = sheet(make_frame({0.5 * kSide, 0, 0}, {0, 0, 1}));
     const std::string reason = reason_on(half, pressed());
     ASSERT_TRUE(reason.ends_with(" % of it touches nothing")) << reason;
-    EXPECT_NEAR(std::stod(reason), 50, 3);  // a sample of the hand is 1 % of the way
+    EXPECT_NEAR(std::stod(reason), 50, 3);  // a sample of the hand is 1 % of the path
 }
 
 TEST(Fit, AStrokeInTheAirIsNoMismatch) {

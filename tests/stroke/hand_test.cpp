@@ -157,23 +157,23 @@ TEST(String, IsNeverLongerThanItsLengthAndTheTipNeverGoesFartherThanTheHand) {
     Random random(11);
     String s;
     Vec3 hand(0), last(0);
-    double hand_way = 0, tip_way = 0;
+    double hand_length = 0, tip_length = 0;
     for (int i = 0; i < 20000; ++i) {
         const Vec3 step = 1e-3 * Vec3(random.uniform(-1, 1.2), random.uniform(-1, 1), 0);
         hand += step;
         if (i == 0)
             last = hand;
         else
-            hand_way += glm::length(step);
+            hand_length += glm::length(step);
         const StrokeSample out = pull(s, StrokeSample{.time = 0.01 * i, .position = hand, .pressure = 0.5}, length);
         EXPECT_LE(glm::distance(out.position, hand), length * (1 + 1e-12));
-        tip_way += glm::distance(out.position, last);
+        tip_length += glm::distance(out.position, last);
         last = out.position;
         EXPECT_NEAR(out.pressure, 0.5, 1e-15);
         EXPECT_LT(s.past.size(), 3000u);  // only the string's worth of travel is kept
     }
-    EXPECT_LE(tip_way, hand_way);
-    EXPECT_LT(tip_way, 0.6 * hand_way);  // the wobble is gone
+    EXPECT_LE(tip_length, hand_length);
+    EXPECT_LT(tip_length, 0.6 * hand_length);  // the wobble is gone
 }
 
 TEST(String, AWobbleNarrowerThanTheStringMovesNothing) {
@@ -215,7 +215,7 @@ TEST(String, ZeroLengthPassesEverythingThrough) {
 }
 
 TEST(String, PressureStaysAtItsPositionOnThePath) {
-    // A straight drag whose pressure grows along the way; once taut the tip must have, wherever
+    // A straight drag whose pressure grows along the path; once taut the tip must have, wherever
     // it is, the pressure the hand had there.
     StrokeSettings settings;
     settings.stabilise = 4e-3;

@@ -168,14 +168,14 @@ TEST(LineWidth, LinesOnCurvedWallsLieWhereTheyAreDrapedInBothDirections) {
         const Model model = wall(0.05, inside);
         const mesh::SurfacePoint at = *model.query->closest_point({0.05, 0, 0});
         std::array<double, 2> aside{};
-        for (const std::size_t way : {0, 1}) {
+        for (const std::size_t direction : {0, 1}) {
             PaintStroke stroke = straight("wolf-medium", 0.0036, 0);
             Placement& place = stroke.trace.placement;
             place.origin = at.position;
             place.right = glm::normalize(glm::cross(Vec3(0, 0, 1), at.normal));
             place.down = glm::cross(place.right, at.normal);
             for (StrokeSample& s : stroke.trace.samples)
-                s.position = s.position.x * (way ? 1.0 : -1.0) * Vec3(std::sqrt(0.5), std::sqrt(0.5), 0);
+                s.position = s.position.x * (direction ? 1.0 : -1.0) * Vec3(std::sqrt(0.5), std::sqrt(0.5), 0);
             draw_to_width(stroke.trace, LineWidths(brush::load_preset("wolf-medium")));
             Document painting(model);
             painting.paint(stroke);
@@ -188,9 +188,9 @@ TEST(LineWidth, LinesOnCurvedWallsLieWhereTheyAreDrapedInBothDirections) {
                         const Vec3 p = Vec3(model.texels.position(slot, t)) - at.position;
                         if (texel <= 0 || (*plane)[t] < 0.1f || glm::length(p) > 0.01) continue;
                         area += texel;
-                        aside[way] += glm::dot(p, across) * texel;
+                        aside[direction] += glm::dot(p, across) * texel;
                     }
-            aside[way] /= area;
+            aside[direction] /= area;
         }
         // A tenth of the width. The tuft lies over some 6 mm, along which the wall leans by 0.1 rad and more; a hand
         // that was held over the surface ahead, not over the place of the ink, had the lines 1.1 mm aside.

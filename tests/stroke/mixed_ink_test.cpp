@@ -12,15 +12,15 @@ namespace {
 
 const std::string kBrush = "wolf-medium";
 
-BrushAction care(BrushActionKind kind, const std::string& ink, const Extent& extent) {
+BrushAction brush_action(BrushActionKind kind, const std::string& ink, const Extent& extent) {
     return {.kind = kind, .brush = kBrush, .ink = ink, .extent = extent, .dip = DipMode::persistent};
 }
 
 /// A brush with cinnabar in its right flank and gamboge in the left.
 void load_sides(Document& painting) {
-    painting.paint(care(BrushActionKind::dip, "gamboge", {}));
-    painting.paint(care(BrushActionKind::wipe, "gamboge", {.amount = 1, .side = 0.5}));
-    painting.paint(care(BrushActionKind::dip, "cinnabar", {.side = 0.5}));
+    painting.paint(brush_action(BrushActionKind::dip, "gamboge", {}));
+    painting.paint(brush_action(BrushActionKind::wipe, "gamboge", {.amount = 1, .side = 0.5}));
+    painting.paint(brush_action(BrushActionKind::dip, "cinnabar", {.side = 0.5}));
 }
 
 /// Drawn over the sheet with the holder at right angles to it; `turn` about the holder: where the
@@ -115,7 +115,8 @@ TEST(MixedInk, BrushActionsWithASideComeBackFromTheirText) {
     EXPECT_EQ(preparation_text(c), "dip:cinnabar,depth=0.25,side=-0.5");
     EXPECT_ANY_THROW(preparation_of("wipe,side=1.5"));
     EXPECT_ANY_THROW(preparation_of("rinse,side=0.5"));
-    const BrushAction entry = care(BrushActionKind::wipe, "carbon", {.depth = 0.5, .amount = 0.25, .side = 0.125});
+    const BrushAction entry =
+        brush_action(BrushActionKind::wipe, "carbon", {.depth = 0.5, .amount = 0.25, .side = 0.125});
     EXPECT_EQ(written_and_read(entry).get<BrushAction>().extent, entry.extent);
 }
 

@@ -268,13 +268,13 @@ TEST(Document, TurningSheetAndHandTogetherKeepsTheWidth) {
         return make_frame(sheet.origin, sheet.n, std::cos(angle) * sheet.t + std::sin(angle) * sheet.b);
     };
     for (const double angle : {0.2, 0.5, 1.1}) {
-        const Frame way = at_angle({}, angle), turned_way = at_angle(turned, angle);
+        const Frame frame = at_angle({}, angle), turned_frame = at_angle(turned, angle);
         Document here(flat), there(model);
-        here.paint(line("wolf-small", 4e-3, way));
-        there.paint(line("wolf-small", 4e-3, turned_way));
-        const double width = middle_width(here, way);
+        here.paint(line("wolf-small", 4e-3, frame));
+        there.paint(line("wolf-small", 4e-3, turned_frame));
+        const double width = middle_width(here, frame);
         ASSERT_GT(width, 1e-3);
-        EXPECT_NEAR(middle_width(there, turned_way), width, 0.0025 * width) << angle;
+        EXPECT_NEAR(middle_width(there, turned_frame), width, 0.0025 * width) << angle;
     }
 }
 
@@ -355,7 +355,7 @@ TEST(Document, RefusesAStrokeOfMillionsOfStepsBeforeItPaints) {
     EXPECT_EQ(painting.layers().canvas().hash(), Document(model).layers().canvas().hash());
 }
 
-// The way of the hand ahead of the ink is measured once for a brush. Another brush of the same name has another.
+// The path of the hand ahead of the ink is measured once for a brush. Another brush of the same name has another.
 TEST(Document, ABrushThatTakesAnothersPlaceIsMeasuredAnew) {
     const Model model = sheet();
     PaintStroke flat = line("wolf-small", 0);

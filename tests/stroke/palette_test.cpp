@@ -26,8 +26,8 @@ Fill pool(const std::string& ink, const Vec3& at) {
 }
 
 // A stroke through a place, on the palette or the model, with what is in the brush.
-PaintStroke through(const Vec3& at, std::uint32_t layer, const std::string& ink, const Vec3& way = {1, 0, 0}) {
-    PaintStroke s = line(kBrush, 8e-3, make_frame(at, {0, 0, 1}, way));
+PaintStroke through(const Vec3& at, std::uint32_t layer, const std::string& ink, const Vec3& direction = {1, 0, 0}) {
+    PaintStroke s = line(kBrush, 8e-3, make_frame(at, {0, 0, 1}, direction));
     s.ink = ink;
     s.layer = layer;
     s.settings.dip = DipMode::persistent;

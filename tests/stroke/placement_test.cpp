@@ -177,7 +177,7 @@ TEST(Placement, HeldTuftReachesThePressedDepth) {
     }
 }
 
-/// Heights of the unbent tip over z = 0, pressed with 0.5, on a straight way along x from -20 to 20 mm over the ground
+/// Heights of the unbent tip over z = 0, pressed with 0.5, on a straight path along x from -20 to 20 mm over the ground
 /// z(x), which has 0.25 mm between vertices.
 std::vector<double> tip_heights(const std::function<double(double)>& z, double scale = 1) {
     const TriangleMesh m = make_grid(
@@ -243,7 +243,8 @@ TEST(Placement, SteadyHandDoesNotTrembleOnNoise) {
         }
         return std::sqrt(squares / double(points.size()) - sum * sum / double(points.size() * points.size()));
     };
-    // 0.25 of it measured: the mean over some ten vertices, which is what a disk of 2 to 8 mm and 4 mm of the way hold.
+    // 0.25 of it measured: the mean over some ten vertices, which is what a disk of 2 to 8 mm and 4 mm of the path
+    // hold.
     EXPECT_LT(unsteadiness(0.008), 0.3 * unsteadiness(0));
 }
 
@@ -283,7 +284,7 @@ TEST(Placement, TipLagCompensationIsAheadAndTurnsWithThePath) {
     EXPECT_NEAR(led.samples[touch + 100].position.x, 0.01 + 0.003, 1e-12);  // depth 4 mm
     // The tip touches where the trace begins, and trails while the hand presses.
     EXPECT_NEAR(led.samples[0].pressure, 0, 1e-6);
-    EXPECT_NEAR(led.samples[0].position.x, 0, 1e-3) << "the shortest lead of the table";
+    EXPECT_NEAR(led.samples[0].position.x, 0, 1e-3) << "the shortest lag of the table";
     for (std::size_t i = 1; i <= touch; ++i) {
         EXPECT_GT(led.samples[i].pressure, led.samples[i - 1].pressure);
         EXPECT_GE(led.samples[i].position.x, led.samples[i - 1].position.x);
@@ -299,7 +300,7 @@ TEST(Placement, TipLagCompensationIsAheadAndTurnsWithThePath) {
     const Vec2 p(trace.samples.back().position), d = (Vec2(led.samples.back().position) - p) / 0.003;
     EXPECT_NEAR(glm::length(d), 1, 1e-9);
     EXPECT_NEAR(glm::dot(d, p / radius), l / radius, 6e-4);  // half a sample's step over R: 5e-4
-    // There and back: the lead passes through zero and turns round.
+    // There and back: the lag passes through zero and turns round.
     points.clear();
     for (int i = 0; i <= 200; ++i) points.push_back({1e-4 * (i <= 100 ? i : 200 - i), 0});
     led = compensate_tip_lag(make_trace({}, points), options);
@@ -309,7 +310,7 @@ TEST(Placement, TipLagCompensationIsAheadAndTurnsWithThePath) {
     // A dot has no direction.
     led = compensate_tip_lag(make_trace({}, {{0.01, 0.02}, {0.01, 0.02}}), options);
     EXPECT_EQ(led.samples[1].position, Vec3(0.01, 0.02, 0));
-    // No lead: nothing moves.
+    // No lag: nothing moves.
     led = compensate_tip_lag(trace, {.tip_lag = {}});
     EXPECT_EQ(led.samples[77].position, trace.samples[77].position);
 }

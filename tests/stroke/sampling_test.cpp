@@ -97,7 +97,7 @@ TEST(Sampling, AHolderGoesOnAfterARestAsWithoutOne) {
                 for (std::size_t i = 0; i < straight.size(); ++i)
                     d.take(rested[i <= before ? i : i + more], straight[i]);
                 // Without trembling the paths are the same to rounding. A tremble of 20 µm turns the string of
-                // 1.5 mm that the lead of 7 mm goes by: 20 µm 7 / 1.5. A mean over samples gave 2.2 mm and 5 degrees.
+                // 1.5 mm that the lag of 7 mm goes by: 20 µm 7 / 1.5. A mean over samples gave 2.2 mm and 5 degrees.
                 EXPECT_LT(d.metres, tremble > 0 ? 1.5e-4 : 1e-9);
                 EXPECT_LT(d.radians, tremble > 0 ? 1e-3 : 1e-7);
             }
@@ -117,7 +117,7 @@ TEST(Sampling, AHolderDoesTheSameAtEveryRate) {
             Difference d;
             for (std::size_t i = 0; i < trace.samples.size(); ++i)
                 d.take(own_poses(path, trace)[i], own_poses(finest, fine)[i * std::size_t(1000 / rate)]);
-            // 0.4 mm apart at 100 Hz: chords of a way of 30 mm radius, 0.7 µm off, from which the direction of the
+            // 0.4 mm apart at 100 Hz: chords of a path of 30 mm radius, 0.7 µm off, from which the direction of the
             // first 0.75 mm, the pace of the press and the lean at the start are taken. 1.5 mm and 3.4 degrees by
             // samples.
             EXPECT_LT(d.metres, rate < 200 ? 5e-5 : 1.5e-5) << surface_mapping_name(mapping) << ", " << rate;
@@ -211,9 +211,9 @@ void expect_bounded(const SurfaceQuery& query, const StrokeSamples& trace, const
     for (std::size_t i = 1; i < path.poses.size(); ++i) {
         const double dt = path.poses[i].time - path.poses[i - 1].time;
         const SurfaceSample &a = samples[i - 1], &b = samples[i];
-        const double lead = std::max(glm::length(a.tip_lag), glm::length(b.tip_lag)), length = options.tuft_length;
+        const double lag = std::max(glm::length(a.tip_lag), glm::length(b.tip_lag)), length = options.tuft_length;
         double most =
-            (1 + lead / options.tip_lag_turn + 2 * curvature * length + 1.5) * glm::distance(a.position, b.position) /
+            (1 + lag / options.tip_lag_turn + 2 * curvature * length + 1.5) * glm::distance(a.position, b.position) /
                 dt +
             4 * (options.working_depth * std::abs(b.pressure - a.pressure) + length * glm::length(b.tilt - a.tilt)) /
                 dt;

@@ -70,7 +70,7 @@ TEST(TipLag, UnderATiltedHolderTheLineLiesOnItsPath) {
                 first = std::min(first, k);
                 last = std::max(last, k);
             }
-            // The path runs from column -32 to 16. Under an upright holder's lead the full width began 5 mm
+            // The path runs from column -32 to 16. Under an upright holder's lag the full width began 5 mm
             // late and went on 6 mm beyond; what is left are the press and the grid of leans.
             EXPECT_NEAR(first, -31, 3);
             EXPECT_NEAR(last, 17, 3);
@@ -80,15 +80,15 @@ TEST(TipLag, UnderATiltedHolderTheLineLiesOnItsPath) {
 }
 
 TEST(TipLag, AnUprightHolderHasTheMeasuredLagAndSidesMirror) {
-    TiltedTipLag lead(brush::load_preset("goat-small"));
+    TiltedTipLag lag(brush::load_preset("goat-small"));
     const double depth = 0.3 * working_depth(brush::load_preset("goat-small"));
-    EXPECT_EQ(lead.at(depth, {0.03, -0.03}), Vec2(0));
-    EXPECT_EQ(lead.at(0, {0.5, 0.5}), Vec2(0));
-    const Vec2 left = lead.at(depth, {0.3, 0.5}), right = lead.at(depth, {0.3, -0.5});
+    EXPECT_EQ(lag.at(depth, {0.03, -0.03}), Vec2(0));
+    EXPECT_EQ(lag.at(0, {0.5, 0.5}), Vec2(0));
+    const Vec2 left = lag.at(depth, {0.3, 0.5}), right = lag.at(depth, {0.3, -0.5});
     EXPECT_EQ(left, Vec2(right.x, -right.y));
     // Hair pulled behind a holder that leans ahead trails it less than an upright one's.
-    EXPECT_LT(lead.at(depth, {0.6, 0}).x, -1e-3);
-    EXPECT_NEAR(lead.at(depth, {0.6, 0}).y, 0, 1e-15);  // metres: round-off of the rod
+    EXPECT_LT(lag.at(depth, {0.6, 0}).x, -1e-3);
+    EXPECT_NEAR(lag.at(depth, {0.6, 0}).y, 0, 1e-15);  // metres: round-off of the rod
 }
 
 /// What a trace under a holder that is upright but for a little to the right and to the writer leaves on a plane: where
@@ -111,16 +111,16 @@ TEST(TipLag, AStrokeSetDownFineStaysOnItsPathInEveryDirection) {
         for (int k = 0; k < 8; ++k) {
             SCOPED_TRACE(std::string(brush) + " " + std::to_string(45 * k));
             const double a = k * std::numbers::pi / 4;
-            const Vec2 way(std::cos(a), std::sin(a));
+            const Vec2 direction(std::cos(a), std::sin(a));
             StrokeSamples trace;
             for (int i = 0; i <= 90; ++i) {
                 const double x = 2e-4 * i;
                 trace.samples.push_back(
-                    {.time = x / 0.045, .position = Vec3(x * way, 0), .pressure = 0.35 * smooth_step(x / 4e-3)});
+                    {.time = x / 0.045, .position = Vec3(x * direction, 0), .pressure = 0.35 * smooth_step(x / 4e-3)});
             }
             double body = 0, head = 0;  // how far to the side the ink reaches, within the first 8 mm and beyond
             for (const Vec2& p : inked_cells(trace, brush)) {
-                const double along = glm::dot(p, way), aside = std::abs(p.x * way.y - p.y * way.x);
+                const double along = glm::dot(p, direction), aside = std::abs(p.x * direction.y - p.y * direction.x);
                 if (along < 8e-3)
                     head = std::max(head, aside);
                 else if (along < 15e-3)

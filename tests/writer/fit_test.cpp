@@ -34,8 +34,9 @@ TEST(Writer, FitIsTheSameForAnyNumberOfThreadsAndFromTheCache) {
     const auto one = Writer(options()).write(text);
     set_thread_count(4);
     WriterOptions cached = options();
-    cached.cache = std::filesystem::path(testing::TempDir()) / "tuft-fit-cache";
-    std::filesystem::remove_all(cached.cache);
+    const auto folder = std::filesystem::path(testing::TempDir()) / "tuft-fit-cache";
+    std::filesystem::remove_all(folder);
+    cached.cache = DiskCache(folder);
     Writer first(cached), second(cached);
     const auto many = first.write(text), again = second.write(text);
     set_thread_count(0);
@@ -45,7 +46,7 @@ TEST(Writer, FitIsTheSameForAnyNumberOfThreadsAndFromTheCache) {
         EXPECT_TRUE(equal(one[0][i].trace, many[0][i].trace));
         EXPECT_TRUE(equal(one[0][i].trace, again[0][i].trace));
     }
-    std::filesystem::remove_all(cached.cache);
+    std::filesystem::remove_all(folder);
 }
 
 // The predicted area of a bundled character is what its strokes are to cover; 0.90 is the floor of a stroke that a

@@ -66,9 +66,9 @@ std::vector<brush::Pose> poses_along(const mesh::SurfaceQuery& query, std::span<
                              smooth_step((1 - part) / std::max(1e-3, hand.settings.taper_out));
         const CurveSample place = at_length(curve, s);
         // The hand runs straight ahead, and under a lean aside: the tuft is dragged behind it, along the curve.
-        const Vec3 way = at_length(curve, s + kTangent).position - at_length(curve, s - kTangent).position;
+        const Vec3 chord = at_length(curve, s + kTangent).position - at_length(curve, s - kTangent).position;
         const stroke::Axes axes = stroke::axes_across(place.normal, hand.right, hand.down);
-        const Vec2 ahead{glm::dot(way, axes.right), glm::dot(way, axes.down)};
+        const Vec2 ahead{glm::dot(chord, axes.right), glm::dot(chord, axes.down)};
         stroke::SurfaceSample sample{.position = place.position,
                                      .normal = place.normal,
                                      .right = axes.right,

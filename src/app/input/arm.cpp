@@ -16,9 +16,9 @@ namespace {
 constexpr double kAbove = 0.01;    // m of the tip over the surface where the brush begins
 constexpr double kOnModel = 0.05;  // m round the model within which a recording is in the model's own frame
 
-haptic::Way way_of(const std::string& hand) {
-    for (int i = 0; i <= static_cast<int>(haptic::Way::slide); ++i)
-        if (haptic::name_of(static_cast<haptic::Way>(i)) == hand) return static_cast<haptic::Way>(i);
+haptic::HandMotion motion_of(const std::string& hand) {
+    for (int i = 0; i <= static_cast<int>(haptic::HandMotion::slide); ++i)
+        if (haptic::name_of(static_cast<haptic::HandMotion>(i)) == hand) return static_cast<haptic::HandMotion>(i);
     throw Error(Message("unknown hand '{}'", hand));
 }
 
@@ -56,7 +56,7 @@ Arm::Arm(const ArmSettings& settings) : settings_(settings) {
         known_ = true;
         device_ = std::make_unique<haptic::ReplayDevice>(limits, std::move(periods));
     } else {
-        if (settings.hand != "pointer") way_of(settings.hand);
+        if (settings.hand != "pointer") motion_of(settings.hand);
         hand_ = std::make_shared<PointerHand>();
         device_ = std::make_unique<haptic::SimulatedDevice>(
             haptic::SimulatedArm(limits, [](double) { return haptic::HandTarget{}; }));
@@ -79,7 +79,7 @@ void Arm::open_simulated() {
         hand_->wanted.write({});
         path = [hand = hand_](double) { return hand->at_present(); };
     } else {
-        const haptic::HandPath world = haptic::hand_path(way_of(settings_.hand), {"", scene_.start}, scene_.brush);
+        const haptic::HandPath world = haptic::hand_path(motion_of(settings_.hand), {"", scene_.start}, scene_.brush);
         path = [world, space = workspace_](double time) {
             haptic::HandTarget target = world(time);
             target.position = space.place_in_device(target.position);

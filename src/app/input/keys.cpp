@@ -57,7 +57,7 @@ constexpr std::array<Shipped, static_cast<std::size_t>(Action::count)> kShipped{
     {"see-through", "See through the brush", {GLFW_KEY_X, 0}},
     {"atlas", "Atlas beside the model", {GLFW_KEY_U, 0}},
     {"palette", "Palette", {GLFW_KEY_P, 0}},
-    {"next-shading", "Next way of showing the model", {GLFW_KEY_V, 0}},
+    {"next-shading", "Next shading of the model", {GLFW_KEY_V, 0}},
     {"panels", "Fold the panels", {GLFW_KEY_TAB, 0}},
     {"arm", "Force-feedback arm", {GLFW_KEY_A, 0}},
     {"stop-arm", "Stop the arm's forces", {GLFW_KEY_SPACE, 0}},

@@ -29,19 +29,19 @@ constexpr std::size_t kAgreeing = 3;   // of them that must lie on ground
 constexpr double kKnown = 3;           // pixels after which the direction of a clean stroke is known
 constexpr double kRestTime = 0.15;     // seconds after which a hand that rests presses straight down
 constexpr double kSetDown = 0.05;      // seconds in which a clean stroke is pressed down
-constexpr double kTouch = 0.7;         // of the pressure, that it is pressed down with; the rest comes along the way
+constexpr double kTouch = 0.7;         // of the pressure, that it is pressed down with; the rest comes along the path
 // Pressed down in place, the tip is pushed back behind the first place by this part of the tuft's length, at pressure
 // 1; the holder goes as far ahead of it there, and loses that over this part of the length. A fast start pulls the tip
 // along.
 constexpr double kSpread = 0.1, kSpreadGone = 0.2;
 constexpr double kTips = 0.12,
-                 kTipTurns = 4;      // radians that the holder is tipped ahead at first, over so many `tip_lag_turn`
-constexpr double kSlowest = 0.2;     // seconds in which it arrives at its end, at most
-constexpr double kFlick = 1.5;       // of the working depth: a way to the end on which the brush lifts by the next part
+                 kTipTurns = 4;   // radians that the holder is tipped ahead at first, over so many `tip_lag_turn`
+constexpr double kSlowest = 0.2;  // seconds in which it arrives at its end, at most
+constexpr double kFlick = 1.5;  // of the working depth: a distance to the end on which the brush lifts by the next part
 constexpr double kFlickLift = 0.75;  // of its pressure; the rest goes at the end
 constexpr double kSlanting = 0.35;   // cosine to the line of sight under which a gap and an edge look alike
 // Behind an edge hair that was pressed onto the rim would hook over it: the stroke goes on lightly, by this part of its
-// pressure's way, and is pressed down over this part of the tuft's length.
+// pressure's path, and is pressed down over this part of the tuft's length.
 constexpr double kLightly = 0.2, kOverAnEdge = 0.08;
 constexpr double kWall = 0.25, kLip = 0.55;  // radians from the mean normal: of a wall beside a lip at most, of a lip
 constexpr double kSameGround = 1.5;  // radii round the aim in which a place belongs to the ground that a holder levels
@@ -83,9 +83,10 @@ bool is_through_a_hole(const mesh::SurfaceQuery& surface, const mesh::SurfacePoi
     int backs = 0;
     for (int i = 0; i < kRays; ++i) {
         const double out = (i + 0.5) / kRays, turn = kGoldenAngle * i;
-        const Vec3 way = std::sqrt(out) * (std::cos(turn) * f.t + std::sin(turn) * f.b) + std::sqrt(1 - out) * f.n;
-        const auto met = surface.ray(from, way);
-        if (met && glm::dot(met->normal, way) > 0) ++backs;
+        const Vec3 direction =
+            std::sqrt(out) * (std::cos(turn) * f.t + std::sin(turn) * f.b) + std::sqrt(1 - out) * f.n;
+        const auto met = surface.ray(from, direction);
+        if (met && glm::dot(met->normal, direction) > 0) ++backs;
     }
     return backs > kSurrounded * kRays;
 }
@@ -117,8 +118,8 @@ std::optional<AimedSurface> PointerInput::find_gap(const Aim& aim, double centre
         const auto a = aim_at(surface_, one), b = aim_at(surface_, other);
         if (!a || !b) continue;
         // On one ground, flat or evenly bent: each lies as far out of the other's plane. Else it is a rim or a step.
-        const Vec3 na = facing(*a, aim), nb = facing(*b, aim), way = b->position - a->position;
-        const double out_a = glm::dot(na, way), out_b = glm::dot(nb, way);
+        const Vec3 na = facing(*a, aim), nb = facing(*b, aim), chord = b->position - a->position;
+        const double out_a = glm::dot(na, chord), out_b = glm::dot(nb, chord);
         if (std::abs(out_a + out_b) < kShallow * reach_ && std::abs(out_a) < kBent * reach_)
             pairs.push_back({0.5 * (a->distance + b->distance), na + nb});
     }
@@ -182,8 +183,8 @@ void PointerInput::onto_surface() {
     // In a thin wall its other side may be nearer.
     if (on && !is_met(*on)) on = surface_.ray(point_ + kFurthest * normal_, -normal_, 0, 2 * kFurthest);
     if (!on || !is_met(*on)) return;
-    const Vec3 way = on->position - point_;
-    const bool sideways = glm::length(way - glm::dot(way, normal_) * normal_) > 0.5 * glm::length(way);
+    const Vec3 offset = on->position - point_;
+    const bool sideways = glm::length(offset - glm::dot(offset, normal_) * normal_) > 0.5 * glm::length(offset);
     if (bridged_ >= 0 && motion_.time - bridged_ < 5 * settings_.smoothing + 2 * kFrame && sideways) return;
     const double side = glm::dot(on->normal, normal_) < 0 ? -1 : 1;
     point_ = on->position;
@@ -222,10 +223,10 @@ Quat PointerInput::rotation_at(const Aim& aim, const Vec3& up) const {
 }
 
 // The holder has gone on: it turns as the pen does, and after its stroke.
-void PointerInput::turn_holder(const Aim& aim, const Vec3& way) {
+void PointerInput::turn_holder(const Aim& aim, const Vec3& motion) {
     if (!wide_ || !settings_.roll_follow) return;
     const stroke::Axes axes = stroke::axes_across(normal_, aim.view_right, -aim.view_up);
-    stroke::follow_stroke(follower_, -aim.turn, {glm::dot(way, axes.right), glm::dot(way, axes.down)});
+    stroke::follow_stroke(follower_, -aim.turn, {glm::dot(motion, axes.right), glm::dot(motion, axes.down)});
 }
 
 // Where the holder is for ink at the point: ahead along the string, and under a lean aside.
@@ -243,24 +244,25 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
 
 // The point has moved: what it drags follows on the string, along the surface.
 void PointerInput::drag() {
-    Vec3 way = point_ - dragged_.position;
-    way -= glm::dot(way, normal_) * normal_;
-    if (const double length = glm::length(way); length > holder_.tip_lag_turn) way *= holder_.tip_lag_turn / length;
-    dragged_.position = point_ - way;
-    dragged_.string = way / holder_.tip_lag_turn;
+    Vec3 offset = point_ - dragged_.position;
+    offset -= glm::dot(offset, normal_) * normal_;
+    if (const double length = glm::length(offset); length > holder_.tip_lag_turn)
+        offset *= holder_.tip_lag_turn / length;
+    dragged_.position = point_ - offset;
+    dragged_.string = offset / holder_.tip_lag_turn;
 }
 
 double PointerInput::goal_pressure(const Aim& aim) const {
-    const double way = kLightly + gone_ / (kOverAnEdge * holder_.tuft_length);
-    const double landed = over_edge_ ? smooth_step(way / (1 + kLightly)) : 1;
+    const double travel = kLightly + gone_ / (kOverAnEdge * holder_.tuft_length);
+    const double landed = over_edge_ ? smooth_step(travel / (1 + kLightly)) : 1;
     if (aim.pressure >= 0) return landed * pen_depth(settings_, aim.pressure);
     const double slow = 1.0 - settings_.speed_effect * std::min(1.0, motion_.speed / settings_.fast);
     const double rested = settings_.dwell_effect * std::min(1.0, motion_.rest / settings_.dwell);
     return landed * std::clamp(settings_.pressure * slow + rested, 0.02, 1.0);
 }
 
-void PointerInput::touch_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards,
-                              std::vector<StrokeStep>& steps) {
+void PointerInput::pen_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards,
+                            std::vector<StrokeStep>& steps) {
     down_ = true;
     goal_ = point_ = hit.position;
     normal_ = hit.normal;
@@ -292,11 +294,11 @@ void PointerInput::set_down(std::vector<StrokeStep>& steps) {
     waiting_.clear();
     const Waiting& first = waiting.front();
     const Waiting& last = waiting.back();
-    Vec3 way = last.surface.position - first.surface.position;
-    way -= glm::dot(way, first.surface.normal) * first.surface.normal;
-    const double length = glm::length(way);
-    touch_down(first.aim, first.surface, length >= 0.5 * kKnown * last.aim.metres_per_pixel ? way / length : Vec3(0),
-               steps);
+    Vec3 motion = last.surface.position - first.surface.position;
+    motion -= glm::dot(motion, first.surface.normal) * first.surface.normal;
+    const double length = glm::length(motion);
+    pen_down(first.aim, first.surface, length >= 0.5 * kKnown * last.aim.metres_per_pixel ? motion / length : Vec3(0),
+             steps);
     motion_.start -= kSetDown;  // as if it had begun earlier: it lags no further behind
     motion_.speed = length / std::max(kFrame, last.aim.time - first.aim.time);
     if (!over_edge_) spread_ = kSpread * holder_.tuft_length * (1 - std::min(1.0, motion_.speed / settings_.fast));
@@ -367,7 +369,7 @@ std::vector<StrokeStep> PointerInput::move(const Aim& aim) {
         return steps;
     }
     if (!down_) {
-        touch_down(aim, *hit, Vec3(0), steps);
+        pen_down(aim, *hit, Vec3(0), steps);
     } else {
         StrokeStep step;
         // A tablet reports what changes: where it was silent, the pen was held still until shortly before.
@@ -386,15 +388,15 @@ std::vector<StrokeStep> PointerInput::move(const Aim& aim) {
 }
 
 // What the smoothing, or the string, kept the hand behind the cursor. It slows down evenly from the speed that it has,
-// and the pressure goes as what is left of the way, as far as the way is longer than the hand needs to stop anyway.
+// and the pressure goes as what is left of the path, as far as that is longer than the hand needs to stop anyway.
 void PointerInput::arrive(std::vector<brush::Pose>& poses) {
     const Vec3 from = point_;
-    const double way = glm::distance(goal_, from);
-    if (way < 0.25 * aim_.metres_per_pixel) return;
-    const double seconds = std::clamp(2 * way / std::max(motion_.speed, 1e-6), kFrame, kSlowest),
+    const double remaining = glm::distance(goal_, from);
+    if (remaining < 0.25 * aim_.metres_per_pixel) return;
+    const double seconds = std::clamp(2 * remaining / std::max(motion_.speed, 1e-6), kFrame, kSlowest),
                  start = motion_.pressure;
     const int n = static_cast<int>(std::ceil(seconds / kFrame));
-    const double flick = std::min(1.0, way / (kFlick * holder_.working_depth));
+    const double flick = std::min(1.0, remaining / (kFlick * holder_.working_depth));
     for (int i = 1; i <= n; ++i) {
         const double t = static_cast<double>(i) / n, left = (1 - t) * (1 - t);
         const Vec3 before = point_;

@@ -125,9 +125,9 @@ class PointerInput {
     bool is_clean(const Aim& aim) const { return settings_.clean_ends && aim.pressure < 0; }
     brush::Pose pose_at(const Aim& aim, const Vec3& point, const Vec3& normal, double pressure, double time) const;
     Quat rotation_at(const Aim& aim, const Vec3& up) const;
-    void turn_holder(const Aim& aim, const Vec3& way);
+    void turn_holder(const Aim& aim, const Vec3& motion);
     Vec3 ahead_of(const Aim& aim, const Vec3& normal, double pressure) const;
-    void touch_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards, std::vector<StrokeStep>& steps);
+    void pen_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards, std::vector<StrokeStep>& steps);
     void wait(const Aim& aim, const AimedSurface& hit, std::vector<StrokeStep>& steps);
     void set_down(std::vector<StrokeStep>& steps);
     void arrive(std::vector<brush::Pose>& poses);
@@ -150,7 +150,7 @@ class PointerInput {
     std::vector<Waiting> waiting_;  ///< of a clean stroke, until its direction is known
     DraggedPoint dragged_;
     double gone_ = 0;    ///< metres moved since pen down
-    double spread_ = 0;  ///< metres, additional lead of the holder there, at pressure 1
+    double spread_ = 0;  ///< metres, additional lag of the tip there, at pressure 1
     Vec3 goal_{0}, goal_normal_{0, 0, 1}, point_{0}, normal_{0, 0, 1};
     Motion motion_;
 };

@@ -23,7 +23,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kFull = 350;        // counts of a cap pushed all the way (SpaceNavigator at sensitivity 1)
+constexpr double kFull = 350;        // counts of a cap pushed to its stop (SpaceNavigator at sensitivity 1)
 constexpr double kMost = 3;          // full deflections: no sensitivity makes the view jump
 constexpr double kLongestGap = 0.1;  // seconds that one look may cover
 
@@ -45,12 +45,12 @@ class Daemon : public SpaceMouse {
     void merge(EventQueue& events, double now) override {
         const std::scoped_lock lock(mutex_);
         advance();
-        const double part = way_seconds_ > kLongestGap ? kLongestGap / way_seconds_ : 1;
-        if (way_.push != Vec3(0) || way_.twist != Vec3(0))
+        const double part = motion_seconds_ > kLongestGap ? kLongestGap / motion_seconds_ : 1;
+        if (motion_.push != Vec3(0) || motion_.twist != Vec3(0))
             events.push_back(
-                {.kind = Event::Kind::fly, .time = now, .push = part * way_.push, .twist = part * way_.twist});
-        way_ = {};
-        way_seconds_ = 0;
+                {.kind = Event::Kind::fly, .time = now, .push = part * motion_.push, .twist = part * motion_.twist});
+        motion_ = {};
+        motion_seconds_ = 0;
         for (const int button : std::exchange(buttons_, {}))
             events.push_back({.kind = Event::Kind::cap_button, .time = now, .button = button});
     }
@@ -68,15 +68,15 @@ class Daemon : public SpaceMouse {
         Vec3 push{0}, twist{0};
     };
 
-    // The way under the deflection that stood until now.
+    // The motion under the deflection that stood until now.
     void advance() {
         const Clock::time_point now = Clock::now();
         const double seconds = std::chrono::duration<double>(now - since_).count();
         since_ = now;
         if (cap_.push == Vec3(0) && cap_.twist == Vec3(0)) return;
-        way_.push += seconds * cap_.push;
-        way_.twist += seconds * cap_.twist;
-        way_seconds_ += seconds;
+        motion_.push += seconds * cap_.push;
+        motion_.twist += seconds * cap_.twist;
+        motion_seconds_ += seconds;
     }
     void put(const Cap& cap, Message trouble) {
         {
@@ -142,8 +142,8 @@ class Daemon : public SpaceMouse {
     int retry_ms_;
     std::array<int, 2> stop_{-1, -1};
     mutable std::mutex mutex_;
-    Cap cap_, way_;  // deflection now; its integral since the last look
-    double way_seconds_ = 0;
+    Cap cap_, motion_;  // deflection now; its integral since the last look
+    double motion_seconds_ = 0;
     Clock::time_point since_ = Clock::now();
     std::vector<int> buttons_;
     Message trouble_;

@@ -40,15 +40,15 @@ void export_strokes(PaintContext& context, const std::filesystem::path& path) {
 
 void draw_pictures(PaintContext& context, const ExportModel& command, const stroke::Document& painting) {
     const stroke::Model& m = painting.model();
-    const ink::Substrate& ground = painting.appearance().substrate();
-    const ink::AtlasMap<float> colour =
-        ink::compose_linear(painting.appearance().stack(), m.texels, ground, painting.appearance().compose_options());
-    render::Appearance look;
-    look.finish = ground.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
-    look.body_colour = Vec3f(ground.reflectance[0], ground.reflectance[1], ground.reflectance[2]);
-    look.maps.size = colour.size;
-    look.maps.corner_uvs = m.atlas.corner_uvs;
-    look.maps.base_colour =
+    const ink::Substrate& substrate = painting.appearance().substrate();
+    const ink::AtlasMap<float> colour = ink::compose_linear(painting.appearance().stack(), m.texels, substrate,
+                                                            painting.appearance().compose_options());
+    render::Appearance appearance;
+    appearance.finish = substrate.roughness > 0.45f ? render::Finish::clay : render::Finish::porcelain;
+    appearance.body_colour = Vec3f(substrate.reflectance[0], substrate.reflectance[1], substrate.reflectance[2]);
+    appearance.maps.size = colour.size;
+    appearance.maps.corner_uvs = m.atlas.corner_uvs;
+    appearance.maps.base_colour =
         std::span(reinterpret_cast<const Vec3f*>(colour.texels.data()), std::size_t{colour.size} * colour.size);
     for (int i = 0; i < command.pictures; ++i) {
         render::PictureOptions options;
@@ -61,7 +61,7 @@ void draw_pictures(PaintContext& context, const ExportModel& command, const stro
             return shown(phase, (i + part) / command.pictures);
         };
         if (command.pictures > 1) options = render::turntable_frame(options, i, command.pictures);
-        const render::Image image = render::render_picture(*m.mesh, *m.query, look, options);
+        const render::Image image = render::render_picture(*m.mesh, *m.query, appearance, options);
         char number[16] = "";
         if (command.pictures > 1) std::snprintf(number, sizeof number, "-%03d", i);
         std::filesystem::path file = command.path;

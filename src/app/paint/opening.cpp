@@ -130,6 +130,7 @@ PaintWork prepare_model(Inspected in, const OpenOptions& options, const fs::path
     prepare.repair.metres_per_unit = fixed.value_or(metres_per(options.frame.unit).value_or(kMillimetre));
     prepare.repair.y_up = options.frame.y_up && !fixed;
     prepare.unwrap.size = options.atlas_size;
+    prepare.cache = stroke::shared_model_cache();
     prepare.progress = progress;
     work.source = in.path.string();
     work.frame = options.frame;

@@ -32,7 +32,7 @@ bool goes_on(const stroke::JournalEntry& entry) {
 
 }  // namespace
 
-void OutsideChanges::look() {
+void OutsideChanges::poll() {
     if (context_.work.document->session() || !context_.work.autosave.overtaken()) return;
     try {
         take();

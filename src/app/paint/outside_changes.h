@@ -16,7 +16,7 @@ class OutsideChanges {
     explicit OutsideChanges(PaintContext& context) : context_(context) {}
 
     /// Merges the file's changes, if any. Does nothing during a stroke. Cost without changes: some microseconds.
-    void look();
+    void poll();
 
   private:
     void take();

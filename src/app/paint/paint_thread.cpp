@@ -58,7 +58,7 @@ void PaintThread::run() {
         const CommandQueue::Next next = queue_.wait(command, kLookOutsideEvery);
         if (next == CommandQueue::Next::closed) break;
         if (next == CommandQueue::Next::nothing) {
-            outside_.look();
+            outside_.poll();
             continue;
         }
         try {
@@ -73,7 +73,7 @@ void PaintThread::run() {
             context_.publisher.publish(true);
         }
         if (!queue_.pending()) context_.publisher.draw_thumbnails();
-        if (context_.work.autosave.has_unsaved()) outside_.look();
+        if (context_.work.autosave.has_unsaved()) outside_.poll();
     }
     finish_file();
 }
@@ -81,7 +81,7 @@ void PaintThread::run() {
 void PaintThread::finish_file() {
     PaintWork& work = context_.work;
     if (work.document->session()) strokes_.end();
-    outside_.look();
+    outside_.poll();
     Autosave& autosave = work.autosave;
     autosave.retry(work.source, work.frame, *work.document);
     if (autosave.has_unsaved() && !work.spare.empty() &&

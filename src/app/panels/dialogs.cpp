@@ -52,6 +52,61 @@ std::string grouped(std::size_t number) {
     return text;
 }
 
+/// Begins a row of a dialog: the name of what follows.
+void name_row(Ui& ui, const char* name) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", ui.tr(name));
+    ImGui::SameLine(ui.px(150));
+}
+
+void note_beside(const std::string& text) {
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", text.c_str());
+}
+
+/// Unit and upward axis of a file, where its format leaves them open.
+void frame_rows(Ui& ui, const Inspected& in, FileFrame& frame) {
+    static const std::vector<std::string> units{"um", "mm", "cm", "m", "in", "ft"}, axes{"z", "y"};
+    const std::string& guess = in.summary.unit.unit;
+    name_row(ui, "Unit of the file");
+    ImGui::BeginDisabled(in.unit_fixed);
+    ui.combo("Unit", frame.unit, units, 90);
+    ImGui::EndDisabled();
+    note_beside(in.unit_fixed         ? ui.tr("the format says so")
+                : frame.unit == guess ? ui.tr("guessed from the size")
+                                      : std::string(ui.tr("guessed")) + ": " + guess);
+    name_row(ui, "Upward axis");
+    std::string up = frame.y_up || in.unit_fixed ? "y" : "z";
+    ImGui::BeginDisabled(in.unit_fixed);
+    if (ui.combo("Up", up, axes, 90)) frame.y_up = up == "y";
+    ImGui::EndDisabled();
+    if (in.unit_fixed) note_beside(ui.tr("the format says so"));
+}
+
+/// Texels, material and sides of the model that is made of a file. `area`: m².
+void model_rows(Session& s, const mesh::MeshSummary& m, double area) {
+    Ui& ui = s.ui;
+    auto& options = s.project.options;
+    name_row(ui, "Texels per side");
+    static const std::vector<std::string> sizes{"1024", "2048", "4096", "8192"};
+    std::string atlas = std::to_string(options.atlas_size);
+    if (ui.combo("Atlas size", atlas, sizes, 90)) options.atlas_size = static_cast<std::uint32_t>(std::stoul(atlas));
+    note_beside(print(ui.tr("one texel is about %.2f mm"), expected_texel(area, options.atlas_size) * 1e3));
+    name_row(ui, "Material");
+    ui.combo("Surface", options.substrate, s.colours.substrates, 160);
+    if (m.has_colours) {
+        ImGui::SameLine();
+        ui.toggle("in its own colours", options.own_colours);
+    }
+    if (m.report.parts_turned > 0)
+        ui.toggle("Sides as in the file", options.turned_round,
+                  "It was inside out, and was turned round: ink goes onto the front of its faces");
+    else if (!m.report.closed)
+        ui.toggle("Faces turned round", options.turned_round,
+                  "For a model that is inside out: ink goes onto the front of its faces");
+}
+
 }  // namespace
 
 void open_dialog(Session& s) {
@@ -69,59 +124,8 @@ void open_dialog(Session& s) {
     fact(ui, "File", in.path.filename().string());
     fact(ui, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
     fact(ui, "Triangles", grouped(m.n_triangles));
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", ui.tr("Unit of the file"));
-    ImGui::SameLine(ui.px(150));
-    static const std::vector<std::string> units{"um", "mm", "cm", "m", "in", "ft"};
-    ImGui::BeginDisabled(in.unit_fixed);
-    ui.combo("Unit", s.project.options.frame.unit, units, 90);
-    ImGui::EndDisabled();
-    ImGui::SameLine();
-    ImGui::AlignTextToFramePadding();
-    if (in.unit_fixed)
-        ImGui::TextDisabled("%s", ui.tr("the format says so"));
-    else if (s.project.options.frame.unit == m.unit.unit)
-        ImGui::TextDisabled("%s", ui.tr("guessed from the size"));
-    else
-        ImGui::TextDisabled("%s: %s", ui.tr("guessed"), m.unit.unit.c_str());
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", ui.tr("Upward axis"));
-    ImGui::SameLine(ui.px(150));
-    static const std::vector<std::string> axes{"z", "y"};
-    std::string up = s.project.options.frame.y_up || in.unit_fixed ? "y" : "z";
-    ImGui::BeginDisabled(in.unit_fixed);
-    if (ui.combo("Up", up, axes, 90)) s.project.options.frame.y_up = up == "y";
-    ImGui::EndDisabled();
-    if (in.unit_fixed) {
-        ImGui::SameLine();
-        ImGui::AlignTextToFramePadding();
-        ImGui::TextDisabled("%s", ui.tr("the format says so"));
-    }
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", ui.tr("Texels per side"));
-    ImGui::SameLine(ui.px(150));
-    static const std::vector<std::string> sizes{"1024", "2048", "4096", "8192"};
-    std::string atlas = std::to_string(s.project.options.atlas_size);
-    if (ui.combo("Atlas size", atlas, sizes, 90))
-        s.project.options.atlas_size = static_cast<std::uint32_t>(std::stoul(atlas));
-    ImGui::SameLine();
-    ImGui::AlignTextToFramePadding();
-    const double texel = expected_texel(m.area * factor * factor, s.project.options.atlas_size);
-    ImGui::TextDisabled("%s", print(ui.tr("one texel is about %.2f mm"), texel * 1e3).c_str());
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", ui.tr("Material"));
-    ImGui::SameLine(ui.px(150));
-    ui.combo("Surface", s.project.options.substrate, s.colours.substrates, 160);
-    if (m.has_colours) {
-        ImGui::SameLine();
-        ui.toggle("in its own colours", s.project.options.own_colours);
-    }
-    if (m.report.parts_turned > 0)
-        ui.toggle("Sides as in the file", s.project.options.turned_round,
-                  "It was inside out, and was turned round: ink goes onto the front of its faces");
-    else if (!m.report.closed)
-        ui.toggle("Faces turned round", s.project.options.turned_round,
-                  "For a model that is inside out: ink goes onto the front of its faces");
+    frame_rows(ui, in, s.project.options.frame);
+    model_rows(s, m, m.area * factor * factor);
     ui.heading("Checked and repaired");
     if (in.defects.empty()) ui.note(ui.tr("The mesh is sound; nothing had to be repaired."));
     for (const Message& line : in.defects) ui.wrapped("\xc2\xb7 " + ui.sentence(line));

@@ -44,6 +44,52 @@ void row(Ui& ui, const char* name) {
     ImGui::SameLine(ui.px(130));
 }
 
+/// The maps that are written, and their size.
+void map_rows(Ui& ui, ExportSettings& c, std::uint32_t painted) {
+    row(ui, "Maps");
+    bool colour = true;
+    ImGui::BeginDisabled();
+    ui.toggle("Base colour", colour);
+    ImGui::EndDisabled();
+    row(ui, "");
+    ui.toggle("Roughness", c.roughness, "Occlusion, roughness and metal in one picture");
+    row(ui, "");
+    ui.toggle("Relief of the ink", c.relief, "A normal map made from the film's height");
+    if (preset_of(c.preset).extension == std::string(".exr")) {
+        row(ui, "");
+        ui.toggle("Pigment amounts", c.pigments, "A channel for each pigment, in film units");
+    }
+    row(ui, "Texels per side");
+    static const std::vector<std::string> sizes{"As painted", "512", "1024", "2048", "4096", "8192"};
+    std::string size = c.size ? std::to_string(c.size) : "As painted";
+    if (ui.combo("Export size", size, sizes, 130))
+        c.size = size == "As painted" ? 0 : static_cast<std::uint32_t>(std::stoul(size));
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%u", painted);
+    ui.hint("Another size is painted anew from the strokes, not scaled");
+}
+
+/// The pictures of the model that are drawn beside the maps.
+void picture_rows(Ui& ui, ExportSettings& c) {
+    row(ui, "Pictures");
+    static const std::vector<std::string> pictures{"None", "One, as seen now", "24 all round", "72 all round"};
+    static constexpr int counts[] = {0, 1, 24, 72};
+    const auto at =
+        static_cast<std::size_t>(std::find(std::begin(counts), std::end(counts), c.picture) - std::begin(counts));
+    std::string picture = pictures[std::min<std::size_t>(at, 3)];
+    if (ui.combo("Pictures of it", picture, pictures, 200))
+        c.picture = counts[std::find(pictures.begin(), pictures.end(), picture) - pictures.begin()];
+    if (!c.picture) return;
+    row(ui, "");
+    static const std::vector<std::string> widths{"640", "1280", "1920", "3840"};
+    std::string width = std::to_string(c.picture_width);
+    if (ui.combo("Picture width", width, widths, 100)) c.picture_width = std::stoi(width);
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("\xc3\x97 %d", c.picture_width * 9 / 16);
+}
+
 }  // namespace
 
 ExportModel export_command(const ExportSettings& c, const Orbit& seen_from, const std::filesystem::path& path) {
@@ -74,45 +120,8 @@ void export_dialog(Session& s) {
         }))
         ui.wrapped(ui.tr("Strokes name their layer and mask; what layers and masks are stays in the project."));
     ImGui::BeginDisabled(strokes_alone);
-    row(ui, "Maps");
-    bool colour = true;
-    ImGui::BeginDisabled();
-    ui.toggle("Base colour", colour);
-    ImGui::EndDisabled();
-    row(ui, "");
-    ui.toggle("Roughness", c.roughness, "Occlusion, roughness and metal in one picture");
-    row(ui, "");
-    ui.toggle("Relief of the ink", c.relief, "A normal map made from the film's height");
-    if (preset_of(c.preset).extension == std::string(".exr")) {
-        row(ui, "");
-        ui.toggle("Pigment amounts", c.pigments, "A channel for each pigment, in film units");
-    }
-    row(ui, "Texels per side");
-    static const std::vector<std::string> sizes{"As painted", "512", "1024", "2048", "4096", "8192"};
-    std::string size = c.size ? std::to_string(c.size) : "As painted";
-    if (ui.combo("Export size", size, sizes, 130))
-        c.size = size == "As painted" ? 0 : static_cast<std::uint32_t>(std::stoul(size));
-    ImGui::SameLine();
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%u", s.paint_thread->model().atlas.size);
-    ui.hint("Another size is painted anew from the strokes, not scaled");
-    row(ui, "Pictures");
-    static const std::vector<std::string> pictures{"None", "One, as seen now", "24 all round", "72 all round"};
-    static constexpr int counts[] = {0, 1, 24, 72};
-    const auto at =
-        static_cast<std::size_t>(std::find(std::begin(counts), std::end(counts), c.picture) - std::begin(counts));
-    std::string picture = pictures[std::min<std::size_t>(at, 3)];
-    if (ui.combo("Pictures of it", picture, pictures, 200))
-        c.picture = counts[std::find(pictures.begin(), pictures.end(), picture) - pictures.begin()];
-    if (c.picture) {
-        row(ui, "");
-        static const std::vector<std::string> widths{"640", "1280", "1920", "3840"};
-        std::string width = std::to_string(c.picture_width);
-        if (ui.combo("Picture width", width, widths, 100)) c.picture_width = std::stoi(width);
-        ImGui::SameLine();
-        ImGui::AlignTextToFramePadding();
-        ImGui::TextDisabled("\xc3\x97 %d", c.picture_width * 9 / 16);
-    }
+    map_rows(ui, c, s.paint_thread->model().atlas.size);
+    picture_rows(ui, c);
     ImGui::EndDisabled();
     ImGui::Dummy(ImVec2(0, ui.px(4)));
     ui.buttons_at_right({{"Cancel", 110}, {"Choose a file...", 160}});

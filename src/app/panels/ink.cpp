@@ -155,7 +155,7 @@ void push_narrow_buttons(const Ui& ui) {
 }
 
 // What is done with a brush between strokes.
-void care(const InkParts& s) {
+void add_brush_actions(const InkParts& s) {
     Ui& ui = s.ui;
     const auto act = [&](stroke::EntryKind action, double depth = 1, double side = 0) {
         bring_in_colour(s.colours, s.brush.ink, &s.work);
@@ -244,7 +244,7 @@ Savings ink_section(const InkParts& s, ToolRoom room) {
     ui.toggle("Don't reload", s.brush.persistent,
               "The brush runs dry as it paints, until it is dipped again; else every stroke begins with a full brush");
     if (s.brush.persistent)
-        care(s);
+        add_brush_actions(s);
     else
         two_inks(s);
     return saves;

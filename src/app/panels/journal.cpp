@@ -22,7 +22,7 @@ unsigned colour_of(const JournalParts& s, const StrokeLine& line) {
     return (ink_colour(s.colours, line.ink) & 0x00ffffffu) | (line.hidden ? 0x60000000u : 0xff000000u);
 }
 
-// The way of a stroke; `place` puts a point of it on the screen.
+// The path of a stroke; `place` puts a point of it on the screen.
 template <class Place>
 void draw_path(const JournalParts& s, const StrokeLine& line, float size, const Place& place) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
@@ -54,7 +54,7 @@ void draw_entry(const JournalParts& s, const StrokeLine& line, ImVec2 at, float 
     draw_sheet(at, size, line.hidden);
     const float pad = 0.16f * size, inner = size - 2 * pad;
     if (line.length < 1e-3)
-        draw->AddCircleFilled(middle, 0.07f * size, colour_of(s, line), 16);  // a touch, no way
+        draw->AddCircleFilled(middle, 0.07f * size, colour_of(s, line), 16);  // a touch without a path
     else
         draw_path(s, line, size,
                   [&](const Vec3f& p) { return ImVec2(at.x + pad + p.x * inner, at.y + pad + p.y * inner); });

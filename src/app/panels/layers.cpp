@@ -153,7 +153,8 @@ void details(const LayerParts& s, const Layer& layer, std::size_t place) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ui.px(4), ImGui::GetStyle().ItemSpacing.y));
     if (ui.button("Duplicate", "A copy right above it", 0, all.size() < stroke::kMaxLayers)) duplicate(s, layer);
     ImGui::SameLine();
-    if (ui.button("Merge down", "Lays its films on the layer below; it looks the same", 0, place > 0)) merge(s, layer);
+    if (ui.button("Merge down", "Puts its films on the layer below; the appearance stays", 0, place > 0))
+        merge(s, layer);
     ImGui::SameLine();
     const float rest = ImGui::GetContentRegionAvail().x / ui.settings().scale;
     if (ui.button("Remove", "With its strokes; Undo brings them back", rest, all.size() > 1))

@@ -107,11 +107,11 @@ void mask_section(Session& s) {
         }
     }
     if (s.masks.active != 0) {
-        static const std::vector<std::string> ways{"By itself", "Added to the chosen one",
-                                                   "Only within the chosen one"};
-        std::string way = ways[static_cast<std::size_t>(c.with)];
-        if (ui.combo("With the chosen one", way, ways))
-            c.with = static_cast<int>(std::find(ways.begin(), ways.end(), way) - ways.begin());
+        static const std::vector<std::string> modes{"By itself", "Added to the chosen one",
+                                                    "Only within the chosen one"};
+        std::string mode = modes[static_cast<std::size_t>(c.with)];
+        if (ui.combo("With the chosen one", mode, modes))
+            c.with = static_cast<int>(std::find(modes.begin(), modes.end(), mode) - modes.begin());
     }
     list(s);
 }

@@ -13,6 +13,7 @@ namespace tuft::app {
 namespace {
 
 constexpr int kMostAcross = 2048;  // pixels of a texture
+constexpr float kCorner = 16;      // pixels of the corner that changes the size
 
 void keep_reference(Session& s, const ReferenceImage& r) {
     s.paint_thread->post(AttachToProject{io::kReferences, to_attachment(r)});
@@ -101,6 +102,30 @@ bool image_bar(Session& s, ReferenceImage& r, float width) {
     return removed;
 }
 
+/// Moves or resizes the image of the current item with the mouse. `end`: its lower right corner, pixels.
+void drag_reference(Session& s, ReferenceImage& r, std::size_t index, const ImVec2& end) {
+    References& all = s.view.references;
+    const ImVec2 mouse = ImGui::GetIO().MousePos, delta = ImGui::GetIO().MouseDelta;
+    const float corner = s.ui.px(kCorner);
+    const bool grabbed = ImGui::IsItemActivated();
+    if (grabbed) {
+        all.held = index;
+        all.sizing = mouse.x > end.x - corner && mouse.y > end.y - corner;
+    }
+    if (all.held == index && ImGui::IsItemActive() && !grabbed) {
+        const double across = static_cast<double>(delta.x) / static_cast<double>(s.view.area.width),
+                     down = static_cast<double>(delta.y) / static_cast<double>(s.view.area.height);
+        if (all.sizing)
+            r.width += across;
+        else
+            r.at += Vec2(across, down);
+    }
+    if (ImGui::IsItemDeactivated() && all.held == index) {
+        all.held.reset();
+        keep_reference(s, r);
+    }
+}
+
 // One image as a window of its own; true when it is to go.
 bool draw_reference(Session& s, ReferenceImage& r, std::size_t index) {
     Ui& ui = s.ui;
@@ -127,29 +152,12 @@ bool draw_reference(Session& s, ReferenceImage& r, std::size_t index) {
     draw->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at, end, ImVec2(0, 0),
                    ImVec2(1, 1), IM_COL32(255, 255, 255, static_cast<int>(std::lround(255 * r.opacity))));
     const bool over = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
-    const float corner = ui.px(16);
+    const float corner = ui.px(kCorner);
     ImGui::SetCursorPos(ImVec2(0, 0));
     ImGui::InvisibleButton("##move", size);
     ImGui::SetItemAllowOverlap();
     ui.mark("reference " + r.name);
-    const bool grabbed = ImGui::IsItemActivated();
-    if (grabbed) {
-        const ImVec2 mouse = ImGui::GetIO().MousePos;
-        s.view.references.held = index;
-        s.view.references.sizing = mouse.x > end.x - corner && mouse.y > end.y - corner;
-    }
-    const bool held = s.view.references.held == index && ImGui::IsItemActive();
-    if (held && !grabbed) {
-        const ImVec2 way = ImGui::GetIO().MouseDelta;
-        if (s.view.references.sizing)
-            r.width += static_cast<double>(way.x) / across;
-        else
-            r.at += Vec2(static_cast<double>(way.x) / across, static_cast<double>(way.y) / down);
-    }
-    if (ImGui::IsItemDeactivated() && s.view.references.held == index) {
-        s.view.references.held.reset();
-        keep_reference(s, r);
-    }
+    drag_reference(s, r, index, end);
     bool removed = false;
     if (over) {
         draw->AddRect(at, end, ui.accent, 0, 0, ui.px(1.5f));

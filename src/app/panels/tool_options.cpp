@@ -103,7 +103,7 @@ void writing_row(Ui& ui, Writing& w, const Row& row) {
 }
 
 void fill_row(Ui& ui, stroke::Fill& fill, const Row& row) {
-    static constexpr const char* kHint = "What the ink is laid over where you click";
+    static constexpr const char* kHint = "What the ink covers where you click";
     static constexpr std::array<std::tuple<stroke::Region, const char*, const char*>, 3> kRegions{
         {{stroke::Region::all, "All", kHint},
          {stroke::Region::part, "Part", kHint},

@@ -78,8 +78,8 @@ void copy_dots(const MarkParts& s, const render::GlCamera& c, ImDrawList* draw) 
                          &root = s.view.tuft.state.branches.front().sections.back();
     const mesh::SurfaceQuery& query = *s.model.query;
     for (const stroke::PoseMap& map : copies) {
-        const Vec3 from = map.point(root.centre), to = map.point(tip.centre), way = glm::normalize(to - from);
-        const auto ahead = query.ray(from, way, 0, 2 * glm::distance(from, to));
+        const Vec3 from = map.point(root.centre), to = map.point(tip.centre), direction = glm::normalize(to - from);
+        const auto ahead = query.ray(from, direction, 0, 2 * glm::distance(from, to));
         const auto on = ahead ? ahead : query.closest_point(to, glm::distance(from, to));
         if (!on) continue;  // the model has nothing there
         const Vec3 eye = c.parallel_height > 0 ? -c.forward : glm::normalize(c.eye - on->position);

@@ -196,66 +196,102 @@ void Script::expect(Studio& studio, const ScriptCommand& c) const {
     }
 }
 
-// True when the command is done; false: again at the next frame.
-bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
-    Session& s = studio.session();
+// Whether the command was one of these: events of mouse, pen and keyboard.
+bool Script::play(Studio& studio, const ScriptCommand& c) {
     const std::string word = c.words.empty() ? "" : c.words[0];
-    if (wait_.since < 0) wait_.since = now;
-    const double waited = now - wait_.since;
-    if (c.name == "revise")
-        revise_with(s, word);
-    else if (c.name == "open")
+    const Area& area = studio.session().view.area;
+    Event e = cursor_;
+    e.modifiers = 0;
+    if (c.name == "open")
         add({.kind = Event::Kind::drop, .text = word}, 0);
-    else if (c.name == "wait-ready") {
-        if (waited > (word.empty() ? kLongestWait : std::atof(word.c_str()))) fail(c, "waited too long");
-        return is_settled(s) && !s.view.model_changed && waited > 0 && frames_ > 1;
-    } else if (c.name == "wait")
-        return waited >= std::atof(word.c_str());
     else if (c.name == "move") {
         const ScriptPoint& p = c.points[0];
         add({.kind = Event::Kind::move,
-             .x = p.relative_x ? s.view.area.x + p.x * s.view.area.width : p.x,
-             .y = p.relative_y ? s.view.area.y + p.y * s.view.area.height : p.y,
+             .x = p.relative_x ? area.x + p.x * area.width : p.x,
+             .y = p.relative_y ? area.y + p.y * area.height : p.y,
              .pressure = p.pressure},
             sample_);
     } else if (c.name == "press" || c.name == "release") {
-        Event e = cursor_;
-        e.modifiers = 0;
         e.kind = c.name == "press" ? Event::Kind::press : Event::Kind::release;
         e.button = button_of(c);
         add(e, 0.02);
+    } else if (c.name == "scroll") {
+        e.kind = Event::Kind::scroll;
+        e.steps = std::atof(word.c_str());
+        add(e, 0.02);
     } else if (c.name == "stroke")
         stroke(studio, c);
-    else if (c.name == "rate")
-        sample_ = 1.0 / std::clamp(std::atof(word.c_str()), 10.0, 10000.0);
     else if (c.name == "key")
         press_key(word, c.line);
+    else if (c.name == "undo")
+        press_key("ctrl+z", c.line);
+    else if (c.name == "redo")
+        press_key("ctrl+shift+z", c.line);
     else if (c.name == "hold")
         hold(word, c.line);
     else if (c.name == "type")
         add({.kind = Event::Kind::text, .text = word}, 0.02);
-    else if (c.name == "scroll") {
-        Event e = cursor_;
-        e.modifiers = 0;
-        e.kind = Event::Kind::scroll;
-        e.steps = std::atof(word.c_str());
-        add(e, 0.02);
-    } else if (c.name == "click" || c.name == "right-click") {
+    else
+        return false;
+    return true;
+}
+
+// Commands that may have to wait: whether they are done; nothing for another command.
+std::optional<bool> Script::wait_for(Studio& studio, const ScriptCommand& c, double waited) {
+    Session& s = studio.session();
+    const std::string word = c.words.empty() ? "" : c.words[0];
+    if (c.name == "wait-ready") {
+        if (waited > (word.empty() ? kLongestWait : std::atof(word.c_str()))) fail(c, "waited too long");
+        return is_settled(s) && !s.view.model_changed && waited > 0 && frames_ > 1;
+    }
+    if (c.name == "wait") return waited >= std::atof(word.c_str());
+    if (c.name == "click" || c.name == "right-click") {
         const Ui::Place* place = s.ui.find(word);
         if (!place && waited < kLabelWait) return false;
         if (!place) fail(c, Message("'{}' is not on the screen", word));
-        // Panels that are being laid out anew move: a place counts once it has stayed.
+        // Panels that change their layout move: a place counts once it has stayed.
         if (waited == 0 || place->x != wait_.place.x || place->y != wait_.place.y) {
             wait_.place = {place->x, place->y};
             return false;
         }
         click(place->x, place->y, c.name == "right-click" ? 1 : 0);
-    } else if (c.name == "set")
+        return true;
+    }
+    if (c.name == "expect") {
+        if (word == "label" && !s.ui.find(c.words.back()) && waited < kLabelWait) return false;
+        expect(studio, c);
+        return true;
+    }
+    if (c.name == "await") {
+        try {
+            expect(studio, c);
+            return true;
+        } catch (const Error&) {
+            if (waited > kLongestWait) throw;
+            return false;
+        }
+    }
+    if (c.name != "random") return std::nullopt;
+    if (!fuzzer_)
+        fuzzer_.emplace(static_cast<std::size_t>(std::max(0, std::atoi(word.c_str()))),
+                        static_cast<std::uint64_t>(std::atoll(c.words[1].c_str())));
+    for (Event& event : fuzzer_->next(studio)) add(std::move(event), fuzzer_->pause());
+    if (!pending_.empty()) return false;
+    quits_ += fuzzer_->quits();
+    fuzzer_.reset();
+    return true;
+}
+
+// Commands to the program, and to the player of the script.
+void Script::act(Studio& studio, const ScriptCommand& c, double now) {
+    Session& s = studio.session();
+    const std::string word = c.words.empty() ? "" : c.words[0];
+    if (c.name == "revise")
+        revise_with(s, word);
+    else if (c.name == "rate")
+        sample_ = 1.0 / std::clamp(std::atof(word.c_str()), 10.0, 10000.0);
+    else if (c.name == "set")
         studio.set(word, c.words[1]);
-    else if (c.name == "undo")
-        press_key("ctrl+z", c.line);
-    else if (c.name == "redo")
-        press_key("ctrl+shift+z", c.line);
     else if (c.name == "save")
         save_as(s, word);
     else if (c.name == "export") {
@@ -266,31 +302,11 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
         s.project.recovery.lost = find_lost_work();
     } else if (c.name == "screenshot")
         wanted_.picture = word;
-    else if (c.name == "expect") {
-        if (word == "label" && !s.ui.find(c.words.back()) && waited < kLabelWait) return false;
-        expect(studio, c);
-    } else if (c.name == "await") {
-        try {
-            expect(studio, c);
-        } catch (const Error&) {
-            if (waited > kLongestWait) throw;
-            return false;
-        }
-    } else if (c.name == "pace") {
-        pace_.on = word == "on";
-        pace_.start = now;
-        pace_.from = clock_;
-    } else if (c.name == "focus" || c.name == "unfocus") {
+    else if (c.name == "focus" || c.name == "unfocus")
         add({.kind = c.name == "focus" ? Event::Kind::focus : Event::Kind::focus_lost}, 0.02);
-    } else if (c.name == "random") {
-        if (!fuzzer_)
-            fuzzer_.emplace(static_cast<std::size_t>(std::max(0, std::atoi(word.c_str()))),
-                            static_cast<std::uint64_t>(std::atoll(c.words[1].c_str())));
-        for (Event& event : fuzzer_->next(studio)) add(std::move(event), fuzzer_->pause());
-        if (!pending_.empty()) return false;
-        quits_ += fuzzer_->quits();
-        fuzzer_.reset();
-    } else if (c.name == "resize")
+    else if (c.name == "pace")
+        pace_ = {.on = word == "on", .start = now, .from = clock_};
+    else if (c.name == "resize")
         wanted_.size = {std::clamp(std::atoi(word.c_str()), 320, 8192),
                         std::clamp(std::atoi(c.words[1].c_str()), 240, 8192)};
     else if (c.name == "lose-graphics")
@@ -304,6 +320,13 @@ bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
             std::printf("%.1f %.1f %s\n", s.ui.find(name)->x, s.ui.find(name)->y, name.c_str());
     } else if (c.name == "quit")
         request_close(s, {});
+}
+
+// True when the command is done; false: again at the next frame.
+bool Script::perform(Studio& studio, const ScriptCommand& c, double now) {
+    if (wait_.since < 0) wait_.since = now;
+    if (const std::optional<bool> done = wait_for(studio, c, now - wait_.since)) return *done;
+    if (!play(studio, c)) act(studio, c, now);
     return true;
 }
 

@@ -78,6 +78,9 @@ class Script {
     };
 
     bool perform(Studio& studio, const ScriptCommand& command, double now);
+    bool play(Studio& studio, const ScriptCommand& command);
+    std::optional<bool> wait_for(Studio& studio, const ScriptCommand& command, double waited);
+    void act(Studio& studio, const ScriptCommand& command, double now);
     void expect(Studio& studio, const ScriptCommand& command) const;
     void stroke(Studio& studio, const ScriptCommand& command);
     void press_key(const std::string& chord, int line);

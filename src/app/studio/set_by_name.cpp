@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <span>
+#include <string_view>
 
 #include "app/panels/panels.h"
 #include "core/text/units.h"
@@ -20,182 +22,205 @@ double number_of(const std::string& value) {
 
 namespace {
 
-std::vector<std::string> arm_hands() {
-    std::vector<std::string> names{"pointer"};
-    for (const haptic::Way way : haptic::kPaintingWays) names.emplace_back(haptic::name_of(way));
-    return names;
+/// A setting as a script writes it.
+struct Value {
+    const std::string& name;
+    const std::string& text;
+    double number = 0;  ///< at the start of the text; 0 for a word
+    bool on = false;    ///< the text is "on"
+
+    /// Returns the place of the text among `names`. Throws `Error`, with the nearest name, for none of them.
+    int one_of(const std::vector<std::string>& names) const {
+        const auto at = std::find(names.begin(), names.end(), text);
+        if (at != names.end()) return static_cast<int>(at - names.begin());
+        throw Error(Message("unknown {} '{}'{}", name, text, did_you_mean(nearest_name(text, names))));
+    }
+    template <class T>
+    T choice(const std::vector<std::string>& names) const {
+        return static_cast<T>(one_of(names));
+    }
+    double within(double lo, double hi) const { return std::clamp(number, lo, hi); }
+    int whole(int lo, int hi) const { return std::clamp(static_cast<int>(number), lo, hi); }
+};
+
+struct Setting {
+    std::string_view name;
+    void (*set)(Session& s, const Value& v);
+};
+
+/// Returns the name of a shipped ink or of an own one.
+std::string ink_named(const Session& s, const Value& v) {
+    std::vector<std::string> names = s.colours.shipped;
+    for (const ink::Ink& ink : s.colours.own) names.push_back(ink.name);
+    return names[static_cast<std::size_t>(v.one_of(names))];
 }
 
-/// Settings of the arm; false for a name that is none of them.
-bool set_arm(Session& s, const std::string& name, const std::string& value, double number) {
-    ArmState& a = s.arm;
-    const bool on = value == "on";
-    if (name == "arm") {
-        disconnect_arm(a, s.paint_thread.get());
-        if (on) connect_arm(a, s.status);
-    } else if (name == "arm-source")
-        a.settings.source = value == "service"     ? ArmSource::service
-                            : value == "recording" ? ArmSource::recording
-                                                   : ArmSource::simulated;
-    else if (name == "arm-preset")
-        a.settings.preset = haptic::device_preset(value).name;
-    else if (name == "arm-hand") {
-        const std::vector<std::string> hands = arm_hands();
-        if (std::find(hands.begin(), hands.end(), value) == hands.end())
-            throw Error(Message("unknown hand '{}'{}", value, did_you_mean(nearest_name(value, hands))));
-        a.settings.hand = value;
-    } else if (name == "arm-recording")
-        a.settings.recording = value;
-    else if (name == "arm-port")
-        a.settings.port = std::clamp(static_cast<int>(number), 0, 65535);
-    else if (name == "arm-gain")
-        a.settings.gain = std::clamp(number, 0.0, kMostArmGain);
-    else if (name == "arm-limit")
-        a.settings.most_force = std::clamp(number, 0.1, haptic::kForceLimit);
-    else if (name == "arm-scale")
-        a.settings.scale = std::clamp(number, kLeastArmScale, kMostArmScale);
-    else if (name == "arm-view")
-        a.settings.with_view = on;
-    else if (name == "arm-pause")
-        a.paused = on;
-    else if (name == "arm-clutch")
-        a.clutched = on;
-    else if (name == "arm-palette")
-        a.on_palette = on;
-    else if (name == "arm-panel")
-        a.shown = on;
-    else if (name == "arm-emergency")
-        on ? stop_forces(a) : release_forces(a);
-    else
-        return false;
-    return true;
-}
+constexpr Setting kBrush[] = {
+    {"brush",
+     [](Session& s, const Value& v) {
+         s.brush.preset = s.brush.presets[static_cast<std::size_t>(v.one_of(s.brush.presets))];
+     }},
+    {"brush-size", [](Session& s, const Value& v) { size_brush(s.brush, s.status, v.number); }},
+    {"ink", [](Session& s, const Value& v) { s.brush.ink = ink_named(s, v); }},
+    {"tip-ink", [](Session& s, const Value& v) { s.brush.tip_ink = ink_named(s, v); }},
+    {"colour", [](Session& s, const Value& v) { set_colour(s, v.text); }},
+    {"persistent", [](Session& s, const Value& v) { s.brush.persistent = v.on; }},
+    {"carry", [](Session& s, const Value& v) { s.brush.persistent = v.on; }},  // its name before
+    {"wet", [](Session& s, const Value& v) { s.brush.wet = v.on; }},
+    {"two-inks", [](Session& s, const Value& v) { s.brush.two_inks = v.on; }},
+    {"tip", [](Session& s, const Value& v) { s.brush.tip_depth = v.within(0.05, 0.9); }},
+    {"dip-depth", [](Session& s, const Value& v) { s.brush.dip_depth = v.within(0.05, 1); }},
+    {"dip-side", [](Session& s, const Value& v) { s.brush.dip_side = v.within(-1, 1); }},
+    {"palette", [](Session& s, const Value& v) { show_palette(s.colours.palette, s.brush, s.status, v.on); }},
+    {"palette-tool",
+     [](Session& s, const Value& v) {
+         s.colours.palette.tool = v.choice<PaletteTool>({"brush", "pour", "pick"});
+     }},
+};
+
+constexpr Setting kTools[] = {
+    {"tool",
+     [](Session& s, const Value& v) {
+         s.tools.active = v.choice<Tool>({"brush", "line", "curve", "writing", "eraser", "fill", "pick", "mask"});
+     }},
+    {"clean-ends", [](Session& s, const Value& v) { s.tools.pointer.clean_ends = v.on; }},
+    {"pressure", [](Session& s, const Value& v) { s.tools.pointer.pressure = v.within(0.02, 1); }},
+    {"roll", [](Session& s, const Value& v) { s.tools.pointer.roll = v.within(-180, 180) * kDegree; }},
+    {"roll-follow", [](Session& s, const Value& v) { s.tools.pointer.roll_follow = v.on; }},
+    {"string", [](Session& s, const Value& v) { s.tools.pointer.string = std::max(0.0, v.number) * kMillimetre; }},
+    {"radial", [](Session& s, const Value& v) { s.tools.symmetry.radial = v.whole(1, 32); }},
+    {"mirror",
+     [](Session& s, const Value& v) {
+         s.tools.symmetry.mirror_x = v.text.find('x') != std::string::npos;
+         s.tools.symmetry.mirror_y = v.text.find('y') != std::string::npos;
+         s.tools.symmetry.mirror_z = v.text.find('z') != std::string::npos;
+     }},
+    {"writing-width",
+     [](Session& s, const Value& v) {
+         s.tools.writing.scale = v.number * kMillimetre / std::max(1e-6, s.tools.writing.width);
+     }},
+    {"writing-turn", [](Session& s, const Value& v) { s.tools.writing.turn = -v.number * kDegree; }},
+    {"writing-mirror", [](Session& s, const Value& v) { s.tools.writing.mirrored = v.on; }},
+    {"writing-mapping",
+     [](Session& s, const Value& v) {
+         s.tools.writing.mapping = v.choice<stroke::SurfaceMapping>({"wrap", "drape", "project"});
+     }},
+    {"mask-kind", [](Session& s, const Value& v) { s.masks.choice.kind = stroke::mask_kind_of(v.text); }},
+    {"mask-within", [](Session& s, const Value& v) { s.masks.choice.within = v.within(0, 180) * kDegree; }},
+    {"layer",
+     [](Session& s, const Value& v) {
+         const stroke::Layer* layer = s.reported.document.layers.find(std::string_view(v.text));
+         if (!layer) throw Error(Message("there is no layer '{}'", v.text));
+         s.layers.active = layer->id;
+     }},
+};
+
+constexpr Setting kView[] = {
+    {"shading",
+     [](Session& s, const Value& v) {
+         s.view.shading =
+             v.choice<ModelView>({"glaze", "clay", "flat", "height", "wetness", "texels", "charts", "stretch"});
+     }},
+    {"light",
+     [](Session& s, const Value& v) {
+         s.view.rig = v.choice<render::LightRig>({"studio", "window", "raking"});
+     }},
+    {"parallel", [](Session& s, const Value& v) { s.view.orbit.set_parallel(v.on); }},
+    {"azimuth", [](Session& s, const Value& v) { s.view.orbit.azimuth = v.number * kDegree; }},
+    {"elevation", [](Session& s, const Value& v) { s.view.orbit.elevation = v.number * kDegree; }},
+    {"zoom", [](Session& s, const Value& v) { s.view.orbit.zoom(v.number, s.view.orbit.target); }},
+    {"section",
+     [](Session& s, const Value& v) {
+         s.view.section.on = v.number > 0;
+         s.view.section.position = v.within(0.02, 1);
+     }},
+    {"section-axis",
+     [](Session& s, const Value& v) {
+         s.view.section.axis = v.one_of({"x", "y", "z"});
+     }},
+    {"see-through", [](Session& s, const Value& v) { s.view.see_through = v.on; }},
+    {"atlas", [](Session& s, const Value& v) { s.view.atlas.shown = v.on; }},
+    {"swipe",
+     [](Session& s, const Value& v) {
+         s.journal.snapshots.swipe = v.number > 0;
+         s.journal.snapshots.line_at = v.within(0.02, 0.98);
+     }},
+    {"panels", [](Session& s, const Value& v) { s.panels.show_tools = s.panels.show_journal = v.on; }},
+    {"guide", [](Session& s, const Value& v) { v.on ? start_guide(s.panels.help) : void(s.panels.help.step = -1); }},
+};
+
+constexpr Setting kPreferences[] = {
+    {"keymap",
+     [](Session& s, const Value& v) {
+         s.preferences.keymap = v.one_of({"blender", "maya"}) ? Keymap::maya : Keymap::blender;
+     }},
+    {"left-handed",
+     [](Session& s, const Value& v) { s.preferences.ui.left_handed = v.on, s.preferences.restyle = true; }},
+    {"language",
+     [](Session& s, const Value& v) {
+         s.preferences.ui.language = v.one_of({"english", "chinese"}) ? Language::chinese : Language::english;
+         s.preferences.restyle = true;
+     }},
+    {"theme",
+     [](Session& s, const Value& v) {
+         s.preferences.ui.theme = v.one_of({"dark", "light"}) ? Theme::light : Theme::dark;
+         s.preferences.restyle = true;
+     }},
+    {"scale",
+     [](Session& s, const Value& v) {
+         s.preferences.ui.scale = static_cast<float>(v.within(0.75, 3));
+         s.preferences.ui.own_scale = s.preferences.restyle = true;
+     }},
+    {"texels", [](Session& s,
+                  const Value& v) { s.project.options.atlas_size = static_cast<std::uint32_t>(v.within(64, 16384)); }},
+    {"export-size",
+     [](Session& s, const Value& v) {
+         s.dialogs.export_settings.size = static_cast<std::uint32_t>(v.within(0, 16384));
+     }},
+    {"export-pictures", [](Session& s, const Value& v) { s.dialogs.export_settings.picture = v.whole(0, 360); }},
+    {"export-picture-width",
+     [](Session& s, const Value& v) { s.dialogs.export_settings.picture_width = v.whole(16, 8192); }},
+};
+
+constexpr Setting kArm[] = {
+    {"arm",
+     [](Session& s, const Value& v) {
+         disconnect_arm(s.arm, s.paint_thread.get());
+         if (v.on) connect_arm(s.arm, s.status);
+     }},
+    {"arm-source",
+     [](Session& s, const Value& v) {
+         s.arm.settings.source = v.choice<ArmSource>({"simulated", "service", "recording"});
+     }},
+    {"arm-preset", [](Session& s, const Value& v) { s.arm.settings.preset = haptic::device_preset(v.text).name; }},
+    {"arm-hand",
+     [](Session& s, const Value& v) {
+         std::vector<std::string> hands{"pointer"};
+         for (const haptic::HandMotion motion : haptic::kPaintingMotions) hands.emplace_back(haptic::name_of(motion));
+         s.arm.settings.hand = hands[static_cast<std::size_t>(v.one_of(hands))];
+     }},
+    {"arm-recording", [](Session& s, const Value& v) { s.arm.settings.recording = v.text; }},
+    {"arm-port", [](Session& s, const Value& v) { s.arm.settings.port = v.whole(0, 65535); }},
+    {"arm-gain", [](Session& s, const Value& v) { s.arm.settings.gain = v.within(0, kMostArmGain); }},
+    {"arm-limit", [](Session& s, const Value& v) { s.arm.settings.most_force = v.within(0.1, haptic::kForceLimit); }},
+    {"arm-scale", [](Session& s, const Value& v) { s.arm.settings.scale = v.within(kLeastArmScale, kMostArmScale); }},
+    {"arm-view", [](Session& s, const Value& v) { s.arm.settings.with_view = v.on; }},
+    {"arm-pause", [](Session& s, const Value& v) { s.arm.paused = v.on; }},
+    {"arm-clutch", [](Session& s, const Value& v) { s.arm.clutched = v.on; }},
+    {"arm-palette", [](Session& s, const Value& v) { s.arm.on_palette = v.on; }},
+    {"arm-panel", [](Session& s, const Value& v) { s.arm.shown = v.on; }},
+    {"arm-emergency", [](Session& s, const Value& v) { v.on ? stop_forces(s.arm) : release_forces(s.arm); }},
+};
 
 }  // namespace
 
 void set_by_name(Session& s, const std::string& name, const std::string& value) {
-    const double number = number_of(value);
-    const bool on = value == "on";
-    const auto one_of = [&](const std::vector<std::string>& names) {
-        const auto at = std::find(names.begin(), names.end(), value);
-        if (at != names.end()) return static_cast<int>(at - names.begin());
-        const std::string near = nearest_name(value, names);
-        throw Error(Message("unknown {} '{}'{}", name, value, did_you_mean(near)));
-    };
-    if (name == "brush")
-        s.brush.preset = s.brush.presets[static_cast<std::size_t>(one_of(s.brush.presets))];
-    else if (name == "brush-size")
-        size_brush(s.brush, s.status, number);
-    else if (name == "colour")
-        set_colour(s, value);
-    else if (name == "clean-ends")
-        s.tools.pointer.clean_ends = on;
-    else if (name == "ink" || name == "tip-ink") {
-        std::vector<std::string> names = s.colours.shipped;
-        for (const ink::Ink& ink : s.colours.own) names.push_back(ink.name);
-        const std::string& ink = names[static_cast<std::size_t>(one_of(names))];
-        name == "ink" ? s.brush.ink = ink : s.brush.tip_ink = ink;
-    } else if (name == "shading")
-        s.view.shading = static_cast<ModelView>(
-            one_of({"glaze", "clay", "flat", "height", "wetness", "texels", "charts", "stretch"}));
-    else if (name == "light")
-        s.view.rig = static_cast<render::LightRig>(one_of({"studio", "window", "raking"}));
-    else if (name == "keymap")
-        s.preferences.keymap = one_of({"blender", "maya"}) ? Keymap::maya : Keymap::blender;
-    else if (name == "left-handed")
-        s.preferences.ui.left_handed = on, s.preferences.restyle = true;
-    else if (name == "section-axis")
-        s.view.section.axis = one_of({"x", "y", "z"});
-    else if (name == "parallel")
-        s.view.orbit.set_parallel(on);
-    else if (name == "azimuth")
-        s.view.orbit.azimuth = number * kDegree;
-    else if (name == "elevation")
-        s.view.orbit.elevation = number * kDegree;
-    else if (name == "zoom")
-        s.view.orbit.zoom(number, s.view.orbit.target);
-    else if (name == "writing-width")
-        s.tools.writing.scale = number * kMillimetre / std::max(1e-6, s.tools.writing.width);
-    else if (name == "writing-turn")
-        s.tools.writing.turn = -number * kDegree;
-    else if (name == "writing-mirror")
-        s.tools.writing.mirrored = on;
-    else if (name == "writing-mapping")
-        s.tools.writing.mapping = static_cast<stroke::SurfaceMapping>(one_of({"wrap", "drape", "project"}));
-    else if (name == "export-size")
-        s.dialogs.export_settings.size = static_cast<std::uint32_t>(std::clamp(number, 0.0, 16384.0));
-    else if (name == "export-picture-width")
-        s.dialogs.export_settings.picture_width = std::clamp(static_cast<int>(number), 16, 8192);
-    else if (name == "export-pictures")
-        s.dialogs.export_settings.picture = std::clamp(static_cast<int>(number), 0, 360);
-    else if (name == "layer") {
-        const stroke::Layer* layer = s.reported.document.layers.find(std::string_view(value));
-        if (!layer) throw Error(Message("there is no layer '{}'", value));
-        s.layers.active = layer->id;
-    } else if (name == "texels")
-        s.project.options.atlas_size = static_cast<std::uint32_t>(std::clamp(number, 64.0, 16384.0));
-    else if (name == "pressure")
-        s.tools.pointer.pressure = std::clamp(number, 0.02, 1.0);
-    else if (name == "persistent" || name == "carry")
-        s.brush.persistent = on;
-    else if (name == "wet")
-        s.brush.wet = on;
-    else if (name == "palette")
-        show_palette(s.colours.palette, s.brush, s.status, on);
-    else if (name == "palette-tool")
-        s.colours.palette.tool = static_cast<PaletteTool>(one_of({"brush", "pour", "pick"}));
-    else if (name == "two-inks")
-        s.brush.two_inks = on;
-    else if (name == "tip")
-        s.brush.tip_depth = std::clamp(number, 0.05, 0.9);
-    else if (name == "dip-depth")
-        s.brush.dip_depth = std::clamp(number, 0.05, 1.0);
-    else if (name == "dip-side")
-        s.brush.dip_side = std::clamp(number, -1.0, 1.0);
-    else if (name == "mask-kind")
-        s.masks.choice.kind = stroke::mask_kind_of(value);
-    else if (name == "mask-within")
-        s.masks.choice.within = std::clamp(number, 0.0, 180.0) * kDegree;
-    else if (name == "roll")
-        s.tools.pointer.roll = std::clamp(number, -180.0, 180.0) * kDegree;
-    else if (name == "roll-follow")
-        s.tools.pointer.roll_follow = on;
-    else if (name == "string")
-        s.tools.pointer.string = std::max(0.0, number) * kMillimetre;
-    else if (name == "radial")
-        s.tools.symmetry.radial = std::clamp(static_cast<int>(number), 1, 32);
-    else if (name == "mirror") {
-        s.tools.symmetry.mirror_x = value.find('x') != std::string::npos;
-        s.tools.symmetry.mirror_y = value.find('y') != std::string::npos;
-        s.tools.symmetry.mirror_z = value.find('z') != std::string::npos;
-    } else if (name == "tool")
-        s.tools.active =
-            static_cast<Tool>(one_of({"brush", "line", "curve", "writing", "eraser", "fill", "pick", "mask"}));
-    else if (name == "section") {
-        s.view.section.on = number > 0;
-        s.view.section.position = std::clamp(number, 0.02, 1.0);
-    } else if (name == "atlas")
-        s.view.atlas.shown = on;
-    else if (name == "guide")
-        on ? start_guide(s.panels.help) : void(s.panels.help.step = -1);
-    else if (name == "swipe")
-        s.journal.snapshots.swipe = number > 0, s.journal.snapshots.line_at = std::clamp(number, 0.02, 0.98);
-    else if (name == "see-through")
-        s.view.see_through = on;
-    else if (name == "language")
-        s.preferences.ui.language = one_of({"english", "chinese"}) ? Language::chinese : Language::english,
-        s.preferences.restyle = true;
-    else if (name == "theme")
-        s.preferences.ui.theme = one_of({"dark", "light"}) ? Theme::light : Theme::dark, s.preferences.restyle = true;
-    else if (name == "scale")
-        s.preferences.ui.scale = static_cast<float>(std::clamp(number, 0.75, 3.0)), s.preferences.ui.own_scale = true,
-        s.preferences.restyle = true;
-    else if (name.starts_with("arm") && set_arm(s, name, value, number))
-        return;
-    else if (name == "panels")
-        s.panels.show_tools = s.panels.show_journal = on;
-    else
-        throw Error(Message("unknown setting '{}'", name));
+    const Value v{.name = name, .text = value, .number = number_of(value), .on = value == "on"};
+    const std::span<const Setting> groups[] = {kBrush, kTools, kView, kPreferences, kArm};
+    for (const std::span<const Setting> group : groups)
+        for (const Setting& setting : group)
+            if (setting.name == name) return setting.set(s, v);
+    throw Error(Message("unknown setting '{}'", name));
 }
 
 }  // namespace tuft::app

@@ -122,9 +122,9 @@ void StudioInput::fly(const Event& e) {
     Session& s = session_;
     s.preferences.space_mouse.seen = true;
     if (!s.paint_thread || is_dialog_open(s)) return;
-    const double way =
+    const double speed =
         s.preferences.space_mouse.moves_eye ? -s.preferences.space_mouse.speed : s.preferences.space_mouse.speed;
-    s.view.orbit.fly(way * e.push, way * e.twist, s.preferences.space_mouse.level);
+    s.view.orbit.fly(speed * e.push, speed * e.twist, s.preferences.space_mouse.level);
     last_turn_ = now_;
     Event at = cursor_;
     at.time = e.time;

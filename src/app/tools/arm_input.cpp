@@ -34,8 +34,8 @@ std::optional<Frame> ArmInput::start_frame() const {
     const Area& area = s.view.area;
     const double x = area.x + 0.5 * area.width, y = area.y + 0.5 * area.height;
     for (double reach = 0; reach < 0.5 * area.height; reach += kBetweenStarts)
-        for (const Vec2& way : {Vec2{0, 1}, Vec2{0, -1}, Vec2{1, 0}, Vec2{-1, 0}}) {
-            const Aim aim = aim_of(s, {.x = x + reach * way.x, .y = y + reach * way.y});
+        for (const Vec2& side : {Vec2{0, 1}, Vec2{0, -1}, Vec2{1, 0}, Vec2{-1, 0}}) {
+            const Aim aim = aim_of(s, {.x = x + reach * side.x, .y = y + reach * side.y});
             if (const auto hit = aim_at(*s.paint_thread->model().query, aim))
                 return make_frame(hit->position,
                                   glm::dot(hit->normal, aim.ray.direction) > 0 ? -hit->normal : hit->normal,

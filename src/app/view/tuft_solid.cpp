@@ -56,16 +56,16 @@ Vec3f hair_colour(double from_tip, unsigned ink) {
 render::GlSolid solid_of(const brush::TuftState& tuft, unsigned ink) {
     render::GlSolid solid;
     if (tuft.branches.empty()) return solid;
-    const brush::TuftSurface skin = brush::make_tuft_surface(tuft);
+    const brush::TuftSurface surface = brush::make_tuft_surface(tuft);
     const std::vector<brush::Section>& spine = tuft.branches.front().sections;
     const double length = std::max(1e-6, glm::distance(spine.front().centre, spine.back().centre));
-    for (std::size_t i = 0; i < skin.positions.size(); ++i) {
-        solid.positions.push_back(Vec3f(skin.positions[i]));
-        solid.normals.push_back(Vec3f(skin.normals[i]));
-        const double from_root = glm::distance(skin.positions[i], spine.back().centre);
+    for (std::size_t i = 0; i < surface.positions.size(); ++i) {
+        solid.positions.push_back(Vec3f(surface.positions[i]));
+        solid.normals.push_back(Vec3f(surface.normals[i]));
+        const double from_root = glm::distance(surface.positions[i], spine.back().centre);
         solid.colours.push_back(hair_colour(1 - from_root / length, ink));
     }
-    solid.triangles = skin.triangles;
+    solid.triangles = surface.triangles;
     const brush::Section& root = tuft.branches.front().sections.back();
     const double r = std::max(root.a, root.b);
     const Vec3 up = -root.tangent;

@@ -41,8 +41,8 @@ constexpr ManualPage kPages[] = {
      "Choose an ink by its colour; its name and what it is made of show under the cursor.\n"
      "* \"Don't reload\": the brush runs dry as it paints, until you dip it. Else every stroke begins with a full "
      "brush.\n"
-     "* \"Wet ink\": it flows, soaks in and mixes with wet ink under the brush. \"1 min\" and \"Dry\" let it go its "
-     "way.\n"
+     "* \"Wet ink\": it flows, soaks in and mixes with wet ink under the brush. \"1 min\" and \"Dry\" let it flow and "
+     "dry.\n"
      "* \"Another ink in the tip\": petals and leaves in one stroke.\n"
      "* {pick}: a click makes the pigments that lie there an ink of your own.\n"
      "* {palette}: a plate for mixing. Pour inks on it, stir them, paint with what the brush took up.\n"
@@ -59,7 +59,7 @@ constexpr ManualPage kPages[] = {
     {"Layers, masks and filling",
      "* Strokes go onto the chosen layer. Layers are shown, faded, ordered and locked apart from each other.\n"
      "* {eraser} takes ink off the chosen layer, as deep as it is pressed.\n"
-     "* {fill} lays ink over the model, a part or a chart.\n"
+     "* {fill} covers the model, a part or a chart with ink.\n"
      "* {mask}: what faces one way, a chart, a group of the file or a lasso. The rest is veiled and takes no ink. "
      "\"Mask off\" paints everywhere again.\n"},
     {"Journal and snapshots",

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kManyTriangles = 4096;  // from which crossings are looked for in each step
 constexpr double kNearEnds = 1.0 / 32;        // of the border's length
 constexpr double kAsLong = 1.05;              // as another
-constexpr double kAtFirst = 1.1;              // beyond limits of form, before a chart is laid flat
+constexpr double kAtFirst = 1.1;              // beyond limits of form, before a chart is flattened
 constexpr double kUnderway = 1.01;            // the same after a step of it
 constexpr double kNearEndsUnderway = 1.0 / 64;
 constexpr int kSettled = 4;       // steps after which the rest of a crossing stays
@@ -209,7 +209,7 @@ class Merger {
         t.flat.mesh = make_chart(mesh_, cut_.glued, std::move(triangles), cut_.unit, cut_.place);
         ChartMesh& mesh = t.flat.mesh;
         if (!mesh.disk) return;
-        std::vector<std::uint32_t> anew;        // faces that are laid anew; none: all
+        std::vector<std::uint32_t> anew;        // faces that are flattened anew; none: all
         if (mesh.faces.size() > kLargeChart) {  // a start from which few steps lead on
             const bool grows = a.mesh.triangles.size() < b.mesh.triangles.size();  // b, by a
             const FlatChart &kept = grows ? b : a, &taken = grows ? a : b;
@@ -220,9 +220,9 @@ class Merger {
         }
 
         // Charts that lie one over the other stay so; only near the ends of the chain do small
-        // crossings go away. That is worth a look where laying flat is dear.
+        // crossings go away. That is worth a search where flattening is costly.
         if (mesh.faces.size() > kManyTriangles && crosses_itself(mesh, t.flat.uv, 0, kNearEnds)) return;
-        // Nor does laying flat change much of the shape.
+        // Nor does flattening change much of the shape.
         const std::array<Form, 2> parts{form_of(a), form_of(b)};
         scale_to_area(mesh, t.flat.uv);
         if (misshapen(form_of(t.flat), parts, kAtFirst)) return;
@@ -244,7 +244,7 @@ class Merger {
         t.merged = !misshapen(form_of(t.flat), parts, 1);
     }
 
-    /// Whether a chart of two parts that is being laid flat will have to be rejected: nearly all its
+    /// Whether a chart of two parts that is being flattened will have to be rejected: nearly all its
     /// motion is in the first steps.
     bool should_stop(const FlatChart& chart, const std::array<Form, 2>& parts, int steps) const {
         if (chart.mesh.faces.size() <= kManyTriangles) return false;

@@ -18,7 +18,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kFlatTriangle = 1e-3;
 constexpr double kTie = 0.02;
 
-/// Writes nothing where the way is a step long already, so that threads may ask then.
+/// Writes nothing where the path is a step long already, so that threads may ask then.
 std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
     while (parent[i] != i) {
         const std::uint32_t next = parent[parent[i]];

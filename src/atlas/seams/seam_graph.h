@@ -106,7 +106,7 @@ class SeamGraph {
     std::vector<float> length_, bent_;  // of chains: sum of length, of length × angle
     std::vector<std::uint32_t> version_;
     std::vector<NormalMoments> moments_;      // of charts
-    std::vector<double> error_;               // of charts: dear to find anew for each of their chains
+    std::vector<double> error_;               // of charts: costly to find anew for each of their chains
     std::vector<std::uint32_t> n_triangles_;  // of charts
     std::vector<std::uint32_t> vertex_half_;  // [n_vertices] a half-edge that leaves it
     std::vector<std::uint32_t> degree_;       // seam edges at a vertex, borders included

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSeamSpacing = 0.7;  // texels between samples of a seam
 constexpr double kSeamSearch = 2.0;   // texels from a seam to the nearest texel
-constexpr double kStep = 3;           // texels between the points of a way over a cluster
+constexpr double kStep = 3;           // texels between the points of a path over a cluster
 const double kCreaseCos = std::cos(20 * 0.017453292519943295);
 
 Vec3f position(const TexelShape& shape, int t) {

@@ -38,8 +38,8 @@ void add_section(const Section& s, Patch& patch) {
     // ω = atan2(nm, ne) ± acos(-z/reach) by their cosines and sines, so that mirrored sections have mirrored ends.
     const double co = ne / reach, si = nm / reach, down = -z / reach, half = std::sqrt(std::max(0.0, 1 - down * down));
     double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-    for (const double way : {-half, half}) {
-        const Vec3 q = s.centre + s.a * (co * down - way * si) * s.e + s.b * (si * down + way * co) * s.m;
+    for (const double sign : {-half, half}) {
+        const Vec3 q = s.centre + s.a * (co * down - sign * si) * s.e + s.b * (si * down + sign * co) * s.m;
         lo = std::min(lo, q.y);
         hi = std::max(hi, q.y);
         patch.front = std::min(patch.front, q.x);

@@ -183,7 +183,7 @@ ChainPore ChainModel::pore_of(const OneSpine& spine, std::span<const Vec3> carri
     pore.active = true;
     pore.direction = along / slant;
     pore.tip = (spine.node[n] - input.pose.position) / preset_.length;
-    pore.lead = (kPoreLead + height * slant / down) / preset_.length;
+    pore.reach = (kPoreLead + height * slant / down) / preset_.length;
     return pore;
 }
 
@@ -345,12 +345,12 @@ void ChainModel::spread(std::vector<Section>& sections, const SpineModelInput& i
             row.at.push_back(at_[i]);
             row.outer.push_back((1 - options_.effective_radius) * r);
             row.rest.push_back(std::min(r - own + spreads, preset_.flatten_max * r));
-            // Where it would be had it stayed: the spine's way along e comes off its distance.
+            // Where it would be had it stayed: the spine's motion along e comes off its distance.
             const Vec3& e = sections[count - 1 - i].e;
-            const double way = glm::dot(spines_[0].node[i] - before[0].node[i], e);
-            row.stuck.push_back(lateral_[side][i] - (side == 0 ? way : -way));
-            const bool lay = i > 0 && before[0].pressure[i] > 0;
-            row.drag.push_back(lay ? mu * kLateralLoad * spines_[0].pressure[i] * newton : 0);
+            const double motion = glm::dot(spines_[0].node[i] - before[0].node[i], e);
+            row.stuck.push_back(lateral_[side][i] - (side == 0 ? motion : -motion));
+            const bool touched = i > 0 && before[0].pressure[i] > 0;
+            row.drag.push_back(touched ? mu * kLateralLoad * spines_[0].pressure[i] * newton : 0);
         }
         const std::vector<double> d = solve_lateral_chain(row);
         major[side].resize(count);

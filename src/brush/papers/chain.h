@@ -18,7 +18,7 @@
 /// mean,
 ///    0.3 of it dry [X]. ρ follows the last step, so a held bend relaxes step by step, as in print: a bend below α ends
 ///    without force.
-/// 3. Pores: p·Δx_tip <= l_p, p the projected tip, l_p = l_0 + z cot α_tip [R: the way to touch], l_0 = 0.05 mm [X],
+/// 3. Pores: p·Δx_tip <= l_p, p the projected tip, l_p = l_0 + z cot α_tip [R: the path to touch], l_0 = 0.05 mm [X],
 ///    while the tip points down and slants more than 1° [X].
 /// 4. Lateral nodes (chain_lateral.h) of every second node: s(θ) = σ r k/k_ref with k the curvature there and k_ref
 ///    that of hair bent evenly from upright to flat [linear p; σ = 0.5 X]; springs 0.03 k_c, dry 0.7 of it [X]. Their

@@ -18,11 +18,11 @@ using Eigen::VectorXd;
 
 constexpr double kReferenceCurvature = std::numbers::pi / 2;  ///< [X]
 constexpr double kLargestTurn = 0.25;                         ///< radians that a joint turns in one iteration
-constexpr double kLeastBend = 1e-5;   ///< radians below which the curvature of |u|^m counts as constant
-constexpr double kLeastShift = 1e-7;  ///< of the Hessian's diagonal, relative to the joint
-constexpr double kSettled = 1e-7;     ///< lengths a node still moves
-constexpr double kGivesWay = 1e-10;   ///< compliance of constraints that contradict each other
-constexpr double kHold = 100;         ///< σ over 1 + the largest multiplier
+constexpr double kLeastBend = 1e-5;    ///< radians below which the curvature of |u|^m counts as constant
+constexpr double kLeastShift = 1e-7;   ///< of the Hessian's diagonal, relative to the joint
+constexpr double kSettled = 1e-7;      ///< lengths a node still moves
+constexpr double kCompliance = 1e-10;  ///< compliance of constraints that contradict each other
+constexpr double kHold = 100;          ///< σ over 1 + the largest multiplier
 constexpr double kArmijo = 1e-4;
 
 Mat3 cross_matrix(const Vec3& v) {
@@ -108,7 +108,7 @@ Drag drag_of(const ChainFriction& f, const ChainContact& c, const Vec3& x) {
     const Mat3 h_hessian =
         k * eps * eps / (s * s * s) * aa +
         l / t * (tangential - (isotropic ? Mat3{0} : aa) - glm::outerProduct(across, across) / (t * t));
-    // Dragged tip last: the way is against the tip's direction.
+    // Dragged tip last: the motion is against the tip's direction.
     const double rho = std::sqrt(glm::dot(d, d) + eps * eps), cosine = std::max(0.0, -along / rho);
     const double factor = 1 - f.with_hair * std::pow(cosine, 4);
     Vec3 factor_slope{0};
@@ -146,9 +146,9 @@ Height height_of(const ChainContact& c, const Vec3& x, double rounding) {
 struct Evaluation {
     Kinematics at;
     double energy = 0, bend_energy = 0;
-    std::vector<Drag> drag;  ///< [n] of nodes 1 … n
-    VectorXd room;           ///< constraints, >= 0 where kept: nodes, then the pore
-    std::vector<Vec3> way;   ///< their gradients by the node's position
+    std::vector<Drag> drag;           ///< [n] of nodes 1 … n
+    VectorXd room;                    ///< constraints, >= 0 where kept: nodes, then the pore
+    std::vector<Vec3> node_gradient;  ///< their gradients by the node's position
     double violation() const {
         double sum = 0;
         for (Index i = 0; i < room.size(); ++i) sum += std::max(0.0, -room[i]);
@@ -204,12 +204,12 @@ Evaluation Sqp::evaluate(std::span<const Vec2> bend) const {
         e.energy += e.drag.back().value;
         const Height h = height_of(c, e.at.node[i + 1], problem_.edge_rounding);
         e.room[static_cast<Index>(i)] = h.z - c.radius;
-        e.way.push_back(h.slope);
+        e.node_gradient.push_back(h.slope);
     }
     if (problem_.pore.active) {
         const ChainPore& pore = problem_.pore;
-        e.room[e.room.size() - 1] = pore.lead - glm::dot(pore.direction, e.at.node.back() - pore.tip);
-        e.way.push_back(-pore.direction);
+        e.room[e.room.size() - 1] = pore.reach - glm::dot(pore.direction, e.at.node.back() - pore.tip);
+        e.node_gradient.push_back(-pore.direction);
     }
     return e;
 }
@@ -237,7 +237,7 @@ MatrixXd Sqp::constraint_rows(const Evaluation& e) const {
     for (std::size_t i = 0; i < constraints_; ++i) {
         const Vec3 x = e.at.node[node_of(i)];
         for (std::size_t j = 0; j < node_of(i); ++j) {
-            const Vec3 about = glm::cross(x - e.at.node[j], e.way[i]);
+            const Vec3 about = glm::cross(x - e.at.node[j], e.node_gradient[i]);
             for (int k = 0; k < 2; ++k)
                 rows(static_cast<Index>(i), static_cast<Index>(2 * j) + k) = glm::dot(e.at.axis[k][j], about);
         }
@@ -252,7 +252,7 @@ MatrixXd Sqp::hessian(const Evaluation& e, std::span<const Vec2> bend) const {
     std::vector<Vec3> pull(count_, Vec3{0});
     for (std::size_t i = 0; i < e.drag.size(); ++i) pull[i] += e.drag[i].slope;
     for (std::size_t i = 0; i < constraints_; ++i)
-        pull[node_of(i) - 1] -= multiplier_[static_cast<Index>(i)] * e.way[i];
+        pull[node_of(i) - 1] -= multiplier_[static_cast<Index>(i)] * e.node_gradient[i];
     // Second moments outboard of each joint about the origin: Σ x pullᵀ and the force; Σ K, Σ [x]K, Σ [x]K[x]ᵀ.
     Mat3 second{0}, k0{0}, k1{0}, k2{0};
     Vec3 force{0};
@@ -326,7 +326,7 @@ VectorXd Sqp::step_of(const Evaluation& e, std::span<const Vec2> bend) {
     // Dual: min ½ λᵀ(A H⁻¹ Aᵀ)λ + λᵀ(room + A free), λ >= 0; step = free + H⁻¹ Aᵀ λ.
     const MatrixXd answer = factor.solve(rows.transpose());
     MatrixXd dual = rows * answer;
-    dual.diagonal().array() += kGivesWay;
+    dual.diagonal().array() += kCompliance;
     const VectorXd room = e.room + rows * free;
     const std::size_t n = constraints_;
     const std::vector<double> found =
@@ -344,7 +344,7 @@ void Sqp::finish(const Evaluation& e, ChainSolution& out) const {
     for (std::size_t i = 0; i < e.drag.size(); ++i) out.force[i + 1] -= e.drag[i].slope;
     for (std::size_t i = 0; i < constraints_; ++i) {
         const double f = multiplier_[static_cast<Index>(i)];
-        out.force[node_of(i)] += f * e.way[i];
+        out.force[node_of(i)] += f * e.node_gradient[i];
         if (i < problem_.contact.size()) out.pressure[i + 1] = f;
     }
 }

@@ -20,8 +20,8 @@
 ///     E = Σ κ_j (|w_j − ρ_j|^m + c |w_j − w'_j|^m) + Σ μN_i (1 − η_i) 2 (κ_f h(d∥) + (1 − κ_f) h(d⊥))
 ///
 /// subject to z_i >= r_i at every node and p·(x_n − x'_n) <= l_p at the tip. w' is the last step's w; ρ its plastic
-/// part; d_i the way of node i over the surface since it touched; h(d) = √(d² + ε²) − ε [X: ‖d‖ has a kink at 0];
-/// ∥ is along the projected tip; η = C max(0, d_p·d)^4 with d_p the way of a tip dragged last. The factor 2 makes
+/// part; d_i the motion of node i over the surface since it touched; h(d) = √(d² + ε²) − ε [X: ‖d‖ has a kink at 0];
+/// ∥ is along the projected tip; η = C max(0, d_p·d)^4 with d_p the direction of a tip dragged last. The factor 2 makes
 /// κ_f = ½ isotropic with μ [X].
 ///
 /// Sources: Chu and Tai 2002, 4.2.2–4.2.4; Van Laerhoven and Van Reeth 2007, equations (2)–(4).
@@ -44,7 +44,7 @@ struct ChainContact {
     ContactPlane plane;       ///< in units of L
     double radius = 0;        ///< r, least height
     double normal_force = 0;  ///< N of the last step
-    Vec3 touched{0};          ///< where the way d begins
+    Vec3 touched{0};          ///< where the motion d begins
     Vec3 normal{0, 0, 1};     ///< of the surface there; d is normal to it
 };
 
@@ -61,7 +61,7 @@ struct ChainPore {
     bool active = false;
     Vec3 direction{1, 0, 0};  ///< p, unit
     Vec3 tip{0};              ///< x'_n
-    double lead = 0;          ///< l_p
+    double reach = 0;         ///< l_p
 };
 
 struct ChainProblem {

@@ -37,8 +37,8 @@ bool too_long(const Spring& s, std::span<const Vec3> particles) {
     return glm::length(particles[s.to] - particles[s.from]) > (1 + kMostStretch) * s.rest;
 }
 
-/// Way that takes a vector d to length `most`. On the surface of a half space it runs along the surface if it can, so
-/// that hair that is drawn along keeps touching.
+/// Displacement that takes a vector d to length `most`. On the surface of a half space it runs along the surface if it
+/// can, so that hair that is drawn along keeps touching.
 Vec3 shortening(const Vec3& d, double most, const HalfSpace* touched) {
     if (touched != nullptr) {
         const double rise = glm::dot(d, touched->normal);
@@ -49,16 +49,17 @@ Vec3 shortening(const Vec3& d, double most, const HalfSpace* touched) {
     return (most / glm::length(d) - 1) * d;
 }
 
-/// Contracts all springs that are too long by the mean way of those at each point; whether there were any.
+/// Contracts all springs that are too long by the mean displacement of those at each point; whether there were any.
 bool contract_all(const Truss& truss, const Ground& ground, std::vector<Vec3>& particles) {
-    std::vector<Vec3> way(static_cast<std::size_t>(truss.count), Vec3{0});
-    std::vector<int> count(way.size(), 0);
+    std::vector<Vec3> displacement(static_cast<std::size_t>(truss.count), Vec3{0});
+    std::vector<int> count(displacement.size(), 0);
     const int base = truss.base_count();
     const auto pull = [&](int point, int other, const Spring& s, double share) {
         const HalfSpace* space = ground.below.empty() ? nullptr : &ground.below[point - base];
         const bool touches = space != nullptr && space->height(particles[point]) <= kOnSurface;
         const double most = (1 + kMostStretch - kSlack) * s.rest;
-        way[point - base] += share * shortening(particles[point] - particles[other], most, touches ? space : nullptr);
+        displacement[point - base] +=
+            share * shortening(particles[point] - particles[other], most, touches ? space : nullptr);
         ++count[point - base];
     };
     bool any = false;
@@ -69,8 +70,8 @@ bool contract_all(const Truss& truss, const Ground& ground, std::vector<Vec3>& p
         pull(s.to, s.from, s, driven ? 1 : 0.5);
         if (!driven) pull(s.from, s.to, s, 0.5);
     }
-    for (std::size_t j = 0; j < way.size(); ++j)
-        if (count[j] > 0) particles[base + j] += way[j] / static_cast<double>(count[j]);
+    for (std::size_t j = 0; j < displacement.size(); ++j)
+        if (count[j] > 0) particles[base + j] += displacement[j] / static_cast<double>(count[j]);
     return any;
 }
 

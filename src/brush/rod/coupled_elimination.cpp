@@ -367,7 +367,7 @@ Eigen::MatrixXd CoupledSystem::dense() const {
     std::vector<double> own;
     for (std::size_t k = 0; k < solvers_.size(); ++k) {
         const Solver& s = solvers_[k];
-        fill_hessian(s.rod, s.shape, s.ws.at, s.ws.derivatives, own);
+        fill_hessian({s.rod, s.shape, s.ws.at, s.ws.derivatives}, own);
         const Eigen::MatrixXd lower = Eigen::Map<const Eigen::MatrixXd>(own.data(), 2 * s.n(), 2 * s.n());
         out.block(first[k], first[k], 2 * s.n(), 2 * s.n()) = lower.selfadjointView<Eigen::Lower>();
     }

@@ -52,7 +52,7 @@ class CoupledSystem {
     std::span<const double> step() const { return step_; }
     void differentiate();
     void differentiate_twice();
-    int newton_step(bool dear);
+    int newton_step(bool by_eigenvectors);
     double try_step(double scale);
     void accept();
 

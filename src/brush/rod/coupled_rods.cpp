@@ -39,25 +39,25 @@ FrozenPair frozen_pair(const CoupledPair& pair, std::span<const CoupledRod> rods
 /// Starts the lagged normal forces from those of the last solve, changed on as they changed there.
 void start_pairs(Work& w) {
     double part = 2;
-    for (const Solver& s : w.solvers) part = std::min(part, s.stands() ? 0 : s.onward());
+    for (const Solver& s : w.solvers) part = std::min(part, s.stands() ? 0 : s.step_ratio());
     for (FrozenPair& f : w.pairs) {
         for (std::size_t i = 0; i < f.lagged.size(); ++i)
             f.lagged[i] = std::max(0.0, f.normal[i] + part * f.pair->memory->growth[i]);
     }
 }
 
-/// Starts all rods from their shapes carried on as they changed in the last solve, if Π of all is lower there.
+/// Starts all rods from their extrapolated shapes where the sum of Π is lower there.
 void start(Work& w, CoupledSystem& system) {
-    bool onward = true;
-    for (Solver& s : w.solvers) onward = onward && s.lay_onward();
+    bool extrapolated = true;
+    for (Solver& s : w.solvers) extrapolated = extrapolated && s.extrapolate_shape();
     for (Solver& s : w.solvers) s.freeze_friction(s.memory.node, s.shape.tangent);
     system.evaluate_all();
     system.freeze_pairs();
     system.evaluate_all();
-    if (!onward) return;
+    if (!extrapolated) return;
     const double kept = system.value();
     for (Solver& s : w.solvers) {
-        s.freeze_onward();
+        s.freeze_extrapolated();
         std::swap(s.shape, s.ws.next);
     }
     system.evaluate_all();
@@ -158,7 +158,7 @@ PairState finish_pair(const FrozenPair& f, const CouplingLaw& law, const Work& w
     return state;
 }
 
-/// Moves the rods to their clamps and lays the solvers; `buffers` holds one for each rod.
+/// Moves the rods to their clamps and prepares the solvers; `buffers` holds one for each rod.
 void begin(std::span<const CoupledRod> rods, std::span<const CoupledPair> pairs, std::deque<Buffers>& buffers,
            Work& w) {
     while (buffers.size() < rods.size()) buffers.emplace_back();
@@ -167,7 +167,7 @@ void begin(std::span<const CoupledRod> rods, std::span<const CoupledPair> pairs,
         const CoupledRod& r = rods[k];
         buffers[k].before = r.memory->node;
         const double moved = clamp_distance(r.memory->clamp, r.clamp);
-        carry_with_clamp(*r.memory, r.clamp);
+        move_with_clamp(*r.memory, r.clamp);
         w.solvers.push_back({*r.rod, *r.memory, r.obstacles, r.walls, *r.law, buffers[k], moved});
         w.solvers.back().begin(r.load, buffers[k].before);
     }

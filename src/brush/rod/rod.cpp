@@ -81,7 +81,7 @@ Memory make_memory(const Rod& rod, const Clamp& clamp) {
     return memory;
 }
 
-void carry_with_clamp(Memory& memory, const Clamp& clamp) {
+void move_with_clamp(Memory& memory, const Clamp& clamp) {
     const Clamp& was = memory.clamp;
     const Mat3 turn = clamp_frame(clamp) * glm::transpose(clamp_frame(was));
     for (Vec3& t : memory.tangent) t = glm::normalize(turn * t);

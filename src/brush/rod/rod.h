@@ -42,7 +42,7 @@ struct Rod {
     std::vector<double> yield;      ///< [n] joint angle θ_e where yielding starts; infinite: elastic
     std::vector<double> weight;     ///< [n+1] tributary length of each node
     double plastic_share = 1;       ///< part of k_j in stops that yield; the rest stays elastic
-    double buckling = 0;            ///< least load that buckles it as a column with its tip held
+    double buckling = 0;            ///< least load that buckles it as a column with its tip pinned
     int segments() const { return static_cast<int>(length.size()); }
 };
 
@@ -56,7 +56,7 @@ Rod make_rod(const Profile& profile, std::span<const double> lengths);
 /// clamp is the segment before `first`.
 Rod outer_part(const Rod& rod, int first, double share);
 
-/// Returns the buckling load of a straight rod whose tip is held and pressed end-on, in B0/L². It is the least
+/// Returns the buckling load of a straight rod whose tip is pinned and pressed end-on, in B0/L². It is the least
 /// eigenvalue P of Σ k_j (θ_j − θ_{j-1})² − P Σ l_j θ_j² on Σ l_j θ_j = 0.
 double buckling_load(const Rod& rod);
 
@@ -147,6 +147,16 @@ struct Load {
     Vec3 toward{1, 0, 0};
 };
 
+/// What acts on a rod in one solve, in units of L and B0. The spans are read during the call only.
+struct SolveInput {
+    std::span<const Obstacle> obstacles;  ///< [n+1] contact plane of each node; empty: no contact
+    Law law;                              ///< of contact, damping and recovery, with the solver's limits
+    Load load;                            ///< at the tip; default: none
+    /// Empty: none. They need obstacles, and have the same order in every solve of one `Memory`. A wall out of reach
+    /// changes no bit.
+    std::span<const Wall> walls;
+};
+
 /// Plastic state of a joint: parallel elastic-plastic elements in the frame of its inner segment.
 struct JointMemory {
     std::array<Vec2, kFibres> stop{};  ///< s_f, elastic strain of element f
@@ -198,7 +208,7 @@ struct Result {
 Memory make_memory(const Rod& rod, const Clamp& clamp);
 
 /// Moves the rod rigidly with the clamp to a new pose.
-void carry_with_clamp(Memory& memory, const Clamp& clamp);
+void move_with_clamp(Memory& memory, const Clamp& clamp);
 
 /// Rotates the rod about its clamp's axis by `angle` radians, with its set and its friction anchors. The clamp does
 /// not move.
@@ -207,14 +217,11 @@ void turn_about_clamp(Memory& memory, double angle);
 /// Returns the nodes root + Σ l_j t_j. [n+1]
 std::vector<Vec3> nodes(const Rod& rod, const Memory& memory);
 
-/// Moves the rod rigidly to `clamp`, then minimises Π. `obstacles`: [n+1], or empty for none. `walls` need
-/// obstacles and have the same order in every solve; a wall out of reach changes no bit. Never throws. The work is
-/// bounded: when it stops early, the best state is retained and `converged` is false.
-Result solve(const Rod& rod, Memory& memory, const Clamp& clamp, std::span<const Obstacle> obstacles, const Law& law,
-             const Load& load = {}, std::span<const Wall> walls = {});
+/// Moves the rod rigidly to `clamp`, then minimises Π. Never throws. The work is bounded: when it stops early, the
+/// best state is retained and `converged` is false.
+Result solve(const Rod& rod, Memory& memory, const Clamp& clamp, const SolveInput& input);
 
-/// Value and derivatives of Π for frozen friction, for tests. x holds 2n steps along the two normals of each
-/// segment, from the state in `memory`.
+/// Value and derivatives of Π at one place, for tests.
 struct Probe {
     double value = 0;
     std::vector<double> gradient;
@@ -223,7 +230,9 @@ struct Probe {
     /// not positive definite.
     std::vector<double> step;
 };
-Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles, const Law& law,
-                   const Load& load, std::span<const double> x, double damping = 0);
+/// Returns Π and its derivatives for frozen friction after the steps x [2n] from the state in `memory`: two for each
+/// segment, along its normals, in radians. `damping` ≥ 0 enters the Newton step only.
+Probe probe_energy(const Rod& rod, const Memory& memory, const SolveInput& input, std::span<const double> x,
+                   double damping = 0);
 
 }  // namespace tuft::brush::rod

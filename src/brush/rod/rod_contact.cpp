@@ -57,10 +57,10 @@ struct EndOn {
     double dd = 0, dc = 0, cc = 0;
 };
 
-/// min_s s²/(2 give) + contact(depth - c s). With e the indentation left, s = give c f(e) and
-/// e + give c² f(e) = depth, whose left side is convex and grows with e: Newton from above.
-EndOn end_on(const Law& law, double weight, double radius, double depth, double c, double give) {
-    const double soft = give * c * c;
+/// min_s s²/(2 compliance) + contact(depth - c s). With e the indentation left, s = compliance c f(e) and
+/// e + compliance c² f(e) = depth, whose left side is convex and grows with e: Newton from above.
+EndOn end_on(const Law& law, double weight, double radius, double depth, double c, double compliance) {
+    const double soft = compliance * c * c;
     double e = depth;
     NormalForce f = normal_force(law, weight, radius, e, 0);
     for (int i = 0; i < 40; ++i) {
@@ -69,8 +69,8 @@ EndOn end_on(const Law& law, double weight, double radius, double depth, double 
         e -= miss / (1 + soft * f.stiffness);
         f = normal_force(law, weight, radius, e, 0);
     }
-    const double s = give * c * f.force, k = f.stiffness, total = 1 + soft * k;
-    const double s_c = give * (f.force - c * k * s) / total;
+    const double s = compliance * c * f.force, k = f.stiffness, total = 1 + soft * k;
+    const double s_c = compliance * (f.force - c * k * s) / total;
     EndOn out;
     out.energy = f.energy + 0.5 * s * c * f.force;
     out.d = f.force;
@@ -134,7 +134,7 @@ void add_slope(const Stencil& at, const double* w, const Vec3& slope, Evaluation
 /// Part of a contact point's length of hair over a crease.
 struct Piece {
     Stencil at;
-    double weight = 0, radius = 0, give = 0;
+    double weight = 0, radius = 0, compliance = 0;
 };
 
 /// A piece of hair at a crease.
@@ -153,7 +153,7 @@ struct Shortened {
     Vec3 x{0};
     Distance at_surface;
     NormalForce push, pull;  // of the contact and of the film
-    double miss = 0;         // s / give less the force along the hair
+    double miss = 0;         // s / compliance less the force along the hair
 };
 
 Shortened shortened_by(const HairAtCrease& hair, double s) {
@@ -163,19 +163,19 @@ Shortened shortened_by(const HairAtCrease& hair, double s) {
     const double depth = piece.radius - out.at_surface.z;
     out.push = normal_force(law, piece.weight, piece.radius, depth, 0);
     out.pull = adhesion(law, piece.weight, -depth);
-    if (piece.give > 0) {
+    if (piece.compliance > 0) {
         const double force = out.push.force - out.pull.force;
-        out.miss = s / piece.give - force * glm::dot(inwards, out.at_surface.slope);
+        out.miss = s / piece.compliance - force * glm::dot(inwards, out.at_surface.slope);
     }
     return out;
 }
 
-/// The largest s at which s²/(2 give) + contact(r - z(x + s i)) is stationary: where the hair, coming
+/// The largest s at which s²/(2 compliance) + contact(r - z(x + s i)) is stationary: where the hair, coming
 /// from its root, meets the surface. Bracketed from outside, then false position (Illinois).
 Shortened shorten_to_surface(const HairAtCrease& hair) {
     const auto at = [&](double s) { return shortened_by(hair, s); };
     Shortened low = at(0);
-    if (hair.piece.give <= 0 || low.push.force <= 0) return low;
+    if (hair.piece.compliance <= 0 || low.push.force <= 0) return low;
     constexpr int kSteps = 12;
     const double step = 3 * hair.law.end_compliance / kSteps;
     Shortened high = at(kSteps * step);
@@ -210,7 +210,7 @@ Shortened shorten_to_surface(const HairAtCrease& hair) {
 }
 
 /// Adds the potential of a piece over an edge where it stands. With i the direction inwards, y = x + s i
-/// and ψ(y) the contact's: E = s²/(2 give) + ψ, E_x = ψ', E_i = s ψ'.
+/// and ψ(y) the contact's: E = s²/(2 compliance) + ψ, E_x = ψ', E_i = s ψ'.
 double add_piece(int p, const Piece& piece, const Shortened& st, Evaluation& out) {
     const Stencil& at = piece.at;
     const Vec3 inwards = at.inwards(out.node);
@@ -223,9 +223,9 @@ double add_piece(int p, const Piece& piece, const Shortened& st, Evaluation& out
     out.normal[p] += st.push.force;
     double energy = st.push.energy + st.pull.energy;
     if (st.s > 0) {
-        energy += st.s * st.s / (2 * piece.give);
+        energy += st.s * st.s / (2 * piece.compliance);
         const Vec3 ci = xx * inwards, b = slope + st.s * ci;
-        const double total = std::max(1 / piece.give + glm::dot(inwards, ci), 0.01 / piece.give);
+        const double total = std::max(1 / piece.compliance + glm::dot(inwards, ci), 0.01 / piece.compliance);
         const Sym3 ii = st.s * st.s * xx + -1 / total * outer(b);
         const Sym3 mixed = 2 * st.s * xx + -2 / total * symmetric(ci, b);
         xx += -1 / total * outer(ci);
@@ -260,7 +260,7 @@ void for_clusters(const Frozen& frozen, int p, const std::vector<Vec3>& node, co
         piece.weight = frozen.rod->length[j] / (per * kPieces);
         const Obstacle &o = frozen.obstacles[p], &other = frozen.obstacles[offset < 0 ? p - 1 : p + 1];
         piece.radius = o.radius + std::abs(offset) * (other.radius - o.radius);
-        piece.give = frozen.give[p] * frozen.weight[p] / piece.weight;
+        piece.compliance = frozen.compliance[p] * frozen.weight[p] / piece.weight;
         f(piece,
           shorten_to_surface({*frozen.law, frozen.crease[p], o, piece, piece.at.at(node), piece.at.inwards(node)}));
     }
@@ -297,8 +297,8 @@ double add_contact(const Frozen& frozen, int p, Evaluation& out) {
     }
     const double c = glm::dot(at.inwards(out.node), n);
     EndOn f;
-    if (depth > 0 && c > 0 && frozen.give[p] > 0 && frozen.crease[p].share <= 0) {
-        f = end_on(law, frozen.weight[p], o.radius, depth, c, frozen.give[p]);
+    if (depth > 0 && c > 0 && frozen.compliance[p] > 0 && frozen.crease[p].share <= 0) {
+        f = end_on(law, frozen.weight[p], o.radius, depth, c, frozen.compliance[p]);
     } else {
         const NormalForce whole = normal_force(law, frozen.weight[p], o.radius, depth, frozen.multiplier[p]);
         f = {.energy = whole.energy, .d = whole.force, .dd = whole.stiffness};

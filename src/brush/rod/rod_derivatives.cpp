@@ -136,11 +136,13 @@ void differentiate_twice(const Frozen& frozen, const Shape& shape, const Evaluat
     }
 }
 
-bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Derivatives& d, double damping,
-             Elimination& work, std::vector<double>& step) {
+namespace {
+
+/// Eliminates the steps from tip to root into `work`. Returns false where a pivot is not positive definite.
+bool eliminate(const QuadraticModel& model, double damping, Elimination& work) {
+    const auto& [rod, shape, at, d] = model;
     const int n = rod.segments();
     work.gain.resize(n);
-    step.resize(2 * n);
     // ½ xᵀPx + Σ_k (Q_k·x) v_k + ½ vᵀRv + p·x + r·v, x the move of the node outboard of segment j
     // and v its steps: the least of Π's model over everything further out.
     Sym3 big_p = at.curvature[n];
@@ -168,7 +170,7 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
         Elimination::Gain& gain = work.gain[j];
         gain.rest[0] = i00 * g[0] + i10 * g[1];
         gain.rest[1] = i10 * g[0] + i11 * g[1];
-        if (j == 0) break;
+        if (j == 0) return true;
         // The node before x_j moves by x less the steps there, v: V_{j-1,j+1} couples those to x and to u.
         const Sym3& far = at.across[j - 1];
         const Sym3 coupling = at.coupling[j] + far;
@@ -194,6 +196,12 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
             }
         }
     }
+}
+
+/// Computes the steps from root to tip by what `eliminate` left in `work`.
+void substitute(const QuadraticModel& model, const Elimination& work, std::vector<double>& step) {
+    const auto& [rod, shape, at, d] = model;
+    const int n = rod.segments();
     Vec3 moved{0};
     double before[2] = {0, 0};
     for (int j = 0; j < n; ++j) {
@@ -209,11 +217,19 @@ bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Der
         before[0] = u[0];
         before[1] = u[1];
     }
+}
+
+}  // namespace
+
+bool descend(const QuadraticModel& model, double damping, Elimination& work, std::vector<double>& step) {
+    step.resize(2 * model.rod.segments());
+    if (!eliminate(model, damping, work)) return false;
+    substitute(model, work, step);
     return true;
 }
 
-void fill_hessian(const Rod& rod, const Shape& shape, const Evaluation& at, const Derivatives& d,
-                  std::vector<double>& hessian) {
+void fill_hessian(const QuadraticModel& model, std::vector<double>& hessian) {
+    const auto& [rod, shape, at, d] = model;
     const int n = rod.segments();
     const auto size = static_cast<std::size_t>(2 * n);
     hessian.assign(size * size, 0);

@@ -212,7 +212,7 @@ double add_damping(const Frozen& frozen, int j, JointForce& joint) {
 
 namespace {
 
-/// Π of the joints and the load; lays the nodes.
+/// Π of the joints and the load; computes the nodes.
 double add_joints(const Frozen& frozen, const Shape& shape, Evaluation& out) {
     const Rod& rod = *frozen.rod;
     const int n = rod.segments();

@@ -68,8 +68,8 @@ struct Evaluation;
 /// Returns true when all points of node k are out of reach of one plane.
 bool all_clear(const Frozen& frozen, int k, const Evaluation& at);
 
-/// `lay_patches` finds the patches of the nodes. `turn_patches` sets their axes from the friction of their points.
-void lay_patches(Frozen& frozen);
+/// `compute_patches` finds the patches of the nodes. `turn_patches` sets their axes from the friction of their points.
+void compute_patches(Frozen& frozen);
 void turn_patches(Frozen& frozen);
 
 /// Adds the points of the patch of node k to `out` and returns their potential. Without `derivatives` it changes
@@ -111,9 +111,9 @@ struct Frozen {
     std::span<const Obstacle> obstacles;  ///< of the contact points, or empty
     std::vector<PointPlace> place;        ///< of the contact points
     std::vector<Stencil> stencil;         ///< of the contact points
-    std::vector<double> laid_length;      ///< segment lengths for which place and stencil were computed,
-    int laid_per = 0;                     ///< points per segment,
-    bool laid_round = false;              ///< and whether rounded
+    std::vector<double> placed_length;    ///< segment lengths for which place and stencil were computed,
+    int placed_per = 0;                   ///< points per segment,
+    bool placed_round = false;            ///< and whether rounded
     std::size_t walls_from = 0;           ///< index of the first contact point of a wall
     std::vector<Crease> crease;           ///< of the contact points
     std::vector<double> weight;           ///< of the contact points, tributary lengths
@@ -122,7 +122,7 @@ struct Frozen {
     Clamp clamp;
     std::vector<Friction> friction;  ///< of the contact points
     std::vector<double> multiplier;  ///< of the contact points
-    std::vector<double> give;        ///< of the contact points, end compliance: displacement per force
+    std::vector<double> compliance;  ///< of the contact points, end compliance: displacement per force
     std::vector<Patch> patch;        ///< of the nodes, or none
     std::vector<PatchPoint> spot;    ///< of the contact points on patches
 };
@@ -195,6 +195,14 @@ struct Derivatives {
 void differentiate(const Frozen& frozen, const Shape& shape, const Evaluation& at, Derivatives& out);
 void differentiate_twice(const Frozen& frozen, const Shape& shape, const Evaluation& at, Derivatives& out);
 
+/// Second-order expansion of Π about `shape`: views of what was computed there. `derivatives` holds both orders.
+struct QuadraticModel {
+    const Rod& rod;
+    const Shape& shape;
+    const Evaluation& at;
+    const Derivatives& derivatives;
+};
+
 /// Buffer of `descend`: steps of each segment as functions of its inner node's displacement and of the inner
 /// neighbour's steps.
 struct Elimination {
@@ -206,15 +214,14 @@ struct Elimination {
     std::vector<Gain> gain;
 };
 
-/// Solves (H + damping · (stiffness of the joints beside each segment)) u = −gradient for the steps u [2n]. With
-/// the node displacements as further unknowns, x_{j+1} = x_j + l_j T_j u_j, each segment couples to its neighbours
-/// only, and elimination from tip to root costs O(n). Returns false where the matrix is not positive definite.
-bool descend(const Rod& rod, const Shape& shape, const Evaluation& at, const Derivatives& derivatives, double damping,
-             Elimination& work, std::vector<double>& step);
+/// Solves (H + damping · (stiffness of the joints beside each segment)) u = −gradient for the steps u [2n], radians.
+/// `damping` ≥ 0. With the node displacements as further unknowns, x_{j+1} = x_j + l_j T_j u_j, each segment couples
+/// to its neighbours only, and elimination from tip to root costs O(n). Returns false where the matrix is not positive
+/// definite.
+bool descend(const QuadraticModel& model, double damping, Elimination& work, std::vector<double>& step);
 
 /// Computes the lower half of H [2n × 2n, column major].
-void fill_hessian(const Rod& rod, const Shape& shape, const Evaluation& at, const Derivatives& derivatives,
-                  std::vector<double>& hessian);
+void fill_hessian(const QuadraticModel& model, std::vector<double>& hessian);
 
 /// Computes the shape after steps u [2n] scaled by `scale`.
 void advance(const Shape& from, std::span<const double> u, double scale, Shape& to);

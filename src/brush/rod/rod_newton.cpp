@@ -8,15 +8,16 @@ constexpr int kEigenCost = 12;  ///< iterations that a step by eigenvectors coun
 
 /// Solves H u = -g into ws.step by elimination. A step that turns some segment too far, or an
 /// indefinite H, is damped in proportion to the joints' stiffness, so that the soft tip alone
-/// does not hold up the rest. With `by_eigenvectors` an indefinite H is taken with |λ| in
-/// place of λ instead: dear, but it converges fast next to a saddle. Returns the cost.
+/// does not shorten the step of the rest. With `by_eigenvectors` |λ| replaces λ where H is indefinite: it costs more,
+/// and converges fast next to a saddle. Returns the cost in iterations; 0: no step.
 int newton_step(const Rod& rod, const Shape& shape, Workspace& ws, bool by_eigenvectors) {
+    const QuadraticModel model{rod, shape, ws.at, ws.derivatives};
     constexpr double kDamping[] = {0, 0.5, 3, 20, 200};
     int cost = 0;
     bool usable = false;
     for (const double damping : kDamping) {
         ++cost;
-        if (descend(rod, shape, ws.at, ws.derivatives, damping, ws.elimination, ws.step)) {
+        if (descend(model, damping, ws.elimination, ws.step)) {
             usable = std::all_of(ws.step.begin(), ws.step.end(), [](double u) { return std::isfinite(u); });
             if (usable && longest_turn(ws.step) <= 2 * kLongestStep) return cost;
         } else if (by_eigenvectors) {
@@ -25,7 +26,7 @@ int newton_step(const Rod& rod, const Shape& shape, Workspace& ws, bool by_eigen
     }
     if (usable) return cost;
     const auto size = static_cast<Eigen::Index>(ws.derivatives.gradient.size());
-    fill_hessian(rod, shape, ws.at, ws.derivatives, ws.hessian);
+    fill_hessian(model, ws.hessian);
     ws.matrix = Eigen::Map<const DenseMatrix>(ws.hessian.data(), size, size);
     if (!ws.matrix.allFinite()) return 0;
     ws.eigen.compute(ws.matrix);

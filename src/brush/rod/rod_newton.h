@@ -47,9 +47,9 @@ inline double longest_turn(std::span<const double> step) {
 ///
 ///     tolerance(), value()             of the residual; Π at its shape
 ///     gradient()                       after differentiate()
-///     newton_step(bool dear)           after differentiate_twice(): fills step(), returns its cost, 0 for none
-///     try_step(scale)                  Π at the shape moved by scale · step()
-///     accept()                         takes the shape that was tried
+///     newton_step(bool by_eigenvectors)           after differentiate_twice(): fills step(), returns its cost, 0 for
+///     none try_step(scale)                  Π at the shape moved by scale · step() accept() takes the shape that was
+///     tried
 template <class System>
 NewtonResult minimise(System& system, int limit) {
     const double tolerance = system.tolerance();

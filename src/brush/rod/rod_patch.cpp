@@ -87,7 +87,7 @@ struct PatchSum {
 
 }  // namespace
 
-void lay_patches(Frozen& frozen) {
+void compute_patches(Frozen& frozen) {
     const Law& law = *frozen.law;
     const int per = law.points_per_segment, n = frozen.rod->segments();
     frozen.patch.assign(static_cast<std::size_t>(n + 1), {});
@@ -101,7 +101,8 @@ void lay_patches(Frozen& frozen) {
         double reach = -1e300;
         for (int p = range.begin; p < range.end; ++p) {
             const Obstacle& o = frozen.obstacles[p];
-            patch.flat = patch.flat && o.normal == patch.normal && frozen.crease[p].share <= 0 && frozen.give[p] <= 0;
+            patch.flat =
+                patch.flat && o.normal == patch.normal && frozen.crease[p].share <= 0 && frozen.compliance[p] <= 0;
             if (!patch.flat) break;
             frozen.spot[p].height = glm::dot(o.origin - frozen.clamp.position, patch.normal);
             reach = std::max(reach, frozen.spot[p].height + o.radius + law.adhesion_range);

@@ -10,7 +10,7 @@ namespace tuft::brush::rod {
 
 namespace {
 
-struct Layer {
+struct PointBuilder {
     const Rod& rod;
     const Law& law;
     std::span<const Obstacle> obstacles;
@@ -32,27 +32,27 @@ struct Layer {
 
     /// The two planes of a point over a crease: those of an edge near the nodes beside it, or of
     /// the nodes themselves.
-    void lay_crease(std::size_t p, const PointPlace& at, const Obstacle& from, const Obstacle& to) {
+    void compute_crease(std::size_t p, const PointPlace& at, const Obstacle& from, const Obstacle& to) {
         const bool inner = at.s > 0 && at.s < 1;
         const bool near_first = at.s < 1 && from.at_edge(), near_last = at.s > 0 && to.at_edge();
         if (near_first || near_last) {
             const bool both = near_first && near_last;
             const Obstacle &edge = near_first ? from : to, &other = near_first ? to : from;
             const double part = !inner ? 0 : near_first ? at.s : 1 - at.s;
-            if (lay_edge(p, edge, other, both, part)) return;
+            if (compute_edge(p, edge, other, both, part)) return;
             // The other node is nearer, and on a third face.
             if (both)
-                lay_edge(p, other, edge, false, 0);
+                compute_edge(p, other, edge, false, 0);
             else
                 std::tie(fine[p].origin, fine[p].normal) = std::tie(other.origin, other.normal);
             return;
         }
-        lay_parted(p, at, from, to);
+        compute_parted(p, at, from, to);
     }
 
     /// The planes of the edge near node `a`, those that node `b` has too interpolated towards
     /// it by `part`; false when b's plane is neither of them and b nearer.
-    bool lay_edge(std::size_t p, const Obstacle& a, const Obstacle& b, bool both, double part) {
+    bool compute_edge(std::size_t p, const Obstacle& a, const Obstacle& b, bool both, double part) {
         Wedge w{{a.origin, a.beyond_origin}, {a.normal, a.beyond_normal}};
         const double straight = glm::dot(b.normal, w.normal[0]), turned = glm::dot(b.normal, w.normal[1]);
         constexpr double kSame = 0.9;  // cos 26°
@@ -81,9 +81,9 @@ struct Layer {
 
     /// The planes of the nodes beside a point, or a node's own and the one next to it that
     /// differs most, where they part.
-    void lay_parted(std::size_t p, const PointPlace& at, const Obstacle& from, const Obstacle& to) {
+    void compute_parted(std::size_t p, const PointPlace& at, const Obstacle& from, const Obstacle& to) {
         if (at.s > 0 && at.s < 1) {
-            lay_parted(p, from, to);
+            compute_parted(p, from, to);
             return;
         }
         const int i = at.s == 0 ? at.node : at.node + 1;
@@ -93,10 +93,10 @@ struct Layer {
             const Obstacle before = facing(obstacles[i - 1], own.normal);
             if (glm::dot(own.normal, before.normal) < glm::dot(own.normal, other.normal)) other = before;
         }
-        lay_parted(p, own, other);
+        compute_parted(p, own, other);
     }
 
-    void lay_parted(std::size_t p, const Obstacle& a, const Obstacle& b) {
+    void compute_parted(std::size_t p, const Obstacle& a, const Obstacle& b) {
         const double alike = glm::dot(a.normal, b.normal);
         constexpr double kAlike = 0.985, kApart = 0.90;  // 10° and 26°, as over smooth surfaces
         const double share = smooth_step((kAlike - alike) / (kAlike - kApart));
@@ -109,9 +109,9 @@ struct Layer {
     }
 
     /// Places, planes, radii and tributary lengths of the contact points.
-    void lay_points() {
+    void compute_points() {
         const int per = law.points_per_segment;
-        lay_places(per);
+        compute_places(per);
         if (obstacles.empty()) return;
         fine.resize(frozen.place.size());
         frozen.crease.resize(fine.size());
@@ -123,12 +123,12 @@ struct Layer {
             const Obstacle &from = obstacles[at.node], &to = obstacles[at.node + 1];
             const bool edge = from.at_edge() || to.at_edge(), alike = !edge && from.normal == to.normal;
             if (alike && (at.s > 0 || alike_before)) {
-                lay_plane(p, at, from, to, from.normal);
+                compute_plane(p, at, from, to, from.normal);
             } else if (edge) {
                 const Vec3 x = frozen.stencil[p].at(node);
-                lay_point(p, at, within_reach(from, x), within_reach(to, x));
+                compute_point(p, at, within_reach(from, x), within_reach(to, x));
             } else {
-                lay_point(p, at, from, to);
+                compute_point(p, at, from, to);
             }
             alike_before = alike;
             if (p + 1 < fine.size()) {
@@ -139,15 +139,15 @@ struct Layer {
         }
     }
 
-    void lay_places(int per) {
-        if (frozen.laid_length == rod.length && frozen.laid_per == per && frozen.laid_round == rounded(law)) {
+    void compute_places(int per) {
+        if (frozen.placed_length == rod.length && frozen.placed_per == per && frozen.placed_round == rounded(law)) {
             frozen.place.resize(frozen.walls_from);
             frozen.stencil.resize(frozen.walls_from);
             return;
         }
-        frozen.laid_length = rod.length;
-        frozen.laid_per = per;
-        frozen.laid_round = rounded(law);
+        frozen.placed_length = rod.length;
+        frozen.placed_per = per;
+        frozen.placed_round = rounded(law);
         frozen.place.clear();
         frozen.walls_from = static_cast<std::size_t>(n()) * per + 1;
         for (int j = 0; j < n(); ++j) {
@@ -159,43 +159,43 @@ struct Layer {
             frozen.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
     }
 
-    void lay_point(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b) {
+    void compute_point(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b) {
         const Vec3 normal_sum = (1 - at.s) * a.normal + at.s * b.normal;
         const double size = glm::length(normal_sum);
-        lay_plane(p, at, a, b, size > 1e-6 ? normal_sum / size : a.normal);
-        if (law.edge > 0) lay_crease(p, at, a, b);
+        compute_plane(p, at, a, b, size > 1e-6 ? normal_sum / size : a.normal);
+        if (law.edge > 0) compute_crease(p, at, a, b);
     }
 
-    void lay_plane(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b, const Vec3& normal) {
+    void compute_plane(std::size_t p, const PointPlace& at, const Obstacle& a, const Obstacle& b, const Vec3& normal) {
         fine[p].origin = (1 - at.s) * a.origin + at.s * b.origin;
         fine[p].normal = normal;
         fine[p].radius = (1 - at.s) * a.radius + at.s * b.radius;
     }
 
-    /// How much the hair's ends give at each contact point: 1/k_e, k_e = 2 P s_e^-2 per length
+    /// End compliance of each contact point: 1/k_e, k_e = 2 P s_e^-2 per length
     /// so that a straight end takes the buckling load P at s_e.
-    void lay_give() {
-        frozen.give.assign(fine.size(), 0);
+    void compute_compliance() {
+        frozen.compliance.assign(fine.size(), 0);
         if (law.end_compliance <= 0 || law.hard || rod.buckling <= 0) return;
         const double soft = law.end_compliance * law.end_compliance / (2 * rod.buckling);
         double from_tip = 0;
         for (std::size_t p = fine.size(); p-- > 1;) {
             const double window = 1 - from_tip / (4 * law.end_compliance);
             if (window <= 0) break;
-            frozen.give[p] = soft * window * window / frozen.weight[p];
+            frozen.compliance[p] = soft * window * window / frozen.weight[p];
             from_tip += rod.length[frozen.place[p - 1].node] / law.points_per_segment;
         }
     }
 
     /// Points of their own on the nodes.
-    void lay_walls(std::span<const Wall> walls) {
+    void add_walls(std::span<const Wall> walls) {
         if (fine.empty() || law.hard) return;
         for (const Wall& w : walls) {
             const PointPlace at = w.node < n() ? PointPlace{w.node, 0} : PointPlace{n() - 1, 1};
             frozen.place.push_back(at);
             frozen.stencil.push_back(stencil_at(rod, rounded(law), at.node, at.s));
             frozen.crease.push_back({});
-            frozen.give.push_back(0);
+            frozen.compliance.push_back(0);
             frozen.weight.push_back(w.share * rod.weight[w.node]);
             constexpr double kNowhere = -1e6;  // lengths
             fine.push_back({w.origin, w.normal, w.share > 0 ? w.radius : kNowhere});
@@ -235,13 +235,13 @@ std::vector<Vec3> curve_nodes(const Rod& rod, const std::vector<Vec3>& node) {
     return x;
 }
 
-void lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
-                std::vector<Obstacle>& fine, std::span<const Wall> walls) {
+void compute_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
+                    std::vector<Obstacle>& fine, std::span<const Wall> walls) {
     fine.clear();
-    Layer layer{*frozen.rod, *frozen.law, obstacles, node, frozen, fine};
-    layer.lay_points();
-    layer.lay_give();
-    layer.lay_walls(walls);
+    PointBuilder builder{*frozen.rod, *frozen.law, obstacles, node, frozen, fine};
+    builder.compute_points();
+    builder.compute_compliance();
+    builder.add_walls(walls);
 }
 
 }  // namespace tuft::brush::rod

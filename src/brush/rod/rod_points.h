@@ -25,9 +25,9 @@ std::vector<Vec3> curve_nodes(const Rod& rod, const std::vector<Vec3>& node);
 
 /// Computes the contact points: planes and radii interpolated between those of the nodes. At a crease a node has
 /// two planes, or neighbouring nodes have different ones; its points get both. `obstacles`: [n+1], or empty;
-/// `node`: [n+1], node positions. Fills place, stencil, crease, weight and give of `frozen`, whose rod and law are
-/// set. `fine`: [points], or empty; the last points are those of the walls, one each.
-void lay_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
-                std::vector<Obstacle>& fine, std::span<const Wall> walls = {});
+/// `node`: [n+1], node positions. Fills place, stencil, crease, weight and compliance of `frozen`, whose rod and law
+/// are set. `fine`: [points], or empty; the last points are those of the walls, one each.
+void compute_points(std::span<const Obstacle> obstacles, const std::vector<Vec3>& node, Frozen& frozen,
+                    std::vector<Obstacle>& fine, std::span<const Wall> walls = {});
 
 }  // namespace tuft::brush::rod

@@ -3,24 +3,23 @@
 
 namespace tuft::brush::rod {
 
-Result solve(const Rod& rod, Memory& memory, const Clamp& clamp, std::span<const Obstacle> obstacles, const Law& law,
-             const Load& load, std::span<const Wall> walls) {
+Result solve(const Rod& rod, Memory& memory, const Clamp& clamp, const SolveInput& input) {
     thread_local Buffers buffers;
     buffers.before = memory.node;
     const double moved = clamp_distance(memory.clamp, clamp);
-    carry_with_clamp(memory, clamp);
-    Solver solver{rod, memory, obstacles, walls, law, buffers, moved};
-    solver.begin(load, buffers.before);
+    move_with_clamp(memory, clamp);
+    Solver solver{rod, memory, input.obstacles, input.walls, input.law, buffers, moved};
+    solver.begin(input.load, buffers.before);
     return solver.run();
 }
 
-Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacle> obstacles, const Law& law,
-                   const Load& load, std::span<const double> x, double damping) {
+Probe probe_energy(const Rod& rod, const Memory& memory, const SolveInput& input, std::span<const double> x,
+                   double damping) {
     Buffers buffers;
     Workspace& ws = buffers.newton;
     Memory copy = memory;
-    Solver solver{rod, copy, obstacles, {}, law, buffers};
-    solver.begin(load, memory.node);
+    Solver solver{rod, copy, input.obstacles, input.walls, input.law, buffers};
+    solver.begin(input.load, memory.node);
     for (std::size_t i = 0; i < solver.fine.size() && i < memory.contact.size(); ++i) {
         solver.normal[i] = memory.contact[i].force;
         if (memory.contact[i].force > 0) {
@@ -37,8 +36,9 @@ Probe probe_energy(const Rod& rod, const Memory& memory, std::span<const Obstacl
     differentiate(solver.frozen, moved, ws.at, ws.derivatives);
     differentiate_twice(solver.frozen, moved, ws.at, ws.derivatives);
     probe.gradient = ws.derivatives.gradient;
-    fill_hessian(rod, moved, ws.at, ws.derivatives, probe.hessian);
-    if (!descend(rod, moved, ws.at, ws.derivatives, damping, ws.elimination, probe.step)) probe.step.clear();
+    const QuadraticModel model{rod, moved, ws.at, ws.derivatives};
+    fill_hessian(model, probe.hessian);
+    if (!descend(model, damping, ws.elimination, probe.step)) probe.step.clear();
     return probe;
 }
 

@@ -70,7 +70,7 @@ void Solver::begin(const Load& load, const std::vector<Vec3>& before) {
     transport_sides(memory.clamp, shape.tangent, shape.side);
     Vec3 a = memory.clamp.tangent, side = memory.clamp.side;
     for (int j = 0; j < n(); ++j) {
-        // Frames are laid anew along the rod, so that spin gathered in one solve is dropped.
+        // Frames are transported anew along the rod, so that spin gathered in one solve is dropped.
         memory.joint[j].bend = bend_of(a, side, shape.tangent[j]);
         recovered += recover_joint(rod, j, memory.joint[j], law.recovery);
         a = shape.tangent[j];
@@ -81,9 +81,9 @@ void Solver::begin(const Load& load, const std::vector<Vec3>& before) {
     frozen.law = &law;
     frozen.load = load;
     frozen.clamp = memory.clamp;
-    lay_points(obstacles, memory.node, frozen, fine, walls);
+    compute_points(obstacles, memory.node, frozen, fine, walls);
     frozen.obstacles = fine;
-    lay_patches(frozen);
+    compute_patches(frozen);
     const std::size_t points = fine.size();
     frozen.friction.resize(points);
     for (Friction& f : frozen.friction) f.cap = 0;
@@ -91,7 +91,7 @@ void Solver::begin(const Load& load, const std::vector<Vec3>& before) {
     normal.assign(points, 0);
     anchor.assign(points, Vec3{0});
     anchored.assign(points, 0);
-    const double part = stands() ? 0 : onward();
+    const double part = stands() ? 0 : step_ratio();
     double carried = 0;
     for (const ContactMemory& c : memory.contact) carried += c.force;
     memory.contact.resize(std::max(static_cast<std::size_t>(law.points_per_segment) * n() + 1, points));
@@ -99,7 +99,7 @@ void Solver::begin(const Load& load, const std::vector<Vec3>& before) {
         const ContactMemory& c = memory.contact[p];
         const Vec3 x = point(memory.node, p);
         if (c.touching) {
-            anchor[p] = carried_anchor(p, c, point(before, p));
+            anchor[p] = transported_anchor(p, c, point(before, p));
             anchored[p] = 1;
             normal[p] = std::max(0.0, c.force + part * c.growth);
             frozen.multiplier[p] = c.multiplier;
@@ -114,7 +114,7 @@ void Solver::begin(const Load& load, const std::vector<Vec3>& before) {
     }
 }
 
-Vec3 Solver::carried_anchor(std::size_t p, const ContactMemory& c, const Vec3& last) const {
+Vec3 Solver::transported_anchor(std::size_t p, const ContactMemory& c, const Vec3& last) const {
     if (c.normal == Vec3{0}) return c.anchor;
     return last - parallel_transport(last - c.anchor, c.normal, normal_at(p, memory.node));
 }
@@ -150,8 +150,8 @@ void Solver::freeze_friction(const std::vector<Vec3>& x, const std::vector<Vec3>
     turn_patches(frozen);
 }
 
-bool Solver::lay_onward() {
-    const double part = onward();
+bool Solver::extrapolate_shape() {
+    const double part = step_ratio();
     if (memory.turn.empty() || part <= 0) return false;
     const Mat3 frame = clamp_frame(memory.clamp);
     ws.next.tangent.resize(shape.tangent.size());
@@ -168,7 +168,7 @@ bool Solver::stands() const {
     return glm::dot(memory.tangent.back(), memory.clamp.tangent) > kStands;
 }
 
-void Solver::freeze_onward() {
+void Solver::freeze_extrapolated() {
     if (stands())
         freeze_friction(memory.node, shape.tangent);
     else
@@ -176,8 +176,8 @@ void Solver::freeze_onward() {
 }
 
 void Solver::start() {
-    if (lay_onward()) {
-        freeze_onward();
+    if (extrapolate_shape()) {
+        freeze_extrapolated();
         evaluate(frozen, ws.next, ws.trial);
         if (ws.trial.value < value_of(frozen, shape, ws.at)) {
             std::swap(shape, ws.next);

@@ -16,7 +16,7 @@ namespace tuft::brush::rod {
 /// Returns how far a clamp went, turns counted at one length.
 double clamp_distance(const Clamp& a, const Clamp& b);
 
-/// Buffers of one thread, kept so that a warm solve allocates little.
+/// Buffers of one thread, reused so that a warm solve allocates little.
 struct Buffers {
     std::vector<Vec3> before;    ///< nodes of the last solve
     std::vector<Obstacle> fine;  ///< of the contact points
@@ -52,10 +52,9 @@ struct Solver {
     int n() const { return rod.segments(); }
 
     void begin(const Load& load, const std::vector<Vec3>& before);
-    /// The anchor of a point that stuck at `last`: what it is stretched along the surface
-    /// turns with the surface's normal, so that neither a rounded edge nor a change of planes
-    /// pulls at it.
-    Vec3 carried_anchor(std::size_t p, const ContactMemory& c, const Vec3& last) const;
+    /// Returns the anchor of a point that stuck at `last`. Its stretch along the surface is transported with the
+    /// surface's normal, so that neither a rounded edge nor a change of planes pulls at it.
+    Vec3 transported_anchor(std::size_t p, const ContactMemory& c, const Vec3& last) const;
     const PointPlace& place(std::size_t p) const { return frozen.place[p]; }
     Vec3 point(const std::vector<Vec3>& x, std::size_t p) const { return frozen.stencil[p].at(x); }
     Distance distance(std::size_t p, const Vec3& x) const;
@@ -66,15 +65,14 @@ struct Solver {
     void freeze_friction(const std::vector<Vec3>& x, const std::vector<Vec3>& tangents);
     /// Hair that stands may buckle: neither its friction nor its forces go on as they did.
     bool stands() const;
-    /// How far the hand goes on in this solve, over its way in the last.
-    double onward() const { return memory.moved > 0 ? std::min(2.0, moved / memory.moved) : 0; }
-    /// The shape carried on as it changed in the last solve, with its nodes; none where it is not known.
-    bool lay_onward();
-    /// Freezes friction for that shape, or for the hair as it stands.
-    void freeze_onward();
-    /// Starts from the shape carried on as it changed in the last solve, if Π is lower there with the
-    /// friction of hair that lies so; else from the one carried with the clamp. Friction frozen where the
-    /// hand alone would have taken the hair points the wrong way, and costs passes.
+    /// Displacement of the clamp in this solve over that of the last, 0–2; 0 where it did not move.
+    double step_ratio() const { return memory.moved > 0 ? std::min(2.0, moved / memory.moved) : 0; }
+    /// Extrapolates the shape and its nodes by the change of the last solve. Returns false where that is not known.
+    bool extrapolate_shape();
+    /// Freezes friction for the extrapolated shape, or for the present one where the hair stands.
+    void freeze_extrapolated();
+    /// Starts from the extrapolated shape where Π is lower there with the friction of that shape. Else it starts from
+    /// the shape that moved rigidly with the clamp: friction frozen there points the wrong way and costs passes.
     void start();
     /// Takes the normal forces of the pass; true when they no longer change.
     bool take_normal_forces(int pass);

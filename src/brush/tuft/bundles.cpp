@@ -157,7 +157,7 @@ void split_bundles(Bundles& bundles, const Preset& p, double stress, std::span<c
     }
 }
 
-void gather(Bundles& bundles) {
+void rejoin_hair(Bundles& bundles) {
     std::fill(bundles.separation.begin(), bundles.separation.end(), 0.0);
 }
 

@@ -48,13 +48,13 @@ Bundles make_bundles(const Preset& preset, std::uint64_t seed);
 ///     ξ k (1 − s_k) > split_at · resists_k  →  separation_k grows over 4 mm of travel;
 ///     ξ (1 − s_k) < merge_at · resists_k    →  separation_k falls to 0 within 0.1 s.
 ///
-/// Between the thresholds it does not change: separate hair joins again when it is wetted or combed (`gather`).
+/// Between the thresholds it does not change: separate hair joins again when it is wetted or combed (`rejoin_hair`).
 /// `stress` is k in [0, 1], `travel` in metres, `dt` in seconds. The result does not depend on the step size.
 void split_bundles(Bundles& bundles, const Preset& preset, double stress, std::span<const double> saturation,
                    double travel, double dt);
 
 /// Joins all bundles: every separation becomes 0.
-void gather(Bundles& bundles);
+void rejoin_hair(Bundles& bundles);
 
 /// Returns the current position of a bristle in the section. Separation moves it towards its bundle's centre.
 Vec2 place_of(const Bundles& bundles, const Bristle& bristle);

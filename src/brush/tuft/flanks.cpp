@@ -27,8 +27,8 @@ std::vector<rod::Wall> flank_walls(const Preset& p, const Spine& spine, const Qu
         const double width = glm::length(across);
         if (node == 0 || !(width > 0)) continue;
         const ContactPlane& wall = walls[k];
-        const Vec3 way = (k % 2 == 0 ? 1.0 : -1.0) * (turn * (across / width));
-        const double nearing = -glm::dot(way, wall.normal);
+        const Vec3 outward = (k % 2 == 0 ? 1.0 : -1.0) * (turn * (across / width));
+        const double nearing = -glm::dot(outward, wall.normal);
         const double share = smooth_step((nearing - kGround) / (kSteep - kGround));
         if (share <= 0) continue;
         const double along = glm::dot(spine.memory.tangent[node - 1], wall.normal);

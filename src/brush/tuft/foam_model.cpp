@@ -137,7 +137,7 @@ class FoamModel : public SpineModel {
     void straighten(const Pose& pose) override;
 
   private:
-    SkinContact ground_at(std::span<const ContactPlane> planes, std::size_t point, const Vec3& p) const;
+    SkinContact contact_at(std::span<const ContactPlane> planes, std::size_t point, const Vec3& p) const;
     void press(const SpineModelInput& input, TuftState& state);
     void lean(const SpineModelInput& input, TuftState& state);
     void make_sections(const SpineModelInput& input, TuftState& state);
@@ -145,9 +145,9 @@ class FoamModel : public SpineModel {
         return pose.position + pose.rotation * rest + part * lean_;
     }
     /// Depth along the axis, metres, of a column's end at that height.
-    static double pressed(const Vec3& axis, const SkinContact& ground, double end) {
-        const double cosine = std::max(kLeastCosine, -glm::dot(axis, ground.normal));
-        return std::clamp(-ground.height / cosine, 0.0, kMostStrain * end);
+    static double pressed(const Vec3& axis, const SkinContact& contact, double end) {
+        const double cosine = std::max(kLeastCosine, -glm::dot(axis, contact.normal));
+        return std::clamp(-contact.height / cosine, 0.0, kMostStrain * end);
     }
 
     std::shared_ptr<const FoamBody> body_;
@@ -167,17 +167,17 @@ void FoamModel::straighten(const Pose& pose) {
     for (const Vec3& n : body_->nodes) nodes_.push_back(rest_at(pose, n, 1));  // without lean also the mouth's
 }
 
-SkinContact FoamModel::ground_at(std::span<const ContactPlane> planes, std::size_t point, const Vec3& p) const {
+SkinContact FoamModel::contact_at(std::span<const ContactPlane> planes, std::size_t point, const Vec3& p) const {
     if (planes.size() == 1) return {height_over(planes[0], p), planes[0].normal};
-    SkinContact ground{0, Vec3{0}};
+    SkinContact contact{0, Vec3{0}};
     for (std::uint32_t i = body_->first_weight[point]; i < body_->first_weight[point + 1]; ++i) {
         const auto& [node, weight] = body_->weights[i];
-        ground.height += weight * height_over(planes[node], p);
-        ground.normal += weight * planes[node].normal;
+        contact.height += weight * height_over(planes[node], p);
+        contact.normal += weight * planes[node].normal;
     }
-    const double size = glm::length(ground.normal);
-    ground.normal = size > 1e-9 ? ground.normal / size : planes[0].normal;
-    return ground;
+    const double size = glm::length(contact.normal);
+    contact.normal = size > 1e-9 ? contact.normal / size : planes[0].normal;
+    return contact;
 }
 
 /// Normal forces, and the volume lost. Adds up in the order of the points.
@@ -190,19 +190,19 @@ void FoamModel::press(const SpineModelInput& input, TuftState& state) {
         const Column& column = body_->columns[v];
         if (!(column.area > 0)) continue;
         const Vec3 at = rest_at(input.pose, body_->shape->rest[v], 1);
-        const SkinContact ground = ground_at(input.planes, v, at);
-        const double depth = pressed(axis, ground, column.end);
+        const SkinContact contact = contact_at(input.planes, v, at);
+        const double depth = pressed(axis, contact, column.end);
         if (!(depth > 0)) continue;
         const double strain = std::min(depth / p.length, kMostStrain);
         const double axial = p.modulus * foam_stress(p.solid, strain) * column.area;
-        const Vec3 force = axial / std::max(kLeastCosine, -glm::dot(axis, ground.normal)) * ground.normal;
+        const Vec3 force = axial / std::max(kLeastCosine, -glm::dot(axis, contact.normal)) * contact.normal;
         state.force += force;
         state.moment += glm::cross(at - depth * axis - input.pose.position, force);
         state.normal_force += glm::length(force);
         state.energy.contact += p.modulus * foam_energy(p.solid, strain) * column.area * p.length;
         state.volume_lost += column.area * depth;
         touching_area_ += column.area;
-        normals += column.area * ground.normal;
+        normals += column.area * contact.normal;
     }
     if (touching_area_ > 0) normal_ = glm::normalize(normals);
 }
@@ -276,15 +276,15 @@ TuftState FoamModel::step(const SpineModelInput& input) {
             state.shape.position.push_back(at);
             continue;
         }
-        const SkinContact ground = ground_at(input.planes, v, at);
-        double depth = pressed(axis, ground, column.end);
+        const SkinContact contact = contact_at(input.planes, v, at);
+        double depth = pressed(axis, contact, column.end);
         if (part < 1) {
             const Vec3 end = rest_at(pose, {Vec2(shape.rest[v]), -column.end}, 1);
-            depth = pressed(axis, ground_at(input.planes, v, end), column.end);
+            depth = pressed(axis, contact_at(input.planes, v, end), column.end);
         }
         state.shape.position.push_back(at - depth * part * axis);
-        state.shape.height.push_back(ground.height);
-        state.shape.normal.push_back(ground.normal);
+        state.shape.height.push_back(contact.height);
+        state.shape.normal.push_back(contact.normal);
     }
     touching_ = touching_area_ > 0;
     pose_ = pose;

@@ -150,8 +150,9 @@ Solved solve_spine(const SpineStep& step, Spine& spine, const Passed& passed) {
     const Preset& p = step.preset;
     const rod::Law law = law_of(p, step.wetness, step.share, step.dt);
     const std::vector<rod::Obstacle> obstacles = obstacles_of(p, spine, step.planes);
-    rod::Result result = rod::solve(spine.rod, spine.memory, step.clamp, obstacles, law, {},
-                                    flank_walls(p, spine, step.rotation, step.walls, step.wetness));
+    rod::Result result = rod::solve(
+        spine.rod, spine.memory, step.clamp,
+        {.obstacles = obstacles, .law = law, .walls = flank_walls(p, spine, step.rotation, step.walls, step.wetness)});
     spine.pressed = result.contact_energy;
     result.dissipation += passed.dissipation;
     for (std::size_t i = 0; i < passed.slip.size(); ++i) result.slip[i] += passed.slip[i];
@@ -174,7 +175,7 @@ Pose between(const Pose& a, const Pose& b, double t) {
     return {glm::mix(a.position, b.position, t), glm::slerp(a.rotation, b.rotation, t), a.time + t * (b.time - a.time)};
 }
 
-int parts_of_way(const Preset& p, const Pose& from, const Pose& to, double bend) {
+int count_substeps(const Preset& p, const Pose& from, const Pose& to, double bend) {
     const double turned = 2 * std::acos(std::min(1.0, std::abs(glm::dot(from.rotation, to.rotation))));
     const double moved = glm::length(to.position - from.position) / p.length + turned;
     if (moved >= kTeleport) return 1;
@@ -191,7 +192,7 @@ Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pos
     const auto upright = [&](const Pose& pose) { return Upright{.tip = pose.position + p.length * pose.axis()}; };
     const double bend =
         std::acos(std::clamp(glm::dot(spine.memory.tangent.back(), spine.memory.clamp.tangent), -1.0, 1.0));
-    const int parts = parts_of_way(p, from, to, bend);
+    const int parts = count_substeps(p, from, to, bend);
     law.max_iterations = std::max(30, law.max_iterations / parts);
     step.dt /= parts;
     set_time(p, step.dt, law);
@@ -200,8 +201,10 @@ Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pos
         const Pose pose = between(from, to, static_cast<double>(k) / parts);
         turn_with_spread(p, spine, last, pose, planes);
         break_symmetry(p, spine, last, pose, planes, upright(pose));
-        const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose), obstacles_of(p, spine, planes),
-                                         law, {}, flank_walls(p, spine, pose.rotation, step.walls, step.wetness));
+        const rod::Result r = rod::solve(spine.rod, spine.memory, clamp_of(p, pose),
+                                         {.obstacles = obstacles_of(p, spine, planes),
+                                          .law = law,
+                                          .walls = flank_walls(p, spine, pose.rotation, step.walls, step.wetness)});
         spine.pressed = r.contact_energy;
         passed.dissipation += r.dissipation;
         passed.slip.resize(r.slip.size(), Vec3{0});
@@ -213,6 +216,49 @@ Passed follow_ferrule(SpineStep& step, Spine& spine, const Pose& from, const Pos
     return passed;
 }
 
+namespace {
+
+/// Unit direction across the clamp in which the tip bends: where it is, seen from the clamp's axis.
+Vec3 bending_side(const rod::Clamp& clamp, const Vec3& root_before, const Vec3& tip_before) {
+    Vec3 side = tip_before - clamp.position;
+    side -= glm::dot(side, clamp.tangent) * clamp.tangent;
+    side = glm::length(side) > 1e-9 ? glm::normalize(side) : clamp.side;
+    const Vec3 moved_by = clamp.position - root_before;
+    if (glm::dot(side, moved_by) > 0.999 * glm::length(moved_by) && glm::length(moved_by) > 1e-9) {
+        // Pushed straight ahead of the hand a tractrix balances; the hair gives way to one side.
+        side = glm::normalize(side + 0.03 * glm::cross(clamp.tangent, side));
+    }
+    return side;
+}
+
+/// Adds the reaction R of the surface at the tip: lever × R is the root moment of the table. Friction is μ R against
+/// the slip of the tip.
+void add_reaction(const Spine& spine, const std::vector<rod::Obstacle>& obstacles, double root_moment, double friction,
+                  const Vec3& tip_before, rod::Result& r) {
+    const rod::Memory& m = spine.memory;
+    const rod::Obstacle& o = obstacles.back();
+    Vec3 lever = m.node.back() - m.clamp.position;
+    lever -= glm::dot(lever, o.normal) * o.normal;
+    const double reaction = root_moment / std::max(glm::length(lever), 0.1);
+    Vec3 slip = m.node.back() - tip_before;
+    slip -= glm::dot(slip, o.normal) * o.normal;
+    const double moved = glm::length(slip);
+    r.force = reaction * o.normal;
+    if (moved > 1e-9) r.force -= friction * reaction / moved * slip;
+    r.root_moment = glm::cross(m.node.back() - m.clamp.position, r.force);
+    // Where the side of the tuft lies on the surface it shares the load.
+    double sum = 0;
+    for (std::size_t i = 1; i < m.node.size(); ++i) {
+        const rod::Obstacle& at = obstacles[i];
+        const double depth = at.radius - glm::dot(m.node[i] - at.origin, at.normal);
+        r.normal_force[i] = spine.rod.weight[i] * std::max(0.0, depth);
+        sum += r.normal_force[i];
+    }
+    for (double& f : r.normal_force) f *= sum > 0 ? reaction / sum : 0;
+}
+
+}  // namespace
+
 Solved bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spine) {
     const Preset& p = step.preset;
     const rod::Clamp& clamp = step.clamp;
@@ -221,7 +267,7 @@ Solved bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spin
     rod::Memory& m = spine.memory;
     const Vec3 root_before = m.clamp.position;
     const Vec3 tip_before = rod::nodes(spine.rod, m).back();
-    rod::carry_with_clamp(m, clamp);
+    rod::move_with_clamp(m, clamp);
     const std::size_t n = m.tangent.size();
     rod::Result r;
     r.converged = true;
@@ -235,14 +281,7 @@ Solved bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spin
         }
         for (std::size_t j = 0; j < n; ++j) m.tangent[j] = glm::normalize(m.node[j + 1] - m.node[j]);
     };
-    Vec3 side = tip_before - clamp.position;
-    side -= glm::dot(side, clamp.tangent) * clamp.tangent;
-    side = glm::length(side) > 1e-9 ? glm::normalize(side) : clamp.side;
-    const Vec3 moved_by = clamp.position - root_before;
-    if (glm::dot(side, moved_by) > 0.999 * glm::length(moved_by) && glm::length(moved_by) > 1e-9) {
-        // Pushed straight ahead of the hand a tractrix balances; the hair gives way to one side.
-        side = glm::normalize(side + 0.03 * glm::cross(clamp.tangent, side));
-    }
+    const Vec3 side = bending_side(clamp, root_before, tip_before);
     if (obstacles.empty()) {
         take_shape(table.rows.front(), side);
         return finish_spine(step, spine, {std::move(r), m.node, obstacles});
@@ -258,24 +297,7 @@ Solved bend_by_table(const SpineStep& step, const QueryTable& table, Spine& spin
     if (moment > 0) {
         const double unit = p.stiffness / p.length;
         for (std::size_t j = 0; j < n; ++j) r.moment[j] = row.moments[n - j] / unit;
-        Vec3 lever = m.node.back() - clamp.position;
-        lever -= glm::dot(lever, o.normal) * o.normal;
-        const double reaction = moment / unit / std::max(glm::length(lever), 0.1);
-        Vec3 slip = m.node.back() - tip_before;
-        slip -= glm::dot(slip, o.normal) * o.normal;
-        const double moved = glm::length(slip);
-        r.force = reaction * o.normal;
-        if (moved > 1e-9) r.force -= law.friction * reaction / moved * slip;
-        r.root_moment = glm::cross(m.node.back() - clamp.position, r.force);
-        // Where the side of the tuft lies on the surface it shares the load.
-        double sum = 0;
-        for (std::size_t i = 1; i <= n; ++i) {
-            const rod::Obstacle& at = obstacles[i];
-            const double depth = at.radius - glm::dot(m.node[i] - at.origin, at.normal);
-            r.normal_force[i] = spine.rod.weight[i] * std::max(0.0, depth);
-            sum += r.normal_force[i];
-        }
-        for (double& f : r.normal_force) f *= sum > 0 ? reaction / sum : 0;
+        add_reaction(spine, obstacles, moment / unit, law.friction, tip_before, r);
     }
     return finish_spine(step, spine, {std::move(r), m.node, obstacles});
 }

@@ -27,7 +27,7 @@ Loaded load_to(const rod::Rod& fine, const rod::Memory& from, double load) {
     law.tolerance = 1e-10;
     law.max_iterations = 200;
     Loaded out{from, {}};
-    out.result = rod::solve(fine, out.memory, kHolder, {}, law, {{0, load, 0}});
+    out.result = rod::solve(fine, out.memory, kHolder, {.law = law, .load = {{0, load, 0}}});
     return out;
 }
 

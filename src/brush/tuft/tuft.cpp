@@ -66,7 +66,7 @@ TuftState step_model(Tuft& tuft, const Pose& pose, std::span<const ContactPlane>
 
 constexpr double kCoheres = 0.25;        ///< of the capacity: ink from which water draws parted hair together
 constexpr double kMergingTime = 0.03;    ///< s in which it does
-constexpr double kPartingLength = 6e-3;  ///< m of the hand's way in which sub-spines part
+constexpr double kPartingLength = 6e-3;  ///< m of the hand's path in which sub-spines part
 constexpr double kMerged = 0.02;         ///< spread at which they are one again
 
 }  // namespace
@@ -216,7 +216,7 @@ TuftState step(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> plane
     }
     if (!tuft.posed) {
         // The first pose is where the hand starts: the tuft comes with it, from above.
-        for (Spine& spine : tuft.spines) rod::carry_with_clamp(spine.memory, clamp_in(tuft, spine, pose));
+        for (Spine& spine : tuft.spines) rod::move_with_clamp(spine.memory, clamp_in(tuft, spine, pose));
         if (tuft.model) tuft.model->straighten(pose);
         tuft.pose = pose;
         tuft.posed = true;
@@ -273,7 +273,7 @@ void reshape(Tuft& tuft) {
     }
     if (tuft.model) tuft.model->straighten(tuft.pose);
     tuft.split = false;
-    gather(tuft.bundles);
+    rejoin_hair(tuft.bundles);
 }
 
 Vec3 device_force(const Preset& p, const TuftState& state) {

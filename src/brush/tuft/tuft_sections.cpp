@@ -82,7 +82,7 @@ Wide wide_axis(const SectionInput& in, const std::vector<Vec3>& t) {
 
 namespace {
 
-/// Cubic from p to q with slopes u and v (Hermite), at f of the way.
+/// Cubic from p to q with slopes u and v (Hermite), at f of the path.
 double cubic(double p, double q, double u, double v, double f) {
     const double g = 1 - f;
     return g * g * (1 + 2 * f) * p + f * f * (1 + 2 * g) * q + f * g * (g * u - f * v);
@@ -126,7 +126,7 @@ constexpr double kSides =
     0.03;  ///< of k_c, the stretch springs: water holds hair together by some 0.3 N/m a millimetre
 constexpr double kSideDrag = 1.0;  ///< of kSides: share of the friction across a section that its side nodes take
 constexpr double kGrip =
-    0.05;  ///< of the length, way along the hair over which a contact comes to hold the hair beyond it
+    0.05;  ///< of the length, distance along the hair over which a contact takes the hair beyond it along
 constexpr double kFree = 0.1;   ///< of r, height off the surface from which hair beyond the contact is free of it
 constexpr double kLying = 0.6;  ///< height over b at which wet hair lies by its own weight
 
@@ -207,49 +207,53 @@ Rest rest_of(const SectionInput& in, const std::vector<Vec3>& t, const std::vect
     return out;
 }
 
-/// How far, beyond its resting half-width r, a side node may go out along `way` before it meets the place between its
-/// spine and a neighbour where the hair of both touches.
-double clearance_beside(const Neighbour& beside, std::size_t node, const Vec3& way, double r) {
+/// How far, beyond its resting half-width r, a side node may go out along `direction` before it meets the place between
+/// its spine and a neighbour where the hair of both touches.
+double clearance_beside(const Neighbour& beside, std::size_t node, const Vec3& direction, double r) {
     constexpr double kFaces = 0.5;  // cosine to the neighbour from which it is in the way
     if (node >= beside.apart.size()) return std::numeric_limits<double>::infinity();
     const Vec3& apart = beside.apart[node];
-    const double distance = glm::length(apart), nearing = glm::dot(apart, way);
+    const double distance = glm::length(apart), nearing = glm::dot(apart, direction);
     if (nearing < kFaces * distance) return std::numeric_limits<double>::infinity();
     return distance * distance / nearing * beside.part[node] - r;
 }
 
-/// How far, beyond its rest radius, a side node may go out along `way` before it meets a wall;
+/// How far, beyond its rest radius, a side node may go out along `direction` before it meets a wall;
 /// planes that lean away less than 20° are the ground the section lies on.
-double clearance(const SectionInput& in, std::size_t node, const ContactPlane& wall, const Vec3& way, double r) {
+double clearance(const SectionInput& in, std::size_t node, const ContactPlane& wall, const Vec3& direction, double r) {
     constexpr double kGround = 0.34;  // sin 20°
-    const double nearing = -glm::dot(way, wall.normal);
+    const double nearing = -glm::dot(direction, wall.normal);
     if (nearing < kGround) return std::numeric_limits<double>::infinity();
     const Vec3 x = in.node[node] * in.preset.length;
     return glm::dot(x - wall.origin, wall.normal) / nearing - r;
 }
 
-/// What pushes the side nodes out, as if it worked against the wet stretch springs alone:
-/// r (κ1 |m|/M_e0 + κ2 k_F + κ3 i); and the shift by the friction of the surface along e.
-Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std::vector<Vec3>& e) {
+/// Loads of the side nodes, root first.
+struct SideLoads {
+    std::vector<double> at;  ///< metres from the mouth
+    LateralSide plus, minus;
+    LateralFriction friction;
+};
+
+/// Computes what pushes the side nodes out, as if it worked against the wet stretch springs alone:
+/// r (κ1 |m|/M_e0 + κ2 k_F + κ3 i); how far they can go; and the friction of the surface along e.
+SideLoads side_loads(const SectionInput& in, const std::vector<Vec3>& t, const std::vector<Vec3>& e, const Rest& rest) {
     const Preset& p = in.preset;
     const std::size_t count = e.size();
     const double yield = (p.yield > 0 ? p.yield : 1) / in.share;
     const double newton = p.stiffness / (p.length * p.length);
     const double of_tuft = in.wide() ? in.share : 1;
     const double k_f = std::min(1.0, p.force_gain * glm::length(in.result.force) * of_tuft * newton / p.force_limit);
-    const Rest rest = rest_of(in, t, e);
     const std::vector<double> indentation = indentation_of(in, t);
     const double wet = kSides * p.transverse_stiffness;
-    LateralSprings springs{
-        .stretch = wet * (kDry + (1 - kDry) * in.wetness), .bend = wet, .reach = kReach * p.length, .wall = kWall};
-    for (const double r : rest.along) springs.taper.push_back(std::max(r, kFinest));
-    std::vector<double> at(count, 0);
-    LateralSide plus{std::vector<double>(count, 0),
-                     std::vector<double>(count, std::numeric_limits<double>::infinity())};
+    SideLoads out;
+    auto& [at, plus, minus, friction] = out;
+    at.assign(count, 0);
+    plus = {std::vector<double>(count, 0), std::vector<double>(count, std::numeric_limits<double>::infinity())};
     const double root = in.spine.root_width;
     if (root > 0) plus.root = side_of_width(rest.along.front(), root, p.flatten_max);
-    LateralSide minus = plus;
-    LateralFriction friction{std::vector<double>(count, 0), std::vector<double>(count, 0), in.spine.slips};
+    minus = plus;
+    friction = {std::vector<double>(count, 0), std::vector<double>(count, 0), in.spine.slips};
     for (std::size_t i = 0; i < count; ++i) {
         if (i > 0) at[i] = at[i - 1] + in.spine.rod.length[i - 1] * p.length;
         const double moment = i + 1 < count ? in.result.moment[i] : 0;
@@ -274,6 +278,19 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
         }
         plus.push[i] = minus.push[i] = wet * rest.across[i] * widen;
     }
+    return out;
+}
+
+/// Half-widths of the sections in equilibrium of the side nodes.
+Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std::vector<Vec3>& e) {
+    const Preset& p = in.preset;
+    const std::size_t count = e.size();
+    const Rest rest = rest_of(in, t, e);
+    const double wet = kSides * p.transverse_stiffness;
+    LateralSprings springs{
+        .stretch = wet * (kDry + (1 - kDry) * in.wetness), .bend = wet, .reach = kReach * p.length, .wall = kWall};
+    for (const double r : rest.along) springs.taper.push_back(std::max(r, kFinest));
+    auto [at, plus, minus, friction] = side_loads(in, t, e, rest);
     Widths out;
     out.turn = rest.turn;
     const LateralRow row = lateral_row(at, springs);

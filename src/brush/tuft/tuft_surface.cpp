@@ -92,28 +92,28 @@ std::vector<Section> refine_sections(const std::vector<Section>& in, int between
 
 namespace {
 
-void add_branch(const std::vector<Section>& sections, const TuftSurfaceOptions& options, TuftSurface& skin) {
+void add_branch(const std::vector<Section>& sections, const TuftSurfaceOptions& options, TuftSurface& surface) {
     const std::vector<Section> rings = refine_sections(sections, options.rings_between_nodes);
     if (rings.size() < 2) return;
     const auto p = static_cast<std::uint32_t>(options.points_per_ring);
-    const auto first = static_cast<std::uint32_t>(skin.positions.size());
+    const auto first = static_cast<std::uint32_t>(surface.positions.size());
     for (std::size_t k = rings.size(); k-- > 1;) {  // root first; the tip closes with a point
         const Section& c = rings[k];
         for (std::uint32_t i = 0; i < p; ++i) {
             const double w = 2 * std::numbers::pi * i / p;
-            skin.positions.push_back(c.centre + c.a * std::cos(w) * c.e + c.b * std::sin(w) * c.m);
+            surface.positions.push_back(c.centre + c.a * std::cos(w) * c.e + c.b * std::sin(w) * c.m);
             const Vec3 across = c.b * std::cos(w) * c.e + c.a * std::sin(w) * c.m;
             const double size = glm::length(across);
-            skin.normals.push_back(size > 0 ? across / size : c.e);
+            surface.normals.push_back(size > 0 ? across / size : c.e);
         }
-        ++skin.rings;
+        ++surface.rings;
     }
     const auto ring_count = static_cast<std::uint32_t>(rings.size() - 1);
-    const auto tip = static_cast<std::uint32_t>(skin.positions.size());
-    skin.positions.push_back(rings.front().centre);
-    skin.normals.push_back(rings.front().tangent);
+    const auto tip = static_cast<std::uint32_t>(surface.positions.size());
+    surface.positions.push_back(rings.front().centre);
+    surface.normals.push_back(rings.front().tangent);
     const auto add = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
-        skin.triangles.insert(skin.triangles.end(), {i, j, k});
+        surface.triangles.insert(surface.triangles.end(), {i, j, k});
     };
     // Seen along the spine towards the tip, (e, m) turn counter-clockwise when e × m = -t.
     for (std::uint32_t ring = 0; ring + 1 < ring_count; ++ring) {
@@ -128,15 +128,16 @@ void add_branch(const std::vector<Section>& sections, const TuftSurfaceOptions& 
     for (std::uint32_t i = 0; i < p; ++i) add(last + i, tip, last + (i + 1) % p);
 }
 
-/// Unit vector across the hair of a section and across the way to its neighbour.
-Vec3 beside_row(const Vec3& way, const Section& s) {
-    const Vec3 out = glm::cross(way, s.tangent);
+/// Unit vector across the hair of a section and across the direction to its neighbour.
+Vec3 beside_row(const Vec3& direction, const Section& s) {
+    const Vec3 out = glm::cross(direction, s.tangent);
     const double size = glm::length(out);
     return size > 1e-12 ? out / size : s.m;
 }
 
 /// Closes what lies between two joined spines of a ferrule: above and below, from section to section, tip first.
-void add_joint(const TuftState& state, const Opening& opening, const TuftSurfaceOptions& options, TuftSurface& skin) {
+void add_joint(const TuftState& state, const Opening& opening, const TuftSurfaceOptions& options,
+               TuftSurface& surface) {
     const Branch &first = state.branches[opening.first], &second = state.branches[opening.second];
     // Sections of equal number from the root face each other.
     const std::size_t count = std::min(first.sections.size(), second.sections.size());
@@ -147,26 +148,26 @@ void add_joint(const TuftState& state, const Opening& opening, const TuftSurface
     const std::vector<Section> a = tail(first), b = tail(second);
     const std::size_t off = first.sections.size() - count, per = 1 + options.rings_between_nodes;
     for (const double side : {1.0, -1.0}) {
-        const auto start = static_cast<std::uint32_t>(skin.positions.size());
+        const auto start = static_cast<std::uint32_t>(surface.positions.size());
         for (std::size_t i = 0; i < a.size(); ++i) {
             for (const Section* s : {&a[i], &b[i]}) {
                 const Vec3 out = state.strips ? (glm::dot(s->m, a[i].m) < 0 ? -1.0 : 1.0) * s->m
                                               : beside_row(b[i].centre - a[i].centre, *s);
                 const double reach =
                     state.strips ? s->b : std::hypot(s->a * glm::dot(out, s->e), s->b * glm::dot(out, s->m));
-                skin.positions.push_back(s->centre + side * reach * out);
-                skin.normals.push_back(side * out);
+                surface.positions.push_back(s->centre + side * reach * out);
+                surface.normals.push_back(side * out);
             }
         }
         for (std::uint32_t i = 0; i + 1 < a.size(); ++i) {
             if (!(opening.width[off + i / per] <= 0)) continue;
             const std::uint32_t p = start + 2 * i;
-            const Vec3 out =
-                glm::cross(skin.positions[p + 1] - skin.positions[p], skin.positions[p + 2] - skin.positions[p]);
-            if (glm::dot(out, skin.normals[p]) > 0)
-                skin.triangles.insert(skin.triangles.end(), {p, p + 1, p + 2, p + 1, p + 3, p + 2});
+            const Vec3 out = glm::cross(surface.positions[p + 1] - surface.positions[p],
+                                        surface.positions[p + 2] - surface.positions[p]);
+            if (glm::dot(out, surface.normals[p]) > 0)
+                surface.triangles.insert(surface.triangles.end(), {p, p + 1, p + 2, p + 1, p + 3, p + 2});
             else
-                skin.triangles.insert(skin.triangles.end(), {p, p + 2, p + 1, p + 1, p + 2, p + 3});
+                surface.triangles.insert(surface.triangles.end(), {p, p + 2, p + 1, p + 1, p + 2, p + 3});
         }
     }
 }
@@ -176,20 +177,20 @@ void add_joint(const TuftState& state, const Opening& opening, const TuftSurface
 namespace {
 
 /// A mesh as it is, with smooth normals.
-void add_mesh(const TuftShape& shape, TuftSurface& skin) {
-    skin.positions = shape.position;
-    skin.normals.assign(shape.position.size(), Vec3{0});
+void add_mesh(const TuftShape& shape, TuftSurface& surface) {
+    surface.positions = shape.position;
+    surface.normals.assign(shape.position.size(), Vec3{0});
     for (const auto& t : shape.carried->triangles) {
-        skin.triangles.insert(skin.triangles.end(), t.begin(), t.end());
+        surface.triangles.insert(surface.triangles.end(), t.begin(), t.end());
         const Vec3& p = shape.position[t[0]];
         const Vec3 area = glm::cross(shape.position[t[1]] - p, shape.position[t[2]] - p);
-        for (const std::uint32_t v : t) skin.normals[v] += area;
+        for (const std::uint32_t v : t) surface.normals[v] += area;
     }
-    for (Vec3& n : skin.normals) n = glm::length(n) > 0 ? glm::normalize(n) : Vec3{0, 0, 1};
+    for (Vec3& n : surface.normals) n = glm::length(n) > 0 ? glm::normalize(n) : Vec3{0, 0, 1};
 }
 
 /// Hairs as tubes of three sides.
-void add_lines(const TuftShape& shape, TuftSurface& skin) {
+void add_lines(const TuftShape& shape, TuftSurface& surface) {
     constexpr double kHalf = 1e-4;  // m
     for (const std::vector<std::uint32_t>& line : shape.carried->lines)
         for (std::size_t k = 0; k < line.size(); ++k) {
@@ -197,15 +198,15 @@ void add_lines(const TuftShape& shape, TuftSurface& skin) {
             const Vec3 run =
                 shape.position[line[std::min(k + 1, line.size() - 1)]] - shape.position[line[k > 0 ? k - 1 : 0]];
             const Frame across = make_frame(at, glm::length(run) > 1e-12 ? glm::normalize(run) : Vec3{0, 0, -1});
-            const auto first = static_cast<std::uint32_t>(skin.positions.size());
+            const auto first = static_cast<std::uint32_t>(surface.positions.size());
             for (std::uint32_t i = 0; i < 3; ++i) {
                 const double w = 2 * std::numbers::pi * i / 3;
                 const Vec3 out = std::cos(w) * across.t + std::sin(w) * across.b;
-                skin.positions.push_back(at + kHalf * out);
-                skin.normals.push_back(out);
+                surface.positions.push_back(at + kHalf * out);
+                surface.normals.push_back(out);
                 if (k == 0) continue;
                 const std::uint32_t a = first + i, b = first + (i + 1) % 3;
-                skin.triangles.insert(skin.triangles.end(), {a - 3, b - 3, b, a - 3, b, a});
+                surface.triangles.insert(surface.triangles.end(), {a - 3, b - 3, b, a - 3, b, a});
             }
         }
 }
@@ -213,22 +214,22 @@ void add_lines(const TuftShape& shape, TuftSurface& skin) {
 }  // namespace
 
 TuftSurface make_tuft_surface(const TuftState& state, const TuftSurfaceOptions& options) {
-    TuftSurface skin;
-    skin.points_per_ring = std::max(3, options.points_per_ring);
+    TuftSurface surface;
+    surface.points_per_ring = std::max(3, options.points_per_ring);
     if (state.shape.carried) {
-        add_mesh(state.shape, skin);
+        add_mesh(state.shape, surface);
         if (!state.shape.carried->lines.empty()) {
-            skin.positions.clear();
-            skin.normals.clear();
-            add_lines(state.shape, skin);
+            surface.positions.clear();
+            surface.normals.clear();
+            add_lines(state.shape, surface);
         }
-        return skin;
+        return surface;
     }
     TuftSurfaceOptions used = options;
-    used.points_per_ring = skin.points_per_ring;
-    for (const Branch& branch : state.branches) add_branch(branch.sections, used, skin);
-    for (const Opening& opening : state.openings) add_joint(state, opening, used, skin);
-    return skin;
+    used.points_per_ring = surface.points_per_ring;
+    for (const Branch& branch : state.branches) add_branch(branch.sections, used, surface);
+    for (const Opening& opening : state.openings) add_joint(state, opening, used, surface);
+    return surface;
 }
 
 }  // namespace tuft::brush

@@ -13,7 +13,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kBuiltIn = 0.05;                ///< |w| of a tuft as it is bound: its ends do not lie quite evenly
-constexpr double kTurnsAt = 0.15, kDrawn = 0.5;  ///< |w|, see splay.h
+constexpr double kTurnsAt = 0.15, kDrawn = 0.5;  ///< |w|, see upright_hair.h
 constexpr double kElsewhere = 0.4;               ///< radians: hair no further from its mean its friction turns
 constexpr double kLeastReach = 0.02;             ///< of the length, ρ at the first touch
 

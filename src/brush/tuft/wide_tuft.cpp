@@ -59,8 +59,8 @@ std::vector<double> spread_half_widths(const Spine& spine, const Vec2& direction
         const double size = glm::length(across);
         const double a = 0.5 * (spine.flank[k] + spine.flank[k + 1]);
         const double r = spine.rest_radius[i];
-        const Vec3 way = direction.x * spine.broad[i] + direction.y * spine.across[i];
-        const double along = size > 0 ? std::abs(glm::dot(way, across) / size) : 1;
+        const Vec3 broadside = direction.x * spine.broad[i] + direction.y * spine.across[i];
+        const double along = size > 0 ? std::abs(glm::dot(broadside, across) / size) : 1;
         out.push_back(std::hypot(a * along, r * r / a * std::sqrt(std::max(0.0, 1 - along * along))));
     }
     return out;
@@ -117,10 +117,12 @@ struct Coupled {
         pairs.clear();
         for (Beside& beside : tuft.beside) {
             const Spine &first = tuft.spines[beside.first], &second = tuft.spines[beside.second];
-            const Vec2& way = beside.direction;
-            const std::vector<double> left = spread_half_widths(first, way), right = spread_half_widths(second, way);
+            const Vec2& direction = beside.direction;
+            const std::vector<double> left = spread_half_widths(first, direction),
+                                      right = spread_half_widths(second, direction);
             // The clamp's second axis is −y.
-            rod::CoupledPair pair{.first = beside.first, .second = beside.second, .direction = {way.x, -way.y}};
+            rod::CoupledPair pair{
+                .first = beside.first, .second = beside.second, .direction = {direction.x, -direction.y}};
             const FilmHeight film{tuft.preset.radius, beside.face, first.rest_section.front(),
                                   second.rest_section.front()};
             for (std::size_t i = 0; i < beside.distance.size(); ++i) {
@@ -268,64 +270,96 @@ double rest_reach(const Spine& spine, std::size_t i, const Vec3& x, const Vec3& 
     return std::sqrt(a * a + b * b + c * c);
 }
 
-SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPlane> planes,
-                          std::span<const ContactPlane> walls, double dt) {
+namespace {
+
+/// What follows from the motion of the ferrule to one pose.
+struct Followed {
+    rod::CoupledResult result;            ///< of the last part of the motion
+    std::vector<std::vector<Vec3>> slip;  ///< of each spine, all parts together
+    double dissipation = 0;               ///< all parts together
+};
+
+/// Moves the ferrule to `to` in parts that are small enough to be followed.
+Followed follow_pose(Tuft& tuft, const Pose& to, std::span<const ContactPlane> planes,
+                     std::span<const ContactPlane> walls, double dt, Coupled& coupled) {
     const Preset& p = tuft.preset;
     const std::size_t k_all = tuft.spines.size();
     double bend = 0;
     for (const Spine& spine : tuft.spines) bend = std::max(bend, bend_of_tip(spine));
-    const int parts = planes.empty() ? 1 : parts_of_way(p, tuft.pose, to, bend);
+    const int parts = planes.empty() ? 1 : count_substeps(p, tuft.pose, to, bend);
     const double part_dt = dt / parts;
-    Coupled coupled;
-    std::vector<std::vector<Vec3>> slip(k_all);
-    SolvedSpines out;
-    rod::CoupledResult result;
+    Followed out;
+    out.slip.resize(k_all);
     Pose last = tuft.pose;
     const rod::Law whole = law_of(p, tuft.wetness, 1, part_dt);
     for (int k = 1; k <= parts; ++k) {
         const Pose pose = k == parts ? to : between(tuft.pose, to, static_cast<double>(k) / parts);
         break_symmetries(tuft, last, pose, planes);
         const int most = k == parts ? whole.max_iterations : std::max(30, whole.max_iterations / parts);
-        result = coupled.solve(tuft, pose, planes, walls, part_dt, most);
-        out.dissipation += result.dissipation;
+        out.result = coupled.solve(tuft, pose, planes, walls, part_dt, most);
+        out.dissipation += out.result.dissipation;
         for (std::size_t i = 0; i < k_all; ++i) {
-            const rod::Result& r = result.rods[i];
+            const rod::Result& r = out.result.rods[i];
             tuft.spines[i].pressed = r.contact_energy;
             out.dissipation += r.dissipation;
-            slip[i].resize(r.slip.size(), Vec3{0});
-            for (std::size_t j = 0; j < r.slip.size(); ++j) slip[i][j] += r.slip[j];
+            out.slip[i].resize(r.slip.size(), Vec3{0});
+            for (std::size_t j = 0; j < r.slip.size(); ++j) out.slip[i][j] += r.slip[j];
         }
         last = pose;
     }
-    out.coupling_energy = result.energy;
-    out.film_range = p.length * coupling_of(p, tuft.wetness).film_range * (tuft.wetness > 0 ? 1 : 0);
+    return out;
+}
+
+/// Stores the axes of every spine in the frame of the ferrule. Returns the nodes on the rounded hair, [spines][n+1].
+std::vector<std::vector<Vec3>> store_axes(Tuft& tuft, const Quat& rotation) {
     std::vector<std::vector<Vec3>> node;
     for (Spine& spine : tuft.spines) {
         node.push_back(rod::curve_nodes(spine.rod, spine.memory.node));
         const std::vector<Vec3> t = node_tangents(spine.memory);
         spine.broad = broad_axes(spine.memory, t);
         spine.across.resize(t.size());
-        const Quat back = glm::conjugate(to.rotation);
+        const Quat back = glm::conjugate(rotation);
         for (std::size_t i = 0; i < t.size(); ++i) {
             spine.across[i] = back * glm::cross(spine.broad[i], t[i]);
             spine.broad[i] = back * spine.broad[i];
         }
     }
+    return node;
+}
+
+/// Returns the spines beside spine k.
+Neighbours neighbours_of(const Tuft& tuft, std::size_t k, const std::vector<std::vector<Vec3>>& node) {
+    Neighbours neighbours;
+    for (const Beside& beside : tuft.beside) {
+        const auto one = static_cast<std::size_t>(beside.first), two = static_cast<std::size_t>(beside.second);
+        if (one != k && two != k) continue;
+        const std::vector<Vec3>& other = node[one == k ? two : one];
+        Neighbour& neighbour = neighbours.emplace_back();
+        for (std::size_t i = 0; i < std::min(node[k].size(), other.size()); ++i) {
+            neighbour.apart.push_back(tuft.preset.length * (other[i] - node[k][i]));
+            neighbour.part.push_back(tuft.spines[k].rest_section[i].x / beside.distance[i]);
+        }
+    }
+    return neighbours;
+}
+
+}  // namespace
+
+SolvedSpines solve_spines(Tuft& tuft, const Pose& to, std::span<const ContactPlane> planes,
+                          std::span<const ContactPlane> walls, double dt) {
+    const Preset& p = tuft.preset;
+    Coupled coupled;
+    auto [result, slip, dissipation] = follow_pose(tuft, to, planes, walls, dt, coupled);
+    SolvedSpines out;
+    out.dissipation = dissipation;
+    out.coupling_energy = result.energy;
+    out.film_range = p.length * coupling_of(p, tuft.wetness).film_range * (tuft.wetness > 0 ? 1 : 0);
+    const std::vector<std::vector<Vec3>> node = store_axes(tuft, to.rotation);
     std::size_t first = 0;
-    for (std::size_t k = 0; k < k_all; ++k) {
+    for (std::size_t k = 0; k < tuft.spines.size(); ++k) {
         Spine& spine = tuft.spines[k];
         result.rods[k].slip = slip[k];
-        Neighbours neighbours;
-        for (const Beside& beside : tuft.beside) {
-            const auto one = static_cast<std::size_t>(beside.first), two = static_cast<std::size_t>(beside.second);
-            if (one != k && two != k) continue;
-            const std::vector<Vec3>& other = node[one == k ? two : one];
-            Neighbour& way = neighbours.emplace_back();
-            for (std::size_t i = 0; i < std::min(node[k].size(), other.size()); ++i) {
-                way.apart.push_back(p.length * (other[i] - node[k][i]));
-                way.part.push_back(spine.rest_section[i].x / beside.distance[i]);
-            }
-        }
+        const Neighbours neighbours = neighbours_of(tuft, k, node);
         const std::size_t count = spine.rest_radius.size();
         const SpineStep step{.preset = p,
                              .clamp = spine.memory.clamp,

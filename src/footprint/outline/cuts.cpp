@@ -11,7 +11,7 @@ namespace tuft::footprint {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kSearchSteps = 4;  // per segment, to find where the skin meets the surface
+constexpr int kSearchSteps = 4;  // per segment, to find where the surface meets the surface
 constexpr int kSamples = 48;     // sections taken from a stretch that touches
 
 Cut cut_of(const brush::Section& s, const Frame& frame, const brush::ContactPlane* plane, double film) {
@@ -64,10 +64,10 @@ double hermite(double p0, double p1, double m0, double m1, double h, double f) {
     return p0 + (p1 - p0) * (3 * f2 - 2 * f3) + h * (m0 * (f3 - 2 * f2 + f) + m1 * (f3 - f2));
 }
 
-/// The skin of a branch between its nodes: node parameter 0 (tip) … n − 1 (root).
-class TuftSurface {
+/// The surface of a branch between its nodes: node parameter 0 (tip) … n − 1 (root).
+class BranchSurface {
   public:
-    TuftSurface(const brush::Branch& branch, bool strip, const Frame& frame, const NodePlanes* planes, double film) {
+    BranchSurface(const brush::Branch& branch, bool strip, const Frame& frame, const NodePlanes* planes, double film) {
         const auto& sections = branch.sections;
         const auto plane = [&](std::size_t i) { return planes && i < planes->size() ? &(*planes)[i] : nullptr; };
         add_cap(sections.front(), strip, frame, plane(0), film);
@@ -189,31 +189,31 @@ class TuftSurface {
     std::size_t cap_ = 0;  // nodes that close the tip
 };
 
-/// Part [begin, end] of the skin that touches the surface.
+/// Part [begin, end] of the surface that touches the surface.
 struct Stretch {
     double begin = 0, end = 0;
 };
 
-/// Parameter between `out` (not touching) and `in` (touching) where the skin meets the surface.
-double find_meeting_point(const TuftSurface& skin, double out, double in) {
+/// Parameter between `out` (not touching) and `in` (touching) where the surface meets the surface.
+double find_meeting_point(const BranchSurface& surface, double out, double in) {
     for (int i = 0; i < 26; ++i) {
         const double middle = 0.5 * (out + in);
-        (skin.at(middle).overlap() >= 0 ? in : out) = middle;
+        (surface.at(middle).overlap() >= 0 ? in : out) = middle;
     }
     return in;
 }
 
-std::vector<Stretch> touching_stretches(const TuftSurface& skin) {
+std::vector<Stretch> touching_stretches(const BranchSurface& surface) {
     std::vector<Stretch> found;
-    const int n = static_cast<int>(skin.end()) * kSearchSteps;
+    const int n = static_cast<int>(surface.end()) * kSearchSteps;
     bool before = false;
     for (int i = 0; i <= n; ++i) {
         const double s = double(i) / kSearchSteps;
-        const bool now = skin.at(s).overlap() >= 0;
+        const bool now = surface.at(s).overlap() >= 0;
         if (now && !before)
-            found.push_back({i == 0 ? 0 : find_meeting_point(skin, double(i - 1) / kSearchSteps, s), s});
+            found.push_back({i == 0 ? 0 : find_meeting_point(surface, double(i - 1) / kSearchSteps, s), s});
         if (now) found.back().end = s;
-        if (!now && before) found.back().end = find_meeting_point(skin, s, double(i - 1) / kSearchSteps);
+        if (!now && before) found.back().end = find_meeting_point(surface, s, double(i - 1) / kSearchSteps);
         before = now;
     }
     return found;
@@ -228,14 +228,14 @@ std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame,
     for (std::size_t k = 0; k < count; ++k) {
         const auto& sections = tuft.branches[k].sections;
         if (sections.size() < 2) continue;
-        const TuftSurface skin(tuft.branches[k], tuft.strips, frame, k < planes.size() ? &planes[k] : nullptr,
-                               std::max(film, 0.0));
+        const BranchSurface surface(tuft.branches[k], tuft.strips, frame, k < planes.size() ? &planes[k] : nullptr,
+                                    std::max(film, 0.0));
         // The middle one of several branches goes on as the trunk.
         const bool carries = count > 1 && k == count / 2 && !tuft.wide;
-        const double trunk = carries ? skin.at_section(tuft.branches[0].sections.size() - 1) : 1e9;
+        const double trunk = carries ? surface.at_section(tuft.branches[0].sections.size() - 1) : 1e9;
         // The hair of a wide ferrule differs in length.
-        const double whole = tuft.wide && length > 0 ? skin.from_tip(skin.end()) / length : 1;
-        for (const Stretch& stretch : touching_stretches(skin)) {
+        const double whole = tuft.wide && length > 0 ? surface.from_tip(surface.end()) / length : 1;
+        for (const Stretch& stretch : touching_stretches(surface)) {
             Trail trail{.branch = static_cast<int>(k),
                         .cuts = {},
                         .along = {},
@@ -247,13 +247,13 @@ std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame,
             for (int i = 0; i < kSamples; ++i) {
                 const double f = 0.5 - 0.5 * std::cos(kPi * i / (kSamples - 1));
                 const double s = stretch.begin + f * (stretch.end - stretch.begin);
-                trail.cuts.push_back(skin.at(s));
-                trail.along.push_back(length > 0 ? whole - skin.from_tip(s) / length : 0);
+                trail.cuts.push_back(surface.at(s));
+                trail.along.push_back(length > 0 ? whole - surface.from_tip(s) / length : 0);
                 if (s < trunk) trail.trunk = trail.cuts.size();
                 std::size_t next = 0;
                 for (const brush::Opening& opening : tuft.openings)
                     if (opening.first == trail.branch)
-                        trail.openings[next++].width.push_back(skin.value_at(s, opening.width));
+                        trail.openings[next++].width.push_back(surface.value_at(s, opening.width));
             }
             found.push_back(std::move(trail));
         }

@@ -38,9 +38,9 @@ void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& fo
     if (glm::dot(to - tail, tail - cuts.front().centre) <= 0) return;  // the tuft lies over it
     const double length = glm::length(to - from), end = foot.share * (kPressed * foot.radius + std::max(film, 0.0));
     if (!(length > 1e-7)) return;
-    const Vec2 way = (to - from) / length;
+    const Vec2 ahead = (to - from) / length;
     const auto width_at = [&](const Vec2& p) {
-        return std::lerp(half, end, std::clamp(glm::dot(p - from, way) / length, 0.0, 1.0));
+        return std::lerp(half, end, std::clamp(glm::dot(p - from, ahead) / length, 0.0, 1.0));
     };
     for (std::size_t i = widest + 1; i < cuts.size(); ++i) {
         const double need = width_at(cuts[i].centre);
@@ -48,10 +48,10 @@ void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& fo
         cuts[i].a = need;
         cuts[i].z = 0;
     }
-    // Hair that lies on the surface, across the way.
+    // Hair that lies on the surface, across the path.
     Cut cut = cuts.back();
-    const double turn = glm::dot(Vec2(cut.e), Vec2{-way.y, way.x}) < 0 ? -1 : 1;
-    cut.e = turn * Vec3{-way.y, way.x, 0};
+    const double turn = glm::dot(Vec2(cut.e), Vec2{-ahead.y, ahead.x}) < 0 ? -1 : 1;
+    cut.e = turn * Vec3{-ahead.y, ahead.x, 0};
     cut.m = {0, 0, cut.m.z < 0 ? -1 : 1};
     cut.z = 0;
     const auto add = [&](const Vec2& centre, double a) {
@@ -66,7 +66,7 @@ void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& fo
     }
     for (int i = 1; i <= kRound; ++i) {
         const double w = 0.5 * std::numbers::pi * i / kRound;
-        add(to + end * std::sin(w) * way, std::max(end * std::cos(w), 1e-6));
+        add(to + end * std::sin(w) * ahead, std::max(end * std::cos(w), 1e-6));
     }
     trail.trunk = cuts.size();
 }

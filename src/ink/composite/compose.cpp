@@ -145,17 +145,17 @@ void continue_over_seams(AtlasMap<T>& image, std::span<const std::uint32_t> slot
     });
 }
 
-/// Computes the tiles of `slots` by `look(slot)` and then the gutter that depends on them.
+/// Computes the tiles of `slots` by `appearance(slot)` and then the gutter that depends on them.
 template <class T, int C, class Fn, class Code>
 void refresh(AtlasMap<T>& image, std::span<const std::uint32_t> slots, const atlas::TexelMap& map,
-             const ComposeOptions& options, Fn&& look, const Code& code) {
+             const ComposeOptions& options, Fn&& appearance, const Code& code) {
     report(options.progress, "colour", 0);
     constexpr std::size_t kBatch = 4096;
     for (std::size_t first = 0; first < slots.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, slots.size() - first);
         parallel_for(count, 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = first + begin; i < first + end; ++i)
-                write_tile<T, C>(image, map, slots[i], look(slots[i]));
+                write_tile<T, C>(image, map, slots[i], appearance(slots[i]));
         });
         report(options.progress, "colour",
                0.8 * static_cast<double>(first + count) / static_cast<double>(slots.size()));
@@ -175,11 +175,12 @@ void refresh(AtlasMap<T>& image, std::span<const std::uint32_t> slots, const atl
 
 template <class T, int C, class Fn, class Code>
 AtlasMap<T> compose(std::span<const std::uint32_t> slots, const atlas::TexelMap& map,
-                    const std::array<T, C>& background, const ComposeOptions& options, Fn&& look, const Code& code) {
+                    const std::array<T, C>& background, const ComposeOptions& options, Fn&& appearance,
+                    const Code& code) {
     AtlasMap<T> image{.size = map.size, .channels = C, .texels = {}};
     image.texels.resize(std::size_t{map.size} * map.size * C);
     for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i] = background[i % C];
-    refresh<T, C>(image, slots, map, options, look, code);
+    refresh<T, C>(image, slots, map, options, appearance, code);
     return image;
 }
 
@@ -201,10 +202,10 @@ float film_on(const Stack& stack, std::uint32_t slot, int texel) {
     return sum;
 }
 
-TileOut<std::uint8_t, 3> srgb8_of(const TileAppearance& look) {
+TileOut<std::uint8_t, 3> srgb8_of(const TileAppearance& appearance) {
     TileOut<std::uint8_t, 3> out;
     for (int t = 0; t < kN; ++t)
-        for (int b = 0; b < 3; ++b) out[t][b] = code_of_linear(look.colour[b][t]);
+        for (int b = 0; b < 3; ++b) out[t][b] = code_of_linear(appearance.colour[b][t]);
     return out;
 }
 
@@ -231,10 +232,10 @@ AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map, c
     return compose<float, 3>(
         coloured_slots(stack), map, substrate.reflectance, options,
         [&](std::uint32_t slot) {
-            const TileAppearance look = shade_tile(stack, slot, substrate);
+            const TileAppearance appearance = shade_tile(stack, slot, substrate);
             TileOut<float, 3> out;
             for (int t = 0; t < kN; ++t)
-                for (int b = 0; b < 3; ++b) out[t][b] = look.colour[b][t];
+                for (int b = 0; b < 3; ++b) out[t][b] = appearance.colour[b][t];
             return out;
         },
         FloatCode{});
@@ -244,9 +245,9 @@ AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map, c
     return compose<float, 1>(
         stack.touched_slots(), map, {0.0f}, options,
         [&](std::uint32_t slot) {
-            const TileAppearance look = shade_tile(stack, slot, Substrate{}, false);
+            const TileAppearance appearance = shade_tile(stack, slot, Substrate{}, false);
             TileOut<float, 1> out;
-            for (int t = 0; t < kN; ++t) out[t][0] = look.height[t];
+            for (int t = 0; t < kN; ++t) out[t][0] = appearance.height[t];
             return out;
         },
         FloatCode{});
@@ -257,9 +258,9 @@ AtlasMap<float> compose_roughness(const Stack& stack, const atlas::TexelMap& map
     return compose<float, 1>(
         stack.touched_slots(), map, {substrate.roughness}, options,
         [&](std::uint32_t slot) {
-            const TileAppearance look = shade_tile(stack, slot, substrate, false);
+            const TileAppearance appearance = shade_tile(stack, slot, substrate, false);
             TileOut<float, 1> out;
-            for (int t = 0; t < kN; ++t) out[t][0] = look.roughness[t];
+            for (int t = 0; t < kN; ++t) out[t][0] = appearance.roughness[t];
             return out;
         },
         FloatCode{});
@@ -293,12 +294,12 @@ AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& m
     return compose<std::uint8_t, 3>(
         stack.touched_slots(), map, background, options,
         [&](std::uint32_t slot) {
-            const TileAppearance look = shade_tile(stack, slot, substrate, false);
+            const TileAppearance appearance = shade_tile(stack, slot, substrate, false);
             TileOut<std::uint8_t, 3> out;
             for (int t = 0; t < kN; ++t) {
                 // Ink hides the substrate's metal as it hides its microfacets.
                 const float film = substrate.metallic > 0 ? film_on(stack, slot, t) : 0;
-                out[t] = {255, unit8(look.roughness[t]), unit8(substrate.metallic * std::exp(-4 * film))};
+                out[t] = {255, unit8(appearance.roughness[t]), unit8(substrate.metallic * std::exp(-4 * film))};
             }
             return out;
         },

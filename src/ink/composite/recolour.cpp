@@ -44,16 +44,16 @@ void recolour(Canvas& canvas, const Ink& painted, const Ink& wanted) {
         Sum sum = added;
         if (const InkPart* same = part_named(wanted, old.pigment.name))
             sum.add(same->pigment, same->fraction / old.fraction);
-        Pigment look = old.pigment;
+        Pigment displayed = old.pigment;
         for (int b = 0; b < kBands; ++b) {
-            look.k[b] = static_cast<float>(sum.k[b]);
-            look.s[b] = static_cast<float>(sum.s[b]);
+            displayed.k[b] = static_cast<float>(sum.k[b]);
+            displayed.s[b] = static_cast<float>(sum.s[b]);
         }
-        look.height = static_cast<float>(sum.height);
-        if (sum.amount > 0) look.roughness = static_cast<float>(sum.roughness / sum.amount);
-        look.curve = {};
-        look.source = "ink " + painted.name + " shown as " + wanted.name;
-        canvas.set_pigment(static_cast<int>(at - all.begin()), look);
+        displayed.height = static_cast<float>(sum.height);
+        if (sum.amount > 0) displayed.roughness = static_cast<float>(sum.roughness / sum.amount);
+        displayed.curve = {};
+        displayed.source = "ink " + painted.name + " shown as " + wanted.name;
+        canvas.set_pigment(static_cast<int>(at - all.begin()), displayed);
     }
     for (const std::uint32_t slot : canvas.touched_slots()) canvas.mark_dirty(slot);
 }

@@ -81,8 +81,8 @@ struct Alone {
 /// The film of such an ink in one pass: goals, increments and what is stored, as `law_goals`,
 /// `increments` and `store_change` have them, to the bit. Returns Σ (stored change) · area;
 /// `wanted`: whether any increment is positive.
-TUFT_CLONES double lay_alone(float* __restrict w, const float* __restrict coverage, const float* __restrict area,
-                             const Alone& law, int n, bool& wanted) {
+TUFT_CLONES double deposit_alone(float* __restrict w, const float* __restrict coverage, const float* __restrict area,
+                                 const Alone& law, int n, bool& wanted) {
     double sum[kRow] = {};
     alignas(64) float goal[kRow];
     const float inverse_part = 1.0f / law.part;
@@ -196,7 +196,8 @@ double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
         const Alone alone{params.target,   law.hidden, law.inverse_extinction,
                           params.capacity, law.rate,   params.mix[only]};
         bool wanted = false;
-        const double stored = lay_alone(planes[only]->data() + begin, &coverage[begin], &area[begin], alone, n, wanted);
+        const double stored =
+            deposit_alone(planes[only]->data() + begin, &coverage[begin], &area[begin], alone, n, wanted);
         if (!wanted) return 0;
         canvas.mark_dirty(slot);
         return stored / static_cast<double>(params.mix[only]);

@@ -239,12 +239,12 @@ class Reader {
             if (local_part(component.name()) == "component") add_copy(where, component, world, depth + 1, name);
     }
 
-    struct Look {
+    struct Appearance {
         std::uint32_t material = kNone;
         const Texture* texture = nullptr;
     };
 
-    Look look_of(const Part& in, std::string_view pid, std::size_t index) const {
+    Appearance appearance_of(const Part& in, std::string_view pid, std::size_t index) const {
         const auto property = in.properties.find(std::string(pid));
         if (property == in.properties.end()) return {};
         const Property& p = property->second;
@@ -284,7 +284,7 @@ class Reader {
             constexpr std::array<const char*, 3> keys{"v1", "v2", "v3"}, property_keys{"p1", "p2", "p3"};
             const std::string_view own = t.attribute("pid").value();
             const std::size_t first = index_of(t, "p1", object_index);
-            const Look look = look_of(in, own.empty() ? object_pid : own, first);
+            const Appearance appearance = appearance_of(in, own.empty() ? object_pid : own, first);
             std::array<Vec2f, 3> uvs{Vec2f(NAN), Vec2f(NAN), Vec2f(NAN)};
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::size_t v = index_of(t, keys[k], n_points);
@@ -293,10 +293,10 @@ class Reader {
                 const std::size_t at = mirrored ? 2 - k : k;
                 corners[at] = base + static_cast<std::uint32_t>(v);
                 const std::size_t p = index_of(t, property_keys[k], first);
-                if (look.texture && p < look.texture->uvs.size()) uvs[at] = look.texture->uvs[p];
+                if (appearance.texture && p < appearance.texture->uvs.size()) uvs[at] = appearance.texture->uvs[p];
             }
-            out_.add_polygon(part_of(name, look.material), corners,
-                             look.texture ? std::span<const Vec2f>(uvs) : std::span<const Vec2f>());
+            out_.add_polygon(part_of(name, appearance.material), corners,
+                             appearance.texture ? std::span<const Vec2f>(uvs) : std::span<const Vec2f>());
         }
     }
 

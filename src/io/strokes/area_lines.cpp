@@ -150,17 +150,17 @@ void attach_stencils(const std::vector<stroke::StencilEdge>& stencil, std::vecto
     }
 }
 
-/// Points at even steps of about `step` along a way; its end is left out.
-Line even(std::span<const Vec2> way, double step) {
+/// Points at even steps of about `step` along a path; its end is left out.
+Line even(std::span<const Vec2> path, double step) {
     double whole = 0;
-    for (std::size_t i = 1; i < way.size(); ++i) whole += glm::distance(way[i - 1], way[i]);
+    for (std::size_t i = 1; i < path.size(); ++i) whole += glm::distance(path[i - 1], path[i]);
     const auto n = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(whole / step)));
     Line points;
     double along = 0;
-    for (std::size_t i = 1; i < way.size(); ++i) {
-        const double length = glm::distance(way[i - 1], way[i]);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const double length = glm::distance(path[i - 1], path[i]);
         for (double at; points.size() < n && (at = whole * double(points.size()) / double(n)) < along + length;)
-            points.push_back(glm::mix(way[i - 1], way[i], (at - along) / length));
+            points.push_back(glm::mix(path[i - 1], path[i], (at - along) / length));
         along += length;
     }
     return points;
@@ -301,7 +301,7 @@ std::vector<Part> split_line(const Line& line, double reach) {
 /// From the end of a line at `d` from the outline, where it came to a point, into the corner of the
 /// area: to where the outline along it and the one on the point's other side meet, which is
 /// straight ahead on their bisector; a line `inside` others, or one that ends between others, 7/4
-/// of a width; past the corner on stencil edge. The length of a way into a corner, else 0.
+/// of a width; past the corner on stencil edge. The length of a path into a corner, else 0.
 double run_out(Line& line, const Line& other, double d, double width, bool inside, const Shape& shape) {
     const double reach = kPoint * width;
     const auto heading = [&](const Line& l, bool from_end) {  // away from the point
@@ -315,20 +315,20 @@ double run_out(Line& line, const Line& other, double d, double width, bool insid
     const Vec2 tip = line.back(), a = heading(line, true), b = heading(other, false);
     const Vec2 middle = -(a + b);
     if (glm::length(middle) < 0.1) return 0;
-    const Vec2 way = glm::normalize(middle);
+    const Vec2 ahead = glm::normalize(middle);
     const double half = 0.5 * std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
     constexpr double kFarthest = 8;
     double length = d / std::max(std::sin(half), 1 / kFarthest);
     constexpr int kSteps = 40;
     const double most = 1.4 * length;  // points may be bent
     int n = 0;
-    while (n < kSteps && shape.contains(tip + way * (most * (n + 1) / kSteps))) ++n;
+    while (n < kSteps && shape.contains(tip + ahead * (most * (n + 1) / kSteps))) ++n;
     const bool corner = n < kSteps;  // else the line ends where the area is narrow, between others
     double in = most * n / kSteps, out = in + most / kSteps;
     for (int k = 0; corner && k < 10; ++k)
-        (shape.contains(tip + way * (0.5 * (in + out))) ? in : out) = 0.5 * (in + out);
+        (shape.contains(tip + ahead * (0.5 * (in + out))) ? in : out) = 0.5 * (in + out);
     length = corner && !inside ? in + kPast * width : std::min(in, kBetween * width);
-    if (length > 0) line.push_back(tip + way * length);
+    if (length > 0) line.push_back(tip + ahead * length);
     return corner && !inside ? length : 0;
 }
 
@@ -390,7 +390,7 @@ double line_width(const Shape& shape) {
 std::vector<AreaLine> area_lines(std::span<const Ring> rings, FillRule rule) {
     const Shape shape(rings, rule);
     double w = line_width(shape);
-    // A jagged outline is longer than the way along it.
+    // A jagged outline is longer than the path along it.
     if (w > 0) w = line_width(shape.simplified(kSlack * w));
     if (!(w > 0)) return {};
     std::vector<AreaLine> lines;

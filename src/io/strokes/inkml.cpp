@@ -279,22 +279,71 @@ class Reader : InkmlText {
         drafts_.push_back(std::move(draft));
     }
 
+    /// Columns of the channels that a sample is made of; −1: not there.
+    struct Columns {
+        explicit Columns(const InkmlFormat& f)
+            : x(f.find("X")),
+              y(f.find("Y")),
+              z(f.find("Z")),
+              time(f.find("T")),
+              pressure(f.find("P") >= 0 ? f.find("P") : f.find("F")),
+              tilt{f.find("OTx"), f.find("OTy")},
+              azimuth(f.find("OA")),
+              elevation(f.find("OE")),
+              roll(f.find("OR")),
+              rotation{f.find("QW"), f.find("QX"), f.find("QY"), f.find("QZ")} {}
+
+        bool turned() const { return *std::min_element(std::begin(rotation), std::end(rotation)) >= 0; }
+        bool flat() const { return z < 0 && !turned(); }
+
+        int x, y, z, time, pressure, tilt[2], azimuth, elevation, roll, rotation[4];
+    };
+
+    /// The sample of one row. A trace in space has a rotation: its own, or that of tilt and roll.
+    StrokeSample sample_of(const InkmlRows& rows, std::size_t row, const Columns& c, long line) const {
+        const auto get = [&](int k) { return k >= 0 ? rows.at(row, k) : 0.0; };
+        StrokeSample s;
+        s.position = {get(c.x), get(c.y), get(c.z)};
+        for (int k = 0; k < 3; ++k)
+            if (std::abs(s.position[k]) > options_.max_extent)
+                throw Error(path, line,
+                            Message("a coordinate lies more than {} m away; declare the unit of X and Y",
+                                    static_cast<long>(options_.max_extent)));
+        s.time = get(c.time);
+        s.pressure = get(c.pressure);
+        s.tilt = {get(c.tilt[0]), get(c.tilt[1])};
+        if (c.tilt[0] < 0 && c.tilt[1] < 0 && c.elevation >= 0) {
+            const double lean = std::clamp(90 * kDegree - get(c.elevation), 0.0, 85 * kDegree);
+            s.tilt = {std::atan(std::tan(lean) * std::cos(get(c.azimuth))),
+                      std::atan(std::tan(lean) * std::sin(get(c.azimuth)))};
+        }
+        s.roll = get(c.roll);
+        for (int k = 0; k < 2; ++k) s.tilt[k] = std::clamp(s.tilt[k], -85 * kDegree, 85 * kDegree);
+        if (c.turned()) {
+            s.rotation = Quat(get(c.rotation[0]), get(c.rotation[1]), get(c.rotation[2]), get(c.rotation[3]));
+            const double size = glm::length(s.rotation);
+            if (!(size > 1e-6 && size < 1e6)) throw Error(path, line, "a rotation is zero, or out of range");
+            if (!is_unit(glm::dot(s.rotation, s.rotation))) s.rotation = glm::normalize(s.rotation);
+        } else if (!c.flat()) {
+            const Vec3 up = glm::normalize(Vec3(std::tan(s.tilt.x), std::tan(s.tilt.y), 1));
+            s.rotation = Quat(Vec3(0, 0, 1), up);
+            if (s.roll != 0) s.rotation = glm::normalize(s.rotation * glm::angleAxis(s.roll, Vec3(0, 0, 1)));
+            s.roll = 0;  // the rotation has it
+        }
+        return s;
+    }
+
     Draft draft_of(const InkmlRows& rows, const State& state, long line) const {
         const InkmlFormat& f = state.format;
-        const int x = f.find("X"), y = f.find("Y"), z = f.find("Z"), t = f.find("T");
-        const int tx = f.find("OTx"), ty = f.find("OTy"), oa = f.find("OA"), oe = f.find("OE");
-        const int roll = f.find("OR");
-        const int q[4] = {f.find("QW"), f.find("QX"), f.find("QY"), f.find("QZ")};
-        const int p = f.find("P") >= 0 ? f.find("P") : f.find("F");
-        const bool turned = q[0] >= 0 && q[1] >= 0 && q[2] >= 0 && q[3] >= 0;
-
+        const Columns columns(f);
+        const int p = columns.pressure;
         Draft d;
         d.line = line;
-        d.has_time = t >= 0;
+        d.has_time = columns.time >= 0;
         d.has_pressure = p >= 0;
         d.pressure_ranged = p < 0 || f.channels[static_cast<std::size_t>(p)].ranged;
         d.sample_rate = state.sample_rate;
-        d.trace.flat = z < 0 && !turned;
+        d.trace.flat = columns.flat();
         d.trace.placement = state.marks.placement;
         d.trace.placed = state.marks.placed;
         d.trace.brush = state.marks.brush;
@@ -309,37 +358,7 @@ class Reader : InkmlText {
         d.keeps_clock = state.marks.keeps_clock;
         d.trace.pressed = d.has_pressure;
         d.trace.samples.reserve(rows.n_rows());
-        for (std::size_t i = 0; i < rows.n_rows(); ++i) {
-            const auto get = [&](int k) { return k >= 0 ? rows.at(i, k) : 0.0; };
-            StrokeSample s;
-            s.position = {get(x), get(y), get(z)};
-            for (int k = 0; k < 3; ++k)
-                if (std::abs(s.position[k]) > options_.max_extent)
-                    throw Error(path, line,
-                                Message("a coordinate lies more than {} m away; declare the unit of X and Y",
-                                        static_cast<long>(options_.max_extent)));
-            s.time = get(t);
-            s.pressure = get(p);
-            s.tilt = {get(tx), get(ty)};
-            if (tx < 0 && ty < 0 && oe >= 0) {
-                const double lean = std::clamp(90 * kDegree - get(oe), 0.0, 85 * kDegree);
-                s.tilt = {std::atan(std::tan(lean) * std::cos(get(oa))), std::atan(std::tan(lean) * std::sin(get(oa)))};
-            }
-            s.roll = get(roll);
-            for (int k = 0; k < 2; ++k) s.tilt[k] = std::clamp(s.tilt[k], -85 * kDegree, 85 * kDegree);
-            if (turned) {
-                s.rotation = Quat(get(q[0]), get(q[1]), get(q[2]), get(q[3]));
-                const double size = glm::length(s.rotation);
-                if (!(size > 1e-6 && size < 1e6)) throw Error(path, line, "a rotation is zero, or out of range");
-                if (!is_unit(glm::dot(s.rotation, s.rotation))) s.rotation = glm::normalize(s.rotation);
-            } else if (!d.trace.flat) {
-                const Vec3 up = glm::normalize(Vec3(std::tan(s.tilt.x), std::tan(s.tilt.y), 1));
-                s.rotation = Quat(Vec3(0, 0, 1), up);
-                if (s.roll != 0) s.rotation = glm::normalize(s.rotation * glm::angleAxis(s.roll, Vec3(0, 0, 1)));
-                s.roll = 0;  // the rotation has it
-            }
-            d.trace.samples.push_back(s);
-        }
+        for (std::size_t i = 0; i < rows.n_rows(); ++i) d.trace.samples.push_back(sample_of(rows, i, columns, line));
         return d;
     }
 

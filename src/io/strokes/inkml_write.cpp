@@ -16,7 +16,7 @@ namespace {
 
 using stroke::RecordedStroke;
 
-enum class Kind { flat, leaned, rolled, space };
+enum class Kind { flat, tilted, rolled, space };
 
 Kind kind_of(const RecordedStroke& trace) {
     if (!trace.flat) return Kind::space;
@@ -24,11 +24,11 @@ Kind kind_of(const RecordedStroke& trace) {
         return Kind::rolled;
     const bool leans =
         std::any_of(trace.samples.begin(), trace.samples.end(), [](const auto& s) { return s.tilt != Vec2{0}; });
-    return leans ? Kind::leaned : Kind::flat;
+    return leans ? Kind::tilted : Kind::flat;
 }
 
 constexpr const char* name_of(Kind kind) {
-    return kind == Kind::flat ? "flat" : kind == Kind::leaned ? "leaned" : kind == Kind::rolled ? "rolled" : "space";
+    return kind == Kind::flat ? "flat" : kind == Kind::tilted ? "tilted" : kind == Kind::rolled ? "rolled" : "space";
 }
 
 std::string escaped(const std::string& text) {
@@ -131,7 +131,7 @@ void add_format(std::string& out, Kind kind, const Style& style) {
     if (kind == Kind::space) channel("Z", length);
     channel("P", " min=\"0\" max=\"1\"");
     channel("T", style.exact ? " units=\"s\"" : " units=\"ms\"");
-    if (kind == Kind::leaned || kind == Kind::rolled)
+    if (kind == Kind::tilted || kind == Kind::rolled)
         for (const char* name : {"OTx", "OTy"}) channel(name, angle);
     if (kind == Kind::rolled) channel("OR", angle);
     if (kind == Kind::space)
@@ -151,7 +151,7 @@ void add_sample(std::string& out, const stroke::StrokeSample& s, Kind kind, cons
     if (kind == Kind::space) add(s.position.z / style.length, decimals);
     add(s.pressure, 5);
     add(style.exact ? s.time : s.time * 1e3, 3);
-    if (kind == Kind::leaned || kind == Kind::rolled)
+    if (kind == Kind::tilted || kind == Kind::rolled)
         for (int k = 0; k < 2; ++k) add(s.tilt[k] / style.angle, 3);
     if (kind == Kind::rolled) add(s.roll / style.angle, 3);
     if (kind == Kind::space)
@@ -224,7 +224,7 @@ std::string inkml_text(std::span<const RecordedStroke> traces, const std::string
         "<ink xmlns=\"http://www.w3.org/2003/InkML\">\n";
     if (!title.empty()) out += fmt::format("  <annotation type=\"title\">{}</annotation>\n", escaped(title));
     out += "  <definitions>\n";
-    for (const Kind kind : {Kind::flat, Kind::leaned, Kind::rolled, Kind::space})
+    for (const Kind kind : {Kind::flat, Kind::tilted, Kind::rolled, Kind::space})
         if (std::any_of(traces.begin(), traces.end(), [&](const RecordedStroke& t) { return kind_of(t) == kind; }))
             add_format(out, kind, style);
     out += "  </definitions>\n";

@@ -89,7 +89,7 @@ std::vector<Ring> united(const Grid& grid, const clip::Paths& paths, clip::PolyF
     return grid.rings(out);
 }
 
-/// The points of the way from `first` to `last` (past the end it begins anew) that are needed are
+/// The points of the path from `first` to `last` (past the end it begins anew) that are needed are
 /// marked.
 void mark_needed(const Ring& ring, std::size_t first, std::size_t last, double tolerance, std::vector<bool>& needed) {
     std::vector<std::pair<std::size_t, std::size_t>> ranges{{first, last}};

@@ -124,7 +124,7 @@ class AreaMaker {
             for (const PaintedPart& part : all.back())
                 if (!part.gradient) inks_.of(part.colour);  // the drawing's own colours before those between stops
         }
-        drop_ground(all);
+        drop_background(all);
         for (const std::vector<PaintedPart>& parts : all)
             for (const PaintedPart& part : parts) add(part);
         frame();
@@ -133,8 +133,8 @@ class AreaMaker {
 
   private:
     // The page itself is bare.
-    void drop_ground(std::vector<std::vector<PaintedPart>>& all) {
-        if (std::vector<PaintedPart>* first = first_painted(all); first && is_ground(first->front(), scene_.page)) {
+    void drop_background(std::vector<std::vector<PaintedPart>>& all) {
+        if (std::vector<PaintedPart>* first = first_painted(all); first && is_background(first->front(), scene_.page)) {
             first->erase(first->begin());
             scene_.losses.add(SvgLoss::white);
         }
@@ -146,7 +146,7 @@ class AreaMaker {
     }
 
   public:
-    static bool is_ground(const PaintedPart& part, const Vec2& page) {
+    static bool is_background(const PaintedPart& part, const Vec2& page) {
         if (part.gradient || part.opacity < 1 || part.colour != SvgColour{{1, 1, 1}, 1} || part.rings.size() != 1 ||
             !(page.x > 0 && page.y > 0) || !part.shape->clips.empty() || !part.shape->masks.empty())
             return false;
@@ -354,8 +354,8 @@ bool has_colours(const SvgScene& scene) {
         if (!s.style.visible) continue;
         for (const PaintedPart& part : parts_of(s, scene.unit, 1)) {
             if (part.gradient) return true;
-            const bool ground = std::exchange(first, false) && AreaMaker::is_ground(part, scene.page);
-            if (!ground && part.colour.rgb != std::array<double, 3>{0, 0, 0}) return true;
+            const bool background = std::exchange(first, false) && AreaMaker::is_background(part, scene.page);
+            if (!background && part.colour.rgb != std::array<double, 3>{0, 0, 0}) return true;
         }
     }
     return false;

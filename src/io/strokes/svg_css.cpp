@@ -90,72 +90,81 @@ SvgSheet::Block SvgSheet::block_of(std::string_view text) {
     return out;
 }
 
-bool SvgSheet::read_selector(std::string_view text, std::vector<Compound>& out) {
-    text = stripped(text);
-    std::size_t at = 0;
-    Joint joint = Joint::none;
+bool SvgSheet::read_attribute(std::string_view inside, Attribute& out) {
+    std::size_t k = 0;
+    while (k < inside.size() && (is_name(inside[k]) || inside[k] == ':')) out.name += inside[k++];
+    if (out.name.empty()) return false;
+    const std::string_view rest = stripped(inside.substr(k));
+    if (rest.empty()) return true;
+    out.how = rest[0];
+    if (rest[0] != '=' &&
+        (rest.size() < 2 || rest[1] != '=' || std::string_view("~|^$*").find(rest[0]) == std::string_view::npos))
+        return false;
+    std::string_view value = stripped(rest.substr(rest[0] == '=' ? 1 : 2));
+    if (value.size() > 1 && (value[0] == '"' || value[0] == '\'') && value.back() == value[0])
+        value = value.substr(1, value.size() - 2);
+    out.value = value;
+    return true;
+}
+
+bool SvgSheet::read_compound(std::string_view text, std::size_t& at, Compound& one) {
+    const std::size_t from = at;
+    if (text[at] == '*')
+        ++at;
+    else
+        one.name = name_at(text, at);
     while (at < text.size()) {
-        Compound one{.joint = joint};
-        const std::size_t from = at;
-        if (text[at] == '*')
-            ++at;
-        else
-            one.name = name_at(text, at);
-        while (at < text.size()) {
-            const char mark = text[at];
-            if (mark == '.' || mark == '#' || mark == ':') {
-                std::string name = name_at(text, ++at);
-                if (name.empty()) return false;
-                if (mark == '#') {
-                    if (!one.id.empty() && one.id != name) return false;
-                    one.id = name;
-                } else if (mark == '.') {
-                    one.classes.push_back(name);
-                } else if (name == "first-child" || name == "last-child" || name == "root") {
-                    one.pseudos.push_back(name);
-                } else {
-                    return false;
-                }
-            } else if (mark == '[') {
-                const std::size_t close = text.find(']', at);
-                if (close == std::string_view::npos) return false;
-                const std::string_view inside = stripped(text.substr(at + 1, close - at - 1));
-                std::size_t k = 0;
-                Attribute attribute{.name = {}, .value = {}};
-                while (k < inside.size() && (is_name(inside[k]) || inside[k] == ':')) attribute.name += inside[k++];
-                std::string_view rest = stripped(inside.substr(k));
-                if (attribute.name.empty()) return false;
-                if (!rest.empty()) {
-                    attribute.how = rest[0];
-                    if (rest[0] != '=' && (rest.size() < 2 || rest[1] != '=' ||
-                                           std::string_view("~|^$*").find(rest[0]) == std::string_view::npos))
-                        return false;
-                    std::string_view value = stripped(rest.substr(rest[0] == '=' ? 1 : 2));
-                    if (value.size() > 1 && (value[0] == '"' || value[0] == '\'') && value.back() == value[0])
-                        value = value.substr(1, value.size() - 2);
-                    attribute.value = value;
-                }
-                one.attributes.push_back(std::move(attribute));
-                at = close + 1;
-            } else {
-                break;
-            }
+        const char mark = text[at];
+        if (mark == '[') {
+            const std::size_t close = text.find(']', at);
+            if (close == std::string_view::npos) return false;
+            Attribute attribute{.name = {}, .value = {}};
+            if (!read_attribute(stripped(text.substr(at + 1, close - at - 1)), attribute)) return false;
+            one.attributes.push_back(std::move(attribute));
+            at = close + 1;
+            continue;
         }
-        if (at == from) return false;
-        out.push_back(std::move(one));
-        if (out.size() > kMostParts) return false;
-        const std::size_t blank = at;
-        while (at < text.size() && std::isspace(static_cast<unsigned char>(text[at]))) ++at;
-        if (at == text.size()) break;
-        joint = Joint::inside;
-        if (text[at] == '>' || text[at] == '+' || text[at] == '~') {
-            joint = text[at] == '>' ? Joint::child : text[at] == '+' ? Joint::next : Joint::after;
-            ++at;
-            while (at < text.size() && std::isspace(static_cast<unsigned char>(text[at]))) ++at;
-            if (at == text.size()) return false;
-        } else if (at == blank) {
+        if (mark != '.' && mark != '#' && mark != ':') break;
+        std::string name = name_at(text, ++at);
+        if (name.empty()) return false;
+        if (mark == '#') {
+            if (!one.id.empty() && one.id != name) return false;
+            one.id = name;
+        } else if (mark == '.') {
+            one.classes.push_back(name);
+        } else if (name == "first-child" || name == "last-child" || name == "root") {
+            one.pseudos.push_back(name);
+        } else {
             return false;
         }
+    }
+    return at != from;
+}
+
+bool SvgSheet::read_joint(std::string_view text, std::size_t& at, Joint& joint) {
+    const auto skip_blanks = [&] {
+        while (at < text.size() && std::isspace(static_cast<unsigned char>(text[at]))) ++at;
+    };
+    const std::size_t blank = at;
+    skip_blanks();
+    if (at == text.size()) return true;
+    joint = Joint::inside;
+    if (text[at] != '>' && text[at] != '+' && text[at] != '~') return at != blank;
+    joint = text[at] == '>' ? Joint::child : text[at] == '+' ? Joint::next : Joint::after;
+    ++at;
+    skip_blanks();
+    return at < text.size();
+}
+
+bool SvgSheet::read_selector(std::string_view text, std::vector<Compound>& out) {
+    text = stripped(text);
+    Joint joint = Joint::none;
+    for (std::size_t at = 0; at < text.size();) {
+        Compound one{.joint = joint};
+        if (!read_compound(text, at, one)) return false;
+        out.push_back(std::move(one));
+        if (out.size() > kMostParts) return false;
+        if (at < text.size() && !read_joint(text, at, joint)) return false;
     }
     return !out.empty();
 }

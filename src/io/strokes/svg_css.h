@@ -59,6 +59,10 @@ class SvgSheet {
     using Block = std::map<std::string, Value>;
 
     static Block block_of(std::string_view text);
+    // Each returns false for what this program does not know. `at` moves to the end of what was read.
+    static bool read_attribute(std::string_view inside, Attribute& out);
+    static bool read_compound(std::string_view text, std::size_t& at, Compound& one);
+    static bool read_joint(std::string_view text, std::size_t& at, Joint& joint);
     static bool read_selector(std::string_view text, std::vector<Compound>& out);
     static bool fits(const Compound& one, const pugi::xml_node& node);
     static bool fits(const std::vector<Compound>& selector, std::size_t last, const pugi::xml_node& node, int& budget);

@@ -116,11 +116,11 @@ std::optional<SvgGradient> svg_gradient(const std::string& id, const SvgGradient
     } else {
         const Vec2 from(number("x1", 0, page.x), number("y1", 0, page.y)),
             to(number("x2", 1, page.x), number("y2", 0, page.y));
-        const Vec2 way = to - from;
-        if (!(glm::length(way) > 0))
+        const Vec2 axis = to - from;
+        if (!(glm::length(axis) > 0))
             last_only();
         else
-            m = m * SvgMatrix(way.x, way.y, 0, -way.y, way.x, 0, from.x, from.y, 1);
+            m = m * SvgMatrix(axis.x, axis.y, 0, -axis.y, axis.x, 0, from.x, from.y, 1);
     }
     const double det = glm::determinant(m);
     if (!std::isfinite(det) || det == 0) {

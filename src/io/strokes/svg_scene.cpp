@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <optional>
 #include <pugixml.hpp>
 #include <utility>
 
@@ -413,48 +414,73 @@ class SceneReader {
         if (marked) markers(line_copy, state, depth);
     }
 
-    // The tiles of a pattern, back to front, within the shape (SVG 1.1, 13.3).
-    void pattern(const SvgShape& shape, const std::pair<Vec2, Vec2>& bounds, const State& state, int depth) {
-        if (depth > kDeepest) throw Error(source_, "patterns refer to each other");
-        const auto find = [&](const char* name, pugi::xml_node& with_children) {
-            std::string found;
-            bool has = false;
-            auto at = by_id_.find(shape.style.fill.server);
-            for (int k = 0; k < kDeepest && at != by_id_.end() && local_name(at->second) == "pattern"; ++k) {
-                if (!has && at->second.attribute(name)) found = at->second.attribute(name).value(), has = true;
-                if (!with_children && at->second.first_child()) with_children = at->second;
-                const std::string next = href_of(at->second);
-                at = next.size() > 1 ? by_id_.find(next.substr(1)) : by_id_.end();
-            }
-            return found;
-        };
-        pugi::xml_node content;
-        const bool in_box = find("patternUnits", content) != "userSpaceOnUse";
+    /// Elements of a pattern: the one that a paint names, then those that it refers to. Attributes and content that one
+    /// lacks are those of the next.
+    std::vector<pugi::xml_node> pattern_chain(const std::string& id) const {
+        std::vector<pugi::xml_node> chain;
+        auto at = by_id_.find(id);
+        for (int k = 0; k < kDeepest && at != by_id_.end() && local_name(at->second) == "pattern"; ++k) {
+            chain.push_back(at->second);
+            const std::string next = href_of(at->second);
+            at = next.size() > 1 ? by_id_.find(next.substr(1)) : by_id_.end();
+        }
+        return chain;
+    }
+    static std::string chain_text(const std::vector<pugi::xml_node>& chain, const char* name) {
+        for (const pugi::xml_node& one : chain)
+            if (one.attribute(name)) return one.attribute(name).value();
+        return {};
+    }
+
+    /// Where the tiles of a pattern lie on a shape, user units.
+    struct PatternGrid {
+        Vec2 corner{0}, tile{0};  ///< of the first tile; empty: nothing is painted
+        SvgMatrix matrix{1};      ///< patternTransform
+        Vec2 from{0}, to{0};      ///< whole numbers: tiles that reach the shape
+    };
+    std::optional<PatternGrid> pattern_grid(const std::vector<pugi::xml_node>& chain,
+                                            const std::pair<Vec2, Vec2>& bounds, const Vec2& page) const {
+        const bool in_box = chain_text(chain, "patternUnits") != "userSpaceOnUse";
         const auto [low, high] = bounds;
-        const Vec2 size = high - low, whole = in_box ? Vec2(1) : state.page;
+        const Vec2 size = high - low, whole = in_box ? Vec2(1) : page;
         const auto number = [&](const char* name, double unit) {
-            const std::string text = find(name, content);
+            const std::string text = chain_text(chain, name);
             if (text.empty()) return 0.0;
             SvgReader in(text, source_);
             const double value = in.number();
             return in.peek() == '%' ? value / 100 * unit : value;
         };
-        Vec2 corner(number("x", whole.x), number("y", whole.y)),
-            tile(number("width", whole.x), number("height", whole.y));
-        if (in_box) corner = low + corner * size, tile *= size;
-        if (!content || !(tile.x > 0 && tile.y > 0) || !(size.x > 0 && size.y > 0)) return;
-        SvgMatrix own(1);
-        if (const std::string text = find("patternTransform", content); !text.empty())
-            own = svg_transform(text.c_str(), source_);
-        if (glm::determinant(own) == 0) return;
+        PatternGrid grid;
+        grid.corner = {number("x", whole.x), number("y", whole.y)};
+        grid.tile = {number("width", whole.x), number("height", whole.y)};
+        if (in_box) grid.corner = low + grid.corner * size, grid.tile *= size;
+        if (!(grid.tile.x > 0 && grid.tile.y > 0) || !(size.x > 0 && size.y > 0)) return std::nullopt;
+        if (const std::string text = chain_text(chain, "patternTransform"); !text.empty())
+            grid.matrix = svg_transform(text.c_str(), source_);
+        if (glm::determinant(grid.matrix) == 0) return std::nullopt;
         Vec2 from(HUGE_VAL), to(-HUGE_VAL);
         for (const Vec2& p : {low, high, Vec2(low.x, high.y), Vec2(high.x, low.y)}) {
-            const Vec2 q = (Vec2(glm::inverse(own) * Vec3(p, 1)) - corner) / tile;
+            const Vec2 q = (Vec2(glm::inverse(grid.matrix) * Vec3(p, 1)) - grid.corner) / grid.tile;
             from = glm::min(from, q), to = glm::max(to, q);
         }
-        from = glm::floor(from + 1e-9), to = glm::ceil(to - 1e-9);
-        if (!((to.x - from.x) * (to.y - from.y) <= double(kMostTiles)))
+        grid.from = glm::floor(from + 1e-9), grid.to = glm::ceil(to - 1e-9);
+        if (!((grid.to.x - grid.from.x) * (grid.to.y - grid.from.y) <= double(kMostTiles)))
             throw Error(source_, "a pattern has too many tiles");
+        return grid;
+    }
+
+    // The tiles of a pattern, back to front, within the shape (SVG 1.1, 13.3).
+    void pattern(const SvgShape& shape, const std::pair<Vec2, Vec2>& bounds, const State& state, int depth) {
+        if (depth > kDeepest) throw Error(source_, "patterns refer to each other");
+        const std::vector<pugi::xml_node> chain = pattern_chain(shape.style.fill.server);
+        const auto filled =
+            std::find_if(chain.begin(), chain.end(), [](const pugi::xml_node& one) { return bool(one.first_child()); });
+        if (filled == chain.end()) return;
+        const std::optional<PatternGrid> grid = pattern_grid(chain, bounds, state.page);
+        if (!grid) return;
+        const auto& [corner, tile, own, from, to] = *grid;
+        const pugi::xml_node content = *filled;
+        const Vec2 size = bounds.second - bounds.first;
         State inside{.matrix = state.matrix * own,
                      .opacity = shape.opacity * shape.style.fill_opacity,
                      .clips = state.clips,
@@ -465,8 +491,8 @@ class SceneReader {
         State outer = state;
         add_clip(outer, shape.lines, shape.style.rule);
         inside.clips.push_back(outer.clips.back());
-        const std::string box = find("viewBox", content);
-        const bool content_in_box = box.empty() && find("patternContentUnits", content) == "objectBoundingBox";
+        const std::string box = chain_text(chain, "viewBox");
+        const bool content_in_box = box.empty() && chain_text(chain, "patternContentUnits") == "objectBoundingBox";
         for (double j = from.y; j < to.y; ++j)
             for (double i = from.x; i < to.x; ++i) {
                 State one = inside;

@@ -131,83 +131,108 @@ void SvgCurves::arc(SvgLine& line, const SvgArc& arc) const {
     line.back() = end;
 }
 
-void svg_path(const char* text, const std::string& source, const SvgCurves& curves,
-              const std::function<void(const SvgLine&)>& emit) {
-    SvgReader in(text, source);
-    SvgLine line;
-    Vec2 start(0), at(0), control(0);
-    char command = '\0', before = '\0';
-    const auto flush = [&] {
-        emit(line);
-        line.clear();
-    };
-    while (!in.done()) {
-        if (std::isalpha(static_cast<unsigned char>(in.peek())))
-            command = in.take();
-        else if (!in.number_next() || command == '\0' || command == 'Z' || command == 'z')
-            throw Error(source, "a path cannot be read");
-        const bool relative = std::islower(static_cast<unsigned char>(command)) != 0;
-        const Vec2 base = relative ? at : Vec2(0);
-        const auto point = [&] {
-            const double x = in.number();
-            return base + Vec2(x, in.number());
-        };
+namespace {
+
+/// Path data as subpaths: the current point and what the next command needs of the one before (SVG 1.1, 8.3).
+class PathReader {
+  public:
+    PathReader(SvgReader& in, const SvgCurves& curves, const std::function<void(const SvgLine&)>& emit)
+        : in_(in), curves_(curves), emit_(emit) {}
+
+    /// Reads the points of one command; `command` is a lower-case letter where they are relative.
+    void read(char command) {
         const char c = static_cast<char>(std::toupper(static_cast<unsigned char>(command)));
+        base_ = c == command ? Vec2(0) : at_;
         if (c == 'M') {
             flush();
-            start = at = point();
-            command = relative ? 'l' : 'L';  // more points are lines
-            before = 'M';
-            continue;
+            start_ = at_ = point();
+        } else {
+            if (line_.empty()) line_.push_back(at_);
+            add(c);
         }
-        if (line.empty()) line.push_back(at);
-        // The reflected control point after a curve of the same kind, else the current point.
-        const auto smooth = [&](const char* kinds) {
-            return std::strchr(kinds, before) && before ? 2.0 * at - control : at;
-        };
+        before_ = c;
+    }
+    void flush() {
+        emit_(line_);
+        line_.clear();
+    }
+
+  private:
+    Vec2 point() {
+        const double x = in_.number();
+        return base_ + Vec2(x, in_.number());
+    }
+    /// The reflected control point after a curve of the same kind, else the current point.
+    Vec2 smooth(const char* kinds) const { return std::strchr(kinds, before_) && before_ ? 2.0 * at_ - control_ : at_; }
+
+    void add(char c) {
         switch (c) {
             case 'L':
-                line.push_back(point());
+                line_.push_back(point());
                 break;
             case 'H':
-                line.emplace_back(base.x + in.number(), at.y);
+                line_.emplace_back(base_.x + in_.number(), at_.y);
                 break;
             case 'V':
-                line.emplace_back(at.x, base.y + in.number());
+                line_.emplace_back(at_.x, base_.y + in_.number());
                 break;
             case 'C':
             case 'S': {
                 const Vec2 first = c == 'C' ? point() : smooth("CS");
-                control = point();
-                curves.cubic(line, first, control, point());
+                control_ = point();
+                curves_.cubic(line_, first, control_, point());
                 break;
             }
             case 'Q':
             case 'T': {
-                control = c == 'Q' ? point() : smooth("QT");
+                control_ = c == 'Q' ? point() : smooth("QT");
                 const Vec2 end = point();
-                curves.cubic(line, at + 2.0 / 3 * (control - at), end + 2.0 / 3 * (control - end), end);
+                curves_.cubic(line_, at_ + 2.0 / 3 * (control_ - at_), end + 2.0 / 3 * (control_ - end), end);
                 break;
             }
             case 'A': {
-                const double rx = in.number(), ry = in.number(), turn = in.number() * std::numbers::pi / 180;
-                const bool large = in.flag(), sweep = in.flag();
-                curves.arc(line, {{rx, ry}, turn, large, sweep, point()});
+                const double rx = in_.number(), ry = in_.number(), turn = in_.number() * std::numbers::pi / 180;
+                const bool large = in_.flag(), sweep = in_.flag();
+                curves_.arc(line_, {{rx, ry}, turn, large, sweep, point()});
                 break;
             }
-            case 'Z':
-                line.push_back(start);
+            default:  // Z
+                line_.push_back(start_);
                 flush();
-                at = start;
-                before = 'Z';
-                continue;
-            default:
-                throw Error(source, Message("a path has the unknown command '{}'", command));
+                at_ = start_;
+                return;
         }
-        at = line.back();
-        before = c;
+        at_ = line_.back();
     }
-    flush();
+
+    SvgReader& in_;
+    const SvgCurves& curves_;
+    const std::function<void(const SvgLine&)>& emit_;
+    SvgLine line_;
+    Vec2 start_{0}, at_{0}, control_{0}, base_{0};
+    char before_ = '\0';
+};
+
+}  // namespace
+
+void svg_path(const char* text, const std::string& source, const SvgCurves& curves,
+              const std::function<void(const SvgLine&)>& emit) {
+    SvgReader in(text, source);
+    PathReader path(in, curves, emit);
+    char command = '\0';
+    while (!in.done()) {
+        if (std::isalpha(static_cast<unsigned char>(in.peek()))) {
+            command = in.take();
+            if (!std::strchr("MmLlHhVvCcSsQqTtAaZz", command))
+                throw Error(source, Message("a path has the unknown command '{}'", command));
+        } else if (!in.number_next() || command == '\0' || command == 'Z' || command == 'z') {
+            throw Error(source, "a path cannot be read");
+        }
+        path.read(command);
+        if (command == 'M') command = 'L';  // more points are lines
+        if (command == 'm') command = 'l';
+    }
+    path.flush();
 }
 
 SvgLine svg_points(const char* text, const std::string& source, bool closed) {

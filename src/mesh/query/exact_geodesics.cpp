@@ -105,7 +105,7 @@ ExactGeodesics::Corner ExactGeodesics::over(std::uint32_t face, int edge) {
     return {kNone, 0};
 }
 
-/// Whether ways over vertices of the face are shorter to all of [from, to] of its edge.
+/// Whether paths over vertices of the face are shorter to all of [from, to] of its edge.
 bool ExactGeodesics::is_dominated(const Face& face, int edge, double from, double to, const Source& source) const {
     const auto far = [&](double x) { return source.before + glm::length(source.at - Vec2{x, 0}); };
     const double a = vertices_[face.vertex[edge]].distance, b = vertices_[face.vertex[after(edge)]].distance;
@@ -117,7 +117,7 @@ bool ExactGeodesics::is_dominated(const Face& face, int edge, double from, doubl
     return near * (1 - kSlack) > vertices_[face.vertex[before(edge)]].distance + most;
 }
 
-/// Ways from `source` out of the face over the part [from, to] of its edge.
+/// Paths from `source` out of the face over the part [from, to] of its edge.
 void ExactGeodesics::add_window(std::uint32_t face, int edge, double from, double to, const Source& source) {
     const double length = faces_[face].length[edge];
     from = std::clamp(from, 0.0, length);
@@ -196,7 +196,7 @@ std::vector<ExactGeodesics::Corner>& ExactGeodesics::fan(std::vector<Corner>& co
     return corners;
 }
 
-/// Ways round a vertex through [from, to] of the edge opposite to it in one of its faces.
+/// Paths round a vertex through [from, to] of the edge opposite to it in one of its faces.
 void ExactGeodesics::add_window_at_vertex(const Corner& at, double from, double to, double distance) {
     const int edge = after(at.corner);
     const double length = faces_[at.face].length[edge];
@@ -218,7 +218,7 @@ void ExactGeodesics::add_window_at_vertex(const Corner& at, double from, double 
     if (!(to < length)) along(1, faces_[at.face].length[before(at.corner)]);
 }
 
-/// Ways that bend round a vertex fill what lies between the straight ways past it on either side.
+/// Paths that bend round a vertex fill what lies between the straight paths past it on either side.
 void ExactGeodesics::bend(const Arrival& arrival) {
     const Face& face = faces_[arrival.face];
     const double distance = vertices_[face.vertex[arrival.corner]].distance;
@@ -238,7 +238,7 @@ void ExactGeodesics::bend(const Arrival& arrival) {
         right_.assign(left_.rbegin(), left_.rend());
     else
         fan(right_, at, false);
-    // Where the straight ways past the vertex meet the edges opposite to it.
+    // Where the straight paths past the vertex meet the edges opposite to it.
     std::size_t i = 0, j = 0;
     double from = 0, to = 0;
     for (; i < left_.size(); ++i) {

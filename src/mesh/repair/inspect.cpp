@@ -127,26 +127,26 @@ MeshSummary summarise(const Surface& surface, double metres_per_unit) {
 
 std::vector<Message> describe_defects(const RepairReport& r) {
     std::vector<Message> lines;
-    const auto tell = [&](std::size_t n, const char* one, const char* many) {
+    const auto note = [&](std::size_t n, const char* one, const char* many) {
         if (n) lines.push_back(Message(n == 1 ? one : many, n));
     };
     // Triangles without shared vertices are the way of STL, not a defect.
     if (!r.loose_triangles)
-        tell(r.vertices_welded, "{} vertex lay on another one: welded", "{} vertices lay on others: welded");
-    tell(r.crack_vertices_welded, "{} vertex lay next to another one across a crack: welded",
+        note(r.vertices_welded, "{} vertex lay on another one: welded", "{} vertices lay on others: welded");
+    note(r.crack_vertices_welded, "{} vertex lay next to another one across a crack: welded",
          "{} vertices lay next to others across cracks: welded");
-    tell(r.unused_vertices_dropped, "{} vertex is used by no face: dropped",
+    note(r.unused_vertices_dropped, "{} vertex is used by no face: dropped",
          "{} vertices are used by no face: dropped");
-    tell(r.degenerate_faces_dropped, "{} face without an area: dropped", "{} faces without an area: dropped");
-    tell(r.degenerate_faces_repaired, "{} face with a corner on its opposite side: mended by a flip",
+    note(r.degenerate_faces_dropped, "{} face without an area: dropped", "{} faces without an area: dropped");
+    note(r.degenerate_faces_repaired, "{} face with a corner on its opposite side: mended by a flip",
          "{} faces with a corner on their opposite side: mended by flips");
-    tell(r.duplicate_faces_dropped, "{} face is there twice: dropped", "{} faces are there twice: dropped");
-    tell(r.non_manifold_edges_split, "{} edge with more than two faces: split",
+    note(r.duplicate_faces_dropped, "{} face is there twice: dropped", "{} faces are there twice: dropped");
+    note(r.non_manifold_edges_split, "{} edge with more than two faces: split",
          "{} edges with more than two faces: split");
-    tell(r.non_manifold_vertices_split, "{} vertex where separate surfaces touch: split",
+    note(r.non_manifold_vertices_split, "{} vertex where separate surfaces touch: split",
          "{} vertices where separate surfaces touch: split");
-    tell(r.faces_flipped, "{} face showed its back: turned round", "{} faces showed their backs: turned round");
-    tell(r.parts_turned, "{} open part was inside out: turned round", "{} open parts were inside out: turned round");
+    note(r.faces_flipped, "{} face showed its back: turned round", "{} faces showed their backs: turned round");
+    note(r.parts_turned, "{} open part was inside out: turned round", "{} open parts were inside out: turned round");
     lines.insert(lines.end(), r.warnings.begin(), r.warnings.end());
     return lines;
 }

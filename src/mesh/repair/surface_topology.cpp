@@ -141,7 +141,7 @@ SurfaceTopology::SurfaceTopology(const RawMesh& mesh) : state_(std::make_unique<
 
 SurfaceTopology::~SurfaceTopology() = default;
 
-/// Whether so many edges meet at the start of h that looking through them is too dear.
+/// Whether so many edges meet at the start of h that a search through them is too costly.
 bool SurfaceTopology::State::is_hub(HalfedgeHandle h) const {
     constexpr int kMaxValence = 1000;
     HalfedgeHandle at = h;

@@ -26,13 +26,14 @@ Vec3 light_of(const BrushView& view) {
     return glm::normalize(0.75 * view.up - 0.45 * view.right + 0.5 * view.toward());
 }
 
-void draw_pores(BrushCanvas& canvas, const TuftShape& shape, std::uint32_t triangle, std::size_t& next,
-                std::span<const std::uint32_t> by_triangle, const BrushView& view, double tilt) {
+/// Draws pores of one triangle. `tilt`: cosine between its normal and the direction to the viewer.
+void draw_pores(BrushCanvas& canvas, const TuftShape& shape, std::span<const std::uint32_t> pores,
+                const BrushView& view, double tilt) {
     constexpr int kSides = 8;
     const CarriedShape& carried = *shape.carried;
-    const auto& t = carried.triangles[triangle];
-    for (; next < by_triangle.size() && carried.pores[by_triangle[next]].triangle == triangle; ++next) {
-        const SkinPore& pore = carried.pores[by_triangle[next]];
+    for (const std::uint32_t i : pores) {
+        const SkinPore& pore = carried.pores[i];
+        const auto& t = carried.triangles[pore.triangle];
         const Vec3 at = (1 - pore.weights.x - pore.weights.y) * shape.position[t[0]] +
                         pore.weights.x * shape.position[t[1]] + pore.weights.y * shape.position[t[2]];
         Vec2 round[kSides];
@@ -76,8 +77,9 @@ void draw_mesh(BrushCanvas& canvas, const TuftShape& shape, const BrushView& vie
             if (size > 0) c += 0.6 / size * (c - middle);
         }
         fill_polygon(canvas, corners, glm::mix(dark, bright, std::clamp(0.45 + 0.5 * glm::dot(n, light), 0.0, 1.0)));
-        std::size_t next = first[piece.index];
-        draw_pores(canvas, shape, piece.index, next, order, view, std::max(0.2, glm::dot(n, viewer)));
+        const std::size_t begin = first[piece.index], end = first[piece.index + 1];
+        draw_pores(canvas, shape, std::span(order).subspan(begin, end - begin), view,
+                   std::max(0.2, glm::dot(n, viewer)));
     }
 }
 

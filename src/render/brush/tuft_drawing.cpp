@@ -313,7 +313,7 @@ Section between(const Section& p, const Section& q, double f) {
 }
 
 /// Those of the sections that meet the sheet, and more up to where the tuft only just does: there
-/// the patch is round, as wide as the root of the way from its end.
+/// the patch is round, as wide as the square root of the distance from its end.
 std::vector<Section> touching(const std::vector<Section>& sections) {
     constexpr int kRound = 12;
     std::vector<Section> out;

@@ -173,7 +173,7 @@ FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTex
     for (std::size_t i = 0; i < tiles.size(); ++i)
         if (parts[i].any) result.before.push_back(target.canvas.snapshot(tiles[i]->slot));
 
-    std::vector<ink::Amounts> laid(tiles.size());
+    std::vector<ink::Amounts> deposited(tiles.size());
     parallel_for(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
         ink::Coat coat;
         for (std::size_t i = begin; i < end; ++i) {
@@ -195,11 +195,12 @@ FillResult apply_area(const Fill& fill, const PaintTarget& target, const FlatTex
                 if (!any) continue;
                 coat.first = mixes[stop];
                 coat.second = mixes[next];
-                laid[i] += ink::add_coat(target.canvas, slot, map.tiles[slot].area, coat, target.substrate.capacity);
+                deposited[i] +=
+                    ink::add_coat(target.canvas, slot, map.tiles[slot].area, coat, target.substrate.capacity);
             }
         }
     });
-    for (const ink::Amounts& a : laid) result.ink_given += a.sum();
+    for (const ink::Amounts& a : deposited) result.ink_given += a.sum();
     return result;
 }
 

@@ -12,12 +12,12 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kPart = 0.1;          // of the way, that may be lost, buried or stretched
-constexpr double kMost = 0.5;          // of the way: then no depth is worth telling
+constexpr double kPart = 0.1;          // of the path, that may be lost, buried or stretched
+constexpr double kMost = 0.5;          // of the path: then no depth is worth telling
 constexpr double kDepthPart = 0.5;     // of the depth, that it may change by
 constexpr double kLeastChange = 2e-4;  // metres of depth that nobody sees
 constexpr double kLeastMove = 1e-3,
-                 kMovePart = 0.01;  // metres, and part of the way, that a place may move by
+                 kMovePart = 0.01;  // metres, and part of the path, that a place may move by
 constexpr double kStretch = 1.25;   // times as long, or short
 constexpr double kPiece = 5e-3;     // metres of path that are measured together
 constexpr double kTooSmall = 0.25;  // times as large as the former model: a unit that was mistaken is less

@@ -123,7 +123,7 @@ void refresh(PalettePicture& picture, const Palette& palette, std::span<const st
     const atlas::TexelMap& map = palette.model().texels;
     const ink::Substrate substrate = palette_substrate();
     for (const std::uint32_t slot : slots) {
-        const ink::TileAppearance look = ink::shade_tile(*palette.canvas(), slot, substrate);
+        const ink::TileAppearance appearance = ink::shade_tile(*palette.canvas(), slot, substrate);
         const int tile = static_cast<int>(map.tile_of_slot[slot]), per_side = static_cast<int>(map.tiles_per_side);
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             const int x = tile % per_side * atlas::kTile + t % atlas::kTile - kFirstColumn;
@@ -131,7 +131,7 @@ void refresh(PalettePicture& picture, const Palette& palette, std::span<const st
             if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) continue;
             for (std::size_t c = 0; c < 3; ++c)
                 picture.rgb[3 * static_cast<std::size_t>(y * picture.width + x) + c] = static_cast<std::uint8_t>(
-                    std::lround(255 * ink::srgb_encode(look.colour[c][static_cast<std::size_t>(t)])));
+                    std::lround(255 * ink::srgb_encode(appearance.colour[c][static_cast<std::size_t>(t)])));
         }
     }
 }

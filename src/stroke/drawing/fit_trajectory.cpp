@@ -18,17 +18,17 @@ namespace {
 using std::numbers::pi;
 
 // Widths of the line.
-constexpr double kApart = 0.1;      // stations of the way
+constexpr double kApart = 0.1;      // stations of the path
 constexpr double kStep = 1.0 / 10;  // of the hand
 constexpr double kCell = 1.0 / 24;  // of the picture
 constexpr double kFarthest = 0.8;   // that ink is looked for beyond the wanted edge
-constexpr double kSoft = 0.4;       // of the way to both sides over which corrections are smoothed
-constexpr double kAbout = 2.5;      // of the way about a turn that is corrected
-constexpr double kMostMoved = 1.5;  // that the way moves
-constexpr double kOwn = 0.8;        // of the way from a place within which the tuft lays its ink there
+constexpr double kSoft = 0.4;       // of the path to both sides over which corrections are smoothed
+constexpr double kAbout = 2.5;      // of the path about a turn that is corrected
+constexpr double kMostMoved = 1.5;  // that the path moves
+constexpr double kOwn = 0.8;        // of the path from a place within which the tuft lays its ink there
 constexpr double kEdge = 0.08;      // of the half width within which a place still belongs to the edge
 constexpr double kUnder = 0.1;      // of another line's half width from its edge: less may be bare
-constexpr double kSharpLift = 1;    // of the way about a sharp turn in which the hand lifts at first
+constexpr double kSharpLift = 1;    // of the path about a sharp turn in which the hand lifts at first
 
 constexpr double kTurn = 0.35,
                  kSharp = 1.7;    // radians within a width: less is no corner; more, and the tuft turns over
@@ -40,7 +40,7 @@ constexpr double kLongest = 2000;  // widths: longer lines are not fitted
 constexpr double kEnough = 0.008,
                  kGain = 0.97;  // rms in widths that nobody sees; of the one before, less is a gain
 
-/// A place of the way and the half width that the ink is to have there.
+/// A place of the path and the half width that the ink is to have there.
 struct Station {
     Vec2 centre{0};
     double half = 0;
@@ -73,7 +73,7 @@ std::vector<StrokeSample> evenly(const std::vector<StrokeSample>& s, double apar
     return out;
 }
 
-/// Direction of the way before and behind a station.
+/// Direction of the path before and behind a station.
 Vec2 heading(const std::vector<Station>& s, std::size_t i, int step) {
     for (std::size_t k = i; step < 0 ? k > 0 : k + 1 < s.size();) {
         k = step < 0 ? k - 1 : k + 1;
@@ -182,7 +182,7 @@ double reach_over(const PlaneInk& ink, const EdgePoint& point, double half) {
     return point.farthest;
 }
 
-/// By how much the way turns within half a width to both sides of each station, radians.
+/// By how much the path turns within half a width to both sides of each station, radians.
 std::vector<double> turns_of(const std::vector<Station>& stations, const std::vector<double>& along, double width) {
     const std::size_t n = stations.size();
     std::vector<double> turns(n, 0);
@@ -197,7 +197,7 @@ std::vector<double> turns_of(const std::vector<Station>& stations, const std::ve
     return turns;
 }
 
-/// Metres along the way from each station to the nearest with a turn of more than `least`.
+/// Metres along the path from each station to the nearest with a turn of more than `least`.
 std::vector<double> far_from_turns(const std::vector<double>& turns, const std::vector<double>& along, double least) {
     const std::size_t n = turns.size();
     std::vector<double> far(n, 1e30);

@@ -11,10 +11,11 @@ constexpr double kCatchUpSpacing = 2.5e-4;  // metres between samples while the 
 constexpr double kSlowestCatchUp = 0.02;    // m/s
 
 double mean_speed(const std::vector<StrokeSample>& samples) {
-    double way = 0;
-    for (std::size_t i = 1; i < samples.size(); ++i) way += glm::length(samples[i].position - samples[i - 1].position);
+    double length = 0;
+    for (std::size_t i = 1; i < samples.size(); ++i)
+        length += glm::length(samples[i].position - samples[i - 1].position);
     const double time = samples.back().time - samples.front().time;
-    return time > 0 ? std::max(way / time, kSlowestCatchUp) : kSlowestCatchUp;
+    return time > 0 ? std::max(length / time, kSlowestCatchUp) : kSlowestCatchUp;
 }
 
 }  // namespace
@@ -25,11 +26,11 @@ StrokeSamples steady(StrokeSamples trace, const StrokeSettings& settings) {
     if (settings.smooth > 0) {
         const HandFilterOptions options = hand_filter_options(settings.smooth);
         const double end = samples.back().time;
-        for (int way = 0; way < 2; ++way) {
+        for (int pass = 0; pass < 2; ++pass) {
             HandFilter filter;
             for (StrokeSample& s : samples) {
                 StrokeSample now = s;
-                if (way == 1) now.time = end - s.time;
+                if (pass == 1) now.time = end - s.time;
                 now = smooth(filter, now, options);
                 now.time = s.time;
                 s = now;

@@ -16,7 +16,7 @@ double time_constant(double cutoff) {
     return 1 / (2 * std::numbers::pi * cutoff);
 }
 
-// Part of the way to a constant goal that a low-pass goes in dt.
+// Part of the distance to a constant goal that a low-pass goes in dt.
 double share(double cutoff, double dt) {
     return -std::expm1(-dt / time_constant(cutoff));
 }
@@ -154,14 +154,14 @@ StrokeSample pull(String& s, const StrokeSample& hand, double length) {
 void let_go(String& s, double time, double speed, double spacing, std::vector<StrokeSample>& out) {
     if (!s.started || s.past.empty()) return;
     const Vec3 start = s.tip;
-    const double way = glm::length(s.hand - start);
-    if (!(way > 0) || !(speed > 0) || !(spacing > 0)) return;
-    const int steps = std::max(1, static_cast<int>(std::min(std::ceil(way / spacing), 1e5)));
+    const double moved = glm::length(s.hand - start);
+    if (!(moved > 0) || !(speed > 0) || !(spacing > 0)) return;
+    const int steps = std::max(1, static_cast<int>(std::min(std::ceil(moved / spacing), 1e5)));
     for (int i = 1; i <= steps; ++i) {
         const double part = static_cast<double>(i) / steps;
         s.tip = start + part * (s.hand - start);
-        const String::Grip grip = i == steps ? s.past.back() : grip_at(s, s.travel - (1 - part) * way);
-        out.push_back({.time = time + part * way / speed,
+        const String::Grip grip = i == steps ? s.past.back() : grip_at(s, s.travel - (1 - part) * moved);
+        out.push_back({.time = time + part * moved / speed,
                        .position = s.tip,
                        .pressure = grip.pressure,
                        .tilt = grip.tilt,

@@ -9,14 +9,14 @@ namespace tuft::stroke {
 namespace {
 
 constexpr double kTaper = 3e-3;       // metres over which the hand lifts
-constexpr double kTaperShare = 0.25;  // of the way, at most
-constexpr double kTaperEnd = 0.08;    // of the pressure, where the way ends
+constexpr double kTaperShare = 0.25;  // of the path, at most
+constexpr double kTaperEnd = 0.08;    // of the pressure, where the path ends
 constexpr double kBackShare = 0.6;    // of the taper that the lifting hand goes back
 constexpr double kLift = 0.06;        // seconds of it
 constexpr int kLiftSamples = 8;
-constexpr double kLook = 0.03;  // seconds of the trace that tell its first speed
+constexpr double kLook = 0.03;  // seconds of the trace that give its first speed
 
-// Part of the way to its goal that a first-order lag goes in dt.
+// Part of the distance to its goal that a first-order lag goes in dt.
 double settled_part(double dt, double constant) {
     return -std::expm1(-dt / std::max(constant, 1e-6));
 }
@@ -29,25 +29,25 @@ double goal_of(const PressureState& s, const PressureOptions& o) {
 }
 
 double first_speed(const std::vector<StrokeSample>& samples) {
-    double way = 0;
+    double travel = 0;
     for (std::size_t i = 1; i < samples.size(); ++i) {
-        way += glm::length(samples[i].position - samples[i - 1].position);
+        travel += glm::length(samples[i].position - samples[i - 1].position);
         const double dt = samples[i].time - samples[0].time;
-        if (dt > 0 && (dt >= kLook || i + 1 == samples.size())) return way / dt;
+        if (dt > 0 && (dt >= kLook || i + 1 == samples.size())) return travel / dt;
     }
     return 0;
 }
 
 // The tip is taken back over the end of the stroke while it lifts, so that the hair springs
 // onto ink and draws no drop beyond the end. `left`: metres from each sample to the end.
-void lift_back(std::vector<StrokeSample>& samples, const std::vector<double>& left, double way) {
+void lift_back(std::vector<StrokeSample>& samples, const std::vector<double>& left, double travel) {
     const StrokeSample end = samples.back();
     std::size_t i = samples.size() - 1;
     for (int k = 1; k <= kLiftSamples; ++k) {
         const double part = static_cast<double>(k) / kLiftSamples;
-        while (i > 0 && (i + 1 == left.size() || left[i] < part * way)) --i;
+        while (i > 0 && (i + 1 == left.size() || left[i] < part * travel)) --i;
         const double span = left[i] - left[i + 1];
-        const double w = span > 0 ? (part * way - left[i + 1]) / span : 0;
+        const double w = span > 0 ? (part * travel - left[i + 1]) / span : 0;
         StrokeSample s = end;
         s.position = samples[i + 1].position + w * (samples[i].position - samples[i + 1].position);
         s.time = end.time + part * kLift;
@@ -66,7 +66,7 @@ double press(PressureState& s, const Vec3& position, double time, const Pressure
         return s.pressure;
     }
     const double dt = time - s.time;
-    if (!(dt > 0)) return s.pressure;  // the way is counted with the next sample
+    if (!(dt > 0)) return s.pressure;  // the path is counted with the next sample
     const double speed = glm::length(position - s.position) / dt;
     s.speed += settled_part(dt, o.speed_time) * (speed - s.speed);
     const double slow = s.speed / o.still;

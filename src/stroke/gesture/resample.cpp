@@ -84,7 +84,7 @@ Vec3 rate_at(const Quat& a, const Quat& b, const Quat& c, double h0, double h1, 
     return turn > most ? most / turn * rate : rate;
 }
 
-/// Cubic way from b to c in time, with the parabolas' rates at its ends: cumulative Bézier form.
+/// Cubic path from b to c in time, with the parabolas' rates at its ends: cumulative Bézier form.
 Quat rotation_between(const Pose& a, const Pose& b, const Pose& c, const Pose& d, double s) {
     constexpr double kSame = 1e-15;  // of 1 − |cos| between rotations
     const double h = c.time - b.time;

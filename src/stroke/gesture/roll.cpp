@@ -8,7 +8,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// The shortest way from a to b, radians.
+/// The shortest turn from a to b, radians.
 double turn_between(double a, double b) {
     return std::remainder(b - a, 2 * pi);
 }
@@ -19,7 +19,7 @@ double mix_roll(double a, double b, double t) {
     return a + t * turn_between(a, b);
 }
 
-double follow_stroke(RollFollower& state, double hand, const Vec2& way) {
+double follow_stroke(RollFollower& state, double hand, const Vec2& motion) {
     if (!state.started) {
         state = {.started = true, .roll = hand, .hand = hand};
         return hand;
@@ -27,8 +27,8 @@ double follow_stroke(RollFollower& state, double hand, const Vec2& way) {
     const double twist = turn_between(state.hand, hand);
     state.hand = hand;
     state.roll += 0.5 * twist;
-    if (const double length = glm::length(way); length > 0) {
-        const Vec2 ahead = static_cast<double>(state.face) * way;
+    if (const double length = glm::length(motion); length > 0) {
+        const Vec2 ahead = static_cast<double>(state.face) * motion;
         double left = turn_between(state.roll, std::atan2(-ahead.x, -ahead.y));
         if (std::abs(left) > kOtherFace) {
             state.face = -state.face;
@@ -44,9 +44,9 @@ StrokeSamples roll_holder(StrokeSamples trace, const StrokeSettings& settings) {
     RollFollower follower;
     Vec3 before{0};
     for (StrokeSample& s : trace.samples) {
-        const Vec2 way = follower.started ? Vec2(s.position - before) : Vec2{0};
+        const Vec2 motion = follower.started ? Vec2(s.position - before) : Vec2{0};
         before = s.position;
-        if (settings.roll_follow) s.roll = follow_stroke(follower, s.roll, way);
+        if (settings.roll_follow) s.roll = follow_stroke(follower, s.roll, motion);
         s.roll += settings.roll;
     }
     return trace;

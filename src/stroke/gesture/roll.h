@@ -25,7 +25,7 @@ namespace tuft::stroke {
 inline constexpr double kRollLag = 5e-3;      ///< λ, metres
 inline constexpr double kOtherFace = 2.3562;  ///< radians, 3π/4: a larger turn is left to the other face
 
-/// Returns the roll at the part t, 0–1, of the shortest way from a to b, radians.
+/// Returns the roll at the part t, 0–1, of the shortest turn from a to b, radians.
 double mix_roll(double a, double b, double t);
 
 /// A holder that follows its stroke, sample by sample.
@@ -37,9 +37,10 @@ struct RollFollower {
 };
 
 /// Returns the roll after the next sample. `hand`: radians, the roll that the hand itself gives, such as that of a pen
-/// about itself. `way`: metres, from the last sample to this one in the axes of flat samples. The first sample's roll
-/// is the hand's. A turn of the hand adds to the roll evenly along the way, and is lost again as the ferrule goes on.
-double follow_stroke(RollFollower& state, double hand, const Vec2& way);
+/// about itself. `motion`: metres, from the last sample to this one in the axes of flat samples. The first sample's
+/// roll is the hand's. A turn of the hand adds to the roll evenly along the path, and is lost again as the ferrule goes
+/// on.
+double follow_stroke(RollFollower& state, double hand, const Vec2& motion);
 
 /// Returns the trace with the rolls that `roll` and `roll_follow` of the settings give to its samples. A trace in space
 /// stays as it is.

@@ -22,21 +22,21 @@ namespace tuft::stroke {
 template <class V>
 V drag_string(const V& end, const V& from, const V& to, double length) {
     const V motion = to - from, string = from - end;
-    const double way = glm::length(motion), reach = glm::length(to - end);
+    const double travel = glm::length(motion), reach = glm::length(to - end);
     if (reach <= length) return end;
     if (!(length > 0)) return to;
-    if (!(way > 0)) return to - (length / reach) * (to - end);
-    const V ahead = motion / way;
+    if (!(travel > 0)) return to - (length / reach) * (to - end);
+    const V ahead = motion / travel;
     // Where the string becomes taut: the hand leaves the circle round the end.
     const double along = glm::dot(string, ahead);
     const double left = along * along - glm::dot(string, string) + length * length;
-    const double taut = std::clamp(std::sqrt(std::max(0.0, left)) - along, 0.0, way);
+    const double taut = std::clamp(std::sqrt(std::max(0.0, left)) - along, 0.0, travel);
     const V at = (string + taut * ahead) / length;
     const double cosine = std::clamp(glm::dot(at, ahead), -1.0, 1.0);
     const V across = at - cosine * ahead;
     const double sine = glm::length(across);
     if (sine < 1e-12) return to - length * ahead;
-    const double half = sine / (1 + cosine) * std::exp(-(way - taut) / length);  // tan(φ/2)
+    const double half = sine / (1 + cosine) * std::exp(-(travel - taut) / length);  // tan(φ/2)
     const double scale = 1 / (1 + half * half);
     return to - length * scale * ((1 - half * half) * ahead + (2 * half / sine) * across);
 }

@@ -35,7 +35,7 @@ Preparation preparation_named(EntryKind kind, const std::string& text) {
     if (kind == EntryKind::dry) return Dry{};
     if (kind == EntryKind::wash) return WashPalette{};
     if (kind == EntryKind::fill) return Fill{};
-    if (kind == EntryKind::stroke || keeps_texels(kind)) throw Error(Message("'{}' is no care of a brush", text));
+    if (kind == EntryKind::stroke || keeps_texels(kind)) throw Error(Message("'{}' is no brush action", text));
     return BrushAction{.kind = brush_action_of(kind)};
 }
 

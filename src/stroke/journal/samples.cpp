@@ -34,7 +34,7 @@ void check_samples(const StrokeSamples& stroke) {
         if (!(square > 1e-6 && square < 1e6)) refuse("a sample's rotation");
     }
     for (const StencilEdge& e : stroke.stencil)
-        if (!within(e.from) || !within(e.to)) refuse("an edge of tape");
+        if (!within(e.from) || !within(e.to)) refuse("a stencil edge");
 }
 
 }  // namespace tuft::stroke

@@ -43,7 +43,7 @@ class Drape {
     Drape(const SurfaceQuery& query, const Placement& place)
         : query_(query), radius_(drape_radius(query.mesh())), stride_(0.5 * radius_) {
         const auto start = query.closest_point(place.origin);
-        if (!start) throw Error("there is no surface to lay a stroke on");
+        if (!start) throw Error("there is no surface to map a stroke onto");
         gap_ = start->distance;
         SurfacePatch patch{
             start->position, start->normal, axes_across(start->normal, place.right, place.down).right, {0, 0, 0}, true};

@@ -98,7 +98,7 @@ double working_depth(const brush::Preset& preset);
 /// Returns options for a brush over a model, `steady` its `drape_radius`, without tip lag.
 HolderOptions holder_options(const brush::Preset& preset, const mesh::TriangleMesh& mesh);
 
-/// Returns the ferrule's pose over each mapped sample. The holder's axis is the normal leaned by the tilt,
+/// Returns the ferrule's pose over each mapped sample. The holder's axis is the normal rotated by the tilt,
 ///
 ///     up ∝ normal + tan(tilt.x) right + tan(tilt.y) down.
 ///

@@ -72,7 +72,7 @@ void check(const StrokeSamples& trace) {
 
 SurfaceTrace map_wrapped(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
     const auto start = query.closest_point(trace.placement.origin);
-    if (!start) throw Error("there is no surface to lay a stroke on");
+    if (!start) throw Error("there is no surface to map a stroke onto");
     SurfaceTrace mapped;
     mapped.origin_gap = start->distance;
     const Axes axes = axes_across(start->normal, trace.placement.right, trace.placement.down);

@@ -116,22 +116,22 @@ constexpr double kAiming = 0.5;   // of `tip_lag_turn`: distance from the first 
 Vec2 first_direction(std::span<const StrokeSample> samples, double away) {
     const Vec2 first(samples[0].position);
     for (std::size_t i = 1; i < samples.size(); ++i) {
-        const Vec2 a = Vec2(samples[i - 1].position) - first, b = Vec2(samples[i].position) - first, way = b - a;
+        const Vec2 a = Vec2(samples[i - 1].position) - first, b = Vec2(samples[i].position) - first, chord = b - a;
         if (glm::length(b) < away) continue;
-        // |a + t way| = away
-        const double aa = glm::dot(way, way), ab = glm::dot(a, way), c = glm::dot(a, a) - away * away;
+        // |a + t chord| = away
+        const double aa = glm::dot(chord, chord), ab = glm::dot(a, chord), c = glm::dot(a, a) - away * away;
         const double t = aa > 0 ? (-ab + std::sqrt(std::max(0.0, ab * ab - aa * c))) / aa : 1;
-        return glm::normalize(a + std::clamp(t, 0.0, 1.0) * way);
+        return glm::normalize(a + std::clamp(t, 0.0, 1.0) * chord);
     }
     return Vec2{0};
 }
 
-/// Speed over the first `way` metres of path; 0 where it does not move.
-double first_pace(std::span<const StrokeSample> samples, double way) {
+/// Speed over the first `reach` metres of path; 0 where it does not move.
+double first_pace(std::span<const StrokeSample> samples, double reach) {
     double gone = 0, taken = 0;
-    for (std::size_t i = 1; i < samples.size() && gone < way; ++i) {
+    for (std::size_t i = 1; i < samples.size() && gone < reach; ++i) {
         const double piece = glm::distance(samples[i].position, samples[i - 1].position);
-        const double part = piece > 0 ? std::min(1.0, (way - gone) / piece) : 1;
+        const double part = piece > 0 ? std::min(1.0, (reach - gone) / piece) : 1;
         gone += part * piece;
         taken += part * (samples[i].time - samples[i - 1].time);
     }

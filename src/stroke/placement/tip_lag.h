@@ -30,9 +30,9 @@ class TiltedTipLag {
   public:
     explicit TiltedTipLag(brush::Preset preset) : preset_(std::move(preset)) {}
 
-    /// Returns the additional lead of the hand, metres ahead along the path and to its left, that puts the line onto
-    /// the path. `lean`: radians along the path and to its left, up ∝ normal + tan(lean.x) ahead + tan(lean.y) left.
-    /// `depth`: metres of the unbent tip below the surface.
+    /// Returns the additional displacement of the hand, metres ahead along the path and to its left, that puts the line
+    /// onto the path. `lean`: radians along the path and to its left, up ∝ normal + tan(lean.x) ahead + tan(lean.y)
+    /// left. `depth`: metres of the unbent tip below the surface.
     Vec2 at(double depth, const Vec2& lean);
 
   private:

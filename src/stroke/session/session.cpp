@@ -169,7 +169,7 @@ void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double 
     // its stroke, which begins where it has been pressed aside, does not reach.
     const bool prints = motion_.contact_travel >= kPrintTravel;
     stamp.ds = prints ? path_.spacing : (1 - static_cast<double>(stamp.separation)) * path_.spacing;
-    // An edge that slips away under a press draws by its own way, which is longer than the hand's.
+    // An edge that slips away under a press draws by its own path, which is longer than the hand's.
     if (brush::has_broad_side(preset)) stamp.ds = std::max(stamp.ds, leap * glm::length(stamp.motion.shift));
 }
 

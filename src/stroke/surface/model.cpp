@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "core/system/memory.h"
+#include "stroke/surface/model_cache.h"
 
 namespace tuft::stroke {
 namespace {
@@ -59,7 +61,37 @@ void give_atlas(Model& model, const atlas::UnwrapOptions& unwrap, const ModelOpt
     finish(model, options.texels, options.progress);
 }
 
+// Takes mesh and atlas from the cache, and what is not stored from the soup. False when they are not there.
+bool restore_model(Model& model, mesh::PolygonSoup& soup, const CacheKey& key, const ModelOptions& options) {
+    StoredModel stored;
+    const bool found = options.cache.read(key, [&](CacheReader& entry) {
+        stored = get_model(entry);
+        const std::size_t n_groups = soup.group_names.size(), n_parts = soup.scene ? soup.scene->parts.size() : 0;
+        for (const std::uint32_t group : stored.mesh.triangle_groups)
+            if (group >= n_groups) CacheReader::fail();
+        for (const std::uint32_t part : stored.mesh.triangle_parts)
+            if (part >= n_parts) CacheReader::fail();
+    });
+    if (!found) return false;
+    if (!stored.mesh.triangle_groups.empty()) stored.mesh.group_names = std::move(soup.group_names);
+    stored.mesh.materials = std::move(soup.materials);
+    stored.mesh.scene = std::move(soup.scene);
+    stored.repairs.warnings.insert(stored.repairs.warnings.begin(), soup.warnings.begin(), soup.warnings.end());
+    soup = {};
+    model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(stored.mesh));
+    model.repairs = std::move(stored.repairs);
+    model.atlas = std::move(stored.atlas);
+    model.atlas_report = std::move(stored.atlas_report);
+    check_memory(side_of_pages(model.atlas.page_size(), model.atlas.pages), options.texels, options.memory_limit);
+    finish(model, options.texels, options.progress);
+    return true;
+}
+
 }  // namespace
+
+DiskCache shared_model_cache() {
+    return DiskCache(cache_folder("models"));
+}
 
 std::size_t atlas_memory(std::uint32_t size, atlas::TexelStore texels) {
     const double shape = atlas::is_packed(texels, size) ? kPackedShape : kFloatShape;
@@ -92,12 +124,23 @@ Model prepare_model(mesh::PolygonSoup soup, const ModelOptions& options) {
     mesh::RepairOptions repair = options.repair;
     repair.progress = unwrap.progress = options.progress;
 
+    std::optional<CacheKey> key;
+    if (!options.cache.folder().empty()) key = model_key(soup, options);
     Model model;
+    if (key && restore_model(model, soup, *key, options)) return model;
+
+    const std::size_t n_reader_warnings = soup.warnings.size();
     mesh::Surface surface = mesh::build_surface(std::move(soup), repair);
     model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(surface.mesh));
     model.repairs = std::move(surface.report);
     release_free_memory();
     give_atlas(model, unwrap, options);
+    if (key) {
+        report(options.progress, "storing", 0);
+        options.cache.write(*key, [&](CacheWriter& entry) { put_model(entry, model, n_reader_warnings); });
+        options.cache.trim();
+        report(options.progress, "storing", 1);
+    }
     return model;
 }
 

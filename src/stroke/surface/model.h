@@ -5,6 +5,7 @@
 #include "atlas/atlas.h"
 #include "atlas/texels/cluster_graph.h"
 #include "atlas/texels/texel_map.h"
+#include "core/system/disk_cache.h"
 #include "footprint/stamp/stamp.h"
 #include "ink/colour/base_colour.h"
 #include "mesh/query/surface_query.h"
@@ -34,11 +35,13 @@ struct ModelOptions {
     atlas::UnwrapOptions unwrap;  ///< likewise
     atlas::TexelStore texels = atlas::TexelStore::automatic;
     std::size_t memory_limit = 0;  ///< bytes; 0: `available_memory`
+    DiskCache cache;               ///< of repaired meshes and their atlases (model_cache.h)
     ProgressFn progress;
 };
 
 /// Repairs a mesh, unwraps it and builds queries and texel map. Throws `Error` for a mesh without surface, and before
-/// it allocates where the atlas needs more memory than the limit, with the size that it needs.
+/// it allocates where the atlas needs more memory than the limit, with the size that it needs. A model in the cache has
+/// the same bits as one prepared anew.
 Model prepare_model(mesh::PolygonSoup soup, const ModelOptions& options = {});
 
 /// The same from an existing mesh and atlas, such as a project's.
@@ -47,6 +50,9 @@ Model prepare_model(mesh::TriangleMesh mesh, atlas::Atlas atlas, const ProgressF
 
 /// Returns the same mesh with a new atlas, of another size or with new charts.
 Model rescale_model(Model model, const ModelOptions& options);
+
+/// Returns the cache of the user's prepared models: `tuft/models` in $XDG_CACHE_HOME or ~/.cache, 2 GiB.
+DiskCache shared_model_cache();
 
 /// Returns an upper bound for the memory of painting on an atlas of size × size texels, bytes.
 std::size_t atlas_memory(std::uint32_t size, atlas::TexelStore texels = atlas::TexelStore::automatic);

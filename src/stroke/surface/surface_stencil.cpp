@@ -109,7 +109,7 @@ class Cut {
 SurfaceStencil::SurfaceStencil(const mesh::SurfaceQuery& query, const StrokeSamples& trace) {
     if (!trace.flat || trace.stencil.empty()) return;
     StrokeSamples ends{.placement = trace.placement};
-    std::vector<Vec2> ways;
+    std::vector<Vec2> directions;
     double whole = 0;
     for (const StencilEdge& e : trace.stencil) whole += glm::distance(e.from, e.to);
     const double cluster = std::max(kPiece, whole / kMostPieces);
@@ -119,15 +119,15 @@ SurfaceStencil::SurfaceStencil(const mesh::SurfaceQuery& query, const StrokeSamp
         const auto n = static_cast<int>(std::ceil(length / cluster));
         for (int i = 0; i <= n; ++i) {
             ends.samples.push_back({.position = Vec3(glm::mix(e.from, e.to, static_cast<double>(i) / n), 0)});
-            ways.push_back(i < n ? (e.to - e.from) / length : Vec2(0));
+            directions.push_back(i < n ? (e.to - e.from) / length : Vec2(0));
         }
     }
     if (ends.samples.empty()) return;
     const SurfaceTrace on = map_to_surface(query, ends);
     for (std::size_t i = 0; i + 1 < on.samples.size(); ++i) {
         const SurfaceSample &a = on.samples[i], &b = on.samples[i + 1];
-        if (ways[i] == Vec2(0) || !a.on_surface || !b.on_surface) continue;
-        pieces_.push_back({a.position, b.position, ways[i].x * a.down - ways[i].y * a.right});
+        if (directions[i] == Vec2(0) || !a.on_surface || !b.on_surface) continue;
+        pieces_.push_back({a.position, b.position, directions[i].x * a.down - directions[i].y * a.right});
     }
     find_clusters();
 }

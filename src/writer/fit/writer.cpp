@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 
 #include "brush/preset/preset.h"
 #include "core/error.h"
@@ -14,14 +12,12 @@
 #include "core/system/parallel.h"
 #include "io/strokes/area_lines.h"
 
-namespace fs = std::filesystem;
-
 namespace tuft::writer {
 namespace {
 
 constexpr double kMargin = 80;                 // units of cells around a stroke
 constexpr float kUnder = 0.25f;                // weight of an error under another stroke
-constexpr std::uint64_t kVersion = 5;          // of what is stored in the cache
+constexpr std::uint64_t kVersion = 6;          // of the fit
 constexpr std::size_t kMostStations = 20'000;  // of a stroke
 
 double median_width(const stroke::LineWidths& widths, double unit) {
@@ -36,6 +32,12 @@ std::string sized(const std::string& brush, double factor) {
 
 std::uint64_t hash_of(const std::vector<Station>& s, std::uint64_t seed) {
     return hash_span(std::span<const Station>(s), seed);
+}
+
+CacheKey cache_key(std::uint64_t key) {
+    CacheKey out("fitted stroke 1");
+    out.add(key);
+    return out;
 }
 
 Vec2 slanted(const Vec2& p, double slant) {
@@ -156,6 +158,7 @@ std::vector<std::vector<WrittenStroke>> Writer::write(const std::vector<Glyph>& 
         }
     }
     n_fitted_ += fitted;
+    if (fitted > 0) options_.cache.trim();
     std::vector<std::vector<WrittenStroke>> out;
     std::size_t next = 0;
     for (const Glyph& glyph : glyphs) {
@@ -222,45 +225,27 @@ std::vector<WrittenStroke> Writer::filled(const Glyph& glyph) const {
     return out;
 }
 
-fs::path fit_cache_folder() {
-    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return fs::path(cache) / "tuft" / "writer";
-    if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache" / "tuft" / "writer";
-    return {};
-}
-
 std::optional<std::vector<Station>> Writer::cached(std::uint64_t key) const {
-    if (options_.cache.empty()) return std::nullopt;
-    const fs::path path = options_.cache / fmt::format("{:016x}.fit", key);
-    std::error_code none;
-    if (!fs::exists(path, none)) return std::nullopt;
-    try {
-        const std::vector<char> bytes = read_file(path, kMostStations * 3 * sizeof(double));
-        std::vector<double> values(bytes.size() / sizeof(double));
-        if (bytes.size() % (3 * sizeof(double)) != 0 || values.size() < 6) return std::nullopt;
-        std::memcpy(values.data(), bytes.data(), bytes.size());
-        std::vector<Station> stations;
+    std::vector<Station> stations;
+    const auto take = [&](CacheReader& entry) {
+        const std::vector<double> values = entry.get<double>();
+        if (values.size() % 3 != 0 || values.size() < 6 || values.size() > 3 * kMostStations) CacheReader::fail();
         for (std::size_t i = 0; i < values.size(); i += 3) {
             const Station s{{values[i], values[i + 1]}, values[i + 2]};
             if (!(std::abs(s.centre.x) < kFarthestUnit && std::abs(s.centre.y) < kFarthestUnit && s.half >= 0 &&
                   s.half < kSide))
-                return std::nullopt;
+                CacheReader::fail();
             stations.push_back(s);
         }
-        return stations;
-    } catch (const Error&) {
-        return std::nullopt;  // it is fitted again
-    }
+    };
+    if (!options_.cache.read(cache_key(key), take)) return std::nullopt;
+    return stations;
 }
 
 void Writer::store(std::uint64_t key, const std::vector<Station>& stations) const {
-    if (options_.cache.empty()) return;
     std::vector<double> values;
     for (const Station& s : stations) values.insert(values.end(), {s.centre.x, s.centre.y, s.half});
-    try {
-        fs::create_directories(options_.cache);
-        write_file(options_.cache / fmt::format("{:016x}.fit", key), values.data(), values.size() * sizeof(double));
-    } catch (const std::exception&) {  // a cache that cannot be written costs time only
-    }
+    options_.cache.write(cache_key(key), [&](CacheWriter& entry) { entry.put(values); });
 }
 
 }  // namespace tuft::writer

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/system/disk_cache.h"
 #include "core/system/progress.h"
 #include "writer/fit/ink_fit.h"
 #include "writer/gesture/side_table.h"
@@ -18,10 +18,10 @@ namespace tuft::writer {
 
 struct WriterOptions {
     Style style;
-    std::string brush;            ///< preset; empty: the style's, in the size that suits the character
-    double side = 0.05;           ///< metres, of a character's square
-    bool fit = false;             ///< to the source's outlines where it states them; else to predicted sides
-    std::filesystem::path cache;  ///< folder of fitted strokes; empty: none
+    std::string brush;   ///< preset; empty: the style's, in the size that suits the character
+    double side = 0.05;  ///< metres, of a character's square
+    bool fit = false;    ///< to the source's outlines where it states them; else to predicted sides
+    DiskCache cache;     ///< of fitted strokes
 };
 
 /// A stroke of the hand.
@@ -65,10 +65,6 @@ class Writer {
     std::map<std::uint64_t, std::vector<Station>> known_;
     std::size_t n_fitted_ = 0;
 };
-
-/// Returns the folder where fitted strokes are stored: `tuft/writer` in $XDG_CACHE_HOME or ~/.cache; empty: neither is
-/// known.
-std::filesystem::path fit_cache_folder();
 
 /// Joins the stations of consecutive strokes over gaps up to `style.link` by thin curves, and rounds corners.
 std::vector<std::vector<Station>> linked(std::vector<std::vector<Station>> strokes, const Style& style);

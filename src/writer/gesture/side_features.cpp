@@ -85,7 +85,7 @@ std::vector<double> stroke_features(const StrokeLine& line, const Glyph& glyph, 
     }
     f.push_back(std::pow(head / kFarNeighbour, 2));
     f.push_back(std::pow(tail / kFarNeighbour, 2));
-    // The way on beyond the ends: what a stroke runs into.
+    // The path on beyond the ends: what a stroke runs into.
     for (const bool at_tail : {false, true}) {
         const Vec2 p = at_tail ? line.points.back() : line.points.front();
         const Vec2 d = at_tail ? line.direction(length, 16) : -line.direction(0, 16);

@@ -146,7 +146,7 @@ std::vector<Ring> area_of(const StrokeLine& line, const StrokeSides& sides) {
             left_before = left, right_before = right;
             if (s == 0 && k == 0) {
                 const Vec2 back = -line.direction(0, kTangent);
-                // Anticlockwise of the way back lies the right of the line.
+                // Anticlockwise of the direction back lies the right of the line.
                 for (std::size_t f = 0; f < kFan; ++f)
                     head.push_back(p + sides.head[f] * turned(back, kFanDegrees[f] * kDegree));
                 head.push_back(left);

@@ -8,20 +8,20 @@
 #include "paths.h"
 
 /// \file
-/// Models that the tests of `haptic` feel.
+/// Models that the tests of `haptic` touch.
 namespace tuft::haptic {
 
-struct Felt {
+struct TrialModel {
     std::unique_ptr<mesh::TriangleMesh> mesh;
     std::unique_ptr<mesh::SurfaceQuery> surface;
     TrialPlace place;
 };
 
 /// A place of a shipped model: "sheet", "bowl", "rim", "roof", "edge" of the car, "plate".
-inline Felt felt(const std::string& name) {
+inline TrialModel load_trial_model(const std::string& name) {
     const bool edge = name == "rim" || name == "edge" || name == "plate";
     const std::string file = name == "rim" ? "bowl" : name == "roof" || name == "edge" ? "car" : name;
-    Felt f;
+    TrialModel f;
     const std::string path = source_folder() + "/models/" + file + ".ply";
     mesh::RepairOptions options;
     options.metres_per_unit = io::metres_per_unit_of(path).value_or(1e-3);

@@ -12,8 +12,8 @@ namespace {
 const std::string kBrush = "wolf-small";
 
 // A stroke on its own place of the sheet, row by row.
-PaintStroke carried(int row, const std::string& ink = "carbon", const std::string& brush = kBrush,
-                    double depth = 4e-3) {
+PaintStroke persistent_stroke(int row, const std::string& ink = "carbon", const std::string& brush = kBrush,
+                              double depth = 4e-3) {
     PaintStroke s = line(brush, depth, make_frame({0, 0.004 * row - 0.012, 0}, {0, 0, 1}, {1, 0, 0}));
     s.ink = ink;
     s.settings.dip = DipMode::persistent;
@@ -40,7 +40,7 @@ TEST(PersistentBrush, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
     const double capacity = painting.materials().brush(kBrush).capacity * ink::kFilmPerVolume;
     double left = capacity;
     for (int row = 0; row < 3; ++row) {
-        const StrokeReport r = painting.paint(carried(row));
+        const StrokeReport r = painting.paint(persistent_stroke(row));
         // What was there is given or left.
         EXPECT_NEAR((r.ink_given + r.ink_left) / left, 1, 1e-9);
         EXPECT_LT(r.ink_left, left);
@@ -51,7 +51,7 @@ TEST(PersistentBrush, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
     EXPECT_NEAR(painting.brushes().find(kBrush)->reservoir.remaining() / capacity, 1, 1e-12);
     painting.paint(action(BrushActionKind::rinse));
     EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), 0);
-    const StrokeReport dry = painting.paint(carried(3));
+    const StrokeReport dry = painting.paint(persistent_stroke(3));
     EXPECT_TRUE(dry.touched());
     EXPECT_EQ(dry.ink_given, 0);
 }
@@ -59,7 +59,7 @@ TEST(PersistentBrush, InkRunsDownFromStrokeToStrokeAndADipFillsItUp) {
 TEST(PersistentBrush, HairKeepsItsSetUntilItIsCombed) {
     const Model model = sheet();
     Document painting(model);
-    painting.paint(carried(0, "carbon", kBrush, 0.6 * painting.materials().brush(kBrush).length));
+    painting.paint(persistent_stroke(0, "carbon", kBrush, 0.6 * painting.materials().brush(kBrush).length));
     const double set = set_of(*painting.brushes().find(kBrush));
     ASSERT_GT(set, 0);
     painting.paint(action(BrushActionKind::dip, "carbon"));
@@ -76,7 +76,7 @@ TEST(PersistentBrush, WetnessFollowsTheInkAlsoInAReplay) {
     Document painting(model);
     painting.paint(action(BrushActionKind::dip, "carbon"));
     EXPECT_EQ(wetness(painting), 1);
-    painting.paint(carried(0));
+    painting.paint(persistent_stroke(0));
     EXPECT_LE(wetness(painting), 1);
     painting.paint(action(BrushActionKind::rinse));
     EXPECT_EQ(wetness(painting), 0) << "rinsed and wiped";
@@ -90,11 +90,11 @@ TEST(PersistentBrush, WetnessFollowsTheInkAlsoInAReplay) {
 TEST(PersistentBrush, ACombedFullBrushIsAFreshOne) {
     const Model model = sheet();
     Document carry(model), each(model);
-    carry.paint(carried(0));
+    carry.paint(persistent_stroke(0));
     carry.paint(action(BrushActionKind::reshape));
     carry.paint(action(BrushActionKind::dip, "carbon"));
-    carry.paint(carried(1));
-    PaintStroke a = carried(0), b = carried(1);
+    carry.paint(persistent_stroke(1));
+    PaintStroke a = persistent_stroke(0), b = persistent_stroke(1);
     a.settings.dip = b.settings.dip = DipMode::each;
     each.paint(a);
     each.paint(b);
@@ -106,15 +106,15 @@ TEST(PersistentBrush, ACombedFullBrushIsAFreshOne) {
 TEST(PersistentBrush, AnotherInkIsDippedIntoUnlessLoadedBefore) {
     const Model model = sheet();
     Document painting(model);
-    painting.paint(carried(0, "carbon"));
-    painting.paint(carried(1, "cinnabar"));
+    painting.paint(persistent_stroke(0, "carbon"));
+    painting.paint(persistent_stroke(1, "cinnabar"));
     EXPECT_EQ(painting.brushes().find(kBrush)->dipped, "cinnabar");
     EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.pigment(0), 0) << "washed before";
     // Told: a dip on top of what is left, which the next stroke keeps whichever of the two it names.
     painting.paint(action(BrushActionKind::dip, "carbon"));
     const double mixed = painting.brushes().find(kBrush)->reservoir.pigment(0);
     EXPECT_GT(mixed, 0);
-    painting.paint(carried(2, "cinnabar"));
+    painting.paint(persistent_stroke(2, "cinnabar"));
     EXPECT_GT(painting.brushes().find(kBrush)->reservoir.pigment(0), 0);
     EXPECT_LT(painting.brushes().find(kBrush)->reservoir.pigment(0), mixed);
     EXPECT_GT(painting.brushes().find(kBrush)->reservoir.pigment(1), 0);
@@ -122,16 +122,16 @@ TEST(PersistentBrush, AnotherInkIsDippedIntoUnlessLoadedBefore) {
 
 // Strokes and actions of two brushes.
 std::vector<JournalEntry> session() {
-    return {carried(0),
-            carried(1),
-            carried(1, "cinnabar", "goat-small"),
+    return {persistent_stroke(0),
+            persistent_stroke(1),
+            persistent_stroke(1, "cinnabar", "goat-small"),
             action(BrushActionKind::reshape),
-            carried(2),
+            persistent_stroke(2),
             action(BrushActionKind::dip, "cinnabar"),
-            carried(3),
+            persistent_stroke(3),
             action(BrushActionKind::rinse, {}, "goat-small"),
             action(BrushActionKind::dip, "carbon", "goat-small"),
-            carried(4, "cinnabar", "goat-small")};
+            persistent_stroke(4, "cinnabar", "goat-small")};
 }
 
 TEST(PersistentBrush, ReplayIsTheSameToTheBitForAnyThreadCount) {
@@ -189,18 +189,18 @@ TEST(PersistentBrush, UndoBringsTheBrushBackToo) {
 TEST(PersistentBrush, AReopenedPaintingTakesAFreshBrushAndSaysSo) {
     const Model model = sheet();
     Document first(model);
-    first.paint(carried(0));
+    first.paint(persistent_stroke(0));
     EXPECT_EQ(first.journal().entries()[0].get<PaintStroke>().settings.dip, DipMode::each)
         << "nothing to carry on from";
-    first.paint(carried(1));
+    first.paint(persistent_stroke(1));
     EXPECT_EQ(first.journal().entries()[1].get<PaintStroke>().settings.dip, DipMode::persistent);
     Document second(model);
     second.adopt(first.journal().entries(), {{kFirstLayer, first.layers().canvas()}},
                  first.journal().entries().back().id);
     EXPECT_EQ(second.brushes().find(kBrush), nullptr);
-    second.paint(carried(2));
+    second.paint(persistent_stroke(2));
     EXPECT_EQ(second.journal().entries()[2].get<PaintStroke>().settings.dip, DipMode::each);
-    second.paint(carried(3));
+    second.paint(persistent_stroke(3));
     Document replayed(model);
     replayed.replay(second.journal().entries());
     EXPECT_EQ(replayed.layers().canvas().hash(), second.layers().canvas().hash());
@@ -209,11 +209,11 @@ TEST(PersistentBrush, AReopenedPaintingTakesAFreshBrushAndSaysSo) {
 TEST(PersistentBrush, ACancelledStrokeLeavesTheBrushAsItWas) {
     const Model model = sheet();
     Document painting(model);
-    painting.paint(carried(0));
+    painting.paint(persistent_stroke(0));
     const double ink = painting.brushes().find(kBrush)->reservoir.remaining(),
                  set = set_of(*painting.brushes().find(kBrush));
-    painting.begin(carried(1));
-    const auto poses = spatial_poses(carried(1).trace);
+    painting.begin(persistent_stroke(1));
+    const auto poses = spatial_poses(persistent_stroke(1).trace);
     painting.extend(std::span(poses).first(poses.size() / 2));
     painting.cancel();
     EXPECT_EQ(painting.brushes().find(kBrush)->reservoir.remaining(), ink);

@@ -1,0 +1,150 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "core/error.h"
+#include "core/hash.h"
+
+/// \file
+/// Results that can be computed again, stored between runs in the user's cache folder. `stroke` stores prepared models,
+/// `writer` fitted strokes.
+namespace tuft {
+
+/// Returns the folder `tuft/NAME` in $XDG_CACHE_HOME, or else in $HOME/.cache. Empty when neither variable is set.
+std::filesystem::path cache_folder(const std::string& name);
+
+/// Fingerprint of everything that a result depends on: 128 bits, two XXH3 chains with different seeds. Values are
+/// hashed as raw bytes, so a key holds only on machines of one byte order and one ABI.
+class CacheKey {
+  public:
+    /// `kind` names the result and the version of its layout, such as "model 1".
+    explicit CacheKey(std::string_view kind) { add_text(kind); }
+
+    template <class T>
+    void add(const T& value) {
+        static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
+        add_bytes(&value, sizeof(T));
+    }
+    /// Adds the number of elements first, so that neighbouring arrays cannot trade elements.
+    template <class T>
+    void add_array(std::span<const T> values) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        add(values.size());
+        add_bytes(values.data(), values.size_bytes());
+    }
+    void add_text(std::string_view text) { add_array(std::span<const char>(text)); }
+
+    std::uint64_t low() const { return low_; }
+    std::uint64_t high() const { return high_; }
+
+  private:
+    void add_bytes(const void* data, std::size_t size) {
+        low_ = hash_bytes(data, size, low_);
+        high_ = hash_bytes(data, size, high_);
+    }
+
+    std::uint64_t low_ = 0, high_ = 0x9e3779b97f4a7c15;
+};
+
+/// Writes the arrays of one entry, each with its size and its hash.
+class CacheWriter {
+  public:
+    explicit CacheWriter(std::ostream& out) : out_(out) {}
+
+    template <class T>
+    void put(std::span<const T> values) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        put_bytes(values.data(), values.size_bytes());
+    }
+    template <class T>
+    void put(const std::vector<T>& values) {
+        put(std::span<const T>(values));
+    }
+    void put_text(std::string_view text) { put(std::span<const char>(text)); }
+
+  private:
+    void put_bytes(const void* data, std::size_t size);
+
+    std::ostream& out_;
+};
+
+/// Reads the arrays of one entry in the order in which they were written. Every function throws `Error` for an array
+/// that is missing, too short, of another element size, or that has not its hash. Sizes are checked against the bytes
+/// left in the file before memory is allocated.
+class CacheReader {
+  public:
+    CacheReader(std::ifstream file, std::uintmax_t bytes) : file_(std::move(file)), left_(bytes) {}
+
+    template <class T>
+    std::vector<T> get() {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const std::uint64_t size = next_size();
+        if (size % sizeof(T) != 0) fail();
+        std::vector<T> values(size / sizeof(T));
+        get_bytes(values.data(), size);
+        return values;
+    }
+    /// Returns an array of exactly one value.
+    template <class T>
+    T get_one() {
+        const std::vector<T> values = get<T>();
+        if (values.size() != 1) fail();
+        return values.front();
+    }
+    std::string get_text();
+
+    /// Throws the `Error` for an entry that is not what it should be.
+    [[noreturn]] static void fail();
+
+  private:
+    std::uint64_t next_size();
+    void get_bytes(void* out, std::uint64_t size);
+
+    std::ifstream file_;
+    std::uintmax_t left_;  ///< bytes
+    std::uint64_t hash_ = 0;
+};
+
+/// A folder of entries, one file each, named by their keys. Several processes may use one folder at once: an entry is
+/// written beside its place and renamed. A failure to write costs time only, so it is not an error.
+class DiskCache {
+  public:
+    static constexpr std::uintmax_t kDefaultLimit = std::uintmax_t{2} << 30;
+
+    /// No cache: `read` finds nothing, `write` does nothing.
+    DiskCache() = default;
+    /// Entries of together at most `limit` bytes in `folder`, which `write` creates when it is absent. An empty folder
+    /// means no cache.
+    explicit DiskCache(std::filesystem::path folder, std::uintmax_t limit = kDefaultLimit)
+        : folder_(std::move(folder)), limit_(limit) {}
+
+    const std::filesystem::path& folder() const { return folder_; }
+
+    /// Calls `take` with the entry of the key. Returns false when there is no entry or when `take` throws `Error`; a
+    /// damaged entry is deleted. `take` must not change anything outside before it has read all it needs.
+    bool read(const CacheKey& key, const std::function<void(CacheReader&)>& take) const;
+
+    /// Stores an entry. Returns false when it could not be stored.
+    bool write(const CacheKey& key, const std::function<void(CacheWriter&)>& put) const;
+
+    /// Deletes the entries that were used longest ago until the folder is within its limit. To be called after `write`,
+    /// once for many.
+    void trim() const;
+
+  private:
+    std::filesystem::path path_of(const CacheKey& key) const;
+
+    std::filesystem::path folder_;
+    std::uintmax_t limit_ = kDefaultLimit;
+};
+
+}  // namespace tuft

@@ -1,0 +1,220 @@
+#include "stroke/surface/model_cache.h"
+
+#include <array>
+#include <cmath>
+
+#include "atlas/unwrap/fault.h"
+#include "core/geometry/bounds.h"
+#include "core/system/build_facts.h"
+#include "stroke/surface/preparation_code.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr std::size_t kMostNested = 8;  // messages inside a message
+
+void require(bool good) {
+    if (!good) CacheReader::fail();
+}
+
+// Counts of a report, in the order in which they are stored.
+std::vector<std::uint64_t> counts_of(const mesh::RepairReport& r) {
+    return {r.points_in_file,
+            r.polygons_in_file,
+            r.polygons_triangulated,
+            r.loose_triangles,
+            r.vertices_welded,
+            r.crack_vertices_welded,
+            r.unused_vertices_dropped,
+            r.degenerate_faces_dropped,
+            r.degenerate_faces_repaired,
+            r.duplicate_faces_dropped,
+            r.non_manifold_edges_split,
+            r.non_manifold_vertices_split,
+            r.faces_flipped,
+            r.parts_turned,
+            r.components,
+            r.holes,
+            r.border_edges,
+            r.closed};
+}
+
+mesh::RepairReport report_of(const std::vector<std::uint64_t>& n) {
+    require(n.size() == 18);
+    return {.points_in_file = n[0],
+            .polygons_in_file = n[1],
+            .polygons_triangulated = n[2],
+            .loose_triangles = n[3] != 0,
+            .vertices_welded = n[4],
+            .crack_vertices_welded = n[5],
+            .unused_vertices_dropped = n[6],
+            .degenerate_faces_dropped = n[7],
+            .degenerate_faces_repaired = n[8],
+            .duplicate_faces_dropped = n[9],
+            .non_manifold_edges_split = n[10],
+            .non_manifold_vertices_split = n[11],
+            .faces_flipped = n[12],
+            .parts_turned = n[13],
+            .components = n[14],
+            .holes = n[15],
+            .border_edges = n[16],
+            .closed = n[17] != 0,
+            .warnings = {}};
+}
+
+void put_message(CacheWriter& entry, const Message& message) {
+    entry.put_text(message.words());
+    entry.put(std::vector<std::uint64_t>{message.translated(), message.arguments().size()});
+    for (const Message& argument : message.arguments()) put_message(entry, argument);
+}
+
+Message get_message(CacheReader& entry, std::size_t depth = 0) {
+    require(depth < kMostNested);
+    std::string words = entry.get_text();
+    const std::vector<std::uint64_t> facts = entry.get<std::uint64_t>();
+    require(facts.size() == 2 && facts[1] <= 64);
+    std::vector<Message> arguments;
+    for (std::uint64_t i = 0; i < facts[1]; ++i) arguments.push_back(get_message(entry, depth + 1));
+    return {std::move(words), facts[0] != 0, std::move(arguments)};
+}
+
+void put_atlas(CacheWriter& entry, const atlas::Atlas& a, const atlas::AtlasReport& r) {
+    entry.put(std::vector<std::uint32_t>{a.size, a.pages, a.gutter, a.n_charts, a.from_file});
+    entry.put(a.udims);
+    entry.put(a.corner_uvs);
+    entry.put(a.triangle_chart);
+    entry.put(std::vector<double>{a.texel_size, r.l2_stretch, r.linf_stretch, r.angle_distortion, r.area_distortion,
+                                  r.utilisation, r.seam_length});
+    entry.put(std::vector<std::uint64_t>{r.charts, r.flips, r.overlapping_texels, r.zero_area_triangles,
+                                         static_cast<std::uint64_t>(r.smallest_gap)});
+}
+
+void get_atlas(CacheReader& entry, atlas::Atlas& a, atlas::AtlasReport& r) {
+    const auto sizes = entry.get<std::uint32_t>();
+    require(sizes.size() == 5);
+    a.size = sizes[0], a.pages = sizes[1], a.gutter = sizes[2], a.n_charts = sizes[3], a.from_file = sizes[4] != 0;
+    a.udims = entry.get<std::uint32_t>();
+    a.corner_uvs = entry.get<Vec2f>();
+    a.triangle_chart = entry.get<std::uint32_t>();
+    const auto measures = entry.get<double>();
+    const auto counts = entry.get<std::uint64_t>();
+    require(measures.size() == 7 && counts.size() == 5 && counts[4] <= 64);
+    a.texel_size = measures[0];
+    r.l2_stretch = measures[1], r.linf_stretch = measures[2];
+    r.angle_distortion = measures[3], r.area_distortion = measures[4];
+    r.utilisation = measures[5], r.seam_length = measures[6];
+    r.charts = counts[0], r.flips = counts[1], r.overlapping_texels = counts[2], r.zero_area_triangles = counts[3];
+    r.smallest_gap = static_cast<int>(counts[4]);
+}
+
+template <class V>
+bool all_finite(const std::vector<V>& values) {
+    for (const V& v : values)
+        for (int i = 0; i < V::length(); ++i)
+            if (!std::isfinite(v[i])) return false;
+    return true;
+}
+
+bool all_below(const std::vector<std::uint32_t>& values, std::size_t limit, bool or_none = false) {
+    for (const std::uint32_t v : values)
+        if (v >= limit && !(or_none && v == kNone)) return false;
+    return true;
+}
+
+void check(const mesh::TriangleMesh& m) {
+    const std::size_t n = m.n_triangles();
+    require(n > 0 && m.n_vertices() > 0 && m.corner_normals.size() == 3 * n && m.neighbours.size() == 3 * n);
+    require(m.corner_uvs.empty() || m.corner_uvs.size() == 3 * n);
+    require(m.vertex_colours.empty() || m.vertex_colours.size() == m.n_vertices());
+    require(m.triangle_groups.empty() || m.triangle_groups.size() == n);
+    require(m.triangle_parts.empty() || m.triangle_parts.size() == n);
+    require(all_below(m.neighbours, n, true));
+    for (const auto& triangle : m.triangles)
+        for (const std::uint32_t v : triangle) require(v < m.n_vertices());
+    for (const Vec3f& p : m.positions) require(within(Vec3(p)));
+    require(all_finite(m.corner_normals) && all_finite(m.corner_uvs));
+}
+
+void check(const atlas::Atlas& a, std::size_t n_triangles) {
+    require(a.size >= 1 && a.size <= 65536 && a.pages >= 1 && a.pages <= 100 && a.size % a.pages_per_side() == 0);
+    require(a.texel_size > 0 && std::isfinite(a.texel_size));
+    require(a.corner_uvs.size() == 3 * n_triangles && a.triangle_chart.size() == n_triangles);
+    require(all_below(a.triangle_chart, a.n_charts) && all_finite(a.corner_uvs));
+    for (const std::uint32_t udim : a.udims) require(udim >= 1001 && udim <= 2000);
+    require(atlas::fault_of(a).empty());
+}
+
+}  // namespace
+
+CacheKey model_key(const mesh::PolygonSoup& soup, const ModelOptions& options) {
+    CacheKey key("model 1");
+    key.add_text(kPreparationCode);
+    const BuildFacts& facts = build_facts();
+    key.add_text(facts.compiler);
+    key.add_text(facts.build_type);
+    for (const auto& [name, version] : facts.libraries) key.add_text(name), key.add_text(version);
+
+    key.add_array(std::span<const Vec3>(soup.points));
+    key.add_array(std::span<const std::uint32_t>(soup.corners));
+    key.add_array(std::span<const std::uint32_t>(soup.polygon_start));
+    key.add_array(std::span<const Vec2f>(soup.corner_uvs));
+    key.add_array(std::span<const std::array<std::uint8_t, 4>>(soup.point_colours));
+    key.add_array(std::span<const std::uint32_t>(soup.polygon_groups));
+    key.add_array(std::span<const std::uint32_t>(soup.polygon_parts));
+    key.add(soup.group_names.size());
+    for (const std::string& name : soup.group_names) key.add_text(name);
+    key.add(soup.materials.size());
+    key.add(soup.scene ? soup.scene->parts.size() : 0);
+    if (soup.scene)
+        for (const mesh::ScenePart& part : soup.scene->parts)
+            key.add_text(part.object), key.add_text(part.group), key.add_text(part.material);
+
+    const mesh::RepairOptions& repair = options.repair;
+    key.add(repair.metres_per_unit), key.add(repair.y_up), key.add(repair.crease_angle), key.add(repair.sides);
+    const atlas::UnwrapOptions& unwrap = options.unwrap;
+    key.add(unwrap.size), key.add(unwrap.texel_size), key.add(unwrap.pages), key.add(unwrap.gutter);
+    key.add(unwrap.uvs), key.add(unwrap.seams.groups), key.add(unwrap.seams.sharp_angle);
+    key.add(unwrap.max_size), key.add(unwrap.cutting);
+    return key;
+}
+
+void put_model(CacheWriter& entry, const Model& model, std::size_t n_reader_warnings) {
+    const mesh::TriangleMesh& m = *model.mesh;
+    entry.put(m.positions);
+    entry.put(m.triangles);
+    entry.put(m.corner_normals);
+    entry.put(m.neighbours);
+    entry.put(m.corner_uvs);
+    entry.put(m.vertex_colours);
+    entry.put(m.triangle_groups);
+    entry.put(m.triangle_parts);
+    entry.put(counts_of(model.repairs));
+    const std::vector<Message>& warnings = model.repairs.warnings;
+    entry.put(std::vector<std::uint64_t>{warnings.size() - n_reader_warnings});
+    for (std::size_t i = n_reader_warnings; i < warnings.size(); ++i) put_message(entry, warnings[i]);
+    put_atlas(entry, model.atlas, model.atlas_report);
+}
+
+StoredModel get_model(CacheReader& entry) {
+    StoredModel model;
+    mesh::TriangleMesh& m = model.mesh;
+    m.positions = entry.get<Vec3f>();
+    m.triangles = entry.get<std::array<std::uint32_t, 3>>();
+    m.corner_normals = entry.get<Vec3f>();
+    m.neighbours = entry.get<std::uint32_t>();
+    m.corner_uvs = entry.get<Vec2f>();
+    m.vertex_colours = entry.get<std::array<std::uint8_t, 4>>();
+    m.triangle_groups = entry.get<std::uint32_t>();
+    m.triangle_parts = entry.get<std::uint32_t>();
+    check(m);
+    for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
+    model.repairs = report_of(entry.get<std::uint64_t>());
+    const auto n_warnings = entry.get_one<std::uint64_t>();
+    require(n_warnings <= 1'000'000);
+    for (std::uint64_t i = 0; i < n_warnings; ++i) model.repairs.warnings.push_back(get_message(entry));
+    get_atlas(entry, model.atlas, model.atlas_report);
+    check(model.atlas, m.n_triangles());
+    return model;
+}
+
+}  // namespace tuft::stroke

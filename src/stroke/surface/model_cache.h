@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/system/disk_cache.h"
+#include "stroke/surface/model.h"
+
+/// \file
+/// Repaired meshes and their atlases, stored between runs. `prepare_model` reads and writes them; texel map and
+/// cluster graph are computed anew, because that is faster than reading their 29 bytes a texel from a disk.
+namespace tuft::stroke {
+
+/// Returns the key of a soup that is prepared with these options. It also covers the sources of the modules that
+/// prepare a model, their compiler and libraries, so that another build never reads what this one stored.
+CacheKey model_key(const mesh::PolygonSoup& soup, const ModelOptions& options);
+
+/// What a cache stores of a model. The rest of it comes from the soup: materials, scene and names.
+struct StoredModel {
+    mesh::TriangleMesh mesh;
+    mesh::RepairReport repairs;
+    atlas::Atlas atlas;
+    atlas::AtlasReport atlas_report;
+};
+
+/// Writes the arrays of a model. `n_reader_warnings` of its warnings come from the reader and are left out.
+void put_model(CacheWriter& entry, const Model& model, std::size_t n_reader_warnings);
+
+/// Reads what `put_model` wrote. Throws `Error` for an entry that is damaged: every count, every index and every number
+/// is checked, as in a project.
+StoredModel get_model(CacheReader& entry);
+
+}  // namespace tuft::stroke
