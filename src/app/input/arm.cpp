@@ -248,6 +248,11 @@ std::vector<float> Arm::recent_forces() const {
     return loop_ ? loop_->recent_forces() : std::vector<float>{};
 }
 
+bool Arm::at_limit() const {
+    constexpr double kNear = 5e-3;  // m
+    return glm::any(glm::greaterThan(glm::abs(status_.device - settings_.centre), 0.5 * limits().workspace - kNear));
+}
+
 std::array<Vec3, 8> Arm::reach() const {
     std::array<Vec3, 8> corners;
     const Vec3 half = 0.5 * limits().workspace;

@@ -90,6 +90,8 @@ class Arm {
     std::vector<float> recent_forces() const;
     /// Corners of the arm's reach, m, world: x fastest, then y, then z.
     std::array<Vec3, 8> reach() const;
+    /// Whether the arm is within 5 mm of the end of its reach.
+    bool at_limit() const;
 
     const haptic::DeviceLimits& limits() const { return device_->limits(); }
     const ArmSettings& settings() const { return settings_; }

@@ -316,6 +316,7 @@ void arm_marks(const Session& s, const render::GlCamera& camera) {
     const ArmState& a = s.arm;
     if (!a.arm || !a.arm->feels() || a.on_palette || a.arm->status().periods == 0) return;
     const std::array<Vec3, 8> corners = a.arm->reach();
+    const unsigned colour = a.arm->at_limit() ? kBad : IM_COL32(255, 176, 32, 110);
     ImDrawList* draw = ImGui::GetBackgroundDrawList();
     const ImVec2 from(static_cast<float>(s.view.area.x), static_cast<float>(s.view.area.y));
     draw->PushClipRect(
@@ -330,8 +331,8 @@ void arm_marks(const Session& s, const render::GlCamera& camera) {
             const Vec3 p = render::picture_point(camera, corners[i]),
                        q = render::picture_point(camera, corners[i | bit]);
             draw->AddLine(ImVec2(static_cast<float>(p.x) + from.x, static_cast<float>(p.y) + from.y),
-                          ImVec2(static_cast<float>(q.x) + from.x, static_cast<float>(q.y) + from.y),
-                          IM_COL32(255, 176, 32, 110), s.ui.px(1.2f));
+                          ImVec2(static_cast<float>(q.x) + from.x, static_cast<float>(q.y) + from.y), colour,
+                          s.ui.px(1.2f));
         }
     draw->PopClipRect();
 }
