@@ -29,10 +29,11 @@ struct Places {
     std::vector<const mesh::SurfaceQuery*> surface;
     std::vector<haptic::TrialPlace> place;
 
-    void add(ContactModel model, const std::string& name, bool edge) {
+    enum class Where { above, edge, groove };
+    void add(ContactModel model, const std::string& name, Where where) {
         surface.push_back(model.surface.get());
-        place.push_back(edge ? haptic::place_at_edge(*surface.back(), name)
-                             : haptic::place_above(*surface.back(), name));
+        place.push_back(where == Where::above ? haptic::place_above(*surface.back(), name)
+                                              : haptic::place_at_edge(*surface.back(), name, where == Where::groove));
         models.push_back(std::move(model));
     }
 };
@@ -40,16 +41,17 @@ struct Places {
 Places places_of(const DeviceWork& a) {
     Places places;
     if (!a.model.empty()) {
-        places.add(load_contact_model(a.model), "model", false);
-        places.add(load_contact_model(a.model), "edge", true);
+        places.add(load_contact_model(a.model), "model", Places::Where::above);
+        places.add(load_contact_model(a.model), "edge", Places::Where::edge);
         return places;
     }
-    places.add(load_contact_model("sheet"), "sheet", false);
-    places.add(load_contact_model("bowl"), "bowl", false);
-    places.add(load_contact_model("bowl"), "rim", true);
-    places.add(load_contact_model("car"), "roof", false);
-    places.add(load_contact_model("car"), "car's edge", true);
-    places.add(load_contact_model("plate"), "plate's edge", true);
+    places.add(load_contact_model("sheet"), "sheet", Places::Where::above);
+    places.add(load_contact_model("bowl"), "bowl", Places::Where::above);
+    places.add(load_contact_model("bowl"), "rim", Places::Where::edge);
+    places.add(load_contact_model("car"), "roof", Places::Where::above);
+    places.add(load_contact_model("car"), "car's edge", Places::Where::edge);
+    places.add(load_contact_model("car"), "shut line", Places::Where::groove);
+    places.add(load_contact_model("plate"), "plate's edge", Places::Where::edge);
     return places;
 }
 

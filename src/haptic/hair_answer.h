@@ -41,7 +41,7 @@ struct HairAnswer {
     bool converged = true;     ///< the solve ended within its limits
     std::size_t n_bounds = 0;  ///< of `bounds`
     std::array<RootBound, kMostBounds> bounds;
-    double seconds = 0;  ///< that the solve took
+    double seconds = 0;  ///< of processor time that the solve took
 };
 
 /// A pose that was solved, as the stroke takes it.

@@ -53,9 +53,10 @@ struct ServerOptions {
     double fault_after = 1;                 ///< s
 };
 
-/// Serves a simulated arm on 127.0.0.1, one client at a time, until `go_on` returns false; it is asked ten times a
-/// second. `ready` is called with the port. Without a command for 20 ms the arm's motors are off. Throws `Error` where
-/// the port is taken. `force`, if given, always holds the size of the arm's force, N.
+/// Serves a simulated arm on 127.0.0.1, whose time begins with the first client, one client at a time, until `go_on`
+/// returns false; it is asked ten times a second. `ready` is called with the port. Without a command for 20 ms the
+/// arm's motors are off. The calling thread has SCHED_FIFO 22 from then on where the system allows it, but for a flood.
+/// Throws `Error` where the port is taken. `force`, if given, always holds the size of the arm's force, N.
 void serve_simulated(SimulatedArm arm, const ServerOptions& options, const std::function<bool()>& go_on,
                      const std::function<void(int port)>& ready, std::atomic<double>* force = nullptr);
 

@@ -1,3 +1,5 @@
+#include <pthread.h>
+
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
@@ -21,13 +23,24 @@ using namespace std::chrono_literals;
 
 constexpr auto kLook = 100ms;
 
-/// The arm, moved on by the wall clock, with or without a client.
+/// What it simulates is a device of its own, which no program on this machine makes late.
+void take_priority() {
+    const sched_param param{.sched_priority = 22};  // above the client's
+    ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &param);
+}
+
+/// The arm, moved on by the wall clock from its first client on, with or without one.
 struct RunningArm {
     SimulatedArm arm;
-    Clock::time_point begin = Clock::now();
+    bool began = false;
+    Clock::time_point begin{};
 
     double now() const { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+    void start() {
+        if (!std::exchange(began, true)) begin = Clock::now();
+    }
     void advance() {
+        if (!began) return;
         constexpr double kCatchUp = 0.1;  // s
         const double behind = now() - arm.time();
         if (behind > kCatchUp)
@@ -143,6 +156,7 @@ void serve_simulated(SimulatedArm arm, const ServerOptions& options, const std::
     if (!error) acceptor.listen(1, error);
     if (error) throw Error(Message("port {} is taken: end what listens there, or choose another", options.port));
     if (ready) ready(acceptor.local_endpoint().port());
+    if (options.fault != ServerFault::floods) take_priority();
     RunningArm running{std::move(arm)};
     std::optional<tcp::socket> next;
     const std::function<void()> wait = [&] {
@@ -169,6 +183,7 @@ void serve_simulated(SimulatedArm arm, const ServerOptions& options, const std::
                 if (options.fault == ServerFault::dies) served = false;
             }
             if (next && !client) {
+                running.start();
                 client.emplace(io, std::move(*next), running, options);
                 next.reset();
                 client->accept();

@@ -13,11 +13,13 @@ constexpr double kFadeStiffness = 1000;   // N/m
 constexpr double kFadeFree = 0.01;        // N that g may jump in a period
 constexpr double kFadeRate = 0.06;        // N by which the offset falls in a period
 constexpr double kRestoreTime = 0.15;     // s
-constexpr double kTankFull = 30e-6;       // e_0, J
+constexpr double kTankFull = 30e-6;       // e_0, J, lent at the beginning of a contact
 constexpr double kTankStiffness = 1.25;   // of K: what a full spring gives is never held back
 constexpr double kMostDelayed = 12;       // periods
-constexpr double kEmpty = 2e-6;           // J
-constexpr double kMostLent = 1e-4;        // J that friction pays in a contact
+constexpr double kLeast = 0.5e-6;         // J to which an empty tank is filled, so that it does not lock at no force
+constexpr double kMostLent = 0.8e-6;      // J of it in a contact
+constexpr double kFlicker = 1.8;          // counts that a position at rest flickers by, on two axes at once
+constexpr double kCountError = 0.5;       // counts between a measured and a true position
 constexpr double kMostAcceleration = 60;  // m/s², of a hand
 constexpr double kFree = 1e-3;            // N below which a force is none
 
@@ -79,26 +81,44 @@ const Vec3& sent(const LawState& s, std::size_t i) {
     return s.sent[(s.n_sent + s.sent.size() - i) % s.sent.size()];
 }
 
-/// Step 6 before the force of this period: what the last one has given.
+/// The force that acted since x′ moved, N: of those with each of two delays, which are not known to a period, the one
+/// that took more energy from the tank.
+struct Acted {
+    Vec3 mean{0};
+    double taken = 0;  // J
+};
+
+Acted acted_over(const LawState& s, const Vec3& moved) {
+    const double n = static_cast<double>(std::max<std::size_t>(1, s.n_acted));
+    Acted acted{s.acted[0] / n};
+    acted.taken = glm::dot(acted.mean, moved);
+    if (s.delayed == 0) return acted;
+    const Vec3 later = s.acted[1] / n;
+    if (glm::dot(later, moved) > acted.taken) acted = {later, glm::dot(later, moved)};
+    return acted;
+}
+
+/// Step 6 before the force of this period: what the last ones have given.
 void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
     const double count = options.limits.count * options.scale;
-    const Vec3 off = in.arm - s.played;
-    const double size = glm::length(off);
-    if (size > count) {
-        const Vec3 moved = off * (1 - count / size);
-        s.played += moved;
-        // With a delay that is not known to a period, the worse of two.
-        double taken = glm::dot(sent(s, s.delayed + 1), moved);
-        if (s.delayed > 0) taken = std::max(taken, glm::dot(sent(s, s.delayed + 2), moved));
-        s.tank -= taken;
-        // Friction of the arm charges the tank where it is empty: it would lock at no force.
-        const double charged = std::min(0.5 * options.limits.friction * glm::length(moved), kMostLent - s.lent);
-        if (s.tank < kEmpty && charged > 0) {
-            s.tank += charged;
-            s.lent += charged;
-        }
+    s.acted[0] += sent(s, s.delayed + 1);
+    s.acted[1] += sent(s, s.delayed + 2);
+    ++s.n_acted;
+    if (const Vec3 moved = in.arm - s.played; glm::length(moved) > kFlicker * count) {
+        const Acted acted = acted_over(s, moved);
+        // The true position is within half a count: by Abel's sum its work differs by that times the change of force.
+        s.tank -= acted.taken + kCountError * count * glm::distance(acted.mean, s.counted_force);
+        s.counted_force = acted.mean;
+        s.played = in.arm;
+        s.acted = {};
+        s.n_acted = 0;
     }
     s.tank -= glm::dot(s.moment, turn_between(s.rotation, in.rotation));
+    s.repaid = std::clamp(s.tank - kTankFull, s.repaid, kTankFull);
+    if (const double lends = std::min(kLeast - (s.tank - s.repaid), kMostLent - s.lent); lends > 0) {
+        s.tank += lends;
+        s.lent += lends;
+    }
 }
 
 /// k, N/m.
@@ -108,7 +128,7 @@ double tank_stiffness(const LawOptions& options) {
 
 /// Step 6: the greatest force along `u` that the tank lets out.
 double most_force(const LawOptions& options, const LawState& s, const Vec3& moved, const Vec3& u) {
-    const double tank = std::max(0.0, s.tank);
+    const double tank = std::max(0.0, s.tank - s.repaid);
     const double k = tank_stiffness(options);
     const double count = options.limits.count * options.scale;
     double pending = 0;  // what forces on their way will take, if the hand goes on
@@ -175,11 +195,12 @@ LawOutput step_law(const LawOptions& options, LawState& s, const LawInput& in) {
     s.free = !touching && glm::length(s.offset) < kFree;
     if (s.free) {
         s.tank = kTankFull + s.coupled;
-        s.lent = 0;
+        s.lent = s.repaid = 0;
         s.restored *= 1 - T / kRestoreTime;
     }
     const double stored = in.hair ? gain * in.hair->stored : 0;
-    s.tank = std::min(s.tank, kTankFull + stored + s.coupled);  // what the hair lost is not kept for later
+    // What the hair lost is not kept for later; hair that has taken a set may have less than none.
+    s.tank = std::min(s.tank, s.repaid + kTankFull + std::max(0.0, stored) + s.coupled);
     LawOutput out{.root = root, .hard = held.hard};
     const double size = glm::length(f);
     if (size > 0) {

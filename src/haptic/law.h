@@ -25,14 +25,17 @@
 ///    (a proxy [Ruspini1997]); along them acts Coulomb friction. The arm never shows more than K.
 /// 4. Restore, optional: s += (T / 0.15 s) (x − y) takes the softness of the coupling away in the long run.
 /// 5. Clamp to the device and to 7.9 N. A moment is scaled with its force.
-/// 6. Tank (a passivity observer and controller [Hannaford2002]): e −= f₋ · Δx′, e −= G τ · Δθ; x′ follows x with a
-///    play of one count, f₋ is the force that acted, sent as long ago as the delay says (of two periods the worse);
-///    e <= e_0 + G stored + ½ K |y − x − s|² + ½ m v², and equal to that without G stored when free; an empty tank is
-///    lent ½ f_c |Δx′| by the arm's friction, 0.1 mJ a contact.
+/// 6. Tank (a passivity observer and controller [Hannaford2002]): e −= f₋ · Δx′ + ½ count |Δf₋|, e −= G τ · Δθ. x′ is
+///    the position measured, but stays while that flickers within 1.8 counts. f₋ is the mean of the forces that acted
+///    meanwhile, sent as long ago as the delay says (of two periods the worse). The true position is within half a
+///    count of the measured one, so that by Abel's summation the second term bounds what the count hides.
+///    e <= r + e_0 + G stored + ½ K |y − x − s|² + ½ m v², and equal to that without r and G stored when free. e_0 is
+///    lent: r of it, as much as has come in since, stays in the tank. An empty tank is filled to 0.5 µJ, with 0.8 µJ at
+///    most in a contact, from which a hand that presses fills it by itself.
 ///
 ///        |f| <= e′ / a where e′ < k a², else √(2 k e′ − k² a²);   a = Δx · f̂ + 60 m/s² T² + count,
 ///
-///    e_0 = 30 µJ, k = min(k_max, 1.25 K); e′ is e less what forces on their way will take. A force that ends with
+///    e_0 = 30 µJ, k = min(k_max, 1.25 K); e′ is e − r less what forces on their way will take. A force that ends with
 ///    its energy so falls by k a a period at most. Where a < 0 the tank only fills: |f| <= √(2 k e′) − k a.
 ///
 /// It holds while the hand accelerates by less than 60 m/s².
@@ -60,13 +63,17 @@ struct LawState {
     Vec3 hair_force{0};           ///< g before the fade, N
     Vec3 offset{0};               ///< o, N
     Vec3 played{0};               ///< x′, m
+    std::array<Vec3, 2> acted{};  ///< N, sums since x′ moved, of the force with the delay and one period more
+    std::size_t n_acted = 0;      ///< forces in each
+    Vec3 counted_force{0};        ///< N, mean that was counted when x′ moved last
     Vec3 force{0};                ///< f, N
     Vec3 moment{0};               ///< of hair and handle about the root, N·m, scaled as the force is
     std::array<Vec3, 16> sent{};  ///< f of the last periods, N: a ring
     std::size_t n_sent = 0;
     std::size_t delayed = 0;  ///< periods until a force acts
     double tank = 0;          ///< e, J
-    double lent = 0;          ///< J, by the arm's friction in this contact
+    double lent = 0;          ///< J, to an empty tank in this contact
+    double repaid = 0;        ///< J of e_0 that came in since and stays
     double coupled = 0;       ///< J, in the spring of the coupling and the moving root
     bool free = true;         ///< neither hair nor ferrule touches
 };

@@ -147,9 +147,10 @@ void Loop::State::run_servo() {
         tick = std::max<std::uint64_t>(tick + 1, static_cast<std::uint64_t>((now_ns() - begin) / kPeriodNs));
         DeviceState state;
         const bool fresh = device.read(state);
+        const bool release = released.exchange(false);  // before the control that no longer asks for the emergency
         control.read(wanted);
         if (law.read(fresh_law)) servo.set_options(fresh_law);
-        if (released.exchange(false)) servo.release();
+        if (release) servo.release();
         const RootPose asked = servo.begin(tick, fresh ? &state : nullptr, wanted);
         if (servo.engaged()) {
             pose.write(asked);
@@ -167,8 +168,10 @@ void Loop::State::run_servo() {
         now.force = out.force;
         now.root = out.root;
         now.rotation = asked.rotation;
+        now.arm = out.arm;
+        now.device = out.device;
         if (fresh) {
-            now.device = state.position;
+            now.grip = state.rotation;
             now.buttons = state.buttons;
         }
         ++now.periods;
@@ -180,13 +183,16 @@ void Loop::State::run_servo() {
         const std::uint64_t n = n_recent.load(std::memory_order_relaxed);
         recent[n % kRecent].store(static_cast<float>(glm::length(out.force)), std::memory_order_relaxed);
         n_recent.store(n + 1, std::memory_order_release);
-        if (options.record)
+        if (options.record) {
+            ServoControl done = wanted;
+            done.clutched = servo.clutched();
             periods.push({.tick = tick,
                           .fresh = fresh,
                           .state = state,
-                          .control = wanted,
+                          .control = done,
                           .answer = any ? newest.pose.tick : 0,
                           .force = out.force});
+        }
         due = std::max(due + kPeriodNs, begin + (now_ns() - begin) / kPeriodNs * kPeriodNs);
     }
     device.send({});

@@ -49,7 +49,9 @@ struct LoopStatus {
     Vec3 force{0};              ///< N, on the hand, world
     Vec3 root{0};               ///< m, of the tuft, world
     Quat rotation{1, 0, 0, 0};  ///< of the holder, world
-    Vec3 device{0};             ///< m, arm's frame
+    Vec3 arm{0};                ///< x, m, world
+    Vec3 device{0};             ///< m, arm's frame: the same place
+    Quat grip{1, 0, 0, 0};      ///< arm's frame
     std::uint32_t buttons = 0;  ///< of the grip, one bit each
     std::uint64_t periods = 0, solves = 0;
     std::uint64_t late_solves = 0;  ///< answers that came after 0.6 ms
@@ -74,7 +76,7 @@ class Loop {
 
     // One thread, the owner's:
     void set_control(const ServoControl& control);
-    /// Ends an emergency.
+    /// Ends an emergency; first set a control that asks for none.
     void release();
     void set_law(const LawOptions& law);
     /// What the stroke has made of the hair, see `HairSolver::set_ink`.

@@ -2,33 +2,42 @@
 
 namespace tuft::haptic {
 
-// The brush stays where it is while the clutch is held, and when the workspace turns; so the force has no step.
-void Servo::place_arm(const ServoControl& control) {
-    if (control.clutched) {
+// The brush stays where it is while the clutch is pressed, and when a workspace turns that does not carry it; so the
+// force has no step.
+void Servo::place_arm(const ServoControl& control, bool clutched) {
+    if (clutched) {
         clutched_ = true;
         return;
     }
     const Workspace& w = control.workspace;
-    const bool turned = w.rotation != workspace_.rotation || w.scale != workspace_.scale;
-    const bool moved = w.offset != workspace_.offset && verdict_.engaged;
-    if (placed_ && (clutched_ || turned || moved)) shift_ = arm_ - w.to_world(device_);
-    workspace_ = w;
-    arm_ = w.to_world(device_) + shift_;
+    const bool scaled = w.scale != workspace_.scale;
+    if (control.carried && !scaled && !clutched_) {
+        workspace_ = placed_ && verdict_.engaged ? workspace_.approached(w) : w;
+    } else {
+        const bool turned = w.rotation != workspace_.rotation || scaled;
+        const bool moved = w.offset != workspace_.offset && verdict_.engaged;
+        if (placed_ && (clutched_ || turned || moved))
+            shift_ = glm::conjugate(w.rotation) * (arm_ - w.to_world(device_));
+        workspace_ = w;
+    }
+    arm_ = workspace_.to_world(device_) + workspace_.rotation * shift_;
+    rotation_ = glm::normalize(workspace_.rotation * grip_ * glm::conjugate(workspace_.grip));
     clutched_ = false;
     placed_ = known_;
 }
 
 RootPose Servo::begin(std::uint64_t tick, const DeviceState* fresh, const ServoControl& control) {
     tick_ = tick;
-    verdict_ = safety_.check(tick, fresh, control.paused || control.clutched, control.emergency);
+    if (fresh) buttons_ = fresh->buttons;
+    const bool clutched = control.clutched || (buttons_ & control.clutch_buttons) != 0;
+    verdict_ = safety_.check(tick, fresh, control.paused || clutched, control.emergency);
     const bool usable = fresh && (verdict_.engaged || verdict_.fault == Fault::paused || !known_);
     if (usable && glm::length(fresh->position) < 1e3) {  // NaN is not less
         device_ = fresh->position;
-        buttons_ = fresh->buttons;
-        if (!control.clutched) rotation_ = glm::normalize(control.workspace.rotation * fresh->rotation);
+        grip_ = fresh->rotation;
         known_ = true;
     }
-    place_arm(control);
+    place_arm(control, clutched);
     if (verdict_.restart) {
         restart_law(law_, arm_, rotation_);
         restarted_ = tick;
@@ -37,7 +46,12 @@ RootPose Servo::begin(std::uint64_t tick, const DeviceState* fresh, const ServoC
 }
 
 ServoOutput Servo::finish(const HairAnswer* newest) {
-    ServoOutput out{.root = law_.root, .fault = verdict_.fault, .pass = verdict_.pass, .engaged = verdict_.engaged};
+    ServoOutput out{.root = law_.root,
+                    .arm = arm_,
+                    .device = device_,
+                    .fault = verdict_.fault,
+                    .pass = verdict_.pass,
+                    .engaged = verdict_.engaged};
     if (!verdict_.engaged) return out;
     if (newest && (newest->pose.tick < restarted_ || newest->pose.tick > tick_)) newest = nullptr;
     out.age = newest ? tick_ - newest->pose.tick : 0;

@@ -17,7 +17,10 @@ struct ServoControl {
     bool paused = false;     ///< also: the window lost its focus
     bool emergency = false;  ///< latched until `Servo::release`
     bool clutched = false;   ///< the arm moves without the brush
-    /// Its offset counts only while no force is on; after a turn or a change of scale the brush stays where it is.
+    /// The brush goes with a workspace that turns or moves, as it does with the view; else it stays where it is.
+    bool carried = false;
+    std::uint32_t clutch_buttons = 0;  ///< of the grip: while one of them is pressed, as `clutched`
+    /// Its offset counts only while no force is on; after a change of scale the brush stays where it is.
     Workspace workspace;
 };
 
@@ -25,6 +28,8 @@ struct ServoOutput {
     DeviceCommand command;  ///< in the arm's frame
     Vec3 force{0};          ///< N, on the hand, world
     Vec3 root{0};           ///< y, m, of the next pose
+    Vec3 arm{0};            ///< x, m, world
+    Vec3 device{0};         ///< m, arm's frame: the same place
     Fault fault = Fault::none;
     double pass = 0;                                      ///< 0–1, share of the force that safety lets out
     bool engaged = false, hard = false, limited = false;  ///< see `Verdict`, `LawOutput`
@@ -39,6 +44,8 @@ class Servo {
     /// Takes the arm's state, null when none came, and returns the pose to solve. Not engaged: nothing to solve.
     RootPose begin(std::uint64_t tick, const DeviceState* fresh, const ServoControl& control);
     bool engaged() const { return verdict_.engaged; }
+    /// Whether the arm moved without the brush in this period.
+    bool clutched() const { return clutched_; }
     /// Ends the period with the newest answer, or null.
     ServoOutput finish(const HairAnswer* newest);
 
@@ -48,7 +55,7 @@ class Servo {
     const LawState& law() const { return law_; }
 
   private:
-    void place_arm(const ServoControl& control);
+    void place_arm(const ServoControl& control, bool clutched);
 
     LawOptions options_;
     LawState law_;
@@ -56,8 +63,8 @@ class Servo {
     Verdict verdict_;
     Workspace workspace_;
     Vec3 device_{0}, arm_{0};  // m: the arm in its frame and in the world
-    Vec3 shift_{0};            // m, world, by clutch and turns of the workspace
-    Quat rotation_{1, 0, 0, 0};
+    Vec3 shift_{0};            // m, in the workspace's axes, by clutch and turns of the workspace
+    Quat rotation_{1, 0, 0, 0}, grip_{1, 0, 0, 0};
     std::uint32_t buttons_ = 0;
     std::uint64_t tick_ = 0, restarted_ = 0;
     bool known_ = false, placed_ = false, clutched_ = false;

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/random.h"
+
 namespace tuft::haptic {
 namespace {
 
@@ -90,6 +92,34 @@ TEST(Law, AForceThatWorksOnItsOwnRunsOutOfEnergy) {
         // e_0, what friction lends, and the play of a count at full force.
         EXPECT_LT(given, 30e-6 + 100e-6 + limits.max_force * limits.count) << limits.name;
     }
+}
+
+// Whatever the hair does, and however coarse the counts are: the work of the force over the true path stays above what
+// the tank lends. The path is a hand's, of less than 60 m/s².
+TEST(Law, NoHairTakesMoreThanTheTankLends) {
+    constexpr double kLent = 31e-6;  // J, e_0 and what fills an empty tank
+    for (const DeviceLimits& limits : device_presets())
+        for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+            Random random(seed);
+            const LawOptions options{.limits = limits, .gain = 15};
+            const double rate = random.uniform(2, 30), size = std::min(0.02, 40 / (rate * rate * 3));
+            LawState state;
+            HairAnswer hair{.touching = true};
+            double energy = 0, least = 0, base = 0;
+            Vec3 force{0}, before{0};
+            for (int i = 0; i < 4000; ++i) {
+                const double t = 1e-3 * i;
+                const Vec3 x{0, size * std::sin(0.6 * rate * t), size * std::sin(rate * t)};
+                if (i > 0) energy -= glm::dot(force, x - before);
+                least = std::min(least, energy - base);
+                if (random.uniform() < 0.1) hair.force = random.uniform(0, 1) * Vec3{random.uniform(-1, 1), 0, 1};
+                hair.stored = random.uniform(0, 0.01);
+                const Vec3 measured = limits.count * glm::round(x / limits.count);
+                force = step_law(options, state, {.arm = measured, .hair = &hair}).force;
+                before = x;
+            }
+            EXPECT_GE(least, -kLent) << limits.name << " " << seed;
+        }
 }
 
 TEST(Law, TheRootKeepsToTheFreeSideOfItsBounds) {

@@ -103,6 +103,47 @@ TEST(Clutch, TheBrushWaitsWhileTheArmMovesAndGoesOnFromThere) {
     EXPECT_NEAR(root.x, 0.10, 2e-3);
 }
 
+TEST(Clutch, TheGripsButtonDoesTheSame) {
+    Servo servo({.limits = device_preset("inverse3")});
+    Vec3 root{0};
+    for (std::uint64_t tick = 1; tick <= 2000; ++tick) {
+        DeviceState state = at(tick <= 700 ? 0 : 0.05);
+        state.position.x = 0.05 * std::clamp((static_cast<double>(tick) - 700) / 500, 0.0, 1.0);
+        state.buttons = tick > 690 && tick < 1300 ? 2 : 0;
+        servo.begin(tick, &state, {.clutch_buttons = 2});
+        root = servo.finish(nullptr).root;
+        EXPECT_EQ(servo.clutched(), state.buttons == 2) << tick;
+    }
+    EXPECT_NEAR(root.x, 0, 1e-3);
+}
+
+// The view turns 60 times a second: the brush goes with it, by steps that a coupling can follow.
+TEST(Workspace, CarriesTheBrushSteadily) {
+    Servo servo({.limits = device_preset("inverse3")});
+    ServoControl control{.carried = true};
+    Vec3 before{0}, arm{0};
+    for (std::uint64_t tick = 1; tick <= 3000; ++tick) {
+        const DeviceState state = at(0.05);
+        if (tick >= 1000 && tick % 16 == 0 && tick < 2000) {
+            const double turn = 1e-3 * (static_cast<double>(tick) - 1000);  // 1 rad/s
+            control.workspace.rotation = glm::angleAxis(turn, Vec3{0, 0, 1});
+            control.workspace.offset = {0, 0, 1e-5 * (static_cast<double>(tick) - 1000)};
+        }
+        servo.begin(tick, &state, control);
+        arm = servo.finish(nullptr).arm;
+        // 0.5 mm of the offset and 4 mrad at 50 mm.
+        if (tick > 1) EXPECT_LE(glm::distance(arm, before), 5e-4 + 4e-3 * 0.05 + 1e-9) << tick;
+        before = arm;
+    }
+    EXPECT_LT(glm::distance(arm, control.workspace.to_world(at(0.05).position)), 1e-9);
+    // Not carried, it stays.
+    control.carried = false;
+    control.workspace.rotation = Quat{1, 0, 0, 0};
+    const DeviceState state = at(0.05);
+    servo.begin(3001, &state, control);
+    EXPECT_LT(glm::distance(servo.finish(nullptr).arm, arm), 1e-9);
+}
+
 TEST(Workspace, GripsAnewWithoutAStep) {
     const Workspace w{.offset = {1, 2, 3}, .rotation = glm::angleAxis(0.7, Vec3{0, 0, 1}), .scale = 2};
     const Vec3 device{0.1, 0.02, -0.03}, world{4, 5, 6};

@@ -60,10 +60,40 @@ TEST(Trial, PortAndWristGiveBackNothingWithThreeMillisecondsAndALowerCoupling) {
     expect_passive("sheet", "wolf-medium", 3e-3);
 }
 
-// Stiff flats and edges under taps are out of reach yet: README.md of the module has the figures.
 TEST(Trial, RoundBrushesGiveBackNothing) {
     for (const char* brush : {"goat-small", "mixed-medium", "liner-3"})
         for (const char* place : {"sheet", "bowl"}) expect_passive(place, brush, 0);
+}
+
+/// Energy alone, with delays of none and of a millisecond.
+void expect_no_energy(const TrialModel& f, const std::string& brush, std::initializer_list<HandMotion> motions) {
+    const brush::Tuft tuft = tuft_of(brush);
+    for (const DeviceLimits& limits : device_presets())
+        for (const HandMotion motion : motions)
+            for (const double delay : {0.0, 1e-3}) {
+                const TrialReport r =
+                    run_trial(tuft, *f.surface, hand_path(motion, f.place, tuft.preset), options_for(limits, delay));
+                EXPECT_GE(r.least_energy, -kMicrojoule)
+                    << f.place.name << " " << brush << " " << limits.name << " " << name_of(motion) << " " << delay;
+            }
+}
+
+// Five spines of hog hair on a ferrule 13 mm wide: the arm stands at its greatest force when the hand turns round.
+TEST(Trial, AStiffFlatBrushGivesBackNothing) {
+    expect_no_energy(load_trial_model("sheet"), "bright-12", {HandMotion::taps, HandMotion::press_fast});
+}
+
+// Beside a shut line the planes of nodes change from one period to the next, and the hair's force works by itself.
+TEST(Trial, EdgesGiveBackNothing) {
+    for (const char* place : {"edge", "rim", "plate"})
+        expect_no_energy(load_trial_model(place), "wolf-medium", {HandMotion::taps, HandMotion::slide});
+}
+
+TEST(Trial, HairTrappedInAShutLineGivesBackNothing) {
+    TrialModel f = load_trial_model("edge");
+    f.place = place_at_edge(*f.surface, "shut line", true);
+    expect_no_energy(f, "wolf-small", {HandMotion::press, HandMotion::drag, HandMotion::taps, HandMotion::rocking});
+    expect_no_energy(f, "liner-3", {HandMotion::drag, HandMotion::rocking});
 }
 
 // Restore leaks like any lag; the arm's friction pays.

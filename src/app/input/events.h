@@ -14,7 +14,22 @@ enum Modifier : unsigned { kShift = 1, kControl = 2, kAlt = 4 };
 
 /// One input event. Positions are in pixels of the picture, origin at the top left.
 struct Event {
-    enum class Kind { move, press, release, scroll, key_down, key_up, text, drop, hover_end, fly, cap_button, resize };
+    enum class Kind {
+        move,
+        press,
+        release,
+        scroll,
+        key_down,
+        key_up,
+        text,
+        drop,
+        hover_end,
+        fly,
+        cap_button,
+        resize,
+        focus,
+        focus_lost
+    };
     Kind kind = Kind::move;
     double time = 0;       ///< seconds on the window's clock
     double x = 0, y = 0;   ///< pixels, of the cursor, for all kinds but keys and text; resize: the new size

@@ -81,6 +81,8 @@ std::vector<Event> feed_imgui(EventQueue& queue, int width, int height, double d
             case Event::Kind::resize:
             case Event::Kind::fly:
             case Event::Kind::cap_button:
+            case Event::Kind::focus:
+            case Event::Kind::focus_lost:
                 break;
         }
         events.push_back(std::move(e));

@@ -59,6 +59,8 @@ constexpr std::array<Shipped, static_cast<std::size_t>(Action::count)> kShipped{
     {"palette", "Palette", {GLFW_KEY_P, 0}},
     {"next-shading", "Next shading of the model", {GLFW_KEY_V, 0}},
     {"panels", "Fold the panels", {GLFW_KEY_TAB, 0}},
+    {"arm", "Force-feedback arm", {GLFW_KEY_A, 0}},
+    {"stop-arm", "Stop the arm's forces", {GLFW_KEY_SPACE, 0}},
 }};
 
 constexpr std::pair<int, const char*> kNames[] = {{GLFW_KEY_SPACE, "Space"},

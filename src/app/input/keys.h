@@ -52,6 +52,8 @@ enum class Action {
     palette,
     next_shading,
     panels,
+    arm,
+    stop_arm,
     count
 };
 

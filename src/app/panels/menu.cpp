@@ -63,6 +63,9 @@ void view_menu(const MenuParts& s, MenuChoice& chosen) {
         s.panels.journal_over_tools = !s.panels.journal_over_tools;
     if (s.ui.menu_item("Palette", name_of(s.keys.chord(Action::palette)).c_str(), s.palette.shown, s.work != nullptr))
         show_palette(s.palette, s.brush, s.status, !s.palette.shown);
+    if (s.ui.menu_item("Force-feedback arm", name_of(s.keys.chord(Action::arm)).c_str(), s.arm.shown,
+                       s.work != nullptr))
+        s.arm.shown = !s.arm.shown;
     if (s.ui.menu_item("Settings of the tools", nullptr, s.panels.show_tools, s.work != nullptr))
         s.panels.show_tools = !s.panels.show_tools, chosen = MenuChoice::store_settings;
     if (s.ui.menu_item("Journal", nullptr, s.panels.show_journal, s.work != nullptr && s.panels.journal_fits))

@@ -26,6 +26,7 @@ struct MenuParts {
     PaintThread* work;  ///< nullptr: no model is open
     const PaintStatus& reported;
     bool has_former_model;  ///< the open one was revised from it
+    ArmState& arm;
 };
 struct HistoryParts {
     Ui& ui;
@@ -123,6 +124,10 @@ void comparison_bar(Session& s);
 void swipe_line(Session& s);
 /// The palette over the view, when shown.
 void palette_panel(Session& s);
+/// The force-feedback arm over the view, when shown: its device, its state, its forces, its space.
+void arm_panel(Session& s);
+/// The reach of the connected arm, a box in the view.
+void arm_marks(const Session& s, const render::GlCamera& camera);
 /// The tuft in side view with the surface below it, and the contact force.
 void tuft_inset(Session& s);
 /// Marks on the model: contact of the tuft and of its symmetric copies, and the curve being edited.

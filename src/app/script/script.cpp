@@ -47,6 +47,16 @@ int button_of(const ScriptCommand& c) {
     return c.words[0] == "right" ? 1 : 2;
 }
 
+// What the arm does, in a word.
+std::string arm_word(const ArmState& arm) {
+    if (!arm.arm) return "off";
+    const haptic::LoopStatus& now = arm.arm->status();
+    if (!arm.arm->feels() || !now.running) return "waiting";
+    if (arm.emergency) return glm::length(now.force) > 0 ? "stopping" : "stopped";
+    if (!now.engaged) return "free";
+    return arm.in_stroke() ? "painting" : "engaged";
+}
+
 }  // namespace
 
 Script::Script(const std::filesystem::path& path) : path_(path), commands_(parse_script(path)) {}
@@ -59,7 +69,8 @@ void Script::add(Event event, double after) {
     clock_ += after;
     event.time = clock_;
     if (event.kind != Event::Kind::text) event.modifiers |= held_;
-    if (event.kind != Event::Kind::key_down && event.kind != Event::Kind::key_up && event.kind != Event::Kind::text)
+    if (event.kind != Event::Kind::key_down && event.kind != Event::Kind::key_up && event.kind != Event::Kind::text &&
+        event.kind != Event::Kind::focus && event.kind != Event::Kind::focus_lost)
         cursor_ = event;
     pending_.push_back(std::move(event));
 }
@@ -174,6 +185,12 @@ void Script::expect(Studio& studio, const ScriptCommand& c) const {
             fail(c, Message("the message is '{}'", s.status.text));
     } else if (what == "label") {
         if (!s.ui.find(value)) fail(c, Message("'{}' is not on the screen", value));
+    } else if (what == "arm") {
+        const std::string state = arm_word(s.arm);
+        if (state != value) fail(c, Message("the arm is {}, not {}", state, value));
+    } else if (what == "force") {
+        const double force = s.arm.arm ? glm::length(s.arm.arm->status().force) : 0;
+        if (force < std::atof(value.c_str())) fail(c, Message("the arm's force is {} N", force));
     } else {
         fail(c, Message("unknown expectation '{}'", what));
     }
@@ -285,6 +302,8 @@ void Script::act(Studio& studio, const ScriptCommand& c, double now) {
         s.project.recovery.lost = find_lost_work();
     } else if (c.name == "screenshot")
         wanted_.picture = word;
+    else if (c.name == "focus" || c.name == "unfocus")
+        add({.kind = c.name == "focus" ? Event::Kind::focus : Event::Kind::focus_lost}, 0.02);
     else if (c.name == "pace")
         pace_ = {.on = word == "on", .start = now, .from = clock_};
     else if (c.name == "resize")

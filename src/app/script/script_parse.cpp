@@ -31,12 +31,17 @@
 ///                           export-picture-width, pressure, writing-width (mm), writing-turn (degrees, anticlockwise),
 ///                           writing-mirror, writing-mapping, roll (degrees, anticlockwise), roll-follow,
 ///                           string, radial, mirror, persistent, tool, language, theme,
-///                           scale, left-handed, keymap, section, section-axis, see-through, atlas, draw-every (frames
-///                           of which one is drawn, for tests)
+///                           arm (on, off), arm-source (simulated, service, recording), arm-preset, arm-hand,
+///                           arm-recording, arm-port, arm-gain, arm-limit (N), arm-scale, arm-view (on, off),
+///                           arm-pause, arm-clutch, arm-palette, arm-panel, arm-emergency (on, off), scale,
+///                           left-handed, keymap, section, section-axis, see-through, atlas, draw-every (frames of
+///                           which one is drawn, for tests)
 ///   undo  redo  save FILE  export FILE  close
 ///   screenshot FILE.png
 ///   expect strokes N | expect model | expect no-model | expect kept | expect message TEXT | expect label LABEL
+///   expect arm off|waiting|free|engaged|painting|stopping|stopped | expect force N (newtons, at least)
 ///   await ...               until that holds
+///   focus  unfocus          the window gets or loses the keyboard
 ///   pace on|off             events at the speed of the clock, or at once
 ///   resize WIDTH HEIGHT     the window, pixels
 ///   random COUNT SEED       that many events of any kind, also resizing and lost graphics; what would end the
@@ -53,14 +58,15 @@ namespace {
 
 // Least and most words after the command.
 const std::map<std::string, std::pair<int, int>> kCommands{
-    {"open", {1, 1}},          {"revise", {1, 1}},     {"wait-ready", {0, 1}},  {"wait", {1, 1}},
-    {"move", {1, 1}},          {"press", {0, 1}},      {"release", {0, 1}},     {"stroke", {2, 10000}},
-    {"rate", {1, 1}},          {"key", {1, 1}},        {"hold", {1, 1}},        {"type", {1, 1}},
-    {"scroll", {1, 1}},        {"click", {1, 1}},      {"right-click", {1, 1}}, {"set", {2, 2}},
-    {"undo", {0, 0}},          {"redo", {0, 0}},       {"save", {1, 1}},        {"export", {1, 1}},
-    {"close", {0, 0}},         {"screenshot", {1, 1}}, {"expect", {1, 2}},      {"await", {1, 2}},
-    {"pace", {1, 1}},          {"random", {2, 2}},     {"resize", {2, 2}},      {"report", {0, 0}},
-    {"lose-graphics", {0, 0}}, {"names", {0, 0}},      {"places", {0, 0}},      {"quit", {0, 0}}};
+    {"open", {1, 1}},   {"revise", {1, 1}},     {"wait-ready", {0, 1}},    {"wait", {1, 1}},
+    {"move", {1, 1}},   {"press", {0, 1}},      {"release", {0, 1}},       {"stroke", {2, 10000}},
+    {"rate", {1, 1}},   {"key", {1, 1}},        {"hold", {1, 1}},          {"type", {1, 1}},
+    {"scroll", {1, 1}}, {"click", {1, 1}},      {"right-click", {1, 1}},   {"set", {2, 2}},
+    {"undo", {0, 0}},   {"redo", {0, 0}},       {"save", {1, 1}},          {"export", {1, 1}},
+    {"close", {0, 0}},  {"screenshot", {1, 1}}, {"expect", {1, 2}},        {"await", {1, 2}},
+    {"focus", {0, 0}},  {"unfocus", {0, 0}},    {"pace", {1, 1}},          {"random", {2, 2}},
+    {"resize", {2, 2}}, {"report", {0, 0}},     {"lose-graphics", {0, 0}}, {"names", {0, 0}},
+    {"places", {0, 0}}, {"quit", {0, 0}}};
 
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 constexpr double kMostNumber = 1e6;  // of a place, in pixels or per cent

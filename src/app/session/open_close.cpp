@@ -218,7 +218,8 @@ void close_model(Session& s) {
     remember_brush(s.brush, s.paint_thread.get());
     s.colours.choice.in_hand.reset();
     s.layers.list.pictures.clear();
-    const bool empty = s.journal.lines.empty() && s.paint_thread->idle(), viewing = s.reported.file.viewing;
+    const bool drew = leave_arm(s.arm, s.paint_thread.get());
+    const bool empty = !drew && s.journal.lines.empty() && s.paint_thread->idle(), viewing = s.reported.file.viewing;
     const fs::path project = finish_work(s);
     forget_model(s);
     if (empty && !viewing && is_unnamed(project)) {

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "app/paint/paint_thread.h"
+#include "app/session/arm_state.h"
 #include "app/session/brush_settings.h"
 #include "app/session/colour_state.h"
 #include "app/session/dialog_state.h"
@@ -40,6 +41,7 @@ struct Session {
     MaskState masks;
     ColourState colours;
     JournalState journal;
+    ArmState arm;
 };
 
 /// Takes the results of all background threads.

@@ -25,6 +25,41 @@ double number_within(const std::string& text, double lo, double hi) {
     return number >= lo ? std::min(number, hi) : lo;  // NaN, too, becomes `lo`
 }
 
+void load_arm(ArmState& arm, const std::string& key, const std::string& value) {
+    ArmSettings& a = arm.settings;
+    if (key == "arm_source")
+        a.source = static_cast<ArmSource>(static_cast<int>(number_within(value, 0, 2)));
+    else if (key == "arm_preset") {
+        for (const haptic::DeviceLimits& preset : haptic::device_presets())
+            if (preset.name == value) a.preset = value;
+    } else if (key == "arm_host")
+        a.host = value;
+    else if (key == "arm_port")
+        a.port = static_cast<int>(number_within(value, 0, 65535));
+    else if (key == "arm_gain")
+        a.gain = number_within(value, 0, kMostArmGain);
+    else if (key == "arm_limit")
+        a.most_force = number_within(value, 0.1, haptic::kForceLimit);
+    else if (key == "arm_scale")
+        a.scale = number_within(value, kLeastArmScale, kMostArmScale);
+    else if (key == "arm_view")
+        a.with_view = value == "1";
+    else if (key == "arm_restore")
+        a.restore = value == "1";
+    else if (const std::size_t axis = std::string("xyz").find(key.back()); key.starts_with("arm_centre_"))
+        if (axis < 3) a.centre[static_cast<int>(axis)] = number_within(value, -1, 1);
+}
+
+void store_arm(const ArmState& arm, std::ostream& out) {
+    const ArmSettings& a = arm.settings;
+    out << "arm_source " << static_cast<int>(a.source) << "\narm_preset " << a.preset << "\narm_host " << a.host
+        << "\narm_port " << a.port << "\narm_gain " << a.gain << "\narm_limit " << a.most_force << "\narm_scale "
+        << a.scale << "\narm_view " << a.with_view << "\narm_restore " << a.restore << '\n';
+    for (int i = 0; i < 3; ++i)
+        out << "arm_centre_"
+            << "xyz"[i] << ' ' << a.centre[i] << '\n';
+}
+
 }  // namespace
 
 void load_settings(Session& s) {
@@ -62,6 +97,8 @@ void load_settings(Session& s) {
             s.preferences.space_mouse.moves_eye = value == "1";
         else if (key == "clean_ends")
             s.tools.pointer.clean_ends = value == "1";
+        else if (key.starts_with("arm_"))
+            load_arm(s.arm, key, value);
         else if (key == "keymap")
             s.preferences.keymap = value == "maya" ? Keymap::maya : Keymap::blender;
     }
@@ -80,6 +117,7 @@ void store_settings(const Session& s) {
     out << "guide_seen " << s.panels.help.seen << "\n";
     out << "panels -" << (s.panels.show_tools ? "t" : "") << (s.panels.show_journal ? "j" : "") << '\n';
     for (const auto& [title, open] : s.ui.sections) out << "section:" << as_word(title) << ' ' << open << '\n';
+    store_arm(s.arm, out);
     for (const auto& [word, chord] : s.preferences.keys.changes()) out << "key:" << word << ' ' << chord << '\n';
     const std::string text = out.str();
     try {

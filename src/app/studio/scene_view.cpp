@@ -101,7 +101,22 @@ void SceneView::show_triangle_colours() {
     if (s.view.shading == ModelView::stretch) scene_->set_triangle_colours(stretch_colours(*m.mesh, m.atlas));
 }
 
-void SceneView::update_tuft(const Event* cursor, double now) {
+void SceneView::choose_preview() {
+    const Session& s = session_;
+    if (preview_ && preview_brush_ == s.brush.preset) return;
+    preview_ = brush::make_tuft(brush::load_preset(s.brush.preset));
+    preview_brush_ = s.brush.preset;
+}
+
+void SceneView::hover(const brush::Pose& pose) {
+    TuftView& view = session_.view.tuft;
+    choose_preview();
+    view.state = brush::step(*preview_, pose, {}, 0.01);
+    view.pose = pose;
+    view.mouth = brush::mouth_outline(preview_->preset);
+}
+
+void SceneView::update_tuft(const Event* cursor, const std::optional<brush::Pose>& guided, double now) {
     Session& s = session_;
     s.view.tuft.state = {};
     s.view.tuft.depth = 0;
@@ -111,20 +126,15 @@ void SceneView::update_tuft(const Event* cursor, double now) {
     if (s.view.tuft.pressed) {
         s.view.tuft.state = painting.tuft;
         preview_brush_.clear();  // its file may be another by the next stroke
+    } else if (guided) {
+        hover(*guided);
     } else if (s.tools.active != Tool::writing && s.tools.active != Tool::fill && s.tools.active != Tool::pick &&
                s.tools.active != Tool::mask && !s.journal.move_on_drag && cursor && !is_dialog_open(s)) {
-        if (!preview_ || preview_brush_ != s.brush.preset) {
-            preview_ = brush::make_tuft(brush::load_preset(s.brush.preset));
-            preview_brush_ = s.brush.preset;
-        }
+        choose_preview();
         Event at = *cursor;
         at.time = now;
         const PointerInput hand(*s.paint_thread->model().query, preview_->preset, s.tools.pointer);
-        if (const auto pose = hand.hover(aim_of(s, at))) {
-            s.view.tuft.state = brush::step(*preview_, *pose, {}, 0.01);
-            s.view.tuft.pose = *pose;
-            s.view.tuft.mouth = brush::mouth_outline(preview_->preset);
-        }
+        if (const auto pose = hand.hover(aim_of(s, at))) hover(*pose);
     }
     if (s.view.tuft.state.branches.empty() || !s.view.tuft.pressed) return;
     const brush::Section& root = s.view.tuft.state.branches.front().sections.back();

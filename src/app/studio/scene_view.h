@@ -24,8 +24,9 @@ class SceneView {
     /// Loads a newly opened model, and changed texels.
     void take_model();
     void take_texels();
-    /// Updates the tuft: in contact, or hovering over the cursor (null: not over the model). `now`: seconds.
-    void update_tuft(const Event* cursor, double now);
+    /// Updates the tuft: in contact, in the air where an arm guides it, or hovering over the cursor (null: not over the
+    /// model). `now`: seconds.
+    void update_tuft(const Event* cursor, const std::optional<brush::Pose>& guided, double now);
     /// Draws into a framebuffer of that height. `moving`: a coarser picture suffices.
     void draw(unsigned framebuffer, int height, bool moving);
     /// Frees all graphics objects before the OpenGL context is lost; creates them in the new one.
@@ -33,6 +34,8 @@ class SceneView {
     void make_graphics();
 
   private:
+    void choose_preview();
+    void hover(const brush::Pose& pose);
     void show_triangle_colours();
     void draw_atlas(const render::DrawOptions& options, unsigned framebuffer, int height);
 

@@ -186,11 +186,42 @@ constexpr Setting kPreferenceSettings[] = {
      [](Session& s, const SettingValue& v) { s.dialogs.export_settings.picture_width = v.whole(16, 8192); }},
 };
 
+constexpr Setting kArmSettings[] = {
+    {"arm",
+     [](Session& s, const SettingValue& v) {
+         disconnect_arm(s.arm, s.paint_thread.get());
+         if (v.on) connect_arm(s.arm, s.status);
+     }},
+    {"arm-source",
+     [](Session& s, const SettingValue& v) {
+         s.arm.settings.source = v.choice<ArmSource>({"simulated", "service", "recording"});
+     }},
+    {"arm-preset", [](Session& s, const SettingValue& v) { s.arm.settings.preset = haptic::device_preset(v.text).name; }},
+    {"arm-hand",
+     [](Session& s, const SettingValue& v) {
+         std::vector<std::string> hands{"pointer"};
+         for (const haptic::HandMotion motion : haptic::kPaintingMotions) hands.emplace_back(haptic::name_of(motion));
+         s.arm.settings.hand = hands[static_cast<std::size_t>(v.one_of(hands))];
+     }},
+    {"arm-recording", [](Session& s, const SettingValue& v) { s.arm.settings.recording = v.text; }},
+    {"arm-port", [](Session& s, const SettingValue& v) { s.arm.settings.port = v.whole(0, 65535); }},
+    {"arm-gain", [](Session& s, const SettingValue& v) { s.arm.settings.gain = v.within(0, kMostArmGain); }},
+    {"arm-limit", [](Session& s, const SettingValue& v) { s.arm.settings.most_force = v.within(0.1, haptic::kForceLimit); }},
+    {"arm-scale", [](Session& s, const SettingValue& v) { s.arm.settings.scale = v.within(kLeastArmScale, kMostArmScale); }},
+    {"arm-view", [](Session& s, const SettingValue& v) { s.arm.settings.with_view = v.on; }},
+    {"arm-pause", [](Session& s, const SettingValue& v) { s.arm.paused = v.on; }},
+    {"arm-clutch", [](Session& s, const SettingValue& v) { s.arm.clutched = v.on; }},
+    {"arm-palette", [](Session& s, const SettingValue& v) { s.arm.on_palette = v.on; }},
+    {"arm-panel", [](Session& s, const SettingValue& v) { s.arm.shown = v.on; }},
+    {"arm-emergency", [](Session& s, const SettingValue& v) { v.on ? stop_forces(s.arm) : release_forces(s.arm); }},
+};
+
 }  // namespace
 
 void set_by_name(Session& s, const std::string& name, const std::string& value) {
     const SettingValue v{.name = name, .text = value, .number = number_of(value), .on = value == "on"};
-    const std::span<const Setting> groups[] = {kBrushSettings, kToolSettings, kViewSettings, kPreferenceSettings};
+    const std::span<const Setting> groups[] = {kBrushSettings, kToolSettings, kViewSettings, kPreferenceSettings,
+                                              kArmSettings};
     for (const std::span<const Setting> group : groups)
         for (const Setting& setting : group)
             if (setting.name == name) return setting.set(s, v);

@@ -81,6 +81,7 @@ void Studio::make_graphics() {
 void Studio::finish() {
     Session& s = session_;
     input_.stroke().lift(now_);
+    disconnect_arm(s.arm, s.paint_thread.get());
     if (s.paint_thread && picture_.outdated()) {
         s.paint_thread->wait_idle(kPictureWait);
         poll_paint_thread(s);
@@ -96,7 +97,7 @@ double Studio::patience() const {
     const bool moves = input_.stroke().drawing() || input_.turning();
     if (s.view.model_changed || !s.view.texels.tiles.empty() || s.preferences.restyle || moves) return 0;
     if (s.project.opening.running() || !s.reported.progress.busy.empty()) return kProgressEvery;
-    if (!is_settled(s)) return kInkEvery;
+    if (!is_settled(s) || s.arm.arm) return kInkEvery;
     if (now_ - last_event_ < kStillAfter) return kStillEvery;
     return s.project.start_page.pictures.busy() ? 0.1 : 0.5;
 }
@@ -129,7 +130,7 @@ void Studio::layout(int width, int height) {
 void Studio::draw_panels() {
     Session& s = session_;
     take_menu(menu_bar({s.ui, s.panels, s.dialogs, s.view, s.colours.palette, s.brush, s.status, s.preferences.keys,
-                        s.paint_thread.get(), s.reported, !s.project.revision.previous.empty()}));
+                        s.paint_thread.get(), s.reported, !s.project.revision.previous.empty(), s.arm}));
     s.ui.modal = is_dialog_open(s);
     ImGui::BeginDisabled(s.ui.modal);
     if (s.paint_thread)
@@ -209,11 +210,13 @@ void Studio::draw_side_panels() {
     const bool still = !input_.stroke().drawing() && !input_.turned_within(kStill, now_);
     upload_thumbnails(s, still);
     colour_panel(s);
+    arm_panel(s);
     references_over_view(s);
     swipe_line(s);
     comparison_bar(s);
     guide(s);
     view_marks({s.ui, s.view, s.tools, s.journal, s.masks, s.paint_thread->model()}, camera_of(s));
+    arm_marks(s, camera_of(s));
     atlas_marks(s.ui, s.view.atlas, *s.paint_thread, atlas_cursor(s, input_.cursor()));
 }
 
@@ -256,6 +259,9 @@ void Studio::take_file(const fs::path& path) {
             return open_ink(s.paint_thread.get(), s.status, path);
         case FileDialog::Purpose::save_ink:
             return save_ink(s.colours, s.brush.ink, s.status, path);
+        case FileDialog::Purpose::arm_recording:
+            s.arm.settings.recording = path;
+            return;
         case FileDialog::Purpose::export_model:
             if (s.paint_thread) s.paint_thread->post(export_command(s.dialogs.export_settings, s.view.orbit, path));
     }
@@ -320,8 +326,8 @@ void Studio::frame(EventQueue& queue, int width, int height, unsigned framebuffe
     for (const Event& event : events) input_.handle(event, now);
     if (s.paint_thread && input_.stroke().drawing() && keeps_up && !events.empty()) await_ink(dt);
     if (s.paint_thread) {
-        input_.watch();
-        scene_.update_tuft(input_.turning() ? nullptr : input_.cursor(), now);
+        input_.watch(now);
+        scene_.update_tuft(input_.turning() ? nullptr : input_.cursor(), input_.arm().hover(), now);
     }
     draw_panels();
     s.ui.enter = false;

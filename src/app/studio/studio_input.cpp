@@ -38,7 +38,8 @@ StudioInput::StudioInput(Session& session, const Comparison& comparison)
       comparison_(comparison),
       stroke_(session, tip_lag_),
       curve_(session, tip_lag_),
-      writing_(session) {
+      writing_(session),
+      arm_(session) {
     cursor_.x = cursor_.y = -1;
 }
 
@@ -47,9 +48,10 @@ void StudioInput::drop() {
     curve_.drop();
 }
 
-void StudioInput::watch() {
+void StudioInput::watch(double now) {
     curve_.watch(cursor());
     writing_.watch(cursor());
+    arm_.update(now, stroke_.drawing());
 }
 
 void StudioInput::handle(const Event& e, double now) {
@@ -77,6 +79,10 @@ void StudioInput::handle(const Event& e, double now) {
         case Event::Kind::cap_button:
             s.preferences.space_mouse.seen = true;
             if (s.paint_thread && !is_dialog_open(s)) perform(e.button == 0 ? Action::frame_all : Action::frame_cursor);
+            return;
+        case Event::Kind::focus:
+        case Event::Kind::focus_lost:
+            s.arm.focused = e.kind == Event::Kind::focus;
             return;
         case Event::Kind::hover_end:
             inside_ = false;
@@ -135,7 +141,8 @@ void StudioInput::press(const Event& e) {
     if (!s.paint_thread || is_dialog_open(s) || stroke_.drawing()) return;
     if (over_palette) return stroke_.press_palette(e);
     if (ImGui::GetIO().WantCaptureMouse || s.tools.curve.grabbed >= 0) return;
-    if (!press_view(e) && e.button == 0 && comparison_.on_work(e)) press_tool(e);
+    if (!press_view(e) && e.button == 0 && comparison_.on_work(e) && !arm_.press(e) && !s.arm.in_stroke())
+        press_tool(e);
 }
 
 // Begins to turn or move what is seen; false where the press is none for that.
@@ -174,6 +181,7 @@ void StudioInput::press_tool(const Event& e) {
 void StudioInput::move(const Event& e) {
     Session& s = session_;
     if (stroke_.drawing()) return stroke_.move(e);
+    if (drag_ == Drag::none && !ImGui::GetIO().WantCaptureMouse) arm_.move(e);
     if (s.tools.curve.grabbed >= 0) return curve_.drag(e);
     if (!s.masks.lasso.empty()) return move_lasso(s, e);
     if (s.journal.from) return drag_move(s, e);
@@ -193,6 +201,7 @@ void StudioInput::move(const Event& e) {
 void StudioInput::release(const Event& e) {
     Session& s = session_;
     if (e.button == 0) {
+        arm_.release(e);
         if (stroke_.drawing()) stroke_.release(e);
         if (!s.masks.lasso.empty()) release_lasso(s);
         if (s.journal.from) release_move(s, e);
@@ -205,8 +214,12 @@ void StudioInput::key(const Event& e) {
     Session& s = session_;
     const bool escape = e.key == GLFW_KEY_ESCAPE;
     if (ImGui::GetIO().WantTextInput && !escape) return;
+    const auto action = s.preferences.keys.find({e.key, e.modifiers & (kShift | kControl | kAlt)});
+    // Before all else: a hand may be in danger.
+    if (s.arm.arm && action == Action::stop_arm && !ImGui::GetIO().WantTextInput) return stop_forces(s.arm);
     if (escape && stroke_.drawing()) return stroke_.cancel();
-    if (stroke_.drawing()) return;
+    if (escape && arm_.cancel()) return;
+    if (stroke_.drawing() || s.arm.in_stroke()) return;
     // A menu or a list that is open lies over all else.
     if (escape && ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return ImGui::ClosePopupToLevel(0, true);
     if (escape && !s.masks.lasso.empty()) return s.masks.lasso.clear();
@@ -223,8 +236,7 @@ void StudioInput::key(const Event& e) {
         s.layers.list.focus = true;
         return;
     }
-    if (const auto action = s.preferences.keys.find({e.key, e.modifiers & (kShift | kControl | kAlt)}))
-        perform(*action);
+    if (action) perform(*action);
 }
 
 void StudioInput::assign_key(const Event& e) {
@@ -267,6 +279,9 @@ void StudioInput::perform(Action action) {
             break;
         case Action::panels:
             fold_panels(s);
+            break;
+        case Action::arm:
+            s.arm.shown = !s.arm.shown;
             break;
         default:
             break;

@@ -3,6 +3,7 @@
 #include "app/input/events.h"
 #include "app/session/session.h"
 #include "app/studio/comparison.h"
+#include "app/tools/arm_input.h"
 #include "app/tools/curve_tool.h"
 #include "app/tools/stroke_input.h"
 #include "app/tools/writing_tool.h"
@@ -18,13 +19,14 @@ class StudioInput {
 
     /// Handles one event. `now`: seconds, of the frame on the events' clock.
     void handle(const Event& e, double now);
-    /// Updates everything that follows the cursor.
-    void watch();
+    /// Updates everything that follows the cursor or the arm. `now`: seconds.
+    void watch(double now);
     /// Forgets strokes and curves, because the model was replaced.
     void drop();
 
     StrokeInput& stroke() { return stroke_; }
     const StrokeInput& stroke() const { return stroke_; }
+    const ArmInput& arm() const { return arm_; }
     /// Returns the cursor over the model's view; null where it is not.
     const Event* cursor() const { return inside_ ? &cursor_ : nullptr; }
     bool turning() const { return drag_ != Drag::none; }
@@ -53,6 +55,7 @@ class StudioInput {
     StrokeInput stroke_;
     CurveTool curve_;
     WritingTool writing_;
+    ArmInput arm_;
     Event cursor_;
     bool inside_ = false;  ///< the cursor is over the model's view
     Drag drag_ = Drag::none;

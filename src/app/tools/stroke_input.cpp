@@ -25,6 +25,15 @@ BeginStroke stroke_to_begin(const Session& s) {
             .tip_depth = s.brush.tip_depth};
 }
 
+BeginStroke stroke_to_stir(const Session& s) {
+    return {.brush = s.brush.preset,
+            .ink = s.brush.ink,
+            .persistent = true,
+            .as_it_is = true,
+            .layer = stroke::kPaletteLayer,
+            .wet = true};
+}
+
 void StrokeInput::press(const Event& e) {
     Session& s = session_;
     try {
@@ -114,15 +123,8 @@ void StrokeInput::drop() {
 void StrokeInput::post(std::vector<StrokeStep> steps, double time) {
     Session& s = session_;
     for (StrokeStep& step : steps) {
-        if (step.kind == StrokeStep::Kind::begin && on_plate_)
-            s.paint_thread->post(BeginStroke{.brush = s.brush.preset,
-                                             .ink = s.brush.ink,
-                                             .persistent = true,
-                                             .as_it_is = true,
-                                             .layer = stroke::kPaletteLayer,
-                                             .wet = true});
-        else if (step.kind == StrokeStep::Kind::begin)
-            s.paint_thread->post(stroke_to_begin(s));
+        if (step.kind == StrokeStep::Kind::begin)
+            s.paint_thread->post(on_plate_ ? stroke_to_stir(s) : stroke_to_begin(s));
         else if (step.kind == StrokeStep::Kind::end)
             s.paint_thread->post(EndStroke{});
         else {

@@ -15,6 +15,8 @@ namespace tuft::app {
 
 /// Returns the command that begins a stroke with the present brush, ink, layer and mask.
 BeginStroke stroke_to_begin(const Session& s);
+/// The same on the palette.
+BeginStroke stroke_to_stir(const Session& s);
 
 /// The stroke being drawn on the model or on the palette.
 class StrokeInput {

@@ -197,6 +197,9 @@ class Window : public Display {
             if (count > 0) e.text = paths[0];
             of(w).fresh_.push_back(e);
         });
+        glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int focused) {
+            of(w).fresh_.push_back(of(w).event(focused ? Event::Kind::focus : Event::Kind::focus_lost));
+        });
         glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int inside) {
             if (!inside) of(w).fresh_.push_back(of(w).event(Event::Kind::hover_end));
         });

@@ -69,6 +69,7 @@ bool FileDialog::reads() const {
 bool FileDialog::suits(const fs::path& file) const {
     const std::string e = lower(file.extension().string());
     if (purpose_ == Purpose::save) return e == ".tuft";
+    if (purpose_ == Purpose::arm_recording) return e == ".csv";
     if (purpose_ == Purpose::export_model) return is_one_of(e, {".glb", ".gltf", ".obj", ".png", ".exr", ".inkml"});
     if (purpose_ == Purpose::ink || purpose_ == Purpose::save_ink) return e == ".toml";
     if (purpose_ == Purpose::writing) return is_one_of(e, {".svg", ".inkml"});
@@ -363,7 +364,8 @@ std::optional<fs::path> FileDialog::draw(Ui& ui, Pictures& pictures) {
     ImGui::SetNextWindowSize(ImVec2(std::min(ui.px(860), screen.x - 20), std::min(ui.px(520), screen.y - 20)));
     static constexpr const char* titles[] = {
         "Open a model or project", "Save project as", "Export to",       "Writing or drawing to place",
-        "Revised model",           "Open an ink",     "Save the ink as", "Reference image"};
+        "Revised model",           "Open an ink",     "Save the ink as", "Reference image",
+        "Recording of an arm"};
     const char* title = titles[static_cast<int>(purpose_)];
     ImGui::Begin((std::string(ui.tr(title)) + "###files").c_str(), nullptr,
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |

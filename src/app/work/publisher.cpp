@@ -56,6 +56,7 @@ void Publisher::publish(bool journal_changed) {
         status.brush = {.tuft = tuft ? *tuft : brush::TuftState{},
                         .on_palette = tuft && on_palette_,
                         .fullness = held ? held->reservoir.fullness() : 1,
+                        .wetness = held ? stroke::wetness_of(held->reservoir) : 1,
                         .colour = brush_colour_};
         status.progress = {.done = done_};
         status.file = {.project = file.path(),

@@ -60,6 +60,7 @@ struct BrushStatus {
     brush::TuftState tuft;                              ///< during a stroke; else without branches
     bool on_palette = false;                            ///< `tuft` is on the palette
     double fullness = 1;                                ///< ink over capacity, 0–1
+    double wetness = 1;                                 ///< of the hair, 0 dry … 1 wet
     std::optional<std::array<std::uint8_t, 3>> colour;  ///< sRGB of a full film of that ink
 };
 

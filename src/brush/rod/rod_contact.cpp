@@ -180,7 +180,12 @@ Shortened shorten_to_surface(const HairAtCrease& hair) {
     const double step = 3 * hair.law.end_compliance / kSteps;
     Shortened high = at(kSteps * step);
     if (high.miss <= 0) return high;
-    for (int k = kSteps; k-- > 0;) {
+    // A step brings hair no nearer to the surface than it is long: as far as neither contact nor film can begin, no
+    // sign changes.
+    const double off = high.at_surface.z - hair.piece.radius - hair.law.adhesion_range - 1e-9;
+    const int clear = std::clamp(static_cast<int>(off / step), 0, kSteps - 1);
+    if (clear > 0) high = at((kSteps - clear) * step);
+    for (int k = kSteps - clear; k-- > 0;) {
         low = at(k * step);
         if (low.miss <= 0) break;
         high = low;
