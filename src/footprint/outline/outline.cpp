@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "footprint/outline/cuts.h"
+#include "footprint/outline/slip.h"
 
 namespace tuft::footprint {
 namespace {
@@ -399,16 +400,109 @@ Outline outline_of(const Joint& joint, int points) {
 
 }  // namespace
 
-std::vector<Outline> outlines_of(std::span<const Trail> trails, int points) {
+namespace {
+
+constexpr double kLeap = 0.4;     // of a patch's extent: what it moves by more, it leaps
+constexpr int kSweptSamples = 8;  // sections of a trail that leapt
+
+/// Extent of a trail in a direction of the stamp, metres.
+double extent_along(const Trail& trail, const Vec2& direction) {
+    const Cut& c = trail.cuts[trail.cuts.size() / 2];
+    const Vec2 run = trail.cuts.front().centre - trail.cuts.back().centre;
+    return std::abs(glm::dot(run, direction)) +
+           2 * std::hypot(c.a * glm::dot(Vec2(c.e), direction), c.b * glm::dot(Vec2(c.m), direction));
+}
+
+/// The trail of the same branch that is nearest in `before`; null: there is none.
+const Trail* same_branch(const Trail& trail, std::span<const Trail> before) {
+    const Trail* best = nullptr;
+    double nearest = 1e9;
+    for (const Trail& b : before) {
+        if (b.branch != trail.branch) continue;
+        const double off = std::abs(b.along.front() - trail.along.front());
+        if (off < nearest) nearest = off, best = &b;
+    }
+    return best;
+}
+
+/// Sections from end to end of a trail, evenly in their number.
+std::vector<Cut> sections_of(const Trail& trail) {
+    std::vector<Cut> out;
+    const std::size_t last = trail.cuts.size() - 1;
+    for (int i = 0; i < kSweptSamples; ++i)
+        out.push_back(trail.cuts[last * static_cast<std::size_t>(i) / (kSweptSamples - 1)]);
+    return out;
+}
+
+/// Outline of trails at two poses and of all that lies between them, seen along the longest way that one went.
+Outline swept_outline(std::span<const Trail* const> now, std::span<const Trail* const> before, int points) {
+    Loops loops;
+    Vec2 way{0}, middle{0};
+    const auto add = [&](const Trail& trail) { loops.add(sections_of(trail), strip_of(trail)); };
+    for (std::size_t k = 0; k < now.size(); ++k) {
+        add(*now[k]);
+        add(*before[k]);
+        const Cut &p = before[k]->cuts.front(), &q = now[k]->cuts.front();
+        if (glm::length(q.centre - p.centre) > glm::length(way)) way = q.centre - p.centre;
+        middle += (p.centre + q.centre) / (2.0 * static_cast<double>(now.size()));
+    }
+    const PatchFrame patch{middle, unit_or(way, forward_direction(now.front()->cuts))};
+    patch.to_patch(loops.corners);
+    const auto [rear, front] = std::minmax_element(loops.corners.begin(), loops.corners.end(), by_x);
+    Envelope envelope(rear->x, front->x, points);
+    const std::size_t n = kSweptSamples, sides = 2 * now.size();
+    for (std::size_t k = 0; k < sides; ++k) add_loops(loops, k * n, (k + 1) * n, envelope);
+    for (std::size_t k = 0; k < sides; ++k)
+        for (std::size_t l = k + 1; l < sides; ++l)
+            for (std::size_t i = 0; i < n; ++i) add_bridge(loops[k * n + i], loops[l * n + i], true, envelope);
+    return closed_outline(envelope, patch, {*front, *rear}, points, now.front()->strip);
+}
+
+}  // namespace
+
+std::vector<Trail> leapt_trails(std::span<const Trail> trails, const Frame& frame, std::span<const Trail> before,
+                                const Frame& frame_before, const Vec2& hand) {
+    bool leapt = false;
+    for (const Trail& trail : trails) {
+        const Trail* was = same_branch(trail, before);
+        if (!was) continue;
+        const auto moved = [&](const Cut& from, const Cut& to) {
+            return to.centre - Vec2(frame.to_local(frame_before.to_world(Vec3(from.centre, 0)))) - hand;
+        };
+        const Vec2 tip = moved(was->cuts.front(), trail.cuts.front()),
+                   root = moved(was->cuts.back(), trail.cuts.back());
+        const Vec2 most = glm::length(tip) > glm::length(root) ? tip : root;
+        const double way = glm::length(most);
+        leapt = leapt || (way > 1e-9 && way > kLeap * extent_along(trail, most / way));
+    }
+    if (!leapt) return {};
+    std::vector<Trail> out(before.begin(), before.end());
+    change_frame(out, frame_before, frame);
+    return out;
+}
+
+std::vector<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before) {
     points = std::max(points, 4);
     std::vector<Outline> out;
     const auto keep = [&](Outline outline) {
         if (outline.left.size() >= 3) out.push_back(std::move(outline));
     };
     const auto join = [&](std::initializer_list<const Trail*> joined) {
-        for (const Joint& joint : joints_of({joined.begin(), joined.size()})) keep(outline_of(joint, points));
+        const std::vector<Joint> joints = joints_of({joined.begin(), joined.size()});
+        for (const Joint& joint : joints) keep(outline_of(joint, points));
+        if (joints.empty() || before.empty()) return;
+        std::vector<const Trail*> was;
+        for (const Trail* trail : joined)
+            if (const Trail* b = same_branch(*trail, before)) was.push_back(b);
+        if (was.size() == joined.size()) keep(swept_outline({joined.begin(), joined.size()}, was, points));
     };
-    for (const Trail& trail : trails) keep(outline_of(trail, points));
+    for (const Trail& trail : trails) {
+        keep(outline_of(trail, points));
+        if (const Trail* was = same_branch(trail, before)) {
+            const Trail* const now = &trail;
+            keep(swept_outline({&now, 1}, {&was, 1}, points));
+        }
+    }
     for (const Trail& a : trails) {
         for (const Trail& b : trails) {
             if (!opening_between(a, b)) continue;

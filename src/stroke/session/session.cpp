@@ -111,6 +111,7 @@ contact::Result StrokeSession::next_contact(const brush::Pose& pose, double dt) 
     if (contact_.forecast) {
         if (PoseForecast* ready = contact_.forecast->next(pose, tuft_.brush.tuft)) {
             contact_.hair = std::move(ready->hair);
+            contact_.last.store(tuft_.brush.tuft, pose, contact_.hair, ready->contact);
             return std::move(ready->contact);
         }
         leave_forecast();
@@ -119,7 +120,8 @@ contact::Result StrokeSession::next_contact(const brush::Pose& pose, double dt) 
     if (!path_.started && tuft_.brush.tuft.posed) brush::step(tuft_.brush.tuft, pose, {}, 0);
     contact::Result contact =
         contact::step(tuft_.brush.tuft, pose, *input_.model.query, contact_.memory, dt, contact_.options);
-    contact_.hair = touches(contact) ? find_hair(tuft_.brush.tuft, contact) : HairShape{};
+    contact_.hair = touches(contact) ? find_hair(tuft_.brush.tuft, contact, contact_.last) : HairShape{};
+    contact_.last.store(tuft_.brush.tuft, pose, contact_.hair, contact);
     return contact;
 }
 
@@ -163,13 +165,15 @@ double patch_size(const brush::Preset& preset, double area) {
 void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double area) const {
     const brush::Preset& preset = tuft_.brush.tuft.preset;
     const double size = std::max(patch_size(preset, area), 1e-15);
-    const double leap = smooth_step(glm::length(moved.hair - moved.hand) / size / kLeap);
+    // A patch of several spines that leapt has all that it passed over in its footprint.
+    const double leap = stamp.swept ? 0 : smooth_step(glm::length(moved.hair - moved.hand) / size / kLeap);
     stamp.motion.shift = glm::mix(moved.hand, moved.hair, std::max(leap, static_cast<double>(stamp.separation)));
     // Dry hair leaves ink by how it is drawn: where it only comes to touch, a tip that leans would print a speck that
     // its stroke, which begins where it has been pressed aside, does not reach.
     const bool prints = motion_.contact_travel >= kPrintTravel;
     stamp.ds = prints ? path_.spacing : (1 - static_cast<double>(stamp.separation)) * path_.spacing;
     // An edge that slips away under a press draws by its own way, which is longer than the hand's.
+    if (stamp.swept) stamp.ds = std::max(stamp.ds, glm::length(moved.hair));
     if (brush::has_broad_side(preset)) stamp.ds = std::max(stamp.ds, leap * glm::length(stamp.motion.shift));
 }
 
