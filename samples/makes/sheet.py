@@ -10,31 +10,7 @@ import math
 import pathlib
 import sys
 
-RATE = 100  # samples a second
-
-
-class Stroke:
-    """Points of a hand's path, mm on the sheet, y down; pressure 0 to 1; roll in degrees."""
-
-    def __init__(self, label, before=""):
-        self.label, self.before, self.points, self.time = label, before, [], 0.0
-
-    def go(self, keys, speed):
-        """Goes from key to key (x, y, pressure, roll), linear between them, at `speed` mm a second."""
-        for a, b in zip(keys, keys[1:]):
-            length = max(math.dist(a[:2], b[:2]), 0.1 * speed)
-            steps = max(1, round(length / speed * RATE))
-            for i in range(steps if b is not keys[-1] else steps + 1):
-                f = i / steps
-                self.points.append([p + f * (q - p) for p, q in zip(a, b)] + [self.time])
-                self.time += 1000 / RATE
-        return self
-
-    def text(self):
-        points = ", ".join("{0:.3f} {1:.3f} {2:.4f} {4:.0f} 0 0 {3:.2f}".format(*p) for p in self.points)
-        return (f'    <trace contextRef="#rolled">\n      <annotation type="tuft:label">{self.label}</annotation>\n'
-                f"{self.before}{points}\n    </trace>\n")
-
+from hand import Stroke, care, write
 
 def line(x0, y0, x1, y1, roll, press=0.5, land=0.12):
     """Keys of a straight stroke that lands and leaves within the part `land` of it."""
@@ -59,7 +35,6 @@ def strokes(cell, width, broad):
     """The strokes of one make, on 4 by 2 cells, with the origin at the upper left corner of the first one."""
     across = 90.0 if broad else 0.0  # the broad side across a stroke to the right
     speed = 0.8 * cell
-    wipe = '      <annotation type="tuft:wipe" amount="{}"/>\n'
     out = []
 
     def centre(column, row):
@@ -95,7 +70,7 @@ def strokes(cell, width, broad):
     x, y = centre(2, 1)
     for i, amount in enumerate((0.6, 0.75, 0.88)):
         at = y + (i - 1) * 0.3 * cell
-        out.append(Stroke(f"dry {amount}", wipe.format(amount)).go(line(x - half, at, x + half, at, across), 1.5 * speed))
+        out.append(Stroke(f"dry {amount}", care("wipe", amount=amount)).go(line(x - half, at, x + half, at, across), 1.5 * speed))
     x, y = centre(3, 1)
     out.append(Stroke("leaning").go(line(x - half, y - 0.2 * cell, x + half, y - 0.2 * cell, across, 0.25), speed))
     out.append(Stroke("reversed").go([(x - half, y + 0.2 * cell, 0, across), (x - 0.8 * half, y + 0.2 * cell, 0.4, across),
@@ -120,19 +95,8 @@ def main():
             for i in range(n):
                 a, b = j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1
                 f.write(f"f {a}/{a} {b}/{b} {b + 1}/{b + 1}\nf {a}/{a} {b + 1}/{b + 1} {a + 1}/{a + 1}\n")
-    channels = "".join(f'      <channel name="{name}" type="decimal" {unit}/>\n' for name, unit in (
-        ("X", 'units="mm"'), ("Y", 'units="mm"'), ("P", 'min="0" max="1"'), ("T", 'units="ms"'), ("OTx", 'units="deg"'),
-        ("OTy", 'units="deg"'), ("OR", 'units="deg"')))
-    with open(folder / f"{brush}.inkml", "w") as f:
-        f.write('<?xml version="1.0" encoding="UTF-8"?>\n<ink xmlns="http://www.w3.org/2003/InkML">\n'
-                f'  <definitions>\n    <traceFormat xml:id="rolled-format">\n{channels}    </traceFormat>\n'
-                '    <context xml:id="rolled" traceFormatRef="#rolled-format"/>\n  </definitions>\n  <traceGroup>\n'
-                f'    <annotation type="tuft:brush">{brush}</annotation>\n'
-                '    <annotation type="tuft:origin">0 0 0</annotation>\n    <annotation type="tuft:right">1 0 0</annotation>\n'
-                '    <annotation type="tuft:down">0 -1 0</annotation>\n    <annotation type="tuft:mapping">project</annotation>\n')
-        for stroke in strokes(cell, width, broad):
-            f.write(stroke.text())
-        f.write("  </traceGroup>\n</ink>\n")
+    write(folder / f"{brush}.inkml", brush, [({"brush": brush, "origin": "0 0 0", "right": "1 0 0", "down": "0 -1 0",
+                                               "mapping": "project"}, strokes(cell, width, broad))])
 
 
 main()

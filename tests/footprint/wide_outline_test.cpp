@@ -247,11 +247,48 @@ TEST(WideOutline, ABladeThatFollowsACurveKeepsItsStripe) {
     EXPECT_GT(stripe_of_sword(true, false), 3 * straight);
 }
 
-/// Spines that are not joined keep outlines of their own; joined ones get one more between two.
+/// The edge of a flat that is pressed down slips away by more than it is wide from pose to pose. The patches of all
+/// poses leave no gap on the way of its middle.
+TEST(WideOutline, AnEdgeThatLeapsMarksAllThatItPassesOver) {
+    brush::Tuft tuft = brush::make_tuft(brush::load_preset("flat-12"), 5);
+    const brush::ContactPlane ground;
+    const double length = tuft.preset.length;
+    std::vector<Trail> before;
+    std::vector<std::pair<double, double>> covered;
+    double most = 0, least = 1e9;
+    int leaps = 0;
+    for (int i = 0; i <= 30; ++i) {
+        const brush::Pose pose{.position = {0, 0, length + 1e-5 - 1e-4 * i}};
+        const brush::TuftState state = brush::step(tuft, pose, std::span(&ground, 1), 1e-3);
+        const std::vector<Trail> trails = find_trails(state, kFlat, {}, length, 1e-4);
+        const std::vector<Trail> leapt = leapt_trails(trails, kFlat, before, kFlat, {0, 0});
+        leaps += !leapt.empty();
+        double lo = 1e9, hi = -1e9;
+        for (const Outline& o : outlines_of(trails, 20, leapt))
+            for (const Vec2& p : curve_points(o, 8)) lo = std::min(lo, p.y), hi = std::max(hi, p.y);
+        if (!trails.empty()) {
+            covered.emplace_back(lo, hi);
+            least = std::min(least, lo);
+            most = std::max(most, hi);
+        }
+        before = trails;
+    }
+    EXPECT_GT(leaps, 3);
+    ASSERT_GT(most - least, 3e-3);
+    std::sort(covered.begin(), covered.end());
+    double reached = least;
+    for (const auto& [lo, hi] : covered) {
+        EXPECT_LE(lo, reached + 2e-5);  // a control polygon's corners are rounded by about that
+        reached = std::max(reached, hi);
+    }
+}
+
+/// Spines that are not joined keep outlines of their own; joined ones have one for two of them, and the outermost their
+/// own.
 TEST(WideOutline, OutlinesFollowTheOpenings) {
     brush::TuftState tuft = dragged("flat-12");
     const std::size_t joined = outlines_of(tuft, kFlat).size();
-    EXPECT_EQ(joined, 5u + 4u);
+    EXPECT_EQ(joined, 4u + 2u);
     const double whole = coverage_area(rasterise(outlines_of(tuft, kFlat), kFlat, 0, kCell));
     for (brush::Opening& opening : tuft.openings)
         for (double& o : opening.width) o = 1e-3;

@@ -170,10 +170,9 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
         draw_shape(stamp, tuft, hair, contact, motion, wetness);
     else if (by_hair_)
         draw_hairs(stamp, hair, contact, motion, wetness);
-    else {
+    else
         stamp.footprint = std::move(*shape.closed);
-        stamp.swept = !shape.leapt.empty();
-    }
+    stamp.leapt = !shape.leapt.empty();
     previous_ = std::move(uncovered);
     previous_frame_ = contact.frame;
     if (options_.places_nodes) place_nodes(stamp, tuft, hair, contact);

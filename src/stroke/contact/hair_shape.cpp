@@ -7,9 +7,14 @@ namespace tuft::stroke {
 
 void LastHair::store(const brush::Tuft& tuft, const brush::Pose& at, const HairShape& hair,
                      const contact::Result& contact) {
+    constexpr int kMostMissed = 2;
     if (!tuft.wide()) return;
-    trails.clear();
-    if (touches(contact)) trails = hair.trails;
+    if (!touches(contact)) {
+        if (++missed > kMostMissed) trails.clear();
+        return;
+    }
+    missed = 0;
+    trails = hair.trails;
     frame = contact.frame;
     root = at.position;
 }

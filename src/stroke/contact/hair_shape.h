@@ -27,11 +27,13 @@ inline bool touches(const contact::Result& contact) {
     return contact.tuft.touching && contact.triangle != kNone;
 }
 
-/// Hair of the pose before of a tuft with several spines; empty after a pose that did not touch.
+/// Hair of the last pose that touched, of a tuft with several spines; empty after three poses that did not. Hair that
+/// springs forward while it is lifted may be in the air for a pose or two.
 struct LastHair {
     std::vector<footprint::Trail> trails;
     Frame frame;
-    Vec3 root{0};  ///< metres, world, of the ferrule
+    Vec3 root{0};    ///< metres, world, of the ferrule
+    int missed = 0;  ///< poses since then
 
     /// `at`: pose of the holder at that contact.
     void store(const brush::Tuft& tuft, const brush::Pose& at, const HairShape& hair, const contact::Result& contact);
