@@ -130,8 +130,8 @@ def blue_and_white():
             ({"brush": "wash-12*0.6", "ink": "samples/inks/cobalt-wash.toml", **place}, washes)]
 
 
-STRIPE = [(470, 178), (400, 197), (345, 204), (285, 200), (225, 192), (150, 184), (50, 181), (-50, 180.5), (-150, 185),
-          (-250, 193.5), (-345, 200), (-420, 196), (-480, 184), (-525, 169)]
+STRIPE = [(470, 170), (430, 181), (400, 187), (345, 193), (285, 188), (225, 181), (150, 177), (50, 178), (-50, 180), (-150, 185),
+          (-250, 193), (-345, 200), (-420, 196), (-480, 184), (-530, 168)]
 
 
 def sword():
@@ -152,8 +152,7 @@ def sword():
             keys.append((x, y, p, roll))
         return Stroke("sword").curve(keys, speed)
 
-    level = lambda f: 0 if f in (0, 1) else 0.12
-    stripe = blade([(x, -z) for x, z in STRIPE], level, 160)
+    stripe = blade([(x, -z) for x, z in STRIPE], lambda f: 0 if f in (0, 1) else 0.2, 160)
     stripe.label = "pinstripe"
     strokes = [stripe]
 
@@ -167,11 +166,11 @@ def sword():
         return out
 
     for way in (1, -1):
-        scroll = blade(spiral(-10 + 46 * way, -140, 22, 1.15, 90, way), lambda f: 0 if f in (0, 1) else 0.06 + 0.12 * (1 - f), 60)
+        scroll = blade(spiral(-10 + 46 * way, -140, 22, 1.15, 90, way), lambda f: 0 if f in (0, 1) else 0.1 + 0.2 * (1 - f), 60)
         scroll.label = "scroll"
         strokes.append(scroll)
         for k, size in enumerate((1.0, 0.75, 0.5)):
-            drop = Stroke("teardrop").curve([(0, 0, 0, 0), (1.5, 0, 0.3, 0), (5, 0, 0.24, 0), (14, 0, 0.08, 0), (24, 0, 0, 0)],
+            drop = Stroke("teardrop").curve([(0, 0, 0, 0), (1, 0, 0.62, 0), (4, 0, 0.5, 0), (14, 0, 0.22, 0), (26, 0, 0, 0)],
                                             40)
             strokes.append(drop.moved(90 + way * (28 * k - 60), size, -10 + way * (6 + 5 * k), -132 + 3 * k))
     return [({"brush": "sword-8", "ink": "titanium-white", **place}, strokes)]

@@ -177,11 +177,13 @@ TEST(WideOutline, RefinedRowsConvergeWithTheSquareOfTheirPitch) {
     const Refined flat = refined("flat-12", 1);
     EXPECT_GT(order_of(flat.force), 1.8);
     EXPECT_GT(order_of(flat.width), 1.8);
-    for (const char* name : {"filbert-12", "fan-30"}) {
-        const Refined row = refined(name, name[1] == 'a' ? 0 : 1);
-        std::printf("%s force %g %g %g order %.2f width %g %g %g order %.2f\n", name, row.force[0], row.force[1],
-                    row.force[2], order_of(row.force), row.width[0], row.width[1], row.width[2], order_of(row.width));
-    }
+    // A filbert's toe falls steeply at its edges, 1 − √(1 − s²): the length of the outermost strip's mean hair, and
+    // with it the force, converge more slowly than its breadth.
+    const Refined filbert = refined("filbert-12", 1);
+    EXPECT_GT(order_of(filbert.force), 0.7);
+    EXPECT_GT(order_of(filbert.width), 1.8);
+    // A wet fan zips in other places for each number of spines; dry hair has no film.
+    EXPECT_GT(order_of(refined("fan-30", 0).force), 1.7);
 }
 
 /// A filbert's toe is round: its middle touches further ahead than its edges, as a mirror image.
@@ -229,7 +231,7 @@ TEST(WideOutline, RingMarksADisc) {
 /// Width of the stripe of a sword after a long way, straight or on a circle of 60 mm, metres. Its blade goes along the
 /// way where its point touches, or keeps its direction.
 double stripe_of_sword(bool circle, bool follows) {
-    constexpr double kRadius = 60e-3, kStep = 2e-4, kDepth = 0.15;
+    constexpr double kRadius = 60e-3, kStep = 2e-4, kDepth = 0.06;
     const brush::Preset p = brush::load_preset("sword-8");
     brush::Tuft tuft = brush::make_tuft(p, 7);
     brush::TuftState state;
@@ -303,12 +305,11 @@ TEST(WideOutline, AnEdgeThatLeapsMarksAllThatItPassesOver) {
     }
 }
 
-/// Spines that are not joined keep outlines of their own; joined ones have one for two of them, and the outermost their
-/// own.
+/// Spines that are not joined keep outlines of their own; joined ones get one more between two.
 TEST(WideOutline, OutlinesFollowTheOpenings) {
     brush::TuftState tuft = dragged("flat-12");
     const std::size_t joined = outlines_of(tuft, kFlat).size();
-    EXPECT_EQ(joined, 4u + 2u);
+    EXPECT_EQ(joined, 5u + 4u);
     const double whole = coverage_area(rasterise(outlines_of(tuft, kFlat), kFlat, 0, kCell));
     for (brush::Opening& opening : tuft.openings)
         for (double& o : opening.width) o = 1e-3;

@@ -15,7 +15,6 @@ namespace {
 struct Joint {
     std::vector<std::vector<Cut>> side;  ///< [trails][sections]
     std::vector<const Trail*> trail;     ///< [trails]
-    bool whole = false;                  ///< there is no other: ink joins all that touches
 };
 
 Cut cut_between(const Cut& p, const Cut& q, double f) {
@@ -94,14 +93,12 @@ std::vector<Joint> joints_of(std::span<const Trail* const> trails) {
             for (const Trail* b : trails)
                 if (const TrailOpening* o = opening_between(*a.trail, *b)) widest = std::max(widest, a.opening(u, *o));
         if (widest <= 0) {
-            if (open)
-                out.push_back({std::vector<std::vector<Cut>>(trails.size()), {trails.begin(), trails.end()}, false});
+            if (open) out.push_back({std::vector<std::vector<Cut>>(trails.size()), {trails.begin(), trails.end()}});
             for (std::size_t k = 0; k < walks.size(); ++k) out.back().side[k].push_back(walks[k].cut(u));
         }
         open = widest > 0;
     }
     std::erase_if(out, [](const Joint& j) { return j.side.front().size() < 2; });
-    if (out.size() == 1) out[0].whole = out[0].side.front().size() == kJointSamples;
     return out;
 }
 
@@ -257,11 +254,7 @@ namespace {
 class Union {
   public:
     Union(std::span<const Trail> trails, int points, std::span<const Trail> before)
-        : trails_(trails),
-          before_(before),
-          points_(std::max(points, 4)),
-          middle_(middle_of_ring(trails)),
-          within_(trails.size(), 0) {}
+        : trails_(trails), before_(before), points_(std::max(points, 4)), middle_(middle_of_ring(trails)) {}
 
     void join(std::initializer_list<std::size_t> numbers) {
         std::vector<const Trail*> now, was;
@@ -272,21 +265,18 @@ class Union {
             if (arc) add_arc(joint, middle_);
             keep(outline_of(joint, points_));
         }
-        if (joints.size() == 1 && joints[0].whole)
-            for (const std::size_t k : numbers) within_[k] += is_within(k, now);
         if (joints.empty()) return;
         for (const Trail* trail : now)
             if (const Trail* b = same_branch(*trail, before_)) was.push_back(b);
         if (was.size() == now.size()) keep(swept_outline(now, was, points_));
     }
 
-    /// Adds those that are not joined on both sides; a joined outline is not exact round its ends.
-    void add_others() {
-        for (std::size_t k = 0; k < trails_.size(); ++k) {
-            if (trails_[k].strip && within_[k] >= 2) continue;
-            const Trail* const now = &trails_[k];
-            keep(outline_of(*now, points_));
-            if (const Trail* was = same_branch(*now, before_)) keep(swept_outline({&now, 1}, {&was, 1}, points_));
+    /// Adds each trail alone.
+    void add_alone() {
+        for (const Trail& trail : trails_) {
+            const Trail* const now = &trail;
+            keep(outline_of(trail, points_));
+            if (const Trail* was = same_branch(trail, before_)) keep(swept_outline({&now, 1}, {&was, 1}, points_));
         }
     }
 
@@ -296,26 +286,17 @@ class Union {
     void keep(Outline outline) {
         if (outline.left.size() >= 3) out_.push_back(std::move(outline));
     }
-    /// Whether all of a trail lies over the stretch that it has in common with the others of its joint.
-    bool is_within(std::size_t k, std::span<const Trail* const> joined) const {
-        const Trail& own = trails_[k];
-        return std::all_of(joined.begin(), joined.end(), [&](const Trail* other) {
-            return own.along.front() / own.length <= other->along.front() / other->length + kPast &&
-                   own.along.back() / own.length >= other->along.back() / other->length - kPast;
-        });
-    }
-
     std::span<const Trail> trails_, before_;
     int points_;
     Vec2 middle_;
     std::vector<Outline> out_;
-    std::vector<int> within_;  // joined outlines in which a trail lies
 };
 
 }  // namespace
 
 std::vector<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before) {
     Union all(trails, points, before);
+    all.add_alone();
     for (std::size_t a = 0; a < trails.size(); ++a)
         for (std::size_t b = 0; b < trails.size(); ++b) {
             if (!opening_between(trails[a], trails[b])) continue;
@@ -323,7 +304,6 @@ std::vector<Outline> outlines_of(std::span<const Trail> trails, int points, std:
             for (std::size_t c = 0; c < trails.size(); ++c)
                 if (opening_between(trails[b], trails[c]) && opening_between(trails[a], trails[c])) all.join({a, b, c});
         }
-    all.add_others();
     return all.take();
 }
 
