@@ -27,8 +27,8 @@ def one_stroke():
                  (-9, 0, 0.22, 74), (-4, 0, 0, 66)], 18)
         petals.append(s.moved(turn))
     # From the stem to the point: broad, turned onto the edge while it slides and is lifted.
-    for x, y, turn, size in ((36, 20, 28, 1.0), (26, 38, 62, 0.9), (-34, -20, 208, 1.0), (-22, -40, 243, 0.85),
-                             (-40, 8, 172, 0.8), (41, -6, -9, 0.8)):
+    for x, y, turn, size in ((44, 22, 24, 1.0), (26, 44, 62, 0.9), (-44, -20, 204, 1.0), (-26, -44, 243, 0.85),
+                             (-48, 8, 172, 0.8), (50, -6, -9, 0.8)):
         s = Stroke("leaf", double_loaded("indigo", "gamboge"))
         s.curve([(-13, 0, 0, 90), (-11, 0, 0.3, 90), (-5, 1.2, 0.55, 92), (3, 2.2, 0.5, 78), (11, 1.8, 0.3, 48),
                  (18, 0.4, 0.12, 22), (24, -0.8, 0, 8)], 20)
@@ -37,7 +37,7 @@ def one_stroke():
         s = Stroke("comma", double_loaded("cinnabar", "titanium-white"))
         s.curve([(-4, 0, 0, 90), (-3.4, 0, 0.4, 90), (-1, 0.2, 0.3, 84), (2.5, 0.8, 0.1, 60), (5, 1.6, 0, 40)], 10)
         a = math.radians(60 * k + 38)
-        commas.append(s.moved(60 * k + 38, 1, 33 * math.cos(a), 33 * math.sin(a)))
+        commas.append(s.moved(60 * k + 38, 1, 26 * math.cos(a), 26 * math.sin(a)))
     return [({"brush": "flat-12*0.8", "ink": "indigo", **place}, leaves),
             ({"brush": "filbert-12", "ink": "cinnabar", **place}, petals),
             ({"brush": "filbert-12*0.45", "ink": "cinnabar", **place}, commas),
@@ -169,10 +169,11 @@ def sword():
         scroll = blade(spiral(-10 + 46 * way, -140, 22, 1.15, 90, way), lambda f: 0 if f in (0, 1) else 0.1 + 0.2 * (1 - f), 60)
         scroll.label = "scroll"
         strokes.append(scroll)
-        for k, size in enumerate((1.0, 0.75, 0.5)):
+        # Drops that fall away from the scroll's foot, the longest in the middle.
+        for k, size in enumerate((1.0, 0.7, 0.45)):
             drop = Stroke("teardrop").curve([(0, 0, 0, 0), (1, 0, 0.62, 0), (4, 0, 0.5, 0), (14, 0, 0.22, 0), (26, 0, 0, 0)],
                                             40)
-            strokes.append(drop.moved(90 + way * (28 * k - 60), size, -10 + way * (6 + 5 * k), -132 + 3 * k))
+            strokes.append(drop.moved(90 - way * 16 * k, size, -10 + way * (4 + 9 * k), -122 - 2 * k))
     return [({"brush": "sword-8", "ink": "titanium-white", **place}, strokes)]
 
 
