@@ -87,6 +87,36 @@ TEST(MixedInk, EachPigmentIsConservedStillAndWet) {
     }
 }
 
+/// A flat with an ink in each half of its width, drawn over the sheet: what its hair loses of each, the texels have.
+/// Sums of the differences of what is stored, so that even the rounding of texels is in the books.
+TEST(MixedInk, ADoubleLoadedFlatKeepsTheMassOfEachInk) {
+    const std::string flat = "flat-12*0.4";
+    const Model model = sheet();
+    Document painting(model);
+    const auto prepare = [&](BrushActionKind kind, const std::string& ink, const Extent& extent) {
+        painting.paint(
+            BrushAction{.kind = kind, .brush = flat, .ink = ink, .extent = extent, .dip = DipMode::persistent});
+    };
+    prepare(BrushActionKind::dip, "gamboge", {});
+    prepare(BrushActionKind::wipe, "gamboge", {.amount = 1, .side = 0.5});
+    prepare(BrushActionKind::dip, "cinnabar", {.side = 0.5});
+    std::array<double, 2> whole;
+    for (int p = 0; p < 2; ++p) whole[p] = painting.brushes().find(flat)->reservoir.pigment(p);
+    for (int i = 0; i < 2; ++i) {
+        PaintStroke s = line(flat, 3e-3, make_frame({8e-3 * i - 4e-3, 0, 0}, {0, 0, 1}, {0, 1, 0}));
+        for (StrokeSample& p : s.trace.samples) p.rotation = Quat{1, 0, 0, 0};
+        s.ink = "cinnabar";
+        s.settings.dip = DipMode::persistent;
+        painting.paint(s);
+    }
+    for (int p = 0; p < 2; ++p) {
+        const double on_sheet = painting.layers().canvas().total(model.texels, p);
+        const double now = on_sheet + painting.brushes().find(flat)->reservoir.pigment(p);
+        EXPECT_GT(on_sheet, 1e-3 * whole[p]) << p;
+        EXPECT_NEAR(now / whole[p], 1, 1e-10) << p;
+    }
+}
+
 TEST(MixedInk, ReplaysToTheBitOnAnyNumberOfThreads) {
     const Model model = sheet();
     for (const FilmModel film : {FilmModel::still, FilmModel::wet}) {

@@ -12,10 +12,10 @@ namespace {
 
 constexpr int kSlices = 4096;  ///< of the mouth, for areas: error 1e-6 for q ≥ 2
 
-/// Length of the hair at s = x/a over the tuft's.
-double length_at(const Preset& p, double s) {
+/// Length of the hair at s = x/a over the tuft's. `outermost`: s of the last spine.
+double length_at(const Preset& p, double s, double outermost) {
     const double toe = p.toe * (1 - std::sqrt(std::max(0.0, 1 - s * s)));
-    const double slant = 0.5 * p.slant * (1 - s);
+    const double slant = 0.5 * p.slant * (1 - s / outermost);
     return 1 - (toe + slant) / p.length;
 }
 
@@ -96,7 +96,6 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
         spine.x = a * s;
         spine.share = own / area;
         spine.lean = p.splay * s;
-        spine.length = length_at(p, s);
         spine.pitch = a * (spine.to - spine.from);
         spine.thick = 2 * p.radius * own * (2.0 / kSlices) / (spine.to - spine.from);
     }
@@ -110,9 +109,9 @@ std::vector<FerruleSpine> ferrule_spines(const Preset& p) {
         r.thick = l.thick;
         r.to = -l.from;
         r.from = -l.to;
-        if (p.slant == 0) r.length = l.length;
         if (k == p.spines - 1 - k) l.x = l.lean = 0;
     }
+    for (FerruleSpine& spine : out) spine.length = length_at(p, spine.x / a, out.back().x / a);
     return out;
 }
 

@@ -11,8 +11,9 @@
 /// The mouth is |x/a|^q + |y/b|^q ≤ 1 with a = width/2, b = radius (half the thickness), x the broad side. It is cut
 /// into K strips of equal area; a spine stands at the centroid of each. Lengths over the width, with s = x/a:
 ///
-///     even  L          toe  L − h (1 − √(1 − s²))  (filbert)          slant  L − h (1 − s)/2  (sword)
+///     even  L          toe  L − h (1 − √(1 − s²))  (filbert)          slant  L − h (1 − s/s_K)/2  (sword)
 ///
+/// s_K is that of the last spine: a sword's outermost spines end where its hair does.
 /// A round mouth, a = b = R, holds a ring: one spine in the middle and K − 1 around it. The middle cell is a disc of
 /// radius R/√K, the others are equal sectors of what is left; each is a disc of the same area at rest. Neighbours touch
 /// along a face: along that disc's rim, or along the line between two sectors.

@@ -185,12 +185,14 @@ TuftState bend_wide(Tuft& tuft, const Pose& pose, std::span<const ContactPlane> 
     state.energy.lost += lost * p.stiffness / p.length;
     state.energy.contact += solved.coupling_energy * p.stiffness / p.length;
     const double bridged = std::max(tuft.wetness * solved.film_range, p.hair_diameter);
+    // The hair of a ring that splays is spread over the gap between two spines, and leaves as many narrow ones.
+    const double shared = has_broad_side(p) ? 1 : std::sqrt(static_cast<double>(p.bristles) / p.spines);
     for (const Beside& beside : tuft.beside) {
         // Beyond the end of the shorter one its tip says whether the skin goes on.
         const std::vector<double>& gap = beside.gap;
         std::vector<double> width(tuft.spines[beside.first].rest_radius.size());
         for (std::size_t i = 0; i < width.size(); ++i)
-            width[width.size() - 1 - i] = gap[std::min(i, gap.size() - 1)] - bridged;
+            width[width.size() - 1 - i] = gap[std::min(i, gap.size() - 1)] / shared - bridged;
         state.openings.push_back({beside.first, beside.second, std::move(width)});
     }
     return state;

@@ -221,6 +221,43 @@ std::vector<Stretch> touching_stretches(const BranchSurface& surface) {
 
 }  // namespace
 
+std::vector<NodePlanes> node_planes(const brush::TuftState& tuft, std::span<const brush::ContactPlane> planes) {
+    const auto& branches = tuft.branches;
+    if (planes.size() == 1) {
+        std::vector<NodePlanes> same;
+        same.reserve(branches.size());
+        for (const brush::Branch& b : branches) same.emplace_back(b.sections.size(), planes[0]);
+        return same;
+    }
+    if (branches.size() == 1 && planes.size() >= branches[0].sections.size())
+        return {NodePlanes(planes.begin(), planes.begin() + branches[0].sections.size())};
+    if (branches.size() < 2) return {};
+    if (tuft.wide) {
+        std::vector<NodePlanes> own;
+        std::size_t first = 0;
+        for (const brush::Branch& b : branches) {
+            if (planes.size() < first + b.sections.size()) return {};
+            const auto part = planes.subspan(first, b.sections.size());
+            own.emplace_back(part.begin(), part.end());
+            first += b.sections.size();
+        }
+        return own;
+    }
+    // The middle branch ends in the whole spine's root; its outer nodes are the sub_spine's.
+    const std::size_t trunk = branches[branches.size() / 2].sections.size();
+    const std::size_t sub_spine = branches[0].sections.size();
+    if (trunk < sub_spine || planes.size() != trunk + branches.size() * sub_spine) return {};
+    std::vector<NodePlanes> dealt;
+    for (std::size_t k = 0; k < branches.size(); ++k) {
+        const auto own = planes.subspan(trunk + k * sub_spine, sub_spine);
+        dealt.emplace_back(own.begin(), own.end());
+        if (k != branches.size() / 2) continue;
+        dealt.back().pop_back();
+        dealt.back().insert(dealt.back().end(), planes.begin() + sub_spine - 1, planes.begin() + trunk);
+    }
+    return dealt;
+}
+
 std::vector<Trail> find_trails(const brush::TuftState& tuft, const Frame& frame, std::span<const NodePlanes> planes,
                                double length, double film) {
     std::vector<Trail> found;

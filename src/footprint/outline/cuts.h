@@ -100,7 +100,15 @@ void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& fo
 Outline outline_of(const Trail& trail, int points);
 
 /// Returns the outlines whose union is the contact patch: one for each trail, and where spines of a ferrule are joined
-/// by ink, one for what lies between two of them, or in a ring between three, at equal parts of their hair.
-std::vector<Outline> outlines_of(std::span<const Trail> trails, int points);
+/// by ink, one for what lies between two of them, or in a ring between three, at equal parts of their hair. `before`:
+/// of `leapt_trails`; what leapt also has an outline of all that it passed over.
+std::vector<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before = {});
+
+/// Returns the trails of the pose before in the frame of `trails`, where a patch leapt: from pose to pose, apart from
+/// the motion of the hand, a part of it moved by more than 0.4 of its own extent in that direction. The edge of hair
+/// that stands touches in a line that slips away by millimetres for a tenth of a millimetre of press. Empty where none
+/// leapt. `frame_before`: of `before`; `hand`: displacement of the hand, metres, (u, v) of `frame`.
+std::vector<Trail> leapt_trails(std::span<const Trail> trails, const Frame& frame, std::span<const Trail> before,
+                                const Frame& frame_before, const Vec2& hand);
 
 }  // namespace tuft::footprint

@@ -34,6 +34,7 @@ constexpr double kSkirt = 0.7, kFullSkirt = 0.9;
 constexpr double kBridge = 0.5;        // spacings that ink bridges from one bristle to the next at half wetness
 constexpr double kLeastContact = 0.1;  // fraction of its length on the surface that the driest bristle touches with
 constexpr double kSameEnd = 0.01;      // of the length
+constexpr double kLeastLength = 1e-6;  // of the length, that hair touches with at least
 constexpr double kBeyond = 0.5;        // widest half width that the outermost hair's ink may reach further
 
 /// Height of a place over its section's centre, metres.
@@ -298,11 +299,13 @@ TUFT_CLONES std::uint32_t scale_coverage(std::uint8_t* __restrict coverage, cons
     return sum;
 }
 
-/// Calls f(bundle, cut, position in the section, length) for each part of a bundle on the surface.
+/// Calls f(bundle, cut, position in the section, length) for each part of a bundle on the surface. Of a spine of a
+/// ferrule that just touches, with less than a bundle, all bundles touch where it is lowest.
 template <class F>
 void for_each_contact(const Trail& trail, const brush::Bundles& bundles, int branches, F f) {
     constexpr std::size_t kStride = 3;  // sections looked at
     const std::size_t count = trail.cuts.size();
+    bool any = false;
     for (std::size_t k = 0; k < bundles.place.size(); ++k) {
         const BristlePlace placed(bundles, bundles.place[k], branches);
         for (std::size_t i = 0; i < count; i += kStride) {
@@ -310,8 +313,16 @@ void for_each_contact(const Trail& trail, const brush::Bundles& bundles, int bra
             if (!at || height_over_centre(trail.cuts[i], *at) > 0 || !is_touching(trail, trail.cuts[i], *at)) continue;
             const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
             f(k, i, *at, std::abs(trail.along[a] - trail.along[b]));
+            any = true;
         }
     }
+    if (any || (bundles.strips.empty() && bundles.around == 0)) return;
+    const auto deepest = std::max_element(trail.cuts.begin(), trail.cuts.end(),
+                                          [](const Cut& p, const Cut& q) { return p.overlap() < q.overlap(); });
+    const auto i = static_cast<std::size_t>(deepest - trail.cuts.begin());
+    const double length = std::max(std::abs(trail.along.front() - trail.along.back()), kLeastLength);
+    for (std::size_t k = 0; k < bundles.place.size(); ++k)
+        if (const Vec2* at = BristlePlace(bundles, bundles.place[k], branches).at(trail, i)) f(k, i, *at, length);
 }
 
 }  // namespace

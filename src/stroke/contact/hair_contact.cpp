@@ -172,6 +172,7 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
         draw_hairs(stamp, hair, contact, motion, wetness);
     else
         stamp.footprint = std::move(*shape.closed);
+    stamp.leapt = !shape.leapt.empty();
     previous_ = std::move(uncovered);
     previous_frame_ = contact.frame;
     if (options_.places_nodes) place_nodes(stamp, tuft, hair, contact);

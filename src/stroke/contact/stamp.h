@@ -17,6 +17,7 @@ struct Stamp {
     ink::DepositParams ink;
     double ds = 0;          ///< metres of travel that it stands for
     double erases = 0;      ///< strength of an eraser, which removes ink; 0: no eraser
+    bool leapt = false;     ///< hair leapt since the stamp before; if wet, all that it passed over is in the footprint
     bool by_hair = false;   ///< made of single hairs: the substrate's grain shows where ink does not fill it
     float separation = 0;   ///< part of it that is single hairs, 0–1; 0: one closed patch
     double grain_film = 0;  ///< by hair: metres of ink under the hair above the grain's mean height

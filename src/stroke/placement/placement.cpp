@@ -88,6 +88,32 @@ std::vector<brush::Pose> spatial_poses(const StrokeSamples& trace) {
     return poses;
 }
 
+namespace {
+
+constexpr double kWayLength = 3e-3;  // metres to both sides of a sample over which its path's direction is taken
+constexpr double kMostTurn = 0.5;    // radians by which a mapping turns a path against its axes; beyond, it is torn
+
+/// Turns the rolls of a trace so that the ferrule lies to its path on the surface as it did to the flat one: a mapping
+/// turns a path against the axes that it carries along, by a degree or two where a projected surface leans. A blade as
+/// long as a sword's draws twice its line at one degree.
+void keep_rolls_to_path(std::span<const StrokeSample> flat, std::span<SurfaceSample> mapped) {
+    if (std::none_of(flat.begin(), flat.end(), [](const StrokeSample& s) { return s.roll != 0; })) return;
+    const std::vector<double> along = travelled(flat);
+    std::size_t a = 0, b = 0;
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+        while (along[i] - along[a] > kWayLength) ++a;
+        while (b + 1 < flat.size() && along[b] - along[i] < kWayLength) ++b;
+        const Vec2 drawn(flat[b].position - flat[a].position);
+        const Vec3 way = mapped[b].position - mapped[a].position;
+        const Vec2 laid{glm::dot(way, mapped[i].right), glm::dot(way, mapped[i].down)};
+        if (!(glm::length(drawn) > 0.1 * kWayLength) || !(glm::length(laid) > 0.1 * kWayLength)) continue;
+        const double turn = std::atan2(drawn.x * laid.y - drawn.y * laid.x, glm::dot(drawn, laid));
+        mapped[i].roll -= std::clamp(turn, -kMostTurn, kMostTurn);
+    }
+}
+
+}  // namespace
+
 HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, const HolderOptions& options) {
     if (!trace.flat) return {{}, spatial_poses(trace), 0};
     // The mapped samples are where the ink is to be: over a hollow, the surface ahead leans otherwise.
@@ -101,6 +127,7 @@ HandPath hand_path(const mesh::SurfaceQuery& query, const StrokeSamples& trace, 
         ink.samples[i].position = trace.samples[own].position;
     }
     path.mapped = map_to_surface(query, ink);
+    keep_rolls_to_path(ink.samples, path.mapped.samples);
     for (std::size_t i = 0; i < ink.samples.size(); ++i)
         path.mapped.samples[i].tip_lag = Vec2(lifted.samples[i].position - ink.samples[i].position);
     path.poses = pose_holder(query, path.mapped.samples, options);

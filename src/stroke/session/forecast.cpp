@@ -21,15 +21,17 @@ StrokeForecast::StrokeForecast(brush::Tuft tuft, std::span<const brush::Pose> pa
     start_.wetness = 1;
     start_.ink_left = kWetFullness;
     end_ = start_;
+    LastHair last;
     for (std::size_t i = 0; i < path_.size(); ++i) {
         PoseForecast forecast{.pose = path_[i], .contact = {}, .hair = {}};
         forecast.contact =
             contact::step(end_, path_[i], surface_, end_memory_, seconds_between(path_, i), options_.contact);
         if (end_.split) break;
         if (touches(forecast.contact)) {
-            forecast.hair = find_hair(end_, forecast.contact);
+            forecast.hair = find_hair(end_, forecast.contact, last);
             close_hair(forecast.hair, forecast.contact, options_.cell);
         }
+        last.store(end_, forecast.pose, forecast.hair, forecast.contact);
         poses_.push_back(std::move(forecast));
     }
 }

@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kLeap = 0.5;          // of a patch's size: beyond, single marks would part
 constexpr double kPrintTravel = 1e-4;  // metres that dry hair slides after it came to touch until it prints
+// Of the ink that a face of foam gives where it is pressed on, what it gives where it slides by as far: its ridges ride
+// on a thin film, and its pores wipe behind them.
+constexpr double kSlidingFoam = 0.005;
 
 // Metres: furrows and edges of paste are rounded over more than a tenth of a millimetre.
 constexpr double kPasteSpacing = 1e-4, kPasteCell = 4e-5;
@@ -111,6 +114,7 @@ contact::Result StrokeSession::next_contact(const brush::Pose& pose, double dt) 
     if (contact_.forecast) {
         if (PoseForecast* ready = contact_.forecast->next(pose, tuft_.brush.tuft)) {
             contact_.hair = std::move(ready->hair);
+            contact_.last.store(tuft_.brush.tuft, pose, contact_.hair, ready->contact);
             return std::move(ready->contact);
         }
         leave_forecast();
@@ -119,7 +123,8 @@ contact::Result StrokeSession::next_contact(const brush::Pose& pose, double dt) 
     if (!path_.started && tuft_.brush.tuft.posed) brush::step(tuft_.brush.tuft, pose, {}, 0);
     contact::Result contact =
         contact::step(tuft_.brush.tuft, pose, *input_.model.query, contact_.memory, dt, contact_.options);
-    contact_.hair = touches(contact) ? find_hair(tuft_.brush.tuft, contact) : HairShape{};
+    contact_.hair = touches(contact) ? find_hair(tuft_.brush.tuft, contact, contact_.last) : HairShape{};
+    contact_.last.store(tuft_.brush.tuft, pose, contact_.hair, contact);
     return contact;
 }
 
@@ -164,13 +169,20 @@ void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double 
     const brush::Preset& preset = tuft_.brush.tuft.preset;
     const double size = std::max(patch_size(preset, area), 1e-15);
     const double leap = smooth_step(glm::length(moved.hair - moved.hand) / size / kLeap);
-    stamp.motion.shift = glm::mix(moved.hand, moved.hair, std::max(leap, static_cast<double>(stamp.separation)));
+    // Spines that leapt went each along its own path: none goes with their mean.
+    const double with_hair = stamp.leapt ? 0 : std::max(leap, static_cast<double>(stamp.separation));
+    stamp.motion.shift = glm::mix(moved.hand, moved.hair, with_hair);
     // Dry hair leaves ink by how it is drawn: where it only comes to touch, a tip that leans would print a speck that
     // its stroke, which begins where it has been pressed aside, does not reach.
     const bool prints = motion_.contact_travel >= kPrintTravel;
     stamp.ds = prints ? path_.spacing : (1 - static_cast<double>(stamp.separation)) * path_.spacing;
+    if (brush::is_foam(preset)) {
+        const double slides = std::min(stamp.ds, glm::length(moved.hair));
+        stamp.ds += (kSlidingFoam - 1) * slides;
+    }
     // An edge that slips away under a press draws by its own path, which is longer than the hand's.
-    if (brush::has_broad_side(preset)) stamp.ds = std::max(stamp.ds, leap * glm::length(stamp.motion.shift));
+    if (brush::has_broad_side(preset)) stamp.ds = std::max(stamp.ds, with_hair * glm::length(stamp.motion.shift));
+    if (stamp.leapt && !stamp.by_hair) stamp.ds = std::max(stamp.ds, glm::length(moved.hair));
 }
 
 void StrokeSession::set_ink(Stamp& stamp, double area) const {

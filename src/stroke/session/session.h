@@ -103,6 +103,7 @@ class StrokeSession {
         Vec3 device_force{0};
         std::optional<StrokeForecast> forecast;
         HairShape hair;  // at the last pose that touched
+        LastHair last;
     };
     /// What is recorded of the forces, where it is asked for.
     struct ForceLog {

@@ -1,0 +1,191 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/text/units.h"
+#include "mesh/read/polygon_soup.h"
+#include "paths.h"
+#include "stroke/document/document.h"
+
+/// Stripes by a sword: how even they are, measured on the texels.
+namespace tuft::stroke {
+namespace {
+
+Model shipped(const std::string& name, std::uint32_t size) {
+    const std::string file = source_folder() + "/models/" + name;
+    ModelOptions options;
+    options.unwrap.size = size;
+    return prepare_model(mesh::read_polygon_file(file), options);
+}
+
+constexpr double kSpeed = 0.16;  // m/s
+constexpr double kPress = 0.15;
+constexpr double kLands = 15e-3;  // m over which it is pressed and lifted
+
+/// A stripe along points 1 mm apart, x to the right and y down, with the blade along it.
+PaintStroke stripe(const std::vector<Vec2>& path, const Placement& place) {
+    PaintStroke s;
+    s.brush = "sword-8";
+    s.ink = "titanium-white";
+    s.trace.placement = place;
+    s.trace.placed = true;
+    double along = 0, whole = 0;
+    for (std::size_t i = 1; i < path.size(); ++i) whole += glm::distance(path[i], path[i - 1]);
+    double roll = 0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        if (i > 0) along += glm::distance(path[i], path[i - 1]);
+        const Vec2 ahead = path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0];
+        const double across = std::atan2(-ahead.y, ahead.x);
+        roll = i > 0 ? roll + std::remainder(across - roll, 2 * std::numbers::pi) : across;
+        StrokeSample p;
+        p.time = along / kSpeed;
+        p.position = Vec3(path[i], 0);
+        p.pressure = kPress * std::clamp(std::min(along, whole - along) / kLands, 0.0, 1.0);
+        p.roll = roll;
+        s.trace.samples.push_back(p);
+    }
+    return s;
+}
+
+struct Evenness {
+    double mean = 0, deviation = 0, widest = 0, narrowest = 1e9;  // metres, over parts of the path
+    double length = 0;                                            // metres
+};
+
+/// Width of what is inked of each `part` metres of the stripe: area over length along the surface, as seen along the
+/// mean normal there, so that the walls of a shut line do not count. The ends, where the
+/// hand presses and lifts, do not count. `along`: place of a point of the model on the stripe, metres, or negative.
+/// `gaps`: parts with a shut line, where hair dips into the gap; they count for the widest and the narrowest only.
+template <class F>
+Evenness measure(const Document& painting, const Model& model, double part, F along,
+                 std::vector<std::size_t> gaps = {}) {
+    struct Texel {
+        std::size_t part;
+        double area;
+        Vec3 normal;
+    };
+    std::vector<Texel> texels;
+    std::vector<double> area;
+    std::vector<Vec3> middle, normal;  // sums weighted by area
+    const ink::Canvas& canvas = painting.layers().canvas();
+    const auto full = static_cast<float>(0.8 * painting.materials().ink("titanium-white").film);
+    for (const std::uint32_t slot : canvas.touched_slots()) {
+        const ink::Plane* plane = canvas.plane(slot, 0);
+        for (int t = 0; plane && t < atlas::kTileTexels; ++t) {
+            const double covered = std::min((*plane)[t] / full, 1.0f);
+            const Vec3 p(model.texels.position(slot, t));
+            const double place = along(p), own = covered * static_cast<double>(model.texels.tiles[slot].area[t]);
+            if (!(own > 0) || place < 0) continue;
+            const auto k = static_cast<std::size_t>(place / part);
+            if (k >= area.size()) area.resize(k + 1, 0), middle.resize(k + 1, Vec3{0}), normal.resize(k + 1, Vec3{0});
+            texels.push_back({k, own, Vec3(model.texels.normal(slot, t))});
+            area[k] += own;
+            middle[k] += own * p;
+            normal[k] += own * texels.back().normal;
+        }
+    }
+    std::size_t first = 0, end = area.size();
+    while (first < end && area[first] == 0) ++first;
+    for (std::size_t k = 0; k < area.size(); ++k)
+        if (area[k] > 0) middle[k] /= area[k];
+    std::fill(area.begin(), area.end(), 0.0);
+    for (const Texel& t : texels)
+        area[t.part] += t.area * std::max(0.0, glm::dot(t.normal, glm::normalize(normal[t.part])));
+    Evenness out;
+    std::vector<double> width;
+    const auto skip = static_cast<std::size_t>(std::ceil(2 * kLands / part));
+    for (std::size_t k = first + skip; k + skip < end; ++k) {
+        const double length = 0.5 * glm::distance(middle[k - 1], middle[k + 1]);
+        const double own = area[k] / length;
+        out.length += length;
+        out.widest = std::max(out.widest, own);
+        out.narrowest = std::min(out.narrowest, own);
+        if (std::find(gaps.begin(), gaps.end(), k) != gaps.end()) continue;
+        width.push_back(own);
+        out.mean += own;
+    }
+    out.mean /= static_cast<double>(width.size());
+    for (const double w : width) out.deviation += (w - out.mean) * (w - out.mean);
+    out.deviation = std::sqrt(out.deviation / static_cast<double>(width.size()));
+    return out;
+}
+
+void record(const Evenness& e) {
+    testing::Test::RecordProperty("mean_mm", std::to_string(e.mean / kMillimetre));
+    testing::Test::RecordProperty("deviation_percent", std::to_string(100 * e.deviation / e.mean));
+    std::printf("mean %.3f mm, sd %.2f %%, widest %.3f, narrowest %.3f, over %.0f mm\n", 1e3 * e.mean,
+                100 * e.deviation / e.mean, e.widest / e.mean, e.narrowest / e.mean, 1e3 * e.length);
+}
+
+/// Points of a polygon's Catmull-Rom curve, about 1 mm apart.
+std::vector<Vec2> curve_through(const std::vector<Vec2>& keys) {
+    std::vector<Vec2> out;
+    for (std::size_t k = 0; k + 1 < keys.size(); ++k) {
+        const Vec2 p0 = k > 0 ? keys[k - 1] : 2.0 * keys[0] - keys[1], p1 = keys[k], p2 = keys[k + 1];
+        const Vec2 p3 = k + 2 < keys.size() ? keys[k + 2] : 2.0 * p2 - p1;
+        const int n = std::max(1, static_cast<int>(glm::distance(p1, p2) / 1e-3));
+        for (int i = 0; i < n; ++i) {
+            const double f = static_cast<double>(i) / n, f2 = f * f, f3 = f2 * f;
+            out.push_back(0.5 * (2.0 * p1 + f * (p2 - p0) + f2 * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3) +
+                                 f3 * (3.0 * p1 - p0 - 3.0 * p2 + p3)));
+        }
+    }
+    out.push_back(keys.back());
+    return out;
+}
+
+/// Along the car's flank, from behind the nose over both arches.
+TEST(Pinstripe, AMetreOverTheCarsFlankIsEven) {
+    const Model car = shipped("car.ply", 8192);
+    std::vector<Vec2> keys;
+    for (const auto& [x, z] : {std::pair{470, 170},
+                               {430, 181},
+                               {400, 187},
+                               {345, 193},
+                               {285, 188},
+                               {225, 181},
+                               {150, 177},
+                               {50, 178},
+                               {-50, 180},
+                               {-150, 185},
+                               {-250, 193},
+                               {-345, 200},
+                               {-420, 196},
+                               {-480, 184},
+                               {-530, 168}})
+        keys.push_back(kMillimetre * Vec2(x, 178 - z));
+    const std::vector<Vec2> path = curve_through(keys);
+    Document painting(car);
+    painting.paint(stripe(path, {{0, -0.24, 0.178}, {1, 0, 0}, {0, 0, -1}, SurfaceMapping::project}));
+    const Evenness e = measure(painting, car, 10e-3, [](const Vec3& p) { return p.y < 0 ? 0.55 - p.x : -1; },
+                               {35, 36, 67});  // the door's
+    record(e);
+    EXPECT_GT(e.length, 0.95);
+    EXPECT_LE(e.deviation, 0.03 * e.mean);
+    EXPECT_LT(e.widest, 1.3 * e.mean) << "no bead, nor at the shut lines";
+    EXPECT_GT(e.narrowest, 0.85 * e.mean) << "no break";
+}
+
+/// Round a circle of 60 mm, the start with it.
+TEST(Pinstripe, ACurveOfSixtyMillimetresIsEven) {
+    const Model sheet = shipped("sheet.ply", 2048);
+    std::vector<Vec2> path;
+    for (int i = 0; i <= 340; ++i) {
+        const double a = i * 1e-3 / 60e-3;
+        path.push_back(60e-3 * Vec2(std::cos(a), std::sin(a)));
+    }
+    Document painting(sheet);
+    painting.paint(stripe(path, {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, SurfaceMapping::project}));
+    const Evenness e = measure(painting, sheet, 5e-3, [](const Vec3& p) {
+        return 60e-3 * std::fmod(std::atan2(-p.y, p.x) + 2 * std::numbers::pi, 2 * std::numbers::pi);
+    });
+    record(e);
+    EXPECT_LE(e.deviation, 0.03 * e.mean);
+    EXPECT_LT(e.widest, 1.15 * e.mean);
+    EXPECT_GT(e.narrowest, 0.85 * e.mean);
+}
+
+}  // namespace
+}  // namespace tuft::stroke
