@@ -28,6 +28,7 @@ ink/colour
 ink/canvas
 ink/composite ink/exchange ink/texels
 ink/film
+decal
 stroke/journal
 stroke/gesture
 stroke/placement
@@ -38,7 +39,7 @@ stroke/session
 stroke/document
 io/image render/brush render/picture render/gl
 io/model
-io/export io/project io/strokes
+io/export io/project io/sheet io/strokes
 writer/glyphs
 writer/gesture
 writer/fit writer/layout
@@ -87,6 +88,7 @@ wall 'embree3' '*.cpp'
 wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|zlib|assimp' 'io/*.cpp'
 wall 'pugixml' 'io/*.cpp' 'writer/glyphs/*.cpp'
 wall 'ft2build|hb' 'writer/glyphs/*.cpp'
+wall 'podofo' 'io/sheet/*.cpp'
 wall 'GL/|epoxy|EGL' 'render/*' 'app/*'
 wall 'GLFW|imgui' 'app/*'
 exit $bad

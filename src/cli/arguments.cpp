@@ -111,6 +111,9 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
     add_layers(e, exported.layers);
     add_common(e, exported.common);
 
+    Decals decals;
+    auto* c = add_decals(app, decals);
+
     LayerWork layer;
     auto* l = app.add_subcommand("layer", "change a project's layers");
     l->add_option("PROJECT", layer.project, "project file (.tuft)")->required();
@@ -272,6 +275,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         command = replay;
     else if (e->parsed())
         command = exported;
+    else if (c->parsed())
+        command = decals;
     else if (d->parsed())
         command = render;
     else if (b->parsed())

@@ -253,8 +253,26 @@ struct Write : Paint {
     double spacing = 0, line_spacing = 0;  ///< 0: the style's
 };
 
+inline constexpr double kLeastPageMm = 60;  ///< side of a sheet
+
+/// `tuft decals PROJECT -o OUTPUT`
+struct Decals {
+    std::filesystem::path project, output;
+    std::filesystem::path guide;      ///< folder, or empty
+    std::string mask;                 ///< name; empty: all that is painted
+    std::vector<std::string> layers;  ///< as in `View`
+    Recolouring recolouring;
+    double max_strain = 0.03;
+    double bleed_mm = 3, overlap_mm = 1, join_mm = 10;
+    Vec2 page_mm{210, 297};     ///< height 0: a roll
+    std::string grain = "free";  ///< free | up
+    double dpi = 300;
+    bool plates = false, strain_map = false;
+    Common common;
+};
+
 using Command = std::variant<Paint, Write, Inspect, Unwrap, Replay, Export, Render, Brush, BiasCorrection, Bench,
-                             LayerWork, FillWork, MaskWork, InkWork, DeviceWork>;
+                             LayerWork, FillWork, MaskWork, InkWork, DeviceWork, Decals>;
 
 /// Parses the command line into `command`. Returns false, with the exit status in `status`, when there is nothing to
 /// run: after printing help or version (0), and after one line on standard error for a wrong command line (2). Main

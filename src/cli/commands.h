@@ -23,5 +23,6 @@ int run(const FillWork& arguments);
 int run(const MaskWork& arguments);
 int run(const InkWork& arguments);
 int run(const DeviceWork& arguments);
+int run(const Decals& arguments);
 
 }  // namespace tuft::cli

@@ -47,5 +47,7 @@ void add_write_options(CLI::App* app, Write& write);
 void add_paint_options(CLI::App* app, Paint& paint);
 /// Adds `tuft device` with its commands.
 void add_device(CLI::App& app, DeviceWork& device);
+/// Adds `tuft decals`.
+CLI::App* add_decals(CLI::App& app, Decals& decals);
 
 }  // namespace tuft::cli
