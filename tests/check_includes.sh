@@ -39,7 +39,8 @@ stroke/session
 stroke/document
 io/image render/brush render/picture render/gl
 io/model
-io/export io/project io/sheet io/strokes
+io/export io/project io/strokes
+io/sheet
 writer/glyphs
 writer/gesture
 writer/fit writer/layout

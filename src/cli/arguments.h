@@ -264,7 +264,7 @@ struct Decals {
     Recolouring recolouring;
     double max_strain = 0.03;
     double bleed_mm = 3, overlap_mm = 1, join_mm = 10;
-    Vec2 page_mm{210, 297};     ///< height 0: a roll
+    Vec2 page_mm{210, 297};      ///< height 0: a roll
     std::string grain = "free";  ///< free | up
     double dpi = 300;
     bool plates = false, strain_map = false;

@@ -60,8 +60,9 @@ void read_page(Decals& d, const std::string& text) {
         }
     }
     throw CLI::ValidationError(
-        "--page", fmt::format("'{}' is not A4, A3, WxH (such as 320x450mm), roll or roll:WIDTH, each side at least {} mm",
-                              excerpt(text), kLeastPageMm));
+        "--page",
+        fmt::format("'{}' is not A4, A3, WxH (such as 320x450mm), roll or roll:WIDTH, each side at least {} mm",
+                    excerpt(text), kLeastPageMm));
 }
 
 }  // namespace
@@ -79,8 +80,7 @@ CLI::App* add_decals(CLI::App& app, Decals& d) {
              if (text.ends_with('%')) text.pop_back();
              const std::optional<double> value = number_of(text);
              if (!value || *value < 0.1 || *value > 50)
-                 throw CLI::ValidationError("--max-strain",
-                                            "'" + excerpt(text) + "' is not a strain from 0.1% to 50%");
+                 throw CLI::ValidationError("--max-strain", "'" + excerpt(text) + "' is not a strain from 0.1% to 50%");
              d.max_strain = *value / 100;
          },
          "strain up to which the film follows the surface: 3% water-slide decal (default), 15% wrap film")

@@ -28,6 +28,8 @@ std::string format_of(const Decals& a) {
     return extension;
 }
 
+constexpr int kSpread = 3;  // texels
+
 struct Maps {
     ink::AtlasMap<float> coverage, amounts;
     ink::AtlasMap<std::uint8_t> colour;
@@ -80,9 +82,9 @@ Maps make_decal_maps(const Decals& a, const stroke::Document& painting) {
     if (a.mask.empty() || a.plates) maps.amounts = ink::compose_amounts(stack, painting.model().texels, compose);
     maps.coverage = a.mask.empty() ? coverage_of_paint(maps.amounts) : coverage_of_mask(a, painting);
     if (!a.plates) maps.amounts = {};
-    if (format_of(a) != ".dxf")
-        maps.colour =
-            ink::compose_srgb8(stack, painting.model().texels, painting.appearance().substrate(), compose);
+    if (format_of(a) == ".dxf") return maps;
+    maps.colour = ink::compose_srgb8(stack, painting.model().texels, painting.appearance().substrate(), compose);
+    decal::spread_colours(maps.colour, maps.coverage, kSpread);
     return maps;
 }
 
@@ -142,8 +144,7 @@ nlohmann::json to_json(const decal::Piece& piece) {
 
 void check_request(const Decals& a) {
     check_extension(a.output, {".pdf", ".svg", ".dxf"});
-    if (a.plates && format_of(a) != ".pdf")
-        throw UsageError("--plates: plates are separations, which only a .pdf has");
+    if (a.plates && format_of(a) != ".pdf") throw UsageError("--plates: plates are separations, which only a .pdf has");
     check_output(a.output);
     if (a.guide.empty()) return;
     std::error_code ec;
@@ -151,12 +152,14 @@ void check_request(const Decals& a) {
 }
 
 void print_result(const Decals& a, const decal::Sheet& sheet, const std::vector<std::string>& wrote) {
-    const std::size_t pages =
-        static_cast<std::size_t>(std::count_if(sheet.pages.begin(), sheet.pages.end(),
-                                               [](const decal::Page& page) { return !page.strain_map; }));
+    const std::size_t pages = static_cast<std::size_t>(std::count_if(
+        sheet.pages.begin(), sheet.pages.end(), [](const decal::Page& page) { return !page.strain_map; }));
     if (a.common.json) {
-        nlohmann::json j{{"project", a.project.string()}, {"wrote", wrote}, {"pages", pages},
-                         {"max_strain", sheet.max_strain}, {"pieces", nlohmann::json::array()},
+        nlohmann::json j{{"project", a.project.string()},
+                         {"wrote", wrote},
+                         {"pages", pages},
+                         {"max_strain", sheet.max_strain},
+                         {"pieces", nlohmann::json::array()},
                          {"plates", nlohmann::json::array()}};
         for (const decal::Piece& piece : sheet.pieces) j["pieces"].push_back(to_json(piece));
         for (const decal::Plate& plate : sheet.plates)

@@ -9,8 +9,8 @@
 #include "core/system/files.h"
 #include "core/text/units.h"
 #include "decal/stroke_font.h"
-#include "io/export/export.h"
 #include "ink/spectra/srgb.h"
+#include "io/export/export.h"
 #include "render/brush/brush_canvas.h"
 #include "render/picture/camera.h"
 
@@ -25,6 +25,7 @@ constexpr double kLift = 1e-4;              // metres, of lines above the surfac
 constexpr double kAround = 1.7;             // width of the view over the size of the piece
 constexpr double kLeastView = 0.03;         // metres
 constexpr double kSteepest = 80;            // degrees of elevation
+constexpr double kLevelArrow = 0.4;         // rise of an arrow over its length below which it points to the back
 
 struct SurfacePath {
     std::vector<Vec3> points, normals;  // metres, model frame
@@ -35,8 +36,9 @@ struct PlacedPiece {
     int number = 0;
     std::vector<SurfacePath> outline;
     SurfacePath arrow;
-    Vec3 centre{0}, normal{0, 0, 1};
-    double size = 0;  // metres, of the box round it
+    Vec3 centre{0}, normal{0, 0, 1};  // where number and arrow are
+    Vec3 middle{0};                   // of the box round it
+    double size = 0;                  // metres, of the box round it
 };
 
 class PieceOnModel {
@@ -102,10 +104,12 @@ PlacedPiece place_on_model(const mesh::TriangleMesh& mesh, const decal::Sheet& s
         placed.centre = decal::point_at(mesh, at->triangle, at->weights);
         placed.normal = mesh::face_normal(mesh, at->triangle);
     }
+    placed.middle = placed.centre;
     const auto arrow = on.lift({middle, middle + 0.18 * std::min(size.x, size.y) * piece.up});
     if (!arrow.empty()) placed.arrow = arrow[0];
     if (!box.empty()) {
         placed.size = std::max(box.diagonal(), 1e-3);
+        placed.middle = box.centre();
         Vec3 mean(0);
         for (const SurfacePath& path : placed.outline)
             for (const Vec3& n : path.normals) mean += n;
@@ -121,9 +125,15 @@ View view_of(const PlacedPiece& piece, const mesh::TriangleMesh& mesh) {
     view.width = kWidth;
     view.height = kHeight;
     const double level = std::hypot(piece.normal.x, piece.normal.y);
+    // An arrow to the back of the model points up in a picture from the front.
+    bool to_back = level < 0.2;
+    if (piece.arrow.points.size() > 1) {
+        const Vec3 arrow = piece.arrow.points.back() - piece.arrow.points.front();
+        to_back |= std::abs(arrow.z) < kLevelArrow * glm::length(arrow);
+    }
     view.elevation = std::clamp(std::atan2(piece.normal.z, level) / kDegree, -kSteepest, kSteepest);
-    view.azimuth = level > 0.2 ? std::atan2(piece.normal.x, -piece.normal.y) / kDegree : 0;
-    const Vec3 target = piece.centre / kMillimetre;
+    view.azimuth = to_back ? 0 : std::atan2(piece.normal.x, -piece.normal.y) / kDegree;
+    const Vec3 target = piece.middle / kMillimetre;
     view.target_mm = {target.x, target.y, target.z};
     const double aspect = static_cast<double>(kWidth) / kHeight;
     view.zoom = mesh.bounds.diagonal() / std::max(kAround * aspect * piece.size, kLeastView);
@@ -220,8 +230,7 @@ const Vec3 kOwn = render::linear_colour(210, 0, 140), kOther = render::linear_co
 void write_guide_picture(const fs::path& path, const GuideRequest& request, const std::vector<PlacedPiece>& pieces,
                          int number, const View& view, Console& console) {
     const stroke::Model& model = request.project.model;
-    render::Image image =
-        draw_picture({.model = model, .painting = &request.painting, .view = view}, console);
+    render::Image image = draw_picture({.model = model, .painting = &request.painting, .view = view}, console);
     const render::Camera camera = camera_of(view, *model.mesh);
     Overlay overlay(image, camera, *model.query);
     for (const bool own : {false, true})

@@ -21,7 +21,7 @@ struct GuideRequest {
 /// its cut line, number and arrow drawn on it, those of the others fainter; `overview.png`; and `lines.obj`, the cut
 /// lines and arrows on the surface as polylines in unit and axes of the model's file, to be projected or drawn on the
 /// clay. Returns the paths. Throws `Error`; then nothing is written.
-std::vector<std::filesystem::path> write_placing_guide(const std::filesystem::path& folder,
-                                                       const GuideRequest& request, Console& console);
+std::vector<std::filesystem::path> write_placing_guide(const std::filesystem::path& folder, const GuideRequest& request,
+                                                       Console& console);
 
 }  // namespace tuft::cli

@@ -26,8 +26,7 @@ Weights mix(const Weights& a, const Weights& b, double t) {
 bool is_painted(const mesh::TriangleMesh& model, std::uint32_t triangle, const CoverageFn& coverage, double texel) {
     double longest = 0;
     for (int k = 0; k < 3; ++k)
-        longest =
-            std::max(longest, glm::length(model.position(triangle, (k + 1) % 3) - model.position(triangle, k)));
+        longest = std::max(longest, glm::length(model.position(triangle, (k + 1) % 3) - model.position(triangle, k)));
     const int n = std::clamp(static_cast<int>(std::ceil(longest / texel)), 1, kMostSamples);
     for (int i = 0; i <= n; ++i)
         for (int j = 0; i + j <= n; ++j) {

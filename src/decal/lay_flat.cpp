@@ -46,8 +46,7 @@ std::array<double, 4> map_of(const Reference& r, const std::array<std::uint32_t,
 
 bool is_needle(const Reference& r) {
     double longest = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-        longest = std::max(longest, glm::length(r.corner[(k + 1) % 3] - r.corner[k]));
+    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, glm::length(r.corner[(k + 1) % 3] - r.corner[k]));
     return 2 * r.area < kNeedle * longest * longest;
 }
 

@@ -9,8 +9,8 @@
 namespace tuft::decal {
 namespace {
 
-constexpr double kLeastCell = 5e-4;  // metres
-constexpr double kMostAcross = 2000;  // cells
+constexpr double kLeastCell = 5e-4;           // metres
+constexpr double kMostAcross = 2000;          // cells
 constexpr std::uint32_t kEndless = 1u << 20;  // rows of a roll
 
 /// Cells to leave free on both sides of a taken one, by distance in rows, so that `gap` cells lie between.

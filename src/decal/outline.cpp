@@ -10,11 +10,12 @@
 namespace tuft::decal {
 namespace {
 
-constexpr double kLeastCell = 1e-4;   // metres
+constexpr double kLeastCell = 1e-4;  // metres
 constexpr double kMostCells = 4e6;
 constexpr double kLeastPaint = 5e-8;  // m²: less is a speck that no one would apply
 constexpr double kSlit = 2e-6;        // metres: sides of a slit nearer than this are one
 constexpr double kPainted = 0.5;      // coverage
+constexpr double kLeastHole = 3;      // of the closing's distance: smaller holes are a nuisance to cut and lay
 
 /// Nodes of a grid over the panel's plane.
 struct Grid {
@@ -255,7 +256,8 @@ double paint_inside(const Grid& grid, const std::vector<float>& coverage, const 
     const Vec2 lo = (box.lo - grid.origin) / grid.cell, hi = (box.hi - grid.origin) / grid.cell;
     double sum = 0;
     for (int y = std::max(0, static_cast<int>(lo.y)); y <= std::min(grid.height - 1, static_cast<int>(hi.y) + 1); ++y)
-        for (int x = std::max(0, static_cast<int>(lo.x)); x <= std::min(grid.width - 1, static_cast<int>(hi.x) + 1); ++x)
+        for (int x = std::max(0, static_cast<int>(lo.x)); x <= std::min(grid.width - 1, static_cast<int>(hi.x) + 1);
+             ++x)
             if (const float c = coverage[grid.index(x, y)]; c > 0 && contains(film, grid.node(x, y))) sum += c;
     return sum * grid.cell * grid.cell;
 }
@@ -270,14 +272,13 @@ std::vector<Outline> find_outlines(const FilmMesh& film, const Panel& panel, con
     if (std::find(paint.inked.begin(), paint.inked.end(), 1) == paint.inked.end()) return {};
     const Region allowed = allowed_region(film, panel, options, options.bleed + options.least_side);
     const double tolerance = std::min(2e-5, 0.25 * grid.cell);
-    const Region wanted =
-        simplify(without_small_holes(film_round(grid, paint.inked, options.bleed, around), around), tolerance);
+    const Region wanted = simplify(
+        without_small_holes(film_round(grid, paint.inked, options.bleed, around), kLeastHole * around), tolerance);
     std::vector<Outline> outlines;
     for (Region& part : separate(intersect(wanted, allowed))) {
         const Vec2 size = box_of(part).size();
         const double side = std::min(size.x, size.y);
-        if (side < options.least_side)
-            part = intersect(offset(part, 0.5 * (options.least_side - side)), allowed);
+        if (side < options.least_side) part = intersect(offset(part, 0.5 * (options.least_side - side)), allowed);
         const double area = paint_inside(grid, paint.mean, part);
         if (area > kLeastPaint) outlines.push_back({simplify(part, 0.5 * tolerance), area});
     }

@@ -12,10 +12,10 @@ namespace tuft::decal {
 
 /// Distances of cut lines, metres.
 struct OutlineOptions {
-    double bleed = 0.003;     ///< film beyond the paint
-    double join = 0.01;       ///< islands of paint nearer than this to each other share a piece of film
+    double bleed = 0.003;      ///< film beyond the paint
+    double join = 0.01;        ///< islands of paint nearer than this to each other share a piece of film
     double least_side = 0.01;  ///< short side of the smallest piece: what fingers can hold
-    double texel = 1e-4;      ///< of the coverage
+    double texel = 1e-4;       ///< of the coverage
     /// Returns how far the film may reach beyond a seam with the panels of a label.
     std::function<double(std::uint32_t label)> overlap;
 };
@@ -28,9 +28,10 @@ struct Outline {
 
 /// Returns the pieces of film of a panel. The film is the closing of the paint P, all that is within g of it and more
 /// than g − bleed from what is not, g = max(bleed, join / 2); so the cut line runs `bleed` outside the paint and
-/// bridges gaps. It ends at seams, or `overlap` beyond them. Beyond other borders of the panel it goes on in the plane.
-/// Distances are exact on a grid of cells (Felzenszwalb and Huttenlocher 2012) of a texel, at least 0.1 mm, and at
-/// most 4 million of them; the line is within half a cell. Pieces with less than 0.05 mm² of paint are left out.
+/// bridges gaps. Holes smaller than a disc of radius 3 g are film. It ends at seams, or `overlap` beyond them. Beyond
+/// other borders of the panel it goes on in the plane. Distances are exact on a grid of cells (Felzenszwalb and
+/// Huttenlocher 2012) of a texel, at least 0.1 mm, and at most 4 million of them; the line is within half a cell.
+/// Pieces with less than 0.05 mm² of paint are left out.
 std::vector<Outline> find_outlines(const FilmMesh& film, const Panel& panel, const PrintSurface& surface,
                                    const CoverageFn& coverage, const OutlineOptions& options);
 

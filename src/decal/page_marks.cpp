@@ -30,8 +30,7 @@ void add_arrow(Page& page, const Vec2& middle, const Vec2& along, double length)
     const Vec2 across{-along.y, along.x};
     const Vec2 neck = tip - 0.35 * length * along;
     page.lines.push_back({{tail, tip}, false, Role::label});
-    page.lines.push_back(
-        {{neck + 0.2 * length * across, tip, neck - 0.2 * length * across}, false, Role::label});
+    page.lines.push_back({{neck + 0.2 * length * across, tip, neck - 0.2 * length * across}, false, Role::label});
 }
 
 void add_registration_mark(Page& page, const Vec2& at) {
@@ -77,7 +76,8 @@ void add_strain_scale(Page& page, const Vec2& at, double limit) {
             for (const std::uint8_t c : strain_colour(limit * (x + 0.5) / kWidth, limit)) scale.rgb.push_back(c);
     page.prints.push_back(std::move(scale));
     const double width = kWidth * 0.2 * kMm, height = kHeight * 0.2 * kMm;
-    page.lines.push_back({{at, at + Vec2(width, 0), at + Vec2(width, height), at + Vec2(0, height)}, true, Role::label});
+    page.lines.push_back(
+        {{at, at + Vec2(width, 0), at + Vec2(width, height), at + Vec2(0, height)}, true, Role::label});
     add_text(page, "0", at + Vec2(0, height + 1 * kMm), kTextSize);
     const std::string end = fmt::format("{:.1f} %", 100 * limit);
     add_text(page, end, at + Vec2(width - text_width(end, kTextSize), height + 1 * kMm), kTextSize);

@@ -139,8 +139,8 @@ std::vector<Plane> cutting_planes(const FilmMesh& film, std::uint32_t label, con
     }
     parallel_for(candidates.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            candidates[i].cost = (1 + 2 * kOffCentre * candidates[i].away) *
-                                 cut_cost(film, facets, coverage, candidates[i].plane);
+            candidates[i].cost =
+                (1 + 2 * kOffCentre * candidates[i].away) * cut_cost(film, facets, coverage, candidates[i].plane);
     });
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
@@ -171,7 +171,8 @@ class Cutting {
         double visibility = 0;
     };
 
-    std::optional<Panel> make_panel(std::vector<std::uint32_t> triangles, const std::vector<std::uint32_t>& glued) const {
+    std::optional<Panel> make_panel(std::vector<std::uint32_t> triangles,
+                                    const std::vector<std::uint32_t>& glued) const {
         Panel panel;
         panel.chart = atlas::make_chart(film_.mesh, glued, std::move(triangles), 1.0);
         FlatPanel flat = lay_flat(panel.chart, options_.max_strain);
@@ -272,8 +273,7 @@ class Cutting {
         const auto& w = film_.weights[h / 3];
         Weights middle;
         for (std::size_t i = 0; i < 3; ++i) middle[i] = 0.5 * (w[h % 3][i] + w[(h % 3 + 1) % 3][i]);
-        const double length =
-            glm::length(Vec3(film_.mesh.positions[to(h)]) - Vec3(film_.mesh.positions[from(h)]));
+        const double length = glm::length(Vec3(film_.mesh.positions[to(h)]) - Vec3(film_.mesh.positions[from(h)]));
         return (kBareCut + coverage_(film_.source[h / 3], middle)) * length;
     }
 
@@ -350,7 +350,7 @@ class Cutting {
     FilmMesh& film_;
     const CoverageFn& coverage_;
     const PanelOptions& options_;
-    std::vector<std::uint32_t> glued_, twin_;  // of the film mesh; `glued_` is kNone at seams
+    std::vector<std::uint32_t> glued_, twin_;   // of the film mesh; `glued_` is kNone at seams
     std::vector<std::optional<Panel>> panels_;  // by label
     std::set<std::pair<std::uint32_t, std::pair<std::size_t, std::size_t>>> rejected_;
 };

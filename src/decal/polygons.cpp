@@ -12,7 +12,7 @@ namespace {
 
 namespace clip = ClipperLib;
 
-constexpr double kSteps = 1e7;       // per metre
+constexpr double kSteps = 1e7;        // per metre
 constexpr double kArcTolerance = 50;  // steps, 5 µm
 
 clip::Path path_of(const std::vector<Vec2>& points) {

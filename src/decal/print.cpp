@@ -1,6 +1,7 @@
 #include "decal/print.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/error.h"
 #include "core/system/parallel.h"
@@ -118,6 +119,34 @@ std::uint8_t byte_of(double part) {
 
 }  // namespace
 
+void spread_colours(ink::AtlasMap<std::uint8_t>& colour, const ink::AtlasMap<float>& coverage, int rings) {
+    const std::size_t n = colour.size;
+    std::vector<std::uint8_t> known(n * n), now;
+    for (std::size_t i = 0; i < known.size(); ++i) known[i] = coverage.texels[i] >= 0.5f;
+    for (int ring = 0; ring < rings; ++ring) {
+        now = known;
+        parallel_for(n, 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t y = begin; y < end; ++y)
+                for (std::size_t x = 0; x < n; ++x) {
+                    if (known[y * n + x]) continue;
+                    std::array<unsigned, 3> sum{};
+                    unsigned count = 0;
+                    for (std::size_t v = y > 0 ? y - 1 : 0; v <= y + 1 && v < n; ++v)
+                        for (std::size_t u = x > 0 ? x - 1 : 0; u <= x + 1 && u < n; ++u) {
+                            if (!known[v * n + u]) continue;
+                            ++count;
+                            for (std::size_t c = 0; c < 3; ++c) sum[c] += colour.texels[3 * (v * n + u) + c];
+                        }
+                    if (count == 0) continue;
+                    now[y * n + x] = 1;
+                    for (std::size_t c = 0; c < 3; ++c)
+                        colour.texels[3 * (y * n + x) + c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+                }
+        });
+        known.swap(now);
+    }
+}
+
 PrintImage print_piece(const PrintSurface& surface, const PrintSource& source, const PagePlacement& placement,
                        const Region& printed, double pixel) {
     const Region on_page = placed(printed, placement);
@@ -134,9 +163,9 @@ PrintImage print_piece(const PrintSurface& surface, const PrintSource& source, c
         for (std::size_t i = begin; i < end; ++i) {
             if (under[i] == kNone) continue;
             const PixelWeights weights(surface, placement, under[i]);
-            const Vec2 corner = image.origin + pixel * Vec2(static_cast<double>(i % width),
-                                                            static_cast<double>(image.height - 1) -
-                                                                static_cast<double>(i / width));
+            const Vec2 corner =
+                image.origin + pixel * Vec2(static_cast<double>(i % width),
+                                            static_cast<double>(image.height - 1) - static_cast<double>(i / width));
             double cover = 0;
             std::array<double, 3> colour{};
             std::array<double, kMostPlates> tint{};

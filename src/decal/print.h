@@ -29,6 +29,10 @@ void sample(const ink::AtlasMap<T>& map, const Vec2& uv, float* out) {
                  t * ((1 - s) * static_cast<float>(p[up * n + c]) + s * static_cast<float>(p[(up + right) * n + c]));
 }
 
+/// Gives texels with less than half coverage, as far as `rings` texels from others, the mean colour of those: at the
+/// edge of paint a bilinear read then mixes in no substrate. Both maps are of one size.
+void spread_colours(ink::AtlasMap<std::uint8_t>& colour, const ink::AtlasMap<float>& coverage, int rings);
+
 /// Returns the UV of a point of a triangle.
 inline Vec2 uv_of(std::span<const Vec2f> corner_uvs, std::uint32_t triangle, const Weights& w) {
     Vec2 uv(0);
@@ -38,12 +42,12 @@ inline Vec2 uv_of(std::span<const Vec2f> corner_uvs, std::uint32_t triangle, con
 
 /// Maps of a decoration, gutters filled. They must outlive it.
 struct PrintSource {
-    std::span<const Vec2f> corner_uvs;                       ///< [3 n_triangles of the model]
-    CoverageFn coverage;                                     ///< of the paint, 0–1
-    const ink::AtlasMap<std::uint8_t>* colour = nullptr;     ///< sRGB; null: no picture is made
-    const ink::AtlasMap<float>* amounts = nullptr;           ///< film units, a channel for each plate; null: no plates
-    std::vector<float> full;                                 ///< [n_plates] amount of a tint of 100 %
-    double texel = 1e-4;                                     ///< metres
+    std::span<const Vec2f> corner_uvs;                    ///< [3 n_triangles of the model]
+    CoverageFn coverage;                                  ///< of the paint, 0–1
+    const ink::AtlasMap<std::uint8_t>* colour = nullptr;  ///< sRGB; null: no picture is made
+    const ink::AtlasMap<float>* amounts = nullptr;        ///< film units, a channel for each plate; null: no plates
+    std::vector<float> full;                              ///< [n_plates] amount of a tint of 100 %
+    double texel = 1e-4;                                  ///< metres
 };
 
 /// How a panel's plane lies on a page: p ↦ (c p.x − s p.y, s p.x + c p.y) + offset, metres from the page's lower left.

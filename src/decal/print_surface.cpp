@@ -49,11 +49,9 @@ class Strip {
   private:
     struct Entry {
         double distance;
-        std::uint32_t half;          // of the film mesh, in the triangle that is entered
+        std::uint32_t half;           // of the film mesh, in the triangle that is entered
         std::uint32_t first, second;  // chart vertices of its two ends
-        bool operator<(const Entry& o) const {
-            return distance != o.distance ? distance > o.distance : half > o.half;
-        }
+        bool operator<(const Entry& o) const { return distance != o.distance ? distance > o.distance : half > o.half; }
     };
 
     void enter(std::uint32_t half, std::uint32_t first, std::uint32_t second, double distance) {
@@ -86,8 +84,7 @@ class Strip {
         chart_.triangles.push_back(t);
         for (const std::uint32_t h : {mesh::next_half(e.half), mesh::prev_half(e.half)}) {
             const std::uint32_t g = twin_[h];
-            if (g != kNone && film_.label[g / 3] != own_label_)
-                enter(g, face[(h % 3 + 1) % 3], face[h % 3], distance);
+            if (g != kNone && film_.label[g / 3] != own_label_) enter(g, face[(h % 3 + 1) % 3], face[h % 3], distance);
         }
     }
 
@@ -118,8 +115,7 @@ class Strip {
 
 }  // namespace
 
-PrintSurface extend(const FilmMesh& film, const Panel& panel,
-                    const std::function<double(std::uint32_t label)>& reach) {
+PrintSurface extend(const FilmMesh& film, const Panel& panel, const std::function<double(std::uint32_t label)>& reach) {
     Strip strip(film, panel, reach);
     strip.grow();
     PrintSurface surface;

@@ -16,9 +16,9 @@
 namespace tuft::decal {
 namespace {
 
-constexpr double kLevel = 0.3;        // tangential part of "up" below which a panel is level
-constexpr double kBetween = 0.002;    // metres, least distance of two pieces' prints
-constexpr double kLeastSide = 0.010;  // metres
+constexpr double kLevel = 0.3;         // tangential part of "up" below which a panel is level
+constexpr double kBetween = 0.002;     // metres, least distance of two pieces' prints
+constexpr double kLeastSide = 0.010;   // metres
 constexpr double kStrainPixel = 5e-4;  // metres, of strain maps
 
 /// Panels with what is printed round them.
@@ -113,7 +113,8 @@ Footprint footprint_of(const Piece& piece, double angle, double bleed) {
     Footprint footprint{angle, {}, {}};
     const double width = label_width(piece.number);
     const Box2 box = box_of(region);
-    const double left = std::clamp(top.x - 0.5 * width, std::min(box.lo.x, top.x), std::max(box.hi.x - width, top.x - width));
+    const double left =
+        std::clamp(top.x - 0.5 * width, std::min(box.lo.x, top.x), std::max(box.hi.x - width, top.x - width));
     footprint.label = {left, top.y};
     const Vec2 lo{left, top.y - 1e-4}, hi{left + width, top.y + kLabelHeight};
     region = unite(region, {{lo, {hi.x, lo.y}, hi, {lo.x, hi.y}}});
@@ -210,8 +211,7 @@ void draw_pieces(const Laid& laid, const PrintSource& source, const SheetOptions
         add_label(page, piece.number, labels[i], up);
         if (!options.strain_map) continue;
         Page& map = sheet.pages[n + piece.page];
-        map.prints.push_back(
-            print_strain(surface, piece.placement, piece.film, kStrainPixel, options.max_strain));
+        map.prints.push_back(print_strain(surface, piece.placement, piece.film, kStrainPixel, options.max_strain));
         for (const Ring& ring : placed(piece.film, piece.placement)) map.lines.push_back({ring, true, Role::label});
         add_label(map, piece.number, labels[i], up);
     }

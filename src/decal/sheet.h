@@ -36,21 +36,21 @@ struct Page {
 
 /// A piece of film to be cut out and laid on.
 struct Piece {
-    int number = 1;             ///< as printed beside it
-    std::size_t surface = 0;    ///< index into `Sheet::surfaces`
-    Region film;                ///< cut line, in the plane of its surface, metres
-    double paint_area = 0;      ///< m²
-    double strain = 0;          ///< largest of the panel
-    Vec2 up{0, 1};              ///< unit, of the arrow beside it, in that plane
-    std::size_t page = 0;       ///< index into `Sheet::pages`
-    PagePlacement placement;    ///< of that plane
+    int number = 1;           ///< as printed beside it
+    std::size_t surface = 0;  ///< index into `Sheet::surfaces`
+    Region film;              ///< cut line, in the plane of its surface, metres
+    double paint_area = 0;    ///< m²
+    double strain = 0;        ///< largest of the panel
+    Vec2 up{0, 1};            ///< unit, of the arrow beside it, in that plane
+    std::size_t page = 0;     ///< index into `Sheet::pages`
+    PagePlacement placement;  ///< of that plane
 };
 
 /// A plate: one ink of a screen or pad print.
 struct Plate {
-    std::string name;                      ///< of the pigment
+    std::string name;                       ///< of the pigment
     std::array<double, 3> colour{0, 0, 0};  ///< sRGB 0–1 of a tint of 100 %, for screens
-    double full = 1;                       ///< film units of a tint of 100 %
+    double full = 1;                        ///< film units of a tint of 100 %
 };
 
 struct Sheet {
@@ -62,16 +62,16 @@ struct Sheet {
 };
 
 struct SheetOptions {
-    double max_strain = 0.03;    ///< of the film
-    double bleed = 0.003;        ///< film beyond the paint, metres
-    double overlap = 0.001;      ///< of two panels, metres; the one with the lower number lies below
-    double join = 0.01;          ///< see `OutlineOptions`
-    Vec2 page{0.21, 0.297};      ///< metres; height 0: a roll
-    bool upright = false;        ///< all pieces with their arrow up the page, along the grain; else turned to fit
+    double max_strain = 0.03;     ///< of the film
+    double bleed = 0.003;         ///< film beyond the paint, metres
+    double overlap = 0.001;       ///< of two panels, metres; the one with the lower number lies below
+    double join = 0.01;           ///< see `OutlineOptions`
+    Vec2 page{0.21, 0.297};       ///< metres; height 0: a roll
+    bool upright = false;         ///< all pieces with their arrow up the page, along the grain; else turned to fit
     double pixel = 0.0254 / 300;  ///< metres
-    bool strain_map = false;     ///< appends a page of strain for each page of film
-    bool prints = true;          ///< makes pictures; else lines only
-    std::string title;           ///< in the foot of each page
+    bool strain_map = false;      ///< appends a page of strain for each page of film
+    bool prints = true;           ///< makes pictures; else lines only
+    std::string title;            ///< in the foot of each page
     ProgressFn progress;
 };
 

@@ -18,7 +18,8 @@ double area_of_mesh(const mesh::TriangleMesh& m) {
 // where their weights say.
 TEST(FilmMesh, CuttingKeepsTheSurface) {
     const mesh::TriangleMesh model = test::whole_cylinder(0.04, 0.1, 60, 20);
-    FilmMesh film = select_film(model, [](std::uint32_t, const Weights&) { return 1.0; }, 0.01, 1e-3);
+    FilmMesh film = select_film(
+        model, [](std::uint32_t, const Weights&) { return 1.0; }, 0.01, 1e-3);
     ASSERT_EQ(film.n_labels, 1u);
     const double area = area_of_mesh(model);
     EXPECT_EQ(cut(film, 0, {glm::normalize(Vec3(1, 0.3, 0.2)), 0.011}).size(), 2u);
@@ -38,12 +39,12 @@ TEST(FilmMesh, CuttingKeepsTheSurface) {
 TEST(FilmMesh, TakesWhatIsPaintedAndAMarginRoundIt) {
     const mesh::TriangleMesh model =
         test::grid_mesh(100, 100, false, false, [](double u, double v) { return Vec3(0.1 * u, 0.1 * v, 0); });
-    const auto painted = test::coverage_where(model, [](const Vec3& p) {
-        return glm::length(p - Vec3(0.05, 0.05, 0)) < 0.01;
-    });
+    const auto painted =
+        test::coverage_where(model, [](const Vec3& p) { return glm::length(p - Vec3(0.05, 0.05, 0)) < 0.01; });
     const FilmMesh film = select_film(model, painted, 5 * kMm, 0.5 * kMm);
     double farthest = 0;
-    for (const Vec3f& p : film.mesh.positions) farthest = std::max(farthest, glm::length(Vec3(p) - Vec3(0.05, 0.05, 0)));
+    for (const Vec3f& p : film.mesh.positions)
+        farthest = std::max(farthest, glm::length(Vec3(p) - Vec3(0.05, 0.05, 0)));
     EXPECT_GT(farthest, 15 * kMm);
     EXPECT_LT(farthest, 19 * kMm);  // 10 + 5, and two edges of 1.4 mm: one to touch paint, one to hold the margin
 }
@@ -66,7 +67,8 @@ TEST(Panels, CutsRunBetweenMotifs) {
         const double a = std::fmod(std::atan2(p.y, p.x) + 2 * test::kPi, 2 * test::kPi / 3);
         return a > 0.25 && a < 1.9;
     });
-    FilmMesh film = select_film(model, [](std::uint32_t, const Weights&) { return 1.0; }, 0.005, 1e-3);
+    FilmMesh film = select_film(
+        model, [](std::uint32_t, const Weights&) { return 1.0; }, 0.005, 1e-3);
     const std::vector<Panel> panels = cut_into_panels(film, patches, {.max_strain = 0.03});
     ASSERT_EQ(panels.size(), 1u);
     double cut = 0, through = 0;

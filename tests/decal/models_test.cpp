@@ -10,9 +10,7 @@ namespace tuft::decal {
 namespace {
 
 mesh::TriangleMesh shipped(const std::string& name) {
-    return mesh::build_surface(io::read_model(test::source_folder() + "/models/" + name),
-                               {.metres_per_unit = 1e-3})
-        .mesh;
+    return mesh::build_surface(io::read_model(source_folder() + "/models/" + name), {.metres_per_unit = 1e-3}).mesh;
 }
 
 void expect_within(const mesh::TriangleMesh& model, const CoverageFn& painted, double limit, std::size_t most) {
@@ -25,28 +23,30 @@ void expect_within(const mesh::TriangleMesh& model, const CoverageFn& painted, d
 
 TEST(ShippedModels, ACarDoorIsOneSheetOfWrapFilm) {
     const mesh::TriangleMesh car = shipped("car.ply");
-    expect_within(car, test::coverage_where(car, [](const Vec3& p) {
-                      return p.y < -0.15 && std::abs(p.x) < 0.12 && p.z > 0.08 && p.z < 0.2;
-                  }),
-                  0.15, 3);
+    expect_within(
+        car,
+        test::coverage_where(
+            car, [](const Vec3& p) { return p.y < -0.15 && std::abs(p.x) < 0.12 && p.z > 0.08 && p.z < 0.2; }),
+        0.15, 3);
 }
 
 TEST(ShippedModels, ABonnetIsLaidWithinTheStrainOfWrapFilm) {
     const mesh::TriangleMesh car = shipped("car.ply");
     const double front = 0.5 * (car.bounds.lo.x + car.bounds.hi.x) - 0.3 * car.bounds.size().x;
-    expect_within(car, test::coverage_where(car, [&](const Vec3& p) {
-                      return p.x < front && std::abs(p.y) < 0.15 && p.z > 0.2;
-                  }),
-                  0.15, 6);
+    expect_within(
+        car, test::coverage_where(car, [&](const Vec3& p) { return p.x < front && std::abs(p.y) < 0.15 && p.z > 0.2; }),
+        0.15, 6);
 }
 
 TEST(ShippedModels, ABowlWallIsCutIntoWaterSlideDecals) {
     const mesh::TriangleMesh bowl = shipped("bowl.ply");
     const double middle = 0.5 * bowl.bounds.hi.z;
-    expect_within(bowl, test::coverage_where(bowl, [&](const Vec3& p) {
-                      const double r = std::hypot(p.x, p.y);
-                      return std::abs(p.z - middle) < 0.012 && r > 0.4 * bowl.bounds.hi.x;
-                  }),
+    expect_within(bowl,
+                  test::coverage_where(bowl,
+                                       [&](const Vec3& p) {
+                                           const double r = std::hypot(p.x, p.y);
+                                           return std::abs(p.z - middle) < 0.012 && r > 0.4 * bowl.bounds.hi.x;
+                                       }),
                   0.03, 12);
 }
 

@@ -75,7 +75,7 @@ TEST(Outline, KeepsWideHolesOnly) {
     double area = 0;
     for (const Outline& o : Sheet100().outlines(ring(30 * kMm), {.bleed = 2 * kMm})) area += area_of(o.film);
     EXPECT_NEAR(area, test::kPi * (36 * 36 - 28 * 28) * 1e-6, 2e-5);  // half a cell along 400 mm
-    const auto small = Sheet100().outlines(ring(4 * kMm), {.bleed = 2 * kMm});
+    const auto small = Sheet100().outlines(ring(14 * kMm), {.bleed = 2 * kMm});
     ASSERT_EQ(small.size(), 1u);
     EXPECT_EQ(small[0].film.size(), 1u);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/system/parallel.h"
 #include "ink/colour/pigments.h"
 #include "surfaces.h"
 
@@ -17,7 +18,11 @@ class SheetOfFormula : public testing::Test {
     Sheet sheet(const mesh::TriangleMesh& model, Painted painted, const SheetOptions& options) {
         uvs_.assign(3 * model.n_triangles(), Vec2f(0.5f));
         colour_ = {1, 3, {200, 30, 40}};
-        PrintSource source{.corner_uvs = uvs_, .coverage = {}, .colour = &colour_, .amounts = nullptr, .full = {},
+        PrintSource source{.corner_uvs = uvs_,
+                           .coverage = {},
+                           .colour = &colour_,
+                           .amounts = nullptr,
+                           .full = {},
                            .texel = 0.05 * kMm};
         source.coverage = test::coverage_where(model, painted);
         return make_sheet(model, source, options);
@@ -203,8 +208,12 @@ TEST(Plates, SumToTheColour) {
     std::vector<Vec2f> uvs;
     for (std::size_t t = 0; t < model.n_triangles(); ++t)
         for (int k = 0; k < 3; ++k) uvs.push_back(Vec2f(model.position(t, k) / 0.016));
-    const PrintSource source{.corner_uvs = uvs, .coverage = [](std::uint32_t, const Weights&) { return 1.0; },
-                             .colour = &colour, .amounts = &amounts, .full = {0.3f, 0.21f}, .texel = 1e-3};
+    const PrintSource source{.corner_uvs = uvs,
+                             .coverage = [](std::uint32_t, const Weights&) { return 1.0; },
+                             .colour = &colour,
+                             .amounts = &amounts,
+                             .full = {0.3f, 0.21f},
+                             .texel = 1e-3};
     const Sheet made = make_sheet(model, source, {.upright = true, .pixel = 1e-3});
     const PrintImage& print = made.pages[0].prints[0];
     ASSERT_EQ(print.plates.size(), 2u);
@@ -220,6 +229,19 @@ TEST(Plates, SumToTheColour) {
         ++compared;
     }
     EXPECT_GT(compared, 150u);
+}
+
+// A bilinear read at the edge of paint mixes in no substrate.
+TEST(Colours, SpreadFromPaintToTheTexelsRoundIt) {
+    ink::AtlasMap<std::uint8_t> colour{5, 3, std::vector<std::uint8_t>(75, 200)};
+    ink::AtlasMap<float> coverage{5, 1, std::vector<float>(25, 0)};
+    coverage.texels[12] = 1;
+    for (std::size_t c = 0; c < 3; ++c) colour.texels[3 * 12 + c] = 10;
+    spread_colours(colour, coverage, 1);
+    for (std::size_t i = 0; i < 25; ++i) {
+        const bool near = i % 5 >= 1 && i % 5 <= 3 && i / 5 >= 1 && i / 5 <= 3;
+        EXPECT_EQ(colour.texels[3 * i], near ? 10 : 200) << i;
+    }
 }
 
 }  // namespace

@@ -44,8 +44,8 @@ inline mesh::TriangleMesh sphere_cap(double radius, double polar, int rings) {
         start.push_back(static_cast<std::uint32_t>(positions.size()));
         for (int i = 0; i < 6 * k; ++i) {
             const double a = 2 * kPi * i / (6 * k), p = polar * k / rings;
-            positions.push_back(
-                Vec3f(Vec3(radius * std::sin(p) * std::cos(a), radius * std::sin(p) * std::sin(a), radius * std::cos(p))));
+            positions.push_back(Vec3f(
+                Vec3(radius * std::sin(p) * std::cos(a), radius * std::sin(p) * std::sin(a), radius * std::cos(p))));
         }
     }
     Triangles triangles;

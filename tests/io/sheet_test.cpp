@@ -1,5 +1,3 @@
-#include "io/sheet/sheet_files.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -12,6 +10,7 @@
 #include "core/error.h"
 #include "core/system/files.h"
 #include "io/image/image.h"
+#include "io/sheet/sheet_files.h"
 
 namespace tuft::io {
 namespace {
@@ -84,8 +83,9 @@ TEST_F(SheetFiles, PdfHasItsSizeAndCutLineInTrueMillimetres) {
     Extent cut;
     for (int y = 0; y < page.height; ++y)
         for (int x = 0; x < page.width; ++x) {
-            const std::uint8_t* p = &page.pixels[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(page.width) +
-                                                      static_cast<std::size_t>(x))];
+            const std::uint8_t* p =
+                &page.pixels[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(page.width) +
+                                  static_cast<std::size_t>(x))];
             const bool magenta = p[0] > 200 && p[1] < 100 && p[2] > 100 && p[2] < 200;
             if (!magenta) continue;
             cut.left = std::min(cut.left, (x + 0.5) * pixel), cut.right = std::max(cut.right, (x + 0.5) * pixel);
@@ -125,15 +125,16 @@ TEST_F(SheetFiles, PdfHoldsAPlateForEachPigment) {
     EXPECT_NE(bytes.find("/iron#20red"), std::string::npos);
     const std::string list = output_of("pdfimages -list '" + pdf.string() + "'");
     if (list.empty()) GTEST_SKIP() << "poppler-utils is not installed";
-    EXPECT_EQ(std::distance(std::sregex_iterator(list.begin(), list.end(), std::regex(" sep ")), std::sregex_iterator()),
-              2);
+    EXPECT_EQ(
+        std::distance(std::sregex_iterator(list.begin(), list.end(), std::regex(" sep ")), std::sregex_iterator()), 2);
 }
 
 TEST_F(SheetFiles, SvgIsInMillimetres) {
     const fs::path path = folder_ / "sheet.svg";
     ASSERT_EQ(write_sheet(path, sample(false)), std::vector<fs::path>{path});
     const std::string svg = text_of(path);
-    EXPECT_NE(svg.find("width=\"123.4000mm\" height=\"87.6000mm\" viewBox=\"0 0 123.4000 87.6000\""), std::string::npos);
+    EXPECT_NE(svg.find("width=\"123.4000mm\" height=\"87.6000mm\" viewBox=\"0 0 123.4000 87.6000\""),
+              std::string::npos);
     const auto layer = svg.find("id=\"CutContour\"");
     ASSERT_NE(layer, std::string::npos);
     EXPECT_NE(svg.find("M20.0000,57.6000 L80.0000,57.6000 L80.0000,17.6000 L20.0000,17.6000 Z", layer),
@@ -178,8 +179,7 @@ TEST_F(SheetFiles, SeveralPagesAreNumberedFilesAndAllOrNone) {
     sheet.pages.push_back(sheet.pages[0]);
     sheet.pages[2].strain_map = true;
     EXPECT_EQ(write_sheet(folder_ / "a.svg", sheet).size(), 3u);
-    EXPECT_EQ(write_sheet(folder_ / "a.dxf", sheet),
-              (std::vector<fs::path>{folder_ / "a-1.dxf", folder_ / "a-2.dxf"}));
+    EXPECT_EQ(write_sheet(folder_ / "a.dxf", sheet), (std::vector<fs::path>{folder_ / "a-1.dxf", folder_ / "a-2.dxf"}));
     EXPECT_TRUE(fs::exists(folder_ / "a-2.dxf"));
     EXPECT_THROW(write_sheet(folder_ / "missing" / "a.svg", sheet), Error);
     EXPECT_THROW(write_sheet(folder_ / "a.txt", sheet), Error);

@@ -13,9 +13,8 @@ struct Layer {
     const char* name;
     int colour;  // of AutoCAD's index: 6 magenta, 7 black or white, 8 grey
 };
-constexpr Layer kLayers[] = {{decal::Role::cut, kCutContour, 6},
-                             {decal::Role::mark, "Registration", 7},
-                             {decal::Role::label, "Labels", 8}};
+constexpr Layer kLayers[] = {
+    {decal::Role::cut, kCutContour, 6}, {decal::Role::mark, "Registration", 7}, {decal::Role::label, "Labels", 8}};
 
 std::string pair(int code, const std::string& value) {
     return fmt::format("{:3}\n{}\n", code, value);

@@ -80,8 +80,7 @@ class PdfSheet {
         plate_state_ = document_.GetObjects().CreateObject(PdfVariant(state));
     }
 
-    PdfObject* picture(const decal::PrintImage& image, const std::vector<std::uint8_t>& data,
-                       const PdfVariant& space) {
+    PdfObject* picture(const decal::PrintImage& image, const std::vector<std::uint8_t>& data, const PdfVariant& space) {
         PdfObject* object = document_.GetObjects().CreateObject("XObject");
         PdfDictionary& dictionary = object->GetDictionary();
         dictionary.AddKey("Subtype", PdfName("Image"));
@@ -89,8 +88,8 @@ class PdfSheet {
         dictionary.AddKey("Height", PdfVariant(static_cast<PoDoFo::pdf_int64>(image.height)));
         dictionary.AddKey("BitsPerComponent", PdfVariant(static_cast<PoDoFo::pdf_int64>(8)));
         dictionary.AddKey("ColorSpace", space);
-        object->GetStream()->Set(reinterpret_cast<const char*>(data.data()),
-                                 static_cast<PoDoFo::pdf_long>(data.size()), {PoDoFo::ePdfFilter_FlateDecode});
+        object->GetStream()->Set(reinterpret_cast<const char*>(data.data()), static_cast<PoDoFo::pdf_long>(data.size()),
+                                 {PoDoFo::ePdfFilter_FlateDecode});
         return object;
     }
 
@@ -98,10 +97,10 @@ class PdfSheet {
         const auto place = [&](const std::string& state, PdfObject* object) {
             const std::string name = fmt::format("Im{}", resources.GetKeys().size());
             resources.AddKey(PdfName(name), object->Reference());
-            content += fmt::format("q {}{:.4f} 0 0 {:.4f} {:.4f} {:.4f} cm /{} Do Q\n", state,
-                                   image.width * image.pixel * kPointsPerMetre,
-                                   image.height * image.pixel * kPointsPerMetre, image.origin.x * kPointsPerMetre,
-                                   image.origin.y * kPointsPerMetre, name);
+            content +=
+                fmt::format("q {}{:.4f} 0 0 {:.4f} {:.4f} {:.4f} cm /{} Do Q\n", state,
+                            image.width * image.pixel * kPointsPerMetre, image.height * image.pixel * kPointsPerMetre,
+                            image.origin.x * kPointsPerMetre, image.origin.y * kPointsPerMetre, name);
         };
         for (std::size_t i = 0; i < image.plates.size(); ++i)
             place("/Plate gs ", picture(image, image.plates[i], PdfVariant(plates_[i]->Reference())));
@@ -146,8 +145,7 @@ class PdfSheet {
         resources.AddKey("ColorSpace", spaces);
         resources.AddKey("ExtGState", states);
         resources.AddKey("XObject", pictures);
-        own->GetContentsForAppending()->GetStream()->Set(content.data(),
-                                                         static_cast<PoDoFo::pdf_long>(content.size()));
+        own->GetContentsForAppending()->GetStream()->Set(content.data(), static_cast<PoDoFo::pdf_long>(content.size()));
     }
 
     const decal::Sheet& sheet_;

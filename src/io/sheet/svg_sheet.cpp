@@ -68,7 +68,8 @@ std::string svg_text(const decal::Sheet& sheet, std::size_t index) {
                "height=\"{1:.4f}mm\" viewBox=\"0 0 {0:.4f} {1:.4f}\">\n",
                kMm * page.size.x, kMm * page.size.y) +
            layer("Print", "", pictures) +
-           layer("Labels", "stroke=\"#000000\" stroke-width=\"0.18\" stroke-linecap=\"round\" stroke-linejoin=\"round\"",
+           layer("Labels",
+                 "stroke=\"#000000\" stroke-width=\"0.18\" stroke-linecap=\"round\" stroke-linejoin=\"round\"",
                  lines_of(page, decal::Role::label)) +
            layer("Registration", "stroke=\"#000000\" stroke-width=\"0.09\"", lines_of(page, decal::Role::mark)) +
            layer(kCutContour, "stroke=\"#ff00ff\" stroke-width=\"0.09\"", lines_of(page, decal::Role::cut)) +
