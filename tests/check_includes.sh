@@ -37,8 +37,9 @@ stroke/contact
 stroke/deposit
 stroke/session
 stroke/document
+motion
 io/image render/brush render/picture render/gl
-io/model
+io/model io/motion
 io/export io/project io/strokes
 io/sheet
 writer/glyphs

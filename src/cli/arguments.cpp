@@ -113,6 +113,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
 
     Decals decals;
     auto* c = add_decals(app, decals);
+    TrajectoryWork trajectory;
+    auto* t = add_trajectory(app, trajectory);
 
     LayerWork layer;
     auto* l = app.add_subcommand("layer", "change a project's layers");
@@ -277,6 +279,8 @@ bool parse_arguments(int argc, const char* const* argv, Command& command, int& s
         command = exported;
     else if (c->parsed())
         command = decals;
+    else if (t->parsed())
+        command = trajectory;
     else if (d->parsed())
         command = render;
     else if (b->parsed())

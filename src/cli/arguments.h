@@ -271,8 +271,19 @@ struct Decals {
     Common common;
 };
 
+/// `tuft trajectory PROJECT -o OUTPUT`
+struct TrajectoryWork {
+    std::filesystem::path project, output;
+    std::vector<double> tool{0, 0, 100, 0, 0, 0};  ///< [6] mm and degrees about x, y, z: TCP in the flange frame
+    std::vector<double> base{0, 0, 0, 0, 0, 0};    ///< [6] the model in the robot's base frame
+    std::vector<double> holder_mm{12, 150};        ///< [2] diameter and length
+    double max_speed_mm = 250, max_acceleration_mm = 1000, max_turn_deg = 90;
+    double clearance_mm = 20;
+    Common common;
+};
+
 using Command = std::variant<Paint, Write, Inspect, Unwrap, Replay, Export, Render, Brush, BiasCorrection, Bench,
-                             LayerWork, FillWork, MaskWork, InkWork, DeviceWork, Decals>;
+                             LayerWork, FillWork, MaskWork, InkWork, DeviceWork, Decals, TrajectoryWork>;
 
 /// Parses the command line into `command`. Returns false, with the exit status in `status`, when there is nothing to
 /// run: after printing help or version (0), and after one line on standard error for a wrong command line (2). Main

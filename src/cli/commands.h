@@ -24,5 +24,6 @@ int run(const MaskWork& arguments);
 int run(const InkWork& arguments);
 int run(const DeviceWork& arguments);
 int run(const Decals& arguments);
+int run(const TrajectoryWork& arguments);
 
 }  // namespace tuft::cli

@@ -49,5 +49,7 @@ void add_paint_options(CLI::App* app, Paint& paint);
 void add_device(CLI::App& app, DeviceWork& device);
 /// Adds `tuft decals`.
 CLI::App* add_decals(CLI::App& app, Decals& decals);
+/// Adds `tuft trajectory`.
+CLI::App* add_trajectory(CLI::App& app, TrajectoryWork& work);
 
 }  // namespace tuft::cli

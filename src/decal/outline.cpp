@@ -15,7 +15,8 @@ constexpr double kMostCells = 4e6;
 constexpr double kLeastPaint = 5e-8;  // m²: less is a speck that no one would apply
 constexpr double kSlit = 2e-6;        // metres: sides of a slit nearer than this are one
 constexpr double kPainted = 0.5;      // coverage
-constexpr double kLeastHole = 3;      // of the closing's distance: smaller holes are a nuisance to cut and lay
+constexpr double kWidestClosing = 3;  // of `join`: with hardly a bleed nothing bridges gaps
+constexpr double kLeastHole = 3;      // of the bleed, or half of `join`: smaller holes are a nuisance to cut and lay
 
 /// Nodes of a grid over the panel's plane.
 struct Grid {
@@ -32,8 +33,8 @@ struct Grid {
 
 Grid grid_over(const PrintSurface& surface, double margin, double texel) {
     Box2 box{surface.flat[0], surface.flat[0]};
-    for (std::size_t t = 0; t < surface.n_own; ++t)
-        for (const std::uint32_t v : surface.faces[t])
+    for (const auto& face : surface.faces)
+        for (const std::uint32_t v : face)
             box.lo = glm::min(box.lo, surface.flat[v]), box.hi = glm::max(box.hi, surface.flat[v]);
     const Vec2 size = box.size() + Vec2(2 * margin);
     Grid grid;
@@ -44,16 +45,16 @@ Grid grid_over(const PrintSurface& surface, double margin, double texel) {
     return grid;
 }
 
-/// Coverage at the nodes, of the panel's own triangles; a node counts the most covered point of its cell.
+/// Coverage at the nodes. Paint beyond the seams counts for the cut line, not for the area.
 struct Paint {
-    std::vector<float> mean;          // coverage of the node's cell
+    std::vector<float> mean;          // coverage of the node's cell, of the panel's own triangles
     std::vector<std::uint8_t> inked;  // somewhere in it
 };
 
 Paint find_paint(const PrintSurface& surface, const CoverageFn& coverage, const Grid& grid, double texel) {
     Paint paint{std::vector<float>(grid.size(), 0), std::vector<std::uint8_t>(grid.size(), 0)};
     const int fine = std::clamp(static_cast<int>(std::ceil(grid.cell / texel)), 1, 5);
-    for (std::size_t t = 0; t < surface.n_own; ++t) {
+    for (std::size_t t = 0; t < surface.faces.size(); ++t) {
         const auto& f = surface.faces[t];
         const Vec2 a = (surface.flat[f[0]] - grid.origin) / grid.cell;
         const Vec2 x = (surface.flat[f[1]] - grid.origin) / grid.cell - a;
@@ -74,7 +75,7 @@ Paint find_paint(const PrintSurface& surface, const CoverageFn& coverage, const 
                                c * surface.weights[t][2][m];
                     const double value = coverage(surface.source[t], w);
                     const std::size_t at = grid.index(i, j);
-                    paint.mean[at] += static_cast<float>(value / (fine * fine));
+                    if (t < surface.n_own) paint.mean[at] += static_cast<float>(value / (fine * fine));
                     if (value > kPainted) paint.inked[at] = 1;
                 }
     }
@@ -262,18 +263,27 @@ double paint_inside(const Grid& grid, const std::vector<float>& coverage, const 
     return sum * grid.cell * grid.cell;
 }
 
+/// The least distance at which the closing bridges two points `join` apart: √(g² − ¼ join²) = g − bleed.
+double closing_distance(const OutlineOptions& options) {
+    const double half = 0.5 * options.join;
+    if (half <= options.bleed) return options.bleed;
+    const double bridging = (half * half + options.bleed * options.bleed) / (2 * std::max(options.bleed, 1e-9));
+    return std::min(bridging, kWidestClosing * options.join);
+}
+
 }  // namespace
 
 std::vector<Outline> find_outlines(const FilmMesh& film, const Panel& panel, const PrintSurface& surface,
                                    const CoverageFn& coverage, const OutlineOptions& options) {
-    const double around = std::max(options.bleed, 0.5 * options.join);
+    const double around = closing_distance(options);
     const Grid grid = grid_over(surface, around + 2 * kLeastCell, options.texel);
     const Paint paint = find_paint(surface, coverage, grid, options.texel);
     if (std::find(paint.inked.begin(), paint.inked.end(), 1) == paint.inked.end()) return {};
     const Region allowed = allowed_region(film, panel, options, options.bleed + options.least_side);
     const double tolerance = std::min(2e-5, 0.25 * grid.cell);
-    const Region wanted = simplify(
-        without_small_holes(film_round(grid, paint.inked, options.bleed, around), kLeastHole * around), tolerance);
+    const Region wanted = simplify(without_small_holes(film_round(grid, paint.inked, options.bleed, around),
+                                                       kLeastHole * std::max(options.bleed, 0.5 * options.join)),
+                                   tolerance);
     std::vector<Outline> outlines;
     for (Region& part : separate(intersect(wanted, allowed))) {
         const Vec2 size = box_of(part).size();

@@ -26,12 +26,13 @@ struct Outline {
     double paint_area = 0;  ///< m² of coverage inside it, of the panel's own triangles
 };
 
-/// Returns the pieces of film of a panel. The film is the closing of the paint P, all that is within g of it and more
-/// than g − bleed from what is not, g = max(bleed, join / 2); so the cut line runs `bleed` outside the paint and
-/// bridges gaps. Holes smaller than a disc of radius 3 g are film. It ends at seams, or `overlap` beyond them. Beyond
-/// other borders of the panel it goes on in the plane. Distances are exact on a grid of cells (Felzenszwalb and
-/// Huttenlocher 2012) of a texel, at least 0.1 mm, and at most 4 million of them; the line is within half a cell.
-/// Pieces with less than 0.05 mm² of paint are left out.
+/// Returns the pieces of film of a panel. The film is the closing of the paint: all that is within g of it and more
+/// than g − bleed from what is not. So the cut line runs `bleed` outside the paint and bridges gaps; with g = (¼ join²
+/// + bleed²) / 2 bleed two points `join` apart share a piece, and broad islands a little further apart do too. Holes
+/// smaller than a disc of radius 3 max(bleed, join / 2) are film. The film ends at seams, or `overlap` beyond them.
+/// Beyond other borders of the panel it goes on in the plane. Distances are exact on a grid [Felzenszwalb2012] of cells
+/// of a texel, at least 0.1 mm, and at most 4 million of them; the line is within half a cell. Pieces with less than
+/// 0.05 mm² of paint are left out.
 std::vector<Outline> find_outlines(const FilmMesh& film, const Panel& panel, const PrintSurface& surface,
                                    const CoverageFn& coverage, const OutlineOptions& options);
 

@@ -53,7 +53,8 @@ TEST(Outline, NearIslandsShareAPieceAndFarOnesDoNot) {
         };
     };
     EXPECT_EQ(Sheet100().outlines(two(19 * kMm), {.bleed = 1 * kMm}).size(), 1u);  // 9 mm between them
-    EXPECT_EQ(Sheet100().outlines(two(21 * kMm), {.bleed = 1 * kMm}).size(), 2u);  // 11 mm
+    EXPECT_EQ(Sheet100().outlines(two(24 * kMm), {.bleed = 3 * kMm}).size(), 2u);  // 14 mm
+    EXPECT_EQ(Sheet100().outlines(two(40 * kMm), {.bleed = 1 * kMm}).size(), 2u);  // 30 mm
 }
 
 TEST(Outline, ASpeckGetsFilmThatFingersCanHold) {

@@ -125,8 +125,8 @@ TEST_F(SheetFiles, PdfHoldsAPlateForEachPigment) {
     EXPECT_NE(bytes.find("/iron#20red"), std::string::npos);
     const std::string list = output_of("pdfimages -list '" + pdf.string() + "'");
     if (list.empty()) GTEST_SKIP() << "poppler-utils is not installed";
-    EXPECT_EQ(
-        std::distance(std::sregex_iterator(list.begin(), list.end(), std::regex(" sep ")), std::sregex_iterator()), 2);
+    const std::regex separation(" sep ");
+    EXPECT_EQ(std::distance(std::sregex_iterator(list.begin(), list.end(), separation), std::sregex_iterator()), 2);
 }
 
 TEST_F(SheetFiles, SvgIsInMillimetres) {
