@@ -21,6 +21,7 @@ constexpr int kDirections = 24;
 constexpr int kPositions = 7;
 constexpr double kFirstPosition = 0.35, kLastPosition = 0.65;  // parts of the area
 constexpr double kOffCentre = 1.0;  // growth of the cost from the middle to half the area away from it
+constexpr double kSharp = 0.3;      // radians
 constexpr std::uint32_t kMostPanels = 2000;
 
 std::vector<std::uint32_t> triangles_of(const FilmMesh& film, std::uint32_t label) {
@@ -104,6 +105,31 @@ double cut_cost(const FilmMesh& film, const std::vector<Facet>& facets, const Co
     return cost;
 }
 
+/// The vertex inside a part whose angles miss 2π by most, where that is more than `kSharp`. Cuts beside it do not help.
+std::optional<Vec3> sharpest_point(const FilmMesh& film, std::uint32_t label) {
+    std::map<std::uint32_t, double> angles;  // by vertex
+    std::set<std::uint32_t> border;
+    for (const std::uint32_t t : triangles_of(film, label))
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const std::uint32_t v = film.mesh.triangles[t][k], next = film.mesh.triangles[t][(k + 1) % 3];
+            const Vec3 p(film.mesh.positions[v]);
+            const Vec3 a = Vec3(film.mesh.positions[next]) - p;
+            const Vec3 b = Vec3(film.mesh.positions[film.mesh.triangles[t][(k + 2) % 3]]) - p;
+            angles[v] += std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+            const std::uint32_t other = film.mesh.neighbours[3 * t + k];
+            if (other == kNone || film.label[other] != label) border.insert({v, next});
+        }
+    double most = kSharp;
+    std::optional<Vec3> sharpest;
+    for (const auto& [v, angle] : angles) {
+        const double defect = std::abs(2 * std::numbers::pi - angle);
+        if (border.contains(v) || defect <= most) continue;
+        most = defect;
+        sharpest = Vec3(film.mesh.positions[v]);
+    }
+    return sharpest;
+}
+
 /// The planes that may cut a part, the best first.
 std::vector<Plane> cutting_planes(const FilmMesh& film, std::uint32_t label, const CoverageFn& coverage) {
     std::vector<Facet> facets;
@@ -114,6 +140,7 @@ std::vector<Plane> cutting_planes(const FilmMesh& film, std::uint32_t label, con
         area += facets.back().area;
     }
     const auto [long_axis, other_axis] = long_axes(facets);
+    const std::optional<Vec3> sharpest = sharpest_point(film, label);
     struct Candidate {
         Plane plane;
         double away = 0, cost = 0;
@@ -122,6 +149,10 @@ std::vector<Plane> cutting_planes(const FilmMesh& film, std::uint32_t label, con
     for (int d = 0; d < kDirections; ++d) {
         const double angle = std::numbers::pi * d / kDirections;
         const Vec3 normal = std::cos(angle) * long_axis + std::sin(angle) * other_axis;
+        if (sharpest) {
+            candidates.push_back({{normal, glm::dot(normal, *sharpest)}, 0, 0});
+            continue;
+        }
         std::vector<std::pair<double, double>> along;  // position, area
         along.reserve(facets.size());
         for (const Facet& f : facets) along.emplace_back(glm::dot(normal, f.centre), f.area);
@@ -177,11 +208,7 @@ class Cutting {
         panel.chart = atlas::make_chart(film_.mesh, glued, std::move(triangles), 1.0);
         FlatPanel flat = lay_flat(panel.chart, options_.max_strain);
         if (!flat.within(options_.max_strain)) return std::nullopt;
-        if (options_.fits) {
-            std::vector<Vec2> border;
-            for (const std::uint32_t v : panel.chart.loop) border.push_back(flat.flat[v]);
-            if (!options_.fits(border)) return std::nullopt;
-        }
+        if (options_.fits && !options_.fits(panel.chart, flat.flat)) return std::nullopt;
         panel.strain = flat.strain;
         panel.flat = std::move(flat.flat);
         return panel;

@@ -14,8 +14,8 @@ namespace tuft::decal {
 /// Limits of panels.
 struct PanelOptions {
     double max_strain = 0.03;  ///< of the film: 0.03 water-slide decal, 0.15 wrap film
-    /// Returns whether a panel with these border points (metres) fits a page; empty: any does.
-    std::function<bool(const std::vector<Vec2>& border)> fits;
+    /// Returns whether a panel, laid flat (metres), fits a page; empty: any does.
+    std::function<bool(const atlas::ChartMesh& chart, const std::vector<Vec2>& flat)> fits;
     ProgressFn progress;
 };
 
@@ -31,7 +31,8 @@ struct Panel {
 ///
 /// 1. A connected part that is no disk, strains the film by more than the limit or fits no page is cut in two by a
 ///    plane: of 24 directions through its two longer axes and 7 positions in its middle third the one with the least
-///    visible cut, ∫ (0.15 + coverage) ds. So cuts run between motifs where they can.
+///    visible cut, ∫ (0.15 + coverage) ds. So cuts run between motifs where they can. Where the angles at a vertex miss
+///    2π by more than 0.3, the plane goes through the sharpest such vertex.
 /// 2. Neighbours are joined again along one connected seam, the most visible one first, where the whole still lies
 ///    flat within the limits. In the end no two panels can be joined.
 ///

@@ -148,15 +148,12 @@ std::optional<ModelPoint> locate(const PrintSurface& surface, const Vec2& p) {
     return std::nullopt;
 }
 
-Vec2 flat_direction(const mesh::TriangleMesh& model, const PrintSurface& surface, const Vec3& direction) {
+Vec2 flat_direction(const atlas::ChartMesh& chart, std::span<const Vec2> flat, const Vec3& direction) {
     Vec2 sum(0);
     double area = 0;
-    for (std::size_t t = 0; t < surface.n_own; ++t) {
-        std::array<Vec3, 3> p;
-        for (std::size_t k = 0; k < 3; ++k) p[k] = point_at(model, surface.source[t], surface.weights[t][k]);
-        const Vec3 x = p[1] - p[0], y = p[2] - p[0];
-        const Vec2 u = surface.flat[surface.faces[t][1]] - surface.flat[surface.faces[t][0]];
-        const Vec2 v = surface.flat[surface.faces[t][2]] - surface.flat[surface.faces[t][0]];
+    for (const auto& f : chart.faces) {
+        const Vec3 x = chart.position[f[1]] - chart.position[f[0]], y = chart.position[f[2]] - chart.position[f[0]];
+        const Vec2 u = flat[f[1]] - flat[f[0]], v = flat[f[2]] - flat[f[0]];
         // The direction's tangential part is α x + β y.
         const double xx = glm::dot(x, x), xy = glm::dot(x, y), yy = glm::dot(y, y), det = xx * yy - xy * xy;
         if (!(det > 0)) continue;

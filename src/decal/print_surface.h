@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "decal/panels.h"
 
@@ -34,8 +35,8 @@ struct ModelPoint {
 /// there is none. Cost: all triangles are tested.
 std::optional<ModelPoint> locate(const PrintSurface& surface, const Vec2& p);
 
-/// Returns the direction on the sheet of a direction of the model: the mean over the own triangles of its tangential
-/// part, laid flat. Its length is at most 1; 0 where the panel is normal to it.
-Vec2 flat_direction(const mesh::TriangleMesh& model, const PrintSurface& surface, const Vec3& direction);
+/// Returns the direction on the sheet of a direction of the model: the mean over a panel of its tangential part, laid
+/// flat. Its length is at most 1; 0 where the panel is normal to it.
+Vec2 flat_direction(const atlas::ChartMesh& chart, std::span<const Vec2> flat, const Vec3& direction);
 
 }  // namespace tuft::decal

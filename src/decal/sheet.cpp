@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -39,34 +40,54 @@ double overlap_of(const Laid& laid, std::size_t i, std::uint32_t label, const Sh
     return laid.index.at(label) > i ? options.overlap : 0;
 }
 
+/// Up the model on a panel's sheet, unit; on level panels to its back.
+Vec2 up_of(const atlas::ChartMesh& chart, const std::vector<Vec2>& flat) {
+    Vec2 up = flat_direction(chart, flat, {0, 0, 1});
+    if (glm::length(up) < kLevel) up = flat_direction(chart, flat, {0, 1, 0});
+    const double length = glm::length(up);
+    return length > 0 ? up / length : Vec2(0, 1);
+}
+
+/// The turn that brings `up` to the page's.
+double upright_angle(const Vec2& up) {
+    return 0.5 * std::numbers::pi - std::atan2(up.y, up.x);
+}
+
+/// Whether a panel with its bleed and its label fits the page in an orientation that it may take.
+bool fits_page(const atlas::ChartMesh& chart, const std::vector<Vec2>& flat, const SheetOptions& options) {
+    const Vec2 area = free_area(options.page);
+    const double around = 2 * (options.bleed + printed_bleed(options)) + kLabelHeight;
+    Ring border;
+    for (const std::uint32_t v : chart.loop) border.push_back(flat[v]);
+    if (options.upright) {
+        const double angle = upright_angle(up_of(chart, flat));
+        const PagePlacement turn{std::cos(angle), std::sin(angle), Vec2(0)};
+        for (Vec2& p : border) p = turn(p);
+        const Vec2 size = box_of({border}).size() + Vec2(around);
+        return size.x < area.x && (area.y == 0 || size.y < area.y);
+    }
+    const atlas::Rectangle box = atlas::smallest_rectangle(atlas::convex_hull(border));
+    const double longest = area.y > 0 ? std::max(area.x, area.y) : std::numeric_limits<double>::infinity();
+    const double shortest = area.y > 0 ? std::min(area.x, area.y) : area.x;
+    return box.length + around < longest && box.width + around < shortest;
+}
+
 Laid lay_out(const mesh::TriangleMesh& model, const PrintSource& source, const SheetOptions& options) {
     Laid laid;
     const double margin = std::min(std::max(options.bleed, 0.5 * options.join), 0.5 * options.join + kPrintedBleed);
     laid.film = select_film(model, source.coverage, 1.2 * margin, source.texel);
     if (laid.film.source.empty()) throw Error("nothing is painted: there is no film to cut");
-    const Vec2 area = free_area(options.page);
-    const double around = 2 * (options.bleed + printed_bleed(options)) + kLabelHeight;
     PanelOptions panel_options{.max_strain = options.max_strain, .fits = {}, .progress = options.progress};
-    panel_options.fits = [&](const std::vector<Vec2>& border) {
-        const atlas::Rectangle box = atlas::smallest_rectangle(atlas::convex_hull(border));
-        const double longest = area.y > 0 ? std::max(area.x, area.y) : 1e9;
-        const double shortest = area.y > 0 ? std::min(area.x, area.y) : area.x;
-        return box.length + around < longest && box.width + around < shortest;
+    panel_options.fits = [&](const atlas::ChartMesh& chart, const std::vector<Vec2>& flat) {
+        return fits_page(chart, flat, options);
     };
     laid.panels = cut_into_panels(laid.film, source.coverage, panel_options);
     for (std::size_t i = 0; i < laid.panels.size(); ++i) laid.index[laid.label(i)] = i;
     return laid;
 }
 
-Vec2 up_of(const mesh::TriangleMesh& model, const PrintSurface& surface) {
-    Vec2 up = flat_direction(model, surface, {0, 0, 1});
-    if (glm::length(up) < kLevel) up = flat_direction(model, surface, {0, 1, 0});
-    const double length = glm::length(up);
-    return length > 0 ? up / length : Vec2(0, 1);
-}
-
-std::vector<Piece> find_pieces(const mesh::TriangleMesh& model, const Laid& laid, const PrintSource& source,
-                               const SheetOptions& options, std::vector<PrintSurface>& surfaces) {
+std::vector<Piece> find_pieces(const Laid& laid, const PrintSource& source, const SheetOptions& options,
+                               std::vector<PrintSurface>& surfaces) {
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < laid.panels.size(); ++i) {
         report(options.progress, "cut lines", static_cast<double>(i) / static_cast<double>(laid.panels.size()));
@@ -79,7 +100,7 @@ std::vector<Piece> find_pieces(const mesh::TriangleMesh& model, const Laid& laid
             .least_side = kLeastSide,
             .texel = source.texel,
             .overlap = [&](std::uint32_t label) { return overlap_of(laid, i, label, options); }};
-        const Vec2 up = up_of(model, surfaces[i]);
+        const Vec2 up = up_of(laid.panels[i].chart, laid.panels[i].flat);
         for (Outline& o : find_outlines(laid.film, laid.panels[i], surfaces[i], source.coverage, outline)) {
             Piece piece;
             piece.number = static_cast<int>(pieces.size()) + 1;
@@ -125,7 +146,7 @@ Footprint footprint_of(const Piece& piece, double angle, double bleed) {
 std::vector<Footprint> footprints_of(const Piece& piece, const SheetOptions& options) {
     std::vector<double> angles;
     if (options.upright) {
-        angles.push_back(0.5 * std::numbers::pi - std::atan2(piece.up.y, piece.up.x));
+        angles.push_back(upright_angle(piece.up));
     } else {
         const atlas::Rectangle box = atlas::smallest_rectangle(atlas::convex_hull(piece.film[0]));
         for (int k = 0; k < 4; ++k) angles.push_back(0.5 * std::numbers::pi * k - std::atan2(box.s, box.c));
@@ -225,7 +246,7 @@ Sheet make_sheet(const mesh::TriangleMesh& model, const PrintSource& source, con
     const Laid laid = lay_out(model, source, options);
     Sheet sheet;
     sheet.max_strain = options.max_strain;
-    sheet.pieces = find_pieces(model, laid, source, options, sheet.surfaces);
+    sheet.pieces = find_pieces(laid, source, options, sheet.surfaces);
     if (sheet.pieces.empty()) throw Error("nothing is painted: there is no film to cut");
     const std::vector<Vec2> labels = place_pieces(sheet.pieces, options, sheet.pages);
     draw_pieces(laid, source, options, labels, sheet);

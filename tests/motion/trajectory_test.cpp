@@ -150,7 +150,7 @@ TEST(Plan, RefusesWhereTheHolderWouldHit) {
                   std::string::npos)
             << error.what();
     }
-    EXPECT_EQ(plan(query, {stroke}, {.holder = {0.004, 0.03}, .clearance = 0.005}).moves.size(), 3u);
+    EXPECT_EQ(plan(query, {stroke}, {.holder = {0.004, 0.012}, .clearance = 0.005}).moves.size(), 3u);
 }
 
 }  // namespace
