@@ -203,31 +203,88 @@ std::vector<std::uint32_t> border_of(const atlas::ChartMesh& chart) {
     return border;
 }
 
-/// Where film may lie: the panel, `free` beyond its open borders, as far as `overlap` beyond its seams.
-Region allowed_region(const FilmMesh& film, const Panel& panel, const OutlineOptions& options, double free) {
+/// A run of a panel's border beside one neighbour, or none.
+struct BorderRun {
+    std::vector<Vec2> line;  // the panel lies on its left
+    double reach = 0;        // metres of film beyond it
+    bool seam = false;       // beside another panel
+
+    /// Whether it runs from one end to the other, and not into the panel and back.
+    bool is_straight() const {
+        double length = 0;
+        for (std::size_t i = 0; i + 1 < line.size(); ++i) length += glm::length(line[i + 1] - line[i]);
+        return glm::length(line.back() - line.front()) > 0.5 * length;
+    }
+
+    /// The line with straight ends `more` metres longer.
+    std::vector<Vec2> extended(double more) const {
+        std::vector<Vec2> out = line;
+        const Vec2 first = line[0] - line[1], last = line.back() - line[line.size() - 2];
+        out.insert(out.begin(), line.front() + more / glm::length(first) * first);
+        out.push_back(line.back() + more / glm::length(last) * last);
+        return out;
+    }
+
+    /// What lies more than `reach` and less than that and `depth` beyond a seam: its line moved outwards.
+    Region beyond(double depth) const {
+        Vec2 along = line.back() - line.front();
+        along /= glm::length(along);
+        const Vec2 out{along.y, -along.x};
+        const std::vector<Vec2> edge = extended(depth);
+        Ring ring;
+        for (const Vec2& p : edge) ring.push_back(p + reach * out);
+        for (auto p = edge.rbegin(); p != edge.rend(); ++p) ring.push_back(*p + (reach + depth) * out);
+        if (area_of(ring) < 0) std::reverse(ring.begin(), ring.end());
+        return unite({ring}, {});
+    }
+};
+
+std::vector<BorderRun> border_runs(const FilmMesh& film, const Panel& panel, const OutlineOptions& options,
+                                   double free) {
     const std::vector<std::uint32_t> border = border_of(panel.chart);
     const std::vector<std::uint32_t> twin = atlas::twin_half_edges(film.mesh);
     const std::uint32_t own = film.label[panel.chart.triangles[0]];
-    std::vector<double> reach;
-    Ring ring;
-    for (const std::uint32_t h : border) {
-        ring.push_back(panel.flat[panel.chart.faces[h / 3][h % 3]]);
+    const auto label_beyond = [&](std::uint32_t h) {
         const std::uint32_t other = twin[3 * panel.chart.triangles[h / 3] + h % 3];
-        const std::uint32_t label = other == kNone ? kNone : film.label[other / 3];
-        reach.push_back(other == kNone ? free : label == own ? 0 : options.overlap(label));
-    }
-    Region region = offset(offset({ring}, kSlit), -kSlit);
+        return other == kNone ? kNone : film.label[other / 3];
+    };
     const std::size_t n = border.size();
-    std::size_t first = 0;  // of a run of equal reach
-    while (first < n && reach[first] == reach[(first + n - 1) % n]) ++first;
-    if (first == n) return reach[0] > 0 ? unite(region, offset(region, reach[0])) : region;
+    std::size_t first = 0;
+    while (first < n && label_beyond(border[first]) == label_beyond(border[(first + n - 1) % n])) ++first;
+    first %= n;
+    std::vector<BorderRun> runs;
     for (std::size_t i = 0; i < n;) {
-        const double distance = reach[(first + i) % n];
-        std::vector<Vec2> line{ring[(first + i) % n]};
-        for (; i < n && reach[(first + i) % n] == distance; ++i) line.push_back(ring[(first + i + 1) % n]);
-        if (distance > 0) region = unite(region, sweep(line, distance));
+        const std::uint32_t label = label_beyond(border[(first + i) % n]);
+        BorderRun run{.line = {},
+                      .reach = label == kNone ? free
+                               : label == own ? 0
+                                              : options.overlap(label),
+                      .seam = label != kNone && label != own};
+        const auto corner = [&](std::size_t k, std::uint32_t next) {
+            const std::uint32_t h = border[(first + k) % n];
+            return panel.flat[panel.chart.faces[h / 3][(h % 3 + next) % 3]];
+        };
+        run.line.push_back(corner(i, 0));
+        for (; i < n && label_beyond(border[(first + i) % n]) == label; ++i) run.line.push_back(corner(i, 1));
+        runs.push_back(std::move(run));
     }
-    return region;
+    return runs;
+}
+
+/// Where film may lie: the panel, `free` beyond its open borders, as far as `overlap` beyond its seams.
+Region allowed_region(const FilmMesh& film, const Panel& panel, const OutlineOptions& options, double free) {
+    Ring ring;
+    for (const std::uint32_t v : panel.chart.loop) ring.push_back(panel.flat[v]);
+    const Region own = offset(offset({ring}, kSlit), -kSlit);
+    const std::vector<BorderRun> runs = border_runs(film, panel, options, free);
+    if (runs.size() == 1) return runs[0].reach > 0 ? offset(own, runs[0].reach) : own;
+    Region around, beyond;
+    for (const BorderRun& run : runs) {
+        const bool open = run.is_straight();
+        if (run.reach > 0) around = unite(around, sweep(run.seam && open ? run.extended(free) : run.line, run.reach));
+        if (run.seam && open) beyond = unite(beyond, run.beyond(2 * free));
+    }
+    return unite(own, subtract(around, beyond));
 }
 
 /// The closing of the paint by `around`, `bleed` beyond it.

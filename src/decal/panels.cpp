@@ -144,15 +144,13 @@ std::vector<Plane> cutting_planes(const FilmMesh& film, std::uint32_t label, con
     struct Candidate {
         Plane plane;
         double away = 0, cost = 0;
+        bool sharp = false;  // through the sharpest point
     };
     std::vector<Candidate> candidates;
     for (int d = 0; d < kDirections; ++d) {
         const double angle = std::numbers::pi * d / kDirections;
         const Vec3 normal = std::cos(angle) * long_axis + std::sin(angle) * other_axis;
-        if (sharpest) {
-            candidates.push_back({{normal, glm::dot(normal, *sharpest)}, 0, 0});
-            continue;
-        }
+        if (sharpest) candidates.push_back({{normal, glm::dot(normal, *sharpest)}, 0, 0, true});
         std::vector<std::pair<double, double>> along;  // position, area
         along.reserve(facets.size());
         for (const Facet& f : facets) along.emplace_back(glm::dot(normal, f.centre), f.area);
@@ -173,8 +171,9 @@ std::vector<Plane> cutting_planes(const FilmMesh& film, std::uint32_t label, con
             candidates[i].cost =
                 (1 + 2 * kOffCentre * candidates[i].away) * cut_cost(film, facets, coverage, candidates[i].plane);
     });
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+        return a.sharp != b.sharp ? a.sharp : a.cost < b.cost;
+    });
     std::vector<Plane> planes;
     for (const Candidate& c : candidates) planes.push_back(c.plane);
     return planes;
@@ -242,13 +241,15 @@ class Cutting {
     }
 
     std::vector<std::uint32_t> split(std::uint32_t label) {
-        for (const Plane& plane : cutting_planes(film_, label, coverage_)) {
-            std::vector<std::uint32_t> parts = cut(film_, label, plane);
-            if (parts.size() < 2) continue;
-            if (film_.n_labels > kMostPanels) break;
-            return parts;
-        }
-        throw Error("a part of the film cannot be laid flat within this strain and page; allow more of either");
+        if (film_.n_labels < kMostPanels)
+            for (const Plane& plane : cutting_planes(film_, label, coverage_))
+                if (std::vector<std::uint32_t> parts = cut(film_, label, plane); parts.size() > 1) return parts;
+        // No plane parts a few folded triangles: the first of them goes alone.
+        const std::vector<std::uint32_t> triangles = triangles_of(film_, label);
+        if (triangles.size() < 2 || film_.n_labels >= kMostPanels)
+            throw Error("a part of the film cannot be laid flat within this strain and page; allow more of either");
+        film_.label[triangles[0]] = film_.n_labels;
+        return {label, film_.n_labels++};
     }
 
     std::vector<Chain> chains() const {

@@ -113,6 +113,10 @@ Region intersect(const Region& a, const Region& b) {
     return combine(a, b, clip::ctIntersection);
 }
 
+Region subtract(const Region& a, const Region& b) {
+    return combine(a, b, clip::ctDifference);
+}
+
 Region offset(const Region& region, double distance) {
     if (distance == 0) return region;
     return inflated(paths_of(region), clip::etClosedPolygon, distance);

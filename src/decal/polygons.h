@@ -21,6 +21,7 @@ double area_of(const Region& region);
 
 Region unite(const Region& a, const Region& b);
 Region intersect(const Region& a, const Region& b);
+Region subtract(const Region& a, const Region& b);
 /// Returns the points within `distance` of the region, or for a negative one those that far inside. Round corners,
 /// within 5 µm.
 Region offset(const Region& region, double distance);

@@ -13,11 +13,11 @@ namespace fs = std::filesystem;
 class Decals : public test::Program {
   protected:
     /// A project with writing on the bowl, texels of 0.3 mm.
-    std::string bowl() const {
-        const std::string project = path("bowl.tuft");
+    std::string bowl(const std::string& strokes = "man-bu-ren-sheng") const {
+        const std::string project = path(strokes + ".tuft");
         const test::Ran ran =
-            tuft("paint " + model("bowl.ply") + " --strokes " + source_folder() +
-                 "/samples/strokes/man-bu-ren-sheng.inkml --atlas-size 1024 --quiet --project " + project);
+            tuft("paint " + model("bowl.ply") + " --strokes " + source_folder() + "/samples/strokes/" + strokes +
+                 ".inkml --atlas-size 1024 --quiet --project " + project);
         EXPECT_EQ(ran.status, 0) << ran.err;
         return project;
     }
@@ -134,7 +134,8 @@ TEST_F(Trajectories, AreWrittenInEachLanguageAndRefusedWhereTheHolderHits) {
     const test::Ran lean = tuft("trajectory " + project + " -o " + path("a.gcode"));
     EXPECT_EQ(lean.status, 1);
     EXPECT_NE(lean.err.find("G-code holds it upright"), std::string::npos) << lean.err;
-    const test::Ran hit = tuft("trajectory " + project + " --holder 90x100 -o " + path("b.json"));
+    // A ball of 200 mm does not go into a bowl of 150 mm.
+    const test::Ran hit = tuft("trajectory " + bowl("qi-shang-ba-xia") + " --holder 200x150 -o " + path("b.json"));
     EXPECT_EQ(hit.status, 1);
     EXPECT_TRUE(std::regex_search(hit.err, std::regex("stroke [0-9]+.*the holder would hit the model at"))) << hit.err;
     EXPECT_FALSE(fs::exists(path("b.json")));

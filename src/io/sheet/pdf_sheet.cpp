@@ -39,6 +39,8 @@ class PdfSheet {
 
     std::string bytes() {
         document_.SetPdfVersion(PoDoFo::ePdfVersion_1_6);
+        // The file's identifier is made of this date, too: without it the same sheet is the same file.
+        document_.GetInfo()->GetObject()->GetDictionary().RemoveKey("CreationDate");
         make_spaces();
         for (const decal::Page& page : sheet_.pages) add_page(page);
         PoDoFo::PdfRefCountedBuffer buffer;
