@@ -282,16 +282,18 @@ std::vector<std::uint32_t> cut(FilmMesh& film, std::uint32_t label, const Plane&
     }
     Divider divider(film, middle);
     for (std::uint32_t t = 0; t < n; ++t) divider.divide(t);
-    const std::uint32_t other = film.n_labels++;
+    std::vector<std::size_t> below, above;
     for (std::size_t t = 0; t < film.mesh.n_triangles(); ++t) {
         if (film.label[t] != label) continue;
-        const auto& f = film.mesh.triangles[t];
         int sum = 0;
         double heights = 0;
-        for (const std::uint32_t v : f) sum += side[v], heights += height[v];
-        if (sum > 0 || (sum == 0 && heights > 0)) film.label[t] = other;
+        for (const std::uint32_t v : film.mesh.triangles[t]) sum += side[v], heights += height[v];
+        (sum > 0 || (sum == 0 && heights > 0) ? above : below).push_back(t);
     }
     find_neighbours(film.mesh);
+    if (below.empty() || above.empty()) return label_parts(film, label);
+    const std::uint32_t other = film.n_labels++;
+    for (const std::size_t t : above) film.label[t] = other;
     std::vector<std::uint32_t> labels = label_parts(film, label);
     const std::vector<std::uint32_t> more = label_parts(film, other);
     labels.insert(labels.end(), more.begin(), more.end());

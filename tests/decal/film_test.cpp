@@ -39,6 +39,14 @@ TEST(FilmMesh, CuttingKeepsTheSurface) {
                       1e-7);
 }
 
+TEST(FilmMesh, APlaneBesideAPartLeavesItWhole) {
+    const mesh::TriangleMesh model = test::whole_cylinder(0.04, 0.1, 60, 20);
+    FilmMesh film = select_film(
+        model, [](std::uint32_t, const Weights&) { return 1.0; }, 0.01, 1e-3);
+    for (const double offset : {-0.05, 0.05}) EXPECT_EQ(cut(film, 0, {{1, 0, 0}, offset}), std::vector{0u});
+    EXPECT_EQ(film.n_labels, 1u);
+}
+
 TEST(FilmMesh, TakesWhatIsPaintedAndAMarginRoundIt) {
     const mesh::TriangleMesh model =
         test::grid_mesh(100, 100, false, false, [](double u, double v) { return Vec3(0.1 * u, 0.1 * v, 0); });
