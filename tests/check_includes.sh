@@ -28,6 +28,7 @@ ink/colour
 ink/canvas
 ink/composite ink/exchange ink/texels
 ink/film
+decal
 stroke/journal
 stroke/gesture
 stroke/placement
@@ -36,9 +37,11 @@ stroke/contact
 stroke/deposit
 stroke/session
 stroke/document
+motion
 io/font io/image render/brush render/picture render/gl
-io/model
+io/model io/motion
 io/export io/project io/strokes
+io/sheet
 writer/glyphs
 writer/gesture
 writer/fit writer/layout
@@ -87,6 +90,7 @@ wall 'embree3' '*.cpp'
 wall 'OpenImageIO|SQLiteCpp|sqlite3|tiny_gltf|zlib|assimp' 'io/*.cpp'
 wall 'pugixml' 'io/*.cpp' 'writer/glyphs/*.cpp'
 wall 'ft2build|hb|fontconfig' 'io/font/*.cpp'
+wall 'podofo' 'io/sheet/*.cpp'
 wall 'GL/|epoxy|EGL' 'render/*' 'app/*'
 wall 'GLFW|imgui' 'app/*'
 exit $bad

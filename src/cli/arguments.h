@@ -254,8 +254,37 @@ struct Write : Paint {
     double spacing = 0, line_spacing = 0;  ///< 0: the style's
 };
 
+inline constexpr double kLeastPageMm = 60;  ///< side of a sheet
+
+/// `tuft decals PROJECT -o OUTPUT`
+struct Decals {
+    std::filesystem::path project, output;
+    std::filesystem::path guide;      ///< folder, or empty
+    std::string mask;                 ///< name; empty: all that is painted
+    std::vector<std::string> layers;  ///< as in `View`
+    Recolouring recolouring;
+    double max_strain = 0.03;
+    double bleed_mm = 3, overlap_mm = 1, join_mm = 10;
+    Vec2 page_mm{210, 297};      ///< height 0: a roll
+    std::string grain = "free";  ///< free | up
+    double dpi = 300;
+    bool plates = false, strain_map = false;
+    Common common;
+};
+
+/// `tuft trajectory PROJECT -o OUTPUT`
+struct TrajectoryWork {
+    std::filesystem::path project, output;
+    std::vector<double> tool{0, 0, 100, 0, 0, 0};  ///< [6] mm and degrees about x, y, z: TCP in the flange frame
+    std::vector<double> base{0, 0, 0, 0, 0, 0};    ///< [6] the model in the robot's base frame
+    std::vector<double> holder_mm{12, 150};        ///< [2] diameter and length
+    double max_speed_mm = 250, max_acceleration_mm = 1000, max_turn_deg = 90;
+    double clearance_mm = 20;
+    Common common;
+};
+
 using Command = std::variant<Paint, Write, Inspect, Unwrap, Replay, Export, Render, Brush, BiasCorrection, Bench,
-                             LayerWork, FillWork, MaskWork, InkWork, DeviceWork>;
+                             LayerWork, FillWork, MaskWork, InkWork, DeviceWork, Decals, TrajectoryWork>;
 
 /// Parses the command line into `command`. Returns false, with the exit status in `status`, when there is nothing to
 /// run: after printing help or version (0), and after one line on standard error for a wrong command line (2). Main

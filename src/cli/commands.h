@@ -23,5 +23,7 @@ int run(const FillWork& arguments);
 int run(const MaskWork& arguments);
 int run(const InkWork& arguments);
 int run(const DeviceWork& arguments);
+int run(const Decals& arguments);
+int run(const TrajectoryWork& arguments);
 
 }  // namespace tuft::cli

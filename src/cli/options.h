@@ -48,5 +48,9 @@ void add_write_options(CLI::App* app, Write& write);
 void add_paint_options(CLI::App* app, Paint& paint);
 /// Adds `tuft device` with its commands.
 CLI::App* add_device(CLI::App& app, DeviceWork& device);
+/// Adds `tuft decals`.
+CLI::App* add_decals(CLI::App& app, Decals& decals);
+/// Adds `tuft trajectory`.
+CLI::App* add_trajectory(CLI::App& app, TrajectoryWork& work);
 
 }  // namespace tuft::cli

@@ -196,7 +196,8 @@ constexpr Setting kArmSettings[] = {
      [](Session& s, const SettingValue& v) {
          s.arm.settings.source = v.choice<ArmSource>({"simulated", "service", "recording"});
      }},
-    {"arm-preset", [](Session& s, const SettingValue& v) { s.arm.settings.preset = haptic::device_preset(v.text).name; }},
+    {"arm-preset",
+     [](Session& s, const SettingValue& v) { s.arm.settings.preset = haptic::device_preset(v.text).name; }},
     {"arm-hand",
      [](Session& s, const SettingValue& v) {
          std::vector<std::string> hands{"pointer"};
@@ -206,8 +207,10 @@ constexpr Setting kArmSettings[] = {
     {"arm-recording", [](Session& s, const SettingValue& v) { s.arm.settings.recording = v.text; }},
     {"arm-port", [](Session& s, const SettingValue& v) { s.arm.settings.port = v.whole(0, 65535); }},
     {"arm-gain", [](Session& s, const SettingValue& v) { s.arm.settings.gain = v.within(0, kMostArmGain); }},
-    {"arm-limit", [](Session& s, const SettingValue& v) { s.arm.settings.most_force = v.within(0.1, haptic::kForceLimit); }},
-    {"arm-scale", [](Session& s, const SettingValue& v) { s.arm.settings.scale = v.within(kLeastArmScale, kMostArmScale); }},
+    {"arm-limit",
+     [](Session& s, const SettingValue& v) { s.arm.settings.most_force = v.within(0.1, haptic::kForceLimit); }},
+    {"arm-scale",
+     [](Session& s, const SettingValue& v) { s.arm.settings.scale = v.within(kLeastArmScale, kMostArmScale); }},
     {"arm-view", [](Session& s, const SettingValue& v) { s.arm.settings.with_view = v.on; }},
     {"arm-pause", [](Session& s, const SettingValue& v) { s.arm.paused = v.on; }},
     {"arm-clutch", [](Session& s, const SettingValue& v) { s.arm.clutched = v.on; }},
@@ -221,7 +224,7 @@ constexpr Setting kArmSettings[] = {
 void set_by_name(Session& s, const std::string& name, const std::string& value) {
     const SettingValue v{.name = name, .text = value, .number = number_of(value), .on = value == "on"};
     const std::span<const Setting> groups[] = {kBrushSettings, kToolSettings, kViewSettings, kPreferenceSettings,
-                                              kArmSettings};
+                                               kArmSettings};
     for (const std::span<const Setting> group : groups)
         for (const Setting& setting : group)
             if (setting.name == name) return setting.set(s, v);

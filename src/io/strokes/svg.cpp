@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/system/files.h"
 #include "io/model/xml_fault.h"
+#include "io/motion/motion_files.h"
 #include "io/strokes/area_lines.h"
 #include "io/strokes/inkml_marks.h"
 #include "io/strokes/svg_areas.h"
@@ -263,6 +264,7 @@ std::vector<stroke::RecordedStroke> read_strokes(const std::filesystem::path& pa
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".json") return read_trajectory(path);
     return extension == ".svg" ? read_svg(path, options) : read_inkml(path, options.ink);
 }
 

@@ -116,8 +116,8 @@ std::vector<brush::Pose> pose_holder(const mesh::SurfaceQuery& query, std::span<
 /// Returns the poses of a trace in space: its samples, with rotations normalised.
 std::vector<brush::Pose> spatial_poses(const StrokeSamples& trace);
 
-/// Poses of a trace. The rolls of a flat one are turned with its path: the ferrule lies to the path on the surface as it
-/// did to the flat path.
+/// Poses of a trace. The rolls of a flat one are turned with its path: the ferrule lies to the path on the surface as
+/// it did to the flat path.
 struct HandPath {
     SurfaceTrace mapped;  ///< of a flat trace
     std::vector<brush::Pose> poses;

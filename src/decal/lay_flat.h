@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "atlas/seams/chart_mesh.h"
+
+/// \file
+/// Laying a panel of film flat at its true size, within a limit of strain. Called by panels.h.
+namespace tuft::decal {
+
+/// Principal stretches σ₁ ≥ σ₂ of the map from the sheet onto the model: length on the model over length on the sheet,
+/// so σ − 1 is the strain of film that is printed flat and then laid onto the model.
+struct Stretch {
+    double most = 1, least = 1;
+
+    double strain() const { return std::max(most - 1, 1 - least); }
+};
+
+/// Returns the stretches of each triangle. Infinite where a triangle has no positive area on the sheet. Needles, less
+/// high than 1/100 of their longest edge, are 1: what they measure is rounding. [n_triangles of the chart]
+std::vector<Stretch> measure_stretch(const atlas::ChartMesh& chart, std::span<const Vec2> flat);
+
+/// Returns the largest strain, max |σ − 1| over all triangles.
+double largest_strain(const atlas::ChartMesh& chart, std::span<const Vec2> flat);
+
+/// A panel on the sheet.
+struct FlatPanel {
+    std::vector<Vec2> flat;  ///< [n_vertices of the chart], metres on the sheet; empty: it cannot be laid flat
+    double strain = 0;       ///< `largest_strain`
+    bool sound = false;      ///< no triangle is turned over and the border does not cross itself
+
+    bool within(double limit) const { return sound && strain <= limit; }
+};
+
+/// Lays a disk (metres) flat at true size. Developable panels are unrolled triangle by triangle: exact to rounding.
+/// Others are laid out as rigid as possible [Liu2008]: Σ area Σ_k (1/σ_k − 1)² is least. Where that strains a triangle
+/// by more than `limit`, strain is moved to its neighbours until no triangle exceeds it: the target of each triangle is
+/// its map with both stretches clamped into 1 ± limit, and a global step takes all vertices to the mean of the targets
+/// (strain limiting by local and global steps, Bouaziz et al. 2014). Ends early where the least mean of the strain
+/// already rules the limit out. Cost: about 0.3 s for 10,000 triangles.
+///
+/// On a spherical cap of angular radius α the least possible strain is (k − 1)/(k + 1) with k = α / sin α
+/// (Milnor 1969: no map of the cap has a smaller ratio k of its greatest scale to its least); `limit` = 1.1 times
+/// that is met.
+FlatPanel lay_flat(const atlas::ChartMesh& chart, double limit);
+
+}  // namespace tuft::decal

@@ -1,0 +1,168 @@
+#include "decal/print_surface.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <queue>
+#include <set>
+#include <unordered_map>
+
+#include "atlas/flatten/flatten.h"
+#include "atlas/seams/half_edges.h"
+
+namespace tuft::decal {
+namespace {
+
+constexpr double kInside = -1e-9;  // barycentric weights of points on an edge, rounding
+
+/// Walks over the seams and lays down triangle after triangle.
+class Strip {
+  public:
+    Strip(const FilmMesh& film, const Panel& panel, const std::function<double(std::uint32_t)>& reach)
+        : film_(film), panel_(panel), reach_(reach), twin_(atlas::twin_half_edges(film.mesh)) {
+        used_.assign(film.mesh.n_triangles(), 0);
+        for (const std::uint32_t t : panel.chart.triangles) used_[t] = 1;
+        chart_ = panel.chart;
+        flat_ = panel.flat;
+        own_label_ = film.label[panel.chart.triangles[0]];
+    }
+
+    void grow() {
+        for (std::uint32_t h = 0; h < panel_.is_seam.size(); ++h) {
+            if (!panel_.is_seam[h]) continue;
+            const std::uint32_t g = twin_[3 * panel_.chart.triangles[h / 3] + h % 3];
+            if (film_.label[g / 3] == own_label_) continue;  // a slit of the panel itself
+            enter(g, panel_.chart.faces[h / 3][(h % 3 + 1) % 3], panel_.chart.faces[h / 3][h % 3], 0);
+        }
+        while (!queue_.empty()) {
+            const Entry e = queue_.top();
+            queue_.pop();
+            if (used_[e.half / 3]) continue;
+            add(e);
+        }
+        relax();
+    }
+
+    const atlas::ChartMesh& chart() const { return chart_; }
+    const std::vector<Vec2>& flat() const { return flat_; }
+
+  private:
+    struct Entry {
+        double distance;
+        std::uint32_t half;           // of the film mesh, in the triangle that is entered
+        std::uint32_t first, second;  // chart vertices of its two ends
+        bool operator<(const Entry& o) const { return distance != o.distance ? distance > o.distance : half > o.half; }
+    };
+
+    void enter(std::uint32_t half, std::uint32_t first, std::uint32_t second, double distance) {
+        if (used_[half / 3] || distance >= reach_(film_.label[half / 3])) return;
+        queue_.push({distance, half, first, second});
+    }
+
+    void add(const Entry& e) {
+        const std::uint32_t t = e.half / 3;
+        used_[t] = 1;
+        const std::uint32_t apex = film_.mesh.triangles[t][(e.half % 3 + 2) % 3];
+        const Vec3 a = chart_.position[e.first], b = chart_.position[e.second];
+        const Vec3 c = Vec3(film_.mesh.positions[apex]) - origin();
+        auto [it, fresh] = vertex_.emplace(apex, static_cast<std::uint32_t>(chart_.position.size()));
+        double distance = std::min(glm::length(c - a), glm::length(c - b)) + e.distance;
+        if (fresh) {
+            const Vec3 x = b - a, y = c - a;
+            const double along = glm::dot(x, y) / glm::dot(x, x);
+            const double across = glm::length(glm::cross(x, y)) / glm::dot(x, x);
+            const Vec2 u = flat_[e.second] - flat_[e.first];
+            chart_.position.push_back(c);
+            flat_.push_back(flat_[e.first] + along * u + across * Vec2(-u.y, u.x));
+        }
+        const std::uint32_t third = it->second;
+        std::array<std::uint32_t, 3> face;
+        face[e.half % 3] = e.first;
+        face[(e.half % 3 + 1) % 3] = e.second;
+        face[(e.half % 3 + 2) % 3] = third;
+        chart_.faces.push_back(face);
+        chart_.triangles.push_back(t);
+        for (const std::uint32_t h : {mesh::next_half(e.half), mesh::prev_half(e.half)}) {
+            const std::uint32_t g = twin_[h];
+            if (g != kNone && film_.label[g / 3] != own_label_) enter(g, face[(h % 3 + 1) % 3], face[h % 3], distance);
+        }
+    }
+
+    Vec3 origin() const { return film_.mesh.position(panel_.chart.triangles[0], 0); }
+
+    void relax() {
+        const std::size_t n_own = panel_.chart.faces.size();
+        if (chart_.faces.size() == n_own) return;
+        std::vector<std::uint32_t> ring(chart_.faces.size() - n_own);
+        std::iota(ring.begin(), ring.end(), static_cast<std::uint32_t>(n_own));
+        std::vector<Vec2> relaxed = flat_;
+        atlas::arap(chart_, relaxed, {.iterations = 20}, ring);
+        const auto finite = [](const Vec2& p) { return std::isfinite(p.x) && std::isfinite(p.y); };
+        if (std::all_of(relaxed.begin(), relaxed.end(), finite)) flat_ = std::move(relaxed);
+    }
+
+    const FilmMesh& film_;
+    const Panel& panel_;
+    const std::function<double(std::uint32_t)>& reach_;
+    std::vector<std::uint32_t> twin_;
+    std::vector<std::uint8_t> used_;
+    std::uint32_t own_label_ = 0;
+    atlas::ChartMesh chart_;
+    std::vector<Vec2> flat_;
+    std::unordered_map<std::uint32_t, std::uint32_t> vertex_;  // of the film mesh, in the strip
+    std::priority_queue<Entry> queue_;
+};
+
+}  // namespace
+
+PrintSurface extend(const FilmMesh& film, const Panel& panel, const std::function<double(std::uint32_t label)>& reach) {
+    Strip strip(film, panel, reach);
+    strip.grow();
+    PrintSurface surface;
+    surface.faces = strip.chart().faces;
+    surface.n_own = panel.chart.faces.size();
+    surface.flat = strip.flat();
+    for (const std::uint32_t t : strip.chart().triangles) {
+        surface.source.push_back(film.source[t]);
+        surface.weights.push_back(film.weights[t]);
+    }
+    for (const Stretch& s : measure_stretch(strip.chart(), surface.flat))
+        surface.strain.push_back(static_cast<float>(s.strain()));
+    return surface;
+}
+
+std::optional<ModelPoint> locate(const PrintSurface& surface, const Vec2& p) {
+    for (std::size_t t = 0; t < surface.faces.size(); ++t) {
+        const auto& f = surface.faces[t];
+        const Vec2 a = surface.flat[f[0]], x = surface.flat[f[1]] - a, y = surface.flat[f[2]] - a, d = p - a;
+        const double det = x.x * y.y - x.y * y.x;
+        if (!(det > 0)) continue;
+        const double b = (d.x * y.y - d.y * y.x) / det, c = (x.x * d.y - x.y * d.x) / det;
+        if (b < kInside || c < kInside || 1 - b - c < kInside) continue;
+        ModelPoint point{surface.source[t], {}};
+        for (std::size_t k = 0; k < 3; ++k)
+            point.weights[k] =
+                (1 - b - c) * surface.weights[t][0][k] + b * surface.weights[t][1][k] + c * surface.weights[t][2][k];
+        return point;
+    }
+    return std::nullopt;
+}
+
+Vec2 flat_direction(const atlas::ChartMesh& chart, std::span<const Vec2> flat, const Vec3& direction) {
+    Vec2 sum(0);
+    double area = 0;
+    for (const auto& f : chart.faces) {
+        const Vec3 x = chart.position[f[1]] - chart.position[f[0]], y = chart.position[f[2]] - chart.position[f[0]];
+        const Vec2 u = flat[f[1]] - flat[f[0]], v = flat[f[2]] - flat[f[0]];
+        // The direction's tangential part is α x + β y.
+        const double xx = glm::dot(x, x), xy = glm::dot(x, y), yy = glm::dot(y, y), det = xx * yy - xy * xy;
+        if (!(det > 0)) continue;
+        const double dx = glm::dot(direction, x), dy = glm::dot(direction, y);
+        const double a = 0.5 * std::sqrt(det);
+        sum += a * ((dx * yy - dy * xy) / det * u + (dy * xx - dx * xy) / det * v);
+        area += a;
+    }
+    return area > 0 ? sum / area : Vec2(0);
+}
+
+}  // namespace tuft::decal

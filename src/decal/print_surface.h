@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "decal/panels.h"
+
+/// \file
+/// A panel together with the strip of surface beyond its seams that overlaps and bleeds are printed from, and where its
+/// points lie on the model. Used by outline.h, print.h and placing guides.
+namespace tuft::decal {
+
+/// Triangles on the sheet, each with its place in a triangle of the model.
+struct PrintSurface {
+    std::vector<std::array<std::uint32_t, 3>> faces;  ///< the panel's own first
+    std::size_t n_own = 0;                            ///< faces of the panel itself
+    std::vector<Vec2> flat;                           ///< [n_vertices], metres
+    std::vector<std::uint32_t> source;                ///< [n_faces] triangle of the model
+    std::vector<std::array<Weights, 3>> weights;      ///< [n_faces] of the corners
+    std::vector<float> strain;                        ///< [n_faces]
+};
+
+/// Returns the panel and what lies within `reach(label)` metres beyond its seams with the panels of that label. The
+/// strip is unrolled over the seam, then laid out as rigid as possible with the panel held.
+PrintSurface extend(const FilmMesh& film, const Panel& panel, const std::function<double(std::uint32_t label)>& reach);
+
+/// A point of the model under a point of the sheet.
+struct ModelPoint {
+    std::uint32_t triangle = kNone;
+    Weights weights{};
+};
+
+/// Returns the point of the model under a point of the panel's plane; the panel's own triangles come first. Empty where
+/// there is none. Cost: all triangles are tested.
+std::optional<ModelPoint> locate(const PrintSurface& surface, const Vec2& p);
+
+/// Returns the direction on the sheet of a direction of the model: the mean over a panel of its tangential part, laid
+/// flat. Its length is at most 1; 0 where the panel is normal to it.
+Vec2 flat_direction(const atlas::ChartMesh& chart, std::span<const Vec2> flat, const Vec3& direction);
+
+}  // namespace tuft::decal

@@ -1,0 +1,256 @@
+#include "decal/sheet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "atlas/flatten/hull.h"
+#include "atlas/seams/half_edges.h"
+#include "core/error.h"
+#include "decal/nest.h"
+#include "decal/page_marks.h"
+
+namespace tuft::decal {
+namespace {
+
+constexpr double kLevel = 0.3;         // tangential part of "up" below which a panel is level
+constexpr double kBetween = 0.002;     // metres, least distance of two pieces' prints
+constexpr double kLeastSide = 0.010;   // metres
+constexpr double kStrainPixel = 5e-4;  // metres, of strain maps
+
+/// Panels with what is printed round them.
+struct Laid {
+    FilmMesh film;
+    std::vector<Panel> panels;
+    std::map<std::uint32_t, std::size_t> index;  // of a panel, by its label
+
+    std::uint32_t label(std::size_t panel) const { return film.label[panels[panel].chart.triangles[0]]; }
+};
+
+double printed_bleed(const SheetOptions& options) {
+    return std::min(options.bleed, kPrintedBleed);
+}
+
+/// How far film i reaches beyond its seam with another panel: the one with the lower number lies below.
+double overlap_of(const Laid& laid, std::size_t i, std::uint32_t label, const SheetOptions& options) {
+    return laid.index.at(label) > i ? options.overlap : 0;
+}
+
+/// Up the model on a panel's sheet, unit; on level panels to its back.
+Vec2 up_of(const atlas::ChartMesh& chart, const std::vector<Vec2>& flat) {
+    Vec2 up = flat_direction(chart, flat, {0, 0, 1});
+    if (glm::length(up) < kLevel) up = flat_direction(chart, flat, {0, 1, 0});
+    const double length = glm::length(up);
+    return length > 0 ? up / length : Vec2(0, 1);
+}
+
+/// The turn that brings `up` to the page's.
+double upright_angle(const Vec2& up) {
+    return 0.5 * std::numbers::pi - std::atan2(up.y, up.x);
+}
+
+/// Whether a panel with its bleed and its label fits the page in an orientation that it may take.
+bool fits_page(const atlas::ChartMesh& chart, const std::vector<Vec2>& flat, const SheetOptions& options) {
+    const Vec2 area = free_area(options.page);
+    const double around = 2 * (options.bleed + printed_bleed(options)) + kLabelHeight;
+    Ring border;
+    for (const std::uint32_t v : chart.loop) border.push_back(flat[v]);
+    if (options.upright) {
+        const double angle = upright_angle(up_of(chart, flat));
+        const PagePlacement turn{std::cos(angle), std::sin(angle), Vec2(0)};
+        for (Vec2& p : border) p = turn(p);
+        const Vec2 size = box_of({border}).size() + Vec2(around);
+        return size.x < area.x && (area.y == 0 || size.y < area.y);
+    }
+    const atlas::Rectangle box = atlas::smallest_rectangle(atlas::convex_hull(border));
+    const double longest = area.y > 0 ? std::max(area.x, area.y) : std::numeric_limits<double>::infinity();
+    const double shortest = area.y > 0 ? std::min(area.x, area.y) : area.x;
+    return box.length + around < longest && box.width + around < shortest;
+}
+
+Laid lay_out(const mesh::TriangleMesh& model, const PrintSource& source, const SheetOptions& options) {
+    Laid laid;
+    const double margin = std::min(std::max(options.bleed, 0.5 * options.join), 0.5 * options.join + kPrintedBleed);
+    laid.film = select_film(model, source.coverage, 1.2 * margin, source.texel);
+    if (laid.film.source.empty()) throw Error("nothing is painted: there is no film to cut");
+    PanelOptions panel_options{.max_strain = options.max_strain, .fits = {}, .progress = options.progress};
+    panel_options.fits = [&](const atlas::ChartMesh& chart, const std::vector<Vec2>& flat) {
+        return fits_page(chart, flat, options);
+    };
+    laid.panels = cut_into_panels(laid.film, source.coverage, panel_options);
+    for (std::size_t i = 0; i < laid.panels.size(); ++i) laid.index[laid.label(i)] = i;
+    return laid;
+}
+
+std::vector<Piece> find_pieces(const Laid& laid, const PrintSource& source, const SheetOptions& options,
+                               std::vector<PrintSurface>& surfaces) {
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i < laid.panels.size(); ++i) {
+        report(options.progress, "cut lines", static_cast<double>(i) / static_cast<double>(laid.panels.size()));
+        surfaces.push_back(extend(laid.film, laid.panels[i], [&](std::uint32_t label) {
+            return overlap_of(laid, i, label, options) + printed_bleed(options);
+        }));
+        const OutlineOptions outline{
+            .bleed = options.bleed,
+            .join = options.join,
+            .least_side = kLeastSide,
+            .texel = source.texel,
+            .overlap = [&](std::uint32_t label) { return overlap_of(laid, i, label, options); }};
+        const Vec2 up = up_of(laid.panels[i].chart, laid.panels[i].flat);
+        for (Outline& o : find_outlines(laid.film, laid.panels[i], surfaces[i], source.coverage, outline)) {
+            Piece piece;
+            piece.number = static_cast<int>(pieces.size()) + 1;
+            piece.surface = i;
+            piece.film = std::move(o.film);
+            piece.paint_area = o.paint_area;
+            piece.strain = laid.panels[i].strain;
+            piece.up = up;
+            pieces.push_back(std::move(piece));
+        }
+    }
+    return pieces;
+}
+
+/// What a piece takes up on a page in one orientation: its print and its label.
+struct Footprint {
+    double angle = 0;
+    Ring shape;
+    Vec2 label{0};  // lower left corner of the label's box
+};
+
+Footprint footprint_of(const Piece& piece, double angle, double bleed) {
+    const PagePlacement turn{std::cos(angle), std::sin(angle), Vec2(0)};
+    Region region = offset(piece.film, bleed);
+    for (Ring& ring : region)
+        for (Vec2& p : ring) p = turn(p);
+    Vec2 top = region[0][0];
+    for (const Ring& ring : region)
+        for (const Vec2& p : ring)
+            if (p.y > top.y) top = p;
+    Footprint footprint{angle, {}, {}};
+    const double width = label_width(piece.number);
+    const Box2 box = box_of(region);
+    const double left =
+        std::clamp(top.x - 0.5 * width, std::min(box.lo.x, top.x), std::max(box.hi.x - width, top.x - width));
+    footprint.label = {left, top.y};
+    const Vec2 lo{left, top.y - 1e-4}, hi{left + width, top.y + kLabelHeight};
+    region = unite(region, {{lo, {hi.x, lo.y}, hi, {lo.x, hi.y}}});
+    footprint.shape = separate(region)[0][0];
+    return footprint;
+}
+
+std::vector<Footprint> footprints_of(const Piece& piece, const SheetOptions& options) {
+    std::vector<double> angles;
+    if (options.upright) {
+        angles.push_back(upright_angle(piece.up));
+    } else {
+        const atlas::Rectangle box = atlas::smallest_rectangle(atlas::convex_hull(piece.film[0]));
+        for (int k = 0; k < 4; ++k) angles.push_back(0.5 * std::numbers::pi * k - std::atan2(box.s, box.c));
+    }
+    std::vector<Footprint> all;
+    for (const double angle : angles) all.push_back(footprint_of(piece, angle, printed_bleed(options)));
+    return all;
+}
+
+/// Places all pieces; returns where each one's label lies on its page.
+std::vector<Vec2> place_pieces(std::vector<Piece>& pieces, const SheetOptions& options, std::vector<Page>& pages) {
+    std::vector<std::vector<Footprint>> footprints;
+    std::vector<NestItem> items;
+    for (const Piece& piece : pieces) {
+        footprints.push_back(footprints_of(piece, options));
+        items.emplace_back();
+        for (const Footprint& f : footprints.back()) items.back().shapes.push_back(f.shape);
+    }
+    const std::vector<NestPlace> places = nest(items, free_area(options.page), kBetween);
+    std::vector<Vec2> labels;
+    double used = 0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (!places[i].fits) {
+            const Vec2 size = 1000.0 * box_of({items[i].shapes[0]}).size();
+            throw Error(Message("piece {} of {} x {} mm fits no page; choose a larger one, or let pieces be turned",
+                                pieces[i].number, std::lround(size.x), std::lround(size.y)));
+        }
+        const Footprint& f = footprints[i][places[i].orientation];
+        const Vec2 offset = places[i].offset + free_origin();
+        pieces[i].page = places[i].page;
+        pieces[i].placement = {std::cos(f.angle), std::sin(f.angle), offset};
+        labels.push_back(f.label + offset);
+        for (const Vec2& p : f.shape) used = std::max(used, p.y + offset.y);
+        while (pages.size() <= places[i].page) pages.push_back({.size = options.page});
+    }
+    if (options.page.y == 0)
+        for (Page& page : pages) page.size.y = roll_length(used);
+    return labels;
+}
+
+/// The line on a panel's film up to which the next one is laid.
+void add_lap_lines(const Laid& laid, const Piece& piece, const SheetOptions& options, Page& page) {
+    const Panel& panel = laid.panels[piece.surface];
+    const std::vector<std::uint32_t> twin = atlas::twin_half_edges(laid.film.mesh);
+    for (std::uint32_t h = 0; h < panel.is_seam.size(); ++h) {
+        if (!panel.is_seam[h]) continue;
+        const std::uint32_t label = laid.film.label[twin[3 * panel.chart.triangles[h / 3] + h % 3] / 3];
+        if (laid.index.at(label) <= piece.surface || options.overlap <= 0) continue;
+        const Vec2 a = panel.flat[panel.chart.faces[h / 3][h % 3]];
+        const Vec2 b = panel.flat[panel.chart.faces[h / 3][(h % 3 + 1) % 3]];
+        if (contains(piece.film, a) && contains(piece.film, b))
+            page.lines.push_back({{piece.placement(a), piece.placement(b)}, false, Role::label});
+    }
+}
+
+Region placed(const Region& region, const PagePlacement& placement) {
+    Region out = region;
+    for (Ring& ring : out)
+        for (Vec2& p : ring) p = placement(p);
+    return out;
+}
+
+void draw_pieces(const Laid& laid, const PrintSource& source, const SheetOptions& options,
+                 const std::vector<Vec2>& labels, Sheet& sheet) {
+    const std::size_t n = sheet.pages.size();
+    if (options.strain_map)
+        for (std::size_t i = 0; i < n; ++i) {
+            sheet.pages.push_back({.size = sheet.pages[i].size});
+            sheet.pages.back().strain_map = true;
+        }
+    for (std::size_t i = 0; i < sheet.pieces.size(); ++i) {
+        report(options.progress, "prints", static_cast<double>(i) / static_cast<double>(sheet.pieces.size()));
+        const Piece& piece = sheet.pieces[i];
+        const PrintSurface& surface = sheet.surfaces[piece.surface];
+        Page& page = sheet.pages[piece.page];
+        if (options.prints)
+            page.prints.push_back(print_piece(surface, source, piece.placement,
+                                              offset(piece.film, printed_bleed(options)), options.pixel));
+        for (const Ring& ring : placed(piece.film, piece.placement)) page.lines.push_back({ring, true, Role::cut});
+        add_lap_lines(laid, piece, options, page);
+        const Vec2 up{piece.placement.c * piece.up.x - piece.placement.s * piece.up.y,
+                      piece.placement.s * piece.up.x + piece.placement.c * piece.up.y};
+        add_label(page, piece.number, labels[i], up);
+        if (!options.strain_map) continue;
+        Page& map = sheet.pages[n + piece.page];
+        map.prints.push_back(print_strain(surface, piece.placement, piece.film, kStrainPixel, options.max_strain));
+        for (const Ring& ring : placed(piece.film, piece.placement)) map.lines.push_back({ring, true, Role::label});
+        add_label(map, piece.number, labels[i], up);
+    }
+    for (std::size_t i = 0; i < sheet.pages.size(); ++i)
+        add_marks(sheet.pages[i], {.title = options.title, .page = i % n + 1, .pages = n, .limit = options.max_strain});
+}
+
+}  // namespace
+
+Sheet make_sheet(const mesh::TriangleMesh& model, const PrintSource& source, const SheetOptions& options) {
+    const Laid laid = lay_out(model, source, options);
+    Sheet sheet;
+    sheet.max_strain = options.max_strain;
+    sheet.pieces = find_pieces(laid, source, options, sheet.surfaces);
+    if (sheet.pieces.empty()) throw Error("nothing is painted: there is no film to cut");
+    const std::vector<Vec2> labels = place_pieces(sheet.pieces, options, sheet.pages);
+    draw_pieces(laid, source, options, labels, sheet);
+    return sheet;
+}
+
+}  // namespace tuft::decal

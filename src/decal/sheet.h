@@ -1,0 +1,87 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/system/progress.h"
+#include "decal/outline.h"
+#include "decal/print.h"
+
+/// \file
+/// Decal sheets: the paint of a model, or what a mask holds, on pages of film at true size, ready for a printer and a
+/// plotter. `tuft decals` calls it; io/sheet writes the result.
+namespace tuft::decal {
+
+/// What a line is for.
+enum class Role {
+    cut,    ///< cut line: a spot colour of its own
+    mark,   ///< registration marks and scale bar, on every plate
+    label,  ///< numbers, arrows, lap lines and the foot of the page
+};
+
+/// A line on a page, metres from its lower left corner, y up.
+struct Line {
+    std::vector<Vec2> points;
+    bool closed = false;
+    Role role = Role::cut;
+};
+
+/// A page of film, or the map of its strain.
+struct Page {
+    Vec2 size{0};  ///< metres
+    std::vector<Line> lines;
+    std::vector<PrintImage> prints;
+    bool strain_map = false;
+};
+
+/// A piece of film to be cut out and laid on.
+struct Piece {
+    int number = 1;           ///< as printed beside it
+    std::size_t surface = 0;  ///< index into `Sheet::surfaces`
+    Region film;              ///< cut line, in the plane of its surface, metres
+    double paint_area = 0;    ///< m²
+    double strain = 0;        ///< largest of the panel
+    Vec2 up{0, 1};            ///< unit, of the arrow beside it, in that plane
+    std::size_t page = 0;     ///< index into `Sheet::pages`
+    PagePlacement placement;  ///< of that plane
+};
+
+/// A plate: one ink of a screen or pad print.
+struct Plate {
+    std::string name;                       ///< of the pigment
+    std::array<double, 3> colour{0, 0, 0};  ///< sRGB 0–1 of a tint of 100 %, for screens
+    double full = 1;                        ///< film units of a tint of 100 %
+};
+
+struct Sheet {
+    std::vector<Page> pages;
+    std::vector<Piece> pieces;
+    std::vector<PrintSurface> surfaces;
+    std::vector<Plate> plates;  ///< of `PrintImage::plates`
+    double max_strain = 0;      ///< limit
+};
+
+struct SheetOptions {
+    double max_strain = 0.03;     ///< of the film
+    double bleed = 0.003;         ///< film beyond the paint, metres
+    double overlap = 0.001;       ///< of two panels, metres; the one with the lower number lies below
+    double join = 0.01;           ///< see `OutlineOptions`
+    Vec2 page{0.21, 0.297};       ///< metres; height 0: a roll
+    bool upright = false;         ///< all pieces with their arrow up the page, along the grain; else turned to fit
+    double pixel = 0.0254 / 300;  ///< metres
+    bool strain_map = false;      ///< appends a page of strain for each page of film
+    bool prints = true;           ///< makes pictures; else lines only
+    std::string title;            ///< in the foot of each page
+    ProgressFn progress;
+};
+
+/// Largest part of the bleed that is printed beyond cut lines through paint, metres.
+inline constexpr double kPrintedBleed = 0.003;
+
+/// Returns the sheet of a model: panels by `cut_into_panels`, cut lines by `find_outlines`, nested by `nest`. The arrow
+/// of a piece points up the model (+z), or on level surfaces to its back (+y). Pieces are numbered panel by panel.
+/// Pages of film come first, then their strain maps. Throws `Error` where nothing is painted or a piece fits no page.
+/// The same bits for any number of threads.
+Sheet make_sheet(const mesh::TriangleMesh& model, const PrintSource& source, const SheetOptions& options);
+
+}  // namespace tuft::decal

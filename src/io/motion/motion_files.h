@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "motion/trajectory.h"
+#include "stroke/journal/recorded_stroke.h"
+
+/// \file
+/// Trajectories as files: a neutral list (JSON, CSV) and programs for robots and plotters. Called by `tuft trajectory`;
+/// `io::read_strokes` reads JSON back.
+namespace tuft::io {
+
+/// A frame: position in metres and rotation.
+struct MotionFrame {
+    Vec3 position{0};
+    Quat rotation{1, 0, 0, 0};
+};
+
+/// A trajectory and what it is painted with.
+struct MotionProgram {
+    motion::Trajectory trajectory;
+    std::vector<stroke::RecordedStroke> strokes;  ///< [n_strokes] brush, ink, settings …; their samples are not used
+    MotionFrame base;                             ///< of the model in the robot's base frame
+    MotionFrame tool{{0, 0, 0.1}, {1, 0, 0, 0}};  ///< TCP in the flange frame
+    motion::Limits limits;
+    std::string title;  ///< a name of letters, digits and _
+};
+
+/// Returns where the TCP is for a pose of the ferrule, in the robot's base frame. The TCP's z axis points out of the
+/// tool, along the hair; its x axis is the ferrule's.
+MotionFrame tcp_of(const brush::Pose& pose, const MotionFrame& base);
+
+/// Writes a program; the extension chooses the form.
+///
+/// | extension | form | one point |
+/// |---|---|---|
+/// | .json | neutral list, read by `read_trajectory` | seconds, metres, quaternion, newtons; ferrule, model frame |
+/// | .csv | the same as a table | |
+/// | .urscript, .script | URScript of Universal Robots | `movep` (strokes) and `movel`: m, rotation vector |
+/// | .mod | RAPID of ABB | `MoveL` with `\T`: mm, quaternion |
+/// | .src | KRL of KUKA | `LIN` with `$VEL.CP`: mm, degrees A B C about z, y, x |
+/// | .gcode, .nc | G-code of a plotter over a flat sheet | `G1`: mm, mm/min, of the ferrule's mouth |
+///
+/// Throws `Error` for another extension, for G-code of strokes whose holder leans by more than 3°, and where the file
+/// cannot be written.
+void write_trajectory(const std::filesystem::path& path, const MotionProgram& program);
+std::string trajectory_json(const MotionProgram& program);
+std::string trajectory_csv(const MotionProgram& program);
+std::string urscript_text(const MotionProgram& program);
+std::string rapid_text(const MotionProgram& program);
+std::string krl_text(const MotionProgram& program);
+std::string gcode_text(const MotionProgram& program);
+
+/// Returns the strokes of a trajectory in JSON, in space, with what they are painted with. Throws `Error` with the file
+/// for anything that `trajectory_json` cannot have written.
+std::vector<stroke::RecordedStroke> read_trajectory(const std::filesystem::path& path);
+
+}  // namespace tuft::io

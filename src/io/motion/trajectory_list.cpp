@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/system/files.h"
+#include "core/text/nesting.h"
+#include "io/motion/motion_files.h"
+
+/// The neutral list of a trajectory, written and read.
+namespace tuft::io {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kFormat = "tuft-trajectory";
+constexpr int kVersion = 1;
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+constexpr std::size_t kColumns = 11;  // t x y z qw qx qy qz fx fy fz
+
+json frame_json(const MotionFrame& f) {
+    return {{"position", {f.position.x, f.position.y, f.position.z}},
+            {"rotation", {f.rotation.w, f.rotation.x, f.rotation.y, f.rotation.z}}};
+}
+
+json point_json(const motion::Waypoint& p) {
+    const brush::Pose& pose = p.pose;
+    return {pose.time,       pose.position.x, pose.position.y, pose.position.z, pose.rotation.w, pose.rotation.x,
+            pose.rotation.y, pose.rotation.z, p.force.x,       p.force.y,       p.force.z};
+}
+
+json stroke_json(const stroke::RecordedStroke& s) {
+    json j{{"brush", s.brush},   {"ink", s.ink},           {"seed", s.seed},       {"label", s.label},
+           {"erases", s.erases}, {"layer", s.names.layer}, {"mask", s.names.mask}, {"before", json::array()}};
+    for (const stroke::Preparation& p : s.before)
+        if (!std::holds_alternative<stroke::Fill>(p)) j["before"].push_back(stroke::preparation_text(p));
+    if (s.settings) j["settings"] = json::parse(stroke::to_json(*s.settings));
+    return j;
+}
+
+stroke::RecordedStroke stroke_of(const json& j) {
+    stroke::RecordedStroke s;
+    s.flat = false;
+    s.brush = j.at("brush").get<std::string>();
+    s.ink = j.at("ink").get<std::string>();
+    s.seed = j.at("seed").get<std::uint64_t>();
+    s.label = j.at("label").get<std::string>();
+    s.erases = j.at("erases").get<bool>();
+    s.names.layer = j.at("layer").get<std::string>();
+    s.names.mask = j.at("mask").get<std::string>();
+    for (const json& text : j.at("before")) s.before.push_back(stroke::preparation_of(text.get<std::string>()));
+    if (j.contains("settings")) s.settings = stroke::settings_from_json(j["settings"].dump());
+    return s;
+}
+
+/// Adds the points of a stroke's move, its clock from 0.
+void add_samples(const json& points, stroke::RecordedStroke& s) {
+    double start = 0;
+    for (const json& p : points) {
+        if (!p.is_array() || p.size() != kColumns) throw Error("a point has not 11 numbers");
+        std::array<double, kColumns> v;
+        for (std::size_t i = 0; i < kColumns; ++i) v[i] = p[i].get<double>();
+        if (s.samples.empty()) start = v[0];
+        stroke::StrokeSample sample;
+        sample.time = v[0] - start;
+        sample.position = {v[1], v[2], v[3]};
+        sample.rotation = Quat(v[4], v[5], v[6], v[7]);
+        s.samples.push_back(sample);
+    }
+}
+
+std::vector<stroke::RecordedStroke> strokes_of(const json& file) {
+    if (file.at("format") != kFormat) throw Error("is no trajectory of tuft");
+    if (file.at("version").get<int>() > kVersion) throw Error("is of a later version of tuft");
+    std::vector<stroke::RecordedStroke> strokes;
+    for (const json& j : file.at("strokes")) strokes.push_back(stroke_of(j));
+    for (const json& move : file.at("moves")) {
+        if (move.at("kind") != "stroke") continue;
+        const auto i = move.at("stroke").get<std::size_t>();
+        if (i >= strokes.size()) throw Error("a move belongs to no stroke");
+        add_samples(move.at("points"), strokes[i]);
+    }
+    for (const stroke::RecordedStroke& s : strokes) stroke::check_samples(s);
+    return strokes;
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    write_file(path, text.data(), text.size());
+}
+
+}  // namespace
+
+std::string trajectory_json(const MotionProgram& program) {
+    json file{{"format", kFormat},
+              {"version", kVersion},
+              {"units",
+               "seconds, metres, newtons; points: t, x, y, z, qw, qx, qy, qz, fx, fy, fz of the ferrule's "
+               "mouth, model frame; its hair points along -z"},
+              {"base", frame_json(program.base)},
+              {"tool", frame_json(program.tool)},
+              {"seconds", program.trajectory.seconds()},
+              {"strokes", json::array()},
+              {"moves", json::array()}};
+    for (const stroke::RecordedStroke& s : program.strokes) file["strokes"].push_back(stroke_json(s));
+    for (const motion::Move& move : program.trajectory.moves) {
+        json points = json::array();
+        for (const motion::Waypoint& p : move.points) points.push_back(point_json(p));
+        file["moves"].push_back(
+            {{"kind", motion::name_of(move.kind)}, {"stroke", move.stroke}, {"points", std::move(points)}});
+    }
+    return file.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::string trajectory_csv(const MotionProgram& program) {
+    std::string text = "move,kind,stroke,t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,fx_n,fy_n,fz_n\n";
+    for (std::size_t i = 0; i < program.trajectory.moves.size(); ++i) {
+        const motion::Move& move = program.trajectory.moves[i];
+        for (const motion::Waypoint& p : move.points) {
+            const Vec3 mm = 1000.0 * p.pose.position;
+            const Quat& q = p.pose.rotation;
+            text +=
+                fmt::format("{},{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f},{:.5f},{:.5f},{:.5f}\n",
+                            i + 1, motion::name_of(move.kind), move.stroke + 1, p.pose.time, mm.x, mm.y, mm.z, q.w, q.x,
+                            q.y, q.z, p.force.x, p.force.y, p.force.z);
+        }
+    }
+    return text;
+}
+
+void write_trajectory(const std::filesystem::path& path, const MotionProgram& program) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".json") return write_text(path, trajectory_json(program));
+    if (extension == ".csv") return write_text(path, trajectory_csv(program));
+    if (extension == ".urscript" || extension == ".script") return write_text(path, urscript_text(program));
+    if (extension == ".mod") return write_text(path, rapid_text(program));
+    if (extension == ".src") return write_text(path, krl_text(program));
+    if (extension == ".gcode" || extension == ".nc") return write_text(path, gcode_text(program));
+    throw Error(path.string(), "a trajectory is written as .json, .csv, .urscript, .mod, .src or .gcode");
+}
+
+std::vector<stroke::RecordedStroke> read_trajectory(const std::filesystem::path& path) {
+    const std::vector<char> bytes = read_file(path, kMostBytes);
+    const std::string name = path.string();
+    check_json_nesting({bytes.data(), bytes.size()}, name);
+    try {
+        return strokes_of(json::parse(bytes.begin(), bytes.end()));
+    } catch (const json::exception&) {
+        throw Error(name, "is no trajectory of tuft");
+    } catch (const Error& error) {
+        throw Error(name, error.message());
+    }
+}
+
+}  // namespace tuft::io

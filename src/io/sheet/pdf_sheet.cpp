@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+#include <podofo/podofo.h>
+
+#include <array>
+
+#include "core/error.h"
+#include "core/system/build_facts.h"
+#include "io/sheet/sheet_files.h"
+
+/// PDF by PoDoFo: objects, cross-references and compression are its own; the content of pages is written here, because
+/// its painter knows neither overprint nor images in separations.
+namespace tuft::io {
+namespace {
+
+using PoDoFo::PdfArray;
+using PoDoFo::PdfDictionary;
+using PoDoFo::PdfName;
+using PoDoFo::PdfObject;
+using PoDoFo::PdfVariant;
+
+constexpr double kPointsPerMetre = 72 / 0.0254;
+constexpr double kHairline = 0.25;  // points
+constexpr double kLabelLine = 0.5;
+
+PdfVariant number(double value) {
+    return PdfVariant(value);
+}
+
+PdfArray numbers(std::initializer_list<double> values) {
+    PdfArray array;
+    for (const double v : values) array.push_back(number(v));
+    return array;
+}
+
+/// One document while it is made.
+class PdfSheet {
+  public:
+    explicit PdfSheet(const decal::Sheet& sheet) : sheet_(sheet) {}
+
+    std::string bytes() {
+        document_.SetPdfVersion(PoDoFo::ePdfVersion_1_6);
+        // The file's identifier is made of this date, too: without it the same sheet is the same file.
+        document_.GetInfo()->GetObject()->GetDictionary().RemoveKey("CreationDate");
+        make_spaces();
+        for (const decal::Page& page : sheet_.pages) add_page(page);
+        PoDoFo::PdfRefCountedBuffer buffer;
+        PoDoFo::PdfOutputDevice device(&buffer);
+        document_.Write(&device);
+        return std::string(buffer.GetBuffer(), device.GetLength());
+    }
+
+  private:
+    PdfObject* separation(const std::string& name, const char* alternate, const PdfArray& none, const PdfArray& full) {
+        PdfDictionary function;
+        function.AddKey("FunctionType", PdfVariant(static_cast<PoDoFo::pdf_int64>(2)));
+        function.AddKey("Domain", numbers({0, 1}));
+        function.AddKey("C0", none);
+        function.AddKey("C1", full);
+        function.AddKey("N", PdfVariant(static_cast<PoDoFo::pdf_int64>(1)));
+        PdfArray space;
+        space.push_back(PdfName("Separation"));
+        space.push_back(PdfName(name));
+        space.push_back(PdfName(alternate));
+        space.push_back(document_.GetObjects().CreateObject(PdfVariant(function))->Reference());
+        return document_.GetObjects().CreateObject(PdfVariant(space));
+    }
+
+    void make_spaces() {
+        cut_ = separation(kCutContour, "DeviceCMYK", numbers({0, 0, 0, 0}), numbers({0, 1, 0, 0}));
+        all_ = separation("All", "DeviceCMYK", numbers({0, 0, 0, 0}), numbers({1, 1, 1, 1}));
+        for (const decal::Plate& plate : sheet_.plates)
+            plates_.push_back(separation(plate.name, "DeviceRGB", numbers({1, 1, 1}),
+                                         numbers({plate.colour[0], plate.colour[1], plate.colour[2]})));
+        PdfDictionary state;
+        state.AddKey("Type", PdfName("ExtGState"));
+        state.AddKey("OP", PdfVariant(true));
+        state.AddKey("op", PdfVariant(true));
+        state.AddKey("OPM", PdfVariant(static_cast<PoDoFo::pdf_int64>(1)));
+        overprint_ = document_.GetObjects().CreateObject(PdfVariant(state));
+        // Screens without separations show all plates over each other.
+        state.AddKey("BM", PdfName("Multiply"));
+        plate_state_ = document_.GetObjects().CreateObject(PdfVariant(state));
+    }
+
+    PdfObject* picture(const decal::PrintImage& image, const std::vector<std::uint8_t>& data, const PdfVariant& space) {
+        PdfObject* object = document_.GetObjects().CreateObject("XObject");
+        PdfDictionary& dictionary = object->GetDictionary();
+        dictionary.AddKey("Subtype", PdfName("Image"));
+        dictionary.AddKey("Width", PdfVariant(static_cast<PoDoFo::pdf_int64>(image.width)));
+        dictionary.AddKey("Height", PdfVariant(static_cast<PoDoFo::pdf_int64>(image.height)));
+        dictionary.AddKey("BitsPerComponent", PdfVariant(static_cast<PoDoFo::pdf_int64>(8)));
+        dictionary.AddKey("ColorSpace", space);
+        object->GetStream()->Set(reinterpret_cast<const char*>(data.data()), static_cast<PoDoFo::pdf_long>(data.size()),
+                                 {PoDoFo::ePdfFilter_FlateDecode});
+        return object;
+    }
+
+    void add_picture(const decal::PrintImage& image, PdfDictionary& resources, std::string& content) {
+        const auto place = [&](const std::string& state, PdfObject* object) {
+            const std::string name = fmt::format("Im{}", resources.GetKeys().size());
+            resources.AddKey(PdfName(name), object->Reference());
+            content +=
+                fmt::format("q {}{:.4f} 0 0 {:.4f} {:.4f} {:.4f} cm /{} Do Q\n", state,
+                            image.width * image.pixel * kPointsPerMetre, image.height * image.pixel * kPointsPerMetre,
+                            image.origin.x * kPointsPerMetre, image.origin.y * kPointsPerMetre, name);
+        };
+        for (std::size_t i = 0; i < image.plates.size(); ++i)
+            place("/Plate gs ", picture(image, image.plates[i], PdfVariant(plates_[i]->Reference())));
+        if (!image.plates.empty()) return;
+        PdfObject* colour = picture(image, image.rgb, PdfVariant(PdfName("DeviceRGB")));
+        PdfObject* mask = picture(image, image.alpha, PdfVariant(PdfName("DeviceGray")));
+        colour->GetDictionary().AddKey("SMask", mask->Reference());
+        place("", colour);
+    }
+
+    static void add_line(const decal::Line& line, std::string& content) {
+        for (std::size_t i = 0; i < line.points.size(); ++i)
+            content += fmt::format("{:.4f} {:.4f} {} ", line.points[i].x * kPointsPerMetre,
+                                   line.points[i].y * kPointsPerMetre, i == 0 ? 'm' : 'l');
+        content += line.closed ? "s\n" : "S\n";
+    }
+
+    static void add_lines(const decal::Page& page, decal::Role role, const std::string& style, std::string& content) {
+        content += "q " + style + "\n";
+        for (const decal::Line& line : page.lines)
+            if (line.role == role) add_line(line, content);
+        content += "Q\n";
+    }
+
+    void add_page(const decal::Page& page) {
+        const double width = page.size.x * kPointsPerMetre, height = page.size.y * kPointsPerMetre;
+        PoDoFo::PdfPage* own = document_.CreatePage(PoDoFo::PdfRect(0, 0, width, height));
+        // PdfRect rounds nothing, but writes what it was given; trim and bleed are the whole page.
+        own->GetObject()->GetDictionary().AddKey("MediaBox", numbers({0, 0, width, height}));
+        own->GetObject()->GetDictionary().AddKey("TrimBox", numbers({0, 0, width, height}));
+        PdfDictionary spaces, states, pictures;
+        spaces.AddKey("Cut", cut_->Reference());
+        spaces.AddKey("Marks", all_->Reference());
+        states.AddKey("Overprint", overprint_->Reference());
+        states.AddKey("Plate", plate_state_->Reference());
+        std::string content;
+        for (const decal::PrintImage& image : page.prints) add_picture(image, pictures, content);
+        add_lines(page, decal::Role::label, fmt::format("/Marks CS 1 SCN {} w 1 J 1 j", kLabelLine), content);
+        add_lines(page, decal::Role::mark, fmt::format("/Marks CS 1 SCN {} w", kHairline), content);
+        add_lines(page, decal::Role::cut, fmt::format("/Overprint gs /Cut CS 1 SCN {} w", kHairline), content);
+        PdfDictionary& resources = own->GetResources()->GetDictionary();
+        resources.AddKey("ColorSpace", spaces);
+        resources.AddKey("ExtGState", states);
+        resources.AddKey("XObject", pictures);
+        own->GetContentsForAppending()->GetStream()->Set(content.data(), static_cast<PoDoFo::pdf_long>(content.size()));
+    }
+
+    const decal::Sheet& sheet_;
+    PoDoFo::PdfMemDocument document_;
+    PdfObject *cut_ = nullptr, *all_ = nullptr, *overprint_ = nullptr, *plate_state_ = nullptr;
+    std::vector<PdfObject*> plates_;
+};
+
+}  // namespace
+
+std::string pdf_bytes(const decal::Sheet& sheet) {
+    PoDoFo::PdfError::EnableDebug(false);
+    PoDoFo::PdfError::EnableLogging(false);
+    try {
+        return PdfSheet(sheet).bytes();
+    } catch (const PoDoFo::PdfError& error) {
+        const char* why = PoDoFo::PdfError::ErrorMessage(error.GetError());
+        throw Error(Message("the PDF cannot be made: {}", std::string(why ? why : "")));
+    }
+}
+
+}  // namespace tuft::io

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <string>
+
+#include "mesh/query/surface_query.h"
+#include "motion/retime.h"
+
+/// \file
+/// The strokes of a journal as motions of a robot or plotter that holds the brush: timed poses with approach, retract
+/// and pen-up travel. `tuft trajectory` calls it; io/motion writes the result.
+namespace tuft::motion {
+
+/// One stroke as the hand made it.
+struct StrokePath {
+    std::uint64_t id = 0;  ///< of its entry
+    std::string label;
+    std::vector<Waypoint> points;
+    double tuft_length = 0.03;   ///< metres from the ferrule's mouth to the unbent tip
+    double tuft_radius = 0.004;  ///< metres
+};
+
+/// The holder behind the ferrule: a cylinder about its axis, with round ends, from the mouth backwards.
+struct Holder {
+    double radius = 0.006;  ///< metres
+    double length = 0.15;   ///< metres
+};
+
+enum class MoveKind {
+    approach,  ///< along the axis, from `clearance` above the surface to the first pose
+    stroke,
+    retract,  ///< back along the axis
+    travel,   ///< from stroke to stroke, clear of the model
+};
+const char* name_of(MoveKind kind);
+
+struct Move {
+    MoveKind kind = MoveKind::stroke;
+    std::size_t stroke = 0;        ///< index of the stroke that it belongs to, or leads to
+    std::vector<Waypoint> points;  ///< from rest to rest; times from the start of the trajectory
+};
+
+struct Trajectory {
+    std::vector<Move> moves;  ///< each begins where and when the one before it ends
+
+    double seconds() const { return moves.empty() ? 0 : moves.back().points.back().pose.time; }
+};
+
+struct MotionOptions {
+    Limits limits;
+    Holder holder;
+    double clearance = 0.02;  ///< metres, of the tip above the surface before and after a stroke
+};
+
+/// Distance of brush and holder from the model in travel, metres, at least.
+inline constexpr double kTravelGap = 0.003;
+
+/// Returns the trajectory of strokes in their order. A stroke's path is its own; points that lie within 5 µm and 0.1°
+/// of the line between their neighbours are left out. Travel is straight where the whole tool stays `kTravelGap` clear
+/// of the model, sampled each 2 mm by closest points (Embree); else it goes out along the axis, round the model on a
+/// sphere, over the top where that would pass below it, and in again. Throws `Error` that names the stroke where the
+/// holder would hit the model, or no clear path leads to it.
+Trajectory plan(const mesh::SurfaceQuery& query, const std::vector<StrokePath>& strokes, const MotionOptions& options);
+
+}  // namespace tuft::motion

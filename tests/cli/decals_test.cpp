@@ -1,0 +1,147 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "io/image/image.h"
+#include "program.h"
+
+namespace tuft {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Decals : public test::Program {
+  protected:
+    /// A project with writing on the bowl, texels of 0.3 mm.
+    std::string bowl(const std::string& strokes = "man-bu-ren-sheng") const {
+        const std::string project = path(strokes + ".tuft");
+        const test::Ran ran =
+            tuft("paint " + model("bowl.ply") + " --strokes " + source_folder() + "/samples/strokes/" + strokes +
+                 ".inkml --atlas-size 1024 --quiet --project " + project);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return project;
+    }
+};
+
+using Trajectories = Decals;
+
+TEST_F(Decals, WritesSheetsWithinTheStrainOfTheFilm) {
+    const std::string project = bowl();
+    const test::Ran ran = tuft("decals " + project + " -o " + path("sheet.pdf") + " --strain-map --json");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const nlohmann::json j = nlohmann::json::parse(ran.out);
+    ASSERT_FALSE(j.at("pieces").empty());
+    double paint = 0;
+    for (const nlohmann::json& piece : j["pieces"]) {
+        EXPECT_LE(piece.at("strain").get<double>(), 0.03);
+        EXPECT_GT(piece.at("film_mm2").get<double>(), piece.at("paint_mm2").get<double>());
+        EXPECT_GE(std::min(piece["size_mm"][0].get<double>(), piece["size_mm"][1].get<double>()),
+                  9);  // 10 mm, cut at seams
+        paint += piece["paint_mm2"].get<double>();
+    }
+    EXPECT_GT(paint, 100);
+    // The same paint, whatever the film: in fewer pieces of wrap film.
+    const test::Ran wrap = tuft("decals " + project + " -o " + path("wrap.dxf") + " --max-strain 15% --json");
+    ASSERT_EQ(wrap.status, 0) << wrap.err;
+    double same = 0;
+    const nlohmann::json w = nlohmann::json::parse(wrap.out);
+    for (const nlohmann::json& piece : w.at("pieces")) same += piece.at("paint_mm2").get<double>();
+    EXPECT_LE(w["pieces"].size(), j["pieces"].size());
+    EXPECT_NEAR(same, paint, 0.03 * paint);  // the film's strain, and cells on the rim of the paint
+}
+
+TEST_F(Decals, WritesAPlateForEachPigmentAndCutLinesAlone) {
+    const std::string project = bowl();
+    const test::Ran ran = tuft("decals " + project + " -o " + path("plates.pdf") + " --plates --json");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_GE(nlohmann::json::parse(ran.out).at("plates").size(), 1u);
+    const test::Ran dxf = tuft("decals " + project + " -o " + path("cut.dxf") + " --page roll:300mm --grain up");
+    ASSERT_EQ(dxf.status, 0) << dxf.err;
+    EXPECT_NE(read(path("cut.dxf")).find("CutContour"), std::string::npos);
+}
+
+TEST_F(Decals, LaysAMaskFlatWhereNothingIsPainted) {
+    const std::string project = bowl();
+    ASSERT_EQ(tuft("mask " + project + " band --lasso '-40,-10 40,-10 40,10 -40,10' --view 200,0").status, 0);
+    const test::Ran ran = tuft("decals " + project + " --mask band -o " + path("band.svg") + " --json");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const test::Ran wrong = tuft("decals " + project + " --mask bend -o " + path("band.pdf"));
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_NE(wrong.err.find("did you mean 'band'?"), std::string::npos) << wrong.err;
+}
+
+TEST_F(Decals, RefusesBadInputInOneLineAndWritesNothing) {
+    const std::string project = bowl();
+    const std::string start = "decals " + project + " -o " + path("x.pdf") + " ";
+    for (const char* options : {"--page A5", "--page 10x10mm", "--bleed 3furlongs", "--bleed -1", "--max-strain 90%",
+                                "--dpi 0", "--grain left", "--page 60mm", "--layers nothing", "--guide "}) {
+        const test::Ran ran = tuft(start + options);
+        EXPECT_EQ(ran.status, 2) << options;
+        EXPECT_EQ(ran.error_lines(), 1) << options << ran.err;
+    }
+    for (const std::string& command :
+         {"decals " + project + " -o " + path("x.png"), "decals " + project + " -o " + path("x.svg") + " --plates"}) {
+        EXPECT_EQ(tuft(command).status, 2) << command;
+    }
+    for (const std::string& command :
+         {"decals " + project + " -o " + path("missing/x.pdf"), "decals " + path("none.tuft") + " -o " + path("x.pdf"),
+          start + "--guide " + path("missing/guide")}) {
+        const test::Ran ran = tuft(command);
+        EXPECT_EQ(ran.status, 1) << command;
+        EXPECT_EQ(ran.error_lines(), 1) << ran.err;
+    }
+    EXPECT_FALSE(fs::exists(path("x.pdf")));
+    EXPECT_FALSE(fs::exists(path("x.svg")));
+}
+
+/// Intersection over union of the texels with paint.
+double overlap_of(const io::ImageF& a, const io::ImageF& b) {
+    std::size_t both = 0, any = 0;
+    const auto amount = [](const io::ImageF& image, std::size_t i) {
+        float sum = 0;
+        for (int c = 0; c < image.channels; ++c)
+            sum += image.pixels[i * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(c)];
+        return sum;
+    };
+    for (std::size_t i = 0; i < static_cast<std::size_t>(a.width) * static_cast<std::size_t>(a.height); ++i) {
+        const bool p = amount(a, i) > 0.2f, q = amount(b, i) > 0.2f;
+        both += p && q, any += p || q;
+    }
+    return static_cast<double>(both) / static_cast<double>(any);
+}
+
+TEST_F(Trajectories, ReadBackPaintTheSameTexels) {
+    const std::string project = bowl();
+    const test::Ran ran = tuft("trajectory " + project + " -o " + path("bowl.json") + " --json");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_GT(nlohmann::json::parse(ran.out).at("largest_force_n").get<double>(), 0.001);
+    const test::Ran back = tuft("paint " + model("bowl.ply") + " --strokes " + path("bowl.json") +
+                                " --atlas-size 1024 --quiet --project " + path("back.tuft"));
+    ASSERT_EQ(back.status, 0) << back.err;
+    std::array<io::ImageF, 2> amounts;
+    for (const bool read_back : {false, true}) {
+        const std::string from = read_back ? path("back.tuft") : project, to = path(read_back ? "b.exr" : "a.exr");
+        ASSERT_EQ(tuft("export " + from + " -o " + to + " --map pigments --quiet").status, 0);
+        amounts[read_back ? 1 : 0] = io::read_image_float(to);
+    }
+    EXPECT_GE(overlap_of(amounts[0], amounts[1]), 0.99);
+}
+
+TEST_F(Trajectories, AreWrittenInEachLanguageAndRefusedWhereTheHolderHits) {
+    const std::string project = bowl();
+    for (const char* name : {"a.urscript", "a.mod", "a.src", "a.csv"})
+        EXPECT_EQ(tuft("trajectory " + project + " --quiet -o " + path(name)).status, 0) << name;
+    const test::Ran lean = tuft("trajectory " + project + " -o " + path("a.gcode"));
+    EXPECT_EQ(lean.status, 1);
+    EXPECT_NE(lean.err.find("G-code holds it upright"), std::string::npos) << lean.err;
+    // A ball of 200 mm does not go into a bowl of 150 mm.
+    const test::Ran hit = tuft("trajectory " + bowl("qi-shang-ba-xia") + " --holder 200x150 -o " + path("b.json"));
+    EXPECT_EQ(hit.status, 1);
+    EXPECT_TRUE(std::regex_search(hit.err, std::regex("stroke [0-9]+.*the holder would hit the model at"))) << hit.err;
+    EXPECT_FALSE(fs::exists(path("b.json")));
+    for (const char* options : {"--tool 1,2,3", "--holder 12", "--max-speed 0", "--base a"})
+        EXPECT_EQ(tuft("trajectory " + project + " -o " + path("b.json") + " " + options).status, 2) << options;
+}
+
+}  // namespace
+}  // namespace tuft

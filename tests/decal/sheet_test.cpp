@@ -1,0 +1,248 @@
+#include "decal/sheet.h"
+
+#include <gtest/gtest.h>
+
+#include "core/system/parallel.h"
+#include "ink/colour/pigments.h"
+#include "surfaces.h"
+
+namespace tuft::decal {
+namespace {
+
+using test::kMm;
+
+/// A model whose paint is given by a formula; its atlas is one texel of one colour.
+class SheetOfFormula : public testing::Test {
+  protected:
+    template <class Painted>
+    Sheet sheet(const mesh::TriangleMesh& model, Painted painted, const SheetOptions& options) {
+        uvs_.assign(3 * model.n_triangles(), Vec2f(0.5f));
+        colour_ = {1, 3, {200, 30, 40}};
+        PrintSource source{.corner_uvs = uvs_,
+                           .coverage = {},
+                           .colour = &colour_,
+                           .amounts = nullptr,
+                           .full = {},
+                           .texel = 0.05 * kMm};
+        source.coverage = test::coverage_where(model, painted);
+        return make_sheet(model, source, options);
+    }
+
+    std::vector<Vec2f> uvs_;
+    ink::AtlasMap<std::uint8_t> colour_;
+};
+
+double printed_area(const PrintImage& image) {
+    double sum = 0;
+    for (const std::uint8_t a : image.alpha) sum += a / 255.0;
+    return sum * image.pixel * image.pixel;
+}
+
+/// Means of the printed pixels within `radius` of a point of the page, by coverage.
+Vec2 centroid(const PrintImage& image, const Vec2& near, double radius) {
+    Vec2 sum(0);
+    double weight = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const Vec2 p = image.origin + image.pixel * Vec2(x + 0.5, image.height - 1 - y + 0.5);
+            if (glm::length(p - near) > radius) continue;
+            const double a = image.alpha[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                         static_cast<std::size_t>(x)];
+            sum += a * p;
+            weight += a;
+        }
+    return sum / weight;
+}
+
+constexpr double kRadius = 0.05;
+
+/// Geodesic discs on a cylinder of radius kRadius: centre (arc, height), radius.
+struct Dot {
+    Vec2 centre;
+    double radius;
+};
+auto dots_on_cylinder(std::vector<Dot> dots) {
+    return [dots](const Vec3& p) {
+        const Vec2 q(kRadius * std::atan2(p.y, p.x), p.z);
+        return std::any_of(dots.begin(), dots.end(),
+                           [&](const Dot& d) { return glm::length(q - d.centre) < d.radius; });
+    };
+}
+
+// Pixels of 1/300 inch with four samples a texel: the rim of a disc of 20 mm errs by 0.02 % of its area.
+TEST_F(SheetOfFormula, PrintsTheAreaThatIsPainted) {
+    const mesh::TriangleMesh model = test::cylinder_part(kRadius, 2.5, 0.1, 240, 60);
+    const Sheet made = sheet(model, dots_on_cylinder({{{0, 0.05}, 0.02}}), {.bleed = 3 * kMm});
+    ASSERT_EQ(made.pieces.size(), 1u);
+    EXPECT_LT(made.pieces[0].strain, 2e-5);
+    const double area = test::kPi * 0.02 * 0.02;
+    EXPECT_NEAR(printed_area(made.pages[0].prints[0]), area, 1e-3 * area);
+    EXPECT_NEAR(made.pieces[0].paint_area, area, 5e-3 * area);  // cells of 0.1 mm
+}
+
+// From the model to the print and back: the middles of small dots, found in the picture, are as far apart as on the
+// cylinder, and lie under the dots.
+TEST_F(SheetOfFormula, RoundTripFromModelToSheetAndBack) {
+    const mesh::TriangleMesh model = test::cylinder_part(kRadius, 2.5, 0.1, 400, 60);
+    const std::vector<Dot> dots{{{-0.03, 0.02}, 1 * kMm}, {{0.03, 0.03}, 1 * kMm}, {{0.01, 0.08}, 1 * kMm}};
+    const Sheet made = sheet(model, dots_on_cylinder(dots), {.bleed = 3 * kMm, .join = 0.1});
+    ASSERT_EQ(made.pieces.size(), 1u);
+    const Piece& piece = made.pieces[0];
+    const PrintSurface& surface = made.surfaces[piece.surface];
+    std::vector<Vec2> found;
+    for (const Dot& dot : dots) {
+        // Where the dot's middle is on the page: the nearest of many points of the panel to it.
+        Vec2 near(0);
+        double least = 1;
+        for (std::size_t t = 0; t < surface.faces.size(); ++t) {
+            const Vec3 p = point_at(model, surface.source[t], surface.weights[t][0]);
+            const double d = glm::length(Vec2(kRadius * std::atan2(p.y, p.x), p.z) - dot.centre);
+            if (d < least) least = d, near = piece.placement(surface.flat[surface.faces[t][0]]);
+        }
+        found.push_back(centroid(made.pages[0].prints[0], near, 3 * kMm));
+        const auto back = locate(surface, piece.placement.inverse(found.back()));
+        ASSERT_TRUE(back);
+        const Vec3 p = point_at(model, back->triangle, back->weights);
+        const Vec3 truth(kRadius * std::cos(dot.centre.x / kRadius), kRadius * std::sin(dot.centre.x / kRadius),
+                         dot.centre.y);
+        EXPECT_LT(glm::length(p - truth), 0.05 * kMm);
+    }
+    for (std::size_t i = 0; i < dots.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_NEAR(glm::length(found[i] - found[j]), glm::length(dots[i].centre - dots[j].centre), 0.05 * kMm);
+}
+
+// A band round a cylinder wider than the page is cut; the lower piece laps under the next by the overlap, and prints
+// agree there: together they show the band once and the laps twice.
+TEST_F(SheetOfFormula, PanelsLapByTheOverlap) {
+    const mesh::TriangleMesh model = test::whole_cylinder(kRadius, 0.08, 240, 40);
+    const auto band = [](const Vec3& p) { return p.z > 0.03 && p.z < 0.05; };
+    const Sheet made = sheet(model, band, {.bleed = 2 * kMm, .overlap = 6 * kMm, .page = {0.2, 0.15}});
+    ASSERT_EQ(made.pieces.size(), 2u);
+    double film = 0;
+    for (const Piece& piece : made.pieces) film += area_of(piece.film);
+    // Film: the band of 24 mm, round once, and a lap at one or both seams of the lower piece.
+    const double round = 2 * 240 * kRadius * std::sin(test::kPi / 240), width = 24 * kMm;
+    const double laps = film / width - round;
+    EXPECT_NEAR(laps, 2 * 6 * kMm, 0.3 * kMm);  // the film's corners are cut within half a cell
+    std::size_t lap_lines = 0;
+    for (const Page& page : made.pages)
+        for (const Line& line : page.lines) lap_lines += line.role == Role::label && line.points.size() == 2;
+    EXPECT_GT(lap_lines, 10u);
+}
+
+TEST_F(SheetOfFormula, NumbersMarksAndScaleBarStandOnThePage) {
+    const mesh::TriangleMesh model = test::cylinder_part(kRadius, 2.5, 0.1, 120, 60);
+    const Sheet made = sheet(model, dots_on_cylinder({{{-0.03, 0.05}, 5 * kMm}, {{0.03, 0.05}, 5 * kMm}}),
+                             {.upright = true, .strain_map = true});
+    ASSERT_EQ(made.pieces.size(), 2u);
+    ASSERT_EQ(made.pages.size(), 2u);
+    EXPECT_TRUE(made.pages[1].strain_map);
+    Region films;
+    for (const Piece& piece : made.pieces) {
+        Ring ring = piece.film[0];
+        for (Vec2& p : ring) p = piece.placement(p);
+        EXPECT_TRUE(intersect(films, {ring}).empty());
+        films.push_back(ring);
+        // Upright: the arrow points up the page.
+        EXPECT_NEAR(piece.placement.s * piece.up.x + piece.placement.c * piece.up.y, 1, 1e-6);
+    }
+    double scale = 0;
+    for (const Line& line : made.pages[0].lines) {
+        for (const Vec2& p : line.points) {
+            EXPECT_GE(std::min(p.x, p.y), 0);
+            EXPECT_LE(p.x, 0.21);
+            EXPECT_LE(p.y, 0.297);
+            if (line.role == Role::label) EXPECT_FALSE(contains(films, p));  // nothing is printed on a piece
+        }
+        if (line.role == Role::mark && line.points.size() == 2)
+            scale = std::max(scale, glm::length(line.points[1] - line.points[0]));
+    }
+    EXPECT_NEAR(scale, 50 * kMm, 1e-9);
+}
+
+// Same bits for any number of threads.
+TEST_F(SheetOfFormula, DoesNotDependOnTheNumberOfThreads) {
+    const mesh::TriangleMesh model = test::sphere_cap(0.05, 1.3, 30);
+    const auto painted = [](const Vec3& p) { return p.z > 0.02 && std::sin(300 * p.x) > 0; };
+    std::vector<Sheet> made;
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        made.push_back(sheet(model, painted, {}));
+    }
+    set_thread_count(0);
+    ASSERT_EQ(made[0].pieces.size(), made[1].pieces.size());
+    for (std::size_t i = 0; i < made[0].pieces.size(); ++i) {
+        EXPECT_EQ(made[0].pieces[i].film, made[1].pieces[i].film);
+        EXPECT_EQ(made[0].pages[0].prints.size(), made[1].pages[0].prints.size());
+    }
+    for (std::size_t i = 0; i < made[0].pages[0].prints.size(); ++i)
+        EXPECT_EQ(made[0].pages[0].prints[i].alpha, made[1].pages[0].prints[i].alpha);
+}
+
+// Plates hold amounts: laid over each other by Kubelka and Munk's law they are the colour of the painting. Tints are
+// steps of 1/255 of the fullest texel; two codes are what such a step changes at most here.
+TEST(Plates, SumToTheColour) {
+    const mesh::TriangleMesh model =
+        test::grid_mesh(20, 20, false, false, [](double u, double v) { return Vec3(0.016 * u, 0.016 * v, 0); });
+    const ink::Substrate substrate = ink::load_substrate("porcelain");
+    const std::vector<ink::Pigment> pigments{ink::load_ink("cobalt").parts[0].pigment,
+                                             ink::load_ink("cinnabar").parts[0].pigment};
+    ink::AtlasMap<float> amounts{16, 2, {}};
+    ink::Plane first{}, second{};
+    for (std::size_t t = 0; t < 256; ++t) {
+        first[t] = 0.3f * static_cast<float>(t % 16) / 15;
+        second[t] = 0.2f * static_cast<float>(t / 16) / 15 + 0.01f;
+        amounts.texels.push_back(first[t]);
+        amounts.texels.push_back(second[t]);
+    }
+    const auto colours_of = [&](const ink::Plane& a, const ink::Plane& b) {
+        const ink::TileFilm film{.pigments = {&a, &b}};
+        const ink::TileAppearance shown = ink::shade_films({&film, 1}, nullptr, pigments, substrate);
+        std::vector<std::uint8_t> rgb;
+        for (std::size_t t = 0; t < 256; ++t)
+            for (std::size_t c = 0; c < 3; ++c) rgb.push_back(ink::code_of_linear(shown.colour[c][t]));
+        return rgb;
+    };
+    const ink::AtlasMap<std::uint8_t> colour{16, 3, colours_of(first, second)};
+    std::vector<Vec2f> uvs;
+    for (std::size_t t = 0; t < model.n_triangles(); ++t)
+        for (int k = 0; k < 3; ++k) uvs.push_back(Vec2f(model.position(t, k) / 0.016));
+    const PrintSource source{.corner_uvs = uvs,
+                             .coverage = [](std::uint32_t, const Weights&) { return 1.0; },
+                             .colour = &colour,
+                             .amounts = &amounts,
+                             .full = {0.3f, 0.21f},
+                             .texel = 1e-3};
+    const Sheet made = make_sheet(model, source, {.upright = true, .pixel = 1e-3});
+    const PrintImage& print = made.pages[0].prints[0];
+    ASSERT_EQ(print.plates.size(), 2u);
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < print.alpha.size(); ++i) {
+        if (print.alpha[i] != 255) continue;
+        ink::Plane a{}, b{};
+        a[0] = 0.3f * static_cast<float>(print.plates[0][i]) / 255;
+        b[0] = 0.21f * static_cast<float>(print.plates[1][i]) / 255;
+        const std::vector<std::uint8_t> sum = colours_of(a, b);
+        // Pixels lie between texels: colours there are means of codes, amounts are means of amounts.
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], print.rgb[3 * i + c], 4) << i;
+        ++compared;
+    }
+    EXPECT_GT(compared, 150u);
+}
+
+// A bilinear read at the edge of paint mixes in no substrate.
+TEST(Colours, SpreadFromPaintToTheTexelsRoundIt) {
+    ink::AtlasMap<std::uint8_t> colour{5, 3, std::vector<std::uint8_t>(75, 200)};
+    ink::AtlasMap<float> coverage{5, 1, std::vector<float>(25, 0)};
+    coverage.texels[12] = 1;
+    for (std::size_t c = 0; c < 3; ++c) colour.texels[3 * 12 + c] = 10;
+    spread_colours(colour, coverage, 1);
+    for (std::size_t i = 0; i < 25; ++i) {
+        const bool near = i % 5 >= 1 && i % 5 <= 3 && i / 5 >= 1 && i / 5 <= 3;
+        EXPECT_EQ(colour.texels[3 * i], near ? 10 : 200) << i;
+    }
+}
+
+}  // namespace
+}  // namespace tuft::decal

@@ -1,0 +1,160 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <regex>
+
+#include "core/error.h"
+#include "io/motion/motion_files.h"
+
+namespace tuft::io {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Three points of a stroke and its approach; the holder leans by `lean` about x.
+MotionProgram program(double lean) {
+    MotionProgram p;
+    p.title = "sheet";
+    p.strokes.resize(1);
+    p.strokes[0].brush = "wolf-medium";
+    p.strokes[0].ink = "carbon";
+    p.strokes[0].seed = 99;
+    p.strokes[0].label = "heng";
+    p.strokes[0].settings = stroke::StrokeSettings{};
+    p.strokes[0].before = {stroke::BrushAction{.kind = stroke::BrushActionKind::wipe, .extent = {.amount = 0.5}}};
+    const Quat rotation = glm::angleAxis(lean, Vec3(1, 0, 0));
+    motion::Move approach{motion::MoveKind::approach, 0, {}}, stroke{motion::MoveKind::stroke, 0, {}};
+    approach.points = {{{{0.01, 0.02, 0.06}, rotation, 0}}, {{{0.01, 0.02, 0.02}, rotation, 0.5}}};
+    for (int i = 0; i < 3; ++i)
+        stroke.points.push_back({{{0.01 + 0.005 * i, 0.02, 0.02}, rotation, 0.5 + 0.1 * i}, {0, 0, 0.02}});
+    p.trajectory.moves = {approach, stroke};
+    return p;
+}
+
+std::vector<std::vector<double>> numbers_in(const std::string& text, const std::regex& line) {
+    std::vector<std::vector<double>> all;
+    for (auto it = std::sregex_iterator(text.begin(), text.end(), line); it != std::sregex_iterator(); ++it) {
+        all.emplace_back();
+        for (std::size_t k = 1; k < it->size(); ++k) all.back().push_back(std::stod((*it)[k]));
+    }
+    return all;
+}
+
+const std::string kNumber = R"((-?[0-9.]+))";
+
+// The tool's z axis points along the hair: with an upright brush (0, 0, −1).
+TEST(Programs, TcpPointsAlongTheHair) {
+    const MotionFrame tcp = tcp_of({{0.1, 0.2, 0.3}, glm::angleAxis(0.4, Vec3(0, 1, 0)), 0}, {});
+    EXPECT_LT(glm::length(tcp.rotation * Vec3(0, 0, 1) - glm::angleAxis(0.4, Vec3(0, 1, 0)) * Vec3(0, 0, -1)), 1e-12);
+    EXPECT_LT(glm::length(tcp.rotation * Vec3(1, 0, 0) - glm::angleAxis(0.4, Vec3(0, 1, 0)) * Vec3(1, 0, 0)), 1e-12);
+}
+
+TEST(Programs, UrScriptHoldsPositionsRotationsAndSpeeds) {
+    const double lean = 0.3;
+    const auto moves =
+        numbers_in(urscript_text(program(lean)),
+                   std::regex("move[pl]\\(p\\[" + kNumber + ", " + kNumber + ", " + kNumber + ", " + kNumber + ", " +
+                              kNumber + ", " + kNumber + "\\], a=" + kNumber + ", v=" + kNumber));
+    ASSERT_EQ(moves.size(), 3u);  // one line of the approach, two of the stroke
+    EXPECT_NEAR(moves[2][0], 0.02, 1e-6);
+    // Half a turn about x after the lean about x: a turn by π + 0.3, or π − 0.3 the other way round.
+    EXPECT_NEAR(std::hypot(moves[2][3], moves[2][4], moves[2][5]), kPi - lean, 1e-5);
+    EXPECT_NEAR(std::abs(moves[2][3]), kPi - lean, 1e-5);
+    EXPECT_NEAR(moves[2][7], 0.05, 1e-5);  // 5 mm in 0.1 s
+}
+
+TEST(Programs, RapidHoldsMillimetresQuaternionsAndTimes) {
+    const auto moves =
+        numbers_in(rapid_text(program(0.3)),
+                   std::regex("MoveL \\[\\[" + kNumber + ", " + kNumber + ", " + kNumber + "\\], \\[" + kNumber + ", " +
+                              kNumber + ", " + kNumber + ", " + kNumber + "\\][^\\n]*\\\\T:=" + kNumber));
+    ASSERT_EQ(moves.size(), 3u);
+    EXPECT_NEAR(moves[1][0], 15, 1e-3);
+    EXPECT_NEAR(moves[1][2], 20, 1e-3);
+    const Quat q(moves[1][3], moves[1][4], moves[1][5], moves[1][6]);
+    EXPECT_LT(glm::length(q * Vec3(0, 0, 1) - glm::angleAxis(0.3, Vec3(1, 0, 0)) * Vec3(0, 0, -1)), 1e-6);
+    EXPECT_NEAR(moves[0][7], 0.5, 1e-6);
+    EXPECT_NEAR(moves[1][7], 0.1, 1e-6);
+}
+
+TEST(Programs, KrlHoldsEulerAnglesAboutZYX) {
+    const auto lines =
+        numbers_in(krl_text(program(0.3)),
+                   std::regex("VEL.CP = " + kNumber + "\\n  LIN \\{X " + kNumber + ", Y " + kNumber + ", Z " + kNumber +
+                              ", A " + kNumber + ", B " + kNumber + ", C " + kNumber + "\\}"));
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_NEAR(lines[1][0], 0.05, 1e-5);
+    EXPECT_NEAR(lines[1][1], 15, 1e-3);
+    const auto turn = [](double degrees, const Vec3& axis) { return glm::angleAxis(degrees * kPi / 180, axis); };
+    const Quat q = turn(lines[1][4], {0, 0, 1}) * turn(lines[1][5], {0, 1, 0}) * turn(lines[1][6], {1, 0, 0});
+    EXPECT_LT(glm::length(q * Vec3(0, 0, 1) - glm::angleAxis(0.3, Vec3(1, 0, 0)) * Vec3(0, 0, -1)), 1e-5);
+    EXPECT_LT(glm::length(q * Vec3(1, 0, 0) - Vec3(1, 0, 0)), 1e-5);
+}
+
+TEST(Programs, GCodeIsForUprightBrushesOnly) {
+    const auto lines = numbers_in(gcode_text(program(0)),
+                                  std::regex("G1 X" + kNumber + " Y" + kNumber + " Z" + kNumber + " F" + kNumber));
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_NEAR(lines[2][0], 20, 1e-3);
+    EXPECT_NEAR(lines[2][3], 3000, 0.1);  // 50 mm/s
+    EXPECT_THROW(gcode_text(program(0.3)), Error);
+}
+
+class TrajectoryFile : public testing::Test {
+  protected:
+    std::filesystem::path file_ =
+        std::filesystem::path(testing::TempDir()) / ("tuft_motion_" + std::to_string(::getpid()) + ".json");
+    void TearDown() override { std::filesystem::remove(file_); }
+};
+
+TEST_F(TrajectoryFile, ReadsBackToTheBit) {
+    const MotionProgram p = program(0.3);
+    write_trajectory(file_, p);
+    const std::vector<stroke::RecordedStroke> read = read_trajectory(file_);
+    ASSERT_EQ(read.size(), 1u);
+    EXPECT_FALSE(read[0].flat);
+    EXPECT_EQ(read[0].brush, "wolf-medium");
+    EXPECT_EQ(read[0].seed, 99u);
+    EXPECT_EQ(read[0].label, "heng");
+    EXPECT_EQ(read[0].before.size(), 1u);
+    ASSERT_EQ(read[0].samples.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(read[0].samples[i].position, p.trajectory.moves[1].points[i].pose.position);
+        EXPECT_EQ(read[0].samples[i].rotation, p.trajectory.moves[1].points[i].pose.rotation);
+    }
+    EXPECT_EQ(read[0].samples[0].time, 0);
+}
+
+TEST_F(TrajectoryFile, RefusesWhatItHasNotWritten) {
+    const std::string good = trajectory_json(program(0));
+    const auto refused = [&](const std::string& text) {
+        std::ofstream(file_) << text;
+        try {
+            read_trajectory(file_);
+        } catch (const Error& error) {
+            return std::string(error.what()).starts_with(file_.string() + ": ");
+        }
+        return false;
+    };
+    EXPECT_TRUE(refused("{}"));
+    EXPECT_TRUE(refused("[1,2"));
+    EXPECT_TRUE(refused(std::string(100000, '[')));
+    for (const auto& [what, by] : {std::pair<std::string, std::string>{"tuft-trajectory", "other"},
+                                   {"\"version\":1", "\"version\":2"},
+                                   {"\"stroke\":0", "\"stroke\":5"},
+                                   {"\"points\":[[", "\"points\":[[1e999,"},
+                                   {"\"points\":[[", "\"points\":[7,["}}) {
+        std::string text = good;
+        for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+            text.replace(at, what.size(), by);
+        EXPECT_TRUE(refused(text)) << what;
+    }
+    for (std::size_t n = 0; n + 2 < good.size(); n += 97) EXPECT_TRUE(refused(good.substr(0, n))) << n;
+}
+
+}  // namespace
+}  // namespace tuft::io
