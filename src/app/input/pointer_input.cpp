@@ -363,7 +363,9 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
         // Low-pass of a goal that moves evenly, solved exactly: y' = (x - y) / τ, x' = pace.
         const Vec3 behind = target - settings_.smoothing * pace;
         point_ = behind + (1 - part(dt, settings_.smoothing)) * (point_ - behind + pace * dt);
-        normal_ = glm::normalize(normal_ + part(dt, std::max(0.01, settings_.smoothing)) * (normal - normal_));
+        const bool leans_ahead = glm::dot(normal - normal_, dragged_.string) > 0;
+        const double constant = std::max(0.01, settings_.smoothing) * (leans_ahead ? 1 - at_start() : 1);
+        normal_ = glm::normalize(normal_ + part(dt, constant) * (normal - normal_));
         onto_surface();
         if (is_clean(aim)) drag(aim);
         turn_holder(aim, point_ - before);
