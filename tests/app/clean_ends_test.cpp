@@ -87,8 +87,9 @@ struct Painted : stroke::Document {
     std::string brush_;
 };
 
-/// Places of the view with ink, pixels.
-std::vector<Vec2> inked(const stroke::Document& painting, const View& view) {
+/// Places of the view with ink, pixels; `which`: only where it holds.
+std::vector<Vec2> inked(const stroke::Document& painting, const View& view,
+                        const std::function<bool(const Vec3&)>& which = {}) {
     std::vector<Vec2> places;
     const stroke::Model& model = painting.model();
     const ink::Canvas& canvas = painting.layers().canvas();
@@ -98,8 +99,8 @@ std::vector<Vec2> inked(const stroke::Document& painting, const View& view) {
             for (int p = 0; p < static_cast<int>(canvas.pigments().size()); ++p)
                 if (const ink::Plane* w = canvas.plane(slot, p)) film += static_cast<double>((*w)[t]);
             // A tenth of a full film of carbon is a dark grey.
-            if (film > 0.18 && model.texels.tiles[slot].cluster[t] != atlas::kNoCluster)
-                places.push_back(view.pixel(Vec3(model.texels.position(slot, t))));
+            if (!(film > 0.18) || model.texels.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
+            if (const Vec3 p(model.texels.position(slot, t)); !which || which(p)) places.push_back(view.pixel(p));
         }
     return places;
 }
@@ -240,12 +241,19 @@ double longest_gap(const std::vector<Vec2>& ink, const Vec2& a, const Vec2& b) {
     return gap;
 }
 
+/// Furthest ink from the line through `a` and `b`, pixels.
+double furthest_aside(const std::vector<Vec2>& ink, const Vec2& a, const Vec2& b) {
+    const Vec2 along = glm::normalize(b - a);
+    double most = 0;
+    for (const Vec2& p : ink) most = std::max(most, std::abs(along.x * (p.y - a.y) - along.y * (p.x - a.x)));
+    return most;
+}
+
 // From the inside of a bowl to its outside, seen from above its rim: one stroke for the eye. It was none: hair hooked
 // over the rim, and the holder turned by a right angle on the lip.
 TEST(CleanEnds, AStrokeOverARimHasNoGapAndNoClaw) {
     const stroke::Model bowl = test::shipped_model("bowl.ply", 2048);
     const Box& box = bowl.mesh->bounds;
-    int far_aside = 0;
     for (const auto& [elevation, below] : {std::pair{0.35, 60.0}, {0.55, 60.0}, {0.9, 15.0}}) {
         const View view{.middle = {box.centre().x, box.lo.y, box.hi.z},
                         .up = {0, std::sin(elevation), std::cos(elevation)}};
@@ -259,18 +267,37 @@ TEST(CleanEnds, AStrokeOverARimHasNoGapAndNoClaw) {
                                              std::to_string(aside) + ", from " + std::to_string(elevation);
                     // Pixels: two events of a fast mouse are 13 apart, and one is on each side of the rim.
                     EXPECT_LT(longest_gap(ink, a, b), 8) << what;
-                    double aside_most = 0;
-                    for (const Vec2& p : ink) {
-                        const Vec2 along = glm::normalize(b - a), d = p - a;
-                        aside_most = std::max(aside_most, std::abs(along.x * d.y - along.y * d.x));
-                    }
-                    // The line is up to 16 wide. Behind the rim its middle is within 3 of the cursor's path, and in one
-                    // of these 36 strokes within 6.5.
-                    EXPECT_LT(aside_most, 15) << what;
-                    far_aside += aside_most >= 11;
+                    // The line is up to 16 wide, and its middle is within 3 of the cursor's path.
+                    EXPECT_LT(furthest_aside(ink, a, b), 11) << what;
                 }
     }
-    EXPECT_LE(far_aside, 1);
+}
+
+// Under a flared lip the wall's normal is a right angle from the lip's within some millimetres: a holder that turned as
+// slowly as over a calm surface had its tip ahead there, and the hair swung aside.
+TEST(CleanEnds, AStrokeFromAFlaredLipGoesStraightDownTheNeck) {
+    const stroke::Model vase = test::shipped_model("vase.ply", 1024);
+    const Box& box = vase.mesh->bounds;
+    const double elevation = 0.7;
+    const View view{.middle = {box.centre().x, -0.0404, box.hi.z},  // the front of the lip
+                    .up = {0, std::sin(elevation), std::cos(elevation)}};
+    const auto in_front = [&](const Vec3& p) {
+        const auto at = vase.query->closest_point(p, 1e-3);
+        return at && p.y < box.centre().y && glm::dot(at->normal, glm::cross(view.right, view.up)) > 0;
+    };
+    for (const char* brush : {"wolf-medium", "mixed-medium"})
+        for (const double pace : {400.0, 600.0, 900.0}) {
+            const Vec2 a{-6, 40}, b{10, -62};
+            const Painted painting(vase, brush, drawn(view, {a, b}, pace, false));
+            const std::vector<Vec2> ink = inked(painting, view, in_front);
+            ASSERT_GT(ink.size(), 50u);
+            // The line is up to 7 wide. Its middle is up to 9 aside where it begins under the lip, from which the tuft
+            // still hangs, and within 5 from 80 pixels on.
+            EXPECT_LT(furthest_aside(ink, a, b), 13) << brush << " at " << pace;
+            std::vector<Vec2> end = ink;
+            std::erase_if(end, [&](const Vec2& p) { return glm::dot(p - a, glm::normalize(b - a)) < 80; });
+            EXPECT_LT(furthest_aside(end, a, b), 8) << brush << " at " << pace;
+        }
 }
 
 TEST(CleanEnds, StrokesReplayToTheBit) {

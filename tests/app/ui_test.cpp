@@ -26,6 +26,7 @@
 #include "core/system/files.h"
 #include "core/system/system_message.h"
 #include "ink/colour/pigments.h"
+#include "io/image/image.h"
 #include "io/model/read_model.h"
 #include "io/project/project.h"
 #include "io/strokes/svg.h"
@@ -61,7 +62,7 @@ TEST(Contrast, OfBlackOnWhiteIsTwentyOne) {
 bool has_english(const std::string& text) {
     static const std::regex kWord("[A-Za-z]{2,}"),
         kName(
-            "mm|km|um|cm|in|ft|PLY|OBJ|STL|OFF|SVG|glb|GLB|obj|ply|stl|off|tuft|endsolid|UV|MiB|gltf|JSON|"
+            "mm|km|um|cm|in|ft|PLY|OBJ|STL|OFF|SVG|glb|GLB|obj|ply|stl|off|tuft|endsolid|UV|MiB|gltf|JSON|TOML|UTF|"
             "xyz|end|header|glTF|FBX|DAE|COLLADA|X3D|AMF|MF|none|svg|STEP|dae|fbx|or|and");
     const std::string words = std::regex_replace(text, std::regex("'[^']*'|\xe2\x80\x9c[^\xe2]*\xe2\x80\x9d"), "");
     for (std::sregex_iterator it(words.begin(), words.end(), kWord), end; it != end; ++it)
@@ -276,6 +277,36 @@ TEST(UiText, ErrorsOfFilesAreSaidInChineseAndKeepTheNameOfTheFile) {
         const std::size_t at = text.find(folder);
         ASSERT_EQ(at, 0u) << text;
         EXPECT_FALSE(has_english(text.substr(text.find("\xef\xbc\x9a")))) << text << " | " << error.text();
+    }
+    // Of files that a library reads: kinds in Chinese, the library's own words only in parentheses behind them.
+    const auto broken = [&](const char* target, const char* name, std::size_t from, std::string_view bytes) {
+        const std::vector<char> whole = read_file(source_folder() + "/tests/fuzz/corpus/" + target + "/" + name);
+        std::string text(whole.begin(), whole.end());
+        text = from < text.size() ? text.substr(0, from) + std::string(bytes) : text;
+        return written(std::string("broken_") + name, text);
+    };
+    std::vector<Message> faults;
+    for (const char* name : {"two.png", "two.jpg", "two.tif", "two.exr"})
+        for (const std::size_t from : {std::size_t{20}, std::size_t{60}, std::size_t{100}})
+            for (const std::string_view bytes :
+                 {std::string_view(), std::string_view("\x7f\x01\xfe garbage \x80\xff")}) {
+                const Message error = error_of([&] { io::read_image8(broken("image", name, from, bytes)); });
+                if (error.text() != "no error") faults.push_back(error);
+            }
+    EXPECT_GT(faults.size(), 12u);
+    for (const std::size_t from : {std::size_t{40}, std::size_t{400}}) {
+        faults.push_back(error_of([&] { io::read_model(broken("fbx", "box.fbx", from, "")); }));
+        faults.push_back(error_of([&] { io::read_model(broken("dae", "small.dae", from, "")); }));
+    }
+    faults.push_back(error_of([&] { io::read_model(written("i.gltf", "{\"asset\": {")); }));
+    faults.push_back(error_of([&] { io::read_model(written("j.gltf", "{\"asset\": {\"version\": 3}}")); }));
+    for (const char* toml : {"a = 1\na = 2\n", "a = [1, 2", "a = = 1", "a = \"\xff\""})
+        faults.push_back(error_of([&] { brush::parse_preset(toml, folder + "/k.toml"); }));
+    const std::regex details("\xef\xbc\x88[^\xef]*\xef\xbc\x89|^[^\xef]*");
+    for (const Message& fault : faults) {
+        EXPECT_NE(fault.text(), "no error");
+        EXPECT_FALSE(has_english(std::regex_replace(chinese(fault), details, "")))
+            << chinese(fault) << " | " << fault.text();
     }
     std::vector<Message> notes;
     io::read_strokes(written("h.svg",

@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <string>
 
 #include "io/model/import_scene.h"
@@ -63,14 +64,22 @@ void become_importer() {
     setrlimit(RLIMIT_CORE, &core);
 }
 
+/// One for all files of a format: its readers and steps take longer to make than most files to read.
+Assimp::Importer& importer_of(const std::string& format) {
+    static std::map<std::string, Assimp::Importer> importers;
+    const bool is_new = !importers.contains(format);
+    Assimp::Importer& importer = importers[format];
+    if (is_new) io::prepare_importer(importer, format.c_str());
+    return importer;
+}
+
 void import_one(const char* format) {
     Shared& s = shared();
     s.out = 0;
     s.stage = Stage::reading;
     try {
-        Assimp::Importer importer;
         const std::vector<char> packed =
-            io::import_scene(importer, format, {s.input, s.in}, [&] { s.stage = Stage::walking; });
+            io::import_scene(importer_of(format), format, {s.input, s.in}, [&] { s.stage = Stage::walking; });
         s.stage = Stage::done;
         if (packed.size() <= kMostOutput) {
             std::memcpy(s.output, packed.data(), packed.size());

@@ -44,6 +44,7 @@ constexpr double kSlanting = 0.35;   // cosine to the line of sight under which 
 // pressure's path, and is pressed down over this part of the tuft's length.
 constexpr double kLightly = 0.2, kOverAnEdge = 0.08;
 constexpr double kWall = 0.25, kLip = 0.55;  // radians from the mean normal: of a wall beside a lip at most, of a lip
+constexpr double kAhead = 0.5;       // of the radius that a holder levels: how far ahead the ground is looked at
 constexpr double kSameGround = 1.5;  // radii round the aim in which a place belongs to the ground that a holder levels
 
 double part(double dt, double constant) {
@@ -52,6 +53,16 @@ double part(double dt, double constant) {
 
 Vec3 facing(const mesh::SurfacePoint& p, const Aim& aim) {
     return glm::dot(p.normal, aim.ray.direction) < 0 ? p.normal : -p.normal;
+}
+
+/// A way in the plane of the levelled ground. `start`, 0–1: as it is seen, else along the normal. A stroke that begins
+/// on a lip goes far along the ground's normal before it is on the wall, and its direction is that of the wall; one
+/// that ends on a lip has the direction that it came with.
+Vec3 along_ground(const Vec3& way, const Vec3& normal, const Aim& aim, double start) {
+    const double facing = -glm::dot(aim.ray.direction, normal);
+    const Vec3 onto = glm::mix(-normal, aim.ray.direction / std::max(facing, kSlanting),
+                               start * smooth_step((facing - kSlanting) / kSlanting));
+    return way + glm::dot(way, normal) * onto;
 }
 
 }  // namespace
@@ -243,11 +254,9 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
 }
 
 // The point has moved: what it drags follows on the string, along the surface.
-void PointerInput::drag() {
-    Vec3 offset = point_ - dragged_.position;
-    offset -= glm::dot(offset, normal_) * normal_;
-    if (const double length = glm::length(offset); length > holder_.tip_lag_turn)
-        offset *= holder_.tip_lag_turn / length;
+void PointerInput::drag(const Aim& aim) {
+    Vec3 offset = along_ground(point_ - dragged_.position, normal_, aim, at_start());
+    if (const double length = glm::length(offset); length > holder_.tip_lag_turn) offset *= holder_.tip_lag_turn / length;
     dragged_.position = point_ - offset;
     dragged_.string = offset / holder_.tip_lag_turn;
 }
@@ -288,17 +297,38 @@ void PointerInput::wait(const Aim& aim, const AimedSurface& hit, std::vector<Str
     if (known || aim.time - waiting_.front().aim.time > kRestTime) set_down(steps);
 }
 
+double PointerInput::at_start() const {
+    return 1 - smooth_step(gone_ / std::max(holder_.steady, 1e-6));
+}
+
+// At its start a clean stroke has the normal of what lies ahead, where that leans further ahead: over the rounding of a
+// lip a holder by the lip's own normal stands so that its tip is ahead on the wall that it goes down, and hair pushed
+// against its lie swings aside.
+Vec3 PointerInput::normal_at_start(const Aim& aim, const AimedSurface& at, const Vec3& towards) const {
+    const double reach = kAhead * holder_.steady, start = at_start();
+    if (!(glm::length(towards) > 1e-6 && reach > 0 && start > 0)) return at.normal;
+    Aim ahead = aim;
+    ahead.ray.origin += reach * glm::normalize(towards);
+    const auto hit = aim_at(surface_, ahead);
+    if (!hit || glm::distance(hit->position, at.position) > kSameGround * reach) return at.normal;
+    const Vec3 normal = levelled_normal(ahead, *hit);
+    if (glm::dot(normal, towards) <= glm::dot(at.normal, towards)) return at.normal;
+    return glm::normalize(glm::mix(at.normal, normal, start));
+}
+
 // Presses the tuft down at the first place, then goes on to where the cursor is by now.
 void PointerInput::set_down(std::vector<StrokeStep>& steps) {
     const std::vector<Waiting> waiting = std::move(waiting_);
     waiting_.clear();
     const Waiting& first = waiting.front();
     const Waiting& last = waiting.back();
-    Vec3 motion = last.surface.position - first.surface.position;
-    motion -= glm::dot(motion, first.surface.normal) * first.surface.normal;
+    const Vec3 motion = along_ground(last.surface.position - first.surface.position, first.surface.normal, first.aim, 1);
     const double length = glm::length(motion);
-    pen_down(first.aim, first.surface, length >= 0.5 * kKnown * last.aim.metres_per_pixel ? motion / length : Vec3(0),
-             steps);
+    const Vec3 towards = length >= 0.5 * kKnown * last.aim.metres_per_pixel ? motion / length : Vec3(0);
+    gone_ = 0;
+    AimedSurface surface = first.surface;
+    surface.normal = normal_at_start(first.aim, surface, towards);
+    pen_down(first.aim, surface, towards, steps);
     motion_.start -= kSetDown;  // as if it had begun earlier: it lags no further behind
     motion_.speed = length / std::max(kFrame, last.aim.time - first.aim.time);
     if (!over_edge_) spread_ = kSpread * holder_.tuft_length * (1 - std::min(1.0, motion_.speed / settings_.fast));
@@ -312,7 +342,8 @@ void PointerInput::set_down(std::vector<StrokeStep>& steps) {
     }
     for (std::size_t i = 1; i < waiting.size(); ++i) {
         if (waiting[i].surface.bridged) bridged_ = motion_.time;
-        follow(waiting[i].aim, waiting[i].surface.position, waiting[i].surface.normal, step.poses);
+        const Vec3 normal = normal_at_start(waiting[i].aim, waiting[i].surface, dragged_.string);
+        follow(waiting[i].aim, waiting[i].surface.position, normal, step.poses);
         goal_normal_ = waiting[i].surface.normal;
     }
     steps.push_back(std::move(step));
@@ -333,9 +364,11 @@ void PointerInput::follow(const Aim& aim, const Vec3& goal, const Vec3& normal, 
         // Low-pass of a goal that moves evenly, solved exactly: y' = (x - y) / τ, x' = pace.
         const Vec3 behind = target - settings_.smoothing * pace;
         point_ = behind + (1 - part(dt, settings_.smoothing)) * (point_ - behind + pace * dt);
-        normal_ = glm::normalize(normal_ + part(dt, std::max(0.01, settings_.smoothing)) * (normal - normal_));
+        const bool leans_ahead = glm::dot(normal - normal_, dragged_.string) > 0;
+        const double constant = std::max(0.01, settings_.smoothing) * (leans_ahead ? 1 - at_start() : 1);
+        normal_ = glm::normalize(normal_ + part(dt, constant) * (normal - normal_));
         onto_surface();
-        if (is_clean(aim)) drag();
+        if (is_clean(aim)) drag(aim);
         turn_holder(aim, point_ - before);
         gone_ += glm::distance(before, point_);
         const double v = glm::distance(before, point_) / dt;
@@ -379,6 +412,7 @@ std::vector<StrokeStep> PointerInput::move(const Aim& aim) {
             follow(still, goal_, goal_normal_, step.poses);
         }
         if (hit->bridged) bridged_ = motion_.time;
+        if (is_clean(aim)) hit->normal = normal_at_start(aim, *hit, dragged_.string);
         follow(aim, hit->position, hit->normal, step.poses);
         steps.push_back(std::move(step));
     }
@@ -403,7 +437,7 @@ void PointerInput::arrive(std::vector<brush::Pose>& poses) {
         point_ = from + (1 - left) * (goal_ - from);
         normal_ = glm::normalize(normal_ + t * (goal_normal_ - normal_));
         onto_surface();
-        drag();
+        drag(aim_);
         turn_holder(aim_, point_ - before);
         gone_ += glm::distance(before, point_);
         motion_.pressure = start * (1 - kFlickLift * flick * (1 - left));

@@ -129,9 +129,11 @@ class PointerInput {
     Vec3 ahead_of(const Aim& aim, const Vec3& normal, double pressure) const;
     void pen_down(const Aim& aim, const AimedSurface& hit, const Vec3& towards, std::vector<StrokeStep>& steps);
     void wait(const Aim& aim, const AimedSurface& hit, std::vector<StrokeStep>& steps);
+    double at_start() const;
+    Vec3 normal_at_start(const Aim& aim, const AimedSurface& at, const Vec3& towards) const;
     void set_down(std::vector<StrokeStep>& steps);
     void arrive(std::vector<brush::Pose>& poses);
-    void drag();
+    void drag(const Aim& aim);
     void follow(const Aim& aim, const Vec3& goal, const Vec3& normal, std::vector<brush::Pose>& poses);
     void onto_surface();
     double goal_pressure(const Aim& aim) const;

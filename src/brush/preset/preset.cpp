@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/system/files.h"
+#include "core/system/library_fault.h"
 #include "core/text/nesting.h"
 #include "core/text/units.h"
 
@@ -278,7 +279,7 @@ Preset parse_preset(std::string_view text, const std::string& source, const std:
     try {
         root = toml::parse(text);
     } catch (const toml::parse_error& e) {
-        fail(source, static_cast<long>(e.source().begin.line), std::string(e.description()));
+        fail(source, static_cast<long>(e.source().begin.line), toml_fault(e.description()));
     }
     Preset p;
     for (const auto& [key, node] : root) {

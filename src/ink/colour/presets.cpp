@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/system/files.h"
+#include "core/system/library_fault.h"
 #include "core/text/nesting.h"
 
 namespace fs = std::filesystem;
@@ -99,7 +100,7 @@ toml::table parse_table(std::string_view text, const std::string& source) {
     try {
         return toml::parse(text);
     } catch (const toml::parse_error& e) {
-        throw Error(source, e.source().begin.line, std::string(e.description()));
+        throw Error(source, e.source().begin.line, toml_fault(e.description()));
     }
 }
 

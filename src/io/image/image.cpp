@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/system/files.h"
+#include "core/system/library_fault.h"
 #include "io/image/exr_header.h"
 #include "io/image/image_codec.h"
 #include "stroke/surface/model.h"
@@ -52,6 +53,11 @@ const ImageCodec& codec() {
     return loaded;
 }
 
+/// Empty: there is no fault.
+Message words_of(const ImageFault& fault) {
+    return fault.message.empty() && !fault.library.empty() ? library_fault(fault.library) : fault.message;
+}
+
 std::vector<unsigned char> encode(ImageFormat format, const PixelView& pixels, const ImageOptions& options,
                                   const std::string& name) {
     if (pixels.width <= 0 || pixels.height <= 0 || pixels.channels <= 0 || !pixels.first)
@@ -60,8 +66,8 @@ std::vector<unsigned char> encode(ImageFormat format, const PixelView& pixels, c
         throw Error(name, Message("a PNG file has 1 to 4 channels, not {}; write an EXR file", pixels.channels));
     assert(options.channel_names.empty() || options.channel_names.size() == static_cast<std::size_t>(pixels.channels));
     std::vector<unsigned char> bytes;
-    const std::string fault = codec().encode({.format = format, .pixels = pixels, .options = &options}, bytes);
-    if (!fault.empty()) throw Error(name, fault);
+    const Message fault = words_of(codec().encode({.format = format, .pixels = pixels, .options = &options}, bytes));
+    if (!fault.empty()) throw Error(name, Message("the picture cannot be written: {}", fault));
     return bytes;
 }
 
@@ -88,13 +94,13 @@ Image<T> decode(const std::vector<char>& bytes, const fs::path& path, std::size_
     const ImageFormat format = format_of(bytes, path);
     Message fault = format == ImageFormat::exr ? exr_header_fault(bytes, max_pixels) : Message();
     if (fault.empty())
-        fault = codec().decode({.format = format,
-                                .bytes = bytes.data(),
-                                .size = bytes.size(),
-                                .type = view_of<T>(1, 1, 1, nullptr).type,
-                                .max_pixels = max_pixels,
-                                .max_bytes = most_bytes()},
-                               decoded);
+        fault = words_of(codec().decode({.format = format,
+                                         .bytes = bytes.data(),
+                                         .size = bytes.size(),
+                                         .type = view_of<T>(1, 1, 1, nullptr).type,
+                                         .max_pixels = max_pixels,
+                                         .max_bytes = most_bytes()},
+                                        decoded));
     if (!fault.empty()) throw Error(path.string(), Message("the picture cannot be read: {}", fault));
     Image<T> image{.width = decoded.width,
                    .height = decoded.height,

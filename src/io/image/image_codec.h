@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/message.h"
 #include "io/image/image.h"
 
 /// \file
@@ -33,10 +34,16 @@ struct DecodedImage {
     std::vector<unsigned char> bytes;  ///< top row first
 };
 
-/// Both functions return the fault, or "". They do not throw.
+/// Why a picture is not read or written: our words, or else those of a library. Both empty: it is.
+struct ImageFault {
+    Message message;
+    std::string library;
+};
+
+/// Both functions return the fault. They do not throw.
 struct ImageCodec {
-    std::string (*encode)(const EncodeRequest& request, std::vector<unsigned char>& out) = nullptr;
-    std::string (*decode)(const DecodeRequest& request, DecodedImage& out) = nullptr;
+    ImageFault (*encode)(const EncodeRequest& request, std::vector<unsigned char>& out) = nullptr;
+    ImageFault (*decode)(const DecodeRequest& request, DecodedImage& out) = nullptr;
 };
 
 /// Symbol of the module's function without arguments that returns `const ImageCodec*`.

@@ -2,8 +2,9 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include <algorithm>
+#include <exception>
 #include <memory>
+#include <utility>
 
 #include "io/image/image_codec.h"
 
@@ -36,7 +37,16 @@ OIIO::TypeDesc type_of(PixelView::Type type) {
     return OIIO::TypeDesc::UNKNOWN;
 }
 
-std::string encode_checked(const EncodeRequest& request, std::vector<unsigned char>& out) {
+ImageFault ours(Message message) {
+    return {.message = std::move(message), .library = {}};
+}
+
+/// What a library says; never nothing.
+ImageFault said(std::string words) {
+    return words.empty() ? ours("it is damaged") : ImageFault{.message = {}, .library = std::move(words)};
+}
+
+ImageFault encode_checked(const EncodeRequest& request, std::vector<unsigned char>& out) {
     const PixelView& px = request.pixels;
     const bool exr = request.format == ImageFormat::exr;
     OIIO::TypeDesc stored = type_of(px.type);
@@ -63,28 +73,29 @@ std::string encode_checked(const EncodeRequest& request, std::vector<unsigned ch
     const char* name = extension_of(request.format);
     OIIO::Filesystem::IOVecOutput memory;
     std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name, &memory);
-    if (!output) return OIIO::geterror();
-    if (!output->open(name, spec)) return output->geterror();
-    if (!output->write_image(type_of(px.type), px.first, OIIO::AutoStride, px.row_bytes)) return output->geterror();
-    if (!output->close()) return output->geterror();
+    if (!output) return said(OIIO::geterror());
+    if (!output->open(name, spec)) return said(output->geterror());
+    if (!output->write_image(type_of(px.type), px.first, OIIO::AutoStride, px.row_bytes))
+        return said(output->geterror());
+    if (!output->close()) return said(output->geterror());
     out = memory.buffer();
-    return out.empty() ? "the encoder wrote nothing" : "";
+    return out.empty() ? ours("the encoder wrote nothing") : ImageFault{};
 }
 
-std::string decode_checked(const DecodeRequest& request, DecodedImage& out) {
+ImageFault decode_checked(const DecodeRequest& request, DecodedImage& out) {
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     OIIO::Filesystem::IOMemReader memory(const_cast<void*>(request.bytes), request.size);
     const char* name = extension_of(request.format);
     std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(name, false, &config, &memory);
-    if (!input) return OIIO::geterror();
+    if (!input) return said(OIIO::geterror());
     OIIO::ImageSpec spec;
-    if (!input->set_ioproxy(&memory) || !input->open(name, spec, config)) return input->geterror();
-    if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1) return "it has no pixels";
+    if (!input->set_ioproxy(&memory) || !input->open(name, spec, config)) return said(input->geterror());
+    if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1) return ours("it has no pixels");
     if (static_cast<std::size_t>(spec.width) > request.max_pixels / static_cast<std::size_t>(spec.height) ||
         spec.nchannels > 64)
-        return "it has " + std::to_string(spec.width) + " × " + std::to_string(spec.height) + " pixels with " +
-               std::to_string(spec.nchannels) + " channels, which is too many";
+        return ours(Message("it has {} × {} pixels with {} channels, which is too many", spec.width, spec.height,
+                            spec.nchannels));
     out.width = spec.width;
     out.height = spec.height;
     out.channels = spec.nchannels;
@@ -92,34 +103,26 @@ std::string decode_checked(const DecodeRequest& request, DecodedImage& out) {
     const OIIO::TypeDesc type = type_of(request.type);
     const std::size_t bytes = std::size_t(spec.width) * spec.height * spec.nchannels * type.size();
     if (bytes > request.max_bytes)
-        return "its pixels take " + std::to_string(bytes >> 20) + " MiB, more memory than there is";
+        return ours(Message("its pixels take {} MiB, more memory than there is", bytes >> 20));
     out.bytes.resize(bytes);
-    if (!input->read_image(0, 0, 0, spec.nchannels, type, out.bytes.data())) return input->geterror();
-    return "";
+    if (!input->read_image(0, 0, 0, spec.nchannels, type, out.bytes.data())) return said(input->geterror());
+    return {};
 }
 
-/// One line, whatever the library says.
-std::string one_line(std::string text, const char* fallback) {
-    if (text.empty()) return fallback;
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return text;
-}
-
-std::string encode(const EncodeRequest& request, std::vector<unsigned char>& out) {
+ImageFault encode(const EncodeRequest& request, std::vector<unsigned char>& out) {
     try {
-        const std::string fault = encode_checked(request, out);
-        return out.empty() ? one_line(fault, "the picture cannot be encoded") : "";
+        return encode_checked(request, out);
     } catch (const std::exception& e) {
-        return one_line(e.what(), "the picture cannot be encoded");
+        return said(e.what());
     }
 }
 
-std::string decode(const DecodeRequest& request, DecodedImage& out) {
+ImageFault decode(const DecodeRequest& request, DecodedImage& out) {
     try {
-        const std::string fault = decode_checked(request, out);
-        return fault.empty() && !out.bytes.empty() ? "" : one_line(fault, "it is damaged");
+        const ImageFault fault = decode_checked(request, out);
+        return fault.message.empty() && fault.library.empty() && out.bytes.empty() ? said("") : fault;
     } catch (const std::exception& e) {
-        return one_line(e.what(), "it is damaged");
+        return said(e.what());
     }
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/system/files.h"
+#include "core/system/library_fault.h"
 #include "core/text/nesting.h"
 #include "core/text/text.h"
 #include "io/model/materials.h"
@@ -236,7 +237,7 @@ GltfFile open_gltf(const std::vector<char>& bytes, const fs::path& path) {
         else
             ok = loader.LoadASCIIFromString(&model, &err, &warn, bytes.data(), size, sandbox.folder.string());
     } catch (const std::bad_alloc&) {
-        err = "it asks for more memory than there is";
+        throw Error(name, "asks for more memory than there is");
     } catch (const std::exception& e) {
         err = e.what();
     }
@@ -246,8 +247,9 @@ GltfFile open_gltf(const std::vector<char>& bytes, const fs::path& path) {
         // The JSON library's messages begin with its name for the error, and end with what it read last.
         if (const auto end = err.find("] "); err.starts_with("[json.exception") && end != err.npos)
             throw Error(name, Message("its JSON cannot be read: {}",
-                                      excerpt(err.substr(end + 2, err.find("; last read") - end - 2), 200)));
-        throw Error(name, err.empty() ? Message("is not a glTF file that can be read") : Message(err));
+                                      library_fault(err.substr(end + 2, err.find("; last read") - end - 2))));
+        throw Error(name, err.empty() ? Message("is not a glTF file that can be read")
+                                      : Message("is not a glTF file that can be read: {}", library_fault(err)));
     }
     if (model.asset.version.starts_with("1."))
         throw Error(name, Message("is glTF version {}; tuft reads version 2", model.asset.version));

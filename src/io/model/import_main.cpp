@@ -58,15 +58,16 @@ int main(int argc, char** argv) {
     std::string fault;
     try {
         Assimp::Importer& importer = *new Assimp::Importer;
+        tuft::io::prepare_importer(importer, argv[1]);
         const std::vector<char> packed = tuft::io::import_scene(importer, argv[1], tuft::io::read_input());
         tuft::io::write_output({packed.data(), packed.size()});
         std::_Exit(0);  // what Assimp holds is not given back piece by piece
     } catch (const std::bad_alloc&) {
-        fault = "asks for more memory than a file of its size may";
+        fault = tuft::io::kTooMuchMemory;
     } catch (const std::exception& e) {
         fault = e.what();
     } catch (...) {
-        fault = "cannot be read";
+        fault = "";
     }
     tuft::io::write_output("fault: " + fault);
     std::_Exit(1);

@@ -136,7 +136,7 @@ class Walker {
 
     void add_mesh(const aiMesh& mesh, const aiNode& node, const Mat4& world) {
         const auto base = static_cast<std::uint32_t>(out_.points.size());
-        if (out_.points.size() + mesh.mNumVertices >= kNone) throw std::runtime_error("has too many vertices");
+        if (out_.points.size() + mesh.mNumVertices >= kNone) throw std::runtime_error(kTooManyVertices);
         for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
             const aiVector3D& p = mesh.mVertices[v];
             out_.points.push_back(Vec3(world * glm::dvec4(p.x, p.y, p.z, 1)));
@@ -170,7 +170,7 @@ class Walker {
             }
             for (unsigned i = 0; i < face.mNumIndices; ++i) {
                 const unsigned index = face.mIndices[mirrored ? face.mNumIndices - 1 - i : i];
-                if (index >= mesh.mNumVertices) throw std::runtime_error("has a face with a vertex that is not there");
+                if (index >= mesh.mNumVertices) throw std::runtime_error(kNoSuchVertex);
                 corners.push_back(base + index);
                 if (uvs) corner_uvs.push_back(placed(uvs[index]));
             }
@@ -202,8 +202,7 @@ class Walker {
 
 }  // namespace
 
-std::vector<char> import_scene(Assimp::Importer& importer, const char* format, std::span<const char> bytes,
-                               const std::function<void()>& is_read) {
+void prepare_importer(Assimp::Importer& importer, const char* format) {
     importer.SetIOHandler(new NoFiles);
     // Only the reader of this format: the others would try their luck with what it refuses.
     const std::size_t wanted = importer.GetImporterIndex((std::string(".") + format).c_str());
@@ -214,11 +213,15 @@ std::vector<char> import_scene(Assimp::Importer& importer, const char* format, s
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
+}
+
+std::vector<char> import_scene(Assimp::Importer& importer, const char* format, std::span<const char> bytes,
+                               const std::function<void()>& is_read) {
     const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, format);
     if (!scene) {
         const std::string words = importer.GetErrorString();
         if (words.find("bad_alloc") != words.npos) throw std::bad_alloc();
-        throw std::runtime_error("cannot be read: " + words);
+        throw std::runtime_error(words);
     }
     if (is_read) is_read();
     return pack_scene(Walker(*scene, std::string_view(format) == "fbx").run());

@@ -20,9 +20,10 @@
 #include "core/error.h"
 #include "core/system/files.h"
 #include "core/system/interrupt.h"
+#include "core/system/library_fault.h"
 #include "core/system/system_message.h"
-#include "core/text/text.h"
 #include "io/model/file_scene.h"
+#include "io/model/import_scene.h"
 
 namespace fs = std::filesystem;
 
@@ -204,6 +205,13 @@ Message failure(std::optional<int> status, const Cost& cost) {
     }
 }
 
+/// What the importer says, in words that have a translation. It may be damaged itself: its own words are compared.
+Message fault_of(std::string_view words) {
+    for (const char* own : kImportFaults)
+        if (words == own) return Message(own);
+    return Message("cannot be read: {}", library_fault(words));
+}
+
 mesh::PolygonSoup read_import(const char* format, const std::vector<char>& bytes, const fs::path& path) {
     const std::string name = path.string();
     const Cost cost = cost_of(bytes.size());
@@ -216,7 +224,7 @@ mesh::PolygonSoup read_import(const char* format, const std::vector<char>& bytes
     const std::vector<char> result = output.read_all();
     constexpr std::string_view kFault = "fault: ";
     const std::string_view words(result.data(), result.size());
-    if (words.starts_with(kFault)) throw Error(name, excerpt(words.substr(kFault.size()), 200));
+    if (words.starts_with(kFault)) throw Error(name, fault_of(words.substr(kFault.size())));
     if (WEXITSTATUS(*status) != 0) throw Error(name, "is damaged: reading it failed");
     return soup_of(unpack_scene(result, name), path);
 }

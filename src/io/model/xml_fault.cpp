@@ -3,6 +3,8 @@
 #include <pugixml.hpp>
 #include <string>
 
+#include "core/system/library_fault.h"
+
 namespace tuft::io {
 
 Message xml_fault(const pugi::xml_parse_result& result) {
@@ -32,7 +34,7 @@ Message xml_fault(const pugi::xml_parse_result& result) {
         case pugi::status_out_of_memory:
             return Message("out of memory");
         default:
-            return Message(std::string(result.description()));
+            return library_fault(result.description());
     }
 }
 

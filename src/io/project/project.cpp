@@ -15,6 +15,7 @@
 #include "core/system/files.h"
 #include "core/system/memory.h"
 #include "core/system/system_message.h"
+#include "core/text/text.h"
 #include "io/project/project_db.h"
 
 namespace fs = std::filesystem;
@@ -82,6 +83,7 @@ class OpenFile {
 constexpr int kBusyMilliseconds = 2000;
 constexpr std::size_t kMostMeta = 1000, kMostName = 4096, kMostPreset = std::size_t{1} << 20;  // bytes
 constexpr std::size_t kMostPresets = 10'000;
+constexpr std::size_t kMostWords = 160;  // bytes, of SQLite's in a message
 
 /// Whether the project was moved away under our hands, which SQLite calls many names; empty when it is there.
 Message why_gone(const std::filesystem::path& path) {
@@ -118,7 +120,12 @@ Message why_not_opened(const std::filesystem::path& path) {
         case SQLITE_LOCKED:
             throw Error(name, "is in use by another program");
         case SQLITE_IOERR:
-            throw Error(name, Message("cannot be read or written: {}", e.what()));
+            throw Error(name, Message("cannot be read or written: {}", system_message(EIO)));
+        case SQLITE_PERM:
+            throw Error(name, Message("cannot be read or written: {}", system_message(EACCES)));
+        case SQLITE_CORRUPT:
+        case SQLITE_NOTADB:
+            throw Error(name, "the project is damaged");
         case SQLITE_CANTOPEN:
             throw Error(name, why_not_opened(path));
         case SQLITE_INTERRUPT:
@@ -126,9 +133,9 @@ Message why_not_opened(const std::filesystem::path& path) {
         case SQLITE_NOMEM:
             throw Error(name, "does not fit into memory");
         case SQLITE_CONSTRAINT:
-            throw Error(name, Message("refuses the change: {}", e.what()));
+            throw Error(name, Message("refuses the change ({})", excerpt(e.what(), kMostWords)));
         default:
-            throw Error(name, Message("the project is damaged: {}", e.what()));
+            throw Error(name, Message("the project is damaged ({})", excerpt(e.what(), kMostWords)));
     }
 }
 

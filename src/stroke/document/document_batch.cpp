@@ -218,7 +218,7 @@ void Document::paint_batch(std::vector<BatchStroke>& batch, const ProgressFn& pr
     const BatchOrder order = order_by_tiles(std::span(batch).first(first_fault), model_.texels.n_slots());
     run_tasks(order.before, [&](std::size_t k) {
         const auto [i, step] = order.steps[k];
-        guarded(i, [&, step = step](BatchStroke& stroke) { paint_step(stroke, step, shown_of(i)); });
+        guarded(i, [&, i = i, step = step](BatchStroke& stroke) { paint_step(stroke, step, shown_of(i)); });
     });
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/system/files.h"
+#include "core/system/library_fault.h"
 #include "core/text/nesting.h"
 #include "core/text/units.h"
 #include "stroke/gesture/bias_correction.h"
@@ -121,7 +122,7 @@ BiasCorrection parse_bias(std::string_view text, const std::string& source) {
     try {
         root = toml::parse(text);
     } catch (const toml::parse_error& e) {
-        throw Error(source, static_cast<long>(e.source().begin.line), std::string(e.description()));
+        throw Error(source, static_cast<long>(e.source().begin.line), toml_fault(e.description()));
     }
     BiasCorrection bias;
     for (const auto& [key, node] : root) {

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/system/files.h"
+#include "core/system/library_fault.h"
 #include "core/text/nesting.h"
 #include "core/text/units.h"
 
@@ -91,7 +92,7 @@ Style parse_style(std::string_view text, const std::string& source) {
     try {
         root = toml::parse(text);
     } catch (const toml::parse_error& e) {
-        throw Error(source, static_cast<long>(e.source().begin.line), Message(std::string(e.description())));
+        throw Error(source, static_cast<long>(e.source().begin.line), toml_fault(e.description()));
     }
     Style style;
     for (const auto& [key, node] : root) read_key(style, std::string(key.str()), node, source);

@@ -3,6 +3,7 @@
 #include <pugixml.hpp>
 
 #include "core/error.h"
+#include "core/system/library_fault.h"
 #include "io/strokes/svg_shapes.h"
 #include "writer/glyphs/glyph_source.h"
 
@@ -65,7 +66,7 @@ class Reader {
 Glyph parse_kanji_svg(std::string_view text, char32_t code, const std::string& source) {
     pugi::xml_document document;
     if (const auto parsed = document.load_buffer(text.data(), text.size()); !parsed)
-        throw Error(source, Message("no SVG: {}", std::string(parsed.description())));
+        throw Error(source, Message("no SVG: {}", library_fault(parsed.description())));
     if (!document.child("svg")) throw Error(source, Message("it has no svg element"));
     Glyph glyph{.code = code};
     Reader(source, glyph).walk(document.child("svg"), 0);

@@ -2,6 +2,7 @@
 #include <pugixml.hpp>
 
 #include "core/error.h"
+#include "core/system/library_fault.h"
 #include "io/strokes/svg_shapes.h"
 #include "writer/glyphs/glyph_source.h"
 
@@ -34,7 +35,7 @@ double number(const pugi::xml_node& node, const char* key, double otherwise, con
 std::vector<Glyph> parse_line_font(std::string_view text, const std::string& source) {
     pugi::xml_document document;
     if (const auto parsed = document.load_buffer(text.data(), text.size()); !parsed)
-        throw Error(source, Message("no SVG font: {}", std::string(parsed.description())));
+        throw Error(source, Message("no SVG font: {}", library_fault(parsed.description())));
     const pugi::xml_node font = find_font(document, 0);
     if (!font) throw Error(source, Message("it has no font element"));
     const pugi::xml_node face = font.child("font-face");
