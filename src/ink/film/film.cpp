@@ -12,6 +12,7 @@
 #include "ink/film/film_step.h"
 #include "ink/film/film_worker.h"
 #include "ink/film/paste.h"
+#include "ink/film/tension.h"
 #include "ink/texels/drying.h"
 #include "ink/texels/pool.h"
 
@@ -26,6 +27,10 @@ constexpr double kStirring = 0.02;      // film units: mixing over mobility
 constexpr double kMostUneven = 1.2;
 constexpr double kFilmHeight = 10e-6;  // metres: relief over which flow is as uneven as half of that
 constexpr float kFilmsPerMicrometre = 0.1f;
+// Seconds of a step by tension. It is doubled where Σ curvature² keeps the one part, halved where it keeps but the other:
+// what decays by 1 / (1 + z) in place of e^−z has a rate that is off by z / 2.
+constexpr double kLevelStep = 0.1, kLongestLevelStep = 1.6, kSlow = 0.9, kFast = 0.8;
+constexpr double kSteep = 0.1;                          // sin α: where beads may run
 constexpr double kRimLength = 1e-3;  // metres: what the rim of a wet spot adds to its area, as for drying
 
 /// What lies on a tile and on those around it.
@@ -93,7 +98,13 @@ struct WetFilm::State : TileList {
     std::unique_ptr<Drips> drips;
     std::vector<Sources> sources;             ///< of the list; empty: not looked up yet
     Part part = Part::whole;                  ///< of the step in work
-    std::vector<std::uint32_t> beside_order;  ///< of `order` what lies beside seams
+    std::vector<std::uint32_t> part_order;    ///< of `order` what a step in parts, or by tension, goes through
+    Tension tension;
+    bool levels = false;                   ///< the step in work is one by tension
+    double level_step = kLevelStep;        ///< seconds
+    std::vector<std::uint32_t> level_set;  ///< places of the tiles that it levels, ascending
+    std::vector<std::int8_t> steep;        ///< [n_slots] whether beads may run; −1: not looked up
+    Vec3 steep_down{0};
     std::mutex mutex;
     std::vector<std::unique_ptr<Worker>> workers;  ///< idle ones
 
@@ -233,6 +244,31 @@ struct WetFilm::State : TileList {
         if (step.rim > 0 && thin) slopes_over_seams(index, step, work);
     }
 
+    void cross_seams_by_tension(std::size_t index, int pigments, const Step& step, Work& work,
+                                Crossing& crossing) const {
+        const TensionTile& tile = *tension.tile(static_cast<std::uint32_t>(index));
+        crossing.clear(list[index].links.size(), pigments);
+        for (const TensionLink& l : tile.links) {
+            const TensionTile& beyond = tension.in_set(l.other);
+            const auto here = static_cast<std::size_t>(field_of(l.texel)),
+                       there = static_cast<std::size_t>(field_of(l.other_texel));
+            const Sources& from = sources[beyond.place];
+            const float total = at(from.liquid[0], l.other_texel) + at(from.liquid[1], l.other_texel);
+            const Carried c = flow_over_link(l, {tile.w[here], beyond.w[there]}, {tile.grid.p[here], beyond.grid.p[there]},
+                                             {work.rate[here], 1 / std::max(total, step.grip)});
+            work.dw[l.texel] -= c.flow;
+            for (int p = 0; p < pigments; ++p) {
+                crossing.beyond[static_cast<std::size_t>(p) * crossing.links + crossing.size] =
+                    at(from.open[p], l.other_texel);
+                crossing.pigments |= static_cast<std::uint32_t>(from.open[p] != nullptr) << p;
+            }
+            SeamLanes& lanes = crossing.lanes[crossing.size / kSide];
+            lanes.a[crossing.size % kSide] = c.a;
+            lanes.b[crossing.size % kSide] = c.b;
+            crossing.texels[crossing.size++] = l.texel;
+        }
+    }
+
     /// On a texel of a tile in the list, or of none.
     std::array<float, 2> liquid_at(std::uint32_t index, int texel) const {
         if (index == kNone) return {};
@@ -308,11 +344,17 @@ struct WetFilm::State : TileList {
         work.on_relief = any_relief && load(work.z, near, [](const Sources& a) { return a.relief; });
         Ahead& ahead = worker.ahead;
         ahead.fetch(kLines);
-        const bool thin = fluxes(work, g, step);
-        if (step.most > 0 && any_w) film_block_flow(work, g, beside(tile, near, Liquid::film), step);
-        if (step.most > 0 && any_s) pore_block_flow(work, g, beside(tile, near, Liquid::pores), step);
-        ahead.fetch(2 * kLines);
-        cross_seams(index, pigments, step, thin, work, worker.crossing);
+        if (levels) {
+            tension_flow(work, g, tension.tile(index)->grid, step.grip);
+            cross_seams_by_tension(index, pigments, step, work, worker.crossing);
+        } else {
+            const bool thin = fluxes(work, g, step);
+            if (step.most > 0 && any_w) film_block_flow(work, g, beside(tile, near, Liquid::film), step);
+            if (step.most > 0 && any_s) pore_block_flow(work, g, beside(tile, near, Liquid::pores), step);
+            if (step.held > 0) tile.ripples = any_w && tile.outcome.most_w > step.held && ripples(work.w, step.held);
+            ahead.fetch(2 * kLines);
+            cross_seams(index, pigments, step, thin, work, worker.crossing);
+        }
         ahead.fetch(kLines);
         // From what is there and nothing else: the same whenever this journal is painted.
         const std::uint64_t seed = hash_bits(hash_bits(tile.slot, number),
@@ -456,20 +498,20 @@ struct WetFilm::State : TileList {
     /// they are.
     std::span<const std::uint32_t> going() {
         const auto set = [&](std::uint32_t i, std::uint32_t n) { readers[i].store(n, std::memory_order_relaxed); };
-        if (part != Part::inside) {
+        if (part != Part::inside && !levels) {
             for (std::uint32_t i = 0; i < list.size(); ++i) set(i, n_readers[i]);
             return order;
         }
-        beside_order.clear();
+        part_order.clear();
         for (const std::uint32_t i : order)
-            if (beside_seam(list[i].slot)) beside_order.push_back(i);
+            if (levels ? tension.tile(i) != nullptr : beside_seam(list[i].slot)) part_order.push_back(i);
         for (std::uint32_t i = 0; i < list.size(); ++i) {
             set(i, 0);
             list[i].idle = true;
         }
-        for (const std::uint32_t i : beside_order)
+        for (const std::uint32_t i : part_order)
             each_read(i, [&](std::uint32_t read) { set(read, readers[read].load(std::memory_order_relaxed) + 1); });
-        return beside_order;
+        return part_order;
     }
 
     /// `number`: of the step, another one for each of its parts.
@@ -518,6 +560,70 @@ struct WetFilm::State : TileList {
         if (bedded) sources.clear();
     }
 
+    bool is_steep(std::uint32_t slot, const Vec3& down) {
+        if (!(glm::length(down) > 0)) return false;
+        if (steep.empty() || steep_down != down) steep.assign(map.n_slots(), -1), steep_down = down;
+        std::int8_t& known = steep[slot];
+        for (int t = 0; known != 1 && known < 1 && t < kTexels; ++t) {
+            if (known < 0 && t == 0) known = 0;
+            if (map.tiles[slot].cluster[t] == atlas::kNoCluster) continue;
+            if (glm::length(glm::cross(Vec3(map.normal(slot, t)), down)) > kSteep) known = 1;
+        }
+        return known == 1;
+    }
+
+    /// The tiles with ripples and those around them, but for those on relief, where the liquid's own surface levels, and
+    /// on steep places where it is so thick that beads may hang or run.
+    void find_level_set(const FilmParams& params) {
+        const double bead = Drips::least(params);
+        std::vector<std::uint8_t> wanted(list.size(), 0);
+        const auto each_beside = [&](const Active& tile, auto&& visit) {
+            for (const std::uint32_t i : tile.around)
+                if (i != kNone) visit(i);
+            for (const Beyond& other : tile.others)
+                if (other.linked && other.place != kNone) visit(other.place);
+        };
+        for (const Active& tile : list)
+            if (tile.ripples) each_beside(tile, [&](std::uint32_t i) { wanted[i] = 1; });
+        for (const Active& tile : list)
+            if (static_cast<double>(tile.outcome.most_w) >= bead && is_steep(tile.slot, params.down))
+                each_beside(tile, [&](std::uint32_t i) { wanted[i] = 0; });
+        level_set.clear();
+        for (std::uint32_t i = 0; i < list.size(); ++i)
+            if (wanted[i] && static_cast<double>(list[i].outcome.most_w) > params.held && !relief[list[i].slot])
+                level_set.push_back(i);
+    }
+
+    /// Ripples level for `seconds`, in steps of `level_step`, which grows while all is slow.
+    void level(Canvas& canvas, const FilmParams& params, double seconds, const Step& last, FilmReport& report) {
+        find_level_set(params);
+        if (level_set.empty()) return;
+        Step rates = last;
+        for (float* rate : {&rates.flow, &rates.levelling, &rates.mixing, &rates.relief, &rates.soak, &rates.evaporation,
+                            &rates.rim, &rates.most})
+            *rate = 0;
+        const double area = map.texel_size * map.texel_size;
+        const double mobility =
+            params.tension / (3 * params.viscosity) * (kFilmUnit * kFilmUnit * kFilmUnit) / (area * area);
+        part = Part::whole;
+        std::uint64_t n = 0;
+        for (double left = seconds; left > 0;) {
+            double dt = level_step;
+            dt = left / std::ceil(left / dt * (1 - 1e-9));
+            if (sources.empty()) prepare(canvas);
+            tension.begin(*this, level_set, sources, static_cast<float>(params.held), static_cast<float>(mobility * dt));
+            const double stays = tension.solve();
+            levels = true;
+            step(canvas, params, rates, report.steps | ++n << 48, report);
+            levels = false;
+            left = dt < left * (1 - 1e-9) ? left - dt : 0;
+            if (stays > kSlow)
+                level_step = std::min(2 * level_step, kLongestLevelStep);
+            else if (stays < kFast)
+                level_step = std::max(0.5 * level_step, kLevelStep);
+        }
+    }
+
     void step_in_parts(Canvas& canvas, const FilmParams& params, const Chosen& chosen, FilmReport& report,
                        const BeforeFn& before) {
         const std::uint64_t number = report.steps++;
@@ -553,16 +659,23 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet
     bool running = glm::length(params.down) > 0;
+    s.level_step = kLevelStep;
+    double rippled = 0;  // seconds in which ripples have not levelled yet
     for (double left = seconds; left > 0 && !s.list.empty();) {
         if (progress && !progress("drying", 1 - left / seconds)) {
             s.end(canvas);
             throw Cancelled();
         }
         if (s.sources.empty()) s.prepare(canvas);
-        const Chosen chosen = choose_step(params, s, s.map.texel_size, s.any_relief, running, left);
-        s.step_in_parts(canvas, params, chosen, report, before);
+        Chosen chosen = choose_step(params, s, s.map.texel_size, s.any_relief, running, left);
         const double dt = chosen.dt;
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
+        rippled += dt;
+        const bool level = params.tension > 0 && (rippled > 0.9 * s.level_step || left == 0);
+        if (level) chosen.step.held = static_cast<float>(params.held);
+        s.step_in_parts(canvas, params, chosen, report, before);
+        if (level && !s.list.empty()) s.level(canvas, params, rippled, chosen.step, report);
+        if (level) rippled = 0;
         beads += dt;
         if (beads > 0.9 * kBeadStep || left == 0) {
             running = s.run_beads(canvas, params, beads, before);

@@ -30,7 +30,10 @@ struct FilmParams {
     double unevenness = 0;          ///< rms of ln of the relative mobility over the surface; 0: even
     Vec3 down{0};                   ///< unit, direction of gravity; zero: none
     double retained = 2;            ///< w_r: film units not moved by gravity or surface tension
-    double levelling = 1e-8;        ///< L, m²/s per film unit above `retained`: levelling by surface tension
+    double levelling = 1e-8;        ///< L, m²/s per film unit above `retained`: spreading onto dry surface
+    double tension = 0.06;          ///< σ, N/m: between water (0.073) and water with glue (0.05); 0: ripples stay
+    double viscosity = 1e-3;        ///< η, Pa s, of water; pigments and glue make some inks several times as viscous
+    double held = 0.3;              ///< film units: so thin a film is held by its contact line and does not level
     double ridge = 0.4;             ///< film units that stay on the ridges of dry paint
     double bead_angle = 0.15;       ///< radians: contact angle of a bead that runs down
     double bead_speed = 8e-3;       ///< m/s, speed of a bead of √2 times the radius at which it stops

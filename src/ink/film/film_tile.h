@@ -113,6 +113,7 @@ struct Step {
     float retained = 0;
     float relief = 0;  ///< L dt / A, on relief
     float ridge = 0;   ///< film units that stay on relief
+    float held = 0;    ///< film units: thicker films are searched for ripples; 0: none are
 };
 
 /// The faces that a step goes over: all; or those among tiles beside seams, and all others.
