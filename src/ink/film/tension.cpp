@@ -1,17 +1,19 @@
 #include "ink/film/tension.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
+#include <cmath>
 
 #include "core/system/parallel.h"
+#include "ink/film/drips.h"
+#include "ink/film/film_seams.h"
 
 namespace tuft::ink::wet {
 namespace {
 
 constexpr std::size_t kGrain = 8;  // tiles
+constexpr double kSteep = 0.1;     // sin α: where beads may run
 constexpr int kLeastCycles = 2, kMostCycles = 12;
-constexpr float kMissing = 1e-3f;  // film units: so much a texel may be off after a step
+constexpr float kMissing = 0.1f, kLeastMissing = 1e-6f;  // of the greatest change, film units: a texel may be off
 constexpr int kSweepsBefore = 2, kSweepsAfter = 2, kSweepsOfLast = 8;
 
 /// Copies the border of one cell from the tiles around.
@@ -45,6 +47,17 @@ void set_liquid(TensionTile& tile, const Active& active, std::span<const Sources
     gather_field(tile.w, planes);
 }
 
+void find_change(TensionTile& t) {
+    t.change = t.share = 0;
+    for (int i = 0; i < kTexels; ++i) {
+        const auto k = static_cast<std::size_t>(field_of(i));
+        if (!(t.mobility[k] > 0)) continue;
+        const float change = std::abs(t.grid.v[k]);
+        t.change = std::max(t.change, change);
+        t.share = std::max(t.share, change / t.w[k]);
+    }
+}
+
 }  // namespace
 
 template <class Fn>
@@ -54,17 +67,84 @@ void Tension::each(Fn&& fn) {
     });
 }
 
-void Tension::begin(const TileList& tiles, std::span<const std::uint32_t> places, std::span<const Sources> sources,
-                    float held, float mobility) {
+void Tension::start(const FilmParams& params, const atlas::TexelMap& map) {
+    if (steep_.empty() || params.down != params_.down) steep_.assign(map.n_slots(), -1);
+    params_ = params;
+    held_ = static_cast<float>(std::max(params.held, params.threshold));
+    held_on_steep_ = std::max(held_, static_cast<float>(params.trail));
+}
+
+void Tension::look_at(const atlas::TexelMap& map, std::uint32_t slot) {
+    if (steep_[slot] >= 0) return;
+    bool any = false;
+    for (int t = 0; t < kTexels && !any; ++t)
+        any = map.tiles[slot].cluster[t] != atlas::kNoCluster &&
+              glm::length(glm::cross(Vec3(map.normal(slot, t)), params_.down)) > kSteep;
+    steep_[slot] = any;
+}
+
+bool Tension::find(const TileList& tiles, std::span<const std::unique_ptr<Plane>> relief) {
+    const auto& list = tiles.list;
+    const auto bead = static_cast<float>(Drips::least(params_));
+    std::vector<std::uint8_t> wanted(list.size(), 0);
+    const auto each_beside = [&](const Active& tile, auto&& visit) {
+        for (const std::uint32_t i : tile.around)
+            if (i != kNone) visit(i);
+        for (const Beyond& other : tile.others)
+            if (other.linked && other.place != kNone) visit(other.place);
+    };
+    for (std::size_t at = 0; at < list.size(); ++at) {
+        if (list[at].ripples.strong) wanted[at] = 1;
+        if (!list[at].ripples.faint) continue;
+        bool rims = false;
+        each_beside(list[at], [&](std::uint32_t i) { rims = rims || list[i].ripples.rims; });
+        if (!rims) each_beside(list[at], [&](std::uint32_t i) { wanted[i] = 1; });
+    }
+    for (const Active& tile : list)
+        if (tile.outcome.most_w >= bead && steep_[tile.slot] == 1)
+            each_beside(tile, [&](std::uint32_t i) { wanted[i] = 0; });
+    places_.clear();
+    for (std::uint32_t i = 0; i < list.size(); ++i)
+        if (wanted[i] && list[i].outcome.most_w > held_on(list[i].slot) && !relief[list[i].slot]) places_.push_back(i);
+    return !places_.empty();
+}
+
+void Tension::cross_seams(std::uint32_t place, std::span<const Sources> sources, int pigments, float grip, Work& work,
+                          Crossing& crossing) const {
+    const TensionTile& tile = *this->tile(place);
+    crossing.clear(tile.links.size(), pigments);
+    for (const TensionLink& l : tile.links) {
+        const TensionTile& beyond = *tiles_[l.other];
+        const auto here = static_cast<std::size_t>(field_of(l.texel)),
+                   there = static_cast<std::size_t>(field_of(l.other_texel));
+        const Sources& from = sources[beyond.place];
+        const float total = at(from.liquid[0], l.other_texel) + at(from.liquid[1], l.other_texel);
+        const Carried c = flow_over_link(l, {tile.w[here], beyond.w[there]}, {tile.grid.p[here], beyond.grid.p[there]},
+                                         {work.rate[here], 1 / std::max(total, grip)});
+        work.dw[l.texel] -= c.flow;
+        for (int p = 0; p < pigments; ++p) {
+            const Plane* open = from.open[static_cast<std::size_t>(p)];
+            crossing.beyond[static_cast<std::size_t>(p) * crossing.links + crossing.size] = at(open, l.other_texel);
+            crossing.pigments |= static_cast<std::uint32_t>(open != nullptr) << p;
+        }
+        SeamLanes& lanes = crossing.lanes[crossing.size / kSide];
+        lanes.a[crossing.size % kSide] = c.a;
+        lanes.b[crossing.size % kSide] = c.b;
+        crossing.texels[crossing.size++] = l.texel;
+    }
+}
+
+void Tension::begin(const TileList& tiles, std::span<const Sources> sources, float mobility) {
     for (auto& tile : tiles_) spare_.push_back(std::move(tile));
     tiles_.clear();
     set_of_.assign(tiles.list.size(), kNone);
-    for (const std::uint32_t place : places) {
+    for (const std::uint32_t place : places_) {
         set_of_[place] = static_cast<std::uint32_t>(tiles_.size());
         if (spare_.empty()) spare_.push_back(std::make_unique<TensionTile>());
         tiles_.push_back(std::move(spare_.back()));
         spare_.pop_back();
         tiles_.back()->place = place;
+        tiles_.back()->held = held_on(tiles.list[place].slot);
     }
     const auto geometry_of = [&](const TensionTile& t) -> const Geometry& { return *tiles.list[t.place].geometry; };
     each([&](TensionTile& t) {
@@ -74,11 +154,12 @@ void Tension::begin(const TileList& tiles, std::span<const std::uint32_t> places
             t.around[i] = at == kNone ? kNone : set_of_[at];
         }
         set_liquid(t, active, sources);
-        open_texels(t, geometry_of(t), held, mobility);
+        open_texels(t, geometry_of(t), mobility);
         for (const atlas::SeamLink& l : active.links) {
-            const std::uint32_t at = active.others[active.link_others[static_cast<std::size_t>(&l - active.links.data())]].place;
+            const std::uint32_t at =
+                active.others[active.link_others[static_cast<std::size_t>(&l - active.links.data())]].place;
             const Plane* w = at == kNone ? nullptr : sources[at].liquid[0];
-            if (!w || !((*w)[l.other_texel] > held)) t.mobility[static_cast<std::size_t>(field_of(l.texel))] = 0;
+            if (!w || !((*w)[l.other_texel] > t.held)) t.mobility[static_cast<std::size_t>(field_of(l.texel))] = 0;
         }
     });
     const auto take_mobility = [&](TensionTile& t) {
@@ -99,7 +180,8 @@ void Tension::begin(const TileList& tiles, std::span<const std::uint32_t> places
         }
     });
     each([&](TensionTile& t) {
-        for (int i = 0; i < kTexels; ++i) t.mobility[static_cast<std::size_t>(field_of(i))] = t.inner[static_cast<std::size_t>(i)];
+        for (int i = 0; i < kTexels; ++i)
+            t.mobility[static_cast<std::size_t>(field_of(i))] = t.inner[static_cast<std::size_t>(i)];
     });
     each([&](TensionTile& t) {
         take_mobility(t);
@@ -115,7 +197,8 @@ void Tension::begin(const TileList& tiles, std::span<const std::uint32_t> places
                        there = static_cast<std::size_t>(field_of(l.other_texel));
             const float m0 = t.mobility[here], m1 = tiles_[other]->mobility[there];
             if (!(m0 > 0 && m1 > 0)) continue;
-            t.links.push_back({other, l.texel, l.other_texel, l.weight, l.weight * (0.5f * (m0 + m1)), active.link_areas[i]});
+            t.links.push_back(
+                {other, l.texel, l.other_texel, l.weight, l.weight * (0.5f * (m0 + m1)), active.link_areas[i]});
             t.grid.e[l.texel] += l.weight * (t.w[here] - tiles_[other]->w[there]) * t.grid.inverse[l.texel];
         }
         sum_faces(t.grid, t.links, 1);
@@ -180,7 +263,11 @@ void Tension::cycle() {
     }
 }
 
-double Tension::solve() {
+Tension::Solved Tension::solve(const TileList& tiles, std::span<const Sources> sources, double dt) {
+    const double area = tiles.map.texel_size * tiles.map.texel_size;
+    begin(tiles, sources,
+          static_cast<float>(params_.tension / (3 * params_.viscosity) * dt * (kFilmUnit * kFilmUnit * kFilmUnit) /
+                             (area * area)));
     const auto square = [](const TensionTile& t, auto&& curvature) {
         double sum = 0;
         for (int i = 0; i < kTexels; ++i) {
@@ -189,23 +276,25 @@ double Tension::solve() {
         }
         return sum;
     };
-    each([&](TensionTile& t) {
-        t.bent = square(t, [&](int i) { return t.grid.e[static_cast<std::size_t>(i)]; });
-    });
+    each([&](TensionTile& t) { t.bent = square(t, [&](int i) { return t.grid.e[static_cast<std::size_t>(i)]; }); });
     for (int i = 1; i <= kMostCycles; ++i) {
         cycle<16>();
-        float missing = 0;
-        if (i >= kLeastCycles) each([&](TensionTile& t) { t.missing = restrict_residual(t.grid, t.grid2); });
-        for (const auto& t : tiles_) missing = std::max(missing, t->missing);
-        if (std::getenv("TENSION")) std::fprintf(stderr, "tiles %zu cycle %d missing %g\n", tiles_.size(), i, double(missing));
-        if (i >= kLeastCycles && missing < kMissing) break;
+        if (i < kLeastCycles) continue;
+        each([&](TensionTile& t) {
+            t.missing = restrict_residual(t.grid, t.grid2);
+            find_change(t);
+        });
+        float missing = 0, change = 0;
+        for (const auto& t : tiles_) missing = std::max(missing, t->missing), change = std::max(change, t->change);
+        if (missing < std::max(kMissing * change, kLeastMissing)) break;
     }
     each([&](TensionTile& t) {
         t.bends = square(t, [&](int i) { return t.grid.p[static_cast<std::size_t>(field_of(i))]; });
     });
     double bent = 0, bends = 0;
-    for (const auto& t : tiles_) bent += t->bent, bends += t->bends;
-    return bent > 0 ? bends / bent : 1;
+    float share = 0;
+    for (const auto& t : tiles_) bent += t->bent, bends += t->bends, share = std::max(share, t->share);
+    return {bent > 0 ? bends / bent : 1, static_cast<double>(share)};
 }
 
 }  // namespace tuft::ink::wet

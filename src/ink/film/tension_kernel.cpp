@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/simd.h"
 #include "ink/elementary.h"
@@ -14,9 +15,13 @@ namespace {
 constexpr float kThin = 1e-30f;        // film units: no division by zero in lanes that are dry
 constexpr float kMostOfTexel = 0.12f;  // through a side, half of it through a corner: of 4 and 4, 0.72
 constexpr float kMostOfLinks = 0.25f;  // over a seam; 0.4 of the above through the texel's other sides
-// Of the thickness, between three texels, blocks of 2 × 2 and of 4 × 4 in a row: ripples of up to 16 texels level down
-// to an amplitude of 1 %, of 40 to 0.3 %, of 80 to 1 %. Nobody sees so little in an ink.
-constexpr float kRippleOfTexels = 5e-3f, kRippleOfPairs = 2e-3f, kRippleOfBlocks = 1e-3f;
+/// Curvature of ripples: Σ of two differences over the thickness, of texels, blocks of 2 × 2 and of 4 × 4 in a row.
+struct Limits {
+    float texels, pairs, blocks;
+};
+// Ripples of 4 to 160 texels level down to an amplitude of 1 %. Nobody sees so little in an ink. Beside contact lines,
+// which draw liquid in as they dry, ripples of 4 to 40 texels level down to 3 to 10 %.
+constexpr Limits kInside{5e-3f, 2e-3f, 2.5e-4f}, kBesideRims{0.1f, 6e-2f, 3e-2f};
 
 TUFT_INLINE float conductance_of(std::uint16_t g) {
     return static_cast<float>(g) * kConductanceUnit;
@@ -196,8 +201,8 @@ TUFT_CLONES void flow_by_tension(Work& o, const Geometry& g, const Grid<16>& t, 
         faces(o, o.y, g, p, &t.my[static_cast<std::size_t>((row + 1) * kSide)], field_at(0, row), 0, kRow, 1);
     add_flow(o, -kRow, 0);
     if (!g.gd) return;
-    const auto diagonals = [&](Faces& f, const std::array<float, (kSide + 1) * (kSide + 1)>& mobility, int from, int to)
-        __attribute__((always_inline)) {
+    const auto diagonals = [&](Faces & f, const std::array<float, (kSide + 1) * (kSide + 1)>& mobility, int from,
+                               int to) __attribute__((always_inline)) {
         for (int row = -1; row < kSide; ++row) {
             const float* m = &mobility[static_cast<std::size_t>((row + 1) * (kSide + 1))];
             const int k = field_at(-1, row);
@@ -216,7 +221,7 @@ TUFT_CLONES void flow_by_tension(Work& o, const Geometry& g, const Grid<16>& t, 
 
 /// 1 where liquid is thicker than `held` on a texel and the four beside it; then of those that all five are so: near
 /// the tile's edge as far as is known.
-TUFT_INLINE void open_field(std::array<float, kTexels>& open, const Field& w, float held) {
+TUFT_CLONES void open_field(std::array<float, kTexels>& open, const Field& w, float held) {
     alignas(64) std::array<float, (kSide + 2) * kRow> once;
     once.fill(1);
     for (int row = 0; row < kSide; ++row) {
@@ -224,7 +229,8 @@ TUFT_INLINE void open_field(std::array<float, kTexels>& open, const Field& w, fl
         float* o = &once[field_at(0, row)];
 #pragma GCC ivdep
         for (int x = 0; x < kSide; ++x) {
-            const float low = smaller(at[x], smaller(smaller(at[x - 1], at[x + 1]), smaller(at[x - kRow], at[x + kRow])));
+            const float low =
+                smaller(at[x], smaller(smaller(at[x - 1], at[x + 1]), smaller(at[x - kRow], at[x + kRow])));
             o[x] = low > held ? 1.0f : 0.0f;
         }
     }
@@ -236,31 +242,32 @@ TUFT_INLINE void open_field(std::array<float, kTexels>& open, const Field& w, fl
     }
 }
 
-/// The greatest curvature of `n` × `n` amounts over their own, where they and those beside are open.
-template <int N>
-TUFT_INLINE float curvature(const float* w, const float* open, int row_length) {
+/// Whether three of N × N amounts in a row, all open, are more curved than `limit`.
+template <int N, bool kAllOpen>
+TUFT_INLINE bool curved(const float* w, const float* open, int row_length, float limit) {
     alignas(64) float most[N] = {};
+    const auto bend = [&](float before, float here, float after) {
+        return std::abs((before - here) + (after - here)) - limit * here;
+    };
     for (int row = 0; row < N; ++row) {
         const float *at = w + row * row_length, *o = open + row * N;
-        const bool inner = row > 0 && row < N - 1;
 #pragma GCC ivdep
         for (int x = 1; x < N - 1; ++x) {
-            const float bend = std::abs((at[x - 1] - at[x]) + (at[x + 1] - at[x])) * (o[x - 1] * o[x + 1]);
-            most[x] = larger(most[x], o[x] * bend / larger(at[x], kThin));
+            const float over = bend(at[x - 1], at[x], at[x + 1]);
+            most[x] = larger(most[x], kAllOpen ? over : over * (o[x] * (o[x - 1] * o[x + 1])));
         }
-        if (!inner) continue;
+        if (row == 0 || row == N - 1) continue;
 #pragma GCC ivdep
         for (int x = 0; x < N; ++x) {
-            const float bend =
-                std::abs((at[x - row_length] - at[x]) + (at[x + row_length] - at[x])) * (o[x - N] * o[x + N]);
-            most[x] = larger(most[x], o[x] * bend / larger(at[x], kThin));
+            const float over = bend(at[x - row_length], at[x], at[x + row_length]);
+            most[x] = larger(most[x], kAllOpen ? over : over * (o[x] * (o[x - N] * o[x + N])));
         }
     }
     float all = 0;
     for (const float m : most) all = larger(all, m);
-    return all;
+    return all > 0;
 }
-template <int N>
+template <int N, bool kAllOpen>
 TUFT_INLINE void halve(float* w, float* open, const float* from, const float* from_open, int row_length) {
     for (int row = 0; row < N; ++row)
 #pragma GCC ivdep
@@ -268,24 +275,74 @@ TUFT_INLINE void halve(float* w, float* open, const float* from, const float* fr
             const float* at = from + 2 * row * row_length + 2 * x;
             const float* o = from_open + 2 * row * 2 * N + 2 * x;
             w[row * N + x] = 0.25f * ((at[0] + at[1]) + (at[row_length] + at[row_length + 1]));
-            open[row * N + x] = (o[0] * o[1]) * (o[2 * N] * o[2 * N + 1]);
+            if constexpr (!kAllOpen) open[row * N + x] = (o[0] * o[1]) * (o[2 * N] * o[2 * N + 1]);
         }
 }
 
-TUFT_CLONES bool any_ripples(const Field& w, float held) {
-    alignas(64) std::array<float, kTexels> open, half, half_open, quarter, quarter_open;
-    open_field(open, w, held);
-    if (curvature<16>(&w[field_at(0, 0)], open.data(), kRow) > kRippleOfTexels) return true;
-    halve<8>(half.data(), half_open.data(), &w[field_at(0, 0)], open.data(), kRow);
-    if (curvature<8>(half.data(), half_open.data(), 8) > kRippleOfPairs) return true;
-    halve<4>(quarter.data(), quarter_open.data(), half.data(), half_open.data(), 8);
-    return curvature<4>(quarter.data(), quarter_open.data(), 4) > kRippleOfBlocks;
+template <bool kAllOpen>
+TUFT_INLINE bool any_curved(const Field& w, const float* open, const Limits& limits) {
+    alignas(64) std::array<float, kTexels / 4> half, half_open{};
+    alignas(64) std::array<float, kTexels / 16> quarter, quarter_open{};
+    const float* texels = &w[field_at(0, 0)];
+    if (curved<16, kAllOpen>(texels, open, kRow, limits.texels)) return true;
+    halve<8, kAllOpen>(half.data(), half_open.data(), texels, open, kRow);
+    if (curved<8, kAllOpen>(half.data(), half_open.data(), 8, limits.pairs)) return true;
+    halve<4, kAllOpen>(quarter.data(), quarter_open.data(), half.data(), half_open.data(), 8);
+    return curved<4, kAllOpen>(quarter.data(), quarter_open.data(), 4, limits.blocks);
+}
+TUFT_CLONES float least_of(const Field& w) {
+    alignas(64) float least[kSide];
+    for (int x = 0; x < kSide; ++x) least[x] = w[field_at(x, 0)];
+    for (int row = 0; row < kSide; ++row)
+        for (int x = 0; x < kSide; ++x) least[x] = smaller(least[x], w[field_at(x, row)]);
+    float all = least[0];
+    for (const float l : least) all = smaller(all, l);
+    return all;
+}
+TUFT_CLONES bool any_curved_inside(const Field& w, const Limits& limits) {
+    return any_curved<true>(w, nullptr, limits);
+}
+TUFT_CLONES bool any_curved_of(const Field& w, const std::array<float, kTexels>& open, const Limits& limits) {
+    return any_curved<false>(w, open.data(), limits);
+}
+bool is_valid(const Geometry& g, int column, int row) {
+    return g.valid[static_cast<std::size_t>(row + 1)] >> (column + 1) & 1;
+}
+
+/// Whether a texel beside the tile, but of a chart, has no more than `held`.
+bool ends_beside(const Field& w, const Geometry& g, float held) {
+    const auto thin = [&](int column, int row) {
+        return is_valid(g, column, row) && !(w[field_at(column, row)] > held);
+    };
+    for (int i = 0; i < kSide; ++i)
+        if (thin(i, -1) || thin(i, kSide) || thin(-1, i) || thin(kSide, i)) return true;
+    return false;
 }
 
 }  // namespace
 
-bool ripples(const Field& w, float held) {
-    return any_ripples(w, held);
+Ripples find_ripples(const Field& w, const Geometry& g, float held) {
+    constexpr std::uint32_t kAll = (1u << (kSide + 2)) - 1;
+    if (std::all_of(g.valid.begin(), g.valid.end(), [](std::uint32_t row) { return row == kAll; })) {
+        if (!(least_of(w) > held)) {
+            alignas(64) std::array<float, kTexels> open;
+            open_field(open, w, held);
+            return {any_curved_of(w, open, kBesideRims), false, true};
+        }
+        const bool any = any_curved_inside(w, kInside);
+        return {any && any_curved_inside(w, kBesideRims), any, ends_beside(w, g, held)};
+    }
+    // Beside charts, where no contact line is, it is as thick as can be.
+    Field thick = w;
+    for (int row = -1; row <= kSide; ++row)
+        for (int x = -1; x <= kSide; ++x)
+            if (!is_valid(g, x, row)) thick[field_at(x, row)] = std::numeric_limits<float>::max();
+    alignas(64) std::array<float, kTexels> open;
+    open_field(open, thick, held);
+    for (int row = 0; row < kSide; ++row)
+        for (int x = 0; x < kSide; ++x) open[row * kSide + x] = is_valid(g, x, row) ? open[row * kSide + x] : 0;
+    const bool rims = !(least_of(thick) > held) || ends_beside(w, g, held);
+    return {any_curved_of(w, open, kBesideRims), !rims && any_curved_of(w, open, kInside), rims};
 }
 
 void tension_flow(Work& work, const Geometry& g, const Grid<16>& grid, float grip) {
@@ -297,7 +354,8 @@ Carried flow_over_link(const TensionLink& link, const std::array<float, 2>& w, c
     return carried(link.mobility, p[0], p[1], kMostOfLinks * link.area * smaller(w[0], w[1]), rate[0], rate[1]);
 }
 
-void open_texels(TensionTile& tile, const Geometry& g, float held, float factor) {
+void open_texels(TensionTile& tile, const Geometry& g, float factor) {
+    const float held = tile.held;
     for (int row = 0; row < kSide; ++row)
         for (int x = 0; x < kSide; ++x) {
             const int k = field_at(x, row), side = Geometry::right_of(x, row), i = row * kSide + x;
@@ -316,9 +374,10 @@ void hold_rims(TensionTile& tile, const Geometry& g) {
         for (int x = 0; x < kSide; ++x) {
             const int k = field_at(x, row), side = Geometry::right_of(x, row), i = row * kSide + x;
             const auto open = [&](std::uint16_t conductance, int to) { return conductance == 0 || m[k + to] > 0; };
-            next[i] = open(g.gx[side], 1) && open(g.gx[side - 1], -1) && open(g.gy[i + kSide], kRow) && open(g.gy[i], -kRow)
-                          ? m[k]
-                          : 0;
+            next[i] =
+                open(g.gx[side], 1) && open(g.gx[side - 1], -1) && open(g.gy[i + kSide], kRow) && open(g.gy[i], -kRow)
+                    ? m[k]
+                    : 0;
         }
     for (int i = 0; i < kTexels; ++i) tile.inner[i] = next[i];
 }
@@ -351,7 +410,8 @@ void set_faces(TensionTile& tile, const Geometry& g) {
         for (int x = -1; x < kSide; ++x) {
             const auto i = static_cast<std::size_t>((row + 1) * (kSide + 1) + x + 1);
             const int k = field_at(x, row);
-            const float d = static_cast<float>((*g.gd)[static_cast<std::size_t>(Geometry::corner_of(x, row))]) * kDiagonalUnit;
+            const float d =
+                static_cast<float>((*g.gd)[static_cast<std::size_t>(Geometry::corner_of(x, row))]) * kDiagonalUnit;
             face(positive(d), k, k + kRow + 1, t.squares->c_up[i], t.squares->m_up[i]);
             face(positive(-d), k + 1, k + kRow, t.squares->c_down[i], t.squares->m_down[i]);
         }
@@ -369,7 +429,8 @@ void set_faces(TensionTile& tile, const Geometry& g) {
                 const auto& q = *t.squares;
                 const std::size_t own = static_cast<std::size_t>((row + 1) * (kSide + 1) + x + 1);
                 bend += q.c_up[own] * (here - w[k + kRow + 1]) + q.c_up[own - kSide - 2] * (here - w[k - kRow - 1]);
-                bend += q.c_down[own - 1] * (here - w[k + kRow - 1]) + q.c_down[own - kSide - 1] * (here - w[k - kRow + 1]);
+                bend +=
+                    q.c_down[own - 1] * (here - w[k + kRow - 1]) + q.c_down[own - kSide - 1] * (here - w[k - kRow + 1]);
             }
             t.e[i] = bend * t.inverse[i];
             t.f[i] = 0;
@@ -506,8 +567,8 @@ void prolong(const Grid<N>& coarse, Grid<2 * N>& fine) {
         }
 }
 
-#define TUFT_GRID(N)                                                                  \
-    template void sum_faces<N>(Grid<N>&, std::span<const TensionLink>, float);        \
+#define TUFT_GRID(N)                                                           \
+    template void sum_faces<N>(Grid<N>&, std::span<const TensionLink>, float); \
     template void relax<N>(Grid<N>&);
 TUFT_GRID(16)
 TUFT_GRID(8)
@@ -515,8 +576,8 @@ TUFT_GRID(4)
 TUFT_GRID(2)
 TUFT_GRID(1)
 #undef TUFT_GRID
-#define TUFT_GRIDS(N)                                              \
-    template void coarsen<N>(const Grid<2 * N>&, Grid<N>&);        \
+#define TUFT_GRIDS(N)                                                  \
+    template void coarsen<N>(const Grid<2 * N>&, Grid<N>&);            \
     template float restrict_residual<N>(const Grid<2 * N>&, Grid<N>&); \
     template void prolong<N>(const Grid<N>&, Grid<2 * N>&);
 TUFT_GRIDS(8)
