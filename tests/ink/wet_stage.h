@@ -59,7 +59,7 @@ struct Wet {
 /// Nothing but what a test switches on.
 inline FilmParams still() {
     FilmParams p;
-    p.mobility = p.levelling = p.threshold = p.pin = p.mixing = p.grip = p.evaporation = 0;
+    p.mobility = p.levelling = p.threshold = p.pin = p.mixing = p.grip = p.evaporation = p.tension = 0;
     p.shortest_step = 0;
     return p;
 }

@@ -9,9 +9,11 @@
 #include "core/random.h"
 #include "core/system/parallel.h"
 #include "ink/film/film_list.h"
+#include "ink/film/film_seams.h"
 #include "ink/film/film_step.h"
 #include "ink/film/film_worker.h"
 #include "ink/film/paste.h"
+#include "ink/film/tension.h"
 #include "ink/texels/drying.h"
 #include "ink/texels/pool.h"
 
@@ -26,6 +28,11 @@ constexpr double kStirring = 0.02;      // film units: mixing over mobility
 constexpr double kMostUneven = 1.2;
 constexpr double kFilmHeight = 10e-6;  // metres: relief over which flow is as uneven as half of that
 constexpr float kFilmsPerMicrometre = 0.1f;
+// Seconds of a step by tension.
+constexpr double kLevelEvery = 0.05, kLevelStep = 0.1, kLongestLevelStep = 1.6, kShortestLevelStep = 0.0125;
+// Steps are doubled where Σ curvature² keeps the one part, or no texel changes by so much of its thickness; halved
+// where it keeps but the other. What decays by 1 / (1 + z) in place of e^−z has a rate that is off by z / 2.
+constexpr double kSlow = 0.9, kFast = 0.8, kLittle = 2e-3, kMuch = 5e-3, kVeryMuch = 0.1;
 constexpr double kRimLength = 1e-3;  // metres: what the rim of a wet spot adds to its area, as for drying
 
 /// What lies on a tile and on those around it.
@@ -45,16 +52,6 @@ bool load(Field& field, const Near& near, PlaneOf&& plane_of) {
     }
     if (any) gather_field(field, planes);
     return any;
-}
-
-/// Of a tile's `others`.
-const Beyond* other_of(const Active& tile, std::uint32_t slot) {
-    return &*std::lower_bound(tile.others.begin(), tile.others.end(), slot,
-                              [](const Beyond& b, std::uint32_t s) { return b.slot < s; });
-}
-
-float at(const Plane* plane, int t) {
-    return plane ? (*plane)[t] : 0;
 }
 
 bool all_zero(const Plane& plane) {
@@ -91,9 +88,12 @@ struct WetFilm::State : TileList {
     std::vector<std::uint8_t> relief_known;     ///< [n_slots] 1: the relief was looked for
     bool any_relief = false;
     std::unique_ptr<Drips> drips;
-    std::vector<Sources> sources;             ///< of the list; empty: not looked up yet
-    Part part = Part::whole;                  ///< of the step in work
-    std::vector<std::uint32_t> beside_order;  ///< of `order` what lies beside seams
+    std::vector<Sources> sources;           ///< of the list; empty: not looked up yet
+    Part part = Part::whole;                ///< of the step in work
+    std::vector<std::uint32_t> part_order;  ///< of `order` what a step in parts, or by tension, goes through
+    Tension tension;
+    bool levels = false;             ///< the step in work is one by tension
+    double level_step = kLevelStep;  ///< seconds
     std::mutex mutex;
     std::vector<std::unique_ptr<Worker>> workers;  ///< idle ones
 
@@ -174,13 +174,6 @@ struct WetFilm::State : TileList {
         return any;
     }
 
-    const Geometry& faces_of(const Active& tile) const {
-        const SplitGeometry* split = split_geometry[tile.slot].get();
-        return part == Part::whole || !split ? *geometry[tile.slot]
-               : part == Part::inside        ? split->inside
-                                             : split->outside;
-    }
-
     void prepare(const Canvas& canvas) {
         sources.resize(list.size());
         parallel_for(list.size(), 4, [&](std::size_t begin, std::size_t end) {
@@ -191,90 +184,11 @@ struct WetFilm::State : TileList {
                 list[i].geometry = g.get();
                 list[i].diagonals = g->gd.get();
                 feel(canvas, list[i].slot);
+                tension.look_at(map, list[i].slot);
                 find_planes(canvas, i);
             }
         });
         for (const Active& tile : list) any_relief = any_relief || relief[tile.slot];
-    }
-
-    /// Fluxes over the seams of a tile: added to dw, ds; what pigments need is kept.
-    void cross_seams(std::size_t index, int pigments, const Step& step, bool thin, Work& work,
-                     Crossing& crossing) const {
-        const Active& tile = list[index];
-        crossing.clear(tile.links.size(), pigments);
-        if (tile.links.empty()) return;
-        for (std::size_t i = 0; i < tile.links.size(); ++i) {
-            const atlas::SeamLink& l = tile.links[i];
-            const std::uint32_t other = tile.others[tile.link_others[i]].place;
-            const std::array<float, 2> here = liquid_at(index, l.texel), there = liquid_at(other, l.other_texel);
-            const float t = here[0] + here[1], u = there[0] + there[1];
-            thin = thin || u < step.rim_depth;
-            if (!(t + u > 0) || other == kNone || part == Part::outside) continue;
-            for (int p = 0; p < pigments; ++p)
-                crossing.beyond[static_cast<std::size_t>(p) * crossing.links + crossing.size] =
-                    at(sources[other].open[p], l.other_texel);
-            for (int p = 0; p < pigments; ++p)
-                crossing.pigments |= static_cast<std::uint32_t>(sources[other].open[p] != nullptr) << p;
-            SeamLanes& lanes = crossing.lanes[crossing.size / kSide];
-            const std::size_t lane = crossing.size % kSide;
-            const bool both = t > 0 && u > 0;  // then what pins rims has no say, and lies in memory far away
-            lanes.grain[0][lane] = both ? 0 : geometry[tile.slot]->grain[field_of(l.texel)];
-            lanes.grain[1][lane] = both ? 0 : geometry[l.other_slot]->grain[field_of(l.other_texel)];
-            lanes.z[0][lane] = at(sources[index].relief, l.texel);
-            lanes.z[1][lane] = at(sources[other].relief, l.other_texel);
-            crossing.add(l, tile.link_areas[i], {here[0], there[0]}, {here[1], there[1]});
-        }
-        wet::seam_fluxes(std::span(crossing.lanes).first((crossing.size + kSide - 1) / kSide), step);
-        for (std::size_t i = 0; i < crossing.size; ++i) {
-            const SeamLanes& l = crossing.lanes[i / kSide];
-            work.dw[crossing.texels[i]] -= l.through_w[i % kSide];
-            work.ds[crossing.texels[i]] -= l.through_s[i % kSide];
-        }
-        if (step.rim > 0 && thin) slopes_over_seams(index, step, work);
-    }
-
-    /// On a texel of a tile in the list, or of none.
-    std::array<float, 2> liquid_at(std::uint32_t index, int texel) const {
-        if (index == kNone) return {};
-        return {at(sources[index].liquid[0], texel), at(sources[index].liquid[1], texel)};
-    }
-
-    /// `rim_slope` of the texels whose neighbours lie over a seam.
-    void slopes_over_seams(std::size_t index, const Step& step, Work& work) const {
-        const Active& tile = list[index];
-        const Geometry& g = faces_of(tile);
-        const Beyond* other = tile.others.data();
-        work.sloping = true;
-        for (std::size_t i = 0; i < tile.taps.size();) {
-            const std::uint8_t texel = tile.taps[i].texel;
-            const int k = field_of(texel), column = texel % kSide, row = texel / kSide;
-            const float here = std::min(work.total[k], step.rim_depth);
-            std::array<float, 4> beyond{};
-            std::array<bool, 4> tapped{};
-            for (; i < tile.taps.size() && tile.taps[i].texel == texel; ++i) {
-                const atlas::SeamTap& tap = tile.taps[i];
-                tapped[tap.side] = true;
-                if (tap.other_slot == kNone) {
-                    beyond[tap.side] +=
-                        tap.weight * work.total[k + tap.other_texel % 3 - 1 + (tap.other_texel / 3 - 1) * kRow];
-                    continue;
-                }
-                if (other->slot != tap.other_slot) other = other_of(tile, tap.other_slot);
-                if (other->place == kNone) continue;
-                const Sources& there = sources[other->place];
-                beyond[tap.side] +=
-                    tap.weight * (at(there.liquid[0], tap.other_texel) + at(there.liquid[1], tap.other_texel));
-            }
-            if (!(here > 0)) continue;
-            const auto drop = [&](int side, int conductance, int neighbour) {
-                if (conductance == 0 && !tapped[side]) return 0.0f;
-                return std::max(0.0f, here - (tapped[side] ? std::max(0.0f, beyond[side]) : work.total[neighbour]));
-            };
-            const int side = Geometry::right_of(column, row);
-            const float across = drop(0, g.gx[side], k + 1) + drop(2, g.gx[side - 1], k - 1);
-            const float along = drop(1, g.gy[texel + kSide], k + kRow) + drop(3, g.gy[texel], k - kRow);
-            work.rim_slope[texel] = std::sqrt(across * across + along * along);
-        }
     }
 
     /// On relief the liquid's own surface levels, and not its depth.
@@ -297,7 +211,7 @@ struct WetFilm::State : TileList {
     void compute(std::size_t index, int pigments, const Step& step, std::uint64_t number, Worker& worker) {
         Active& tile = list[index];
         Work& work = worker.work;
-        const Geometry& g = faces_of(tile);
+        const Geometry& g = faces_of(tile.slot, part);
         static constexpr Sources kNothing{};
         Near near;
         for (int i = 0; i < 9; ++i) near[i] = tile.around[i] == kNone ? &kNothing : &sources[tile.around[i]];
@@ -308,11 +222,20 @@ struct WetFilm::State : TileList {
         work.on_relief = any_relief && load(work.z, near, [](const Sources& a) { return a.relief; });
         Ahead& ahead = worker.ahead;
         ahead.fetch(kLines);
-        const bool thin = fluxes(work, g, step);
-        if (step.most > 0 && any_w) film_block_flow(work, g, beside(tile, near, Liquid::film), step);
-        if (step.most > 0 && any_s) pore_block_flow(work, g, beside(tile, near, Liquid::pores), step);
-        ahead.fetch(2 * kLines);
-        cross_seams(index, pigments, step, thin, work, worker.crossing);
+        if (levels) {
+            tension_flow(work, g, tension.tile(index)->grid, step.grip);
+            tension.cross_seams(static_cast<std::uint32_t>(index), sources, pigments, step.grip, work, worker.crossing);
+        } else {
+            const bool thin = fluxes(work, g, step);
+            if (step.most > 0 && any_w) film_block_flow(work, g, beside(tile, near, Liquid::film), step);
+            if (step.most > 0 && any_s) pore_block_flow(work, g, beside(tile, near, Liquid::pores), step);
+            if (step.searches) {
+                const float held = tension.held_on(tile.slot);
+                tile.ripples = any_w && tile.outcome.most_w > held ? find_ripples(work.w, g, held) : Ripples{.rims = true};
+            }
+            ahead.fetch(2 * kLines);
+            cross_seams({*this, sources, part, index}, pigments, step, thin, work, worker.crossing);
+        }
         ahead.fetch(kLines);
         // From what is there and nothing else: the same whenever this journal is painted.
         const std::uint64_t seed = hash_bits(hash_bits(tile.slot, number),
@@ -345,7 +268,7 @@ struct WetFilm::State : TileList {
     void compute_pigment(std::size_t index, const Near& near, int p, std::uint64_t seed, Worker& worker) {
         Active& tile = list[index];
         Work& work = worker.work;
-        const Geometry& g = faces_of(tile);
+        const Geometry& g = faces_of(tile.slot, part);
         bool any = load(work.p, near, [p](const Sources& a) { return a.open[p]; });
         if (!any) work.p.fill(0);
         const Crossing& crossing = worker.crossing;
@@ -456,20 +379,20 @@ struct WetFilm::State : TileList {
     /// they are.
     std::span<const std::uint32_t> going() {
         const auto set = [&](std::uint32_t i, std::uint32_t n) { readers[i].store(n, std::memory_order_relaxed); };
-        if (part != Part::inside) {
+        if (part != Part::inside && !levels) {
             for (std::uint32_t i = 0; i < list.size(); ++i) set(i, n_readers[i]);
             return order;
         }
-        beside_order.clear();
+        part_order.clear();
         for (const std::uint32_t i : order)
-            if (beside_seam(list[i].slot)) beside_order.push_back(i);
+            if (levels ? tension.tile(i) != nullptr : beside_seam(list[i].slot)) part_order.push_back(i);
         for (std::uint32_t i = 0; i < list.size(); ++i) {
             set(i, 0);
             list[i].idle = true;
         }
-        for (const std::uint32_t i : beside_order)
+        for (const std::uint32_t i : part_order)
             each_read(i, [&](std::uint32_t read) { set(read, readers[read].load(std::memory_order_relaxed) + 1); });
-        return beside_order;
+        return part_order;
     }
 
     /// `number`: of the step, another one for each of its parts.
@@ -518,6 +441,33 @@ struct WetFilm::State : TileList {
         if (bedded) sources.clear();
     }
 
+    /// Ripples level for `seconds`, in steps of `level_step`, which grows while all is slow.
+    void level(Canvas& canvas, const FilmParams& params, double seconds, const Step& last, FilmReport& report) {
+        if (!tension.find(*this, relief)) {
+            level_step = std::min(2 * level_step, kLongestLevelStep);
+            return;
+        }
+        Step rates = last;
+        for (float* rate : {&rates.flow, &rates.levelling, &rates.mixing, &rates.relief, &rates.soak,
+                            &rates.evaporation, &rates.rim, &rates.most})
+            *rate = 0;
+        part = Part::whole;
+        std::uint64_t n = 0;
+        for (double left = seconds; left > 0;) {
+            const double dt = left / std::ceil(left / level_step * (1 - 1e-9));
+            if (sources.empty()) prepare(canvas);
+            const Tension::Solved solved = tension.solve(*this, sources, dt);
+            levels = true;
+            step(canvas, params, rates, report.steps | ++n << 48, report);
+            levels = false;
+            left = dt < left * (1 - 1e-9) ? left - dt : 0;
+            if (solved.bends > kSlow || solved.change < kLittle)
+                level_step = std::min(2 * level_step, kLongestLevelStep);
+            else if (solved.bends < kFast && solved.change > kMuch)
+                level_step = std::max(0.5 * level_step, solved.change > kVeryMuch ? kShortestLevelStep : kLevelStep);
+        }
+    }
+
     void step_in_parts(Canvas& canvas, const FilmParams& params, const Chosen& chosen, FilmReport& report,
                        const BeforeFn& before) {
         const std::uint64_t number = report.steps++;
@@ -549,20 +499,28 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     State& s = *state_;
     s.reported.assign(s.map.n_slots(), 0);
     s.forget_relief();
+    s.tension.start(params, s.map);
     s.set_unevenness(params.unevenness);
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet
     bool running = glm::length(params.down) > 0;
+    s.level_step = kLevelStep;
+    double rippled = 0;  // seconds in which ripples have not levelled yet
     for (double left = seconds; left > 0 && !s.list.empty();) {
         if (progress && !progress("drying", 1 - left / seconds)) {
             s.end(canvas);
             throw Cancelled();
         }
         if (s.sources.empty()) s.prepare(canvas);
-        const Chosen chosen = choose_step(params, s, s.map.texel_size, s.any_relief, running, left);
-        s.step_in_parts(canvas, params, chosen, report, before);
+        Chosen chosen = choose_step(params, s, s.map.texel_size, s.any_relief, running, left);
         const double dt = chosen.dt;
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
+        rippled += dt;
+        const bool level = params.tension > 0 && (rippled > 0.9 * std::max(s.level_step, kLevelEvery) || left == 0);
+        if (level) chosen.step.searches = true;
+        s.step_in_parts(canvas, params, chosen, report, before);
+        if (level && !s.list.empty()) s.level(canvas, params, rippled, chosen.step, report);
+        if (level) rippled = 0;
         beads += dt;
         if (beads > 0.9 * kBeadStep || left == 0) {
             running = s.run_beads(canvas, params, beads, before);

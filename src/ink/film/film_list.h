@@ -29,6 +29,13 @@ struct alignas(64) Sources {
     const Plane* relief = nullptr;  ///< of what is dry, film units; null: plain
 };
 
+/// How uneven a tile's liquid is.
+struct Ripples {
+    bool strong = false;  ///< so much that it levels beside contact lines too
+    bool faint = false;   ///< so much that it levels away from them
+    bool rims = false;    ///< some of its texels, or of those beside it, hold contact lines
+};
+
 /// A tile on the other side of a seam.
 struct Beyond {
     std::uint32_t slot = kNone;
@@ -53,9 +60,10 @@ struct Active {
     const Geometry* geometry = nullptr;              ///< null: not looked up yet
     const Geometry::Diagonals* diagonals = nullptr;  ///< its own; for prefetching
     bool seam_wet = false;
-    bool spreads = true;  ///< wet at other texels than at the last `changed`
-    bool idle = false;    ///< no wet texel in this tile or its neighbours
-    PlanePtr w, s;        ///< end of the step, before they are swapped into the canvas
+    bool spreads = true;              ///< wet at other texels than at the last `changed`
+    bool idle = false;                ///< no wet texel in this tile or its neighbours
+    Ripples ripples;  ///< at the last step that searched for them
+    PlanePtr w, s;                    ///< end of the step, before they are swapped into the canvas
     std::array<PlanePtr, kMaxPigments> p;
     std::unique_ptr<std::array<std::uint8_t, kTexels>> closing;  ///< where outcome.closing
 
@@ -88,6 +96,11 @@ struct TileList {
     bool beside_seam(std::uint32_t slot) const { return beside_[slot]; }
     /// Makes `split_geometry` of a tile beside a seam.
     void split_faces(std::uint32_t slot);
+    /// Returns a tile's faces in a part of a step.
+    const Geometry& faces_of(std::uint32_t slot, Part part) const {
+        const SplitGeometry* split = split_geometry[slot].get();
+        return part == Part::whole || !split ? *geometry[slot] : part == Part::inside ? split->inside : split->outside;
+    }
     /// Sets the list to the canvas' wet tiles and their neighbours.
     void begin(const Canvas& canvas);
     /// Sets the list to the wet tiles and those that liquid may reach in the next step.

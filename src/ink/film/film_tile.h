@@ -111,8 +111,9 @@ struct Step {
     float rim = 0;          ///< film units more, per film unit of slope
     float rim_depth = 0;
     float retained = 0;
-    float relief = 0;  ///< L dt / A, on relief
-    float ridge = 0;   ///< film units that stay on relief
+    float relief = 0;       ///< L dt / A, on relief
+    float ridge = 0;        ///< film units that stay on relief
+    bool searches = false;  ///< for ripples
 };
 
 /// The faces that a step goes over: all; or those among tiles beside seams, and all others.
