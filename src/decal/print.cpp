@@ -113,6 +113,35 @@ Region placed(const Region& region, const PagePlacement& placement) {
     return out;
 }
 
+/// Clears what is printed outside the film and does not hang together with what is printed inside; `inside` is kNone
+/// outside.
+void drop_islands(PrintImage& image, const std::vector<std::uint32_t>& inside) {
+    const int width = image.width, height = image.height;
+    std::vector<std::uint8_t> kept(image.alpha.size(), 0);
+    std::vector<std::size_t> stack;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        if (image.alpha[i] > 0 && inside[i] != kNone) kept[i] = 1, stack.push_back(i);
+    while (!stack.empty()) {
+        const int x = static_cast<int>(stack.back() % static_cast<std::size_t>(width));
+        const int y = static_cast<int>(stack.back() / static_cast<std::size_t>(width));
+        stack.pop_back();
+        for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
+            for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
+                const auto i =
+                    static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u);
+                if (kept[i] || image.alpha[i] == 0) continue;
+                kept[i] = 1;
+                stack.push_back(i);
+            }
+    }
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        if (kept[i] || image.alpha[i] == 0) continue;
+        image.alpha[i] = 0;
+        for (std::size_t c = 0; c < 3; ++c) image.rgb[3 * i + c] = 255;
+        for (std::vector<std::uint8_t>& plate : image.plates) plate[i] = 0;
+    }
+}
+
 std::uint8_t byte_of(double part) {
     return static_cast<std::uint8_t>(std::lround(255 * std::clamp(part, 0.0, 1.0)));
 }
@@ -148,8 +177,8 @@ void spread_colours(ink::AtlasMap<std::uint8_t>& colour, const ink::AtlasMap<flo
 }
 
 PrintImage print_piece(const PrintSurface& surface, const PrintSource& source, const PagePlacement& placement,
-                       const Region& printed, double pixel) {
-    const Region on_page = placed(printed, placement);
+                       const Region& film, double bleed, double pixel) {
+    const Region on_page = placed(offset(film, bleed), placement);
     PrintImage image = blank_over(on_page, pixel);
     const std::vector<std::uint32_t> under = triangles_under(surface, placement, on_page, image);
     const std::size_t n_plates = source.amounts ? std::min(source.full.size(), kMostPlates) : 0;
@@ -190,6 +219,7 @@ PrintImage print_piece(const PrintSurface& surface, const PrintSource& source, c
             for (std::size_t m = 0; m < n_plates; ++m) image.plates[m][i] = byte_of(tint[m] / (fine * fine));
         }
     });
+    drop_islands(image, triangles_under(surface, placement, placed(film, placement), image));
     return image;
 }
 

@@ -72,11 +72,11 @@ struct PrintImage {
     std::vector<std::vector<std::uint8_t>> plates;  ///< [n_plates][width height] tint, 255: 100 %
 };
 
-/// Draws what of a piece lies inside `printed` (in the panel's plane) at `pixel` metres a pixel. A pixel is the mean of
-/// samples a texel apart, at most 4 × 4. Alpha is the coverage of paint; colours are not premultiplied. Throws `Error`
-/// for more than 2²⁸ pixels.
+/// Draws a piece at `pixel` metres a pixel: what lies inside `film` (in the panel's plane), and of the paint within
+/// `bleed` metres of it what hangs together with that. A pixel is the mean of samples a texel apart, at most 4 × 4.
+/// Alpha is the coverage of paint; colours are not premultiplied. Throws `Error` for more than 2²⁸ pixels.
 PrintImage print_piece(const PrintSurface& surface, const PrintSource& source, const PagePlacement& placement,
-                       const Region& printed, double pixel);
+                       const Region& film, double bleed, double pixel);
 
 /// Draws the strain of a piece in colours of `strain_colour`.
 PrintImage print_strain(const PrintSurface& surface, const PagePlacement& placement, const Region& printed,

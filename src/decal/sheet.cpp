@@ -223,8 +223,8 @@ void draw_pieces(const Laid& laid, const PrintSource& source, const SheetOptions
         const PrintSurface& surface = sheet.surfaces[piece.surface];
         Page& page = sheet.pages[piece.page];
         if (options.prints)
-            page.prints.push_back(print_piece(surface, source, piece.placement,
-                                              offset(piece.film, printed_bleed(options)), options.pixel));
+            page.prints.push_back(
+                print_piece(surface, source, piece.placement, piece.film, printed_bleed(options), options.pixel));
         for (const Ring& ring : placed(piece.film, piece.placement)) page.lines.push_back({ring, true, Role::cut});
         add_lap_lines(laid, piece, options, page);
         const Vec2 up{piece.placement.c * piece.up.x - piece.placement.s * piece.up.y,

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "core/system/parallel.h"
 #include "ink/colour/pigments.h"
 #include "surfaces.h"
@@ -129,6 +131,36 @@ TEST_F(SheetOfFormula, PanelsLapByTheOverlap) {
     for (const Page& page : made.pages)
         for (const Line& line : page.lines) lap_lines += line.role == Role::label && line.points.size() == 2;
     EXPECT_GT(lap_lines, 10u);
+}
+
+// Dots 1 mm wide all over: beyond a cut line only the rest of those that it cuts is printed, nothing of the next ones.
+TEST_F(SheetOfFormula, BleedPrintsOnlyWhatIsCutThrough) {
+    const mesh::TriangleMesh model = test::whole_cylinder(kRadius, 0.04, 240, 20);
+    const auto dots = [](const Vec3& p) {
+        const double arc = kRadius * std::atan2(p.y, p.x), step = 2 * test::kPi * kRadius / 125;
+        const Vec2 d(arc - step * std::round(arc / step), p.z - 2.5 * kMm * std::round(p.z / (2.5 * kMm)));
+        return glm::length(d) < 0.5 * kMm;
+    };
+    const Sheet made = sheet(model, dots, {.page = {0.2, 0.15}});
+    ASSERT_GE(made.pieces.size(), 2u);
+    std::size_t beyond = 0;
+    std::map<std::size_t, std::size_t> prints;  // by page: those of the pieces before
+    for (const Piece& piece : made.pieces) {
+        const PrintImage& print = made.pages[piece.page].prints[prints[piece.page]++];
+        const Region near = offset(piece.film, 1.2 * kMm);  // a dot, and two pixels
+        for (int y = 0; y < print.height; y += 3)
+            for (int x = 0; x < print.width; x += 3) {
+                if (print.alpha[static_cast<std::size_t>(y) * static_cast<std::size_t>(print.width) +
+                                static_cast<std::size_t>(x)] == 0)
+                    continue;
+                const Vec2 p =
+                    piece.placement.inverse(print.origin + print.pixel * Vec2(x + 0.5, print.height - y - 0.5));
+                if (contains(piece.film, p)) continue;
+                ++beyond;
+                EXPECT_TRUE(contains(near, p));
+            }
+    }
+    EXPECT_GT(beyond, 0u);
 }
 
 TEST_F(SheetOfFormula, NumbersMarksAndScaleBarStandOnThePage) {
