@@ -302,7 +302,7 @@ TEST_F(BadInput, FilesThatMayNotGrowLeaveNothing) {
         expect_refused("export " + path("p.tuft") + " -o " + path(name), 1, "out", "ulimit -f 1;");
     expect_refused(
         "paint " + sheet() + " --strokes " + good_strokes() + " --atlas-size 256 --project " + path("out.tuft"), 1,
-        "out.tuft", "ulimit -f 8;");
+        "out.tuft: cannot be read or written: File too large", "ulimit -f 8;");
 }
 
 TEST_F(BadInput, PointsBesideTheModel) {

@@ -105,10 +105,11 @@ Message why_not_opened(const std::filesystem::path& path) {
 }
 
 /// What SQLite says, in words for people.
-[[noreturn]] void rethrow(const SQLite::Exception& e, const std::filesystem::path& path) {
+[[noreturn]] void rethrow(const SQLite::Exception& e, const std::filesystem::path& path,
+                          const std::filesystem::path& place, int cause) {
     const std::string name = path.string();
     const int code = e.getErrorCode();
-    if (const Message gone = why_gone(path);
+    if (const Message gone = why_gone(place);
         !gone.empty() && (code == SQLITE_READONLY || code == SQLITE_IOERR || code == SQLITE_CANTOPEN))
         throw Error(name, gone);
     switch (code) {
@@ -120,7 +121,7 @@ Message why_not_opened(const std::filesystem::path& path) {
         case SQLITE_LOCKED:
             throw Error(name, "is in use by another program");
         case SQLITE_IOERR:
-            throw Error(name, Message("cannot be read or written: {}", system_message(EIO)));
+            throw Error(name, Message("cannot be read or written: {}", system_message(cause)));
         case SQLITE_PERM:
             throw Error(name, Message("cannot be read or written: {}", system_message(EACCES)));
         case SQLITE_CORRUPT:
@@ -139,13 +140,16 @@ Message why_not_opened(const std::filesystem::path& path) {
     }
 }
 
-/// Runs `fn`, turning SQLite's exceptions into `Error`s that name the file.
+/// Runs `fn`, turning SQLite's exceptions into `Error`s that name the file `path`. `place`: where the file is.
 template <class Fn>
-auto guarded(const std::filesystem::path& path, Fn&& fn) {
+auto guarded(const std::filesystem::path& path, const std::filesystem::path& place, Fn&& fn) {
+    errno = 0;
     try {
         return fn();
     } catch (const SQLite::Exception& e) {
-        rethrow(e, path);
+        // What succeeds after the failure leaves it as it was. Of others than these SQLite says more.
+        const int cause = errno == EFBIG || errno == EDQUOT ? errno : EIO;
+        rethrow(e, path, place, cause);
     }
 }
 
@@ -262,7 +266,7 @@ struct Project::State {
     auto run(Fn&& fn, bool hears = false) {
         overseer.begin(seen.size, hears);
         try {
-            return guarded(path, [&] { return fn(db); });
+            return guarded(path, place, [&] { return fn(db); });
         } catch (const Cancelled&) {
             if (overseer.spent()) damaged(path, "reading it does not come to an end");
             throw;
@@ -301,7 +305,7 @@ Project::Project(Project&&) noexcept = default;
 Project& Project::operator=(Project&&) noexcept = default;
 
 Project Project::open_file(const fs::path& path, std::optional<ProjectLock> lock, const ProgressFn& progress) {
-    auto state = guarded(path, [&] { return std::make_unique<State>(path, std::move(lock)); });
+    auto state = guarded(path, path, [&] { return std::make_unique<State>(path, std::move(lock)); });
     state->overseer.listen(progress);
     report(progress, "reading", 0);
     state->run(
@@ -323,7 +327,7 @@ Project Project::create(const fs::path& path, const ModelToWrite& model, const s
     write_atomically(path, [&](const fs::path& temporary) {
         std::error_code ec;
         fs::remove(temporary, ec);
-        guarded(path, [&] {
+        guarded(path, temporary, [&] {
             SQLite::Database db(temporary.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
             // Nothing to protect yet: the file gets its name when it is complete.
             db.exec("PRAGMA journal_mode = OFF; PRAGMA synchronous = FULL; PRAGMA page_size = 8192;");
@@ -383,7 +387,7 @@ bool Project::changed_outside() const {
 }
 
 void Project::read_together(const std::function<void()>& read) const {
-    guarded(state_->path, [&] {
+    guarded(state_->path, state_->place, [&] {
         SQLite::Transaction transaction(state_->db);
         read();
         transaction.commit();
