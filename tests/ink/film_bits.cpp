@@ -2,10 +2,12 @@
 // this program for one instruction set (same_bits.sh compares them). Prints "skipped" where it cannot run.
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 
 #include "core/hash.h"
 #include "core/random.h"
 #include "ink/film/film_tile.h"
+#include "ink/film/tension.h"
 
 namespace {
 
@@ -20,6 +22,41 @@ float chance(std::uint64_t a, std::uint64_t b) {
 /// Texels outside the charts.
 bool beside(int texel) {
     return texel % 29 == 7;
+}
+
+/// Levelling by tension of one tile, alone and over a seam to itself.
+template <class Add>
+void level(const Field& w, const Geometry& g, Work& work, Add&& add) {
+    auto tile = std::make_unique<TensionTile>();
+    tile->w = w;
+    tile->held = 0.3f;
+    const std::array<TensionLink, 2> links{{{0, 17, 200, 0.7f, 5, 0.5f}, {0, 200, 17, 0.7f, 5, 0.5f}}};
+    open_texels(*tile, g, 30);
+    hold_rims(*tile, g);
+    add(tile->inner);
+    set_faces(*tile, g);
+    sum_faces(tile->grid, links, 1);
+    coarsen(tile->grid, tile->grid2);
+    sum_faces(tile->grid2, links, 0.5f);
+    coarsen(tile->grid2, tile->grid4);
+    sum_faces(tile->grid4, links, 0.25f);
+    for (int i = 0; i < 3; ++i) {
+        relax(tile->grid);
+        std::array<float, 2> missing{restrict_residual(tile->grid, tile->grid2)};
+        relax(tile->grid2);
+        missing[1] = restrict_residual(tile->grid2, tile->grid4);
+        relax(tile->grid4);
+        prolong(tile->grid4, tile->grid2);
+        prolong(tile->grid2, tile->grid);
+        add(missing);
+    }
+    tension_flow(work, g, tile->grid, 0.5f);
+    for (float& v : work.dw) v += 0.0f;  // no zero's sign counts
+    add(work.dw);
+    const Ripples found = find_ripples(w, g, 0.3f);
+    const Carried over = flow_over_link(links[0], {1.5f, 2}, {tile->grid.p[40], tile->grid.p[80]}, {0.5f, 0.4f});
+    add(std::array{over.flow + 0.0f, over.a, over.b + 0.0f,
+                   static_cast<float>(found.strong + 2 * found.faint + 4 * found.rims)});
 }
 
 /// Conductances as of a stretched, sheared chart with a hole in it.
@@ -142,6 +179,7 @@ int main() {
         const std::array rest{out.most_w, out.most_s, static_cast<float>(out.sides), static_cast<float>(out.evaporated),
                               greatest(pigment.data())};
         add(rest);
+        level(work.w, g, work, add);
     }
     std::printf("%016llx\n", static_cast<unsigned long long>(hash));
 }

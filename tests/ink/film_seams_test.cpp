@@ -215,9 +215,9 @@ Wet ridges_on(testing::Unwrapped sheet) {
 TEST(WetFilm, RidgesLevelAsIfThereWereNoSeam) {
     // Of 80 % of the peak-to-peak amounts that were there before a tenth is left.
     const double degree = std::numbers::pi / 180;
-    for (const auto& [left, right] :
-         {std::pair{Lie{{8.21, 8.13}, 0}, Lie{{200.87, 8.21}, 0}}, {{{140.3, 8.4}, 0}, {{420.7, 10.2}, 30 * degree}},
-          {{{140.3, 8.4}, 15 * degree}, {{420.7, 10.2}, 40 * degree}}}) {
+    for (const auto& [left, right] : {std::pair{Lie{{8.21, 8.13}, 0}, Lie{{200.87, 8.21}, 0}},
+                                      {{{140.3, 8.4}, 0}, {{420.7, 10.2}, 30 * degree}},
+                                      {{{140.3, 8.4}, 15 * degree}, {{420.7, 10.2}, 40 * degree}}}) {
         const Wet cut = ridges_on(two_charts(left, right));
         const Wet whole[] = {ridges_on(one_chart(left)), ridges_on(one_chart(right))};
         const BlotError e = error_of(cut, [&](const Vec3& at) {

@@ -231,7 +231,8 @@ struct WetFilm::State : TileList {
             if (step.most > 0 && any_s) pore_block_flow(work, g, beside(tile, near, Liquid::pores), step);
             if (step.searches) {
                 const float held = tension.held_on(tile.slot);
-                tile.ripples = any_w && tile.outcome.most_w > held ? find_ripples(work.w, g, held) : Ripples{.rims = true};
+                tile.ripples =
+                    any_w && tile.outcome.most_w > held ? find_ripples(work.w, g, held) : Ripples{.rims = true};
             }
             ahead.fetch(2 * kLines);
             cross_seams({*this, sources, part, index}, pigments, step, thin, work, worker.crossing);

@@ -100,9 +100,10 @@ struct FilmReport {
 /// there the step is divided as stability needs, half of it before and half after the other flows (Strang 1968).
 ///
 /// Cost: 10 to 16 ns per texel and step with four pigments, depending on the fraction sheared and beside seams; two
-/// thirds are sums in the first-level cache. A step of levelling costs 80 to 130 ns per texel of tiles with ripples. Only wet tiles and their neighbours are visited. Conductances 1/√g
-/// (g22, −g12; −g12, g11), the mixed term by diagonal faces (Selling's decomposition), are computed when a tile
-/// first gets wet (about 4 KiB a tile). The same bits for any number of threads and on every instruction set.
+/// thirds are sums in the first-level cache. A step of levelling costs 80 to 130 ns per texel of tiles with ripples.
+/// Only wet tiles and their neighbours are visited. Conductances 1/√g (g22, −g12; −g12, g11), the mixed term by
+/// diagonal faces (Selling's decomposition), are computed when a tile first gets wet (about 4 KiB a tile). The same
+/// bits for any number of threads and on every instruction set.
 class WetFilm {
   public:
     /// The map must outlive it.

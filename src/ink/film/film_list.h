@@ -60,10 +60,10 @@ struct Active {
     const Geometry* geometry = nullptr;              ///< null: not looked up yet
     const Geometry::Diagonals* diagonals = nullptr;  ///< its own; for prefetching
     bool seam_wet = false;
-    bool spreads = true;              ///< wet at other texels than at the last `changed`
-    bool idle = false;                ///< no wet texel in this tile or its neighbours
-    Ripples ripples;  ///< at the last step that searched for them
-    PlanePtr w, s;                    ///< end of the step, before they are swapped into the canvas
+    bool spreads = true;  ///< wet at other texels than at the last `changed`
+    bool idle = false;    ///< no wet texel in this tile or its neighbours
+    Ripples ripples;      ///< at the last step that searched for them
+    PlanePtr w, s;        ///< end of the step, before they are swapped into the canvas
     std::array<PlanePtr, kMaxPigments> p;
     std::unique_ptr<std::array<std::uint8_t, kTexels>> closing;  ///< where outcome.closing
 
