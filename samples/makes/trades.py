@@ -61,9 +61,9 @@ def bamboo():
                      (at(high), high + 7, 0.3, 0), (at(high), high + 3, 0.42, 0), (at(high), high + 2.6, 0, 0)], 60)
             stalks.append(s)
             if low < 80:
-                joints.append(Stroke("joint").curve([(at(low) - 6.4, low + 1.2, 0, 0), (at(low) - 5.6, low, 0.22, 0),
-                                                     (at(low), low + 0.5, 0.12, 0), (at(low) + 5.6, low, 0.22, 0),
-                                                     (at(low) + 6.4, low + 1.2, 0, 0)], 30))
+                joints.append(Stroke("joint").curve([(at(low) - 6.4, low + 5.7, 0, 0), (at(low) - 5.6, low + 4.5, 0.22, 0),
+                                                     (at(low), low + 5, 0.12, 0), (at(low) + 5.6, low + 4.5, 0.22, 0),
+                                                     (at(low) + 6.4, low + 5.7, 0, 0)], 30))
     for x, y, turns in ((-32, -42, (28, 62, 96)), (18, -20, (8, 40, 74)), (16, -60, (20, 58, 95)),
                         (-42, 2, (150, 118, 84)), (-34, 42, (22, 58)), (16, 20, (14, 52, 88)), (4, -20, (166, 128))):
         for turn in turns:
