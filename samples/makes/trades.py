@@ -61,9 +61,9 @@ def bamboo():
                      (at(high), high + 7, 0.3, 0), (at(high), high + 3, 0.42, 0), (at(high), high + 2.6, 0, 0)], 60)
             stalks.append(s)
             if low < 80:
-                joints.append(Stroke("joint").curve([(at(low) - 6.4, low + 1.2, 0, 0), (at(low) - 5.6, low, 0.22, 0),
-                                                     (at(low), low + 0.5, 0.12, 0), (at(low) + 5.6, low, 0.22, 0),
-                                                     (at(low) + 6.4, low + 1.2, 0, 0)], 30))
+                joints.append(Stroke("joint").curve([(at(low) - 6.4, low + 5.7, 0, 0), (at(low) - 5.6, low + 4.5, 0.22, 0),
+                                                     (at(low), low + 5, 0.12, 0), (at(low) + 5.6, low + 4.5, 0.22, 0),
+                                                     (at(low) + 6.4, low + 5.7, 0, 0)], 30))
     for x, y, turns in ((-32, -42, (28, 62, 96)), (18, -20, (8, 40, 74)), (16, -60, (20, 58, 95)),
                         (-42, 2, (150, 118, 84)), (-34, 42, (22, 58)), (16, 20, (14, 52, 88)), (4, -20, (166, 128))):
         for turn in turns:
@@ -115,11 +115,13 @@ def blue_and_white():
         leaf = outline in LEAVES
         start = outline[2 if leaf else 0]
         far = outline[-1] if leaf else outline[len(outline) // 2]
-        a, b = [tuple(middle[i] + f * (p[i] - middle[i]) for i in (0, 1)) for p, f in ((start, 0.55), (far, 0.6))]
-        side = (0.28 * (b[1] - a[1]), -0.28 * (b[0] - a[0]))
-        washes.append(Stroke("wash").curve([(*a, 0, 0), (*a, 0.14, 0), (*(m + s for m, s in zip(middle, side)), 0.26, 0),
-                                            (*b, 0.2, 0), (*(m - s for m, s in zip(middle, side)), 0.26, 0),
-                                            (*a, 0.14, 0), (*a, 0, 0)], 14))
+        reach, aside, press = ((0.45, 0.5), 0.1, 0.15) if leaf else ((0.5, 0.72), 0.36, 0.24)
+        a, b = [tuple(middle[i] + f * (p[i] - middle[i]) for i in (0, 1)) for p, f in zip((start, far), reach)]
+        side = (aside * (b[1] - a[1]), -aside * (b[0] - a[0]))
+        washes.append(Stroke("wash").curve([(*a, 0, 0), (*a, 0.5 * press, 0),
+                                            (*(m + s for m, s in zip(middle, side)), press, 0), (*b, 0.9 * press, 0),
+                                            (*(m - s for m, s in zip(middle, side)), press, 0),
+                                            (*a, 0.5 * press, 0), (*a, 0, 0)], 14))
         if leaf:
             veins.append(Stroke("vein").curve([(*far, 0, 0), (*middle, 0.1, 0), (*start, 0, 0)], 24))
     stem = Stroke("stem").curve([(-1, 24, 0, 0), (-1, 26, 0.2, 0), (3, 40, 0.22, 0), (-4, 58, 0.2, 0), (-3, 60, 0, 0)], 24)

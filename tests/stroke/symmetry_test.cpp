@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "stroke/drawing/copies.h"
+
 namespace tuft::stroke {
 namespace {
 
@@ -51,6 +53,25 @@ TEST(Symmetry, TheBroadSideIsMirrored) {
                    y = mirror.linear * (turned(roll) * Vec3(0, 1, 0));
         EXPECT_NEAR(glm::distance(copy.rotation * Vec3(1, 0, 0), x), 0, 1e-15);
         EXPECT_NEAR(glm::distance(copy.rotation * Vec3(0, 1, 0), -y), 0, 1e-15);
+    }
+}
+
+// A flat stroke's ferrule lies along (cos r, -sin r), right and down, with r of samples and settings together. Its
+// image in a copy whose x is flipped is (-cos r, -sin r): to the sign for a flat, which has none, and with it for a
+// sword.
+TEST(Symmetry, AFlatStrokesRollIsMirrored) {
+    const PoseMap mirror = symmetry_copies({.mirror_y = true})[0];
+    for (const std::string brush : {"flat-12", "sword-8"}) {
+        PaintStroke stroke;
+        stroke.brush = brush;
+        stroke.settings.roll = 0.3;
+        stroke.trace.placement = {{0, -0.1, 0}, {1, 0, 0}, {0, 0, -1}, SurfaceMapping::project};
+        stroke.trace.samples = {{.position = {0.01, 0.02, 0}, .pressure = 0.5, .roll = 0.4}};
+        const PaintStroke copy = copy_of(JournalEntry(stroke), mirror, CopyReading::mirrored).get<PaintStroke>();
+        const double r = 0.7, m = copy.trace.samples[0].roll + copy.settings.roll;
+        const Vec2 image{-std::cos(r), -std::sin(r)}, found{std::cos(m), -std::sin(m)};
+        const double along = glm::dot(image, found);
+        EXPECT_NEAR(brush == "sword-8" ? along : std::abs(along), 1, 1e-12) << brush;
     }
 }
 

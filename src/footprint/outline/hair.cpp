@@ -299,10 +299,10 @@ TUFT_CLONES std::uint32_t scale_coverage(std::uint8_t* __restrict coverage, cons
     return sum;
 }
 
-/// Calls f(bundle, cut, position in the section, length) for each part of a bundle on the surface. Of a spine of a
-/// ferrule that just touches, with less than a bundle, all bundles touch where it is lowest.
+/// Calls f(bundle, cut, position in the section, length) for each part of a bundle on the surface. Returns true where
+/// there is one.
 template <class F>
-void for_each_contact(const Trail& trail, const brush::Bundles& bundles, int branches, F f) {
+bool for_each_contact(const Trail& trail, const brush::Bundles& bundles, int branches, F f) {
     constexpr std::size_t kStride = 3;  // sections looked at
     const std::size_t count = trail.cuts.size();
     bool any = false;
@@ -316,7 +316,13 @@ void for_each_contact(const Trail& trail, const brush::Bundles& bundles, int bra
             any = true;
         }
     }
-    if (any || (bundles.strips.empty() && bundles.around == 0)) return;
+    return any;
+}
+
+/// The same of a spine of a ferrule that just touches, with less than a bundle: all its bundles, where it is lowest.
+template <class F>
+void for_each_bundle(const Trail& trail, const brush::Bundles& bundles, int branches, F f) {
+    if (bundles.strips.empty() && bundles.around == 0) return;
     const auto deepest = std::max_element(trail.cuts.begin(), trail.cuts.end(),
                                           [](const Cut& p, const Cut& q) { return p.overlap() < q.overlap(); });
     const auto i = static_cast<std::size_t>(deepest - trail.cuts.begin());
@@ -359,11 +365,13 @@ std::vector<float> contact_cells(std::span<const Trail> trails, const brush::Bun
 std::vector<HairContactPoint> hair_contact_points(std::span<const Trail> trails, const brush::Bundles& bundles,
                                                   int branches) {
     std::vector<HairContactPoint> found;
-    for (const Trail& trail : trails)
-        for_each_contact(trail, bundles, branches, [&](std::size_t k, std::size_t i, const Vec2& place, double length) {
+    for (const Trail& trail : trails) {
+        const auto add = [&](std::size_t k, std::size_t i, const Vec2& place, double length) {
             found.push_back({static_cast<std::uint32_t>(k), point_on_surface(trail, trail.cuts[i], place.x),
                              trail.along[i], length});
-        });
+        };
+        if (!for_each_contact(trail, bundles, branches, add)) for_each_bundle(trail, bundles, branches, add);
+    }
     return found;
 }
 

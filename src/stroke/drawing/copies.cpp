@@ -1,5 +1,8 @@
 #include "stroke/drawing/copies.h"
 
+#include <numbers>
+
+#include "brush/preset/preset.h"
 #include "stroke/drawing/drawing.h"
 
 namespace tuft::stroke {
@@ -20,6 +23,13 @@ void copy_trace(StrokeSamples& trace, const PoseMap& map, bool reflects, CopyRea
         sample.position = pose.position;
         sample.rotation = pose.rotation;
     }
+}
+
+/// The roll that the settings add, in a mirrored copy of a flat stroke. The samples' rolls change their sign, by which
+/// the ferrule's x comes to lie along its image the other way round: that is no matter unless one edge is longer.
+void mirror_roll(PaintStroke& stroke) {
+    const bool slanted = !stroke.brush.empty() && brush::load_preset(stroke.brush).slant > 0;
+    stroke.settings.roll = (slanted ? std::numbers::pi : 0) - stroke.settings.roll;
 }
 
 void copy_area(FlatArea& area, const PoseMap& map, bool reflects, CopyReading reading) {
@@ -51,7 +61,10 @@ bool is_copied(const JournalEntry& entry) {
 JournalEntry copy_of(const JournalEntry& entry, const PoseMap& map, CopyReading reading) {
     const bool reflects = glm::determinant(map.linear) < 0;
     JournalEntry copy = entry;
-    if (PaintStroke* stroke = copy.as<PaintStroke>()) copy_trace(stroke->trace, map, reflects, reading);
+    if (PaintStroke* stroke = copy.as<PaintStroke>()) {
+        copy_trace(stroke->trace, map, reflects, reading);
+        if (reflects && stroke->trace.flat && reading != CopyReading::upright) mirror_roll(*stroke);
+    }
     if (Fill* fill = copy.as<Fill>(); fill && fill->area) copy_area(*fill->area, map, reflects, reading);
     return copy;
 }
