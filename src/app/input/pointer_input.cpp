@@ -256,7 +256,8 @@ Vec3 PointerInput::ahead_of(const Aim& aim, const Vec3& normal, double pressure)
 // The point has moved: what it drags follows on the string, along the surface.
 void PointerInput::drag(const Aim& aim) {
     Vec3 offset = along_ground(point_ - dragged_.position, normal_, aim, at_start());
-    if (const double length = glm::length(offset); length > holder_.tip_lag_turn) offset *= holder_.tip_lag_turn / length;
+    if (const double length = glm::length(offset); length > holder_.tip_lag_turn)
+        offset *= holder_.tip_lag_turn / length;
     dragged_.position = point_ - offset;
     dragged_.string = offset / holder_.tip_lag_turn;
 }
@@ -322,7 +323,8 @@ void PointerInput::set_down(std::vector<StrokeStep>& steps) {
     waiting_.clear();
     const Waiting& first = waiting.front();
     const Waiting& last = waiting.back();
-    const Vec3 motion = along_ground(last.surface.position - first.surface.position, first.surface.normal, first.aim, 1);
+    const Vec3 motion =
+        along_ground(last.surface.position - first.surface.position, first.surface.normal, first.aim, 1);
     const double length = glm::length(motion);
     const Vec3 towards = length >= 0.5 * kKnown * last.aim.metres_per_pixel ? motion / length : Vec3(0);
     gone_ = 0;
