@@ -246,7 +246,7 @@ RowText text_of(const JournalParts& s, const StrokeLine& line, std::size_t numbe
         title += s.ui.tr(line.change ? layer_change(*line.change) : actions[static_cast<int>(line.action)]);
     else
         title += length + (line.erases ? std::string("   ") + s.ui.tr("erased") : std::string());
-    if (stroke::keeps_texels(line.action)) return {title, line.label};
+    if (stroke::keeps_texels(line.action)) return {title, line.change ? layer_title(s.ui, line.label) : line.label};
     const char* between = line.ink.empty() || line.brush.empty() ? "" : " \xc2\xb7 ";
     return {title, s.ui.title(line.brush) + between + s.ui.tr(line.ink.c_str())};
 }

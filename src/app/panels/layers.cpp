@@ -24,13 +24,6 @@ std::string fresh_name(const LayerParts& s) {
     }
 }
 
-// A name that `fresh_name` or the document gave, in the language of the interface; else as the person wrote it.
-std::string title_of(const Ui& ui, const std::string& name) {
-    constexpr std::string_view kGiven = "Layer ";
-    const bool given = name.starts_with(kGiven) && name.find_first_not_of("0123456789", kGiven.size()) == name.npos;
-    return given ? std::string(ui.tr("Layer")) + " " + name.substr(kGiven.size()) : name;
-}
-
 // The layer as it is, changed in one respect.
 template <class Fn>
 void change(const LayerParts& s, Layer layer, Fn&& how) {
@@ -109,7 +102,7 @@ void context_menu(const LayerParts& s, const Layer& layer, std::size_t place) {
 void drag(const LayerParts& s, const Layer& layer, std::size_t place) {
     if (ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceNoHoldToOpenOthers)) {
         ImGui::SetDragDropPayload("layer", &layer.id, sizeof layer.id);
-        ImGui::TextUnformatted(title_of(s.ui, layer.name).c_str());
+        ImGui::TextUnformatted(layer_title(s.ui, layer.name).c_str());
         ImGui::EndDragDropSource();
     }
     if (!ImGui::BeginDragDropTarget()) return;
@@ -165,7 +158,7 @@ void details(const LayerParts& s, const Layer& layer, std::size_t place) {
 }
 
 std::string row_text(const LayerParts& s, const Layer& layer) {
-    std::string text = title_of(s.ui, layer.name), more;
+    std::string text = layer_title(s.ui, layer.name), more;
     const auto add = [&](const std::string& word) { more += (more.empty() ? "" : ", ") + word; };
     if (layer.blend != ink::Blend::normal) add(s.ui.tr(layer.blend == ink::Blend::glaze ? "Glazing" : "Multiply"));
     if (layer.opacity < 1) add(std::to_string(std::lround(100 * layer.opacity)) + " %");
@@ -217,6 +210,12 @@ void row(const LayerParts& s, const Layer& layer, std::size_t place) {
 }
 
 }  // namespace
+
+std::string layer_title(const Ui& ui, const std::string& name) {
+    constexpr std::string_view kGiven = "Layer ";
+    const bool given = name.starts_with(kGiven) && name.find_first_not_of("0123456789", kGiven.size()) == name.npos;
+    return given ? std::string(ui.tr("Layer")) + " " + name.substr(kGiven.size()) : name;
+}
 
 void layers_section(const LayerParts& s) {
     Ui& ui = s.ui;

@@ -86,6 +86,9 @@ void tool_panel(Session& s, float top, float bottom, float left);
 void colours_panel(Session& s, float top, float bottom, float left);
 /// Undo and redo, and how far long work is.
 void history_buttons(const HistoryParts& s);
+/// Returns the name of a layer in the language of the interface where the document or the studio gave it, else as the
+/// person wrote it.
+std::string layer_title(const Ui& ui, const std::string& name);
 void layers_section(const LayerParts& s);
 void journal_section(const JournalParts& s);
 /// Pixels that a section saves in less room.

@@ -72,6 +72,14 @@ std::string find_chinese_font(const std::map<std::string, std::string>& fonts) {
     return {};
 }
 
+bool has_chinese_characters(std::string_view text) {
+    for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+        const auto lead = static_cast<unsigned char>(text[i]), next = static_cast<unsigned char>(text[i + 1]);
+        if (lead > 0xe2 || (lead == 0xe2 && next >= 0xba)) return true;
+    }
+    return false;
+}
+
 Message Ui::prepare(const UiSettings& settings) {
     settings_ = settings;
     ImGuiIO& io = ImGui::GetIO();
@@ -99,7 +107,7 @@ Message Ui::prepare(const UiSettings& settings) {
         ranges.clear();
         ImFontGlyphRangesBuilder builder;
         builder.AddText(all_chinese_text().c_str());
-        if (settings.language == Language::chinese)
+        if (settings.language == Language::chinese || settings.chinese_names)
             builder.AddRanges(io.Fonts->GetGlyphRangesChineseSimplifiedCommon());
         builder.BuildRanges(&ranges);
         // A square character needs more room than a Latin letter of the same size to be read.

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,14 +24,18 @@ enum class Theme { dark, light };
 struct UiSettings {
     Language language = Language::english;
     Theme theme = Theme::dark;
-    float scale = 1;           ///< factor on all sizes
-    bool own_scale = false;    ///< set by the user; else it follows the display
-    bool left_handed = false;  ///< tools on the right
+    float scale = 1;             ///< factor on all sizes
+    bool own_scale = false;      ///< set by the user; else it follows the display
+    bool left_handed = false;    ///< tools on the right
+    bool chinese_names = false;  ///< texts of the person have Chinese characters; not stored
 };
 
 /// Returns the scale for a window of that size in pixels: the display's `content` scale, and at least the window's size
 /// over 1920 × 1080, in steps of 1/4, from 1 to 3.
 float scale_for(float content, int width, int height);
+
+/// Whether a text in UTF-8 has characters from U+2E80 on, which Latin fonts lack.
+bool has_chinese_characters(std::string_view text);
 
 /// Returns the best font with Chinese characters among these files; "" when there is none.
 std::string find_chinese_font(const std::map<std::string, std::string>& path_by_name);
