@@ -20,6 +20,7 @@ constexpr double kLeast = 0.5e-6;         // J to which an empty tank is filled,
 constexpr double kMostLent = 0.8e-6;      // J of it in a contact
 constexpr double kFlicker = 1.8;          // counts that a position at rest flickers by, on two axes at once
 constexpr double kCountError = 0.5;       // counts between a measured and a true position
+constexpr double kCountedShare = 0.3;     // of a change of force that is counted at once
 constexpr double kMostAcceleration = 60;  // m/s², of a hand
 constexpr double kFree = 1e-3;            // N below which a force is none
 
@@ -107,8 +108,10 @@ void settle_tank(const LawOptions& options, LawState& s, const LawInput& in) {
     if (const Vec3 moved = in.arm - s.played; glm::length(moved) > kFlicker * count) {
         const Acted acted = acted_over(s, moved);
         // The true position is within half a count: by Abel's sum its work differs by that times the change of force.
-        s.tank -= acted.taken + kCountError * count * glm::distance(acted.mean, s.counted_force);
-        s.counted_force = acted.mean;
+        // What counts stir up in the damper's force goes against their error and takes no energy: it is smoothed out.
+        const Vec3 change = kCountedShare * (acted.mean - s.counted_force);
+        s.tank -= acted.taken + kCountError * count * glm::length(change);
+        s.counted_force += change;
         s.played = in.arm;
         s.acted = {};
         s.n_acted = 0;

@@ -28,7 +28,8 @@
 /// 6. Tank (a passivity observer and controller [Hannaford2002]): e −= f₋ · Δx′ + ½ count |Δf₋|, e −= G τ · Δθ. x′ is
 ///    the position measured, but stays while that flickers within 1.8 counts. f₋ is the mean of the forces that acted
 ///    meanwhile, sent as long ago as the delay says (of two periods the worse). The true position is within half a
-///    count of the measured one, so that by Abel's summation the second term bounds what the count hides.
+///    count of the measured one, so that by Abel's summation the second term, of f₋ smoothed over three of its motions,
+///    bounds what the count hides.
 ///    e <= r + e_0 + G stored + ½ K |y − x − s|² + ½ m v², and equal to that without r and G stored when free. e_0 is
 ///    lent: r of it, as much as has come in since, stays in the tank. An empty tank is filled to 0.5 µJ, with 0.8 µJ at
 ///    most in a contact, from which a hand that presses fills it by itself.
@@ -65,7 +66,7 @@ struct LawState {
     Vec3 played{0};               ///< x′, m
     std::array<Vec3, 2> acted{};  ///< N, sums since x′ moved, of the force with the delay and one period more
     std::size_t n_acted = 0;      ///< forces in each
-    Vec3 counted_force{0};        ///< N, mean that was counted when x′ moved last
+    Vec3 counted_force{0};        ///< N, f₋ smoothed
     Vec3 force{0};                ///< f, N
     Vec3 moment{0};               ///< of hair and handle about the root, N·m, scaled as the force is
     std::array<Vec3, 16> sent{};  ///< f of the last periods, N: a ring
