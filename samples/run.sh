@@ -31,6 +31,9 @@ say "a drawing on the car's door"
   --atlas-size 8192 --project "$out/door.tuft"
 "$tuft" render "$out/door.tuft" -o "$out/door.png" --view 10,6 --zoom 3 --target 0,-270,130
 
+say "wrap film for the car's door, and where it goes"
+"$tuft" decals "$out/door.tuft" -o "$out/door-wrap.pdf" --max-strain 15% --bleed 8mm --page A3 --strain-map --guide "$out/door-guide"
+
 say "a livery on the car"
 livery() { "$tuft" paint "$1" --strokes samples/strokes/livery.svg --mapping project "${@:2}"; }
 livery models/car.ply --only Flank --read-from front --place=-2,-216,131.8 --mirror y --readable --substrate primed-metal \
@@ -74,6 +77,14 @@ paint plum vase vase-plum "" --view 0,4 --size 740x740 --zoom 3 --target 0,-60,1
 "$tuft" render "$out/plum.tuft" -o "$out/plum-blue.png" --recolour cinnabar=indigo --recolour iron-red=carbon --substrate bisque \
   --view 0,4 --size 740x740 --zoom 3 --target 0,-60,115
 oiiotool "$out/plum-blue.png" "$out/plum.png" --create 1480x740 3 --paste +0+0 --paste +740+0 -d uint8 -o "$out/vase-plum.png"
+
+# By brushes of trades: petals of two inks, bamboo by a flat, blue-and-white, a sword's pinstripe.
+paint one-stroke plate one-stroke "" --view 0,70 --zoom 2 --size 740x460
+paint flat-bamboo sheet flat-bamboo "--substrate rice-paper" --view 0,89 --size 740x460 --zoom 1.3
+paint blue-and-white vase blue-and-white "--film wet --dry 0" --view 0,4 --size 740x460 --zoom 2.6 --target 0,-60,115
+paint car-sword car car-sword "--substrate clay" --view 10,8 --size 740x460
+oiiotool "$out/car-sword.png" "$out/blue-and-white.png" "$out/flat-bamboo.png" "$out/one-stroke.png" --create 1480x920 3 \
+  --paste +0+0 --paste +740+0 --paste +0+460 --paste +740+460 -d uint8 -o "$out/trades.png"
 
 paint impasto sheet impasto "--substrate bisque" --raking --view 0,89 --size 1400x1000 --zoom 2.6
 
