@@ -179,7 +179,8 @@ TEST(Spectrum, TheCompositeShowsShippedPigmentsAsTheFullSpectraDo) {
         for (int i = 0; i < 300; ++i) {
             // One to three films of one to four of eight pigments each, 0.1 to 50 film units.
             std::vector<Pigment> eight = pigments;
-            eight.erase(eight.begin() + static_cast<long>(u() * 0.999 * static_cast<double>(eight.size())));
+            while (eight.size() > static_cast<std::size_t>(kMaxPigments))
+                eight.erase(eight.begin() + static_cast<long>(u() * 0.999 * static_cast<double>(eight.size())));
             std::vector<std::vector<std::pair<Pigment, double>>> films(1 + static_cast<int>(2.999 * u() * u()));
             std::vector<std::array<Plane, kMaxPigments>> planes(films.size());
             std::vector<TileFilm> tiles(films.size());
