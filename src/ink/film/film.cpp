@@ -30,6 +30,7 @@ constexpr double kFilmHeight = 10e-6;  // metres: relief over which flow is as u
 constexpr float kFilmsPerMicrometre = 0.1f;
 // Seconds of a step by tension.
 constexpr double kLevelEvery = 0.05, kLevelStep = 0.1, kLongestLevelStep = 1.6, kShortestLevelStep = 0.0125;
+constexpr double kPartOfWait = 0.025, kLeastOfLongWait = 1.5;
 // Steps are doubled where Σ curvature² keeps the one part, or no texel changes by so much of its thickness; halved
 // where it keeps but the other. What decays by 1 / (1 + z) in place of e^−z has a rate that is off by z / 2.
 constexpr double kSlow = 0.9, kFast = 0.8, kLittle = 2e-3, kMuch = 5e-3, kVeryMuch = 0.1;
@@ -94,6 +95,7 @@ struct WetFilm::State : TileList {
     Tension tension;
     bool levels = false;             ///< the step in work is one by tension
     double level_step = kLevelStep;  ///< seconds
+    double least_level_step = kLevelStep;
     std::mutex mutex;
     std::vector<std::unique_ptr<Worker>> workers;  ///< idle ones
 
@@ -465,7 +467,9 @@ struct WetFilm::State : TileList {
             if (solved.bends > kSlow || solved.change < kLittle)
                 level_step = std::min(2 * level_step, kLongestLevelStep);
             else if (solved.bends < kFast && solved.change > kMuch)
-                level_step = std::max(0.5 * level_step, solved.change > kVeryMuch ? kShortestLevelStep : kLevelStep);
+                level_step = std::max(0.5 * level_step, solved.change > kVeryMuch
+                                                            ? kShortestLevelStep * least_level_step / kLevelStep
+                                                            : least_level_step);
         }
     }
 
@@ -505,8 +509,10 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
     s.begin(canvas);
     double beads = 0;  // seconds that they have not run yet
     bool running = glm::length(params.down) > 0;
-    s.level_step = kLevelStep;
-    double rippled = 0;  // seconds in which ripples have not levelled yet
+    // A long wait ends with what is level; how it became so needs not be followed at every moment.
+    s.least_level_step = std::clamp(kPartOfWait * seconds, kLevelStep, kLeastOfLongWait);
+    s.level_step = s.least_level_step;
+    double rippled = params.unlevelled;  // seconds in which ripples have not levelled yet
     for (double left = seconds; left > 0 && !s.list.empty();) {
         if (progress && !progress("drying", 1 - left / seconds)) {
             s.end(canvas);
@@ -517,7 +523,8 @@ FilmReport WetFilm::advance(Canvas& canvas, double seconds, const FilmParams& pa
         const double dt = chosen.dt;
         left = dt < left * (1 - 1e-9) ? left - dt : 0;
         rippled += dt;
-        const bool level = params.tension > 0 && (rippled > 0.9 * std::max(s.level_step, kLevelEvery) || left == 0);
+        const bool level = params.tension > 0 && params.levels_ripples &&
+                           (rippled > 0.9 * std::max(s.level_step, kLevelEvery) || left == 0);
         if (level) chosen.step.searches = true;
         s.step_in_parts(canvas, params, chosen, report, before);
         if (level && !s.list.empty()) s.level(canvas, params, rippled, chosen.step, report);

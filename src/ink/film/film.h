@@ -31,6 +31,8 @@ struct FilmParams {
     Vec3 down{0};                   ///< unit, direction of gravity; zero: none
     double retained = 2;            ///< w_r: film units not moved by gravity or surface tension
     double levelling = 1e-8;        ///< L, m²/s per film unit above `retained`: spreading onto dry surface
+    bool levels_ripples = true;     ///< by tension, in this call; false: the caller counts the time, see `unlevelled`
+    double unlevelled = 0;          ///< s before this call in which ripples have not levelled yet
     double tension = 0.06;          ///< σ, N/m: between water (0.073) and water with glue (0.05); 0: ripples stay
     double viscosity = 1e-3;        ///< η, Pa s, of water; pigments and glue make some inks several times as viscous
     double held = 0.3;              ///< film units: so thin a film is held by its contact line and does not level

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kGrain = 8;  // tiles
 constexpr double kSteep = 0.1;     // sin α: where beads may run
-constexpr int kLeastCycles = 2, kMostCycles = 12;
+constexpr int kLeastCycles = 2, kMostCycles = 3;
 constexpr float kMissing = 0.1f, kLeastMissing = 1e-6f;  // of the greatest change, film units: a texel may be off
 constexpr int kSweepsBefore = 2, kSweepsAfter = 2, kSweepsOfLast = 8;
 

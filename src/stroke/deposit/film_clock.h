@@ -15,7 +15,8 @@ struct WetFilmInUse {
     ink::FilmParams params;
 };
 
-/// Advances the film with the time of a stroke, in steps of at least 50 ms. Without a film it does nothing.
+/// Advances the film with the time of a stroke, in steps of at least 50 ms; its ripples level every 250 ms and when the
+/// stroke ends, since a solve for all of them costs as much as several steps. Without a film it does nothing.
 class FilmClock {
   public:
     FilmClock(StampTarget& target, const WetFilmInUse& wet, ProgressFn progress)
@@ -24,13 +25,16 @@ class FilmClock {
     /// Adds time; advances the film once 50 ms have gathered. Throws `Cancelled` when `progress` stops it.
     void pass(double seconds);
     /// Advances the film by the time that is left.
-    void catch_up();
+    void catch_up() { step(true); }
 
   private:
+    void step(bool ends);
+
     StampTarget& target_;
     WetFilmInUse wet_;
     ProgressFn progress_;
-    double behind_ = 0;  // seconds
+    double behind_ = 0;      // seconds
+    double unlevelled_ = 0;  // seconds in which ripples have not levelled yet
 };
 
 }  // namespace tuft::stroke
