@@ -24,9 +24,9 @@ constexpr double uniform(std::uint64_t seed, std::uint64_t counter = 0) {
 class Random {
   public:
     explicit constexpr Random(std::uint64_t seed) : seed_(seed) {}
-    constexpr std::uint64_t bits() { return hash_bits(seed_, counter_++); }
-    constexpr double uniform() { return tuft::uniform(seed_, counter_++); }
-    constexpr double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
+    constexpr std::uint64_t bits() { return hash_bits(seed_, counter_++); }                ///< uniform
+    constexpr double uniform() { return tuft::uniform(seed_, counter_++); }                ///< in [0, 1)
+    constexpr double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }  ///< in [lo, hi)
 
   private:
     std::uint64_t seed_;

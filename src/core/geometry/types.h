@@ -24,12 +24,12 @@ inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max()
 
 /// Right-handed orthonormal frame: columns t, b, n with t × b = n.
 struct Frame {
-    Vec3 origin{0};
-    Vec3 t{1, 0, 0};
-    Vec3 b{0, 1, 0};
-    Vec3 n{0, 0, 1};
+    Vec3 origin{0};   ///< world
+    Vec3 t{1, 0, 0};  ///< unit, world
+    Vec3 b{0, 1, 0};  ///< unit, world
+    Vec3 n{0, 0, 1};  ///< unit, world; of a surface: its normal
 
-    Vec3 to_local(const Vec3& p_world) const {
+    Vec3 to_local(const Vec3& p_world) const {  ///< coordinates along t, b and n
         const Vec3 d = p_world - origin;
         return {glm::dot(d, t), glm::dot(d, b), glm::dot(d, n)};
     }
