@@ -287,6 +287,16 @@ std::vector<Entry> add_commands(CLI::App& app) {
     };
 }
 
+/// The words of the command that was given, such as tuft or tuft device test.
+std::string command_words(const CLI::App& app) {
+    std::string words = "tuft";
+    for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+        at = at->get_subcommands().front();
+        words += " " + at->get_name();
+    }
+    return words;
+}
+
 /// Parses the arguments. Returns false where the program ends with `status`: after a help text or a fault.
 bool parse(CLI::App& app, int argc, const char* const* argv, int& status) {
     try {
@@ -298,7 +308,7 @@ bool parse(CLI::App& app, int argc, const char* const* argv, int& status) {
     } catch (const CLI::ParseError& error) {
         std::string line = error.what();
         if (const auto end = line.find('\n'); end != std::string::npos) line.resize(end);
-        std::cerr << "tuft: " << excerpt(line, kLongestMessage) << " (see 'tuft --help')\n";
+        std::cerr << "tuft: " << excerpt(line, kLongestMessage) << " (see '" << command_words(app) << " --help')\n";
         status = 2;
     }
     return false;

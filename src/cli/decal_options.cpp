@@ -68,10 +68,11 @@ void read_page(Decals& d, const std::string& text) {
 }  // namespace
 
 CLI::App* add_decals(CLI::App& app, Decals& d) {
-    auto* s = app.add_subcommand("decals", "lay what is painted flat at true size, as sheets of film to print and cut");
+    auto* s =
+        app.add_subcommand("decals", "flatten the painted areas at true size, as sheets of film to print and cut");
     s->add_option("PROJECT", d.project, "project file (.tuft)")->required();
     s->add_option("-o,--output", d.output, ".pdf (spot colours, all pages), .svg or .dxf (cut lines)")->required();
-    s->add_option("--mask", d.mask, "what this mask holds, painted or not, instead of all that is painted");
+    s->add_option("--mask", d.mask, "the areas of this mask, painted or not, instead of all painted areas");
     add_layers(s, d.layers);
     add_recolouring(s, d.recolouring);
     s->add_option_function<std::string>(

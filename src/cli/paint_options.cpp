@@ -155,12 +155,11 @@ void add_reader(CLI::App* p, Paint& paint) {
 
 /// How flat strokes are mapped onto the surface.
 void add_mapping(CLI::App* p, Paint& paint) {
-    p->add_option("--mapping,--laying", paint.mapping,
-                  "how flat strokes lie: drape (bent round the surface, over its grooves, relief and gaps), wrap "
-                  "(round its very "
-                  "triangles, into each groove), project (straight, as seen from before the place); default: as their "
-                  "file says, "
-                  "drape where it names no place")
+    p->add_option(
+         "--mapping,--laying", paint.mapping,
+         "how flat strokes lie: drape (bent round the surface, over its grooves, relief and gaps), wrap (along "
+         "its triangles, into each groove), project (straight, as seen from before the place); default: as "
+         "their file says, drape where it names no place")
         ->check(CLI::IsMember({"drape", "wrap", "project"}));
     p->add_option("--place-width", paint.place_width_mm,
                   "draws what is placed this wide, all stroke files together (default: as written)")

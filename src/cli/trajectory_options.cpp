@@ -41,11 +41,14 @@ CLI::App* add_trajectory(CLI::App& app, TrajectoryWork& work) {
          },
          "holder behind the ferrule's mouth, which must not hit the model: DIAMETERxLENGTH (default: 12x150 mm)")
         ->type_name("DxL");
-    s->add_option("--max-speed", work.max_speed_mm, "mm/s of the ferrule; strokes are never faster than the hand was")
+    s->add_option("--max-speed", work.max_speed_mm,
+                  "mm/s of the ferrule (default: 250); strokes are never faster than the hand was")
         ->check(number_in(0.1, 10000));
-    s->add_option("--max-acceleration", work.max_acceleration_mm, "mm/s2 of the ferrule")->check(number_in(1, 100000));
-    s->add_option("--max-turn", work.max_turn_deg, "degrees/s of the tool")->check(number_in(0.1, 10000));
-    s->add_option("--clearance", work.clearance_mm, "mm of the tip above the surface before and after a stroke")
+    s->add_option("--max-acceleration", work.max_acceleration_mm, "mm/s2 of the ferrule (default: 1000)")
+        ->check(number_in(1, 100000));
+    s->add_option("--max-turn", work.max_turn_deg, "degrees/s of the tool (default: 90)")->check(number_in(0.1, 10000));
+    s->add_option("--clearance", work.clearance_mm,
+                  "mm of the tip above the surface before and after a stroke (default: 20)")
         ->check(number_in(5, 1000));
     add_common(s, work.common);
     return s;

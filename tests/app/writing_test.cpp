@@ -50,6 +50,14 @@ TEST(Writing, CharactersWithPlacesOfTheirOwnStandSideBySide) {
     EXPECT_GT(w.width, 3 * w.height);
 }
 
+TEST(Writing, OptionsOfAnUprightPlaceHaveNoNegativeZero) {
+    const Vec3 front{0, -1, 0};
+    for (const double turn : {-1e-9, 0.0, 1e-9}) {
+        const std::string words = place_words(cross(), stroke::upright_placement({0, -0.1, 0.05}, front, turn));
+        EXPECT_TRUE(words.ends_with("--place-turn 0.00")) << words;
+    }
+}
+
 /// What the painter makes of a drawing: the hash of all texels, the project, and its journal.
 struct Painted {
     std::string hash, words;

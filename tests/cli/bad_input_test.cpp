@@ -43,6 +43,16 @@ TEST_F(BadInput, MissingModel) {
     expect_refused("inspect " + path("none.ply"), 1, "no such file");
 }
 
+// The options of a command are in its own help.
+TEST_F(BadInput, MistakenOptionsNameTheHelpOfTheirCommand) {
+    expect_refused("paint " + sheet() + " --strokes " + good_strokes() + " --on ceiling", 2,
+                   "(see 'tuft paint --help')");
+    expect_refused("device test --seconds never", 2, "(see 'tuft device test --help')");
+    expect_refused("brush calibrate", 2, "(see 'tuft brush calibrate --help')");
+    expect_refused("", 2, "(see 'tuft --help')");
+    expect_refused("polish", 2, "(see 'tuft --help')");
+}
+
 TEST_F(BadInput, EmptyModel) {
     expect_refused("inspect " + write("e.obj", ""), 1, "empty");
 }

@@ -141,6 +141,32 @@ TEST(Inkml, PlanarHandwritingGetsPressureThatSwellsAndTapers) {
     EXPECT_NEAR(t[1].samples[0].pressure, 0.5, 1e-12);
 }
 
+// 15 mm at 50 mm/s, half a second of rest, 25 mm on.
+std::vector<stroke::StrokeSample> with_a_rest(int step_ms) {
+    std::string points;
+    for (int t = 0; t <= 1300; t += step_ms) {
+        const double moving = t < 300 ? t : std::max(300, t - 500);
+        points += (t ? "," : "") + std::to_string(0.05 * moving) + " 0 " + std::to_string(t);
+    }
+    return parse(
+               "<traceFormat><channel name='X' units='mm'/><channel name='Y' units='mm'/><channel name='T' "
+               "units='ms'/></traceFormat><trace>" +
+               points + "</trace>")[0]
+        .samples;
+}
+
+TEST(Inkml, DefaultPressureFollowsTheSpeedNotTheNumberOfSamples) {
+    const auto rare = with_a_rest(10), often = with_a_rest(1);
+    ASSERT_EQ(often.size(), 10 * (rare.size() - 1) + 1);
+    // Speed changes only at times that both have: the same but for rounding.
+    for (std::size_t i = 0; i < rare.size(); ++i) EXPECT_NEAR(rare[i].pressure, often[10 * i].pressure, 1e-9) << i;
+    // p = v^(-1/4) / 2, v in mean speeds, at most 1.3 / 2, which is at v = 0.35. Over 60 ms v falls from 1.3 s * 50
+    // mm/s / 40 mm to 0, so that p rises in 1 ms by at most 0.35^(-5/4) / 8 * 1.625 / 60 = 0.0126.
+    for (std::size_t i = 1; i < often.size(); ++i)
+        EXPECT_LT(std::abs(often[i].pressure - often[i - 1].pressure), 0.013) << i;
+    EXPECT_NEAR(often[500].pressure, 0.65, 1e-9) << "a hand that rests presses 1.3 times as much";
+}
+
 TEST(Inkml, FlatTracesScaleTogether) {
     const auto t = parse("<trace>0 0,1000 0</trace><trace>3000 500,4000 0</trace>", {.flat_width = 0.1});
     EXPECT_NEAR(t[1].samples[1].position.x - t[0].samples[0].position.x, 0.1, 1e-12);

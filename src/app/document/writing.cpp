@@ -93,8 +93,9 @@ std::string place_words(const Writing& w, const stroke::Placement& p) {
     const bool project = w.mapping == stroke::SurfaceMapping::project;
     const Vec3 from = rounded_direction(normal),
                upright = project ? stroke::reading_right(from) : stroke::upright_right(normal);
+    const double turn = std::round(100 * stroke::turn_of(normal, upright, p.right) / kDegree) / 100;
     std::string words = fmt::format("--place {:.3f},{:.3f},{:.3f} --place-width {:.3f} --place-turn {:.2f}", at.x, at.y,
-                                    at.z, width_mm(w), stroke::turn_of(normal, upright, p.right) / kDegree);
+                                    at.z, width_mm(w), turn + 0.0);  // without the sign of -0
     if (w.mirrored) words += " --place-mirror";
     if (w.mapping != stroke::SurfaceMapping::drape)
         words += " --mapping " + std::string(stroke::surface_mapping_name(w.mapping));

@@ -240,7 +240,7 @@ void colour_panel(Session& s) {
     result(s);
     const bool in_brush = c.match && s.brush.ink == c.match->ink.name;
     if (!in_brush && c.match &&
-        ui.primary_button("Paint with it", (width - 2 * ImGui::GetStyle().WindowPadding.x) / ui.settings().scale))
+        ui.primary_button("Paint with it", ImGui::GetContentRegionAvail().x / ui.settings().scale))
         take_mix(s.colours, s.brush, c.match->ink);
     save(s);
     recent(s);

@@ -119,9 +119,12 @@ void put_hints(const Session& s) {
                       m.atlas.texel_size * 1e3);
     }
     const float x = ImGui::GetIO().DisplaySize.x - ImGui::CalcTextSize(text).x - ui.px(14);
+    // The wheel sizes a drawing that is being placed.
+    const bool wheel_is_taken = s.tools.active == Tool::writing && !s.tools.writing.empty();
     put(s,
         ui.tr(s.preferences.keymap == Keymap::blender
-                  ? "Middle or right: turn    Shift + middle: move    Wheel: nearer    F1: keys"
+                  ? (wheel_is_taken ? "Middle or right: turn    Shift + middle: move    F1: keys"
+                                    : "Middle or right: turn    Shift + middle: move    Wheel: nearer    F1: keys")
                   : "Alt + left: turn    Alt + middle: move    Alt + right: nearer    F1: keys"),
         ui.faint, x - ui.px(16));
     if (ImGui::GetItemRectMax().x + ui.px(12) >= x) return;

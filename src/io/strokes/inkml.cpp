@@ -26,12 +26,26 @@ using stroke::RecordedStroke;
 using stroke::StrokeSample;
 
 constexpr int kMaxNesting = 64;  // groups in groups, references to references
+// Seconds to each side over which the speed is taken for the default pressure: a time, not a number of samples, else a
+// hand that stops would press at once where its device reports often.
+constexpr double kSpeedWindow = 0.03;
 
 struct State {
     InkmlFormat format;
     double sample_rate = 0;  ///< Hz, 0 unknown
     InkmlMarks marks;
 };
+
+/// Path length at a time, linear between samples whose lengths are `along`.
+double length_at(const std::vector<StrokeSample>& samples, const std::vector<double>& along, double time) {
+    const auto next =
+        std::ranges::upper_bound(samples, time, std::ranges::less{}, [](const StrokeSample& s) { return s.time; });
+    if (next == samples.begin()) return along.front();
+    if (next == samples.end()) return along.back();
+    const auto b = static_cast<std::size_t>(next - samples.begin());
+    const double part = (time - samples[b - 1].time) / (samples[b].time - samples[b - 1].time);
+    return along[b - 1] + part * (along[b] - along[b - 1]);
+}
 
 /// A trace with what is settled only once the whole file is read.
 struct Draft {
@@ -425,17 +439,19 @@ class Reader : InkmlText {
         const std::size_t n = s.size();
         std::vector<double> along(n, 0);
         for (std::size_t i = 1; i < n; ++i) along[i] = along[i - 1] + glm::length(s[i].position - s[i - 1].position);
-        const double length = along.back(), duration = s.back().time;
+        const double first = s.front().time, last = s.back().time;
+        const double length = along.back(), duration = last - first;
         const double swell = std::min(0.25 * length, 4e-3), taper = std::min(0.25 * length, 3e-3);
         for (std::size_t i = 0; i < n; ++i) {
             double p = options_.flat_pressure;
             if (length > 0) {
                 p *= 0.25 + 0.75 * smooth_step(along[i] / swell);
                 p *= 0.25 + 0.75 * smooth_step((length - along[i]) / taper);
-                const std::size_t a = i > 3 ? i - 3 : 0, b = std::min(i + 3, n - 1);
-                const double dt = s[b].time - s[a].time;
-                if (dt > 0 && duration > 0) {
-                    const double speed = (along[b] - along[a]) / dt / (length / duration);
+                const double from = std::max(s[i].time - kSpeedWindow, first),
+                             to = std::min(s[i].time + kSpeedWindow, last);
+                if (to > from && duration > 0) {
+                    const double travelled = length_at(s, along, to) - length_at(s, along, from);
+                    const double speed = travelled / (to - from) / (length / duration);
                     p *= std::clamp(std::pow(std::max(speed, 1e-3), -0.25), 0.7, 1.3);
                 }
             }

@@ -70,8 +70,8 @@ struct InkmlOptions {
 /// stroke::Extent. A fill may have the attributes film, region (all, part, chart), at, gradient (none, along, round),
 /// to_film, to_ink, from and to of stroke::Fill; points are "x y z" in mm, or in metres with a trailing m.
 ///
-/// Flat traces without P and F get a pressure that rises at the start, falls at the end and falls with speed. P without
-/// a declared range is 0–1, or scaled by its largest value.
+/// Flat traces without P and F get a pressure that rises at the start, falls at the end and falls with speed, taken
+/// over 60 ms. P without a declared range is 0–1, or scaled by its largest value.
 ///
 /// Throws `Error` with file and line where the file is not well formed or no InkML, has no traces, has a value that is
 /// no finite number, a point with too few values, a dangling reference, or exceeds a limit.
