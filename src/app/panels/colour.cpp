@@ -70,7 +70,7 @@ void hex_field(Session& s) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(s.ui.tr("Hex"));
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(s.ui.px(78));
+    ImGui::SetNextItemWidth(s.ui.px(73));
     const bool entered = ImGui::InputText("##hex", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue);
     s.ui.mark("Hex");
     if (ImGui::IsItemActive() || entered) c.hex = text;
