@@ -107,7 +107,7 @@ LEAVES = [[(-28, 8), (-38, 6), (-50, 14), (-40, 20), (-30, 17), (-24, 11)], [(28
 def blue_and_white():
     """Outlines by a liner, each filled with a wash inside them."""
     place = {"origin": "0 -66.7 118", "right": "1 0 0", "down": "0 0 -1", "mapping": "wrap"}
-    lines, veins, washes = [], [], []
+    lines, veins, washes, small = [], [], [], []
     for outline in PEONY + LEAVES:
         keys = [(x, y, 0.16 if 0 < i < len(outline) - 1 else 0.05, 0) for i, (x, y) in enumerate(outline)]
         lines.append(Stroke("outline").curve([(*outline[0], 0, 0)] + keys[1:-1] + [(*outline[-1], 0, 0)], 22))
@@ -115,10 +115,10 @@ def blue_and_white():
         leaf = outline in LEAVES
         start = outline[2 if leaf else 0]
         far = outline[-1] if leaf else outline[len(outline) // 2]
-        reach, aside, press = ((0.45, 0.5), 0.1, 0.15) if leaf else ((0.5, 0.72), 0.36, 0.24)
+        reach, aside, press = ((0.5, 0.52), 0.15, 0.17) if leaf else ((0.5, 0.62), 0.3, 0.2)
         a, b = [tuple(middle[i] + f * (p[i] - middle[i]) for i in (0, 1)) for p, f in zip((start, far), reach)]
         side = (aside * (b[1] - a[1]), -aside * (b[0] - a[0]))
-        washes.append(Stroke("wash").curve([(*a, 0, 0), (*a, 0.5 * press, 0),
+        (small if leaf else washes).append(Stroke("wash").curve([(*a, 0, 0), (*a, 0.5 * press, 0),
                                             (*(m + s for m, s in zip(middle, side)), press, 0), (*b, 0.9 * press, 0),
                                             (*(m - s for m, s in zip(middle, side)), press, 0),
                                             (*a, 0.5 * press, 0), (*a, 0, 0)], 14))
@@ -129,7 +129,8 @@ def blue_and_white():
     for s in washes[:1]:
         s.before = dry
     return [({"brush": "liner-3", "ink": "cobalt", **place}, lines + veins + [stem]),
-            ({"brush": "wash-12*0.6", "ink": "samples/inks/cobalt-wash.toml", **place}, washes)]
+            ({"brush": "wash-12*0.6", "ink": "samples/inks/cobalt-wash.toml", **place}, washes),
+            ({"brush": "wash-12*0.35", "ink": "samples/inks/cobalt-wash.toml", **place}, small)]
 
 
 STRIPE = [(470, 170), (430, 181), (400, 187), (345, 193), (285, 188), (225, 181), (150, 177), (50, 178), (-50, 180), (-150, 185),
