@@ -143,12 +143,7 @@ nlohmann::json project_json(const ProjectFacts& p, const std::filesystem::path& 
     for (const stroke::Mask& m : stroke::masks_after(p.strokes).masks)
         j["masks"].push_back({{"id", m.id}, {"name", m.name}, {"kind", stroke::name_of(m.kind)}});
     for (const stroke::Layer& l : p.layers.layers)  // the lowest first
-        j["layers"].push_back({{"id", l.id},
-                               {"name", l.name},
-                               {"visible", l.visible},
-                               {"opacity", l.opacity},
-                               {"blend", ink::name_of(l.blend)},
-                               {"locked", l.locked}});
+        j["layers"].push_back(to_json(l));
     for (const auto& [id, group] : p.groups)
         j["groups"].push_back({{"id", id},
                                {"name", group.name},

@@ -65,13 +65,7 @@ int run(const LayerWork& a) {
     project.append(stroke::entry_after(entries, edit));
     if (a.common.json) {
         nlohmann::json j{{"project", a.project.string()}, {"layers", nlohmann::json::array()}};
-        for (const stroke::Layer& l : table.layers)
-            j["layers"].push_back({{"id", l.id},
-                                   {"name", l.name},
-                                   {"visible", l.visible},
-                                   {"opacity", l.opacity},
-                                   {"blend", ink::name_of(l.blend)},
-                                   {"locked", l.locked}});
+        for (const stroke::Layer& l : table.layers) j["layers"].push_back(to_json(l));
         print_json(j);
         return 0;
     }

@@ -416,6 +416,15 @@ void print_json(const nlohmann::json& json) {
     std::cout << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
 }
 
+nlohmann::json to_json(const stroke::Layer& layer) {
+    return {{"id", layer.id},
+            {"name", layer.name},
+            {"visible", layer.visible},
+            {"opacity", layer.opacity},
+            {"blend", ink::name_of(layer.blend)},
+            {"locked", layer.locked}};
+}
+
 nlohmann::json to_json(const mesh::RepairReport& r) {
     return {{"points_in_file", r.points_in_file},
             {"polygons_in_file", r.polygons_in_file},

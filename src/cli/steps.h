@@ -112,6 +112,7 @@ void check_on_surface(const stroke::Model& model, const Vec3& at, const char* op
 
 /// Writes one JSON object to standard output. File names that are not UTF-8 get replacement characters.
 void print_json(const nlohmann::json& json);
+nlohmann::json to_json(const stroke::Layer& layer);
 nlohmann::json to_json(const mesh::RepairReport& report);
 nlohmann::json to_json(const atlas::Atlas& atlas, const atlas::AtlasReport& report);
 nlohmann::json to_json(const stroke::StrokeReport& report, const stroke::JournalEntry& stroke);

@@ -1,39 +1,9 @@
-#include <csignal>
-#include <cstdio>
-
+#include "served.h"
 #include "studio_program.h"
 
 /// The force-feedback arm in the real program: a simulated arm in a simulated hand, a service, a recording.
 namespace tuft::app {
 namespace {
-
-/// A program in the background whose first line ends with its port.
-class Served {
-  public:
-    explicit Served(const std::string& arguments) {
-        const std::string command = "export TUFT_DATA='" + source_folder() + "'; echo $$; exec '" + tuft_program() +
-                                    "' device simulate --port 0 " + arguments;
-        pipe_ = ::popen(command.c_str(), "r");
-        char line[200];
-        if (std::fgets(line, sizeof line, pipe_)) pid_ = std::atoi(line);
-        if (std::fgets(line, sizeof line, pipe_)) {
-            const std::string text = line;
-            port = std::atoi(text.substr(text.find_last_of(": ") + 1).c_str());
-        }
-    }
-    ~Served() {
-        if (pid_ > 0) ::kill(pid_, SIGINT);
-        ::pclose(pipe_);
-    }
-    Served(const Served&) = delete;
-    Served& operator=(const Served&) = delete;
-
-    int port = 0;
-
-  private:
-    FILE* pipe_ = nullptr;
-    int pid_ = 0;
-};
 
 class StudioArm : public StudioProgram {
   protected:
@@ -118,7 +88,8 @@ TEST_F(StudioArm, StirsOnThePalette) {
 }
 
 TEST_F(StudioArm, AServiceThatDiesLeavesTheStrokeAndOneLine) {
-    const Served server("--motion rest --brush wolf-medium --fault dies --fault-after 6");
+    const Served server(tuft_program(),
+                        "device simulate --port 0 --motion rest --brush wolf-medium --fault dies --fault-after 6");
     ASSERT_GT(server.port, 0);
     expect_played(kLookedAt + "set arm-view off\nset arm-source service\nset arm-port " + std::to_string(server.port) +
                   "\nset arm on\nawait arm painting\nawait message ended\nawait arm free\nwait-ready\nexpect strokes "

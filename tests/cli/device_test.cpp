@@ -6,6 +6,7 @@
 
 #include "haptic/haply.h"
 #include "program.h"
+#include "served.h"
 
 /// \file
 /// `tuft device` and samples/device-bridge as programs.
@@ -55,34 +56,6 @@ TEST_F(Device, ARecordingPlaysAgainToTheBit) {
     EXPECT_EQ(nlohmann::json::parse(ran.out)["different"], 0);
     EXPECT_EQ(read(path("a.csv")), read(path("b.csv")));
 }
-
-/// A program in the background whose first line is its port.
-class Served {
-  public:
-    Served(const std::string& program, const std::string& arguments) {
-        const std::string command =
-            "export TUFT_DATA='" + source_folder() + "'; echo $$; exec '" + program + "' " + arguments;
-        pipe_ = ::popen(command.c_str(), "r");
-        char line[200];
-        if (std::fgets(line, sizeof line, pipe_)) pid_ = std::atoi(line);
-        if (std::fgets(line, sizeof line, pipe_)) {
-            const std::string text = line;
-            port = std::atoi(text.substr(text.find_last_of(": ") + 1).c_str());
-        }
-    }
-    ~Served() {
-        if (pid_ > 0) ::kill(pid_, SIGTERM);  // a shell makes its background jobs ignore SIGINT
-        ::pclose(pipe_);
-    }
-    Served(const Served&) = delete;
-    Served& operator=(const Served&) = delete;
-
-    int port = 0;
-
-  private:
-    FILE* pipe_ = nullptr;
-    int pid_ = 0;
-};
 
 TEST_F(Device, SimulateServesAnArmThatListAndRecordFind) {
     const Served server(tuft_program(), "device simulate --preset omega.6 --port 0");

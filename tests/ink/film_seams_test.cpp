@@ -68,10 +68,11 @@ BlotError error_of(const Wet& s, Truth&& truth) {
 }
 
 /// Each half against a sheet without a seam, whose texels lie where the half has its own: what differs is the seam
-/// alone.
-BlotError error_of_seam(const Lie& left, const Lie& right, double shortest_step = 0) {
-    const Wet cut = blot_on(two_charts(left, right), shortest_step);
-    const Wet whole[] = {blot_on(one_chart(left), shortest_step), blot_on(one_chart(right), shortest_step)};
+/// alone. `paint` puts the ink on a sheet of given charts.
+template <class Paint>
+BlotError error_of_seam(const Lie& left, const Lie& right, const Paint& paint) {
+    const Wet cut = paint(two_charts(left, right));
+    const Wet whole[] = {paint(one_chart(left)), paint(one_chart(right))};
     return error_of(cut, [&](const Vec3& at) {
         const Lie& lie = at.x > 0 ? right : left;
         const Vec2 uv = lie.at + lie.across((at.x + 8e-3) * 1e4) + lie.up((at.y + 8e-3) * 1e4);
@@ -80,6 +81,9 @@ BlotError error_of_seam(const Lie& left, const Lie& right, double shortest_step 
             atlas::texel_ref(s.map, static_cast<std::int64_t>(uv.x), static_cast<std::int64_t>(uv.y));
         return ref.valid() ? s.amount(ref.slot, ref.texel) : 0;
     });
+}
+BlotError error_of_seam(const Lie& left, const Lie& right, double shortest_step = 0) {
+    return error_of_seam(left, right, [&](const auto& charts) { return blot_on(charts, shortest_step); });
 }
 
 TEST(WetFilm, ABlotIsTheSameWithASeamUnderIt) {
@@ -218,16 +222,7 @@ TEST(WetFilm, RidgesLevelAsIfThereWereNoSeam) {
     for (const auto& [left, right] : {std::pair{Lie{{8.21, 8.13}, 0}, Lie{{200.87, 8.21}, 0}},
                                       {{{140.3, 8.4}, 0}, {{420.7, 10.2}, 30 * degree}},
                                       {{{140.3, 8.4}, 15 * degree}, {{420.7, 10.2}, 40 * degree}}}) {
-        const Wet cut = ridges_on(two_charts(left, right));
-        const Wet whole[] = {ridges_on(one_chart(left)), ridges_on(one_chart(right))};
-        const BlotError e = error_of(cut, [&](const Vec3& at) {
-            const Lie& lie = at.x > 0 ? right : left;
-            const Vec2 uv = lie.at + lie.across((at.x + 8e-3) * 1e4) + lie.up((at.y + 8e-3) * 1e4);
-            const Wet& s = whole[at.x > 0];
-            const atlas::TexelRef ref =
-                atlas::texel_ref(s.map, static_cast<std::int64_t>(uv.x), static_cast<std::int64_t>(uv.y));
-            return ref.valid() ? s.amount(ref.slot, ref.texel) : 0;
-        });
+        const BlotError e = error_of_seam(left, right, [](const auto& charts) { return ridges_on(charts); });
         EXPECT_LT(e.worst, 0.02) << left.angle << ' ' << right.angle << " at " << e.at.x << ' ' << e.at.y;
         EXPECT_LT(e.rms, 0.002) << e.rms;
     }

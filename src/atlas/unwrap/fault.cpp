@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "atlas/pack/coverage.h"
 #include "atlas/pack/raster.h"
@@ -9,7 +10,8 @@
 namespace tuft::atlas {
 namespace {
 
-constexpr double kOverPage = 1e-6;  // of a page: roundings of floats
+constexpr std::uint32_t kMostTexels = 65536;  // per side
+constexpr double kOverPage = 1e-6;            // of a page: roundings of floats
 
 using Corners = std::array<Vec2, 3>;
 
@@ -27,6 +29,16 @@ bool on_a_page(const Corners& uv, const Atlas& atlas, double k) {
 }  // namespace
 
 Message fault_of(const Atlas& atlas) {
+    if (atlas.size == 0 || atlas.size > kMostTexels || !(atlas.texel_size > 0) || !std::isfinite(atlas.texel_size))
+        return "the atlas has no valid size";
+    if (atlas.pages < 1 || atlas.pages > 100 || atlas.size % atlas.pages_per_side() != 0)
+        return "the atlas has no valid pages";
+    for (const std::uint32_t udim : atlas.udims)
+        if (udim < 1001 || udim > 2000) return "a page of the atlas has no valid number";
+    if (atlas.triangle_chart.empty() || atlas.corner_uvs.size() != 3 * atlas.triangle_chart.size())
+        return "a part of the model is missing";
+    for (const std::uint32_t chart : atlas.triangle_chart)
+        if (chart >= atlas.n_charts) return "a triangle is in a chart that does not exist";
     for (const Vec2f& uv : atlas.corner_uvs) {
         if (!is_finite(uv)) return "some UVs are not finite";
         if (std::min(uv.x, uv.y) < 0 || std::max(uv.x, uv.y) > 1) return "some UVs lie off the page";

@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "atlas/unwrap/fault.h"
-#include "core/geometry/bounds.h"
 #include "core/hash.h"
 #include "core/text/nesting.h"
 #include "core/text/units.h"
 #include "io/project/project_db.h"
+#include "mesh/fault.h"
 
 namespace tuft::io {
 namespace {
@@ -18,43 +18,10 @@ constexpr Packing kXyz{.element = 4, .lag = 3};
 constexpr Packing kUv{.element = 4, .lag = 2};
 constexpr Packing kSingle{.element = 4, .lag = 1};
 
-template <class V>
-bool all_finite(const std::vector<V>& values) {
-    for (const V& v : values)
-        for (int i = 0; i < V::length(); ++i)
-            if (!std::isfinite(v[i])) return false;
-    return true;
-}
-
 void check(const ProjectModel& model, const std::filesystem::path& path) {
-    const mesh::TriangleMesh& m = model.mesh;
-    const auto n_vertices = static_cast<std::uint32_t>(m.n_vertices());
-    const auto n_triangles = static_cast<std::uint32_t>(m.n_triangles());
-    for (const auto& triangle : m.triangles)
-        for (const std::uint32_t v : triangle)
-            if (v >= n_vertices) damaged(path, "a triangle has a vertex that does not exist");
-    for (const std::uint32_t t : m.neighbours)
-        if (t != kNone && t >= n_triangles) damaged(path, "a triangle has a neighbour that does not exist");
-    for (const std::uint32_t g : m.triangle_groups)
-        if (g >= m.group_names.size()) damaged(path, "a triangle is in a group that does not exist");
-    for (const std::uint32_t c : model.atlas.triangle_chart)
-        if (c >= model.atlas.n_charts) damaged(path, "a triangle is in a chart that does not exist");
-    for (const Vec3f& p : m.positions)
-        if (!within(Vec3(p))) damaged(path, "the model has points that are no numbers or lie more than 10 km away");
-    if (!(m.bounds.diagonal() >= kSmallestModel)) damaged(path, "the model is smaller than a micrometre");
-    if (!all_finite(m.corner_normals) || !all_finite(m.corner_uvs) || !all_finite(model.atlas.corner_uvs))
-        damaged(path, "the model has numbers that are not finite");
-    if (m.corner_normals.empty() || m.neighbours.empty() || model.atlas.corner_uvs.empty() ||
-        model.atlas.triangle_chart.empty())
-        damaged(path, "a part of the model is missing");
-    const double texel = model.atlas.texel_size;
-    if (model.atlas.size == 0 || model.atlas.size > 65536 || !(texel > 0) || !std::isfinite(texel))
-        damaged(path, "the atlas has no valid size");
-    if (model.atlas.pages < 1 || model.atlas.pages > 100 || model.atlas.size % model.atlas.pages_per_side() != 0)
-        damaged(path, "the atlas has no valid pages");
-    for (const std::uint32_t udim : model.atlas.udims)
-        if (udim < 1001 || udim > 2000) damaged(path, "a page of the atlas has no valid number");
+    if (const Message fault = mesh::fault_of(model.mesh); !fault.empty()) damaged(path, fault);
     if (!metres_per(model.frame.unit)) damaged(path, "the model's unit is unknown");
+    if (model.atlas.triangle_chart.size() != model.mesh.n_triangles()) damaged(path, "a part of the model is missing");
     if (const Message fault = atlas::fault_of(model.atlas); !fault.empty())
         damaged(path, Message("its atlas cannot be painted on: {}", fault));
 }

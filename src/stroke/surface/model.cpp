@@ -64,18 +64,8 @@ void give_atlas(Model& model, const atlas::UnwrapOptions& unwrap, const ModelOpt
 // Takes mesh and atlas from the cache, and what is not stored from the soup. False when they are not there.
 bool restore_model(Model& model, mesh::PolygonSoup& soup, const CacheKey& key, const ModelOptions& options) {
     StoredModel stored;
-    const bool found = options.cache.read(key, [&](CacheReader& entry) {
-        stored = get_model(entry);
-        const std::size_t n_groups = soup.group_names.size(), n_parts = soup.scene ? soup.scene->parts.size() : 0;
-        for (const std::uint32_t group : stored.mesh.triangle_groups)
-            if (group >= n_groups) CacheReader::fail();
-        for (const std::uint32_t part : stored.mesh.triangle_parts)
-            if (part >= n_parts) CacheReader::fail();
-    });
-    if (!found) return false;
-    if (!stored.mesh.triangle_groups.empty()) stored.mesh.group_names = std::move(soup.group_names);
+    if (!options.cache.read(key, [&](CacheReader& entry) { stored = get_model(entry, soup); })) return false;
     stored.mesh.materials = std::move(soup.materials);
-    stored.mesh.scene = std::move(soup.scene);
     stored.repairs.warnings.insert(stored.repairs.warnings.begin(), soup.warnings.begin(), soup.warnings.end());
     soup = {};
     model.mesh = std::make_unique<mesh::TriangleMesh>(std::move(stored.mesh));

@@ -1,11 +1,10 @@
 #include "stroke/surface/model_cache.h"
 
 #include <array>
-#include <cmath>
 
 #include "atlas/unwrap/fault.h"
-#include "core/geometry/bounds.h"
 #include "core/system/build_facts.h"
+#include "mesh/fault.h"
 #include "stroke/surface/preparation_code.h"
 
 namespace tuft::stroke {
@@ -107,43 +106,6 @@ void get_atlas(CacheReader& entry, atlas::Atlas& a, atlas::AtlasReport& r) {
     r.smallest_gap = static_cast<int>(counts[4]);
 }
 
-template <class V>
-bool all_finite(const std::vector<V>& values) {
-    for (const V& v : values)
-        for (int i = 0; i < V::length(); ++i)
-            if (!std::isfinite(v[i])) return false;
-    return true;
-}
-
-bool all_below(const std::vector<std::uint32_t>& values, std::size_t limit, bool or_none = false) {
-    for (const std::uint32_t v : values)
-        if (v >= limit && !(or_none && v == kNone)) return false;
-    return true;
-}
-
-void check(const mesh::TriangleMesh& m) {
-    const std::size_t n = m.n_triangles();
-    require(n > 0 && m.n_vertices() > 0 && m.corner_normals.size() == 3 * n && m.neighbours.size() == 3 * n);
-    require(m.corner_uvs.empty() || m.corner_uvs.size() == 3 * n);
-    require(m.vertex_colours.empty() || m.vertex_colours.size() == m.n_vertices());
-    require(m.triangle_groups.empty() || m.triangle_groups.size() == n);
-    require(m.triangle_parts.empty() || m.triangle_parts.size() == n);
-    require(all_below(m.neighbours, n, true));
-    for (const auto& triangle : m.triangles)
-        for (const std::uint32_t v : triangle) require(v < m.n_vertices());
-    for (const Vec3f& p : m.positions) require(within(Vec3(p)));
-    require(all_finite(m.corner_normals) && all_finite(m.corner_uvs));
-}
-
-void check(const atlas::Atlas& a, std::size_t n_triangles) {
-    require(a.size >= 1 && a.size <= 65536 && a.pages >= 1 && a.pages <= 100 && a.size % a.pages_per_side() == 0);
-    require(a.texel_size > 0 && std::isfinite(a.texel_size));
-    require(a.corner_uvs.size() == 3 * n_triangles && a.triangle_chart.size() == n_triangles);
-    require(all_below(a.triangle_chart, a.n_charts) && all_finite(a.corner_uvs));
-    for (const std::uint32_t udim : a.udims) require(udim >= 1001 && udim <= 2000);
-    require(atlas::fault_of(a).empty());
-}
-
 }  // namespace
 
 CacheKey model_key(const mesh::PolygonSoup& soup, const ModelOptions& options) {
@@ -195,7 +157,7 @@ void put_model(CacheWriter& entry, const Model& model, std::size_t n_reader_warn
     put_atlas(entry, model.atlas, model.atlas_report);
 }
 
-StoredModel get_model(CacheReader& entry) {
+StoredModel get_model(CacheReader& entry, const mesh::PolygonSoup& soup) {
     StoredModel model;
     mesh::TriangleMesh& m = model.mesh;
     m.positions = entry.get<Vec3f>();
@@ -206,14 +168,16 @@ StoredModel get_model(CacheReader& entry) {
     m.vertex_colours = entry.get<std::array<std::uint8_t, 4>>();
     m.triangle_groups = entry.get<std::uint32_t>();
     m.triangle_parts = entry.get<std::uint32_t>();
-    check(m);
     for (const Vec3f& p : m.positions) m.bounds.add(Vec3(p));
+    if (!m.triangle_groups.empty()) m.group_names = soup.group_names;
+    m.scene = soup.scene;
+    require(mesh::fault_of(m).empty() && (m.triangle_parts.empty() || m.scene));
     model.repairs = report_of(entry.get<std::uint64_t>());
     const auto n_warnings = entry.get_one<std::uint64_t>();
     require(n_warnings <= 1'000'000);
     for (std::uint64_t i = 0; i < n_warnings; ++i) model.repairs.warnings.push_back(get_message(entry));
     get_atlas(entry, model.atlas, model.atlas_report);
-    check(model.atlas, m.n_triangles());
+    require(model.atlas.triangle_chart.size() == m.n_triangles() && atlas::fault_of(model.atlas).empty());
     return model;
 }
 

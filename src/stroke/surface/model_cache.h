@@ -12,7 +12,7 @@ namespace tuft::stroke {
 /// prepare a model, their compiler and libraries, so that another build never reads what this one stored.
 CacheKey model_key(const mesh::PolygonSoup& soup, const ModelOptions& options);
 
-/// What a cache stores of a model. The rest of it comes from the soup: materials, scene and names.
+/// What a cache stores of a model. The rest of it comes from the soup: names, scene and materials.
 struct StoredModel {
     mesh::TriangleMesh mesh;
     mesh::RepairReport repairs;
@@ -23,8 +23,8 @@ struct StoredModel {
 /// Writes the arrays of a model. `n_reader_warnings` of its warnings come from the reader and are left out.
 void put_model(CacheWriter& entry, const Model& model, std::size_t n_reader_warnings);
 
-/// Reads what `put_model` wrote. Throws `Error` for an entry that is damaged: every count, every index and every number
-/// is checked, as in a project.
-StoredModel get_model(CacheReader& entry);
+/// Reads what `put_model` wrote, and takes names and scene from the soup. Throws `Error` for an entry that is damaged:
+/// mesh and atlas are checked as a project's (`fault_of`).
+StoredModel get_model(CacheReader& entry, const mesh::PolygonSoup& soup);
 
 }  // namespace tuft::stroke
