@@ -4,7 +4,7 @@
 #include "promise.h"
 #include "targets.h"
 
-/// What the address sanitizer does beside its checks took up to a third of the time (fbx, dae): it walks thirty frames
+/// What the address sanitizer does beside its checks cost up to a third of the time (fbx, dae): it walks thirty frames
 /// at each allocation and freeing, and holds 256 MB of freed memory back. `ASAN_OPTIONS` goes before.
 extern "C" const char* __asan_default_options() {
     return "malloc_context_size=4:quarantine_size_mb=32:thread_local_quarantine_size_kb=256";
