@@ -83,7 +83,23 @@ CLI::App* add_unwrap(CLI::App& app, Unwrap& unwrap) {
 CLI::App* add_replay(CLI::App& app, Replay& replay) {
     auto* command = app.add_subcommand("replay", "paint a project's strokes again, on the same or a revised model");
     command->add_option("PROJECT", replay.project, "project file (.tuft)")->required();
-    command->add_option("--model", replay.model, "paint onto this revised mesh instead");
+    auto* model = command->add_option("--model", replay.model, "paint onto this revised mesh instead");
+    command
+        ->add_option("--follow", replay.follow,
+                     "where the revised model, or a part of it, was moved, turned or scaled, its strokes go with it: "
+                     "parts (default), stretch (a body that became longer or wider carries them too), or none (strokes "
+                     "stay where they were)")
+        ->check(CLI::IsMember({"parts", "stretch", "none"}))
+        ->needs(model);
+    command
+        ->add_flag("--pull-back", replay.pull_back,
+                   "pull strokes of a hand in space onto the revised surface, as deep as they were pressed before")
+        ->needs(model);
+    command
+        ->add_option(
+            "--moved", replay.moved,
+            "write a picture of what moved (.png): changed surface by its distance, strokes that no longer fit")
+        ->needs(model);
     command->add_option("--brush", replay.brush, "use this brush for every stroke");
     command->add_option("--ink", replay.ink,
                         "use this ink for every stroke: a name, a .toml file or a colour such as '#c03020'");

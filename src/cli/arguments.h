@@ -126,8 +126,10 @@ struct Recolouring {
 
 /// `tuft replay PROJECT`
 struct Replay {
-    std::filesystem::path project, model, out_project, exported, preview;
+    std::filesystem::path project, model, out_project, exported, preview, moved;
     std::string brush, ink;
+    std::string follow = "parts";  ///< "parts", "stretch" or "none"
+    bool pull_back = false;
     Recolouring recolouring;
     Surface surface;
     View view;

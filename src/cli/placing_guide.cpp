@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/picture_overlay.h"
 #include "core/error.h"
 #include "core/system/files.h"
 #include "core/text/units.h"
-#include "decal/stroke_font.h"
-#include "ink/spectra/srgb.h"
 #include "io/export/export.h"
 #include "render/brush/brush_canvas.h"
-#include "render/picture/camera.h"
 
 namespace fs = std::filesystem;
 
@@ -21,15 +19,10 @@ namespace {
 
 constexpr int kWidth = 960, kHeight = 720;  // pixels
 constexpr double kSpacing = 1e-3;           // metres between points of a line on the model
-constexpr double kLift = 1e-4;              // metres, of lines above the surface when they are looked at
 constexpr double kAround = 1.7;             // width of the view over the size of the piece
 constexpr double kLeastView = 0.03;         // metres
 constexpr double kSteepest = 80;            // degrees of elevation
 constexpr double kLevelArrow = 0.4;         // rise of an arrow over its length below which it points to the back
-
-struct SurfacePath {
-    std::vector<Vec3> points, normals;  // metres, model frame
-};
 
 /// A piece on the model.
 struct PlacedPiece {
@@ -140,91 +133,6 @@ View view_of(const PlacedPiece& piece, const mesh::TriangleMesh& mesh) {
     return view;
 }
 
-render::Camera camera_of(const View& v, const mesh::TriangleMesh& mesh) {
-    render::View view;
-    view.azimuth = v.azimuth * kDegree;
-    view.elevation = v.elevation * kDegree;
-    if (!v.target_mm.empty()) {
-        view.target = kMillimetre * vector_of(v.target_mm);
-        view.width_at_target = mesh.bounds.diagonal() / v.zoom;
-    }
-    return render::make_camera(view, v.width, v.height, mesh.positions);
-}
-
-/// Lines over a rendered picture, hidden where the model stands before them.
-class Overlay {
-  public:
-    Overlay(const render::Image& image, const render::Camera& camera, const mesh::SurfaceQuery& query)
-        : canvas_(image.width, image.height, Vec3(0)), camera_(camera), query_(query) {
-        for (std::size_t i = 0; i < image.rgb.size(); ++i) canvas_.rgb[i] = ink::linear_of_code()[image.rgb[i]];
-    }
-
-    void draw(const SurfacePath& path, double width, const Vec3& colour) {
-        std::vector<Vec2> run;
-        const auto flush = [&] {
-            if (run.size() > 1) line(run, width, colour);
-            run.clear();
-        };
-        for (std::size_t i = 0; i < path.points.size(); ++i) {
-            const std::optional<Vec2> at = seen(path.points[i], path.normals[i]);
-            if (at)
-                run.push_back(*at);
-            else
-                flush();
-        }
-        flush();
-    }
-
-    void draw_arrow(const SurfacePath& arrow, double width, const Vec3& colour) {
-        if (arrow.points.size() < 2) return;
-        const auto tail = seen(arrow.points.front(), arrow.normals.front());
-        const auto tip = seen(arrow.points.back(), arrow.normals.back());
-        if (!tail || !tip || glm::length(*tip - *tail) < 4) return;
-        const Vec2 along = *tip - *tail, across = 0.3 * Vec2(-along.y, along.x);
-        line({*tail, *tip}, width, colour);
-        line({*tip - 0.4 * along + across, *tip, *tip - 0.4 * along - across}, width, colour);
-    }
-
-    void draw_number(int number, const Vec3& p, const Vec3& normal, double size, const Vec3& colour) {
-        const std::optional<Vec2> at = seen(p, normal);
-        if (!at) return;
-        const std::string text = std::to_string(number);
-        const Vec2 corner = *at - Vec2(decal::text_width(text, size) + 0.5 * size, -0.5 * size);
-        for (const double halo : {1.0, 0.0})
-            for (const std::vector<Vec2>& l : decal::text_lines(text, Vec2(0), size)) {
-                std::vector<Vec2> points;
-                for (const Vec2& q : l) points.push_back(corner + Vec2(q.x, -q.y));
-                stroke(points, halo > 0 ? 0.3 * size : 0.13 * size, halo > 0 ? Vec3(1) : colour);
-            }
-    }
-
-    std::vector<std::uint8_t> rgb() const { return render::to_srgb(canvas_); }
-
-  private:
-    /// Position in the picture of a point that nothing hides.
-    std::optional<Vec2> seen(const Vec3& p, const Vec3& normal) const {
-        const Vec3 lifted = p + kLift * normal, way = camera_.eye - lifted;
-        const double distance = glm::length(way);
-        if (glm::dot(way, normal) <= 0 || query_.occluded(lifted, way / distance, 0, distance)) return std::nullopt;
-        const std::optional<Vec3> at = render::project(camera_, p);
-        if (!at) return std::nullopt;
-        return Vec2(at->x, at->y);
-    }
-
-    void line(const std::vector<Vec2>& points, double width, const Vec3& colour) {
-        stroke(points, width + 2, Vec3(1));
-        stroke(points, width, colour);
-    }
-    void stroke(const std::vector<Vec2>& points, double width, const Vec3& colour) {
-        const double widths[] = {width};
-        render::stroke_line(canvas_, points, widths, colour);
-    }
-
-    render::BrushCanvas canvas_;
-    const render::Camera& camera_;
-    const mesh::SurfaceQuery& query_;
-};
-
 const Vec3 kOwn = render::linear_colour(210, 0, 140), kOther = render::linear_colour(90, 110, 140);
 
 void write_guide_picture(const fs::path& path, const GuideRequest& request, const std::vector<PlacedPiece>& pieces,
@@ -232,7 +140,7 @@ void write_guide_picture(const fs::path& path, const GuideRequest& request, cons
     const stroke::Model& model = request.project.model;
     render::Image image = draw_picture({.model = model, .painting = &request.painting, .view = view}, console);
     const render::Camera camera = camera_of(view, *model.mesh);
-    Overlay overlay(image, camera, *model.query);
+    PictureOverlay overlay(image, camera, *model.query);
     for (const bool own : {false, true})
         for (const PlacedPiece& piece : pieces) {
             if ((number == 0 || piece.number == number) != own) continue;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/revision.h"
 #include "cli/steps.h"
 #include "core/text/counted.h"
 #include "core/text/units.h"
@@ -12,7 +13,6 @@
 #include "io/model/read_model.h"
 #include "io/project/restore.h"
 #include "io/strokes/inkml.h"
-#include "stroke/document/fit.h"
 #include "stroke/journal/recorded_journal.h"
 
 /// Commands that start from a project: replay, export, render.
@@ -43,70 +43,6 @@ stroke::Model replay_model(const Replay& a, OpenProject& project, Console& conso
         atlas.from_file && (atlas.pages > 1 || !atlas.udims.empty()) && !surface.new_uv && surface.seams == "free";
     stroke::ModelOptions options = model_options(surface, console);
     return stroke::rescale_model(std::move(project.model), options);
-}
-
-/// How the strokes lie on a revised model; which touch nothing where the model is the same.
-struct Fit {
-    std::optional<stroke::ModelMotion> motion;
-    std::vector<stroke::StrokeFit> fits;
-    std::vector<stroke::StrokeMismatch> mismatches;
-    stroke::FitTotal total;
-};
-
-Fit find_fit(const Replay& a, const OpenProject& project, stroke::Document& painting,
-             const std::vector<stroke::JournalEntry>& strokes, const std::vector<stroke::StrokeReport>& reports) {
-    Fit fit;
-    if (!a.model.empty()) {
-        const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
-        const mesh::SurfaceQuery &former = *project.model.query, &revised = *painting.model().query;
-        fit.motion = stroke::find_motion(former, revised);
-        fit.fits = stroke::compare_fit(strokes, length_of, former, revised, fit.motion);
-    }
-    fit.mismatches = stroke::find_mismatches(reports, fit.fits);
-    fit.total = stroke::total_of(fit.fits, fit.mismatches);
-    return fit;
-}
-
-void note_fit(const Fit& fit, Console& console) {
-    for (const stroke::StrokeMismatch& m : fit.mismatches)
-        console.note(fmt::format("warning: stroke {} no longer fits: {}", m.stroke, m.reason.text()));
-    if (fit.motion)
-        console.note("warning: the revised model is the former one " + stroke::describe(*fit.motion).text());
-    if (!fit.mismatches.empty() && !fit.fits.empty()) console.note("warning: " + stroke::describe(fit.total).text());
-}
-
-nlohmann::json to_json(const stroke::StrokeFit& f) {
-    nlohmann::json j{{"stroke", f.stroke},
-                     {"path_mm", f.length / kMillimetre},
-                     {"moved_mm", f.moved / kMillimetre},
-                     {"moved_most_mm", f.moved_most / kMillimetre},
-                     {"missing", f.missing()},
-                     {"stretched", f.length > 0 ? f.stretched / f.length : 0},
-                     {"length_factor", f.kept > 0 ? f.kept_now / f.kept : 1}};
-    if (f.slid) j["moved_on_model_mm"] = *f.slid / kMillimetre;
-    if (!f.flat) j["deeper_mm"] = f.deeper / kMillimetre;
-    return j;
-}
-
-/// All of the fit; "mismatch" is separate.
-nlohmann::json to_json(const Fit& fit) {
-    nlohmann::json strokes = nlohmann::json::array();
-    for (const stroke::StrokeFit& f : fit.fits) strokes.push_back(to_json(f));
-    nlohmann::json j{{"strokes", std::move(strokes)},
-                     {"mismatches", fit.total.mismatches},
-                     {"moved_mm", fit.total.moved / kMillimetre},
-                     {"moved_most_mm", fit.total.moved_most / kMillimetre},
-                     {"missing", fit.total.missing},
-                     {"stretched", fit.total.stretched}};
-    j["misfits"] = j["mismatches"];  // its name before
-    if (fit.total.slid) j["moved_on_model_mm"] = *fit.total.slid / kMillimetre;
-    if (fit.motion) {
-        const Vec3 shift = stroke::shift_of(*fit.motion) / kMillimetre;
-        j["model"] = {{"shift_mm", {shift.x, shift.y, shift.z}},
-                      {"turn_deg", stroke::turn_of(*fit.motion) / kDegree},
-                      {"scale", fit.motion->scale}};
-    }
-    return j;
 }
 
 /// The map a picture shall hold: the one asked for, or the one the file is called.
@@ -148,32 +84,32 @@ int write_strokes(const Export& a, Console& console) {
 int run(const Replay& a) {
     Outputs outputs{a.out_project, a.exported, a.preview, a.view, {}};
     check_outputs(outputs);
+    check_extension(a.moved, {".png"});
+    check_output(a.moved);
     Console console(a.common.quiet);
     const auto reserved = reserve(a.out_project, console);
     const auto project = open_project(a.project, io::Access::read, console);
     outputs.frame = a.model.empty() ? project->frame : frame_of(a.surface.unit, a.surface.up, project->frame);
-    std::vector<stroke::JournalEntry> strokes = project->file.strokes();
+    std::vector<stroke::JournalEntry> project_strokes = project->file.strokes();
     const stroke::Model model = replay_model(a, *project, console);
 
     stroke::Document painting(model);
     painting.use(project->substrate);
     io::use_presets(project->file, painting);
-    for (stroke::JournalEntry& s : strokes) {
+    for (stroke::JournalEntry& s : project_strokes) {
         if (!a.brush.empty()) stroke::set_brush(s, a.brush);
         if (!a.ink.empty()) stroke::set_ink(s, a.ink);
     }
-    find_presets(painting, strokes);
-    if (!a.model.empty()) {
-        const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
-        const Message fault = stroke::size_fault(strokes, length_of, *project->model.query, *model.query);
-        if (!fault.empty()) throw Error(a.model.string(), Message("{} (see --unit)", fault));
-    }
+    find_presets(painting, project_strokes);
+    const mesh::SurfaceQuery& former = a.model.empty() ? *model.query : *project->model.query;
+    const RevisedStrokes revised = revise_strokes(a, std::move(project_strokes), painting, former, *model.query);
+    const std::vector<stroke::JournalEntry>& strokes = revised.followed;
     const std::vector<stroke::StrokeReport> reports = painting.replay(strokes, console.progress());
     console.clear();
-    const Fit fit = find_fit(a, *project, painting, strokes, reports);
+    const Fit fit = find_fit(a, revised, painting, former, reports);
     std::size_t missed = 0;
     for (const stroke::StrokeReport& r : reports) missed += !r.touched();
-    note_fit(fit, console);
+    note_fit(a, revised, fit, console);
     apply_recolouring(project->file, painting, a.recolouring, console);
     if (!a.out_project.empty()) {
         io::Project out = start_project(a.out_project, a.model.empty() ? project->source : a.model.string(),
@@ -183,6 +119,7 @@ int run(const Replay& a) {
     }
     show_layers(painting, a.view.layers);
     write_outputs(outputs, painting, console);
+    if (!a.moved.empty()) write_revision_picture(a.moved, revised, fit, painting, former, a.view, console);
     console.clear();
     if (a.common.json) {
         nlohmann::json list = nlohmann::json::array();
@@ -195,7 +132,7 @@ int run(const Replay& a) {
                          {"atlas", to_json(model.atlas, model.atlas_report)},
                          {"canvas_hash", fmt::format("{:016x}", painting.layers().hash())}};
         j["misfits"] = j["mismatches"];  // its name before
-        if (!a.model.empty()) j["fit"] = to_json(fit);
+        if (!a.model.empty()) j["fit"] = to_json(revised, fit);
         print_json(j);
     } else {
         fmt::print("replayed {}, {} of them miss{} the model; atlas {} x {}\n", counted(reports.size(), "stroke"),

@@ -229,6 +229,20 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
     return strokes;
 }
 
+render::View picture_view(const View& v, const mesh::TriangleMesh& mesh) {
+    render::View view;
+    view.azimuth = v.azimuth * kDegree;
+    view.elevation = v.elevation * kDegree;
+    if (!v.target_mm.empty()) {
+        view.target = kMillimetre * vector_of(v.target_mm);
+        view.width_at_target = mesh.bounds.diagonal() / v.zoom;
+    } else if (v.zoom != 1) {
+        view.target = mesh.bounds.centre();
+        view.width_at_target = 1.3 * mesh.bounds.diagonal() / v.zoom;
+    }
+    return view;
+}
+
 render::Image draw_picture(const PictureRequest& request, Console& console) {
     const auto& [model, painting, v, material, frame, count] = request;
     render::Appearance appearance;
@@ -258,15 +272,7 @@ render::Image draw_picture(const PictureRequest& request, Console& console) {
     render::PictureOptions options;
     options.width = v.width;
     options.height = v.height;
-    options.view.azimuth = v.azimuth * kDegree;
-    options.view.elevation = v.elevation * kDegree;
-    if (!v.target_mm.empty()) {
-        options.view.target = kMillimetre * vector_of(v.target_mm);
-        options.view.width_at_target = model.mesh->bounds.diagonal() / v.zoom;
-    } else if (v.zoom != 1) {
-        options.view.target = model.mesh->bounds.centre();
-        options.view.width_at_target = 1.3 * model.mesh->bounds.diagonal() / v.zoom;
-    }
+    options.view = picture_view(v, *model.mesh);
     options.light_azimuth = v.light * kDegree;
     if (v.raking) options.lights = render::Lights::raking;
     options.progress = console.progress();

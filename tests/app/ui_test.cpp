@@ -31,7 +31,7 @@
 #include "io/project/project.h"
 #include "io/strokes/svg.h"
 #include "paths.h"
-#include "stroke/journal/model_motion.h"
+#include "stroke/placement/model_motion.h"
 
 namespace tuft::app {
 

@@ -20,7 +20,8 @@ std::string reason_on(const Model& revised, const PaintStroke& stroke) {
     const auto reports = painting.replay({stroke});
     const auto length_of = [&](const std::string& brush) { return painting.materials().brush(brush).length; };
     const auto mismatches =
-        find_mismatches(reports, compare_fit(painting.journal().entries(), length_of, *former.query, *revised.query));
+        find_mismatches(reports, compare_fit(painting.journal().entries(), painting.journal().entries(), length_of,
+                                             {*former.query, *revised.query}));
     EXPECT_LE(mismatches.size(), 1u);
     return mismatches.empty() ? "" : mismatches.front().reason.text();
 }
@@ -79,10 +80,10 @@ PaintStroke written(SurfaceMapping mapping) {
 StrokeFit fit_on(const mesh::TriangleMesh& revised, const PaintStroke& stroke, bool with_motion = false) {
     const Model former = sheet({}, kSmall);
     const mesh::SurfaceQuery query(revised);
-    const auto motion = with_motion ? find_motion(*former.query, query) : std::nullopt;
-    return compare_fit(
-               {JournalEntry(stroke)}, [](const std::string& brush) { return brush::load_preset(brush).length; },
-               *former.query, query, motion)
+    const ModelChange change = with_motion ? find_change(*former.query, query) : ModelChange{};
+    const std::vector<JournalEntry> entries{JournalEntry(stroke)};
+    return compare_fit(entries, entries, [](const std::string& brush) { return brush::load_preset(brush).length; },
+                       {*former.query, query, change})
         .at(0);
 }
 

@@ -12,6 +12,7 @@
 #include "io/model/read_model.h"
 #include "io/project/appearance.h"
 #include "io/project/restore.h"
+#include "stroke/drawing/follow_model.h"
 
 namespace fs = std::filesystem;
 
@@ -94,7 +95,7 @@ Inspected inspect_file(const fs::path& path, const ProgressFn& progress) {
 }
 
 // Strokes of a former project, its presets and ground, on the new model.
-void copy_strokes(const fs::path& former, PaintWork& work, const ProgressFn& progress) {
+void copy_strokes(const fs::path& former, bool follow, PaintWork& work, const ProgressFn& progress) {
     const io::Project project = io::Project::open(former, {.access = io::Access::read, .progress = progress});
     work.document->use(ink::parse_substrate(project.model().substrate, former.string()));
     io::use_presets(project, *work.document);
@@ -106,13 +107,16 @@ void copy_strokes(const fs::path& former, PaintWork& work, const ProgressFn& pro
     const mesh::SurfaceQuery before(mesh);
     const Message fault = stroke::size_fault(strokes, length_of, before, *work.model->query);
     if (!fault.empty()) throw Error(fault);
-    const std::vector<stroke::StrokeReport> reports = work.document->replay(strokes, progress);
-    const std::optional<stroke::ModelMotion> motion = stroke::find_motion(before, *work.model->query);
+    const stroke::ModelChange change = stroke::find_change(before, *work.model->query);
+    const std::vector<stroke::JournalEntry> followed = follow ? stroke::follow_model(strokes, change, before) : strokes;
+    const std::vector<stroke::StrokeReport> reports = work.document->replay(followed, progress);
     const std::vector<stroke::StrokeFit> fits =
-        stroke::compare_fit(strokes, length_of, before, *work.model->query, motion);
+        stroke::compare_fit(strokes, followed, length_of, {before, *work.model->query, change});
     work.mismatches = stroke::find_mismatches(reports, fits);
     work.fit = {Message("{}.", stroke::describe(stroke::total_of(fits, work.mismatches)))};
-    if (motion) work.fit.push_back(Message("The revised model is the former one {}.", stroke::describe(*motion)));
+    if (change.whole) work.fit.push_back(Message("The revised model is the former one {}.", describe(*change.whole)));
+    for (const stroke::PartMotion& part : change.parts)
+        work.fit.push_back(Message("The part '{}' is {}.", part.name, describe(part.motion)));
 }
 
 // In a file from now on, or in memory until there can be one.
@@ -140,7 +144,7 @@ PaintWork prepare_model(Inspected in, const OpenOptions& options, const fs::path
     work.model = std::make_unique<stroke::Model>(stroke::prepare_model(std::move(in.soup), prepare));
     work.document =
         std::make_unique<stroke::Document>(*work.model, stroke::DocumentOptions{.substrate = options.substrate});
-    if (!former.empty()) copy_strokes(former, work, progress);
+    if (!former.empty()) copy_strokes(former, options.follow, work, progress);
     work.texture = std::make_unique<Texture>(*work.document, progress);
     work.pixels = work.texture->pixels();
     keep(work, project);

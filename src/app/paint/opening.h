@@ -31,6 +31,7 @@ struct OpenOptions {
     std::string substrate = "porcelain";
     bool own_colours = true;    ///< shows the model's own colours, if any
     bool turned_round = false;  ///< the other side of open parts is their front than reading chose
+    bool follow = true;         ///< of a revised model: strokes go where it, or their part of it, was moved
 };
 
 /// Purpose of opening a project.

@@ -99,6 +99,9 @@ void model_rows(Session& s, const mesh::MeshSummary& m, double area) {
         ImGui::SameLine();
         ui.toggle("in its own colours", options.own_colours);
     }
+    if (!s.project.revision.source.empty())
+        ui.toggle("Strokes follow the model", options.follow,
+                  "Where the model, or a part of it, was moved, turned or scaled, its strokes go with it");
     if (m.report.parts_turned > 0)
         ui.toggle("Sides as in the file", options.turned_round,
                   "It was inside out, and was turned round: ink goes onto the front of its faces");

@@ -179,7 +179,8 @@ void revise_with(Session& s, const fs::path& path) {
                            .atlas_size = s.paint_thread->model().atlas.size,
                            .substrate = s.project.options.substrate,
                            .own_colours = s.project.options.own_colours,
-                           .turned_round = s.project.options.turned_round};
+                           .turned_round = s.project.options.turned_round,
+                           .follow = s.project.options.follow};
     const fs::path former = s.reported.file.project;
     open_path(s, path);
     s.project.options = same;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/system/parallel.h"
+#include "stroke/drawing/follow_model.h"
 #include "stroke/gesture/hand.h"
 #include "stroke/placement/placement.h"
 
@@ -53,6 +54,7 @@ struct Place {
 void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::optional<ModelMotion>& motion) {
     std::vector<double> moved, slid;
     double piece = 0, now = 0;
+    const double scale = motion ? motion->scale : 1;
     const auto end_piece = [&] {
         fit.kept += piece;
         fit.kept_now += now;
@@ -75,7 +77,7 @@ void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::opt
         }
         if (i == 0 || !p.is || !places[i - 1].was || !places[i - 1].is) continue;
         piece += glm::distance(*p.was, *places[i - 1].was);
-        now += glm::distance(*p.is, *places[i - 1].is);
+        now += glm::distance(*p.is, *places[i - 1].is) / scale;
         if (piece > kPiece) end_piece();
     }
     // What is left over is short: it says nothing of its own, but for a stroke that is all as
@@ -86,40 +88,53 @@ void add_places(StrokeFit& fit, const std::vector<Place>& places, const std::opt
     if (!slid.empty()) fit.slid = median(std::move(slid));
 }
 
-StrokeFit fit_in_space(const JournalEntry& entry, double length, const mesh::SurfaceQuery& former,
-                       const mesh::SurfaceQuery& revised, const std::optional<ModelMotion>& motion) {
-    StrokeFit fit{.stroke = entry.id};
+/// One stroke on both models.
+struct ComparedStroke {
+    const JournalEntry &entry, &followed;
+    double length = 0;                  // of the tuft on the former model, metres
+    std::optional<ModelMotion> motion;  // of the model under it
+    double scale() const { return motion ? motion->scale : 1; }
+};
+
+StrokeFit fit_in_space(const ComparedStroke& stroke, const Revision& r) {
+    StrokeFit fit{.stroke = stroke.entry.id};
     std::vector<double> depths, changes;
     std::vector<Place> places;
-    for (const brush::Pose& pose : spatial_poses(samples_of(entry))) {
-        const Vec3 mouth = pose.position, axis = pose.axis();
+    const std::vector<brush::Pose> before = spatial_poses(samples_of(stroke.entry)),
+                                   after = spatial_poses(samples_of(stroke.followed));
+    const double length = stroke.length, now_length = length * stroke.scale();
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const Vec3 mouth = before[i].position, axis = after[i].axis();
         Place& place = places.emplace_back();
         place.hand = mouth;
-        const auto was = former.ray(mouth, axis, 0, length);
-        fit.reached = fit.reached || was || former.closest_point(mouth, length);
+        const auto was = r.former.ray(mouth, before[i].axis(), 0, length);
+        fit.reached = fit.reached || was || r.former.closest_point(mouth, length);
         if (!was) continue;
         place.was = was->position;
-        const auto now = revised.ray(mouth - length * axis, axis, 0, 2 * length);
+        const auto now = r.revised.ray(after[i].position - now_length * axis, axis, 0, 2 * now_length);
         if (!now) continue;
-        place.buried = now->distance < length;
+        place.buried = now->distance < now_length;
         if (place.buried) continue;
         place.is = place.gone = now->position;
         depths.push_back(length - was->distance);
-        changes.push_back(was->distance - (now->distance - length));
+        changes.push_back(was->distance - (now->distance - now_length) / stroke.scale());
     }
-    add_places(fit, places, motion);
+    add_places(fit, places, stroke.motion);
     fit.depth = median(std::move(depths));
     fit.deeper = median(std::move(changes));
     return fit;
 }
 
-StrokeFit fit_flat(const JournalEntry& entry, const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
-                   const std::optional<ModelMotion>& motion) {
-    const PaintStroke& stroke = *entry.as<PaintStroke>();
-    StrokeFit fit{.stroke = entry.id, .flat = true};
-    const StrokeSamples trace = steady(stroke.trace, stroke.settings);
-    const SurfaceTrace was = map_to_surface(former, trace), now = map_to_surface(revised, trace);
-    std::vector<Place> places(trace.samples.size());
+StrokeFit fit_flat(const ComparedStroke& stroke, const Revision& r) {
+    const auto steadied = [](const JournalEntry& entry) {
+        const PaintStroke& s = *entry.as<PaintStroke>();
+        return steady(s.trace, s.settings);
+    };
+    StrokeFit fit{.stroke = stroke.entry.id, .flat = true};
+    const StrokeSamples trace = steadied(stroke.entry);
+    const SurfaceTrace was = map_to_surface(r.former, trace),
+                       now = map_to_surface(r.revised, steadied(stroke.followed));
+    std::vector<Place> places(std::min(was.samples.size(), now.samples.size()));
     for (std::size_t i = 0; i < places.size(); ++i) {
         Place& place = places[i];
         place.hand = Vec3(trace.samples[i].position.x, trace.samples[i].position.y, 0);
@@ -129,8 +144,15 @@ StrokeFit fit_flat(const JournalEntry& entry, const mesh::SurfaceQuery& former, 
         place.was = was.samples[i].position;
         if (now.samples[i].on_surface) place.is = place.gone;
     }
-    add_places(fit, places, motion);
+    add_places(fit, places, stroke.motion);
     return fit;
+}
+
+/// Whether a stroke lies elsewhere than before.
+bool is_followed(const JournalEntry& entry, const JournalEntry& followed) {
+    const StrokeSamples &a = samples_of(entry), &b = samples_of(followed);
+    if (a.flat) return !(a.placement == b.placement);
+    return !a.samples.empty() && a.samples[0].position != b.samples[0].position;
 }
 
 /// The brush of one of these whose tuft is longer than `most`, and that length.
@@ -182,22 +204,21 @@ Message size_fault(const std::vector<JournalEntry>& entries, const std::function
         millimetres(across), millimetres(drawing.diagonal()), longer->first, millimetres(longer->second));
 }
 
-std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
+std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries, const std::vector<JournalEntry>& followed,
                                    const std::function<double(const std::string&)>& length_of,
-                                   const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
-                                   const std::optional<ModelMotion>& motion) {
-    std::vector<const JournalEntry*> compared;
-    std::vector<double> lengths;  // asked for here: presets are loaded one at a time
-    for (const JournalEntry& entry : entries)
-        if (is_compared(entry)) {
-            compared.push_back(&entry);
-            lengths.push_back(length_of(brush_of(entry)));
-        }
+                                   const Revision& revision) {
+    std::vector<ComparedStroke> compared;
+    for (std::size_t i = 0; i < entries.size(); ++i)  // here: presets are loaded one at a time
+        if (is_compared(entries[i])) compared.push_back({entries[i], followed[i], length_of(brush_of(entries[i])), {}});
     std::vector<StrokeFit> fits(compared.size());
     parallel_for(compared.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            fits[i] = samples_of(*compared[i]).flat ? fit_flat(*compared[i], former, revised, motion)
-                                                    : fit_in_space(*compared[i], lengths[i], former, revised, motion);
+        for (std::size_t i = begin; i < end; ++i) {
+            ComparedStroke& stroke = compared[i];
+            const StrokeSamples& trace = samples_of(stroke.entry);
+            if (!revision.change.none()) stroke.motion = motion_of(trace, revision.change, revision.former);
+            fits[i] = trace.flat ? fit_flat(stroke, revision) : fit_in_space(stroke, revision);
+            fits[i].followed = is_followed(stroke.entry, stroke.followed);
+        }
     });
     return fits;
 }
@@ -208,7 +229,7 @@ Message mismatch_reason(const StrokeFit& fit) {
     const double far = std::max(kLeastMove, kMovePart * fit.length);
     std::vector<Message> reasons;
     // A place in space is the hand's: it moves along the hair only, which the depth shows.
-    if (fit.flat && fit.moved > far)
+    if (fit.flat && !fit.followed && fit.moved > far)
         reasons.push_back(Message("lies {} mm from where it lay", tenths(1e3 * fit.moved)));
     if (fit.slid && *fit.slid > far)
         reasons.push_back(Message("lies {} mm from its place on the model", tenths(1e3 * *fit.slid)));

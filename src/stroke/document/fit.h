@@ -9,7 +9,7 @@
 #include "core/message.h"
 #include "mesh/query/surface_query.h"
 #include "stroke/document/document.h"
-#include "stroke/journal/model_motion.h"
+#include "stroke/placement/model_motion.h"
 
 /// \file
 /// Fit of strokes to a revised model: where their ink lies, and which of them no longer fit. Called by `tuft replay
@@ -28,6 +28,7 @@ struct StrokeFit {
     double depth = 0;            ///< in space: median depth of the unbent tip in the former model, of the rest
     double deeper = 0;           ///< in space: median increase of that depth
     bool flat = false;           ///< a flat stroke, mapped anew onto the revised model
+    bool followed = false;       ///< the entry on the revised model is not that on the former one
     double moved = 0;            ///< median displacement of the ink
     double moved_most = 0;       ///< largest displacement of the ink
     std::optional<double> slid;  ///< median distance of the ink from its former point moved by the model's motion;
@@ -54,20 +55,26 @@ Message size_fault(const std::vector<JournalEntry>& entries,
 Message size_fault(const std::vector<JournalEntry>& entries,
                    const std::function<double(const std::string& brush)>& length_of, const mesh::SurfaceQuery& model);
 
-/// Compares two models along strokes. At each sample of a stroke in space, rays from the ferrule's mouth along its
-/// axis, one tuft length to both sides, find the surfaces; flat strokes are mapped onto both models. `length_of`
-/// returns the tuft length of a brush, metres; `motion` is that of the whole model. Hidden strokes and those on the
-/// palette are left out. Cost: two rays per sample, or two mappings.
-std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries,
+/// What a journal was made on, and what it comes to lie on. The references must outlive it.
+struct Revision {
+    const mesh::SurfaceQuery &former, &revised;
+    ModelChange change = {};  ///< of the model
+};
+
+/// Compares two models along strokes: the entries on the former one, and `followed`, what became of them
+/// (`follow_model`; the same entries where they stay), on the revised one. At each sample of a stroke in space, rays
+/// from the ferrule's mouth along its axis, one tuft length to both sides, find the surfaces; flat strokes are mapped
+/// onto both models. `length_of` returns the tuft length of a brush, metres. Hidden strokes and those on the palette
+/// are left out. Cost: two rays per sample, or two mappings. Precondition: as many followed as entries.
+std::vector<StrokeFit> compare_fit(const std::vector<JournalEntry>& entries, const std::vector<JournalEntry>& followed,
                                    const std::function<double(const std::string& brush)>& length_of,
-                                   const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised,
-                                   const std::optional<ModelMotion>& motion = {});
+                                   const Revision& revision);
 
 /// Returns why a stroke no longer fits, as a sentence for people; empty where it fits. It does not fit if
 /// - more than 10 % of its path have no ink, or
 /// - in space, its depth changed by more than half and by more than 0.2 mm, or
-/// - it moved (flat, or relative to a model moved as a whole) by more than 1 mm and by more than 1 % of its path: the
-///   width of a fine brush's line, and more than another triangulation moves it, or
+/// - it moved (flat and not followed, or relative to a model or part that moved) by more than 1 mm and by more than 1 %
+///   of its path: the width of a fine brush's line, and more than another triangulation moves it, or
 /// - more than 10 % of its path are longer or shorter by more than a quarter.
 Message mismatch_reason(const StrokeFit& fit);
 

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "cli/arguments.h"
+#include "cli/steps.h"
+#include "stroke/document/fit.h"
+
+/// \file
+/// Strokes of a project on a revised model: which follow it, how they fit, and what moved. Called by `tuft replay`.
+namespace tuft::cli {
+
+/// The strokes of a project on their way to the model that they are painted on.
+struct RevisedStrokes {
+    stroke::ModelChange change;                  ///< of the model; none where the model is the project's own
+    std::vector<stroke::JournalEntry> former;    ///< as the project has them
+    std::vector<stroke::JournalEntry> followed;  ///< as they are painted
+};
+
+/// Returns the strokes as `--follow` and `--pull-back` say. Without `--model` they stay. Throws `Error` for a model
+/// that is too small for them. `former` and `revised` are the models of the project and of the file.
+RevisedStrokes revise_strokes(const Replay& arguments, std::vector<stroke::JournalEntry> strokes,
+                              stroke::Document& painting, const mesh::SurfaceQuery& former,
+                              const mesh::SurfaceQuery& revised);
+
+/// How the strokes lie on a revised model; which touch nothing where the model is the same.
+struct Fit {
+    std::vector<stroke::StrokeFit> fits;
+    std::vector<stroke::StrokeMismatch> mismatches;
+    stroke::FitTotal total;
+};
+
+/// Compares a replay on a revised model with the project; without one, only finds strokes that touch nothing.
+Fit find_fit(const Replay& arguments, const RevisedStrokes& strokes, stroke::Document& painting,
+             const mesh::SurfaceQuery& former, const std::vector<stroke::StrokeReport>& reports);
+
+/// Says on the console what moved, what followed and what no longer fits.
+void note_fit(const Replay& arguments, const RevisedStrokes& strokes, const Fit& fit, Console& console);
+
+/// All of the fit but the mismatches.
+nlohmann::json to_json(const RevisedStrokes& strokes, const Fit& fit);
+
+/// Writes a picture of the painting on the revised model. Surface that lies elsewhere than on the former model, after
+/// its motion and that of its part, is coloured by the distance; the ink's path of strokes that no longer fit is red,
+/// with the number of the stroke.
+void write_revision_picture(const std::filesystem::path& path, const RevisedStrokes& strokes, const Fit& fit,
+                            const stroke::Document& painting, const mesh::SurfaceQuery& former, const View& view,
+                            Console& console);
+
+}  // namespace tuft::cli
