@@ -20,7 +20,7 @@ constexpr std::size_t kNamedParts = 5;       // in messages
 constexpr double kLeastSeen = 0.05e-3;       // metres: less is no change
 constexpr double kMostSeen = 10e-3;          // metres: more has the same colour
 constexpr double kTint = 0.75;               // part of the colour at a change
-constexpr double kFarthest = 5 * kMostSeen;  // metres that a changed surface is searched within
+constexpr double kSearched = 5 * kMostSeen;  // metres that a changed surface is searched within
 
 stroke::MotionFreedom freedom_of(const Replay& a) {
     return a.follow == "stretch" ? stroke::MotionFreedom::affine : stroke::MotionFreedom::similarity;
@@ -46,8 +46,8 @@ class Deviation {
     }
     double at(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const Vec3& p) const {
         const stroke::ModelMotion& motion = motions_[mesh.triangle_groups.empty() ? 0 : mesh.triangle_groups[triangle]];
-        const auto hit = former_.closest_point(motion.back(p), kFarthest / motion.scale);
-        return hit ? motion.scale * hit->distance : kFarthest;
+        const auto hit = former_.closest_point(motion.back(p), kSearched / motion.scale);
+        return hit ? motion.scale * hit->distance : kSearched;
     }
 
   private:
