@@ -11,8 +11,8 @@
 #include "brush/preset/preset.h"
 #include "cli/steps.h"
 #include "core/random.h"
+#include "core/system/allocations.h"
 #include "core/system/interrupt.h"
-#include "haptic/allocations.h"
 #include "haptic/loop.h"
 
 /// `tuft device test`: the figures of stability, safety and loop.
@@ -155,7 +155,7 @@ haptic::LoopStatus run_loop(const DeviceWork& a, const Places& places) {
     const std::unique_ptr<haptic::Device> device = open_device(a, path, state);
     const haptic::LawOptions law{.limits = device->limits(), .gain = preset.force_gain, .restore = a.restore};
     haptic::Loop loop(*device, haptic::HairSolver(brush::make_tuft(preset), *places.surface[0]),
-                      {.law = law, .count_allocations = haptic::allocations_of_this_thread});
+                      {.law = law, .count_allocations = allocations_of_this_thread});
     haptic::ServoControl control;
     if (a.simulate.empty()) {
         const Frame& f = places.place[0].frame;

@@ -14,6 +14,7 @@
 #include "core/system/files.h"
 #include "core/text/counted.h"
 #include "core/text/units.h"
+#include "io/project/commit_queue.h"
 #include "stroke/document/fit.h"
 #include "stroke/journal/tables.h"
 
@@ -194,6 +195,14 @@ Painted paint_strokes(const std::vector<stroke::JournalEntry>& strokes, stroke::
     const auto painting_start = Clock::now();
     double area_ink = 0;
     const ProgressFn progress = console.progress();
+    std::optional<io::CommitQueue> commits;
+    if (project) commits.emplace(*project);
+    const auto commit_all = [&] {
+        if (!commits) return;
+        commits->finish();
+        commits.reset();
+        project->listen(progress);
+    };
     try {
         painting.paint(
             strokes,
@@ -201,13 +210,15 @@ Painted paint_strokes(const std::vector<stroke::JournalEntry>& strokes, stroke::
                 if (const stroke::Fill* fill = entry.as<stroke::Fill>(); fill && fill->area)
                     ++out.areas, area_ink += report.ink_given;
                 if (entry.as<stroke::PaintStroke>()) out.reports.push_back(std::move(report));
-                if (project) project->append(entry);
+                if (commits) commits->add(entry);
             },
             [&](std::string_view phase, double fraction) {
                 if (out.first_stamp == 0) out.first_stamp = seconds_since(start);
                 return progress(phase, fraction);
             });
+        commit_all();
     } catch (const Cancelled&) {
+        commit_all();
         if (project)
             console.note(fmt::format("{} holds the {} that {} finished", a.project.string(),
                                      counted(project->n_strokes(), "stroke"),

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "core/error.h"
-#include "haptic/allocations.h"
+#include "core/system/allocations.h"
 #include "haptic/exchange.h"
 #include "trial_model.h"
 

@@ -147,38 +147,70 @@ void draw_ids(const Atlas& atlas, const Bands& bands, std::size_t band, std::vec
 /// Surface at a texel's centre.
 struct TexelSurface {
     Vec3 position{0}, normal{0, 0, 1};  ///< metres; unit
-    double area = 0;                    ///< m²
-    float diagonal = 0;                 ///< metres, of the texel's image
 };
 
-TexelSurface surface_of_texel(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle,
-                              std::int64_t column, std::int64_t row) {
-    const SnappedTriangle s = snapped_triangle(atlas, triangle);
-    const std::int64_t x = column * kSnap + kSnap / 2, y = row * kSnap + kSnap / 2;
-    const double scale = 1.0 / static_cast<double>(s.area2);
-    Vec3 p{0}, n{0}, du{0}, dv{0};
+/// What all texels of a triangle share.
+struct TriangleSurface {
+    std::uint32_t triangle = kNone;
+    SnappedTriangle snapped{};
+    double scale = 0;                          ///< 1 / area2
+    std::array<Vec3, 3> corners{}, normals{};  ///< metres; as in the mesh
+    Vec3 face{0};                              ///< normal of the triangle, any length
+    double area = 0;                           ///< m², of a texel's image
+    float diagonal = 0;                        ///< metres, of it
+};
+
+TriangleSurface surface_of_triangle(const mesh::TriangleMesh& mesh, const Atlas& atlas, std::uint32_t triangle) {
+    TriangleSurface t{.triangle = triangle, .snapped = snapped_triangle(atlas, triangle)};
+    const SnappedTriangle& s = t.snapped;
+    t.scale = 1.0 / static_cast<double>(s.area2);
+    Vec3 du{0}, dv{0};
     for (int k = 0; k < 3; ++k) {  // corner k faces edge k+1 → k+2
         const int l = (k + 1) % 3, o = (k + 2) % 3;
-        const double w = static_cast<double>(edge_value(s, l, x, y)) * scale;
-        const Vec3 corner = mesh.position(triangle, s.corner[k]);
-        p += w * corner;
-        n += w * Vec3(mesh.corner_normals[3 * std::size_t{triangle} + s.corner[k]]);
-        du += static_cast<double>(s.y[l] - s.y[o]) * scale * kSnap * corner;
-        dv += static_cast<double>(s.x[o] - s.x[l]) * scale * kSnap * corner;
+        const Vec3 corner = t.corners[k] = mesh.position(triangle, s.corner[k]);
+        t.normals[k] = Vec3(mesh.corner_normals[3 * std::size_t{triangle} + s.corner[k]]);
+        du += static_cast<double>(s.y[l] - s.y[o]) * t.scale * kSnap * corner;
+        dv += static_cast<double>(s.x[o] - s.x[l]) * t.scale * kSnap * corner;
     }
-    const Vec3 area_vector = glm::cross(du, dv);
+    t.face = glm::cross(mesh.position(triangle, 1) - mesh.position(triangle, 0),
+                        mesh.position(triangle, 2) - mesh.position(triangle, 0));
+    t.area = glm::length(glm::cross(du, dv));
+    t.diagonal = static_cast<float>(std::sqrt(glm::dot(du, du) + glm::dot(dv, dv)));
+    return t;
+}
+
+/// Surfaces of the triangles met last: the texels of a tile share few.
+class TriangleSurfaces {
+  public:
+    TriangleSurfaces(const mesh::TriangleMesh& mesh, const Atlas& atlas) : mesh_(mesh), atlas_(atlas) {}
+
+    const TriangleSurface& at(std::uint32_t triangle) {
+        TriangleSurface& t = met_[triangle % met_.size()];
+        if (t.triangle != triangle) t = surface_of_triangle(mesh_, atlas_, triangle);
+        return t;
+    }
+
+  private:
+    const mesh::TriangleMesh& mesh_;
+    const Atlas& atlas_;
+    std::array<TriangleSurface, 32> met_;
+};
+
+TexelSurface surface_of_texel(const TriangleSurface& t, std::int64_t column, std::int64_t row) {
+    const std::int64_t x = column * kSnap + kSnap / 2, y = row * kSnap + kSnap / 2;
+    Vec3 p{0}, n{0};
+    for (int k = 0; k < 3; ++k) {
+        const double w = static_cast<double>(edge_value(t.snapped, (k + 1) % 3, x, y)) * t.scale;
+        p += w * t.corners[k];
+        n += w * t.normals[k];
+    }
     double length = glm::length(n);
     if (!(length > 1e-6)) {
-        const Vec3 face = glm::cross(mesh.position(triangle, 1) - mesh.position(triangle, 0),
-                                     mesh.position(triangle, 2) - mesh.position(triangle, 0));
-        length = glm::length(face);
-        n = length > 0 ? face : Vec3{0, 0, 1};
+        length = glm::length(t.face);
+        n = length > 0 ? t.face : Vec3{0, 0, 1};
         if (!(length > 0)) length = 1;
     }
-    return {p,
-            {n.x / length, n.y / length, n.z / length},
-            glm::length(area_vector),
-            static_cast<float>(std::sqrt(glm::dot(du, du) + glm::dot(dv, dv)))};
+    return {p, {n.x / length, n.y / length, n.z / length}};
 }
 
 void store_texel(const TexelSurface& surface, int texel, TexelShape& shape) {
@@ -280,7 +312,7 @@ struct TileClusters {
 };
 
 /// Fills one tile from the triangle of each of its texels.
-TileClusters fill_tile(const mesh::TriangleMesh& mesh, const Atlas& atlas, const TileInBand& place, TexelShape& shape,
+TileClusters fill_tile(TriangleSurfaces& triangles, const Atlas& atlas, const TileInBand& place, TexelShape& shape,
                        TexelTile& tile) {
     const std::int64_t x0 = std::int64_t{place.column} * kTile;
     const auto y0 = static_cast<std::int64_t>(place.band) * kTile;
@@ -294,10 +326,10 @@ TileClusters fill_tile(const mesh::TriangleMesh& mesh, const Atlas& atlas, const
         const std::uint32_t id = place.triangle[static_cast<std::size_t>(t / kTile) * atlas.size + x];
         if (id == kNone) continue;
         chart[t] = atlas.triangle_chart[id];
-        const TexelSurface surface = surface_of_texel(mesh, atlas, id, x, y);
-        store_texel(surface, t, shape);
-        tile.area[t] = static_cast<float>(surface.area);
-        diagonals += surface.diagonal;
+        const TriangleSurface& triangle = triangles.at(id);
+        store_texel(surface_of_texel(triangle, x, y), t, shape);
+        tile.area[t] = static_cast<float>(triangle.area);
+        diagonals += triangle.diagonal;
         ++n;
     }
     // Mean diagonal of a texel, with room for stretch that varies inside the tile.
@@ -359,13 +391,14 @@ FilledTiles fill_tiles(const mesh::TriangleMesh& mesh, const Atlas& atlas, const
     parallel_for(side, 1, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> ids;
         TexelShape buffer{};
+        TriangleSurfaces triangles(mesh, atlas);
         for (std::size_t band = begin; band < end; ++band) {
             draw_ids(atlas, bands, band, ids);
             for (std::uint32_t tx = 0; tx < side; ++tx) {
                 const std::uint32_t slot = map.slot_of_tile[band * side + tx];
                 if (slot == kNone) continue;
                 TexelShape& shape = packed ? buffer : map.shapes[slot];
-                TileClusters clusters = fill_tile(mesh, atlas, {tx, band, ids.data()}, shape, map.tiles[slot]);
+                TileClusters clusters = fill_tile(triangles, atlas, {tx, band, ids.data()}, shape, map.tiles[slot]);
                 filled.charts[slot] = std::move(clusters.chart);
                 map.reach[slot] = clusters.reach;
                 if (!packed) continue;

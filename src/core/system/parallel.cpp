@@ -4,7 +4,6 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
 #include <algorithm>
@@ -12,16 +11,20 @@
 #include <memory>
 #include <mutex>
 #include <queue>
+#include <utility>
 
 #include "core/system/interrupt.h"
+#include "core/system/task_arena.h"
 
 namespace tuft {
 namespace {
 
 std::atomic<int> g_threads{0};
-thread_local bool t_in_task = false;  // of `run_tasks`
+thread_local bool t_in_task = false;
 
-tbb::task_arena& arena() {
+}  // namespace
+
+tbb::task_arena& task_arena() {
     // One arena, rebuilt when the count changes; TBB sizes it once.
     static std::mutex mutex;
     static std::unique_ptr<tbb::task_arena> current;
@@ -39,7 +42,11 @@ tbb::task_arena& arena() {
     return *current;
 }
 
-}  // namespace
+LoopsOnThisThread::LoopsOnThisThread() : before_(std::exchange(t_in_task, true)) {}
+
+LoopsOnThisThread::~LoopsOnThisThread() {
+    t_in_task = before_;
+}
 
 void set_thread_count(int n) {
     g_threads = std::max(0, n);
@@ -58,7 +65,7 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
         body(0, n);
         return;
     }
-    arena().execute([&] {
+    task_arena().execute([&] {
         // A thread that waits for a loop within a loop takes nothing of the outer one meanwhile, which may wait for it.
         tbb::this_task_arena::isolate([&] {
             tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
@@ -98,14 +105,15 @@ void run_tasks(const std::vector<std::vector<std::uint32_t>>& before, const std:
             if (--waits[next] == 0) ready.push(next), ++released;
         return released;
     };
-    arena().execute([&] {
+    task_arena().execute([&] {
         tbb::task_group group;
         // One call for every task that is ready; which one it takes is decided when it runs.
         const std::function<void()> run_next = [&] {
             const std::size_t i = take();
-            t_in_task = true;
-            task(i);
-            t_in_task = false;
+            {
+                const LoopsOnThisThread sequential;
+                task(i);
+            }
             for (std::size_t k = release(i); k > 0; --k) group.run(run_next);
         };
         for (std::size_t k = ready.size(); k > 0; --k) group.run(run_next);

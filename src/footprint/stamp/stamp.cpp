@@ -41,12 +41,12 @@ double count_sub_poses(const Footprint& footprint, const Motion& motion, double 
 
 /// Poses of the picture at the middles of equal parts of the motion. At a part σ before
 /// its end a texel at (u, v) sees the picture's point x = R(σ turn) ((u, v) + σ shift).
-std::vector<SubPose> make_sub_poses(const Footprint& footprint, const Motion& motion, double texel_size,
-                                    const StampOptions& options) {
+void set_sub_poses(const Footprint& footprint, const Motion& motion, double texel_size, const StampOptions& options,
+                   std::vector<SubPose>& poses) {
     const double wanted = count_sub_poses(footprint, motion, texel_size, options);
-    if (!(wanted > 0)) return {SubPose{}};
+    if (!(wanted > 0)) return poses.assign(1, {});
     const int n = static_cast<int>(std::clamp(wanted, 1.0, double(std::max(options.max_sub_poses, 1))));
-    std::vector<SubPose> poses(n);
+    poses.resize(n);
     const Vec2 zero = footprint.lo / footprint.cell + 0.5;  // cell (0, 0) in cells from the origin
     for (int k = 0; k < n; ++k) {
         const double rest = 1 - (k + 0.5) / n;
@@ -60,7 +60,6 @@ std::vector<SubPose> make_sub_poses(const Footprint& footprint, const Motion& mo
                     static_cast<float>(c * p.x - s * p.y - zero.x),
                     static_cast<float>(s * p.x + c * p.y - zero.y)};
     }
-    return poses;
 }
 
 Reach reach_of(const Footprint& footprint, const Motion& motion) {
@@ -253,7 +252,7 @@ StampJobs plan_stamp(const Surface& surface, const Footprint& footprint, const M
     const double wanted = motion.turn == 0 ? count_sub_poses(footprint, motion, texel_size, options) : 0;
     const bool takes_max = options.max_weight > 0 && wanted > 0;
     const bool swept = takes_max || (options.prefix_sums > 0 && wanted >= options.prefix_sums);
-    if (!swept) jobs.sub_poses = make_sub_poses(footprint, motion, texel_size, options);
+    if (!swept) set_sub_poses(footprint, motion, texel_size, options, jobs.sub_poses);
     list_clusters(surface.clusters, footprint, motion, scratch, jobs);
     if (jobs.discrepancy > std::min(options.enter, options.leave))
         place_clusters(surface.clusters, footprint, scratch, jobs);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "core/system/parallel.h"
 
@@ -25,25 +26,29 @@ bool StampBatch::add(Stamp stamp) {
 void StampBatch::plan() {
     const footprint::Surface surface = target_.model().surface();
     const double texel = target_.texels().texel_size;
-    parallel_for(batch_.size(), 2, [&](std::size_t begin, std::size_t end) {
+    const auto plan_some = [&](std::size_t begin, std::size_t end) {
         PlanScratchPool::Lease scratch(target_.scratch());
         for (std::size_t i = begin; i < end; ++i)
             plans_[i] = footprint::plan_stamp(surface, batch_[i].footprint, joined_motion(batch_[i], texel),
                                               stamp_options(options_, batch_[i]), scratch, std::move(plans_[i]));
-    });
+    };
+    parallel_for(batch_.size(), 2, std::ref(plan_some));  // by reference: a loop allocates nothing
 }
 
-std::vector<StampBatch::TileStamp> StampBatch::sort_by_tile() {
-    std::vector<TileStamp> order;
+void StampBatch::sort_by_tile() {
+    order_.clear();
     for (std::uint32_t i = 0; i < batch_.size(); ++i) {
         if (plans_[i].empty()) continue;
         piecewise_ = footprint::choose_mode(plans_[i], piecewise_, options_);
-        for (std::uint32_t k = 0; k < plans_[i].tiles.size(); ++k) order.push_back({plans_[i].tiles[k].slot, i, k});
+        for (std::uint32_t k = 0; k < plans_[i].tiles.size(); ++k) order_.push_back({plans_[i].tiles[k].slot, i, k});
     }
-    std::sort(order.begin(), order.end(), [](const TileStamp& a, const TileStamp& b) {
+    std::sort(order_.begin(), order_.end(), [](const TileStamp& a, const TileStamp& b) {
         return a.slot != b.slot ? a.slot < b.slot : a.stamp < b.stamp;
     });
-    return order;
+    first_.clear();
+    for (std::size_t k = 0; k < order_.size(); ++k)
+        if (k == 0 || order_[k].slot != order_[k - 1].slot) first_.push_back(k);
+    first_.push_back(order_.size());
 }
 
 // All stamps of one tile, by one thread. `erased`: one for each stamp, or none.
@@ -72,43 +77,39 @@ void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const i
 double StampBatch::flush(const ProgressFn& going_on) {
     if (batch_.empty()) return 0;
     plan();
-    const std::vector<TileStamp> order = sort_by_tile();
-    std::vector<std::size_t> first;  // of each tile's stamps
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        if (k > 0 && order[k].slot == order[k - 1].slot) continue;
-        first.push_back(k);
-        target_.snapshot(order[k].slot);
-    }
-    first.push_back(order.size());
+    sort_by_tile();
+    const std::size_t n_tiles = first_.size() - 1;
+    for (std::size_t t = 0; t < n_tiles; ++t) target_.snapshot(order_[first_[t]].slot);
 
     const bool erases = batch_.front().erases > 0;
-    for (std::size_t t = 0; erases && t + 1 < first.size(); ++t) {
-        const std::uint32_t slot = order[first[t]].slot;
+    for (std::size_t t = 0; erases && t < n_tiles; ++t) {
+        const std::uint32_t slot = order_[first_[t]].slot;
         if (!erase_starts_.contains(slot)) erase_starts_.emplace(slot, ink::erase_start(target_.canvas(), slot));
     }
     if (std::any_of(batch_.begin(), batch_.end(), [](const Stamp& s) { return s.by_hair; })) target_.prepare_grain();
     std::array<ink::DepositLaw, kStamps> laws;
     for (std::size_t i = 0; i < batch_.size(); ++i) laws[i] = ink::deposit_law(batch_[i].ink, batch_[i].ds);
 
-    std::vector<double> given(order.size(), 0.0);
-    std::vector<ink::Amounts> erased(erases ? order.size() : 0);
-    for (std::size_t from = 0; from + 1 < first.size(); from += kTilesPerReport) {
+    given_.assign(order_.size(), 0.0);
+    erased_of_.assign(erases ? order_.size() : 0, {});
+    for (std::size_t from = 0; from < n_tiles; from += kTilesPerReport) {
         report(going_on, "painting", 0);
-        const std::size_t n = std::min(kTilesPerReport, first.size() - 1 - from);
-        parallel_for(n, 4, [&](std::size_t begin, std::size_t end) {
+        const std::size_t n = std::min(kTilesPerReport, n_tiles - from);
+        const auto write_some = [&](std::size_t begin, std::size_t end) {
             footprint::Unpacked unpacked;
             for (std::size_t t = from + begin; t < from + end; ++t) {
-                const std::size_t at = first[t], n_stamps = first[t + 1] - at;
-                write_tile(std::span(order).subspan(at, n_stamps), laws,
-                           erases ? std::span(erased).subspan(at, n_stamps) : std::span<ink::Amounts>(),
-                           std::span(given).subspan(at, n_stamps), unpacked);
+                const std::size_t at = first_[t], n_stamps = first_[t + 1] - at;
+                write_tile(std::span(order_).subspan(at, n_stamps), laws,
+                           erases ? std::span(erased_of_).subspan(at, n_stamps) : std::span<ink::Amounts>(),
+                           std::span(given_).subspan(at, n_stamps), unpacked);
             }
-        });
+        };
+        parallel_for(n, 4, std::ref(write_some));
     }
     batch_.clear();
-    for (const ink::Amounts& e : erased) erased_ += e;
+    for (const ink::Amounts& e : erased_of_) erased_ += e;
     double sum = 0;
-    for (const double g : given) sum += g;
+    for (const double g : given_) sum += g;
     return sum;
 }
 

@@ -38,7 +38,7 @@ class StampBatch {
         std::uint32_t slot, stamp, tile;
     };
     void plan();
-    std::vector<TileStamp> sort_by_tile();
+    void sort_by_tile();
     void write_tile(std::span<const TileStamp> stamps, std::span<const ink::DepositLaw> laws,
                     std::span<ink::Amounts> erased, std::span<double> given, footprint::Unpacked& unpacked);
 
@@ -47,6 +47,11 @@ class StampBatch {
     std::vector<Stamp> batch_;
     std::vector<footprint::StampJobs> plans_;  ///< one per place in the batch; memory is reused
     bool piecewise_ = false;
+    // Of the present batch; their memory is reused.
+    std::vector<TileStamp> order_;         ///< by tile, then by stamp
+    std::vector<std::size_t> first_;       ///< of each tile in `order_`, and its end
+    std::vector<double> given_;            ///< film·m², by `order_`
+    std::vector<ink::Amounts> erased_of_;  ///< likewise; empty where nothing is erased
     ink::EraseStarts erase_starts_;
     ink::Amounts erased_;
 };

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/overloaded.h"
+#include "stroke/document/path_ahead.h"
 #include "stroke/document/tile_reach.h"
 #include "stroke/journal/tables.h"
 #include "stroke/session/session.h"
@@ -82,11 +83,14 @@ StrokeReport Document::paint(JournalEntry entry, const ProgressFn& progress) {
     return report;
 }
 
-StrokeReport Document::perform(const JournalEntry& entry, const ProgressFn& progress) {
+// `path`: of a stroke, where it was computed ahead.
+StrokeReport Document::perform(const JournalEntry& entry, const ProgressFn& progress, PathAhead* path) {
     if (!entry.as<PaintStroke>()) cancel();
     const std::uint64_t id = entry.id;
     const auto done = [id] { return StrokeReport{.stroke_id = id}; };
-    return std::visit(Overloaded{[&](const PaintStroke& stroke) { return draw(id, stroke, progress); },
+    return std::visit(Overloaded{[&](const PaintStroke& stroke) {
+                                     return draw(id, stroke, path ? path->take() : path_of(stroke), progress);
+                                 },
                                  [&](const BrushAction& action) { return act(id, action), done(); },
                                  [&](const Dry& wait) { return dry(id, wait, progress), done(); },
                                  [&](const WashPalette&) { return wash(id), done(); },

@@ -32,6 +32,8 @@ struct DocumentOptions {
 
 class FlatTexels;
 struct FillResult;
+struct HandPath;
+class PathAhead;
 class PlanScratchPool;
 struct SessionResult;
 class StrokeSession;
@@ -123,8 +125,8 @@ class Document {
     void settle(PaintStroke& stroke) const;
     void settle(EntryContent& content) const;
 
-    StrokeReport perform(const JournalEntry& entry, const ProgressFn& progress);
-    StrokeReport draw(std::uint64_t id, const PaintStroke& stroke, const ProgressFn& progress);
+    StrokeReport perform(const JournalEntry& entry, const ProgressFn& progress, PathAhead* path = nullptr);
+    StrokeReport draw(std::uint64_t id, const PaintStroke& stroke, const HandPath& path, const ProgressFn& progress);
     void act(std::uint64_t id, const BrushAction& action);
     void dry(std::uint64_t id, const Dry& wait, const ProgressFn& progress);
     void wash(std::uint64_t id);
@@ -150,6 +152,7 @@ class Document {
     void take_back(std::span<BatchStroke> batch);
 
     HandPath path_of(const PaintStroke& stroke);
+    std::unique_ptr<PathAhead> plan_path_ahead(const JournalEntry& entry);
     std::unique_ptr<StrokeSession> make_session(PaintStroke stroke, const std::vector<TileUse>* plan = nullptr);
     StrokeReport finish_session(std::uint64_t id);
     StrokeReport put_down(std::uint64_t id, const PaintStroke& stroke, SessionResult result, std::size_t n_pigments);

@@ -11,6 +11,7 @@
 #include "core/system/parallel.h"
 #include "stroke/document/document.h"
 #include "stroke/document/paint_path.h"
+#include "stroke/document/path_ahead.h"
 #include "stroke/document/tile_reach.h"
 
 /// Many entries in turn. A stroke that begins with a fresh brush depends on the model and on the ink in the tiles it
@@ -180,7 +181,10 @@ void Document::paint_step(BatchStroke& stroke, std::size_t step, const ProgressF
     const std::span<const brush::Pose> poses = stroke.path.poses;
     if (step == 0) {
         begin_path(session, stroke.path, progress);
-        if (std::optional<StrokeForecast> forecast = session.forecast(poses)) session.use(std::move(*forecast));
+        if (std::unique_ptr<StrokeForecast> forecast = session.forecast(poses)) {
+            forecast->compute();
+            session.use(std::move(forecast));
+        }
         return;
     }
     const std::size_t part = step - 1;
@@ -263,17 +267,22 @@ void Document::perform_all(std::vector<JournalEntry>& entries, const EntrySteps&
             return !progress || progress(phase, (static_cast<double>(first) + part * static_cast<double>(n)) / all);
         };
     };
+    std::unique_ptr<PathAhead> path;  // of entry i, or null
     while (i < entries.size()) {
         std::vector<BatchStroke> batch = plan_batch(std::span(entries).subspan(i), steps);
         if (batch.size() > 1) {
             paint_batch(batch, part_of(batch.size()));
             const std::size_t appended = append_batch(batch, steps);
             i += appended;
+            if (appended > 0) path.reset();
             if (appended == batch.size()) continue;
         }
         JournalEntry& entry = entries[i];
         if (steps.prepare) steps.prepare(entry, 0);
-        StrokeReport report = entry.hidden ? StrokeReport{} : perform(entry, part_of(1));
+        const std::unique_ptr<PathAhead> own = std::exchange(path, nullptr);
+        if (thread_count() > 1 && i + 1 < entries.size() && !paints_beside_others(entries[i + 1]))
+            path = plan_path_ahead(entries[i + 1]);
+        StrokeReport report = entry.hidden ? StrokeReport{} : perform(entry, part_of(1), own.get());
         steps.append(entry, std::move(report));
         ++i;
     }

@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "contact/node_contact.h"
+#include "core/system/parallel.h"
 #include "stroke/document/document.h"
 #include "stroke/document/paint_path.h"
+#include "stroke/document/path_ahead.h"
 #include "stroke/gesture/hand.h"
 #include "stroke/gesture/resample.h"
 #include "stroke/journal/tables.h"
@@ -150,6 +152,7 @@ StrokeReport Document::put_down(std::uint64_t id, const PaintStroke& stroke, Ses
 }
 
 HandPath Document::path_of(const PaintStroke& stroke) {
+    if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
     if (!stroke.trace.flat) return {{}, spatial_poses(stroke.trace), 0};
     const Model& model = stroke.layer == kPaletteLayer ? palette_.model() : model_;
     const mesh::SurfaceQuery& query = *model.query;
@@ -157,13 +160,32 @@ HandPath Document::path_of(const PaintStroke& stroke) {
                      materials_.holder(stroke.brush, query.mesh(), stroke.settings.compensate_tip_lag));
 }
 
-StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const ProgressFn& progress) {
-    if (stroke.trace.samples.empty()) throw Error("a stroke without samples cannot be painted");
-    const HandPath path = path_of(stroke);
+// The path of a stroke of the model that is likely to be painted by itself, in work; null where it has none.
+std::unique_ptr<PathAhead> Document::plan_path_ahead(const JournalEntry& entry) {
+    const PaintStroke* stroke = entry.as<PaintStroke>();
+    if (entry.hidden || !stroke || !stroke->trace.flat || stroke->trace.samples.empty() || on_palette(entry))
+        return nullptr;
+    try {
+        return std::make_unique<PathAhead>(
+            *stroke, materials_.holder(stroke->brush, *model_.mesh, stroke->settings.compensate_tip_lag),
+            *model_.query);
+    } catch (const Error&) {
+        return nullptr;  // it is reported when its turn comes
+    }
+}
+
+StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const HandPath& path,
+                            const ProgressFn& progress) {
     cancel();
     session_ = make_session(stroke);
     try {
         begin_path(*session_, path, progress);
+        if (thread_count() > 1) {
+            if (std::unique_ptr<StrokeForecast> forecast = session_->forecast(path.poses)) {
+                forecast->compute_ahead();
+                session_->use(std::move(forecast));
+            }
+        }
         paint_poses(*session_, path.poses, 0, path.poses.size());
         StrokeReport report = finish_session(id);
         note_origin(report, stroke, target(stroke.layer, 0).model);

@@ -1,16 +1,18 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "contact/contact.h"
+#include "core/system/work_ahead.h"
 #include "stroke/contact/hair_shape.h"
 #include "stroke/contact/tuft_in_hand.h"
 
 /// \file
 /// Bending and contact of a stroke's hair, computed before its ink is deposited. Both do not depend on the ink of wet
-/// hair. Strokes are forecast at the same time; their ink is deposited in turn. `StrokeSession` uses a forecast as long
-/// as the hair is wet.
+/// hair. `StrokeSession` uses a forecast as long as the hair is wet. Strokes of a batch are forecast at the same time;
+/// a stroke that is painted by itself is forecast by another thread a little ahead of its ink.
 namespace tuft::stroke {
 
 /// Contact and hair at one pose of a path, as the session would compute them.
@@ -31,30 +33,47 @@ class StrokeForecast {
         double cell = 1e-4;  ///< metres, of footprints
     };
 
-    /// Returns true for a tuft that can be forecast: fresh, hair in a ferrule, bent by the rods of `brush/rod`.
-    static bool serves(const brush::Tuft& tuft) { return !tuft.posed && !tuft.split && !tuft.model && !tuft.carried; }
+    /// Returns true for a tuft that can be forecast: not split, hair in a ferrule, bent by the rods of `brush/rod`.
+    static bool serves(const brush::Tuft& tuft) { return !tuft.split && !tuft.model && !tuft.carried; }
 
-    /// `path`: poses of the resampled path. Cost: that of bending and outlines at every pose.
-    StrokeForecast(brush::Tuft tuft, std::span<const brush::Pose> path, const mesh::SurfaceQuery& surface,
+    /// `path`: poses of the resampled path. `tuft`: as the stroke begins. Computes nothing yet.
+    StrokeForecast(brush::Tuft tuft, std::vector<brush::Pose> path, const mesh::SurfaceQuery& surface,
                    const Options& options);
+    StrokeForecast(const StrokeForecast&) = delete;
+    StrokeForecast& operator=(const StrokeForecast&) = delete;
+
+    /// Computes all poses, with footprints. Cost: that of bending and outlines at every pose. Once, before `next`.
+    void compute();
+    /// Instead of `compute`: lets another thread compute poses while `next` returns those before, some 100 ahead.
+    void compute_ahead();
 
     /// Returns the forecast of the next pose where it is valid for this pose and this hair, else null. The result may
-    /// be moved from.
-    PoseForecast* next(const brush::Pose& pose, const brush::Tuft& hair);
+    /// be moved from; it is valid until the next call. `closes`: the footprint of wet hair will be needed.
+    PoseForecast* next(const brush::Pose& pose, const brush::Tuft& hair, bool closes);
     /// Sets the hair and the memory of the contact to what they are after the poses returned by `next`. Bundles,
-    /// wetness and ink of `hair` stay. Cost: bending at all those poses, or nothing at the end of the path.
+    /// wetness and ink of `hair` stay. Cost: bending at up to 32 poses.
     void catch_up(brush::Tuft& hair, contact::Memory& memory);
 
   private:
-    brush::Tuft bend_to(std::size_t end, contact::Memory& memory) const;
+    /// Some poses of the path, and the hair before the first of them.
+    struct Part {
+        brush::Tuft hair;
+        contact::Memory memory;
+        std::vector<PoseForecast> poses;  ///< up to where the tuft splits
+    };
+    contact::Result bend(brush::Tuft& hair, contact::Memory& memory, std::size_t i) const;
+    void compute_part(std::size_t k, bool closes);
+    void close_together(Part& part, std::size_t from) const;
 
     const mesh::SurfaceQuery& surface_;
     Options options_;
-    brush::Tuft start_, end_;
-    contact::Memory end_memory_;
     std::vector<brush::Pose> path_;
-    std::vector<PoseForecast> poses_;  ///< up to where the tuft splits
+    std::vector<Part> parts_;
     std::size_t next_ = 0;
+    brush::Tuft hair_;  ///< after the poses computed so far
+    contact::Memory memory_;
+    LastHair last_;
+    std::unique_ptr<WorkAhead> ahead_;  ///< uses the others; null: all is computed
 };
 
 }  // namespace tuft::stroke

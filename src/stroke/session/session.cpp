@@ -112,7 +112,7 @@ void StrokeSession::paint_poses() {
 
 contact::Result StrokeSession::next_contact(const brush::Pose& pose, double dt) {
     if (contact_.forecast) {
-        if (PoseForecast* ready = contact_.forecast->next(pose, tuft_.brush.tuft)) {
+        if (PoseForecast* ready = contact_.forecast->next(pose, tuft_.brush.tuft, !hair_.by_hair())) {
             contact_.hair = std::move(ready->hair);
             contact_.last.store(tuft_.brush.tuft, pose, contact_.hair, ready->contact);
             return std::move(ready->contact);
@@ -266,12 +266,13 @@ std::vector<ForceRecord> StrokeSession::forces_at_samples() const {
     return records;
 }
 
-std::optional<StrokeForecast> StrokeSession::forecast(std::span<const brush::Pose> poses) const {
-    if (!StrokeForecast::serves(tuft_.brush.tuft)) return std::nullopt;
+std::unique_ptr<StrokeForecast> StrokeSession::forecast(std::span<const brush::Pose> poses) const {
+    if (!StrokeForecast::serves(tuft_.brush.tuft) || wetness_of(tuft_.brush.reservoir) < 1) return nullptr;
     Path path(path_options());
     for (const brush::Pose& pose : poses) path.resampler.push(next_pose(path, pose), path.poses);
     path.resampler.finish(path.poses);
-    return StrokeForecast(tuft_.brush.tuft, path.poses, *input_.model.query, {contact_.options, hair_.options().cell});
+    return std::make_unique<StrokeForecast>(tuft_.brush.tuft, std::move(path.poses), *input_.model.query,
+                                            StrokeForecast::Options{contact_.options, hair_.options().cell});
 }
 
 SessionResult StrokeSession::finish() {

@@ -61,11 +61,11 @@ class StrokeSession {
     void set_progress(ProgressFn progress) { progress_.ask = std::move(progress); }
     /// Throws `Error` where these poses, which are all of the stroke's, are a longer path than is painted.
     void check_length(std::span<const brush::Pose> poses) const;
-    /// Returns a forecast of the stroke along all of its poses, or nothing where its brush allows none. Before the
-    /// first `advance`; safe beside other sessions.
-    std::optional<StrokeForecast> forecast(std::span<const brush::Pose> poses) const;
+    /// Returns a forecast of the stroke along all of its poses, not computed yet, or null where its brush allows none.
+    /// Before the first `advance`; safe beside other sessions.
+    std::unique_ptr<StrokeForecast> forecast(std::span<const brush::Pose> poses) const;
     /// Takes a forecast of the poses that come. The bits are the same as without.
-    void use(StrokeForecast forecast) { contact_.forecast.emplace(std::move(forecast)); }
+    void use(std::unique_ptr<StrokeForecast> forecast) { contact_.forecast = std::move(forecast); }
     /// Paints the next poses. `done`: part of the stroke to be reported, 0–1.
     void advance(std::span<const brush::Pose> poses, double done = 0);
     /// Sets the part of the path that comes next, for the plan of tiles.
@@ -101,7 +101,7 @@ class StrokeSession {
         contact::Memory memory;
         contact::Options options;
         Vec3 device_force{0};
-        std::optional<StrokeForecast> forecast;
+        std::unique_ptr<StrokeForecast> forecast;
         HairShape hair;  // at the last pose that touched
         LastHair last;
     };

@@ -1,4 +1,4 @@
-#include "haptic/allocations.h"
+#include "core/system/allocations.h"
 
 #include <cstdlib>
 #include <new>
@@ -61,10 +61,10 @@ void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
     std::free(memory);
 }
 
-namespace tuft::haptic {
+namespace tuft {
 
 std::uint64_t allocations_of_this_thread() {
     return count;
 }
 
-}  // namespace tuft::haptic
+}  // namespace tuft
