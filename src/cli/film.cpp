@@ -213,6 +213,39 @@ void check_painted(const Film& a, const stroke::Document& finished) {
         throw Error(a.replay.project.string(), "nothing is painted: there is nothing to film");
 }
 
+/// Whether the project's stored texels are what is filmed.
+bool films_stored_work(const Replay& a) {
+    return a.model.empty() && a.brush.empty() && a.ink.empty() && a.surface.atlas_size == 0 &&
+           a.surface.texel_size_mm == 0 && !a.surface.new_uv && a.surface.seams == "free";
+}
+
+PictureLook look_of_finished(const Film& a, OpenProject& project, const stroke::Model& model, Console& console) {
+    stroke::Document finished(model);
+    if (films_stored_work(a.replay)) {
+        restore(project, finished, console);
+    } else {
+        finished.use(project.substrate);
+        io::use_presets(project.file, finished);
+        finished.replay(replay_entries(a.replay, project, finished), console.progress());
+    }
+    io::apply_recolouring(project.file, finished);
+    check_painted(a, finished);
+    return make_look(model, &finished, "", a.replay.view.raking);
+}
+
+void print_result(const Film& a, const Timeline& timeline) {
+    const int frames = timeline.frames + timeline.still;
+    if (a.common.json)
+        print_json(nlohmann::json{{"project", a.replay.project.string()},
+                                  {"wrote", a.output.string()},
+                                  {"frames", frames},
+                                  {"seconds", frames / a.frames_per_second},
+                                  {"work_seconds", timeline.total}});
+    else
+        fmt::print("filmed {:.0f} s of work in {} frames, {:.1f} s\nwrote {}\n", timeline.total, frames,
+                   frames / a.frames_per_second, a.output.string());
+}
+
 }  // namespace
 
 int run(const Film& a) {
@@ -222,25 +255,9 @@ int run(const Film& a) {
     if (io::is_film_file(a.output)) check_output(a.output);
     Console console(a.common.quiet);
     const auto project = open_project(a.replay.project, io::Access::read, console);
-    const bool same = a.replay.model.empty() && a.replay.brush.empty() && a.replay.ink.empty();
-    const bool stored = same && a.replay.surface.atlas_size == 0 && a.replay.surface.texel_size_mm == 0 &&
-                        !a.replay.surface.new_uv && a.replay.surface.seams == "free";
     const stroke::Model model = replay_model(a.replay, *project, console);
-    PictureLook lit;
-    {
-        stroke::Document finished(model);
-        if (stored) {
-            restore(*project, finished, console);
-        } else {
-            finished.use(project->substrate);
-            io::use_presets(project->file, finished);
-            finished.replay(replay_entries(a.replay, *project, finished), console.progress());
-        }
-        io::apply_recolouring(project->file, finished);
-        check_painted(a, finished);
-        lit = make_look(model, &finished, "", a.replay.view.raking);
-        lit.point_to_maps(model);
-    }
+    PictureLook lit = look_of_finished(a, *project, model, console);
+    lit.point_to_maps(model);
     stroke::Document painting(model);
     painting.use(project->substrate);
     io::use_presets(project->file, painting);
@@ -253,16 +270,7 @@ int run(const Film& a) {
         {.width = a.replay.view.width, .height = a.replay.view.height, .frames_per_second = a.frames_per_second},
         [&](io::FilmSink& sink) { shoot(std::move(entries), timeline, painting, camera, sink); });
     console.clear();
-    const int frames = timeline.frames + timeline.still;
-    if (a.common.json)
-        print_json(nlohmann::json{{"project", a.replay.project.string()},
-                                  {"wrote", a.output.string()},
-                                  {"frames", frames},
-                                  {"seconds", frames / a.frames_per_second},
-                                  {"work_seconds", timeline.total}});
-    else
-        fmt::print("filmed {:.0f} s of work in {} frames, {:.1f} s\nwrote {}\n", timeline.total, frames,
-                   frames / a.frames_per_second, a.output.string());
+    print_result(a, timeline);
     return 0;
 }
 

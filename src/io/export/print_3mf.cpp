@@ -233,6 +233,38 @@ class Painter {
     std::vector<Facet> facets_;
 };
 
+/// Textures of a package: of page p the picture has the id 2 p + 1, its UVs the next.
+struct TexturedPages {
+    std::string resources, relations;  ///< XML
+    std::vector<std::uint32_t> index;  ///< [n_wedges] of its UV on its page
+};
+
+TexturedPages add_textures(ZipWriter& zip, const ExportScene& scene, std::span<const EncodedMap> maps) {
+    TexturedPages out;
+    std::vector<std::string> uvs(scene.udims.size());
+    std::vector<std::uint32_t> count(uvs.size(), 0);
+    for (const std::uint32_t corner : scene.wedges.corner) {
+        const std::uint32_t page = scene.page_of(corner / 3);
+        out.index.push_back(count[page]++);
+        fmt::format_to(std::back_inserter(uvs[page]), "<m:tex2coord u=\"{:.9g}\" v=\"{:.9g}\"/>\n",
+                       scene.corner_uvs[corner].x, scene.corner_uvs[corner].y);
+    }
+    for (const EncodedMap& map : maps) {
+        if (map.kind != "base_colour" || uvs[map.page].empty()) continue;
+        const std::string name = fmt::format("3D/Textures/{}", map.file);
+        zip.add(name, std::span<const std::uint8_t>(map.png), ZipWriter::Method::stored);
+        out.relations += fmt::format(
+            " <Relationship Target=\"/{}\" Id=\"rel{}\" "
+            "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture\"/>\n",
+            name, map.page);
+        out.resources += fmt::format(
+            "  <m:texture2d id=\"{0}\" path=\"/{2}\" contenttype=\"image/png\" tilestyleu=\"clamp\" "
+            "tilestylev=\"clamp\"/>\n  <m:texture2dgroup id=\"{1}\" texid=\"{0}\">\n{3}  </m:texture2dgroup>\n",
+            2 * map.page + 1, 2 * map.page + 2, name, uvs[map.page]);
+    }
+    return out;
+}
+
 }  // namespace
 
 PaintedTriangles paint_triangles(const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
@@ -277,38 +309,16 @@ void write_3mf(const std::filesystem::path& path, const ExportScene& scene, std:
     const bool closed = std::find(mesh.neighbours.begin(), mesh.neighbours.end(), kNone) == mesh.neighbours.end();
     ZipWriter zip;
     add_package(zip, true);
-    std::string model = model_begin(), relations;
-    // Of a page: 2 × page + 1 its picture, the next number its UVs.
-    const auto pages = static_cast<std::uint32_t>(scene.udims.size());
-    std::vector<std::string> uvs(pages);
-    std::vector<std::uint32_t> count(pages, 0), index(scene.wedges.corner.size());
-    for (std::size_t w = 0; w < index.size(); ++w) {
-        const std::uint32_t corner = scene.wedges.corner[w], page = scene.page_of(corner / 3);
-        index[w] = count[page]++;
-        fmt::format_to(std::back_inserter(uvs[page]), "<m:tex2coord u=\"{:.9g}\" v=\"{:.9g}\"/>\n",
-                       scene.corner_uvs[corner].x, scene.corner_uvs[corner].y);
-    }
-    for (const EncodedMap& map : maps) {
-        if (map.kind != "base_colour" || uvs[map.page].empty()) continue;
-        const std::string name = fmt::format("3D/Textures/{}", map.file);
-        zip.add(name, std::span<const std::uint8_t>(map.png), ZipWriter::Method::stored);
-        relations += fmt::format(
-            " <Relationship Target=\"/{}\" Id=\"rel{}\" "
-            "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture\"/>\n",
-            name, map.page);
-        model += fmt::format(
-            "  <m:texture2d id=\"{0}\" path=\"/{2}\" contenttype=\"image/png\" tilestyleu=\"clamp\" "
-            "tilestylev=\"clamp\"/>\n  <m:texture2dgroup id=\"{1}\" texid=\"{0}\">\n{3}  </m:texture2dgroup>\n",
-            2 * map.page + 1, 2 * map.page + 2, name, uvs[map.page]);
-    }
-    const int object = static_cast<int>(2 * pages + 1);
+    const TexturedPages pages = add_textures(zip, scene, maps);
+    std::string model = model_begin() + pages.resources;
+    const int object = static_cast<int>(2 * scene.udims.size() + 1);
     const std::uint32_t first = scene.page_of(0);
     model += fmt::format("  <object id=\"{}\" name=\"{}\" type=\"{}\" pid=\"{}\" pindex=\"0\"><mesh>\n", object,
                          xml_text(scene.name), closed ? "model" : "surface", 2 * first + 2);
     append_vertices(model, mesh.positions);
     for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
         const auto& v = mesh.triangles[t];
-        const auto p = [&](std::size_t k) { return index[scene.wedges.corner_wedge[3 * t + k]]; };
+        const auto p = [&](std::size_t k) { return pages.index[scene.wedges.corner_wedge[3 * t + k]]; };
         fmt::format_to(std::back_inserter(model),
                        "<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\" pid=\"{}\" p1=\"{}\" p2=\"{}\" p3=\"{}\"/>\n", v[0],
                        v[1], v[2], 2 * scene.page_of(t) + 2, p(0), p(1), p(2));
@@ -318,7 +328,7 @@ void write_3mf(const std::filesystem::path& path, const ExportScene& scene, std:
     zip.add("3D/_rels/3dmodel.model.rels",
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Relationships "
             "xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\n" +
-                relations + "</Relationships>\n");
+                pages.relations + "</Relationships>\n");
     const std::vector<std::uint8_t> bytes = zip.finish();
     write_staged(path, bytes.data(), bytes.size());
 }

@@ -92,6 +92,40 @@ std::array<float, 256> make_linear_of_code() {
     return linear;
 }
 
+/// What decides where the brush is seen.
+struct BrushScene {
+    const Camera& camera;
+    const mesh::SurfaceQuery& query;
+    const std::vector<AxisPoint>& axis;
+    Part part;
+};
+
+std::size_t first_channel(const Image& image, const Part& part, std::size_t k) {
+    const std::size_t x = k % static_cast<std::size_t>(part.width), y = k / static_cast<std::size_t>(part.width);
+    return 3 * ((static_cast<std::size_t>(part.y) + y) * static_cast<std::size_t>(image.width) +
+                static_cast<std::size_t>(part.x) + x);
+}
+
+/// Writes the pixels of the part that drawing changed, as far as the brush is before the model.
+void blend_visible(Image& image, const BrushScene& scene, const std::vector<float>& before,
+                   const std::vector<float>& drawn) {
+    const Part& part = scene.part;
+    parallel_for(before.size() / 3, 512, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const float *now = &drawn[3 * k], *was = &before[3 * k];
+            if (std::equal(now, now + 3, was)) continue;
+            const float seen = visible_part(scene.camera, scene.query, scene.axis,
+                                            part.x + static_cast<int>(k % static_cast<std::size_t>(part.width)),
+                                            part.y + static_cast<int>(k / static_cast<std::size_t>(part.width)));
+            if (seen <= 0) continue;
+            std::uint8_t* out = &image.rgb[first_channel(image, part, k)];
+            for (std::size_t c = 0; c < 3; ++c)
+                out[c] = static_cast<std::uint8_t>(
+                    std::clamp(255 * encode_srgb(std::lerp(was[c], now[c], seen)) + 0.5f, 0.0f, 255.0f));
+        }
+    });
+}
+
 }  // namespace
 
 void draw_brush_in_picture(Image& image, const Camera& camera, const mesh::SurfaceQuery& query, const brush::Tuft& tuft,
@@ -112,14 +146,9 @@ void draw_brush_in_picture(Image& image, const Camera& camera, const mesh::Surfa
 
     static const std::array<float, 256> linear = make_linear_of_code();
     BrushCanvas canvas(part.width, part.height, Vec3{0});
-    const auto pixel_of = [&](int x, int y) {
-        return 3 * (static_cast<std::size_t>(part.y + y) * static_cast<std::size_t>(image.width) +
-                    static_cast<std::size_t>(part.x + x));
-    };
-    const std::size_t row = 3 * static_cast<std::size_t>(part.width);
-    for (int y = 0; y < part.height; ++y)
-        for (std::size_t i = 0; i < row; ++i)
-            canvas.rgb[static_cast<std::size_t>(y) * row + i] = linear[image.rgb[pixel_of(0, y) + i]];
+    for (std::size_t k = 0; k < canvas.rgb.size() / 3; ++k)
+        for (std::size_t c = 0; c < 3; ++c)
+            canvas.rgb[3 * k + c] = linear[image.rgb[first_channel(image, part, k) + c]];
     const std::vector<float> before = canvas.rgb;
     // Sheared axes: a point farther off lies nearer to the middle of the picture.
     const Vec3 sight = (tip - camera.eye) / foot->z;
@@ -130,21 +159,7 @@ void draw_brush_in_picture(Image& image, const Camera& camera, const mesh::Surfa
                          .up = camera.up - glm::dot(sight, camera.up) * camera.forward};
     draw_brush(canvas, {tuft, state, tuft.pose}, view, length, {.ground = -std::numeric_limits<double>::infinity()});
 
-    parallel_for(static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height), 512,
-                 [&](std::size_t begin, std::size_t end) {
-                     for (std::size_t k = begin; k < end; ++k) {
-                         const float* now = &canvas.rgb[3 * k];
-                         const float* was = &before[3 * k];
-                         if (std::equal(now, now + 3, was)) continue;
-                         const int x = static_cast<int>(k % static_cast<std::size_t>(part.width)),
-                                   y = static_cast<int>(k / static_cast<std::size_t>(part.width));
-                         const float seen = visible_part(camera, query, axis, part.x + x, part.y + y);
-                         if (seen <= 0) continue;
-                         for (std::size_t c = 0; c < 3; ++c)
-                             image.rgb[pixel_of(x, y) + c] = static_cast<std::uint8_t>(
-                                 std::clamp(255 * encode_srgb(std::lerp(was[c], now[c], seen)) + 0.5f, 0.0f, 255.0f));
-                     }
-                 });
+    blend_visible(image, {camera, query, axis, part}, before, canvas.rgb);
 }
 
 }  // namespace tuft::render
