@@ -38,8 +38,8 @@ stroke/deposit
 stroke/session
 stroke/document
 motion
-io/font io/image render/brush render/picture render/gl
-io/model io/motion
+io/font io/image render/brush render/gl
+io/model io/motion render/picture
 io/export io/project io/strokes
 io/sheet
 writer/glyphs

@@ -25,7 +25,7 @@ set(same_version "(= ${PROJECT_VERSION}-1)")
 set(CPACK_DEBIAN_TUFT_PACKAGE_NAME tuft)
 set(CPACK_DEBIAN_TUFT_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_TUFT_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_TUFT_PACKAGE_SUGGESTS tuft-studio)
+set(CPACK_DEBIAN_TUFT_PACKAGE_SUGGESTS "tuft-studio, ffmpeg")
 set(CPACK_DEBIAN_TUFT_DESCRIPTION "ink and a bending hair brush on the surface of 3D models
 tuft makes a texture atlas for a product, clay or scan mesh, lets a physically
 bending brush touch the real curved surface, leaves ink in the texels that it

@@ -118,17 +118,38 @@ CLI::App* add_export(CLI::App& app, Export& exported) {
     auto* command = app.add_subcommand("export", "write a project's textured model, maps or strokes");
     command->add_option("PROJECT", exported.project, "project file (.tuft)")->required();
     command
-        ->add_option("-o,--output", exported.output,
-                     ".glb, .gltf, .obj (model); .png, .exr (one map); .inkml (strokes, to the bit)")
+        ->add_option(
+            "-o,--output", exported.output,
+            ".glb, .gltf, .obj, .3mf (model); .png, .exr (one map); .ora (layers, OpenRaster); .inkml (strokes, to the "
+            "bit)")
         ->required();
     command
         ->add_option("--map", exported.map,
-                     "which map a .png or .exr holds: base-colour, normal, height, roughness, pigments (.exr) or "
-                     "palette (.png); "
+                     "which map a .png or .exr holds: base-colour, normal, height, roughness, pigments (.exr), "
+                     "layers (.exr) or palette (.png); "
                      "default: the file's name if it is one of these, else base-colour")
         ->check(CLI::IsMember(io::map_names()));
     command->add_option("--bits", exported.bits, "8 or 16 bits a channel of base-colour.png")
         ->check(CLI::IsMember({8, 16}));
+    command
+        ->add_option("--colour-space", exported.colour_space,
+                     "of base-colour and layers, whose profile is stored: srgb (default), display-p3, or acescg "
+                     "(linear: .exr, or .png with 16 bits)")
+        ->check(CLI::IsMember(ink::colour_space_names()));
+    auto* filaments =
+        command
+            ->add_option("--filaments", exported.filaments,
+                         ".3mf: paint triangles in these filaments instead of a texture: colours (#f4f2ea,#203060,...) "
+                         "or a .toml file; the first is the core")
+            ->type_name("COLOURS");
+    command->add_option("--wall", exported.wall_mm, "painted wall in mm, through which the core shows (default: 0.45)")
+        ->check(number_in(0.01, 100.0))
+        ->needs(filaments);
+    command
+        ->add_option("--detail", exported.detail_mm,
+                     "halve triangles of several colours until their edges are shorter, in mm (default: 0.5)")
+        ->check(number_in(0.01, 1000.0))
+        ->needs(filaments);
     add_recolouring(command, exported.recolouring);
     add_layers(command, exported.layers);
     add_common(command, exported.common);
@@ -298,8 +319,8 @@ std::vector<Entry> add_commands(CLI::App& app) {
         make_entry(app, add_unwrap), make_entry(app, add_replay),     make_entry(app, add_export),
         make_entry(app, add_decals), make_entry(app, add_trajectory), make_entry(app, add_layer),
         make_entry(app, add_fill),   make_entry(app, add_mask),       make_entry(app, add_render),
-        make_entry(app, add_brush),  make_entry(app, add_bias),       make_entry(app, add_ink),
-        make_entry(app, add_bench),  make_entry(app, add_device),
+        make_entry(app, add_film),   make_entry(app, add_brush),      make_entry(app, add_bias),
+        make_entry(app, add_ink),    make_entry(app, add_bench),      make_entry(app, add_device),
     };
 }
 

@@ -142,6 +142,9 @@ struct Export {
     std::vector<std::string> layers;  ///< as in `View`
     int bits = 8;                     ///< per channel of base-colour.png, 8 or 16
     std::string map;                  ///< to write as a picture; empty: by the file's name, else base-colour
+    std::string filaments;            ///< .3mf: colours or a .toml file; empty: a texture
+    double wall_mm = 0.45, detail_mm = 0.5;
+    std::string colour_space;  ///< srgb | display-p3 | acescg; empty: sRGB without a profile
     Recolouring recolouring;
     Common common;
 };
@@ -185,6 +188,19 @@ struct Render : FileReading {
     std::string material;  ///< empty: the project's substrate, else porcelain
     Recolouring recolouring;
     View view;
+    Common common;
+};
+
+/// `tuft film PROJECT -o OUTPUT`
+struct Film {
+    std::filesystem::path output;
+    Replay replay;  ///< project, and what is painted otherwise than in it; its outputs are not used
+    double seconds = 20;
+    double speed = 0;  ///< times as fast as the hand; 0: as fast as `seconds` needs
+    double frames_per_second = 25;
+    double still_seconds = 2;      ///< of the finished work at the end
+    std::string camera = "still";  ///< still | turntable | VIEW,VIEW,... | FILE.toml
+    bool no_brush = false;
     Common common;
 };
 
@@ -271,6 +287,7 @@ struct Decals {
     std::string grain = "free";  ///< free | up
     double dpi = 300;
     bool plates = false, strain_map = false;
+    std::string colour_space = "srgb";  ///< srgb | display-p3
     Common common;
 };
 
@@ -286,7 +303,7 @@ struct TrajectoryWork {
 };
 
 using Command = std::variant<Paint, Write, Inspect, Unwrap, Replay, Export, Render, Brush, BiasCorrection, Bench,
-                             LayerWork, FillWork, MaskWork, InkWork, DeviceWork, Decals, TrajectoryWork>;
+                             LayerWork, FillWork, MaskWork, InkWork, DeviceWork, Decals, TrajectoryWork, Film>;
 
 /// Parses the command line into `command`. Returns false, with the exit status in `status`, when there is nothing to
 /// run: after printing help or version (0), and after one line on standard error for a wrong command line (2). Main

@@ -15,6 +15,7 @@ int run(const Unwrap& arguments);
 int run(const Replay& arguments);
 int run(const Export& arguments);
 int run(const Render& arguments);
+int run(const Film& arguments);
 int run(const Brush& arguments);
 int run(const BiasCorrection& arguments);
 int run(const Bench& arguments);

@@ -102,6 +102,9 @@ CLI::App* add_decals(CLI::App& app, Decals& d) {
         ->check(CLI::IsMember({"free", "up"}));
     s->add_option("--dpi", d.dpi, "dots per inch of the print")->check(number_in(10, 4800));
     s->add_flag("--plates", d.plates, "print one plate for each pigment, a separation of its name (.pdf)");
+    s->add_option("--colour-space", d.colour_space,
+                  "of the pictures, whose profile is stored: srgb (default), display-p3")
+        ->check(CLI::IsMember({"srgb", "display-p3"}));
     s->add_flag("--strain-map", d.strain_map, "append pages that show the strain of the film");
     s->add_option("--guide", d.guide,
                   "folder for a placing guide: a picture of the model for each piece, and lines.obj, the cut lines on "

@@ -12,6 +12,7 @@
 #include "core/text/counted.h"
 #include "core/text/units.h"
 #include "ink/spectra/srgb.h"
+#include "io/image/icc_profile.h"
 #include "io/sheet/sheet_files.h"
 
 /// `tuft decals`: sheets of film from a project.
@@ -75,7 +76,8 @@ ink::AtlasMap<float> coverage_of_paint(const ink::AtlasMap<float>& amounts) {
 Maps make_decal_maps(const Decals& a, const stroke::Document& painting) {
     Maps maps;
     const ink::Stack stack = painting.appearance().stack();
-    const ink::ComposeOptions compose = painting.appearance().compose_options();
+    ink::ComposeOptions compose = painting.appearance().compose_options();
+    compose.space = *ink::colour_space_named(a.colour_space);
     const bool painted = !painting.layers().pigments().empty() && !stack.layers.empty();
     if (!painted && (a.mask.empty() || a.plates))
         throw Error(a.project.string(), "nothing is painted: there is no film to cut");
@@ -206,6 +208,7 @@ int run(const Decals& a) {
     for (const decal::Plate& plate : plates) source.full.push_back(static_cast<float>(plate.full));
     decal::Sheet sheet = decal::make_sheet(*project->model.mesh, source, sheet_options(a, console));
     sheet.plates = std::move(plates);
+    sheet.profile = io::icc_profile(*ink::colour_space_named(a.colour_space));
     std::vector<std::string> wrote;
     for (const auto& path : io::write_sheet(a.output, sheet)) wrote.push_back(path.string());
     if (!a.guide.empty())

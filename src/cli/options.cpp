@@ -149,6 +149,11 @@ void add_view_direction(CLI::App* app, View& v) {
 }
 
 void add_view(CLI::App* app, View& v) {
+    add_camera(app, v);
+    add_layers(app, v.layers);
+}
+
+void add_camera(CLI::App* app, View& v) {
     app->add_option_function<std::string>(
            "--size",
            [&v](const std::string& text) {
@@ -161,7 +166,6 @@ void add_view(CLI::App* app, View& v) {
            },
            "size of the picture, WIDTHxHEIGHT")
         ->type_name("WxH");
-    add_layers(app, v.layers);
     add_view_direction(app, v);
     app->add_option("--light", v.light, "turn the lights by so many degrees (they follow the camera)")
         ->check(number_in(-kMostDegrees, kMostDegrees, "DEGREES"));

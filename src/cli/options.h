@@ -41,6 +41,8 @@ CLI::Option* add_point(CLI::App* app, const std::string& name, std::vector<doubl
 void add_layers(CLI::App* app, std::vector<std::string>& layers);
 void add_recolouring(CLI::App* app, Recolouring& recolouring);
 void add_view_direction(CLI::App* app, View& v);
+/// Adds `add_view` without the layers.
+void add_camera(CLI::App* app, View& v);
 void add_view(CLI::App* app, View& v);
 /// Adds what `tuft write` takes besides: the text, its characters and its layout.
 void add_write_options(CLI::App* app, Write& write);
@@ -50,6 +52,8 @@ void add_paint_options(CLI::App* app, Paint& paint);
 CLI::App* add_device(CLI::App& app, DeviceWork& device);
 /// Adds `tuft decals`.
 CLI::App* add_decals(CLI::App& app, Decals& decals);
+/// Adds `tuft film`.
+CLI::App* add_film(CLI::App& app, Film& film);
 /// Adds `tuft trajectory`.
 CLI::App* add_trajectory(CLI::App& app, TrajectoryWork& work);
 

@@ -144,9 +144,19 @@ std::function<double(const std::string&)> lengths_of(stroke::Document& painting)
 
 }  // namespace
 
-RevisedStrokes revise_strokes(const Replay& a, std::vector<stroke::JournalEntry> strokes, stroke::Document& painting,
-                              const mesh::SurfaceQuery& former, const mesh::SurfaceQuery& revised) {
-    RevisedStrokes out{.former = std::move(strokes)};
+const mesh::SurfaceQuery& former_surface(const Replay& a, const OpenProject& project,
+                                         const stroke::Document& painting) {
+    return a.model.empty() ? *painting.model().query : *project.model.query;
+}
+
+RevisedStrokes replay_strokes(const Replay& a, const OpenProject& project, stroke::Document& painting) {
+    RevisedStrokes out{.change = {}, .former = project.file.strokes(), .followed = {}};
+    for (stroke::JournalEntry& s : out.former) {
+        if (!a.brush.empty()) stroke::set_brush(s, a.brush);
+        if (!a.ink.empty()) stroke::set_ink(s, a.ink);
+    }
+    find_presets(painting, out.former);
+    const mesh::SurfaceQuery &former = former_surface(a, project, painting), &revised = *painting.model().query;
     if (!a.model.empty()) {
         const Message fault = stroke::size_fault(out.former, lengths_of(painting), former, revised);
         if (!fault.empty()) throw Error(a.model.string(), Message("{} (see --unit)", fault));

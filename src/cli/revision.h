@@ -18,11 +18,13 @@ struct RevisedStrokes {
     std::vector<stroke::JournalEntry> followed;  ///< as they are painted
 };
 
-/// Returns the strokes as `--follow` and `--pull-back` say. Without `--model` they stay. Throws `Error` for a model
-/// that is too small for them. `former` and `revised` are the models of the project and of the file.
-RevisedStrokes revise_strokes(const Replay& arguments, std::vector<stroke::JournalEntry> strokes,
-                              stroke::Document& painting, const mesh::SurfaceQuery& former,
-                              const mesh::SurfaceQuery& revised);
+/// Returns the surface that a project was painted on. `painting` is on the model of `replay_model`.
+const mesh::SurfaceQuery& former_surface(const Replay& arguments, const OpenProject& project,
+                                         const stroke::Document& painting);
+
+/// Returns the strokes of a project with brush and ink of the arguments, moved as `--follow` and `--pull-back` say.
+/// Without `--model` they stay. Throws `Error` for an unknown preset and for a model that is too small for the strokes.
+RevisedStrokes replay_strokes(const Replay& arguments, const OpenProject& project, stroke::Document& painting);
 
 /// How the strokes lie on a revised model; which touch nothing where the model is the same.
 struct Fit {

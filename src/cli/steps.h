@@ -63,6 +63,21 @@ void check_outputs(const Outputs& outputs);
 /// Writes the exported model and the preview. The project is written while painting.
 void write_outputs(const Outputs& outputs, const stroke::Document& painting, Console& console);
 
+/// Surface of a model as a picture shows it, with its maps.
+struct PictureLook {
+    render::Appearance appearance;  ///< its maps are those below
+    ink::AtlasMap<float> colour, height;
+
+    /// Sets the maps of `appearance` after they were made or replaced.
+    void point_to_maps(const stroke::Model& model);
+};
+/// Returns what is painted on a model, or without `painting` the bare one, with a height map where `raking`.
+/// `material`: of the bare surface; empty: the painting's, else porcelain.
+PictureLook make_look(const stroke::Model& model, const stroke::Document* painting, const std::string& material,
+                      bool raking);
+/// Returns size, camera and lights of the arguments.
+render::PictureOptions picture_options(const View& view, const stroke::Model& model);
+
 /// What to draw. The references must outlive it.
 struct PictureRequest {
     const stroke::Model& model;
@@ -102,6 +117,9 @@ io::OpenOptions open_options(io::Access access, Console& console);
 /// Takes the lock of the project `path`, so that another program that holds it is reported before long work. Empty
 /// paths are skipped.
 std::optional<io::ProjectLock> reserve(const std::filesystem::path& path, Console& console);
+/// Returns the model that the strokes of a project are painted on again: the stored one, with a new atlas if asked for,
+/// or a revised file. The stored one is moved out of `project`.
+stroke::Model replay_model(const Replay& arguments, OpenProject& project, Console& console);
 std::unique_ptr<OpenProject> open_project(const std::filesystem::path& path, io::Access access, Console& console);
 /// Shows the painting by the project's recolouring, then by the command line's. Notes pigments that other inks share.
 void apply_recolouring(const io::Project& project, stroke::Document& painting, const Recolouring& recolouring,

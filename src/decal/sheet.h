@@ -59,6 +59,8 @@ struct Sheet {
     std::vector<PrintSurface> surfaces;
     std::vector<Plate> plates;  ///< of `PrintImage::plates`
     double max_strain = 0;      ///< limit
+    /// ICC profile of the colours of `PrintImage::rgb`; empty: the writer's own of sRGB.
+    std::vector<std::uint8_t> profile = {};
 };
 
 struct SheetOptions {

@@ -55,6 +55,29 @@ std::uint64_t one_by_one(const std::vector<JournalEntry>& entries, std::size_t n
     return p.layers().hash();
 }
 
+TEST_F(Batch, WatchedStrokesHaveTheSameBitsAndAreSeenAlongTheirWay) {
+    const std::vector<JournalEntry> entries = crossing_strokes();
+    const std::uint64_t expected = one_by_one(entries, entries.size());
+    set_thread_count(3);
+    Document p(model());
+    std::size_t strokes = 0, seen = 0;
+    double last = 1;
+    p.watch_poses([&](const StrokeSession& session, double part) {
+        if (part <= last) ++strokes;  // begins anew
+        last = part;
+        seen += session.tuft().branches.empty() ? 0 : 1;
+        EXPECT_GT(part, 0);
+        EXPECT_LE(part, 1);
+    });
+    p.paint(entries, {});
+    EXPECT_EQ(p.layers().hash(), expected);
+    EXPECT_EQ(strokes, entries.size());
+    EXPECT_GT(seen, 10 * entries.size());
+    p.watch_poses({});
+    p.paint(stroke_at(0, 0, 0));
+    EXPECT_EQ(strokes, entries.size());
+}
+
 TEST_F(Batch, PaintsTheBitsOfOneStrokeAfterTheOther) {
     const std::vector<JournalEntry> entries = crossing_strokes();
     set_thread_count(1);

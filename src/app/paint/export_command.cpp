@@ -23,7 +23,7 @@ void export_maps(const ExportModel& command, const stroke::Document& painting, c
         for (const std::string& name : names) {
             const std::string suffix = name == "base-colour" ? "" : "_" + name;
             io::write_map(folder / (command.path.stem().string() + suffix + command.path.extension().string()), name,
-                          painting, compose, 16);
+                          painting, compose, {.bits = 16});
         }
     });
 }

@@ -209,36 +209,72 @@ TileOut<std::uint8_t, 3> srgb8_of(const TileAppearance& appearance) {
     return out;
 }
 
+/// Of texels without ink, far from any chart.
+Rgb bare_colour(const Substrate& substrate, ColourSpace space) {
+    if (space == ColourSpace::srgb) return substrate.reflectance;
+    return into_gamut(transform(from_linear_srgb(space), substrate.reflectance), space);
+}
+
+TileOut<float, 3> linear_of(const TileAppearance& appearance) {
+    TileOut<float, 3> out;
+    for (int t = 0; t < kN; ++t)
+        for (int b = 0; b < 3; ++b) out[t][b] = appearance.colour[b][t];
+    return out;
+}
+
 }  // namespace
 
 AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                                      const ComposeOptions& options) {
+    const Rgb bare = bare_colour(substrate, options.space);
     std::array<std::uint8_t, 3> background;
-    for (int b = 0; b < 3; ++b) background[b] = code_of_linear(substrate.reflectance[b]);
+    for (int b = 0; b < 3; ++b) background[b] = code_of_linear(bare[b]);
     return compose<std::uint8_t, 3>(
         coloured_slots(stack), map, background, options,
-        [&](std::uint32_t slot) { return srgb8_of(shade_tile(stack, slot, substrate)); }, SrgbCode{});
+        [&](std::uint32_t slot) { return srgb8_of(shade_tile(stack, slot, substrate, true, options.space)); },
+        SrgbCode{});
 }
 
 void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t> slots, const Stack& stack,
                    const atlas::TexelMap& map, const Substrate& substrate, const ComposeOptions& options) {
     refresh<std::uint8_t, 3>(
-        image, slots, map, options, [&](std::uint32_t slot) { return srgb8_of(shade_tile(stack, slot, substrate)); },
+        image, slots, map, options,
+        [&](std::uint32_t slot) { return srgb8_of(shade_tile(stack, slot, substrate, true, options.space)); },
         SrgbCode{});
 }
 
 AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                                const ComposeOptions& options) {
     return compose<float, 3>(
-        coloured_slots(stack), map, substrate.reflectance, options,
-        [&](std::uint32_t slot) {
-            const TileAppearance appearance = shade_tile(stack, slot, substrate);
-            TileOut<float, 3> out;
-            for (int t = 0; t < kN; ++t)
-                for (int b = 0; b < 3; ++b) out[t][b] = appearance.colour[b][t];
-            return out;
-        },
+        coloured_slots(stack), map, bare_colour(substrate, options.space), options,
+        [&](std::uint32_t slot) { return linear_of(shade_tile(stack, slot, substrate, true, options.space)); },
         FloatCode{});
+}
+
+void refresh_linear(AtlasMap<float>& image, std::span<const std::uint32_t> slots, const Stack& stack,
+                    const atlas::TexelMap& map, const Substrate& substrate, const ComposeOptions& options) {
+    refresh<float, 3>(
+        image, slots, map, options,
+        [&](std::uint32_t slot) { return linear_of(shade_tile(stack, slot, substrate, true, options.space)); },
+        FloatCode{});
+}
+
+std::vector<std::uint32_t> refreshed_tiles(std::span<const std::uint32_t> slots, const atlas::TexelMap& map,
+                                           const ComposeOptions& options) {
+    if (!options.seams && options.gutter > 0) return with_neighbours(map, slots);
+    std::vector<std::uint32_t> tiles;
+    for (const std::uint32_t slot : slots) {
+        tiles.push_back(map.tile_of_slot[slot]);
+        if (!options.seams) continue;
+        const GutterPlan& plan = *options.seams;
+        for (std::uint32_t e = plan.first_of_slot[slot]; e < plan.first_of_slot[slot + 1]; ++e) {
+            const std::uint32_t texel = plan.gutter.texels[plan.entries[e]];
+            tiles.push_back(texel / map.size / kSide * map.tiles_per_side + texel % map.size / kSide);
+        }
+    }
+    std::sort(tiles.begin(), tiles.end());
+    tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+    return tiles;
 }
 
 AtlasMap<float> compose_height(const Stack& stack, const atlas::TexelMap& map, const ComposeOptions& options) {

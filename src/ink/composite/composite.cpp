@@ -74,10 +74,14 @@ TUFT_CLONES void gloss(float* __restrict roughness, const float* __restrict wet,
     }
 }
 
-/// Into the gamut of sRGB along the line to the grey of the same luminance.
-TUFT_CLONES void into_gamut(float* __restrict red, float* __restrict green, float* __restrict blue) {
+struct Luminance {
+    float red = 0.212639f, green = 0.715169f, blue = 0.072192f;  // of sRGB
+};
+
+/// Into the gamut along the line to the grey of the same luminance.
+TUFT_CLONES void into_gamut(float* __restrict red, float* __restrict green, float* __restrict blue, Luminance part_of) {
     for (int t = 0; t < kN; ++t) {
-        const float y = 0.212639f * red[t] + 0.715169f * green[t] + 0.072192f * blue[t];
+        const float y = part_of.red * red[t] + part_of.green * green[t] + part_of.blue * blue[t];
         const float grey = y > 0 ? (y < 1 ? y : 1) : 0;
         float low = red[t] < green[t] ? red[t] : green[t];
         low = low < blue[t] ? low : blue[t];
@@ -240,13 +244,15 @@ void reflect_base(Reflectances& r, TileBaseColour& base_colour, const BaseColour
         for (int c = 0; c < 3; ++c) add_scaled_plane(base_colour.bare[c].data(), r[b].data(), band_weights()[c][b]);
         below_interface(r[b].data(), static_cast<float>(kInterface.k2) * substrate.interface);
     }
-    into_gamut(base_colour.bare[0].data(), base_colour.bare[1].data(), base_colour.bare[2].data());
+    into_gamut(base_colour.bare[0].data(), base_colour.bare[1].data(), base_colour.bare[2].data(), {});
     for (int c = 0; c < 3; ++c)
         for (int t = 0; t < kN; ++t) base_colour.lack[c][t] = colour[c][t] - base_colour.bare[c][t];
 }
 
-/// Colour and gloss under the boundary of glaze and water.
-void finish_appearance(Reflectances& r, TileAppearance& appearance, const Plane* water, const Substrate& substrate) {
+/// Colour and gloss under the boundary of glaze and water. The colour is linear sRGB, cut to its gamut where that is
+/// the space wanted.
+void finish_appearance(Reflectances& r, TileAppearance& appearance, const Plane* water, const Substrate& substrate,
+                       ColourSpace space = ColourSpace::srgb) {
     constexpr Interface kInterface{};
     const auto k2 = static_cast<float>(kInterface.k2);
     alignas(64) Texels wet{};
@@ -261,7 +267,21 @@ void finish_appearance(Reflectances& r, TileAppearance& appearance, const Plane*
         if (water || substrate.interface > 0) under_interface(r[b].data(), wet.data(), substrate.interface, k2);
         for (int c = 0; c < 3; ++c) add_scaled_plane(appearance.colour[c].data(), r[b].data(), band_weights()[c][b]);
     }
-    into_gamut(appearance.colour[0].data(), appearance.colour[1].data(), appearance.colour[2].data());
+    if (space == ColourSpace::srgb)
+        into_gamut(appearance.colour[0].data(), appearance.colour[1].data(), appearance.colour[2].data(), {});
+}
+
+/// From linear sRGB, which may lie outside its gamut, to another space.
+void convert(TileAppearance& appearance, ColourSpace space) {
+    const Matrix3& matrix = from_linear_srgb(space);
+    alignas(64) std::array<Texels, 3> out{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            add_scaled_plane(out[i].data(), appearance.colour[c].data(), static_cast<float>(matrix[i][c]));
+    const Matrix3 xyz = xyz_of_linear(space);
+    into_gamut(out[0].data(), out[1].data(), out[2].data(),
+               {static_cast<float>(xyz[1][0]), static_cast<float>(xyz[1][1]), static_cast<float>(xyz[1][2])});
+    for (std::size_t c = 0; c < 3; ++c) std::copy(out[c].begin(), out[c].end(), appearance.colour[c].begin());
 }
 
 void add_layer(Reflectances& r, TileAppearance& appearance, const TileLayer& layer) {
@@ -311,7 +331,8 @@ TileAppearance shade_tile(const Canvas& canvas, std::uint32_t slot, const Substr
                        with_colour);
 }
 
-TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate, bool with_colour) {
+TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate, bool with_colour,
+                          ColourSpace space) {
     TileAppearance appearance;
     const BaseColour::Tile* tile = with_colour && stack.has_base_colour() ? &stack.base_colour->tiles[slot] : nullptr;
     Reflectances r(with_colour && (!tile || stack.touched(slot)));
@@ -319,7 +340,8 @@ TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrat
     TileBaseColour base_colour;
     if (tile && r.bands == 0) {  // bare
         appearance.colour = linear_colour(*tile);
-        finish_appearance(r, appearance, nullptr, substrate);
+        finish_appearance(r, appearance, nullptr, substrate, space);
+        if (space != ColourSpace::srgb) convert(appearance, space);
         return appearance;
     }
     if (tile) reflect_base(r, base_colour, *tile, substrate);
@@ -334,8 +356,9 @@ TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrat
         water = &sum;
         add_scaled_plane(sum.data(), layer.water->data(), view.opacity);
     }
-    finish_appearance(r, appearance, water, substrate);
+    finish_appearance(r, appearance, water, substrate, space);
     if (tile) add_lost_colour(appearance, base_colour);
+    if (with_colour && space != ColourSpace::srgb) convert(appearance, space);
     return appearance;
 }
 

@@ -10,6 +10,7 @@
 #include "ink/canvas/canvas.h"
 #include "ink/colour/base_colour.h"
 #include "ink/composite/blend.h"
+#include "ink/spectra/colour_space.h"
 #include "ink/spectra/srgb.h"
 
 /// \file
@@ -94,7 +95,10 @@ struct Stack {
 /// Over a base colour the substrate's reflectance is, per texel, the smooth spectrum of that colour. What its bands
 /// lack of a saturated colour (`bands_of_rgb`) is added in proportion to the visibility of the base, so bare texels
 /// have the base colour exactly.
-TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate, bool with_colour = true);
+///
+/// `colour` is linear RGB of `space`, cut to that gamut alone.
+TileAppearance shade_tile(const Stack& stack, std::uint32_t slot, const Substrate& substrate, bool with_colour = true,
+                          ColourSpace space = ColourSpace::srgb);
 
 /// A map over the whole atlas, rows from v = 0 upwards, channels interleaved.
 template <class T>
@@ -121,13 +125,14 @@ struct ComposeOptions {
     /// outlive the call.
     const GutterPlan* seams = nullptr;
     ProgressFn progress = {};
+    ColourSpace space = ColourSpace::srgb;  ///< of colours; `compose_srgb8` has its primaries and the curve of sRGB
 };
 
 /// Base colour, sRGB-encoded 8 bit (3 channels). Texels far from any chart have the
 /// substrate's colour. Over a base colour all texels of charts are drawn, not those with ink only.
 AtlasMap<std::uint8_t> compose_srgb8(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                                      const ComposeOptions& options = {});
-/// Base colour, linear RGB.
+/// Base colour, linear RGB of `options.space`.
 AtlasMap<float> compose_linear(const Stack& stack, const atlas::TexelMap& map, const Substrate& substrate,
                                const ComposeOptions& options = {});
 /// Film units of each pigment in all films of a texel, layers weighted by opacity. One channel per pigment, in the
@@ -147,5 +152,12 @@ AtlasMap<std::uint8_t> compose_orm8(const Stack& stack, const atlas::TexelMap& m
 /// the same arguments.
 void refresh_srgb8(AtlasMap<std::uint8_t>& image, std::span<const std::uint32_t> slots, const Stack& stack,
                    const atlas::TexelMap& map, const Substrate& substrate, const ComposeOptions& options = {});
+/// The same in a map made by `compose_linear`.
+void refresh_linear(AtlasMap<float>& image, std::span<const std::uint32_t> slots, const Stack& stack,
+                    const atlas::TexelMap& map, const Substrate& substrate, const ComposeOptions& options = {});
+/// Returns the tiles of the atlas (row · tiles per side + column) in which a refresh of `slots` changes texels, gutters
+/// included, ascending.
+std::vector<std::uint32_t> refreshed_tiles(std::span<const std::uint32_t> slots, const atlas::TexelMap& map,
+                                           const ComposeOptions& options = {});
 
 }  // namespace tuft::ink

@@ -205,7 +205,7 @@ std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps
                                      const atlas::Atlas& atlas) {
     std::vector<fs::path> files{path};
     const std::string extension = path.extension().string();
-    if (extension == ".glb") return files;
+    if (extension == ".glb" || extension == ".3mf") return files;
     const auto beside = [&](const std::string& tail) { return path.parent_path() / (safe_stem(path) + tail); };
     files.push_back(beside(extension == ".obj" ? ".mtl" : ".bin"));
     for (const MapFile& map : map_files(maps, options))
@@ -217,22 +217,24 @@ std::vector<fs::path> exported_files(const fs::path& path, const ModelMaps& maps
 std::vector<Message> export_model(const fs::path& path, const mesh::TriangleMesh& mesh, const atlas::Atlas& atlas,
                                   const ModelMaps& maps, const ExportOptions& options) {
     const std::string extension = path.extension().string();
-    if (extension != ".glb" && extension != ".gltf" && extension != ".obj")
-        throw Error(path.string(), Message("models are written as .glb, .gltf or .obj, not as '{}'", extension));
+    if (extension != ".glb" && extension != ".gltf" && extension != ".obj" && extension != ".3mf")
+        throw Error(path.string(), Message("models are written as .glb, .gltf, .obj or .3mf, not as '{}'", extension));
     const auto metres = metres_per(options.frame.unit);
     if (!metres) throw Error(Message("unknown unit '{}'; there are um, mm, cm, m, in and ft", options.frame.unit));
     mesh::SourceScene of_groups;
     if (!mesh.scene || mesh.scene->document.empty()) of_groups = make_scene(mesh, safe_stem(path));
     const mesh::SourceScene& source = of_groups.document.empty() ? *mesh.scene : of_groups;
     check_parts(mesh, source);
-    ExportScene scene{.mesh = mesh,
-                      .source = source,
-                      .decorated = decorated_parts(source, options.painted),
-                      .wedges = {},
-                      .corner_uvs = atlas.corner_uvs,
-                      .name = safe_stem(path),
-                      .y_up = options.frame.y_up,
-                      .metres_per_unit = *metres};
+    ExportScene scene{
+        .mesh = mesh,
+        .source = source,
+        // The base colour map holds the file's own colours, too.
+        .decorated = decorated_parts(source, extension == ".3mf" ? std::vector<std::uint8_t>{} : options.painted),
+        .wedges = {},
+        .corner_uvs = atlas.corner_uvs,
+        .name = safe_stem(path),
+        .y_up = options.frame.y_up,
+        .metres_per_unit = *metres};
     const std::vector<Vec2f> page_uvs = split_pages(atlas, scene);
     scene.wedges = split_wedges(mesh, scene.corner_uvs, scene.triangle_page);
     std::vector<EncodedMap> encoded;
@@ -259,6 +261,8 @@ std::vector<Message> export_model(const fs::path& path, const mesh::TriangleMesh
     write_together(path, [&](const fs::path& folder) {
         if (extension == ".obj")
             write_obj(folder / path.filename(), scene, encoded);
+        else if (extension == ".3mf")
+            write_3mf(folder / path.filename(), scene, encoded);
         else
             write_gltf(folder / path.filename(), scene, encoded);
     });

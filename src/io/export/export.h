@@ -69,6 +69,8 @@ std::vector<std::uint8_t> painted_parts(const ink::Stack& stack, const mesh::Tri
 /// - `.gltf`: the same as NAME.gltf, NAME.bin and NAME_*.png.
 /// - `.obj`: NAME.obj, NAME.mtl and NAME_*.png. Coordinates are in `frame`. Vertices keep their order, triangles keep
 ///   theirs within a part.
+/// - `.3mf`: one file in millimetres, in the axes of the mesh: one object with the base colour as texture, for colour
+///   printers (export_formats.h).
 ///
 /// Nodes and names are those of the file, else the groups. Parts without ink retain their material with pictures,
 /// transparency and extensions. From a glTF file such parts and all other content are written as they were read. OBJ

@@ -66,6 +66,10 @@ void write_gltf(const std::filesystem::path& path, const ExportScene& scene, std
 /// Writes OBJ, MTL and pictures into the folder of `path`, a staging folder. Throws `Error`.
 void write_obj(const std::filesystem::path& path, const ExportScene& scene, std::span<const EncodedMap> maps);
 
+/// Writes 3MF with the base colour as textures, in millimetres: one object, of type model where the mesh bounds a
+/// solid, else surface. All triangles have the UVs of the atlas. Throws `Error`.
+void write_3mf(const std::filesystem::path& path, const ExportScene& scene, std::span<const EncodedMap> maps);
+
 /// Returns the stem of `path` with '_' for bytes that a URI or a line of an MTL file cannot hold. The files that a
 /// model refers to are named after it.
 std::string safe_stem(const std::filesystem::path& path);

@@ -5,28 +5,41 @@
 
 #include "core/error.h"
 #include "io/export/export.h"
-#include "io/image/image.h"
+#include "io/export/export_layers.h"
+#include "io/image/icc_profile.h"
 
 namespace fs = std::filesystem;
 
 namespace tuft::io {
 
-ink::AtlasMap<std::uint16_t> srgb16(const ink::AtlasMap<float>& linear) {
+ink::AtlasMap<std::uint16_t> encode16(const ink::AtlasMap<float>& linear, ink::ColourSpace space) {
     ink::AtlasMap<std::uint16_t> out{.size = linear.size, .channels = linear.channels, .texels = {}};
     out.texels.reserve(linear.texels.size());
     for (const float v : linear.texels)
         out.texels.push_back(
-            static_cast<std::uint16_t>(std::lround(65535 * ink::srgb_encode(std::clamp(v, 0.0f, 1.0f)))));
+            static_cast<std::uint16_t>(std::lround(65535 * ink::encode(space, std::clamp(v, 0.0f, 1.0f)))));
     return out;
 }
 
+ImageOptions linear_options(ink::ColourSpace space) {
+    ImageOptions options;
+    options.srgb = false;
+    options.half = true;
+    if (space == ink::ColourSpace::srgb) return options;
+    const ink::ColourSpaceData& data = ink::data_of(space);
+    for (const ink::Chromaticity& c : {data.red, data.green, data.blue, data.white})
+        options.chromaticities.insert(options.chromaticities.end(), {static_cast<float>(c.x), static_cast<float>(c.y)});
+    return options;
+}
+
 const std::vector<std::string>& map_names() {
-    static const std::vector<std::string> names{"base-colour", "normal", "height", "roughness", "pigments", "palette"};
+    static const std::vector<std::string> names{"base-colour", "normal", "height", "roughness",
+                                                "pigments",    "layers", "palette"};
     return names;
 }
 
 void write_map(const fs::path& path, const std::string& name, const stroke::Document& painting,
-               const ink::ComposeOptions& compose, int bits) {
+               const ink::ComposeOptions& compose, const MapOptions& wanted) {
     const ink::Stack stack = painting.appearance().stack();
     const ink::Substrate& substrate = painting.appearance().substrate();
     const stroke::Model& model = painting.model();
@@ -43,13 +56,19 @@ void write_map(const fs::path& path, const std::string& name, const stroke::Docu
         stroke::refresh(picture, painting.palette());
         return write_image(path, view_of(picture.width, picture.height, 3, picture.rgb.data()));
     }
-    if (name == "base-colour" && png && bits == 16) {
-        write(view_of(srgb16(ink::compose_linear(stack, model.texels, substrate, compose))));
+    ImageOptions coloured;
+    coloured.srgb = compose.space == ink::ColourSpace::srgb;
+    if (wanted.profile || !coloured.srgb) coloured.icc_profile = icc_profile(compose.space);
+    if (name == "base-colour" && png && wanted.bits == 16) {
+        write(view_of(encode16(ink::compose_linear(stack, model.texels, substrate, compose), compose.space)), coloured);
     } else if (name == "base-colour" && png) {
-        write(view_of(ink::compose_srgb8(stack, model.texels, substrate, compose)));
+        if (ink::data_of(compose.space).linear)
+            throw Error(path.string(), "linear colours need 16 bits or an .exr file");
+        write(view_of(ink::compose_srgb8(stack, model.texels, substrate, compose)), coloured);
     } else if (name == "base-colour") {
-        data.half = true;
-        write(view_of(ink::compose_linear(stack, model.texels, substrate, compose)), data);
+        write(view_of(ink::compose_linear(stack, model.texels, substrate, compose)), linear_options(compose.space));
+    } else if (name == "layers") {
+        write_layers(path, painting, compose);
     } else if (name == "roughness") {
         data.half = true;
         write(view_of(ink::compose_roughness(stack, model.texels, substrate, compose)), data);

@@ -71,8 +71,12 @@ PixelView view_of(const ink::AtlasMap<T>& map) {
 struct ImageOptions {
     /// The colour space of the numbers, stored in the file: sRGB, else linear. Nothing is converted.
     bool srgb = true;
+    /// ICC profile stored in a PNG file; empty: none.
+    std::vector<std::uint8_t> icc_profile = {};
+    /// x and y of red, green, blue and white, stored in an EXR file; empty: none, which means Rec. 709 and D65.
+    std::vector<float> chromaticities = {};
     /// Names of the channels in an EXR file; empty: Y, or R, G, B, A.
-    std::vector<std::string> channel_names;
+    std::vector<std::string> channel_names = {};
     /// Stores floats in an EXR file in 16 bits, relative error 1/2048. It halves the reader's memory.
     bool half = false;
     /// zlib level of PNG, 0 (fast) – 9 (small).

@@ -63,6 +63,13 @@ ImageFault encode_checked(const EncodeRequest& request, std::vector<unsigned cha
     // Pixels count as premultiplied otherwise, and colour is lost where alpha is 0.
     spec.attribute("oiio:UnassociatedAlpha", 1);
     if (!exr && request.options->srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+    const std::vector<std::uint8_t>& profile = request.options->icc_profile;
+    if (!exr && !profile.empty())
+        spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
+                       profile.data());
+    const std::vector<float>& chromaticities = request.options->chromaticities;
+    if (exr && chromaticities.size() == 8)
+        spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities.data());
     if (exr) {
         spec.attribute("compression", "zip");
         // Otherwise the time of day goes into the file, and no two are the same.

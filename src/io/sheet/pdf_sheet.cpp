@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/system/build_facts.h"
+#include "io/image/icc_profile.h"
 #include "io/sheet/sheet_files.h"
 
 /// PDF by PoDoFo: objects, cross-references and compression are its own; the content of pages is written here, because
@@ -65,7 +66,22 @@ class PdfSheet {
         return document_.GetObjects().CreateObject(PdfVariant(space));
     }
 
+    PdfObject* profiled_rgb() {
+        const std::vector<std::uint8_t> profile =
+            sheet_.profile.empty() ? icc_profile(ink::ColourSpace::srgb) : sheet_.profile;
+        PdfObject* stream = document_.GetObjects().CreateObject();
+        stream->GetDictionary().AddKey("N", PdfVariant(static_cast<PoDoFo::pdf_int64>(3)));
+        stream->GetDictionary().AddKey("Alternate", PdfName("DeviceRGB"));
+        stream->GetStream()->Set(reinterpret_cast<const char*>(profile.data()),
+                                 static_cast<PoDoFo::pdf_long>(profile.size()), {PoDoFo::ePdfFilter_FlateDecode});
+        PdfArray space;
+        space.push_back(PdfName("ICCBased"));
+        space.push_back(stream->Reference());
+        return document_.GetObjects().CreateObject(PdfVariant(space));
+    }
+
     void make_spaces() {
+        rgb_ = profiled_rgb();
         cut_ = separation(kCutContour, "DeviceCMYK", numbers({0, 0, 0, 0}), numbers({0, 1, 0, 0}));
         all_ = separation("All", "DeviceCMYK", numbers({0, 0, 0, 0}), numbers({1, 1, 1, 1}));
         for (const decal::Plate& plate : sheet_.plates)
@@ -107,7 +123,7 @@ class PdfSheet {
         for (std::size_t i = 0; i < image.plates.size(); ++i)
             place("/Plate gs ", picture(image, image.plates[i], PdfVariant(plates_[i]->Reference())));
         if (!image.plates.empty()) return;
-        PdfObject* colour = picture(image, image.rgb, PdfVariant(PdfName("DeviceRGB")));
+        PdfObject* colour = picture(image, image.rgb, PdfVariant(rgb_->Reference()));
         PdfObject* mask = picture(image, image.alpha, PdfVariant(PdfName("DeviceGray")));
         colour->GetDictionary().AddKey("SMask", mask->Reference());
         place("", colour);
@@ -152,6 +168,7 @@ class PdfSheet {
 
     const decal::Sheet& sheet_;
     PoDoFo::PdfMemDocument document_;
+    PdfObject* rgb_ = nullptr;  // of pictures
     PdfObject *cut_ = nullptr, *all_ = nullptr, *overprint_ = nullptr, *plate_state_ = nullptr;
     std::vector<PdfObject*> plates_;
 };

@@ -17,7 +17,8 @@ inline constexpr const char* kCutContour = "CutContour";
 ///
 /// - `.pdf` (PDF 1.6): all pages in one file. Cut lines are hairlines of 0.25 points in the separation `CutContour`
 ///   (100 % magenta on screens), which overprint. Registration marks, numbers and scale bar are of the separation
-///   `All`, on every plate. Pictures are sRGB with the coverage of paint as soft mask; with plates each pigment is a
+///   `All`, on every plate. Pictures carry the ICC profile of the sheet (sRGB by default), with the coverage of paint
+///   as soft mask; with plates each pigment is a
 ///   separation of its own name that overprints.
 /// - `.svg`: a file for each page, pictures as PNG inside; cut lines in a layer `CutContour`.
 /// - `.dxf` (R12, ASCII, millimetres): a file for each page of film, closed polylines on the layer `CutContour`, marks

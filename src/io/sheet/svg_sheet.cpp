@@ -21,7 +21,7 @@ std::string base64(const std::vector<unsigned char>& bytes) {
     return text;
 }
 
-std::string picture(const decal::PrintImage& image, double height) {
+std::string picture(const decal::PrintImage& image, double height, const ImageOptions& options) {
     std::vector<std::uint8_t> rgba;
     rgba.reserve(4 * image.alpha.size());
     for (std::size_t i = 0; i < image.alpha.size(); ++i) {
@@ -33,7 +33,7 @@ std::string picture(const decal::PrintImage& image, double height) {
         "<image x=\"{:.4f}\" y=\"{:.4f}\" width=\"{:.4f}\" height=\"{:.4f}\" preserveAspectRatio=\"none\" "
         "xlink:href=\"data:image/png;base64,{}\"/>\n",
         kMm * image.origin.x, kMm * top, kMm * image.width * image.pixel, kMm * image.height * image.pixel,
-        base64(png_bytes(view_of(image.width, image.height, 4, rgba.data()))));
+        base64(png_bytes(view_of(image.width, image.height, 4, rgba.data()), options)));
 }
 
 std::string lines_of(const decal::Page& page, decal::Role role) {
@@ -60,7 +60,8 @@ std::string layer(const char* name, const char* style, const std::string& conten
 std::string svg_text(const decal::Sheet& sheet, std::size_t index) {
     const decal::Page& page = sheet.pages[index];
     std::string pictures;
-    for (const decal::PrintImage& image : page.prints) pictures += picture(image, page.size.y);
+    const ImageOptions options{.srgb = sheet.profile.empty(), .icc_profile = sheet.profile};
+    for (const decal::PrintImage& image : page.prints) pictures += picture(image, page.size.y, options);
     return fmt::format(
                "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
                "xmlns:xlink=\"http://www.w3.org/1999/xlink\" "

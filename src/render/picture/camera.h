@@ -19,6 +19,8 @@ struct View {
     std::optional<Vec3> target;    ///< metres; looks here instead of fitting the whole object
     double distance = 0;           ///< metres from eye to target; 0: such that `width_at_target` fits
     double width_at_target = 0.1;  ///< metres seen across the picture at the target
+
+    bool operator==(const View&) const = default;
 };
 
 struct Camera {

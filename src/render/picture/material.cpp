@@ -27,6 +27,13 @@ Taps taps_at(const Vec2f& uv, std::uint32_t size) {
             {(1 - wx) * (1 - wy), wx * (1 - wy), (1 - wx) * wy, wx * wy}};
 }
 
+void record(TileReads* reads, const Taps& taps, std::uint32_t size) {
+    if (!reads) return;
+    const std::size_t per_side = (size + kMapTile - 1) / kMapTile;
+    for (const std::size_t i : taps.index)
+        reads->add(static_cast<std::uint32_t>(i / size / kMapTile * per_side + i % size / kMapTile));
+}
+
 float into_unit(float v) {
     return v >= 0 && v <= 1 ? v : v - std::floor(v);
 }
@@ -68,16 +75,18 @@ Vec2f MaterialReader::uv(std::uint32_t triangle, float b1, float b2) const {
     return {into_unit(at.x), into_unit(at.y)};
 }
 
-Vec3f MaterialReader::albedo(std::uint32_t triangle, float b1, float b2) const {
+Vec3f MaterialReader::albedo(std::uint32_t triangle, float b1, float b2, TileReads* reads) const {
     const TextureMaps& maps = appearance_.maps;
     if (!maps.base_colour.empty()) {
         const Taps taps = taps_at(uv(triangle, b1, b2), maps.size);
+        record(reads, taps, maps.size);
         Vec3f sum{0};
         for (int i = 0; i < 4; ++i) sum += taps.weight[i] * maps.base_colour[taps.index[i]];
         return glm::clamp(sum, 0.0f, 1.0f);
     }
     if (!maps.base_colour_srgb.empty()) {
         const Taps taps = taps_at(uv(triangle, b1, b2), maps.size);
+        record(reads, taps, maps.size);
         Vec3f sum{0};
         for (int i = 0; i < 4; ++i) {
             const auto& c = maps.base_colour_srgb[taps.index[i]];
@@ -160,10 +169,10 @@ Vec3f MaterialReader::relief(std::uint32_t triangle, const Vec2f& at) const {
     return steepness > 1 ? slope / steepness : slope;  // texel steps beyond 45° are not real slopes
 }
 
-Material MaterialReader::read(std::uint32_t triangle, float b1, float b2) const {
+Material MaterialReader::read(std::uint32_t triangle, float b1, float b2, TileReads* reads) const {
     const TextureMaps& maps = appearance_.maps;
     Material m;
-    m.albedo = albedo(triangle, b1, b2);
+    m.albedo = albedo(triangle, b1, b2, reads);
     m.roughness = roughness_;
     if (!maps.roughness.empty() || !maps.height.empty()) {
         const Vec2f at = uv(triangle, b1, b2);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "render/picture/picture.h"
 
@@ -16,14 +18,26 @@ struct Material {
     Vec3f slope{0};
 };
 
+inline constexpr std::uint32_t kMapTile = 16;  ///< texels along the side of a tile of the maps
+
+/// Tiles of the colour map that were read, each once: row · tiles per side + column.
+struct TileReads {
+    std::vector<std::uint32_t> tiles;
+
+    void add(std::uint32_t tile) {
+        if (std::find(tiles.begin(), tiles.end(), tile) == tiles.end()) tiles.push_back(tile);
+    }
+};
+
 /// Constant data of a picture's appearance, checked once.
 class MaterialReader {
   public:
     /// Throws `Error` when a map does not have size² texels or the UVs do not fit the mesh.
     MaterialReader(const mesh::TriangleMesh& mesh, const Appearance& appearance);
 
-    Vec3f albedo(std::uint32_t triangle, float b1, float b2) const;
-    Material read(std::uint32_t triangle, float b1, float b2) const;
+    /// `reads` takes the tiles of the colour map that the result depends on; null: none are recorded.
+    Vec3f albedo(std::uint32_t triangle, float b1, float b2, TileReads* reads = nullptr) const;
+    Material read(std::uint32_t triangle, float b1, float b2, TileReads* reads = nullptr) const;
     /// Returns the fraction of light from a small lamp in direction `to_light` (unit; `normal` is the surface's)
     /// that the relief lets through: 0 in the shadow of higher ink, soft over the lamp's radius `blur` (radians).
     /// Looks up to 3 mm away, within the chart.

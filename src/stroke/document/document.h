@@ -45,6 +45,9 @@ struct WetFilmInUse;
 /// waits for the document.
 using EntryDoneFn = std::function<void(const JournalEntry& entry, StrokeReport report)>;
 
+/// Called after every pose of a stroke in work, with the part of its path that is painted, 0–1. Thread of the document.
+using PoseFn = std::function<void(const StrokeSession& session, double part)>;
+
 /// A journal and what its entries make: layers, masks, palette, and the brushes in hand. Each entry is performed once,
 /// in order; the same entries give the same bits, for any number of threads. `model` must outlive the document. Its
 /// parts refer to each other, so it is neither copied nor moved. One thread at a time.
@@ -108,6 +111,9 @@ class Document {
 
     /// Takes over a stored journal, ids kept, and performs what is not hidden. Returns a report per stroke.
     std::vector<StrokeReport> replay(std::vector<JournalEntry> entries, const ProgressFn& progress = {});
+    /// Lets `watcher` see strokes while they are painted; null: none. Watched strokes are painted one after the other;
+    /// the bits are the same. Texels are up to 8 stamps behind the brush. It may read the document, not change it.
+    void watch_poses(PoseFn watcher) { watcher_ = std::move(watcher); }
     /// Takes over a stored journal with the texels of layers and palette as they were after entry `last`; performs what
     /// came after it. Throws `Error` for texels of another atlas, and where `fits` does not hold or layers are missing:
     /// then the journal must be replayed.
@@ -186,7 +192,8 @@ class Document {
     std::unique_ptr<PlanScratchPool> plan_scratch_;
     std::unique_ptr<TileReach> tile_reach_;   ///< of the model, made for the first batch of strokes
     std::unique_ptr<StrokeSession> session_;  ///< the stroke in work
-    JournalEntry open_;                       ///< its header, from `begin` to `end`
+    PoseFn watcher_;
+    JournalEntry open_;  ///< its header, from `begin` to `end`
 };
 
 /// Texels of all layers, and of the palette where there is something on it: what a project stores.

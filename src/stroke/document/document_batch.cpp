@@ -136,11 +136,12 @@ bool Document::plan_stroke(BatchStroke& planned) {
     return true;
 }
 
-// Strokes from the first of these entries on that can be painted side by side; none where there is one thread.
+// Strokes from the first of these entries on that can be painted side by side; none where there is one thread, or where
+// each is watched.
 std::vector<Document::BatchStroke> Document::plan_batch(std::span<JournalEntry> entries, const EntrySteps& steps) {
     const auto threads = static_cast<std::size_t>(thread_count());
     std::vector<BatchStroke> batch;
-    if (threads == 1) return batch;
+    if (threads == 1 || watcher_) return batch;
     const std::size_t most = std::min(entries.size(), kStrokesPerThread * threads);
     batch.reserve(most);  // sessions refer to the tiles of their strokes
     std::size_t samples = 0;

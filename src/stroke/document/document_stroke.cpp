@@ -180,13 +180,18 @@ StrokeReport Document::draw(std::uint64_t id, const PaintStroke& stroke, const H
     session_ = make_session(stroke);
     try {
         begin_path(*session_, path, progress);
-        if (thread_count() > 1) {
+        if (thread_count() > 1 && !watcher_) {
             if (std::unique_ptr<StrokeForecast> forecast = session_->forecast(path.poses)) {
                 forecast->compute_ahead();
                 session_->use(std::move(forecast));
             }
         }
-        paint_poses(*session_, path.poses, 0, path.poses.size());
+        const std::size_t n = path.poses.size();
+        if (!watcher_) paint_poses(*session_, path.poses, 0, n);
+        for (std::size_t i = 0; watcher_ && i < n; ++i) {
+            paint_poses(*session_, path.poses, i, i + 1);
+            watcher_(*session_, static_cast<double>(i + 1) / static_cast<double>(n));
+        }
         StrokeReport report = finish_session(id);
         note_origin(report, stroke, target(stroke.layer, 0).model);
         return report;

@@ -82,6 +82,8 @@ class StrokeSession {
     const PaintStroke& stroke() const { return input_.stroke; }
     /// The bent tuft at the last pose, for drawing it.
     const brush::TuftState& tuft() const { return tuft_.state; }
+    /// The brush itself; its pose is the last one.
+    const brush::Tuft& brush() const { return tuft_.brush.tuft; }
     /// Force for a haptic device at the last pose, newtons, world frame.
     const Vec3& device_force() const { return contact_.device_force; }
 

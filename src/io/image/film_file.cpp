@@ -1,0 +1,242 @@
+#include "io/image/film_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/system/files.h"
+#include "core/system/interrupt.h"
+#include "core/system/system_message.h"
+
+extern char** environ;
+
+namespace fs = std::filesystem;
+
+namespace tuft::io {
+namespace {
+
+std::string extension_of(const fs::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+/// The program on $PATH; empty: it is not installed.
+fs::path find_ffmpeg() {
+    const char* listed = std::getenv("PATH");
+    std::istringstream folders(listed ? listed : "/usr/bin:/bin");
+    for (std::string folder; std::getline(folders, folder, ':');) {
+        const fs::path program = fs::path(folder.empty() ? "." : folder) / "ffmpeg";
+        if (::access(program.c_str(), X_OK) == 0) return program;
+    }
+    return {};
+}
+
+fs::path frame_path(const fs::path& folder, int number) {
+    return folder / fmt::format("frame-{:05}.png", number);
+}
+
+class FrameFolder : public FilmSink {
+  public:
+    explicit FrameFolder(fs::path folder) : folder_(std::move(folder)) {
+        std::error_code ec;
+        fs::create_directory(folder_, ec);
+        if (!fs::is_directory(folder_, ec)) throw Error(folder_.string(), "cannot be made");
+    }
+    void add(const PixelView& frame) override { write_image(frame_path(folder_, ++count_), frame); }
+
+  private:
+    fs::path folder_;
+    int count_ = 0;
+};
+
+std::vector<std::string> ffmpeg_arguments(const fs::path& program, const fs::path& output, const FilmFormat& format) {
+    std::vector<std::string> a{program.string(),
+                               "-hide_banner",
+                               "-loglevel",
+                               "error",
+                               "-y",
+                               "-f",
+                               "rawvideo",
+                               "-pix_fmt",
+                               "rgb24",
+                               "-s",
+                               fmt::format("{}x{}", format.width, format.height),
+                               "-r",
+                               fmt::format("{:g}", format.frames_per_second),
+                               "-i",
+                               "pipe:0"};
+    const std::vector<std::string> gif{"-vf", "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1",
+                                       "-f", "gif"};
+    // One thread: x264 with several gives other bits.
+    const std::vector<std::string> mp4{"-vf",
+                                       "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
+                                       "-c:v",
+                                       "libx264",
+                                       "-threads",
+                                       "1",
+                                       "-preset",
+                                       "fast",
+                                       "-crf",
+                                       "18",
+                                       "-pix_fmt",
+                                       "yuv420p",
+                                       "-colorspace",
+                                       "bt709",
+                                       "-color_primaries",
+                                       "bt709",
+                                       "-color_trc",
+                                       "iec61966-2-1",
+                                       "-movflags",
+                                       "+faststart",
+                                       "-f",
+                                       "mp4"};
+    const std::vector<std::string>& more = extension_of(output) == ".gif" ? gif : mp4;
+    a.insert(a.end(), more.begin(), more.end());
+    a.push_back("file:" + output.string());
+    return a;
+}
+
+/// A started ffmpeg and the pipe to it; it is ended where this is left before `finish`.
+class FilmPipe : public FilmSink {
+  public:
+    FilmPipe(const fs::path& output, const FilmFormat& format) : format_(format) {
+        const fs::path program = find_ffmpeg();
+        if (program.empty()) throw Error("ffmpeg", "is not installed");
+        std::vector<std::string> words = ffmpeg_arguments(program, output, format);
+        std::vector<char*> arguments;
+        for (std::string& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        int ends[2];
+        if (::pipe2(ends, O_CLOEXEC) != 0) throw Error("ffmpeg", Message("no pipe: {}", system_message(errno)));
+        posix_spawn_file_actions_t files;
+        posix_spawn_file_actions_init(&files);
+        posix_spawn_file_actions_adddup2(&files, ends[0], 0);
+        posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
+        posix_spawn_file_actions_addopen(&files, 2, "/dev/null", O_WRONLY, 0);
+        // A process group of its own: Ctrl-C reaches this process alone, which then ends the other.
+        posix_spawnattr_t attributes;
+        posix_spawnattr_init(&attributes);
+        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+        posix_spawnattr_setpgroup(&attributes, 0);
+        const int failed = posix_spawn(&pid_, program.c_str(), &files, &attributes, arguments.data(), environ);
+        posix_spawnattr_destroy(&attributes);
+        posix_spawn_file_actions_destroy(&files);
+        ::close(ends[0]);
+        pipe_ = ends[1];
+        if (failed) {
+            pid_ = 0;
+            ::close(pipe_);
+            throw Error(program.string(), Message("cannot be started: {}", system_message(failed)));
+        }
+    }
+    ~FilmPipe() override { end(); }
+    FilmPipe(const FilmPipe&) = delete;
+    FilmPipe& operator=(const FilmPipe&) = delete;
+
+    void add(const PixelView& frame) override {
+        const std::size_t row = 3 * static_cast<std::size_t>(format_.width);
+        for (int y = 0; y < format_.height; ++y)
+            write_all(static_cast<const char*>(frame.first) + y * frame.row_bytes, row);
+    }
+
+    /// Waits until ffmpeg has written the file.
+    void finish() {
+        ::close(pipe_);
+        pipe_ = -1;
+        int status = 0;
+        while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) check_interrupt();
+        pid_ = 0;
+        if (status != 0) fail();
+    }
+
+  private:
+    [[noreturn]] static void fail() { throw Error("ffmpeg", "did not write the film (disk full? no libx264?)"); }
+
+    void write_all(const char* bytes, std::size_t n) const {
+        while (n > 0) {
+            const ssize_t wrote = ::write(pipe_, bytes, n);
+            if (wrote < 0 && errno == EINTR) {
+                check_interrupt();
+                continue;
+            }
+            if (wrote <= 0) fail();
+            bytes += wrote;
+            n -= static_cast<std::size_t>(wrote);
+        }
+    }
+
+    void end() noexcept {
+        if (pid_ > 0) {
+            ::kill(-pid_, SIGKILL);
+            ::waitpid(pid_, nullptr, 0);
+        }
+        if (pipe_ >= 0) ::close(pipe_);
+        pid_ = 0;
+        pipe_ = -1;
+    }
+
+    FilmFormat format_;
+    pid_t pid_ = 0;
+    int pipe_ = -1;
+};
+
+/// A pipe whose reader has ended gives an error, not a signal, while this lives.
+class NoPipeSignal {
+  public:
+    NoPipeSignal() {
+        struct sigaction ignore {};
+        ignore.sa_handler = SIG_IGN;
+        ::sigaction(SIGPIPE, &ignore, &before_);
+    }
+    ~NoPipeSignal() { ::sigaction(SIGPIPE, &before_, nullptr); }
+    NoPipeSignal(const NoPipeSignal&) = delete;
+    NoPipeSignal& operator=(const NoPipeSignal&) = delete;
+
+  private:
+    struct sigaction before_ {};
+};
+
+}  // namespace
+
+bool is_film_file(const fs::path& path) {
+    return extension_of(path) == ".mp4" || extension_of(path) == ".gif";
+}
+
+void check_film(const fs::path& path) {
+    std::error_code ec;
+    if (!is_film_file(path)) {
+        if (fs::exists(frame_path(path, 1), ec))
+            throw Error(path.string(), "has the frames of a film already (frame-00001.png)");
+        return;
+    }
+    if (find_ffmpeg().empty())
+        throw Error(path.string(), "needs the program ffmpeg, which is not installed; name a folder to get the frames");
+}
+
+void write_film(const fs::path& path, const FilmFormat& format, const std::function<void(FilmSink& sink)>& draw) {
+    if (!is_film_file(path)) {
+        FrameFolder folder(path);
+        return draw(folder);
+    }
+    write_atomically(path, [&](const fs::path& temporary) {
+        const NoPipeSignal quiet;
+        FilmPipe pipe(temporary, format);
+        draw(pipe);
+        pipe.finish();
+    });
+}
+
+}  // namespace tuft::io

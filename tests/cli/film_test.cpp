@@ -1,0 +1,94 @@
+#include <sys/stat.h>
+
+#include <nlohmann/json.hpp>
+
+#include "io/image/image.h"
+#include "program.h"
+
+/// `tuft film` as a program.
+namespace tuft::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FilmCommand : public Program {
+  protected:
+    /// Two strokes on the sheet.
+    std::string project() const {
+        write("s.inkml", stroke_file("0 0 0", "wolf-small", 20));
+        write("t.inkml", stroke_file("0 10 0", "goat-small", 20));
+        const Ran ran = tuft("paint " + model("sheet.ply") + " --atlas-size 512 --quiet --strokes " + path("s.inkml") +
+                             " --strokes " + path("t.inkml") + " --project " + path("p.tuft"));
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return path("p.tuft");
+    }
+    static constexpr const char* kView = " --size 64x48 --view 20,50 ";
+    std::size_t files() const {
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+    }
+};
+
+TEST_F(FilmCommand, BeginsBareAndEndsWithThePictureOfRender) {
+    const std::string p = project();
+    const Ran ran = tuft("film " + p + kView + "--seconds 0.4 --end 0.08 --json -o " + path("frames"));
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(nlohmann::json::parse(ran.out).at("frames"), 12);
+    ASSERT_EQ(tuft("render " + p + kView + "-o " + path("last.png")).status, 0);
+    EXPECT_EQ(read(path("frames/frame-00012.png")), read(path("last.png")));
+    EXPECT_EQ(read(path("frames/frame-00010.png")), read(path("last.png")));
+    ASSERT_EQ(tuft("render " + model("sheet.ply") + kView + "-o " + path("bare.png")).status, 0);
+    // Light thrown back by paint is that of the finished work: a code or two beside it.
+    const io::Image8 bare = io::read_image8(path("bare.png")), first = io::read_image8(path("frames/frame-00001.png"));
+    ASSERT_EQ(bare.pixels.size(), first.pixels.size());
+    for (std::size_t i = 0; i < bare.pixels.size(); ++i) ASSERT_NEAR(bare.pixels[i], first.pixels[i], 3) << i;
+    // A brush is over the stroke in work.
+    EXPECT_NE(read(path("frames/frame-00005.png")), read(path("frames/frame-00006.png")));
+}
+
+TEST_F(FilmCommand, GivesTheSameFramesOnAnyNumberOfThreadsAndByTurns) {
+    const std::string p = project();
+    const std::string film = "film " + p + kView + "--seconds 0.3 --end 0 --camera front,view --quiet ";
+    ASSERT_EQ(tuft(film + "--threads 1 -o " + path("one")).status, 0);
+    ASSERT_EQ(tuft(film + "--threads 3 -o " + path("three")).status, 0);
+    for (const char* frame : {"frame-00001.png", "frame-00004.png", "frame-00008.png"})
+        EXPECT_EQ(read(path(std::string("one/") + frame)), read(path(std::string("three/") + frame))) << frame;
+}
+
+TEST_F(FilmCommand, LeavesNoHalfFilm) {
+    const std::string p = project();
+    // A program in the place of ffmpeg that fails, and one that is never done.
+    write("ffmpeg", "#!/bin/sh\nhead -c 1000 >/dev/null\nexit 3\n");
+    ::chmod(path("ffmpeg").c_str(), 0755);
+    const std::size_t before = files();
+    const std::string film = "film " + p + kView + "-o " + path("f.mp4");
+    const Ran failed = tuft(film, "PATH='" + folder_.string() + ":$PATH'");
+    EXPECT_EQ(failed.status, 1);
+    EXPECT_EQ(failed.error_lines(), 1) << failed.err;
+    const Ran stopped = tuft(film + " --seconds 600", "timeout -s INT 2");
+    EXPECT_NE(stopped.status, 0);
+    const Ran none = tuft(film, "PATH=/nonexistent");
+    EXPECT_EQ(none.status, 1);
+    EXPECT_NE(none.err.find("ffmpeg"), std::string::npos) << none.err;
+    EXPECT_EQ(files(), before);
+}
+
+TEST_F(FilmCommand, RefusesBadCamerasInOneLine) {
+    const std::string p = project();
+    write("empty.toml", "");
+    write("falls.toml", "[[key]]\nat = 0.5\n[[key]]\nat = 0.2\n");
+    write("odd.toml", "[[key]]\nat = 0.5\nroll = 3\n");
+    for (const char* camera : {"frnot", "front,,top", "nothing.toml"}) {
+        const Ran ran = tuft("film " + p + " -o " + path("f") + " --camera " + std::string(camera));
+        EXPECT_GT(ran.status, 0) << camera;
+        EXPECT_EQ(ran.error_lines(), 1) << ran.err;
+    }
+    for (const char* camera : {"empty", "falls", "odd"}) {
+        const Ran ran = tuft("film " + p + " -o " + path("f") + " --camera " + path(std::string(camera) + ".toml"));
+        EXPECT_EQ(ran.status, 1) << camera;
+        EXPECT_EQ(ran.error_lines(), 1) << ran.err;
+    }
+    EXPECT_FALSE(fs::exists(path("f")));
+}
+
+}  // namespace
+}  // namespace tuft::test
