@@ -43,6 +43,8 @@ class SurfaceGrid {
 
     bool empty() const { return mesh_.triangles.empty(); }
     double reach() const { return reach_; }
+    /// Off its surface, metres: what is farther belongs to another part.
+    double cut_height() const { return kCutHeight * reach_; }
     const Box& bounds() const { return mesh_.bounds; }
     const mesh::SurfaceQuery& query() const { return *query_; }
     Vec2 flat(const Vec2& cell) const { return low_ + step_ * cell; }
@@ -190,7 +192,7 @@ class TileUnfolding {
     TileUnfolding(const SurfaceGrid& grid, double texel, AreaEdges edges)
         : grid_(grid),
           slack_(0.3 * texel + 0.02 * grid.reach()),
-          highest_(edges == AreaEdges::cut ? kCutHeight * grid.reach() + texel : grid.reach()),
+          highest_(edges == AreaEdges::cut ? grid.cut_height() + texel : grid.reach()),
           facing_(edges == AreaEdges::run_over ? kWall : kFacing) {}
 
     Vec2f at(const Vec3& p, const Vec3& normal) {
@@ -301,9 +303,7 @@ void FlatTexels::project(const Model& model) {
     const double texel = model.texels.texel_size, far = 4 * model.mesh->bounds.diagonal();
     const Vec2 margin(2 * texel);
     tiles_ = gather_tiles(model, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
-        std::optional<TileUnfolding> unfolding;
         if (grid && !reaches(*grid, shape, in)) return false;
-        if (grid) unfolding.emplace(*grid, texel, edges);
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             out.at[t] = Vec2f(kNowhere);
             if (in.cluster[t] == atlas::kNoCluster) continue;
@@ -311,7 +311,7 @@ void FlatTexels::project(const Model& model) {
             const Vec2 flat(glm::dot(d, axes.right), glm::dot(d, axes.down));
             if (glm::any(glm::lessThan(flat, low - margin)) || glm::any(glm::greaterThan(flat, high + margin)))
                 continue;
-            if (unfolding && std::isnan(unfolding->at(p, n).x)) continue;
+            if (grid && !grid->query().closest_point(p, grid->cut_height() + texel)) continue;
             if (glm::dot(n, outward) <= facing || model.query->occluded(p + 2 * texel * n, outward, 0, far)) continue;
             out.at[t] = Vec2f(flat);
         }
