@@ -205,6 +205,12 @@ CLI::App* add_mask(CLI::App& app, MaskWork& mask) {
     command->require_option(2, 0);
     command->add_option("--group", mask.groups, "the mesh's groups of these names")->delimiter(',');
     add_point(command, "--facing", mask.direction, "where the surface faces this direction");
+    command
+        ->add_option("--clear-of-edges", mask.clear_mm,
+                     "what is farther than this from borders and from edges sharper than --within degrees, in "
+                     "millimetres")
+        ->check(number_in(0.001, 1000.0))
+        ->type_name("MM");
     command->add_option("--within", mask.within, "to within so many degrees")->check(number_in(0.0, 180.0));
     command->add_option("--soft", mask.soft, "with an edge of so many degrees to either side")
         ->check(number_in(0.0, 180.0));

@@ -89,6 +89,11 @@ struct Paint {
     double place_turn_deg = 0;           ///< anticlockwise, seen from outside the surface
     bool place_mirror = false;           ///< mirrors the drawing from left to right
     std::string areas;                   ///< mask, brush; empty: by the drawing's colours
+    std::string along;                   ///< "rim", "edge" or a stroke file: path of copies; empty: none
+    std::string repeat = "fit";          ///< fit, or a number of copies along it
+    std::string edges;                   ///< cut, run-over, end-before, wrap; empty: cut
+    double edge_margin_mm = 2;           ///< of end-before
+    double wide_lines_mm = 1.5;          ///< as painted; lines of a drawing in one ink are areas from this width on
     std::vector<std::string> only;       ///< layers and named groups of drawings; empty: all
     std::string mirror;                  ///< some of x, y, z: planes of copies
     bool readable = false;               ///< mirrored copies keep text and marked groups readable
@@ -175,6 +180,7 @@ struct MaskWork {
     std::string invert;
     std::vector<double> direction, chart_mm;  ///< [3] each, or empty
     double within = 45, soft = 0;             ///< degrees, angle of the normal to `direction`, and its soft range
+    double clear_mm = 0;                      ///< distance to sharp edges; 0: none
     std::string lasso;                        ///< "X,Y X,Y ...", mm, as seen from `view`
     View view;
     bool through = false, remove = false;

@@ -21,6 +21,7 @@ namespace {
 constexpr double kOpaque = 0.999;
 constexpr double kTexelsAcross = 3;  // that a detail needs to keep its shape
 constexpr double kSpeck = 0.01;      // of the drawing's outline
+constexpr double kSharp = 30 * kDegree;
 
 std::array<double, 3> as_doubles(const ink::Rgb& rgb) {
     return {double(rgb[0]), double(rgb[1]), double(rgb[2])};
@@ -179,6 +180,46 @@ void note_detail(std::vector<stroke::JournalEntry>& strokes, double texel, Conso
         "warning: the finest detail of the drawing is {:.3g} mm wide, {:.1f} texels; it keeps its shape with texels of "
         "{:.2g} mm (see --texel-size, --auto-texel)",
         finest / kMillimetre, finest / texel, finest / kTexelsAcross / kMillimetre));
+}
+
+stroke::AreaEdges edges_of(const Paint& a) {
+    if (a.edges == "run-over") return stroke::AreaEdges::run_over;
+    return a.edges == "wrap" ? stroke::AreaEdges::facing : stroke::AreaEdges::cut;
+}
+
+void keep_clear_of_edges(std::vector<stroke::JournalEntry>& strokes, const stroke::MaskTable& masks, const Paint& a) {
+    if (a.edges != "end-before") return;
+    std::vector<stroke::JournalEntry> edits;
+    std::uint32_t next = masks.next_id;
+    // The id of a mask like this one: that of the project where it has it, else of a new one.
+    const auto id_of = [&](stroke::Mask mask) {
+        if (const stroke::Mask* known = masks.find(mask.name)) {
+            mask.id = known->id;
+            if (*known == mask) return mask.id;
+            for (int n = 2; masks.find(mask.name); ++n) mask.name = fmt::format("{} ({})", known->name, n);
+        }
+        mask.id = next++;
+        edits.emplace_back(stroke::MaskEdit{.mask = mask});
+        return mask.id;
+    };
+    const std::string name = fmt::format("{:.3g} mm clear of edges", a.edge_margin_mm);
+    const std::uint32_t clear = id_of(
+        {.name = name, .kind = stroke::MaskKind::clear, .within = kSharp, .distance = a.edge_margin_mm * kMillimetre});
+    std::map<std::uint32_t, std::uint32_t> both{{0, clear}};
+    const auto keep = [&](std::uint32_t& mask) {
+        const auto [at, fresh] = both.try_emplace(mask, 0);
+        if (fresh)
+            at->second = id_of({.name = fmt::format("{}, {}", masks.find(mask)->name, name),
+                                .kind = stroke::MaskKind::intersect,
+                                .of = {mask, clear}});
+        mask = at->second;
+    };
+    for (stroke::JournalEntry& s : strokes) {
+        if (stroke::on_palette(s)) continue;
+        if (auto* stroke = s.as<stroke::PaintStroke>()) keep(stroke->mask);
+        if (auto* fill = s.as<stroke::Fill>()) keep(fill->mask);
+    }
+    strokes.insert(strokes.begin(), std::make_move_iterator(edits.begin()), std::make_move_iterator(edits.end()));
 }
 
 void add_copies(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model, const Paint& a) {

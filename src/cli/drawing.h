@@ -30,6 +30,12 @@ double texel_for_detail(std::vector<stroke::JournalEntry>& strokes, const Paint&
 /// Says that detail is finer than three texels, with the size that it needs.
 void note_detail(std::vector<stroke::JournalEntry>& strokes, double texel, Console& console);
 
+/// Returns what `--edges` asks of areas.
+stroke::AreaEdges edges_of(const Paint& arguments);
+/// With `--edges end-before`: puts masks clear of edges before the strokes, which then keep to them and to their own.
+void keep_clear_of_edges(std::vector<stroke::JournalEntry>& strokes, const stroke::MaskTable& masks,
+                         const Paint& arguments);
+
 /// Appends the symmetric copies that the arguments ask for, about the middle of the model. Ids of their groups follow
 /// those of `strokes`.
 void add_copies(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model, const Paint& arguments);

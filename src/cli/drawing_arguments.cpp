@@ -13,9 +13,38 @@ void add_drawing_options(CLI::App& command, Paint& paint) {
             "where the file has colours besides black and neither --ink, --brush nor --erase is given, else brush")
         ->check(CLI::IsMember({"mask", "brush"}));
     command
+        .add_option("--wide-lines", paint.wide_lines_mm,
+                    "lines of a drawing in one ink are masked and filled from this width on, with the ends, corners "
+                    "and dashes of the file; narrower ones, and all with --areas brush, --brush or --erase, are "
+                    "strokes of a brush")
+        ->check(CLI::Range(0.0, 1e6))
+        ->type_name("MM");
+    command
+        .add_option("--edges", paint.edges,
+                    "where masked areas of drawings end: cut (default), on the part in their middle, beyond its shut "
+                    "lines, not beyond openings and steps; run-over, also on walls and on what is seen behind; "
+                    "end-before, as cut, and all strokes too a margin before sharp edges and borders; wrap, round "
+                    "edges along the surface (--mapping wrap)")
+        ->check(CLI::IsMember({"cut", "run-over", "end-before", "wrap"}));
+    command.add_option("--edge-margin", paint.edge_margin_mm, "distance that end-before leaves")
+        ->check(CLI::Range(0.01, 1000.0))
+        ->type_name("MM");
+    command
         .add_option("--only", paint.only, "only these layers and named groups of an .svg: NAME, more by another --only")
         ->allow_extra_args(false)
         ->type_name("NAME");
+    command
+        .add_option("--along", paint.along,
+                    "repeats the drawing along a path on the model, such as an ornament round a bowl: rim, level "
+                    "round the model at the height of --place; edge, along the sharp edge, shut line or border next "
+                    "to --place; or a stroke file whose first line is the path")
+        ->excludes("--on")
+        ->type_name("rim|edge|FILE");
+    command
+        .add_option("--repeat", paint.repeat,
+                    "with --along: fit (default), as many copies as the path has room for, made to meet; or a "
+                    "number of copies, evenly spaced, which meet unless --place-width gives their width")
+        ->type_name("fit|N");
     command
         .add_option("--mirror", paint.mirror,
                     "paints the other flank as well: copies beyond the planes through the middle of the model across "

@@ -52,15 +52,19 @@ stroke::Mask mask_of(const MaskWork& a, const stroke::MaskTable& table, const io
     is(!a.direction.empty(), stroke::MaskKind::angle);
     is(!a.chart_mm.empty(), stroke::MaskKind::chart);
     is(!a.lasso.empty(), stroke::MaskKind::lasso);
+    is(a.clear_mm > 0, stroke::MaskKind::clear);
     is(!a.invert.empty(), stroke::MaskKind::invert);
     is(!a.intersect.empty(), stroke::MaskKind::intersect);
     is(!a.unite.empty(), stroke::MaskKind::unite);
     if (kinds != 1)
-        throw UsageError("a mask is one of --group, --facing, --chart, --lasso, --invert, --intersect and --unite");
+        throw UsageError(
+            "a mask is one of --group, --facing, --chart, --lasso, --clear-of-edges, --invert, --intersect and "
+            "--unite");
     mask.groups = a.groups;
     if (!a.direction.empty()) mask.direction = vector_of(a.direction);
     mask.within = a.within * kDegree;
     mask.soft = a.soft * kDegree;
+    if (a.clear_mm > 0) mask.distance = a.clear_mm * kMillimetre;
     if (!a.chart_mm.empty()) mask.points = {kMillimetre * vector_of(a.chart_mm)};
     if (!a.lasso.empty()) {
         mask.polygon = polygon_of(a.lasso);

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/drawing.h"
+#include "cli/model_path.h"
 #include "cli/steps.h"
 #include "core/system/files.h"
 #include "core/text/counted.h"
@@ -33,6 +34,8 @@ nlohmann::json placed_json(const PlacedDrawing& p) {
                      {"width_mm", p.size.x / kMillimetre},
                      {"height_mm", p.size.y / kMillimetre}};
     if (!p.side.empty()) j["side"] = p.side;
+    if (p.repeats > 0)
+        j["repeats"] = p.repeats, j["step_mm"] = p.step / kMillimetre, j["path_mm"] = p.path / kMillimetre;
     if (p.part > 0) j["free_mm"] = {p.free.x / kMillimetre, p.free.y / kMillimetre}, j["part"] = p.part;
     return j;
 }
@@ -141,6 +144,7 @@ void prepare_strokes(std::vector<stroke::JournalEntry>& strokes, stroke::Documen
                      Console& console) {
     strokes = stroke::onto_named_layers(std::move(strokes), painting.layers().table(), a.layer);
     stroke::keep_to_named_masks(strokes, painting.masks().table(), a.mask);
+    keep_clear_of_edges(strokes, painting.masks().table(), a);
     // Files are numbered from 1: each is a group of its own in this journal.
     const std::uint64_t first_group = painting.journal().next_group_id();
     for (stroke::JournalEntry& s : strokes)
@@ -271,7 +275,10 @@ nlohmann::json painted_json(const Painted& painted, const stroke::Model& model) 
 int run(const Paint& a) {
     return paint(a, {.load = [&](Console& console) { return load_strokes(a, console); },
                      .place = [&](std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
-                                  Console& console) { return place_strokes(strokes, model, a, console); }});
+                                  Console& console) -> std::optional<PlacedDrawing> {
+                         if (!a.along.empty()) return place_along(strokes, model, a, console);
+                         return place_strokes(strokes, model, a, console);
+                     }});
 }
 
 int paint(const Paint& a, const StrokeSource& source) {

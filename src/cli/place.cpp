@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "cli/drawing.h"
 #include "contact/node_contact.h"
 #include "core/error.h"
 #include "core/text/units.h"
@@ -114,7 +115,7 @@ void note_placed(const PlacedDrawing& p, const Paint& a, const Box& area, double
 std::optional<PlacedDrawing> place_on_model(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                             const Paint& a, const stroke::BrushFit& fit, stroke::WidthTables& widths,
                                             Console& console) {
-    const auto mapping = stroke::surface_mapping_named(a.mapping);
+    const auto mapping = stroke::surface_mapping_named(a.edges == "wrap" ? "wrap" : a.mapping);
     for (stroke::FlatArea* area : stroke::areas_in(strokes, true)) {
         if (!area->placed) area->placement.mapping = stroke::SurfaceMapping::drape;
         if (mapping) area->placement.mapping = *mapping;
@@ -169,6 +170,7 @@ std::optional<PlacedDrawing> place_strokes(std::vector<stroke::JournalEntry>& st
     const bool chosen = !a.brush.empty();
     const stroke::BrushFit fit{.grow = !chosen, .fit = !chosen || a.fit_brush};
     const std::optional<PlacedDrawing> placed = place_on_model(strokes, model, a, fit, widths, console);
+    stroke::fill_wide_lines(strokes, a.wide_lines_mm * kMillimetre, edges_of(a));
     stroke::redip_long_lines(strokes, fit, widths);
     note_widths(stroke::press_to_widths(strokes, widths), console);
     return placed;

@@ -30,6 +30,8 @@ struct PlacedDrawing {
     std::string side;             ///< stroke::side_name; empty: a point was given
     Vec2 free{0};                 ///< metres, in projection, of the side's largest free area; 0: none found
     double part = 0;              ///< fraction of that area's length that the drawing takes, the larger of both
+    int repeats = 0;              ///< copies along a path; 0: it is not repeated
+    double step = 0, path = 0;    ///< metres between their middles, and of the path
 };
 
 /// Places flat strokes on the model as one drawing: those without a placement, or all of them when the arguments give a

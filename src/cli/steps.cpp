@@ -11,6 +11,7 @@
 #include <set>
 #include <span>
 
+#include "cli/drawing.h"
 #include "core/text/units.h"
 #include "ink/composite/composite.h"
 #include "ink/composite/match.h"
@@ -155,6 +156,11 @@ io::SvgPainting painting_of(const Paint& a) {
     return a.areas == "brush" || one_ink ? io::SvgPainting::brush : io::SvgPainting::automatic;
 }
 
+// A brush that was chosen, or prepared, paints every line itself.
+bool fills_wide_lines(const Paint& a) {
+    return a.areas.empty() && a.brush.empty() && !a.erases && a.prepare.empty() && a.film == "still";
+}
+
 // The file is a group, and so is each layer and named group in it.
 void number_groups(std::span<stroke::JournalEntry> strokes, const fs::path& file, std::uint64_t& n_groups) {
     std::map<std::string, std::uint64_t> ids;
@@ -215,9 +221,14 @@ std::vector<stroke::JournalEntry> load_strokes(const Paint& a, Console& console)
                                            const std::string text = file.string() + ": " + line.text();
                                            if (reported.insert(text).second) console.note(text);
                                        }};
-        std::vector<stroke::RecordedStroke> traces =
-            io::read_strokes(file, io::SvgOptions{.painting = painting_of(a), .groups = a.only, .ink = reading});
+        std::vector<stroke::RecordedStroke> traces = io::read_strokes(
+            file, io::SvgOptions{
+                      .painting = painting_of(a), .groups = a.only, .outlines = fills_wide_lines(a), .ink = reading});
         if (bias) traces = stroke::correct_bias(*bias, std::move(traces));
+        for (stroke::RecordedStroke& trace : traces)
+            for (stroke::Preparation& one : trace.before)
+                if (auto* fill = std::get_if<stroke::Fill>(&one); fill && fill->area)
+                    if (!a.edges.empty() || !fill->area->placed) fill->area->edges = edges_of(a);
         stroke::append_entries(strokes, std::move(traces), options);
         number_groups(std::span(strokes).subspan(first), file, n_groups);
         if (!a.ink.empty())

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/model_path.h"
 #include "cli/paint.h"
 #include "cli/steps.h"
 #include "core/text/units.h"
@@ -23,7 +24,6 @@ namespace {
 constexpr double kPartOfModel = 0.25;   // of the model's diagonal that a text takes at a named point
 constexpr double kPartOfPath = 0.9;     // of a path on the model that a text takes
 constexpr double kPartOfHeight = 0.25;  // of the model's height that characters round it have at most
-constexpr double kRimHeight = 0.62;     // of the model's height, where no place is named
 
 /// A text with its glyphs, before it is put anywhere.
 struct Text {
@@ -141,50 +141,17 @@ std::optional<PlacedDrawing> write_in_lines(std::vector<stroke::JournalEntry>& s
     return place_strokes(strokes, model, at, console);
 }
 
-/// Path that the text runs along, and the length at which its middle stands.
-struct TextPath {
-    writer::ModelPath path;
-    double middle = 0;
-};
-
-TextPath rim_path(const stroke::Model& model, const Write& a) {
-    const Box& box = model.mesh->bounds;
-    Vec3 through = box.centre();
-    if (!a.place_mm.empty()) {
-        through = model.query->closest_point(kMillimetre * vector_of(a.place_mm))->position;
-    } else {
-        through.z = box.lo.z + kRimHeight * box.size().z;
-        const Vec3 before(through.x, box.lo.y - box.diagonal(), through.z);
-        if (const auto front = model.query->ray(before, {0, 1, 0})) through = front->position;
-    }
-    return {writer::level_section(*model.query, through), 0};
-}
-
-TextPath curve_path(const stroke::Model& model, const Write& a, Console& console) {
+PathOnModel text_path(const stroke::Model& model, const Write& a, writer::Direction direction, Console& console) {
+    if (direction == writer::Direction::rim) return rim_path(model, a);
     if (a.curve.empty()) throw UsageError("--direction curve needs a line on the model (see --curve)");
-    Paint line = a;
-    line.strokes = {a.curve};
-    std::vector<stroke::JournalEntry> entries = load_strokes(line, console);
-    place_strokes(entries, model, line, console);
-    for (const stroke::JournalEntry& entry : entries)
-        if (const stroke::StrokeSamples& trace = stroke::samples_of(entry); trace.flat && trace.samples.size() > 1) {
-            TextPath out;
-            for (const stroke::SurfaceSample& s : stroke::map_to_surface(*model.query, trace).samples) {
-                out.path.points.push_back(s.position);
-                out.path.normals.push_back(s.normal);
-            }
-            out.middle = 0.5 * out.path.length();
-            return out;
-        }
-    throw Error(a.curve.string(), Message("it has no flat line"));
+    return curve_path(model, a, a.curve, console);
 }
 
 std::optional<PlacedDrawing> write_along(std::vector<stroke::JournalEntry>& strokes, const stroke::Model& model,
                                          Text text, const Write& a, Console& console) {
     if (text.lines.size() > 1) throw UsageError("--direction rim and curve take a text of one line");
     const std::vector<writer::Glyph>& glyphs = text.lines.front();
-    const TextPath on =
-        text.layout.direction == writer::Direction::rim ? rim_path(model, a) : curve_path(model, a, console);
+    const PathOnModel on = text_path(model, a, text.layout.direction, console);
     double whole = 0;
     for (const writer::Glyph& g : glyphs) whole += text.layout.spacing * g.advance / writer::kSide;
     double side = std::min(kPartOfPath * on.path.length() / whole, kPartOfHeight * model.mesh->bounds.diagonal());

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -88,6 +89,69 @@ TEST_F(Drawing, FineDetailIsSaidWithTheTexelThatItNeeds) {
     ASSERT_EQ(fine.status, 0) << fine.err;
     EXPECT_EQ(fine.err.find("detail"), std::string::npos) << fine.err;
     EXPECT_NEAR(double(json::parse(fine.out)["atlas"]["texel_size_mm"]), 0.1, 0.012);
+}
+
+TEST_F(Drawing, WideLinesAreAreasAndNarrowOnesStrokes) {
+    write("wide.svg",
+          "<svg width='40mm' viewBox='0 0 40 20'><path d='M5 5 H35' stroke='black' stroke-width='4'/>"
+          "<path d='M5 15 H35' stroke='black' stroke-width='1'/></svg>");
+    const std::string file = "--strokes " + path("wide.svg") + " --place 0,0,0 ";
+    const json j = paint(file);
+    EXPECT_EQ(j["areas"], 1);
+    EXPECT_EQ(j["strokes"].size(), 1u);
+    EXPECT_EQ(paint(file + "--wide-lines 0")["areas"], 2);
+    EXPECT_EQ(paint(file + "--wide-lines 5")["areas"], 0);
+    EXPECT_EQ(paint(file + "--place-width 12")["areas"], 0) << "1.3 and 0.3 mm wide as painted";
+    for (const char* brush : {"--areas brush", "--brush wolf-medium", "--erase", "--film wet"})
+        EXPECT_EQ(paint(file + brush)["areas"], 0) << brush;
+    EXPECT_EQ(paint(file + "--ink cinnabar")["areas"], 1);
+}
+
+TEST_F(Drawing, EndsBeforeEdgesWhereItIsAsked) {
+    write("across.svg",
+          "<svg width='300mm' viewBox='0 0 300 20'><path d='M0 10 H300' stroke='red' stroke-width='10'/></svg>");
+    const std::string file = "--strokes " + path("across.svg") + " --place 0,0,0 --atlas-size 1024 ";
+    const double cut = paint(file)["ink_mm3"], before = paint(file + "--edges end-before --edge-margin 5")["ink_mm3"];
+    // The sheet is 200 mm wide, the stripe ends 5 mm before both its borders; a texel is 0.2 mm.
+    EXPECT_NEAR(before / cut, 0.95, 0.003);
+    EXPECT_NEAR(double(paint(file + "--edges run-over")["ink_mm3"]) / cut, 1, 0.003);
+    const std::string project = path("p.tuft");
+    paint(file + "--edges end-before --project " + project);
+    const Ran again = tuft("replay " + project + " --project " + path("q.tuft"));
+    EXPECT_EQ(again.status, 0) << again.err;
+}
+
+TEST_F(Drawing, ABandHasAWholeNumberOfCopiesThatMeet) {
+    // A band of one colour over its whole tile: where neighbours overlap or leave a gap, ink is lacking.
+    write("tile.svg", "<svg width='30mm' viewBox='0 0 30 6'><rect width='30' height='6' fill='#c8402a'/></svg>");
+    const std::string on = "paint " + model("bowl.ply") + " --atlas-size 2048 --json --strokes " + path("tile.svg");
+    const auto band = [&](const std::string& more) {
+        const Ran ran = tuft(on + " --along rim " + more);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        return json::parse(ran.out);
+    };
+    const json fit = band("");
+    const int n = fit["placed"]["repeats"];
+    const double step = fit["placed"]["step_mm"], whole = fit["placed"]["path_mm"];
+    EXPECT_NEAR(n * step, whole, 1e-6 * whole);
+    EXPECT_EQ(n, std::lround(whole / 30));
+    EXPECT_NEAR(double(fit["placed"]["width_mm"]), step, 1e-6 * step);
+    EXPECT_EQ(fit["areas"], n);
+    // Its height grows with its width. Coverage of texels at the seams adds up to within a texel.
+    const double height = 6 * step / 30, film = double(fit["ink_mm3"]) / (whole * height);
+    const json seven = band("--repeat 7");
+    EXPECT_EQ(seven["placed"]["repeats"], 7);
+    const double wide = seven["placed"]["step_mm"];
+    EXPECT_NEAR(double(seven["ink_mm3"]) / (whole * 6 * wide / 30), film, 0.01 * film);
+    EXPECT_NEAR(double(band("--repeat 8 --place-width 15")["ink_mm3"]), film * 8 * 15 * 3, 0.01 * film * 8 * 15 * 3);
+    for (const char* wrong : {"--repeat 0", "--repeat none", "--repeat 1001"})
+        EXPECT_EQ(tuft(on + " --along rim " + wrong).status, 2) << wrong;
+    write("path.svg", "<svg width='60mm' viewBox='0 0 60 10'><path d='M0 5 H60' stroke='black' fill='none'/></svg>");
+    const Ran along = tuft("paint " + model("sheet.ply") + " --atlas-size 1024 --json --strokes " + path("tile.svg") +
+                           " --along " + path("path.svg") + " --place 0,0,0");
+    ASSERT_EQ(along.status, 0) << along.err;
+    EXPECT_EQ(json::parse(along.out)["placed"]["repeats"], 2);
+    EXPECT_NEAR(double(json::parse(along.out)["placed"]["step_mm"]), 30, 0.01);
 }
 
 }  // namespace

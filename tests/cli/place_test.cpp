@@ -111,9 +111,9 @@ TEST_F(Place, TheWidthAskedForIsThatOfTheInk) {
     write("thick.svg",
           "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 30 10' width='30mm'><path d='M5 5 h20' fill='none' "
           "stroke='#000' stroke-width='4'/></svg>");
-    const Reach own = painted("thick.svg", "--place 0,0,20");
-    const Reach asked =
-        painted("thick.svg", "--place 0,0,20 --place-width 24");  // 20 of line, 2 of ink beyond each end
+    // 20 of line, 2 of ink beyond each end of a brush's.
+    const Reach own = painted("thick.svg", "--areas brush --place 0,0,20");
+    const Reach asked = painted("thick.svg", "--areas brush --place 0,0,20 --place-width 24");
     for (int axis = 0; axis < 3; ++axis)
         EXPECT_NEAR(own.size(axis), asked.size(axis), 1e-6) << "the scale is 1 but for rounding";
 }

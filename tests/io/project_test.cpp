@@ -510,10 +510,11 @@ TEST(Project, ForeignFilesAreNamedAsSuch) {
     std::memcpy(&other[68], "GPKG", 4);
     write_file(folder / "o.tuft", other.data(), other.size());
     EXPECT_NE(fault(folder / "o.tuft").find("not a tuft project"), std::string::npos);
-    bytes[63] = 9;  // user_version
+    bytes[63] = kProjectFormat + 1;  // user_version
     write_file(folder / "n.tuft", bytes.data(), bytes.size());
     EXPECT_NE(fault(folder / "n.tuft")
-                  .find("newer tuft (format 9, this one reads up to " + std::to_string(kProjectFormat) + ")"),
+                  .find("newer tuft (format " + std::to_string(kProjectFormat + 1) + ", this one reads up to " +
+                        std::to_string(kProjectFormat) + ")"),
               std::string::npos);
     EXPECT_THROW(Project::create(folder / "no/where/a.tuft", sample_model()), Error);
 }

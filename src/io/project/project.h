@@ -25,7 +25,8 @@
 /// and a cache of the texels. Called by `cli` and by the studio's paint thread.
 namespace tuft::io {
 
-inline constexpr int kProjectFormat = 8;  ///< highest format version that this program reads
+inline constexpr int kProjectFormat = 9;  ///< highest format version that this program reads
+inline constexpr int kEdgesFormat = 9;    ///< needed for areas that end at edges, pictures, masks clear of edges
 inline constexpr int kRolledFormat = 8;   ///< needed for strokes with a roll of the holder
 inline constexpr int kStencilFormat = 7;  ///< needed for strokes with a stencil
 inline constexpr int kColoursFormat = 6;  ///< needed for colours of the model

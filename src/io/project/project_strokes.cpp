@@ -45,6 +45,12 @@ void raise_format_for(SQLite::Database& db, const stroke::JournalEntry& entry) {
     if (!t.stencil.empty()) raise_format(db, kStencilFormat);
     if (has_roll(t.samples) || (stroke && (stroke->settings.roll != 0 || stroke->settings.roll_follow)))
         raise_format(db, kRolledFormat);
+    const stroke::Fill* fill = entry.as<stroke::Fill>();
+    const stroke::MaskEdit* mask = entry.as<stroke::MaskEdit>();
+    if ((fill && fill->area &&
+         (fill->area->edges != stroke::AreaEdges::facing || fill->area->gradient == stroke::AreaGradient::image)) ||
+        (mask && mask->mask.kind == stroke::MaskKind::clear))
+        raise_format(db, kEdgesFormat);
 }
 
 }  // namespace

@@ -17,12 +17,14 @@
 #include "io/strokes/svg_areas.h"
 #include "io/strokes/svg_page.h"
 #include "io/strokes/svg_scene.h"
+#include "io/strokes/svg_stroke.h"
 #include "io/strokes/xml_entities.h"
 
 namespace tuft::io {
 namespace {
 
 constexpr double kSpacing = 5e-4;  // metres, of samples on a straight line
+constexpr double kDot = 0.05;      // of its width, half of the line that stands for a point
 
 // A line of the drawing; metres.
 struct Drawn {
@@ -30,8 +32,15 @@ struct Drawn {
     double width = 0;                    // of its stroke; 0: it has none
     double taper_in = 0, taper_out = 0;  // lengths over which it runs out into a point
     std::vector<stroke::StencilEdge> stencil = {};
+    std::vector<Ring> outline = {};  // of its stroke
     std::string group = {};
 };
+
+// A drawing is often painted larger than its file says: a thousandth of a percent of it is out of sight.
+double area_tolerance(const SvgScene& scene, double most) {
+    const double size = glm::length(scene.page);
+    return size > 0 ? std::clamp(1e-5 * size, 1e-3 * most, most) : 0.1 * most;
+}
 
 /// Lines of a scene for a brush.
 class BrushLines {
@@ -41,50 +50,87 @@ class BrushLines {
 
     std::vector<Drawn> draw() {
         for (const SvgShape& s : scene_.shapes) {
-            if (s.style.visible && s.style.stroked() && s.style.width * svg_growth(s.matrix) >= options_.wide)
-                add_wide(s);
+            if (s.fixed_width && s.style.stroked())
+                add_shape(svg_with_own_width(s, scene_.unit));
             else
-                add(s);
+                add_shape(s);
         }
         return std::move(lines_);
     }
 
   private:
-    void add(const SvgShape& s) {
-        const double growth = svg_growth(s.matrix);
-        width_ = s.style.stroked() ? std::min(s.style.width * growth, options_.ink.max_extent) : 0;
-        if (!std::isfinite(width_)) width_ = 0;
+    void add_shape(const SvgShape& s) {
+        const bool wide = s.style.visible && s.style.stroked() && !options_.outlines &&
+                          s.style.width * svg_growth(s.matrix) >= options_.wide;
         const std::size_t before = lines_.size();
-        for (const SvgLine& line : s.lines) emit(line, s);
-        if (lines_.size() == before) return;
-        if (s.fixed_width && s.style.stroked()) scene_.losses.add(SvgLoss::scaled_width);
+        const std::size_t whole = add_lines(s);
+        if (whole == 0 && !s.style.stroked()) return;
         count_paints(s.style);
         if (s.style.bare())
             lines_.resize(before);
-        else if (s.style.filled())
+        else if (s.style.filled() && whole > 0)
             fill(before, s.style);
+        if (s.style.stroked() && (wide || options_.outlines || whole == 0 || !s.style.dashes.empty())) {
+            lines_.resize(lines_.size() - whole);
+            if (!wide || !add_wide(s)) add_strokes(s);
+        }
         for (std::size_t i = before; i < lines_.size(); ++i) lines_[i].group = s.group;
     }
 
+    // The lines of the shape, without dashes; how many.
+    std::size_t add_lines(const SvgShape& s) {
+        width_ = s.style.stroked() ? std::min(s.style.width * svg_growth(s.matrix), options_.ink.max_extent) : 0;
+        if (!std::isfinite(width_)) width_ = 0;
+        const std::size_t before = lines_.size();
+        for (const SvgLine& line : s.lines) emit(line, s);
+        return lines_.size() - before;
+    }
+
     // A wide line is an area with the ends and corners that the file gives it.
-    void add_wide(const SvgShape& s) {
-        if (s.style.filled()) {
-            SvgShape fill = s;
-            fill.style.stroke = {};
-            add(fill);
-        }
-        SvgStyle stroke = s.style;
-        stroke.fill = {};
-        stroke.dashes.clear();
-        const std::vector<Ring> rings = svg_stroke_outline(s, scene_.unit, options_.tolerance);
-        std::vector<AreaLine> lines = area_lines(rings, FillRule::nonzero);
-        if (lines.empty()) return add(s);
-        count_paints(stroke);
-        for (AreaLine& line : lines) {
-            n_points_ += line.line.size() + line.stencil.size();
-            lines_.push_back(
-                {std::move(line.line), line.width, line.taper_in, line.taper_out, std::move(line.stencil), s.group});
-        }
+    bool add_wide(const SvgShape& s) {
+        std::vector<AreaLine> lines =
+            area_lines(svg_stroke_outline(s, scene_.unit, options_.tolerance), FillRule::nonzero);
+        for (AreaLine& line : lines) lines_.push_back(counted(std::move(line)));
+        return !lines.empty();
+    }
+
+    Drawn counted(AreaLine line) {
+        n_points_ += line.line.size() + line.stencil.size();
+        check_points();
+        return {.line = std::move(line.line),
+                .width = line.width,
+                .taper_in = line.taper_in,
+                .taper_out = line.taper_out,
+                .stencil = std::move(line.stencil)};
+    }
+
+    // The stroke of a shape, each dash a line of its own, with what it covers.
+    void add_strokes(const SvgShape& s) {
+        const double tolerance = area_tolerance(scene_, options_.tolerance);
+        SvgShape one{.matrix = s.matrix, .style = s.style};
+        one.style.dashes.clear();
+        for (const SvgLine& line : s.lines)
+            for (SvgLine& dash : s.style.dashes.empty() || line.size() < 2
+                                     ? std::vector<SvgLine>{line}
+                                     : svg_dashed(line, s.style.dashes, s.style.dash_offset)) {
+                const std::size_t before = lines_.size();
+                if (emit(dash, s); lines_.size() == before) emit(dot_of(dash, s.style), s);
+                if (lines_.size() == before || !options_.outlines) continue;
+                one.lines = {std::move(dash)};
+                lines_.back().outline = svg_stroke_outline(one, scene_.unit, tolerance);
+                for (const Ring& ring : lines_.back().outline) n_points_ += ring.size();
+                check_points();
+            }
+    }
+
+    // A point shows its ends, a brush needs a line.
+    static SvgLine dot_of(const SvgLine& line, const SvgStyle& style) {
+        if (line.empty() || style.cap == SvgCap::butt) return {};
+        const Vec2 half(kDot * style.width, 0);
+        return {line.front() - half, line.front() + half};
+    }
+
+    void check_points() const {
         if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
     }
 
@@ -94,11 +140,7 @@ class BrushLines {
         std::vector<SvgLine> rings;
         for (std::size_t i = before; i < lines_.size(); ++i) rings.push_back(lines_[i].line);
         std::vector<Drawn> area;
-        for (AreaLine& line : area_lines(rings, style.rule)) {
-            n_points_ += line.line.size() + line.stencil.size();
-            area.push_back({std::move(line.line), line.width, line.taper_in, line.taper_out, std::move(line.stencil)});
-        }
-        if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
+        for (AreaLine& line : area_lines(rings, style.rule)) area.push_back(counted(std::move(line)));
         if (area.empty()) {  // a line, drawn as such unless it says that it has a stroke, which paints nothing
             if (!style.stroked() && style.stroke.kind != SvgPaint::Kind::none) lines_.resize(before);
             return;
@@ -118,7 +160,6 @@ class BrushLines {
         if (either(Kind::missing)) losses.add(SvgLoss::missing_paint);
         if (either(Kind::gradient)) losses.add(SvgLoss::gradient);
         if (either(Kind::pattern)) losses.add(SvgLoss::pattern);
-        if (style.stroked() && !style.dashes.empty()) losses.add(SvgLoss::dash);
         if (style.marked()) losses.add(SvgLoss::marker);
         if ((style.filled() && style.fill_opacity < 1) || (style.stroked() && style.stroke_opacity < 1))
             losses.add(SvgLoss::opacity);
@@ -141,8 +182,8 @@ class BrushLines {
         }
         if (out.size() < 2) return;
         n_points_ += out.size();
-        if (n_points_ > options_.ink.max_samples) throw Error(source_, "the drawing has too many points");
-        lines_.push_back({std::move(out), width_});
+        check_points();
+        lines_.push_back({.line = std::move(out), .width = width_});
     }
 
     SvgScene& scene_;
@@ -186,6 +227,7 @@ std::vector<stroke::RecordedStroke> traces_of(const std::vector<Drawn>& lines, c
     for (std::size_t i = 0; i < traces.size(); ++i) {
         give_width(traces[i], lines.at(i), options.flat_pressure);
         traces[i].stencil = lines.at(i).stencil;
+        traces[i].outline = lines.at(i).outline;
         traces[i].group = lines.at(i).group;
     }
     return traces;
@@ -197,12 +239,6 @@ void report_losses(const std::vector<Message>& losses, bool nothing, const std::
     if (nothing) throw Error(source, Message("nothing is drawn in this file; {}", losses.front()));
     if (options.note)
         for (const Message& loss : losses) options.note(loss);
-}
-
-// A drawing is often painted larger than its file says: a thousandth of a percent of it is out of sight.
-double area_tolerance(const SvgScene& scene, double most) {
-    const double size = glm::length(scene.page);
-    return size > 0 ? std::clamp(1e-5 * size, 1e-3 * most, most) : 0.1 * most;
 }
 
 /// Leaves the shapes of the groups asked for.
@@ -225,7 +261,10 @@ void keep_groups(SvgScene& scene, const std::vector<std::string>& names, const s
 std::optional<std::vector<stroke::RecordedStroke>> coloured(const pugi::xml_node& svg, const std::string& source,
                                                             const SvgOptions& options) {
     if (options.painting == SvgPainting::brush) return {};
-    SvgSceneOptions how{.brush = false, .tolerance = options.tolerance, .max_points = options.ink.max_samples};
+    SvgSceneOptions how{.brush = false,
+                        .tolerance = options.tolerance,
+                        .max_points = options.ink.max_samples,
+                        .folder = options.folder};
     const SvgPage page = svg_page(svg, source);
     how.tolerance = area_tolerance({.page = page.size}, options.tolerance);
     SvgScene scene = read_svg_scene(svg, source, how);
@@ -257,7 +296,9 @@ std::vector<stroke::RecordedStroke> parse_svg(std::string_view text, const std::
 
 std::vector<stroke::RecordedStroke> read_svg(const std::filesystem::path& path, const SvgOptions& options) {
     const std::vector<char> bytes = read_file(path, options.ink.max_bytes);
-    return parse_svg({bytes.data(), bytes.size()}, path.string(), options);
+    SvgOptions own = options;
+    own.folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    return parse_svg({bytes.data(), bytes.size()}, path.string(), own);
 }
 
 std::vector<stroke::RecordedStroke> read_strokes(const std::filesystem::path& path, const SvgOptions& options) {

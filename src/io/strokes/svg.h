@@ -24,9 +24,12 @@ struct SvgOptions {
     SvgPainting painting = SvgPainting::brush;
     std::vector<std::string> groups;  ///< only shapes in these layers and named groups; empty: all
     double tolerance = 2e-5;          ///< metres, largest distance of a chord from its curve
-    /// metres, as the file is written; with `brush`, lines from this width on are filled like areas, with the ends,
-    /// corners and dashes that the file says
+    /// metres, as the file is written; with `brush` and without `outlines`, lines from this width on are filled by
+    /// lines of a brush, with the ends, corners and dashes that the file says
     double wide = 8e-3;
+    bool outlines = false;  ///< with `brush`: lines state what they cover (`StrokeSamples::outline`)
+    /// of pictures that the drawing refers to; empty: none is read from files. `read_svg` takes the drawing's own.
+    std::filesystem::path folder;
     InkmlOptions ink;  ///< speed, pressure and limits
 };
 
@@ -44,11 +47,12 @@ struct SvgOptions {
 ///
 /// With `SvgPainting::areas` the shapes become fills with `stroke::Region::outline` instead: strokes with their ends,
 /// corners and dashes, gradients, opacities, clip paths, masks, patterns, markers, `use` of symbols and inner drawings
-/// in their frames. What stays out is reported by `InkmlOptions::note`: images, filters, blend modes, animation.
+/// in their frames. Images are stencils: black ink by their darkness (svg_image.h). What stays out is reported by
+/// `InkmlOptions::note`: images that cannot be read, filters, blend modes, animation.
 ///
 /// `RecordedStroke::group` is the layer, or the outermost group with a name (`inkscape:label`, `data-name`, `id`).
 ///
-/// With `SvgPainting::brush` a stroke at least `SvgOptions::wide` wide is filled as an area, too.
+/// With `SvgPainting::brush` each dash is a line. A point with round or square ends is a short one.
 ///
 /// In traces with a width the pressure is the fraction of the width to draw, 0.5 for all of it. Other traces have speed
 /// and pressure as by `parse_inkml`.

@@ -57,6 +57,7 @@ struct PaintedPart {
     FillRule rule = FillRule::nonzero;
     SvgColour colour;
     SvgGradientPtr gradient;
+    SvgPicturePtr picture;
     double opacity = 1;
     const SvgShape* shape = nullptr;
 };
@@ -82,6 +83,10 @@ std::vector<PaintedPart> parts_of(const SvgShape& s, double unit, double toleran
         std::erase_if(part.rings, [](const Ring& r) { return r.size() < 3; });
         if (!part.rings.empty()) parts.push_back(std::move(part));
     };
+    if (s.picture) {
+        parts.push_back({.rings = moved(s.lines, s.matrix), .picture = s.picture, .opacity = s.opacity, .shape = &s});
+        return parts;
+    }
     add(
         s.style.fill, s.fill_gradient, s.style.fill_opacity, [&] { return moved(s.lines, s.matrix); }, s.style.rule);
     add(
@@ -147,8 +152,9 @@ class AreaMaker {
 
   public:
     static bool is_background(const PaintedPart& part, const Vec2& page) {
-        if (part.gradient || part.opacity < 1 || part.colour != SvgColour{{1, 1, 1}, 1} || part.rings.size() != 1 ||
-            !(page.x > 0 && page.y > 0) || !part.shape->clips.empty() || !part.shape->masks.empty())
+        if (part.gradient || part.picture || part.opacity < 1 || part.colour != SvgColour{{1, 1, 1}, 1} ||
+            part.rings.size() != 1 || !(page.x > 0 && page.y > 0) || !part.shape->clips.empty() ||
+            !part.shape->masks.empty())
             return false;
         Vec2 low(HUGE_VAL), high(-HUGE_VAL);
         for (const Vec2& p : part.rings[0]) low = glm::min(low, p), high = glm::max(high, p);
@@ -262,7 +268,9 @@ class AreaMaker {
             for (SvgStop& stop : graded->stops) stop.colour.rgb = part.colour.rgb;
             gradient = graded;
         }
-        if (gradient)
+        if (part.picture)
+            shade(area, *part.picture, opacity, bool(fade));
+        else if (gradient)
             grade(area, *gradient, opacity);
         else
             area.stops = {{.ink = inks_.of(part.colour), .opacity = std::min(1.0, opacity)}};
@@ -271,6 +279,21 @@ class AreaMaker {
         recorded.group = part.shape->group;
         recorded.before.push_back(stroke::fill_of_area(std::move(area)));
         out_.push_back(std::move(recorded));
+    }
+
+    // Black with the opacity of the picture's darkness.
+    void shade(stroke::FlatArea& area, const SvgPicture& picture, double opacity, bool faded) {
+        constexpr int kShades = 16;
+        if (faded) scene_.losses.add(SvgLoss::mask);
+        const std::string ink = inks_.of({{0, 0, 0}, 1});
+        for (int k = 0; k <= kShades; ++k) {
+            const double t = double(k) / kShades;
+            area.stops.push_back({.at = t, .ink = ink, .opacity = std::min(1.0, opacity * t)});
+        }
+        area.gradient = stroke::AreaGradient::image;
+        area.image = *picture.pixels;
+        const SvgMatrix& m = picture.to_unit;
+        area.to_unit = {m[0][0], m[0][1], m[1][0], m[1][1], m[2][0], m[2][1]};
     }
 
     void grade(stroke::FlatArea& area, const SvgGradient& g, double opacity) {
@@ -330,22 +353,24 @@ class AreaMaker {
 
 }  // namespace
 
+SvgShape svg_with_own_width(SvgShape s, double unit) {
+    if (!s.fixed_width) return s;
+    s.lines = moved(std::move(s.lines), s.matrix);
+    s.matrix = SvgMatrix(1);
+    s.style.width *= unit;
+    s.style.dash_offset *= unit;
+    for (double& d : s.style.dashes) d *= unit;
+    s.fixed_width = false;
+    return s;
+}
+
 std::vector<Ring> svg_stroke_outline(const SvgShape& s, double unit, double tolerance) {
-    SvgStyle style = s.style;
-    SvgMatrix matrix = s.matrix;
-    std::vector<SvgLine> lines = s.lines;
-    if (s.fixed_width) {
-        lines = moved(std::move(lines), matrix);
-        matrix = SvgMatrix(1);
-        style.width *= unit;
-        style.dash_offset *= unit;
-        for (double& d : style.dashes) d *= unit;
-    }
-    const double growth = std::max(svg_growth(matrix), 1e-12);
+    if (s.fixed_width) return svg_stroke_outline(svg_with_own_width(s, unit), unit, tolerance);
+    const double growth = std::max(svg_growth(s.matrix), 1e-12);
     std::vector<Ring> rings;
-    for (const SvgLine& line : lines)
-        for (SvgLine& ring : svg_stroke_rings(line, style, tolerance / growth)) rings.push_back(std::move(ring));
-    return moved(std::move(rings), matrix);
+    for (const SvgLine& line : s.lines)
+        for (SvgLine& ring : svg_stroke_rings(line, s.style, tolerance / growth)) rings.push_back(std::move(ring));
+    return moved(std::move(rings), s.matrix);
 }
 
 bool has_colours(const SvgScene& scene) {
@@ -353,7 +378,7 @@ bool has_colours(const SvgScene& scene) {
     for (const SvgShape& s : scene.shapes) {
         if (!s.style.visible) continue;
         for (const PaintedPart& part : parts_of(s, scene.unit, 1)) {
-            if (part.gradient) return true;
+            if (part.gradient || part.picture) return true;
             const bool background = std::exchange(first, false) && AreaMaker::is_background(part, scene.page);
             if (!background && part.colour.rgb != std::array<double, 3>{0, 0, 0}) return true;
         }

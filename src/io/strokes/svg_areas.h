@@ -17,6 +17,10 @@ inline constexpr double kSameInk = 1;
 /// Returns true when a shape has a colour other than black. A white page does not count, other white does.
 bool has_colours(const SvgScene& scene);
 
+/// Returns a shape whose stroke does not grow with transforms (`fixed_width`) in metres, any other as it is. `unit`:
+/// metres of a unit of the page.
+SvgShape svg_with_own_width(SvgShape shape, double unit);
+
 /// Returns rings that enclose, by the nonzero rule, what the stroke of a shape covers, with its dashes; metres. `unit`:
 /// metres of a unit of the page, for strokes of fixed width.
 std::vector<Ring> svg_stroke_outline(const SvgShape& shape, double unit, double tolerance);

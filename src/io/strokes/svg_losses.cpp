@@ -20,7 +20,8 @@ Message loss_text(SvgLoss loss, std::size_t n) {
             return say("1 character is left out: its path is too short",
                        "{} characters are left out: their path is too short");
         case SvgLoss::image:
-            return say("1 image is left out", "{} images are left out");
+            return say("1 image is left out: lines of a brush do not paint it",
+                       "{} images are left out: lines of a brush do not paint them");
         case SvgLoss::damaged_path:
             return say("1 path is damaged: it is drawn up to its fault",
                        "{} paths are damaged: they are drawn up to their faults");
@@ -47,8 +48,6 @@ Message loss_text(SvgLoss loss, std::size_t n) {
             return say("1 gradient is painted as one even ink", "{} gradients are painted as one even ink");
         case SvgLoss::pattern:
             return say("1 pattern is painted as one even ink", "{} patterns are painted as one even ink");
-        case SvgLoss::dash:
-            return say("1 dashed line is painted whole", "{} dashed lines are painted whole");
         case SvgLoss::marker:
             return say("1 line loses its markers, such as arrow heads",
                        "{} lines lose their markers, such as arrow heads");
@@ -57,9 +56,6 @@ Message loss_text(SvgLoss loss, std::size_t n) {
                        "{} opacities are not applied: the ink is painted in full");
         case SvgLoss::blend:
             return say("1 blend mode is not applied", "{} blend modes are not applied");
-        case SvgLoss::scaled_width:
-            return say("1 line that shall keep its width (vector-effect) grows with its transform",
-                       "{} lines that shall keep their width (vector-effect) grow with their transforms");
         case SvgLoss::white:
             return say(
                 "1 white area or line is left bare: white is the background, and what it covers stays painted",
@@ -103,6 +99,7 @@ std::vector<Message> SvgLosses::lines() const {
     std::vector<Message> out;
     for (std::size_t i = 0; i < kSvgLosses; ++i)
         if (counts_[i] > 0) out.push_back(loss_text(static_cast<SvgLoss>(i), counts_[i]));
+    for (const Message& why : images_) out.push_back(Message("an image is left out: {}", why));
     for (const auto& [missing, used] : fonts_)
         out.push_back(Message("the font '{}' is not installed: its text is set in '{}'", excerpt(missing), used));
     if (colours_.empty() || (colours_.size() == 1 && colours_.front() == "black")) return out;

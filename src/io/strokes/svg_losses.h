@@ -28,11 +28,9 @@ enum class SvgLoss {
     filter,
     gradient,
     pattern,
-    dash,
     marker,
     opacity,
     blend,
-    scaled_width,
     white,
     frame,
     transform,
@@ -50,6 +48,8 @@ class SvgLosses {
     void add_colour(const std::string& colour);
     /// Adds a font family that is not installed, and the one that replaces it.
     void add_font(const std::string& missing, const std::string& used);
+    /// Adds a picture that cannot be read, with its name.
+    void add_image(const Message& why) { images_.push_back(why); }
     /// Returns one line for each kind found, with its count, one for each missing font, and one for the colours
     /// where any is not black.
     std::vector<Message> lines() const;
@@ -57,6 +57,7 @@ class SvgLosses {
   private:
     std::array<std::size_t, kSvgLosses> counts_{};
     std::vector<std::pair<std::string, std::string>> fonts_;  // missing and used, in the order found
+    std::vector<Message> images_;                             // in the order found
     std::vector<std::string> colours_;                        // in the order found
     std::set<std::string> known_;
 };

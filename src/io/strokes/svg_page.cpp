@@ -6,6 +6,7 @@
 #include <pugixml.hpp>
 
 #include "core/error.h"
+#include "io/strokes/inkml_marks.h"
 
 namespace tuft::io {
 
@@ -123,6 +124,17 @@ std::vector<SvgLine> svg_lines(const pugi::xml_node& node, const std::string& na
         emit(svg_ellipse({number("cx"), number("cy")}, Vec2(number("r")), curves));
     } else if (name == "ellipse") {
         emit(svg_ellipse({number("cx"), number("cy")}, {number("rx"), number("ry")}, curves));
+    }
+    return lines;
+}
+
+std::vector<SvgLine> svg_transformed_lines(const pugi::xml_node& node, const SvgCurves& curves, const Vec2& page,
+                                           const std::string& source) {
+    std::vector<SvgLine> lines = svg_lines(node, std::string(local_name(node)), curves, page, source);
+    if (const auto transform = node.attribute("transform")) {
+        const SvgMatrix matrix = svg_transform(transform.value(), source);
+        for (SvgLine& line : lines)
+            for (Vec2& p : line) p = Vec2(matrix * Vec3(p, 1));
     }
     return lines;
 }

@@ -48,5 +48,8 @@ SvgFraming svg_framing(const pugi::xml_node& node, const SvgViewport& port, cons
 /// with `damaged`, a path with a fault ends before it (SVG 1.1, F.2) and sets `damaged` instead.
 std::vector<SvgLine> svg_lines(const pugi::xml_node& node, const std::string& name, const SvgCurves& curves,
                                const Vec2& page, const std::string& source, bool* damaged = nullptr);
+/// The same in the user space round the element, by its `transform`.
+std::vector<SvgLine> svg_transformed_lines(const pugi::xml_node& node, const SvgCurves& curves, const Vec2& page,
+                                           const std::string& source);
 
 }  // namespace tuft::io

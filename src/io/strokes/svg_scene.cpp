@@ -37,7 +37,8 @@ struct State {
 
 class SceneReader {
   public:
-    SceneReader(const std::string& source, const SvgSceneOptions& options) : source_(source), options_(options) {}
+    SceneReader(const std::string& source, const SvgSceneOptions& options)
+        : source_(source), options_(options), pictures_(options.folder) {}
 
     SvgScene read(const pugi::xml_node& svg) {
         index(svg);
@@ -79,10 +80,8 @@ class SceneReader {
         const Properties own(node, sheet_.declared(node));
         if (own("display") == "none" || svg_part(own("opacity"), 1) == 0) return;
         inherit_style(state.style, std::cref(own), by_id_, source_);
-        if (name == "image") {
-            if (state.style.visible) scene_.losses.add(SvgLoss::image);
-            return;
-        }
+        if (name == "image" && !state.style.visible) return;
+        if (name == "image" && options_.brush) return scene_.losses.add(SvgLoss::image);
         count_effects(own);
         state.opacity *= svg_part(own("opacity"), 1);
         name_group(node, name, own, state, depth);
@@ -95,6 +94,7 @@ class SceneReader {
             add_effects(node, own, state, depth);
             if (inner) enter_frame(node, state, viewport_of(node, state, 1), overflows(own));
         }
+        if (name == "image") return picture(node, own, std::move(state));
         if (name == "use") return use(node, std::move(state), depth);
         if (name == "text") return text(node, own, std::move(state), depth);
         if (state.style.visible) shape(node, name, own, state, depth);
@@ -117,13 +117,11 @@ class SceneReader {
     // The first child that asks for nothing special.
     void choose(const pugi::xml_node& node, const State& state, int depth) {
         for (const pugi::xml_node& child : node.children()) {
-            const std::string_view name = local_name(child);
-            if (child.type() != pugi::node_element || name == "foreignObject" || child.attribute("requiredExtensions"))
-                continue;
-            if (const auto language = child.attribute("systemLanguage");
-                language && std::string_view(language.value()).find("en") == std::string_view::npos)
-                continue;
-            return walk(child, state, depth + 1);
+            const auto language = child.attribute("systemLanguage");
+            const bool foreign = language && std::string_view(language.value()).find("en") == std::string_view::npos;
+            if (child.type() == pugi::node_element && local_name(child) != "foreignObject" &&
+                !child.attribute("requiredExtensions") && !foreign)
+                return walk(child, state, depth + 1);
         }
     }
 
@@ -194,12 +192,14 @@ class SceneReader {
             state.style.visible = false;
             return;
         }
-        if (!overflow)
-            add_clip(state, {{port.corner, port.corner + Vec2(port.size.x, 0), port.corner + port.size,
-                              port.corner + Vec2(0, port.size.y)}});
+        if (!overflow) clip_to(state, port);
         const SvgFraming framing = svg_framing(node, port, source_);
         state.matrix = state.matrix * framing.matrix;
         state.page = framing.view;
+    }
+    void clip_to(State& state, const SvgViewport& port) {
+        const Vec2 &a = port.corner, b = a + port.size;
+        add_clip(state, {{a, {b.x, a.y}, b, {a.x, b.y}}});
     }
     // What lies within lines of the user space.
     void add_clip(State& state, std::vector<SvgLine> lines, FillRule rule = FillRule::nonzero) {
@@ -360,6 +360,27 @@ class SceneReader {
         if (!lines.empty()) add_shape(std::move(lines), own, state, depth, name);
     }
 
+    // A picture fills its rectangle as a stencil (SVG 1.1, 5.7).
+    void picture(const pugi::xml_node& node, const Properties& own, State state) {
+        std::shared_ptr<const stroke::AreaImage> pixels;
+        try {
+            pixels = pictures_.read(svg_href(node));
+        } catch (const Error& e) {
+            return scene_.losses.add_image(e.message());
+        }
+        const auto side = [&](const char* name, int whole) {
+            return node.attribute(name) ? number(node, name, state) : whole;
+        };
+        const SvgViewport port{{number(node, "x", state), number(node, "y", state)},
+                               {side("width", pixels->width), side("height", pixels->height)}};
+        std::optional<SvgPlacedPicture> placed =
+            svg_place_picture(std::move(pixels), node, {port, state.matrix}, source_);
+        if (!placed) return;
+        if (!overflows(own)) clip_to(state, port);
+        scene_.shapes.push_back(shape_in({std::move(placed->rectangle)}, state));
+        scene_.shapes.back().picture = std::move(placed->picture);
+    }
+
     // Glyphs as areas. A mirrored copy keeps a text readable.
     void text(const pugi::xml_node& node, const Properties& own, State state, int depth) {
         if (state.upright.empty()) state.upright = "text " + std::to_string(++n_upright_);
@@ -389,29 +410,26 @@ class SceneReader {
         const std::string target = svg_href(along);
         const auto at = target.size() > 1 ? by_id_.find(target.substr(1)) : by_id_.end();
         if (at == by_id_.end()) return {};
-        std::vector<SvgLine> lines =
-            svg_lines(at->second, std::string(local_name(at->second)), curves(state.matrix), state.page, source_);
-        if (const auto transform = at->second.attribute("transform")) {
-            const SvgMatrix matrix = svg_transform(transform.value(), source_);
-            for (SvgLine& line : lines)
-                for (Vec2& p : line) p = Vec2(matrix * Vec3(p, 1));
-        }
-        return lines;
+        return svg_transformed_lines(at->second, curves(state.matrix), state.page, source_);
+    }
+
+    static SvgShape shape_in(std::vector<SvgLine> lines, const State& state) {
+        return {.lines = std::move(lines),
+                .matrix = state.matrix,
+                .style = state.style,
+                .opacity = state.opacity,
+                .clips = state.clips,
+                .masks = state.masks,
+                .group = state.group,
+                .upright = state.upright};
     }
 
     void add_shape(std::vector<SvgLine> lines, const Properties& own, const State& state, int depth,
                    std::string_view name) {
         for (const SvgLine& line : lines) n_points_ += line.size();
         if (n_points_ > options_.max_points) throw Error(source_, "the drawing has too many points");
-        SvgShape shape{.lines = std::move(lines),
-                       .matrix = state.matrix,
-                       .style = state.style,
-                       .opacity = state.opacity,
-                       .fixed_width = own("vector-effect") == "non-scaling-stroke",
-                       .clips = state.clips,
-                       .masks = state.masks,
-                       .group = state.group,
-                       .upright = state.upright};
+        SvgShape shape = shape_in(std::move(lines), state);
+        shape.fixed_width = own("vector-effect") == "non-scaling-stroke";
         if (options_.brush) {
             scene_.shapes.push_back(std::move(shape));
             return;
@@ -484,15 +502,7 @@ class SceneReader {
     }
 
     void markers(const std::vector<SvgLine>& lines, const State& state, int depth) {
-        std::vector<std::pair<Vec2, double>> at;  // of each vertex: place and direction
-        for (const SvgLine& line : lines)
-            for (std::size_t i = 0; i < line.size(); ++i) {
-                const Vec2 in = i > 0 ? line[i] - line[i - 1] : Vec2(0),
-                           on = i + 1 < line.size() ? line[i + 1] - line[i] : Vec2(0);
-                const auto unit = [](const Vec2& d) { return glm::length(d) > 0 ? glm::normalize(d) : Vec2(0); };
-                const Vec2 middle = unit(in) + unit(on);
-                at.emplace_back(line[i], std::atan2(middle.y, middle.x));
-            }
+        const std::vector<std::pair<Vec2, double>> at = svg_vertices(lines);
         if (at.empty() || at.size() > kMostMarkers) return;
         marker(state.style.marker_start, at.front(), true, state, depth);
         if (!state.style.marker_mid.empty()) {
@@ -577,6 +587,7 @@ class SceneReader {
     SvgSheet sheet_;
     SvgIds by_id_;
     SvgFonts fonts_;
+    SvgPictures pictures_;
     std::size_t n_elements_ = 0, n_points_ = 0, n_text_ = 0, n_matches_ = 0, n_upright_ = 0;
 };
 

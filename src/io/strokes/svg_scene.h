@@ -7,6 +7,7 @@
 #include "io/strokes/inkml.h"
 #include "io/strokes/shape.h"
 #include "io/strokes/svg_gradient.h"
+#include "io/strokes/svg_image.h"
 #include "io/strokes/svg_losses.h"
 #include "io/strokes/svg_shapes.h"
 #include "io/strokes/svg_style.h"
@@ -39,8 +40,9 @@ struct SvgShape {
     bool fixed_width = false;               ///< its stroke does not grow with transforms
     std::vector<std::size_t> clips, masks;  ///< indices into the scene: all of them apply
     SvgGradientPtr fill_gradient, stroke_gradient;
-    std::string group;    ///< the outermost group that is a layer or has a name; empty: none
-    std::string upright;  ///< the group that a mirrored copy keeps readable; empty: none
+    SvgPicturePtr picture;  ///< that fills it, in place of the style's paint
+    std::string group;      ///< the outermost group that is a layer or has a name; empty: none
+    std::string upright;    ///< the group that a mirrored copy keeps readable; empty: none
 };
 
 struct SvgScene {
@@ -54,10 +56,11 @@ struct SvgScene {
 
 struct SvgSceneOptions {
     /// For lines of a brush: no clip paths, masks, patterns, markers and frames of inner drawings; they are counted as
-    /// losses, as are opacities, gradients and dashes.
+    /// losses, as are opacities and gradients.
     bool brush = true;
     double tolerance = 2e-5;  ///< metres, largest distance of a chord from its curve
     std::size_t max_points = 10'000'000;
+    std::filesystem::path folder;  ///< of pictures; empty: none is read
 };
 
 /// Reads the shapes of a drawing. Throws `Error` with `source` where a limit is exceeded: depth of groups and of

@@ -240,6 +240,19 @@ void svg_path(const char* text, const std::string& source, const SvgCurves& curv
     path.flush();
 }
 
+std::vector<std::pair<Vec2, double>> svg_vertices(const std::vector<SvgLine>& lines) {
+    std::vector<std::pair<Vec2, double>> out;
+    const auto unit = [](const Vec2& d) { return glm::length(d) > 0 ? glm::normalize(d) : Vec2(0); };
+    for (const SvgLine& line : lines)
+        for (std::size_t i = 0; i < line.size(); ++i) {
+            const Vec2 in = i > 0 ? line[i] - line[i - 1] : Vec2(0),
+                       on = i + 1 < line.size() ? line[i + 1] - line[i] : Vec2(0);
+            const Vec2 middle = unit(in) + unit(on);
+            out.emplace_back(line[i], std::atan2(middle.y, middle.x));
+        }
+    return out;
+}
+
 SvgLine svg_points(const char* text, const std::string& source, bool closed) {
     SvgReader in(text, source);
     SvgLine line;

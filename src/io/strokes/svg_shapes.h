@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/types.h"
@@ -71,6 +72,8 @@ struct SvgCurves {
 /// what comes before the fault.
 void svg_path(const char* text, const std::string& source, const SvgCurves& curves,
               const std::function<void(const SvgLine&)>& emit);
+/// Returns each point of the lines with the angle of its direction, radians: that of the bisector at a corner.
+std::vector<std::pair<Vec2, double>> svg_vertices(const std::vector<SvgLine>& lines);
 /// Returns the points of a polyline, or of a polygon with `closed`.
 SvgLine svg_points(const char* text, const std::string& source, bool closed);
 /// Returns a rectangle; empty where the size is not positive. `radii` of the corners are limited to half a side.

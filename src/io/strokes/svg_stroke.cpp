@@ -113,7 +113,7 @@ std::vector<SvgLine> svg_dashed(const SvgLine& line, const std::vector<double>& 
     if (!(period > 0) || whole / period * static_cast<double>(dashes.size()) > double(kMostDashes)) return {line};
     double phase = offset - period * std::floor(offset / period);
     std::size_t k = 0;
-    while (phase >= dashes[k]) phase -= dashes[k], k = (k + 1) % dashes.size();
+    while (phase > 0 && phase >= dashes[k]) phase -= dashes[k], k = (k + 1) % dashes.size();
     double left = dashes[k] - phase;
     std::vector<SvgLine> out;
     SvgLine dash;
@@ -139,6 +139,7 @@ std::vector<SvgLine> svg_dashed(const SvgLine& line, const std::vector<double>& 
             if (out.size() > kMostDashes) return {line};
         }
     }
+    if (dash.size() == 1 && left == 0) dash.push_back(dash.front());  // a dash without length shows its ends
     if (dash.size() > 1) out.push_back(std::move(dash));
     return out;
 }

@@ -70,7 +70,7 @@ void find_cover(TileArea& out, const FlatTexels::Tile& tile, const FlatArea& are
         const double c = raster.mean(p, width);
         if (c < 1.0 / 512) continue;
         out.cover[t] = static_cast<float>(c);
-        out.blend[t] = area.stops.size() > 1 ? blend_at(area.stops, along_area(area, p)) : StopBlend{};
+        out.blend[t] = area.stops.size() > 1 ? blend_at(area.stops, along_area(area, p, width)) : StopBlend{};
         out.any = true;
     }
 }

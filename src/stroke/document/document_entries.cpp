@@ -148,8 +148,8 @@ FillResult Document::fill_area(const Fill& fill) {
         mixes.push_back(mix_of(stop.ink));
         films.push_back(stop.film >= 0 ? stop.film : stop.opacity * materials_.ink(stop.ink).film);
     }
-    if (!flat_texels_ || !flat_texels_->is_for(area.placement, area.low, area.high))
-        flat_texels_ = std::make_unique<FlatTexels>(model_, area.placement, area.low, area.high);
+    const FlatFrame frame{area.placement, area.low, area.high, area.edges};
+    if (!flat_texels_ || flat_texels_->frame() != frame) flat_texels_ = std::make_unique<FlatTexels>(model_, frame);
     return apply_area(fill, target(fill.layer, fill.mask), *flat_texels_, mixes, films);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>
+#include <utility>
 
 #include "core/error.h"
 #include "ink/colour/pigments.h"
@@ -56,8 +57,12 @@ void transform_samples(StrokeSamples& trace, const Vec2& centre, double scale, b
     }
     for (StencilEdge& edge : trace.stencil)
         for (Vec2* end : {&edge.from, &edge.to}) *end = scale * (*end - centre);
+    for (auto& ring : trace.outline)
+        for (Vec2& p : ring) p = scale * (p - centre);
     trace.line_width *= scale;
     if (!mirrored) return;
+    for (auto& ring : trace.outline)
+        for (Vec2& p : ring) p.x *= -1;
     for (StrokeSample& sample : trace.samples) sample.position.x *= -1, sample.tilt.x *= -1, sample.roll *= -1;
     for (StencilEdge& edge : trace.stencil) edge = {Vec2(-edge.to.x, edge.to.y), Vec2(-edge.from.x, edge.from.y)};
 }
@@ -179,6 +184,38 @@ std::string sized_brush(const PaintStroke& s, bool placed, double scale, double 
 }
 
 }  // namespace
+
+void fill_wide_lines(std::vector<JournalEntry>& entries, double wide, AreaEdges edges) {
+    struct Drawing {
+        Placement placement;
+        Vec2 low{HUGE_VAL}, high{-HUGE_VAL};
+    };
+    std::vector<Drawing> drawings;
+    std::vector<std::pair<FlatArea*, std::size_t>> areas;  // and the drawing that each is part of
+    for (JournalEntry& entry : entries) {
+        PaintStroke* s = entry.as<PaintStroke>();
+        if (!s) continue;
+        std::vector<std::vector<Vec2>> rings = std::exchange(s->trace.outline, {});
+        if (rings.empty() || s->trace.line_width < wide || s->erases() || s->settings.film != FilmModel::still)
+            continue;
+        const Placement placement = s->trace.placement;
+        auto at =
+            std::find_if(drawings.begin(), drawings.end(), [&](const Drawing& d) { return d.placement == placement; });
+        if (at == drawings.end()) at = drawings.insert(at, {.placement = placement});
+        for (const auto& ring : rings)
+            for (const Vec2& p : ring) at->low = glm::min(at->low, p), at->high = glm::max(at->high, p);
+        FlatArea area{.rings = std::move(rings),
+                      .placement = placement,
+                      .placed = true,
+                      .edges = edges,
+                      .stops = {{.ink = s->ink}}};
+        Fill fill = fill_of_area(std::move(area));
+        fill.layer = s->layer, fill.mask = s->mask, fill.names = s->names;
+        entry.content = std::move(fill);
+        areas.emplace_back(&*entry.get<Fill>().area, static_cast<std::size_t>(at - drawings.begin()));
+    }
+    for (const auto& [area, k] : areas) area->low = drawings[k].low, area->high = drawings[k].high;
+}
 
 void choose_brushes(std::vector<JournalEntry>& entries, std::span<StrokeSamples* const> drawing, double scale,
                     double extent, const BrushFit& fit, WidthTables& widths) {

@@ -24,6 +24,15 @@ void transform_samples(StrokeSamples& trace, const Vec2& centre, double scale, b
 /// Returns the bounds of the ink of several traces, metres, in one common frame (`add_extent`).
 Box extent_of(std::span<StrokeSamples* const> drawing);
 
+/// Width of a line from which it is filled, metres. A liner draws narrower ones in one stroke.
+inline constexpr double kWideLine = 1.5e-3;
+
+/// Replaces lines that state their outline (`StrokeSamples::outline`) and are at least `wide` metres wide by masked
+/// areas in their ink: they have the ends and corners of the file, which a tuft has not. Areas of lines with one
+/// placement are one drawing. An eraser's lines and wet ones are not replaced. Removes the outlines of the others.
+/// Precondition: the lines have their place. Invalidates pointers to traces.
+void fill_wide_lines(std::vector<JournalEntry>& entries, double wide = kWideLine, AreaEdges edges = AreaEdges::cut);
+
 /// Returns the width that the scale of a drawing refers to, metres: that of its bounds, at least a twentieth of their
 /// height.
 double width_of(const Box& extent);

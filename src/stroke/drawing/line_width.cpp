@@ -102,6 +102,9 @@ double line_end(double width) {
 void add_extent(Box& box, const StrokeSamples& trace) {
     for (const StencilEdge& edge : trace.stencil) box.add(Vec3(edge.from, 0)), box.add(Vec3(edge.to, 0));
     if (!trace.stencil.empty()) return;
+    for (const auto& ring : trace.outline)
+        for (const Vec2& p : ring) box.add(Vec3(p, 0));
+    if (!trace.outline.empty()) return;
     const Vec3 beside = 0.5 * trace.line_width * Vec3(1, 1, 0);
     for (const StrokeSample& sample : trace.samples)
         box.add(sample.position - beside), box.add(sample.position + beside);

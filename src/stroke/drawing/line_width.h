@@ -57,8 +57,8 @@ inline constexpr double kBrushSizes = 1.25;
 /// are clamped to the range of presets.
 std::string brush_for_width(const std::string& name, const LineWidths& widths, double width);
 
-/// Adds the ink of a line to a box: its stencil, else its samples with half of the line width around them. Metres,
-/// frame of the trace.
+/// Adds the ink of a line to a box: its stencil, else its outline, else its samples with half of the line width around
+/// them. Metres, frame of the trace.
 void add_extent(Box& box, const StrokeSamples& trace);
 
 /// Returns the length over which the pressure of a line of this width rises or falls at its ends, metres.

@@ -16,13 +16,14 @@ using nlohmann::json;
 
 constexpr double kThickestStop = 1000;  // film units
 constexpr const char* kSpreads[] = {"pad", "reflect", "repeat"};
-constexpr const char* kAreaGradients[] = {"none", "linear", "radial"};
+constexpr const char* kAreaGradients[] = {"none", "linear", "radial", "image"};
+constexpr const char* kAreaEdges[] = {"facing", "cut", "run-over"};
 
 template <class Word, std::size_t N>
 Word area_word(const std::string& name, const char* const (&words)[N]) {
     for (std::size_t i = 0; i < N; ++i)
         if (name == words[i]) return static_cast<Word>(i);
-    throw Error(Message("'{}' is no gradient of an area", name));
+    throw Error(Message("'{}' is no word of an area", name));
 }
 
 json pair_of(const Vec2& p) {
@@ -43,6 +44,59 @@ double radial_parameter(const Vec2& q, const Vec2& f) {
     const double a = 1 - glm::dot(f, f), b = glm::dot(d, f), c = glm::dot(d, d);
     if (!(a > 0)) return glm::length(q);
     return (b + std::sqrt(std::max(0.0, b * b + a * c))) / a;
+}
+
+double darkness_at(const AreaImage& image, const Vec2& q) {
+    const double x = std::clamp(q.x * image.width - 0.5, 0.0, image.width - 1.0),
+                 y = std::clamp(q.y * image.height - 0.5, 0.0, image.height - 1.0);
+    const int i = static_cast<int>(x), j = static_cast<int>(y), i1 = std::min(i + 1, image.width - 1),
+              j1 = std::min(j + 1, image.height - 1);
+    const auto pixel = [&](int column, int row) {
+        return double(image.darkness[static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                                     static_cast<std::size_t>(column)]);
+    };
+    const double u = x - i, v = y - j;
+    return ((1 - v) * ((1 - u) * pixel(i, j) + u * pixel(i1, j)) + v * ((1 - u) * pixel(i, j1) + u * pixel(i1, j1))) /
+           255;
+}
+
+// Mean over a square, by as many points as it has pixels across.
+double darkness_at(const FlatArea& area, const Vec2& p, double width) {
+    constexpr double kMostAcross = 8;
+    const auto& a = area.to_unit;
+    const double across =
+        width * std::max(std::hypot(a[0], a[2]) * area.image.width, std::hypot(a[1], a[3]) * area.image.height);
+    const int n = static_cast<int>(std::clamp(std::ceil(across), 1.0, kMostAcross));
+    double sum = 0;
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const Vec2 s = p + width * (Vec2(i + 0.5, j + 0.5) / double(n) - 0.5);
+            sum += darkness_at(area.image, {a[0] * s.x + a[2] * s.y + a[4], a[1] * s.x + a[3] * s.y + a[5]});
+        }
+    return sum / (n * n);
+}
+
+bool is_whole(const AreaImage& image) {
+    return image.width > 0 && image.height > 0 && image.width <= kMaxAreaSide && image.height <= kMaxAreaSide &&
+           image.darkness.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+}
+
+std::string hex_text(const std::vector<std::uint8_t>& bytes) {
+    constexpr const char* kDigits = "0123456789abcdef";
+    std::string text;
+    text.reserve(2 * bytes.size());
+    for (const std::uint8_t b : bytes) text.push_back(kDigits[b >> 4]), text.push_back(kDigits[b & 15]);
+    return text;
+}
+std::vector<std::uint8_t> bytes_of_hex(const std::string& text) {
+    std::vector<std::uint8_t> bytes;
+    const auto digit = [](char c) { return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1; };
+    for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+        const int high = digit(text[i]), low = digit(text[i + 1]);
+        if (high < 0 || low < 0) throw Error("the picture of an area cannot be read");
+        bytes.push_back(static_cast<std::uint8_t>(16 * high + low));
+    }
+    return bytes;
 }
 
 void check_stop(const AreaStop& stop, double before) {
@@ -69,14 +123,17 @@ void check_area(const FlatArea& area) {
         if (!within(p)) throw Error("the bounds of an area lie out of range");
     for (const double a : area.to_unit)
         if (!std::isfinite(a)) throw Error("the gradient of an area is not finite");
+    if (area.gradient == AreaGradient::image && !is_whole(area.image))
+        throw Error("the picture of an area has no pixels, or too many");
     if (!(glm::length(area.focus) < 1)) throw Error("the focus of an area's gradient lies outside its circle");
     StrokeSamples placed;
     placed.placement = area.placement;
     check_samples(placed);
 }
 
-double along_area(const FlatArea& area, const Vec2& p) {
+double along_area(const FlatArea& area, const Vec2& p, double width) {
     if (area.gradient == AreaGradient::none) return 0;
+    if (area.gradient == AreaGradient::image) return darkness_at(area, p, width);
     const auto& a = area.to_unit;
     const Vec2 q(a[0] * p.x + a[2] * p.y + a[4], a[1] * p.x + a[3] * p.y + a[5]);
     double t = area.gradient == AreaGradient::linear ? q.x : radial_parameter(q, area.focus);
@@ -119,6 +176,7 @@ json json_of(const FlatArea& area) {
     j["right"] = triple(place.right);
     j["down"] = triple(place.down);
     j["mapping"] = surface_mapping_name(place.mapping);
+    if (area.edges != AreaEdges::facing) j["edges"] = kAreaEdges[static_cast<int>(area.edges)];
     j["low"] = pair_of(area.low);
     j["high"] = pair_of(area.high);
     if (!area.upright.empty()) j["upright"] = area.upright, j["upright_centre"] = pair_of(area.upright_centre);
@@ -130,6 +188,9 @@ json json_of(const FlatArea& area) {
     j["spread"] = kSpreads[static_cast<int>(area.spread)];
     j["to_unit"] = area.to_unit;
     j["focus"] = pair_of(area.focus);
+    if (area.gradient == AreaGradient::image)
+        j["image"] = {
+            {"width", area.image.width}, {"height", area.image.height}, {"darkness", hex_text(area.image.darkness)}};
     return j;
 }
 
@@ -163,6 +224,7 @@ FlatArea flat_area_of(const json& j) {
         if (!mapping) throw Error("an area of the journal cannot be read");
         area.placement.mapping = *mapping;
         area.placed = true;
+        area.edges = area_word<AreaEdges>(j.value("edges", "facing"), kAreaEdges);
         area.low = pair_in(j.at("low"));
         area.high = pair_in(j.at("high"));
         area.upright = j.value("upright", "");
@@ -172,6 +234,11 @@ FlatArea flat_area_of(const json& j) {
                                   s.at("opacity").get<double>(), s.at("film").get<double>()});
         area.gradient = area_word<AreaGradient>(j.value("gradient", "none"), kAreaGradients);
         if (area.gradient != AreaGradient::none) {
+            if (area.gradient == AreaGradient::image) {
+                const json& image = j.at("image");
+                area.image = {image.at("width").get<int>(), image.at("height").get<int>(),
+                              bytes_of_hex(image.at("darkness").get<std::string>())};
+            }
             area.spread = area_word<AreaSpread>(j.at("spread").get<std::string>(), kSpreads);
             area.to_unit = j.at("to_unit").get<std::array<double, 6>>();
             area.focus = pair_in(j.at("focus"));

@@ -12,7 +12,7 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr const char* kMaskKinds[] = {"group", "angle", "chart", "lasso", "invert", "intersect", "unite"};
+constexpr const char* kMaskKinds[] = {"group", "angle", "chart", "lasso", "clear", "invert", "intersect", "unite"};
 constexpr std::size_t kMaxMasks = 1000, kMaxPoints = 10000;
 
 void check_view(const LassoView& v) {
@@ -38,6 +38,8 @@ void check_mask(const MaskTable& table, const Mask& m) {
         if (!(m.within >= 0 && m.within <= 3.15 && m.soft >= 0 && m.soft <= 3.15))
             throw Error("the angle of a mask is 0 to 180 degrees");
     }
+    if (m.kind == MaskKind::clear && !(m.within > 0 && m.within <= 3.15 && m.distance > 0 && m.distance <= 1))
+        throw Error("a mask clear of edges needs an angle up to 180 degrees and a distance up to 1 m");
     if (m.kind == MaskKind::lasso) {
         if (m.polygon.size() < 3) throw Error("a lasso needs three points");
         check_view(m.view);
@@ -58,8 +60,8 @@ std::string name_of(MaskKind kind) {
 MaskKind mask_kind_of(const std::string& name) {
     for (int i = 0; i <= static_cast<int>(MaskKind::unite); ++i)
         if (name == kMaskKinds[i]) return static_cast<MaskKind>(i);
-    throw Error(
-        Message("'{}' is no kind of mask; there are group, angle, chart, lasso, invert, intersect and unite", name));
+    throw Error(Message(
+        "'{}' is no kind of mask; there are group, angle, chart, lasso, clear, invert, intersect and unite", name));
 }
 
 const Mask* MaskTable::find(std::uint32_t id) const {
@@ -100,6 +102,7 @@ nlohmann::json json_of(const MaskEdit& edit) {
     if (m.kind == MaskKind::group) j["groups"] = m.groups;
     if (m.kind == MaskKind::angle)
         j.update({{"direction", json_of(m.direction)}, {"within", m.within}, {"soft", m.soft}});
+    if (m.kind == MaskKind::clear) j.update({{"within", m.within}, {"distance", m.distance}});
     if (m.kind == MaskKind::chart)
         for (const Vec3& p : m.points) j["points"].push_back(json_of(p));
     if (m.kind == MaskKind::lasso) {
@@ -130,6 +133,10 @@ MaskEdit mask_edit_of(const nlohmann::json& j) {
             m.direction = vector_of(j.at("direction"));
             m.within = j.at("within").get<double>();
             m.soft = j.at("soft").get<double>();
+        }
+        if (m.kind == MaskKind::clear) {
+            m.within = j.at("within").get<double>();
+            m.distance = j.at("distance").get<double>();
         }
         if (m.kind == MaskKind::chart)
             for (const nlohmann::json& p : j.at("points")) m.points.push_back(vector_of(p));

@@ -17,6 +17,7 @@ enum class MaskKind {
     angle,      ///< where the surface normal is within an angle of a direction
     chart,      ///< charts of the atlas at these points
     lasso,      ///< what a polygon encloses in a view
+    clear,      ///< farther than a distance from sharp edges and borders of the mesh
     invert,     ///< the complement of a mask
     intersect,  ///< the intersection of masks
     unite,      ///< the union of masks
@@ -40,12 +41,14 @@ struct Mask {
     MaskKind kind = MaskKind::angle;
     std::vector<std::string> groups;  ///< group
     Vec3 direction{0, 0, 1};          ///< angle: of any length but 0
-    double within = 0.785398;         ///< angle: largest angle between normal and direction
-    double soft = 0;                  ///< angle: coverage falls from 1 to 0 over within ± soft
-    std::vector<Vec3> points;         ///< chart: near the surface
-    LassoView view;                   ///< lasso
-    std::vector<Vec2> polygon;        ///< lasso: corners in the view; closed, even-odd rule
-    std::vector<std::uint32_t> of;    ///< invert (one), intersect, unite: ids of masks
+    double within = 0.785398;   ///< angle: largest angle between normal and direction; clear: between the normals of
+                                ///< two triangles whose edge is not sharp
+    double distance = 2e-3;     ///< clear
+    double soft = 0;            ///< angle: coverage falls from 1 to 0 over within ± soft
+    std::vector<Vec3> points;   ///< chart: near the surface
+    LassoView view;             ///< lasso
+    std::vector<Vec2> polygon;  ///< lasso: corners in the view; closed, even-odd rule
+    std::vector<std::uint32_t> of;  ///< invert (one), intersect, unite: ids of masks
 
     bool operator==(const Mask&) const = default;
 };

@@ -67,6 +67,9 @@ struct StrokeSamples {
     double line_width = 0;              ///< metres, from a drawing; 0: not stated
     std::vector<StencilEdge> stencil;   ///< flat: hair leaves no ink beyond it, wet ink creeps under it; empty: no
                                         ///< stencil
+    /// Of a line of a drawing until it is painted: rings that enclose, by the nonzero rule, what it covers with its
+    /// ends and corners; metres, frame of the samples. Not stored.
+    std::vector<std::vector<Vec2>> outline;
 };
 
 /// Throws `Error` for samples, a placement or a stencil that no hand can have made: numbers that are not finite, points

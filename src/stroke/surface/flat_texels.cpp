@@ -15,12 +15,17 @@ constexpr double kGridStep = 2e-3;  // metres between nodes
 constexpr int kFewestNodes = 33;    // nodes along a side
 constexpr int kMostNodes = 400;     // likewise
 constexpr double kFacing = 0.3;     // cosine of the angle between texel and grid, below which a texel faces away
+constexpr double kWall = -0.2;      // the same where walls are reached
+constexpr double kStep = 0.5, kGapStep = 0.15;  // rise between connected neighbours, over their distance
+constexpr double kGapFacing = 0.9;              // cosine between the normals at both sides of a gap
+constexpr double kCutHeight = 0.25;             // of the grid's reach, off its surface
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 
 /// The drawing's rectangle on the surface, as nodes of a grid.
 class SurfaceGrid {
   public:
-    SurfaceGrid(const Model& model, const Placement& placement, const Vec2& low, const Vec2& high) {
+    SurfaceGrid(const Model& model, const FlatFrame& frame) {
+        const Vec2 low = frame.low, high = frame.high;
         const Vec2 size = glm::max(high - low, Vec2(1e-6));
         for (int k = 0; k < 2; ++k)
             n_[k] = std::clamp(static_cast<int>(std::ceil(size[k] / kGridStep)) + 1, kFewestNodes, kMostNodes);
@@ -28,15 +33,18 @@ class SurfaceGrid {
         step_ = size / Vec2(n_[0] - 1, n_[1] - 1);
         low_ = low - step_;
         n_[0] += 2, n_[1] += 2;
-        StrokeSamples nodes{.placement = placement};
+        StrokeSamples nodes{.placement = frame.placement};
         for (int j = 0; j < n_[1]; ++j)
             for (int i = 0; i < n_[0]; ++i) nodes.samples.push_back({.position = Vec3(low_ + step_ * Vec2(i, j), 0)});
         nodes_ = map_to_surface(*model.query, nodes).samples;
+        if (frame.edges == AreaEdges::cut) keep_connected();
         build_mesh();
     }
 
     bool empty() const { return mesh_.triangles.empty(); }
     double reach() const { return reach_; }
+    /// Off its surface, metres: what is farther belongs to another part.
+    double cut_height() const { return kCutHeight * reach_; }
     const Box& bounds() const { return mesh_.bounds; }
     const mesh::SurfaceQuery& query() const { return *query_; }
     Vec2 flat(const Vec2& cell) const { return low_ + step_ * cell; }
@@ -80,8 +88,69 @@ class SurfaceGrid {
     }
 
   private:
-    const SurfaceSample& node(int i, int j) const {
-        return nodes_[static_cast<std::size_t>(j) * static_cast<std::size_t>(n_[0]) + static_cast<std::size_t>(i)];
+    const SurfaceSample& node(int i, int j) const { return nodes_[index(i, j)]; }
+
+    bool connected(const SurfaceSample& a, const SurfaceSample& b, bool over_gap) const {
+        const Vec3 d = b.position - a.position;
+        const double length = glm::length(d), one = std::abs(glm::dot(d, a.normal)),
+                     other = std::abs(glm::dot(d, b.normal));
+        if (!over_gap) return std::min(one, other) <= kStep * length;
+        return length <= kWidestGap && std::max(one, other) <= kGapStep * length &&
+               glm::dot(a.normal, b.normal) > kGapFacing;
+    }
+
+    /// Leaves the nodes that are connected with the origin's on the surface.
+    void keep_connected() {
+        const std::vector<char> kept = find_connected();
+        // A node beside them continues their surface, so that texels up to the rim have a place on the grid.
+        const std::vector<SurfaceSample> found = nodes_;
+        for (int j = 0; j < n_[1]; ++j)
+            for (int i = 0; i < n_[0]; ++i) {
+                if (kept[index(i, j)]) continue;
+                nodes_[index(i, j)].on_surface = false;
+                for (const auto& [x, y] : kAround) {
+                    if (!inside(i + 2 * x, j + 2 * y) || !kept[index(i + x, j + y)]) continue;
+                    const SurfaceSample &near = found[index(i + x, j + y)], &far = found[index(i + 2 * x, j + 2 * y)];
+                    const Vec3 on = kept[index(i + 2 * x, j + 2 * y)]
+                                        ? near.position - far.position
+                                        : step_.x * double(-x) * near.right + step_.y * double(-y) * near.down;
+                    nodes_[index(i, j)].position = near.position + on;
+                    nodes_[index(i, j)].normal = near.normal;
+                    break;
+                }
+            }
+    }
+
+    std::vector<char> find_connected() const {
+        std::vector<char> kept(nodes_.size(), 0);
+        std::vector<std::pair<int, int>> open;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (int j = 0; j < n_[1]; ++j)
+            for (int i = 0; i < n_[0]; ++i)
+                if (const double d = glm::length(flat({i, j})); node(i, j).on_surface && d < nearest)
+                    nearest = d, open = {{i, j}};
+        const int reach = std::max(1, static_cast<int>(kWidestGap / std::min(step_.x, step_.y)));
+        for (const auto& [i, j] : open) kept[index(i, j)] = 1;
+        while (!open.empty()) {
+            const auto [i, j] = open.back();
+            open.pop_back();
+            for (const auto& [x, y] : kAround)
+                for (int k = 1; k <= reach && inside(i + k * x, j + k * y); ++k) {
+                    const SurfaceSample& next = node(i + k * x, j + k * y);
+                    if (!next.on_surface || !connected(node(i, j), next, k > 1)) continue;
+                    if (char& known = kept[index(i + k * x, j + k * y)]; !known)
+                        known = 1, open.emplace_back(i + k * x, j + k * y);
+                    break;
+                }
+        }
+        return kept;
+    }
+
+    static constexpr std::pair<int, int> kAround[] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
+                                                      {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
+    bool inside(int i, int j) const { return i >= 0 && j >= 0 && i < n_[0] && j < n_[1]; }
+    std::size_t index(int i, int j) const {
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(n_[0]) + static_cast<std::size_t>(i);
     }
 
     void build_mesh() {
@@ -120,7 +189,11 @@ class SurfaceGrid {
 /// Texels of one tile over the grid.
 class TileUnfolding {
   public:
-    TileUnfolding(const SurfaceGrid& grid, double texel) : grid_(grid), slack_(0.3 * texel + 0.02 * grid.reach()) {}
+    TileUnfolding(const SurfaceGrid& grid, double texel, AreaEdges edges)
+        : grid_(grid),
+          slack_(0.3 * texel + 0.02 * grid.reach()),
+          highest_(edges == AreaEdges::cut ? grid.cut_height() + texel : grid.reach()),
+          facing_(edges == AreaEdges::run_over ? kWall : kFacing) {}
 
     Vec2f at(const Vec3& p, const Vec3& normal) {
         std::optional<SurfaceGrid::Foot> foot = has_last_ ? grid_.foot(p, last_) : std::nullopt;
@@ -138,12 +211,12 @@ class TileUnfolding {
   private:
     bool lies(const SurfaceGrid::Foot& foot, const Vec3& normal) const {
         const double height = glm::dot(foot.offset, foot.normal);
-        return glm::dot(normal, foot.normal) > kFacing && std::abs(height) <= grid_.reach() &&
+        return glm::dot(normal, foot.normal) > facing_ && std::abs(height) <= highest_ &&
                glm::length(foot.offset - height * foot.normal) <= slack_ + 0.2 * std::abs(height);
     }
 
     const SurfaceGrid& grid_;
-    double slack_;
+    double slack_, highest_, facing_;
     Vec2 last_{0};
     bool has_last_ = false;
 };
@@ -192,20 +265,19 @@ bool reaches(const SurfaceGrid& grid, const atlas::TexelShape& shape, const atla
 
 }  // namespace
 
-FlatTexels::FlatTexels(const Model& model, const Placement& placement, const Vec2& low, const Vec2& high)
-    : placement_(placement), low_(low), high_(high) {
-    if (placement.mapping == SurfaceMapping::project)
+FlatTexels::FlatTexels(const Model& model, const FlatFrame& frame) : frame_(frame) {
+    if (frame.placement.mapping == SurfaceMapping::project)
         project(model);
     else
         unfold(model);
 }
 
 void FlatTexels::unfold(const Model& model) {
-    const SurfaceGrid grid(model, placement_, low_, high_);
+    const SurfaceGrid grid(model, frame_);
     if (grid.empty()) return;
     tiles_ = gather_tiles(model, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
         if (!reaches(grid, shape, in)) return false;
-        TileUnfolding unfolding(grid, model.texels.texel_size);
+        TileUnfolding unfolding(grid, model.texels.texel_size, frame_.edges);
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             // There and back by rows: each texel begins beside the last one.
             const int row = t / atlas::kTile, column = t % atlas::kTile;
@@ -218,20 +290,29 @@ void FlatTexels::unfold(const Model& model) {
 }
 
 void FlatTexels::project(const Model& model) {
-    const Vec3 outward = glm::normalize(glm::cross(placement_.down, placement_.right));
-    const Axes axes = axes_across(outward, placement_.right, placement_.down);
+    const Placement& placement = frame_.placement;
+    const Vec2 low = frame_.low, high = frame_.high;
+    const AreaEdges edges = frame_.edges;
+    const Vec3 outward = glm::normalize(glm::cross(placement.down, placement.right));
+    const Axes axes = axes_across(outward, placement.right, placement.down);
+    const double facing = edges == AreaEdges::run_over ? kWall : kFacing;
+    std::optional<SurfaceGrid> grid;
+    if (edges == AreaEdges::cut) grid.emplace(model, frame_);
+    if (grid && grid->empty()) return;
     // With right and down of the other hand the reader is on the other side.
     const double texel = model.texels.texel_size, far = 4 * model.mesh->bounds.diagonal();
     const Vec2 margin(2 * texel);
     tiles_ = gather_tiles(model, [&](const atlas::TexelShape& shape, const atlas::TexelTile& in, Tile& out) {
+        if (grid && !reaches(*grid, shape, in)) return false;
         for (int t = 0; t < atlas::kTileTexels; ++t) {
             out.at[t] = Vec2f(kNowhere);
             if (in.cluster[t] == atlas::kNoCluster) continue;
-            const Vec3 p = position_in(shape, t), n = normal_in(shape, t), d = p - placement_.origin;
+            const Vec3 p = position_in(shape, t), n = normal_in(shape, t), d = p - placement.origin;
             const Vec2 flat(glm::dot(d, axes.right), glm::dot(d, axes.down));
-            if (glm::any(glm::lessThan(flat, low_ - margin)) || glm::any(glm::greaterThan(flat, high_ + margin)))
+            if (glm::any(glm::lessThan(flat, low - margin)) || glm::any(glm::greaterThan(flat, high + margin)))
                 continue;
-            if (glm::dot(n, outward) <= kFacing || model.query->occluded(p + 2 * texel * n, outward, 0, far)) continue;
+            if (grid && !grid->query().closest_point(p, grid->cut_height() + texel)) continue;
+            if (glm::dot(n, outward) <= facing || model.query->occluded(p + 2 * texel * n, outward, 0, far)) continue;
             out.at[t] = Vec2f(flat);
         }
         return true;

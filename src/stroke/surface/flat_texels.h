@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "stroke/journal/samples.h"
+#include "stroke/journal/flat_area.h"
 #include "stroke/surface/model.h"
 
 /// \file
@@ -12,13 +12,30 @@
 /// document/apply_area.h, which keeps one for all areas of a drawing.
 namespace tuft::stroke {
 
+/// A drawing's place.
+struct FlatFrame {
+    Placement placement;
+    Vec2 low{0}, high{0};  ///< its bounds, metres
+    AreaEdges edges = AreaEdges::facing;
+
+    bool operator==(const FlatFrame&) const = default;
+};
+
 /// Flat coordinates of the texels that a drawing reaches.
 ///
 /// The rectangle from `low` to `high` is mapped onto the surface (`map_to_surface`) at the nodes of a grid, at most 2
 /// mm and at most 1/32 of it apart, at most 400 by 400 nodes. A texel takes the coordinates of the nearest point of the
 /// grid, linear in each triangle. It is reached when that point lies within a grid step, on the same side of the
 /// surface, and not past the surface's border. With `SurfaceMapping::project` the coordinates are those of the texel's
-/// projection, and what is hidden is not reached. The same bits for any number of threads. Cost: about 2 µs per texel.
+/// projection, and what is hidden is not reached.
+///
+/// With `AreaEdges::cut` the nodes are connected from the one nearest to the placement's origin. Neighbours p, q with
+/// normals n, m are connected where min(|(q − p)·n|, |(q − p)·m|) ≤ |q − p| / 2: a step is no neighbour, a fold is.
+/// Nodes up to `kWidestGap` apart are connected over a gap where both products are below 0.15 |q − p| and n·m > 0.9.
+/// Texels farther than a quarter of a grid step from the surface through connected nodes are not reached. With
+/// `AreaEdges::run_over` texels that stand at right angles to the grid are reached, too.
+///
+/// The same bits for any number of threads. Cost: about 2 µs per texel.
 class FlatTexels {
   public:
     struct Tile {
@@ -27,20 +44,17 @@ class FlatTexels {
         std::array<Vec2f, atlas::kTileTexels> at;  ///< metres; NaN: not reached
     };
 
-    FlatTexels(const Model& model, const Placement& placement, const Vec2& low, const Vec2& high);
+    FlatTexels(const Model& model, const FlatFrame& frame);
 
     /// Tiles with at least one texel that is reached, by ascending slot.
     std::span<const Tile> tiles() const { return tiles_; }
-    bool is_for(const Placement& placement, const Vec2& low, const Vec2& high) const {
-        return placement == placement_ && low == low_ && high == high_;
-    }
+    const FlatFrame& frame() const { return frame_; }
 
   private:
     void project(const Model& model);
     void unfold(const Model& model);
 
-    Placement placement_;
-    Vec2 low_, high_;
+    FlatFrame frame_;
     std::vector<Tile> tiles_;
 };
 

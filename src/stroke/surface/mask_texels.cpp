@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/geometry/segment.h"
 #include "core/system/parallel.h"
+#include "stroke/surface/sharp_edges.h"
 
 /// Masks on texels.
 namespace tuft::stroke {
@@ -144,6 +145,70 @@ MaskTexels by_lasso(const Mask& mask, const Model& model) {
     });
 }
 
+/// Sharp edges and borders of a mesh, by cubes of space.
+class SharpEdges {
+  public:
+    /// `reach`: largest distance asked for, metres.
+    SharpEdges(const mesh::TriangleMesh& mesh, double angle, double reach) : cube_(reach) {
+        for (const auto& [from, to] : sharp_edges(mesh, angle))
+            add(Vec3(mesh.positions[from]), Vec3(mesh.positions[to]));
+    }
+
+    /// Distance of a point to the nearest edge, at most `reach`.
+    double distance(const Vec3& p) const {
+        double nearest2 = cube_ * cube_;
+        const Cube c = cube_of(p);
+        for (int z = -1; z <= 1; ++z)
+            for (int y = -1; y <= 1; ++y)
+                for (int x = -1; x <= 1; ++x) {
+                    const auto at = cubes_.find({c[0] + x, c[1] + y, c[2] + z});
+                    if (at == cubes_.end()) continue;
+                    for (const std::uint32_t e : at->second) {
+                        const auto& [a, b] = edges_[e];
+                        const Vec3 d = b - a;
+                        const double t = std::clamp(glm::dot(p - a, d) / std::max(glm::dot(d, d), 1e-300), 0.0, 1.0);
+                        const Vec3 off = p - a - t * d;
+                        nearest2 = std::min(nearest2, glm::dot(off, off));
+                    }
+                }
+        return std::sqrt(nearest2);
+    }
+
+  private:
+    using Cube = std::array<std::int64_t, 3>;
+
+    Cube cube_of(const Vec3& p) const {
+        Cube c;
+        for (int k = 0; k < 3; ++k)
+            c[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(p[k] / cube_));
+        return c;
+    }
+    // Its points are in no cube more than half a side from those entered here.
+    void add(const Vec3& a, const Vec3& b) {
+        constexpr double kMostCubes = 100'000;
+        const auto e = static_cast<std::uint32_t>(edges_.size());
+        edges_.emplace_back(a, b);
+        const auto n = static_cast<int>(std::min(kMostCubes, std::ceil(2 * glm::distance(a, b) / cube_)));
+        for (int i = 0; i <= n; ++i) {
+            std::vector<std::uint32_t>& in = cubes_[cube_of(n > 0 ? glm::mix(a, b, double(i) / n) : a)];
+            if (in.empty() || in.back() != e) in.push_back(e);
+        }
+    }
+
+    double cube_;
+    std::vector<std::pair<Vec3, Vec3>> edges_;
+    std::map<Cube, std::vector<std::uint32_t>> cubes_;
+};
+
+MaskTexels by_clear(const Mask& mask, const Model& model) {
+    const double texel = model.texels.texel_size;
+    // Half a cube more than is asked for: an edge may lie that far from the cubes that it is entered in.
+    const SharpEdges edges(*model.mesh, mask.within, 1.5 * (mask.distance + texel));
+    return by_texel(model, [&](std::uint32_t slot, int t) {
+        return 0.5 + (edges.distance(Vec3(model.texels.position(slot, t))) - mask.distance) / texel;
+    });
+}
+
 using Parts = std::map<std::uint32_t, MaskTexels>;
 
 MaskTexels of_masks(const Mask& mask, const Parts& done, const Model& model) {
@@ -169,6 +234,8 @@ MaskTexels evaluate_one(const Mask& mask, const Parts& done, const Model& model)
             return by_chart(mask, model);
         case MaskKind::lasso:
             return by_lasso(mask, model);
+        case MaskKind::clear:
+            return by_clear(mask, model);
         case MaskKind::invert:
         case MaskKind::intersect:
         case MaskKind::unite:

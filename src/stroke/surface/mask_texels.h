@@ -33,8 +33,8 @@ class MaskTexels {
 };
 
 /// Evaluates a mask of `table` on a model's texels. Edges of groups and charts are hard, those of a lasso one texel
-/// wide, those of an angle as soft as its `soft`. The same bits for any number of threads. Throws `Error` for groups
-/// that the mesh lacks.
+/// wide, as are those of `clear`, those of an angle as soft as its `soft`. The same bits for any number of threads.
+/// Throws `Error` for groups that the mesh lacks.
 MaskTexels evaluate(const Mask& mask, const MaskTable& table, const Model& model);
 
 }  // namespace tuft::stroke
