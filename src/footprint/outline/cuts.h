@@ -91,6 +91,10 @@ struct SpreadOptions {
 /// straight down does not change. A lifted tuft narrows with a slope of at most 0.35.
 void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, const SpreadOptions& options);
 
+/// Narrows the sections of trails to `part` of their width, 0–1, at constant area: hair that is drawn across itself
+/// draws together behind its point.
+void gather_trails(std::vector<Trail>& trails, double part);
+
 /// Adds the upright hair round the foot of the axis, by `foot.share`: a straight taper from the widest section to
 /// the axis' foot, with a round end. Without it the point, which touches first and then slides aside, leaves a
 /// spur. For an unsplit tuft.

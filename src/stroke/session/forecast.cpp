@@ -29,7 +29,7 @@ StrokeForecast::StrokeForecast(brush::Tuft tuft, std::span<const brush::Pose> pa
         if (end_.split) break;
         if (touches(forecast.contact)) {
             forecast.hair = find_hair(end_, forecast.contact, last);
-            close_hair(forecast.hair, forecast.contact, options_.cell);
+            close_hair(forecast.hair, forecast.contact, options_.closed);
         }
         last.store(end_, forecast.pose, forecast.hair, forecast.contact);
         poses_.push_back(std::move(forecast));

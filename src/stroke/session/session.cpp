@@ -26,10 +26,13 @@ bool is_paste(const ink::Ink& ink) {
 
 HairContactOptions hair_options(const SessionInput& in, bool mixed) {
     const double cell = 0.5 * in.model.texels.texel_size;
-    return {.cell = is_paste(in.ink) ? std::max(cell, kPasteCell) : cell,
+    const bool levels = in.wet.film || is_paste(in.ink) || in.stroke.erases() || in.stroke.layer == kPaletteLayer;
+    const footprint::EdgeGrain grain{static_cast<double>(in.substrate.relief),
+                                     static_cast<double>(in.substrate.relief_length)};
+    return {.closed = {is_paste(in.ink) ? std::max(cell, kPasteCell) : cell, !levels, grain},
             .always_closed = in.stroke.layer == kPaletteLayer,
             .places_nodes = in.wet.film || mixed || is_paste(in.ink),
-            .relief = static_cast<double>(in.substrate.relief)};
+            .tones = !levels && !mixed};
 }
 
 }  // namespace
@@ -198,6 +201,10 @@ void StrokeSession::set_ink(Stamp& stamp, double area) const {
     if (brush::is_foam(tuft_.preset()) && area > 0)
         stamp.ink.target +=
             static_cast<float>(std::max(0.0, ink::excess(tuft_.brush.reservoir) - deposit_->pending()) / area);
+    // Ink stands in the grain, where hair that lies apart does not keep to its hills.
+    if (hair_.options().tones)
+        stamp.grain_share = (1 - stamp.separation) * ink::grain_share(hair_.options().closed.grain.relief,
+                                                                      static_cast<double>(stamp.ink.target));
     stamp.ink.capacity = std::max(input_.substrate.capacity, static_cast<float>(ink::standing_film(tuft_.ink.yield)));
 }
 
@@ -271,7 +278,8 @@ std::optional<StrokeForecast> StrokeSession::forecast(std::span<const brush::Pos
     Path path(path_options());
     for (const brush::Pose& pose : poses) path.resampler.push(next_pose(path, pose), path.poses);
     path.resampler.finish(path.poses);
-    return StrokeForecast(tuft_.brush.tuft, path.poses, *input_.model.query, {contact_.options, hair_.options().cell});
+    return StrokeForecast(tuft_.brush.tuft, path.poses, *input_.model.query,
+                          {contact_.options, hair_.options().closed});
 }
 
 SessionResult StrokeSession::finish() {
