@@ -8,19 +8,20 @@
 namespace tuft::stroke {
 namespace {
 
-constexpr double kInked = 0.9;  // film units
+constexpr double kInked = 0.9, kFull = 1.5;  // film units: inside; of a stroke of 1.8 at this pressure
 
 struct Mark {
     double ink = 0;        // film·m²
-    double area = 0;       // m² with at least half of a full film, weighted by it below
+    double area = 0;       // m² that look covered: f of g(f), see ink::deposit
     double mean = 0;       // film units inside
     double deviation = 0;  // of the film inside over its mean
 };
 
-/// The mark between two places of the stroke, of texels whose neighbours on both sides are inked too.
+/// The mark between two places of the stroke.
 Mark mark_of(const Document& p, double from, double to) {
     Mark mark;
     double sum = 0, square = 0, inside = 0;
+    const double extinction = static_cast<double>(ink::extinction_of(ink::load_ink("carbon")));
     const atlas::TexelMap& map = p.model().texels;
     for (const std::uint32_t slot : p.layers().canvas().touched_slots()) {
         const ink::Plane* plane = p.layers().canvas().plane(slot, 0);
@@ -29,7 +30,7 @@ Mark mark_of(const Document& p, double from, double to) {
             const double x = map.position(slot, t).x;
             if (!(area > 0) || x < from || x > to) continue;
             mark.ink += film * area;
-            mark.area += std::min(1.0, film / kInked) * area;
+            mark.area += std::min(1.0, std::expm1(-extinction * film) / std::expm1(-extinction * kFull)) * area;
             if (film < kInked) continue;
             inside += area;
             sum += film * area;
@@ -51,12 +52,13 @@ Mark paint_line(const Model& model, const std::string& substrate, const std::str
     return mark_of(painting, -6e-3, 6e-3);
 }
 
-// The sheet's texels are 0.06 and 0.24 mm: the coarse ones show neither hair nor strands.
+// The sheet's texels are 0.06 and 0.24 mm: the coarse ones show neither hair nor strands. Two flanks of 12 mm with cells
+// of 3 mm leave the mean width of 3.4 mm a standard deviation of 0.8 %; that it has no bias is tested with the outlines.
 TEST(WetEdge, AtArmsLengthNothingChanges) {
     const Model fine = sheet(), coarse = sheet({}, 256);
     for (const std::string substrate : {"porcelain", "rice-paper"}) {
         const Mark near = paint_line(fine, substrate), far = paint_line(coarse, substrate);
-        EXPECT_NEAR(near.area / far.area, 1, 0.01) << substrate;
+        EXPECT_NEAR(near.area / far.area, 1, 0.02) << substrate;
         EXPECT_NEAR(near.mean / far.mean, 1, 0.01) << substrate;
     }
 }

@@ -12,7 +12,8 @@ namespace {
 constexpr double kRun = 3e-3, kFineRun = 0.8e-3;  // metres along the path over which hair at the edge comes and goes
 constexpr double kEndRun = 2e-3;                  // over which a hair's own end changes
 constexpr double kFlank = 0.8, kFineFlank = 0.5;  // A: of the spacing
-constexpr double kEnd = 2.2;                      // B: of the spacing
+constexpr double kEnd = 1.5;                      // B: of the spacing
+constexpr double kCoarse = 0.1e-3;                // metres: D of coarser hair
 constexpr double kGrain = 0.35, kFilm = 10e-6;    // of the length of the grain; metres of ink that drown it
 constexpr double kLeastGrain = 4e-6;              // metres: G below which the grain is left out
 constexpr double kFull = 0.5, kGone = 1.25;       // cells over the detail's size between which it vanishes
@@ -39,7 +40,9 @@ double visible_part(double cell, double size) {
 class Displacement {
   public:
     Displacement(const PicturePlane& plane, const RoughEdge& edge)
-        : plane_(plane), edge_(edge), hair_(edge.hair.spacing * visible_part(plane.cell, edge.hair.spacing)) {
+        : plane_(plane),
+          edge_(edge),
+          hair_(std::min(edge.hair.spacing, kCoarse) * visible_part(plane.cell, edge.hair.spacing)) {
         const EdgeGrain& g = edge.grain;
         if (!(g.relief > 0)) return;
         const double whole = kGrain * g.length * g.relief / (g.relief + kFilm);

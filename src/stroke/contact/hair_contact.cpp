@@ -24,7 +24,8 @@ constexpr double kSeparateLack = 0.05;
 constexpr double kSpreadLack = 0.4;  // lack of wetness at which no water holds the tip together
 // Sine of the angle between hair and its motion from which on it gathers, and from which on it gathers no more; part of
 // its width that it then has.
-constexpr double kGathersFrom = 0.3, kGathersFull = 0.7, kGathered = 0.4;
+constexpr double kGathersFrom = 0.2, kGathersFull = 0.55, kGathered = 0.3;
+constexpr double kGathersLack = 0.1;  // lack of wetness from which it does so fully; wet hair keeps its outline
 
 /// Returns the direction of a row of spines on the surface, from the first that touches to the last; zero: none.
 Vec2 row_of(std::span<const footprint::Trail> trails) {
@@ -185,7 +186,10 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     const double pivot =
         spread > 0 && !brush::has_broad_side(tuft.preset()) ? pivot_of(trails, motion, contact.frame) : 0;
     footprint::spread_trails(trails, tracks_, {motion.hair_travel, length, spread * (1 - pivot)});
-    if (pivot > 0) footprint::gather_trails(trails, std::lerp(1.0, kGathered, spread * pivot));
+    if (pivot > 0) {
+        const double gathers = pivot * std::clamp((1 - wetness.mean) / kGathersLack, 0.0, 1.0);
+        footprint::gather_trails(trails, std::lerp(1.0, kGathered, gathers));
+    }
     std::vector<footprint::Trail> uncovered;  // without the upright hair
     if (by_hair_) {
         if (!motion.touching) previous_.clear();

@@ -188,6 +188,15 @@ void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double 
     if (stamp.leapt && !stamp.by_hair) stamp.ds = std::max(stamp.ds, glm::length(moved.hair));
 }
 
+namespace {
+
+// Part of the grain that texels show: cells, half a texel, from 0.5 to 1.25 of its length, as at the edge.
+float grain_seen(const ClosedHairOptions& options) {
+    return static_cast<float>(smooth_step((1.25 - options.cell / options.grain.length) / 0.75));
+}
+
+}  // namespace
+
 void StrokeSession::set_ink(Stamp& stamp, double area) const {
     const ink::StampContact contact{
         .moment_factor = tuft_.stress(),
@@ -203,8 +212,9 @@ void StrokeSession::set_ink(Stamp& stamp, double area) const {
             static_cast<float>(std::max(0.0, ink::excess(tuft_.brush.reservoir) - deposit_->pending()) / area);
     // Ink stands in the grain, where hair that lies apart does not keep to its hills.
     if (hair_.options().tones)
-        stamp.grain_share = (1 - stamp.separation) * ink::grain_share(hair_.options().closed.grain.relief,
-                                                                      static_cast<double>(stamp.ink.target));
+        stamp.grain_share =
+            (1 - stamp.separation) * grain_seen(hair_.options().closed) *
+            ink::grain_share(hair_.options().closed.grain.relief, static_cast<double>(stamp.ink.target));
     stamp.ink.capacity = std::max(input_.substrate.capacity, static_cast<float>(ink::standing_film(tuft_.ink.yield)));
 }
 
