@@ -104,7 +104,8 @@ void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& fo
 Outline outline_of(const Trail& trail, int points);
 
 /// Returns the outlines whose union is the contact patch: one for each trail, and where spines of a ferrule are joined
-/// by ink, one for what lies between two of them, or in a ring between three, at equal parts of their hair. `before`:
+/// by ink, one for what lies between two of them, or in a ring between three, at equal parts of their hair; of a row
+/// also one over the heels of all that are joined. `before`:
 /// of `leapt_trails`; what leapt also has an outline of all that it passed over.
 std::vector<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before = {});
 
