@@ -23,8 +23,8 @@ def one_stroke():
     for k in range(6):
         turn = 60 * k + 8
         s = Stroke("petal", double_loaded("cinnabar", "titanium-white"))
-        s.curve([(-27, 0, 0, 90), (-25, -0.4, 0.35, 90), (-20, -0.8, 0.55, 88), (-14, -0.3, 0.42, 82),
-                 (-9, 0, 0.22, 74), (-4, 0, 0, 66)], 18)
+        s.curve([(-27, 0, 0, 90), (-25, -0.4, 0.35, 90), (-20, -0.8, 0.55, 88), (-14, -0.3, 0.42, 76),
+                 (-9, 0, 0.26, 50), (-5, 0, 0.12, 22), (-2, 0, 0, 0)], 18)
         petals.append(s.moved(turn))
     # From the stem to the point: broad, turned onto the edge while it slides and is lifted.
     for x, y, turn, size in ((44, 22, 24, 1.0), (26, 44, 62, 0.9), (-44, -20, 204, 1.0), (-26, -44, 243, 0.85),
@@ -35,7 +35,8 @@ def one_stroke():
         leaves.append(s.moved(turn, size, x, y))
     for k in range(6):
         s = Stroke("comma", double_loaded("cinnabar", "titanium-white"))
-        s.curve([(-4, 0, 0, 90), (-3.4, 0, 0.4, 90), (-1, 0.2, 0.3, 84), (2.5, 0.8, 0.1, 60), (5, 1.6, 0, 40)], 10)
+        s.curve([(-4, 0, 0, 90), (-3.4, 0, 0.4, 90), (-1, 0.2, 0.32, 76), (1.6, 0.7, 0.18, 44), (4, 1.5, 0.08, 8),
+                 (6.4, 2.6, 0, -22)], 10)
         a = math.radians(60 * k + 38)
         commas.append(s.moved(60 * k + 38, 1, 26 * math.cos(a), 26 * math.sin(a)))
     return [({"brush": "flat-12*0.8", "ink": "indigo", **place}, leaves),
@@ -104,6 +105,44 @@ LEAVES = [[(-28, 8), (-38, 6), (-50, 14), (-40, 20), (-30, 17), (-24, 11)], [(28
           (24, 11)], [(-10, -18), (-18, -26), (-17, -38), (-7, -34), (-4, -24), (-5, -20)]]
 
 
+def dense(keys):
+    """Points of the outline that `Stroke.curve` draws through the keys."""
+    return [p[:2] for p in Stroke("").curve([(*k, 0, 0) for k in keys], 22).points]
+
+
+def inside(polygon, x, y):
+    """The distance of a place to a polygon, mm; less than 0 outside."""
+    odd, nearest = False, math.inf
+    for (ax, ay), (bx, by) in zip(polygon, polygon[1:] + polygon[:1]):
+        if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):
+            odd = not odd
+        dx, dy = bx - ax, by - ay
+        f = min(1, max(0, ((x - ax) * dx + (y - ay) * dy) / max(dx * dx + dy * dy, 1e-12)))
+        nearest = min(nearest, math.dist((x, y), (ax + f * dx, ay + f * dy)))
+    return nearest if odd else -nearest
+
+
+def fill(polygon, turn, margin, spacing):
+    """A path to and fro over the places at least `margin` inside, in rows turned by `turn` degrees."""
+    c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
+    across = [s * x - c * y for x, y in polygon]
+    along = [c * x + s * y for x, y in polygon]
+    path = []
+    rows = max(1, round((max(across) - min(across) - 2 * margin) / spacing))
+    for row in range(rows + 1):
+        v = min(across) + margin + (max(across) - min(across) - 2 * margin) * row / rows
+        best, run = [], []
+        u = min(along)
+        while u <= max(along):
+            x, y = c * u + s * v, s * u - c * v
+            run = run + [(x, y)] if inside(polygon, x, y) >= margin else []
+            best = run if len(run) > len(best) else best
+            u += 0.25
+        if best:
+            path += [best[0], best[-1]] if row % 2 == 0 else [best[-1], best[0]]
+    return path
+
+
 def blue_and_white():
     """Outlines by a liner, each filled with a wash inside them."""
     place = {"origin": "0 -66.7 118", "right": "1 0 0", "down": "0 0 -1", "mapping": "wrap"}
@@ -115,13 +154,11 @@ def blue_and_white():
         leaf = outline in LEAVES
         start = outline[2 if leaf else 0]
         far = outline[-1] if leaf else outline[len(outline) // 2]
-        reach, aside, press = ((0.5, 0.52), 0.15, 0.17) if leaf else ((0.5, 0.62), 0.3, 0.2)
-        a, b = [tuple(middle[i] + f * (p[i] - middle[i]) for i in (0, 1)) for p, f in zip((start, far), reach)]
-        side = (aside * (b[1] - a[1]), -aside * (b[0] - a[0]))
-        (small if leaf else washes).append(Stroke("wash").curve([(*a, 0, 0), (*a, 0.5 * press, 0),
-                                            (*(m + s for m, s in zip(middle, side)), press, 0), (*b, 0.9 * press, 0),
-                                            (*(m - s for m, s in zip(middle, side)), press, 0),
-                                            (*a, 0.5 * press, 0), (*a, 0, 0)], 14))
+        press, margin, spacing = (0.2, 0.9, 0.7) if leaf else (0.24, 1.2, 1.1)
+        turn = math.degrees(math.atan2(far[1] - start[1], far[0] - start[0]))
+        path = fill(dense(outline), turn, margin, spacing)
+        (small if leaf else washes).append(Stroke("wash").go(
+            [(*path[0], 0, 0)] + [(*p, press, 0) for p in path] + [(*path[-1], 0, 0)], 30))
         if leaf:
             veins.append(Stroke("vein").curve([(*far, 0, 0), (*middle, 0.1, 0), (*start, 0, 0)], 24))
     stem = Stroke("stem").curve([(-1, 24, 0, 0), (-1, 26, 0.2, 0), (3, 40, 0.22, 0), (-4, 58, 0.2, 0), (-3, 60, 0, 0)], 24)

@@ -305,11 +305,11 @@ TEST(WideOutline, AnEdgeThatLeapsMarksAllThatItPassesOver) {
     }
 }
 
-/// Spines that are not joined keep outlines of their own; joined ones get one more between two.
+/// Spines that are not joined keep outlines of their own; joined ones get one more between two, and one at the heel.
 TEST(WideOutline, OutlinesFollowTheOpenings) {
     brush::TuftState tuft = dragged("flat-12");
     const std::size_t joined = outlines_of(tuft, kFlat).size();
-    EXPECT_EQ(joined, 5u + 4u);
+    EXPECT_EQ(joined, 5u + 4u + 1u);
     const double whole = coverage_area(rasterise(outlines_of(tuft, kFlat), kFlat, 0, kCell));
     for (brush::Opening& opening : tuft.openings)
         for (double& o : opening.width) o = 1e-3;

@@ -186,6 +186,7 @@ double foam_energy(double solid, double strain) {
 std::shared_ptr<const CarriedShape> make_foam(const Preset& p, const Bundles& bundles) {
     auto body = std::make_shared<CarriedShape>();
     body->height = p.length;
+    body->shut_strain = densification_strain(p.solid);
     if (p.geometry)
         take_geometry(p, *body);
     else

@@ -35,6 +35,7 @@ struct CarriedShape {
     std::vector<double> area;                             ///< [points] m² of the skin that a point stands for, or 1
     std::vector<SkinPore> pores;                          ///< of foam
     double height = 0;                                    ///< metres, of foam
+    double shut_strain = 1;                               ///< of foam: strain at which its cells are shut
 };
 
 /// Returns the shape that the tuft carries, made for its spines and bundles; null where its preset has no geometry.

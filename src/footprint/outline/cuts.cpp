@@ -387,4 +387,12 @@ void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, const SpreadO
     }
 }
 
+void gather_trails(std::vector<Trail>& trails, double part) {
+    for (Trail& trail : trails)
+        for (Cut& cut : trail.cuts) {
+            cut.a *= part;
+            cut.b /= part;
+        }
+}
+
 }  // namespace tuft::footprint

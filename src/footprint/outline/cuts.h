@@ -91,6 +91,10 @@ struct SpreadOptions {
 /// straight down does not change. A lifted tuft narrows with a slope of at most 0.35.
 void spread_trails(std::vector<Trail>& trails, HairTracks& tracks, const SpreadOptions& options);
 
+/// Narrows the sections of trails to `part` of their width, 0–1, at constant area: hair that is drawn across itself
+/// draws together behind its point.
+void gather_trails(std::vector<Trail>& trails, double part);
+
 /// Adds the upright hair round the foot of the axis, by `foot.share`: a straight taper from the widest section to
 /// the axis' foot, with a round end. Without it the point, which touches first and then slides aside, leaves a
 /// spur. For an unsplit tuft.
@@ -100,7 +104,8 @@ void cover_upright_hair(std::vector<Trail>& trails, const brush::UprightHair& fo
 Outline outline_of(const Trail& trail, int points);
 
 /// Returns the outlines whose union is the contact patch: one for each trail, and where spines of a ferrule are joined
-/// by ink, one for what lies between two of them, or in a ring between three, at equal parts of their hair. `before`:
+/// by ink, one for what lies between two of them, or in a ring between three, at equal parts of their hair; of a row
+/// also one over the heels of all that are joined. `before`:
 /// of `leapt_trails`; what leapt also has an outline of all that it passed over.
 std::vector<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before = {});
 

@@ -27,6 +27,13 @@ struct Footprint {
     bool empty() const { return coverage.empty(); }
 };
 
+/// Plane and resolution of a picture of the contact patch; see `Footprint`.
+struct PicturePlane {
+    const Frame& frame;              ///< world; n out of the surface, origin on it
+    std::uint32_t triangle = kNone;  ///< of the mesh under the origin
+    double cell = 0;                 ///< metres, > 0
+};
+
 /// Returns a disc of `radius` metres about the origin, antialiased by distance: for benchmarks, tests and round
 /// stamps.
 Footprint disc(const Frame& frame, std::uint32_t triangle, double radius, double cell);

@@ -312,7 +312,8 @@ bool for_each_contact(const Trail& trail, const brush::Bundles& bundles, int bra
             const Vec2* at = placed.at(trail, i);
             if (!at || height_over_centre(trail.cuts[i], *at) > 0 || !is_touching(trail, trail.cuts[i], *at)) continue;
             const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
-            f(k, i, *at, std::abs(trail.along[a] - trail.along[b]));
+            // The cap of an edge that just touches has no length of hair.
+            f(k, i, *at, std::max(std::abs(trail.along[a] - trail.along[b]), kLeastLength));
             any = true;
         }
     }
@@ -399,7 +400,7 @@ std::vector<LowerBristle> find_lower_bristles(const TrailPart& part, const brush
 }  // namespace
 
 HairMarks draw_hair_marks(const TouchingHair& hair, const HairInk& ink, const PicturePlane& plane) {
-    HairMarks result{rasterise(hair.outlines, plane.frame, plane.triangle, plane.cell), 0};
+    HairMarks result{rasterise(hair.outlines, plane, hair.edge), 0};
     Footprint& f = result.footprint;
     if (f.empty()) return result;
     std::vector<BristlePlace> places;

@@ -6,6 +6,7 @@
 #include "brush/tuft/bundles.h"
 #include "footprint/outline/cuts.h"
 #include "footprint/outline/footprint.h"
+#include "footprint/outline/rough_edge.h"
 
 /// \file
 /// Marks of single hairs on the surface. A full tuft touches in one closed shape; a dry one in the lines of its
@@ -37,13 +38,7 @@ struct TouchingHair {
     std::span<const Outline> outlines;  ///< of the trails; bound the marks
     const brush::Bundles& bundles;      ///< of the tuft
     int branches = 1;                   ///< of the tuft; more than 1: split
-};
-
-/// Plane and resolution of a picture of the contact patch; see `Footprint`.
-struct PicturePlane {
-    const Frame& frame;              ///< world; n out of the surface, origin on it
-    std::uint32_t triangle = kNone;  ///< of the mesh under the origin
-    double cell = 0;                 ///< metres, > 0
+    RoughEdge edge = {};                ///< of the outlines
 };
 
 /// Wetness and motion of the touching hair.
@@ -76,8 +71,9 @@ struct HairMarks {
 };
 
 /// Returns the picture of the bristles' marks inside the outlines of the trails. Areas are exact at the edges. As
-/// the wetness of every bundle goes to 1 the picture becomes that of `rasterise`. All lengths are in metres along
-/// hair and path, so the result does not depend on sampling or texel size. Cost: about 0.2 ms for all 500 bristles.
+/// the wetness of every bundle goes to 1 the picture becomes that of `rasterise` (rough_edge.h). All lengths are in
+/// metres along hair and path, so the result does not depend on sampling or texel size. Cost: about 0.2 ms for all 500
+/// bristles.
 ///
 /// Streaks. Each inked bristle of the lower half leaves a streak along the hair, 90 µm wide: a hair and the ink
 /// that adheres to it. Between adjacent bristles it closes gaps of wet / (1 − wet) mean spacings. From wetness 0.7

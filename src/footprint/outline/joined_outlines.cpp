@@ -256,7 +256,21 @@ class Union {
     Union(std::span<const Trail> trails, int points, std::span<const Trail> before)
         : trails_(trails), before_(before), points_(std::max(points, 4)), middle_(middle_of_ring(trails)) {}
 
-    void join(std::initializer_list<std::size_t> numbers) {
+    /// Adds the heel of spines of a row that ink joins, where longer hair meets the surface further from the ferrule
+    /// than its neighbours: ink spans the wedge under it.
+    void add_heel(std::span<const std::size_t> numbers) {
+        if (numbers.size() < 3) return;
+        Joint heel;
+        for (const std::size_t k : numbers) {
+            const std::vector<Cut>& cuts = trails_[k].cuts;
+            heel.side.push_back({cuts[(cuts.size() - 1) / 2], cuts.back()});
+            heel.trail.push_back(&trails_[k]);
+        }
+        keep(outline_of(heel, points_));
+    }
+
+    /// Returns true where ink joins them somewhere.
+    bool join(std::initializer_list<std::size_t> numbers) {
         std::vector<const Trail*> now, was;
         for (const std::size_t k : numbers) now.push_back(&trails_[k]);
         std::vector<Joint> joints = joints_of(now);
@@ -265,10 +279,11 @@ class Union {
             if (arc) add_arc(joint, middle_);
             keep(outline_of(joint, points_));
         }
-        if (joints.empty()) return;
+        if (joints.empty()) return false;
         for (const Trail* trail : now)
             if (const Trail* b = same_branch(*trail, before_)) was.push_back(b);
         if (was.size() == now.size()) keep(swept_outline(now, was, points_));
+        return true;
     }
 
     /// Adds each trail alone.
@@ -297,13 +312,22 @@ class Union {
 std::vector<Outline> outlines_of(std::span<const Trail> trails, int points, std::span<const Trail> before) {
     Union all(trails, points, before);
     all.add_alone();
+    std::vector<std::size_t> row;  // of spines joined so far, each to the next
     for (std::size_t a = 0; a < trails.size(); ++a)
         for (std::size_t b = 0; b < trails.size(); ++b) {
             if (!opening_between(trails[a], trails[b])) continue;
-            all.join({a, b});
+            const bool joined = all.join({a, b});
+            if (trails[a].strip && joined) {
+                if (row.empty() || row.back() != a) {
+                    all.add_heel(row);
+                    row.assign(1, a);
+                }
+                row.push_back(b);
+            }
             for (std::size_t c = 0; c < trails.size(); ++c)
                 if (opening_between(trails[b], trails[c]) && opening_between(trails[a], trails[c])) all.join({a, b, c});
         }
+    all.add_heel(row);
     return all.take();
 }
 

@@ -12,7 +12,6 @@
 namespace tuft::footprint {
 namespace {
 
-constexpr double kClosedAt = 0.45;    // strain at which a pore is shut
 constexpr double kRim = 0.6;          // of a pore's radius, that of its round rim
 constexpr double kDryOpens = 0.8;     // by which a pore of dry foam, which has ink on its ridges only, is wider
 constexpr double kSpanned = 0.3;      // films of ink that stand in from a pore's rim
@@ -233,9 +232,9 @@ std::vector<Polygon> shape_polygons(const brush::Tuft& tuft, const brush::TuftSh
                : hair_polygons(*tuft.carried, shape, frame, tuft.preset.hair_diameter, {}, options);
 }
 
-double open_radius(double rest, double depth, double height) {
+double open_radius(double rest, double depth, double shut_depth) {
     const double rim = kRim * rest, off = std::max(0.0, 1 - depth / rim);
-    return rest * std::sqrt(std::max(0.0, 1 - depth / height / kClosedAt)) + rim * (1 - std::sqrt(1 - off * off));
+    return rest * std::sqrt(std::max(0.0, 1 - depth / shut_depth)) + rim * (1 - std::sqrt(1 - off * off));
 }
 
 void open_pores(const brush::CarriedShape& carried, const brush::TuftShape& shape, const ShapeOptions& options,
@@ -249,7 +248,7 @@ void open_pores(const brush::CarriedShape& carried, const brush::TuftShape& shap
         double height = 0;
         for (int k = 0; k < 3; ++k) height += weights[k] * shape.height[t[k]];
         if (height > options.film) continue;
-        const double r = open_radius(dry * pore.radius, std::max(0.0, -height), carried.height) -
+        const double r = open_radius(dry * pore.radius, std::max(0.0, -height), carried.shut_strain * carried.height) -
                          kSpanned * options.film * options.wetness;
         if (!(r > 0.25 * f.cell)) continue;
         Vec2 at{0};

@@ -47,13 +47,14 @@ std::vector<Polygon> hair_polygons(const brush::CarriedShape& carried, const bru
 std::vector<Polygon> shape_polygons(const brush::Tuft& tuft, const brush::TuftShape& shape, const Frame& frame,
                                     const ShapeOptions& options = {});
 
-/// Returns the radius of a pore's mouth where the skin is pressed by `depth`, metres; `height` is that of the foam:
+/// Returns the radius of a pore's mouth where the skin is pressed by `depth`, metres:
 ///
-///     r = r₀ √(1 − ε/0.45) + q (1 − √(1 − ⟨1 − depth/q⟩²)),   ε = depth/height, q = 0.6 r₀ [X].
+///     r = r₀ √(1 − depth/shut_depth) + q (1 − √(1 − ⟨1 − depth/q⟩²)),   q = 0.6 r₀ [X].
 ///
-/// Pressed foam shuts its pores. Their rims are round with radius q: skin that only just touches touches with the
-/// ridges between the pores.
-double open_radius(double rest, double depth, double height);
+/// Foam that is pressed does not bulge, so its pores keep their width until its cells are shut: `shut_depth` is its
+/// height times the strain ε_D of foam.h. Their rims are round with radius q: skin that only just touches touches with
+/// the ridges between the pores.
+double open_radius(double rest, double depth, double shut_depth);
 
 /// Removes the open pores of foam from its picture; ink spans 0.3 film wetness of each rim.
 void open_pores(const brush::CarriedShape& carried, const brush::TuftShape& shape, const ShapeOptions& options,

@@ -54,6 +54,10 @@ TUFT_CLONES bool increments(float* __restrict film, const float* __restrict all,
     return wanted != 0;
 }
 
+TUFT_CLONES void scale_goals(float* __restrict goal, const float* __restrict tone, int n) {
+    for (int t = 0; t < n; ++t) goal[t] *= tone[t];
+}
+
 void law_goals(float* goal, const float* coverage, float target, const DepositLaw& law, int n) {
     if (law.hidden > 0)
         goals(goal, coverage, law.hidden, law.inverse_extinction, n);
@@ -80,9 +84,9 @@ struct Alone {
 
 /// The film of such an ink in one pass: goals, increments and what is stored, as `law_goals`,
 /// `increments` and `store_change` have them, to the bit. Returns Σ (stored change) · area;
-/// `wanted`: whether any increment is positive.
+/// `wanted`: whether any increment is positive. `tone`: of `deposit`.
 TUFT_CLONES double deposit_alone(float* __restrict w, const float* __restrict coverage, const float* __restrict area,
-                                 const Alone& law, int n, bool& wanted) {
+                                 const float* __restrict tone, const Alone& law, int n, bool& wanted) {
     double sum[kRow] = {};
     alignas(64) float goal[kRow];
     const float inverse_part = 1.0f / law.part;
@@ -98,7 +102,8 @@ TUFT_CLONES double deposit_alone(float* __restrict w, const float* __restrict co
         for (int t = 0; t < kRow; ++t) {
             const float before = w[row + t], film = before * inverse_part;
             const float free = film + law.capacity - before;
-            const float limit = goal[t] < free ? goal[t] : free;
+            const float wants = goal[t] * tone[row + t];
+            const float limit = wants < free ? wants : free;
             const float lack = limit - film;
             const float dw = (lack > 0 ? lack : 0) * law.rate;
             const float after = before + law.part * dw;
@@ -182,13 +187,19 @@ double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
 }
 
 double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> coverage, std::span<const float, kN> area,
-               const DepositParams& params, const DepositLaw& law) {
+               const DepositParams& params, const DepositLaw& law, std::span<const float> tone) {
     // Nothing happens in rows without coverage.
     int begin = 0, end = kN;
     while (begin < end && is_bare(&coverage[begin])) begin += kRow;
     while (end > begin && is_bare(&coverage[end - kRow])) end -= kRow;
     const int n = end - begin;
     if (n == 0) return 0;
+    static constexpr std::array<float, kN> kEven = [] {
+        std::array<float, kN> even;
+        even.fill(1);
+        return even;
+    }();
+    const float* tones = (tone.empty() ? std::span<const float>(kEven) : tone).data() + begin;
     const auto planes = canvas.open_planes(slot);
     if (const int only = only_pigment(params.mix);
         only >= 0 && planes[only] != nullptr && std::count(planes.begin(), planes.end(), nullptr) == kMaxPigments - 1) {
@@ -197,7 +208,7 @@ double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
                           params.capacity, law.rate,   params.mix[only]};
         bool wanted = false;
         const double stored =
-            deposit_alone(planes[only]->data() + begin, &coverage[begin], &area[begin], alone, n, wanted);
+            deposit_alone(planes[only]->data() + begin, &coverage[begin], &area[begin], tones, alone, n, wanted);
         if (!wanted) return 0;
         canvas.mark_dirty(slot);
         return stored / static_cast<double>(params.mix[only]);
@@ -220,6 +231,7 @@ double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, kN> co
     if (!(strength > 0) || !(params.target > 0) || !(law.rate > 0)) return 0;
     alignas(64) float goal[kN];
     law_goals(goal, &coverage[begin], params.target, law, n);
+    if (!tone.empty()) scale_goals(goal, tones, n);
     if (!increments(film, all, goal, params.capacity, law.rate, n)) return 0;
     double given = 0;
     for (int p = 0; p < kMaxPigments; ++p)

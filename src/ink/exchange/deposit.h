@@ -53,9 +53,12 @@ void film_goals(std::span<float, atlas::kTileTexels> goal, std::span<const float
 /// `coverage` [256], 0–1; `area` [256], m² of surface per texel; `ds` metres of travel of the stamp. Returns the
 /// ink given, film·m²: the sum of the stored amounts times `area`, so tuft and texels balance. Different threads
 /// may process different slots. The bits do not depend on the instruction set. Cost: about 0.2 µs.
+///
+/// `tone` [256]: factor on g(f) of each texel, about 1 (film_tone.h); empty: 1.
 double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
                std::span<const float, atlas::kTileTexels> area, double ds, const DepositParams& params);
 double deposit(Canvas& canvas, std::uint32_t slot, std::span<const float, atlas::kTileTexels> coverage,
-               std::span<const float, atlas::kTileTexels> area, const DepositParams& params, const DepositLaw& law);
+               std::span<const float, atlas::kTileTexels> area, const DepositParams& params, const DepositLaw& law,
+               std::span<const float> tone = {});
 
 }  // namespace tuft::ink

@@ -2,45 +2,80 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "core/noise.h"
-#include "core/random.h"
+#include "core/geometry/solid_noise.h"
 
 namespace tuft::ink {
 namespace {
 
-/// Noise between values at the corners of unit cubes.
-double lumps(const Vec3& p, std::uint64_t seed) {
-    const Vec3 cell = glm::floor(p), f = p - cell, g = fade(f);
-    const auto x = static_cast<std::int64_t>(cell.x), y = static_cast<std::int64_t>(cell.y),
-               z = static_cast<std::int64_t>(cell.z);
-    const auto value = [&](int i, int j, int k) {
-        // Three whole numbers of 21 bits: lattices of a kilometre at a millimetre.
-        const auto key = (static_cast<std::uint64_t>(x + i) & 0x1fffff) |
-                         (static_cast<std::uint64_t>(y + j) & 0x1fffff) << 21 |
-                         (static_cast<std::uint64_t>(z + k) & 0x1fffff) << 42;
-        return 2 * uniform(seed, key) - 1;
-    };
-    const auto along_x = [&](int j, int k) { return value(0, j, k) + g.x * (value(1, j, k) - value(0, j, k)); };
-    const auto along_y = [&](int k) { return along_x(0, k) + g.y * (along_x(1, k) - along_x(0, k)); };
-    return along_y(0) + g.z * (along_y(1) - along_y(0));
+/// Noise of one seed with its corners stored over the box of a tile: neighbouring texels share them.
+class TileNoise {
+  public:
+    /// `box`: of all points that are asked for, in cells of the lattice.
+    TileNoise(const Box& box, std::uint64_t seed) : seed_(seed), lo_(glm::floor(box.lo)) {
+        const Vec3 size = glm::floor(box.hi) - lo_ + 2.0;
+        if (!(size.x * size.y * size.z <= kMostCorners)) return;  // of texels that lie apart, or nowhere
+        for (int k = 0; k < 3; ++k) size_[k] = static_cast<int>(size[k]);
+        corners_.reserve(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]));
+        const auto x = static_cast<std::int64_t>(lo_.x), y = static_cast<std::int64_t>(lo_.y),
+                   z = static_cast<std::int64_t>(lo_.z);
+        for (int k = 0; k < size_[2]; ++k)
+            for (int j = 0; j < size_[1]; ++j)
+                for (int i = 0; i < size_[0]; ++i) corners_.push_back(solid_noise_corner(x + i, y + j, z + k, seed));
+    }
+
+    /// `solid_noise` at the point, to the bit.
+    double at(const Vec3& p) const {
+        if (corners_.empty()) return solid_noise(p, seed_);
+        const Vec3 cell = glm::floor(p), from = cell - lo_;
+        const int first =
+            static_cast<int>(from.x) + size_[0] * (static_cast<int>(from.y) + size_[1] * static_cast<int>(from.z));
+        return blend_corners(p - cell, [&](int i, int j, int k) {
+            return corners_[static_cast<std::size_t>(first + i + size_[0] * (j + size_[1] * k))];
+        });
+    }
+
+  private:
+    static constexpr double kMostCorners = 4096;
+    std::uint64_t seed_;
+    Vec3 lo_;
+    int size_[3] = {};
+    std::vector<double> corners_;  // empty: too many
+};
+
+constexpr double kFine = 0.6;        // part of the octave of half the size
+constexpr double kFineShift = 0.37;  // cells
+constexpr std::uint64_t kSeed = 17, kFineSeed = 18;
+
+Vec3 to_lattice(const Vec3& point, double length) {
+    return point / (2 * std::max(length, 1e-7));
 }
 
-// Mean square of values in [-1, 1] blended so: ⅓ (26/35)³; and of both octaves.
-constexpr double kOneOctave = 0.1366399;
-constexpr double kFine = 0.6;  // part of the octave of half the size
+double of_unit_rms(double coarse, double fine) {
+    return (coarse + kFine * fine) / std::sqrt(kSolidNoiseSquare * (1 + kFine * kFine));
+}
 
 }  // namespace
 
 double relief_at(const Vec3& point, double length) {
-    const Vec3 p = point / (2 * std::max(length, 1e-7));
-    const double sum = lumps(p, 17) + kFine * lumps(2.0 * p + 0.37, 18);
-    return sum / std::sqrt(kOneOctave * (1 + kFine * kFine));
+    const Vec3 p = to_lattice(point, length);
+    return of_unit_rms(solid_noise(p, kSeed), solid_noise(2.0 * p + kFineShift, kFineSeed));
 }
 
 void relief_of_tile(const atlas::TexelShape& tile, double length, std::span<float, atlas::kTileTexels> out) {
-    for (int t = 0; t < atlas::kTileTexels; ++t)
-        out[t] = static_cast<float>(relief_at({tile.px[t], tile.py[t], tile.pz[t]}, length));
+    const auto point = [&](int t) { return to_lattice({tile.px[t], tile.py[t], tile.pz[t]}, length); };
+    Box box, fine_box;
+    for (int t = 0; t < atlas::kTileTexels; ++t) {
+        const Vec3 p = point(t);
+        box.add(p);
+        fine_box.add(2.0 * p + kFineShift);
+    }
+    const TileNoise coarse(box, kSeed), fine(fine_box, kFineSeed);
+    for (int t = 0; t < atlas::kTileTexels; ++t) {
+        const Vec3 p = point(t);
+        out[t] = static_cast<float>(of_unit_rms(coarse.at(p), fine.at(2.0 * p + kFineShift)));
+    }
 }
 
 void expose_relief(std::span<float, atlas::kTileTexels> exposure, std::span<const float, atlas::kTileTexels> relief,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/ease.h"
 #include "footprint/outline/hair.h"
@@ -21,6 +22,30 @@ constexpr double kAxisLength = 1e-3;    // metres of hair on the surface that tu
 // Mean lack of wetness of the bundles at which all of a tuft touches by single hairs.
 constexpr double kSeparateLack = 0.05;
 constexpr double kSpreadLack = 0.4;  // lack of wetness at which no water holds the tip together
+// Sine of the angle between hair and its motion from which on it gathers, and from which on it gathers no more; part of
+// its width that it then has.
+constexpr double kGathersFrom = 0.2, kGathersFull = 0.55, kGathered = 0.3;
+constexpr double kGathersLack = 0.1;  // lack of wetness from which it does so fully; wet hair keeps its outline
+
+/// Returns the direction of a row of spines on the surface, from the first that touches to the last; zero: none.
+Vec2 row_of(std::span<const footprint::Trail> trails) {
+    if (trails.empty() || !trails.front().strip) return Vec2{0};
+    const auto [first, last] =
+        std::minmax_element(trails.begin(), trails.end(),
+                            [](const footprint::Trail& p, const footprint::Trail& q) { return p.branch < q.branch; });
+    return last->cuts[last->cuts.size() / 2].centre - first->cuts[first->cuts.size() / 2].centre;
+}
+
+/// Returns how much the hair is drawn across itself, 0–1, over its last millimetre: where the hand pivots.
+double pivot_of(std::span<const footprint::Trail> trails, const MotionTracker& motion, const Frame& frame) {
+    Vec2 lie{0};
+    for (const footprint::Trail& trail : trails) lie += trail.cuts.front().centre - trail.cuts.back().centre;
+    const Vec2 course(frame.to_local(frame.origin + motion.hair_course));
+    const double size = glm::length(lie) * glm::length(course);
+    if (!(size > 1e-12)) return 0;
+    const double sine = std::abs(lie.x * course.y - lie.y * course.x) / size;
+    return smooth_step((sine - kGathersFrom) / (kGathersFull - kGathersFrom));
+}
 
 }  // namespace
 
@@ -69,12 +94,12 @@ void HairContact::draw_hairs(Stamp& stamp, const footprint::TouchingHair& hair, 
         .press_share = motion.press_share,
         .course = of_hand,
         .sine_to_course = lengths > 0 ? std::abs(of_hand.x * of_hair.y - of_hand.y * of_hair.x) / lengths : 0};
-    footprint::HairMarks marks = footprint::draw_hair_marks(hair, ink, {frame, contact.triangle, options_.cell});
+    footprint::HairMarks marks = footprint::draw_hair_marks(hair, ink, {frame, contact.triangle, options_.closed.cell});
     stamp.footprint = std::move(marks.footprint);
     stamp.by_hair = true;
     stamp.separation = static_cast<float>(smooth_step(wetness.lack / kSeparateLack));
     const double dry = std::max(1e-3, 1 - wetness.mean);
-    stamp.grain_film = kGrainFilm * 2 * wetness.mean / (dry * dry) - kHeldUp * options_.relief * dry;
+    stamp.grain_film = kGrainFilm * 2 * wetness.mean / (dry * dry) - kHeldUp * options_.closed.grain.relief * dry;
     closed_area_ = marks.closed_area;
 }
 
@@ -89,12 +114,12 @@ void HairContact::draw_shape(Stamp& stamp, const TuftInHand& tuft, const footpri
         const footprint::LineInk ink{wetness.of_bundle, motion.travel, hair.bundles.seed};
         const std::vector<footprint::Polygon> hairs =
             footprint::hair_polygons(carried, shape, contact.frame, tuft.preset().hair_diameter, ink, options);
-        stamp.footprint = footprint::rasterise_polygons(hairs, contact.frame, contact.triangle, options_.cell);
+        stamp.footprint = footprint::rasterise_polygons(hairs, contact.frame, contact.triangle, options_.closed.cell);
         return;
     }
     footprint::Footprint section =
         footprint::rasterise_polygons(footprint::section_polygons(carried, shape, contact.frame, options),
-                                      contact.frame, contact.triangle, options_.cell);
+                                      contact.frame, contact.triangle, options_.closed.cell);
     if (brush::is_foam(tuft.preset())) footprint::open_pores(carried, shape, options, section);
     if (brush::is_foam(tuft.preset()) || !by_hair_) {
         stamp.footprint = std::move(section);
@@ -106,9 +131,12 @@ void HairContact::draw_shape(Stamp& stamp, const TuftInHand& tuft, const footpri
 
 void HairContact::place_nodes(Stamp& stamp, const TuftInHand& tuft, const footprint::TouchingHair& hair,
                               const contact::Result& contact) {
-    // A tip that stands on the surface has no direction: then it keeps the one it had.
+    // A tip that stands on the surface has no direction: then it keeps the one it had. The ink of a row of spines
+    // varies along the row, whether its edge stands on the surface or its hair lies there.
     Vec2 lie = kAxisLength * axis_;
     for (const footprint::Trail& trail : hair.trails) lie += trail.cuts.front().centre - trail.cuts.back().centre;
+    const Vec2 row = row_of(hair.trails);
+    if (glm::length(row) > 1e-6) lie = (glm::dot(Vec2{-row.y, row.x}, lie) < 0 ? -1.0 : 1.0) * Vec2{-row.y, row.x};
     if (glm::length(lie) > 1e-9) axis_ = glm::normalize(lie);
     std::vector<Vec2> places;
     for (const footprint::Outline& outline : hair.outlines) {
@@ -153,9 +181,15 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
 
     by_hair_ = wetness.lack > 0 && !options_.always_closed && !brush::is_foam(tuft.preset()) && !by_lines;
     closed_area_ = 0;
-    if (!by_hair_ && !shape.closed) close_hair(shape, contact, options_.cell);
+    if (!by_hair_ && !shape.closed) close_hair(shape, contact, options_.closed);
     const double spread = by_hair_ ? std::clamp((1 - wetness.mean) / kSpreadLack, 0.0, 1.0) : 0;
-    footprint::spread_trails(trails, tracks_, {motion.hair_travel, length, spread});
+    const double pivot =
+        spread > 0 && !brush::has_broad_side(tuft.preset()) ? pivot_of(trails, motion, contact.frame) : 0;
+    footprint::spread_trails(trails, tracks_, {motion.hair_travel, length, spread * (1 - pivot)});
+    if (pivot > 0) {
+        const double gathers = pivot * std::clamp((1 - wetness.mean) / kGathersLack, 0.0, 1.0);
+        footprint::gather_trails(trails, std::lerp(1.0, kGathered, gathers));
+    }
     std::vector<footprint::Trail> uncovered;  // without the upright hair
     if (by_hair_) {
         if (!motion.touching) previous_.clear();
@@ -164,7 +198,7 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     }
     footprint::cover_upright_hair(trails, shape.upright, contact.frame, kSkinFilm);
     if (by_hair_) shape.outlines = footprint::outlines_of(trails, footprint::OutlineOptions{}.points);
-    const footprint::TouchingHair hair{trails, shape.outlines, bundles, branches};
+    const footprint::TouchingHair hair{trails, shape.outlines, bundles, branches, edge_of(shape, options_.closed)};
     Stamp stamp;
     if (carried)
         draw_shape(stamp, tuft, hair, contact, motion, wetness);
@@ -173,6 +207,12 @@ Stamp HairContact::make_stamp(TuftInHand& tuft, const contact::Result& contact, 
     else
         stamp.footprint = std::move(*shape.closed);
     stamp.leapt = !shape.leapt.empty();
+    if (options_.tones && !carried) {
+        if (!motion.touching) tone_.clear();
+        tone_.update(shape.edge, options_.closed.cell, tuft.brush.reservoir, bundles,
+                     [&] { return footprint::hair_contact_points(trails, bundles, branches); });
+        stamp.tone = tone_.at(shape.edge, contact.frame, 1 - static_cast<double>(stamp.separation));
+    }
     previous_ = std::move(uncovered);
     previous_frame_ = contact.frame;
     if (options_.places_nodes) place_nodes(stamp, tuft, hair, contact);

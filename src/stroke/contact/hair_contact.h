@@ -6,6 +6,7 @@
 #include "footprint/outline/hair.h"
 #include "ink/exchange/contact_nodes.h"
 #include "stroke/contact/hair_shape.h"
+#include "stroke/contact/hair_tone.h"
 #include "stroke/contact/motion_tracker.h"
 #include "stroke/contact/stamp.h"
 #include "stroke/contact/tuft_in_hand.h"
@@ -18,10 +19,10 @@ namespace tuft::stroke {
 
 /// Options of the footprints of a stroke.
 struct HairContactOptions {
-    double cell = 1e-4;          ///< metres, of footprints
+    ClosedHairOptions closed;    ///< also gives cells and grain of other footprints
     bool always_closed = false;  ///< ink on the surface, such as a pool, fills the gaps of dry hair
     bool places_nodes = false;   ///< computes the stamp's grid, for ink that varies over the footprint
-    double relief = 0;           ///< rms height of the substrate's grain, metres
+    bool tones = false;          ///< computes the stamp's film by place across the hair
 };
 
 /// The touching hair at one pose. Its footprint is one closed patch where the hair is wet enough to close its gaps,
@@ -76,6 +77,7 @@ class HairContact {
     footprint::HairTracks tracks_;            // of the hair on the surface
     std::vector<footprint::Trail> previous_;  // trails of the last stamp by hair, in `previous_frame_`
     Frame previous_frame_;
+    HairTone tone_;  // with `tones`
     bool by_hair_ = false;
     double closed_area_ = 0;
     Vec2 axis_{1, 0};

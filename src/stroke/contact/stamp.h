@@ -4,6 +4,7 @@
 #include "footprint/stamp/stamp.h"
 #include "ink/exchange/contact_grid.h"
 #include "ink/exchange/deposit.h"
+#include "ink/exchange/film_tone.h"
 
 /// \file
 /// A stamp: a footprint with the ink that it deposits. `StrokeSession` makes stamps; deposit models apply them to
@@ -22,6 +23,8 @@ struct Stamp {
     float separation = 0;   ///< part of it that is single hairs, 0–1; 0: one closed patch
     double grain_film = 0;  ///< by hair: metres of ink under the hair above the grain's mean height
     ink::ContactGrid grid;  ///< over the footprint, for ink that varies over it
+    ink::FilmTone tone;     ///< film of one ink by place across the hair
+    float grain_share = 0;  ///< of `ink::apply_grain`
 };
 
 /// Returns the area of a footprint weighted by its coverage, m².

@@ -51,6 +51,16 @@ void StampBatch::sort_by_tile() {
     first_.push_back(order_.size());
 }
 
+// Over a batch the hand goes some texels on: one of its stamps gives the tone of all.
+bool StampBatch::find_tone(std::uint32_t slot, const Stamp& stamp, std::span<float, atlas::kTileTexels> tone) {
+    if (stamp.tone.even && !(stamp.grain_share > 0)) return false;
+    std::ranges::fill(tone, 1.0f);
+    atlas::TexelShape buffer;
+    ink::apply_profile(tone, stamp.tone, atlas::shape_of(target_.texels(), slot, buffer));
+    target_.apply_grain(slot, tone, stamp.grain_share);
+    return true;
+}
+
 // All stamps of one tile, by one thread. `erased`: one for each stamp, or none.
 void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const ink::DepositLaw> laws,
                             std::span<ink::Amounts> erased, std::span<double> given, footprint::Unpacked& unpacked) {
@@ -59,6 +69,8 @@ void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const i
     const atlas::TexelTile& tile = target_.texels().tiles[slot];
     const MaskTexels* mask = target_.mask();
     if (mask && mask->none(slot)) return;
+    alignas(64) std::array<float, atlas::kTileTexels> tone;
+    const bool toned = erased.empty() && find_tone(slot, batch_[stamps[stamps.size() / 2].stamp], tone);
     for (std::size_t k = 0; k < stamps.size(); ++k) {
         const footprint::StampJobs& plan = plans_[stamps[k].stamp];
         if (!footprint::evaluate_tile(target_.texels(), plan, plan.tiles[stamps[k].tile], unpacked, exposure)) continue;
@@ -70,7 +82,8 @@ void StampBatch::write_tile(std::span<const TileStamp> stamps, std::span<const i
             continue;
         }
         if (stamp.by_hair) target_.expose_grain(slot, exposure, stamp.grain_film);
-        given[k] = ink::deposit(target_.canvas(), slot, exposure, tile.area, stamp.ink, laws[stamps[k].stamp]);
+        given[k] = ink::deposit(target_.canvas(), slot, exposure, tile.area, stamp.ink, laws[stamps[k].stamp],
+                                toned ? std::span<const float>(tone) : std::span<const float>());
     }
 }
 
@@ -86,7 +99,8 @@ double StampBatch::flush(const ProgressFn& going_on) {
         const std::uint32_t slot = order_[first_[t]].slot;
         if (!erase_starts_.contains(slot)) erase_starts_.emplace(slot, ink::erase_start(target_.canvas(), slot));
     }
-    if (std::any_of(batch_.begin(), batch_.end(), [](const Stamp& s) { return s.by_hair; })) target_.prepare_grain();
+    if (std::any_of(batch_.begin(), batch_.end(), [](const Stamp& s) { return s.by_hair || s.grain_share > 0; }))
+        target_.prepare_grain();
     std::array<ink::DepositLaw, kStamps> laws;
     for (std::size_t i = 0; i < batch_.size(); ++i) laws[i] = ink::deposit_law(batch_[i].ink, batch_[i].ds);
 

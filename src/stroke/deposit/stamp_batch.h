@@ -39,6 +39,8 @@ class StampBatch {
     };
     void plan();
     void sort_by_tile();
+    /// Computes the factor on the film of each texel of a tile. Returns false where it is 1.
+    bool find_tone(std::uint32_t slot, const Stamp& stamp, std::span<float, atlas::kTileTexels> tone);
     void write_tile(std::span<const TileStamp> stamps, std::span<const ink::DepositLaw> laws,
                     std::span<ink::Amounts> erased, std::span<double> given, footprint::Unpacked& unpacked);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ink/exchange/film_tone.h"
 #include "ink/texels/pool.h"
 #include "ink/texels/relief.h"
 
@@ -33,6 +34,10 @@ const StampTarget::Grain& StampTarget::grain(std::uint32_t slot) {
 
 void StampTarget::expose_grain(std::uint32_t slot, std::array<float, atlas::kTileTexels>& exposure, double film) {
     ink::expose_relief(exposure, grain(slot), grain_rms_, static_cast<float>(film));
+}
+
+void StampTarget::apply_grain(std::uint32_t slot, std::span<float, atlas::kTileTexels> tone, float share) {
+    if (share > 0) ink::apply_grain(tone, grain(slot), share);
 }
 
 bool StampTarget::may_use(std::uint32_t slot) const {

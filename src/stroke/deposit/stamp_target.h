@@ -51,11 +51,15 @@ class StampTarget {
     /// Sets the part of the path that is painted now, for the plan.
     void set_part(std::uint32_t part) { part_ = part; }
 
-    /// Must be called once, by one thread, before `expose_grain`.
+    /// Must be called once, by one thread, before `expose_grain` and `apply_grain`.
     void prepare_grain();
     /// Reduces a tile's exposure to the part of the grain that hair with `film` metres of ink under it reaches. One
     /// thread per tile.
     void expose_grain(std::uint32_t slot, std::array<float, atlas::kTileTexels>& exposure, double film);
+
+    /// Multiplies the film of a tile's texels by that of ink which stands in the grain (ink/exchange/film_tone.h). One
+    /// thread per tile.
+    void apply_grain(std::uint32_t slot, std::span<float, atlas::kTileTexels> tone, float share);
 
     /// Copies a tile, unless it was copied before. Deposit models call it before every use of the tile's ink. Throws
     /// `OutsideTiles`.

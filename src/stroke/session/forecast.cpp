@@ -53,7 +53,7 @@ void StrokeForecast::compute_part(std::size_t k, bool closes) {
         if (hair_.split) return;
         if (touches(forecast.contact)) {
             forecast.hair = find_hair(hair_, forecast.contact, last_);
-            if (closes) close_hair(forecast.hair, forecast.contact, options_.cell);
+            if (closes) close_hair(forecast.hair, forecast.contact, options_.closed);
         }
         last_.store(hair_, forecast.pose, forecast.hair, forecast.contact);
         part.poses.push_back(std::move(forecast));
@@ -75,7 +75,7 @@ void StrokeForecast::close_together(Part& part, std::size_t from) const {
     parallel_for(n, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             PoseForecast& pose = part.poses[from + i];
-            if (touches(pose.contact)) close_hair(pose.hair, pose.contact, options_.cell);
+            if (touches(pose.contact)) close_hair(pose.hair, pose.contact, options_.closed);
         }
     });
 }

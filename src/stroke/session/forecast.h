@@ -30,7 +30,7 @@ class StrokeForecast {
   public:
     struct Options {
         contact::Options contact;
-        double cell = 1e-4;  ///< metres, of footprints
+        ClosedHairOptions closed;
     };
 
     /// Returns true for a tuft that can be forecast: not split, hair in a ferrule, bent by the rods of `brush/rod`.

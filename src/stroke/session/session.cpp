@@ -26,10 +26,13 @@ bool is_paste(const ink::Ink& ink) {
 
 HairContactOptions hair_options(const SessionInput& in, bool mixed) {
     const double cell = 0.5 * in.model.texels.texel_size;
-    return {.cell = is_paste(in.ink) ? std::max(cell, kPasteCell) : cell,
+    const bool levels = in.wet.film || is_paste(in.ink) || in.stroke.erases() || in.stroke.layer == kPaletteLayer;
+    const footprint::EdgeGrain grain{static_cast<double>(in.substrate.relief),
+                                     static_cast<double>(in.substrate.relief_length)};
+    return {.closed = {is_paste(in.ink) ? std::max(cell, kPasteCell) : cell, !levels, grain},
             .always_closed = in.stroke.layer == kPaletteLayer,
             .places_nodes = in.wet.film || mixed || is_paste(in.ink),
-            .relief = static_cast<double>(in.substrate.relief)};
+            .tones = !levels && !mixed};
 }
 
 }  // namespace
@@ -185,6 +188,15 @@ void StrokeSession::set_motion(Stamp& stamp, const ContactMotion& moved, double 
     if (stamp.leapt && !stamp.by_hair) stamp.ds = std::max(stamp.ds, glm::length(moved.hair));
 }
 
+namespace {
+
+// Part of the grain that texels show: cells, half a texel, from 0.5 to 1.25 of its length, as at the edge.
+float grain_seen(const ClosedHairOptions& options) {
+    return static_cast<float>(smooth_step((1.25 - options.cell / options.grain.length) / 0.75));
+}
+
+}  // namespace
+
 void StrokeSession::set_ink(Stamp& stamp, double area) const {
     const ink::StampContact contact{
         .moment_factor = tuft_.stress(),
@@ -198,6 +210,11 @@ void StrokeSession::set_ink(Stamp& stamp, double area) const {
     if (brush::is_foam(tuft_.preset()) && area > 0)
         stamp.ink.target +=
             static_cast<float>(std::max(0.0, ink::excess(tuft_.brush.reservoir) - deposit_->pending()) / area);
+    // Ink stands in the grain, where hair that lies apart does not keep to its hills.
+    if (hair_.options().tones)
+        stamp.grain_share =
+            (1 - stamp.separation) * grain_seen(hair_.options().closed) *
+            ink::grain_share(hair_.options().closed.grain.relief, static_cast<double>(stamp.ink.target));
     stamp.ink.capacity = std::max(input_.substrate.capacity, static_cast<float>(ink::standing_film(tuft_.ink.yield)));
 }
 
@@ -272,7 +289,7 @@ std::unique_ptr<StrokeForecast> StrokeSession::forecast(std::span<const brush::P
     for (const brush::Pose& pose : poses) path.resampler.push(next_pose(path, pose), path.poses);
     path.resampler.finish(path.poses);
     return std::make_unique<StrokeForecast>(tuft_.brush.tuft, std::move(path.poses), *input_.model.query,
-                                            StrokeForecast::Options{contact_.options, hair_.options().cell});
+                                            StrokeForecast::Options{contact_.options, hair_.options().closed});
 }
 
 SessionResult StrokeSession::finish() {

@@ -1,0 +1,137 @@
+#include "footprint/outline/rough_edge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/solid_noise.h"
+#include "footprint/outline/section_outline.h"
+
+namespace tuft::footprint {
+namespace {
+
+constexpr double kRun = 3e-3, kFineRun = 0.8e-3;  // metres along the path over which hair at the edge comes and goes
+constexpr double kEndRun = 2e-3;                  // over which a hair's own end changes
+constexpr double kFlank = 0.8, kFineFlank = 0.5;  // A: of the spacing
+constexpr double kEnd = 1.5;                      // B: of the spacing
+constexpr double kCoarse = 0.1e-3;                // metres: D of coarser hair
+constexpr double kGrain = 0.35, kFilm = 10e-6;    // of the length of the grain; metres of ink that drown it
+constexpr double kLeastGrain = 4e-6;              // metres: G below which the grain is left out
+constexpr double kFull = 0.5, kGone = 1.25;       // cells over the detail's size between which it vanishes
+constexpr double kNarrow = 8;                     // spacings: width of a mark from which its edge is fully rough
+constexpr int kMostPoints = 48;                   // of one span of the spline
+
+/// Noise in [−1, 1] with cells of one unit, blended by 3f² − 2f³.
+double plane_noise(double x, double y, std::uint64_t seed) {
+    const double cx = std::floor(x), cy = std::floor(y), gx = fade(x - cx), gy = fade(y - cy);
+    const auto i = static_cast<std::int64_t>(cx), j = static_cast<std::int64_t>(cy);
+    const auto along_x = [&](std::int64_t row) {
+        const double a = solid_noise_corner(i, row, 0, seed);
+        return a + gx * (solid_noise_corner(i + 1, row, 0, seed) - a);
+    };
+    const double a = along_x(j);
+    return a + gy * (along_x(j + 1) - a);
+}
+
+double visible_part(double cell, double size) {
+    return smooth_step((kGone - cell / size) / (kGone - kFull));
+}
+
+/// δ of one stamp.
+class Displacement {
+  public:
+    Displacement(const PicturePlane& plane, const RoughEdge& edge)
+        : plane_(plane),
+          edge_(edge),
+          hair_(std::min(edge.hair.spacing, kCoarse) * visible_part(plane.cell, edge.hair.spacing)) {
+        const EdgeGrain& g = edge.grain;
+        if (!(g.relief > 0)) return;
+        const double whole = kGrain * g.length * g.relief / (g.relief + kFilm);
+        grain_ = whole > kLeastGrain ? whole * visible_part(plane.cell, g.length) : 0;
+    }
+
+    bool none() const { return !(hair_ > 0) && !(grain_ > 0); }
+
+    double at(const Vec2& p, const Vec2& normal) const {
+        double out = 0;
+        if (hair_ > 0) {
+            const EdgeHair& h = edge_.hair;
+            const Vec2 d = p - h.foot;
+            const double x = (h.direction.x * d.y - h.direction.y * d.x) / h.spacing;
+            const double s = h.travel + glm::dot(h.direction, d), along = glm::dot(normal, h.direction);
+            out += hair_ *
+                   (kFlank * plane_noise(x, s / kRun, h.seed) + kFineFlank * plane_noise(x, s / kFineRun, h.seed + 1) +
+                    kEnd * along * along * plane_noise(x, s / kEndRun, h.seed + 2));
+        }
+        if (grain_ > 0) {
+            const Vec3 q = plane_.frame.to_world(Vec3(p, 0)) / (2 * edge_.grain.length);
+            out += grain_ / std::sqrt(kSolidNoiseSquare) * solid_noise(2.0 * q, kSeed);
+        }
+        return out;
+    }
+
+  private:
+    static constexpr std::uint64_t kSeed = 19;
+    const PicturePlane& plane_;
+    const RoughEdge& edge_;
+    double hair_ = 0, grain_ = 0;  // metres
+};
+
+/// Points of the outline, `step` metres apart.
+Polygon points_of(const Outline& outline, double step) {
+    const std::vector<Vec2>& c = outline.control;
+    const std::size_t n = c.size();
+    Polygon points;
+    for (std::size_t k = 0; k < n && n >= 3; ++k) {
+        const Vec2 &c0 = c[(k + n - 1) % n], &c1 = c[k], &c2 = c[(k + 1) % n], &c3 = c[(k + 2) % n];
+        const int count =
+            static_cast<int>(std::clamp(std::ceil(glm::length(c2 - c1) / step), 1.0, double(kMostPoints)));
+        for (int i = 0; i < count; ++i) {
+            const double f = double(i) / count, g = 1 - f;
+            points.push_back((g * g * g * c0 + (3 * f * f * f - 6 * f * f + 4) * c1 +
+                              (3 * g * g * g - 6 * g * g + 4) * c2 + f * f * f * c3) /
+                             6.0);
+        }
+    }
+    return points;
+}
+
+/// Mean width of a closed curve, metres.
+double mean_width(const Polygon& curve) {
+    double area = 0, length = 0;
+    for (std::size_t k = 0; k < curve.size(); ++k) {
+        const Vec2 &p = curve[k], &q = curve[(k + 1) % curve.size()];
+        area += 0.5 * (p.x * q.y - p.y * q.x);
+        length += glm::length(q - p);
+    }
+    return length > 0 ? 2 * std::abs(area) / length : 0;
+}
+
+void roughen(Polygon& curve, const Displacement& displacement, double scale) {
+    const std::size_t n = curve.size();
+    const Polygon smooth = curve;
+    for (std::size_t k = 0; k < n; ++k) {
+        const Vec2 run = smooth[(k + 1) % n] - smooth[(k + n - 1) % n];
+        const double length = glm::length(run);
+        if (!(length > 1e-12)) continue;
+        const Vec2 outward = Vec2{run.y, -run.x} / length;
+        curve[k] += scale * displacement.at(smooth[k], outward) * outward;
+    }
+}
+
+}  // namespace
+
+Footprint rasterise(std::span<const Outline> outlines, const PicturePlane& plane, const RoughEdge& edge) {
+    const Displacement displacement(plane, edge);
+    if (displacement.none()) return rasterise(outlines, plane.frame, plane.triangle, plane.cell);
+    const double step = 1.5 * plane.cell;
+    std::vector<Polygon> curves;
+    curves.reserve(outlines.size());
+    for (const Outline& outline : outlines) {
+        Polygon curve = points_of(outline, step);
+        roughen(curve, displacement, std::min(1.0, mean_width(curve) / (kNarrow * edge.hair.spacing)));
+        curves.push_back(std::move(curve));
+    }
+    return rasterise_polygons(curves, plane.frame, plane.triangle, plane.cell);
+}
+
+}  // namespace tuft::footprint

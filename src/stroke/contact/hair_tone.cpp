@@ -1,0 +1,112 @@
+#include "stroke/contact/hair_tone.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "core/ease.h"
+#include "core/geometry/solid_noise.h"
+
+namespace tuft::stroke {
+namespace {
+
+constexpr double kOfLoad = 0.5;                       // part of the difference in load that shows in the film
+constexpr double kStrands = 0.05;                     // rms of the film over strands
+constexpr double kStrand = 0.16e-3, kChange = 20e-3;  // metres across a strand, and along, over which it changes
+constexpr double kFull = 0.25, kGone = 0.625;         // cells, half a texel each, over a strand
+constexpr double kReach = 1.5;                        // spacings of bundles over which a load is averaged
+constexpr double kLeastSpan = 0.2e-3;                 // metres
+
+double beside(const footprint::EdgeHair& edge, const Vec2& at) {
+    const Vec2 d = at - edge.foot;
+    return edge.direction.x * d.y - edge.direction.y * d.x;
+}
+
+/// Load of each bundle: saturation of its cells times what it holds.
+std::vector<double> loads_of(const ink::Reservoir& reservoir, const brush::Bundles& bundles) {
+    const std::size_t cells = reservoir.n_cells();
+    std::vector<double> loads(bundles.place.size(), 0);
+    for (std::size_t k = 0; k < loads.size() && k < reservoir.n_bundles(); ++k) {
+        // The last cell lies on the surface.
+        loads[k] = reservoir.saturation((k + 1) * cells - 1) * bundles.holds[k];
+    }
+    return loads;
+}
+
+/// Sums of hats about the points, by sample.
+struct Sums {
+    std::array<double, ink::kToneSamples> weight{}, load{};
+
+    void add(double centre, double reach, double w, double value) {
+        const int first = std::max(0, static_cast<int>(std::ceil(centre - reach))),
+                  last = std::min(ink::kToneSamples - 1, static_cast<int>(std::floor(centre + reach)));
+        for (int i = first; i <= last; ++i) {
+            const double hat = w * (1 - std::abs(i - centre) / reach);
+            weight[i] += hat;
+            load[i] += hat * value;
+        }
+    }
+};
+
+double strand_noise(double x, double s, std::uint64_t seed) {
+    return solid_noise({x, s, 0.5}, seed) / std::sqrt(kSolidNoiseSquare);
+}
+
+}  // namespace
+
+void HairTone::compute(const footprint::EdgeHair& edge, double cell, const ink::Reservoir& reservoir,
+                       const brush::Bundles& bundles, std::span<const footprint::HairContactPoint> points) {
+    constexpr int n = ink::kToneSamples;
+    computed_ = false;
+    if (points.empty()) return;
+    double lo = 1e9, hi = -1e9;
+    std::vector<bool> touches(bundles.place.size(), false);
+    for (const footprint::HairContactPoint& p : points) {
+        const double x = beside(edge, p.at);
+        lo = std::min(lo, x);
+        hi = std::max(hi, x);
+        touches[p.bundle] = true;
+    }
+    const auto count = static_cast<double>(std::count(touches.begin(), touches.end(), true));
+    if (hi - lo < kLeastSpan) return;
+    const double per_metre = (n - 1) / (hi - lo), reach = kReach * (n - 1) / std::max(2.0, count);
+    const std::vector<double> loads = loads_of(reservoir, bundles);
+    Sums sums;
+    double weight = 0, load = 0;
+    for (const footprint::HairContactPoint& p : points) {
+        sums.add((beside(edge, p.at) - lo) * per_metre, std::max(reach, 2.0), p.length, loads[p.bundle]);
+        weight += p.length;
+        load += p.length * loads[p.bundle];
+    }
+    if (!(load > 0)) return;
+    const double mean = load / weight;
+    const double strands = kStrands * smooth_step((kGone - cell / kStrand) / (kGone - kFull));
+    double sum = 0;
+    for (int i = 0; i < n; ++i) {
+        const double relative = sums.weight[i] > 0 ? sums.load[i] / sums.weight[i] / mean : 1;
+        double film = 1 + kOfLoad * (relative - 1);
+        if (strands > 0)
+            film += strands * strand_noise((lo + i / per_metre) / kStrand, edge.travel / kChange, edge.seed + 3);
+        film_[i] = static_cast<float>(std::max(film, 0.0));
+        sum += static_cast<double>(film_[i]);
+    }
+    for (float& f : film_) f *= static_cast<float>(n / sum);
+    from_ = lo;
+    to_ = hi;
+    updated_at_ = edge.travel;
+    computed_ = true;
+}
+
+ink::FilmTone HairTone::at(const footprint::EdgeHair& edge, const Frame& frame, double contrast) const {
+    ink::FilmTone tone;
+    if (!computed_ || !(contrast > 0)) return tone;
+    const Vec2 left{-edge.direction.y, edge.direction.x};
+    tone.even = false;
+    tone.origin = frame.to_world(Vec3(edge.foot + from_ * left, 0));
+    tone.across = (ink::kToneSamples - 1) / (to_ - from_) * (left.x * frame.t + left.y * frame.b);
+    for (int i = 0; i < ink::kToneSamples; ++i) tone.film[i] = 1 + static_cast<float>(contrast) * (film_[i] - 1);
+    return tone;
+}
+
+}  // namespace tuft::stroke
