@@ -251,11 +251,17 @@ CLI::App* add_brush(CLI::App& app, Brush& brush) {
     command->add_option(
         "--compare", brush.compare,
         "print what each way to bend the tuft draws beside a measured table (.csv); --picture draws that");
-    auto* fit = command->add_subcommand("calibrate", "fit a brush to a table of depth against line width");
-    fit->add_option("MEASURED", brush.calibrate, "measured table (.csv)")->required();
+    auto* fit = command->add_subcommand("calibrate",
+                                        "fit a brush to a table of depth against line width, contact length or offset");
+    fit->add_option("MEASURED", brush.calibrate, "measured table (.csv): z_mm and any of width_mm, drag_mm, offset_mm")
+        ->required();
     fit->add_option("-o,--output", brush.output, "brush preset to write (.toml)")->required();
     add_common(command, brush.common);
+    auto* match = command->add_subcommand("match", "rank the brushes by how well they draw a measured table");
+    match->add_option("MEASURED", brush.match, "measured table (.csv): z_mm and any of width_mm, drag_mm, offset_mm")
+        ->required();
     fit->fallthrough();  // options of 'brush' also stand behind 'calibrate'
+    match->fallthrough();
     return command;
 }
 

@@ -216,6 +216,7 @@ struct Brush {
     std::filesystem::path picture, sweep_depth;
     std::filesystem::path compare;            ///< measured table that all spine methods stand beside
     std::filesystem::path calibrate, output;  ///< `tuft brush calibrate MEASURED.csv -o BRUSH.toml`
+    std::filesystem::path match;              ///< `tuft brush match MEASURED.csv`
     Common common;
 };
 

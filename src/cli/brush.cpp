@@ -1,9 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "brush/calibration/calibrate.h"
 #include "brush/calibration/compare.h"
+#include "brush/calibration/match.h"
 #include "brush/calibration/sweep.h"
 #include "brush/preset/preset.h"
 #include "brush/tuft/table.h"
@@ -83,6 +87,50 @@ void print_table(const brush::Preset& preset, const brush::QueryTable& table) {
     fmt::print("\nEvery fourth of {} rows and every second node; --json prints them all.\n", table.rows.size());
 }
 
+nlohmann::json row_json(const brush::SweepRow& row) {
+    return {{"width_mm", row.width / kMillimetre},
+            {"drag_mm", row.drag / kMillimetre},
+            {"offset_mm", row.offset / kMillimetre}};
+}
+
+/// A length for people; "-" where there is none.
+std::string millimetres(double v) {
+    return std::isfinite(v) ? fmt::format("{:.2f}", v / kMillimetre) : "-";
+}
+
+/// The number of combinations of constants that the table determines better than the prior does.
+std::ptrdiff_t determined_combinations(const brush::Calibration& fit) {
+    return std::ranges::count_if(fit.singular, [](double s) { return s > 1; });
+}
+
+nlohmann::json fit_json(const brush::Calibration& fit, const std::filesystem::path& output) {
+    nlohmann::json constants = nlohmann::json::object();
+    for (const brush::FittedConstant& c : fit.constants)
+        constants[c.key] = {{"value", c.value}, {"low", c.low}, {"high", c.high}, {"determined", c.determined}};
+    return {{"wrote", output.string()},
+            {"rms_width_mm", fit.rms.width / kMillimetre},
+            {"rms_drag_mm", fit.rms.drag / kMillimetre},
+            {"rms_offset_mm", fit.rms.offset / kMillimetre},
+            {"rms_over_repeatability", fit.cost},
+            {"constants", std::move(constants)},
+            {"singular_values", fit.singular},
+            {"determined_combinations", determined_combinations(fit)},
+            {"evaluations", fit.evaluations}};
+}
+
+void print_fit(const brush::Calibration& fit, const std::filesystem::path& output) {
+    constexpr double kUndetermined = 0.25;
+    fmt::print("wrote {}: residuals (rms) {} mm of width, {} mm of contact length, {} mm of offset\n\n",
+               output.string(), millimetres(fit.rms.width), millimetres(fit.rms.drag), millimetres(fit.rms.offset));
+    fmt::print("{:<28}{:>12}   95 % interval\n", "constant", "value");
+    for (const brush::FittedConstant& c : fit.constants)
+        fmt::print("{:<28}{:>12.4g}   {:.4g} to {:.4g}{}\n", c.key, c.value, c.low, c.high,
+                   c.determined < kUndetermined ? "   not determined by the table" : "");
+    fmt::print(
+        "\nThe table determines {} of {} combinations of these constants; the others come from the shipped brushes.\n",
+        determined_combinations(fit), fit.constants.size());
+}
+
 int calibrate(const Brush& a) {
     check_extension(a.output, {".toml"});
     check_output(a.output);
@@ -96,22 +144,43 @@ int calibrate(const Brush& a) {
     const std::string toml = brush::preset_toml(fit.preset);
     write_file(a.output, toml.data(), toml.size());
     if (a.common.json)
-        print_json(nlohmann::json{{"wrote", a.output.string()},
-                                  {"rms_width_mm", fit.rms.width / kMillimetre},
-                                  {"rms_drag_mm", fit.rms.drag / kMillimetre},
-                                  {"rms_offset_mm", fit.rms.offset / kMillimetre},
-                                  {"evaluations", fit.evaluations}});
+        print_json(fit_json(fit, a.output));
     else
-        fmt::print("wrote {}: residuals (rms) {:.2f} mm of width, {:.2f} mm of contact length, {:.2f} mm of offset\n",
-                   a.output.string(), fit.rms.width / kMillimetre, fit.rms.drag / kMillimetre,
-                   fit.rms.offset / kMillimetre);
+        print_fit(fit, a.output);
     return 0;
 }
 
-nlohmann::json row_json(const brush::SweepRow& row) {
-    return {{"width_mm", row.width / kMillimetre},
-            {"drag_mm", row.drag / kMillimetre},
-            {"offset_mm", row.offset / kMillimetre}};
+void print_matches(std::span<const brush::BrushMatch> matches) {
+    fmt::print("{:<16}{:>9}{:>9}{:>9}{:>9}   at its best size\n", "rms, mm", "width", "contact", "offset", "misfit");
+    for (const brush::BrushMatch& m : matches) {
+        fmt::print("{:<16}", m.name);
+        for (double brush::SweepRow::*column : brush::kSweepColumns) fmt::print("{:>9}", millimetres(m.rms.*column));
+        fmt::print("{:>9}", std::isfinite(m.misfit) ? fmt::format("{:.2f}", m.misfit) : "-");
+        if (std::isfinite(m.sized_misfit)) fmt::print("   {:.2f} at x {:.2f}", m.sized_misfit, m.size);
+        fmt::print("\n");
+    }
+    fmt::print("\nMisfit: rms over what a ruler repeats to (1.4, 0.5 and 0.7 mm with hair of 30 mm); -: too short.\n");
+}
+
+int match(const Brush& a) {
+    Console console(a.common.quiet);
+    const std::vector<brush::SweepRow> measured = brush::read_sweep(a.match.string());
+    const std::vector<std::string> names = a.name.empty() ? brush::list_presets() : std::vector{a.name};
+    const std::vector<brush::BrushMatch> matches = brush::match_brushes(names, measured, console.progress());
+    console.clear();
+    if (!a.common.json) {
+        print_matches(matches);
+        return 0;
+    }
+    nlohmann::json j{{"brushes", nlohmann::json::array()}};
+    for (const brush::BrushMatch& m : matches)
+        j["brushes"].push_back({{"name", m.name},
+                                {"misfit", m.misfit},  // null where it is too short
+                                {"rms", row_json(m.rms)},
+                                {"best_size", m.size},
+                                {"misfit_at_best_size", m.sized_misfit}});
+    print_json(j);
+    return 0;
 }
 
 nlohmann::json comparison_json(const brush::Preset& preset, std::span<const brush::ModelSweep> models) {
@@ -129,13 +198,13 @@ nlohmann::json comparison_json(const brush::Preset& preset, std::span<const brus
     return j;
 }
 
-/// Mean of a column over the measured rows of one depth, mm.
+/// Mean of a column over the measured rows of one depth, metres; NaN where it is not measured.
 double measured_mean(std::span<const brush::SweepRow> measured, double depth, double brush::SweepRow::*column) {
     double sum = 0;
     int count = 0;
     for (const brush::SweepRow& row : measured) {
         if (row.depth != depth) continue;
-        sum += row.*column / kMillimetre;
+        sum += row.*column;
         ++count;
     }
     return sum / count;
@@ -151,12 +220,12 @@ void print_comparison(std::span<const brush::ModelSweep> models, std::span<const
         fmt::print("\n");
         for (std::size_t i = 0; i < models.front().rows.size(); ++i) {
             const double depth = models.front().rows[i].depth;
-            fmt::print("{:>9.4g}{:>10.2f}", depth / kMillimetre, measured_mean(measured, depth, column));
+            fmt::print("{:>9.4g}{:>10}", depth / kMillimetre, millimetres(measured_mean(measured, depth, column)));
             for (const brush::ModelSweep& model : models) fmt::print("{:>8.2f}", model.rows[i].*column / kMillimetre);
             fmt::print("\n");
         }
         fmt::print("{:>19}", "rms difference");
-        for (const brush::ModelSweep& model : models) fmt::print("{:>8.2f}", model.rms.*column / kMillimetre);
+        for (const brush::ModelSweep& model : models) fmt::print("{:>8}", millimetres(model.rms.*column));
         fmt::print("\n");
     }
 }
@@ -184,6 +253,7 @@ int compare(const Brush& a) {
 
 int run(const Brush& a) {
     if (!a.calibrate.empty()) return calibrate(a);
+    if (!a.match.empty()) return match(a);
     if (!a.compare.empty()) return compare(a);
     if (a.name.empty()) {
         list_brushes(a.common.json);

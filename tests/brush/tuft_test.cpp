@@ -54,7 +54,9 @@ TuftState draw(Tuft& tuft, const Stroke& s) {
 }
 
 TEST(Tuft, SegmentsKeepTheirLengthAndSectionsTheirArea) {
-    Tuft tuft = make_tuft(load_preset("goat-medium"));
+    Preset preset = load_preset("goat-medium");
+    preset.tip_drop = 0;  // ink, not hair
+    Tuft tuft = make_tuft(preset);
     const TuftState state = draw(tuft, {});
     const std::vector<Vec3>& x = tuft.trunk().memory.node;
     for (int j = 0; j < tuft.trunk().rod.segments(); ++j) {

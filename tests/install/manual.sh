@@ -82,7 +82,7 @@ tuft paint bowl.ply --strokes |line.inkml folder !bowl.ply
 tuft paint bowl.ply --strokes line.inkml --export |folder !picture.png
 tuft paint bowl.ply --preview |picture.png !bowl.ply
 tuft layer x.tuft |add remove opacity !rod
-tuft brush |calibrate wolf-medium
+tuft brush |calibrate match wolf-medium
 tuft brush wolf-medium calibrate --|--output !--picture
 tuft export x.tuft --bits |8 16
 CASES

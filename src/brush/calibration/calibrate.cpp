@@ -1,258 +1,314 @@
-#include <Eigen/Cholesky>
+#include "brush/calibration/calibrate.h"
+
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <vector>
 
 #include "brush/calibration/compare.h"
-#include "brush/calibration/sweep.h"
 #include "core/error.h"
 #include "core/system/parallel.h"
+#include "core/text/units.h"
 
 namespace tuft::brush {
 
 namespace {
 
-/// A preset value the fit may change, searched on a logarithmic scale of `shift` + value.
+/// What a constant is in proportion to, so that one prior serves brushes of all sizes.
+enum class Scale { none, length, side, film };
+
+/// A preset value that the fit changes. v = value over its scale; the search is in log(shift + sign v).
 struct Free {
+    const char* key;
+    double unit;  ///< of preset files, SI
     double Preset::*member;
-    double lo, hi;  ///< SI
-    double shift;   ///< makes the value positive
-    double first;   ///< first step of the search, relative
+    Scale scale;
+    double shift, sign;
+    double mean;    ///< v of the prior's middle
+    double spread;  ///< standard deviation of the logarithm
+    double lo, hi;  ///< v
 };
 
-/// Few enough for some ten measured depths. Only the ratio of side stiffness to bending
-/// stiffness shows in a shape, so B0 stays.
+/// Few enough for some ten measured depths. Only the ratio of side stiffness to bending stiffness shows in a shape, so
+/// B0 stays. Means and spreads are those of the shipped round brushes, the spreads doubled. The point of a hair is as
+/// thin as a few µm, so its stiffness is known to a factor only. Friction: wet hair has 0.1–0.3 on glaze and 0.3–0.6 on
+/// paper, two deviations to both sides.
 constexpr std::array kFree = {
-    Free{&Preset::radius, 0.5e-3, 30e-3, 0, 0.15},
-    Free{&Preset::tip_power, 0.6, 2.5, 0, 0.2},
-    Free{&Preset::alpha, -6, 1, -2, 0.3},    // of 2 - α
-    Free{&Preset::beta, -0.995, 0, 1, 0.4},  // of 1 + β
-    Free{&Preset::tip_stiffness, 1e-6, 1e-1, 0, 0.8},
-    Free{&Preset::transverse_stiffness, 200, 2e5, 0, 0.5},
-    Free{&Preset::adhesion_range, 1e-5, 2e-3, 0, 0.8},
-    Free{&Preset::flatten_contact, 0.05, 10, 0, 0.4},
-    Free{&Preset::friction_wet, 0.02, 1.2, 0, 0.3},
+    Free{"radius_mm", kMillimetre, &Preset::radius, Scale::length, 0, 1, 0.11, 0.35, 0.02, 0.4},
+    Free{"tip_power", 1, &Preset::tip_power, Scale::none, 0, 1, 1.05, 0.2, 0.6, 2.5},
+    Free{"alpha", 1, &Preset::alpha, Scale::none, 2, -1, -2, 0.5, -6, 1},
+    Free{"beta", 1, &Preset::beta, Scale::none, 1, 1, -0.975, 0.8, -0.995, 0},
+    Free{"tip_stiffness", 1, &Preset::tip_stiffness, Scale::none, 0, 1, 5e-6, 1.5, 1e-7, 1e-2},
+    Free{"transverse_stiffness_n_m2", 1, &Preset::transverse_stiffness, Scale::side, 0, 1, 80, 0.8, 5, 2000},
+    Free{"adhesion_range_mm", kMillimetre, &Preset::adhesion_range, Scale::length, 0, 1, 0.02, 1, 5e-4, 0.06},
+    Free{"flatten_contact", 1, &Preset::flatten_contact, Scale::none, 0, 1, 3, 0.5, 0.2, 10},
+    Free{"friction_wet", 1, &Preset::friction_wet, Scale::none, 0, 1, 0.25, 0.45, 0.1, 0.6},
 };
+constexpr std::size_t kN = kFree.size();
+constexpr double kFilm = 0.06;  ///< adhesion of the wet film in B0/L³, of the shipped brushes
 
-double to_search(const Free& f, const Preset& p) {
-    const double v = p.*f.member;
-    return std::log(f.shift < 0 ? -f.shift - v : f.shift + v);
+using Point = std::array<double, kN>;  ///< z
+/// A place of the search. With a wet film the free end comes down onto the sheet or stays off it, and the contact
+/// length leaps: a brush that draws its film along and one that does not are fitted apart.
+struct Place {
+    Point z{};
+    bool film = true;
+};
+using Matrix = Eigen::Matrix<double, kN, kN>;
+using Vector = Eigen::Matrix<double, kN, 1>;
+
+double scale_of(Scale scale, const Preset& p) {
+    switch (scale) {
+        case Scale::length:
+            return p.length;
+        case Scale::side:
+            return p.stiffness / std::pow(p.length, 4);
+        case Scale::film:
+            return p.stiffness / std::pow(p.length, 3);
+        case Scale::none:
+            break;
+    }
+    return 1;
 }
 
-void from_search(const Free& f, double x, Preset& p) {
-    const double v = f.shift < 0 ? -f.shift - std::exp(x) : std::exp(x) - f.shift;
-    p.*f.member = std::clamp(v, f.lo, f.hi);
+double search_of(const Free& f, double v) {
+    return (std::log(f.shift + f.sign * v) - std::log(f.shift + f.sign * f.mean)) / f.spread;
 }
 
-constexpr double kNorm = 12;  ///< of the three columns: the worst one counts most
+double value_at(const Free& f, double z) {
+    const double v = f.sign * (std::exp(f.spread * z) * (f.shift + f.sign * f.mean) - f.shift);
+    return std::clamp(v, f.lo, f.hi);
+}
 
-using Point = std::array<double, kFree.size()>;
+struct Bounds {
+    double lo, hi;
+};
+Bounds bounds_of(const Free& f) {
+    const double a = search_of(f, f.lo), b = search_of(f, f.hi);
+    return {std::min(a, b), std::max(a, b)};
+}
 
-Preset preset_at(const Preset& start, const Point& x) {
+Preset preset_at(const Preset& start, const Place& at) {
     Preset p = start;
-    for (std::size_t i = 0; i < kFree.size(); ++i) from_search(kFree[i], x[i], p);
-    p.radius = std::min(p.radius, 0.5 * p.length);
+    for (std::size_t i = 0; i < kN; ++i) p.*kFree[i].member = value_at(kFree[i], at.z[i]) * scale_of(kFree[i].scale, p);
+    p.adhesion = at.film ? kFilm * scale_of(Scale::film, p) : 0;
     return p;
 }
 
 struct Fit {
+    std::vector<double> residual;  ///< over the repeatability, of the measured cells by row
     SweepRow rms;
-    double cost = 0;
-    std::vector<double> misses;  ///< over the spread; rows times columns
+    double cost = 0, objective = 0;
 };
 
-Fit compare(const Preset& p, std::span<const SweepRow> measured, const SweepRow& spread) {
-    const std::vector<double> depths = depths_of(measured);
-    std::vector<SweepRow> swept(depths.size());
-    parallel_for(depths.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            swept[i] = sweep_depth(p, std::span(&depths[i], 1)).front();
-        }
-    });
-    Fit fit{.rms = rms_difference(swept, measured)};
-    for (const SweepRow& row : measured) {
-        const auto at = std::lower_bound(depths.begin(), depths.end(), row.depth) - depths.begin();
-        for (double SweepRow::*column : kSweepColumns) {
-            const double d = swept[static_cast<std::size_t>(at)].*column - row.*column;
-            fit.misses.push_back(d / (spread.*column));
-        }
-    }
-    for (double SweepRow::*column : kSweepColumns) {
-        const double part = fit.rms.*column / (spread.*column);
-        fit.cost += std::pow(part, kNorm) / 3;
-    }
-    fit.cost = std::pow(fit.cost, 1 / kNorm);
-    return fit;
-}
-
-struct Vertex {
-    Point x{};
-    double cost = 0;
+struct Candidate {
+    Place at;
+    Fit fit;
 };
 
-Point blend(const Point& a, const Point& b, double t) {
-    Point out;
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = a[i] + t * (b[i] - a[i]);
-    return out;
+/// The measured table beside the sweeps of a start's relatives.
+class Problem {
+  public:
+    Problem(const Preset& start, std::span<const SweepRow> measured, const CalibrateOptions& options)
+        : start_(start),
+          measured_(measured),
+          options_(options),
+          depths_(depths_of(measured)),
+          spread_(options.repeatability.value_or(ruler_repeatability(start.length))) {}
+
+    int evaluations() const { return evaluations_; }
+    int left() const { return options_.max_evaluations - evaluations_; }
+    Preset preset(const Place& at) const { return preset_at(start_, at); }
+    std::size_t cells() const {
+        std::size_t count = 0;
+        for (const SweepRow& row : measured_)
+            for (double SweepRow::*column : kSweepColumns) count += !std::isnan(row.*column);
+        return count;
+    }
+
+    std::vector<Candidate> evaluate(std::span<const Place> points) {
+        const std::size_t count = depths_.size();
+        std::vector<SweepRow> swept(points.size() * count);
+        parallel_for(swept.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k)
+                swept[k] = sweep_at(preset(points[k / count]), depths_[k % count]).row;
+        });
+        evaluations_ += static_cast<int>(points.size());
+        report(options_.progress, "fitting",
+               std::min(1.0, evaluations_ / static_cast<double>(options_.max_evaluations)));
+        std::vector<Candidate> out;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            out.push_back({points[i], fit_of(points[i].z, std::span(swept).subspan(i * count, count))});
+        return out;
+    }
+    Candidate evaluate(const Place& at) { return std::move(evaluate(std::span(&at, 1)).front()); }
+
+  private:
+    Fit fit_of(const Point& z, std::span<const SweepRow> swept) const {
+        Fit fit{.rms = rms_difference(swept, measured_)};
+        for (const SweepRow& row : measured_) {
+            const auto at = std::lower_bound(depths_.begin(), depths_.end(), row.depth) - depths_.begin();
+            for (double SweepRow::*column : kSweepColumns) {
+                if (std::isnan(row.*column)) continue;
+                const double miss = swept[static_cast<std::size_t>(at)].*column - row.*column;
+                fit.residual.push_back(miss / (spread_.*column));
+            }
+        }
+        for (double SweepRow::*column : kSweepColumns)
+            if (!std::isnan(fit.rms.*column)) fit.cost = std::max(fit.cost, fit.rms.*column / (spread_.*column));
+        for (const double r : fit.residual) fit.objective += r * r;
+        for (const double x : z) fit.objective += x * x;
+        return fit;
+    }
+
+    const Preset& start_;
+    std::span<const SweepRow> measured_;
+    const CalibrateOptions& options_;
+    std::vector<double> depths_;
+    SweepRow spread_;
+    int evaluations_ = 0;
+};
+
+/// Point n of an even sequence in the unit cube of kN dimensions, spread over the prior: fractions of n φ^{-i}, φ the
+/// root of φ^{N+1} = φ + 1 (Roberts).
+Point spread_point(int n, double reach) {
+    double root = 1.5;
+    for (int i = 0; i < 60; ++i) root = std::pow(1 + root, 1.0 / (kN + 1));
+    Point z;
+    double step = 1;
+    for (std::size_t i = 0; i < kN; ++i) {
+        step /= root;
+        const double u = std::fmod(0.5 + n * step, 1.0);
+        const Bounds b = bounds_of(kFree[i]);
+        z[i] = std::clamp(reach * (2 * u - 1), b.lo, b.hi);
+    }
+    return z;
 }
 
-}  // namespace
+/// Jacobian of the residuals by z, by differences away from the nearer bound.
+Eigen::MatrixXd jacobian(Problem& problem, const Candidate& at) {
+    constexpr double kProbe = 0.03;
+    std::vector<Place> probes(kN, at.at);
+    std::array<double, kN> step;
+    for (std::size_t i = 0; i < kN; ++i) {
+        const Bounds b = bounds_of(kFree[i]);
+        step[i] = at.at.z[i] > 0.5 * (b.lo + b.hi) ? -kProbe : kProbe;
+        probes[i].z[i] += step[i];
+    }
+    const std::vector<Candidate> probed = problem.evaluate(probes);
+    Eigen::MatrixXd j(at.fit.residual.size(), kN);
+    for (std::size_t i = 0; i < kN; ++i)
+        for (std::size_t k = 0; k < at.fit.residual.size(); ++k)
+            j(k, i) = (probed[i].fit.residual[k] - at.fit.residual[k]) / step[i];
+    return j;
+}
 
-namespace {
-
-/// Least squares by Gauss and Newton with Marquardt's damping, in steps measured by `first`: far
-/// quicker than the simplex where the valley is smooth. From the second step on the worse columns
-/// weigh more, as they do in the cost. `fit_at` gives the Fit of a point.
-template <class FitAt>
-Vertex least_squares(const Point& begin, int budget, const FitAt& fit_at) {
-    constexpr std::size_t kN = kFree.size();
-    constexpr double kProbe = 0.05;  // of the first step, for differences
-    Point x = begin;
-    Fit fit = fit_at(x);
-    double damping = 0.03;
-    --budget;
-    while (budget > static_cast<int>(kN)) {
-        std::array<double, 3> weight;
-        double worst = 0;
-        for (int c = 0; c < 3; ++c) {
-            weight[c] = 0;
-            for (std::size_t k = c; k < fit.misses.size(); k += 3) weight[c] += fit.misses[k] * fit.misses[k];
-            worst = std::max(worst, weight[c]);
-        }
-        if (worst <= 0) break;
-        for (double& w : weight) w = std::max(0.05, w / worst);
-        Eigen::Matrix<double, kN, kN> normal = Eigen::Matrix<double, kN, kN>::Zero();
-        Eigen::Matrix<double, kN, 1> slope = Eigen::Matrix<double, kN, 1>::Zero();
-        std::array<std::vector<double>, kN> column;
+/// Least squares from `at` for at most `steps` steps. A constant at its bound that would pass it is fixed there for the
+/// step.
+Candidate descend(Problem& problem, Candidate at, int steps) {
+    double damping = 0.1;
+    for (int s = 0; s < steps && problem.left() > static_cast<int>(kN); ++s) {
+        const Eigen::MatrixXd j = jacobian(problem, at);
+        const Eigen::Map<const Eigen::VectorXd> r(at.fit.residual.data(), j.rows());
+        const Eigen::Map<const Vector> z(at.at.z.data());
+        Matrix normal = j.transpose() * j + Matrix::Identity();
+        Vector slope = j.transpose() * r + z;
         for (std::size_t i = 0; i < kN; ++i) {
-            Point probe = x;
-            probe[i] += kProbe * kFree[i].first;
-            column[i] = fit_at(probe).misses;
-            for (std::size_t k = 0; k < column[i].size(); ++k) column[i][k] = (column[i][k] - fit.misses[k]) / kProbe;
-        }
-        budget -= static_cast<int>(kN);
-        for (std::size_t k = 0; k < fit.misses.size(); ++k) {
-            for (std::size_t i = 0; i < kN; ++i) {
-                slope[i] += weight[k % 3] * column[i][k] * fit.misses[k];
-                for (std::size_t j = 0; j < kN; ++j) normal(i, j) += weight[k % 3] * column[i][k] * column[j][k];
+            const Bounds b = bounds_of(kFree[i]);
+            if ((at.at.z[i] <= b.lo && slope[i] > 0) || (at.at.z[i] >= b.hi && slope[i] < 0)) {
+                normal.row(i).setZero();
+                normal.col(i).setZero();
+                normal(i, i) = 1;
+                slope[i] = 0;
             }
         }
+        const double before = at.fit.objective;
         bool better = false;
-        const double before = fit.cost;
-        for (int attempt = 0; attempt < 4 && !better && budget > 0; ++attempt, --budget) {
-            Eigen::Matrix<double, kN, kN> damped = normal;
-            const double scale = normal.trace() / static_cast<double>(kN);
-            for (std::size_t i = 0; i < kN; ++i) damped(i, i) += damping * std::max(normal(i, i), 0.02 * scale);
-            const Eigen::Matrix<double, kN, 1> step = -damped.llt().solve(slope);
-            Point next = x;
-            for (std::size_t i = 0; i < kN; ++i) next[i] += std::clamp(step[i], -3.0, 3.0) * kFree[i].first;
-            Fit tried = fit_at(next);
-            better = tried.cost < fit.cost;
-            damping = std::clamp(damping * (better ? 0.3 : 5), 1e-4, 100.0);
-            if (better) {
-                x = next;
-                fit = std::move(tried);
+        for (int attempt = 0; attempt < 4 && !better && problem.left() > 0; ++attempt) {
+            Matrix damped = normal;
+            damped.diagonal() *= 1 + damping;
+            const Vector step = -damped.llt().solve(slope);
+            Place next = at.at;
+            for (std::size_t i = 0; i < kN; ++i) {
+                const Bounds b = bounds_of(kFree[i]);
+                next.z[i] = std::clamp(at.at.z[i] + std::clamp(step[i], -1.5, 1.5), b.lo, b.hi);
             }
+            Candidate tried = problem.evaluate(next);
+            better = tried.fit.objective < before;
+            damping = std::clamp(damping * (better ? 0.3 : 6), 1e-3, 1e3);
+            if (better) at = std::move(tried);
         }
-        if (!better || fit.cost > before * (1 - 1e-3)) break;
+        if (!better || at.fit.objective > before * (1 - 1e-3)) break;
     }
-    return {x, fit.cost};
+    return at;
 }
 
-/// Downhill simplex (Nelder and Mead 1965) from `begin` with first steps times `size`, for at
-/// most `budget` evaluations or until the vertices agree to 1e-4.
-template <class Cost>
-Vertex descend(const Vertex& begin, double size, int budget, const Cost& cost) {
-    std::vector<Vertex> simplex{begin};
-    for (std::size_t i = 0; i < kFree.size(); ++i) {
-        Point x = begin.x;
-        x[i] += size * kFree[i].first;
-        simplex.push_back({x, cost(x)});
-    }
-    budget -= static_cast<int>(kFree.size());
-    const auto by_cost = [](const Vertex& a, const Vertex& b) { return a.cost < b.cost; };
-    const auto at = [&](const Point& x) {
-        --budget;
-        return Vertex{x, cost(x)};
+bool is_better(const Candidate& a, const Candidate& b) {
+    return a.fit.objective < b.fit.objective;
+}
+
+/// The best of many places, then of their valleys: a third of the budget looks round, a third follows the best few for
+/// two steps, the rest follows the three best to the end.
+Candidate search(Problem& problem, int budget) {
+    constexpr std::size_t kKept = 6, kFollowed = 3;
+    constexpr int kFirstSteps = 2, kSteps = 20;
+    std::vector<Place> points;
+    const int looks = std::max(24, budget / 3) / 2;
+    for (int n = 0; n < looks; ++n)
+        for (const bool film : {false, true}) points.push_back({n > 0 ? spread_point(n, 1.7) : Point{}, film});
+    std::vector<Candidate> found = problem.evaluate(points);
+    const auto keep = [&](std::size_t count) {
+        std::stable_sort(found.begin(), found.end(), is_better);
+        found.resize(std::min(count, found.size()));
     };
-    while (budget > 0) {
-        std::stable_sort(simplex.begin(), simplex.end(), by_cost);
-        Vertex& worst = simplex.back();
-        if (worst.cost - simplex.front().cost < 1e-4 * simplex.front().cost) break;
-        Point centre{};
-        for (std::size_t v = 0; v + 1 < simplex.size(); ++v) {
-            for (std::size_t i = 0; i < centre.size(); ++i) {
-                centre[i] += simplex[v].x[i] / static_cast<double>(kFree.size());
-            }
-        }
-        const Vertex reflected = at(blend(centre, worst.x, -1));
-        if (reflected.cost < simplex.front().cost) {
-            const Vertex further = at(blend(centre, worst.x, -2));
-            worst = further.cost < reflected.cost ? further : reflected;
-        } else if (reflected.cost < simplex[simplex.size() - 2].cost) {
-            worst = reflected;
-        } else {
-            const Vertex closer = at(blend(centre, reflected.cost < worst.cost ? reflected.x : worst.x, 0.5));
-            if (closer.cost < std::min(worst.cost, reflected.cost)) {
-                worst = closer;
-            } else {
-                for (std::size_t v = 1; v < simplex.size(); ++v) {
-                    simplex[v] = at(blend(simplex.front().x, simplex[v].x, 0.5));
-                }
-            }
-        }
+    keep(kKept);
+    for (Candidate& c : found) c = descend(problem, std::move(c), kFirstSteps);
+    keep(kFollowed);
+    for (Candidate& c : found) c = descend(problem, std::move(c), kSteps);
+    keep(1);
+    return std::move(found.front());
+}
+
+void add_uncertainty(Problem& problem, const Preset& start, const Candidate& best, Calibration& out) {
+    const Eigen::MatrixXd j = jacobian(problem, best);
+    const Eigen::VectorXd values = j.jacobiSvd().singularValues();
+    out.singular.assign(values.data(), values.data() + values.size());
+    double squares = 0;
+    for (const double r : best.fit.residual) squares += r * r;
+    const double known = static_cast<double>((values.array() > 1).count());
+    const double free = std::max(1.0, static_cast<double>(problem.cells()) - known);
+    const double noise = std::max(1.0, squares / free);
+    const Matrix covariance = (j.transpose() * j / noise + Matrix::Identity()).inverse();
+    constexpr double kNinetyFive = 1.96;
+    for (std::size_t i = 0; i < kN; ++i) {
+        const Free& f = kFree[i];
+        const double sigma = std::sqrt(covariance(i, i)), scale = scale_of(f.scale, start) / f.unit;
+        const double a = value_at(f, best.at.z[i] - kNinetyFive * sigma),
+                     b = value_at(f, best.at.z[i] + kNinetyFive * sigma);
+        out.constants.push_back({f.key, value_at(f, best.at.z[i]) * scale, std::min(a, b) * scale,
+                                 std::max(a, b) * scale, std::clamp(1 - sigma, 0.0, 1.0)});
     }
-    return *std::min_element(simplex.begin(), simplex.end(), by_cost);
 }
 
 }  // namespace
+
+SweepRow ruler_repeatability(double length) {
+    const double size = length / 30e-3;
+    return {0, size * 1.4e-3, size * 0.5e-3, size * 0.7e-3};
+}
 
 Calibration calibrate(const Preset& start, std::span<const SweepRow> measured, const CalibrateOptions& options) {
-    if (measured.size() < 4) {
+    if (measured.size() < 4)
         throw Error(Message("calibration needs at least 4 measured depths, there are {}", measured.size()));
-    }
     check_preset(start, start.name);
-    Calibration out;
-    const auto fit_at = [&](const Point& x) {
-        ++out.evaluations;
-        report(options.progress, "fitting",
-               std::min(1.0, out.evaluations / static_cast<double>(options.max_evaluations)));
-        return compare(preset_at(start, x), measured, options.repeatability);
-    };
-    const auto cost = [&](const Point& x) { return fit_at(x).cost; };
-    const auto point = [&](const Preset& p) {
-        Point x;
-        for (std::size_t i = 0; i < kFree.size(); ++i) x[i] = to_search(kFree[i], p);
-        return x;
-    };
-    // A wet end that lies down and one that does not, a soft point and a softer one, are
-    // valleys of their own: begin in each, then follow the best.
-    Vertex best{point(start), std::numeric_limits<double>::infinity()};
-    const int share = options.max_evaluations / 6;
-    for (const double film : {1.0, 0.1}) {
-        for (const double gradient : {0.0, 1.0}) {
-            Preset p = start;
-            p.adhesion_range *= film;
-            p.alpha -= 0.5 * gradient;
-            p.tip_stiffness *= 1 - 0.9 * gradient;
-            p.tip_stiffness = std::max(p.tip_stiffness, 2e-6);
-            p.flatten_contact *= 1 + 0.5 * gradient;
-            if (out.evaluations > share * 4) break;
-            const Vertex found = least_squares(point(p), std::max(share, 30), fit_at);
-            if (found.cost < best.cost) best = found;
-        }
-    }
-    for (int round = 0; round < 6 && out.evaluations < options.max_evaluations; ++round) {
-        const double size = (round % 2 == 0 ? 0.5 : -0.5) / (1 + 0.5 * round);
-        const Vertex found = descend(best, size, options.max_evaluations - out.evaluations, cost);
-        if (found.cost < best.cost) best = found;
-    }
-    out.preset = preset_at(start, best.x);
-    const Fit fit = compare(out.preset, measured, options.repeatability);
-    out.rms = fit.rms;
-    out.cost = fit.cost;
+    if (is_foam(start) || has_broad_side(start) || start.spines > 1 || start.geometry)
+        throw Error(start.name, "is not a round tuft of hair, the only kind that can be fitted");
+    Problem problem(start, measured, options);
+    const Candidate best = search(problem, std::max(options.max_evaluations, 60));
+    Calibration out{
+        .preset = problem.preset(best.at), .rms = best.fit.rms, .cost = best.fit.cost, .objective = best.fit.objective};
+    add_uncertainty(problem, start, best, out);
+    out.evaluations = problem.evaluations();
     return out;
 }
 

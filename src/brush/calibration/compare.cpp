@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "core/system/parallel.h"
 
@@ -20,12 +21,15 @@ SweepRow rms_difference(std::span<const SweepRow> swept, std::span<const SweepRo
     const std::vector<double> depths = depths_of(measured);
     SweepRow rms;
     for (double SweepRow::*column : kSweepColumns) {
+        int count = 0;
         for (const SweepRow& row : measured) {
+            if (std::isnan(row.*column)) continue;
             const auto at = std::lower_bound(depths.begin(), depths.end(), row.depth) - depths.begin();
             const double d = swept[static_cast<std::size_t>(at)].*column - row.*column;
             rms.*column += d * d;
+            ++count;
         }
-        rms.*column = std::sqrt(rms.*column / static_cast<double>(measured.size()));
+        rms.*column = count > 0 ? std::sqrt(rms.*column / count) : std::numeric_limits<double>::quiet_NaN();
     }
     return rms;
 }

@@ -14,7 +14,8 @@ namespace tuft::brush {
 std::vector<double> depths_of(std::span<const SweepRow> measured);
 
 /// Returns the root mean square difference of each column between the rows of `swept` and the measured ones of the
-/// same depth; `depth` is unused. Precondition: `swept` has a row for each of `depths_of(measured)`, in that order.
+/// same depth; NaN where no row has the column; `depth` is unused. Precondition: `swept` has a row for each of
+/// `depths_of(measured)`, in that order.
 SweepRow rms_difference(std::span<const SweepRow> swept, std::span<const SweepRow> measured);
 
 /// One spine method's sweep of a brush.

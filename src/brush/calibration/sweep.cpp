@@ -221,11 +221,10 @@ std::vector<SweepRow> read_sweep(const std::string& path) {
                 }
                 if (cells[i] == "excluded_by_authors") excluded = static_cast<int>(i);
             }
-            for (int k = 0; k < 4; ++k) {
-                if (column[k] < 0) {
-                    throw Error(path, number,
-                                Message("no column '{}'; needed are z_mm,width_mm,drag_mm,offset_mm", names[k]));
-                }
+            if (column[0] < 0 || *std::max_element(column + 1, column + 4) < 0) {
+                throw Error(path, number,
+                            Message("no column '{}'; needed are z_mm and one or more of width_mm,drag_mm,offset_mm",
+                                    std::string(column[0] < 0 ? "z_mm" : "width_mm")));
             }
             continue;
         }
@@ -240,7 +239,10 @@ std::vector<SweepRow> read_sweep(const std::string& path) {
         };
         if (excluded >= 0 && value(excluded) != 0) continue;
         SweepRow row;
-        for (int k = 0; k < 4; ++k) row.*members[k] = value(column[k]) * kMillimetre;
+        for (int k = 0; k < 4; ++k) {
+            const double absent = std::numeric_limits<double>::quiet_NaN();
+            row.*members[k] = column[k] < 0 ? absent : value(column[k]) * kMillimetre;
+        }
         rows.push_back(row);
     }
     if (rows.empty()) throw Error(path, "has no measured rows");

@@ -80,6 +80,7 @@ constexpr std::array kFields = {
     Field{"section", "flatten_contact", &Preset::flatten_contact, 1, 0, 10},
     Field{"section", "flatten_max", &Preset::flatten_max, 1, 1, 10},
     Field{"ink", "capacity_ml", &Preset::capacity, kMillilitre, 0, 100},
+    Field{"ink", "tip_drop_mm", &Preset::tip_drop, kMillimetre, 0, 10},
     Field{"split", "factor", &Preset::split_factor, 1, 0, 100},
     Field{"split", "at", &Preset::split_at, 1, 0, 100},
     Field{"split", "merge_at", &Preset::merge_at, 1, 0, 100},
@@ -319,8 +320,8 @@ std::vector<std::string> list_presets() {
 
 Preset scaled(const Preset& preset, double factor) {
     Preset p = preset;
-    for (double Preset::*length : {&Preset::length, &Preset::radius, &Preset::tip_radius, &Preset::end_compliance,
-                                   &Preset::adhesion_range, &Preset::adhesion})
+    for (double Preset::*length : {&Preset::length, &Preset::radius, &Preset::tip_radius, &Preset::tip_drop,
+                                   &Preset::end_compliance, &Preset::adhesion_range, &Preset::adhesion})
         p.*length *= factor;
     if (p.spines > 1) {
         for (double Preset::*length :

@@ -90,6 +90,7 @@ struct Preset {
 
     // Ink and splitting.
     double capacity = 4e-7;               ///< m³ of ink when full
+    double tip_drop = 0;                  ///< m, radius ρ of the ink that hangs at the point of a wet round tuft
     double split_factor = 3;              ///< ξ of SP = ξ k (1 - Z_i/Z)
     double split_at = 1, merge_at = 0.7;  ///< thresholds on SP
     double split_yaw = 0.12;              ///< Δ, radians between sub-spines

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "brush/tuft/lateral.h"
 #include "core/ease.h"
@@ -318,6 +319,30 @@ Widths side_nodes(const SectionInput& in, const std::vector<Vec3>& t, const std:
     return out;
 }
 
+/// Factor ≥ 1 on both semi-axes of each section, root first, by which ink at the point is wider than its hair. The drop
+/// that hangs there has the radius ρ; pressed to the depth δ of the straight hair's point it wets ρ tanh(δ/2ρ). It
+/// reaches 4 ρ up the hair, where the tuft is as thick as the drop, and carries no force.
+std::vector<double> drop_factors(const SectionInput& in) {
+    const double rho = in.wetness * in.preset.tip_drop;
+    std::vector<double> out(in.node.size(), 1);
+    if (in.obstacles.empty() || rho <= 0 || in.wide() || in.share > 1) return out;
+    const double length = in.preset.length;
+    const rod::Obstacle& obstacle = in.obstacles.back();
+    const rod::Clamp& clamp = in.spine.memory.clamp;
+    const auto height = [&](const Vec3& x) { return length * glm::dot(x - obstacle.origin, obstacle.normal); };
+    const double hair = std::accumulate(in.spine.rod.length.begin(), in.spine.rod.length.end(), 0.0);
+    const double depth = std::max(0.0, -height(clamp.position + hair * clamp.tangent));
+    const double gap = height(in.node.back()) - in.spine.rest_radius.back();
+    const double wet = rho * std::tanh(depth / (2 * rho)) * std::clamp(1 - gap / rho, 0.0, 1.0);
+    double from_tip = 0;
+    for (std::size_t i = out.size(); i-- > 0 && from_tip < 4 * rho;) {
+        const double r = in.spine.rest_radius[i];
+        if (r > 0) out[i] = std::hypot(1.0, wet * (1 - from_tip / (4 * rho)) / r);
+        if (i > 0) from_tip += length * in.spine.rod.length[i - 1];
+    }
+    return out;
+}
+
 }  // namespace
 
 double side_stiffness(double wetness) {
@@ -360,6 +385,11 @@ SectionOutput make_sections(const SectionInput& in) {
     const std::vector<double> down = lowering(in, out.sections);
     for (std::size_t i = 1; i < count && !in.obstacles.empty(); ++i) {
         out.sections[count - 1 - i].centre -= down[i] * in.obstacles[i].normal;
+    }
+    const std::vector<double> drop = drop_factors(in);
+    for (std::size_t i = 0; i < count; ++i) {
+        out.sections[count - 1 - i].a *= drop[i];
+        out.sections[count - 1 - i].b *= drop[i];
     }
     const Quat back = glm::conjugate(in.rotation);
     for (std::size_t i = count; i-- > 0;) {

@@ -60,6 +60,9 @@ double side_stiffness(double wetness);
 /// Walls. A wall beside the tuft holds the side nodes with the force of their springs, which acts on the spine. The
 /// rod has it as the potential of the springs at the free half-width of the previous step (flanks.h).
 ///
+/// Point. Ink that hangs at the point of a wet round tuft (`Preset::tip_drop`) widens the sections there; it is no hair
+/// and takes no part in the balance.
+///
 /// Axis. The wide axis e lies in the contact plane where the spine presses most; without contact along the axis of
 /// bending; without bending it is unchanged. It is parallel-transported along the spine from there.
 SectionOutput make_sections(const SectionInput& input);

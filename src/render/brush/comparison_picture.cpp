@@ -98,7 +98,8 @@ void plot_column(const Sheet& sheet, const Plot& plot, std::span<const ModelSwee
         for (const SweepRow& row : model.rows) points.push_back(plot.at(Vec2{row.depth, row.*column} / kMillimetre));
         sheet.line(points, 4, kColours[static_cast<std::size_t>(model.method)]);
     }
-    for (const SweepRow& row : measured) sheet.dot(plot.at(Vec2{row.depth, row.*column} / kMillimetre), 6);
+    for (const SweepRow& row : measured)
+        if (!std::isnan(row.*column)) sheet.dot(plot.at(Vec2{row.depth, row.*column} / kMillimetre), 6);
 }
 
 void plot_spines(const Sheet& sheet, Plot plot, std::span<const ModelSweep> models) {
