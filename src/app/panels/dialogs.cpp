@@ -5,6 +5,7 @@
 
 #include "app/panels/panels.h"
 #include "core/text/units.h"
+#include "io/model/read_model.h"
 
 namespace fs = std::filesystem;
 
@@ -77,7 +78,7 @@ void frame_rows(Ui& ui, const Inspected& in, FileFrame& frame) {
                 : frame.unit == guess ? ui.tr("guessed from the size")
                                       : std::string(ui.tr("guessed")) + ": " + guess);
     name_row(ui, "Upward axis");
-    std::string up = frame.y_up || in.unit_fixed ? "y" : "z";
+    std::string up = frame.y_up || (in.unit_fixed && !io::is_cad_file(in.path)) ? "y" : "z";
     ImGui::BeginDisabled(in.unit_fixed);
     if (ui.combo("Up", up, axes, 90)) frame.y_up = up == "y";
     ImGui::EndDisabled();
