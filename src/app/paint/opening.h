@@ -8,6 +8,7 @@
 
 #include "app/paint/paint_thread.h"
 #include "core/message.h"
+#include "io/model/read_model.h"
 #include "mesh/read/polygon_soup.h"
 #include "mesh/repair/inspect.h"
 
@@ -31,6 +32,7 @@ struct OpenOptions {
     std::string substrate = "porcelain";
     bool own_colours = true;    ///< shows the model's own colours, if any
     bool turned_round = false;  ///< the other side of open parts is their front than reading chose
+    io::CadReading cad;         ///< by which a CAD file was read
 };
 
 /// Purpose of opening a project.
@@ -54,7 +56,7 @@ class Opening {
     Opening();
     ~Opening();
 
-    void inspect(const std::filesystem::path& path);
+    void inspect(const std::filesystem::path& path, const io::CadReading& cad = {});
     void prepare(Inspected inspected, const OpenOptions& options, const std::filesystem::path& project);
     /// Prepares a model that replaces another: paints the strokes of the project `former` on it.
     void revise(Inspected inspected, const OpenOptions& options, const std::filesystem::path& former,

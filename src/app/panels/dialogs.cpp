@@ -1,6 +1,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "app/panels/panels.h"
@@ -85,6 +86,27 @@ void frame_rows(Ui& ui, const Inspected& in, FileFrame& frame) {
     if (in.unit_fixed) note_beside(ui.tr("the format says so"));
 }
 
+/// Groups and chord tolerance of a CAD file. Returns true when it is to be read anew.
+bool cad_rows(Ui& ui, io::CadReading& cad) {
+    static const std::vector<std::string> groups{"bodies", "faces"},
+        chords{"from the size", "0.5 mm", "0.1 mm", "0.02 mm", "0.005 mm"};
+    constexpr std::array<double, 5> kChords{0, 0.5, 0.1, 0.02, 0.005};
+    const io::CadReading before = cad;
+    name_row(ui, "Groups of the file");
+    std::string group = groups[cad.groups == io::CadGroups::faces ? 1 : 0];
+    if (ui.combo("CAD groups", group, groups, 90))
+        cad.groups = group == groups[1] ? io::CadGroups::faces : io::CadGroups::bodies;
+    name_row(ui, "Chord tolerance");
+    std::size_t chosen = 0;
+    for (std::size_t i = 0; i < kChords.size(); ++i)
+        if (kChords[i] * kMillimetre == cad.chord) chosen = i;
+    std::string chord = chords[chosen];
+    if (ui.combo("Chord tolerance", chord, chords, 120))
+        for (std::size_t i = 0; i < chords.size(); ++i)
+            if (chords[i] == chord) cad.chord = kChords[i] * kMillimetre;
+    return !(cad == before);
+}
+
 /// Texels, material and sides of the model that is made of a file. `area`: m².
 void model_rows(Session& s, const mesh::MeshSummary& m, double area) {
     Ui& ui = s.ui;
@@ -126,6 +148,7 @@ void open_dialog(Session& s) {
     fact(ui, "Size", print("%.1f \xc3\x97 %.1f \xc3\x97 %.1f mm", size.x, size.y, size.z));
     fact(ui, "Triangles", grouped(m.n_triangles));
     frame_rows(ui, in, s.project.options.frame);
+    const bool reread = io::is_cad_file(in.path) && cad_rows(ui, s.project.options.cad);
     model_rows(s, m, m.area * factor * factor);
     ui.heading("Checked and repaired");
     if (in.defects.empty()) ui.note(ui.tr("The mesh is sound; nothing had to be repaired."));
@@ -140,10 +163,14 @@ void open_dialog(Session& s) {
     ImGui::SameLine();
     const bool accepted = ui.primary_button(action, 120, fits);
     end_dialog(s.ui);
-    if (accepted)
-        accept_inspected(s);
-    else if (cancelled)
+    if (reread) {
+        s.project.opening.inspect(in.path, s.project.options.cad);
         s.project.inspected.reset();
+    } else if (accepted) {
+        accept_inspected(s);
+    } else if (cancelled) {
+        s.project.inspected.reset();
+    }
 }
 
 void opening_progress(Session& s) {
