@@ -366,7 +366,7 @@ INSTANTIATE_TEST_SUITE_P(, ForeignPart,
                          testing::Values(Foreign{"step/screw.step"}, Foreign{"step/linkrods.step"},
                                          Foreign{"iges/hammer.iges"}, Foreign{"occ/bottle.brep"},
                                          Foreign{"occ/Pump_TopCover.brep"}, Foreign{"occ/Pump_Nut.brep"},
-                                         Foreign{"occ/CrankArm.brep"}, Foreign{"occ/Motor-c.brep"},
+                                         Foreign{"occ/CrankArm.brep"}, Foreign{"occ/Top.brep"},
                                          Foreign{"iges/bearing.iges", false, 3e-3}),
                          [](const auto& part) {
                              std::string name = fs::path(part.param.name).stem().string();

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -229,17 +230,21 @@ class Decompressor {
         const std::size_t length = whole_number(view, "byteLength", std::size_t{0});
         if (start > joined_.size() || length > joined_.size() - start)
             throw Error(name_, "a buffer view lies outside its buffer");
-        const DracoMesh mesh(std::span<const unsigned char>(joined_).subspan(start, length), name_);
+        const std::unique_ptr<DracoMesh> mesh =
+            decode_draco(std::span<const unsigned char>(joined_).subspan(start, length), name_);
         for (const auto& [attribute, id] : stream.at("attributes").items()) {
             json& named = primitive.at("attributes").at(attribute);
             const json accessor = accessor_at(named);
             const auto type = std::find(kTypes.begin(), kTypes.end(), accessor.at("type").get<std::string>());
             const int component = whole_number<int>(accessor.at("componentType"));
-            const Bytes rows = mesh.rows(whole_number<unsigned>(id), component,
-                                         type == kTypes.end() ? 0 : static_cast<int>(type - kTypes.begin()) + 1);
-            named = add_accessor(accessor, rows, mesh.n_points(), component);
+            const int n = type == kTypes.end() ? 0 : static_cast<int>(type - kTypes.begin()) + 1;
+            Bytes rows;
+            if (!mesh->rows(whole_number<unsigned>(id), component, n, rows))
+                throw Error(name_, "a Draco mesh lacks an attribute that its primitive names");
+            named = add_accessor(accessor, rows, mesh->n_points(), component);
         }
-        const std::vector<std::uint32_t> indices = mesh.indices();
+        std::vector<std::uint32_t> indices;
+        if (!mesh->indices(indices)) throw Error(name_, "a Draco mesh is damaged");
         const auto* first = reinterpret_cast<const unsigned char*>(indices.data());
         primitive["indices"] = add_accessor({{"type", "SCALAR"}}, {first, 4 * indices.size()}, indices.size(), 5125);
         primitive["mode"] = 4;  // triangles, whatever it was before
