@@ -19,6 +19,7 @@
 #include <Message_Messenger.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Writer.hxx>
+#include <STEPControl_Controller.hxx>
 #include <STEPControl_Reader.hxx>
 #include <STEPControl_Writer.hxx>
 #include <TDataStd_Name.hxx>
@@ -62,8 +63,9 @@ class Cad : public testing::Test {
     void TearDown() override { fs::remove_all(folder_); }
 
     fs::path step(const TopoDS_Shape& shape, const std::string& name, const char* unit = "MM") const {
+        STEPControl_Controller::Init();
+        Interface_Static::SetCVal("write.step.unit", unit);  // before the writer, which scales by it
         STEPControl_Writer writer;
-        Interface_Static::SetCVal("write.step.unit", unit);
         EXPECT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);
         EXPECT_EQ(writer.Write((folder_ / name).c_str()), IFSelect_RetDone);
         Interface_Static::SetCVal("write.step.unit", "MM");
